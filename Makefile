@@ -1,0 +1,217 @@
+# Screed: every entry point. `make help` lists them.
+#
+# The first call on a fresh machine installs what is missing (DEPS=no switches that off), so rules that need installed tools run in a
+# second make, after the check. Everything is built under build/, results go to out/.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -o pipefail -ec
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-builtin-rules
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(shell nproc)
+endif
+
+BUILD ?= release
+DEPS ?= yes
+BOARD ?= a_star_32u4
+EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
+ARGS ?=
+PREFIX ?= /usr/local
+
+BUILD_ROOT := build
+OUT := out
+B := $(BUILD_ROOT)/$(BUILD)
+
+OPTIMISE_release := -O2 -DNDEBUG
+OPTIMISE_debug := -O0 -g
+OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+ifeq ($(OPTIMISE_$(BUILD)),)
+$(error BUILD=$(BUILD): release, debug or asan)
+endif
+
+# -ffp-contract=off: the same bits with and without fused multiply-add.
+WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor \
+            -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I.
+DATA_FLAGS = -DSCREED_DATA_DIR='"$(DATA_DIR)"' -DSCREED_BOARDS_DIR='"$(BOARDS_DIR)"'
+DATA_DIR ?= $(CURDIR)/host_sim/data
+BOARDS_DIR ?= $(CURDIR)/boards
+VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+
+PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash
+TEST_PACKAGES := gtest_main
+MCU_TEST_LIBS := -lsimavr -lelf
+BENCH_PACKAGES := benchmark
+
+# C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
+CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp)
+HOST_SOURCES := $(wildcard hal/host/*.cpp host_sim/*/*.cpp)
+TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
+LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
+STACK_LIBRARY_SOURCES := $(filter-out tools/avr_stack/main.cpp,$(wildcard tools/avr_stack/*.cpp))
+UNIT_SOURCES := $(wildcard tests/unit/*.cpp)
+SITL_SOURCES := $(wildcard tests/sitl/*.cpp)
+BENCH_SOURCES := $(wildcard tools/bench/*.cpp)
+CPP_FILES := $(shell find firmware hal host_sim tools tests boards -name '*.cpp' -o -name '*.h' 2>/dev/null | LC_ALL=C sort)
+TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) tools/main.cpp $(wildcard tools/avr_stack/main.cpp) \
+                $(UNIT_SOURCES) $(SITL_SOURCES) $(BENCH_SOURCES)
+
+objects = $(patsubst %.cpp,$(B)/%.o,$(1))
+SCREED := $(B)/screed
+LIBRARY := $(B)/libscreed.a
+
+# ---- entry points -----------------------------------------------------------------------------------------------------------
+
+.PHONY: help sim test firmware size bench lint format deps clean install build FORCE
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
+	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
+	@echo "make firmware  build the image for the robot          (BOARD=$(BOARD))"
+	@echo "make size      flash, RAM and stack of that image against the budget"
+	@echo "make bench     real-time factor and ns per tick"
+	@echo "make lint      formatting and static analysis"
+	@echo "make format    clang-format over the tree"
+	@echo "make build     build/$(BUILD)/screed, the host program (BUILD=release|debug|asan)"
+	@echo "make install   install it                             (PREFIX=$(PREFIX))"
+	@echo "make deps      install missing Debian packages        (DEPS=no: never)"
+	@echo "make clean     remove build/ (results in out/ stay)"
+
+# Each of these needs the packages first and then knows how to go on.
+STEP = +@$(MAKE) --no-print-directory BUILD=$(BUILD) BOARD=$(BOARD) DEPS=no
+sim: deps
+	$(STEP) run-sim
+test: deps
+	$(STEP) run-tests
+firmware: deps
+	$(STEP) firmware-image
+size: deps
+	$(STEP) firmware-size
+bench: deps
+	$(STEP) run-bench
+lint: deps
+	$(STEP) -k run-lint
+build: deps
+	$(STEP) $(SCREED)
+
+deps:
+	@tools/install-deps.sh $(DEPS) tools/debian-packages.txt
+
+format: deps
+	clang-format -i $(CPP_FILES)
+
+clean:
+	rm -rf $(BUILD_ROOT)
+
+# ---- compiler flags in response files: rebuilt when they change, and pkg-config runs once. -idirafter: foreign headers
+# are system headers (no warnings), and a package that names /usr/include does not upset the compiler's own order ------------------------------------
+
+$(B)/host.flags: FORCE
+	@mkdir -p $(@D)
+	@{ echo "-std=c++20 $(COMMON_FLAGS) $(subst ",\",$(DATA_FLAGS))" ; \
+	   pkg-config --cflags $(PACKAGES) $(TEST_PACKAGES) $(BENCH_PACKAGES) | sed 's/-I/-idirafter /g' ; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+$(B)/firmware.flags: FORCE
+	@mkdir -p $(@D)
+	@echo "-std=c++14 $(COMMON_FLAGS)" > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+$(B)/link.flags: FORCE
+	@mkdir -p $(@D)
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) ; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+# Only the file that prints the version depends on it.
+$(B)/version.h: FORCE
+	@mkdir -p $(@D)
+	@echo '#define SCREED_VERSION "$(VERSION)"' > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+
+# ---- host program ------------------------------------------------------------------------------------------------------------
+
+$(B)/firmware/%.o: firmware/%.cpp $(B)/firmware.flags
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) @$(B)/firmware.flags -MMD -MP -c $< -o $@
+$(B)/tools/main.o: tools/main.cpp $(B)/host.flags $(B)/version.h
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) @$(B)/host.flags -I$(B) -MMD -MP -c $< -o $@
+$(B)/%.o: %.cpp $(B)/host.flags
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) @$(B)/host.flags -MMD -MP -c $< -o $@
+
+$(LIBRARY): $(call objects,$(LIBRARY_SOURCES))
+	@rm -f $@
+	@ar rcs $@ $^
+$(B)/libavr_stack.a: $(call objects,$(STACK_LIBRARY_SOURCES))
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(SCREED): $(B)/tools/main.o $(LIBRARY) $(B)/link.flags
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -o $@
+
+$(B)/avr_stack: $(B)/tools/avr_stack/main.o $(B)/libavr_stack.a $(B)/link.flags
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -o $@
+
+.PHONY: run-sim
+run-sim: $(SCREED)
+	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
+
+install:
+	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards run-install
+.PHONY: run-install
+run-install: $(SCREED)
+	install -D -m 755 $(SCREED) $(DESTDIR)$(PREFIX)/bin/screed
+	mkdir -p $(DESTDIR)$(PREFIX)/share/screed
+	cp -r host_sim/data/. boards $(DESTDIR)$(PREFIX)/share/screed/
+
+# ---- the image for the microcontroller ---------------------------------------------------------------------------------------
+
+include hal/avr/firmware.mk
+
+# ---- tests -------------------------------------------------------------------------------------------------------------------
+
+TESTS := $(B)/tests/unit_tests $(B)/tests/sitl_tests
+include $(wildcard tests/mcu/mcu_tests.mk)
+
+$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
+$(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flags
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
+
+.PHONY: run-tests
+run-tests: $(SCREED) $(TESTS) $(TEST_IMAGES)
+	@SCREED_PROGRAM=$(CURDIR)/$(SCREED) tests/run.sh $(TESTS)
+
+# ---- benchmarks --------------------------------------------------------------------------------------------------------------
+
+$(B)/bench: $(call objects,$(BENCH_SOURCES)) $(LIBRARY) $(B)/link.flags
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(BENCH_PACKAGES)) -o $@
+.PHONY: run-bench
+run-bench: $(B)/bench
+	@$(B)/bench --benchmark_counters_tabular=true $(ARGS)
+
+# ---- lint --------------------------------------------------------------------------------------------------------------------
+
+.PHONY: run-lint check-format
+run-lint: check-format $(patsubst %.cpp,$(B)/%.tidy,$(TIDY_SOURCES))
+	@echo "lint: $(words $(TIDY_SOURCES)) sources clean"
+check-format:
+	@clang-format --dry-run -Werror $(CPP_FILES)
+
+# A stamp a source, renewed when the source or a header of it changed (the .d file of the object says which).
+$(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags $(B)/version.h .clang-tidy
+	@mkdir -p $(@D)
+	@echo "  TIDY $<"
+	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/%,$<),$(B)/firmware.flags,$(B)/host.flags) | tr -d '\\') -I$(B) 2>&1 \
+	  | { grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$$' || true; }
+	@touch $@
+
+ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
+                 $(SITL_SOURCES) $(BENCH_SOURCES))
+-include $(ALL_OBJECTS:.o=.d)

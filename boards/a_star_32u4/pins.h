@@ -1,0 +1,71 @@
+// Pololu A-Star 32U4 Robot Controller on a Dagu Rover 5: which pin does what. For hal/avr only.
+// Source: Pololu, "A-Star 32U4 User's Guide" 6, and the schematic of the robot controller.
+#pragma once
+
+#include "hal/avr/pin.h"
+#include "hal/avr/quadrature.h"
+
+namespace screed {
+namespace avr {
+
+// Motors. M1 drives the left track, M2 the right one. A high direction pin is reverse.
+using LeftPwmPin = Pin<kPortB, 5>;          // pin 9
+using LeftDirectionPin = Pin<kPortD, 6>;    // pin 12
+using RightPwmPin = Pin<kPortB, 6>;         // pin 10
+using RightDirectionPin = Pin<kPortE, 2>;
+#define LEFT_DUTY_REGISTER OCR1A
+#define RIGHT_DUTY_REGISTER OCR1B
+
+// Encoders: both channels of both tracks on port B, one interrupt and one port read. A leads B when the track drives
+// forward.
+using LeftEncoderA = Pin<kPortB, 4>;   // pin 8
+using LeftEncoderB = Pin<kPortB, 7>;   // pin 11
+using RightEncoderA = Pin<kPortB, 1>;  // pin 15
+using RightEncoderB = Pin<kPortB, 2>;  // pin 16
+
+struct EncoderLevels {
+  QuadratureLevels left;
+  QuadratureLevels right;
+};
+
+inline void make_encoder_pins_inputs() {
+  LeftEncoderA::set();  // pull-ups: a broken wire is a level that stands still
+  LeftEncoderB::set();
+  RightEncoderA::set();
+  RightEncoderB::set();
+}
+
+/// Levels of one moment.
+inline EncoderLevels read_encoder_pins() {
+  const uint8_t port = PINB;
+  return {{(port & LeftEncoderA::kMask) != 0, (port & LeftEncoderB::kMask) != 0},
+          {(port & RightEncoderA::kMask) != 0, (port & RightEncoderB::kMask) != 0}};
+}
+
+inline void enable_encoder_interrupts() {
+  PCMSK0 = LeftEncoderA::kMask | LeftEncoderB::kMask | RightEncoderA::kMask | RightEncoderB::kMask;
+  PCIFR = _BV(PCIF0);
+  PCICR = _BV(PCIE0);
+}
+
+// LEDs and the level that lights them.
+using RedLedPin = Pin<kPortB, 0>;     // pin 17
+using YellowLedPin = Pin<kPortC, 7>;  // pin 13
+using GreenLedPin = Pin<kPortD, 5>;
+constexpr bool kRedLedHigh = false;
+constexpr bool kYellowLedHigh = true;
+constexpr bool kGreenLedHigh = false;
+
+constexpr uint8_t kBatteryChannel = 6;  // A1 = PF6
+
+/// Where the robot's axis i (x forward, y left, z up) comes from: an axis of the chips, turned round or not.
+struct AxisOfChip {
+  uint8_t index;
+  bool reversed;
+};
+// The AltIMU-10 v4 lies flat, components up, its printed x arrow forward. Its printed axes hold for LSM303D and L3GD20H
+// alike. The accelerometer shows +1 g on the axis that points up, as SensorSample wants it.
+constexpr AxisOfChip kImuAxes[3] = {{0, false}, {1, false}, {2, false}};
+
+}  // namespace avr
+}  // namespace screed

@@ -1,0 +1,65 @@
+// From a commanded body motion to the duty of both motors.
+#include "firmware/control/drive_control.h"
+
+#include "firmware/math/fixed.h"
+
+namespace screed {
+namespace {
+
+// The correction may at most add 90 degrees/s: beyond that the robot is stuck, not slipping.
+constexpr int32_t kYawCorrectionLimit = 16384;
+
+int16_t approach(int16_t value, int16_t target, int16_t step) {
+  return static_cast<int16_t>(clamp_i32(target, static_cast<int32_t>(value) - step,
+                                        static_cast<int32_t>(value) + step));
+}
+
+}  // namespace
+
+DriveControl::DriveControl(const BoardConstants& board, const Parameters& parameters)
+    : kinematics_(board.tread_mm),
+      left_(board, parameters),
+      right_(board, parameters),
+      full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
+      step_mm_per_s_(static_cast<int16_t>((parameters.accel_limit + kTickRate_hz - 1) / kTickRate_hz)),
+      yaw_kp_(parameters.yaw_kp),
+      yaw_ki_(parameters.yaw_ki) {}
+
+void DriveControl::idle(const DriveMeasurement& measured) {
+  targets_ = {0, 0};
+  yaw_integral_q8_ = 0;
+  limited_ = false;
+  left_.release(measured.counts_left);
+  right_.release(measured.counts_right);
+}
+
+int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
+  const int32_t error =
+      clamp_i32(static_cast<int32_t>(command.yaw_rate) - measured_rate, -32767, 32767);
+  if (!limited_) {
+    // ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096, shifted in two parts to fit 32 bits.
+    const int32_t step = asr(asr(static_cast<int32_t>(yaw_ki_) * error, 4) * 41, 8);
+    yaw_integral_q8_ =
+        clamp_i32(yaw_integral_q8_ + step, -kYawCorrectionLimit * 256, kYawCorrectionLimit * 256);
+  }
+  const int32_t correction =
+      asr(static_cast<int32_t>(yaw_kp_) * error, 8) + asr(yaw_integral_q8_, 8);
+  return command.yaw_rate + clamp_i32(correction, -kYawCorrectionLimit, kYawCorrectionLimit);
+}
+
+DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurement& measured) {
+  TrackSpeeds wanted = {0, 0};
+  if (command.speed_mm_per_s == 0 && command.yaw_rate == 0) {
+    yaw_integral_q8_ = 0;
+    limited_ = false;
+  } else {
+    wanted = kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
+                                full_speed_mm_per_s_, &limited_);
+  }
+  targets_.left = approach(targets_.left, wanted.left, step_mm_per_s_);
+  targets_.right = approach(targets_.right, wanted.right, step_mm_per_s_);
+  return {left_.tick(targets_.left, measured.counts_left, measured.battery_mv),
+          right_.tick(targets_.right, measured.counts_right, measured.battery_mv)};
+}
+
+}  // namespace screed

@@ -1,0 +1,58 @@
+// From a commanded body motion to the duty of both motors: yaw-rate loop, kinematics, speed loops.
+//
+// A skid-steered track must slip to turn, by an amount the ground decides. So the turn rate is
+// closed over the gyro: a PI controller adds to the commanded rate what slip takes away, before the
+// kinematics split it over the tracks.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/kinematics.h"
+#include "firmware/control/track_speed_control.h"
+
+namespace screed {
+
+struct DriveMeasurement {
+  int16_t counts_left;  ///< encoder counts since the last tick
+  int16_t counts_right;
+  int32_t yaw_rate;  ///< from the gyro, bias removed, angle units/s
+  uint16_t battery_mv;
+};
+
+struct DriveOutput {
+  int16_t duty_left;
+  int16_t duty_right;
+};
+
+class DriveControl {
+ public:
+  DriveControl(const BoardConstants& board, const Parameters& parameters);
+
+  /// Drives: one tick towards `command`.
+  DriveOutput tick(const MotionCommand& command, const DriveMeasurement& measured);
+
+  /// Motors off: keeps observing the tracks, forgets the controllers' state.
+  void idle(const DriveMeasurement& measured);
+
+  /// Track speeds asked for after acceleration limit and yaw-rate correction, mm/s.
+  const TrackSpeeds& targets() const { return targets_; }
+  /// Observed track speeds, 0.1 mm/s.
+  int16_t speed_left_dmm_per_s() const { return left_.speed_dmm_per_s(); }
+  int16_t speed_right_dmm_per_s() const { return right_.speed_dmm_per_s(); }
+
+ private:
+  int32_t corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate);
+
+  SkidSteer kinematics_;
+  TrackSpeedControl left_;
+  TrackSpeedControl right_;
+  TrackSpeeds targets_ = {0, 0};
+  int32_t yaw_integral_q8_ = 0;  ///< angle units/s
+  int16_t full_speed_mm_per_s_;
+  int16_t step_mm_per_s_;  ///< greatest change of a target in one tick
+  int16_t yaw_kp_;
+  int16_t yaw_ki_;
+  bool limited_ = false;  ///< the tracks could not make the last command
+};
+
+}  // namespace screed

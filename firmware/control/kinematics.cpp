@@ -1,0 +1,25 @@
+// Kinematics of a skid-steer robot (thesis 5.1.2).
+#include "firmware/control/kinematics.h"
+
+namespace screed {
+
+TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t limit_mm_per_s,
+                              bool* limited) const {
+  const int32_t limit = limit_mm_per_s;
+  const int32_t rate = clamp_i32(yaw_rate, -INT16_MAX, INT16_MAX);
+  const int32_t wanted = asr(rate * static_cast<int32_t>(half_arc_q22_), 22);
+  const int32_t turn = clamp_i32(wanted, -limit, limit);
+  const int32_t room = limit - (turn < 0 ? -turn : turn);
+  const int32_t speed = clamp_i32(speed_mm_per_s, -room, room);
+  if (limited != nullptr) *limited = turn != wanted || speed != speed_mm_per_s;
+  return {static_cast<int16_t>(speed - turn), static_cast<int16_t>(speed + turn)};
+}
+
+int32_t SkidSteer::yaw_rate(const TrackSpeeds& tracks) const {
+  const int32_t difference = static_cast<int32_t>(tracks.right) - tracks.left;
+  // difference / 2 / half_arc, with the numerator scaled so that it fits 32 bits: |difference| <= 1023 mm/s.
+  return (clamp_i32(difference, -1023, 1023) * (static_cast<int32_t>(1) << 21)) /
+         static_cast<int32_t>(half_arc_q22_);
+}
+
+}  // namespace screed

@@ -1,0 +1,82 @@
+// Speed control of one track.
+#include "firmware/control/track_speed_control.h"
+
+#include "firmware/math/fixed.h"
+#include "hal/sample.h"
+
+namespace screed {
+namespace {
+
+// Gains of the alpha-beta filter with both poles at r = 0.837: alpha = 1 - r^2, beta = (1 - r)^2 (Kalata 1984, fading memory).
+constexpr int32_t kAlpha_q8 = 77;
+constexpr int32_t kBeta_q12 = 109;
+// No track moves 40 counts (23 mm) in a tick: anything above is encoder noise.
+constexpr int16_t kMostCounts = 40;
+// Below this speed a track with target 0 counts as standing.
+constexpr int16_t kStanding_dmm_per_s = 100;
+constexpr int32_t kIntegralLimit_q16 = static_cast<int32_t>(kDutyMax) << 16;
+// Limits of the error, so that its product with the largest gain fits 32 bits.
+constexpr int16_t kErrorLimit_dmm_per_s = 3000;
+
+}  // namespace
+
+TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Parameters& parameters)
+    : count_um_q4_(board.count_um_q4),
+      nominal_mv_(board.motor_nominal_mv),
+      kp_(parameters.speed_kp),
+      ki_(parameters.speed_ki),
+      feed_forward_q8_(
+          static_cast<int16_t>(static_cast<int32_t>(kDutyMax) * 256 / board.full_speed_mm_per_s)) {}
+
+void TrackSpeedControl::release(int16_t counts) {
+  integral_q16_ = 0;
+  observe(counts);
+}
+
+void TrackSpeedControl::observe(int16_t counts) {
+  const int32_t step_q12 =
+      static_cast<int32_t>(clamp_i16(counts, -kMostCounts, kMostCounts)) * 4096;
+  const int32_t error = lag_q12_ + step_q12 - speed_q12_;
+  lag_q12_ = error - asr(error * kAlpha_q8, 8);
+  // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the shift in two parts.
+  speed_q12_ += asr(asr(error, 2) * kBeta_q12, 10);
+  // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16
+  speed_dmm_per_s_ = saturate_i16(asr(speed_q12_ * static_cast<int32_t>(count_um_q4_), 16));
+}
+
+int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv) {
+  observe(counts);
+  const bool standing = speed_dmm_per_s_ < kStanding_dmm_per_s &&
+                        speed_dmm_per_s_ > static_cast<int16_t>(-kStanding_dmm_per_s);
+  if (target_mm_per_s == 0 && standing) {
+    integral_q16_ = 0;
+    return 0;
+  }
+
+  const int32_t error =
+      clamp_i32(static_cast<int32_t>(target_mm_per_s) * 10 - speed_dmm_per_s_,
+                -kErrorLimit_dmm_per_s, kErrorLimit_dmm_per_s);
+
+  // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is.
+  const uint16_t supply_mv = battery_mv < nominal_mv_ / 2 ? nominal_mv_ / 2 : battery_mv;
+  const int32_t nominal_q4 = asr(static_cast<int32_t>(target_mm_per_s) * feed_forward_q8_, 4);
+  const int32_t feed_forward_q10 =
+      nominal_q4 * static_cast<int32_t>((static_cast<uint32_t>(nominal_mv_) << 6) / supply_mv);
+  // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
+  const int32_t proportional_q8 = asr(static_cast<int32_t>(kp_) * error * 102, 6);
+  const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);
+
+  // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the duty is at its limit the
+  // integral only moves back from it.
+  const int32_t unlimited = without_integral + asr(integral_q16_, 16);
+  const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
+                          (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
+  if (!pushes_out) {
+    integral_q16_ = clamp_i32(integral_q16_ + asr(static_cast<int32_t>(ki_) * error * 131, 5),
+                              -kIntegralLimit_q16, kIntegralLimit_q16);
+  }
+  return static_cast<int16_t>(clamp_i32(without_integral + asr(integral_q16_, 16),
+                                        -static_cast<int32_t>(kDutyMax), kDutyMax));
+}
+
+}  // namespace screed

@@ -1,0 +1,45 @@
+// Speed control of one track: encoder counts in, motor duty out.
+//
+// The encoder of the Rover 5 gives 1.8 counts a tick at 0.1 m/s, so the speed is observed by an
+// alpha-beta tracking filter (critically damped, double pole at 0.837 a tick, 56 ms) instead of a
+// difference of counts. The controller is PI with feed-forward from the motor's no-load speed,
+// scaled by the battery voltage.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/robot/board_constants.h"
+#include "firmware/robot/parameters.h"
+
+namespace screed {
+
+class TrackSpeedControl {
+ public:
+  TrackSpeedControl(const BoardConstants& board, const Parameters& parameters);
+
+  /// One tick. target: track speed, mm/s; counts: encoder counts since the last tick; battery_mv:
+  /// for the feed-forward. Returns the duty, -400..400. A target of 0 with the track at rest gives
+  /// duty 0: the driver brakes.
+  int16_t tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv);
+
+  /// One tick with the motors off: observes the speed, forgets the integral.
+  void release(int16_t counts);
+
+  /// Observed speed, 0.1 mm/s.
+  int16_t speed_dmm_per_s() const { return speed_dmm_per_s_; }
+
+ private:
+  void observe(int16_t counts);
+
+  uint16_t count_um_q4_;
+  uint16_t nominal_mv_;
+  int16_t kp_;
+  int16_t ki_;
+  int16_t feed_forward_q8_;   ///< duty per mm/s at the nominal voltage
+  int32_t lag_q12_ = 0;       ///< counts by which the observed position trails the encoder
+  int32_t speed_q12_ = 0;     ///< counts a tick
+  int32_t integral_q16_ = 0;  ///< duty
+  int16_t speed_dmm_per_s_ = 0;
+};
+
+}  // namespace screed

@@ -1,0 +1,315 @@
+// Attitude estimator in fixed point. See attitude.h and docs/attitude.md.
+//
+// The formats are chosen so that nearly every product is 32 x 16 bits with a shift by 16, the
+// cheapest there is on the AVR. A rotation of one tick is rounded to 16 bits (7.6e-6 rad), and what
+// rounding took is carried into the next tick, so nothing is lost over time. Corrections are
+// rounded as well: what they leave stays in the filter.
+#include "firmware/estimation/attitude.h"
+
+#include "firmware/math/fixed.h"
+#include "firmware/math/sqrt.h"
+
+namespace screed {
+
+namespace {
+
+// Every constant has a physical meaning; none was fitted to a single recording.
+
+constexpr int32_t kCountsPerG = 4096;  // 0.244 mg a count
+constexpr uint8_t kGravityBits = 14;   // binary digits of gravity_
+constexpr uint16_t kHalfAnglePerCount =
+    52473;  // 70 mdps * 10 ms / 2 = 6.10865e-6 rad, 33 binary digits
+constexpr int32_t kBiasLimit =
+    22488429;  // 30 dps; the L3GD20H is specified to +-25 dps at this range
+
+// Gravity filter: Butterworth, second order, time constant tau = 3 s; wn = sqrt(2) / tau * 0.01 s =
+// 0.0047140:
+//   slope += wn^2 (input - gravity) - sqrt(2) wn slope;  gravity += slope
+constexpr int16_t kSquaredFrequency =
+    373;  // wn^2 * 2^8 in Q16: 2^8 between the digits of gravity_ and slope_
+constexpr int16_t kDamping = 437;  // sqrt(2) wn in Q16
+
+// Heading: time constant 9 s; at first the mean of all samples (gain 1/k); after 3 s at most 2
+// degrees/s, so a piece of steel that passes by does little.
+constexpr uint16_t kHeadingStartSamples = 900;
+constexpr uint16_t kHeadingLimitedFrom = 300;
+constexpr uint16_t kHalfAnglePerAngle = 51472;  // pi / 65536 in Q30
+constexpr uint16_t kHeadingGain = 57;           // 0.01 s / 9 s of that
+constexpr int32_t kHeadingRateLimit = 2928;     // 0.02 degrees a tick as half angle in Q24
+constexpr uint8_t kMagAgeLimit = 10;
+
+// Rest: no axis differs from its own short mean (time constant 0.64 s) by more than this, for 1.5
+// s.
+constexpr uint8_t kMeanBits = 14;
+constexpr uint8_t kMeanShift = 6;
+constexpr uint32_t kRestGyro = static_cast<uint32_t>(29) << kMeanBits;       // 2 dps
+constexpr uint32_t kRestAccel = static_cast<uint32_t>(200) << kMeanBits;     // 0.05 g
+constexpr uint32_t kRestGyroMean = static_cast<uint32_t>(428) << kMeanBits;  // 30 dps
+constexpr uint8_t kBiasTicks = 100;     // time constant of the bias at rest, 1 s
+constexpr int16_t kMeanToBias = 26237;  // kHalfAnglePerCount / 2^14 / 2^3 in Q16
+
+// Motion bias: 0.02/s of the rate at which gravity has to correct, as each axis sees it: 0.02 *
+// 0.01 s * 2^3 in Q16, with 30 binary digits in and 33 out.
+constexpr int16_t kMotionBiasGain = 105;
+
+constexpr int16_t kYawRateScale = 16298;  // 2 * 100/s * 65536 / (2 pi) / 2^23 in Q16
+constexpr int16_t kMdpsScale = 22381;     // 70 / kHalfAnglePerCount * 2^8 in Q16
+
+constexpr uint32_t kLeastAccelSquared = static_cast<uint32_t>(512) * 512;  // (1/8 g)^2
+
+/// 1 / (n + 1) in Q16, n in 1..65534: the gain that turns a mean of n samples into one of n + 1.
+int16_t mean_gain_q16(uint16_t n) {
+  const uint16_t gain =
+      static_cast<uint16_t>(static_cast<uint16_t>(0xFFFFU) / static_cast<uint16_t>(n + 1U));
+  return static_cast<int16_t>(gain);
+}
+
+/// value * 2^kMeanBits, by a move of 16 bits and a short shift.
+int32_t with_mean_bits(int16_t value) {
+  const uint32_t moved = static_cast<uint32_t>(static_cast<uint16_t>(value)) << 16;
+  return asr(static_cast<int32_t>(moved), 16 - kMeanBits);
+}
+
+/// change q: a rotation about earth axes, in the format of scaled_product.
+Quaternion earth_side_product(const SmallQuaternion& change, const Quaternion& q) {
+  const SmallQuaternion reverse = {change.w, static_cast<int16_t>(-change.x),
+                                   static_cast<int16_t>(-change.y),
+                                   static_cast<int16_t>(-change.z)};
+  return conjugate(scaled_product(conjugate(q), reverse));
+}
+
+/// A half angle in Q24, limited so that it can be negated.
+int16_t limited(int32_t half_angle, int32_t limit) {
+  return static_cast<int16_t>(clamp_i32(half_angle, -limit, limit));
+}
+
+}  // namespace
+
+void AttitudeEstimator::reset() {
+  orientation_ = kIdentityQuaternion;
+  for (uint8_t i = 0; i < 3; ++i) {
+    gravity_[i] = 0;
+    slope_[i] = 0;
+    bias_[i] = 0;
+    gyro_mean_[i] = 0;
+    accel_mean_[i] = 0;
+    carry_[i] = 0;
+    half_angle_[i] = 0;
+  }
+  yaw_rate_ = 0;
+  ticks_ = 0;
+  mag_samples_ = 0;
+  mag_age_ = 0;
+  rest_ticks_ = 0;
+  bias_samples_ = 0;
+}
+
+void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
+  const bool first = ticks_ == 0;
+  if (first && !align(sample.accel)) return;
+  detect_rest(sample, may_be_at_rest);
+  if (at_rest()) learn_bias_at_rest();
+
+  if (!first) integrate(sample.gyro);  // the alignment is the pose at the end of this tick already
+  const RotationMatrix to_earth = rotation_matrix(orientation_);
+  yaw_rate_ = scale_q16(asr(dot_q14(to_earth.row[2], half_angle_), 8), kYawRateScale);
+
+  filter_gravity(to_earth, sample.accel);
+  // Half of the angle between the filtered acceleration and the vertical is y / (2 g) about x and
+  // -x / (2 g) about y; with g = 2^12 counts and 14 digits that is 2^-3 in Q24. A filtered length
+  // other than g only changes the gain.
+  SmallQuaternion correction = {length_deficit_q24(orientation_),
+                                limited(asr_round(gravity_[1], 3), 32767),
+                                limited(asr_round(-gravity_[0], 3), 32767), 0};
+  if (ready()) learn_bias_in_motion(to_earth, correction);
+  if (mag_age_ < kMagAgeLimit) ++mag_age_;
+  if (sample.mag_fresh) correction.z = heading_correction(to_earth, sample.mag);
+  correct(correction);
+}
+
+/// Sets the shortest rotation that turns the measured acceleration upright. False: no acceleration
+/// to speak of.
+bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
+  const uint32_t squared = static_cast<uint32_t>(mul_i16(accel[0], accel[0])) +
+                           static_cast<uint32_t>(mul_i16(accel[1], accel[1])) +
+                           static_cast<uint32_t>(mul_i16(accel[2], accel[2]));
+  if (squared < kLeastAccelSquared) return false;
+  // For a = (ax, ay, az) of length n: q is along (n + az, ay, -ax, 0). Upside down that vanishes,
+  // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
+  // the components.
+  const bool upside_down = accel[2] < 0;
+  const int32_t n = static_cast<int32_t>(isqrt32(squared));
+  const int32_t ax = static_cast<int32_t>(accel[0]);
+  const int32_t ay = upside_down ? -static_cast<int32_t>(accel[1]) : static_cast<int32_t>(accel[1]);
+  const int32_t az = static_cast<int32_t>(abs_u16(accel[2]));
+  const int32_t w = asr(n + az, 2);  // quartered: the squares of clipped values stay within 32 bits
+  const int32_t x = asr(ay, 2);
+  const int32_t y = asr(-ax, 2);
+  const int32_t length =
+      static_cast<int32_t>(isqrt32(static_cast<uint32_t>(w * w + x * x + y * y)));
+  const int32_t scale = kQ30One / (length + 1);
+  orientation_ = upside_down ? Quaternion{-x * scale, w * scale, 0, -y * scale}
+                             : Quaternion{w * scale, x * scale, y * scale, 0};
+  gravity_[0] = 0;
+  gravity_[1] = 0;
+  gravity_[2] = kCountsPerG << kGravityBits;
+  return true;
+}
+
+/// Follows the short means and counts the ticks of standstill.
+void AttitudeEstimator::detect_rest(const ImuSample& sample, bool may_be_at_rest) {
+  bool quiet = may_be_at_rest;
+  for (uint8_t i = 0; i < 3; ++i) {
+    const int32_t gyro = with_mean_bits(sample.gyro[i]);
+    const int32_t accel = with_mean_bits(sample.accel[i]);
+    if (ticks_ == 0) {
+      gyro_mean_[i] = gyro;
+      accel_mean_[i] = accel;
+    }
+    const int32_t gyro_change = gyro - gyro_mean_[i];
+    const int32_t accel_change = accel - accel_mean_[i];
+    gyro_mean_[i] += asr_round(gyro_change, kMeanShift);
+    accel_mean_[i] += asr_round(accel_change, kMeanShift);
+    if (abs_u32(gyro_change) > kRestGyro || abs_u32(accel_change) > kRestAccel ||
+        abs_u32(gyro_mean_[i]) > kRestGyroMean) {
+      quiet = false;
+    }
+  }
+  if (!quiet) {
+    rest_ticks_ = 0;
+  } else if (rest_ticks_ < kRestTicks) {
+    ++rest_ticks_;
+  }
+}
+
+/// Moves the bias to the mean of the gyroscope.
+void AttitudeEstimator::learn_bias_at_rest() {
+  if (bias_samples_ < kBiasTicks) ++bias_samples_;
+  const int16_t gain = mean_gain_q16(bias_samples_);
+  for (uint8_t i = 0; i < 3; ++i) {
+    bias_[i] += scale_q16(scale_q16(gyro_mean_[i] * 8, kMeanToBias) - bias_[i], gain);
+  }
+}
+
+/// A bias makes gravity correct in the same direction again and again, seen from the sensor.
+void AttitudeEstimator::learn_bias_in_motion(const RotationMatrix& to_earth,
+                                             const SmallQuaternion& correction) {
+  for (uint8_t i = 0; i < 3; ++i) {
+    const int32_t seen =
+        mul_i16(to_earth.row[0][i], correction.x) + mul_i16(to_earth.row[1][i], correction.y);
+    bias_[i] =
+        clamp_i32(bias_[i] - scale_q16(asr(seen, 8), kMotionBiasGain), -kBiasLimit, kBiasLimit);
+  }
+}
+
+/// Turns the orientation by what the gyroscope measured in this tick.
+void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
+  int32_t exact[3];
+  int32_t squared = 0;  // of the half angle, 34 digits: below 0.13
+  for (uint8_t i = 0; i < 3; ++i) {
+    exact[i] =
+        detail::mul_su(gyro[i], kHalfAnglePerCount) - bias_[i] + static_cast<int32_t>(carry_[i]);
+    half_angle_[i] = detail::high_half(exact[i]);
+    squared += mul_i16(half_angle_[i], half_angle_[i]);
+  }
+  // With h the half angle and s = h^2: cos h - 1 = -s/2 and sin(h)/h - 1 = -s/6; at the gyroscope's
+  // limit of 2000 dps about one axis the rest of the series changes the angle by 3e-5 of it.
+  const int16_t s = detail::high_half(squared + 0x8000);                 // 18 digits
+  const int16_t shrink = detail::high_half(mul_i16(s, 10923) + 0x8000);  // s / 6, 18 digits
+  int16_t sine[3];
+  for (uint8_t i = 0; i < 3; ++i) {
+    exact[i] -= asr_round(scale_q16(exact[i], shrink), 2);
+    carry_[i] = detail::low_half(exact[i]);
+    sine[i] = detail::high_half(exact[i]);
+  }
+  const SmallQuaternion change = {static_cast<int16_t>(-asr(s, 2)), sine[0], sine[1],
+                                  sine[2]};                        // 17 digits
+  const Quaternion turned = scaled_product(orientation_, change);  // Q31
+  orientation_.w += asr(turned.w, 1);
+  orientation_.x += asr(turned.x, 1);
+  orientation_.y += asr(turned.y, 1);
+  orientation_.z += asr(turned.z, 1);
+}
+
+void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
+  const bool starting = ticks_ < kStartTicks;
+  if (starting) ++ticks_;
+  const int16_t start_gain = starting ? mean_gain_q16(ticks_) : static_cast<int16_t>(0);
+  for (uint8_t i = 0; i < 3; ++i) {
+    const int32_t difference = dot_q14(to_earth.row[i], accel) - gravity_[i];
+    if (starting) {  // the mean of all samples so far
+      gravity_[i] += scale_q16(difference, start_gain);
+    } else {
+      slope_[i] += scale_q16(difference, kSquaredFrequency) - scale_q16(slope_[i], kDamping);
+      gravity_[i] += asr_round(slope_[i], 8);
+    }
+  }
+}
+
+/// Half angle about the vertical, Q24, by which the magnetometer pulls its horizontal part to
+/// north.
+int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
+                                              const int16_t (&mag)[3]) {
+  const Angle error = atan2_angle(dot_q14(to_earth.row[0], mag), dot_q14(to_earth.row[1], mag));
+  const int32_t age = static_cast<int32_t>(mag_age_);
+  mag_age_ = 0;
+  if (mag_samples_ == 0) {  // the first sample may be any angle away: turned at once and exactly
+    mag_samples_ = 1;
+    const Angle half = static_cast<Angle>(asr(error, 1));
+    const Quaternion turned =
+        earth_side_product({cos_q15(half), 0, 0, sin_q15(half)}, orientation_);
+    orientation_ = {turned.w * 2, turned.x * 2, turned.y * 2, turned.z * 2};
+    return 0;
+  }
+  const int32_t gain = mag_samples_ < kHeadingStartSamples
+                           ? static_cast<int32_t>(kHalfAnglePerAngle / (mag_samples_ + 1U))
+                           : static_cast<int32_t>(kHeadingGain) * age;
+  const int32_t limit = mag_samples_ < kHeadingLimitedFrom ? 32767 : kHeadingRateLimit * age;
+  if (mag_samples_ < kHeadingStartSamples) ++mag_samples_;
+  return limited(asr_round(static_cast<int32_t>(error) * gain, 6), limit);
+}
+
+/// Turns the estimate about the earth's axes, and the filtered gravity with it, so that nothing is
+/// corrected twice.
+void AttitudeEstimator::correct(const SmallQuaternion& correction) {
+  const Quaternion turned = earth_side_product(correction, orientation_);  // Q38
+  orientation_.w += asr_round(turned.w, 8);
+  orientation_.x += asr_round(turned.x, 8);
+  orientation_.y += asr_round(turned.y, 8);
+  orientation_.z += asr_round(turned.z, 8);
+  // Only the vertical component moves anything: the others are what is left of the last correction.
+  // Doubled for the whole angle; with the digits of scale_q16 and Q24 that leaves 2^7.
+  gravity_[0] += asr_round(scale_q16(gravity_[2], correction.y) * 2, 8);
+  gravity_[1] -= asr_round(scale_q16(gravity_[2], correction.x) * 2, 8);
+  // Gravity that does not point up any more is a lost attitude (tumbling beyond the gyroscope's
+  // range): start again.
+  if (gravity_[2] < (kCountsPerG / 4) << kGravityBits) {
+    slope_[0] = slope_[1] = slope_[2] = 0;
+    ticks_ = 0;
+    mag_samples_ = 0;
+  }
+}
+
+Angle AttitudeEstimator::roll() const {
+  const RotationMatrix to_earth = rotation_matrix(orientation_);
+  return atan2_angle(to_earth.row[2][1], to_earth.row[2][2]);
+}
+
+Angle AttitudeEstimator::pitch() const {
+  const RotationMatrix to_earth = rotation_matrix(orientation_);
+  const int16_t left = to_earth.row[2][1];
+  const int16_t up = to_earth.row[2][2];
+  const uint16_t level = isqrt32(static_cast<uint32_t>(mul_i16(left, left) + mul_i16(up, up)));
+  return atan2_angle(to_earth.row[2][0], static_cast<int32_t>(level));
+}
+
+Angle AttitudeEstimator::heading() const {
+  const RotationMatrix to_earth = rotation_matrix(orientation_);
+  return atan2_angle(to_earth.row[1][0], to_earth.row[0][0]);
+}
+
+int32_t AttitudeEstimator::gyro_bias_mdps(uint8_t axis) const {
+  return scale_q16(asr(bias_[axis], 8), kMdpsScale);
+}
+
+}  // namespace screed

@@ -1,0 +1,96 @@
+// Attitude estimator: gyroscope, accelerometer and magnetometer counts in, orientation out, in
+// integers. Knows nothing of robots, buses or time: one call of update() is one control tick of 10
+// ms.
+//
+// Structure after VQF (D. Laidig, T. Seel, "VQF: Highly accurate IMU orientation estimation with
+// bias estimation and magnetic disturbance rejection", Information Fusion 91, 2023;
+// arXiv:2203.17024): the gyroscope is integrated strap-down, the acceleration is turned into that
+// almost inertial frame and low-pass filtered THERE, where what a vehicle does averages out and
+// gravity stays. docs/attitude.md has the formulas, figures and limits.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/math/quaternion.h"
+#include "firmware/math/trig.h"
+
+namespace screed {
+
+/// One sample of the inertial sensors: raw counts in robot axes (x forward, y left, z up).
+struct ImuSample {
+  int16_t gyro[3];   ///< 70 mdps a count
+  int16_t accel[3];  ///< specific force, 0.244 mg a count: +z at rest when level; clipped values
+                     ///< are taken as they are
+  int16_t
+      mag[3];  ///< 0.160 mG a count, hard iron removed; any scale does, only the direction is used
+  bool mag_fresh;  ///< mag is new since the last call; when false it is not looked at
+};
+
+class AttitudeEstimator {
+ public:
+  AttitudeEstimator() { reset(); }
+
+  /// Forgets everything, the gyroscope bias as well.
+  void reset();
+
+  /// Advances by one tick. `may_be_at_rest` = false forbids to take this sample for standstill: a
+  /// caller that drives or sees its wheels turn says so, else a slow even turn (its rate steady
+  /// within 2 degrees/s) is learned as bias.
+  void update(const ImuSample& sample, bool may_be_at_rest = true);
+
+  /// Sensor to earth (ENU, y to magnetic north), Q30, length 1 within 2e-4. Identity before the
+  /// first usable sample.
+  const Quaternion& orientation() const { return orientation_; }
+
+  Angle roll() const;     ///< > 0: left side up
+  Angle pitch() const;    ///< > 0: nose up, -16384..16384
+  Angle heading() const;  ///< counter-clockwise from east, seen from above; from the start pose
+                          ///< without magnetometer
+
+  /// Turn rate about the earth's vertical, bias removed, 65536 units = one turn a second; > 0
+  /// counter-clockwise.
+  int32_t yaw_rate() const { return yaw_rate_; }
+
+  /// Gravity has been averaged over the first 3 s: roll and pitch can be relied on.
+  bool ready() const { return ticks_ == kStartTicks; }
+
+  /// The magnetometer has set the heading.
+  bool heading_ready() const { return mag_samples_ != 0; }
+
+  /// Standstill is detected: the bias is being taken from the gyroscope's mean.
+  bool at_rest() const { return rest_ticks_ == kRestTicks; }
+
+  /// Estimated gyroscope bias of an axis (0 x, 1 y, 2 z) in millidegrees a second, within +-30,000.
+  int32_t gyro_bias_mdps(uint8_t axis) const;
+
+ private:
+  static constexpr uint16_t kStartTicks = 300;  // 3 s, the time constant of the gravity filter
+  static constexpr uint8_t kRestTicks = 150;    // 1.5 s
+
+  bool align(const int16_t (&accel)[3]);
+  void detect_rest(const ImuSample& sample, bool may_be_at_rest);
+  void learn_bias_at_rest();
+  void learn_bias_in_motion(const RotationMatrix& to_earth, const SmallQuaternion& correction);
+  void integrate(const int16_t (&gyro)[3]);
+  void filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]);
+  int16_t heading_correction(const RotationMatrix& to_earth, const int16_t (&mag)[3]);
+  void correct(const SmallQuaternion& correction);
+
+  Quaternion orientation_;
+  int32_t gravity_[3];     // filtered acceleration in the earth frame, counts, 14 binary digits
+  int32_t slope_[3];       // change of gravity_ a tick, counts, 22 binary digits
+  int32_t bias_[3];        // half angle in radians a tick, 33 binary digits
+  int32_t gyro_mean_[3];   // short mean for the rest detection, counts, 14 binary digits
+  int32_t accel_mean_[3];  // the same
+  int32_t yaw_rate_;
+  uint16_t
+      carry_[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
+  int16_t half_angle_[3];  // rotation of this tick, half angle in radians, 17 binary digits
+  uint16_t ticks_;         // since the alignment, stops at kStartTicks; 0: not aligned yet
+  uint16_t mag_samples_;   // taken in, stops at kHeadingStartSamples
+  uint8_t mag_age_;        // ticks since the last magnetometer sample
+  uint8_t rest_ticks_;     // stops at kRestTicks
+  uint8_t bias_samples_;   // taken at rest, stops at kBiasTicks
+};
+
+}  // namespace screed

@@ -1,0 +1,38 @@
+// Dead reckoning.
+#include "firmware/estimation/odometry.h"
+
+#include "firmware/math/fixed.h"
+
+namespace screed {
+namespace {
+
+/// length * factor (Q15), rounded; |length| below 2^30.
+int32_t times_q15(int32_t length, int16_t factor) { return scale_q16(length * 2, factor); }
+
+}  // namespace
+
+void Odometry::reset() {
+  x_um_ = 0;
+  y_um_ = 0;
+  path_mm_ = 0;
+  path_rest_um_ = 0;
+}
+
+void Odometry::update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch) {
+  const int32_t counts = static_cast<int32_t>(counts_left) + counts_right;
+  // Mean of both tracks: half the sum; Q4 and the half together are a shift by 5.
+  const int32_t travel_um = asr_round(counts * static_cast<int32_t>(count_um_q4_), 5);
+  const int32_t level_um = times_q15(travel_um, cos_q15(pitch));
+  x_um_ += times_q15(level_um, cos_q15(heading));
+  y_um_ += times_q15(level_um, sin_q15(heading));
+  path_rest_um_ += travel_um < 0 ? -travel_um : travel_um;
+  while (path_rest_um_ >= 1000) {
+    path_rest_um_ -= 1000;
+    ++path_mm_;
+  }
+}
+
+int32_t Odometry::x_mm() const { return x_um_ / 1000; }
+int32_t Odometry::y_mm() const { return y_um_ / 1000; }
+
+}  // namespace screed

@@ -1,0 +1,80 @@
+// What every leveling algorithm sees and answers, and the one place that knows which algorithms
+// there are.
+//
+// The algorithms level with the robot's own motion alone (thesis 7.1.1): they seek hills and drive
+// over them. They see attitude and dead reckoning, no map, and answer with a commanded body motion.
+// A new algorithm is a new file, a value of LevelingAlgorithm and a case in leveling.cpp.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/kinematics.h"
+#include "firmware/leveling/random_walk.h"
+#include "firmware/leveling/site_fence.h"
+#include "firmware/robot/parameters.h"
+
+namespace screed {
+
+struct LevelingInput {
+  Angle pitch;    ///< nose up positive
+  Angle heading;  ///< counter-clockwise from east
+  int32_t x_mm;   ///< dead reckoning from the start of the run
+  int32_t y_mm;
+};
+
+/// Values of the parameter `algorithm`.
+enum class LevelingAlgorithm : uint8_t {
+  kDrive = 0,        ///< no algorithm: the ground station commands the motion
+  kHillSensing = 1,  ///< Algorithm 6
+  kSpinOnPeak = 2,   ///< its successor in 7.1.1
+};
+
+/// What an algorithm is doing; recorded and shown to people.
+enum class LevelingState : uint8_t {
+  kIdle = 0,
+  kWalk = 1,    ///< random walk
+  kClimb = 2,   ///< straight on, up an incline
+  kSpin = 3,    ///< spinning on a peak
+  kReturn = 4,  ///< outside the site, driving back
+  kDrive = 5,   ///< following the ground station
+};
+constexpr uint8_t kLevelingStates = 6;
+
+class Leveling {
+ public:
+  explicit Leveling(const Parameters& parameters);
+
+  /// Starts a run: forgets everything but the random sequence, which goes on.
+  void start();
+
+  /// One tick of the selected algorithm. `drive` is what the ground station commands, used by
+  /// kDrive alone.
+  MotionCommand tick(const LevelingInput& input, const MotionCommand& drive);
+
+  LevelingAlgorithm algorithm() const { return algorithm_; }
+  LevelingState state() const { return state_; }
+  /// Peaks met since power-up: climbs that ended.
+  uint16_t peaks() const { return peaks_; }
+
+ private:
+  LevelingState next_hill_sensing(Angle pitch) const;
+  LevelingState next_spin_on_peak(Angle pitch);
+  MotionCommand motion();
+  void enter(LevelingState next);
+
+  LevelingAlgorithm algorithm_;
+  Angle threshold_;
+  Angle hysteresis_;
+  int16_t climb_speed_;
+  YawRate spin_rate_;
+  uint16_t spin_ticks_;
+  RandomWalk walk_;
+  SiteFence fence_;
+  LevelingState state_ = LevelingState::kIdle;
+  uint16_t ticks_in_state_ = 0;
+  uint16_t peaks_ = 0;
+  bool spin_left_ =
+      true;  ///< the next spin turns left: alternating, so that heading errors do not add up
+};
+
+}  // namespace screed

@@ -1,0 +1,33 @@
+// Keeps a robot that has no map on its site: outside a circle around the start it turns and drives
+// back.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/kinematics.h"
+#include "firmware/math/units.h"
+
+namespace screed {
+
+class SiteFence {
+ public:
+  /// radius_mm: of the circle around the start; 0 switches the fence off. speed: on the way back.
+  SiteFence(int16_t radius_mm, int16_t speed_mm_per_s)
+      : radius_mm_(radius_mm), speed_mm_per_s_(speed_mm_per_s) {}
+
+  /// Looks at the position (dead reckoning from the start). Returns true while the robot has to
+  /// drive back: from the moment it leaves the circle until it is well inside (three quarters of
+  /// the radius) again.
+  bool outside(int32_t x_mm, int32_t y_mm);
+
+  /// The motion that leads back: turns on the spot while the start lies behind, drives as soon as
+  /// it lies ahead.
+  MotionCommand steer(int32_t x_mm, int32_t y_mm, Angle heading) const;
+
+ private:
+  int16_t radius_mm_;
+  int16_t speed_mm_per_s_;
+  bool returning_ = false;
+};
+
+}  // namespace screed

@@ -1,0 +1,200 @@
+// Fixed-point arithmetic shared by firmware and host: shifts, saturation, products. Knows nothing
+// of sensors or robots.
+//
+// Q formats of the project. "Qn" is an integer that stands for value / 2^n.
+//   name          type      one unit is            range            used for
+//   Angle         int16_t   1/65536 turn           [-1/2, 1/2) turn angles; wraps, never saturates
+//   (trig.h) Q15           int16_t   2^-15                  [-1, 1)          sines, rotation matrix
+//   elements, gains Q30           int32_t   2^-30                  [-2, 2)          quaternions,
+//   half angles in radians a tick mm, mm/s      int16/32  1 mm, 1 mm/s distances, speeds IMU counts
+//   int16_t   70 mdps, 0.244 mg, 0.160 mG             raw samples
+// Formats that one file alone needs are documented in that file.
+//
+// The AVR has an 8x8 multiplier and a 16-bit int: products here are built from 16x16 -> 32 bit
+// parts (about 25 cycles each there), never from 64-bit integers, and every operand is widened by
+// hand.
+#pragma once
+
+#include <stdint.h>
+
+/// Keeps a function that is called dozens of times out of line where flash is scarce; of no effect
+/// on the host.
+#ifdef __AVR__
+#define SCREED_OUT_OF_LINE __attribute__((noinline))
+#else
+#define SCREED_OUT_OF_LINE
+#endif
+
+namespace screed {
+
+// Right shift of a negative number is left to the compiler before C++20; every compiler of this
+// project shifts in copies of the sign. All such shifts of the firmware go through asr(), so this
+// is the one place that relies on it.
+static_assert((-1 >> 1) == -1, "arithmetic right shift of negative integers is required");
+
+// The same holds for the conversion of an unsigned number that does not fit: it must wrap (modulo
+// 2^n).
+static_assert(static_cast<int16_t>(static_cast<uint16_t>(0xFFFF)) == -1, "wrapping is required");
+
+constexpr int16_t kQ15One = 32767;                          ///< the largest Q15, 1 - 2^-15
+constexpr int32_t kQ30One = static_cast<int32_t>(1) << 30;  ///< 1.0 in Q30
+
+/// floor(value / 2^n), n in 0..31.
+constexpr int32_t asr(int32_t value, uint8_t n) {
+  return value >> n;
+}
+
+/// value / 2^n rounded to nearest, halves up. n in 1..31; |value| + 2^(n-1) must fit 32 bits.
+constexpr int32_t asr_round(int32_t value, uint8_t n) {
+  return asr(value + (static_cast<int32_t>(1) << (n - 1)), n);
+}
+
+/// value limited to [low, high]; low <= high.
+constexpr int32_t clamp_i32(int32_t value, int32_t low, int32_t high) {
+  return value < low ? low : (value > high ? high : value);
+}
+
+/// value limited to [low, high]; low <= high.
+constexpr int16_t clamp_i16(int16_t value, int16_t low, int16_t high) {
+  return value < low ? low : (value > high ? high : value);
+}
+
+/// value limited to the range of int16_t.
+constexpr int16_t saturate_i16(int32_t value) {
+  return static_cast<int16_t>(clamp_i32(value, INT16_MIN, INT16_MAX));
+}
+
+/// |value| as unsigned, right for INT32_MIN as well.
+constexpr uint32_t abs_u32(int32_t value) {
+  return value < 0 ? static_cast<uint32_t>(0) - static_cast<uint32_t>(value)
+                   : static_cast<uint32_t>(value);
+}
+
+/// |value| as unsigned, right for INT16_MIN as well.
+constexpr uint16_t abs_u16(int16_t value) {
+  return static_cast<uint16_t>(abs_u32(static_cast<int32_t>(value)));
+}
+
+/// Sum that stops at the ends of int32_t instead of overflowing.
+constexpr int32_t add_sat_i32(int32_t a, int32_t b) {
+  return b > 0 ? (a > INT32_MAX - b ? INT32_MAX : a + b) : (a < INT32_MIN - b ? INT32_MIN : a + b);
+}
+
+/// The exact 32-bit product of two 16-bit numbers.
+constexpr int32_t mul_i16(int16_t a, int16_t b) {
+  return static_cast<int32_t>(a) * static_cast<int32_t>(b);
+}
+
+/// a * b in Q15, rounded to nearest, halves up; -1 * -1 saturates to 32767.
+constexpr int16_t mul_q15(int16_t a, int16_t b) {
+  return saturate_i16(asr_round(mul_i16(a, b), 15));
+}
+
+namespace detail {
+
+/// floor(value / 2^16); a plain move on the AVR.
+constexpr int16_t high_half(int32_t value) {
+  return static_cast<int16_t>(asr(value, 16));
+}
+
+/// The lower 16 bits of a 32-bit number.
+constexpr uint16_t low_half(int32_t value) {
+  return static_cast<uint16_t>(static_cast<uint32_t>(value) & 0xFFFFU);
+}
+
+/// Exact signed x unsigned product; one AVR library call.
+constexpr int32_t mul_su(int16_t a, uint16_t b) {
+  return static_cast<int32_t>(a) * static_cast<int32_t>(b);
+}
+
+}  // namespace detail
+
+/// floor((a * k + 2^15) / 2^16): a wide number times a Q16 factor within +-1/2 (or half of a Q15
+/// factor), the exact product rounded to nearest, halves up. All of int32 x int16 is allowed.
+SCREED_OUT_OF_LINE inline int32_t scale_q16(int32_t a, int16_t k) {
+#ifdef __AVR__
+  // The attitude estimator spends most of its time here, and gcc-avr makes 150 cycles of what takes
+  // 70: it calls its 16 x 16 multiplication twice and saves a dozen registers for that. Unsigned
+  // partial products of bytes, added at their places from 2^8 up; then the two sign corrections,
+  // each modulo 2^48.
+  int32_t result;
+  uint8_t fraction;
+  uint8_t zero;
+  asm("clr %[zero]\n\t"
+      "mul %A[a], %A[k]\n\t"  // 2^0: only the upper byte matters
+      "mov %[fraction], r1\n\t"
+      "mul %C[a], %A[k]\n\t"  // 2^16
+      "movw %A[result], r0\n\t"
+      "mul %D[a], %B[k]\n\t"  // 2^32
+      "movw %C[result], r0\n\t"
+      "mul %B[a], %B[k]\n\t"  // 2^16
+      "add %A[result], r0\n\t"
+      "adc %B[result], r1\n\t"
+      "adc %C[result], %[zero]\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mul %A[a], %B[k]\n\t"  // 2^8
+      "add %[fraction], r0\n\t"
+      "adc %A[result], r1\n\t"
+      "adc %B[result], %[zero]\n\t"
+      "adc %C[result], %[zero]\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mul %B[a], %A[k]\n\t"  // 2^8
+      "add %[fraction], r0\n\t"
+      "adc %A[result], r1\n\t"
+      "adc %B[result], %[zero]\n\t"
+      "adc %C[result], %[zero]\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mul %D[a], %A[k]\n\t"  // 2^24
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mul %C[a], %B[k]\n\t"  // 2^24
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "lsl %[fraction]\n\t"  // round
+      "adc %A[result], %[zero]\n\t"
+      "adc %B[result], %[zero]\n\t"
+      "adc %C[result], %[zero]\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "sbrs %D[a], 7\n\t"  // a < 0: k 2^32 too much
+      "rjmp 1f\n\t"
+      "sub %C[result], %A[k]\n\t"
+      "sbc %D[result], %B[k]\n"
+      "1:\n\t"
+      "sbrs %B[k], 7\n\t"  // k < 0: a 2^16 too much
+      "rjmp 2f\n\t"
+      "sub %A[result], %A[a]\n\t"
+      "sbc %B[result], %B[a]\n\t"
+      "sbc %C[result], %C[a]\n\t"
+      "sbc %D[result], %D[a]\n"
+      "2:\n\t"
+      "clr r1\n\t"
+      : [result] "=&r"(result), [fraction] "=&r"(fraction), [zero] "=&r"(zero)
+      : [a] "r"(a), [k] "r"(k)
+      : "r0");
+  return result;
+#else
+  const int32_t low = detail::mul_su(k, detail::low_half(a)) + 0x7FFF + 1;  // at most 2^31 - 1
+  return mul_i16(detail::high_half(a), k) + detail::high_half(low);
+#endif
+}
+
+/// floor((a * b + 2^29) / 2^30): the product of two Q30 numbers, the exact 64-bit product rounded
+/// to nearest, halves up. All of int32 x int32 is allowed as long as the result fits int32 (|a * b|
+/// < 2 in value).
+SCREED_OUT_OF_LINE constexpr int32_t mul_q30(int32_t a, int32_t b) {
+  // Schoolbook in base 2^16. Each partial sum below fits 32 bits for every a and b:
+  // |signed x unsigned| <= 2^31 - 2^15 when positive, and what is added to it is below 2^16 + 2^13.
+  const uint32_t low = static_cast<uint32_t>(detail::low_half(a)) * detail::low_half(b);
+  const int32_t middle1 = detail::mul_su(detail::high_half(a), detail::low_half(b)) +
+                          static_cast<int32_t>(low >> 16) + (static_cast<int32_t>(1) << 13);
+  const int32_t middle2 = detail::mul_su(detail::high_half(b), detail::low_half(a)) +
+                          static_cast<int32_t>(detail::low_half(middle1));
+  const int32_t high =
+      mul_i16(detail::high_half(a), detail::high_half(b)) + asr(middle1, 16) + asr(middle2, 16);
+  return static_cast<int32_t>((static_cast<uint32_t>(high) << 2) |
+                              (static_cast<uint32_t>(detail::low_half(middle2)) >> 14));
+}
+
+}  // namespace screed

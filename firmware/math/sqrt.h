@@ -1,0 +1,24 @@
+// Integer square root. Knows nothing of its users.
+#pragma once
+
+#include <stdint.h>
+
+namespace screed {
+
+/// floor(sqrt(value)), exact for every value. Digit by digit, two bits of the radicand a step: no
+/// division.
+constexpr uint16_t isqrt32(uint32_t value) {
+  uint32_t rest = value;
+  uint32_t root = 0;
+  for (uint32_t bit = static_cast<uint32_t>(1) << 30; bit != 0; bit >>= 2) {
+    const uint32_t trial = root + bit;
+    root >>= 1;
+    if (rest >= trial) {
+      rest -= trial;
+      root += bit;
+    }
+  }
+  return static_cast<uint16_t>(root);
+}
+
+}  // namespace screed

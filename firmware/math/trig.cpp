@@ -1,0 +1,91 @@
+// Trigonometry on binary angles: minimax polynomials on one quadrant or octant, the rest by
+// symmetry. The coefficients are least-maximum-error fits (iteratively reweighted least squares);
+// with alternating signs every Horner step is a difference of unsigned Q16 fractions, so no bit is
+// lost on a sign.
+#include "firmware/math/trig.h"
+
+namespace screed {
+
+namespace {
+
+/// a * b / 2^16 rounded to nearest: one factor is a fraction of 65536.
+uint16_t fraction_of(uint16_t a, uint16_t b) {
+  const uint32_t product = static_cast<uint32_t>(a) * b;
+  return static_cast<uint16_t>((product + 0x8000U) >> 16);
+}
+
+/// sin of x quarter turns / 16384, x in 0..16384, as 0..32767.
+int16_t sin_first_quadrant(uint16_t x) {
+  // z = x / 16384 in (0, 1): sin(pi/2 z) = z (1 + 0.570791 - z^2 (0.645813 - z^2 (0.079300 -
+  // 0.004272 z^2))): the best of the Q16 coefficients near the real fit (0.570791, 0.645893,
+  // 0.0794343, 0.0043331), found by trial.
+  constexpr uint16_t kC1MinusOne = 37407;  // coefficients in Q16
+  constexpr uint16_t kC3 = 42324;
+  constexpr uint16_t kC5 = 5197;
+  constexpr uint16_t kC7 = 280;
+  const uint32_t square = (static_cast<uint32_t>(x) * x + 0x800U) >> 12;
+  const uint16_t z2 =
+      square > 0xFFFFU ? static_cast<uint16_t>(0xFFFFU) : static_cast<uint16_t>(square);
+  const uint16_t p5 = static_cast<uint16_t>(kC5 - fraction_of(z2, kC7));
+  const uint16_t p3 = static_cast<uint16_t>(kC3 - fraction_of(z2, p5));
+  const uint16_t p1 = static_cast<uint16_t>(kC1MinusOne - fraction_of(z2, p3));
+  const uint32_t sine =
+      (static_cast<uint32_t>(x) * (static_cast<uint32_t>(p1) + 0x10000U) + 0x4000U) >> 15;
+  return sine > 32767U ? kQ15One : static_cast<int16_t>(sine);
+}
+
+/// atan(ratio / 65536) in angle units, 0..8192.
+uint16_t atan_first_octant(uint16_t ratio) {
+  // atan(q) / (2 pi) = q (0.1591337 - q^2 (0.0525696 - q^2 (0.0286732 - q^2 (0.0135531 - 0.0033176
+  // q^2)))), error of the polynomial 0.12 angle units. Coefficients in Q18.
+  constexpr uint16_t kC1 = 41716;
+  constexpr uint16_t kC3 = 13781;
+  constexpr uint16_t kC5 = 7517;
+  constexpr uint16_t kC7 = 3553;
+  constexpr uint16_t kC9 = 870;
+  const uint16_t q2 = fraction_of(ratio, ratio);
+  const uint16_t p7 = static_cast<uint16_t>(kC7 - fraction_of(q2, kC9));
+  const uint16_t p5 = static_cast<uint16_t>(kC5 - fraction_of(q2, p7));
+  const uint16_t p3 = static_cast<uint16_t>(kC3 - fraction_of(q2, p5));
+  const uint16_t p1 = static_cast<uint16_t>(kC1 - fraction_of(q2, p3));
+  return static_cast<uint16_t>((static_cast<uint32_t>(ratio) * p1 + 0x20000U) >> 18);
+}
+
+/// smaller / larger as a fraction of 65536, at most 65535. larger > 0, smaller <= larger.
+uint16_t ratio_q16(uint32_t smaller, uint32_t larger) {
+  while ((larger & 0x80000000U) ==
+         0) {  // keep 16 significant bits of the divisor whatever the length is
+    larger <<= 1;
+    smaller <<= 1;
+  }
+  const uint32_t divisor = (larger >> 16) + ((larger >> 15) & 1U);
+  const uint32_t ratio = smaller / divisor;
+  return ratio > 0xFFFFU ? static_cast<uint16_t>(0xFFFFU) : static_cast<uint16_t>(ratio);
+}
+
+}  // namespace
+
+int16_t sin_q15(Angle angle) {
+  const uint16_t turn = static_cast<uint16_t>(angle);
+  const uint16_t half = static_cast<uint16_t>(turn & 0x7FFFU);
+  const uint16_t x = half <= 0x4000U ? half : static_cast<uint16_t>(0x8000U - half);
+  const int16_t magnitude = sin_first_quadrant(x);
+  return (turn & 0x8000U) != 0 ? static_cast<int16_t>(-magnitude) : magnitude;
+}
+
+int16_t cos_q15(Angle angle) {
+  return sin_q15(wrap_angle(static_cast<int32_t>(angle) + kQuarterTurn));
+}
+
+Angle atan2_angle(int32_t y, int32_t x) {
+  const uint32_t ax = abs_u32(x);
+  const uint32_t ay = abs_u32(y);
+  if (ax == 0 && ay == 0) return 0;
+  int32_t angle = ay <= ax
+                      ? static_cast<int32_t>(atan_first_octant(ratio_q16(ay, ax)))
+                      : kQuarterTurn - static_cast<int32_t>(atan_first_octant(ratio_q16(ax, ay)));
+  if (x < 0) angle = 32768 - angle;
+  return wrap_angle(y < 0 ? -angle : angle);
+}
+
+}  // namespace screed

@@ -1,0 +1,56 @@
+// Every number a user may tune, in one table: name, unit, range, default, meaning.
+//
+// The table is a macro so that the struct, its defaults, its range check and the host's listing
+// (names, documentation, experiment files) are made from the same lines and cannot drift apart.
+// Text stays out of the MCU image: only code that asks for parameter_table.h pays for it.
+#pragma once
+
+#include <stdint.h>
+
+// clang-format off
+//  name                    unit         min    max  default  meaning
+#define SCREED_PARAMETERS(X) \
+  X(algorithm,              "",            0,     2,      1, "leveling algorithm: 0 drive (ground commands), 1 hill sensing, 2 spin on the peak") \
+  X(random_seed,            "",            0, 32767,      1, "seed of the random walk") \
+  X(climb_threshold,        "0.01 deg",  100,  4500,    500, "pitch above which a hill is being climbed (epsilon of Algorithm 6)") \
+  X(climb_hysteresis,       "0.01 deg",    0,  1000,    100, "pitch must fall this far below the threshold before the climb counts as over") \
+  X(climb_speed,            "mm/s",       20,   250,    200, "speed while climbing (v_climb of Algorithm 6)") \
+  X(walk_speed_min,         "mm/s",        0,   250,     60, "random walk, slowest leg") \
+  X(walk_speed_max,         "mm/s",        0,   250,    160, "random walk, fastest leg") \
+  X(walk_yaw_rate_max,      "deg/s",       0,   120,     40, "random walk, greatest turn rate either way") \
+  X(walk_leg_min,           "ms",        100, 20000,   1000, "random walk, shortest leg") \
+  X(walk_leg_max,           "ms",        100, 20000,   4000, "random walk, longest leg") \
+  X(spin_rate,              "deg/s",      10,   120,     90, "turn rate on the peak") \
+  X(spin_time,              "ms",        100, 30000,   4000, "how long to spin on a peak") \
+  X(site_radius,            "mm",          0, 30000,      0, "leave the random walk and turn back outside this circle around the start; 0: no limit") \
+  X(speed_kp,               "1/16 duty per mm/s",  0, 320,  24, "wheel speed: proportional gain") \
+  X(speed_ki,               "1/16 duty per mm",    0, 3200, 160, "wheel speed: integral gain") \
+  X(accel_limit,            "mm/s^2",     50,  5000,    600, "greatest change of a track's commanded speed") \
+  X(yaw_kp,                 "1/256",       0,  1024,    128, "yaw rate: proportional gain") \
+  X(yaw_ki,                 "1/256 per s", 0,  4096,    768, "yaw rate: integral gain") \
+  X(tilt_limit,             "0.01 deg", 1000,  9000,   5000, "inclination at which the robot stops and latches a fault") \
+  X(battery_low,            "mV",          0, 12000,   6000, "stop below this voltage; 0: never") \
+  X(stall_time,             "ms",         50,  5000,    250, "a track at high duty that does not move for this long is stalled") \
+  X(standalone,             "",            0,     1,      0, "1: arm and run after power-up without a ground station") \
+  X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run")
+// clang-format on
+
+namespace screed {
+
+struct Parameters {
+#define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = value;
+  SCREED_PARAMETERS(SCREED_FIELD)
+#undef SCREED_FIELD
+
+  /// True when every value lies in its range; a robot with any other parameters refuses to arm.
+  bool valid() const {
+    bool ok = true;
+#define SCREED_CHECK(name, unit, min, max, value, meaning) \
+  ok = ok && name >= static_cast<int16_t>(min) && name <= static_cast<int16_t>(max);
+    SCREED_PARAMETERS(SCREED_CHECK)
+#undef SCREED_CHECK
+    return ok && walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;
+  }
+};
+
+}  // namespace screed

@@ -1,0 +1,165 @@
+// The robot's safe state machine.
+#include "firmware/robot/supervisor.h"
+
+#include "firmware/math/sqrt.h"
+#include "firmware/math/units.h"
+
+namespace screed {
+namespace {
+
+// Deadlines from cause to reaction, in ticks of 10 ms.
+constexpr uint8_t kTiltTicks = 6;        // stop within 100 ms
+constexpr uint8_t kSilentTicks = 8;      // stop within 100 ms
+constexpr uint8_t kFrozenTicks = 18;     // stop within 200 ms
+constexpr uint8_t kBatteryTicks = 100;   // a start-up dip is not an empty battery
+constexpr uint16_t kLinkStopTicks = 50;
+constexpr uint16_t kLinkDisarmTicks = 150;
+// A track that does not move below this duty is not stalled, it is asked for too little.
+constexpr int16_t kStallDuty = 240;
+
+uint8_t count_up(uint8_t value) { return value < UINT8_MAX ? static_cast<uint8_t>(value + 1) : value; }
+uint16_t count_up(uint16_t value) {
+  return value < UINT16_MAX ? static_cast<uint16_t>(value + 1) : value;
+}
+
+uint16_t stalled_for(uint16_t ticks, int16_t duty, int16_t counts) {
+  const bool pushing = duty >= kStallDuty || duty <= static_cast<int16_t>(-kStallDuty);
+  return pushing && counts == 0 ? count_up(ticks) : static_cast<uint16_t>(0);
+}
+
+}  // namespace
+
+Supervisor::Supervisor(const Parameters& parameters)
+    : cos_tilt_limit_q15_(cos_q15(angle_from_centidegrees(parameters.tilt_limit))),
+      battery_low_mv_(static_cast<uint16_t>(parameters.battery_low)),
+      stall_ticks_(ticks_from_ms(parameters.stall_time)),
+      standalone_ticks_(ticks_from_ms(parameters.standalone_delay)),
+      standalone_(parameters.standalone != 0),
+      parameters_valid_(parameters.valid()) {
+  cos_tilt_limit_q30_ = static_cast<int32_t>(cos_tilt_limit_q15_) * 32768;
+}
+
+bool Supervisor::link_alive() const { return ticks_since_heartbeat_ <= kLinkStopTicks; }
+
+// Two witnesses: the estimator, which follows a fast roll by its gyro, and the raw accelerometer, which also sees a robot
+// that was picked up and put down faster than the gyro's range.
+bool Supervisor::tilted(const SupervisorInput& input) {
+  if (input.estimator_ready && input.cos_tilt_q30 < cos_tilt_limit_q30_) return true;
+  // Scaled by 1/4 so that the sum of squares fits 32 bits.
+  uint32_t square = 0;
+  for (uint8_t i = 0; i < 3; ++i) {
+    const int32_t part = asr(input.accel[i], 2);
+    square += static_cast<uint32_t>(part * part);
+  }
+  const int32_t length = isqrt32(square);
+  return asr(input.accel[2], 2) < asr(length * cos_tilt_limit_q15_, 15);
+}
+
+uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
+  uint16_t found = parameters_valid_ ? 0 : static_cast<uint16_t>(kFaultParameters);
+
+  tilt_ticks_ = tilted(input) ? count_up(tilt_ticks_) : static_cast<uint8_t>(0);
+  if (tilt_ticks_ >= kTiltTicks) found |= kFaultTilt;
+
+  const bool new_gyro = (input.fresh & kFreshGyro) != 0;
+  silent_gyro_ticks_ = new_gyro ? static_cast<uint8_t>(0) : count_up(silent_gyro_ticks_);
+  silent_accel_ticks_ =
+      (input.fresh & kFreshAccel) != 0 ? static_cast<uint8_t>(0) : count_up(silent_accel_ticks_);
+  if (silent_gyro_ticks_ >= kSilentTicks || silent_accel_ticks_ >= kSilentTicks) {
+    found |= kFaultImuSilent;
+  }
+
+  // The noise of a live gyro moves its last digit within a few samples.
+  bool same = true;
+  for (uint8_t i = 0; i < 3; ++i) {
+    same = same && input.gyro[i] == last_gyro_[i];
+    last_gyro_[i] = input.gyro[i];
+  }
+  if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
+  if (frozen_gyro_ticks_ >= kFrozenTicks) found |= kFaultGyroFrozen;
+
+  stalled_left_ticks_ = stalled_for(stalled_left_ticks_, input.duty_left, input.counts_left);
+  stalled_right_ticks_ = stalled_for(stalled_right_ticks_, input.duty_right, input.counts_right);
+  if (stalled_left_ticks_ >= stall_ticks_) found |= kFaultStallLeft;
+  if (stalled_right_ticks_ >= stall_ticks_) found |= kFaultStallRight;
+
+  battery_ticks_ =
+      input.battery_mv < battery_low_mv_ ? count_up(battery_ticks_) : static_cast<uint8_t>(0);
+  if (battery_ticks_ >= kBatteryTicks) found |= kFaultBattery;
+  return found;
+}
+
+void Supervisor::watch_link() {
+  ticks_since_heartbeat_ = count_up(ticks_since_heartbeat_);
+  if (standalone_ || state_ == RobotState::kFault) return;
+  if (ticks_since_heartbeat_ > kLinkDisarmTicks) {
+    state_ = RobotState::kDisarmed;
+  } else if (ticks_since_heartbeat_ > kLinkStopTicks && state_ == RobotState::kRunning) {
+    state_ = RobotState::kStopped;
+  }
+}
+
+// Arms and runs once, after the delay: a stand-alone robot that was stopped stays stopped.
+void Supervisor::run_standalone() {
+  if (!standalone_ || ticks_since_start_ == UINT16_MAX) return;
+  if (ticks_since_start_ < standalone_ticks_) {
+    ++ticks_since_start_;
+    return;
+  }
+  if (request(Request::kArm) == RequestResult::kDone) {
+    request(Request::kRun);
+    ticks_since_start_ = UINT16_MAX;
+  }
+}
+
+void Supervisor::tick(const SupervisorInput& input) {
+  estimator_ready_ = input.estimator_ready;
+  present_ = look_for_faults(input);
+  // Before anybody armed the robot a fault is no event: it only keeps the robot from being armed.
+  if (present_ != 0 && state_ != RobotState::kDisarmed) {
+    latched_ |= present_;
+    state_ = RobotState::kFault;
+  }
+  watch_link();
+  run_standalone();
+}
+
+RequestResult Supervisor::request(Request request) {
+  switch (request) {
+    case Request::kArm:
+      if (state_ != RobotState::kDisarmed) return RequestResult::kWrongState;
+      if (present_ != 0) return RequestResult::kFaultPresent;
+      if (!estimator_ready_) return RequestResult::kNotReady;
+      state_ = RobotState::kArmed;
+      return RequestResult::kDone;
+    case Request::kRun:
+      if (state_ != RobotState::kArmed && state_ != RobotState::kStopped) {
+        return RequestResult::kWrongState;
+      }
+      state_ = RobotState::kRunning;
+      return RequestResult::kDone;
+    case Request::kStop:
+      if (state_ != RobotState::kRunning) return RequestResult::kWrongState;
+      state_ = RobotState::kStopped;
+      return RequestResult::kDone;
+    case Request::kDisarm:
+      if (state_ == RobotState::kFault) return RequestResult::kWrongState;
+      state_ = RobotState::kDisarmed;
+      return RequestResult::kDone;
+    case Request::kClear:
+      if (state_ != RobotState::kFault) return RequestResult::kWrongState;
+      if (present_ != 0) return RequestResult::kFaultPresent;
+      latched_ = 0;
+      state_ = RobotState::kDisarmed;
+      return RequestResult::kDone;
+    case Request::kEmergencyStop:
+      latched_ |= kFaultEmergencyStop;
+      state_ = RobotState::kFault;
+      return RequestResult::kDone;
+    case Request::kNone:
+      break;
+  }
+  return RequestResult::kWrongState;
+}
+
+}  // namespace screed

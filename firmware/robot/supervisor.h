@@ -1,0 +1,122 @@
+// The robot's safe state machine: who may drive, and what stops it.
+//
+//   disarmed --arm--> armed --run--> running --stop or link lost--> stopped --run--> running
+//   any state --disarm or link lost for long--> disarmed;  any state --fault--> fault --clear,
+//   cause gone--> disarmed
+//
+// Motors get power in `running`, and in `stopped` while they ramp down; never elsewhere. A fault is
+// latched with its cause.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/math/fixed.h"
+#include "firmware/robot/parameters.h"
+#include "hal/sample.h"
+
+namespace screed {
+
+enum class RobotState : uint8_t {
+  kDisarmed = 0,
+  kArmed = 1,
+  kRunning = 2,
+  kStopped = 3,
+  kFault = 4
+};
+constexpr uint8_t kRobotStates = 5;
+
+/// Causes, one bit each, as latched and as sent in the heartbeat.
+enum FaultBit : uint16_t {
+  kFaultTilt = 1 << 0,        ///< inclination beyond tilt_limit, or rolled over
+  kFaultImuSilent = 1 << 1,   ///< gyro or accelerometer gave nothing new for 80 ms
+  kFaultGyroFrozen = 1 << 2,  ///< the gyro repeats itself to the bit
+  kFaultStallLeft = 1 << 3,   ///< high duty, no motion
+  kFaultStallRight = 1 << 4,
+  kFaultBattery = 1 << 5,        ///< below battery_low
+  kFaultParameters = 1 << 6,     ///< a parameter is out of its range
+  kFaultEmergencyStop = 1 << 7,  ///< ESTOP received
+};
+
+/// Requests, from the ground station.
+enum class Request : uint8_t {
+  kNone = 0,
+  kArm = 1,
+  kRun = 2,
+  kStop = 3,
+  kDisarm = 4,
+  kClear = 5,
+  kEmergencyStop = 6
+};
+
+/// Answer to a request.
+enum class RequestResult : uint8_t {
+  kDone = 0,
+  kWrongState = 1,    ///< not possible in this state
+  kFaultPresent = 2,  ///< a cause of a fault is present
+  kNotReady = 3,      ///< the attitude estimator has not settled yet
+};
+
+struct SupervisorInput {
+  uint8_t fresh;         ///< SensorSample::fresh
+  const int16_t* gyro;   ///< three raw counts
+  const int16_t* accel;  ///< three raw counts
+  int32_t cos_tilt_q30;  ///< cosine of the estimated inclination
+  bool estimator_ready;
+  uint16_t battery_mv;
+  int16_t duty_left;  ///< of the last tick
+  int16_t duty_right;
+  int16_t counts_left;  ///< encoder counts since the last tick
+  int16_t counts_right;
+};
+
+class Supervisor {
+ public:
+  explicit Supervisor(const Parameters& parameters);
+
+  /// One tick: looks for faults, watches the link, runs the stand-alone timer.
+  void tick(const SupervisorInput& input);
+
+  RequestResult request(Request request);
+  /// A valid heartbeat of the ground station arrived.
+  void heartbeat() { ticks_since_heartbeat_ = 0; }
+
+  RobotState state() const { return state_; }
+  bool running() const { return state_ == RobotState::kRunning; }
+  /// The motors may have power: running, or ramping down.
+  bool powered() const { return state_ == RobotState::kRunning || state_ == RobotState::kStopped; }
+  /// Latched causes; non-zero exactly in kFault.
+  uint16_t faults() const { return latched_; }
+  /// The ground station was heard within the last 0.5 s.
+  bool link_alive() const;
+
+ private:
+  uint16_t look_for_faults(const SupervisorInput& input);
+  bool tilted(const SupervisorInput& input);
+  void watch_link();
+  void run_standalone();
+
+  int32_t cos_tilt_limit_q30_;
+  int16_t cos_tilt_limit_q15_;
+  uint16_t battery_low_mv_;
+  uint16_t stall_ticks_;
+  uint16_t standalone_ticks_;
+  bool standalone_;
+  bool parameters_valid_;
+
+  RobotState state_ = RobotState::kDisarmed;
+  uint16_t latched_ = 0;
+  uint16_t present_ = 0;  ///< causes seen in the last tick
+  bool estimator_ready_ = false;
+  uint16_t ticks_since_heartbeat_ = UINT16_MAX;
+  uint16_t ticks_since_start_ = 0;
+  uint8_t tilt_ticks_ = 0;
+  uint8_t silent_gyro_ticks_ = 0;
+  uint8_t silent_accel_ticks_ = 0;
+  uint8_t frozen_gyro_ticks_ = 0;
+  uint8_t battery_ticks_ = 0;
+  uint16_t stalled_left_ticks_ = 0;
+  uint16_t stalled_right_ticks_ = 0;
+  int16_t last_gyro_[3] = {0, 0, 0};
+};
+
+}  // namespace screed

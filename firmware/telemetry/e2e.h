@@ -1,0 +1,28 @@
+// End-to-end protection of a frame: AUTOSAR E2E Profile 2. Byte 0 is a CRC-8 (polynomial 0x2F,
+// initial and final xor 0xFF) over bytes 1..7 and a data id; the low half of byte 1 is an alive
+// counter 0..15.
+//
+// Source: AUTOSAR "Specification of SW-C End-to-End Communication Protection Library", profile 2.
+#pragma once
+
+#include <stdint.h>
+
+namespace screed {
+
+/// CRC-8H2F of `size` bytes, continuing from `crc` (start with 0xFF, xor the end with 0xFF).
+uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size);
+
+/// The data id of a CAN id at a counter value: makes a frame that was delivered under another id
+/// fail its check.
+constexpr uint8_t e2e_data_id(uint16_t can_id, uint8_t counter) {
+  return static_cast<uint8_t>((can_id >> 8) * 31U + (can_id & 0xFFU) + counter * 17U);
+}
+
+/// Writes counter (0..15) and CRC into data[0..size); size 2..8. Bits 4..7 of data[1] are left to
+/// the message.
+void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size);
+
+/// True when the CRC is right for this id and size.
+bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size);
+
+}  // namespace screed

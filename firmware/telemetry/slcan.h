@@ -1,0 +1,43 @@
+// CAN frames as text lines (SLCAN, Lawicel): tIIIL<hex>\r. Knows lines and frames, not what they
+// mean.
+#pragma once
+
+#include <stdint.h>
+
+namespace screed {
+
+struct CanFrame {
+  uint16_t id;   ///< 11 bits
+  uint8_t size;  ///< 0..8
+  uint8_t data[8];
+};
+
+/// Characters of the longest line, its end included: t, three digits of id, one of size, 16 of
+/// data, \r.
+constexpr uint8_t kSlcanLineMax = 22;
+
+/// Writes the line of a frame; returns its length (6..22). `line` has room for kSlcanLineMax
+/// characters; no final 0.
+uint8_t slcan_encode(const CanFrame& frame, uint8_t* line);
+
+/// Collects bytes to lines and lines to frames. A line that is not exactly a data frame (other
+/// commands, wrong length, foreign characters, too long) is dropped; rejected() counts those that
+/// began like a frame.
+class SlcanParser {
+ public:
+  /// Takes one byte. Returns true when it ended a well-formed frame, which is then in `frame`.
+  bool feed(uint8_t byte, CanFrame& frame);
+
+  /// Frame-like lines that were not well-formed, wraps.
+  uint8_t rejected() const { return rejected_; }
+
+ private:
+  bool decode(CanFrame& frame) const;
+
+  uint8_t line_[kSlcanLineMax - 1] = {};
+  uint8_t length_ = 0;
+  bool too_long_ = false;
+  uint8_t rejected_ = 0;
+};
+
+}  // namespace screed

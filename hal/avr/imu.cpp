@@ -1,0 +1,208 @@
+// The inertial sensors on the I2C bus, read in the background once a tick.
+#include "hal/avr/imu.h"
+
+#include <util/atomic.h>
+
+#include "hal/avr/imu_registers.h"
+#include "hal/avr/twi.h"
+#include "pins.h"
+
+namespace screed {
+namespace avr {
+namespace {
+
+/// The transfers of a round, in their order.
+enum Step : uint8_t { kReadGyro, kReadAccel, kReadMag, kReadBaro, kCheckSetting, kMendSetting };
+
+constexpr uint8_t kVectorBytes = 7;  // status and three axes
+constexpr uint8_t kBaroBytes = 6;    // status, pressure (3), temperature (2)
+constexpr uint8_t kBaroRounds = 4;   // 25 Hz
+
+enum Phase : uint8_t { kIdle, kRunning, kHanging };
+
+struct State {
+  volatile Phase phase;
+  Step step;
+  uint8_t round;
+  uint8_t arrived;  // FreshBit set of the bursts that came whole in this round
+  uint8_t gyro[kVectorBytes];
+  uint8_t accel[kVectorBytes];
+  uint8_t mag[kVectorBytes];
+  uint8_t baro[kBaroBytes];
+  // The check of settings.
+  uint8_t setting;                 // the one checked in this round
+  uint8_t register_value;          // what was read, then what is to be written
+  uint8_t right_in_a_row[kChips];  // settings of a chip found right since the last wrong one
+};
+// The interrupt owns it while a round runs, the main program while none does; `phase` says which.
+State state;
+
+Setting setting_at(uint8_t index) {
+  Setting setting;
+  memcpy_P(&setting, &kSettings[index], sizeof(setting));
+  return setting;
+}
+
+constexpr uint8_t settings_of(Chip chip, uint8_t from = 0) {
+  return from == kSettingCount
+             ? static_cast<uint8_t>(0)
+             : static_cast<uint8_t>((kSettings[from].chip == chip ? 1 : 0) +
+                                    settings_of(chip, static_cast<uint8_t>(from + 1)));
+}
+
+/// All settings of the chip were found right, one after the other.
+bool configured(Chip chip) {
+  static constexpr uint8_t kNeeded[kChips] PROGMEM = {
+      settings_of(kAccelMagChip), settings_of(kGyroChip), settings_of(kBaroChip)};
+  return state.right_in_a_row[chip] >= pgm_read_byte(&kNeeded[chip]);
+}
+
+TwiTransfer read_of(Chip chip, uint8_t reg, uint8_t* data, uint8_t size) {
+  return {chip_address(chip), static_cast<uint8_t>(reg | kAutoIncrement), size, false, data};
+}
+
+TwiTransfer transfer_of(Step step) {
+  switch (step) {
+    case kReadGyro:
+      return read_of(kGyroChip, kStatusAndData, state.gyro, kVectorBytes);
+    case kReadAccel:
+      return read_of(kAccelMagChip, kStatusAndData, state.accel, kVectorBytes);
+    case kReadMag:
+      return read_of(kAccelMagChip, kMagStatusAndData, state.mag, kVectorBytes);
+    case kReadBaro:
+      return read_of(kBaroChip, kStatusAndData, state.baro, kBaroBytes);
+    case kCheckSetting:
+    case kMendSetting:
+    default: {
+      const Setting setting = setting_at(state.setting);
+      return {chip_address(setting.chip), setting.reg, 1, step == kMendSetting,
+              &state.register_value};
+    }
+  }
+}
+
+/// Books what the check of a setting found; returns true when the register has to be written.
+bool judge_setting(bool ok) {
+  const Setting setting = setting_at(state.setting);
+  uint8_t& right = state.right_in_a_row[setting.chip];
+  if (ok && state.register_value == setting.value) {
+    if (right < kSettingCount) ++right;
+    return false;
+  }
+  right = 0;
+  state.register_value = setting.value;
+  return ok && setting.reg != kWhoAmI;
+}
+
+/// The step after `state.step`; false when the round is over.
+bool next_step(bool ok) {
+  switch (state.step) {
+    case kReadMag:
+      state.step = state.round % kBaroRounds == 0 ? kReadBaro : kCheckSetting;
+      return true;
+    case kCheckSetting:
+      if (judge_setting(ok)) {
+        state.step = kMendSetting;
+        return true;
+      }
+      break;
+    case kMendSetting:
+      break;
+    default:
+      state.step = static_cast<Step>(state.step + 1);
+      return true;
+  }
+  state.setting = static_cast<uint8_t>(state.setting + 1 == kSettingCount ? 0 : state.setting + 1);
+  return false;
+}
+
+/// FreshBit of the burst that a step reads; 0 for the others.
+uint8_t fresh_bit(Step step) {
+  return step <= kReadBaro ? static_cast<uint8_t>(1U << step) : static_cast<uint8_t>(0);
+}
+static_assert(kFreshGyro == 1 << kReadGyro && kFreshAccel == 1 << kReadAccel &&
+                  kFreshMag == 1 << kReadMag && kFreshBaro == 1 << kReadBaro,
+              "fresh_bit relies on the order");
+
+int16_t word_at(const uint8_t* bytes) {
+  return static_cast<int16_t>(bytes[0] | static_cast<uint16_t>(static_cast<uint16_t>(bytes[1]) << 8));
+}
+
+/// From the chip's axes to the robot's. An axis against the chip's turns -32768 into 32767.
+void to_robot_frame(const uint8_t* bytes, int16_t (&vector)[3]) {
+  for (uint8_t i = 0; i < 3; ++i) {
+    const AxisOfChip axis = kImuAxes[i];
+    const int16_t value = word_at(bytes + 2 * axis.index);
+    vector[i] = !axis.reversed       ? value
+                : value == INT16_MIN ? static_cast<int16_t>(INT16_MAX)
+                                     : static_cast<int16_t>(-value);
+  }
+}
+
+void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit, int16_t (&vector)[3],
+                 SensorSample& sample) {
+  if ((state.arrived & bit) == 0 || (burst[0] & kNewXyz) == 0 || !configured(chip)) return;
+  to_robot_frame(burst + 1, vector);
+  sample.fresh = static_cast<uint8_t>(sample.fresh | bit);
+}
+
+void take_baro(SensorSample& sample) {
+  const uint8_t* const burst = state.baro;
+  if ((state.arrived & kFreshBaro) == 0 || (burst[0] & kNewPressure) == 0 ||
+      !configured(kBaroChip)) {
+    return;
+  }
+  const uint8_t sign = (burst[3] & 0x80U) != 0 ? 0xFF : 0x00;
+  sample.pressure = static_cast<int32_t>(
+      burst[1] | (static_cast<uint32_t>(burst[2]) << 8) | (static_cast<uint32_t>(burst[3]) << 16) |
+      (static_cast<uint32_t>(sign) << 24));
+  sample.temperature = word_at(burst + 4);
+  sample.fresh = static_cast<uint8_t>(sample.fresh | kFreshBaro);
+}
+
+}  // namespace
+
+bool twi_done(bool ok, TwiTransfer& next) {
+  if (ok) state.arrived = static_cast<uint8_t>(state.arrived | fresh_bit(state.step));
+  if (!next_step(ok)) {
+    state.phase = kIdle;
+    return false;
+  }
+  next = transfer_of(state.step);
+  return true;
+}
+
+void imu_init() {
+  // A reset may have come in the middle of a byte: the device still holds the bus.
+  twi_recover();
+}
+
+void imu_start_round() {
+  if (state.phase != kIdle) {
+    state.phase = kHanging;  // for 10 ms, when 1.3 ms is enough
+    return;
+  }
+  state.phase = kRunning;
+  state.step = kReadGyro;
+  state.arrived = 0;
+  state.round = static_cast<uint8_t>(state.round + 1);
+  twi_start(transfer_of(kReadGyro));
+}
+
+void imu_read(SensorSample& sample) {
+  sample.fresh = 0;
+  if (state.phase == kHanging) {
+    twi_recover();
+    state.phase = kIdle;
+    return;
+  }
+  if (state.phase == kRunning) return;  // the tick is late; the numbers come with the next one
+  take_vector(state.gyro, kGyroChip, kFreshGyro, sample.gyro, sample);
+  take_vector(state.accel, kAccelMagChip, kFreshAccel, sample.accel, sample);
+  take_vector(state.mag, kAccelMagChip, kFreshMag, sample.mag, sample);
+  take_baro(sample);
+  state.arrived = 0;
+}
+
+}  // namespace avr
+}  // namespace screed

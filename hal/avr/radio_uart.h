@@ -1,0 +1,22 @@
+// USART1: the line to the radio module, 58,824 baud, with a ring buffer each way.
+#pragma once
+
+#include <stdint.h>
+
+namespace screed {
+namespace avr {
+
+void radio_uart_init();
+
+/// Takes up to `capacity` received bytes; returns how many. Bytes that found the buffer full, and bytes the
+/// hardware lost, are gone and counted.
+uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity);
+
+/// Queues all bytes, or none when they do not fit. Never waits.
+void radio_uart_write(const uint8_t* bytes, uint8_t count);
+
+/// Received bytes lost since start, wraps.
+uint8_t radio_uart_overruns();
+
+}  // namespace avr
+}  // namespace screed

@@ -1,0 +1,137 @@
+// I2C master driven by its interrupt.
+#include "hal/avr/twi.h"
+
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <util/atomic.h>
+#include <util/delay.h>
+#include <util/twi.h>
+
+#include "hal/avr/pin.h"
+
+namespace screed {
+namespace avr {
+namespace {
+
+constexpr uint32_t kBus_hz = 400000;
+constexpr uint8_t kRecoveryClocks = 9;  // a byte and its acknowledge bit (I2C specification UM10204, 3.1.16)
+
+constexpr uint8_t kGo = _BV(TWINT) | _BV(TWEN) | _BV(TWIE);
+constexpr uint8_t kIdle = _BV(TWEN);
+
+// The pins of the TWI are the same on every ATmega32U4.
+using Scl = Pin<kPortD, 0>;
+using Sda = Pin<kPortD, 1>;
+
+// Written by the main program only while no transfer runs, by the interrupt while one runs.
+struct State {
+  TwiTransfer transfer;
+  uint8_t done;  // bytes of transfer.data
+};
+State state;
+
+void finish(bool ok) {
+  const bool more = twi_done(ok, state.transfer);
+  state.done = 0;
+  // With both bits set the hardware makes a stop condition and then a start condition.
+  TWCR = more ? static_cast<uint8_t>(kGo | _BV(TWSTO) | _BV(TWSTA))
+              : static_cast<uint8_t>(kGo | _BV(TWSTO));
+}
+
+/// Acknowledges every byte but the last.
+void receive_next() {
+  const bool last = state.done + 1 == state.transfer.size;
+  TWCR = last ? kGo : static_cast<uint8_t>(kGo | _BV(TWEA));
+}
+
+void send_next() {
+  if (state.done == state.transfer.size) {
+    finish(true);
+    return;
+  }
+  TWDR = state.transfer.data[state.done++];
+  TWCR = kGo;
+}
+
+void send(uint8_t byte) {
+  TWDR = byte;
+  TWCR = kGo;
+}
+
+}  // namespace
+
+ISR(TWI_vect) {
+  const uint8_t address = static_cast<uint8_t>(state.transfer.address << 1);
+  switch (TW_STATUS) {
+    case TW_START:
+      send(address | TW_WRITE);
+      break;
+    case TW_MT_SLA_ACK:
+      send(state.transfer.reg);
+      break;
+    case TW_MT_DATA_ACK:  // the register number or a byte of data
+      if (state.transfer.write) {
+        send_next();
+      } else {
+        TWCR = kGo | _BV(TWSTA);
+      }
+      break;
+    case TW_REP_START:
+      send(address | TW_READ);
+      break;
+    case TW_MR_SLA_ACK:
+      receive_next();
+      break;
+    case TW_MR_DATA_ACK:
+      state.transfer.data[state.done++] = TWDR;
+      receive_next();
+      break;
+    case TW_MR_DATA_NACK:
+      state.transfer.data[state.done] = TWDR;
+      finish(true);
+      break;
+    default:  // no device, arbitration lost, bus error
+      finish(false);
+      break;
+  }
+}
+
+void twi_init() {
+  // Weak pull-ups in case the board has none.
+  Scl::set();
+  Sda::set();
+  TWSR = 0;
+  TWBR = (F_CPU / kBus_hz - 16) / 2;
+  TWCR = kIdle;
+}
+
+void twi_start(const TwiTransfer& transfer) {
+  state.transfer = transfer;
+  state.done = 0;
+  TWCR = kGo | _BV(TWSTA);
+}
+
+void twi_recover() {
+  TWCR = 0;
+  // Open drain by hand: low is driven, high is left to the pull-ups.
+  Scl::clear();
+  Sda::clear();
+  for (uint8_t i = 0; i < kRecoveryClocks && !Sda::is_high(); ++i) {
+    Scl::make_output();
+    _delay_us(5);
+    Scl::make_input();
+    _delay_us(5);
+  }
+  // Stop condition: data rises while the clock is high.
+  Scl::make_output();
+  Sda::make_output();
+  _delay_us(5);
+  Scl::make_input();
+  _delay_us(5);
+  Sda::make_input();
+  _delay_us(5);
+  twi_init();
+}
+
+}  // namespace avr
+}  // namespace screed

@@ -1,0 +1,32 @@
+// hal.h for hosts: forwards to the current target of this thread.
+#include "hal/hal.h"
+
+#include "firmware/main_loop.h"
+#include "hal/host/target.h"
+
+namespace screed {
+namespace hal {
+namespace {
+
+thread_local Target* current = nullptr;
+
+}  // namespace
+
+void init() { current->init(); }
+const BoardConstants& board_constants() { return current->board_constants(); }
+const Parameters& parameters() { return current->parameters(); }
+bool wait_for_tick() { return current->wait_for_tick(); }
+void read_sensors(SensorSample& sample) { current->read_sensors(sample); }
+void write_outputs(const RobotOutput& output) { current->write_outputs(output); }
+
+void run_firmware(Target& target) {
+  struct Restore {
+    Target* before = current;
+    ~Restore() { current = before; }
+  } restore;
+  current = &target;
+  main_loop();
+}
+
+}  // namespace hal
+}  // namespace screed

@@ -1,0 +1,340 @@
+// Experiments: the table of keys and what is made of it.
+#include "host_sim/experiment/experiment.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <system_error>
+
+#include "firmware/leveling/leveling.h"
+#include "firmware/robot/parameter_table.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/experiment/ini_file.h"
+
+namespace screed {
+namespace {
+
+/// One key of an experiment file: how its value is read, written back and described.
+struct Key {
+  std::string section;
+  std::string name;
+  std::string unit;
+  std::string allowed;  ///< for people
+  std::string meaning;
+  /// Returns false when the value is not allowed.
+  std::function<bool(Experiment&, const std::string&)> set;
+  /// The value in force; nothing when an optional key is not set.
+  std::function<std::optional<std::string>(const Experiment&)> get;
+};
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
+template <class Number>
+bool parse_number(const std::string& text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  return result.ec == std::errc() && result.ptr == end && !text.empty();
+}
+
+template <class Get>
+Key real_key(const char* section, const char* name, const char* unit, double min, double max, const char* meaning, Get field) {
+  const auto set = [=](Experiment& experiment, const std::string& text) {
+    double value = 0.0;
+    if (!parse_number(text, value) || !std::isfinite(value) || value < min || value > max) return false;
+    field(experiment) = value;
+    return true;
+  };
+  const auto get = [=](const Experiment& experiment) -> std::optional<std::string> {
+    Experiment copy = experiment;
+    const std::optional<double> value = field(copy);
+    if (!value.has_value()) return std::nullopt;
+    return shortest(*value);
+  };
+  return {section, name, unit, "a number " + shortest(min) + ".." + shortest(max), meaning, set, get};
+}
+
+template <class Get>
+Key bool_key(const char* section, const char* name, const char* meaning, Get field) {
+  const auto set = [=](Experiment& experiment, const std::string& text) {
+    if (text != "true" && text != "false") return false;
+    field(experiment) = text == "true";
+    return true;
+  };
+  const auto get = [=](const Experiment& experiment) -> std::optional<std::string> {
+    Experiment copy = experiment;
+    return field(copy) ? "true" : "false";
+  };
+  return {section, name, "", "true or false", meaning, set, get};
+}
+
+template <class Get>
+Key text_key(const char* section, const char* name, const char* allowed, const char* meaning, Get field,
+             std::function<bool(const std::string&)> accepts) {
+  const auto set = [=](Experiment& experiment, const std::string& text) {
+    if (!accepts(text)) return false;
+    field(experiment) = text;
+    return true;
+  };
+  const auto get = [=](const Experiment& experiment) -> std::optional<std::string> {
+    Experiment copy = experiment;
+    const std::string& value = field(copy);
+    if (value.empty()) return std::nullopt;
+    return value;
+  };
+  return {section, name, "", allowed, meaning, set, get};
+}
+
+struct AlgorithmName {
+  const char* name;
+  LevelingAlgorithm algorithm;
+};
+constexpr AlgorithmName kAlgorithms[] = {
+    {"drive", LevelingAlgorithm::kDrive},
+    {"hill_sensing", LevelingAlgorithm::kHillSensing},
+    {"spin_on_peak", LevelingAlgorithm::kSpinOnPeak},
+};
+
+bool is_algorithm(const std::string& name) {
+  return std::any_of(std::begin(kAlgorithms), std::end(kAlgorithms),
+                     [&](const AlgorithmName& known) { return name == known.name; });
+}
+
+bool is_file_name(const std::string& text) {
+  return !text.empty() && text.size() <= 64 && text.find_first_not_of(
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string::npos;
+}
+
+bool not_empty(const std::string& text) { return !text.empty(); }
+
+std::vector<Key> make_keys() {
+  std::vector<Key> keys;
+  keys.push_back(text_key("", "output_directory_prefix", "a folder", "where run folders are made",
+                          [](Experiment& e) -> std::string& { return e.output_directory_prefix; }, not_empty));
+
+  keys.push_back(bool_key("vehicle", "tracks", "belts round the wheels; false: the wheels alone",
+                          [](Experiment& e) -> bool& { return e.vehicle.tracks; }));
+  keys.push_back(text_key("vehicle", "model", "a URDF file, or rover5", "the robot",
+                          [](Experiment& e) -> std::string& { return e.vehicle.model; }, not_empty));
+  keys.push_back(real_key("vehicle", "x", "m", -500, 500, "start position, east",
+                          [](Experiment& e) -> double& { return e.vehicle.x_m; }));
+  keys.push_back(real_key("vehicle", "y", "m", -500, 500, "start position, north",
+                          [](Experiment& e) -> double& { return e.vehicle.y_m; }));
+  keys.push_back(real_key("vehicle", "z", "m", -200, 200, "start height of the chassis; left out: set down on the ground",
+                          [](Experiment& e) -> std::optional<double>& { return e.vehicle.z_m; }));
+  keys.push_back(real_key("vehicle", "r", "deg", -180, 180, "start roll, left side up",
+                          [](Experiment& e) -> double& { return e.vehicle.roll_deg; }));
+  keys.push_back(real_key("vehicle", "p", "deg", -90, 90, "start pitch, nose up",
+                          [](Experiment& e) -> double& { return e.vehicle.pitch_deg; }));
+  keys.push_back(real_key("vehicle", "h", "deg", -360, 360, "start heading, counter-clockwise from east",
+                          [](Experiment& e) -> double& { return e.vehicle.heading_deg; }));
+  keys.push_back(real_key("vehicle", "leg_angle", "deg", -90, 90, "angle of the legs below the horizontal; left out: as in the model",
+                          [](Experiment& e) -> std::optional<double>& { return e.vehicle.leg_angle_deg; }));
+  keys.push_back(real_key("vehicle", "track_friction", "", 0.01, 5, "Coulomb friction between track or wheel and ground",
+                          [](Experiment& e) -> double& { return e.vehicle.track_friction; }));
+  keys.push_back(real_key("vehicle", "chassis_friction", "", 0.0, 5, "Coulomb friction between chassis and ground",
+                          [](Experiment& e) -> double& { return e.vehicle.chassis_friction; }));
+
+  keys.push_back(text_key("map", "filename", "a grey PNG or BMP file", "height map; left out: level ground, or a ramp",
+                          [](Experiment& e) -> std::string& { return e.map.filename; }, not_empty));
+  keys.push_back(real_key("map", "size", "m", 0.1, 1000, "length of the bed's longer side",
+                          [](Experiment& e) -> double& { return e.map.size_m; }));
+  keys.push_back(real_key("map", "scale", "m", 0.0001, 100, "height of white",
+                          [](Experiment& e) -> double& { return e.map.scale_m; }));
+  keys.push_back(real_key("map", "max_slope", "deg", 0.1, 89, "heights are scaled down until no slope is steeper",
+                          [](Experiment& e) -> std::optional<double>& { return e.map.max_slope_deg; }));
+  keys.push_back(real_key("map", "ramp", "deg", -60, 60, "without a file: slope of the ground, rising to the east",
+                          [](Experiment& e) -> double& { return e.map.ramp_deg; }));
+  keys.push_back(bool_key("map", "wrap", "the terrain repeats at its edges; the image must be tileable",
+                          [](Experiment& e) -> bool& { return e.map.wrap; }));
+  keys.push_back(text_key("map", "model", "rigid", "how the ground answers",
+                          [](Experiment& e) -> std::string& { return e.map.model; },
+                          [](const std::string& text) { return text == "rigid"; }));
+
+  keys.push_back(text_key("experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
+                          [](Experiment& e) -> std::string& { return e.experiment.name; }, is_file_name));
+  keys.push_back(text_key("experiment", "algorithm", "drive, hill_sensing or spin_on_peak", "what the firmware does",
+                          [](Experiment& e) -> std::string& { return e.experiment.algorithm; }, is_algorithm));
+  keys.push_back(real_key("experiment", "duration", "s", 0.01, 1e6, "simulated time",
+                          [](Experiment& e) -> double& { return e.experiment.duration_s; }));
+  keys.push_back({"experiment", "seed", "", "an integer 0..18446744073709551615", "of every random generator of the world",
+                  [](Experiment& e, const std::string& text) { return parse_number(text, e.experiment.seed); },
+                  [](const Experiment& e) -> std::optional<std::string> { return std::to_string(e.experiment.seed); }});
+  keys.push_back(real_key("experiment", "flatness", "deg", 0.0, 89, "slope up to which ground counts as flat",
+                          [](Experiment& e) -> double& { return e.experiment.flatness_deg; }));
+  keys.push_back(real_key("experiment", "lay_on_side_at", "s", 0.01, 1e6, "fault: the robot is laid on its side at this time",
+                          [](Experiment& e) -> std::optional<double>& { return e.experiment.lay_on_side_at_s; }));
+
+  keys.push_back(real_key("drive", "speed", "m/s", -0.5, 0.5, "algorithm drive: commanded speed",
+                          [](Experiment& e) -> double& { return e.drive.speed_m_per_s; }));
+  keys.push_back(real_key("drive", "yaw_rate", "deg/s", -179, 179, "algorithm drive: commanded turn rate",
+                          [](Experiment& e) -> double& { return e.drive.yaw_rate_deg_per_s; }));
+
+  keys.push_back(bool_key("sensors", "noise", "noise, bias and scale errors as in the data sheets; false: quantisation alone",
+                          [](Experiment& e) -> bool& { return e.sensors.noise; }));
+
+  keys.push_back(real_key("radio", "delay", "s", 0, 10, "of a byte, one way",
+                          [](Experiment& e) -> double& { return e.radio.delay_s; }));
+  keys.push_back(real_key("radio", "loss", "", 0, 1, "probability that a packet is lost",
+                          [](Experiment& e) -> double& { return e.radio.loss; }));
+  keys.push_back(bool_key("radio", "ground_station", "the ground station arms and starts the robot",
+                          [](Experiment& e) -> bool& { return e.radio.ground_station; }));
+
+  keys.push_back(real_key("physics", "step", "s", 1e-5, 0.01, "of the integration; divides 0.01 s",
+                          [](Experiment& e) -> double& { return e.physics.step_s; }));
+
+  for (const ParameterInfo& info : kParameterTable) {
+    if (std::string(info.name) == "algorithm") continue;  // [experiment] algorithm, by name
+    keys.push_back({"parameters", info.name, info.unit,
+                    "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max), info.meaning,
+                    [info](Experiment& e, const std::string& text) {
+                      int16_t value = 0;
+                      if (!parse_number(text, value) || value < info.min || value > info.max) return false;
+                      e.parameters.*info.field = value;
+                      return true;
+                    },
+                    [info](const Experiment& e) -> std::optional<std::string> {
+                      return std::to_string(e.parameters.*info.field);
+                    }});
+  }
+  return keys;
+}
+
+const std::vector<Key>& keys() {
+  static const std::vector<Key> table = make_keys();
+  return table;
+}
+
+std::string full_name(const std::string& section, const std::string& key) {
+  return section.empty() ? key : "[" + section + "] " + key;
+}
+
+/// The known names most like what was written, to say what is allowed.
+std::string known_names(const std::string& section) {
+  std::string names;
+  for (const Key& key : keys()) {
+    if (key.section == section) names += (names.empty() ? "" : ", ") + key.name;
+  }
+  return names;
+}
+
+std::string known_sections() {
+  std::string names;
+  std::string last;
+  for (const Key& key : keys()) {
+    if (key.section != last && !key.section.empty()) names += (names.empty() ? "[" : ", [") + key.section + "]";
+    last = key.section;
+  }
+  return names;
+}
+
+void apply(Experiment& experiment, const IniEntry& entry, const std::string& source) {
+  const std::string where = entry.line > 0 ? source + ":" + std::to_string(entry.line) : "--set";
+  const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& known) {
+    return known.section == entry.section && known.name == entry.key;
+  });
+  if (key == keys().end()) {
+    const std::string names = known_names(entry.section);
+    if (names.empty()) {
+      throw InputError(where + ": unknown section [" + entry.section + "]; known are " + known_sections());
+    }
+    throw InputError(where + ": unknown key '" + entry.key + "'" +
+                     (entry.section.empty() ? " before the first section" : " in [" + entry.section + "]") + "; known are " + names);
+  }
+  if (!key->set(experiment, entry.value)) {
+    throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value + "' is not allowed; expected " +
+                     key->allowed + (key->unit.empty() ? "" : " (" + key->unit + ")"));
+  }
+}
+
+/// What no single key can tell.
+void check(const Experiment& experiment, const std::string& source) {
+  const Parameters& p = experiment.parameters;
+  if (p.walk_speed_min > p.walk_speed_max) {
+    throw InputError(source + ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min) +
+                     " is above walk_speed_max = " + std::to_string(p.walk_speed_max));
+  }
+  if (p.walk_leg_min > p.walk_leg_max) {
+    throw InputError(source + ": [parameters] walk_leg_min = " + std::to_string(p.walk_leg_min) +
+                     " is above walk_leg_max = " + std::to_string(p.walk_leg_max));
+  }
+  if (!experiment.map.filename.empty() && experiment.map.ramp_deg != 0.0) {
+    throw InputError(source + ": [map] has both filename and ramp; a ramp needs no image");
+  }
+}
+
+}  // namespace
+
+int16_t algorithm_number(const std::string& name) {
+  for (const AlgorithmName& known : kAlgorithms) {
+    if (name == known.name) return static_cast<int16_t>(known.algorithm);
+  }
+  throw InputError("unknown algorithm '" + name + "'");
+}
+
+std::string Experiment::text() const {
+  std::string text;
+  std::string section;
+  for (const Key& key : keys()) {
+    const std::optional<std::string> value = key.get(*this);
+    if (!value.has_value()) continue;
+    if (key.section != section) text += "\n[" + key.section + "]\n";
+    section = key.section;
+    text += key.name + " = " + *value + "\n";
+  }
+  return text;
+}
+
+Experiment read_experiment(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  Experiment experiment;
+  experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
+  const std::string source = path.string();
+  for (const IniEntry& entry : read_ini_file(path)) apply(experiment, entry, source);
+  for (const std::string& text : overrides) apply(experiment, parse_override(text), source);
+  experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
+  check(experiment, source);
+  return experiment;
+}
+
+std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name, const char* key) {
+  const std::filesystem::path file(name);
+  std::vector<std::filesystem::path> places;
+  if (file.is_absolute()) {
+    places = {file};
+  } else {
+    places = {experiment.folder / file, std::filesystem::path(SCREED_DATA_DIR) / "terrain" / file};
+  }
+  std::string looked;
+  for (const std::filesystem::path& place : places) {
+    std::error_code error;
+    if (std::filesystem::exists(place, error)) return place;
+    looked += (looked.empty() ? "" : ", ") + place.lexically_normal().string();
+  }
+  throw InputError(std::string(key) + " = '" + name + "': no such file; looked for " + looked);
+}
+
+std::filesystem::path find_model_file(const Experiment& experiment) {
+  // Figure 5.3 calls the chassis Dagu5.
+  if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
+    return std::filesystem::path(SCREED_BOARDS_DIR) / "a_star_32u4" / "rover5.urdf";
+  }
+  return find_data_file(experiment, experiment.vehicle.model, "[vehicle] model");
+}
+
+std::string experiment_key_table() {
+  const Experiment defaults;
+  std::string text;
+  for (const Key& key : keys()) {
+    const std::optional<std::string> value = key.get(defaults);
+    text += "| " + (key.section.empty() ? "" : "[" + key.section + "] ") + key.name + " | " + key.unit + " | " +
+            value.value_or("") + " | " + key.allowed + " | " + key.meaning + " |\n";
+  }
+  return text;
+}
+
+}  // namespace screed

@@ -1,0 +1,96 @@
+// An experiment: everything that decides a simulated run, as read from an INI file (thesis Figure 5.3 and our own sections).
+//
+// Reading is strict: an unknown section or key, a value out of range or of the wrong kind ends with one line that names file, line,
+// key and what is allowed. docs/experiments.md lists every key; the list is made from the same table.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/robot/parameters.h"
+
+namespace screed {
+
+struct Experiment {
+  std::string output_directory_prefix = "out";
+
+  struct {
+    bool tracks = true;
+    std::string model = "rover5";  ///< a URDF file, or the name of one in boards/
+    double x_m = 0.0;
+    double y_m = 0.0;
+    std::optional<double> z_m;
+    double roll_deg = 0.0;
+    double pitch_deg = 0.0;
+    double heading_deg = 0.0;
+    std::optional<double> leg_angle_deg;
+    double track_friction = 0.8;
+    double chassis_friction = 0.4;
+  } vehicle;
+
+  struct {
+    std::string filename;                  ///< a grey image; empty: level ground
+    double size_m = 3.0;
+    double scale_m = 0.2;
+    std::optional<double> max_slope_deg;
+    double ramp_deg = 0.0;                 ///< without an image: level ground inclined towards east
+    bool wrap = false;
+    std::string model = "rigid";
+  } map;
+
+  struct {
+    std::string name = "experiment";
+    std::string algorithm = "hill_sensing";
+    double duration_s = 60.0;
+    uint64_t seed = 1;
+    double flatness_deg = 5.0;             ///< epsilon of the thesis' flatness, as a slope
+    std::optional<double> lay_on_side_at_s;
+  } experiment;
+
+  struct {
+    double speed_m_per_s = 0.1;
+    double yaw_rate_deg_per_s = 0.0;
+  } drive;
+
+  struct {
+    bool noise = true;
+  } sensors;
+
+  struct {
+    double delay_s = 0.012;
+    double loss = 0.0;
+    bool ground_station = true;
+  } radio;
+
+  struct {
+    double step_s = 0.001;
+  } physics;
+
+  Parameters parameters;
+
+  /// Where the file stood: relative file names are looked for here first. Not part of text().
+  std::filesystem::path folder = ".";
+
+  /// All keys with the values in force, as an INI file that gives the same experiment again.
+  std::string text() const;
+};
+
+/// Reads `path` and applies `overrides` ("section.key=value") on top. Throws InputError.
+Experiment read_experiment(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+/// The algorithm's number in the parameter table. Throws InputError for an unknown name.
+int16_t algorithm_number(const std::string& name);
+
+/// Finds a file named in an experiment: as given when absolute, else beside the experiment file, else in the project's data folders.
+/// Throws InputError that lists where it looked.
+std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name, const char* key);
+/// The URDF of [vehicle] model.
+std::filesystem::path find_model_file(const Experiment& experiment);
+
+/// One line a key: section.key, unit, default, allowed values, meaning; for docs and `screed sim --keys`.
+std::string experiment_key_table();
+
+}  // namespace screed

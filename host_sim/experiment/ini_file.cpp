@@ -1,0 +1,107 @@
+// INI files through inih.
+#include "host_sim/experiment/ini_file.h"
+
+#include <ini.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+// inih hands over no line numbers, but asks for the file line by line: this counts them.
+struct Reading {
+  std::ifstream file;
+  std::string name;
+  int line = 0;
+  bool too_long = false;
+  std::vector<IniEntry> entries;
+  std::string complaint;  // exceptions must not pass through C code
+  int complaint_line = 0;
+};
+
+char* read_line(char* buffer, int size, void* stream) {
+  auto& reading = *static_cast<Reading*>(stream);
+  std::string text;
+  if (reading.too_long || !std::getline(reading.file, text)) return nullptr;
+  ++reading.line;
+  // inih joins indented lines to the value before them; in an experiment file an indented line is a line.
+  text.erase(0, text.find_first_not_of(" \t\r"));
+  if (text.size() + 2 > static_cast<size_t>(size)) {
+    reading.too_long = true;
+    return nullptr;
+  }
+  text.push_back('\n');
+  *std::copy(text.begin(), text.end(), buffer) = '\0';
+  return buffer;
+}
+
+int take_entry(void* user, const char* section, const char* name, const char* value) {
+  auto& reading = *static_cast<Reading*>(user);
+  if (!reading.complaint.empty()) return 1;
+  const auto same = std::find_if(reading.entries.begin(), reading.entries.end(), [&](const IniEntry& entry) {
+    return entry.section == section && entry.key == name;
+  });
+  if (same != reading.entries.end()) {
+    reading.complaint_line = reading.line;
+    reading.complaint = reading.name + ":" + std::to_string(reading.line) + ": key '" + name + "' is given twice in [" + section +
+                        "], first in line " + std::to_string(same->line);
+    return 1;
+  }
+  // inih takes only ';' for a comment behind a value.
+  std::string text = value;
+  const size_t hash = text.find(" #");
+  if (hash != std::string::npos) text.erase(hash);
+  text.erase(text.find_last_not_of(" \t\r") + 1);
+  reading.entries.push_back({section, name, text, reading.line});
+  return 1;
+}
+
+}  // namespace
+
+std::vector<IniEntry> read_ini_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(path.string() + ": is a folder, not an experiment file");
+  Reading reading;
+  reading.name = path.string();
+  reading.file.open(path);
+  if (!reading.file) throw InputError(path.string() + ": no such experiment file, or it cannot be read");
+  const int bad_line = ini_parse_stream(read_line, &reading, take_entry, &reading);
+  if (reading.too_long) {
+    throw InputError(reading.name + ":" + std::to_string(reading.line) + ": line too long; at most 197 characters");
+  }
+  // The first of two complaints is the one to tell.
+  if (!reading.complaint.empty() && (bad_line <= 0 || bad_line > reading.complaint_line)) {
+    throw InputError(reading.complaint);
+  }
+  if (bad_line > 0) {
+    throw InputError(reading.name + ":" + std::to_string(bad_line) + ": neither [section] nor 'key = value' nor a comment");
+  }
+  if (bad_line < 0) throw InputError(reading.name + ": cannot be read");
+  return std::move(reading.entries);
+}
+
+IniEntry parse_override(const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError("--set " + text + ": expected section.key=value");
+  }
+  const auto trim = [](std::string part) {
+    part.erase(0, part.find_first_not_of(" \t"));
+    part.erase(part.find_last_not_of(" \t") + 1);
+    return part;
+  };
+  IniEntry entry;
+  const std::string name = trim(text.substr(0, equals));
+  const size_t dot = name.find('.');
+  entry.section = dot == std::string::npos ? "" : name.substr(0, dot);
+  entry.key = dot == std::string::npos ? name : name.substr(dot + 1);
+  entry.value = trim(text.substr(equals + 1));
+  return entry;
+}
+
+}  // namespace screed

@@ -1,0 +1,33 @@
+// Colours for pictures: perceptually even ramps for numbers, a fixed set for categories.
+// Knows nothing of drawing.
+#pragma once
+
+#include <cstddef>
+
+namespace screed {
+
+/// sRGB (gamma-encoded) components and opacity, each 0..1.
+struct Color {
+  double red = 0.0;
+  double green = 0.0;
+  double blue = 0.0;
+  double alpha = 1.0;
+};
+
+/// The same colour with another opacity.
+Color with_alpha(Color color, double alpha);
+
+/// Heights: dark slate over green and sand to near white as t goes from 0 to 1 (clamped). Lightness
+/// rises evenly, so equal steps of height look equal, also in grey print.
+Color height_color(double t);
+
+/// Differences: t = -1 blue (cut), 0 near white, +1 red-brown (fill), clamped; both sides equally
+/// light at equal distance from 0.
+Color difference_color(double t);
+
+/// Categories: colours that stay apart on height_color(); the first eight also for colour-blind
+/// eyes (after M. Okabe and K. Ito, 2002). The index counts modulo kCategoryColors.
+inline constexpr size_t kCategoryColors = 10;
+Color category_color(size_t index);
+
+}  // namespace screed

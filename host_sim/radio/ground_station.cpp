@@ -1,0 +1,90 @@
+// The ground station of a simulated run.
+#include "host_sim/radio/ground_station.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "firmware/telemetry/e2e.h"
+#include "hal/sample.h"
+
+namespace screed {
+namespace {
+
+constexpr uint64_t kHeartbeatTicks = kTickRate_hz / 5;
+constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
+
+}  // namespace
+
+void GroundStation::receive(uint64_t now_us, std::span<const uint8_t> bytes) {
+  CanFrame frame{};
+  for (const uint8_t byte : bytes) {
+    if (parser_.feed(byte, frame)) take(now_us, frame);
+  }
+}
+
+void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
+  if (!e2e_check(frame.id, frame.data, frame.size)) {
+    ++rejected_;
+    return;
+  }
+  ++frames_;
+  if (frame.id == kIdHeartbeat && frame.size >= 4) {
+    report_.heard = true;
+    report_.state = static_cast<RobotState>(frame.data[1] >> 4);
+    report_.faults = get_u16(frame.data + kE2eHeaderSize);
+    if (report_.state == RobotState::kRunning) started_ = true;
+  }
+  if (log_ == nullptr) return;
+  char line[64];
+  int length = std::snprintf(line, sizeof line, "(%010llu.%06llu) screed0 %03X#",
+                             static_cast<unsigned long long>(now_us / 1000000U),
+                             static_cast<unsigned long long>(now_us % 1000000U), static_cast<unsigned>(frame.id));
+  for (int i = 0; i < frame.size; ++i) {
+    length += std::snprintf(line + length, sizeof line - static_cast<size_t>(length), "%02X",
+                            static_cast<unsigned>(frame.data[i]));
+  }
+  line[length++] = '\n';
+  log_->write(line, length);
+}
+
+void GroundStation::add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines) {
+  e2e_protect(frame.id, counter, frame.data, frame.size);
+  counter = static_cast<uint8_t>((counter + 1) & 0x0F);
+  uint8_t line[kSlcanLineMax];
+  const uint8_t length = slcan_encode(frame, line);
+  lines.insert(lines.end(), line, line + length);
+}
+
+void GroundStation::add_command(CommandOp op, const DriveArgument* argument, std::vector<uint8_t>& lines) {
+  CanFrame frame{};
+  frame.id = kIdCommand;
+  frame.size = 6;
+  frame.data[2] = static_cast<uint8_t>(op);
+  if (argument != nullptr) put_drive_argument(frame.data + 3, *argument);
+  add_frame(frame, command_counter_, lines);
+}
+
+std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
+  std::vector<uint8_t> lines;
+  if (ticks_ % kHeartbeatTicks == 0) {
+    CanFrame frame{};
+    frame.id = kIdGroundHeartbeat;
+    frame.size = 6;
+    put_u32(frame.data + kE2eHeaderSize, static_cast<uint32_t>(now_us / 1000U));
+    add_frame(frame, heartbeat_counter_, lines);
+  }
+  // Commands between heartbeats, so that no packet holds both.
+  if (ticks_ % kCommandTicks == kCommandTicks / 2 && report_.heard) {
+    if (report_.state == RobotState::kDisarmed && arm_ && !started_) add_command(CommandOp::kArm, nullptr, lines);
+    if (report_.state == RobotState::kArmed && arm_) add_command(CommandOp::kRun, nullptr, lines);
+    if (report_.state == RobotState::kRunning && drive_.has_value()) {
+      const DriveArgument argument = {static_cast<int16_t>(std::lround(drive_->speed_m_per_s * 1000.0)),
+                                      static_cast<int16_t>(std::lround(drive_->yaw_rate_deg_per_s * 10.0))};
+      add_command(CommandOp::kDrive, &argument, lines);
+    }
+  }
+  ++ticks_;
+  return lines;
+}
+
+}  // namespace screed

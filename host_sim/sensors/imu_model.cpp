@@ -1,0 +1,81 @@
+// The AltIMU-10 v4: true motion in, raw counts out.
+#include "host_sim/sensors/imu_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/vehicle/ode_world.h"
+
+namespace screed {
+namespace {
+
+constexpr double kGyroLsb_dps = 0.070;
+constexpr double kAccelLsb_mg = 0.244;
+constexpr double kMagLsb_mg = 0.160;
+constexpr uint32_t kMagTicks = 2;
+constexpr uint32_t kBaroTicks = 4;
+
+int16_t quantise(double value, double lsb) {
+  return static_cast<int16_t>(std::clamp(std::round(value / lsb), -32768.0, 32767.0));
+}
+
+Eigen::Vector3d normals(WorldRandom& random, double sigma) {
+  // One after another: the order of draws is part of the result.
+  const double x = random.normal();
+  const double y = random.normal();
+  const double z = random.normal();
+  return sigma * Eigen::Vector3d(x, y, z);
+}
+
+}  // namespace
+
+ImuModel::ImuModel(uint64_t seed, const ImuErrors& errors)
+    : errors_(errors),
+      gyro_random_(seed, "gyro"),
+      accel_random_(seed, "accelerometer"),
+      mag_random_(seed, "magnetometer"),
+      baro_random_(seed, "barometer"),
+      gyro_bias_dps_(normals(gyro_random_, errors.gyro_bias_dps)),
+      gyro_scale_(Eigen::Vector3d::Ones() + normals(gyro_random_, errors.gyro_scale)),
+      accel_bias_mg_(normals(accel_random_, errors.accel_bias_mg)),
+      accel_scale_(Eigen::Vector3d::Ones() + normals(accel_random_, errors.accel_scale)),
+      mag_bias_mg_(normals(mag_random_, errors.mag_bias_mg)),
+      pressure_bias_hpa_(errors.pressure_bias_hpa * baro_random_.normal()) {}
+
+Eigen::Vector3d ImuModel::earth_field_gauss() {
+  constexpr double kField_g = 0.52;
+  constexpr double kInclination = 68.0 * std::numbers::pi / 180.0;
+  return {0.0, kField_g * std::cos(kInclination), -kField_g * std::sin(kInclination)};
+}
+
+void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const Eigen::Vector3d gyro = (truth.mean_rate_rad_per_s * kDegrees).cwiseProduct(gyro_scale_) + gyro_bias_dps_ +
+                               normals(gyro_random_, errors_.gyro_noise_dps);
+  const Eigen::Vector3d accel = (truth.mean_specific_force * (1000.0 / kGravity_m_per_s2)).cwiseProduct(accel_scale_) +
+                                accel_bias_mg_ + normals(accel_random_, errors_.accel_noise_mg);
+  for (int i = 0; i < 3; ++i) {
+    sample.gyro[i] = quantise(gyro[i], kGyroLsb_dps);
+    sample.accel[i] = quantise(accel[i], kAccelLsb_mg);
+  }
+  sample.fresh = kFreshGyro | kFreshAccel;
+
+  if (ticks_ % kMagTicks == 0) {
+    const Eigen::Vector3d mag = truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0) + mag_bias_mg_ +
+                                normals(mag_random_, errors_.mag_noise_mg);
+    for (int i = 0; i < 3; ++i) sample.mag[i] = quantise(mag[i], kMagLsb_mg);
+    sample.fresh |= kFreshMag;
+  }
+  if (ticks_ % kBaroTicks == 0) {
+    // 1013.25 hPa at height 0; 0.12 hPa a metre near the ground (barometric formula, linearised).
+    const double pressure = 1013.25 - 0.1201 * truth.altitude_m + pressure_bias_hpa_ +
+                            errors_.pressure_noise_hpa * baro_random_.normal();
+    sample.pressure = static_cast<int32_t>(std::lround(pressure * 4096.0));
+    sample.temperature = static_cast<int16_t>(std::lround((20.0 - 42.5) * 480.0));
+    sample.fresh |= kFreshBaro;
+  }
+  ++ticks_;
+}
+
+}  // namespace screed

@@ -1,0 +1,29 @@
+// Replays a recorded run through the firmware core: the same samples must give the same output
+// bytes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace screed {
+
+struct ReplayResult {
+  std::uint64_t ticks = 0;  ///< ticks replayed: all of them, also behind a difference
+  std::optional<std::uint64_t> first_difference_tick;  ///< counted from 0
+  std::string
+      first_difference;     ///< "duty_left: expected 12, got 15"; expected is what was recorded
+  std::string output_hash;  ///< hash of the replayed outputs, 32 hexadecimal digits
+  bool complete =
+      true;  ///< false when the recorded run was killed: only its saved part was replayed
+  bool unchanged =
+      true;  ///< false when the file's content no longer has the hash it was saved with
+};
+
+/// Builds a Robot from the recorded parameters and board constants, feeds it the recorded samples
+/// and compares its outputs byte for byte, of the radio only the valid bytes. Throws InputError
+/// when the file is no session, has no tick, or was recorded at another tick rate.
+ReplayResult replay_session(const std::filesystem::path& session_file);
+
+}  // namespace screed

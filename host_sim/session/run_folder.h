@@ -1,0 +1,54 @@
+// The folder of one run: it appears under its name only when the run is complete, and nothing saved
+// is ever overwritten.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace screed {
+
+/// While a run goes on its folder is `<name>.partial`. commit() gives it its name; without commit()
+/// the destructor removes it. A `.partial` of another run, interrupted or still going on, is never
+/// touched.
+class RunFolder {
+ public:
+  /// A folder named by the user: must not exist yet, or be empty. Missing parents are created.
+  /// Throws InputError when the name is taken, its `.partial` is left over, or a parent is no
+  /// folder; RunError when the folder cannot be created.
+  static RunFolder at(const std::filesystem::path& out);
+
+  /// `<root>/<experiment>-NNNN` with the lowest number, from 0001, that neither a run nor a
+  /// `.partial` has. Throws InputError for a name that is no file name, otherwise as at().
+  static RunFolder numbered(const std::filesystem::path& root, const std::string& experiment);
+
+  RunFolder(RunFolder&& other) noexcept;
+  RunFolder& operator=(RunFolder&& other) = delete;
+  ~RunFolder();
+
+  /// Where to write now.
+  const std::filesystem::path& path() const { return partial_; }
+  /// Where the run will stand after commit().
+  const std::filesystem::path& final_path() const { return final_; }
+  /// Folders of unfinished runs that numbered() passed over, for a note to the user.
+  const std::vector<std::filesystem::path>& leftovers() const { return leftovers_; }
+
+  /// Renames the folder to final_path(). Throws RunError when that fails; the folder then stays as
+  /// path().
+  void commit();
+
+ private:
+  RunFolder() = default;
+  void create_parents();
+  /// False when the partial folder exists already.
+  bool create_partial();
+
+  std::filesystem::path final_;
+  std::filesystem::path partial_;
+  std::vector<std::filesystem::path> leftovers_;
+  std::vector<std::filesystem::path>
+      created_parents_;  ///< outermost first; removed again when the run fails
+  bool owns_partial_ = false;
+};
+
+}  // namespace screed

@@ -1,0 +1,27 @@
+// Ownership of an ODE world.
+#include "host_sim/vehicle/ode_world.h"
+
+#include <mutex>
+
+namespace screed {
+namespace {
+
+// ODE is initialised once a process and never closed: worlds of several threads come and go.
+void initialise_ode() {
+  static std::once_flag once;
+  std::call_once(once, [] { dInitODE2(0); });
+  dAllocateODEDataForThread(dAllocateMaskAll);
+}
+
+dWorldID create_world() {
+  initialise_ode();
+  return dWorldCreate();
+}
+
+}  // namespace
+
+OdeWorld::OdeWorld() : world_(create_world()) { dWorldSetGravity(world_, 0.0, 0.0, -kGravity_m_per_s2); }
+
+OdeWorld::~OdeWorld() { dWorldDestroy(world_); }
+
+}  // namespace screed

@@ -1,0 +1,136 @@
+// One unit of running gear: contact points along a contour, and the degree of freedom of its surface.
+#include "host_sim/vehicle/running_gear.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace screed {
+namespace {
+
+constexpr double kSpacing_m = 0.0125;   // of contact points along the contour
+constexpr double kSinkIn_m = 0.0004;    // under the unit's own load on level ground
+constexpr double kDampingRatio = 0.7;
+
+}  // namespace
+
+void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& along) {
+  points_.push_back(at);
+  along_.push_back(along);
+}
+
+RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const GearMotor& motor,
+                         double friction, double load_n, double mass_kg)
+    : geometry_(geometry),
+      driven_(driven),
+      motor_(motor),
+      centre_(0.5 * (geometry.front + geometry.rear)) {
+  const double radius = geometry.radius;
+  const Eigen::Vector3d run = geometry.front - geometry.rear;
+  const double length = run.norm();
+  const Eigen::Vector3d forward = length > 0.0 ? Eigen::Vector3d(run / length) : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d up = forward.cross(Eigen::Vector3d::UnitY());  // contour plane: forward, up
+  const int half_points = std::max(8, static_cast<int>(std::lround(std::numbers::pi * radius / kSpacing_m)));
+  const int run_points = length > 0.0 ? std::max(1, static_cast<int>(std::lround(length / kSpacing_m))) : 0;
+  spacing_ = std::numbers::pi * radius / half_points;
+
+  // Driving forward the material goes: down round the front wheel, back along the bottom, up round the rear wheel, forward on top.
+  for (int row = 0; row < rows_; ++row) {
+    const Eigen::Vector3d side = Eigen::Vector3d::UnitY() * geometry.width * (row == 0 ? 0.5 : -0.5);
+    const auto arc = [&](const Eigen::Vector3d& axle, double start_rad) {
+      for (int i = 0; i < half_points; ++i) {
+        const double angle = start_rad + (i + 0.5) * std::numbers::pi / half_points;  // from top, forwards
+        const Eigen::Vector3d out = std::sin(angle) * forward + std::cos(angle) * up;
+        const Eigen::Vector3d along = std::cos(angle) * forward - std::sin(angle) * up;
+        add_point(axle + side + radius * out, along);
+      }
+    };
+    arc(geometry.front, 0.0);
+    for (int i = 0; i < run_points; ++i) {
+      const Eigen::Vector3d at = geometry.front - (i + 0.5) / run_points * run;
+      add_point(at + side - radius * up, -forward);
+    }
+    arc(geometry.rear, std::numbers::pi);
+    for (int i = 0; i < run_points; ++i) {
+      const Eigen::Vector3d at = geometry.rear + (i + 0.5) / run_points * run;
+      add_point(at + side + radius * up, forward);
+    }
+  }
+  bristles_.assign(points_.size(), Eigen::Vector3d::Zero());
+  carried_ = bristles_;
+
+  // On level ground the belt's lower run carries the load; of a wheel the lowest two or three points of each row.
+  const double carrying = rows_ * (run_points > 0 ? run_points : 2);
+  law_.friction = friction;
+  law_.stiffness = load_n / (kSinkIn_m * carrying);
+  law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * mass_kg / carrying);
+  const double inertia = geometry.spin_inertia_kg_m2 + (driven ? motor.inertia_kg_m2 : 0.0);
+  mass_ = inertia / (radius * radius);
+}
+
+void RunningGear::halt() {
+  speed_ = 0.0;
+  bristles_.assign(points_.size(), Eigen::Vector3d::Zero());
+}
+
+// The brush model's transport: what a point's material has been bent so far comes with it from the neighbour it passed before.
+// First-order upwind; a belt at 0.25 m/s moves 2 % of the spacing in a step of 1 ms.
+void RunningGear::carry_bristles(double dt) {
+  const double share = std::min(1.0, std::abs(speed_) * dt / spacing_);
+  if (share == 0.0) return;
+  const size_t row_points = points_.size() / static_cast<size_t>(rows_);
+  carried_.swap(bristles_);
+  for (size_t row = 0; row < static_cast<size_t>(rows_); ++row) {
+    const size_t begin = row * row_points;
+    for (size_t i = 0; i < row_points; ++i) {
+      const size_t before = speed_ > 0.0 ? (i == 0 ? row_points - 1 : i - 1)
+                                         : (i + 1 == row_points ? 0 : i + 1);
+      bristles_[begin + i] =
+          carried_[begin + i] + share * (carried_[begin + before] - carried_[begin + i]);
+    }
+  }
+}
+
+void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrier, double dt,
+                          Wrench& wrench) {
+  carry_bristles(dt);
+  ground_force_ = 0.0;
+  normal_load_ = 0.0;
+  GroundTouch touch;
+  for (size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector3d arm = carrier.rotation * points_[i];
+    const Eigen::Vector3d position = carrier.origin + arm;
+    // Most points are above all ground there is near the robot, or above the ground below them.
+    if (position.z() > carrier.ceiling || !touches(ground, position, touch)) {
+      bristles_[i].setZero();
+      continue;
+    }
+    const Eigen::Vector3d along = carrier.rotation * along_[i];
+    const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(arm) + speed_ * along;
+    const Eigen::Vector3d force = contact_force(law_, touch, velocity, dt, bristles_[i]);
+    wrench.add(force, arm);
+    ground_force_ += force.dot(along);
+    normal_load_ += force.z();
+  }
+}
+
+void RunningGear::drive(double voltage, double dt) {
+  const double radius = geometry_.radius;
+  // m dv/dt = torque_per_ampere (V - k v / r) / (R r) + ground - friction; back-EMF implicit, friction last and never past rest.
+  double push = ground_force_;
+  double resist = 0.0;
+  double friction = 0.02;  // N, bearings of an undriven wheel
+  if (driven_) {
+    const double gain = motor_.torque_per_ampere() / (motor_.resistance_ohm * radius);
+    push += gain * voltage;
+    resist = gain * motor_.back_emf_v_s / radius;
+    friction = motor_.friction_torque() / radius;
+  }
+  const double free = (speed_ + push * dt / mass_) / (1.0 + resist * dt / mass_);
+  const double stopped_by = friction * dt / mass_;
+  speed_ = std::abs(free) <= stopped_by ? 0.0 : free - std::copysign(stopped_by, free);
+  angle_ += speed_ * dt / radius;
+  current_ = driven_ ? motor_.current(voltage, speed_ / radius) : 0.0;
+}
+
+}  // namespace screed

@@ -1,0 +1,338 @@
+// A skid-steered robot in the world.
+#include "host_sim/vehicle/vehicle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+constexpr double kHullSpacing_m = 0.04;   // of contact points on boxes
+constexpr double kHullSinkIn_m = 0.001;   // when four points carry the whole robot
+
+const char* const kWheels[2][2] = {{"fl_Wheel", "bl_Wheel"}, {"fr_Wheel", "br_Wheel"}};
+
+bool is_wheel_name(const std::string& name) {
+  for (const auto& side : kWheels) {
+    for (const char* wheel : side) {
+      if (name == wheel) return true;
+    }
+  }
+  return false;
+}
+
+// Points on the surface of a shape, dense enough that the ground cannot pass between them unnoticed.
+void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& points) {
+  const Eigen::Isometry3d at = pose * shape.pose;
+  if (const auto* box = std::get_if<Box>(&shape.geometry)) {
+    Eigen::Vector3i count;
+    for (int axis = 0; axis < 3; ++axis) {
+      count[axis] = std::max(1, static_cast<int>(std::ceil(box->size[axis] / kHullSpacing_m)));
+    }
+    for (int i = 0; i <= count.x(); ++i) {
+      for (int j = 0; j <= count.y(); ++j) {
+        for (int k = 0; k <= count.z(); ++k) {
+          const bool surface = i == 0 || j == 0 || k == 0 || i == count.x() || j == count.y() || k == count.z();
+          if (!surface) continue;
+          const Eigen::Vector3d share(static_cast<double>(i) / count.x() - 0.5, static_cast<double>(j) / count.y() - 0.5,
+                                      static_cast<double>(k) / count.z() - 0.5);
+          points.emplace_back(at * share.cwiseProduct(box->size));
+        }
+      }
+    }
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+    constexpr int kAround = 12;
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kAround;
+      for (const double end : {-0.5, 0.5}) {
+        points.emplace_back(at * Eigen::Vector3d(cylinder->radius * std::cos(angle), cylinder->radius * std::sin(angle),
+                                                 end * cylinder->length));
+      }
+    }
+  } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+    for (const Eigen::Vector3d& vertex : mesh->vertices) points.emplace_back(at * vertex);
+  }
+}
+
+// The cylinder a wheel rolls on: its radius and length.
+const Cylinder& wheel_cylinder(const AssemblyBody& wheel) {
+  for (const Shape& shape : wheel.collision) {
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) return *cylinder;
+  }
+  throw InputError("robot model: wheel '" + wheel.name + "' has no collision cylinder to roll on");
+}
+
+const AssemblyJoint* joint_to(const Assembly& assembly, int child) {
+  for (const AssemblyJoint& joint : assembly.joints) {
+    if (joint.child == child) return &joint;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Attitude attitude_of(const Eigen::Matrix3d& r) {
+  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(r(2, 0), -1.0, 1.0)),
+          std::atan2(r(1, 0), r(0, 0))};
+}
+
+Eigen::Matrix3d rotation_from(const Attitude& attitude) {
+  // Nose up is a negative turn about y, which points left; left side up is a positive turn about x.
+  return (Eigen::AngleAxisd(attitude.heading, Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(-attitude.pitch, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(attitude.roll, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options) : world_(world) {
+  std::vector<bool> is_wheel(assembly.bodies.size());
+  for (size_t i = 0; i < assembly.bodies.size(); ++i) is_wheel[i] = is_wheel_name(assembly.bodies[i].name);
+  for (const AssemblyJoint& joint : assembly.joints) {
+    if (joint.kind == AssemblyJoint::Kind::Motor && !is_wheel[static_cast<size_t>(joint.child)]) {
+      throw InputError("robot model: motor joint '" + joint.name + "' drives '" +
+                       assembly.bodies[static_cast<size_t>(joint.child)].name +
+                       "'; only fl_Wheel, fr_Wheel, bl_Wheel and br_Wheel can be driven");
+    }
+  }
+  add_carriers(assembly, is_wheel, options);
+  add_hinges(assembly);
+  add_running_gear(assembly, options);
+}
+
+void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel, const VehicleOptions& options) {
+  constexpr size_t kNone = std::numeric_limits<size_t>::max();
+  carrier_of_body_.assign(assembly.bodies.size(), kNone);
+  std::vector<std::vector<int>> groups;
+  // Parents come before their children's groups are closed: fixed joints first, then wheels join whoever carries them.
+  for (size_t i = 0; i < assembly.bodies.size(); ++i) {
+    if (carrier_of_body_[i] != kNone || is_wheel[i]) continue;
+    groups.push_back(rigid_group(assembly, static_cast<int>(i)));
+    for (const int member : groups.back()) carrier_of_body_[static_cast<size_t>(member)] = groups.size() - 1;
+  }
+  for (size_t i = 0; i < assembly.bodies.size(); ++i) {
+    if (carrier_of_body_[i] != kNone) continue;
+    const AssemblyJoint* joint = joint_to(assembly, static_cast<int>(i));
+    if (joint == nullptr || is_wheel[static_cast<size_t>(joint->parent)]) {
+      throw InputError("robot model: wheel '" + assembly.bodies[i].name + "' has no body that carries it");
+    }
+    const size_t carrier = carrier_of_body_[static_cast<size_t>(joint->parent)];
+    carrier_of_body_[i] = carrier;
+    groups[carrier].push_back(static_cast<int>(i));
+  }
+
+  for (const std::vector<int>& group : groups) mass_ += composed_inertia(assembly, group).mass;
+  for (const std::vector<int>& group : groups) {
+    const Inertia inertia = composed_inertia(assembly, group);
+    if (inertia.mass <= 0.0) {
+      throw InputError("robot model: body '" + assembly.bodies[static_cast<size_t>(group.front())].name + "' has no mass");
+    }
+    Carrier carrier{};
+    carrier.rest = Eigen::Isometry3d::Identity();
+    carrier.rest.translation() = inertia.pose.translation();
+    const Eigen::Matrix3d axes = inertia.pose.linear();
+    const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
+    carrier.body = dBodyCreate(world_.id());
+    dMass mass;
+    dMassSetParameters(&mass, inertia.mass, 0, 0, 0, tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1),
+                       tensor(0, 2), tensor(1, 2));
+    dBodySetMass(carrier.body, &mass);
+    for (const int member : group) {
+      const AssemblyBody& body = assembly.bodies[static_cast<size_t>(member)];
+      if (is_wheel[static_cast<size_t>(member)]) continue;
+      for (const Shape& shape : body.collision) {
+        add_hull_points(shape, carrier.rest.inverse() * body.pose, carrier.points);
+      }
+    }
+    carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
+    carrier.law.friction = options.chassis_friction;
+    carrier.law.stiffness = mass_ * kGravity_m_per_s2 / (4.0 * kHullSinkIn_m);
+    carrier.law.damping = std::sqrt(carrier.law.stiffness * mass_ / 4.0);
+    for (const Eigen::Vector3d& point : carrier.points) carrier.radius = std::max(carrier.radius, point.norm());
+    carriers_.push_back(std::move(carrier));
+  }
+  chassis_carrier_ = carrier_of_body_[static_cast<size_t>(assembly.body_index("Body"))];
+  place(Eigen::Isometry3d::Identity());
+}
+
+void Vehicle::add_hinges(const Assembly& assembly) {
+  for (const AssemblyJoint& joint : assembly.joints) {
+    const size_t parent = carrier_of_body_[static_cast<size_t>(joint.parent)];
+    const size_t child = carrier_of_body_[static_cast<size_t>(joint.child)];
+    if (parent == child) continue;  // fixed, or a wheel
+    dJointID hinge = dJointCreateHinge(world_.id(), nullptr);
+    dJointAttach(hinge, carriers_[child].body, carriers_[parent].body);
+    const Eigen::Vector3d anchor = joint.pose.translation();
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, joint.axis.x(), joint.axis.y(), joint.axis.z());
+    if (joint.limited) {
+      dJointSetHingeParam(hinge, dParamLoStop, joint.lower_rad);
+      dJointSetHingeParam(hinge, dParamHiStop, joint.upper_rad);
+    }
+  }
+}
+
+void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& options) {
+  struct Wheel {
+    size_t carrier;
+    Eigen::Vector3d centre;  // from the carrier's centre of mass
+    Cylinder cylinder;
+    double spin_inertia;
+    bool driven;
+  };
+  const auto wheel_named = [&](const char* name) {
+    const int index = assembly.body_index(name);
+    const AssemblyBody& body = assembly.bodies[static_cast<size_t>(index)];
+    const AssemblyJoint* joint = joint_to(assembly, index);
+    const size_t carrier = carrier_of_body_[static_cast<size_t>(index)];
+    const Eigen::Vector3d centre = carriers_[carrier].rest.inverse() * body.pose.translation();
+    const Eigen::Matrix3d axes = body.pose.linear() * body.inertia.pose.linear();
+    const double spin = joint->axis.dot(axes * body.inertia.tensor * axes.transpose() * joint->axis);
+    return Wheel{carrier, centre, wheel_cylinder(body), spin, joint->kind == AssemblyJoint::Kind::Motor};
+  };
+
+  double side_y[2] = {0.0, 0.0};
+  const double units = options.tracks ? 2.0 : 4.0;
+  const double load = mass_ * kGravity_m_per_s2 / units;
+  for (const Side side : {kLeft, kRight}) {
+    const Wheel front = wheel_named(kWheels[side][0]);
+    const Wheel rear = wheel_named(kWheels[side][1]);
+    side_y[side] = (carriers_[front.carrier].rest * front.centre).y();
+    const auto add = [&](const Wheel& a, const Wheel& b, double spin_inertia, bool driven) {
+      RunningGearGeometry geometry;
+      geometry.front = a.centre;
+      geometry.rear = b.centre;
+      geometry.radius = a.cylinder.radius;
+      geometry.width = a.cylinder.length;
+      geometry.spin_inertia_kg_m2 = spin_inertia;
+      units_.push_back({a.carrier, side,
+                        RunningGear(geometry, driven, options.motor, options.track_friction, load, mass_ / units)});
+      Carrier& carrier = carriers_[a.carrier];
+      for (const Eigen::Vector3d& point : units_.back().gear.points()) {
+        carrier.radius = std::max(carrier.radius, point.norm());
+      }
+    };
+    const size_t first = units_.size();
+    if (options.tracks) {
+      if (front.carrier != rear.carrier) {
+        throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] + "' and '" + kWheels[side][1] +
+                         "' on the same rigid body; with joints between them set tracks = false");
+      }
+      add(front, rear, front.spin_inertia + rear.spin_inertia, front.driven || rear.driven);
+    } else {
+      add(front, front, front.spin_inertia, front.driven);
+      add(rear, rear, rear.spin_inertia, rear.driven);
+    }
+    const auto driven = std::find_if(units_.begin() + static_cast<std::ptrdiff_t>(first), units_.end(),
+                                     [](const Unit& unit) { return unit.gear.driven(); });
+    if (driven == units_.end()) {
+      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] + "' or '" + kWheels[side][1] +
+                       "'; a revolute joint with <limit velocity=\"1.0\"> is one");
+    }
+    encoder_unit_[static_cast<size_t>(side)] = static_cast<size_t>(driven - units_.begin());
+  }
+  tread_ = side_y[kLeft] - side_y[kRight];
+}
+
+void Vehicle::place(const Eigen::Isometry3d& pose) {
+  dMatrix3 rotation;
+  to_ode(pose.linear(), rotation);
+  for (Carrier& carrier : carriers_) {
+    const Eigen::Vector3d at = pose * carrier.rest.translation();
+    dBodySetPosition(carrier.body, at.x(), at.y(), at.z());
+    dBodySetRotation(carrier.body, rotation);
+    dBodySetLinearVel(carrier.body, 0, 0, 0);
+    dBodySetAngularVel(carrier.body, 0, 0, 0);
+    carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
+  }
+  for (Unit& unit : units_) unit.gear.halt();
+}
+
+double Vehicle::resting_height(const HeightField& ground, double x, double y, const Eigen::Matrix3d& rotation) const {
+  double height = -std::numeric_limits<double>::infinity();
+  const auto rest_on = [&](const Carrier& carrier, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d at = rotation * (carrier.rest * point);
+    height = std::max(height, ground.at(x + at.x(), y + at.y()).height - at.z());
+  };
+  for (const Carrier& carrier : carriers_) {
+    for (const Eigen::Vector3d& point : carrier.points) rest_on(carrier, point);
+  }
+  for (const Unit& unit : units_) {
+    for (const Eigen::Vector3d& point : unit.gear.points()) rest_on(carriers_[unit.carrier], point);
+  }
+  return height;
+}
+
+void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage, double dt) {
+  for (size_t c = 0; c < carriers_.size(); ++c) {
+    Carrier& carrier = carriers_[c];
+    CarrierMotion motion;
+    motion.origin = to_eigen(dBodyGetPosition(carrier.body));
+    motion.rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
+    motion.velocity = to_eigen(dBodyGetLinearVel(carrier.body));
+    motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
+    motion.ceiling = ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius);
+
+    Wrench wrench;
+    for (Unit& unit : units_) {
+      if (unit.carrier == c) unit.gear.contact(ground, motion, dt, wrench);
+    }
+    GroundTouch touch;
+    for (size_t i = 0; i < carrier.points.size(); ++i) {
+      const Eigen::Vector3d arm = motion.rotation * carrier.points[i];
+      const Eigen::Vector3d position = motion.origin + arm;
+      if (position.z() > motion.ceiling || !touches(ground, position, touch)) {
+        carrier.bristles[i].setZero();
+        continue;
+      }
+      const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
+      wrench.add(contact_force(carrier.law, touch, velocity, dt, carrier.bristles[i]), arm);
+    }
+    dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
+    dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
+  }
+  for (Unit& unit : units_) unit.gear.drive(motor_voltage[static_cast<size_t>(unit.side)], dt);
+}
+
+ChassisState Vehicle::chassis() const {
+  const Carrier& carrier = carriers_[chassis_carrier_];
+  ChassisState state;
+  const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
+  const Eigen::Vector3d omega = to_eigen(dBodyGetAngularVel(carrier.body));
+  const Eigen::Vector3d offset = rotation * carrier.rest.translation();
+  state.pose.linear() = rotation;
+  state.pose.translation() = to_eigen(dBodyGetPosition(carrier.body)) - offset;
+  state.velocity = to_eigen(dBodyGetLinearVel(carrier.body)) - omega.cross(offset);
+  state.omega_body = rotation.transpose() * omega;
+  return state;
+}
+
+const RunningGear& Vehicle::encoder_gear(Side side) const { return units_[encoder_unit_[static_cast<size_t>(side)]].gear; }
+
+double Vehicle::track_speed_m_per_s(Side side) const { return encoder_gear(side).speed_m_per_s(); }
+double Vehicle::shaft_angle_rad(Side side) const { return encoder_gear(side).angle_rad(); }
+double Vehicle::wheel_radius_m(Side side) const { return encoder_gear(side).radius_m(); }
+
+double Vehicle::current_a(Side side) const {
+  double sum = 0.0;
+  for (const Unit& unit : units_) {
+    if (unit.side == side) sum += unit.gear.current_a();
+  }
+  return sum;
+}
+
+double Vehicle::ground_speed_m_per_s(Side side) const {
+  const Unit& unit = units_[encoder_unit_[static_cast<size_t>(side)]];
+  const Carrier& carrier = carriers_[unit.carrier];
+  const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
+  const Eigen::Vector3d arm = rotation * unit.gear.centre();
+  const Eigen::Vector3d velocity = to_eigen(dBodyGetLinearVel(carrier.body)) +
+                                   to_eigen(dBodyGetAngularVel(carrier.body)).cross(arm);
+  return rotation.col(0).dot(velocity);
+}
+
+}  // namespace screed

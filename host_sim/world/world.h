@@ -1,0 +1,96 @@
+// One robot in one world of physics, advanced a control tick at a time.
+//
+// The world owns its clock and its seeded generators; nothing in it looks at the wall clock or at global random state, so the same
+// configuration gives the same bytes on every run and any number of worlds live side by side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <ostream>
+
+#include "firmware/robot/board_constants.h"
+#include "hal/sample.h"
+#include "host_sim/radio/ground_station.h"
+#include "host_sim/radio/radio_link.h"
+#include "host_sim/sensors/imu_model.h"
+#include "host_sim/terrain/height_field.h"
+#include "host_sim/vehicle/assembly.h"
+#include "host_sim/vehicle/gear_motor.h"
+#include "host_sim/vehicle/ode_world.h"
+#include "host_sim/vehicle/vehicle.h"
+
+namespace screed {
+
+struct StartPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  std::optional<double> z_m;  ///< of Body's origin; without it the robot is set down on the ground
+  Attitude attitude = {0.0, 0.0, 0.0};
+};
+
+struct WorldOptions {
+  uint64_t seed = 1;
+  double physics_step_s = 0.001;  ///< divides the tick of 10 ms
+  StartPose start;
+  VehicleOptions vehicle;
+  ImuErrors imu;
+  Battery battery;
+  RadioOptions radio;
+  bool ground_station_arms = true;
+  std::optional<DriveOrder> drive;
+  double encoder_counts_per_turn = 1000.0 / 3.0;
+  /// The robot is laid on its left side at this time, s: a fault to inject.
+  std::optional<double> lay_on_side_at_s;
+};
+
+class World {
+ public:
+  /// telemetry_log may be null; it must outlive the world. Throws InputError when the options do not fit together.
+  World(HeightField terrain, const Assembly& model, const BoardConstants& board, const WorldOptions& options,
+        std::ostream* telemetry_log);
+
+  /// Advances physics, sensors and radio by one control tick. Throws RunError when the physics has diverged.
+  void advance();
+  /// What the robot's sensors say now.
+  const SensorSample& sample() const { return sample_; }
+  /// Applies the robot's answer until the next tick.
+  void apply(const RobotOutput& output);
+
+  uint64_t ticks() const { return ticks_; }
+  double time_s() const { return static_cast<double>(ticks_) / kTickRate_hz; }
+  const HeightField& terrain() const { return terrain_; }
+  const Vehicle& vehicle() const { return vehicle_; }
+  const Battery& battery() const { return battery_; }
+  const GroundStation& ground_station() const { return ground_; }
+  GroundStation& ground_station() { return ground_; }
+  /// Picks the robot up and lays it on its left side where it is.
+  void lay_on_side();
+
+ private:
+  void step_physics();
+  void measure();
+  void exchange_radio();
+  Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
+  uint64_t now_us() const { return ticks_ * kTickPeriod_us; }
+
+  WorldOptions options_;
+  BoardConstants board_;
+  HeightField terrain_;
+  OdeWorld ode_;
+  Vehicle vehicle_;
+  Battery battery_;
+  ImuModel imu_;
+  RadioLink uplink_;
+  RadioLink downlink_;
+  GroundStation ground_;
+  Eigen::Vector3d imu_position_;  ///< in the frame of Body
+  int steps_per_tick_;
+  uint64_t ticks_ = 0;
+  std::array<int16_t, 2> duty_ = {0, 0};
+  Eigen::Vector3d last_imu_velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_sum_ = Eigen::Vector3d::Zero();
+  SensorSample sample_{};
+};
+
+}  // namespace screed

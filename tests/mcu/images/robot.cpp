@@ -1,0 +1,19 @@
+// Test image: the robot's core alone. Takes samples from the serial line, answers each with the output of that tick.
+#include "board.h"
+#include "firmware/robot/robot.h"
+#include "tests/mcu/images/serial_link.h"
+#include "tests/mcu/sample_wire.h"
+
+int main() {
+  using namespace screed;
+  SerialLink link;
+  const Parameters parameters;
+  Robot robot(kBoard, parameters);
+  SensorSample sample{};
+  RobotOutput output{};
+  for (;;) {
+    get_sample(link, sample);
+    robot.tick(sample, output);
+    put_output(link, output);
+  }
+}

@@ -1,0 +1,95 @@
+// avr_stack: flash, RAM and worst-case stack of a linked AVR image against its budget.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "host_sim/core/errors.h"
+#include "tools/avr_stack/disassembly.h"
+#include "tools/avr_stack/image_size.h"
+#include "tools/avr_stack/stack_analysis.h"
+
+namespace {
+
+using screed::InputError;
+using screed::avr_stack::StackPath;
+
+struct Options {
+  std::string disassembly;
+  std::string sizes;
+  unsigned flash_budget = 28672;
+  unsigned ram_budget = 2560;
+};
+
+std::ifstream opened(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw InputError("cannot read " + path);
+  return in;
+}
+
+void print_path(const char* title, const StackPath& path) {
+  std::printf("  %-44s %6u B\n", title, path.bytes);
+  for (const auto& frame : path.frames) std::printf("    %6u  %s\n", frame.bytes, frame.name.c_str());
+}
+
+/// Prints one line of the budget; true when it is kept.
+bool print_budget(const char* what, unsigned used, unsigned budget) {
+  if (used <= budget) {
+    std::printf("%-24s %6u of %6u B, %6u B to spare\n", what, used, budget, budget - used);
+    return true;
+  }
+  std::printf("%-24s %6u of %6u B, %6u B TOO MUCH\n", what, used, budget, used - budget);
+  return false;
+}
+
+int run(const Options& options) {
+  using namespace screed::avr_stack;
+  StackReport stack;
+  if (options.disassembly == "-") {
+    stack = analyze(Disassembly::read(std::cin));
+  } else {
+    auto in = opened(options.disassembly);
+    stack = analyze(Disassembly::read(in));
+  }
+  std::printf("worst-case stack         %6u B\n", stack.worst_case());
+  print_path("deepest path from reset", stack.main);
+  if (!stack.interrupts.empty()) print_path("deepest interrupt", stack.interrupts.front());
+  if (options.sizes.empty()) return 0;
+
+  auto sizes = opened(options.sizes);
+  const ImageSize size = read_image_size(sizes);
+  std::printf("static RAM               %6u B\n", size.static_ram);
+  const bool flash_kept = print_budget("flash", size.flash, options.flash_budget);
+  const bool ram_kept =
+      print_budget("static RAM and stack", size.static_ram + stack.worst_case(), options.ram_budget);
+  if (!flash_kept || !ram_kept) throw screed::RunError("the image is over its budget");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Worst-case stack and memory budget of a linked AVR image");
+  app.add_option("disassembly", options.disassembly, "output of avr-objdump -d, - for standard input")
+      ->required();
+  app.add_option("--sizes", options.sizes, "output of avr-size -A: checks the budgets as well");
+  app.add_option("--flash-budget", options.flash_budget, "bytes")->capture_default_str();
+  app.add_option("--ram-budget", options.ram_budget, "bytes, static RAM and stack together")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "avr_stack: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "avr_stack: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,21 @@
+#!/bin/bash
+# install-deps.sh yes|no LIST: installs the Debian packages of LIST that are missing.
+set -euo pipefail
+
+wanted=$1
+list=$2
+[ "$wanted" = no ] && exit 0
+
+mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$list")
+installed=$(dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' "${packages[@]}" 2>/dev/null | awk '$2 == "ii" {print $1}' || true)
+missing=$(comm -23 <(printf '%s\n' "${packages[@]}" | sort) <(printf '%s\n' $installed | sort))
+[ -z "$missing" ] && exit 0
+
+echo "installing:" $missing
+root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo > /dev/null || { echo "make deps: not root and no sudo; install these packages: $(echo $missing)" >&2; exit 1; }
+  root=(sudo)
+fi
+"${root[@]}" apt-get update -qq
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing > /dev/null

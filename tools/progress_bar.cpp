@@ -1,0 +1,57 @@
+// A progress bar.
+#include "tools/progress_bar.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+namespace screed {
+namespace {
+
+constexpr int kWidth = 28;
+constexpr std::chrono::milliseconds kTerminalInterval(100);
+constexpr std::chrono::seconds kLogInterval(10);
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::ostream& out) : out_(out), terminal_(&out == &std::cerr && isatty(STDERR_FILENO) == 1) {}
+
+void ProgressBar::show(double time_s, double duration_s, const std::string& note) {
+  const auto now = std::chrono::steady_clock::now();
+  time_s_ = time_s;
+  duration_s_ = duration_s;
+  note_ = note;
+  shown_ = now;
+  if (!begun_) {
+    begun_ = true;
+    begin_ = now;
+    drawn_ = now;
+    begin_time_s_ = time_s;
+    return;
+  }
+  if (now - drawn_ < (terminal_ ? std::chrono::steady_clock::duration(kTerminalInterval) : kLogInterval)) return;
+  drawn_ = now;
+  draw();
+}
+
+void ProgressBar::draw() {
+  const double wall = std::chrono::duration<double>(shown_ - begin_).count();
+  const double share = duration_s_ > 0.0 ? std::clamp(time_s_ / duration_s_, 0.0, 1.0) : 0.0;
+  const int full = static_cast<int>(share * kWidth);
+  std::string bar;
+  for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "░";
+  char text[200];
+  std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s", share * 100.0, time_s_, duration_s_,
+                wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0, note_.c_str());
+  out_ << (terminal_ ? "\r" : "") << bar << text << (terminal_ ? "\033[K" : "\n") << std::flush;
+}
+
+void ProgressBar::finish() {
+  if (!begun_) return;
+  draw();
+  if (terminal_) out_ << "\n";
+}
+
+}  // namespace screed

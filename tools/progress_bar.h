@@ -1,0 +1,34 @@
+// A progress bar on a terminal; on anything else, a line now and then. Looks at the wall clock, decides nothing.
+#pragma once
+
+#include <chrono>
+#include <ostream>
+#include <string>
+
+namespace screed {
+
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::ostream& out);
+
+  /// Shows simulated time, real-time factor since the first call, and `note`. Cheap when called often: draws ten times a second at most.
+  void show(double time_s, double duration_s, const std::string& note);
+  /// Draws the last state and ends the line.
+  void finish();
+
+ private:
+  void draw();
+
+  std::ostream& out_;
+  bool terminal_;
+  bool begun_ = false;
+  double time_s_ = 0.0;
+  double duration_s_ = 0.0;
+  double begin_time_s_ = 0.0;
+  std::string note_;
+  std::chrono::steady_clock::time_point begin_;
+  std::chrono::steady_clock::time_point shown_;
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+}  // namespace screed

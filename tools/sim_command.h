@@ -1,0 +1,13 @@
+// `screed sim FILE`: runs an experiment and shows what happened.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+namespace screed {
+
+/// Adds the subcommand; its callback sets `action` to what is to be run after parsing.
+void register_sim_command(CLI::App& root, const std::string& version, std::function<int()>& action);
+
+}  // namespace screed
