@@ -184,6 +184,13 @@ void AttitudeEstimator::detect_rest(const ImuSample& sample, bool may_be_at_rest
 
 /// Moves the bias to the mean of the gyroscope.
 void AttitudeEstimator::learn_bias_at_rest() {
+  if (bias_samples_ == 0) {
+    // The bias may have turned the estimate by many degrees until now: average gravity and north
+    // anew.
+    for (uint8_t i = 0; i < 3; ++i) slope_[i] = 0;
+    ticks_ = 1;
+    if (mag_samples_ != 0) mag_samples_ = 1;
+  }
   if (bias_samples_ < kBiasTicks) ++bias_samples_;
   const int16_t gain = mean_gain_q16(bias_samples_);
   for (uint8_t i = 0; i < 3; ++i) {

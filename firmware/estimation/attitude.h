@@ -51,7 +51,9 @@ class AttitudeEstimator {
   /// counter-clockwise.
   int32_t yaw_rate() const { return yaw_rate_; }
 
-  /// Gravity has been averaged over the first 3 s: roll and pitch can be relied on.
+  /// Gravity has been averaged for 3 s: roll and pitch can be relied on. The first standstill found
+  /// starts this again, since the bias may have spoilt what was before: at rest from the start on,
+  /// it is true after 4.5 s.
   bool ready() const { return ticks_ == kStartTicks; }
 
   /// The magnetometer has set the heading.

@@ -175,7 +175,8 @@ SCREED_OUT_OF_LINE inline int32_t scale_q16(int32_t a, int16_t k) {
       : "r0");
   return result;
 #else
-  const int32_t low = detail::mul_su(k, detail::low_half(a)) + 0x7FFF + 1;  // at most 2^31 - 1
+  const int32_t low =
+      detail::mul_su(k, detail::low_half(a)) + 0x8000;  // fits: at most 2^31 - 2^16 + 2^15
   return mul_i16(detail::high_half(a), k) + detail::high_half(low);
 #endif
 }

@@ -40,7 +40,7 @@ constexpr Quaternion conjugate(const Quaternion& q) {
   return {q.w, -q.x, -q.y, -q.z};
 }
 
-/// The matrix of a unit quaternion; error of an element below 3 units (2e-4).
+/// The matrix of a unit quaternion; error of an element below 4 units (2.4e-4).
 RotationMatrix rotation_matrix(const Quaternion& q);
 
 /// (1 - |q|^2) / 2 in Q24: what q has to grow by to have length 1, to first order. Clamped to

@@ -3,7 +3,8 @@
 #   make firmware [BOARD=...]   builds build/firmware/<board>/screed.elf and .hex, prints the budget
 #   make size [BOARD=...]       prints the budget again
 #
-# Needs BUILD_ROOT, CXX and CXXFLAGS (host) from there. A board is a folder boards/<board> with board.h, pins.h, board.mk.
+# Needs from there: B and BUILD_ROOT (folders), $(B)/avr_stack (tools/avr_stack), FORCE. A board is a folder boards/<board>
+# with board.h, pins.h and board.mk.
 
 BOARD ?= a_star_32u4
 include boards/$(BOARD)/board.mk
@@ -32,46 +33,33 @@ AVR_LINK := -Wl,--gc-sections
 .PHONY: firmware-image firmware-size
 firmware-image: $(FIRMWARE_BUILD)/screed.hex firmware-size
 
-firmware-size: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(BUILD_ROOT)/firmware/avr_stack
+firmware-size: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
 	@echo "$(FIRMWARE_ELF)"
-	@$(BUILD_ROOT)/firmware/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
+	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
 	  --flash-budget $(FLASH_BUDGET) --ram-budget $(RAM_BUDGET)
 
 # Changes only when compiler or flags do, and then everything is built anew.
-$(FIRMWARE_BUILD)/flags: AVR_FLAGS_NOW = $(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK)
-$(FIRMWARE_BUILD)/flags: FORCE
+$(FIRMWARE_BUILD)/avr.flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(AVR_FLAGS_NOW)' | cmp -s - $@ || echo '$(AVR_FLAGS_NOW)' > $@
+	@echo '$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK)' > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
-.PHONY: FORCE
-FORCE:
-
-$(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/flags
+$(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags
 	@mkdir -p $(@D)
-	$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) -MMD -MP -c $< -o $@
+	@echo "  AVR  $<"
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) -MMD -MP -c $< -o $@
 
 $(FIRMWARE_ELF): $(FIRMWARE_OBJECTS)
-	$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
+	@echo "  LINK $@"
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
 
 $(FIRMWARE_BUILD)/%.hex: $(FIRMWARE_BUILD)/%.elf
-	$(AVR_OBJCOPY) -O ihex -R .eeprom -R .fuse -R .lock $< $@
+	@$(AVR_OBJCOPY) -O ihex -R .eeprom -R .fuse -R .lock $< $@
 
 $(FIRMWARE_BUILD)/%.lst: $(FIRMWARE_BUILD)/%.elf
-	$(AVR_OBJDUMP) -d $< > $@.new
-	@mv $@.new $@
+	@$(AVR_OBJDUMP) -d $< > $@
 
 $(FIRMWARE_BUILD)/%.size: $(FIRMWARE_BUILD)/%.elf
-	$(AVR_SIZE) -A $< > $@.new
-	@mv $@.new $@
+	@$(AVR_SIZE) -A $< > $@
 
-AVR_STACK_SOURCES := $(sort $(wildcard tools/avr_stack/*.cpp))
-AVR_STACK_OBJECTS := $(AVR_STACK_SOURCES:%.cpp=$(BUILD_ROOT)/firmware/host/%.o)
-
-$(BUILD_ROOT)/firmware/host/%.o: %.cpp
-	@mkdir -p $(@D)
-	$(CXX) $(CXXFLAGS) -I. -MMD -MP -c $< -o $@
-
-$(BUILD_ROOT)/firmware/avr_stack: $(AVR_STACK_OBJECTS)
-	$(CXX) $(CXXFLAGS) $^ $(LDFLAGS) -o $@
-
--include $(FIRMWARE_OBJECTS:.o=.d) $(AVR_STACK_OBJECTS:.o=.d)
+-include $(FIRMWARE_OBJECTS:.o=.d)

@@ -27,12 +27,18 @@ using Sda = Pin<kPortD, 1>;
 struct State {
   TwiTransfer transfer;
   uint8_t done;  // bytes of transfer.data
+  bool register_sent;
 };
 State state;
 
+void rewind() {
+  state.done = 0;
+  state.register_sent = false;
+}
+
 void finish(bool ok) {
   const bool more = twi_done(ok, state.transfer);
-  state.done = 0;
+  rewind();
   // With both bits set the hardware makes a stop condition and then a start condition.
   TWCR = more ? static_cast<uint8_t>(kGo | _BV(TWSTO) | _BV(TWSTA))
               : static_cast<uint8_t>(kGo | _BV(TWSTO));
@@ -67,10 +73,11 @@ ISR(TWI_vect) {
       send(address | TW_WRITE);
       break;
     case TW_MT_SLA_ACK:
-      send(state.transfer.reg);
-      break;
-    case TW_MT_DATA_ACK:  // the register number or a byte of data
-      if (state.transfer.write) {
+    case TW_MT_DATA_ACK:  // simavr 1.6 answers with this to the address as well
+      if (!state.register_sent) {
+        state.register_sent = true;
+        send(state.transfer.reg);
+      } else if (state.transfer.write) {
         send_next();
       } else {
         TWCR = kGo | _BV(TWSTA);
@@ -107,7 +114,7 @@ void twi_init() {
 
 void twi_start(const TwiTransfer& transfer) {
   state.transfer = transfer;
-  state.done = 0;
+  rewind();
   TWCR = kGo | _BV(TWSTA);
 }
 

@@ -1,6 +1,8 @@
 // The HDF5 C library behind RAII and exceptions.
 #include "host_sim/session/hdf5_handle.h"
 
+#include <algorithm>
+#include <cstring>
 #include <string_view>
 #include <utility>
 
@@ -28,7 +30,8 @@ herr_t collect(unsigned level, const H5E_error2_t* error, void* data) {
   Reason reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &reason);
   H5Eclear2(H5E_DEFAULT);
-  const std::string& text = reason.system.empty() ? reason.innermost : reason.system;
+  std::string text = reason.system.empty() ? reason.innermost : reason.system;
+  if (text.find("checksum") != std::string::npos) text = "the file is damaged (" + text + ")";
   throw Hdf5Failure(text.empty() ? std::string(what) : std::string(what) + ": " + text);
 }
 
@@ -36,25 +39,28 @@ Handle scalar_space() {
   return {H5Screate(H5S_SCALAR), H5Sclose, "cannot create a data space"};
 }
 
-/// UTF-8 text of variable length.
-Handle text_type() {
+/// UTF-8 text of so many bytes. Variable length would be handier, but lives in the one part of a
+/// file without checksums.
+Handle text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "cannot create a text type");
-  check(H5Tset_size(type.get(), H5T_VARIABLE), "cannot create a text type");
+  check(H5Tset_size(type.get(), bytes + 1), "cannot create a text type");
+  check(H5Tset_strpad(type.get(), H5T_STR_NULLTERM), "cannot create a text type");
   check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "cannot create a text type");
   return type;
 }
 
-Handle open_or_create(hid_t object, const char* name, hid_t file_type, const Handle& space) {
-  if (has_attribute(object, name)) {
-    return {H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name};
-  }
-  return {H5Acreate2(object, name, file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+Handle create_attribute(hid_t object, const char* name, const Handle& type, const Handle& space) {
+  return {H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
           name};
 }
 
-void write_scalar(hid_t object, const char* name, hid_t file_type, hid_t memory_type,
+void write_number(hid_t object, const char* name, hid_t file_type, hid_t memory_type,
                   const void* value) {
-  const Handle attribute = open_or_create(object, name, file_type, scalar_space());
+  const Handle attribute = has_attribute(object, name)
+                               ? Handle(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name)
+                               : Handle(H5Acreate2(object, name, file_type, scalar_space().get(),
+                                                   H5P_DEFAULT, H5P_DEFAULT),
+                                        H5Aclose, name);
   check(H5Awrite(attribute.get(), memory_type, value), name);
 }
 
@@ -131,32 +137,39 @@ bool has_link(hid_t object, const char* name) {
 }
 
 void write_attribute(hid_t object, const char* name, std::uint64_t value) {
-  write_scalar(object, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &value);
+  write_number(object, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &value);
 }
 
 void write_attribute(hid_t object, const char* name, std::int64_t value) {
-  write_scalar(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
+  write_number(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
 }
 
 void write_attribute(hid_t object, const char* name, double value) {
-  write_scalar(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+  write_number(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
 void write_attribute(hid_t object, const char* name, const std::string& value) {
   if (value.find('\0') != std::string::npos) {
     throw Hdf5Failure("the text of '" + std::string(name) + "' contains a NUL byte");
   }
-  const Handle type = text_type();
-  const char* text = value.c_str();
-  write_scalar(object, name, type.get(), type.get(), &text);
+  const Handle type = text_type(value.size());
+  const Handle attribute = create_attribute(object, name, type, scalar_space());
+  check(H5Awrite(attribute.get(), type.get(), value.c_str()), name);
 }
 
 void write_attribute(hid_t object, const char* name, const std::vector<const char*>& values) {
+  std::size_t longest = 0;
+  for (const char* value : values) longest = std::max(longest, std::strlen(value));
+  const std::size_t width = longest + 1;
+  std::vector<char> text(width * values.size(), '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::memcpy(&text[i * width], values[i], std::strlen(values[i]));
+  }
   const hsize_t count = values.size();
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, name);
-  const Handle type = text_type();
-  const Handle attribute = open_or_create(object, name, type.get(), space);
-  check(H5Awrite(attribute.get(), type.get(), values.data()), name);
+  const Handle type = text_type(longest);
+  const Handle attribute = create_attribute(object, name, type, space);
+  check(H5Awrite(attribute.get(), type.get(), text.data()), name);
 }
 
 std::uint64_t read_uint64(hid_t object, const char* name) {
@@ -188,7 +201,7 @@ std::string read_string(hid_t object, const char* name) {
   }
   std::string value(H5Tget_size(type.get()), '\0');
   check(H5Aread(attribute.get(), type.get(), value.data()), name);
-  value.resize(value.find_last_not_of('\0') + 1);
+  if (const auto end = value.find('\0'); end != std::string::npos) value.resize(end);
   return value;
 }
 

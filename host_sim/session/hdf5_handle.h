@@ -54,12 +54,12 @@ bool has_attribute(hid_t object, const char* name);
 /// Whether a link of that name exists directly under the object.
 bool has_link(hid_t object, const char* name);
 
-/// Creates the attribute, or overwrites it with a value of the same type.
+/// Create the attribute, or overwrite the one of that name.
 void write_attribute(hid_t object, const char* name, std::uint64_t value);
 void write_attribute(hid_t object, const char* name, std::int64_t value);
 void write_attribute(hid_t object, const char* name, double value);
-/// Variable-length UTF-8, as h5py writes and reads str. Throws Hdf5Failure for a text with a NUL
-/// byte.
+/// Create an attribute of UTF-8 text, of any length. Throw Hdf5Failure when it exists, and for a
+/// text with a NUL byte.
 void write_attribute(hid_t object, const char* name, const std::string& value);
 void write_attribute(hid_t object, const char* name, const std::vector<const char*>& values);
 

@@ -94,7 +94,12 @@ h5::Handle create_file(const std::filesystem::path& file) {
   h5::quiet();
   const h5::Handle options(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot create a file");
   h5::check(H5Pset_obj_track_times(options.get(), false), "cannot switch off time stamps");
-  return {H5Fcreate(file.c_str(), H5F_ACC_EXCL, options.get(), H5P_DEFAULT), H5Fclose,
+  // The format of HDF5 1.8: unlike the default of 1996 its structures carry checksums, and unlike
+  // that of 1.10 the file of a killed run opens without repair.
+  const h5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "cannot create a file");
+  h5::check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18),
+            "cannot set the file format");
+  return {H5Fcreate(file.c_str(), H5F_ACC_EXCL, options.get(), access.get()), H5Fclose,
           "cannot create it"};
 }
 

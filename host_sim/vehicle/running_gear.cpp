@@ -11,11 +11,13 @@ namespace {
 constexpr double kSpacing_m = 0.0125;   // of contact points along the contour
 constexpr double kSinkIn_m = 0.0004;    // under the unit's own load on level ground
 constexpr double kDampingRatio = 0.7;
+constexpr double kUpperSide = 0.2;      // vertical part of the outward normal; above 0, so that a robot on its side counts
 
 }  // namespace
 
-void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& along) {
+void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out, const Eigen::Vector3d& along) {
   points_.push_back(at);
+  outwards_.push_back(out);
   along_.push_back(along);
 }
 
@@ -42,22 +44,23 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
         const double angle = start_rad + (i + 0.5) * std::numbers::pi / half_points;  // from top, forwards
         const Eigen::Vector3d out = std::sin(angle) * forward + std::cos(angle) * up;
         const Eigen::Vector3d along = std::cos(angle) * forward - std::sin(angle) * up;
-        add_point(axle + side + radius * out, along);
+        add_point(axle + side + radius * out, out, along);
       }
     };
     arc(geometry.front, 0.0);
     for (int i = 0; i < run_points; ++i) {
       const Eigen::Vector3d at = geometry.front - (i + 0.5) / run_points * run;
-      add_point(at + side - radius * up, -forward);
+      add_point(at + side - radius * up, -up, -forward);
     }
     arc(geometry.rear, std::numbers::pi);
     for (int i = 0; i < run_points; ++i) {
       const Eigen::Vector3d at = geometry.rear + (i + 0.5) / run_points * run;
-      add_point(at + side + radius * up, forward);
+      add_point(at + side + radius * up, up, forward);
     }
   }
   bristles_.assign(points_.size(), Eigen::Vector3d::Zero());
   carried_ = bristles_;
+  bent_.assign(points_.size(), 0);
 
   // On level ground the belt's lower run carries the load; of a wheel the lowest two or three points of each row.
   const double carrying = rows_ * (run_points > 0 ? run_points : 2);
@@ -70,7 +73,14 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
 
 void RunningGear::halt() {
   speed_ = 0.0;
-  bristles_.assign(points_.size(), Eigen::Vector3d::Zero());
+  for (size_t i = 0; i < points_.size(); ++i) let_go(i);
+}
+
+void RunningGear::let_go(size_t point) {
+  if (bent_[point] == 0) return;
+  bristles_[point].setZero();
+  carried_[point].setZero();
+  bent_[point] = 0;
 }
 
 // The brush model's transport: what a point's material has been bent so far comes with it from the neighbour it passed before.
@@ -83,10 +93,12 @@ void RunningGear::carry_bristles(double dt) {
   for (size_t row = 0; row < static_cast<size_t>(rows_); ++row) {
     const size_t begin = row * row_points;
     for (size_t i = 0; i < row_points; ++i) {
-      const size_t before = speed_ > 0.0 ? (i == 0 ? row_points - 1 : i - 1)
-                                         : (i + 1 == row_points ? 0 : i + 1);
-      bristles_[begin + i] =
-          carried_[begin + i] + share * (carried_[begin + before] - carried_[begin + i]);
+      const size_t before = begin + (speed_ > 0.0 ? (i == 0 ? row_points - 1 : i - 1)
+                                                  : (i + 1 == row_points ? 0 : i + 1));
+      const size_t here = begin + i;
+      if ((bent_[here] | bent_[before]) == 0) continue;  // both zero, in both buffers
+      bristles_[here] = carried_[here] + share * (carried_[before] - carried_[here]);
+      bent_[here] = 1;
     }
   }
 }
@@ -97,14 +109,19 @@ void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrie
   ground_force_ = 0.0;
   normal_load_ = 0.0;
   GroundTouch touch;
+  // A height field has no overhangs: a point on the upper side of the contour has a lower one right below it, which touches first.
+  const Eigen::RowVector3d upwards = carrier.rotation.row(2);
   for (size_t i = 0; i < points_.size(); ++i) {
-    const Eigen::Vector3d arm = carrier.rotation * points_[i];
-    const Eigen::Vector3d position = carrier.origin + arm;
-    // Most points are above all ground there is near the robot, or above the ground below them.
-    if (position.z() > carrier.ceiling || !touches(ground, position, touch)) {
-      bristles_[i].setZero();
+    if (upwards.dot(outwards_[i]) > kUpperSide) {
+      let_go(i);
       continue;
     }
+    const Eigen::Vector3d arm = carrier.rotation * points_[i];
+    if (!touches(ground, carrier.origin + arm, touch)) {
+      let_go(i);
+      continue;
+    }
+    bent_[i] = 1;
     const Eigen::Vector3d along = carrier.rotation * along_[i];
     const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(arm) + speed_ * along;
     const Eigen::Vector3d force = contact_force(law_, touch, velocity, dt, bristles_[i]);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "host_sim/terrain/height_field.h"
@@ -21,7 +22,6 @@ struct CarrierMotion {
   Eigen::Matrix3d rotation;  ///< body to world
   Eigen::Vector3d velocity;  ///< of the centre of mass
   Eigen::Vector3d omega;
-  double ceiling;            ///< no ground near the body is higher than this, m
 };
 
 /// Sum of forces on the carrying body, about its centre of mass, world frame.
@@ -70,8 +70,9 @@ class RunningGear {
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
-  void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& along);
+  void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out, const Eigen::Vector3d& along);
   void carry_bristles(double dt);
+  void let_go(size_t point);
 
   RunningGearGeometry geometry_;
   bool driven_;
@@ -84,9 +85,11 @@ class RunningGear {
 
   // Point i of row r stands at index r * (count / rows) + i, in the order in which the material passes when driving forward.
   std::vector<Eigen::Vector3d> points_;
+  std::vector<Eigen::Vector3d> outwards_;  ///< normal of the contour, unit length
   std::vector<Eigen::Vector3d> along_;     ///< direction of the material, unit length
   std::vector<Eigen::Vector3d> bristles_;  ///< world frame, m
-  std::vector<Eigen::Vector3d> carried_;   ///< work space of carry_bristles
+  std::vector<Eigen::Vector3d> carried_;   ///< bristles before carry_bristles
+  std::vector<uint8_t> bent_;              ///< whether a bristle may differ from zero
 
   double speed_ = 0.0;
   double angle_ = 0.0;

@@ -275,17 +275,22 @@ void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2
     motion.rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
     motion.velocity = to_eigen(dBodyGetLinearVel(carrier.body));
     motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
-    motion.ceiling = ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius);
+    const double ceiling =
+        ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius) - motion.origin.z();
 
     Wrench wrench;
     for (Unit& unit : units_) {
       if (unit.carrier == c) unit.gear.contact(ground, motion, dt, wrench);
     }
     GroundTouch touch;
+    const Eigen::RowVector3d upwards = motion.rotation.row(2);
     for (size_t i = 0; i < carrier.points.size(); ++i) {
+      if (upwards.dot(carrier.points[i]) > ceiling) {
+        carrier.bristles[i].setZero();
+        continue;
+      }
       const Eigen::Vector3d arm = motion.rotation * carrier.points[i];
-      const Eigen::Vector3d position = motion.origin + arm;
-      if (position.z() > motion.ceiling || !touches(ground, position, touch)) {
+      if (!touches(ground, motion.origin + arm, touch)) {
         carrier.bristles[i].setZero();
         continue;
       }

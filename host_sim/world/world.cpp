@@ -55,6 +55,17 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
   vehicle_.place(pose);
+  if (!start.z_m.has_value()) settle();
+}
+
+void World::settle() {
+  constexpr double kSettle_s = 1.5;
+  const auto steps = static_cast<int>(std::lround(kSettle_s / options_.physics_step_s));
+  for (int i = 0; i < steps; ++i) {
+    vehicle_.apply_forces(terrain_, {0.0, 0.0}, options_.physics_step_s);
+    ode_.step(options_.physics_step_s);
+  }
+  last_imu_velocity_ = imu_velocity(vehicle_.chassis());
 }
 
 Eigen::Vector3d World::imu_velocity(const ChassisState& chassis) const {

@@ -25,7 +25,7 @@ namespace screed {
 struct StartPose {
   double x_m = 0.0;
   double y_m = 0.0;
-  std::optional<double> z_m;  ///< of Body's origin; without it the robot is set down on the ground
+  std::optional<double> z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
   Attitude attitude = {0.0, 0.0, 0.0};
 };
 
@@ -68,6 +68,8 @@ class World {
   void lay_on_side();
 
  private:
+  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there when it was switched on.
+  void settle();
   void step_physics();
   void measure();
   void exchange_radio();

@@ -110,28 +110,51 @@ double Mcu::time_ms() const {
   return static_cast<double>(avr_->cycle) / static_cast<double>(kCyclesPerMs);
 }
 
-void Mcu::run_ms(double ms) {
-  const auto end = avr_->cycle + static_cast<std::uint64_t>(ms * static_cast<double>(kCyclesPerMs));
-  while (alive() && avr_->cycle < end) step();
-}
+void Mcu::run_ms(double ms) { run_until_sent(SIZE_MAX, ms); }
 
 void Mcu::run_until_sent(std::size_t bytes, double ms) {
-  const auto end = avr_->cycle + static_cast<std::uint64_t>(ms * static_cast<double>(kCyclesPerMs));
-  while (alive() && sent_.size() < bytes && avr_->cycle < end) step();
+  // Ends are counted from the last end, so that many short runs are as long as one; a timer ends a sleep there.
+  end_ += static_cast<std::uint64_t>(ms * static_cast<double>(kCyclesPerMs));
+  if (end_ > avr_->cycle) {
+    avr_cycle_timer_register(avr_, end_ - avr_->cycle, &Mcu::on_end, this);
+  }
+  while (alive() && sent_.size() < bytes && avr_->cycle < end_) step();
+  if (avr_->cycle < end_) {
+    avr_cycle_timer_cancel(avr_, &Mcu::on_end, this);
+    end_ = avr_->cycle;
+  }
 }
+
+std::uint64_t Mcu::on_end(avr_t*, std::uint64_t, void*) { return 0; }
 
 void Mcu::receive(const std::vector<std::uint8_t>& bytes) {
   to_receive_.insert(to_receive_.end(), bytes.begin(), bytes.end());
 }
 
 void Mcu::set_pin(char port, int bit, bool high) {
+  // Else simavr falls back to the pull-up at the next write to the port.
+  avr_ioport_external_t driven = {};
+  DrivenPins& pins = driven_pins_[port];
+  pins.mask = static_cast<std::uint8_t>(pins.mask | 1U << bit);
+  pins.value = static_cast<std::uint8_t>(high ? pins.value | 1U << bit : pins.value & ~(1U << bit));
+  driven.name = static_cast<unsigned char>(port) & 0x7FU;
+  driven.mask = pins.mask;
+  driven.value = pins.value;
+  avr_ioctl(avr_, static_cast<std::uint32_t>(AVR_IOCTL_IOPORT_SET_EXTERNAL(port)), &driven);
   avr_raise_irq(avr_io_getirq(avr_, static_cast<std::uint32_t>(AVR_IOCTL_IOPORT_GETIRQ(port)), bit),
                 high ? 1 : 0);
+  // simavr looks for interrupts from outside only when a sleep has ended.
+  avr_cycle_timer_register(avr_, 1, &Mcu::on_end, nullptr);
 }
 
 void Mcu::set_adc_mv(int channel, int mv) {
   avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel),
                 static_cast<std::uint32_t>(mv));
+}
+
+void Mcu::break_tick() {
+  avr_->flash[kTickVector] = 0x18;  // reti
+  avr_->flash[kTickVector + 1] = 0x95;
 }
 
 std::uint8_t Mcu::memory(std::uint16_t address) const { return avr_->data[address]; }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ class Mcu {
   /// Voltage at an ADC channel.
   void set_adc_mv(int channel, int mv);
 
+  /// Makes the program's main loop hang: the tick's interrupt returns without doing anything.
+  void break_tick();
+
   std::uint8_t memory(std::uint16_t address) const;
   std::uint16_t word(std::uint16_t address) const;
 
@@ -69,13 +73,21 @@ class Mcu {
   static void on_ready(avr_irq_t* irq, std::uint32_t value, void* self);
   static void on_full(avr_irq_t* irq, std::uint32_t value, void* self);
   static void on_sleep(avr_t* avr, std::uint64_t cycles);
+  static std::uint64_t on_end(avr_t* avr, std::uint64_t when, void* self);
+
+  struct DrivenPins {
+    std::uint8_t mask = 0;
+    std::uint8_t value = 0;
+  };
 
   avr_t* avr_ = nullptr;
+  std::map<char, DrivenPins> driven_pins_;
   avr_irq_t* uart_input_ = nullptr;
   std::vector<std::uint8_t> sent_;
   std::deque<std::uint8_t> to_receive_;
   bool uart_ready_ = true;
   int starts_ = 0;
+  std::uint64_t end_ = 0;
   std::uint64_t slept_ = 0;
   std::uint64_t ticks_ = 0;
   std::uint64_t busiest_ = 0;

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <system_error>
 
 #include "host_sim/core/errors.h"
 
@@ -17,33 +20,34 @@ const std::string kExcerpt = "tests/data/imu_broad_excerpt.csv";
 const std::string kHeader = "t_ms,gx,gy,gz,ax,ay,az,mx,my,mz,qw,qx,qy,qz,moving\n";
 const std::string kRow = "0,0,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n";
 
+/// The file of the running test; gone after it.
+std::string own_file() {
+  return testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() +
+         ".csv";
+}
+
+std::string write(const std::string& text) {
+  std::ofstream(own_file()) << text;
+  return own_file();
+}
+
 class AttitudeCommand : public testing::Test {
  protected:
-  std::string write(const std::string& text) {
-    const std::string file =
-        testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv";
-    std::ofstream(file) << text;
-    written_ = file;
-    return file;
-  }
-  ~AttitudeCommand() override {
+  void TearDown() override {
     std::error_code ignored;
-    if (!written_.empty()) std::filesystem::remove(written_, ignored);
+    std::filesystem::remove(own_file(), ignored);
   }
-
-  /// The message of the InputError, or nothing.
-  std::string error_of(const std::string& text) {
-    try {
-      score_attitude(write(text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
- private:
-  std::string written_;
 };
+
+/// The message of the InputError that this content ends in, or nothing.
+std::string error_of(const std::string& text) {
+  try {
+    score_attitude(write(text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
 
 TEST_F(AttitudeCommand, RealRecordingWithinBounds) {
   const AttitudeScore score = score_attitude(kExcerpt);

@@ -174,6 +174,15 @@ TEST(HeightFieldTest, SteepestGradientIsReachedAndNeverExceeded) {
   }
 }
 
+TEST(HeightFieldTest, OneRaisedCornerIsSteepestThere) {
+  // At the raised corner both edges rise by the full height: sqrt 2 times it.
+  for (const int raised : {0, 1, 2, 3}) {
+    HeightField field(2, 2, 0.5, false);
+    field.set_node(raised % 2, raised / 2, 1 << 20);
+    EXPECT_DOUBLE_EQ(field.steepest_gradient(), std::sqrt(2.0) * 0x1p-4 / 0.5) << raised;
+  }
+}
+
 TEST(HeightFieldTest, SlopeLimitIsMetAndNotExceeded) {
   for (const double limit : {1.0, 12.5, 25.0, 60.0}) {
     for (const int bit_depth : {8, 16}) {
@@ -247,6 +256,18 @@ TEST(HeightFieldTest, BoundHoldsAndIsNotFarOff) {
     field.refresh_bounds();
     EXPECT_LT(field.max_height_within(x, y, 0.1), 1.0);
   }
+}
+
+TEST(HeightFieldTest, BoundReachesOverTheSeam) {
+  HeightField field(70, 45, 0.02, true);
+  field.set_node(1, 1, 1 << 24);
+  field.set_node(68, 43, 1 << 23);
+  EXPECT_EQ(field.max_height_within(field.x_max() - 0.01, field.y_max() - 0.01, 0.05), 1.0);
+  EXPECT_EQ(field.max_height_within(field.x_min() + 0.5, field.y_min() - 0.01, 0.05), 0.0);
+  EXPECT_EQ(field.max_height_within(field.x_max() - 0.1, field.y_max() - 0.1, 0.05), 0.5);
+  field.set_node(1, 1, 0);
+  field.refresh_bounds();
+  EXPECT_EQ(field.max_height_within(field.x_max() - 0.01, field.y_max() - 0.01, 0.05), 0.5);
 }
 
 TEST(HeightFieldTest, FlatAndRampAreWhatTheySay) {

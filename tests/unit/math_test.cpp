@@ -233,7 +233,7 @@ TEST(QuaternionMath, RotationMatrixAndLength) {
     const RotationMatrix got = rotation_matrix(fixed_of(u));
     for (std::size_t r = 0; r < 3; ++r) {
       for (std::size_t c = 0; c < 3; ++c) {
-        ASSERT_NEAR(got.row[r][c], expected[r][c] * 16384.0, 3.0) << "row " << r << " column " << c;
+        ASSERT_NEAR(got.row[r][c], expected[r][c] * 16384.0, 4.0) << "row " << r << " column " << c;
       }
     }
     ASSERT_NEAR(length_deficit_q24(fixed_of(u)), 0, 2);

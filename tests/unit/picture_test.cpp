@@ -217,9 +217,13 @@ TEST_F(PictureTest, DifferenceNeedsTheSameGrid) {
   after.set_node(30, 30, after.node(30, 30) + (1 << 20));
   write_difference_picture(folder_ / "changed.png", before, after, small_picture());
   EXPECT_NE(bytes_of(folder_ / "same.png"), bytes_of(folder_ / "changed.png"));
-  EXPECT_THROW(write_difference_picture(folder_ / "other.png", before, HeightField::flat(1.5, 0.1),
-                                        small_picture()),
-               InputError);
+  const HeightField grid(20, 20, 0.1, false);
+  for (const HeightField& other :
+       {HeightField(21, 20, 0.1, false), HeightField(20, 21, 0.1, false),
+        HeightField(20, 20, 0.2, false), HeightField(20, 20, 0.1, true)}) {
+    EXPECT_THROW(write_difference_picture(folder_ / "other.png", grid, other, small_picture()),
+                 InputError);
+  }
   EXPECT_FALSE(fs::exists(folder_ / "other.png"));
 }
 

@@ -1,0 +1,67 @@
+// The robot's board on the bench: the flashed image, its three sensor chips, encoders and a ground station.
+#pragma once
+
+#include <vector>
+
+#include "hal/sample.h"
+#include "tests/mcu/ground_lines.h"
+#include "tests/mcu/i2c_chip.h"
+#include "tests/mcu/mcu.h"
+
+namespace screed::mcu {
+
+// Registers of the ATmega32U4 that the tests look at, as memory addresses.
+constexpr std::uint16_t kOcr1a = 0x88;
+constexpr std::uint16_t kOcr1b = 0x8A;
+constexpr std::uint16_t kPortD = 0x2B;
+constexpr std::uint16_t kPortE = 0x2E;
+
+class Bench {
+ public:
+  Bench();
+
+  /// Runs; meanwhile the chips measure a level robot at rest with a little noise, new numbers every millisecond, the
+  /// tracks turn as the motors drive them, and the ground station sends its heartbeat every 100 ms.
+  void run_ms(int ms);
+
+  /// Sends a command and gives it time to act.
+  void command(CommandOp op, DriveArgument argument = {0, 0});
+
+  /// Puts the chips into their state after power-up: default registers.
+  void power_up(I2cChip& chip) const;
+
+  /// Turns an encoder by one state change.
+  void turn_left_encoder(bool forward);
+  void turn_right_encoder(bool forward);
+
+  /// Frames sent since the last call, those with `id` only.
+  std::vector<CanFrame> frames(std::uint16_t id);
+  /// The newest frame with `id` of the whole run; fails the test when there is none.
+  CanFrame last_frame(std::uint16_t id) const;
+
+  Mcu mcu;
+  I2cChip accel_mag;
+  I2cChip gyro;
+  I2cChip baro;
+  bool ground_station = false;
+  bool tracks_blocked = false;
+  std::int16_t accel_z = 4096;
+
+ private:
+  void measure();
+  void turn_tracks();
+
+  GroundLines ground_;
+  int ms_ = 0;
+  int left_phase_ = 0;
+  int right_phase_ = 0;
+  double left_travel_ = 0;  // counts
+  double right_travel_ = 0;
+  std::size_t looked_at_ = 0;
+};
+
+/// Worst-case stack and static RAM of the image, as the budget tool has them.
+unsigned computed_stack();
+unsigned static_ram();
+
+}  // namespace screed::mcu

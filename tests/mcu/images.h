@@ -1,0 +1,12 @@
+// Where the images under test are; the paths come from the build (mcu_tests.mk).
+#pragma once
+
+namespace screed::mcu {
+
+constexpr const char* kScreedImage = SCREED_IMAGE_FOLDER "/screed.elf";
+constexpr const char* kScreedListing = SCREED_IMAGE_FOLDER "/screed.lst";
+constexpr const char* kScreedSizes = SCREED_IMAGE_FOLDER "/screed.size";
+constexpr const char* kGoldenImage = SCREED_IMAGE_FOLDER "/golden.elf";
+constexpr const char* kRobotImage = SCREED_IMAGE_FOLDER "/robot.elf";
+
+}  // namespace screed::mcu

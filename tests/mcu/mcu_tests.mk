@@ -1,0 +1,33 @@
+# Tests of the images for the microcontroller in the simulator simavr. Included by the top Makefile after hal/avr/firmware.mk.
+#
+# $(B)/tests/mcu_tests runs screed.elf, the image that is flashed, and the images of tests/mcu/images.
+# Needs from the top Makefile: B, LIBRARY, host.flags, link.flags, libavr_stack.a, objects, TEST_PACKAGES, TESTS.
+
+MCU_TESTS := $(B)/tests/mcu_tests
+MCU_TEST_OBJECTS := $(call objects,$(wildcard tests/mcu/*.cpp))
+TESTS += $(MCU_TESTS)
+
+# An image: its main program and what it uses of the firmware's core.
+MCU_IMAGES := $(patsubst tests/mcu/images/%.cpp,$(FIRMWARE_BUILD)/%.elf,$(wildcard tests/mcu/images/*.cpp))
+MCU_IMAGE_CORE := $(filter-out %/main_loop.o,$(filter $(FIRMWARE_BUILD)/firmware/%,$(FIRMWARE_OBJECTS)))
+TEST_IMAGES += $(MCU_IMAGES) $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size
+
+$(MCU_IMAGES): $(FIRMWARE_BUILD)/%.elf: $(FIRMWARE_BUILD)/tests/mcu/images/%.o $(MCU_IMAGE_CORE)
+	@echo "  LINK $@"
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
+
+$(B)/tests/mcu.flags: FORCE
+	@mkdir -p $(@D)
+	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"'" > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+
+$(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags -MMD -MP -c $< -o $@
+
+$(MCU_TESTS): $(MCU_TEST_OBJECTS) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -lsimavr $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
+
+-include $(MCU_TEST_OBJECTS:.o=.d) $(MCU_IMAGES:$(FIRMWARE_BUILD)/%.elf=$(FIRMWARE_BUILD)/tests/mcu/images/%.d)

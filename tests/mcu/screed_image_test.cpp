@@ -1,0 +1,218 @@
+// The image that is flashed, on a simulated board: it boots, keeps its tick, reads its devices, drives, and stays safe when
+// devices fail.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "firmware/robot/supervisor.h"
+#include "tests/mcu/bench.h"
+
+namespace screed::mcu {
+namespace {
+
+constexpr std::uint64_t kTickCycles = kClock_hz / kTickRate_hz;
+// Half of the tick is the most a tick may take, interrupts included.
+constexpr std::uint64_t kMostBusyCycles = kTickCycles / 2;
+
+void expect_healthy(const Bench& bench) {
+  EXPECT_TRUE(bench.mcu.alive());
+  EXPECT_EQ(bench.mcu.starts(), 1) << "the MCU was reset";
+  // An interrupt that runs already, or one atomic block, may delay the tick.
+  EXPECT_GT(bench.mcu.shortest_tick(), kTickCycles - 600);
+  EXPECT_LT(bench.mcu.longest_tick(), kTickCycles + 600);
+  EXPECT_LE(bench.mcu.busiest_tick_cycles(), kMostBusyCycles);
+  EXPECT_LE(bench.mcu.stack_used(), computed_stack());
+}
+
+RobotState state_of(const CanFrame& heartbeat) {
+  return static_cast<RobotState>(heartbeat.data[1] >> 4);
+}
+
+std::int16_t value_at(const CanFrame& frame, int index) {
+  return get_s16(frame.data + kE2eHeaderSize + 2 * index);
+}
+
+/// Armed and driving straight on.
+void set_off(Bench& bench) {
+  bench.ground_station = true;
+  bench.run_ms(4000);
+  bench.command(CommandOp::kArm);
+  bench.command(CommandOp::kRun);
+  bench.run_ms(300);
+  ASSERT_EQ(state_of(bench.last_frame(kIdHeartbeat)), RobotState::kRunning);
+}
+
+TEST(ScreedImage, TicksAndTalksWithoutAnyDevice) {
+  Bench bench;
+  for (I2cChip* chip : {&bench.accel_mag, &bench.gyro, &bench.baro}) chip->present = false;
+  bench.run_ms(3000);
+  expect_healthy(bench);
+  EXPECT_NEAR(static_cast<double>(bench.mcu.ticks()), 299, 2);
+  EXPECT_NEAR(static_cast<double>(bench.frames(kIdHeartbeat).size()), 15, 1);
+  EXPECT_EQ(bench.mcu.word(kOcr1a), 0);
+  EXPECT_EQ(bench.mcu.word(kOcr1b), 0);
+}
+
+TEST(ScreedImage, ConfiguresAndReadsTheSensors) {
+  Bench bench;
+  bench.run_ms(1000);
+  EXPECT_EQ(bench.accel_mag.registers[0x20], 0x7F);
+  EXPECT_EQ(bench.accel_mag.registers[0x21], 0xD8);
+  EXPECT_EQ(bench.accel_mag.registers[0x24], 0x74);
+  EXPECT_EQ(bench.accel_mag.registers[0x25], 0x20);
+  EXPECT_EQ(bench.accel_mag.registers[0x26], 0x00);
+  EXPECT_EQ(bench.gyro.registers[0x20], 0x6F);
+  EXPECT_EQ(bench.gyro.registers[0x23], 0xA0);
+  EXPECT_EQ(bench.baro.registers[0x20], 0xC4);
+  const CanFrame accel = bench.last_frame(kIdAccelRaw);
+  EXPECT_NEAR(value_at(accel, 2), 4096, 3);
+  EXPECT_EQ(value_at(bench.last_frame(kIdMagRaw), 1), 1250);
+  bench.run_ms(1500);
+  const CanFrame baro = bench.last_frame(kIdBaro);
+  EXPECT_EQ(get_u16(baro.data + 2) | (baro.data[4] << 16), (0x3F5678 >> 8) * 100);
+  EXPECT_EQ(value_at(baro, 2), 4250 + (0xD8DC - 0x10000) * 5 / 24);
+  expect_healthy(bench);
+}
+
+TEST(ScreedImage, WritesNothingToSensorsThatAreRight) {
+  Bench bench;
+  bench.run_ms(1000);
+  bench.gyro.written.clear();
+  bench.accel_mag.written.clear();
+  bench.run_ms(1000);
+  EXPECT_TRUE(bench.gyro.written.empty());
+  EXPECT_TRUE(bench.accel_mag.written.empty());
+}
+
+TEST(ScreedImage, ConfiguresASensorAgainAfterABrownOut) {
+  Bench bench;
+  bench.run_ms(1000);
+  bench.power_up(bench.gyro);
+  bench.run_ms(400);
+  EXPECT_EQ(bench.gyro.registers[0x20], 0x6F);
+  EXPECT_EQ(bench.gyro.registers[0x23], 0xA0);
+  expect_healthy(bench);
+}
+
+TEST(ScreedImage, StopsWhenASensorVanishesWhileDriving) {
+  for (const bool gyro : {true, false}) {
+    Bench bench;
+    set_off(bench);
+    EXPECT_GT(bench.mcu.word(kOcr1a), 0);
+    (gyro ? bench.gyro : bench.accel_mag).present = false;
+    bench.run_ms(100);
+    EXPECT_EQ(bench.mcu.word(kOcr1a), 0);
+    EXPECT_EQ(bench.mcu.word(kOcr1b), 0);
+    bench.run_ms(200);
+    const CanFrame heartbeat = bench.last_frame(kIdHeartbeat);
+    EXPECT_EQ(state_of(heartbeat), RobotState::kFault);
+    EXPECT_NE(get_u16(heartbeat.data + 2) & kFaultImuSilent, 0);
+    expect_healthy(bench);
+  }
+}
+
+TEST(ScreedImage, KeepsItsTickWhileTheBusHangs) {
+  Bench bench;
+  bench.run_ms(500);
+  bench.gyro.hangs = true;
+  bench.run_ms(1000);
+  EXPECT_EQ(bench.frames(kIdHeartbeat).size(), 8U);
+  bench.gyro.hangs = false;
+  bench.run_ms(60);
+  const unsigned reads = bench.gyro.reads;
+  bench.run_ms(100);
+  EXPECT_GT(bench.gyro.reads, reads + 50) << "the bus was not freed";
+  expect_healthy(bench);
+}
+
+TEST(ScreedImage, CountsEveryEncoderEdge) {
+  Bench bench;
+  bench.run_ms(300);
+  const CanFrame before = bench.last_frame(kIdEncoders);
+  // Three times the fastest: 0.75 m/s of 565.5 um a count are 1326 counts/s on each track; 1400 here.
+  for (int i = 0; i < 1400; ++i) {
+    bench.turn_left_encoder(true);
+    bench.mcu.run_ms(0.31);
+    bench.turn_right_encoder(false);
+    bench.mcu.run_ms(0.40);
+  }
+  bench.run_ms(100);
+  const CanFrame after = bench.last_frame(kIdEncoders);
+  EXPECT_EQ(static_cast<std::int16_t>(value_at(after, 0) - value_at(before, 0)), 1400);
+  EXPECT_EQ(static_cast<std::int16_t>(value_at(after, 1) - value_at(before, 1)), -1400);
+  EXPECT_EQ(bench.last_frame(kIdMotors).data[6], 0) << "missed edges";
+  // Both channels between two instructions: an edge was missed.
+  bench.mcu.set_pin('B', 4, true);
+  bench.mcu.set_pin('B', 7, true);
+  bench.run_ms(100);
+  EXPECT_EQ(bench.last_frame(kIdMotors).data[6], 1);
+  expect_healthy(bench);
+}
+
+TEST(ScreedImage, DrivesAndStopsWithTheLink) {
+  Bench bench;
+  set_off(bench);
+  EXPECT_GT(bench.mcu.word(kOcr1a) + bench.mcu.word(kOcr1b), 0);
+  const CanFrame motors = bench.last_frame(kIdMotors);
+  EXPECT_NEAR(bench.mcu.word(kOcr1a), std::abs(value_at(motors, 0)), 40);
+  expect_healthy(bench);
+  bench.ground_station = false;
+  bench.run_ms(2000);
+  EXPECT_EQ(bench.mcu.word(kOcr1a), 0);
+  EXPECT_EQ(bench.mcu.word(kOcr1b), 0);
+  EXPECT_EQ(state_of(bench.last_frame(kIdHeartbeat)), RobotState::kDisarmed);
+  std::printf("busiest tick: %llu cycles of %llu; stack: %u B measured, %u B computed\n",
+              static_cast<unsigned long long>(bench.mcu.busiest_tick_cycles()),
+              static_cast<unsigned long long>(kTickCycles), bench.mcu.stack_used(), computed_stack());
+}
+
+TEST(ScreedImage, CutsThePowerOfABlockedTrack) {
+  Bench bench;
+  set_off(bench);
+  bench.tracks_blocked = true;
+  bench.run_ms(1500);
+  EXPECT_EQ(bench.mcu.word(kOcr1a), 0);
+  EXPECT_EQ(bench.mcu.word(kOcr1b), 0);
+  EXPECT_EQ(state_of(bench.last_frame(kIdHeartbeat)), RobotState::kFault);
+}
+
+TEST(ScreedImage, MeasuresTheBattery) {
+  Bench bench;
+  bench.mcu.set_adc_mv(6, 2000);
+  bench.run_ms(1500);
+  EXPECT_NEAR(get_u16(bench.last_frame(kIdPower).data + 2), 6000, 30);
+}
+
+TEST(ScreedImage, KeepsItsTickWhileTheRadioIsFlooded) {
+  Bench bench;
+  bench.run_ms(200);
+  for (int i = 0; i < 200; ++i) {
+    if (bench.mcu.unreceived() < 100) bench.mcu.receive(std::vector<std::uint8_t>(100, 't'));
+    bench.run_ms(10);
+  }
+  EXPECT_NEAR(static_cast<double>(bench.frames(kIdHeartbeat).size()), 11, 1);
+  expect_healthy(bench);
+}
+
+TEST(ScreedImage, WatchdogStopsAHungProgramAndResetsIt) {
+  Bench bench;
+  set_off(bench);
+  ASSERT_GT(bench.mcu.word(kOcr1a), 0);
+  bench.mcu.break_tick();
+  bench.mcu.run_ms(75);
+  EXPECT_EQ(bench.mcu.word(kOcr1a), 0);
+  EXPECT_EQ(bench.mcu.word(kOcr1b), 0);
+  EXPECT_EQ(bench.mcu.starts(), 1);
+  bench.mcu.run_ms(75);
+  EXPECT_EQ(bench.mcu.starts(), 2);
+}
+
+TEST(ScreedImage, UsesMostOfTheComputedStack) {
+  Bench bench;
+  set_off(bench);
+  EXPECT_LE(bench.mcu.stack_used(), computed_stack());
+  EXPECT_GE(bench.mcu.stack_used(), computed_stack() * 8 / 10) << "the bound is far from what is used";
+}
+
+}  // namespace
+}  // namespace screed::mcu
