@@ -213,7 +213,7 @@ void print_table(const std::vector<AttitudeScore>& scores, const AttitudeScore& 
         << std::setw(13) << score.rms_inclination_deg << std::setw(9) << score.rms_heading_deg
         << '\n';
   }
-  out << std::left << std::setw(name) << mean.file << std::right << std::setw(9) << mean.samples
+  out << std::left << std::setw(name) << mean.file << std::right << std::setw(9) << ""
       << std::setw(13) << mean.rms_inclination_deg << std::setw(9) << mean.rms_heading_deg << '\n';
   out.flags(flags);
   out.precision(precision);
@@ -230,8 +230,7 @@ void print_json(const std::vector<AttitudeScore>& scores, const AttitudeScore& m
   }
   const nlohmann::json whole = {{"files", files},
                                 {"mean",
-                                 {{"samples", mean.samples},
-                                  {"rms_inclination_deg", mean.rms_inclination_deg},
+                                 {{"rms_inclination_deg", mean.rms_inclination_deg},
                                   {"rms_heading_deg", mean.rms_heading_deg}}}};
   out << whole.dump(2) << '\n';
 }
@@ -269,7 +268,6 @@ int run_attitude(const std::vector<std::string>& files, bool json, std::ostream&
   mean.file = "mean";
   for (const std::string& file : files) {
     scores.push_back(score_attitude(file));
-    mean.samples += scores.back().samples;
     mean.rms_inclination_deg +=
         scores.back().rms_inclination_deg / static_cast<double>(files.size());
     mean.rms_heading_deg += scores.back().rms_heading_deg / static_cast<double>(files.size());

@@ -9,15 +9,15 @@ namespace screed {
 namespace avr {
 
 // Motors. M1 drives the left track, M2 the right one. A high direction pin is reverse.
-using LeftPwmPin = Pin<kPortB, 5>;          // pin 9
-using LeftDirectionPin = Pin<kPortD, 6>;    // pin 12
-using RightPwmPin = Pin<kPortB, 6>;         // pin 10
+using LeftPwmPin = Pin<kPortB, 5>;        // pin 9
+using LeftDirectionPin = Pin<kPortD, 6>;  // pin 12
+using RightPwmPin = Pin<kPortB, 6>;       // pin 10
 using RightDirectionPin = Pin<kPortE, 2>;
 #define LEFT_DUTY_REGISTER OCR1A
 #define RIGHT_DUTY_REGISTER OCR1B
 
-// Encoders: both channels of both tracks on port B, one interrupt and one port read. A leads B when the track drives
-// forward.
+// Encoders: both channels of both tracks on port B, one interrupt and one port read. A leads B when
+// the track drives forward.
 using LeftEncoderA = Pin<kPortB, 4>;   // pin 8
 using LeftEncoderB = Pin<kPortB, 7>;   // pin 11
 using RightEncoderA = Pin<kPortB, 1>;  // pin 15
@@ -58,13 +58,15 @@ constexpr bool kGreenLedHigh = false;
 
 constexpr uint8_t kBatteryChannel = 6;  // A1 = PF6
 
-/// Where the robot's axis i (x forward, y left, z up) comes from: an axis of the chips, turned round or not.
+/// Where the robot's axis i (x forward, y left, z up) comes from: an axis of the chips, turned
+/// round or not.
 struct AxisOfChip {
   uint8_t index;
   bool reversed;
 };
-// The AltIMU-10 v4 lies flat, components up, its printed x arrow forward. Its printed axes hold for LSM303D and L3GD20H
-// alike. The accelerometer shows +1 g on the axis that points up, as SensorSample wants it.
+// The AltIMU-10 v4 lies flat, components up, its printed x arrow forward. Its printed axes hold for
+// LSM303D and L3GD20H alike. The accelerometer shows +1 g on the axis that points up, as
+// SensorSample wants it.
 constexpr AxisOfChip kImuAxes[3] = {{0, false}, {1, false}, {2, false}};
 
 }  // namespace avr

@@ -36,7 +36,10 @@ void DriveControl::idle(const DriveMeasurement& measured) {
 int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
   const int32_t error =
       clamp_i32(static_cast<int32_t>(command.yaw_rate) - measured_rate, -32767, 32767);
-  if (!limited_) {
+  // While the tracks cannot make the command the integral only moves back towards zero; were it held, what a spin left in it
+  // would turn a robot for ever that is told to drive straight on at nearly full speed.
+  const bool unwinds = (error < 0 && yaw_integral_q8_ > 0) || (error > 0 && yaw_integral_q8_ < 0);
+  if (!limited_ || unwinds) {
     // ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096, shifted in two parts to fit 32 bits.
     const int32_t step = asr(asr(static_cast<int32_t>(yaw_ki_) * error, 4) * 41, 8);
     yaw_integral_q8_ =

@@ -7,7 +7,7 @@ TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t 
                               bool* limited) const {
   const int32_t limit = limit_mm_per_s;
   const int32_t rate = clamp_i32(yaw_rate, -INT16_MAX, INT16_MAX);
-  const int32_t wanted = asr(rate * static_cast<int32_t>(half_arc_q22_), 22);
+  const int32_t wanted = asr_round(rate * static_cast<int32_t>(half_arc_q22_), 22);
   const int32_t turn = clamp_i32(wanted, -limit, limit);
   const int32_t room = limit - (turn < 0 ? -turn : turn);
   const int32_t speed = clamp_i32(speed_mm_per_s, -room, room);

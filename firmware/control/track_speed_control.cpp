@@ -58,7 +58,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
                 -kErrorLimit_dmm_per_s, kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is.
-  const uint16_t supply_mv = battery_mv < nominal_mv_ / 2 ? nominal_mv_ / 2 : battery_mv;
+  const auto least_mv = static_cast<uint16_t>(nominal_mv_ / 2);
+  const uint16_t supply_mv = battery_mv < least_mv ? least_mv : battery_mv;
   const int32_t nominal_q4 = asr(static_cast<int32_t>(target_mm_per_s) * feed_forward_q8_, 4);
   const int32_t feed_forward_q10 =
       nominal_q4 * static_cast<int32_t>((static_cast<uint32_t>(nominal_mv_) << 6) / supply_mv);

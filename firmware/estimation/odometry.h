@@ -19,11 +19,12 @@ class Odometry {
   /// Back to the origin.
   void reset();
 
-  /// One tick: counts of both tracks since the last tick (each within +-100), heading and pitch
-  /// now.
+  /// One tick: counts of both tracks since the last tick (taken as +-100 when beyond), heading and
+  /// pitch now.
   void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch);
 
-  /// Position relative to the place of the last reset, mm; x is east, y north. Good for +-2 km.
+  /// Position relative to the place of the last reset, mm; x is east, y north. Stops at
+  /// +-2147 m.
   int32_t x_mm() const;
   int32_t y_mm() const;
   /// Path length driven, forward and backward alike, mm; wraps after 4000 km.

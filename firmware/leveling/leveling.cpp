@@ -32,7 +32,7 @@ void Leveling::enter(LevelingState next) {
   if (state_ == LevelingState::kClimb && next != LevelingState::kReturn) ++peaks_;
   if (next == LevelingState::kWalk) walk_.restart();
   state_ = next;
-  ticks_in_state_ = 0;
+  ticks_in_state_ = 1;
 }
 
 // Algorithm 6: above the threshold climb straight on, below it walk at random.

@@ -44,7 +44,7 @@ class Leveling {
  public:
   explicit Leveling(const Parameters& parameters);
 
-  /// Starts a run: forgets everything but the random sequence, which goes on.
+  /// Starts a run: the state begins anew. Random sequence, fence and the side of the next spin go on.
   void start();
 
   /// One tick of the selected algorithm. `drive` is what the ground station commands, used by
@@ -71,7 +71,7 @@ class Leveling {
   RandomWalk walk_;
   SiteFence fence_;
   LevelingState state_ = LevelingState::kIdle;
-  uint16_t ticks_in_state_ = 0;
+  uint16_t ticks_in_state_ = 0;  ///< this one included; in a climb since the last incline
   uint16_t peaks_ = 0;
   bool spin_left_ =
       true;  ///< the next spin turns left: alternating, so that heading errors do not add up

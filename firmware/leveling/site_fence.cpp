@@ -6,7 +6,7 @@ namespace {
 
 constexpr Angle kAhead = 8192;                               // 45 degrees either side
 constexpr YawRate kFastestTurn = yaw_rate_from_degrees(60);
-constexpr int32_t kFarthest_mm = 30000;                      // its square fits 32 bits
+constexpr int32_t kFarthest_mm = 32000;                      // beyond any radius; two squares of it fit 32 bits
 
 bool beyond(int32_t x_mm, int32_t y_mm, int32_t radius_mm) {
   const int32_t x = clamp_i32(x_mm, -kFarthest_mm, kFarthest_mm);

@@ -2,12 +2,13 @@
 // of sensors or robots.
 //
 // Q formats of the project. "Qn" is an integer that stands for value / 2^n.
-//   name          type      one unit is            range            used for
-//   Angle         int16_t   1/65536 turn           [-1/2, 1/2) turn angles; wraps, never saturates
-//   (trig.h) Q15           int16_t   2^-15                  [-1, 1)          sines, rotation matrix
-//   elements, gains Q30           int32_t   2^-30                  [-2, 2)          quaternions,
-//   half angles in radians a tick mm, mm/s      int16/32  1 mm, 1 mm/s distances, speeds IMU counts
-//   int16_t   70 mdps, 0.244 mg, 0.160 mG             raw samples
+//   Angle  int16_t  1/65536 turn   plane angles; wrap, never saturate (trig.h)
+//   Q14    int16_t  2^-14, [-2,2)  elements of rotation matrices
+//   Q15    int16_t  2^-15, [-1,1)  sines and cosines; the value 1 is 32767
+//   Q16    int16_t  2^-16          factors within +-1/2 for scale_q16: gains of filters
+//   Q30    int32_t  2^-30, [-2,2)  components of quaternions
+//   mm, mm/s       int16_t or int32_t, 1 mm, 1 mm/s
+//   IMU counts     int16_t, 70 mdps, 0.244 mg, 0.160 mG
 // Formats that one file alone needs are documented in that file.
 //
 // The AVR has an 8x8 multiplier and a 16-bit int: products here are built from 16x16 -> 32 bit

@@ -28,11 +28,32 @@ Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
     first_tick_ = false;
   }
   // Modulo 2^16: a wrap of the counters has no effect.
-  const Deltas deltas = {static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - last_left_)),
-                         static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_right - last_right_))};
+  const Deltas deltas = {
+      static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - last_left_)),
+      static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_right - last_right_))};
   last_left_ = sample.encoder_left;
   last_right_ = sample.encoder_right;
   return deltas;
+}
+
+void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
+  ImuSample imu{};
+  for (uint8_t i = 0; i < 3; ++i) {
+    imu.gyro[i] = sample.gyro[i];
+    imu.accel[i] = sample.accel[i];
+    imu.mag[i] = sample.mag[i];
+  }
+  imu.mag_fresh = (sample.fresh & kFreshMag) != 0;
+  // Turning tracks are no standstill, however evenly the robot turns.
+  const bool tracks_at_rest =
+      duty_left_ == 0 && duty_right_ == 0 && deltas.left == 0 && deltas.right == 0;
+  attitude_.update(imu, tracks_at_rest);
+  pose_.roll = attitude_.roll();
+  pose_.pitch = attitude_.pitch();
+  pose_.heading = attitude_.heading();
+  odometry_.update(deltas.left, deltas.right, pose_.heading, pose_.pitch);
+  pose_.x_mm = odometry_.x_mm();
+  pose_.y_mm = odometry_.y_mm();
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -120,21 +141,19 @@ void Robot::choose_motion() {
     drive_command_ = {0, 0};
     return;
   }
-  const LevelingInput input = {attitude_.pitch(), attitude_.heading(), odometry_.x_mm(),
-                               odometry_.y_mm()};
+  const LevelingInput input = {pose_.pitch, pose_.heading, pose_.x_mm, pose_.y_mm};
   motion_ = leveling_.tick(input, drive_command_);
 }
 
 void Robot::report(const SensorSample& sample, RobotOutput& output) {
-  const Angle heading = attitude_.heading();
   TelemetryView view{};
   view.sample = &sample;
-  view.roll_cdeg = centidegrees_from_angle(attitude_.roll());
-  view.pitch_cdeg = centidegrees_from_angle(attitude_.pitch());
+  view.roll_cdeg = centidegrees_from_angle(pose_.roll);
+  view.pitch_cdeg = centidegrees_from_angle(pose_.pitch);
   view.heading_cdeg = static_cast<uint16_t>(
-      (static_cast<uint32_t>(static_cast<uint16_t>(heading)) * 36000U) >> 16);
-  view.x_mm = odometry_.x_mm();
-  view.y_mm = odometry_.y_mm();
+      (static_cast<uint32_t>(static_cast<uint16_t>(pose_.heading)) * 36000U) >> 16);
+  view.x_mm = pose_.x_mm;
+  view.y_mm = pose_.y_mm;
   view.duty_left = duty_left_;
   view.duty_right = duty_right_;
   view.motion = motion_;
@@ -157,20 +176,11 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
 }
 
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
-  battery_mv_ = static_cast<uint16_t>(
-      (static_cast<uint32_t>(sample.battery) * battery_uv_per_lsb_) / 1000U);
+  battery_mv_ =
+      static_cast<uint16_t>((static_cast<uint32_t>(sample.battery) * battery_uv_per_lsb_) / 1000U);
   const Deltas deltas = count_deltas(sample);
 
-  ImuSample imu{};
-  for (uint8_t i = 0; i < 3; ++i) {
-    imu.gyro[i] = sample.gyro[i];
-    imu.accel[i] = sample.accel[i];
-    imu.mag[i] = sample.mag[i];
-  }
-  imu.mag_fresh = (sample.fresh & kFreshMag) != 0;
-  attitude_.update(imu);
-  odometry_.update(deltas.left, deltas.right, attitude_.heading(), attitude_.pitch());
-
+  estimate_pose(sample, deltas);
   receive(sample);
   supervise(sample, deltas);
   choose_motion();

@@ -99,7 +99,7 @@ void Supervisor::watch_link() {
   }
 }
 
-// Arms and runs once, after the delay: a stand-alone robot that was stopped stays stopped.
+// Arms and runs once, after the delay: a stand-alone robot that was stopped, even before that, stays stopped.
 void Supervisor::run_standalone() {
   if (!standalone_ || ticks_since_start_ == UINT16_MAX) return;
   if (ticks_since_start_ < standalone_ticks_) {
@@ -125,6 +125,10 @@ void Supervisor::tick(const SupervisorInput& input) {
 }
 
 RequestResult Supervisor::request(Request request) {
+  // Whoever holds a stand-alone robot back before its start does not see it start by itself later.
+  if (request == Request::kStop || request == Request::kDisarm || request == Request::kEmergencyStop) {
+    ticks_since_start_ = UINT16_MAX;
+  }
   switch (request) {
     case Request::kArm:
       if (state_ != RobotState::kDisarmed) return RequestResult::kWrongState;

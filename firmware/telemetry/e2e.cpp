@@ -2,14 +2,6 @@
 #include "firmware/telemetry/e2e.h"
 
 namespace screed {
-namespace {
-
-uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size) {
-  const uint8_t over_data = crc8_h2f(0xFF, data + 1, static_cast<uint8_t>(size - 1));
-  return static_cast<uint8_t>(crc8_h2f(over_data, &data_id, 1) ^ 0xFFU);
-}
-
-}  // namespace
 
 uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size) {
   for (uint8_t i = 0; i < size; ++i) {
@@ -23,13 +15,18 @@ uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size) {
   return crc;
 }
 
+uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size) {
+  const uint8_t over_data = crc8_h2f(0xFF, data + 1, static_cast<uint8_t>(size - 1));
+  return static_cast<uint8_t>(crc8_h2f(over_data, &data_id, 1) ^ 0xFFU);
+}
+
 void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size) {
   data[1] = static_cast<uint8_t>((data[1] & 0xF0U) | (counter & 0x0FU));
   data[0] = e2e_crc(e2e_data_id(can_id, counter), data, size);
 }
 
 bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size) {
-  if (size < 2 || size > 8) return false;
+  if (size < 3 || size > 8) return false;
   return data[0] == e2e_crc(e2e_data_id(can_id, data[1] & 0x0FU), data, size);
 }
 

@@ -18,11 +18,16 @@ constexpr uint8_t e2e_data_id(uint16_t can_id, uint8_t counter) {
   return static_cast<uint8_t>((can_id >> 8) * 31U + (can_id & 0xFFU) + counter * 17U);
 }
 
-/// Writes counter (0..15) and CRC into data[0..size); size 2..8. Bits 4..7 of data[1] are left to
+/// Byte 0 of a protected frame: the CRC over data[1..size) and a data id (in the standard:
+/// DataIDList[counter]). size 2..8; data[1] holds the counter already.
+uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size);
+
+/// Writes counter (0..15) and CRC into data[0..size); size 3..8. Bits 4..7 of data[1] are left to
 /// the message.
 void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size);
 
-/// True when the CRC is right for this id and size.
+/// True when the CRC is right for this id and size. A frame of the header alone (size 2) is refused:
+/// there the CRC misses some single wrong bits of the counter, since they change the data id too.
 bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size);
 
 }  // namespace screed

@@ -13,7 +13,8 @@ struct Schedule {
   uint8_t first;   ///< tick of the first one: spreads the load
 };
 
-// In order of importance. A full tick delays the lower lines by one tick; 105 lines a second on average of 200 possible.
+// In order of importance. A full tick delays the lower lines by one tick; 115 lines a second of 200 possible,
+// 2458 bytes.
 constexpr Schedule kSchedule[kTelemetryMessages] = {
     {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2}, {kIdMotors, 5, 3},
     {kIdLeveling, 10, 4},  {kIdOdometry, 10, 6}, {kIdAccelRaw, 10, 8}, {kIdGyroRaw, 10, 9},
@@ -89,8 +90,8 @@ void fill(CanFrame& frame, const TelemetryView& view) {
     }
     case kIdBaro:
     default:
-      // 1/4096 hPa = 100/256 Pa/16
-      put_u32(payload, static_cast<uint32_t>(asr(sample.pressure, 8)) * 100U);
+      // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
+      put_u32(payload, (static_cast<uint32_t>(sample.pressure) * 25U) >> 6);
       // 42.5 degC + raw/480, in 0.01 degC
       put_s16(payload + 4, static_cast<int16_t>(4250 + static_cast<int32_t>(sample.temperature) * 5 / 24));
       break;
@@ -127,16 +128,19 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
     emit(frame, ack_counter_, output);
     ack_op_ = 0;
   }
-  for (uint8_t i = 0; i < kTelemetryMessages; ++i) {
-    if (countdown_[i] > 0) {
-      --countdown_[i];
-      continue;
+  uint16_t bit = 1;
+  for (uint8_t i = 0; i < kTelemetryMessages; ++i, bit = static_cast<uint16_t>(bit << 1)) {
+    // The countdown goes on while a line waits, so that a delay moves one line and not its schedule.
+    if (countdown_[i] == 0) {
+      due_ = static_cast<uint16_t>(due_ | bit);
+      countdown_[i] = kSchedule[i].period;
     }
-    if (output.radio_out_count + kSlcanLineMax > kRadioOutCapacity) continue;
+    --countdown_[i];
+    if ((due_ & bit) == 0 || output.radio_out_count + kSlcanLineMax > kRadioOutCapacity) continue;
     frame.id = kSchedule[i].id;
     fill(frame, view);
     emit(frame, counter_[i], output);
-    countdown_[i] = static_cast<uint8_t>(kSchedule[i].period - 1);
+    due_ = static_cast<uint16_t>(due_ & ~bit);
   }
 }
 

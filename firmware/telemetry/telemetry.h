@@ -44,6 +44,7 @@ class Telemetry {
  private:
   void emit(CanFrame& frame, uint8_t& counter, RobotOutput& output);
 
+  uint16_t due_ = 0;  ///< a bit a message: it waits for room
   uint8_t countdown_[kTelemetryMessages] = {};
   uint8_t counter_[kTelemetryMessages] = {};
   bool started_ = false;

@@ -1,4 +1,5 @@
-// The battery voltage at the ADC: one conversion a tick (104 us, done long before the next), summed over eight ticks.
+// The battery voltage at the ADC: one conversion a tick (104 us, done long before the next), summed
+// over eight ticks.
 #include "hal/avr/battery.h"
 
 #include <avr/io.h>
@@ -24,14 +25,19 @@ void take(uint16_t conversion) {
   state.at = static_cast<uint8_t>((state.at + 1U) % kWindow);
 }
 
-void start_conversion() { ADCSRA |= _BV(ADSC); }
+void start_conversion() {
+  ADCSRA |= _BV(ADSC);
+}
 
-bool converting() { return (ADCSRA & _BV(ADSC)) != 0; }
+bool converting() {
+  return (ADCSRA & _BV(ADSC)) != 0;
+}
 
 }  // namespace
 
 void battery_init() {
-  ADMUX = static_cast<uint8_t>(_BV(REFS0) | (kBatteryChannel & 0x07U));  // reference: the 5 V supply
+  ADMUX =
+      static_cast<uint8_t>(_BV(REFS0) | (kBatteryChannel & 0x07U));  // reference: the 5 V supply
   ADCSRB = 0;
   DIDR0 = static_cast<uint8_t>(1U << kBatteryChannel);
   ADCSRA = _BV(ADEN) | _BV(ADPS2) | _BV(ADPS1) | _BV(ADPS0);  // 125 kHz

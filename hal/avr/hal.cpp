@@ -34,9 +34,13 @@ void init() {
   sei();
 }
 
-const BoardConstants& board_constants() { return kBoard; }
+const BoardConstants& board_constants() {
+  return kBoard;
+}
 
-const Parameters& parameters() { return kDefaults; }
+const Parameters& parameters() {
+  return kDefaults;
+}
 
 bool wait_for_tick() {
   avr::tick_timer_wait();

@@ -125,7 +125,8 @@ static_assert(kFreshGyro == 1 << kReadGyro && kFreshAccel == 1 << kReadAccel &&
               "fresh_bit relies on the order");
 
 int16_t word_at(const uint8_t* bytes) {
-  return static_cast<int16_t>(bytes[0] | static_cast<uint16_t>(static_cast<uint16_t>(bytes[1]) << 8));
+  return static_cast<int16_t>(bytes[0] |
+                              static_cast<uint16_t>(static_cast<uint16_t>(bytes[1]) << 8));
 }
 
 /// From the chip's axes to the robot's. An axis against the chip's turns -32768 into 32767.
@@ -139,8 +140,8 @@ void to_robot_frame(const uint8_t* bytes, int16_t (&vector)[3]) {
   }
 }
 
-void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit, int16_t (&vector)[3],
-                 SensorSample& sample) {
+void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit,
+                 int16_t (&vector)[3], SensorSample& sample) {
   if ((state.arrived & bit) == 0 || (burst[0] & kNewXyz) == 0 || !configured(chip)) return;
   to_robot_frame(burst + 1, vector);
   sample.fresh = static_cast<uint8_t>(sample.fresh | bit);
@@ -153,9 +154,9 @@ void take_baro(SensorSample& sample) {
     return;
   }
   const uint8_t sign = (burst[3] & 0x80U) != 0 ? 0xFF : 0x00;
-  sample.pressure = static_cast<int32_t>(
-      burst[1] | (static_cast<uint32_t>(burst[2]) << 8) | (static_cast<uint32_t>(burst[3]) << 16) |
-      (static_cast<uint32_t>(sign) << 24));
+  sample.pressure = static_cast<int32_t>(burst[1] | (static_cast<uint32_t>(burst[2]) << 8) |
+                                         (static_cast<uint32_t>(burst[3]) << 16) |
+                                         (static_cast<uint32_t>(sign) << 24));
   sample.temperature = word_at(burst + 4);
   sample.fresh = static_cast<uint8_t>(sample.fresh | kFreshBaro);
 }

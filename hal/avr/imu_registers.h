@@ -1,5 +1,6 @@
-// Addresses and registers of the sensors of the AltIMU-10 v4 (LSM303D, L3GD20H, LPS25H) and the settings this project
-// uses. Sources: ST data sheets LSM303D (DocID023312), L3GD20H (DocID023469), LPS25H (DocID026140).
+// Addresses and registers of the sensors of the AltIMU-10 v4 (LSM303D, L3GD20H, LPS25H) and the
+// settings this project uses. Sources: ST data sheets LSM303D (DocID023312), L3GD20H (DocID023469),
+// LPS25H (DocID026140).
 #pragma once
 
 #include <avr/pgmspace.h>
@@ -16,7 +17,9 @@ constexpr uint8_t kL3gd20hAddress = 0x6B;
 constexpr uint8_t kLps25hAddress = 0x5D;
 
 constexpr uint8_t chip_address(Chip chip) {
-  return chip == kAccelMagChip ? kLsm303dAddress : chip == kGyroChip ? kL3gd20hAddress : kLps25hAddress;
+  return chip == kAccelMagChip ? kLsm303dAddress
+         : chip == kGyroChip   ? kL3gd20hAddress
+                               : kLps25hAddress;
 }
 
 /// Set in a register number: the following bytes belong to the following registers.

@@ -1,4 +1,6 @@
 // Start of the program on the ATmega32U4.
 #include "firmware/main_loop.h"
 
-int main() { screed::main_loop(); }
+int main() {
+  screed::main_loop();
+}

@@ -24,14 +24,16 @@ Drive drive_from(int16_t duty) {
   return {duty > kDutyMax ? static_cast<uint16_t>(kDutyMax) : static_cast<uint16_t>(duty), false};
 }
 
-/// The compare registers are double buffered: a new duty counts from the end of the PWM period, 50 us at most.
+/// The compare registers are double buffered: a new duty counts from the end of the PWM period, 50
+/// us at most.
 void wait_for_period_end() {
   TIFR1 = _BV(TOV1);
   for (uint8_t tries = 0; tries < UINT8_MAX && (TIFR1 & _BV(TOV1)) == 0; ++tries) {
   }
 }
 
-/// Changes the direction of a motor that turns the other way. A motor that stands keeps its direction pin.
+/// Changes the direction of a motor that turns the other way. A motor that stands keeps its
+/// direction pin.
 template <typename Pin>
 bool must_reverse(const Drive& drive) {
   return drive.duty != 0 && drive.reverse != Pin::is_high();
@@ -66,7 +68,8 @@ void motors_drive(int16_t left, int16_t right) {
   const Drive right_drive = drive_from(right);
   const bool reverse_left = must_reverse<LeftDirectionPin>(left_drive);
   const bool reverse_right = must_reverse<RightDirectionPin>(right_drive);
-  // The old duty must not act in the new direction: duty off, end of the period, direction, new duty.
+  // The old duty must not act in the new direction: duty off, end of the period, direction, new
+  // duty.
   if (reverse_left || reverse_right) {
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
       if (reverse_left) LEFT_DUTY_REGISTER = 0;

@@ -1,4 +1,5 @@
-// Decoding of a quadrature encoder: two channels, a quarter period apart. Knows no pins; runs on any machine.
+// Decoding of a quadrature encoder: two channels, a quarter period apart. Knows no pins; runs on
+// any machine.
 #pragma once
 
 #include <stdint.h>

@@ -11,7 +11,8 @@ namespace screed {
 namespace avr {
 namespace {
 
-// 16 MHz / 8 / 34 = 58,824 baud: 2.1 % above 57,600, which is what the radio module makes of its setting as well.
+// 16 MHz / 8 / 34 = 58,824 baud: 2.1 % above 57,600, which is what the radio module makes of its
+// setting as well.
 constexpr uint16_t kBaudDivider = 33;
 
 struct State {
@@ -55,10 +56,14 @@ uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity) {
 void radio_uart_write(const uint8_t* bytes, uint8_t count) {
   if (count == 0 || count > state.out.room()) return;
   for (uint8_t i = 0; i < count; ++i) state.out.put(bytes[i]);
-  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { UCSR1B |= _BV(UDRIE1); }
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    UCSR1B |= _BV(UDRIE1);
+  }
 }
 
-uint8_t radio_uart_overruns() { return state.overruns; }
+uint8_t radio_uart_overruns() {
+  return state.overruns;
+}
 
 }  // namespace avr
 }  // namespace screed

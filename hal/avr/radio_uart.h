@@ -8,8 +8,8 @@ namespace avr {
 
 void radio_uart_init();
 
-/// Takes up to `capacity` received bytes; returns how many. Bytes that found the buffer full, and bytes the
-/// hardware lost, are gone and counted.
+/// Takes up to `capacity` received bytes; returns how many. Bytes that found the buffer full, and
+/// bytes the hardware lost, are gone and counted.
 uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity);
 
 /// Queues all bytes, or none when they do not fit. Never waits.

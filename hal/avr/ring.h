@@ -1,5 +1,5 @@
-// A ring buffer of bytes between one interrupt and the main program. Each side writes one index only, and an index is one
-// byte, so neither side needs to lock the other out.
+// A ring buffer of bytes between one interrupt and the main program. Each side writes one index
+// only, and an index is one byte, so neither side needs to lock the other out.
 #pragma once
 
 #include <stdint.h>
@@ -9,7 +9,8 @@ namespace avr {
 
 template <uint8_t kSize>
 class Ring {
-  static_assert(kSize >= 2 && (kSize & (kSize - 1)) == 0, "the size must be a power of two, at most 128");
+  static_assert(kSize >= 2 && (kSize & (kSize - 1)) == 0,
+                "the size must be a power of two, at most 128");
 
  public:
   uint8_t used() const { return static_cast<uint8_t>(put_ - got_); }

@@ -15,8 +15,8 @@ namespace {
 
 constexpr uint16_t kCountsPerTick = F_CPU / 8 / kTickRate_hz;
 constexpr uint8_t kCountsPerUs = F_CPU / 8 / 1000000UL;
-// The IMU is read so that its numbers are complete, and no older than this, when the tick begins. Four bursts and one
-// register take 1.3 ms at 400 kHz.
+// The IMU is read so that its numbers are complete, and no older than this, when the tick begins.
+// Four bursts and one register take 1.3 ms at 400 kHz.
 constexpr uint16_t kImuLead_us = 2000;
 
 struct State {
@@ -44,9 +44,13 @@ uint16_t counts_since_tick() {
 
 }  // namespace
 
-ISR(TIMER3_COMPA_vect) { state.ticks = static_cast<uint8_t>(state.ticks + 1); }
+ISR(TIMER3_COMPA_vect) {
+  state.ticks = static_cast<uint8_t>(state.ticks + 1);
+}
 
-ISR(TIMER3_COMPB_vect) { imu_start_round(); }
+ISR(TIMER3_COMPB_vect) {
+  imu_start_round();
+}
 
 void tick_timer_init() {
   TCCR3A = 0;
@@ -76,9 +80,13 @@ void tick_timer_wait() {
   state.time_us += static_cast<uint32_t>(ticks) * kTickPeriod_us;
 }
 
-uint32_t tick_timer_time_us() { return state.time_us; }
+uint32_t tick_timer_time_us() {
+  return state.time_us;
+}
 
-uint16_t tick_timer_last_us() { return state.last_us; }
+uint16_t tick_timer_last_us() {
+  return state.last_us;
+}
 
 }  // namespace avr
 }  // namespace screed

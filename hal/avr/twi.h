@@ -1,4 +1,5 @@
-// I2C master driven by its interrupt, 400 kHz: one register transfer at a time, no waiting. Knows no devices.
+// I2C master driven by its interrupt, 400 kHz: one register transfer at a time, no waiting. Knows
+// no devices.
 #pragma once
 
 #include <stdint.h>
@@ -11,7 +12,7 @@ struct TwiTransfer {
   uint8_t reg;      ///< first register; the devices' auto-increment bit is the caller's
   uint8_t size;     ///< bytes, at least 1
   bool write;
-  uint8_t* data;    ///< must stay until the transfer has ended
+  uint8_t* data;  ///< must stay until the transfer has ended
 };
 
 void twi_init();
@@ -19,12 +20,13 @@ void twi_init();
 /// Starts a transfer. Only while none is running. Interrupts must be off.
 void twi_start(const TwiTransfer& transfer);
 
-/// Frees a bus that a device holds: drops the running transfer without twi_done(), clocks the bus up to nine times until
-/// the device lets go, makes a stop condition. Takes 120 us at most.
+/// Frees a bus that a device holds: drops the running transfer without twi_done(), clocks the bus
+/// up to nine times until the device lets go, makes a stop condition. Takes 120 us at most.
 void twi_recover();
 
-/// Called from the interrupt when a transfer has ended; `ok` when every byte was acknowledged. Defined by the user of the
-/// bus: fills in `next` and returns true to go on with another transfer at once.
+/// Called from the interrupt when a transfer has ended; `ok` when every byte was acknowledged.
+/// Defined by the user of the bus: fills in `next` and returns true to go on with another transfer
+/// at once.
 bool twi_done(bool ok, TwiTransfer& next);
 
 }  // namespace avr

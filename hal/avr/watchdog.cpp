@@ -10,7 +10,8 @@
 namespace screed {
 namespace avr {
 
-/// After a watchdog reset the watchdog runs on with its shortest time, 15 ms: it has to stop before variables are set up.
+/// After a watchdog reset the watchdog runs on with its shortest time, 15 ms: it has to stop before
+/// variables are set up.
 extern "C" void screed_stop_watchdog() __attribute__((naked, used, section(".init3")));
 extern "C" void screed_stop_watchdog() {
   MCUSR = 0;  // WDRF would keep it running
@@ -18,7 +19,9 @@ extern "C" void screed_stop_watchdog() {
 }
 
 // First time-out. The hardware clears WDIE: the second time-out resets.
-ISR(WDT_vect) { motors_off(); }
+ISR(WDT_vect) {
+  motors_off();
+}
 
 void watchdog_init() {
   wdt_enable(WDTO_60MS);

@@ -1,4 +1,5 @@
-// The watchdog: a main loop that hangs for 60 ms loses its motors, and after 60 ms more the whole MCU is reset.
+// The watchdog: a main loop that hangs for 60 ms loses its motors, and after 60 ms more the whole
+// MCU is reset.
 #pragma once
 
 namespace screed {

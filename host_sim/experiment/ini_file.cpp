@@ -54,8 +54,9 @@ int take_entry(void* user, const char* section, const char* name, const char* va
   }
   // inih takes only ';' for a comment behind a value.
   std::string text = value;
-  const size_t hash = text.find(" #");
-  if (hash != std::string::npos) text.erase(hash);
+  for (size_t hash = text.find('#'); hash != std::string::npos; hash = text.find('#', hash + 1)) {
+    if (hash == 0 || text[hash - 1] == ' ' || text[hash - 1] == '\t') text.erase(hash);
+  }
   text.erase(text.find_last_not_of(" \t\r") + 1);
   reading.entries.push_back({section, name, text, reading.line});
   return 1;

@@ -96,7 +96,9 @@ double MapFrame::y_at(double pixel_y) const {
 }
 
 void MapFrame::draw_fitted(Pixel anchor, const std::string& words, TextStyle style) {
-  const double room = canvas_.width() - kMargin_px - anchor.x;
+  // A long legend lifts the bar beside the title, which then has to end before it.
+  const bool lifted = bar_.top - kBarLabel_px < map_.top;
+  const double room = (lifted ? bar_.left : canvas_.width()) - kMargin_px - anchor.x;
   const double width = canvas_.text_width(words, style);
   if (width > room) style.size_px *= room / width;
   canvas_.text(anchor, words, style);

@@ -9,6 +9,7 @@
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/session/record.h"
+#include "host_sim/session/session_layout.h"
 #include "host_sim/session/session_reader.h"
 
 namespace screed {
@@ -21,6 +22,13 @@ ReplayResult replay_session(const std::filesystem::path& session_file) {
   if (info.tick_rate_hz != kTickRate_hz) {
     throw InputError(session_file.string() + ": recorded at " + std::to_string(info.tick_rate_hz) +
                      " ticks per second; this program replays " + std::to_string(kTickRate_hz));
+  }
+  for (const layout::BoardField& field : layout::kBoardFields) {
+    // The firmware divides by them: a board constant of zero stops the program, not the robot.
+    if (info.board.*field.field == 0) {
+      throw InputError(session_file.string() + ": board constant '" + field.name +
+                       "' is 0; no robot can run with it");
+    }
   }
 
   ReplayResult result;

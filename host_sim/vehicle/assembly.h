@@ -25,9 +25,8 @@ struct Cylinder {
 };
 
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> vertices;  // m, no two alike
-  std::vector<std::array<int, 3>>
-      triangles;  // indices into `vertices`, counter-clockwise from outside
+  std::vector<Eigen::Vector3d> vertices;      // m, no two alike
+  std::vector<std::array<int, 3>> triangles;  // indices of vertices, counter-clockwise from outside
 };
 
 struct Shape {
@@ -36,34 +35,30 @@ struct Shape {
 };
 
 struct Inertia {
-  double mass = 0.0;  // kg; 0 = a massless frame (a sensor's, say)
-  Eigen::Isometry3d pose =
-      Eigen::Isometry3d::Identity();                 // centre of mass, and the axes of `tensor`
-  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();  // kg m^2, about the centre of mass, symmetric
+  double mass = 0.0;                                       // kg; 0 = a massless frame
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // centre of mass, axes of `tensor`
+  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();        // kg m^2, about the centre of mass
 };
 
 struct AssemblyBody {
   std::string name;
-  Inertia inertia;  // pose in the frame of this body
+  Inertia inertia;  // in the frame of this body
   std::vector<Shape> collision;
   std::vector<Shape> visual;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // of this body, in the root frame
 };
 
 struct AssemblyJoint {
-  enum class Kind {
-    Fixed,
-    Revolute,
-    Motor
-  };  // Motor: a revolute joint that is driven and turns without end
+  enum class Kind { Fixed, Revolute, Motor };  // Motor: driven, and turns without end
 
   std::string name;
   Kind kind = Kind::Fixed;
   int parent = -1;  // index into Assembly::bodies
-  int child = -1;   // index into Assembly::bodies; every body is the child of at most one joint
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // of the joint frame, in the root frame
+  int child = -1;   // likewise; every body is the child of at most one joint
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // of the joint frame, in the root frame;
+                                                           // the same as that of the child
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();         // unit length, in the root frame
-  bool limited = false;                                    // whether lower_rad and upper_rad bind
+  bool limited = false;  // whether lower_rad and upper_rad stop the joint
   double lower_rad = 0.0;
   double upper_rad = 0.0;
   double effort_n_m = 0.0;  // greatest torque, N m; 0 = not given
@@ -87,8 +82,8 @@ Inertia transformed(const Eigen::Isometry3d& frame, const Inertia& inertia);
 /// One inertia for parts that are rigidly attached to each other and given in one common frame. The
 /// result is about the common centre of mass, with the axes of the common frame. Parallel axis
 /// theorem (Huygens-Steiner):
-///   I = sum R_i I_i R_i^T + m_i (|d_i|^2 E - d_i d_i^T),  d_i = c_i - c,  c = sum m_i c_i / sum
-///   m_i.
+///   I = sum R_i I_i R_i^T + m_i (|d_i|^2 E - d_i d_i^T)
+///   d_i = c_i - c,  c = sum m_i c_i / sum m_i
 /// Massless parts add nothing; without any mass the result is an Inertia{}.
 Inertia compose(const std::vector<Inertia>& parts);
 

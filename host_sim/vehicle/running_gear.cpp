@@ -133,7 +133,7 @@ void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrie
 
 void RunningGear::drive(double voltage, double dt) {
   const double radius = geometry_.radius;
-  // m dv/dt = torque_per_ampere (V - k v / r) / (R r) + ground - friction; back-EMF implicit, friction last and never past rest.
+  // m dv/dt = torque_per_ampere (V - k v / r) / (R r) + ground - friction; back-EMF implicit, friction never past rest.
   double push = ground_force_;
   double resist = 0.0;
   double friction = 0.02;  // N, bearings of an undriven wheel
@@ -143,9 +143,11 @@ void RunningGear::drive(double voltage, double dt) {
     resist = gain * motor_.back_emf_v_s / radius;
     friction = motor_.friction_torque() / radius;
   }
-  const double free = (speed_ + push * dt / mass_) / (1.0 + resist * dt / mass_);
+  const double pushed = speed_ + push * dt / mass_;
   const double stopped_by = friction * dt / mass_;
-  speed_ = std::abs(free) <= stopped_by ? 0.0 : free - std::copysign(stopped_by, free);
+  speed_ = std::abs(pushed) <= stopped_by
+               ? 0.0
+               : (pushed - std::copysign(stopped_by, pushed)) / (1.0 + resist * dt / mass_);
   angle_ += speed_ * dt / radius;
   current_ = driven_ ? motor_.current(voltage, speed_ / radius) : 0.0;
 }

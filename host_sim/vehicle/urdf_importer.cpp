@@ -585,7 +585,7 @@ JointData to_joint(const JointElement& element, const urdf::Joint& joint,
     data.kind = AssemblyJoint::Kind::Motor;
   }
   const TiXmlElement& limit = *element.xml->FirstChildElement("limit");
-  data.has_range = element.type != "continuous" && data.kind != AssemblyJoint::Kind::Motor &&
+  data.has_range = element.type != "continuous" &&
                    (limit.Attribute("lower") != nullptr || limit.Attribute("upper") != nullptr);
   if (!data.has_range) return data;
   data.lower_rad = joint.limits->lower;

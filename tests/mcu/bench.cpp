@@ -45,6 +45,7 @@ Bench::Bench()
   power_up(gyro);
   power_up(baro);
   mcu.set_adc_mv(6, 2400);  // 7.2 V behind the divider
+  for (const int bit : {4, 7, 1, 2}) mcu.set_pin('B', bit, false);
 }
 
 void Bench::power_up(I2cChip& chip) const {

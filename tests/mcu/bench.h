@@ -1,4 +1,5 @@
-// The robot's board on the bench: the flashed image, its three sensor chips, encoders and a ground station.
+// The robot's board on the bench: the flashed image, its three sensor chips, encoders and a ground
+// station.
 #pragma once
 
 #include <vector>
@@ -20,8 +21,9 @@ class Bench {
  public:
   Bench();
 
-  /// Runs; meanwhile the chips measure a level robot at rest with a little noise, new numbers every millisecond, the
-  /// tracks turn as the motors drive them, and the ground station sends its heartbeat every 100 ms.
+  /// Runs; meanwhile the chips measure a level robot at rest with a little noise, new numbers every
+  /// millisecond, the tracks turn as the motors drive them, and the ground station sends its
+  /// heartbeat every 100 ms.
   void run_ms(int ms);
 
   /// Sends a command and gives it time to act.

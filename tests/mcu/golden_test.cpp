@@ -16,9 +16,9 @@ struct HostLink {
   void put(std::uint8_t byte) { bytes.push_back(byte); }
 };
 
-constexpr const char* kNames[kGoldenSections] = {
-    "shifts", "mul_q30", "scale_q16", "sine",    "atan2",    "sqrt",
-    "units",  "kinematics", "control", "odometry", "attitude", "messages"};
+constexpr const char* kNames[kGoldenSections] = {"shifts",  "mul_q30",  "scale_q16", "sine",
+                                                 "atan2",   "sqrt",     "units",     "kinematics",
+                                                 "control", "odometry", "attitude",  "messages"};
 
 TEST(GoldenVectors, McuAgreesWithHost) {
   HostLink host;
@@ -33,10 +33,12 @@ TEST(GoldenVectors, McuAgreesWithHost) {
   EXPECT_FALSE(mcu.alive()) << "the image sent more bytes than the host";
   EXPECT_EQ(mcu.sent().size(), host.bytes.size());
 
-  const auto difference = std::mismatch(host.bytes.begin(), host.bytes.end(), mcu.sent().begin(), mcu.sent().end());
+  const auto difference =
+      std::mismatch(host.bytes.begin(), host.bytes.end(), mcu.sent().begin(), mcu.sent().end());
   const auto at = static_cast<std::size_t>(difference.first - host.bytes.begin());
   if (at == host.bytes.size()) return;
-  const auto section = static_cast<std::size_t>(std::upper_bound(begin.begin(), begin.end(), at) - begin.begin() - 1);
+  const auto section = static_cast<std::size_t>(std::upper_bound(begin.begin(), begin.end(), at) -
+                                                begin.begin() - 1);
   ADD_FAILURE() << "first difference: " << kNames[section] << ", byte " << at - begin[section];
 }
 

@@ -1,6 +1,7 @@
-// The golden vectors: many inputs through every numeric primitive of the firmware, the results as a stream of bytes. The
-// same code runs on the MCU and on the host, and the streams must agree: a product in a 16-bit int, a shift that depends on
-// the compiler or a wrong constraint of inline assembler shows here.
+// The golden vectors: many inputs through every numeric primitive of the firmware, the results as a
+// stream of bytes. The same code runs on the MCU and on the host, and the streams must agree: a
+// product in a 16-bit int, a shift that depends on the compiler or a wrong constraint of inline
+// assembler shows here.
 #pragma once
 
 #include <stdint.h>
@@ -54,22 +55,38 @@ constexpr uint8_t kExtremeCount = 16;
 inline int32_t extreme(uint8_t index) {
   const int32_t one = 1;
   switch (index) {
-    case 0: return INT32_MIN;
-    case 1: return INT32_MIN + 1;
-    case 2: return -(one << 30);
-    case 3: return -65536;
-    case 4: return -32769;
-    case 5: return -32768;
-    case 6: return -1;
-    case 7: return 0;
-    case 8: return 1;
-    case 9: return 32767;
-    case 10: return 32768;
-    case 11: return 65535;
-    case 12: return 65536;
-    case 13: return one << 30;
-    case 14: return INT32_MAX - 1;
-    default: return INT32_MAX;
+    case 0:
+      return INT32_MIN;
+    case 1:
+      return INT32_MIN + 1;
+    case 2:
+      return -(one << 30);
+    case 3:
+      return -65536;
+    case 4:
+      return -32769;
+    case 5:
+      return -32768;
+    case 6:
+      return -1;
+    case 7:
+      return 0;
+    case 8:
+      return 1;
+    case 9:
+      return 32767;
+    case 10:
+      return 32768;
+    case 11:
+      return 65535;
+    case 12:
+      return 65536;
+    case 13:
+      return one << 30;
+    case 14:
+      return INT32_MAX - 1;
+    default:
+      return INT32_MAX;
   }
 }
 
@@ -93,7 +110,8 @@ void golden_shifts(Link& link) {
     put_word(link, abs_u16(static_cast<int16_t>(a)));
     put_signed(link, add_sat_i32(a, b));
     put_signed(link, mul_i16(static_cast<int16_t>(a), static_cast<int16_t>(b)));
-    put_word(link, static_cast<uint16_t>(mul_q15(static_cast<int16_t>(a), static_cast<int16_t>(b))));
+    put_word(link,
+             static_cast<uint16_t>(mul_q15(static_cast<int16_t>(a), static_cast<int16_t>(b))));
   }
 }
 
@@ -173,7 +191,7 @@ template <typename Link>
 void golden_units(Link& link) {
   GoldenNumbers numbers;
   for (uint16_t i = 0; i < 500; ++i) {
-    const int16_t value = i == 0 ? static_cast<int16_t>(INT16_MAX)
+    const int16_t value = i == 0   ? static_cast<int16_t>(INT16_MAX)
                           : i == 1 ? static_cast<int16_t>(INT16_MIN)
                                    : static_cast<int16_t>(numbers.any() & 0xFFFFU);
     put_word(link, static_cast<uint16_t>(angle_from_centidegrees(clamp_i16(value, -17999, 17999))));
@@ -198,7 +216,8 @@ void golden_kinematics(Link& link) {
     const int32_t rate = i < kExtremeCount ? extreme(static_cast<uint8_t>(i)) : numbers.wide();
     const int16_t speed = i % 8U == 0 ? static_cast<int16_t>(INT16_MIN) : numbers.narrow();
     bool limited = false;
-    const TrackSpeeds tracks = (i % 2U == 0 ? kinematics : widest).tracks(speed, rate, 250, &limited);
+    const TrackSpeeds tracks =
+        (i % 2U == 0 ? kinematics : widest).tracks(speed, rate, 250, &limited);
     put_word(link, static_cast<uint16_t>(tracks.left));
     put_word(link, static_cast<uint16_t>(tracks.right));
     link.put(limited ? 1 : 0);
@@ -223,7 +242,8 @@ void golden_control(Link& link) {
     for (uint16_t i = 0; i < 300; ++i) {
       const int16_t target = i % 7U == 0 ? static_cast<int16_t>(0) : numbers.within(250);
       const int16_t counts = i % 31U == 0 ? numbers.narrow() : numbers.within(8);
-      const uint16_t battery = static_cast<uint16_t>(i % 13U == 0 ? 0 : 6000U + (numbers.any() & 2047U));
+      const uint16_t battery =
+          static_cast<uint16_t>(i % 13U == 0 ? 0 : 6000U + (numbers.any() & 2047U));
       put_word(link, static_cast<uint16_t>(track.tick(target, counts, battery)));
       put_word(link, static_cast<uint16_t>(track.speed_dmm_per_s()));
       const DriveMeasurement measured = {counts, numbers.within(8), numbers.wide() / 2, battery};
@@ -259,7 +279,8 @@ void golden_attitude(Link& link) {
     const int16_t gyro = i < 400 ? static_cast<int16_t>(4) : static_cast<int16_t>(4000);
     for (uint8_t axis = 0; axis < 3; ++axis) {
       sample.gyro[axis] = i < 700 ? numbers.within(gyro) : numbers.narrow();
-      sample.accel[axis] = i < 700 ? numbers.within(static_cast<int16_t>(i + 20U)) : numbers.narrow();
+      sample.accel[axis] =
+          i < 700 ? numbers.within(static_cast<int16_t>(i + 20U)) : numbers.narrow();
       sample.mag[axis] = i < 700 ? numbers.within(50) : numbers.narrow();
     }
     if (i < 700) {
@@ -295,7 +316,8 @@ void golden_messages(Link& link) {
     CanFrame parsed{};
     for (uint8_t at = 0; at < length; ++at) {
       link.put(line[at]);
-      if (parser.feed(line[at], parsed)) link.put(e2e_check(parsed.id, parsed.data, parsed.size) ? 1 : 0);
+      if (parser.feed(line[at], parsed))
+        link.put(e2e_check(parsed.id, parsed.data, parsed.size) ? 1 : 0);
     }
     uint8_t bytes[3];
     put_drive_argument(bytes, {numbers.within(2047), numbers.within(2047)});
@@ -310,18 +332,30 @@ void golden_messages(Link& link) {
 template <typename Link>
 void golden_section(uint8_t section, Link& link) {
   switch (section) {
-    case 0: return golden_shifts(link);
-    case 1: return golden_mul_q30(link);
-    case 2: return golden_scale_q16(link);
-    case 3: return golden_sine(link);
-    case 4: return golden_atan2(link);
-    case 5: return golden_sqrt(link);
-    case 6: return golden_units(link);
-    case 7: return golden_kinematics(link);
-    case 8: return golden_control(link);
-    case 9: return golden_odometry(link);
-    case 10: return golden_attitude(link);
-    default: return golden_messages(link);
+    case 0:
+      return golden_shifts(link);
+    case 1:
+      return golden_mul_q30(link);
+    case 2:
+      return golden_scale_q16(link);
+    case 3:
+      return golden_sine(link);
+    case 4:
+      return golden_atan2(link);
+    case 5:
+      return golden_sqrt(link);
+    case 6:
+      return golden_units(link);
+    case 7:
+      return golden_kinematics(link);
+    case 8:
+      return golden_control(link);
+    case 9:
+      return golden_odometry(link);
+    case 10:
+      return golden_attitude(link);
+    default:
+      return golden_messages(link);
   }
 }
 

@@ -9,7 +9,8 @@ extern "C" {
 namespace screed::mcu {
 
 I2cChip::I2cChip(Mcu& mcu, std::uint8_t address)
-    : to_mcu_(avr_io_getirq(mcu.simulator(), AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT)),
+    : mcu_(mcu),
+      to_mcu_(avr_io_getirq(mcu.simulator(), AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_INPUT)),
       address_(address) {
   avr_irq_register_notify(avr_io_getirq(mcu.simulator(), AVR_IOCTL_TWI_GETIRQ(0), TWI_IRQ_OUTPUT),
                           &I2cChip::on_message, this);
@@ -40,11 +41,10 @@ void I2cChip::handle(std::uint32_t value) {
   if ((what & TWI_COND_START) != 0) {
     selected_ = present && (message.u.twi.addr >> 1) == address_;
     if ((message.u.twi.addr & 1) == 0) pointer_set_ = false;
-    if (selected_ && !hangs) {
-      avr_raise_irq(to_mcu_, avr_twi_irq_msg(TWI_COND_ACK, message.u.twi.addr, 1));
-    }
+    if (selected_ && hangs) mcu_.silence_twi();
+    if (selected_) avr_raise_irq(to_mcu_, avr_twi_irq_msg(TWI_COND_ACK, message.u.twi.addr, 1));
   }
-  if (!selected_ || hangs) return;
+  if (!selected_) return;
   if ((what & TWI_COND_WRITE) != 0) {
     avr_raise_irq(to_mcu_, avr_twi_irq_msg(TWI_COND_ACK, message.u.twi.addr, 1));
     if (pointer_set_) {

@@ -1,5 +1,5 @@
-// A sensor on the simulated I2C bus: 128 registers, register pointer with auto-increment when its bit 7 is set, as LSM303D,
-// L3GD20H and LPS25H have it. Knows nothing of what the registers mean.
+// A sensor on the simulated I2C bus: 128 registers, register pointer with auto-increment when its
+// bit 7 is set, as LSM303D, L3GD20H and LPS25H have it. Knows nothing of what the registers mean.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class I2cChip {
   std::array<std::uint8_t, 128> registers{};
   /// false: answers nothing.
   bool present = true;
-  /// true: takes everything and never answers, so that the master waits for ever.
+  /// true: holds the bus once it is addressed: the master waits for ever, until it starts anew.
   bool hangs = false;
   std::vector<std::uint8_t> written;  ///< numbers of the registers the program wrote, in order
   unsigned reads = 0;                 ///< bytes read
@@ -32,6 +32,7 @@ class I2cChip {
   void handle(std::uint32_t value);
   void advance();
 
+  Mcu& mcu_;
   avr_irq_t* to_mcu_;
   std::uint8_t address_;
   bool selected_ = false;

@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::uint8_t kPaint = 0xA5;
 constexpr std::uint32_t kTickVector = 32 * 4;  // TIMER3_COMPA
+constexpr std::uint16_t kTwcr = 0xBC;
+constexpr std::uint8_t kTwie = 1;
 constexpr std::uint64_t kCyclesPerMs = kClock_hz / 1000;
 
 avr_irq_t* uart_irq(avr_t* avr, int index) {
@@ -47,6 +49,11 @@ Mcu::Mcu(const std::string& elf_path, std::uint16_t static_ram) {
   avr_irq_register_notify(uart_irq(avr_, UART_IRQ_OUT_XON), &Mcu::on_ready, this);
   avr_irq_register_notify(uart_irq(avr_, UART_IRQ_OUT_XOFF), &Mcu::on_full, this);
 
+  avr_irq_register_notify(
+      avr_io_getirq(avr_, static_cast<std::uint32_t>(AVR_IOCTL_IOPORT_GETIRQ('D')),
+                    IOPORT_IRQ_DIRECTION_ALL),
+      &Mcu::on_direction, this);
+
   paint_begin_ = static_cast<std::uint16_t>(kRamBegin + static_ram);
   std::fill(avr_->data + paint_begin_, avr_->data + kRamEnd, kPaint);
 }
@@ -68,7 +75,7 @@ void Mcu::on_full(avr_irq_t*, std::uint32_t, void* self) {
 }
 
 void Mcu::on_sleep(avr_t* avr, std::uint64_t cycles) {
-  static_cast<Mcu*>(avr->custom.data)->slept_ += cycles;
+  static_cast<Mcu*>(avr->custom.data)->slept_ += cycles + 1;  // as simavr advances its clock
 }
 
 void Mcu::feed() {
@@ -104,16 +111,21 @@ void Mcu::step() {
   avr_run(avr_);
 }
 
-bool Mcu::alive() const { return avr_->state == cpu_Running || avr_->state == cpu_Sleeping; }
+bool Mcu::alive() const {
+  return avr_->state == cpu_Running || avr_->state == cpu_Sleeping;
+}
 
 double Mcu::time_ms() const {
   return static_cast<double>(avr_->cycle) / static_cast<double>(kCyclesPerMs);
 }
 
-void Mcu::run_ms(double ms) { run_until_sent(SIZE_MAX, ms); }
+void Mcu::run_ms(double ms) {
+  run_until_sent(SIZE_MAX, ms);
+}
 
 void Mcu::run_until_sent(std::size_t bytes, double ms) {
-  // Ends are counted from the last end, so that many short runs are as long as one; a timer ends a sleep there.
+  // Ends are counted from the last end, so that many short runs are as long as one; a timer ends a
+  // sleep there.
   end_ += static_cast<std::uint64_t>(ms * static_cast<double>(kCyclesPerMs));
   if (end_ > avr_->cycle) {
     avr_cycle_timer_register(avr_, end_ - avr_->cycle, &Mcu::on_end, this);
@@ -125,7 +137,9 @@ void Mcu::run_until_sent(std::size_t bytes, double ms) {
   }
 }
 
-std::uint64_t Mcu::on_end(avr_t*, std::uint64_t, void*) { return 0; }
+std::uint64_t Mcu::on_end(avr_t*, std::uint64_t, void*) {
+  return 0;
+}
 
 void Mcu::receive(const std::vector<std::uint8_t>& bytes) {
   to_receive_.insert(to_receive_.end(), bytes.begin(), bytes.end());
@@ -152,12 +166,25 @@ void Mcu::set_adc_mv(int channel, int mv) {
                 static_cast<std::uint32_t>(mv));
 }
 
+void Mcu::on_direction(avr_irq_t*, std::uint32_t value, void* self) {
+  Mcu& mcu = *static_cast<Mcu*>(self);
+  const bool driven = (value & 1) != 0;  // PD0 is SCL
+  if (driven && !mcu.scl_driven_) ++mcu.scl_pulses_;
+  mcu.scl_driven_ = driven;
+}
+
+void Mcu::silence_twi() {
+  avr_->data[kTwcr] = static_cast<std::uint8_t>(avr_->data[kTwcr] & ~kTwie);
+}
+
 void Mcu::break_tick() {
   avr_->flash[kTickVector] = 0x18;  // reti
   avr_->flash[kTickVector + 1] = 0x95;
 }
 
-std::uint8_t Mcu::memory(std::uint16_t address) const { return avr_->data[address]; }
+std::uint8_t Mcu::memory(std::uint16_t address) const {
+  return avr_->data[address];
+}
 
 std::uint16_t Mcu::word(std::uint16_t address) const {
   return static_cast<std::uint16_t>(memory(address) |
@@ -166,9 +193,8 @@ std::uint16_t Mcu::word(std::uint16_t address) const {
 
 unsigned Mcu::stack_used() const {
   const std::uint8_t* const end = avr_->data + kRamEnd;
-  const std::uint8_t* const lowest =
-      std::find_if(avr_->data + paint_begin_, avr_->data + kRamEnd,
-                   [](std::uint8_t byte) { return byte != kPaint; });
+  const std::uint8_t* const lowest = std::find_if(avr_->data + paint_begin_, avr_->data + kRamEnd,
+                                                  [](std::uint8_t byte) { return byte != kPaint; });
   return static_cast<unsigned>(end - lowest);
 }
 

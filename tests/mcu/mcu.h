@@ -1,4 +1,5 @@
-// An ATmega32U4 with an image, simulated cycle by cycle by simavr: runs it, feeds and reads its pins and its serial line.
+// An ATmega32U4 with an image, simulated cycle by cycle by simavr: runs it, feeds and reads its
+// pins and its serial line.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@ constexpr std::uint16_t kRamEnd = 0xB00;  // one past the last byte
 
 class Mcu {
  public:
-  /// Throws std::runtime_error when the image cannot be read. RAM above `static_ram` bytes is painted to measure the stack.
+  /// Throws std::runtime_error when the image cannot be read. RAM above `static_ram` bytes is
+  /// painted to measure the stack.
   explicit Mcu(const std::string& elf_path, std::uint16_t static_ram = 0);
   ~Mcu();
   Mcu(const Mcu&) = delete;
@@ -46,6 +48,11 @@ class Mcu {
   /// Voltage at an ADC channel.
   void set_adc_mv(int channel, int mv);
 
+  /// The I2C transfer that runs goes no further: takes its interrupt away.
+  void silence_twi();
+  /// How often the program has driven the I2C clock low by hand.
+  unsigned scl_pulses() const { return scl_pulses_; }
+
   /// Makes the program's main loop hang: the tick's interrupt returns without doing anything.
   void break_tick();
 
@@ -72,6 +79,7 @@ class Mcu {
   static void on_sent(avr_irq_t* irq, std::uint32_t value, void* self);
   static void on_ready(avr_irq_t* irq, std::uint32_t value, void* self);
   static void on_full(avr_irq_t* irq, std::uint32_t value, void* self);
+  static void on_direction(avr_irq_t* irq, std::uint32_t value, void* self);
   static void on_sleep(avr_t* avr, std::uint64_t cycles);
   static std::uint64_t on_end(avr_t* avr, std::uint64_t when, void* self);
 
@@ -82,6 +90,8 @@ class Mcu {
 
   avr_t* avr_ = nullptr;
   std::map<char, DrivenPins> driven_pins_;
+  bool scl_driven_ = false;
+  unsigned scl_pulses_ = 0;
   avr_irq_t* uart_input_ = nullptr;
   std::vector<std::uint8_t> sent_;
   std::deque<std::uint8_t> to_receive_;

@@ -1,5 +1,6 @@
-// A scripted mission as a sequence of samples: what a robot would measure while it waits, is armed, walks over hills, hears
-// garbage, loses its gyro and falls on its side. Made up, not simulated: it only has to lead the code everywhere.
+// A scripted mission as a sequence of samples: what a robot would measure while it waits, is armed,
+// walks over hills, hears garbage, loses its gyro and falls on its side. Made up, not simulated: it
+// only has to lead the code everywhere.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +32,8 @@ class Mission {
     sample_.temperature = static_cast<std::int16_t>(-9000 + numbers_.within(10));
     if (moving) {
       sample_.encoder_left = static_cast<std::uint16_t>(sample_.encoder_left + numbers_.any() % 5U);
-      sample_.encoder_right = static_cast<std::uint16_t>(sample_.encoder_right + numbers_.any() % 5U);
+      sample_.encoder_right =
+          static_cast<std::uint16_t>(sample_.encoder_right + numbers_.any() % 5U);
     }
     sample_.battery = static_cast<std::uint16_t>(4000U + numbers_.any() % 30U);
     sample_.last_tick_us = static_cast<std::uint16_t>(2500U + numbers_.any() % 500U);

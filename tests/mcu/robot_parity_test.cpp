@@ -1,5 +1,6 @@
-// Robot::tick gives the same bytes on the MCU and on the host, for the same samples: a scripted mission of 25 s with commands over
-// the radio, driving, hills, garbage on the line, a tilt fault and lost sensors.
+// Robot::tick gives the same bytes on the MCU and on the host, for the same samples: a scripted
+// mission of 25 s with commands over the radio, driving, hills, garbage on the line, a tilt fault
+// and lost sensors.
 #include <gtest/gtest.h>
 
 #include <string>

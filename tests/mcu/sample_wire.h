@@ -1,4 +1,5 @@
-// Samples and outputs as bytes on a serial line, for the host and the MCU alike: little endian, in the order of the members.
+// Samples and outputs as bytes on a serial line, for the host and the MCU alike: little endian, in
+// the order of the members.
 #pragma once
 
 #include <stdint.h>

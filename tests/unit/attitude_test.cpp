@@ -285,6 +285,17 @@ TEST(Attitude, BiasIsFoundInMotion) {
   EXPECT_NEAR(estimator.gyro_bias_mdps(1), 980, 60);
 }
 
+TEST(Attitude, BiasStopsAtItsLimit) {
+  AttitudeEstimator estimator;
+  ImuSample sample = reading(pose(0, 0, 0));
+  sample.gyro[0] = 400;  // 28 dps
+  repeat(estimator, sample, 1000);
+  ASSERT_NEAR(estimator.gyro_bias_mdps(0), 28000, 30);
+  sample.gyro[0] = 450;  // 31.5 dps
+  repeat(estimator, sample, 30000, false);
+  EXPECT_NEAR(estimator.gyro_bias_mdps(0), 30000, 10);
+}
+
 TEST(Attitude, VehicleAccelerationAveragesOut) {
   AttitudeEstimator estimator;
   const Rot truth = pose(0, 0, 0);
@@ -298,6 +309,34 @@ TEST(Attitude, VehicleAccelerationAveragesOut) {
     worst = std::fmax(worst, inclination_between(estimate(estimator), truth));
   }
   EXPECT_LT(worst, 1.2);
+}
+
+TEST(Attitude, VibrationOfTheTracksAveragesOut) {
+  AttitudeEstimator estimator;
+  const Rot truth = pose(0, 10, 0);
+  repeat(estimator, reading(truth), 600);
+  std::uint32_t state = 3;
+  const auto noise = [&state](int amplitude) {  // uniform, whole counts
+    state = state * 1664525U + 1013904223U;
+    return static_cast<int>(state >> 16) % (2 * amplitude + 1) - amplitude;
+  };
+  double worst = 0.0;
+  std::array<int, 3>
+      shake{};  // angle, in counts times ticks: a vibration that turns nothing for good
+  for (int tick = 0; tick < 6000; ++tick) {
+    ImuSample sample = reading(truth);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int angle = noise(140);
+      sample.gyro[i] =
+          static_cast<std::int16_t>(sample.gyro[i] + angle - shake[i]);  // up to 20 dps
+      shake[i] = angle;
+      sample.accel[i] = static_cast<std::int16_t>(sample.accel[i] + noise(820));  // +-0.2 g
+    }
+    estimator.update(sample, false);
+    worst = std::fmax(worst, inclination_between(estimate(estimator), truth));
+  }
+  RecordProperty("worst_millidegrees", static_cast<int>(1000 * worst));
+  EXPECT_LT(worst, 1.0);
 }
 
 TEST(Attitude, ClippedAccelerationIsSurvived) {

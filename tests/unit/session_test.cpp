@@ -355,6 +355,19 @@ TEST_F(SessionTest, EqualRunsGiveEqualFiles) {
   EXPECT_TRUE(get(file_) == get(base_ / "again.h5"));
 }
 
+TEST_F(SessionTest, NoTimeOfDayIsStored) {
+  write_run(file_, random_run(1));
+  edit([](hid_t file) {
+    for (const char* name : {"/", "/frames", "/samples", "/outputs", "/parameters", "/board",
+                             "/terrain", "/terrain/before", "/terrain/after"}) {
+      H5O_info_t info{};
+      ASSERT_GE(H5Oget_info_by_name2(file, name, &info, H5O_INFO_TIME, H5P_DEFAULT), 0) << name;
+      EXPECT_EQ(info.mtime, 0) << name;
+      EXPECT_EQ(info.btime, 0) << name;
+    }
+  });
+}
+
 TEST_F(SessionTest, ALargeTerrainComesBack) {
   Recording run = random_run(1);
   run.before.geometry.nx = 300;
@@ -779,6 +792,20 @@ TEST_F(SessionTest, AKilledRunKeepsItsBlocks) {
   expect_rows<kOutputBytes>(reader, run.outputs);
 }
 
+TEST_F(SessionTest, AnUnfinishedFileHasTheTicksThatAllTablesHave) {
+  for (const char* table : {"frames", "samples", "outputs"}) {
+    fs::remove(file_);
+    write_run(file_, random_run(5));
+    edit([&](hid_t file) {
+      H5Adelete(file, "content_hash");
+      const h5::Handle dataset(H5Dopen2(file, table, H5P_DEFAULT), H5Dclose, table);
+      const hsize_t rows = 3;
+      h5::check(H5Dset_extent(dataset.get(), &rows), table);
+    });
+    EXPECT_EQ(SessionReader(file_).frames(), 3U) << table;
+  }
+}
+
 TEST_F(SessionTest, AnAbandonedWriterLeavesAnUnfinishedFile) {
   { const SessionWriter writer(file_, random_run(0).info); }
   EXPECT_FALSE(SessionReader(file_).complete());
@@ -921,6 +948,12 @@ TEST_F(SessionTest, ReplayRefusesWhatItCannotReplay) {
   run.info.tick_rate_hz = 50;
   write_run(file_, run);
   expect_line(message_of<InputError>([&] { replay_session(file_); }), file_, "50 ticks per second");
+  fs::remove(file_);
+  run = robot_run(3);
+  run.info.board.motor_nominal_mv = 0;
+  write_run(file_, run);
+  expect_line(message_of<InputError>([&] { replay_session(file_); }), file_,
+              "'motor_nominal_mv' is 0");
 }
 
 struct CommandResult {

@@ -464,6 +464,8 @@ INSTANTIATE_TEST_SUITE_P(
               ":11: link 'Body': <mass> 'value' is '-2'; allowed: one positive finite number"},
         Wrong{"MassWithUnit", "mass value=\"2\"", "mass value=\"%s%n kg\"",
               ":11: link 'Body': <mass> 'value' is '%s%n kg'; allowed: one positive finite number"},
+        Wrong{"MassWithSpace", "mass value=\"2\"", "mass value=\"2 \"",
+              ":11: link 'Body': <mass> 'value' is '2 '; allowed: one positive finite number"},
         Wrong{"NoMass", "<mass value=\"2\"/>", "", ":11: link 'Body': <inertial> needs <mass>"},
         Wrong{"NoInertia", kBodyInertia, "", ":11: link 'Body': <inertial> needs <inertia>"},
         Wrong{"NotANumberInertia", "ixx=\"0.03\"", "ixx=\"NaN\"",

@@ -12,10 +12,10 @@
 namespace screed::avr_stack {
 
 struct Instruction {
-  std::uint32_t address = 0;         ///< byte address in flash
-  std::uint32_t size = 0;            ///< 2 or 4 bytes
-  std::string mnemonic;              ///< "call", "sbiw", ...
-  std::vector<std::string> operands; ///< as printed, without comment: "r28", "0x3d", "Y+"
+  std::uint32_t address = 0;            ///< byte address in flash
+  std::uint32_t size = 0;               ///< 2 or 4 bytes
+  std::string mnemonic;                 ///< "call", "sbiw", ...
+  std::vector<std::string> operands;    ///< as printed, without comment: "r28", "0x3d", "Y+"
   std::optional<std::uint32_t> target;  ///< byte address that a jump, branch or call leads to
 
   std::uint32_t next() const { return address + size; }

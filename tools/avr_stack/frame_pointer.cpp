@@ -14,8 +14,8 @@ constexpr std::string_view kLow = "r28";
 constexpr std::string_view kHigh = "r29";
 
 /// Instructions whose first operand is only read.
-constexpr std::array<std::string_view, 14> kReaders = {"cp",  "cpc",  "cpi",  "cpse", "tst",
-                                                       "push", "sbrc", "sbrs", "bst", "mul",
+constexpr std::array<std::string_view, 14> kReaders = {"cp",   "cpc",   "cpi",  "cpse", "tst",
+                                                       "push", "sbrc",  "sbrs", "bst",  "mul",
                                                        "muls", "mulsu", "fmul", "fmuls"};
 
 std::int32_t number(const Instruction& instruction) {

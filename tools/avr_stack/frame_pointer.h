@@ -26,11 +26,11 @@ class FramePointer {
  private:
   enum class Kind : std::uint8_t {
     kUnknown,
-    kLowRead,      ///< r28 = low byte of the stack pointer at height value_
-    kStack,        ///< Y = the stack pointer at height value_
+    kLowRead,        ///< r28 = low byte of the stack pointer at height value_
+    kStack,          ///< Y = the stack pointer at height value_
     kLowSubtracted,  ///< as kStack, with low_ taken off r28 and the borrow pending
-    kLowConstant,  ///< r28 = a constant
-    kConstant,     ///< Y = a constant
+    kLowConstant,    ///< r28 = a constant
+    kConstant,       ///< Y = a constant
   };
 
   void set(Kind kind, std::int32_t value = 0, std::int32_t low = 0);

@@ -31,7 +31,8 @@ std::ifstream opened(const std::string& path) {
 
 void print_path(const char* title, const StackPath& path) {
   std::printf("  %-44s %6u B\n", title, path.bytes);
-  for (const auto& frame : path.frames) std::printf("    %6u  %s\n", frame.bytes, frame.name.c_str());
+  for (const auto& frame : path.frames)
+    std::printf("    %6u  %s\n", frame.bytes, frame.name.c_str());
 }
 
 /// Prints one line of the budget; true when it is kept.
@@ -62,8 +63,8 @@ int run(const Options& options) {
   const ImageSize size = read_image_size(sizes);
   std::printf("static RAM               %6u B\n", size.static_ram);
   const bool flash_kept = print_budget("flash", size.flash, options.flash_budget);
-  const bool ram_kept =
-      print_budget("static RAM and stack", size.static_ram + stack.worst_case(), options.ram_budget);
+  const bool ram_kept = print_budget("static RAM and stack", size.static_ram + stack.worst_case(),
+                                     options.ram_budget);
   if (!flash_kept || !ram_kept) throw screed::RunError("the image is over its budget");
   return 0;
 }
@@ -73,7 +74,8 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("Worst-case stack and memory budget of a linked AVR image");
-  app.add_option("disassembly", options.disassembly, "output of avr-objdump -d, - for standard input")
+  app.add_option("disassembly", options.disassembly,
+                 "output of avr-objdump -d, - for standard input")
       ->required();
   app.add_option("--sizes", options.sizes, "output of avr-size -A: checks the budgets as well");
   app.add_option("--flash-budget", options.flash_budget, "bytes")->capture_default_str();

@@ -148,8 +148,8 @@ Depth Analysis::walk(std::uint32_t entry) {
       refuse(instruction, "an interrupt that lets others interrupt it");
     }
 
-    const bool calls = is_any(instruction.mnemonic, {"call", "rcall"}) &&
-                       instruction.target != instruction.next();
+    const bool calls =
+        is_any(instruction.mnemonic, {"call", "rcall"}) && instruction.target != instruction.next();
     std::int32_t bytes = state.height;
     if (calls) {
       if (!instruction.target) refuse(instruction, "call of an unknown place");
@@ -239,6 +239,8 @@ StackReport Analysis::report() {
 
 }  // namespace
 
-StackReport analyze(const Disassembly& program) { return Analysis(program).report(); }
+StackReport analyze(const Disassembly& program) {
+  return Analysis(program).report();
+}
 
 }  // namespace screed::avr_stack

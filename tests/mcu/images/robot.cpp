@@ -1,6 +1,7 @@
-// Test image: the robot's core alone. Takes samples from the serial line, answers each with the output of that tick.
-#include "board.h"
+// Test image: the robot's core alone. Takes samples from the serial line, answers each with the
+// output of that tick.
 #include "firmware/robot/robot.h"
+#include "board.h"
 #include "tests/mcu/images/serial_link.h"
 #include "tests/mcu/sample_wire.h"
 

@@ -1,0 +1,212 @@
+// The program as a user meets it: bad input ends with one clear line, the right exit code, and nothing left behind.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace screed::testing {
+namespace {
+
+struct Result {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* program = std::getenv("SCREED_PROGRAM");
+    ASSERT_NE(program, nullptr) << "SCREED_PROGRAM names the program under test; `make test` sets it";
+    program_ = program;
+    root_ = std::filesystem::temp_directory_path() /
+            ("screed-program-" + std::to_string(getpid()) + "-" +
+             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(root_);
+    std::filesystem::create_directories(root_);
+  }
+  void TearDown() override { std::filesystem::remove_all(root_); }
+
+  std::string read(const std::filesystem::path& path) const {
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(root_ / name) << text; }
+
+  /// Runs in root_; `before` is shell text in front of the program.
+  Result run(const std::string& arguments, const std::string& before = "") const {
+    const std::string command = "cd '" + root_.string() + "' && { " + before + " '" + program_ + "' " + arguments +
+                                "; } > '" + log("out") + "' 2> '" + log("err") + "' < /dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("out")), read(log("err"))};
+  }
+  std::string log(const char* which) const { return root_.string() + "." + which; }
+
+  /// One line that says all of `parts`, this exit code, and no folder of a run, half or whole.
+  void expect_refused(const Result& result, int exit_code, const std::vector<std::string>& parts) const {
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << part << " in: " << result.err;
+    EXPECT_FALSE(std::filesystem::exists(root_ / "out"));
+    for (const auto& entry : std::filesystem::directory_iterator(root_)) {
+      EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+    }
+  }
+
+  std::string program_;
+  std::filesystem::path root_;
+};
+
+constexpr const char* kShort = "[experiment]\nduration = 1\n";
+// The smallest model that is complete.
+std::string urdf(const std::string& body_name, const std::string& inertia, const std::string& extra = "") {
+  std::string text = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"" + body_name +
+                     "\"><inertial><mass value=\"1\"/><inertia ixx=\"" + inertia +
+                     "\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial></link>\n";
+  for (const std::string wheel : {"fl", "fr", "bl", "br"}) {
+    text += "<link name=\"" + wheel +
+            "_Wheel\"><inertial><mass value=\"0.1\"/><inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-4\"/>"
+            "</inertial><collision><origin rpy=\"1.5707963 0 0\"/><geometry><cylinder radius=\"0.03\" length=\"0.03\"/></geometry>"
+            "</collision></link>\n<joint name=\"" +
+            wheel + "_joint\" type=\"continuous\"><parent link=\"" + body_name + "\"/><child link=\"" + wheel +
+            "_Wheel\"/><origin xyz=\"" + (wheel[0] == 'f' ? "0.09 " : "-0.09 ") + (wheel[1] == 'l' ? "0.1" : "-0.1") +
+            " 0\"/><axis xyz=\"0 1 0\"/><limit effort=\"1\" velocity=\"1.0\"/></joint>\n";
+  }
+  return text + extra + "</robot>\n";
+}
+
+TEST_F(Program, RunsAndReplays) {
+  write("e.ini", kShort);
+  const Result sim = run("sim e.ini --quiet");
+  EXPECT_EQ(sim.exit_code, 0) << sim.err;
+  EXPECT_NE(sim.out.find("out/experiment-0001 "), std::string::npos) << sim.out;
+  const Result replay = run("replay out/experiment-0001");
+  EXPECT_EQ(replay.exit_code, 0) << replay.err;
+  EXPECT_NE(replay.out.find("100 ticks"), std::string::npos) << replay.out;
+  EXPECT_NE(replay.out.find("identical"), std::string::npos) << replay.out;
+}
+
+TEST_F(Program, AModelOfOnesOwnDrives) {
+  write("own.urdf", urdf("Body", "0.01"));
+  write("e.ini", std::string(kShort) + "[vehicle]\nmodel = own.urdf\n");
+  EXPECT_EQ(run("sim e.ini --quiet").exit_code, 0);
+}
+
+TEST_F(Program, ShowsATable) {
+  write("e.ini", kShort);
+  const Result sim = run("sim e.ini");
+  for (const char* part : {"simulated time", "distance driven", "energy", "mean slope", "real-time factor", "content hash"}) {
+    EXPECT_NE(sim.out.find(part), std::string::npos) << part;
+  }
+}
+
+TEST_F(Program, MissingExperiment) { expect_refused(run("sim none.ini"), 2, {"none.ini", "no such"}); }
+
+TEST_F(Program, NoArguments) { expect_refused(run(""), 2, {"subcommand"}); }
+
+TEST_F(Program, UnknownKey) {
+  write("e.ini", "[experiment]\nname = x\n\n[map]\nfoo = 1\n");
+  expect_refused(run("sim e.ini"), 2, {"e.ini:5", "'foo'", "[map]", "filename"});
+}
+
+TEST_F(Program, UnknownSection) {
+  write("e.ini", "[moon]\ngravity = 1\n");
+  expect_refused(run("sim e.ini"), 2, {"e.ini:2", "[moon]", "[vehicle]"});
+}
+
+TEST_F(Program, NegativeSize) {
+  write("e.ini", "[map]\nsize = -3\n");
+  expect_refused(run("sim e.ini"), 2, {"e.ini:2", "size", "-3", "0.1..1000"});
+}
+
+TEST_F(Program, OverrideOutOfRange) {
+  write("e.ini", kShort);
+  expect_refused(run("sim e.ini --set experiment.duration=nan"), 2, {"--set", "duration", "nan"});
+  expect_refused(run("sim e.ini --seed minus"), 2, {"seed", "minus"});
+}
+
+TEST_F(Program, StepThatDoesNotDivideTheTick) {
+  write("e.ini", "[physics]\nstep = 0.003\n");
+  expect_refused(run("sim e.ini"), 2, {"step", "0.003", "0.01"});
+}
+
+TEST_F(Program, MissingImage) {
+  write("e.ini", "[map]\nfilename = gone.png\n");
+  expect_refused(run("sim e.ini"), 2, {"filename", "gone.png", "no such"});
+}
+
+TEST_F(Program, TruncatedImage) {
+  const std::string whole = read(std::filesystem::path(SCREED_DATA_DIR) / "terrain" / "jacksboro_fault_dem_16bit.png");
+  ASSERT_GT(whole.size(), 100000u);
+  write("cut.png", whole.substr(0, whole.size() / 2));
+  write("e.ini", "[map]\nfilename = cut.png\n");
+  expect_refused(run("sim e.ini"), 2, {"cut.png"});
+}
+
+TEST_F(Program, ColourImage) {
+  // 1 x 1 pixel, RGB, 8 bits; made by ImageMagick.
+  static const unsigned char kPng[] = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00,
+      0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x90, 0x77, 0x53, 0xde, 0x00, 0x00, 0x00, 0x0c, 0x49, 0x44, 0x41, 0x54, 0x08, 0xd7, 0x63, 0xf8, 0xcf,
+      0xc0, 0x00, 0x00, 0x03, 0x01, 0x01, 0x00, 0x18, 0xdd, 0x8d, 0xb0, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  write("rgb.png", std::string(reinterpret_cast<const char*>(kPng), sizeof kPng));
+  write("e.ini", "[map]\nfilename = rgb.png\n");
+  expect_refused(run("sim e.ini"), 2, {"rgb.png", "grey"});
+}
+
+TEST_F(Program, ModelWithoutBody) {
+  write("m.urdf", urdf("Chassis", "0.01"));
+  write("e.ini", "[vehicle]\nmodel = m.urdf\n");
+  expect_refused(run("sim e.ini"), 2, {"m.urdf", "'Body'"});
+}
+
+TEST_F(Program, ModelWithNaNInertia) {
+  write("m.urdf", urdf("Body", "nan"));
+  write("e.ini", "[vehicle]\nmodel = m.urdf\n");
+  expect_refused(run("sim e.ini"), 2, {"m.urdf", "ixx"});
+}
+
+TEST_F(Program, ModelWithAJointCycle) {
+  write("m.urdf", urdf("Body", "0.01",
+                       "<joint name=\"back\" type=\"fixed\"><parent link=\"fl_Wheel\"/><child link=\"Body\"/></joint>\n"));
+  write("e.ini", "[vehicle]\nmodel = m.urdf\n");
+  expect_refused(run("sim e.ini"), 2, {"m.urdf", "cycle"});
+}
+
+TEST_F(Program, FullDisk) {
+  write("e.ini", "[experiment]\nduration = 60\n[map]\nfilename = jacksboro_fault_dem_16bit.png\n");
+  // A limit on the size of files stands for a full disk: writing fails half-way. 100 blocks of 1024 bytes.
+  expect_refused(run("sim e.ini --quiet", "trap '' XFSZ; ulimit -f 100;"), 1, {"session.h5"});
+}
+
+TEST_F(Program, UnwritableFolder) {
+  write("e.ini", kShort);
+  write("file", "in the way");
+  expect_refused(run("sim e.ini --out file/run"), 2, {"file"});
+  expect_refused(run("sim e.ini --set output_directory_prefix=/proc/nowhere"), 1, {"/proc/nowhere"});
+}
+
+TEST_F(Program, TakenFolder) {
+  write("e.ini", kShort);
+  std::filesystem::create_directories(root_ / "taken");
+  write("taken/precious.txt", "precious");
+  expect_refused(run("sim e.ini --out taken"), 2, {"taken"});
+  EXPECT_EQ(read(root_ / "taken" / "precious.txt"), "precious");
+}
+
+TEST_F(Program, ReplayOfSomethingElse) {
+  write("session.h5", "no session");
+  expect_refused(run("replay session.h5"), 2, {"session.h5"});
+  expect_refused(run("replay nowhere"), 2, {"nowhere"});
+}
+
+}  // namespace
+}  // namespace screed::testing

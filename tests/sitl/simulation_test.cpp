@@ -1,0 +1,108 @@
+// A whole run with its folder: reproducible, replayable, stoppable.
+#include "host_sim/experiment/simulation.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/session/replay.h"
+#include "host_sim/session/session_reader.h"
+#include "tests/sitl/test_drive.h"
+
+namespace screed::testing {
+namespace {
+
+class Simulation : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = std::filesystem::temp_directory_path() /
+            ("screed-simulation-" + std::to_string(getpid()) + "-" +
+             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(root_);
+    std::filesystem::create_directories(root_);
+    experiment_ = read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" / "first_drive.ini",
+                                  {"experiment.duration=8", "parameters.climb_threshold=300"});
+  }
+  void TearDown() override { std::filesystem::remove_all(root_); }
+
+  SimulationSummary run(const std::string& name) {
+    SimulationOptions options;
+    options.out = root_ / name;
+    return run_simulation(experiment_, options);
+  }
+  static std::string content(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  std::filesystem::path root_;
+  Experiment experiment_;
+};
+
+TEST_F(Simulation, SameSeedSameBytesOtherSeedOtherBytes) {
+  const SimulationSummary first = run("first");
+  const SimulationSummary second = run("second");
+  EXPECT_EQ(first.content_hash, second.content_hash);
+  EXPECT_EQ(content(root_ / "first" / "frames.csv"), content(root_ / "second" / "frames.csv"));
+  EXPECT_EQ(content(root_ / "first" / "telemetry.log"), content(root_ / "second" / "telemetry.log"));
+  EXPECT_EQ(content(root_ / "first" / "terrain_after.png"), content(root_ / "second" / "terrain_after.png"));
+  EXPECT_EQ(content(root_ / "first" / "summary.json"), content(root_ / "second" / "summary.json"));
+  experiment_.experiment.seed = 2;
+  EXPECT_NE(run("third").content_hash, first.content_hash);
+}
+
+TEST_F(Simulation, LeavesARunFolderThatReplays) {
+  const SimulationSummary summary = run("run");
+  for (const char* file : {"session.h5", "frames.csv", "telemetry.log", "terrain_before.png", "terrain_after.png",
+                           "experiment.ini", "summary.json"}) {
+    EXPECT_GT(std::filesystem::file_size(root_ / "run" / file), 0u) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(root_ / "run.partial"));
+  const SessionReader session(root_ / "run" / "session.h5");
+  EXPECT_EQ(session.frames(), 800u);
+  EXPECT_EQ(session.content_hash(), summary.content_hash);
+  const ReplayResult replay = replay_session(root_ / "run" / "session.h5");
+  EXPECT_EQ(replay.ticks, 800u);
+  EXPECT_FALSE(replay.first_difference_tick.has_value()) << replay.first_difference;
+}
+
+TEST_F(Simulation, TheRecordedExperimentGivesTheSameRunAgain) {
+  const SimulationSummary first = run("first");
+  experiment_ = read_experiment(root_ / "first" / "experiment.ini");
+  EXPECT_EQ(run("again").content_hash, first.content_hash);
+}
+
+TEST_F(Simulation, AStoppedRunKeepsWhatItHas) {
+  std::atomic<bool> stop = false;
+  SimulationOptions options;
+  options.out = root_ / "run";
+  options.stop = &stop;
+  options.progress = [&](const SimulationProgress& progress) {
+    if (progress.time_s >= 3.0) stop = true;
+  };
+  const SimulationSummary summary = run_simulation(experiment_, options);
+  EXPECT_TRUE(summary.stopped_early);
+  EXPECT_NEAR(summary.time_s, 3.0, 0.011);
+  EXPECT_EQ(SessionReader(root_ / "run" / "session.h5").frames(), 300u);
+  EXPECT_TRUE(std::filesystem::exists(root_ / "run" / "terrain_after.png"));
+}
+
+TEST_F(Simulation, WrongInputLeavesNothing) {
+  experiment_.map.filename = "no_such_image.png";
+  EXPECT_THROW(run("run"), InputError);
+  EXPECT_TRUE(std::filesystem::is_empty(root_));
+}
+
+TEST_F(Simulation, TheWheeledRobotRunsToo) {
+  experiment_.vehicle.tracks = false;
+  EXPECT_GT(run("run").distance_m, 0.1);
+}
+
+}  // namespace
+}  // namespace screed::testing

@@ -1,0 +1,76 @@
+// A robot driving in a world, tick by tick, for closed-loop tests: no files, no main loop, everything in reach.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <memory>
+
+#include "boards/a_star_32u4/board.h"
+#include "firmware/robot/robot.h"
+#include "host_sim/experiment/experiment.h"
+#include "host_sim/vehicle/urdf_importer.h"
+#include "host_sim/world/world.h"
+
+namespace screed::testing {
+
+inline const Assembly& rover5() {
+  static const Assembly model = import_urdf(find_model_file(Experiment{}));
+  return model;
+}
+
+inline Parameters drive_parameters() {
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  return parameters;
+}
+
+class TestDrive {
+ public:
+  TestDrive(HeightField terrain, const WorldOptions& options, const Parameters& parameters = drive_parameters())
+      : world(std::move(terrain), rover5(), kBoard, options, nullptr), robot(kBoard, parameters) {}
+
+  void tick() {
+    world.advance();
+    robot.tick(world.sample(), output);
+    world.apply(output);
+  }
+  void run(double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds * kTickRate_hz + 0.5); ++i) tick();
+  }
+  /// Ticks until the condition holds; false when it does not within `seconds`.
+  bool run_until(double seconds, const std::function<bool()>& condition) {
+    for (int i = 0; i < static_cast<int>(seconds * kTickRate_hz + 0.5); ++i) {
+      tick();
+      if (condition()) return true;
+    }
+    return false;
+  }
+  bool start() {
+    return run_until(10.0, [this] { return robot.supervisor().running(); });
+  }
+
+  Eigen::Vector3d position() const { return world.vehicle().chassis().pose.translation(); }
+  Attitude attitude() const { return attitude_of(world.vehicle().chassis().pose.linear()); }
+  /// Velocity along the chassis' x axis, m/s.
+  double forward_speed() const {
+    const ChassisState chassis = world.vehicle().chassis();
+    return chassis.pose.linear().col(0).dot(chassis.velocity);
+  }
+  /// Rate about the world's vertical, rad/s.
+  double yaw_rate() const {
+    const ChassisState chassis = world.vehicle().chassis();
+    return (chassis.pose.linear() * chassis.omega_body).z();
+  }
+
+  World world;
+  Robot robot;
+  RobotOutput output{};
+};
+
+inline WorldOptions drive_options(double speed_m_per_s, double yaw_rate_deg_per_s) {
+  WorldOptions options;
+  options.drive = DriveOrder{speed_m_per_s, yaw_rate_deg_per_s};
+  return options;
+}
+
+}  // namespace screed::testing

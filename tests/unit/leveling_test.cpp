@@ -1,0 +1,179 @@
+// The leveling algorithms: Algorithm 6, its successor with a spin on the peak, and the fence over both.
+#include "firmware/leveling/leveling.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace screed {
+namespace {
+
+constexpr Angle degrees(double value) { return static_cast<Angle>(value * 65536.0 / 360.0); }
+
+Parameters parameters_of(LevelingAlgorithm algorithm) {
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(algorithm);
+  return parameters;
+}
+
+/// A robot on a slope, seen by the algorithm alone.
+class Walker {
+ public:
+  explicit Walker(const Parameters& parameters) : leveling(parameters) { leveling.start(); }
+
+  LevelingState tick(double pitch_deg) {
+    motion = leveling.tick({degrees(pitch_deg), 0, x_mm, 0}, drive);
+    return leveling.state();
+  }
+  /// Number of ticks, this one included, for which the state stays the same at this pitch.
+  int ticks_in(LevelingState state, double pitch_deg) {
+    int ticks = 0;
+    while (tick(pitch_deg) == state && ticks < 10000) ++ticks;
+    return ticks;
+  }
+
+  Leveling leveling;
+  MotionCommand motion = {0, 0};
+  MotionCommand drive = {0, 0};
+  int32_t x_mm = 0;
+};
+
+TEST(HillSensing, ClimbsAboveTheThresholdAndWalksBelow) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
+  parameters.climb_threshold = 500;
+  parameters.climb_hysteresis = 100;
+  Walker walker(parameters);
+  EXPECT_EQ(walker.leveling.state(), LevelingState::kIdle);
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+  EXPECT_EQ(walker.tick(4.9), LevelingState::kWalk);
+  EXPECT_EQ(walker.tick(5.1), LevelingState::kClimb);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, parameters.climb_speed);
+  EXPECT_EQ(walker.motion.yaw_rate, 0);
+  EXPECT_EQ(walker.tick(4.1), LevelingState::kClimb);  // within the hysteresis
+  EXPECT_EQ(walker.leveling.peaks(), 0);
+  EXPECT_EQ(walker.tick(3.9), LevelingState::kWalk);
+  EXPECT_EQ(walker.leveling.peaks(), 1);
+  EXPECT_EQ(walker.tick(4.5), LevelingState::kWalk);
+  EXPECT_EQ(walker.tick(-80.0), LevelingState::kWalk);  // down a hill is no hill
+}
+
+TEST(HillSensing, AClimbEndsOneLegAndTheWalkBeginsAnother) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
+  parameters.walk_leg_min = 20000;
+  parameters.walk_leg_max = 20000;
+  Walker walker(parameters);
+  walker.tick(0.0);
+  const MotionCommand leg = walker.motion;
+  walker.tick(0.0);
+  EXPECT_EQ(walker.motion.yaw_rate, leg.yaw_rate);
+  walker.tick(20.0);
+  walker.tick(0.0);
+  EXPECT_NE(walker.motion.yaw_rate, leg.yaw_rate);
+}
+
+TEST(SpinOnPeak, SpinsOnceTheDeclineBegins) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
+  parameters.spin_time = 2000;
+  Walker walker(parameters);
+  EXPECT_EQ(walker.tick(2.0), LevelingState::kWalk);
+  EXPECT_EQ(walker.tick(8.0), LevelingState::kClimb);
+  EXPECT_EQ(walker.tick(1.0), LevelingState::kClimb);   // no incline any more, no decline yet: straight on
+  EXPECT_EQ(walker.tick(-0.9), LevelingState::kClimb);
+  EXPECT_EQ(walker.motion.yaw_rate, 0);
+  EXPECT_EQ(walker.tick(-1.1), LevelingState::kSpin);
+  EXPECT_EQ(walker.leveling.peaks(), 1);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, 0);
+  EXPECT_EQ(std::abs(walker.motion.yaw_rate), 90 * 65536 / 360);
+  // Two seconds in all, whatever the pitch says meanwhile.
+  EXPECT_EQ(walker.ticks_in(LevelingState::kSpin, 30.0), 199);
+  EXPECT_EQ(walker.leveling.state(), LevelingState::kWalk);
+}
+
+TEST(SpinOnPeak, SpinsLeftAndRightInTurn) {
+  Walker walker(parameters_of(LevelingAlgorithm::kSpinOnPeak));
+  std::optional<bool> last_left;
+  for (int peak = 0; peak < 6; ++peak) {
+    walker.tick(10.0);
+    ASSERT_EQ(walker.tick(10.0), LevelingState::kClimb);
+    ASSERT_EQ(walker.tick(-5.0), LevelingState::kSpin);
+    const bool left = walker.motion.yaw_rate > 0;
+    if (last_left.has_value()) EXPECT_NE(left, *last_left);
+    last_left = left;
+    walker.ticks_in(LevelingState::kSpin, 0.0);
+  }
+  EXPECT_EQ(walker.leveling.peaks(), 6);
+}
+
+TEST(SpinOnPeak, APlateauEndsTheClimbAfterThreeSeconds) {
+  Walker walker(parameters_of(LevelingAlgorithm::kSpinOnPeak));
+  for (int tick = 0; tick < 1000; ++tick) ASSERT_NE(walker.tick(10.0), LevelingState::kSpin);
+  EXPECT_EQ(walker.leveling.state(), LevelingState::kClimb);  // a long hill is no plateau
+  EXPECT_EQ(walker.ticks_in(LevelingState::kClimb, 1.0), 299);
+  EXPECT_EQ(walker.leveling.state(), LevelingState::kWalk);
+  // A new incline on the way starts the time again.
+  walker.tick(10.0);
+  for (int tick = 0; tick < 250; ++tick) walker.tick(0.0);
+  walker.tick(6.0);
+  EXPECT_EQ(walker.ticks_in(LevelingState::kClimb, 0.0), 299);
+}
+
+TEST(Leveling, OutsideTheFenceItReturns) {
+  for (const LevelingAlgorithm algorithm :
+       {LevelingAlgorithm::kHillSensing, LevelingAlgorithm::kSpinOnPeak}) {
+    Parameters parameters = parameters_of(algorithm);
+    parameters.site_radius = 1000;
+    Walker walker(parameters);
+    walker.tick(0.0);
+    walker.x_mm = 1001;
+    EXPECT_EQ(walker.tick(20.0), LevelingState::kReturn);  // not even a hill keeps it out there
+    walker.x_mm = 800;
+    EXPECT_EQ(walker.tick(20.0), LevelingState::kReturn);
+    walker.x_mm = 700;
+    EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+  }
+}
+
+TEST(Leveling, AClimbCutShortByTheFenceIsNoPeak) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
+  parameters.site_radius = 1000;
+  Walker walker(parameters);
+  ASSERT_EQ(walker.tick(20.0), LevelingState::kClimb);
+  walker.x_mm = 1001;
+  ASSERT_EQ(walker.tick(20.0), LevelingState::kReturn);
+  EXPECT_EQ(walker.leveling.peaks(), 0);
+}
+
+TEST(Leveling, ASpinIsFinishedBeforeTheFenceCounts) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
+  parameters.site_radius = 1000;
+  Walker walker(parameters);
+  walker.tick(10.0);
+  ASSERT_EQ(walker.tick(-5.0), LevelingState::kSpin);
+  walker.x_mm = 1010;
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kSpin);
+  walker.ticks_in(LevelingState::kSpin, 0.0);
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kReturn);
+}
+
+TEST(Leveling, DriveFollowsTheGroundStationAnywhere) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kDrive);
+  parameters.site_radius = 100;
+  Walker walker(parameters);
+  walker.x_mm = 5000;
+  walker.drive = {-70, 1234};
+  EXPECT_EQ(walker.tick(20.0), LevelingState::kDrive);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, -70);
+  EXPECT_EQ(walker.motion.yaw_rate, 1234);
+}
+
+TEST(Leveling, StartBeginsAnew) {
+  Walker walker(parameters_of(LevelingAlgorithm::kSpinOnPeak));
+  walker.tick(10.0);
+  ASSERT_EQ(walker.tick(-5.0), LevelingState::kSpin);
+  walker.leveling.start();
+  EXPECT_EQ(walker.leveling.state(), LevelingState::kIdle);
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,81 @@
+// The fence: when it calls back, and that its motion leads home.
+#include "firmware/leveling/site_fence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace screed {
+namespace {
+
+TEST(SiteFence, CallsBackAtTheRadiusAndLetsGoAtThreeQuarters) {
+  SiteFence fence(1000, 100);
+  EXPECT_FALSE(fence.outside(0, 0));
+  EXPECT_FALSE(fence.outside(600, -800));  // exactly on the circle
+  EXPECT_TRUE(fence.outside(601, -800));
+  EXPECT_TRUE(fence.outside(600, -790));
+  EXPECT_TRUE(fence.outside(0, 751));
+  EXPECT_FALSE(fence.outside(0, 750));
+  EXPECT_FALSE(fence.outside(0, 999));
+  EXPECT_TRUE(fence.outside(-1001, 0));
+}
+
+TEST(SiteFence, RadiusZeroSwitchesItOff) {
+  SiteFence fence(0, 100);
+  EXPECT_FALSE(fence.outside(INT32_MAX, INT32_MIN));
+}
+
+TEST(SiteFence, SeesTheFarthestPlaces) {
+  for (const int16_t radius_mm : {1, 1000, 30000}) {
+    SiteFence fence(radius_mm, 100);
+    EXPECT_FALSE(fence.outside(0, 0));
+    for (const int32_t far : {30001, 100000, 2147483}) {
+      EXPECT_TRUE(fence.outside(far, 0)) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.outside(0, -far)) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.outside(-far, far)) << radius_mm << " " << far;
+    }
+  }
+}
+
+TEST(SiteFence, TurnsOnTheSpotUntilHomeLiesAhead) {
+  const SiteFence fence(1000, 100);
+  // East of home: home lies in the west, -32768.
+  EXPECT_EQ(fence.steer(1100, 0, 0).speed_mm_per_s, 0);
+  EXPECT_NE(fence.steer(1100, 0, 0).yaw_rate, 0);
+  EXPECT_EQ(fence.steer(1100, 0, -32768).speed_mm_per_s, 100);
+  EXPECT_EQ(fence.steer(1100, 0, -32768).yaw_rate, 0);
+  // Heading a little south of west (counter-clockwise of it): a turn clockwise.
+  EXPECT_LT(fence.steer(1100, 0, static_cast<Angle>(-32768 + 2000)).yaw_rate, 0);
+  EXPECT_GT(fence.steer(1100, 0, static_cast<Angle>(32767 - 2000)).yaw_rate, 0);
+  // Never faster than 60 degrees/s.
+  for (int32_t heading = -32768; heading <= 32767; heading += 111) {
+    EXPECT_LE(std::abs(fence.steer(1100, 300, static_cast<Angle>(heading)).yaw_rate), 10923);
+  }
+}
+
+TEST(SiteFence, LeadsHomeFromEverywhere) {
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    for (int heading_degrees = 0; heading_degrees < 360; heading_degrees += 45) {
+      SiteFence fence(1000, 100);
+      double x = 1100.0 * std::cos(degrees * std::numbers::pi / 180.0);
+      double y = 1100.0 * std::sin(degrees * std::numbers::pi / 180.0);
+      double heading = heading_degrees * 65536.0 / 360.0;
+      int ticks = 0;
+      const auto mm = [](double value) { return static_cast<int32_t>(std::lround(value)); };
+      while (fence.outside(mm(x), mm(y)) && ticks < 3000) {
+        const MotionCommand motion = fence.steer(mm(x), mm(y), wrap_angle(mm(heading)));
+        heading += motion.yaw_rate * 0.01;
+        x += motion.speed_mm_per_s * 0.01 * std::cos(heading * 2.0 * std::numbers::pi / 65536.0);
+        y += motion.speed_mm_per_s * 0.01 * std::sin(heading * 2.0 * std::numbers::pi / 65536.0);
+        ASSERT_LT(std::hypot(x, y), 1150.0);
+        ++ticks;
+      }
+      // 0.35 m at 0.1 m/s and half a turn at up to 60 degrees/s.
+      ASSERT_LT(ticks, 850) << degrees << " " << heading_degrees;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace screed
