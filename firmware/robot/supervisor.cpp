@@ -8,16 +8,23 @@ namespace screed {
 namespace {
 
 // Deadlines from cause to reaction, in ticks of 10 ms.
-constexpr uint8_t kTiltTicks = 6;        // stop within 100 ms
-constexpr uint8_t kSilentTicks = 8;      // stop within 100 ms
-constexpr uint8_t kFrozenTicks = 18;     // stop within 200 ms
-constexpr uint8_t kBatteryTicks = 100;   // a start-up dip is not an empty battery
+constexpr uint8_t kTiltTicks = 6;       // stop within 100 ms
+constexpr uint8_t kSilentTicks = 8;     // stop within 100 ms
+constexpr uint8_t kFrozenTicks = 18;    // stop within 200 ms
+constexpr uint8_t kBatteryTicks = 100;  // a start-up dip is not an empty battery
 constexpr uint16_t kLinkStopTicks = 50;
 constexpr uint16_t kLinkDisarmTicks = 150;
+// The accelerometer is taken for a plumb line while nothing turns faster than 30 degrees/s and it
+// feels 0.85 to 1.15 g.
+constexpr uint16_t kQuietGyro = 429;
+constexpr int32_t kLeastQuietAccel = 870;
+constexpr int32_t kMostQuietAccel = 1178;
 // A track that does not move below this duty is not stalled, it is asked for too little.
 constexpr int16_t kStallDuty = 240;
 
-uint8_t count_up(uint8_t value) { return value < UINT8_MAX ? static_cast<uint8_t>(value + 1) : value; }
+uint8_t count_up(uint8_t value) {
+  return value < UINT8_MAX ? static_cast<uint8_t>(value + 1) : value;
+}
 uint16_t count_up(uint16_t value) {
   return value < UINT16_MAX ? static_cast<uint16_t>(value + 1) : value;
 }
@@ -39,19 +46,25 @@ Supervisor::Supervisor(const Parameters& parameters)
   cos_tilt_limit_q30_ = static_cast<int32_t>(cos_tilt_limit_q15_) * 32768;
 }
 
-bool Supervisor::link_alive() const { return ticks_since_heartbeat_ <= kLinkStopTicks; }
+bool Supervisor::link_alive() const {
+  return ticks_since_heartbeat_ <= kLinkStopTicks;
+}
 
-// Two witnesses: the estimator, which follows a fast roll by its gyro, and the raw accelerometer, which also sees a robot
-// that was picked up and put down faster than the gyro's range.
+// Two witnesses: the estimator, which follows a roll by its gyro, and, at rest, the raw
+// accelerometer, which also sees a robot that was turned over while the estimator was not looking.
+// In motion the accelerometer alone is no witness: tipping over a crest the robot falls and brakes,
+// and for a tenth of a second the force points anywhere.
 bool Supervisor::tilted(const SupervisorInput& input) {
   if (input.estimator_ready && input.cos_tilt_q30 < cos_tilt_limit_q30_) return true;
-  // Scaled by 1/4 so that the sum of squares fits 32 bits.
+  // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {
+    if (abs_u16(input.gyro[i]) > kQuietGyro) return false;
     const int32_t part = asr(input.accel[i], 2);
     square += static_cast<uint32_t>(part * part);
   }
   const int32_t length = isqrt32(square);
+  if (length < kLeastQuietAccel || length > kMostQuietAccel) return false;
   return asr(input.accel[2], 2) < asr(length * cos_tilt_limit_q15_, 15);
 }
 
@@ -99,7 +112,8 @@ void Supervisor::watch_link() {
   }
 }
 
-// Arms and runs once, after the delay: a stand-alone robot that was stopped, even before that, stays stopped.
+// Arms and runs once, after the delay: a stand-alone robot that was stopped, even before that,
+// stays stopped.
 void Supervisor::run_standalone() {
   if (!standalone_ || ticks_since_start_ == UINT16_MAX) return;
   if (ticks_since_start_ < standalone_ticks_) {
@@ -126,7 +140,8 @@ void Supervisor::tick(const SupervisorInput& input) {
 
 RequestResult Supervisor::request(Request request) {
   // Whoever holds a stand-alone robot back before its start does not see it start by itself later.
-  if (request == Request::kStop || request == Request::kDisarm || request == Request::kEmergencyStop) {
+  if (request == Request::kStop || request == Request::kDisarm ||
+      request == Request::kEmergencyStop) {
     ticks_since_start_ = UINT16_MAX;
   }
   switch (request) {

@@ -7,6 +7,9 @@
 # with board.h, pins.h and board.mk.
 
 BOARD ?= a_star_32u4
+ifeq ($(wildcard boards/$(BOARD)/board.mk),)
+$(error BOARD=$(BOARD): no folder boards/$(BOARD) with a board.mk; there are: $(patsubst boards/%/board.mk,%,$(wildcard boards/*/board.mk)))
+endif
 include boards/$(BOARD)/board.mk
 
 AVR_CXX ?= avr-g++

@@ -146,6 +146,8 @@ std::vector<Key> make_keys() {
                           [](Experiment& e) -> double& { return e.map.size_m; }));
   keys.push_back(real_key("map", "scale", "m", 0.0001, 100, "height of white",
                           [](Experiment& e) -> double& { return e.map.scale_m; }));
+  keys.push_back(real_key("map", "smoothing", "m", 0, 1, "standard deviation of a Gaussian low-pass over the image",
+                          [](Experiment& e) -> double& { return e.map.smoothing_m; }));
   keys.push_back(real_key("map", "max_slope", "deg", 0.1, 89, "heights are scaled down until no slope is steeper",
                           [](Experiment& e) -> std::optional<double>& { return e.map.max_slope_deg; }));
   keys.push_back(real_key("map", "ramp", "deg", -60, 60, "without a file: slope of the ground, rising to the east",

@@ -35,6 +35,7 @@ struct Experiment {
     std::string filename;                  ///< a grey image; empty: level ground
     double size_m = 3.0;
     double scale_m = 0.2;
+    double smoothing_m = 0.0;
     std::optional<double> max_slope_deg;
     double ramp_deg = 0.0;                 ///< without an image: level ground inclined towards east
     bool wrap = false;

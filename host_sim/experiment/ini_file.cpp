@@ -18,21 +18,39 @@ struct Reading {
   std::ifstream file;
   std::string name;
   int line = 0;
-  bool too_long = false;
   std::vector<IniEntry> entries;
   std::string complaint;  // exceptions must not pass through C code
   int complaint_line = 0;
+
+  /// About the line that was read last; the first complaint counts.
+  void complain(const std::string& what) {
+    if (!complaint.empty()) return;
+    complaint = name + ":" + std::to_string(line) + ": " + what;
+    complaint_line = line;
+  }
 };
+
+/// True when a section's line goes on after its bracket with more than a comment; inih would not look at that.
+bool has_more_than_section(const std::string& line) {
+  const size_t bracket = line.find(']');
+  if (line.empty() || line[0] != '[' || bracket == std::string::npos) return false;
+  const size_t more = line.find_first_not_of(" \t\r", bracket + 1);
+  return more != std::string::npos && line[more] != ';' && line[more] != '#';
+}
 
 char* read_line(char* buffer, int size, void* stream) {
   auto& reading = *static_cast<Reading*>(stream);
   std::string text;
-  if (reading.too_long || !std::getline(reading.file, text)) return nullptr;
+  if (!reading.complaint.empty() || !std::getline(reading.file, text)) return nullptr;
   ++reading.line;
   // inih joins indented lines to the value before them; in an experiment file an indented line is a line.
   text.erase(0, text.find_first_not_of(" \t\r"));
   if (text.size() + 2 > static_cast<size_t>(size)) {
-    reading.too_long = true;
+    reading.complain("line too long; at most " + std::to_string(size - 2) + " characters");
+    return nullptr;
+  }
+  if (has_more_than_section(text)) {
+    reading.complain("text behind [section]; a key stands in a line of its own");
     return nullptr;
   }
   text.push_back('\n');
@@ -42,14 +60,12 @@ char* read_line(char* buffer, int size, void* stream) {
 
 int take_entry(void* user, const char* section, const char* name, const char* value) {
   auto& reading = *static_cast<Reading*>(user);
-  if (!reading.complaint.empty()) return 1;
   const auto same = std::find_if(reading.entries.begin(), reading.entries.end(), [&](const IniEntry& entry) {
     return entry.section == section && entry.key == name;
   });
   if (same != reading.entries.end()) {
-    reading.complaint_line = reading.line;
-    reading.complaint = reading.name + ":" + std::to_string(reading.line) + ": key '" + name + "' is given twice in [" + section +
-                        "], first in line " + std::to_string(same->line);
+    const std::string where = *section == '\0' ? " before the first section" : std::string(" in [") + section + "]";
+    reading.complain(std::string("key '") + name + "' is given twice" + where + ", first in line " + std::to_string(same->line));
     return 1;
   }
   // inih takes only ';' for a comment behind a value.
@@ -72,9 +88,6 @@ std::vector<IniEntry> read_ini_file(const std::filesystem::path& path) {
   reading.file.open(path);
   if (!reading.file) throw InputError(path.string() + ": no such experiment file, or it cannot be read");
   const int bad_line = ini_parse_stream(read_line, &reading, take_entry, &reading);
-  if (reading.too_long) {
-    throw InputError(reading.name + ":" + std::to_string(reading.line) + ": line too long; at most 197 characters");
-  }
   // The first of two complaints is the one to tell.
   if (!reading.complaint.empty() && (bad_line <= 0 || bad_line > reading.complaint_line)) {
     throw InputError(reading.complaint);

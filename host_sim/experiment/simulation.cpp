@@ -223,6 +223,7 @@ HeightField make_terrain(const Experiment& experiment) {
   HeightFieldOptions options;
   options.size_m = map.size_m;
   options.scale_m = map.scale_m;
+  options.smoothing_m = map.smoothing_m;
   options.max_slope_deg = map.max_slope_deg;
   options.wrap = map.wrap;
   return HeightField::from_image(read_grey_image(find_data_file(experiment, map.filename, "[map] filename")), options);

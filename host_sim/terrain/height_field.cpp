@@ -23,6 +23,7 @@ struct Range {
 
 constexpr Range kSize{"size_m", 0.1, 1000.0};
 constexpr Range kScale{"scale_m", 0.0001, 100.0};
+constexpr Range kSmoothing{"smoothing_m", 0.0, 1.0};
 constexpr Range kMaxSlope{"max_slope_deg", 0.1, 89.0};
 constexpr Range kSpacing{"spacing_m", 1e-6, 100.0};
 constexpr Range kRampSlope{"slope_deg", -89.0, 89.0};
@@ -51,14 +52,54 @@ int nodes_along(double size_m, double spacing_m) {
   return static_cast<int>(std::lround(size_m / spacing_m)) + 1;
 }
 
-void fill_from_image(HeightField& field, const GreyImage& image, double units_per_sample) {
+void fill_from_samples(HeightField& field, const std::vector<double>& samples,
+                       double units_per_sample) {
   for (int iy = 0; iy < field.ny(); ++iy) {
     const size_t row = static_cast<size_t>(field.ny() - 1 - iy) * static_cast<size_t>(field.nx());
     for (int ix = 0; ix < field.nx(); ++ix) {
-      const double sample = image.samples[row + static_cast<size_t>(ix)];
+      const double sample = samples[row + static_cast<size_t>(ix)];
       field.set_node(ix, iy, static_cast<Height>(std::lround(sample * units_per_sample)));
     }
   }
+}
+
+/// One pass of a Gaussian along lines of `count` values that lie `stride` apart; beyond the ends the
+/// line repeats (wrap) or keeps its last value.
+void smooth_lines(std::vector<double>& samples, int lines, size_t line_stride, int count,
+                  size_t stride, bool wrap, const std::vector<double>& weights) {
+  const int reach = static_cast<int>(weights.size()) - 1;
+  std::vector<double> line(static_cast<size_t>(count));
+  for (int l = 0; l < lines; ++l) {
+    double* const begin = samples.data() + static_cast<size_t>(l) * line_stride;
+    for (int i = 0; i < count; ++i) {
+      line[static_cast<size_t>(i)] = begin[static_cast<size_t>(i) * stride];
+    }
+    const auto at = [&](int i) {
+      const int inside = wrap ? ((i % count) + count) % count : std::clamp(i, 0, count - 1);
+      return line[static_cast<size_t>(inside)];
+    };
+    for (int i = 0; i < count; ++i) {
+      double sum = weights[0] * at(i);
+      for (int k = 1; k <= reach; ++k) {
+        sum += weights[static_cast<size_t>(k)] * (at(i - k) + at(i + k));
+      }
+      begin[static_cast<size_t>(i) * stride] = sum;
+    }
+  }
+}
+
+/// Gaussian low-pass, sigma in samples; weights end at 4 sigma and add up to 1.
+void smooth(std::vector<double>& samples, int width, int height, double sigma, bool wrap) {
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (int k = 0; k <= static_cast<int>(std::ceil(4.0 * sigma)); ++k) {
+    weights.push_back(std::exp(-0.5 * (k / sigma) * (k / sigma)));
+    sum += k == 0 ? weights.back() : 2.0 * weights.back();
+  }
+  for (double& weight : weights) weight /= sum;
+  const auto row_stride = static_cast<size_t>(width);
+  smooth_lines(samples, height, row_stride, width, 1, wrap, weights);
+  smooth_lines(samples, width, 1, height, row_stride, wrap, weights);
 }
 
 }  // namespace
@@ -80,14 +121,19 @@ HeightField::HeightField(int nx, int ny, double spacing_m, bool wrap)
 HeightField HeightField::from_image(const GreyImage& image, const HeightFieldOptions& options) {
   require(kSize, options.size_m);
   require(kScale, options.scale_m);
+  require(kSmoothing, options.smoothing_m);
   if (options.max_slope_deg) require(kMaxSlope, *options.max_slope_deg);
   require_nodes(image.width, image.height);
 
   const int longer = std::max(image.width, image.height);
   const double spacing_m = options.size_m / (options.wrap ? longer : longer - 1);
   HeightField field(image.width, image.height, spacing_m, options.wrap);
+  std::vector<double> samples(image.samples.begin(), image.samples.end());
+  if (options.smoothing_m > 0.0) {
+    smooth(samples, image.width, image.height, options.smoothing_m / spacing_m, options.wrap);
+  }
   double units_per_sample = options.scale_m / kHeightUnit_m / image.max_value;
-  fill_from_image(field, image, units_per_sample);
+  fill_from_samples(field, samples, units_per_sample);
 
   if (options.max_slope_deg) {
     // Rounding to units can leave the slope a hair above the limit: then once more.
@@ -96,7 +142,7 @@ HeightField HeightField::from_image(const GreyImage& image, const HeightFieldOpt
     double steepest = field.steepest_gradient();
     while (steepest > limit) {
       units_per_sample *= limit / steepest * (1.0 - kHair);
-      fill_from_image(field, image, units_per_sample);
+      fill_from_samples(field, samples, units_per_sample);
       steepest = field.steepest_gradient();
     }
   }

@@ -11,6 +11,7 @@
 #include "firmware/control/track_speed_control.h"
 #include "firmware/estimation/attitude.h"
 #include "firmware/estimation/odometry.h"
+#include "firmware/leveling/leveling.h"
 #include "firmware/math/fixed.h"
 #include "firmware/math/random.h"
 #include "firmware/math/sqrt.h"
@@ -23,7 +24,7 @@
 
 namespace screed {
 
-constexpr uint8_t kGoldenSections = 12;
+constexpr uint8_t kGoldenSections = 13;
 
 constexpr BoardConstants kGoldenBoard = {9048, 1831, 195, 7200, 250};
 
@@ -299,6 +300,34 @@ void golden_attitude(Link& link) {
 }
 
 template <typename Link>
+void golden_leveling(Link& link) {
+  GoldenNumbers numbers;
+  Parameters parameters;
+  for (uint8_t run = 0; run < 6; ++run) {
+    parameters.algorithm = static_cast<int16_t>(run % 3U);
+    parameters.site_radius = run < 3 ? static_cast<int16_t>(2000) : static_cast<int16_t>(30000);
+    parameters.random_seed = static_cast<int16_t>(32767 - run);
+    Leveling leveling(parameters);
+    leveling.start();
+    LevelingInput input = {0, 0, 0, 0};
+    for (uint16_t i = 0; i < 400; ++i) {
+      if (i % 10U == 0) {
+        input.pitch = numbers.within(3000);
+        input.heading = numbers.narrow();
+        input.x_mm = asr(numbers.wide(), 14);
+        input.y_mm =
+            i % 100U == 0 ? extreme(static_cast<uint8_t>(i / 100U)) / 2 : asr(numbers.wide(), 14);
+      }
+      const MotionCommand motion = leveling.tick(input, {numbers.narrow(), 77});
+      put_word(link, static_cast<uint16_t>(motion.speed_mm_per_s));
+      put_word(link, static_cast<uint16_t>(motion.yaw_rate));
+      link.put(static_cast<uint8_t>(leveling.state()));
+      put_word(link, leveling.peaks());
+    }
+  }
+}
+
+template <typename Link>
 void golden_messages(Link& link) {
   GoldenNumbers numbers;
   SlcanParser parser;
@@ -354,6 +383,8 @@ void golden_section(uint8_t section, Link& link) {
       return golden_odometry(link);
     case 10:
       return golden_attitude(link);
+    case 11:
+      return golden_leveling(link);
     default:
       return golden_messages(link);
   }

@@ -12,6 +12,14 @@ extern "C" {
 #include <algorithm>
 #include <stdexcept>
 
+#ifdef __SANITIZE_ADDRESS__
+// simavr frees neither an image nor an MCU.
+extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
+  return "leak:libsimavr";
+}
+#endif
+
 namespace screed::mcu {
 namespace {
 

@@ -28,8 +28,8 @@ RobotState state_of(const CanFrame& heartbeat) {
   return static_cast<RobotState>(heartbeat.data[1] >> 4);
 }
 
-std::int16_t value_at(const CanFrame& frame, int index) {
-  return get_s16(frame.data + kE2eHeaderSize + 2 * index);
+std::int16_t value_at(const CanFrame& frame, std::size_t index) {
+  return get_s16(&frame.data[kE2eHeaderSize + 2 * index]);
 }
 
 /// Armed and driving straight on.
@@ -69,7 +69,8 @@ TEST(ScreedImage, ConfiguresAndReadsTheSensors) {
   EXPECT_EQ(value_at(bench.last_frame(kIdMagRaw), 1), 1250);
   bench.run_ms(1500);
   const CanFrame baro = bench.last_frame(kIdBaro);
-  EXPECT_EQ(get_u16(baro.data + 2) | (baro.data[4] << 16), (0x3F5678 >> 8) * 100);
+  const int pascal_q4 = get_u16(baro.data + 2) | (baro.data[4] << 16);
+  EXPECT_NEAR(pascal_q4, 0x3F5678 * 100.0 / 256, 100);
   EXPECT_EQ(value_at(baro, 2), 4250 + (0xD8DC - 0x10000) * 5 / 24);
   expect_healthy(bench);
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 #include "boards/a_star_32u4/board.h"
@@ -59,7 +60,7 @@ class SkidRobot {
 
 TEST(DriveControl, TurnsAsCommandedThoughTheTracksSlip) {
   for (const double grip : {1.0, 0.6, 0.4}) {
-    for (const int16_t degrees_per_s : {-40, 20, 40}) {
+    for (const int16_t degrees_per_s : std::initializer_list<int16_t>{-40, 20, 40}) {
       SkidRobot robot(grip);
       const MotionCommand command = {80, yaw_rate_from_degrees(degrees_per_s)};
       robot.run(command, 300);
@@ -130,7 +131,7 @@ TEST(DriveControl, ExtremeMeasurementsStayWithinTheDutyRange) {
   strongest.yaw_ki = 4096;
   strongest.accel_limit = 5000;
   for (const int32_t rate : {INT32_MIN / 2, -32768, 32767, INT32_MAX / 2}) {
-    for (const int16_t yaw : {INT16_MIN, INT16_MAX}) {
+    for (const int16_t yaw : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
       DriveControl control(kBoard, strongest);
       for (int tick = 0; tick < 200; ++tick) {
         const DriveOutput output = control.tick({INT16_MIN, yaw}, {INT16_MIN, INT16_MAX, rate, 0});

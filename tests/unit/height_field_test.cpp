@@ -318,5 +318,48 @@ TEST(HeightFieldTest, RefusesGridsAndHeightsOutOfRange) {
   }
 }
 
+// A Gaussian turns a cosine into the same cosine, weakened by exp(-(k sigma)^2 / 2).
+TEST(HeightFieldSmoothing, WeakensAWaveAsAGaussianDoes) {
+  GreyImage image;
+  image.width = 64;
+  image.height = 64;
+  image.bit_depth = 16;
+  image.max_value = 65535;
+  for (int row = 0; row < 64; ++row) {
+    for (int column = 0; column < 64; ++column) {
+      const double wave = std::cos(2.0 * std::numbers::pi * 4.0 * column / 64.0);
+      image.samples.push_back(static_cast<uint16_t>(std::lround(32767.0 + 30000.0 * wave)));
+    }
+  }
+  HeightFieldOptions options;
+  options.size_m = 6.4;
+  options.scale_m = 1.0;
+  options.wrap = true;
+  options.smoothing_m = 0.2;
+  const HeightField field = HeightField::from_image(image, options);
+  const double k = 2.0 * std::numbers::pi * 4.0 / 6.4;
+  const double amplitude = 30000.0 / 65535.0 * std::exp(-0.5 * k * k * 0.2 * 0.2);
+  const double crest = field.node(0, 10) * kHeightUnit_m;
+  const double trough = field.node(8, 10) * kHeightUnit_m;
+  EXPECT_NEAR(0.5 * (crest - trough), amplitude, 1e-3 * amplitude);
+  EXPECT_NEAR(0.5 * (crest + trough), 32767.0 / 65535.0, 1e-4);
+}
+
+// What is level stays level, also at edges that do not wrap.
+TEST(HeightFieldSmoothing, KeepsALevelField) {
+  GreyImage image;
+  image.width = 20;
+  image.height = 10;
+  image.bit_depth = 8;
+  image.max_value = 255;
+  image.samples.assign(200, 100);
+  HeightFieldOptions options;
+  options.smoothing_m = 0.5;
+  const HeightField field = HeightField::from_image(image, options);
+  for (int iy = 0; iy < 10; ++iy) {
+    for (int ix = 0; ix < 20; ++ix) EXPECT_NEAR(field.node(ix, iy), field.node(0, 0), 1);
+  }
+}
+
 }  // namespace
 }  // namespace screed

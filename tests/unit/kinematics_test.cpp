@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 namespace screed {
@@ -20,12 +21,12 @@ double turn_speed(double tread_mm, double yaw_rate) {
 }
 
 TEST(Kinematics, FollowsTheThesisWithinHalfAMillimetreASecond) {
-  for (const uint16_t tread_mm : {1, 50, 98, 195, 300}) {
+  for (const uint16_t tread_mm : std::initializer_list<uint16_t>{1, 50, 98, 195, 300}) {
     const SkidSteer kinematics(tread_mm);
     // The largest turn is made of a factor that is rounded once.
     const double rounding = 0.5 + turn_speed(tread_mm, 32767.0) * 64.0 / (tread_mm * 12868.0);
     for (int32_t rate = -32767; rate <= 32767; rate += 331) {
-      for (const int16_t speed : {-250, -31, 0, 1, 200}) {
+      for (const int16_t speed : std::initializer_list<int16_t>{-250, -31, 0, 1, 200}) {
         const TrackSpeeds tracks = kinematics.tracks(speed, rate, kNoLimit);
         ASSERT_NEAR(tracks.left, speed - turn_speed(tread_mm, rate), rounding) << rate;
         ASSERT_NEAR(tracks.right, speed + turn_speed(tread_mm, rate), rounding) << rate;
@@ -72,10 +73,10 @@ TEST(Kinematics, TurnIsKeptWhenTheTracksSaturate) {
 }
 
 TEST(Kinematics, ExtremesDoNotOverflow) {
-  for (const uint16_t tread_mm : {1, 300}) {
+  for (const uint16_t tread_mm : std::initializer_list<uint16_t>{1, 300}) {
     const SkidSteer kinematics(tread_mm);
     for (const int32_t rate : {INT32_MIN, -32768, 32768, INT32_MAX}) {
-      for (const int16_t speed : {INT16_MIN, INT16_MAX}) {
+      for (const int16_t speed : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
         const TrackSpeeds tracks = kinematics.tracks(speed, rate, kLimit_mm_per_s);
         // A rate beyond half a turn a second counts as half a turn a second.
         const double turn = std::clamp(turn_speed(tread_mm, rate < 0 ? -32767 : 32767), -250.0, 250.0);

@@ -74,7 +74,7 @@ TEST(Odometry, HalfCountsAreNotLost) {
   // One track alone: half a count of travel a tick.
   Odometry odometry(kCount_um_q4);
   for (int tick = 0; tick < 10000; ++tick) odometry.update(tick % 2 == 0 ? 1 : 0, 0, 0, 0);
-  EXPECT_NEAR(odometry.x_mm(), 2500 * kCount_mm, 1.0);
+  EXPECT_NEAR(odometry.x_mm(), 2500 * kCount_mm, 0.001 * 2500 * kCount_mm);
 }
 
 TEST(Odometry, NoiseOfAnEncoderMovesNoFurtherThanOneTickCan) {

@@ -567,12 +567,14 @@ TEST_F(SessionTest, FilesThatAreNoSessionAreRefused) {
 TEST_F(SessionTest, ATruncatedFileIsRefused) {
   write_run(file_, random_run(1200));
   const std::string whole = get(file_);
+  testing::internal::CaptureStderr();
   for (std::size_t size = whole.size() - 1; size > 2000; size -= size / 9) {
     put(file_, whole.substr(0, size));
     expect_refused("truncated");
   }
   put(file_, whole.substr(0, 4));
   expect_refused("not an HDF5 file");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // the library has no say
 }
 
 TEST_F(SessionTest, DamagedRowsAreReported) {
@@ -749,6 +751,20 @@ TEST_F(SessionTest, AFileSizeLimitIsARunError) {
       }
     }
     return "";
+  }));
+}
+
+// The library would write again what it could not write, when the program is long past its last
+// line.
+TEST_F(SessionTest, AProgramEndsOrderlyAfterAWriteError) {
+  EXPECT_TRUE(succeeds_in_child([&]() -> std::string {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit size{100000, RLIM_INFINITY};
+    if (setrlimit(RLIMIT_FSIZE, &size) != 0) return "cannot set the limit";
+    if (std::string wrong = record_until_full(file_, "File too large"); !wrong.empty()) {
+      return wrong;
+    }
+    std::exit(0);
   }));
 }
 

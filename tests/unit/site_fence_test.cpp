@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 namespace screed {
@@ -27,7 +28,7 @@ TEST(SiteFence, RadiusZeroSwitchesItOff) {
 }
 
 TEST(SiteFence, SeesTheFarthestPlaces) {
-  for (const int16_t radius_mm : {1, 1000, 30000}) {
+  for (const int16_t radius_mm : std::initializer_list<int16_t>{1, 1000, 30000}) {
     SiteFence fence(radius_mm, 100);
     EXPECT_FALSE(fence.outside(0, 0));
     for (const int32_t far : {30001, 100000, 2147483}) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "boards/a_star_32u4/board.h"
 #include "hal/sample.h"
@@ -21,7 +22,7 @@ TrackSpeedControl make_control(const Parameters& parameters = {}) {
 }
 
 TEST(SpeedObserver, SettlesOnTheSpeedOfASteadyRamp) {
-  for (const int16_t counts : {-40, -17, -4, -1, 0, 1, 2, 4, 25, 40}) {
+  for (const int16_t counts : std::initializer_list<int16_t>{-40, -17, -4, -1, 0, 1, 2, 4, 25, 40}) {
     TrackSpeedControl control = make_control();
     for (int tick = 0; tick < 200; ++tick) control.release(counts);
     EXPECT_NEAR(control.speed_dmm_per_s(), counts * kDmmPerCount, 2.0) << counts;
@@ -65,19 +66,21 @@ TEST(SpeedObserver, NoiseOfTheEncoderIsHeldWithinWhatATrackCanDo) {
 }
 
 TEST(TrackSpeedControl, ReachesTheTargetWithoutErrorAgainstALoad) {
-  for (const int16_t target : {-200, -60, 20, 100, 200}) {
+  for (const int16_t target : std::initializer_list<int16_t>{-200, -60, 20, 100, 200}) {
     TrackSpeedControl control = make_control();
     SimulatedTrack track;
     int16_t counts = 0;
     double highest = 0.0;
     double sum = 0.0;
     for (int tick = 0; tick < 500; ++tick) {
-      counts = track.step(control.tick(target, counts, kNominal_mv), 7.2, 30.0);
+      // 600 mm/s^2, as DriveControl lets a target rise.
+      const auto ramp = static_cast<int16_t>(std::clamp<int>(target, -6 * tick, 6 * tick));
+      counts = track.step(control.tick(ramp, counts, kNominal_mv), 7.2, 30.0);
       highest = std::max(highest, std::abs(track.speed_mm_per_s));
       if (tick >= 300) sum += track.speed_mm_per_s;
     }
     EXPECT_NEAR(sum / 200.0, target, 1.0);
-    EXPECT_LT(highest, std::abs(target) * 1.3 + 10.0);
+    EXPECT_LT(highest, std::abs(target) * 1.25 + 10.0);
   }
 }
 
@@ -92,7 +95,7 @@ TEST(TrackSpeedControl, FeedForwardMakesUpForTheBattery) {
     for (int tick = 0; tick < 100; ++tick) {
       track.step(control.tick(150, 0, static_cast<uint16_t>(battery_v * 1000)), battery_v);
     }
-    EXPECT_NEAR(track.speed_mm_per_s, 150.0, 2.0) << battery_v;
+    EXPECT_NEAR(track.speed_mm_per_s, 150.0, 0.025 * 150.0) << battery_v;
   }
   // A reading that cannot be a battery's does not ask for more than twice the nominal duty.
   TrackSpeedControl control = make_control(open_loop);
@@ -143,9 +146,9 @@ TEST(TrackSpeedControl, EveryParameterAtItsEndsStaysWithinTheDutyRange) {
   Parameters strongest;
   strongest.speed_kp = 320;
   strongest.speed_ki = 3200;
-  for (const int16_t target : {INT16_MIN, INT16_MAX}) {
-    for (const int16_t counts : {INT16_MIN, INT16_MAX}) {
-      for (const uint16_t battery_mv : {0, 3599, 3600, 65535}) {
+  for (const int16_t target : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
+    for (const int16_t counts : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
+      for (const uint16_t battery_mv : std::initializer_list<uint16_t>{0, 3599, 3600, 65535}) {
         TrackSpeedControl control = make_control(strongest);
         for (int tick = 0; tick < 50; ++tick) {
           const int16_t duty = control.tick(target, counts, battery_mv);
