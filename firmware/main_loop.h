@@ -3,7 +3,8 @@
 
 namespace screed {
 
-/// Runs the robot until the target has no next tick: for ever on the ATmega32U4, to the end of the run in a simulation.
+/// Runs the robot until the target has no next tick: for ever on the ATmega32U4, to the end of the
+/// run in a simulation.
 void main_loop();
 
 }  // namespace screed

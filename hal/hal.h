@@ -1,7 +1,8 @@
 // The hardware abstraction layer: the only seam between the firmware and a target.
 //
-// Free functions, one header for every target, resolved at link time: hal/avr drives the ATmega32U4, hal/host forwards to
-// the current robot of a simulated world. Only the main loop calls them; the core (firmware/robot) never does.
+// Free functions, one header for every target, resolved at link time: hal/avr drives the
+// ATmega32U4, hal/host forwards to the current robot of a simulated world. Only the main loop calls
+// them; the core (firmware/robot) never does.
 #pragma once
 
 #include "hal/sample.h"
@@ -16,19 +17,22 @@ namespace hal {
 /// Brings the target into its safe state (motors off) and starts its devices. Called once, first.
 void init();
 
-/// The scale factors of the board this program was built or simulated for. Constant while the program runs.
+/// The scale factors of the board this program was built or simulated for. Constant while the
+/// program runs.
 const BoardConstants& board_constants();
 
-/// The parameters this robot starts with: stored ones on the robot, those of the experiment in a simulation.
+/// The parameters this robot starts with: stored ones on the robot, those of the experiment in a
+/// simulation.
 const Parameters& parameters();
 
-/// Waits for the next control tick. On the robot this sleeps until the timer fires; in a simulation it advances the world
-/// by one tick, so that time belongs to the world and no wall clock decides a result.
-/// Returns false when there is no next tick (a simulation has ended); never false on the robot.
+/// Waits for the next control tick. On the robot this sleeps until the timer fires; in a simulation
+/// it advances the world by one tick, so that time belongs to the world and no wall clock decides a
+/// result. Returns false when there is no next tick (a simulation has ended); never false on the
+/// robot.
 bool wait_for_tick();
 
-/// Takes the newest measurements of every device. Never blocks: a device that did not answer keeps its old numbers and its
-/// FreshBit stays clear.
+/// Takes the newest measurements of every device. Never blocks: a device that did not answer keeps
+/// its old numbers and its FreshBit stays clear.
 void read_sensors(SensorSample& sample);
 
 /// Applies motor duty and LEDs, and queues the radio bytes. Never blocks.

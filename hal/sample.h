@@ -1,8 +1,9 @@
 // The data that crosses the hardware abstraction layer: raw counts in, raw commands out.
 //
-// Everything here is plain data with fixed-width members, the same on the ATmega32U4 and on the host, so that a recorded
-// sample replays bit for bit. Units are those of the hardware (counts, LSB, duty steps, microseconds): quantisation
-// happens below this line on both sides, never in the firmware core.
+// Everything here is plain data with fixed-width members, the same on the ATmega32U4 and on the
+// host, so that a recorded sample replays bit for bit. Units are those of the hardware (counts,
+// LSB, duty steps, microseconds): quantisation happens below this line on both sides, never in the
+// firmware core.
 #pragma once
 
 #include <stdint.h>
@@ -13,7 +14,8 @@ namespace screed {
 constexpr uint8_t kTickRate_hz = 100;
 constexpr uint16_t kTickPeriod_us = 10000;
 
-/// Most bytes the radio can have received between two ticks: 57,600 baud is 57.6 bytes a tick; the rest is slack for jitter.
+/// Most bytes the radio can have received between two ticks: 57,600 baud is 57.6 bytes a tick; the
+/// rest is slack for jitter.
 constexpr uint8_t kRadioInCapacity = 64;
 /// Most bytes the core hands to the radio in one tick: two whole telemetry lines of 22 bytes.
 constexpr uint8_t kRadioOutCapacity = 44;
@@ -28,19 +30,19 @@ enum FreshBit : uint8_t {
 
 /// What the robot knows of the world at one tick.
 struct SensorSample {
-  uint32_t time_us;         ///< time of this tick since start, wraps after 71.6 minutes
-  int16_t gyro[3];          ///< x, y, z in the robot frame (x forward, y left, z up), 70 mdps/LSB
-  int16_t accel[3];         ///< specific force, robot frame, 0.244 mg/LSB
-  int16_t mag[3];           ///< robot frame, 0.160 mG/LSB
-  int32_t pressure;         ///< LPS25H, 1/4096 hPa/LSB, 24 bits
-  int16_t temperature;      ///< LPS25H, 42.5 degC + raw/480
-  uint16_t encoder_left;    ///< quadrature count, wraps; rises when the left track drives forward
-  uint16_t encoder_right;   ///< as encoder_left
-  uint16_t battery;         ///< sum of eight 10-bit conversions of the divided battery voltage
-  uint16_t last_tick_us;    ///< how long the previous tick's computation took
-  uint8_t encoder_errors;   ///< missed quadrature edges since start, both sides, wraps
-  uint8_t fresh;            ///< FreshBit set
-  uint8_t radio_in_count;   ///< valid bytes in radio_in
+  uint32_t time_us;        ///< time of this tick since start, wraps after 71.6 minutes
+  int16_t gyro[3];         ///< x, y, z in the robot frame (x forward, y left, z up), 70 mdps/LSB
+  int16_t accel[3];        ///< specific force, robot frame, 0.244 mg/LSB
+  int16_t mag[3];          ///< robot frame, 0.160 mG/LSB
+  int32_t pressure;        ///< LPS25H, 1/4096 hPa/LSB, 24 bits
+  int16_t temperature;     ///< LPS25H, 42.5 degC + raw/480
+  uint16_t encoder_left;   ///< quadrature count, wraps; rises when the left track drives forward
+  uint16_t encoder_right;  ///< as encoder_left
+  uint16_t battery;        ///< sum of eight 10-bit conversions of the divided battery voltage
+  uint16_t last_tick_us;   ///< how long the previous tick's computation took
+  uint8_t encoder_errors;  ///< missed quadrature edges since start, both sides, wraps
+  uint8_t fresh;           ///< FreshBit set
+  uint8_t radio_in_count;  ///< valid bytes in radio_in
   uint8_t radio_in[kRadioInCapacity];
 };
 

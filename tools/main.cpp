@@ -1,4 +1,5 @@
-// `screed`, the one host program: subcommands, and how they end. Exit codes: 0 done, 1 the run failed, 2 the input was wrong.
+// `screed`, the one host program: subcommands, and how they end. Exit codes: 0 done, 1 the run
+// failed, 2 the input was wrong.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
@@ -14,7 +15,8 @@ int main(int argc, char** argv) {
   constexpr int kFailed = 1;
   constexpr int kWrongInput = 2;
   try {
-    CLI::App app("Screed: firmware for a terrain-leveling robot, and its simulation twin", "screed");
+    CLI::App app("Screed: firmware for a terrain-leveling robot, and its simulation twin",
+                 "screed");
     app.set_version_flag("--version", SCREED_VERSION);
     app.require_subcommand(1);
     std::function<int()> action;

@@ -16,7 +16,8 @@ constexpr std::chrono::seconds kLogInterval(10);
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::ostream& out) : out_(out), terminal_(&out == &std::cerr && isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(std::ostream& out)
+    : out_(out), terminal_(&out == &std::cerr && isatty(STDERR_FILENO) == 1) {}
 
 void ProgressBar::show(double time_s, double duration_s, const std::string& note) {
   const auto now = std::chrono::steady_clock::now();
@@ -31,7 +32,9 @@ void ProgressBar::show(double time_s, double duration_s, const std::string& note
     begin_time_s_ = time_s;
     return;
   }
-  if (now - drawn_ < (terminal_ ? std::chrono::steady_clock::duration(kTerminalInterval) : kLogInterval)) return;
+  if (now - drawn_ <
+      (terminal_ ? std::chrono::steady_clock::duration(kTerminalInterval) : kLogInterval))
+    return;
   drawn_ = now;
   draw();
 }
@@ -43,8 +46,8 @@ void ProgressBar::draw() {
   std::string bar;
   for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "░";
   char text[200];
-  std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s", share * 100.0, time_s_, duration_s_,
-                wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0, note_.c_str());
+  std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s", share * 100.0, time_s_,
+                duration_s_, wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0, note_.c_str());
   out_ << (terminal_ ? "\r" : "") << bar << text << (terminal_ ? "\033[K" : "\n") << std::flush;
 }
 

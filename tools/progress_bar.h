@@ -1,4 +1,5 @@
-// A progress bar on a terminal; on anything else, a line now and then. Looks at the wall clock, decides nothing.
+// A progress bar on a terminal; on anything else, a line now and then. Looks at the wall clock,
+// decides nothing.
 #pragma once
 
 #include <chrono>
@@ -11,7 +12,8 @@ class ProgressBar {
  public:
   explicit ProgressBar(std::ostream& out);
 
-  /// Shows simulated time, real-time factor since the first call, and `note`. Cheap when called often: draws ten times a second at most.
+  /// Shows simulated time, real-time factor since the first call, and `note`. Cheap when called
+  /// often: draws ten times a second at most.
   void show(double time_s, double duration_s, const std::string& note);
   /// Draws the last state and ends the line.
   void finish();

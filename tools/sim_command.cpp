@@ -20,7 +20,9 @@ namespace {
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 
-extern "C" void on_interrupt(int) { interrupted.store(true); }
+extern "C" void on_interrupt(int) {
+  interrupted.store(true);
+}
 
 struct SimArguments {
   std::string file;
@@ -44,35 +46,45 @@ std::string format(const char* pattern, double value) {
 }
 
 void print_table(const Experiment& experiment, const SimulationSummary& s) {
-  std::printf("\n%s, %s, seed %llu%s\n", experiment.experiment.name.c_str(), experiment.experiment.algorithm.c_str(),
-              static_cast<unsigned long long>(experiment.experiment.seed), s.stopped_early ? " (stopped early)" : "");
+  std::printf("\n%s, %s, seed %llu%s\n", experiment.experiment.name.c_str(),
+              experiment.experiment.algorithm.c_str(),
+              static_cast<unsigned long long>(experiment.experiment.seed),
+              s.stopped_early ? " (stopped early)" : "");
   std::printf("  %-26s %12s\n", "simulated time", format("%.1f s", s.time_s).c_str());
   std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
   std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());
   std::printf("  %-26s %12d\n", "climbs", s.peaks);
   std::printf("  %-26s %12s\n", "robot", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
-  if (s.outside_s > 0.0) std::printf("  %-26s %12s\n", "time off the bed", format("%.1f s", s.outside_s).c_str());
-  std::printf("  %-26s %12llu\n", "telemetry frames", static_cast<unsigned long long>(s.telemetry_frames));
+  if (s.outside_s > 0.0)
+    std::printf("  %-26s %12s\n", "time off the bed", format("%.1f s", s.outside_s).c_str());
+  std::printf("  %-26s %12llu\n", "telemetry frames",
+              static_cast<unsigned long long>(s.telemetry_frames));
   std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());
   std::printf("\n");
   print_row("terrain", "before", "after");
   const auto degrees = [](double value) { return format("%.2f deg", value); };
   print_row("mean slope", degrees(s.before.mean_slope_deg), degrees(s.after.mean_slope_deg));
   print_row("RMS slope", degrees(s.before.rms_slope_deg), degrees(s.after.rms_slope_deg));
-  print_row("95 % of slopes below", degrees(s.before.p95_slope_deg), degrees(s.after.p95_slope_deg));
-  print_row("steepest slope", degrees(s.before.steepest_slope_deg), degrees(s.after.steepest_slope_deg));
+  print_row("95 % of slopes below", degrees(s.before.p95_slope_deg),
+            degrees(s.after.p95_slope_deg));
+  print_row("steepest slope", degrees(s.before.steepest_slope_deg),
+            degrees(s.after.steepest_slope_deg));
   print_row("height deviation", format("%.1f mm", s.before.height_deviation_m * 1e3),
             format("%.1f mm", s.after.height_deviation_m * 1e3));
-  const std::string flat = "flat (below " + format("%g", experiment.experiment.flatness_deg) + " deg)";
-  print_row(flat.c_str(), format("%.1f %%", s.flatness_before * 100.0), format("%.1f %%", s.flatness_after * 100.0));
-  std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(), s.content_hash.c_str());
+  const std::string flat =
+      "flat (below " + format("%g", experiment.experiment.flatness_deg) + " deg)";
+  print_row(flat.c_str(), format("%.1f %%", s.flatness_before * 100.0),
+            format("%.1f %%", s.flatness_after * 100.0));
+  std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
+              s.content_hash.c_str());
 }
 
 int run_sim(const SimArguments& arguments, const std::string& version) {
   std::vector<std::string> overrides = arguments.sets;
   if (arguments.seed.has_value()) overrides.push_back("experiment.seed=" + *arguments.seed);
-  if (arguments.duration.has_value()) overrides.push_back("experiment.duration=" + *arguments.duration);
+  if (arguments.duration.has_value())
+    overrides.push_back("experiment.duration=" + *arguments.duration);
   const Experiment experiment = read_experiment(arguments.file, overrides);
 
   SimulationOptions options;
@@ -84,7 +96,8 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   if (!arguments.quiet) {
     bar.emplace(std::cerr);
     options.progress = [&bar](const SimulationProgress& progress) {
-      bar->show(progress.time_s, progress.duration_s, format("flat %.1f %%", progress.flatness * 100.0));
+      bar->show(progress.time_s, progress.duration_s,
+                format("flat %.1f %%", progress.flatness * 100.0));
     };
   }
 
@@ -93,7 +106,8 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   const SimulationSummary summary = run_simulation(experiment, options);
   if (bar.has_value()) bar->finish();
   for (const auto& leftover : summary.leftovers) {
-    std::cerr << "note: " << leftover.string() << " is left of a run that did not end; remove it when it is not needed\n";
+    std::cerr << "note: " << leftover.string()
+              << " is left of a run that did not end; remove it when it is not needed\n";
   }
   if (arguments.json) {
     std::cout << summary_json(summary);
@@ -107,23 +121,32 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_sim_command(CLI::App& root, const std::string& version, std::function<int()>& action) {
+void register_sim_command(CLI::App& root, const std::string& version,
+                          std::function<int()>& action) {
   auto arguments = std::make_shared<SimArguments>();
-  CLI::App* command = root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
+  CLI::App* command =
+      root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
   command->add_option("FILE", arguments->file, "experiment file (INI)");
   command->add_option("--seed", arguments->seed, "seed of the world; overrides [experiment] seed");
-  command->add_option("--duration", arguments->duration, "simulated seconds; overrides [experiment] duration");
-  command->add_option("--set", arguments->sets, "override a key: section.key=value; may be repeated")->type_size(1)->allow_extra_args(false);
+  command->add_option("--duration", arguments->duration,
+                      "simulated seconds; overrides [experiment] duration");
+  command
+      ->add_option("--set", arguments->sets, "override a key: section.key=value; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "run folder; must not exist yet");
   command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
-  command->add_flag("--quiet", arguments->quiet, "no progress; print run folder and content hash alone");
+  command->add_flag("--quiet", arguments->quiet,
+                    "no progress; print run folder and content hash alone");
   command->add_flag("--json", arguments->json, "print the summary as JSON");
   auto list_keys = std::make_shared<bool>(false);
   command->add_flag("--keys", *list_keys, "list every key of an experiment file and stop");
   command->callback([arguments, list_keys, version, &action] {
     if (*list_keys) {
       action = [] {
-        std::cout << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n" << experiment_key_table();
+        std::cout
+            << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
+            << experiment_key_table();
         return 0;
       };
       return;

@@ -10,8 +10,8 @@ namespace {
 constexpr int32_t kYawCorrectionLimit = 16384;
 
 int16_t approach(int16_t value, int16_t target, int16_t step) {
-  return static_cast<int16_t>(clamp_i32(target, static_cast<int32_t>(value) - step,
-                                        static_cast<int32_t>(value) + step));
+  return static_cast<int16_t>(
+      clamp_i32(target, static_cast<int32_t>(value) - step, static_cast<int32_t>(value) + step));
 }
 
 }  // namespace
@@ -21,7 +21,8 @@ DriveControl::DriveControl(const BoardConstants& board, const Parameters& parame
       left_(board, parameters),
       right_(board, parameters),
       full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
-      step_mm_per_s_(static_cast<int16_t>((parameters.accel_limit + kTickRate_hz - 1) / kTickRate_hz)),
+      step_mm_per_s_(
+          static_cast<int16_t>((parameters.accel_limit + kTickRate_hz - 1) / kTickRate_hz)),
       yaw_kp_(parameters.yaw_kp),
       yaw_ki_(parameters.yaw_ki) {}
 
@@ -36,11 +37,13 @@ void DriveControl::idle(const DriveMeasurement& measured) {
 int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
   const int32_t error =
       clamp_i32(static_cast<int32_t>(command.yaw_rate) - measured_rate, -32767, 32767);
-  // While the tracks cannot make the command the integral only moves back towards zero; were it held, what a spin left in it
-  // would turn a robot for ever that is told to drive straight on at nearly full speed.
+  // While the tracks cannot make the command the integral only moves back towards zero; were it
+  // held, what a spin left in it would turn a robot for ever that is told to drive straight on at
+  // nearly full speed.
   const bool unwinds = (error < 0 && yaw_integral_q8_ > 0) || (error > 0 && yaw_integral_q8_ < 0);
   if (!limited_ || unwinds) {
-    // ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096, shifted in two parts to fit 32 bits.
+    // ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096, shifted in two parts
+    // to fit 32 bits.
     const int32_t step = asr(asr(static_cast<int32_t>(yaw_ki_) * error, 4) * 41, 8);
     yaw_integral_q8_ =
         clamp_i32(yaw_integral_q8_ + step, -kYawCorrectionLimit * 256, kYawCorrectionLimit * 256);
@@ -56,8 +59,9 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
     yaw_integral_q8_ = 0;
     limited_ = false;
   } else {
-    wanted = kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
-                                full_speed_mm_per_s_, &limited_);
+    wanted =
+        kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
+                           full_speed_mm_per_s_, &limited_);
   }
   targets_.left = approach(targets_.left, wanted.left, step_mm_per_s_);
   targets_.right = approach(targets_.right, wanted.right, step_mm_per_s_);

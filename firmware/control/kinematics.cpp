@@ -17,7 +17,8 @@ TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t 
 
 int32_t SkidSteer::yaw_rate(const TrackSpeeds& tracks) const {
   const int32_t difference = static_cast<int32_t>(tracks.right) - tracks.left;
-  // difference / 2 / half_arc, with the numerator scaled so that it fits 32 bits: |difference| <= 1023 mm/s.
+  // difference / 2 / half_arc, with the numerator scaled so that it fits 32 bits: |difference| <=
+  // 1023 mm/s.
   return (clamp_i32(difference, -1023, 1023) * (static_cast<int32_t>(1) << 21)) /
          static_cast<int32_t>(half_arc_q22_);
 }

@@ -7,9 +7,12 @@
 namespace screed {
 namespace {
 
-// Gains of the alpha-beta filter with both poles at r = 0.837: alpha = 1 - r^2, beta = (1 - r)^2 (Kalata 1984, fading memory).
+// Gains of the alpha-beta filter with both poles at r = 0.837: alpha = 1 - r^2, beta = (1 - r)^2
+// (Kalata 1984, fading memory).
 constexpr int32_t kAlpha_q8 = 77;
 constexpr int32_t kBeta_q12 = 109;
+// 1 - r: two first-order lags with this gain follow a target as that filter follows a speed.
+constexpr int32_t kLag_q8 = 42;
 // No track moves 40 counts (23 mm) in a tick: anything above is encoder noise.
 constexpr int16_t kMostCounts = 40;
 // Below this speed a track with target 0 counts as standing.
@@ -30,7 +33,15 @@ TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Paramete
 
 void TrackSpeedControl::release(int16_t counts) {
   integral_q16_ = 0;
+  halfway_q4_ = 0;
+  expected_q4_ = 0;
   observe(counts);
+}
+
+void TrackSpeedControl::expect(int16_t target_mm_per_s) {
+  const int32_t target_q4 = static_cast<int32_t>(target_mm_per_s) * 160;
+  halfway_q4_ += asr_round((target_q4 - halfway_q4_) * kLag_q8, 8);
+  expected_q4_ += asr_round((halfway_q4_ - expected_q4_) * kLag_q8, 8);
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
@@ -38,7 +49,8 @@ void TrackSpeedControl::observe(int16_t counts) {
       static_cast<int32_t>(clamp_i16(counts, -kMostCounts, kMostCounts)) * 4096;
   const int32_t error = lag_q12_ + step_q12 - speed_q12_;
   lag_q12_ = error - asr(error * kAlpha_q8, 8);
-  // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the shift in two parts.
+  // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the
+  // shift in two parts.
   speed_q12_ += asr(asr(error, 2) * kBeta_q12, 10);
   // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16
   speed_dmm_per_s_ = saturate_i16(asr(speed_q12_ * static_cast<int32_t>(count_um_q4_), 16));
@@ -46,6 +58,7 @@ void TrackSpeedControl::observe(int16_t counts) {
 
 int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv) {
   observe(counts);
+  expect(target_mm_per_s);
   const bool standing = speed_dmm_per_s_ < kStanding_dmm_per_s &&
                         speed_dmm_per_s_ > static_cast<int16_t>(-kStanding_dmm_per_s);
   if (target_mm_per_s == 0 && standing) {
@@ -53,9 +66,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
     return 0;
   }
 
-  const int32_t error =
-      clamp_i32(static_cast<int32_t>(target_mm_per_s) * 10 - speed_dmm_per_s_,
-                -kErrorLimit_dmm_per_s, kErrorLimit_dmm_per_s);
+  const int32_t error = clamp_i32(asr_round(expected_q4_, 4) - speed_dmm_per_s_,
+                                  -kErrorLimit_dmm_per_s, kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is.
   const auto least_mv = static_cast<uint16_t>(nominal_mv_ / 2);
@@ -67,8 +79,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   const int32_t proportional_q8 = asr(static_cast<int32_t>(kp_) * error * 102, 6);
   const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);
 
-  // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the duty is at its limit the
-  // integral only moves back from it.
+  // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
+  // duty is at its limit the integral only moves back from it.
   const int32_t unlimited = without_integral + asr(integral_q16_, 16);
   const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
                           (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);

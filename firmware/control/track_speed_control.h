@@ -3,7 +3,9 @@
 // The encoder of the Rover 5 gives 1.8 counts a tick at 0.1 m/s, so the speed is observed by an
 // alpha-beta tracking filter (critically damped, double pole at 0.837 a tick, 56 ms) instead of a
 // difference of counts. The controller is PI with feed-forward from the motor's no-load speed,
-// scaled by the battery voltage.
+// scaled by the battery voltage. The PI part compares the observed speed with the target as the
+// same filter would show it: against the target itself the filter's delay would look like a track
+// that lags, and every start would overshoot by half.
 #pragma once
 
 #include <stdint.h>
@@ -22,7 +24,7 @@ class TrackSpeedControl {
   /// duty 0: the driver brakes.
   int16_t tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv);
 
-  /// One tick with the motors off: observes the speed, forgets the integral.
+  /// One tick with the motors off: observes the speed, forgets the controller's state.
   void release(int16_t counts);
 
   /// Observed speed, 0.1 mm/s.
@@ -30,6 +32,7 @@ class TrackSpeedControl {
 
  private:
   void observe(int16_t counts);
+  void expect(int16_t target_mm_per_s);
 
   uint16_t count_um_q4_;
   uint16_t nominal_mv_;
@@ -38,6 +41,8 @@ class TrackSpeedControl {
   int16_t feed_forward_q8_;   ///< duty per mm/s at the nominal voltage
   int32_t lag_q12_ = 0;       ///< counts by which the observed position trails the encoder
   int32_t speed_q12_ = 0;     ///< counts a tick
+  int32_t halfway_q4_ = 0;    ///< target behind one lag, 0.1 mm/s
+  int32_t expected_q4_ = 0;   ///< target as the observer would show it, 0.1 mm/s
   int32_t integral_q16_ = 0;  ///< duty
   int16_t speed_dmm_per_s_ = 0;
 };

@@ -6,11 +6,14 @@
 namespace screed {
 namespace {
 
-// What a tick can hold (22 mm at full speed are 40 counts): more is encoder noise, and would keep path_mm_ busy for long.
+// What a tick can hold (22 mm at full speed are 40 counts): more is encoder noise, and would keep
+// path_mm_ busy for long.
 constexpr int16_t kMostCounts = 100;
 
 /// length * factor (Q15), rounded; |length| below 2^30.
-int32_t times_q15(int32_t length, int16_t factor) { return scale_q16(length * 2, factor); }
+int32_t times_q15(int32_t length, int16_t factor) {
+  return scale_q16(length * 2, factor);
+}
 
 }  // namespace
 
@@ -36,7 +39,11 @@ void Odometry::update(int16_t counts_left, int16_t counts_right, Angle heading, 
   }
 }
 
-int32_t Odometry::x_mm() const { return x_um_ / 1000; }
-int32_t Odometry::y_mm() const { return y_um_ / 1000; }
+int32_t Odometry::x_mm() const {
+  return x_um_ / 1000;
+}
+int32_t Odometry::y_mm() const {
+  return y_um_ / 1000;
+}
 
 }  // namespace screed

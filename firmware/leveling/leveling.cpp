@@ -37,14 +37,14 @@ void Leveling::enter(LevelingState next) {
 
 // Algorithm 6: above the threshold climb straight on, below it walk at random.
 LevelingState Leveling::next_hill_sensing(Angle pitch) const {
-  const Angle limit = state_ == LevelingState::kClimb
-                          ? static_cast<Angle>(threshold_ - hysteresis_)
-                          : threshold_;
+  const Angle limit =
+      state_ == LevelingState::kClimb ? static_cast<Angle>(threshold_ - hysteresis_) : threshold_;
   return pitch > limit ? LevelingState::kClimb : LevelingState::kWalk;
 }
 
-// "An approach ... could continue on a straight path when an incline is detected, but instead begin a spinning maneuver
-// once a decline is detected" (7.1.1). Between incline and decline the path goes on straight.
+// "An approach ... could continue on a straight path when an incline is detected, but instead begin
+// a spinning maneuver once a decline is detected" (7.1.1). Between incline and decline the path
+// goes on straight.
 LevelingState Leveling::next_spin_on_peak(Angle pitch) {
   switch (state_) {
     case LevelingState::kClimb:

@@ -44,7 +44,8 @@ class Leveling {
  public:
   explicit Leveling(const Parameters& parameters);
 
-  /// Starts a run: the state begins anew. Random sequence, fence and the side of the next spin go on.
+  /// Starts a run: the state begins anew. Random sequence, fence and the side of the next spin go
+  /// on.
   void start();
 
   /// One tick of the selected algorithm. `drive` is what the ground station commands, used by

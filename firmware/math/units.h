@@ -32,7 +32,8 @@ constexpr YawRate yaw_rate_from_degrees(int16_t degrees_per_s) {
 
 /// ms -> control ticks, rounded down; 0..32767 ms.
 constexpr uint16_t ticks_from_ms(int16_t ms) {
-  return static_cast<uint16_t>((static_cast<uint32_t>(ms) * 52429U) >> 19);  // exact for all 0..43698
+  return static_cast<uint16_t>((static_cast<uint32_t>(ms) * 52429U) >>
+                               19);  // exact for all 0..43698
 }
 static_assert(kTickPeriod_us == 10000, "ticks_from_ms divides by 10 ms");
 

@@ -26,8 +26,9 @@ uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size);
 /// the message.
 void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size);
 
-/// True when the CRC is right for this id and size. A frame of the header alone (size 2) is refused:
-/// there the CRC misses some single wrong bits of the counter, since they change the data id too.
+/// True when the CRC is right for this id and size. A frame of the header alone (size 2) is
+/// refused: there the CRC misses some single wrong bits of the counter, since they change the data
+/// id too.
 bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size);
 
 }  // namespace screed

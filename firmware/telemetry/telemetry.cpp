@@ -13,22 +13,26 @@ struct Schedule {
   uint8_t first;   ///< tick of the first one: spreads the load
 };
 
-// In order of importance. A full tick delays the lower lines by one tick; 115 lines a second of 200 possible,
-// 2458 bytes.
+// In order of importance. A full tick delays the lower lines by one tick; 115 lines a second of 200
+// possible, 2458 bytes.
 constexpr Schedule kSchedule[kTelemetryMessages] = {
-    {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2}, {kIdMotors, 5, 3},
+    {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2},  {kIdMotors, 5, 3},
     {kIdLeveling, 10, 4},  {kIdOdometry, 10, 6}, {kIdAccelRaw, 10, 8}, {kIdGyroRaw, 10, 9},
     {kIdPower, 50, 14},    {kIdMagRaw, 50, 24},  {kIdBaro, 100, 34},
 };
 
-uint8_t header_bits(uint8_t value) { return static_cast<uint8_t>(value << 4); }
+uint8_t header_bits(uint8_t value) {
+  return static_cast<uint8_t>(value << 4);
+}
 
 void put_vector(uint8_t* at, const int16_t (&vector)[3]) {
   for (uint8_t i = 0; i < 3; ++i) put_s16(at + 2 * i, vector[i]);
 }
 
 /// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.
-int16_t centidegrees_per_s(YawRate rate) { return centidegrees_from_angle(rate); }
+int16_t centidegrees_per_s(YawRate rate) {
+  return centidegrees_from_angle(rate);
+}
 
 // Fills size and data[2..]; the protection header is written afterwards.
 void fill(CanFrame& frame, const TelemetryView& view) {
@@ -93,7 +97,8 @@ void fill(CanFrame& frame, const TelemetryView& view) {
       // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
       put_u32(payload, (static_cast<uint32_t>(sample.pressure) * 25U) >> 6);
       // 42.5 degC + raw/480, in 0.01 degC
-      put_s16(payload + 4, static_cast<int16_t>(4250 + static_cast<int32_t>(sample.temperature) * 5 / 24));
+      put_s16(payload + 4,
+              static_cast<int16_t>(4250 + static_cast<int32_t>(sample.temperature) * 5 / 24));
       break;
   }
 }
@@ -130,7 +135,8 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
   }
   uint16_t bit = 1;
   for (uint8_t i = 0; i < kTelemetryMessages; ++i, bit = static_cast<uint16_t>(bit << 1)) {
-    // The countdown goes on while a line waits, so that a delay moves one line and not its schedule.
+    // The countdown goes on while a line waits, so that a delay moves one line and not its
+    // schedule.
     if (countdown_[i] == 0) {
       due_ = static_cast<uint16_t>(due_ | bit);
       countdown_[i] = kSchedule[i].period;

@@ -1,4 +1,5 @@
-// The downlink: which frame is due when, and its bytes. At most two lines a tick, so that the radio's 57.6 bytes a tick hold them.
+// The downlink: which frame is due when, and its bytes. At most two lines a tick, so that the
+// radio's 57.6 bytes a tick hold them.
 #pragma once
 
 #include <stdint.h>
@@ -35,10 +36,12 @@ constexpr uint8_t kTelemetryMessages = 11;
 
 class Telemetry {
  public:
-  /// Queues the acknowledgement of a command for the next tick; a second one before that replaces it.
+  /// Queues the acknowledgement of a command for the next tick; a second one before that replaces
+  /// it.
   void acknowledge(uint8_t op, RequestResult result);
 
-  /// One tick: writes the lines that are due into output.radio_out, whole lines only. What does not fit waits for the next tick.
+  /// One tick: writes the lines that are due into output.radio_out, whole lines only. What does not
+  /// fit waits for the next tick.
   void tick(const TelemetryView& view, RobotOutput& output);
 
  private:

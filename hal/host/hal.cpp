@@ -12,12 +12,24 @@ thread_local Target* current = nullptr;
 
 }  // namespace
 
-void init() { current->init(); }
-const BoardConstants& board_constants() { return current->board_constants(); }
-const Parameters& parameters() { return current->parameters(); }
-bool wait_for_tick() { return current->wait_for_tick(); }
-void read_sensors(SensorSample& sample) { current->read_sensors(sample); }
-void write_outputs(const RobotOutput& output) { current->write_outputs(output); }
+void init() {
+  current->init();
+}
+const BoardConstants& board_constants() {
+  return current->board_constants();
+}
+const Parameters& parameters() {
+  return current->parameters();
+}
+bool wait_for_tick() {
+  return current->wait_for_tick();
+}
+void read_sensors(SensorSample& sample) {
+  current->read_sensors(sample);
+}
+void write_outputs(const RobotOutput& output) {
+  current->write_outputs(output);
+}
 
 void run_firmware(Target& target) {
   struct Restore {

@@ -1,7 +1,8 @@
-// The host's side of the hardware abstraction layer: the free functions of hal.h forward to the current target of the thread.
+// The host's side of the hardware abstraction layer: the free functions of hal.h forward to the
+// current target of the thread.
 //
-// A target is whatever stands in for the hardware: a world of physics, a replayed log, the real image under an MCU simulator.
-// Virtual functions are fine here: the host has the memory for them.
+// A target is whatever stands in for the hardware: a world of physics, a replayed log, the real
+// image under an MCU simulator. Virtual functions are fine here: the host has the memory for them.
 #pragma once
 
 #include "firmware/robot/board_constants.h"
@@ -23,8 +24,8 @@ class Target {
   virtual void write_outputs(const RobotOutput& output) = 0;
 };
 
-/// Runs the firmware's main loop on this target, in this thread, until wait_for_tick() returns false. Exceptions of the target
-/// pass through. Several threads may each run a robot of their own.
+/// Runs the firmware's main loop on this target, in this thread, until wait_for_tick() returns
+/// false. Exceptions of the target pass through. Several threads may each run a robot of their own.
 void run_firmware(Target& target);
 
 }  // namespace hal

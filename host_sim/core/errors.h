@@ -6,14 +6,15 @@
 
 namespace screed {
 
-/// The user's input is wrong: a file, a key, a value. The message names what is wrong, where, and what is allowed.
-/// Ends a program with exit code 2.
+/// The user's input is wrong: a file, a key, a value. The message names what is wrong, where, and
+/// what is allowed. Ends a program with exit code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The input was right, but the run could not be completed: disk full, folder not writable. Ends a program with exit code 1.
+/// The input was right, but the run could not be completed: disk full, folder not writable. Ends a
+/// program with exit code 1.
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,7 +1,9 @@
-// Random numbers of a world: one seeded generator per component, so that adding a draw in one place changes nothing elsewhere.
+// Random numbers of a world: one seeded generator per component, so that adding a draw in one place
+// changes nothing elsewhere.
 //
-// The generator is PCG32 (O'Neill 2014, XSH-RR 64/32); the distributions are our own, since those of the standard library
-// differ between vendors. Integer arithmetic and IEEE operations only; std::log and std::sqrt in normal().
+// The generator is PCG32 (O'Neill 2014, XSH-RR 64/32); the distributions are our own, since those
+// of the standard library differ between vendors. Integer arithmetic and IEEE operations only;
+// std::log and std::sqrt in normal().
 #pragma once
 
 #include <cmath>

@@ -43,10 +43,12 @@ bool parse_number(const std::string& text, Number& value) {
 }
 
 template <class Get>
-Key real_key(const char* section, const char* name, const char* unit, double min, double max, const char* meaning, Get field) {
+Key real_key(const char* section, const char* name, const char* unit, double min, double max,
+             const char* meaning, Get field) {
   const auto set = [=](Experiment& experiment, const std::string& text) {
     double value = 0.0;
-    if (!parse_number(text, value) || !std::isfinite(value) || value < min || value > max) return false;
+    if (!parse_number(text, value) || !std::isfinite(value) || value < min || value > max)
+      return false;
     field(experiment) = value;
     return true;
   };
@@ -56,7 +58,8 @@ Key real_key(const char* section, const char* name, const char* unit, double min
     if (!value.has_value()) return std::nullopt;
     return shortest(*value);
   };
-  return {section, name, unit, "a number " + shortest(min) + ".." + shortest(max), meaning, set, get};
+  return {section, name, unit, "a number " + shortest(min) + ".." + shortest(max),
+          meaning, set,  get};
 }
 
 template <class Get>
@@ -74,8 +77,8 @@ Key bool_key(const char* section, const char* name, const char* meaning, Get fie
 }
 
 template <class Get>
-Key text_key(const char* section, const char* name, const char* allowed, const char* meaning, Get field,
-             std::function<bool(const std::string&)> accepts) {
+Key text_key(const char* section, const char* name, const char* allowed, const char* meaning,
+             Get field, std::function<bool(const std::string&)> accepts) {
   const auto set = [=](Experiment& experiment, const std::string& text) {
     if (!accepts(text)) return false;
     field(experiment) = text;
@@ -106,79 +109,109 @@ bool is_algorithm(const std::string& name) {
 }
 
 bool is_file_name(const std::string& text) {
-  return !text.empty() && text.size() <= 64 && text.find_first_not_of(
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string::npos;
+  return !text.empty() && text.size() <= 64 &&
+         text.find_first_not_of(
+             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+             std::string::npos;
 }
 
-bool not_empty(const std::string& text) { return !text.empty(); }
+bool not_empty(const std::string& text) {
+  return !text.empty();
+}
 
 std::vector<Key> make_keys() {
   std::vector<Key> keys;
-  keys.push_back(text_key("", "output_directory_prefix", "a folder", "where run folders are made",
-                          [](Experiment& e) -> std::string& { return e.output_directory_prefix; }, not_empty));
+  keys.push_back(text_key(
+      "", "output_directory_prefix", "a folder", "where run folders are made",
+      [](Experiment& e) -> std::string& { return e.output_directory_prefix; }, not_empty));
 
   keys.push_back(bool_key("vehicle", "tracks", "belts round the wheels; false: the wheels alone",
                           [](Experiment& e) -> bool& { return e.vehicle.tracks; }));
-  keys.push_back(text_key("vehicle", "model", "a URDF file, or rover5", "the robot",
-                          [](Experiment& e) -> std::string& { return e.vehicle.model; }, not_empty));
+  keys.push_back(text_key(
+      "vehicle", "model", "a URDF file, or rover5", "the robot",
+      [](Experiment& e) -> std::string& { return e.vehicle.model; }, not_empty));
   keys.push_back(real_key("vehicle", "x", "m", -500, 500, "start position, east",
                           [](Experiment& e) -> double& { return e.vehicle.x_m; }));
   keys.push_back(real_key("vehicle", "y", "m", -500, 500, "start position, north",
                           [](Experiment& e) -> double& { return e.vehicle.y_m; }));
-  keys.push_back(real_key("vehicle", "z", "m", -200, 200, "start height of the chassis; left out: set down on the ground",
+  keys.push_back(real_key("vehicle", "z", "m", -200, 200,
+                          "start height of the chassis; left out: set down on the ground",
                           [](Experiment& e) -> std::optional<double>& { return e.vehicle.z_m; }));
   keys.push_back(real_key("vehicle", "r", "deg", -180, 180, "start roll, left side up",
                           [](Experiment& e) -> double& { return e.vehicle.roll_deg; }));
   keys.push_back(real_key("vehicle", "p", "deg", -90, 90, "start pitch, nose up",
                           [](Experiment& e) -> double& { return e.vehicle.pitch_deg; }));
-  keys.push_back(real_key("vehicle", "h", "deg", -360, 360, "start heading, counter-clockwise from east",
+  keys.push_back(real_key("vehicle", "h", "deg", -360, 360,
+                          "start heading, counter-clockwise from east",
                           [](Experiment& e) -> double& { return e.vehicle.heading_deg; }));
-  keys.push_back(real_key("vehicle", "leg_angle", "deg", -90, 90, "angle of the legs below the horizontal; left out: as in the model",
-                          [](Experiment& e) -> std::optional<double>& { return e.vehicle.leg_angle_deg; }));
-  keys.push_back(real_key("vehicle", "track_friction", "", 0.01, 5, "Coulomb friction between track or wheel and ground",
+  keys.push_back(
+      real_key("vehicle", "leg_angle", "deg", -90, 90,
+               "angle of the legs below the horizontal; left out: as in the model",
+               [](Experiment& e) -> std::optional<double>& { return e.vehicle.leg_angle_deg; }));
+  keys.push_back(real_key("vehicle", "track_friction", "", 0.01, 5,
+                          "Coulomb friction between track or wheel and ground",
                           [](Experiment& e) -> double& { return e.vehicle.track_friction; }));
-  keys.push_back(real_key("vehicle", "chassis_friction", "", 0.0, 5, "Coulomb friction between chassis and ground",
+  keys.push_back(real_key("vehicle", "chassis_friction", "", 0.0, 5,
+                          "Coulomb friction between chassis and ground",
                           [](Experiment& e) -> double& { return e.vehicle.chassis_friction; }));
 
-  keys.push_back(text_key("map", "filename", "a grey PNG or BMP file", "height map; left out: level ground, or a ramp",
-                          [](Experiment& e) -> std::string& { return e.map.filename; }, not_empty));
+  keys.push_back(text_key(
+      "map", "filename", "a grey PNG or BMP file", "height map; left out: level ground, or a ramp",
+      [](Experiment& e) -> std::string& { return e.map.filename; }, not_empty));
   keys.push_back(real_key("map", "size", "m", 0.1, 1000, "length of the bed's longer side",
                           [](Experiment& e) -> double& { return e.map.size_m; }));
   keys.push_back(real_key("map", "scale", "m", 0.0001, 100, "height of white",
                           [](Experiment& e) -> double& { return e.map.scale_m; }));
-  keys.push_back(real_key("map", "smoothing", "m", 0, 1, "standard deviation of a Gaussian low-pass over the image",
+  keys.push_back(real_key("map", "smoothing", "m", 0, 1,
+                          "standard deviation of a Gaussian low-pass over the image",
                           [](Experiment& e) -> double& { return e.map.smoothing_m; }));
-  keys.push_back(real_key("map", "max_slope", "deg", 0.1, 89, "heights are scaled down until no slope is steeper",
-                          [](Experiment& e) -> std::optional<double>& { return e.map.max_slope_deg; }));
-  keys.push_back(real_key("map", "ramp", "deg", -60, 60, "without a file: slope of the ground, rising to the east",
+  keys.push_back(real_key(
+      "map", "max_slope", "deg", 0.1, 89, "heights are scaled down until no slope is steeper",
+      [](Experiment& e) -> std::optional<double>& { return e.map.max_slope_deg; }));
+  keys.push_back(real_key("map", "ramp", "deg", -60, 60,
+                          "without a file: slope of the ground, rising to the east",
                           [](Experiment& e) -> double& { return e.map.ramp_deg; }));
-  keys.push_back(bool_key("map", "wrap", "the terrain repeats at its edges; the image must be tileable",
+  keys.push_back(bool_key("map", "wrap",
+                          "the terrain repeats at its edges; the image must be tileable",
                           [](Experiment& e) -> bool& { return e.map.wrap; }));
-  keys.push_back(text_key("map", "model", "rigid", "how the ground answers",
-                          [](Experiment& e) -> std::string& { return e.map.model; },
-                          [](const std::string& text) { return text == "rigid"; }));
+  keys.push_back(text_key(
+      "map", "model", "rigid", "how the ground answers",
+      [](Experiment& e) -> std::string& { return e.map.model; },
+      [](const std::string& text) { return text == "rigid"; }));
 
-  keys.push_back(text_key("experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
-                          [](Experiment& e) -> std::string& { return e.experiment.name; }, is_file_name));
-  keys.push_back(text_key("experiment", "algorithm", "drive, hill_sensing or spin_on_peak", "what the firmware does",
-                          [](Experiment& e) -> std::string& { return e.experiment.algorithm; }, is_algorithm));
+  keys.push_back(text_key(
+      "experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
+      [](Experiment& e) -> std::string& { return e.experiment.name; }, is_file_name));
+  keys.push_back(text_key(
+      "experiment", "algorithm", "drive, hill_sensing or spin_on_peak", "what the firmware does",
+      [](Experiment& e) -> std::string& { return e.experiment.algorithm; }, is_algorithm));
   keys.push_back(real_key("experiment", "duration", "s", 0.01, 1e6, "simulated time",
                           [](Experiment& e) -> double& { return e.experiment.duration_s; }));
-  keys.push_back({"experiment", "seed", "", "an integer 0..18446744073709551615", "of every random generator of the world",
-                  [](Experiment& e, const std::string& text) { return parse_number(text, e.experiment.seed); },
-                  [](const Experiment& e) -> std::optional<std::string> { return std::to_string(e.experiment.seed); }});
-  keys.push_back(real_key("experiment", "flatness", "deg", 0.0, 89, "slope up to which ground counts as flat",
+  keys.push_back(
+      {"experiment", "seed", "", "an integer 0..18446744073709551615",
+       "of every random generator of the world",
+       [](Experiment& e, const std::string& text) { return parse_number(text, e.experiment.seed); },
+       [](const Experiment& e) -> std::optional<std::string> {
+         return std::to_string(e.experiment.seed);
+       }});
+  keys.push_back(real_key("experiment", "flatness", "deg", 0.0, 89,
+                          "slope up to which ground counts as flat",
                           [](Experiment& e) -> double& { return e.experiment.flatness_deg; }));
-  keys.push_back(real_key("experiment", "lay_on_side_at", "s", 0.01, 1e6, "fault: the robot is laid on its side at this time",
-                          [](Experiment& e) -> std::optional<double>& { return e.experiment.lay_on_side_at_s; }));
+  keys.push_back(real_key(
+      "experiment", "lay_on_side_at", "s", 0.01, 1e6,
+      "fault: the robot is laid on its side at this time",
+      [](Experiment& e) -> std::optional<double>& { return e.experiment.lay_on_side_at_s; }));
 
   keys.push_back(real_key("drive", "speed", "m/s", -0.5, 0.5, "algorithm drive: commanded speed",
                           [](Experiment& e) -> double& { return e.drive.speed_m_per_s; }));
-  keys.push_back(real_key("drive", "yaw_rate", "deg/s", -179, 179, "algorithm drive: commanded turn rate",
+  keys.push_back(real_key("drive", "yaw_rate", "deg/s", -179, 179,
+                          "algorithm drive: commanded turn rate",
                           [](Experiment& e) -> double& { return e.drive.yaw_rate_deg_per_s; }));
 
-  keys.push_back(bool_key("sensors", "noise", "noise, bias and scale errors as in the data sheets; false: quantisation alone",
-                          [](Experiment& e) -> bool& { return e.sensors.noise; }));
+  keys.push_back(
+      bool_key("sensors", "noise",
+               "noise, bias and scale errors as in the data sheets; false: quantisation alone",
+               [](Experiment& e) -> bool& { return e.sensors.noise; }));
 
   keys.push_back(real_key("radio", "delay", "s", 0, 10, "of a byte, one way",
                           [](Experiment& e) -> double& { return e.radio.delay_s; }));
@@ -193,10 +226,12 @@ std::vector<Key> make_keys() {
   for (const ParameterInfo& info : kParameterTable) {
     if (std::string(info.name) == "algorithm") continue;  // [experiment] algorithm, by name
     keys.push_back({"parameters", info.name, info.unit,
-                    "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max), info.meaning,
+                    "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max),
+                    info.meaning,
                     [info](Experiment& e, const std::string& text) {
                       int16_t value = 0;
-                      if (!parse_number(text, value) || value < info.min || value > info.max) return false;
+                      if (!parse_number(text, value) || value < info.min || value > info.max)
+                        return false;
                       e.parameters.*info.field = value;
                       return true;
                     },
@@ -229,7 +264,8 @@ std::string known_sections() {
   std::string names;
   std::string last;
   for (const Key& key : keys()) {
-    if (key.section != last && !key.section.empty()) names += (names.empty() ? "[" : ", [") + key.section + "]";
+    if (key.section != last && !key.section.empty())
+      names += (names.empty() ? "[" : ", [") + key.section + "]";
     last = key.section;
   }
   return names;
@@ -243,14 +279,18 @@ void apply(Experiment& experiment, const IniEntry& entry, const std::string& sou
   if (key == keys().end()) {
     const std::string names = known_names(entry.section);
     if (names.empty()) {
-      throw InputError(where + ": unknown section [" + entry.section + "]; known are " + known_sections());
+      throw InputError(where + ": unknown section [" + entry.section + "]; known are " +
+                       known_sections());
     }
-    throw InputError(where + ": unknown key '" + entry.key + "'" +
-                     (entry.section.empty() ? " before the first section" : " in [" + entry.section + "]") + "; known are " + names);
+    throw InputError(
+        where + ": unknown key '" + entry.key + "'" +
+        (entry.section.empty() ? " before the first section" : " in [" + entry.section + "]") +
+        "; known are " + names);
   }
   if (!key->set(experiment, entry.value)) {
-    throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value + "' is not allowed; expected " +
-                     key->allowed + (key->unit.empty() ? "" : " (" + key->unit + ")"));
+    throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value +
+                     "' is not allowed; expected " + key->allowed +
+                     (key->unit.empty() ? "" : " (" + key->unit + ")"));
   }
 }
 
@@ -258,7 +298,8 @@ void apply(Experiment& experiment, const IniEntry& entry, const std::string& sou
 void check(const Experiment& experiment, const std::string& source) {
   const Parameters& p = experiment.parameters;
   if (p.walk_speed_min > p.walk_speed_max) {
-    throw InputError(source + ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min) +
+    throw InputError(source +
+                     ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min) +
                      " is above walk_speed_max = " + std::to_string(p.walk_speed_max));
   }
   if (p.walk_leg_min > p.walk_leg_max) {
@@ -292,7 +333,8 @@ std::string Experiment::text() const {
   return text;
 }
 
-Experiment read_experiment(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+Experiment read_experiment(const std::filesystem::path& path,
+                           const std::vector<std::string>& overrides) {
   Experiment experiment;
   experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
   const std::string source = path.string();
@@ -303,7 +345,8 @@ Experiment read_experiment(const std::filesystem::path& path, const std::vector<
   return experiment;
 }
 
-std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name, const char* key) {
+std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
+                                     const char* key) {
   const std::filesystem::path file(name);
   std::vector<std::filesystem::path> places;
   if (file.is_absolute()) {
@@ -333,8 +376,9 @@ std::string experiment_key_table() {
   std::string text;
   for (const Key& key : keys()) {
     const std::optional<std::string> value = key.get(defaults);
-    text += "| " + (key.section.empty() ? "" : "[" + key.section + "] ") + key.name + " | " + key.unit + " | " +
-            value.value_or("") + " | " + key.allowed + " | " + key.meaning + " |\n";
+    text += "| " + (key.section.empty() ? "" : "[" + key.section + "] ") + key.name + " | " +
+            key.unit + " | " + value.value_or("") + " | " + key.allowed + " | " + key.meaning +
+            " |\n";
   }
   return text;
 }

@@ -1,7 +1,9 @@
-// An experiment: everything that decides a simulated run, as read from an INI file (thesis Figure 5.3 and our own sections).
+// An experiment: everything that decides a simulated run, as read from an INI file (thesis
+// Figure 5.3 and our own sections).
 //
-// Reading is strict: an unknown section or key, a value out of range or of the wrong kind ends with one line that names file, line,
-// key and what is allowed. docs/experiments.md lists every key; the list is made from the same table.
+// Reading is strict: an unknown section or key, a value out of range or of the wrong kind ends with
+// one line that names file, line, key and what is allowed. docs/experiments.md lists every key; the
+// list is made from the same table.
 #pragma once
 
 #include <cstdint>
@@ -32,12 +34,12 @@ struct Experiment {
   } vehicle;
 
   struct {
-    std::string filename;                  ///< a grey image; empty: level ground
+    std::string filename;  ///< a grey image; empty: level ground
     double size_m = 3.0;
     double scale_m = 0.2;
     double smoothing_m = 0.0;
     std::optional<double> max_slope_deg;
-    double ramp_deg = 0.0;                 ///< without an image: level ground inclined towards east
+    double ramp_deg = 0.0;  ///< without an image: level ground inclined towards east
     bool wrap = false;
     std::string model = "rigid";
   } map;
@@ -47,7 +49,7 @@ struct Experiment {
     std::string algorithm = "hill_sensing";
     double duration_s = 60.0;
     uint64_t seed = 1;
-    double flatness_deg = 5.0;             ///< epsilon of the thesis' flatness, as a slope
+    double flatness_deg = 5.0;  ///< epsilon of the thesis' flatness, as a slope
     std::optional<double> lay_on_side_at_s;
   } experiment;
 
@@ -80,18 +82,21 @@ struct Experiment {
 };
 
 /// Reads `path` and applies `overrides` ("section.key=value") on top. Throws InputError.
-Experiment read_experiment(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+Experiment read_experiment(const std::filesystem::path& path,
+                           const std::vector<std::string>& overrides = {});
 
 /// The algorithm's number in the parameter table. Throws InputError for an unknown name.
 int16_t algorithm_number(const std::string& name);
 
-/// Finds a file named in an experiment: as given when absolute, else beside the experiment file, else in the project's data folders.
-/// Throws InputError that lists where it looked.
-std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name, const char* key);
+/// Finds a file named in an experiment: as given when absolute, else beside the experiment file,
+/// else in the project's data folders. Throws InputError that lists where it looked.
+std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
+                                     const char* key);
 /// The URDF of [vehicle] model.
 std::filesystem::path find_model_file(const Experiment& experiment);
 
-/// One line a key: section.key, unit, default, allowed values, meaning; for docs and `screed sim --keys`.
+/// One line a key: section.key, unit, default, allowed values, meaning; for docs and `screed sim
+/// --keys`.
 std::string experiment_key_table();
 
 }  // namespace screed

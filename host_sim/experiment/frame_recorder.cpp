@@ -9,13 +9,17 @@ namespace {
 
 constexpr double kRadPerAngle = std::numbers::pi / 32768.0;
 
-double wrap_rad(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+double wrap_rad(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
 
 /// Slip of a driven surface over the ground: 1 spinning in place, 0 rolling, -1 locked and dragged.
 double slip(double surface, double ground) {
   const double most = std::max(std::abs(surface), std::abs(ground));
   constexpr double kStanding = 1e-3;  // below a mm/s slip means nothing
-  return most < kStanding ? 0.0 : std::clamp((surface - ground) / std::copysign(most, surface), -1.0, 1.0);
+  return most < kStanding
+             ? 0.0
+             : std::clamp((surface - ground) / std::copysign(most, surface), -1.0, 1.0);
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ struct Reading {
   }
 };
 
-/// True when a section's line goes on after its bracket with more than a comment; inih would not look at that.
+/// True when a section's line goes on after its bracket with more than a comment; inih would not
+/// look at that.
 bool has_more_than_section(const std::string& line) {
   const size_t bracket = line.find(']');
   if (line.empty() || line[0] != '[' || bracket == std::string::npos) return false;
@@ -43,7 +44,8 @@ char* read_line(char* buffer, int size, void* stream) {
   std::string text;
   if (!reading.complaint.empty() || !std::getline(reading.file, text)) return nullptr;
   ++reading.line;
-  // inih joins indented lines to the value before them; in an experiment file an indented line is a line.
+  // inih joins indented lines to the value before them; in an experiment file an indented line is a
+  // line.
   text.erase(0, text.find_first_not_of(" \t\r"));
   if (text.size() + 2 > static_cast<size_t>(size)) {
     reading.complain("line too long; at most " + std::to_string(size - 2) + " characters");
@@ -60,12 +62,14 @@ char* read_line(char* buffer, int size, void* stream) {
 
 int take_entry(void* user, const char* section, const char* name, const char* value) {
   auto& reading = *static_cast<Reading*>(user);
-  const auto same = std::find_if(reading.entries.begin(), reading.entries.end(), [&](const IniEntry& entry) {
-    return entry.section == section && entry.key == name;
-  });
+  const auto same = std::find_if(
+      reading.entries.begin(), reading.entries.end(),
+      [&](const IniEntry& entry) { return entry.section == section && entry.key == name; });
   if (same != reading.entries.end()) {
-    const std::string where = *section == '\0' ? " before the first section" : std::string(" in [") + section + "]";
-    reading.complain(std::string("key '") + name + "' is given twice" + where + ", first in line " + std::to_string(same->line));
+    const std::string where =
+        *section == '\0' ? " before the first section" : std::string(" in [") + section + "]";
+    reading.complain(std::string("key '") + name + "' is given twice" + where + ", first in line " +
+                     std::to_string(same->line));
     return 1;
   }
   // inih takes only ';' for a comment behind a value.
@@ -82,18 +86,21 @@ int take_entry(void* user, const char* section, const char* name, const char* va
 
 std::vector<IniEntry> read_ini_file(const std::filesystem::path& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw InputError(path.string() + ": is a folder, not an experiment file");
+  if (std::filesystem::is_directory(path, error))
+    throw InputError(path.string() + ": is a folder, not an experiment file");
   Reading reading;
   reading.name = path.string();
   reading.file.open(path);
-  if (!reading.file) throw InputError(path.string() + ": no such experiment file, or it cannot be read");
+  if (!reading.file)
+    throw InputError(path.string() + ": no such experiment file, or it cannot be read");
   const int bad_line = ini_parse_stream(read_line, &reading, take_entry, &reading);
   // The first of two complaints is the one to tell.
   if (!reading.complaint.empty() && (bad_line <= 0 || bad_line > reading.complaint_line)) {
     throw InputError(reading.complaint);
   }
   if (bad_line > 0) {
-    throw InputError(reading.name + ":" + std::to_string(bad_line) + ": neither [section] nor 'key = value' nor a comment");
+    throw InputError(reading.name + ":" + std::to_string(bad_line) +
+                     ": neither [section] nor 'key = value' nor a comment");
   }
   if (bad_line < 0) throw InputError(reading.name + ": cannot be read");
   return std::move(reading.entries);

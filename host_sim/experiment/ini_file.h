@@ -1,4 +1,5 @@
-// An INI file as a list of its entries with their line numbers. Knows nothing of which keys mean what.
+// An INI file as a list of its entries with their line numbers. Knows nothing of which keys mean
+// what.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +11,16 @@ namespace screed {
 struct IniEntry {
   std::string section;  ///< "" before the first section
   std::string key;
-  std::string value;    ///< without the spaces around it and without a comment
-  int line = 0;         ///< 1-based; 0 for an entry from the command line
+  std::string value;  ///< without the spaces around it and without a comment
+  int line = 0;       ///< 1-based; 0 for an entry from the command line
 };
 
-/// Reads a file: [sections], key = value, comments after ; or #. Throws InputError, naming file and line, for a missing file, a line
-/// that is neither of these, and a key that is given twice.
+/// Reads a file: [sections], key = value, comments after ; or #. Throws InputError, naming file and
+/// line, for a missing file, a line that is neither of these, and a key that is given twice.
 std::vector<IniEntry> read_ini_file(const std::filesystem::path& path);
 
-/// "section.key=value", as on the command line; a key without a section stands before the first. Throws InputError.
+/// "section.key=value", as on the command line; a key without a section stands before the first.
+/// Throws InputError.
 IniEntry parse_override(const std::string& text);
 
 }  // namespace screed

@@ -29,10 +29,13 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
 constexpr uint64_t kPathTicks = kTickRate_hz / 10;  // a point of the drawn path ten times a second
 
-constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped", "fault"};
-constexpr const char* kLevelingStateNames[kLevelingStates] = {"idle", "walk", "climb", "spin", "return", "drive"};
-constexpr const char* kFaultNames[] = {"tilt",       "IMU silent", "gyro frozen", "left track stalled", "right track stalled",
-                                       "battery low", "parameters", "emergency stop"};
+constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",
+                                                   "fault"};
+constexpr const char* kLevelingStateNames[kLevelingStates] = {"idle", "walk",   "climb",
+                                                              "spin", "return", "drive"};
+constexpr const char* kFaultNames[] = {
+    "tilt",        "IMU silent", "gyro frozen",   "left track stalled", "right track stalled",
+    "battery low", "parameters", "emergency stop"};
 
 /// A text file of the run folder; RunError when the disk is full.
 class TextFile {
@@ -43,7 +46,8 @@ class TextFile {
   std::ostream& stream() { return file_; }
   void close() {
     file_.close();
-    if (!file_) throw RunError(path_.string() + ": cannot be written completely; is the disk full?");
+    if (!file_)
+      throw RunError(path_.string() + ": cannot be written completely; is the disk full?");
   }
 
  private:
@@ -64,25 +68,33 @@ HeightMapView view_of(const HeightField& field, std::vector<int32_t>& heights) {
     for (int ix = 0; ix < field.nx(); ++ix) heights.push_back(field.node(ix, iy));
   }
   HeightMapView view;
-  view.geometry = {static_cast<uint32_t>(field.nx()), static_cast<uint32_t>(field.ny()), kHeightUnit_m, field.spacing_m(),
-                   field.node_x(0), field.node_y(0), field.wrap()};
+  view.geometry = {static_cast<uint32_t>(field.nx()),
+                   static_cast<uint32_t>(field.ny()),
+                   kHeightUnit_m,
+                   field.spacing_m(),
+                   field.node_x(0),
+                   field.node_y(0),
+                   field.wrap()};
   view.heights = heights;
   return view;
 }
 
 /// The robot in the world, as the firmware's main loop sees it; records every tick.
 ///
-/// Beside the robot of the main loop runs a second one on the same samples. The core is a pure function, so both must give the same
-/// bytes; the second one also shows its thoughts to the recorder, which the main loop's robot, behind its HAL, does not.
+/// Beside the robot of the main loop runs a second one on the same samples. The core is a pure
+/// function, so both must give the same bytes; the second one also shows its thoughts to the
+/// recorder, which the main loop's robot, behind its HAL, does not.
 class RecordingTarget : public hal::Target {
  public:
-  RecordingTarget(World& world, const Experiment& experiment, const SimulationOptions& options, SessionWriter& writer)
+  RecordingTarget(World& world, const Experiment& experiment, const SimulationOptions& options,
+                  SessionWriter& writer)
       : world_(world),
         options_(options),
         parameters_(experiment.parameters),
         shadow_(kBoard, parameters_),
         writer_(writer),
-        last_tick_(static_cast<uint64_t>(std::llround(experiment.experiment.duration_s * kTickRate_hz))),
+        last_tick_(
+            static_cast<uint64_t>(std::llround(experiment.experiment.duration_s * kTickRate_hz))),
         duration_s_(experiment.experiment.duration_s),
         flatness_deg_(experiment.experiment.flatness_deg),
         flatness_(flatness(world.terrain(), flatness_deg_)) {}
@@ -96,8 +108,9 @@ class RecordingTarget : public hal::Target {
     if (stopped_early_ || world_.ticks() >= last_tick_) return false;
     world_.advance();
     if (options_.realtime) {
-      std::this_thread::sleep_until(begin_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                                 std::chrono::duration<double>(world_.time_s())));
+      std::this_thread::sleep_until(begin_ +
+                                    std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                        std::chrono::duration<double>(world_.time_s())));
     }
     return true;
   }
@@ -110,7 +123,8 @@ class RecordingTarget : public hal::Target {
     const Frame frame = recorder_.record(world_, shadow_);
     writer_.append(frame, world_.sample(), output);
     world_.apply(output);
-    if (world_.ticks() % kPathTicks == 1) path_.push_back({frame.x, frame.y, static_cast<size_t>(frame.leveling_state)});
+    if (world_.ticks() % kPathTicks == 1)
+      path_.push_back({frame.x, frame.y, static_cast<size_t>(frame.leveling_state)});
     if (options_.progress && world_.ticks() % kProgressTicks == 0) {
       options_.progress({world_.time_s(), duration_s_, flatness_});
     }
@@ -121,7 +135,9 @@ class RecordingTarget : public hal::Target {
   std::vector<PathPoint>& path() { return path_; }
   bool stopped_early() const { return stopped_early_ && world_.ticks() < last_tick_; }
   double flatness_before() const { return flatness_; }
-  double wall_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  double wall_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
 
  private:
   void check_purity(const RobotOutput& output) const {
@@ -131,8 +147,8 @@ class RecordingTarget : public hal::Target {
     pack(expected_, expected);
     const auto difference = first_difference(kOutputColumns, expected, got);
     if (difference.has_value()) {
-      throw RunError("two robots answered the same samples differently in tick " + std::to_string(world_.ticks()) + ": " +
-                     *difference);
+      throw RunError("two robots answered the same samples differently in tick " +
+                     std::to_string(world_.ticks()) + ": " + *difference);
     }
   }
 
@@ -164,16 +180,25 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
   return info;
 }
 
-void write_pictures(const std::filesystem::path& folder, const HeightField& before, const World& world,
-                    const Experiment& experiment, std::vector<PathPoint> path) {
+void write_pictures(const std::filesystem::path& folder, const HeightField& before,
+                    const World& world, const Experiment& experiment, std::vector<PathPoint> path) {
   PictureOptions options;
   options.title = experiment.experiment.name + ": before";
   write_height_map_picture(folder / "terrain_before.png", before, options);
 
-  options.title = experiment.experiment.name + ": after " + std::to_string(std::lround(world.time_s())) + " s of " +
+  options.title = experiment.experiment.name + ": after " +
+                  std::to_string(std::lround(world.time_s())) + " s of " +
                   experiment.experiment.algorithm;
+  // The legend names the states that occurred, in their order.
+  std::array<bool, kLevelingStates> occurred{};
+  for (const PathPoint& point : path) occurred.at(point.state) = true;
+  std::array<size_t, kLevelingStates> legend{};
+  for (size_t state = 0; state < kLevelingStates; ++state) {
+    legend.at(state) = options.state_names.size();
+    if (occurred.at(state)) options.state_names.emplace_back(kLevelingStateNames[state]);
+  }
+  for (PathPoint& point : path) point.state = legend.at(point.state);
   options.path = std::move(path);
-  options.state_names.assign(std::begin(kLevelingStateNames), std::end(kLevelingStateNames));
   const ChassisState chassis = world.vehicle().chassis();
   options.robot = RobotOutline{chassis.pose.translation().x(), chassis.pose.translation().y(),
                                attitude_of(chassis.pose.linear()).heading};
@@ -208,7 +233,8 @@ const char* leveling_state_name(LevelingState state) {
 std::string fault_names(uint16_t faults) {
   std::string names;
   for (size_t bit = 0; bit < std::size(kFaultNames); ++bit) {
-    if ((faults >> bit & 1U) != 0) names += (names.empty() ? "" : ", ") + std::string(kFaultNames[bit]);
+    if ((faults >> bit & 1U) != 0)
+      names += (names.empty() ? "" : ", ") + std::string(kFaultNames[bit]);
   }
   return names.empty() ? "none" : names;
 }
@@ -226,12 +252,14 @@ HeightField make_terrain(const Experiment& experiment) {
   options.smoothing_m = map.smoothing_m;
   options.max_slope_deg = map.max_slope_deg;
   options.wrap = map.wrap;
-  return HeightField::from_image(read_grey_image(find_data_file(experiment, map.filename, "[map] filename")), options);
+  return HeightField::from_image(
+      read_grey_image(find_data_file(experiment, map.filename, "[map] filename")), options);
 }
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log) {
   UrdfOptions urdf;
-  if (experiment.vehicle.leg_angle_deg.has_value()) urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
+  if (experiment.vehicle.leg_angle_deg.has_value())
+    urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
   const Assembly model = import_urdf(find_model_file(experiment), urdf);
 
   WorldOptions options;
@@ -240,7 +268,8 @@ std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* te
   options.start.x_m = experiment.vehicle.x_m;
   options.start.y_m = experiment.vehicle.y_m;
   options.start.z_m = experiment.vehicle.z_m;
-  options.start.attitude = {experiment.vehicle.roll_deg * kRadPerDeg, experiment.vehicle.pitch_deg * kRadPerDeg,
+  options.start.attitude = {experiment.vehicle.roll_deg * kRadPerDeg,
+                            experiment.vehicle.pitch_deg * kRadPerDeg,
                             experiment.vehicle.heading_deg * kRadPerDeg};
   options.vehicle.tracks = experiment.vehicle.tracks;
   options.vehicle.track_friction = experiment.vehicle.track_friction;
@@ -260,8 +289,10 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   // Everything that can be wrong with the input is found before the first file is made.
   make_world(experiment, nullptr);
 
-  RunFolder folder = options.out.has_value() ? RunFolder::at(*options.out)
-                                             : RunFolder::numbered(experiment.output_directory_prefix, experiment.experiment.name);
+  RunFolder folder =
+      options.out.has_value()
+          ? RunFolder::at(*options.out)
+          : RunFolder::numbered(experiment.output_directory_prefix, experiment.experiment.name);
   write_text(folder.path() / "experiment.ini", experiment.text());
   TextFile telemetry(folder.path() / "telemetry.log");
   const std::unique_ptr<World> world = make_world(experiment, &telemetry.stream());

@@ -1,4 +1,5 @@
-// Runs an experiment: builds the world, lets the firmware drive in it tick by tick, records everything, leaves a run folder.
+// Runs an experiment: builds the world, lets the firmware drive in it tick by tick, records
+// everything, leaves a run folder.
 #pragma once
 
 #include <atomic>
@@ -25,9 +26,11 @@ struct SimulationProgress {
 };
 
 struct SimulationOptions {
-  std::optional<std::filesystem::path> out;   ///< the run folder; without it a numbered one in output_directory_prefix
-  bool realtime = false;                      ///< sleep so that simulated time does not outrun the clock
-  const std::atomic<bool>* stop = nullptr;    ///< becomes true when the run is to end early, with everything saved
+  std::optional<std::filesystem::path>
+      out;                ///< the run folder; without it a numbered one in output_directory_prefix
+  bool realtime = false;  ///< sleep so that simulated time does not outrun the clock
+  const std::atomic<bool>* stop =
+      nullptr;  ///< becomes true when the run is to end early, with everything saved
   std::function<void(const SimulationProgress&)> progress;  ///< called ten times a simulated second
   std::string program_version;
 };
@@ -37,20 +40,21 @@ struct SimulationSummary {
   std::string content_hash;
   bool stopped_early = false;
   double time_s = 0.0;
-  double wall_s = 0.0;          ///< of the loop alone: building the world and writing pictures do not count
-  double distance_m = 0.0;      ///< length of the chassis' true path, in space
+  double wall_s = 0.0;  ///< of the loop alone: building the world and writing pictures do not count
+  double distance_m = 0.0;  ///< length of the chassis' true path, in space
   double energy_j = 0.0;
-  double outside_s = 0.0;       ///< time off the bed
+  double outside_s = 0.0;  ///< time off the bed
   double battery_v = 0.0;
   int peaks = 0;
-  std::string state;            ///< of the supervisor at the end
+  std::string state;  ///< of the supervisor at the end
   uint16_t faults = 0;
   uint64_t telemetry_frames = 0;
   TerrainStatistics before;
   TerrainStatistics after;
   double flatness_before = 0.0;
   double flatness_after = 0.0;
-  std::vector<std::filesystem::path> leftovers;  ///< folders of interrupted runs that were passed over
+  std::vector<std::filesystem::path>
+      leftovers;  ///< folders of interrupted runs that were passed over
 
   double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
 };
@@ -60,11 +64,12 @@ HeightField make_terrain(const Experiment& experiment);
 /// A world as the experiment describes it. telemetry_log may be null.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log);
 
-/// Runs to the end of the duration or until told to stop. Throws InputError before anything is written, RunError when the run
-/// cannot be saved; then nothing half-written stays behind.
+/// Runs to the end of the duration or until told to stop. Throws InputError before anything is
+/// written, RunError when the run cannot be saved; then nothing half-written stays behind.
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options);
 
-/// The summary as JSON, as written to summary.json: all of the above but wall time and folder, which are not part of the result.
+/// The summary as JSON, as written to summary.json: all of the above but wall time and folder,
+/// which are not part of the result.
 std::string summary_json(const SimulationSummary& summary);
 
 /// Names of the supervisor's states, of the algorithm's states and of the set fault bits ("none").

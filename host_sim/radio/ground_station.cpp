@@ -38,7 +38,8 @@ void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
   char line[64];
   int length = std::snprintf(line, sizeof line, "(%010llu.%06llu) screed0 %03X#",
                              static_cast<unsigned long long>(now_us / 1000000U),
-                             static_cast<unsigned long long>(now_us % 1000000U), static_cast<unsigned>(frame.id));
+                             static_cast<unsigned long long>(now_us % 1000000U),
+                             static_cast<unsigned>(frame.id));
   for (int i = 0; i < frame.size; ++i) {
     length += std::snprintf(line + length, sizeof line - static_cast<size_t>(length), "%02X",
                             static_cast<unsigned>(frame.data[i]));
@@ -55,7 +56,8 @@ void GroundStation::add_frame(CanFrame frame, uint8_t& counter, std::vector<uint
   lines.insert(lines.end(), line, line + length);
 }
 
-void GroundStation::add_command(CommandOp op, const DriveArgument* argument, std::vector<uint8_t>& lines) {
+void GroundStation::add_command(CommandOp op, const DriveArgument* argument,
+                                std::vector<uint8_t>& lines) {
   CanFrame frame{};
   frame.id = kIdCommand;
   frame.size = 6;
@@ -75,11 +77,13 @@ std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
   }
   // Commands between heartbeats, so that no packet holds both.
   if (ticks_ % kCommandTicks == kCommandTicks / 2 && report_.heard) {
-    if (report_.state == RobotState::kDisarmed && arm_ && !started_) add_command(CommandOp::kArm, nullptr, lines);
+    if (report_.state == RobotState::kDisarmed && arm_ && !started_)
+      add_command(CommandOp::kArm, nullptr, lines);
     if (report_.state == RobotState::kArmed && arm_) add_command(CommandOp::kRun, nullptr, lines);
     if (report_.state == RobotState::kRunning && drive_.has_value()) {
-      const DriveArgument argument = {static_cast<int16_t>(std::lround(drive_->speed_m_per_s * 1000.0)),
-                                      static_cast<int16_t>(std::lround(drive_->yaw_rate_deg_per_s * 10.0))};
+      const DriveArgument argument = {
+          static_cast<int16_t>(std::lround(drive_->speed_m_per_s * 1000.0)),
+          static_cast<int16_t>(std::lround(drive_->yaw_rate_deg_per_s * 10.0))};
       add_command(CommandOp::kDrive, &argument, lines);
     }
   }

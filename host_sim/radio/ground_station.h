@@ -1,4 +1,5 @@
-// The ground station of a simulated run: heartbeat, arm, run, drive commands up; everything that comes down is logged.
+// The ground station of a simulated run: heartbeat, arm, run, drive commands up; everything that
+// comes down is logged.
 //
 // The log is `candump -L` text, so that can-utils, Wireshark and python-can read it as it is.
 #pragma once

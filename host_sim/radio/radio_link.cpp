@@ -11,7 +11,8 @@ void RadioLink::send(uint64_t now_us, std::span<const uint8_t> bytes) {
   line_free_us_ = std::max(line_free_us_, static_cast<double>(now_us));
   for (const uint8_t byte : bytes) {
     line_free_us_ += 1e6 / options_.bytes_per_s;
-    if (!lost) in_flight_.push_back({static_cast<uint64_t>(line_free_us_ + options_.delay_s * 1e6), byte});
+    if (!lost)
+      in_flight_.push_back({static_cast<uint64_t>(line_free_us_ + options_.delay_s * 1e6), byte});
   }
 }
 

@@ -1,4 +1,5 @@
-// One direction of the XBee link as a pipe of bytes: rate of the UART, delay, loss of whole packets.
+// One direction of the XBee link as a pipe of bytes: rate of the UART, delay, loss of whole
+// packets.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,9 @@
 namespace screed {
 
 struct RadioOptions {
-  double delay_s = 0.012;          ///< UART to UART
-  double loss = 0.0;               ///< probability that a packet is lost, 0..1
-  double bytes_per_s = 5760.0;     ///< 57,600 baud, 10 bits a byte
+  double delay_s = 0.012;       ///< UART to UART
+  double loss = 0.0;            ///< probability that a packet is lost, 0..1
+  double bytes_per_s = 5760.0;  ///< 57,600 baud, 10 bits a byte
 };
 
 class RadioLink {

@@ -51,10 +51,11 @@ Eigen::Vector3d ImuModel::earth_field_gauss() {
 
 void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
-  const Eigen::Vector3d gyro = (truth.mean_rate_rad_per_s * kDegrees).cwiseProduct(gyro_scale_) + gyro_bias_dps_ +
-                               normals(gyro_random_, errors_.gyro_noise_dps);
-  const Eigen::Vector3d accel = (truth.mean_specific_force * (1000.0 / kGravity_m_per_s2)).cwiseProduct(accel_scale_) +
-                                accel_bias_mg_ + normals(accel_random_, errors_.accel_noise_mg);
+  const Eigen::Vector3d gyro = (truth.mean_rate_rad_per_s * kDegrees).cwiseProduct(gyro_scale_) +
+                               gyro_bias_dps_ + normals(gyro_random_, errors_.gyro_noise_dps);
+  const Eigen::Vector3d accel =
+      (truth.mean_specific_force * (1000.0 / kGravity_m_per_s2)).cwiseProduct(accel_scale_) +
+      accel_bias_mg_ + normals(accel_random_, errors_.accel_noise_mg);
   for (int i = 0; i < 3; ++i) {
     sample.gyro[i] = quantise(gyro[i], kGyroLsb_dps);
     sample.accel[i] = quantise(accel[i], kAccelLsb_mg);
@@ -62,8 +63,8 @@ void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
   sample.fresh = kFreshGyro | kFreshAccel;
 
   if (ticks_ % kMagTicks == 0) {
-    const Eigen::Vector3d mag = truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0) + mag_bias_mg_ +
-                                normals(mag_random_, errors_.mag_noise_mg);
+    const Eigen::Vector3d mag = truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0) +
+                                mag_bias_mg_ + normals(mag_random_, errors_.mag_noise_mg);
     for (int i = 0; i < 3; ++i) sample.mag[i] = quantise(mag[i], kMagLsb_mg);
     sample.fresh |= kFreshMag;
   }

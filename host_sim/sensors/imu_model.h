@@ -1,8 +1,9 @@
 // The AltIMU-10 v4 as its data sheets describe it: true motion in, raw counts out.
 //
-// Noise, bias, scale error, full scale and quantisation are those of LSM303D (accelerometer, magnetometer), L3GD20H (gyro) and LPS25H
-// (pressure) in the configuration the firmware uses: +-8 g, +-4 G, +-2000 degrees/s. Biases and scale errors are drawn once
-// per world; what a calibration leaves behind, not what the chip leaves the factory with, where the firmware relies on one.
+// Noise, bias, scale error, full scale and quantisation are those of LSM303D (accelerometer,
+// magnetometer), L3GD20H (gyro) and LPS25H (pressure) in the configuration the firmware uses: +-8
+// g, +-4 G, +-2000 degrees/s. Biases and scale errors are drawn once per world; what a calibration
+// leaves behind, not what the chip leaves the factory with, where the firmware relies on one.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,17 +17,19 @@ namespace screed {
 
 /// Typical figures of the data sheets; all 1 sigma.
 struct ImuErrors {
-  // L3GD20H: noise density 0.011 degree/s/sqrt(Hz); over the 50 Hz band of 100 Hz output 0.078 degree/s.
+  // L3GD20H: noise density 0.011 degree/s/sqrt(Hz); over the 50 Hz band of 100 Hz output 0.078
+  // degree/s.
   double gyro_noise_dps = 0.078;
-  double gyro_bias_dps = 0.5;           // left after the zero-rate level (+-25 degrees/s) was stored by a calibration at power-up
+  double gyro_bias_dps = 0.5;  // left after the zero-rate level (+-25 degrees/s) was stored by a
+                               // calibration at power-up
   double gyro_scale = 0.01;
   // LSM303D: acceleration noise density 150 ug/sqrt(Hz), 50 Hz band: 1.1 mg.
   double accel_noise_mg = 1.1;
-  double accel_bias_mg = 8.0;           // +-60 mg typical before the six-position calibration
+  double accel_bias_mg = 8.0;  // +-60 mg typical before the six-position calibration
   double accel_scale = 0.005;
   // LSM303D: 5 mG RMS.
   double mag_noise_mg = 5.0;
-  double mag_bias_mg = 10.0;            // hard iron left after calibration
+  double mag_bias_mg = 10.0;  // hard iron left after calibration
   // LPS25H: 0.01 hPa RMS with its internal average.
   double pressure_noise_hpa = 0.01;
   double pressure_bias_hpa = 0.2;
@@ -37,8 +40,8 @@ struct ImuErrors {
 
 /// True motion over the last tick.
 struct ImuTruth {
-  Eigen::Vector3d mean_rate_rad_per_s;      ///< body frame
-  Eigen::Vector3d mean_specific_force;      ///< body frame, m/s^2: acceleration minus gravity
+  Eigen::Vector3d mean_rate_rad_per_s;  ///< body frame
+  Eigen::Vector3d mean_specific_force;  ///< body frame, m/s^2: acceleration minus gravity
   Eigen::Matrix3d body_to_world;
   double altitude_m;
 };
@@ -47,10 +50,12 @@ class ImuModel {
  public:
   ImuModel(uint64_t seed, const ImuErrors& errors);
 
-  /// Counts of gyro, accelerometer (every tick), magnetometer (50 Hz) and pressure (25 Hz), with the FreshBits that go with them.
+  /// Counts of gyro, accelerometer (every tick), magnetometer (50 Hz) and pressure (25 Hz), with
+  /// the FreshBits that go with them.
   void measure(const ImuTruth& truth, SensorSample& sample);
 
-  /// The earth's field in world axes (east, north, up), gauss: declination 0, inclination 68 degrees, as in Newfoundland.
+  /// The earth's field in world axes (east, north, up), gauss: declination 0, inclination 68
+  /// degrees, as in Newfoundland.
   static Eigen::Vector3d earth_field_gauss();
 
  private:

@@ -1,7 +1,9 @@
-// One frame of a session: what is recorded of the world and the robot at each control tick (thesis Table 5.1 and more).
+// One frame of a session: what is recorded of the world and the robot at each control tick (thesis
+// Table 5.1 and more).
 //
-// The list is a macro so that the struct, the columns of the HDF5 table and the header of the CSV export are one thing.
-// All angles in rad, lengths in m, SI units throughout; the raw counts of sensors and outputs are recorded beside it.
+// The list is a macro so that the struct, the columns of the HDF5 table and the header of the CSV
+// export are one thing. All angles in rad, lengths in m, SI units throughout; the raw counts of
+// sensors and outputs are recorded beside it.
 #pragma once
 
 #include <cstdint>

@@ -63,8 +63,8 @@ void fill_from_samples(HeightField& field, const std::vector<double>& samples,
   }
 }
 
-/// One pass of a Gaussian along lines of `count` values that lie `stride` apart; beyond the ends the
-/// line repeats (wrap) or keeps its last value.
+/// One pass of a Gaussian along lines of `count` values that lie `stride` apart; beyond the ends
+/// the line repeats (wrap) or keeps its last value.
 void smooth_lines(std::vector<double>& samples, int lines, size_t line_stride, int count,
                   size_t stride, bool wrap, const std::vector<double>& weights) {
   const int reach = static_cast<int>(weights.size()) - 1;

@@ -37,8 +37,9 @@ struct CellHeights {
 struct HeightFieldOptions {
   double size_m = 3.0;   ///< length of the bed's longer side, 0.1..1000
   double scale_m = 0.2;  ///< height of full white, 0.0001..100; black is 0
-  /// Standard deviation of a Gaussian low-pass over the image before anything else, metres on the bed; 0..1; 0: none.
-  /// An elevation model at robot scale has cliffs of one pixel; without them more relief fits under a slope limit.
+  /// Standard deviation of a Gaussian low-pass over the image before anything else, metres on the
+  /// bed; 0..1; 0: none. An elevation model at robot scale has cliffs of one pixel; without them
+  /// more relief fits under a slope limit.
   double smoothing_m = 0.0;
   /// When the steepest slope exceeds this, all heights are scaled down until it is met: 0.1..89.
   std::optional<double> max_slope_deg = std::nullopt;

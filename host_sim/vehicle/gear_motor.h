@@ -3,15 +3,18 @@
 
 namespace screed {
 
-/// A brushed DC gear motor. The defaults are the Dagu Rover 5's: 7.2 V nominal, 2.5 A stall current, 25 cm/s on wheels of
-/// 30 mm, stall torque 10 kg cm at the output (data sheet). From these follow R = 7.2 V / 2.5 A, the back-EMF constant
-/// k = (V - I0 R) / omega0, and the gearbox's efficiency: stall torque / (k I_stall) = 0.49.
+/// A brushed DC gear motor. The defaults are the Dagu Rover 5's: 7.2 V nominal, 2.5 A stall
+/// current, 25 cm/s on wheels of 30 mm, stall torque 10 kg cm at the output (data sheet). From
+/// these follow R = 7.2 V / 2.5 A, the back-EMF constant k = (V - I0 R) / omega0, and the gearbox's
+/// efficiency: stall torque / (k I_stall) = 0.49.
 struct GearMotor {
   double resistance_ohm = 2.88;
-  double back_emf_v_s = 0.81;        ///< V per rad/s of the output shaft; also N m per A before gearbox losses
-  double efficiency = 0.485;         ///< of the gearbox, on the motor's torque
-  double no_load_current_a = 0.16;   ///< estimate; its torque is the Coulomb friction of motor, gearbox and track
-  double inertia_kg_m2 = 7.5e-4;     ///< rotor (1e-7 kg m^2, estimate) times 86.8 squared
+  double back_emf_v_s =
+      0.81;  ///< V per rad/s of the output shaft; also N m per A before gearbox losses
+  double efficiency = 0.485;  ///< of the gearbox, on the motor's torque
+  double no_load_current_a =
+      0.16;  ///< estimate; its torque is the Coulomb friction of motor, gearbox and track
+  double inertia_kg_m2 = 7.5e-4;  ///< rotor (1e-7 kg m^2, estimate) times 86.8 squared
 
   /// Current at a terminal voltage and shaft speed (rad/s).
   double current(double voltage, double omega) const {
@@ -21,16 +24,17 @@ struct GearMotor {
   double friction_torque() const { return torque_per_ampere() * no_load_current_a; }
 };
 
-/// Six NiMH cells as a source with internal resistance; the open-circuit voltage falls linearly with the charge drawn.
+/// Six NiMH cells as a source with internal resistance; the open-circuit voltage falls linearly
+/// with the charge drawn.
 struct Battery {
   double full_v = 8.1;
   double empty_v = 6.6;
   double capacity_c = 2.0 * 3600.0;  ///< 2 Ah
   double resistance_ohm = 0.15;
-  double electronics_a = 0.12;       ///< board, sensors, radio
+  double electronics_a = 0.12;  ///< board, sensors, radio
 
   double drawn_c = 0.0;
-  double energy_j = 0.0;             ///< drawn at the terminals since the start
+  double energy_j = 0.0;  ///< drawn at the terminals since the start
   double terminal_v = 8.1;
 
   /// Draws `motor_current_a` (and the electronics' share) for dt seconds.

@@ -1,9 +1,11 @@
-// The force between one point of a surface that may move (a belt, a wheel's rim, the chassis) and rigid ground.
+// The force between one point of a surface that may move (a belt, a wheel's rim, the chassis) and
+// rigid ground.
 //
-// Normal: a spring and damper that never pull. Tangential: elastic bristles with Coulomb's limit: the bristle is the way that
-// the surface has moved over the ground while it stuck, so a robot stands still on a slope instead of creeping. Along a
-// moving belt the bristles travel with its material (brush model; Pacejka, Tire and Vehicle Dynamics, ch. 3): the owner of the points
-// does that.
+// Normal: a spring and damper that never pull. Tangential: elastic bristles with Coulomb's limit:
+// the bristle is the way that the surface has moved over the ground while it stuck, so a robot
+// stands still on a slope instead of creeping. Along a moving belt the bristles travel with its
+// material (brush model; Pacejka, Tire and Vehicle Dynamics, ch. 3): the owner of the points does
+// that.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +28,8 @@ struct GroundTouch {
 };
 
 /// Whether `position` is below the ground's surface.
-inline bool touches(const HeightField& ground, const Eigen::Vector3d& position, GroundTouch& touch) {
+inline bool touches(const HeightField& ground, const Eigen::Vector3d& position,
+                    GroundTouch& touch) {
   const SurfacePoint surface = ground.at(position.x(), position.y());
   const double gap = position.z() - surface.height;
   if (gap >= 0.0) return false;
@@ -37,8 +40,9 @@ inline bool touches(const HeightField& ground, const Eigen::Vector3d& position, 
   return true;
 }
 
-/// Force on a surface point that touches the ground and moves at `velocity` relative to it (belt motion included). `bristle` is the
-/// state of the point, world frame, m; it becomes zero when the point is being pulled out and bears nothing.
+/// Force on a surface point that touches the ground and moves at `velocity` relative to it (belt
+/// motion included). `bristle` is the state of the point, world frame, m; it becomes zero when the
+/// point is being pulled out and bears nothing.
 inline Eigen::Vector3d contact_force(const ContactLaw& law, const GroundTouch& touch,
                                      const Eigen::Vector3d& velocity, double dt,
                                      Eigen::Vector3d& bristle) {

@@ -20,8 +20,12 @@ dWorldID create_world() {
 
 }  // namespace
 
-OdeWorld::OdeWorld() : world_(create_world()) { dWorldSetGravity(world_, 0.0, 0.0, -kGravity_m_per_s2); }
+OdeWorld::OdeWorld() : world_(create_world()) {
+  dWorldSetGravity(world_, 0.0, 0.0, -kGravity_m_per_s2);
+}
 
-OdeWorld::~OdeWorld() { dWorldDestroy(world_); }
+OdeWorld::~OdeWorld() {
+  dWorldDestroy(world_);
+}
 
 }  // namespace screed

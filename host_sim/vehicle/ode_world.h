@@ -7,7 +7,8 @@
 
 namespace screed {
 
-/// An ODE world with gravity. ODE keeps global state (memory, dRandSetSeed): nothing here uses its random numbers.
+/// An ODE world with gravity. ODE keeps global state (memory, dRandSetSeed): nothing here uses its
+/// random numbers.
 class OdeWorld {
  public:
   OdeWorld();
@@ -26,7 +27,9 @@ class OdeWorld {
 /// Standard gravity, m/s^2.
 inline constexpr double kGravity_m_per_s2 = 9.80665;
 
-inline Eigen::Vector3d to_eigen(const dReal* v) { return {v[0], v[1], v[2]}; }
+inline Eigen::Vector3d to_eigen(const dReal* v) {
+  return {v[0], v[1], v[2]};
+}
 inline Eigen::Matrix3d rotation_to_eigen(const dReal* r) {  // ODE's matrices have rows of four
   Eigen::Matrix3d m;
   m << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];

@@ -1,4 +1,5 @@
-// One unit of running gear: contact points along a contour, and the degree of freedom of its surface.
+// One unit of running gear: contact points along a contour, and the degree of freedom of its
+// surface.
 #include "host_sim/vehicle/running_gear.h"
 
 #include <algorithm>
@@ -8,14 +9,16 @@
 namespace screed {
 namespace {
 
-constexpr double kSpacing_m = 0.0125;   // of contact points along the contour
-constexpr double kSinkIn_m = 0.0004;    // under the unit's own load on level ground
+constexpr double kSpacing_m = 0.0125;  // of contact points along the contour
+constexpr double kSinkIn_m = 0.0004;   // under the unit's own load on level ground
 constexpr double kDampingRatio = 0.7;
-constexpr double kUpperSide = 0.2;      // vertical part of the outward normal; above 0, so that a robot on its side counts
+constexpr double kUpperSide =
+    0.2;  // vertical part of the outward normal; above 0, so that a robot on its side counts
 
 }  // namespace
 
-void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out, const Eigen::Vector3d& along) {
+void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
+                            const Eigen::Vector3d& along) {
   points_.push_back(at);
   outwards_.push_back(out);
   along_.push_back(along);
@@ -30,18 +33,24 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
   const double radius = geometry.radius;
   const Eigen::Vector3d run = geometry.front - geometry.rear;
   const double length = run.norm();
-  const Eigen::Vector3d forward = length > 0.0 ? Eigen::Vector3d(run / length) : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d forward =
+      length > 0.0 ? Eigen::Vector3d(run / length) : Eigen::Vector3d::UnitX();
   const Eigen::Vector3d up = forward.cross(Eigen::Vector3d::UnitY());  // contour plane: forward, up
-  const int half_points = std::max(8, static_cast<int>(std::lround(std::numbers::pi * radius / kSpacing_m)));
-  const int run_points = length > 0.0 ? std::max(1, static_cast<int>(std::lround(length / kSpacing_m))) : 0;
+  const int half_points =
+      std::max(8, static_cast<int>(std::lround(std::numbers::pi * radius / kSpacing_m)));
+  const int run_points =
+      length > 0.0 ? std::max(1, static_cast<int>(std::lround(length / kSpacing_m))) : 0;
   spacing_ = std::numbers::pi * radius / half_points;
 
-  // Driving forward the material goes: down round the front wheel, back along the bottom, up round the rear wheel, forward on top.
+  // Driving forward the material goes: down round the front wheel, back along the bottom, up round
+  // the rear wheel, forward on top.
   for (int row = 0; row < rows_; ++row) {
-    const Eigen::Vector3d side = Eigen::Vector3d::UnitY() * geometry.width * (row == 0 ? 0.5 : -0.5);
+    const Eigen::Vector3d side =
+        Eigen::Vector3d::UnitY() * geometry.width * (row == 0 ? 0.5 : -0.5);
     const auto arc = [&](const Eigen::Vector3d& axle, double start_rad) {
       for (int i = 0; i < half_points; ++i) {
-        const double angle = start_rad + (i + 0.5) * std::numbers::pi / half_points;  // from top, forwards
+        const double angle =
+            start_rad + (i + 0.5) * std::numbers::pi / half_points;  // from top, forwards
         const Eigen::Vector3d out = std::sin(angle) * forward + std::cos(angle) * up;
         const Eigen::Vector3d along = std::cos(angle) * forward - std::sin(angle) * up;
         add_point(axle + side + radius * out, out, along);
@@ -62,7 +71,8 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
   carried_ = bristles_;
   bent_.assign(points_.size(), 0);
 
-  // On level ground the belt's lower run carries the load; of a wheel the lowest two or three points of each row.
+  // On level ground the belt's lower run carries the load; of a wheel the lowest two or three
+  // points of each row.
   const double carrying = rows_ * (run_points > 0 ? run_points : 2);
   law_.friction = friction;
   law_.stiffness = load_n / (kSinkIn_m * carrying);
@@ -83,8 +93,9 @@ void RunningGear::let_go(size_t point) {
   bent_[point] = 0;
 }
 
-// The brush model's transport: what a point's material has been bent so far comes with it from the neighbour it passed before.
-// First-order upwind; a belt at 0.25 m/s moves 2 % of the spacing in a step of 1 ms.
+// The brush model's transport: what a point's material has been bent so far comes with it from the
+// neighbour it passed before. First-order upwind; a belt at 0.25 m/s moves 2 % of the spacing in a
+// step of 1 ms.
 void RunningGear::carry_bristles(double dt) {
   const double share = std::min(1.0, std::abs(speed_) * dt / spacing_);
   if (share == 0.0) return;
@@ -109,7 +120,8 @@ void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrie
   ground_force_ = 0.0;
   normal_load_ = 0.0;
   GroundTouch touch;
-  // A height field has no overhangs: a point on the upper side of the contour has a lower one right below it, which touches first.
+  // A height field has no overhangs: a point on the upper side of the contour has a lower one right
+  // below it, which touches first.
   const Eigen::RowVector3d upwards = carrier.rotation.row(2);
   for (size_t i = 0; i < points_.size(); ++i) {
     if (upwards.dot(outwards_[i]) > kUpperSide) {
@@ -133,7 +145,8 @@ void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrie
 
 void RunningGear::drive(double voltage, double dt) {
   const double radius = geometry_.radius;
-  // m dv/dt = torque_per_ampere (V - k v / r) / (R r) + ground - friction; back-EMF implicit, friction never past rest.
+  // m dv/dt = torque_per_ampere (V - k v / r) / (R r) + ground - friction; back-EMF implicit,
+  // friction never past rest.
   double push = ground_force_;
   double resist = 0.0;
   double friction = 0.02;  // N, bearings of an undriven wheel

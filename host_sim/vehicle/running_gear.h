@@ -1,9 +1,11 @@
-// One unit of running gear: a belt around two wheels, or a single wheel, with the motor that drives it.
+// One unit of running gear: a belt around two wheels, or a single wheel, with the motor that drives
+// it.
 //
-// A unit is a closed contour in a plane of the chassis, covered with contact points, whose surface moves along it at one speed. That
-// speed is the unit's own degree of freedom (wheels, belt and rotor turn together); their mass rides with the chassis. It is the
-// exact motion of a wheel on a fixed axle and of a belt that does not slip on its wheels, gyroscopic torques of the slow wheels left
-// out, and it needs no joint that a solver would have to hold together.
+// A unit is a closed contour in a plane of the chassis, covered with contact points, whose surface
+// moves along it at one speed. That speed is the unit's own degree of freedom (wheels, belt and
+// rotor turn together); their mass rides with the chassis. It is the exact motion of a wheel on a
+// fixed axle and of a belt that does not slip on its wheels, gyroscopic torques of the slow wheels
+// left out, and it needs no joint that a solver would have to hold together.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -36,31 +38,33 @@ struct Wrench {
 };
 
 struct RunningGearGeometry {
-  Eigen::Vector3d front;   ///< centre of the front wheel, in the frame of the carrier's centre of mass
-  Eigen::Vector3d rear;    ///< of the rear wheel; equal to `front` for a single wheel
-  double radius = 0.03;    ///< m, belt included
-  double width = 0.03;     ///< m
+  Eigen::Vector3d
+      front;  ///< centre of the front wheel, in the frame of the carrier's centre of mass
+  Eigen::Vector3d rear;             ///< of the rear wheel; equal to `front` for a single wheel
+  double radius = 0.03;             ///< m, belt included
+  double width = 0.03;              ///< m
   double spin_inertia_kg_m2 = 0.0;  ///< of all wheels of the unit about their axles
 };
 
 class RunningGear {
  public:
-  /// load_n: weight the unit carries on level ground; sets stiffness so that it sinks in 0.4 mm. mass_kg: the share of
-  /// the robot's mass it carries, for critical damping.
-  RunningGear(const RunningGearGeometry& geometry, bool driven, const GearMotor& motor, double friction,
-              double load_n, double mass_kg);
+  /// load_n: weight the unit carries on level ground; sets stiffness so that it sinks in 0.4 mm.
+  /// mass_kg: the share of the robot's mass it carries, for critical damping.
+  RunningGear(const RunningGearGeometry& geometry, bool driven, const GearMotor& motor,
+              double friction, double load_n, double mass_kg);
 
   /// Contact forces of this step, added to `wrench`; remembers the ground's force along the belt.
   void contact(const HeightField& ground, const CarrierMotion& carrier, double dt, Wrench& wrench);
 
-  /// Advances the surface speed with the motor at `voltage` (its terminals shorted at 0: the driver brakes).
+  /// Advances the surface speed with the motor at `voltage` (its terminals shorted at 0: the driver
+  /// brakes).
   void drive(double voltage, double dt);
 
   /// Stops the surface at once and lets go of the ground.
   void halt();
 
   double speed_m_per_s() const { return speed_; }
-  double angle_rad() const { return angle_; }      ///< of the wheels since the start
+  double angle_rad() const { return angle_; }  ///< of the wheels since the start
   double current_a() const { return current_; }
   double radius_m() const { return geometry_.radius; }
   double normal_load_n() const { return normal_load_; }
@@ -70,7 +74,8 @@ class RunningGear {
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
-  void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out, const Eigen::Vector3d& along);
+  void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
+                 const Eigen::Vector3d& along);
   void carry_bristles(double dt);
   void let_go(size_t point);
 
@@ -83,7 +88,8 @@ class RunningGear {
   int rows_ = 2;    ///< contours side by side, at both edges of the belt
   Eigen::Vector3d centre_;
 
-  // Point i of row r stands at index r * (count / rows) + i, in the order in which the material passes when driving forward.
+  // Point i of row r stands at index r * (count / rows) + i, in the order in which the material
+  // passes when driving forward.
   std::vector<Eigen::Vector3d> points_;
   std::vector<Eigen::Vector3d> outwards_;  ///< normal of the contour, unit length
   std::vector<Eigen::Vector3d> along_;     ///< direction of the material, unit length

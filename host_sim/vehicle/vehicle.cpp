@@ -12,8 +12,8 @@
 namespace screed {
 namespace {
 
-constexpr double kHullSpacing_m = 0.04;   // of contact points on boxes
-constexpr double kHullSinkIn_m = 0.001;   // when four points carry the whole robot
+constexpr double kHullSpacing_m = 0.04;  // of contact points on boxes
+constexpr double kHullSinkIn_m = 0.001;  // when four points carry the whole robot
 
 const char* const kWheels[2][2] = {{"fl_Wheel", "bl_Wheel"}, {"fr_Wheel", "br_Wheel"}};
 
@@ -26,8 +26,10 @@ bool is_wheel_name(const std::string& name) {
   return false;
 }
 
-// Points on the surface of a shape, dense enough that the ground cannot pass between them unnoticed.
-void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose, std::vector<Eigen::Vector3d>& points) {
+// Points on the surface of a shape, dense enough that the ground cannot pass between them
+// unnoticed.
+void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose,
+                     std::vector<Eigen::Vector3d>& points) {
   const Eigen::Isometry3d at = pose * shape.pose;
   if (const auto* box = std::get_if<Box>(&shape.geometry)) {
     Eigen::Vector3i count;
@@ -37,9 +39,11 @@ void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose, std::vec
     for (int i = 0; i <= count.x(); ++i) {
       for (int j = 0; j <= count.y(); ++j) {
         for (int k = 0; k <= count.z(); ++k) {
-          const bool surface = i == 0 || j == 0 || k == 0 || i == count.x() || j == count.y() || k == count.z();
+          const bool surface =
+              i == 0 || j == 0 || k == 0 || i == count.x() || j == count.y() || k == count.z();
           if (!surface) continue;
-          const Eigen::Vector3d share(static_cast<double>(i) / count.x() - 0.5, static_cast<double>(j) / count.y() - 0.5,
+          const Eigen::Vector3d share(static_cast<double>(i) / count.x() - 0.5,
+                                      static_cast<double>(j) / count.y() - 0.5,
                                       static_cast<double>(k) / count.z() - 0.5);
           points.emplace_back(at * share.cwiseProduct(box->size));
         }
@@ -50,7 +54,8 @@ void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose, std::vec
     for (int i = 0; i < kAround; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kAround;
       for (const double end : {-0.5, 0.5}) {
-        points.emplace_back(at * Eigen::Vector3d(cylinder->radius * std::cos(angle), cylinder->radius * std::sin(angle),
+        points.emplace_back(at * Eigen::Vector3d(cylinder->radius * std::cos(angle),
+                                                 cylinder->radius * std::sin(angle),
                                                  end * cylinder->length));
       }
     }
@@ -89,9 +94,11 @@ Eigen::Matrix3d rotation_from(const Attitude& attitude) {
       .toRotationMatrix();
 }
 
-Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options) : world_(world) {
+Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options)
+    : world_(world) {
   std::vector<bool> is_wheel(assembly.bodies.size());
-  for (size_t i = 0; i < assembly.bodies.size(); ++i) is_wheel[i] = is_wheel_name(assembly.bodies[i].name);
+  for (size_t i = 0; i < assembly.bodies.size(); ++i)
+    is_wheel[i] = is_wheel_name(assembly.bodies[i].name);
   for (const AssemblyJoint& joint : assembly.joints) {
     if (joint.kind == AssemblyJoint::Kind::Motor && !is_wheel[static_cast<size_t>(joint.child)]) {
       throw InputError("robot model: motor joint '" + joint.name + "' drives '" +
@@ -104,21 +111,25 @@ Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions
   add_running_gear(assembly, options);
 }
 
-void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel, const VehicleOptions& options) {
+void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
+                           const VehicleOptions& options) {
   constexpr size_t kNone = std::numeric_limits<size_t>::max();
   carrier_of_body_.assign(assembly.bodies.size(), kNone);
   std::vector<std::vector<int>> groups;
-  // Parents come before their children's groups are closed: fixed joints first, then wheels join whoever carries them.
+  // Parents come before their children's groups are closed: fixed joints first, then wheels join
+  // whoever carries them.
   for (size_t i = 0; i < assembly.bodies.size(); ++i) {
     if (carrier_of_body_[i] != kNone || is_wheel[i]) continue;
     groups.push_back(rigid_group(assembly, static_cast<int>(i)));
-    for (const int member : groups.back()) carrier_of_body_[static_cast<size_t>(member)] = groups.size() - 1;
+    for (const int member : groups.back())
+      carrier_of_body_[static_cast<size_t>(member)] = groups.size() - 1;
   }
   for (size_t i = 0; i < assembly.bodies.size(); ++i) {
     if (carrier_of_body_[i] != kNone) continue;
     const AssemblyJoint* joint = joint_to(assembly, static_cast<int>(i));
     if (joint == nullptr || is_wheel[static_cast<size_t>(joint->parent)]) {
-      throw InputError("robot model: wheel '" + assembly.bodies[i].name + "' has no body that carries it");
+      throw InputError("robot model: wheel '" + assembly.bodies[i].name +
+                       "' has no body that carries it");
     }
     const size_t carrier = carrier_of_body_[static_cast<size_t>(joint->parent)];
     carrier_of_body_[i] = carrier;
@@ -129,7 +140,8 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
   for (const std::vector<int>& group : groups) {
     const Inertia inertia = composed_inertia(assembly, group);
     if (inertia.mass <= 0.0) {
-      throw InputError("robot model: body '" + assembly.bodies[static_cast<size_t>(group.front())].name + "' has no mass");
+      throw InputError("robot model: body '" +
+                       assembly.bodies[static_cast<size_t>(group.front())].name + "' has no mass");
     }
     Carrier carrier{};
     carrier.rest = Eigen::Isometry3d::Identity();
@@ -138,8 +150,8 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
     const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
     carrier.body = dBodyCreate(world_.id());
     dMass mass;
-    dMassSetParameters(&mass, inertia.mass, 0, 0, 0, tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1),
-                       tensor(0, 2), tensor(1, 2));
+    dMassSetParameters(&mass, inertia.mass, 0, 0, 0, tensor(0, 0), tensor(1, 1), tensor(2, 2),
+                       tensor(0, 1), tensor(0, 2), tensor(1, 2));
     dBodySetMass(carrier.body, &mass);
     for (const int member : group) {
       const AssemblyBody& body = assembly.bodies[static_cast<size_t>(member)];
@@ -152,7 +164,8 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
     carrier.law.friction = options.chassis_friction;
     carrier.law.stiffness = mass_ * kGravity_m_per_s2 / (4.0 * kHullSinkIn_m);
     carrier.law.damping = std::sqrt(carrier.law.stiffness * mass_ / 4.0);
-    for (const Eigen::Vector3d& point : carrier.points) carrier.radius = std::max(carrier.radius, point.norm());
+    for (const Eigen::Vector3d& point : carrier.points)
+      carrier.radius = std::max(carrier.radius, point.norm());
     carriers_.push_back(std::move(carrier));
   }
   chassis_carrier_ = carrier_of_body_[static_cast<size_t>(assembly.body_index("Body"))];
@@ -191,8 +204,10 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
     const size_t carrier = carrier_of_body_[static_cast<size_t>(index)];
     const Eigen::Vector3d centre = carriers_[carrier].rest.inverse() * body.pose.translation();
     const Eigen::Matrix3d axes = body.pose.linear() * body.inertia.pose.linear();
-    const double spin = joint->axis.dot(axes * body.inertia.tensor * axes.transpose() * joint->axis);
-    return Wheel{carrier, centre, wheel_cylinder(body), spin, joint->kind == AssemblyJoint::Kind::Motor};
+    const double spin =
+        joint->axis.dot(axes * body.inertia.tensor * axes.transpose() * joint->axis);
+    return Wheel{carrier, centre, wheel_cylinder(body), spin,
+                 joint->kind == AssemblyJoint::Kind::Motor};
   };
 
   double side_y[2] = {0.0, 0.0};
@@ -210,7 +225,8 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
       geometry.width = a.cylinder.length;
       geometry.spin_inertia_kg_m2 = spin_inertia;
       units_.push_back({a.carrier, side,
-                        RunningGear(geometry, driven, options.motor, options.track_friction, load, mass_ / units)});
+                        RunningGear(geometry, driven, options.motor, options.track_friction, load,
+                                    mass_ / units)});
       Carrier& carrier = carriers_[a.carrier];
       for (const Eigen::Vector3d& point : units_.back().gear.points()) {
         carrier.radius = std::max(carrier.radius, point.norm());
@@ -219,7 +235,8 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
     const size_t first = units_.size();
     if (options.tracks) {
       if (front.carrier != rear.carrier) {
-        throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] + "' and '" + kWheels[side][1] +
+        throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] +
+                         "' and '" + kWheels[side][1] +
                          "' on the same rigid body; with joints between them set tracks = false");
       }
       add(front, rear, front.spin_inertia + rear.spin_inertia, front.driven || rear.driven);
@@ -227,10 +244,12 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
       add(front, front, front.spin_inertia, front.driven);
       add(rear, rear, rear.spin_inertia, rear.driven);
     }
-    const auto driven = std::find_if(units_.begin() + static_cast<std::ptrdiff_t>(first), units_.end(),
-                                     [](const Unit& unit) { return unit.gear.driven(); });
+    const auto driven =
+        std::find_if(units_.begin() + static_cast<std::ptrdiff_t>(first), units_.end(),
+                     [](const Unit& unit) { return unit.gear.driven(); });
     if (driven == units_.end()) {
-      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] + "' or '" + kWheels[side][1] +
+      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] +
+                       "' or '" + kWheels[side][1] +
                        "'; a revolute joint with <limit velocity=\"1.0\"> is one");
     }
     encoder_unit_[static_cast<size_t>(side)] = static_cast<size_t>(driven - units_.begin());
@@ -252,7 +271,8 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
   for (Unit& unit : units_) unit.gear.halt();
 }
 
-double Vehicle::resting_height(const HeightField& ground, double x, double y, const Eigen::Matrix3d& rotation) const {
+double Vehicle::resting_height(const HeightField& ground, double x, double y,
+                               const Eigen::Matrix3d& rotation) const {
   double height = -std::numeric_limits<double>::infinity();
   const auto rest_on = [&](const Carrier& carrier, const Eigen::Vector3d& point) {
     const Eigen::Vector3d at = rotation * (carrier.rest * point);
@@ -267,7 +287,8 @@ double Vehicle::resting_height(const HeightField& ground, double x, double y, co
   return height;
 }
 
-void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage, double dt) {
+void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
+                           double dt) {
   for (size_t c = 0; c < carriers_.size(); ++c) {
     Carrier& carrier = carriers_[c];
     CarrierMotion motion;
@@ -276,7 +297,8 @@ void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2
     motion.velocity = to_eigen(dBodyGetLinearVel(carrier.body));
     motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
     const double ceiling =
-        ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius) - motion.origin.z();
+        ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius) -
+        motion.origin.z();
 
     Wrench wrench;
     for (Unit& unit : units_) {
@@ -316,11 +338,19 @@ ChassisState Vehicle::chassis() const {
   return state;
 }
 
-const RunningGear& Vehicle::encoder_gear(Side side) const { return units_[encoder_unit_[static_cast<size_t>(side)]].gear; }
+const RunningGear& Vehicle::encoder_gear(Side side) const {
+  return units_[encoder_unit_[static_cast<size_t>(side)]].gear;
+}
 
-double Vehicle::track_speed_m_per_s(Side side) const { return encoder_gear(side).speed_m_per_s(); }
-double Vehicle::shaft_angle_rad(Side side) const { return encoder_gear(side).angle_rad(); }
-double Vehicle::wheel_radius_m(Side side) const { return encoder_gear(side).radius_m(); }
+double Vehicle::track_speed_m_per_s(Side side) const {
+  return encoder_gear(side).speed_m_per_s();
+}
+double Vehicle::shaft_angle_rad(Side side) const {
+  return encoder_gear(side).angle_rad();
+}
+double Vehicle::wheel_radius_m(Side side) const {
+  return encoder_gear(side).radius_m();
+}
 
 double Vehicle::current_a(Side side) const {
   double sum = 0.0;

@@ -1,7 +1,9 @@
-// A skid-steered robot in the world: rigid bodies integrated by ODE, running gear and chassis in contact with the ground.
+// A skid-steered robot in the world: rigid bodies integrated by ODE, running gear and chassis in
+// contact with the ground.
 //
-// Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries them and turn in their running
-// gear (running_gear.h). Other revolute joints are ODE hinges. All ground forces are our own (ground_contact.h).
+// Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
+// them and turn in their running gear (running_gear.h). Other revolute joints are ODE hinges. All
+// ground forces are our own (ground_contact.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,8 +20,8 @@
 namespace screed {
 
 struct VehicleOptions {
-  bool tracks = true;             ///< a belt round the wheels of each side; false: single wheels
-  double track_friction = 0.8;    ///< Coulomb coefficient, rubber on the ground
+  bool tracks = true;           ///< a belt round the wheels of each side; false: single wheels
+  double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
   double chassis_friction = 0.4;
   GearMotor motor;
 };
@@ -28,9 +30,9 @@ enum Side : int { kLeft = 0, kRight = 1 };
 
 /// Pose and motion of the frame of `Body` (x forward, y left, z up).
 struct ChassisState {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();   ///< Body to world
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();       ///< of the frame's origin, world frame, m/s
-  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();     ///< rad/s, Body frame
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< Body to world
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the frame's origin, world frame, m/s
+  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, Body frame
 };
 
 /// Roll (left side up), pitch (nose up), heading (counter-clockwise from east), rad.
@@ -45,22 +47,27 @@ Eigen::Matrix3d rotation_from(const Attitude& attitude);
 
 class Vehicle {
  public:
-  /// Throws InputError when the model cannot be driven: no motor wheel on a side, motor joints on other bodies, a wheel without a
-  /// cylinder to roll on.
+  /// Throws InputError when the model cannot be driven: no motor wheel on a side, motor joints on
+  /// other bodies, a wheel without a cylinder to roll on.
   Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options);
 
   /// Puts the robot somewhere, at rest. Passive joints go back to zero.
   void place(const Eigen::Isometry3d& pose);
-  /// Height of Body's origin at which the lowest contact point just touches the ground, for this attitude at (x, y).
-  double resting_height(const HeightField& ground, double x, double y, const Eigen::Matrix3d& rotation) const;
+  /// Height of Body's origin at which the lowest contact point just touches the ground, for this
+  /// attitude at (x, y).
+  double resting_height(const HeightField& ground, double x, double y,
+                        const Eigen::Matrix3d& rotation) const;
 
-  /// Adds the forces of this step to the bodies and advances the motors; the world steps afterwards.
-  void apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage, double dt);
+  /// Adds the forces of this step to the bodies and advances the motors; the world steps
+  /// afterwards.
+  void apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
+                    double dt);
 
   ChassisState chassis() const;
   double mass_kg() const { return mass_; }
 
-  /// Of the side's driven unit: surface speed over the wheels, angle of the encoder's shaft, motor current (all motors of the side).
+  /// Of the side's driven unit: surface speed over the wheels, angle of the encoder's shaft, motor
+  /// current (all motors of the side).
   double track_speed_m_per_s(Side side) const;
   double shaft_angle_rad(Side side) const;
   double current_a(Side side) const;
@@ -71,11 +78,11 @@ class Vehicle {
   double ground_speed_m_per_s(Side side) const;
 
  private:
-  struct Carrier {                     // one ODE body
+  struct Carrier {  // one ODE body
     dBodyID body;
-    Eigen::Isometry3d rest;            // its centre of mass in the frame of Body, joints at zero
-    double radius;                     // of a sphere round it, for the broad phase
-    std::vector<Eigen::Vector3d> points;    // of its hull, from the centre of mass
+    Eigen::Isometry3d rest;               // its centre of mass in the frame of Body, joints at zero
+    double radius;                        // of a sphere round it, for the broad phase
+    std::vector<Eigen::Vector3d> points;  // of its hull, from the centre of mass
     std::vector<Eigen::Vector3d> bristles;
     ContactLaw law;
   };
@@ -85,7 +92,8 @@ class Vehicle {
     RunningGear gear;
   };
 
-  void add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel, const VehicleOptions& options);
+  void add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
+                    const VehicleOptions& options);
   void add_hinges(const Assembly& assembly);
   void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
   const RunningGear& encoder_gear(Side side) const;

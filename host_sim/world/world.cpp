@@ -31,8 +31,8 @@ Eigen::Vector3d imu_position(const Assembly& model) {
 
 }  // namespace
 
-World::World(HeightField terrain, const Assembly& model, const BoardConstants& board, const WorldOptions& options,
-             std::ostream* telemetry_log)
+World::World(HeightField terrain, const Assembly& model, const BoardConstants& board,
+             const WorldOptions& options, std::ostream* telemetry_log)
     : options_(options),
       board_(board),
       terrain_(std::move(terrain)),
@@ -51,7 +51,8 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
   const double resting = vehicle_.resting_height(terrain_, start.x_m, start.y_m, rotation);
   pose.translation() << start.x_m, start.y_m, start.z_m.value_or(resting);
   if (start.z_m.has_value() && *start.z_m < resting - 0.01) {
-    throw InputError("[vehicle] z = " + std::to_string(*start.z_m) + " m puts the robot into the ground; at this place it must be " +
+    throw InputError("[vehicle] z = " + std::to_string(*start.z_m) +
+                     " m puts the robot into the ground; at this place it must be " +
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
   vehicle_.place(pose);
@@ -82,7 +83,8 @@ void World::step_physics() {
     for (const Side side : {kLeft, kRight}) {
       const double share = static_cast<double>(duty_[static_cast<size_t>(side)]) / kDutyMax;
       voltage[static_cast<size_t>(side)] = share * battery_.terminal_v;
-      // The driver's off phase brakes: current then circulates in the motor, and never flows back into the battery.
+      // The driver's off phase brakes: current then circulates in the motor, and never flows back
+      // into the battery.
       current += std::max(0.0, share * vehicle_.current_a(side));
     }
     vehicle_.apply_forces(terrain_, voltage, dt);
@@ -96,7 +98,8 @@ void World::measure() {
   const ChassisState chassis = vehicle_.chassis();
   const Eigen::Vector3d velocity = imu_velocity(chassis);
   const Eigen::Matrix3d rotation = chassis.pose.linear();
-  if (!velocity.allFinite() || !chassis.pose.translation().allFinite() || velocity.norm() > 1000.0) {
+  if (!velocity.allFinite() || !chassis.pose.translation().allFinite() ||
+      velocity.norm() > 1000.0) {
     throw RunError("the physics diverged at " + std::to_string(time_s()) +
                    " s; a smaller [physics] step may help");
   }
@@ -111,12 +114,13 @@ void World::measure() {
 
   const auto counts = [&](Side side) {
     const double turns = vehicle_.shaft_angle_rad(side) / (2.0 * std::numbers::pi);
-    return static_cast<uint16_t>(static_cast<int64_t>(std::floor(turns * options_.encoder_counts_per_turn)) & 0xFFFF);
+    return static_cast<uint16_t>(
+        static_cast<int64_t>(std::floor(turns * options_.encoder_counts_per_turn)) & 0xFFFF);
   };
   sample_.encoder_left = counts(kLeft);
   sample_.encoder_right = counts(kRight);
-  sample_.battery = static_cast<uint16_t>(
-      std::clamp(std::round(battery_.terminal_v * 1e6 / board_.battery_uv_per_lsb), 0.0, 8.0 * 1023.0));
+  sample_.battery = static_cast<uint16_t>(std::clamp(
+      std::round(battery_.terminal_v * 1e6 / board_.battery_uv_per_lsb), 0.0, 8.0 * 1023.0));
   sample_.time_us = static_cast<uint32_t>(now_us());
 }
 
@@ -124,8 +128,8 @@ void World::exchange_radio() {
   uplink_.send(now_us(), ground_.transmit(now_us()));
   const std::vector<uint8_t> arrived = uplink_.receive(now_us(), kRadioInCapacity);
   sample_.radio_in_count = static_cast<uint8_t>(arrived.size());
-  std::fill(std::copy(arrived.begin(), arrived.end(), sample_.radio_in), sample_.radio_in + kRadioInCapacity,
-            static_cast<uint8_t>(0));
+  std::fill(std::copy(arrived.begin(), arrived.end(), sample_.radio_in),
+            sample_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));
   ground_.receive(now_us(), downlink_.receive(now_us(), SIZE_MAX));
 }
 
@@ -152,8 +156,8 @@ void World::lay_on_side() {
   attitude.roll = -std::numbers::pi / 2.0;
   attitude.pitch = 0.0;
   pose.linear() = rotation_from(attitude);
-  pose.translation().z() =
-      vehicle_.resting_height(terrain_, pose.translation().x(), pose.translation().y(), pose.linear());
+  pose.translation().z() = vehicle_.resting_height(terrain_, pose.translation().x(),
+                                                   pose.translation().y(), pose.linear());
   vehicle_.place(pose);
   // A hand, not an impact: the accelerometer sees the new attitude, no jerk.
   last_imu_velocity_.setZero();

@@ -1,7 +1,8 @@
 // One robot in one world of physics, advanced a control tick at a time.
 //
-// The world owns its clock and its seeded generators; nothing in it looks at the wall clock or at global random state, so the same
-// configuration gives the same bytes on every run and any number of worlds live side by side.
+// The world owns its clock and its seeded generators; nothing in it looks at the wall clock or at
+// global random state, so the same configuration gives the same bytes on every run and any number
+// of worlds live side by side.
 #pragma once
 
 #include <array>
@@ -25,7 +26,8 @@ namespace screed {
 struct StartPose {
   double x_m = 0.0;
   double y_m = 0.0;
-  std::optional<double> z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
+  std::optional<double>
+      z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
   Attitude attitude = {0.0, 0.0, 0.0};
 };
 
@@ -46,11 +48,13 @@ struct WorldOptions {
 
 class World {
  public:
-  /// telemetry_log may be null; it must outlive the world. Throws InputError when the options do not fit together.
-  World(HeightField terrain, const Assembly& model, const BoardConstants& board, const WorldOptions& options,
-        std::ostream* telemetry_log);
+  /// telemetry_log may be null; it must outlive the world. Throws InputError when the options do
+  /// not fit together.
+  World(HeightField terrain, const Assembly& model, const BoardConstants& board,
+        const WorldOptions& options, std::ostream* telemetry_log);
 
-  /// Advances physics, sensors and radio by one control tick. Throws RunError when the physics has diverged.
+  /// Advances physics, sensors and radio by one control tick. Throws RunError when the physics has
+  /// diverged.
   void advance();
   /// What the robot's sensors say now.
   const SensorSample& sample() const { return sample_; }
@@ -68,7 +72,8 @@ class World {
   void lay_on_side();
 
  private:
-  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there when it was switched on.
+  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
+  /// when it was switched on.
   void settle();
   void step_physics();
   void measure();

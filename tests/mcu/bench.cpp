@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "tests/mcu/images.h"
@@ -72,19 +73,32 @@ void Bench::measure() {
   baro.set_vector(0x28, 0x5678, 0xDC3F, 0x00D8);  // pressure 0x3F5678, temperature 0xD8DC
 }
 
+int Bench::left_duty() const {
+  const int duty = mcu.word(kOcr1a);
+  return (mcu.memory(kPortD) & 0x40) != 0 ? -duty : duty;
+}
+
+int Bench::right_duty() const {
+  const int duty = mcu.word(kOcr1b);
+  return (mcu.memory(kPortE) & 0x04) != 0 ? -duty : duty;
+}
+
 void Bench::turn_tracks() {
   // 0.25 m/s at full duty, 565.5 um a count.
   constexpr double kCountsPerMsAndDuty = 0.25 / 565.5e-6 / 1000 / 400;
   if (tracks_blocked) return;
-  left_travel_ += kCountsPerMsAndDuty * mcu.word(kOcr1a);
-  right_travel_ += kCountsPerMsAndDuty * mcu.word(kOcr1b);
-  if (left_travel_ >= 1) {
-    left_travel_ -= 1;
-    turn_left_encoder((mcu.memory(kPortD) & 0x40) == 0);
+  const double pushed = tracks_pushed_mm_per_s / 0.5655 / 1000;
+  left_travel_ += pushed + kCountsPerMsAndDuty * left_duty();
+  right_travel_ += pushed + kCountsPerMsAndDuty * right_duty();
+  if (std::abs(left_travel_) >= 1) {
+    const bool forward = left_travel_ > 0;
+    left_travel_ -= forward ? 1 : -1;
+    turn_left_encoder(forward);
   }
-  if (right_travel_ >= 1) {
-    right_travel_ -= 1;
-    turn_right_encoder((mcu.memory(kPortE) & 0x04) == 0);
+  if (std::abs(right_travel_) >= 1) {
+    const bool forward = right_travel_ > 0;
+    right_travel_ -= forward ? 1 : -1;
+    turn_right_encoder(forward);
   }
 }
 

@@ -36,6 +36,10 @@ class Bench {
   void turn_left_encoder(bool forward);
   void turn_right_encoder(bool forward);
 
+  /// What the motors get, -400..400: the compare register with the sign of the direction pin.
+  int left_duty() const;
+  int right_duty() const;
+
   /// Frames sent since the last call, those with `id` only.
   std::vector<CanFrame> frames(std::uint16_t id);
   /// The newest frame with `id` of the whole run; fails the test when there is none.
@@ -47,6 +51,7 @@ class Bench {
   I2cChip baro;
   bool ground_station = false;
   bool tracks_blocked = false;
+  double tracks_pushed_mm_per_s = 0;  ///< on top of what the motors do
   std::int16_t accel_z = 4096;
 
  private:

@@ -169,6 +169,21 @@ void Mcu::set_pin(char port, int bit, bool high) {
   avr_cycle_timer_register(avr_, 1, &Mcu::on_end, nullptr);
 }
 
+void Mcu::watch_pin(char port, int bit, void (*on_change)(void* context), void* context) {
+  avr_irq_t* const pin =
+      avr_io_getirq(avr_, static_cast<std::uint32_t>(AVR_IOCTL_IOPORT_GETIRQ(port)), bit);
+  const int port_register = 0x25 + 3 * (port - 'B');
+  watches_.push_back({on_change, context, (avr_->data[port_register] >> bit) & 1U});
+  avr_irq_register_notify(pin, &Mcu::on_watched, &watches_.back());
+}
+
+void Mcu::on_watched(avr_irq_t*, std::uint32_t value, void* watch) {
+  auto& it = *static_cast<Watch*>(watch);
+  if ((value & 1U) == it.level) return;
+  it.level = value & 1U;
+  it.on_change(it.context);
+}
+
 void Mcu::set_adc_mv(int channel, int mv) {
   avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel),
                 static_cast<std::uint32_t>(mv));

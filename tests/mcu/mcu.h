@@ -45,6 +45,8 @@ class Mcu {
 
   /// Level of an input pin.
   void set_pin(char port, int bit, bool high);
+  /// Calls back at every change of an output pin.
+  void watch_pin(char port, int bit, void (*on_change)(void* context), void* context);
   /// Voltage at an ADC channel.
   void set_adc_mv(int channel, int mv);
 
@@ -83,6 +85,13 @@ class Mcu {
   static void on_sleep(avr_t* avr, std::uint64_t cycles);
   static std::uint64_t on_end(avr_t* avr, std::uint64_t when, void* self);
 
+  struct Watch {
+    void (*on_change)(void* context);
+    void* context;
+    std::uint32_t level;
+  };
+  static void on_watched(avr_irq_t* irq, std::uint32_t value, void* watch);
+
   struct DrivenPins {
     std::uint8_t mask = 0;
     std::uint8_t value = 0;
@@ -90,6 +99,7 @@ class Mcu {
 
   avr_t* avr_ = nullptr;
   std::map<char, DrivenPins> driven_pins_;
+  std::deque<Watch> watches_;  // elements stay in place when it grows
   bool scl_driven_ = false;
   unsigned scl_pulses_ = 0;
   avr_irq_t* uart_input_ = nullptr;

@@ -1,6 +1,6 @@
 // A scripted mission as a sequence of samples: what a robot would measure while it waits, is armed,
-// walks over hills, hears garbage, loses its gyro and falls on its side. Made up, not simulated: it
-// only has to lead the code everywhere.
+// walks over hills, hears garbage, loses its gyro and falls on its side, and at last reads
+// nonsense. Made up, not simulated: it only has to lead the code everywhere.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace screed::mcu {
 
 class Mission {
  public:
-  static constexpr int kTicks = 2500;
+  static constexpr int kTicks = 2700;
 
   SensorSample next() {
     const int tick = tick_++;
@@ -43,6 +43,7 @@ class Mission {
     if (tick > 2300) {  // on its side
       std::swap(sample_.accel[1], sample_.accel[2]);
     }
+    if (tick > 2400) babble();
     hear(tick);
     return sample_;
   }
@@ -51,6 +52,20 @@ class Mission {
   static int slope(int tick) {  // up and down hills of 3 s
     const int phase = tick % 300;
     return (phase < 150 ? phase : 300 - phase) * 8 - 300;
+  }
+
+  /// Anything the devices can say.
+  void babble() {
+    for (std::int16_t& value : sample_.gyro) value = numbers_.narrow();
+    for (std::int16_t& value : sample_.accel) value = numbers_.narrow();
+    for (std::int16_t& value : sample_.mag) value = numbers_.narrow();
+    sample_.pressure = numbers_.wide();
+    sample_.temperature = numbers_.narrow();
+    sample_.encoder_left = static_cast<std::uint16_t>(numbers_.wide());
+    sample_.encoder_right = static_cast<std::uint16_t>(numbers_.wide());
+    sample_.battery = static_cast<std::uint16_t>(numbers_.any() % 8185U);
+    sample_.last_tick_us = static_cast<std::uint16_t>(numbers_.wide());
+    sample_.fresh = static_cast<std::uint8_t>(numbers_.any() & 0x0FU);
   }
 
   void hear(int tick) {

@@ -174,7 +174,11 @@ TEST(ScreedImage, DrivesAndStopsWithTheLink) {
   set_off(bench);
   EXPECT_GT(bench.mcu.word(kOcr1a) + bench.mcu.word(kOcr1b), 0);
   const CanFrame motors = bench.last_frame(kIdMotors);
-  EXPECT_NEAR(bench.mcu.word(kOcr1a), std::abs(value_at(motors, 0)), 40);
+  EXPECT_NEAR(bench.left_duty(), value_at(motors, 0), 40);
+  // The image's own measure of its load, in percent: from the tick to the end of its computation.
+  const double busy = 100.0 * static_cast<double>(bench.mcu.busiest_tick_cycles()) / kTickCycles;
+  EXPECT_LE(bench.last_frame(kIdPower).data[4], busy);
+  EXPECT_GE(bench.last_frame(kIdPower).data[4], busy / 2);
   expect_healthy(bench);
   bench.ground_station = false;
   bench.run_ms(2000);
@@ -185,6 +189,42 @@ TEST(ScreedImage, DrivesAndStopsWithTheLink) {
               static_cast<unsigned long long>(bench.mcu.busiest_tick_cycles()),
               static_cast<unsigned long long>(kTickCycles), bench.mcu.stack_used(),
               computed_stack());
+}
+
+/// Watches a direction pin: the duty register at the moment it changes.
+struct DirectionWatch {
+  Bench& bench;
+  std::uint16_t duty_register;
+  int changes = 0;
+  int changes_under_power = 0;
+};
+
+TEST(ScreedImage, ReversesAMotorOnlyWithoutDuty) {
+  Bench bench;
+  DirectionWatch left{bench, kOcr1a};
+  DirectionWatch right{bench, kOcr1b};
+  const auto on_change = [](void* watch) {
+    auto& it = *static_cast<DirectionWatch*>(watch);
+    ++it.changes;
+    if (it.bench.mcu.word(it.duty_register) != 0) ++it.changes_under_power;
+  };
+  set_off(bench);
+  bench.mcu.watch_pin('D', 6, on_change, &left);
+  bench.mcu.watch_pin('E', 2, on_change, &right);
+  bench.tracks_pushed_mm_per_s = 300;  // downhill: the motors have to brake
+  bench.run_ms(300);
+  EXPECT_LT(bench.left_duty(), 0);
+  EXPECT_LT(bench.right_duty(), 0);
+  EXPECT_LT(value_at(bench.last_frame(kIdMotors), 0), 0);
+  bench.tracks_pushed_mm_per_s = -300;
+  bench.run_ms(300);
+  EXPECT_GT(bench.left_duty(), 0);
+  EXPECT_GT(bench.right_duty(), 0);
+  EXPECT_GE(left.changes, 2);
+  EXPECT_GE(right.changes, 2);
+  EXPECT_EQ(left.changes_under_power, 0);
+  EXPECT_EQ(right.changes_under_power, 0);
+  expect_healthy(bench);
 }
 
 TEST(ScreedImage, CutsThePowerOfABlockedTrack) {

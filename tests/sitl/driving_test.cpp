@@ -1,4 +1,5 @@
-// Closed loop on rigid ground: the commanded motion is reached and held, on the level and on slopes.
+// Closed loop on rigid ground: the commanded motion is reached and held, on the level and on
+// slopes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +22,8 @@ class Driving : public ::testing::TestWithParam<Order> {};
 // Every second mean of the last eight of ten seconds is within 5 % of what was commanded.
 TEST_P(Driving, ReachesAndHoldsTheCommandedMotion) {
   const Order order = GetParam();
-  TestDrive drive(HeightField::flat(20.0, 0.1), drive_options(order.speed_m_per_s, order.yaw_rate_deg_per_s));
+  TestDrive drive(HeightField::flat(20.0, 0.1),
+                  drive_options(order.speed_m_per_s, order.yaw_rate_deg_per_s));
   ASSERT_TRUE(drive.start());
   drive.run(2.0);
   for (int second = 0; second < 8; ++second) {
@@ -33,15 +35,18 @@ TEST_P(Driving, ReachesAndHoldsTheCommandedMotion) {
       rate += drive.yaw_rate() / kTickRate_hz;
     }
     // What is commanded to be zero stays within 5 % of the other figure's scale.
-    EXPECT_NEAR(speed, order.speed_m_per_s, 0.05 * std::max(std::abs(order.speed_m_per_s), 0.1)) << "second " << second;
-    EXPECT_NEAR(rate / kDeg, order.yaw_rate_deg_per_s, 0.05 * std::max(std::abs(order.yaw_rate_deg_per_s), 45.0))
+    EXPECT_NEAR(speed, order.speed_m_per_s, 0.05 * std::max(std::abs(order.speed_m_per_s), 0.1))
+        << "second " << second;
+    EXPECT_NEAR(rate / kDeg, order.yaw_rate_deg_per_s,
+                0.05 * std::max(std::abs(order.yaw_rate_deg_per_s), 45.0))
         << "second " << second;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, Driving,
-                         ::testing::Values(Order{0.1, 0.0}, Order{-0.1, 0.0}, Order{0.0, 45.0}, Order{0.0, -45.0},
-                                           Order{0.1, 45.0}, Order{0.1, -45.0}, Order{-0.1, 45.0}, Order{0.2, 10.0}));
+                         ::testing::Values(Order{0.1, 0.0}, Order{-0.1, 0.0}, Order{0.0, 45.0},
+                                           Order{0.0, -45.0}, Order{0.1, 45.0}, Order{0.1, -45.0},
+                                           Order{-0.1, 45.0}, Order{0.2, 10.0}));
 
 TEST(DrivingOnSlopes, ClimbsTwentyDegrees) {
   WorldOptions options = drive_options(0.1, 0.0);
@@ -58,8 +63,9 @@ TEST(DrivingOnSlopes, ClimbsTwentyDegrees) {
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
 
-// Without belts only the front wheels pull. Uphill they carry the smaller share of the weight, (cos/2 - sin h/L) of it with the centre of
-// mass h above the ground: friction 0.8 is enough for 10 degrees, and not for 20.
+// Without belts only the front wheels pull. Uphill they carry the smaller share of the weight,
+// (cos/2 - sin h/L) of it with the centre of mass h above the ground: friction 0.8 is enough for 10
+// degrees, and not for 20.
 TEST(DrivingOnSlopes, FrontWheelsAlonePullAsMuchAsTheirLoadAllows) {
   const auto climbed = [](double slope_deg) {
     WorldOptions options = drive_options(0.1, 0.0);
@@ -95,7 +101,8 @@ TEST(Estimation, FollowsTheTruthWhileDrivingOverASlope) {
     drive.tick();
     const double pitch = drive.robot.attitude().pitch() * std::numbers::pi / 32768.0;
     const double roll = drive.robot.attitude().roll() * std::numbers::pi / 32768.0;
-    worst = std::max({worst, std::abs(pitch - drive.attitude().pitch), std::abs(roll - drive.attitude().roll)});
+    worst = std::max(
+        {worst, std::abs(pitch - drive.attitude().pitch), std::abs(roll - drive.attitude().roll)});
   }
   EXPECT_LT(worst, 1.5 * kDeg);  // accelerometer bias of 8 mg is 0.46 degrees, three sigma
 }

@@ -10,8 +10,9 @@ namespace {
 
 // A hill of 0.25 m in the middle of the site; its flank is 19 degrees at most.
 HeightField hill() {
-  return HeightField::from_function(121, 121, 0.05, false,
-                                    [](double x, double y) { return 0.25 * std::exp(-(x * x + y * y) / (2.0 * 0.45 * 0.45)); });
+  return HeightField::from_function(121, 121, 0.05, false, [](double x, double y) {
+    return 0.25 * std::exp(-(x * x + y * y) / (2.0 * 0.45 * 0.45));
+  });
 }
 
 Parameters leveling_parameters(LevelingAlgorithm algorithm) {
@@ -30,7 +31,8 @@ TEST(Leveling, HillSensingChargesTheHill) {
   Parameters parameters = leveling_parameters(LevelingAlgorithm::kHillSensing);
   parameters.site_radius = 2500;
   TestDrive drive(hill(), facing_the_hill(), parameters);
-  ASSERT_TRUE(drive.run_until(180.0, [&] { return drive.robot.leveling().state() == LevelingState::kClimb; }));
+  ASSERT_TRUE(drive.run_until(
+      180.0, [&] { return drive.robot.leveling().state() == LevelingState::kClimb; }));
   EXPECT_GT(drive.attitude().pitch, 0.05);  // it really points up
   EXPECT_EQ(drive.robot.motion().speed_mm_per_s, parameters.climb_speed);
   EXPECT_EQ(drive.robot.motion().yaw_rate, 0);
@@ -40,8 +42,10 @@ TEST(Leveling, SpinOnPeakSpinsNearTheTop) {
   Parameters parameters = leveling_parameters(LevelingAlgorithm::kSpinOnPeak);
   parameters.walk_yaw_rate_max = 5;  // nearly straight at the hill
   TestDrive drive(hill(), facing_the_hill(), parameters);
-  ASSERT_TRUE(drive.run_until(120.0, [&] { return drive.robot.leveling().state() == LevelingState::kSpin; }));
-  const double height_of_begin = drive.world.terrain().at(drive.position().x(), drive.position().y()).height;
+  ASSERT_TRUE(drive.run_until(
+      120.0, [&] { return drive.robot.leveling().state() == LevelingState::kSpin; }));
+  const double height_of_begin =
+      drive.world.terrain().at(drive.position().x(), drive.position().y()).height;
   const double at_begin = drive.attitude().heading;
   EXPECT_GT(height_of_begin, 0.15);
   // 90 degrees/s for 4 s is a whole turn.

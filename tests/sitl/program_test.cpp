@@ -1,4 +1,5 @@
-// The program as a user meets it: bad input ends with one clear line, the right exit code, and nothing left behind.
+// The program as a user meets it: bad input ends with one clear line, the right exit code, and
+// nothing left behind.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,7 +24,8 @@ class Program : public ::testing::Test {
  protected:
   void SetUp() override {
     const char* program = std::getenv("SCREED_PROGRAM");
-    ASSERT_NE(program, nullptr) << "SCREED_PROGRAM names the program under test; `make test` sets it";
+    ASSERT_NE(program, nullptr)
+        << "SCREED_PROGRAM names the program under test; `make test` sets it";
     program_ = program;
     root_ = std::filesystem::temp_directory_path() /
             ("screed-program-" + std::to_string(getpid()) + "-" +
@@ -39,22 +41,27 @@ class Program : public ::testing::Test {
     text << file.rdbuf();
     return text.str();
   }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(root_ / name) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(root_ / name) << text;
+  }
 
   /// Runs in root_; `before` is shell text in front of the program.
   Result run(const std::string& arguments, const std::string& before = "") const {
-    const std::string command = "cd '" + root_.string() + "' && { " + before + " '" + program_ + "' " + arguments +
-                                "; } > '" + log("out") + "' 2> '" + log("err") + "' < /dev/null";
+    const std::string command = "cd '" + root_.string() + "' && { " + before + " '" + program_ +
+                                "' " + arguments + "; } > '" + log("out") + "' 2> '" + log("err") +
+                                "' < /dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("out")), read(log("err"))};
   }
   std::string log(const char* which) const { return root_.string() + "." + which; }
 
   /// One line that says all of `parts`, this exit code, and no folder of a run, half or whole.
-  void expect_refused(const Result& result, int exit_code, const std::vector<std::string>& parts) const {
+  void expect_refused(const Result& result, int exit_code,
+                      const std::vector<std::string>& parts) const {
     EXPECT_EQ(result.exit_code, exit_code) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << part << " in: " << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << " in: " << result.err;
     EXPECT_FALSE(std::filesystem::exists(root_ / "out"));
     for (const auto& entry : std::filesystem::directory_iterator(root_)) {
       EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
@@ -67,17 +74,22 @@ class Program : public ::testing::Test {
 
 constexpr const char* kShort = "[experiment]\nduration = 1\n";
 // The smallest model that is complete.
-std::string urdf(const std::string& body_name, const std::string& inertia, const std::string& extra = "") {
-  std::string text = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"" + body_name +
-                     "\"><inertial><mass value=\"1\"/><inertia ixx=\"" + inertia +
-                     "\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial></link>\n";
+std::string urdf(const std::string& body_name, const std::string& inertia,
+                 const std::string& extra = "") {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n<link name=\"" + body_name +
+      "\"><inertial><mass value=\"1\"/><inertia ixx=\"" + inertia +
+      "\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial></link>\n";
   for (const std::string wheel : {"fl", "fr", "bl", "br"}) {
     text += "<link name=\"" + wheel +
-            "_Wheel\"><inertial><mass value=\"0.1\"/><inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" iyy=\"1e-4\" iyz=\"0\" izz=\"1e-4\"/>"
-            "</inertial><collision><origin rpy=\"1.5707963 0 0\"/><geometry><cylinder radius=\"0.03\" length=\"0.03\"/></geometry>"
+            "_Wheel\"><inertial><mass value=\"0.1\"/><inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" "
+            "iyy=\"1e-4\" iyz=\"0\" izz=\"1e-4\"/>"
+            "</inertial><collision><origin rpy=\"1.5707963 0 0\"/><geometry><cylinder "
+            "radius=\"0.03\" length=\"0.03\"/></geometry>"
             "</collision></link>\n<joint name=\"" +
-            wheel + "_joint\" type=\"continuous\"><parent link=\"" + body_name + "\"/><child link=\"" + wheel +
-            "_Wheel\"/><origin xyz=\"" + (wheel[0] == 'f' ? "0.09 " : "-0.09 ") + (wheel[1] == 'l' ? "0.1" : "-0.1") +
+            wheel + "_joint\" type=\"continuous\"><parent link=\"" + body_name +
+            "\"/><child link=\"" + wheel + "_Wheel\"/><origin xyz=\"" +
+            (wheel[0] == 'f' ? "0.09 " : "-0.09 ") + (wheel[1] == 'l' ? "0.1" : "-0.1") +
             " 0\"/><axis xyz=\"0 1 0\"/><limit effort=\"1\" velocity=\"1.0\"/></joint>\n";
   }
   return text + extra + "</robot>\n";
@@ -103,14 +115,19 @@ TEST_F(Program, AModelOfOnesOwnDrives) {
 TEST_F(Program, ShowsATable) {
   write("e.ini", kShort);
   const Result sim = run("sim e.ini");
-  for (const char* part : {"simulated time", "distance driven", "energy", "mean slope", "real-time factor", "content hash"}) {
+  for (const char* part : {"simulated time", "distance driven", "energy", "mean slope",
+                           "real-time factor", "content hash"}) {
     EXPECT_NE(sim.out.find(part), std::string::npos) << part;
   }
 }
 
-TEST_F(Program, MissingExperiment) { expect_refused(run("sim none.ini"), 2, {"none.ini", "no such"}); }
+TEST_F(Program, MissingExperiment) {
+  expect_refused(run("sim none.ini"), 2, {"none.ini", "no such"});
+}
 
-TEST_F(Program, NoArguments) { expect_refused(run(""), 2, {"subcommand"}); }
+TEST_F(Program, NoArguments) {
+  expect_refused(run(""), 2, {"subcommand"});
+}
 
 TEST_F(Program, UnknownKey) {
   write("e.ini", "[experiment]\nname = x\n\n[map]\nfoo = 1\n");
@@ -144,7 +161,8 @@ TEST_F(Program, MissingImage) {
 }
 
 TEST_F(Program, TruncatedImage) {
-  const std::string whole = read(std::filesystem::path(SCREED_DATA_DIR) / "terrain" / "jacksboro_fault_dem_16bit.png");
+  const std::string whole =
+      read(std::filesystem::path(SCREED_DATA_DIR) / "terrain" / "jacksboro_fault_dem_16bit.png");
   ASSERT_GT(whole.size(), 100000u);
   write("cut.png", whole.substr(0, whole.size() / 2));
   write("e.ini", "[map]\nfilename = cut.png\n");
@@ -154,9 +172,11 @@ TEST_F(Program, TruncatedImage) {
 TEST_F(Program, ColourImage) {
   // 1 x 1 pixel, RGB, 8 bits; made by ImageMagick.
   static const unsigned char kPng[] = {
-      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00,
-      0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x90, 0x77, 0x53, 0xde, 0x00, 0x00, 0x00, 0x0c, 0x49, 0x44, 0x41, 0x54, 0x08, 0xd7, 0x63, 0xf8, 0xcf,
-      0xc0, 0x00, 0x00, 0x03, 0x01, 0x01, 0x00, 0x18, 0xdd, 0x8d, 0xb0, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+      0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00,
+      0x00, 0x90, 0x77, 0x53, 0xde, 0x00, 0x00, 0x00, 0x0c, 0x49, 0x44, 0x41, 0x54, 0x08,
+      0xd7, 0x63, 0xf8, 0xcf, 0xc0, 0x00, 0x00, 0x03, 0x01, 0x01, 0x00, 0x18, 0xdd, 0x8d,
+      0xb0, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
   write("rgb.png", std::string(reinterpret_cast<const char*>(kPng), sizeof kPng));
   write("e.ini", "[map]\nfilename = rgb.png\n");
   expect_refused(run("sim e.ini"), 2, {"rgb.png", "grey"});
@@ -176,14 +196,16 @@ TEST_F(Program, ModelWithNaNInertia) {
 
 TEST_F(Program, ModelWithAJointCycle) {
   write("m.urdf", urdf("Body", "0.01",
-                       "<joint name=\"back\" type=\"fixed\"><parent link=\"fl_Wheel\"/><child link=\"Body\"/></joint>\n"));
+                       "<joint name=\"back\" type=\"fixed\"><parent link=\"fl_Wheel\"/><child "
+                       "link=\"Body\"/></joint>\n"));
   write("e.ini", "[vehicle]\nmodel = m.urdf\n");
   expect_refused(run("sim e.ini"), 2, {"m.urdf", "cycle"});
 }
 
 TEST_F(Program, FullDisk) {
   write("e.ini", "[experiment]\nduration = 60\n[map]\nfilename = jacksboro_fault_dem_16bit.png\n");
-  // A limit on the size of files stands for a full disk: writing fails half-way. 100 blocks of 1024 bytes.
+  // A limit on the size of files stands for a full disk: writing fails half-way. 100 blocks of 1024
+  // bytes.
   expect_refused(run("sim e.ini --quiet", "trap '' XFSZ; ulimit -f 100;"), 1, {"session.h5"});
 }
 
@@ -191,7 +213,8 @@ TEST_F(Program, UnwritableFolder) {
   write("e.ini", kShort);
   write("file", "in the way");
   expect_refused(run("sim e.ini --out file/run"), 2, {"file"});
-  expect_refused(run("sim e.ini --set output_directory_prefix=/proc/nowhere"), 1, {"/proc/nowhere"});
+  expect_refused(run("sim e.ini --set output_directory_prefix=/proc/nowhere"), 1,
+                 {"/proc/nowhere"});
 }
 
 TEST_F(Program, TakenFolder) {

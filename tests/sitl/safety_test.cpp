@@ -15,7 +15,8 @@ TEST(Safety, ARobotLaidOnItsSideIsReportedAndStopped) {
   ASSERT_GT(drive.output.duty_left, 0);
   drive.world.lay_on_side();
   const uint64_t begin = drive.world.ticks();
-  ASSERT_TRUE(drive.run_until(1.0, [&] { return drive.output.duty_left == 0 && drive.output.duty_right == 0; }));
+  ASSERT_TRUE(drive.run_until(
+      1.0, [&] { return drive.output.duty_left == 0 && drive.output.duty_right == 0; }));
   EXPECT_LE(drive.world.ticks() - begin, 10u);  // 100 ms
   EXPECT_EQ(drive.robot.supervisor().state(), RobotState::kFault);
   EXPECT_EQ(drive.robot.supervisor().faults(), kFaultTilt);

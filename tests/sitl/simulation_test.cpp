@@ -24,8 +24,9 @@ class Simulation : public ::testing::Test {
              ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
-    experiment_ = read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" / "first_drive.ini",
-                                  {"experiment.duration=8", "parameters.climb_threshold=300"});
+    experiment_ =
+        read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" / "first_drive.ini",
+                        {"experiment.duration=8", "parameters.climb_threshold=300"});
   }
   void TearDown() override { std::filesystem::remove_all(root_); }
 
@@ -50,8 +51,10 @@ TEST_F(Simulation, SameSeedSameBytesOtherSeedOtherBytes) {
   const SimulationSummary second = run("second");
   EXPECT_EQ(first.content_hash, second.content_hash);
   EXPECT_EQ(content(root_ / "first" / "frames.csv"), content(root_ / "second" / "frames.csv"));
-  EXPECT_EQ(content(root_ / "first" / "telemetry.log"), content(root_ / "second" / "telemetry.log"));
-  EXPECT_EQ(content(root_ / "first" / "terrain_after.png"), content(root_ / "second" / "terrain_after.png"));
+  EXPECT_EQ(content(root_ / "first" / "telemetry.log"),
+            content(root_ / "second" / "telemetry.log"));
+  EXPECT_EQ(content(root_ / "first" / "terrain_after.png"),
+            content(root_ / "second" / "terrain_after.png"));
   EXPECT_EQ(content(root_ / "first" / "summary.json"), content(root_ / "second" / "summary.json"));
   experiment_.experiment.seed = 2;
   EXPECT_NE(run("third").content_hash, first.content_hash);
@@ -59,8 +62,8 @@ TEST_F(Simulation, SameSeedSameBytesOtherSeedOtherBytes) {
 
 TEST_F(Simulation, LeavesARunFolderThatReplays) {
   const SimulationSummary summary = run("run");
-  for (const char* file : {"session.h5", "frames.csv", "telemetry.log", "terrain_before.png", "terrain_after.png",
-                           "experiment.ini", "summary.json"}) {
+  for (const char* file : {"session.h5", "frames.csv", "telemetry.log", "terrain_before.png",
+                           "terrain_after.png", "experiment.ini", "summary.json"}) {
     EXPECT_GT(std::filesystem::file_size(root_ / "run" / file), 0u) << file;
   }
   EXPECT_FALSE(std::filesystem::exists(root_ / "run.partial"));

@@ -1,4 +1,5 @@
-// A robot driving in a world, tick by tick, for closed-loop tests: no files, no main loop, everything in reach.
+// A robot driving in a world, tick by tick, for closed-loop tests: no files, no main loop,
+// everything in reach.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -26,7 +27,8 @@ inline Parameters drive_parameters() {
 
 class TestDrive {
  public:
-  TestDrive(HeightField terrain, const WorldOptions& options, const Parameters& parameters = drive_parameters())
+  TestDrive(HeightField terrain, const WorldOptions& options,
+            const Parameters& parameters = drive_parameters())
       : world(std::move(terrain), rover5(), kBoard, options, nullptr), robot(kBoard, parameters) {}
 
   void tick() {

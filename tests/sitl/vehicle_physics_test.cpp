@@ -40,7 +40,8 @@ TEST(VehiclePhysics, FallsFreely) {
   pose.translation().z() = 100.0;
   bench.vehicle.place(pose);
   bench.run(2.0);
-  EXPECT_NEAR(100.0 - bench.vehicle.chassis().pose.translation().z(), 0.5 * kGravity_m_per_s2 * 4.0, 0.02);
+  EXPECT_NEAR(100.0 - bench.vehicle.chassis().pose.translation().z(), 0.5 * kGravity_m_per_s2 * 4.0,
+              0.02);
   EXPECT_NEAR(bench.vehicle.chassis().velocity.z(), -2.0 * kGravity_m_per_s2, 1e-6);
 }
 
@@ -84,13 +85,15 @@ TEST(VehiclePhysics, SlidesDownASlopeAsCoulombSays) {
   bench.run(1.0);
   const double begin = bench.vehicle.chassis().velocity.norm();
   bench.run(1.0);
-  const double acceleration = kGravity_m_per_s2 * (std::sin(20.0 * kDeg) - 0.2 * std::cos(20.0 * kDeg));
+  const double acceleration =
+      kGravity_m_per_s2 * (std::sin(20.0 * kDeg) - 0.2 * std::cos(20.0 * kDeg));
   EXPECT_NEAR(bench.vehicle.chassis().velocity.norm() - begin, acceleration, 0.01 * acceleration);
 }
 
-// Spinning in place: the share of the tracks' speed that turns the robot follows from the moment balance of Coulomb friction under an
-// evenly loaded footprint of length L and tread B. With slip speed w a along the track, the integral over the footprint of
-// (a B/2 - x^2) / sqrt(a^2 + x^2) vanishes; a is found by bisection.
+// Spinning in place: the share of the tracks' speed that turns the robot follows from the moment
+// balance of Coulomb friction under an evenly loaded footprint of length L and tread B. With slip
+// speed w a along the track, the integral over the footprint of (a B/2 - x^2) / sqrt(a^2 + x^2)
+// vanishes; a is found by bisection.
 TEST(VehiclePhysics, SkidTurnFollowsTheMomentBalance) {
   Bench bench(HeightField::flat(10.0, 0.1));
   bench.put_down(0, 0);
@@ -117,11 +120,14 @@ TEST(VehiclePhysics, SkidTurnFollowsTheMomentBalance) {
     }
     (moment < 0.0 ? low : high) = a;
   }
-  // Belt width, motor friction on the belt and the load's distribution are left out of the formula: 5 %.
-  EXPECT_NEAR(way / (angle * half_tread), (low + half_tread) / half_tread, 0.05 * (low + half_tread) / half_tread);
+  // Belt width, motor friction on the belt and the load's distribution are left out of the formula:
+  // 5 %.
+  EXPECT_NEAR(way / (angle * half_tread), (low + half_tread) / half_tread,
+              0.05 * (low + half_tread) / half_tread);
 }
 
-// Forces between belt and ground are internal to nothing else: on frictionless ground the tracks cannot move the robot.
+// Forces between belt and ground are internal to nothing else: on frictionless ground the tracks
+// cannot move the robot.
 TEST(VehiclePhysics, NoFrictionNoTraction) {
   VehicleOptions options;
   options.track_friction = 1e-9;
@@ -139,9 +145,11 @@ TEST(VehiclePhysics, HalvingTheStepChangesLittle) {
     WorldOptions options = drive_options(0.15, 20.0);
     options.physics_step_s = step;
     options.imu = ImuErrors::none();
-    TestDrive drive(HeightField::from_function(201, 201, 0.05, false,
-                                               [](double x, double y) { return 0.02 * std::sin(4.0 * x) * std::cos(3.0 * y); }),
-                    options);
+    TestDrive drive(
+        HeightField::from_function(
+            201, 201, 0.05, false,
+            [](double x, double y) { return 0.02 * std::sin(4.0 * x) * std::cos(3.0 * y); }),
+        options);
     drive.run(10.0);
     return drive.position();
   };

@@ -1,4 +1,5 @@
-// `make bench`: how fast the twin is. Each figure is also a ratio to simulated time, since machines differ and are shared.
+// `make bench`: how fast the twin is. Each figure is also a ratio to simulated time, since machines
+// differ and are shared.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -15,7 +16,8 @@ namespace screed {
 namespace {
 
 Experiment first_drive() {
-  return read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" / "first_drive.ini");
+  return read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" /
+                         "first_drive.ini");
 }
 
 /// Samples of a real run, so that the firmware takes the ways it takes when driving.
@@ -51,7 +53,8 @@ void firmware_tick(benchmark::State& state) {
 }
 BENCHMARK(firmware_tick);
 
-/// One control tick of the world with the robot in it: ten physics steps of 1 ms, sensors, radio, firmware.
+/// One control tick of the world with the robot in it: ten physics steps of 1 ms, sensors, radio,
+/// firmware.
 void world_tick(benchmark::State& state) {
   const Experiment experiment = first_drive();
   const std::unique_ptr<World> world = make_world(experiment, nullptr);
@@ -62,13 +65,14 @@ void world_tick(benchmark::State& state) {
     robot.tick(world->sample(), output);
     world->apply(output);
   }
-  state.counters["real_time_factor"] = benchmark::Counter(static_cast<double>(state.iterations()) / kTickRate_hz,
-                                                          benchmark::Counter::kIsRate);
+  state.counters["real_time_factor"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) / kTickRate_hz, benchmark::Counter::kIsRate);
 }
 BENCHMARK(world_tick);
 
-/// `screed sim` as the user runs it: 300 s with session, telemetry log, tables and pictures. real_time_factor counts the loop with
-/// recording, as the program prints it; whole_real_time_factor everything.
+/// `screed sim` as the user runs it: 300 s with session, telemetry log, tables and pictures.
+/// real_time_factor counts the loop with recording, as the program prints it;
+/// whole_real_time_factor everything.
 void recorded_run(benchmark::State& state) {
   Experiment experiment = first_drive();
   experiment.experiment.duration_s = 300.0;
@@ -87,7 +91,8 @@ void recorded_run(benchmark::State& state) {
     state.ResumeTiming();
   }
   state.counters["real_time_factor"] = simulated / wall;
-  state.counters["whole_real_time_factor"] = benchmark::Counter(simulated, benchmark::Counter::kIsRate);
+  state.counters["whole_real_time_factor"] =
+      benchmark::Counter(simulated, benchmark::Counter::kIsRate);
 }
 BENCHMARK(recorded_run)->Unit(benchmark::kMillisecond)->Iterations(3)->UseRealTime();
 
