@@ -33,14 +33,12 @@ endif
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor \
             -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
 COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I.
-DATA_FLAGS = -DSCREED_DATA_DIR='"$(DATA_DIR)"' -DSCREED_BOARDS_DIR='"$(BOARDS_DIR)"'
 DATA_DIR ?= $(CURDIR)/host_sim/data
 BOARDS_DIR ?= $(CURDIR)/boards
 VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash
 TEST_PACKAGES := gtest_main
-MCU_TEST_LIBS := -lsimavr -lelf
 BENCH_PACKAGES := benchmark
 
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
@@ -109,7 +107,7 @@ clean:
 
 $(B)/host.flags: FORCE
 	@mkdir -p $(@D)
-	@{ echo "-std=c++20 $(COMMON_FLAGS) $(subst ",\",$(DATA_FLAGS))" ; \
+	@{ echo "-std=c++20 $(COMMON_FLAGS) -I$(B)/generated" ; \
 	   pkg-config --cflags $(PACKAGES) $(TEST_PACKAGES) $(BENCH_PACKAGES) | sed 's/-I/-idirafter /g' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 $(B)/firmware.flags: FORCE
@@ -120,11 +118,18 @@ $(B)/link.flags: FORCE
 	@mkdir -p $(@D)
 	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
-# Only the file that prints the version depends on it.
-$(B)/version.h: FORCE
+# What the program knows of its surroundings; only the files that include them depend on them.
+$(B)/generated/version.h: FORCE
 	@mkdir -p $(@D)
 	@echo '#define SCREED_VERSION "$(VERSION)"' > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+$(B)/generated/paths.h: FORCE
+	@mkdir -p $(@D)
+	@{ echo '// Where the data of this build lies.' ; echo 'namespace screed {' ; \
+	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
+	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; echo '}' ; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h
 
 # ---- host program ------------------------------------------------------------------------------------------------------------
 
@@ -132,11 +137,7 @@ $(B)/firmware/%.o: firmware/%.cpp $(B)/firmware.flags
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/firmware.flags -MMD -MP -c $< -o $@
-$(B)/tools/main.o: tools/main.cpp $(B)/host.flags $(B)/version.h
-	@mkdir -p $(@D)
-	@echo "  CXX  $<"
-	@$(CXX) @$(B)/host.flags -I$(B) -MMD -MP -c $< -o $@
-$(B)/%.o: %.cpp $(B)/host.flags
+$(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags -MMD -MP -c $< -o $@
@@ -205,10 +206,10 @@ check-format:
 	@clang-format --dry-run -Werror $(CPP_FILES)
 
 # A stamp a source, renewed when the source or a header of it changed (the .d file of the object says which).
-$(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags $(B)/version.h .clang-tidy
+$(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  TIDY $<"
-	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/%,$<),$(B)/firmware.flags,$(B)/host.flags) | tr -d '\\') -I$(B) 2>&1 \
+	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/%,$<),$(B)/firmware.flags,$(B)/host.flags)) 2>&1 \
 	  | { grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$$' || true; }
 	@touch $@
 

@@ -1,11 +1,10 @@
 // Options and results of `screed replay`.
 #include "tools/replay_command.h"
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "host_sim/session/replay.h"
@@ -23,32 +22,22 @@ std::filesystem::path session_file(const std::filesystem::path& run) {
   return std::filesystem::is_directory(run, error) ? run / "session.h5" : run;
 }
 
-std::string json_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned>(c));
-      quoted += code.data();
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
-
 void print_json(const std::string& run, const ReplayResult& result) {
-  const bool identical = !result.first_difference_tick;
-  std::cout << "{\"run\":" << json_text(run) << ",\"ticks\":" << result.ticks
-            << ",\"identical\":" << (identical ? "true" : "false") << ",\"first_difference_tick\":"
-            << (identical ? "null" : std::to_string(*result.first_difference_tick))
-            << ",\"first_difference\":" << (identical ? "null" : json_text(result.first_difference))
-            << ",\"output_hash\":" << json_text(result.output_hash)
-            << ",\"complete\":" << (result.complete ? "true" : "false")
-            << ",\"unchanged\":" << (result.unchanged ? "true" : "false") << "}\n";
+  nlohmann::ordered_json json;
+  json["run"] = run;
+  json["ticks"] = result.ticks;
+  json["identical"] = !result.first_difference_tick;
+  json["first_difference_tick"] = nullptr;
+  json["first_difference"] = nullptr;
+  if (result.first_difference_tick) {
+    json["first_difference_tick"] = *result.first_difference_tick;
+    json["first_difference"] = result.first_difference;
+  }
+  json["output_hash"] = result.output_hash;
+  json["complete"] = result.complete;
+  json["unchanged"] = result.unchanged;
+  // A path need not be UTF-8; JSON must.
+  std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
 }
 
 void print_text(const ReplayResult& result) {

@@ -30,7 +30,7 @@
   X(yaw_ki,                 "1/256 per s", 0,  4096,    768, "yaw rate: integral gain") \
   X(tilt_limit,             "0.01 deg", 1000,  9000,   5000, "inclination at which the robot stops and latches a fault") \
   X(battery_low,            "mV",          0, 12000,   6000, "stop below this voltage; 0: never") \
-  X(stall_time,             "ms",         50,  5000,    250, "a track at high duty that does not move for this long is stalled") \
+  X(stall_time,             "ms",         50,  5000,    180, "a track at high duty that does not move for this long is stalled") \
   X(standalone,             "",            0,     1,      0, "1: arm and run after power-up without a ground station") \
   X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run")
 // clang-format on
@@ -38,7 +38,7 @@
 namespace screed {
 
 struct Parameters {
-#define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = value;
+#define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = (value);
   SCREED_PARAMETERS(SCREED_FIELD)
 #undef SCREED_FIELD
 
@@ -46,7 +46,7 @@ struct Parameters {
   bool valid() const {
     bool ok = true;
 #define SCREED_CHECK(name, unit, min, max, value, meaning) \
-  ok = ok && name >= static_cast<int16_t>(min) && name <= static_cast<int16_t>(max);
+  ok = ok && (name) >= static_cast<int16_t>(min) && (name) <= static_cast<int16_t>(max);
     SCREED_PARAMETERS(SCREED_CHECK)
 #undef SCREED_CHECK
     return ok && walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;

@@ -14,11 +14,11 @@ constexpr uint8_t kFrozenTicks = 18;    // stop within 200 ms
 constexpr uint8_t kBatteryTicks = 100;  // a start-up dip is not an empty battery
 constexpr uint16_t kLinkStopTicks = 50;
 constexpr uint16_t kLinkDisarmTicks = 150;
-// The accelerometer is taken for a plumb line while nothing turns faster than 30 degrees/s and it
-// feels 0.85 to 1.15 g.
-constexpr uint16_t kQuietGyro = 429;
-constexpr int32_t kLeastQuietAccel = 870;
-constexpr int32_t kMostQuietAccel = 1178;
+// The accelerometer is taken for a plumb line while nothing turns faster than 57 degrees/s and it
+// feels 0.8 to 1.2 g.
+constexpr uint16_t kQuietGyro = 814;
+constexpr int32_t kLeastQuietAccel = 819;
+constexpr int32_t kMostQuietAccel = 1229;
 // A track that does not move below this duty is not stalled, it is asked for too little.
 constexpr int16_t kStallDuty = 240;
 

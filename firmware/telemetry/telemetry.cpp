@@ -26,7 +26,10 @@ uint8_t header_bits(uint8_t value) {
 }
 
 void put_vector(uint8_t* at, const int16_t (&vector)[3]) {
-  for (uint8_t i = 0; i < 3; ++i) put_s16(at + 2 * i, vector[i]);
+  for (const int16_t component : vector) {
+    put_s16(at, component);
+    at += 2;
+  }
 }
 
 /// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.

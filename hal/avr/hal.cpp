@@ -2,6 +2,7 @@
 #include "hal/hal.h"
 
 #include <avr/interrupt.h>
+#include <avr/io.h>
 
 #include "board.h"
 #include "firmware/robot/parameters.h"
@@ -20,10 +21,17 @@ namespace {
 
 const Parameters kDefaults;
 
+/// The bootloader leaves the USB controller running; its interrupts have no handler here.
+void usb_off() {
+  UDIEN = 0;
+  USBCON = _BV(FRZCLK);
+}
+
 }  // namespace
 
 void init() {
   avr::motors_init();
+  usb_off();
   avr::leds_init();
   avr::encoders_init();
   avr::radio_uart_init();

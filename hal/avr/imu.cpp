@@ -18,7 +18,9 @@ constexpr uint8_t kVectorBytes = 7;  // status and three axes
 constexpr uint8_t kBaroBytes = 6;    // status, pressure (3), temperature (2)
 constexpr uint8_t kBaroRounds = 4;   // 25 Hz
 
-enum Phase : uint8_t { kIdle, kRunning, kHanging };
+/// Who owns the state: the bus interrupt from the start of a round to its end, the main program
+/// while it reads.
+enum Phase : uint8_t { kIdle, kRunning, kHanging, kReading };
 
 struct State {
   volatile Phase phase;
@@ -34,7 +36,6 @@ struct State {
   uint8_t register_value;          // what was read, then what is to be written
   uint8_t right_in_a_row[kChips];  // settings of a chip found right since the last wrong one
 };
-// The interrupt owns it while a round runs, the main program while none does; `phase` says which.
 State state;
 
 Setting setting_at(uint8_t index) {
@@ -179,10 +180,8 @@ void imu_init() {
 }
 
 void imu_start_round() {
-  if (state.phase != kIdle) {
-    state.phase = kHanging;  // for 10 ms, when 1.3 ms is enough
-    return;
-  }
+  if (state.phase == kRunning) state.phase = kHanging;  // for 10 ms, when 1.3 ms is enough
+  if (state.phase != kIdle) return;
   state.phase = kRunning;
   state.step = kReadGyro;
   state.arrived = 0;
@@ -192,17 +191,24 @@ void imu_start_round() {
 
 void imu_read(SensorSample& sample) {
   sample.fresh = 0;
-  if (state.phase == kHanging) {
-    twi_recover();
-    state.phase = kIdle;
-    return;
+  Phase phase = kIdle;
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    phase = state.phase;
+    if (phase != kRunning) state.phase = kReading;
   }
-  if (state.phase == kRunning) return;  // the tick is late; the numbers come with the next one
+  if (phase == kRunning) return;  // the tick is late; the numbers come with the next one
+  if (phase == kHanging) {
+    twi_recover();
+    state.arrived = 0;
+  }
   take_vector(state.gyro, kGyroChip, kFreshGyro, sample.gyro, sample);
   take_vector(state.accel, kAccelMagChip, kFreshAccel, sample.accel, sample);
   take_vector(state.mag, kAccelMagChip, kFreshMag, sample.mag, sample);
   take_baro(sample);
   state.arrived = 0;
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    state.phase = kIdle;
+  }
 }
 
 }  // namespace avr

@@ -1,6 +1,6 @@
 // Addresses and registers of the sensors of the AltIMU-10 v4 (LSM303D, L3GD20H, LPS25H) and the
-// settings this project uses. Sources: ST data sheets LSM303D (DocID023312), L3GD20H (DocID023469),
-// LPS25H (DocID026140).
+// settings this project uses: ST's data sheets of the three chips, as drivers of other projects
+// (Pololu, PX4 and its kin) spell them out.
 #pragma once
 
 #include <avr/pgmspace.h>
@@ -49,7 +49,7 @@ constexpr Setting kSettings[] PROGMEM = {
     {kAccelMagChip, 0x26, 0x00},  // CTRL7: magnetometer continuous
     {kGyroChip, kWhoAmI, 0xD7},
     {kGyroChip, 0x39, 0x00},  // LOW_ODR: off
-    {kGyroChip, 0x20, 0x6F},  // CTRL1: 200 Hz, cut-off 50 Hz, on, three axes
+    {kGyroChip, 0x20, 0x7F},  // CTRL1: 200 Hz, cut-off 70 Hz, on, three axes
     {kGyroChip, 0x23, 0xA0},  // CTRL4: block data update, +-2000 dps
     {kBaroChip, kWhoAmI, 0xBD},
     {kBaroChip, 0x20, 0xC4},  // CTRL1: on, 25 Hz, block data update

@@ -14,8 +14,8 @@ namespace avr {
 namespace {
 
 constexpr uint32_t kBus_hz = 400000;
-constexpr uint8_t kRecoveryClocks =
-    9;  // a byte and its acknowledge bit (I2C specification UM10204, 3.1.16)
+// A byte and its acknowledge bit (I2C specification UM10204, 3.1.16).
+constexpr uint8_t kRecoveryClocks = 9;
 
 constexpr uint8_t kGo = _BV(TWINT) | _BV(TWEN) | _BV(TWIE);
 constexpr uint8_t kIdle = _BV(TWEN);

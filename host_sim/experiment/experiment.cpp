@@ -12,6 +12,7 @@
 #include "firmware/robot/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/ini_file.h"
+#include "paths.h"
 
 namespace screed {
 namespace {
@@ -78,7 +79,7 @@ Key bool_key(const char* section, const char* name, const char* meaning, Get fie
 
 template <class Get>
 Key text_key(const char* section, const char* name, const char* allowed, const char* meaning,
-             Get field, std::function<bool(const std::string&)> accepts) {
+             Get field, bool (*accepts)(const std::string&)) {
   const auto set = [=](Experiment& experiment, const std::string& text) {
     if (!accepts(text)) return false;
     field(experiment) = text;
@@ -352,7 +353,7 @@ std::filesystem::path find_data_file(const Experiment& experiment, const std::st
   if (file.is_absolute()) {
     places = {file};
   } else {
-    places = {experiment.folder / file, std::filesystem::path(SCREED_DATA_DIR) / "terrain" / file};
+    places = {experiment.folder / file, std::filesystem::path(kDataFolder) / "terrain" / file};
   }
   std::string looked;
   for (const std::filesystem::path& place : places) {
@@ -366,7 +367,7 @@ std::filesystem::path find_data_file(const Experiment& experiment, const std::st
 std::filesystem::path find_model_file(const Experiment& experiment) {
   // Figure 5.3 calls the chassis Dagu5.
   if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
-    return std::filesystem::path(SCREED_BOARDS_DIR) / "a_star_32u4" / "rover5.urdf";
+    return std::filesystem::path(kBoardsFolder) / "a_star_32u4" / "rover5.urdf";
   }
   return find_data_file(experiment, experiment.vehicle.model, "[vehicle] model");
 }

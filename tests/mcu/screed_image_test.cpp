@@ -61,7 +61,7 @@ TEST(ScreedImage, ConfiguresAndReadsTheSensors) {
   EXPECT_EQ(bench.accel_mag.registers[0x24], 0x74);
   EXPECT_EQ(bench.accel_mag.registers[0x25], 0x20);
   EXPECT_EQ(bench.accel_mag.registers[0x26], 0x00);
-  EXPECT_EQ(bench.gyro.registers[0x20], 0x6F);
+  EXPECT_EQ(bench.gyro.registers[0x20], 0x7F);
   EXPECT_EQ(bench.gyro.registers[0x23], 0xA0);
   EXPECT_EQ(bench.baro.registers[0x20], 0xC4);
   const CanFrame accel = bench.last_frame(kIdAccelRaw);
@@ -90,7 +90,7 @@ TEST(ScreedImage, ConfiguresASensorAgainAfterABrownOut) {
   bench.run_ms(1000);
   bench.power_up(bench.gyro);
   bench.run_ms(400);
-  EXPECT_EQ(bench.gyro.registers[0x20], 0x6F);
+  EXPECT_EQ(bench.gyro.registers[0x20], 0x7F);
   EXPECT_EQ(bench.gyro.registers[0x23], 0xA0);
   expect_healthy(bench);
 }

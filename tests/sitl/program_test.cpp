@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "paths.h"
+
 namespace screed::testing {
 namespace {
 
@@ -81,16 +83,19 @@ std::string urdf(const std::string& body_name, const std::string& inertia,
       "\"><inertial><mass value=\"1\"/><inertia ixx=\"" + inertia +
       "\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial></link>\n";
   for (const std::string wheel : {"fl", "fr", "bl", "br"}) {
-    text += "<link name=\"" + wheel +
-            "_Wheel\"><inertial><mass value=\"0.1\"/><inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" "
-            "iyy=\"1e-4\" iyz=\"0\" izz=\"1e-4\"/>"
-            "</inertial><collision><origin rpy=\"1.5707963 0 0\"/><geometry><cylinder "
-            "radius=\"0.03\" length=\"0.03\"/></geometry>"
-            "</collision></link>\n<joint name=\"" +
-            wheel + "_joint\" type=\"continuous\"><parent link=\"" + body_name +
-            "\"/><child link=\"" + wheel + "_Wheel\"/><origin xyz=\"" +
-            (wheel[0] == 'f' ? "0.09 " : "-0.09 ") + (wheel[1] == 'l' ? "0.1" : "-0.1") +
-            " 0\"/><axis xyz=\"0 1 0\"/><limit effort=\"1\" velocity=\"1.0\"/></joint>\n";
+    text += "<link name=\"" + wheel;
+    text +=
+        "_Wheel\"><inertial><mass value=\"0.1\"/><inertia ixx=\"1e-4\" ixy=\"0\" ixz=\"0\" "
+        "iyy=\"1e-4\" "
+        "iyz=\"0\" izz=\"1e-4\"/></inertial><collision><origin rpy=\"1.5707963 0 0\"/><geometry>"
+        "<cylinder radius=\"0.03\" length=\"0.03\"/></geometry></collision></link>\n<joint name=\"";
+    text += wheel;
+    text += "_joint\" type=\"continuous\"><parent link=\"" + body_name;
+    text += "\"/><child link=\"" + wheel;
+    text += "_Wheel\"/><origin xyz=\"";
+    text += wheel[0] == 'f' ? "0.09 " : "-0.09 ";
+    text += wheel[1] == 'l' ? "0.1" : "-0.1";
+    text += " 0\"/><axis xyz=\"0 1 0\"/><limit effort=\"1\" velocity=\"1.0\"/></joint>\n";
   }
   return text + extra + "</robot>\n";
 }
@@ -162,7 +167,7 @@ TEST_F(Program, MissingImage) {
 
 TEST_F(Program, TruncatedImage) {
   const std::string whole =
-      read(std::filesystem::path(SCREED_DATA_DIR) / "terrain" / "jacksboro_fault_dem_16bit.png");
+      read(std::filesystem::path(kDataFolder) / "terrain" / "jacksboro_fault_dem_16bit.png");
   ASSERT_GT(whole.size(), 100000u);
   write("cut.png", whole.substr(0, whole.size() / 2));
   write("e.ini", "[map]\nfilename = cut.png\n");

@@ -11,6 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/session/replay.h"
 #include "host_sim/session/session_reader.h"
+#include "paths.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {
@@ -25,7 +26,7 @@ class Simulation : public ::testing::Test {
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
     experiment_ =
-        read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" / "first_drive.ini",
+        read_experiment(std::filesystem::path(kDataFolder) / "experiments" / "first_drive.ini",
                         {"experiment.duration=8", "parameters.climb_threshold=300"});
   }
   void TearDown() override { std::filesystem::remove_all(root_); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -37,11 +38,13 @@ class TestDrive {
     world.apply(output);
   }
   void run(double seconds) {
-    for (int i = 0; i < static_cast<int>(seconds * kTickRate_hz + 0.5); ++i) tick();
+    const int64_t ticks = std::lround(seconds * kTickRate_hz);
+    for (int64_t i = 0; i < ticks; ++i) tick();
   }
   /// Ticks until the condition holds; false when it does not within `seconds`.
   bool run_until(double seconds, const std::function<bool()>& condition) {
-    for (int i = 0; i < static_cast<int>(seconds * kTickRate_hz + 0.5); ++i) {
+    const int64_t ticks = std::lround(seconds * kTickRate_hz);
+    for (int64_t i = 0; i < ticks; ++i) {
       tick();
       if (condition()) return true;
     }

@@ -23,7 +23,8 @@ struct Bench {
     vehicle.place(pose);
   }
   void run(double seconds, double left_v = 0.0, double right_v = 0.0) {
-    for (int i = 0; i < static_cast<int>(seconds / kStep_s + 0.5); ++i) {
+    const int64_t steps = std::lround(seconds / kStep_s);
+    for (int64_t i = 0; i < steps; ++i) {
       vehicle.apply_forces(ground, {left_v, right_v}, kStep_s);
       ode.step(kStep_s);
     }

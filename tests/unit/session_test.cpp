@@ -208,8 +208,7 @@ class SessionTest : public testing::Test {
   fs::path file_;
 };
 
-// --- rows
-// ---------------------------------------------------------------------------------------------------------------
+// --- rows ---
 
 TEST(Record, RowsAreLittleEndianWithoutPadding) {
   SensorSample sample{};
@@ -254,8 +253,7 @@ TEST(Record, DifferencesAreNamed) {
             "duty_left: expected -12, got 300");
 }
 
-// --- writing and reading
-// ------------------------------------------------------------------------------------------------
+// --- writing and reading ---
 
 TEST_F(SessionTest, EverythingComesBack) {
   const Recording run = random_run(2 * SessionWriter::kBlockRows + 452);
@@ -382,8 +380,7 @@ TEST_F(SessionTest, ALargeTerrainComesBack) {
   EXPECT_TRUE(map->heights == run.before.heights);
 }
 
-// --- other programs
-// -----------------------------------------------------------------------------------------------------
+// --- other programs ---
 
 /// The numbers between "DATA {" and the attributes of what h5dump printed.
 std::vector<double> dumped_numbers(const std::string& dump) {
@@ -468,8 +465,7 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   EXPECT_NE(listing.find("/outputs                 Dataset {3/Inf}"), std::string::npos) << listing;
 }
 
-// --- the content hash
-// ---------------------------------------------------------------------------------------------------
+// --- the content hash ---
 
 TEST_F(SessionTest, TheHashCoversEveryByteOfEveryRow) {
   Recording run = random_run(1);
@@ -544,8 +540,7 @@ TEST_F(SessionTest, TheHashShowsAnEditedFile) {
   EXPECT_NE(reader.compute_content_hash(), hash);
 }
 
-// --- what is wrong with a file
-// ------------------------------------------------------------------------------------------
+// --- what is wrong with a file ---
 
 TEST_F(SessionTest, FilesThatAreNoSessionAreRefused) {
   expect_refused("no such file");
@@ -693,8 +688,7 @@ TEST_F(SessionTest, TooManyRadioBytesAreRefused) {
               "row 1: 45 radio bytes");
 }
 
-// --- what goes wrong while writing
-// --------------------------------------------------------------------------------------
+// --- what goes wrong while writing ---
 
 TEST_F(SessionTest, AnExistingFileIsNotOverwritten) {
   put(file_, "precious");
@@ -827,8 +821,7 @@ TEST_F(SessionTest, AnAbandonedWriterLeavesAnUnfinishedFile) {
   EXPECT_FALSE(SessionReader(file_).complete());
 }
 
-// --- CSV
-// ----------------------------------------------------------------------------------------------------------------
+// --- CSV ---
 
 TEST_F(SessionTest, CsvHasAllNumbersExactly) {
   const Recording run = random_run(1300);
@@ -887,8 +880,7 @@ TEST_F(SessionTest, CsvThatCannotBeWrittenIsARunErrorAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(base_ / "frames.csv.partial"));
 }
 
-// --- replay
-// -------------------------------------------------------------------------------------------------------------
+// --- replay ---
 
 /// A run of the real core over made-up samples that move, with something on the radio now and then.
 Recording robot_run(std::size_t ticks) {

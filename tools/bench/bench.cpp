@@ -11,13 +11,13 @@
 #include "firmware/robot/robot.h"
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
+#include "paths.h"
 
 namespace screed {
 namespace {
 
 Experiment first_drive() {
-  return read_experiment(std::filesystem::path(SCREED_DATA_DIR) / "experiments" /
-                         "first_drive.ini");
+  return read_experiment(std::filesystem::path(kDataFolder) / "experiments" / "first_drive.ini");
 }
 
 /// Samples of a real run, so that the firmware takes the ways it takes when driving.

@@ -1,0 +1,93 @@
+// A Robot on its own: standing level with a well IMU, its tracks simulated as lags, and a ground station's frames to send.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "boards/a_star_32u4/board.h"
+#include "firmware/robot/robot.h"
+#include "firmware/telemetry/e2e.h"
+#include "tests/unit/simulated_track.h"
+
+namespace screed {
+
+class TestRobot {
+ public:
+  explicit TestRobot(const Parameters& parameters = {}) : robot(kBoard, parameters) {
+    sample.accel[2] = 4098;
+    sample.mag[1] = 1217;
+    sample.mag[2] = -3013;
+    sample.battery = 3932;  // 7.2 V
+  }
+
+  /// One tick of 10 ms; the bytes queued with send() arrive in it.
+  void tick() {
+    sample.time_us += kTickPeriod_us;
+    sample.fresh = kFreshGyro | kFreshAccel | kFreshMag;
+    sample.gyro[0] = sample.gyro[0] == 0 ? 1 : 0;
+    if (heartbeats && ticks % 20 == 0) send(heartbeat());
+    sample.radio_in_count = 0;
+    while (!queue.empty() && sample.radio_in_count < kRadioInCapacity) {
+      sample.radio_in[sample.radio_in_count++] = queue.front();
+      queue.erase(queue.begin());
+    }
+    const int16_t counts_left = left.step(output.duty_left);
+    const int16_t counts_right = right.step(output.duty_right);
+    sample.encoder_left = static_cast<uint16_t>(sample.encoder_left + counts_left);
+    sample.encoder_right = static_cast<uint16_t>(sample.encoder_right + (right_encoder_dead ? 0 : counts_right));
+    robot.tick(sample, output);
+    ++ticks;
+  }
+  void run(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+  /// Until the attitude is there, then armed and running.
+  void start() {
+    run(600);
+    send(command(CommandOp::kArm));
+    run(2);
+    send(command(CommandOp::kRun));
+    run(2);
+  }
+
+  CanFrame heartbeat() {
+    CanFrame frame{kIdGroundHeartbeat, 6, {}};
+    put_u32(frame.data + 2, sample.time_us / 1000);
+    return protect(frame, heartbeat_counter);
+  }
+  CanFrame command(CommandOp op, DriveArgument argument = {0, 0}) {
+    CanFrame frame{kIdCommand, 6, {}};
+    frame.data[2] = static_cast<uint8_t>(op);
+    put_drive_argument(frame.data + 3, argument);
+    return protect(frame, command_counter);
+  }
+  CanFrame emergency_stop() {
+    uint8_t counter = 0;
+    return protect({kIdEmergencyStop, 3, {}}, counter);
+  }
+  static CanFrame protect(CanFrame frame, uint8_t& counter) {
+    e2e_protect(frame.id, counter, frame.data, frame.size);
+    counter = static_cast<uint8_t>((counter + 1) & 0x0F);
+    return frame;
+  }
+  void send(const CanFrame& frame) {
+    uint8_t line[kSlcanLineMax];
+    const uint8_t length = slcan_encode(frame, line);
+    queue.insert(queue.end(), line, line + length);
+  }
+  RobotState state() const { return robot.supervisor().state(); }
+
+  Robot robot;
+  SensorSample sample{};
+  RobotOutput output{};
+  SimulatedTrack left;
+  SimulatedTrack right;
+  std::vector<uint8_t> queue;
+  bool heartbeats = true;
+  bool right_encoder_dead = false;
+  uint8_t heartbeat_counter = 0;
+  uint8_t command_counter = 0;
+  int ticks = 0;
+};
+
+}  // namespace screed
