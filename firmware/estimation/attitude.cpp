@@ -297,22 +297,13 @@ void AttitudeEstimator::correct(const SmallQuaternion& correction) {
   }
 }
 
-Angle AttitudeEstimator::roll() const {
-  const RotationMatrix to_earth = rotation_matrix(orientation_);
-  return atan2_angle(to_earth.row[2][1], to_earth.row[2][2]);
-}
-
-Angle AttitudeEstimator::pitch() const {
+AttitudeAngles AttitudeEstimator::angles() const {
   const RotationMatrix to_earth = rotation_matrix(orientation_);
   const int16_t left = to_earth.row[2][1];
   const int16_t up = to_earth.row[2][2];
   const uint16_t level = isqrt32(static_cast<uint32_t>(mul_i16(left, left) + mul_i16(up, up)));
-  return atan2_angle(to_earth.row[2][0], static_cast<int32_t>(level));
-}
-
-Angle AttitudeEstimator::heading() const {
-  const RotationMatrix to_earth = rotation_matrix(orientation_);
-  return atan2_angle(to_earth.row[1][0], to_earth.row[0][0]);
+  return {atan2_angle(left, up), atan2_angle(to_earth.row[2][0], static_cast<int32_t>(level)),
+          atan2_angle(to_earth.row[1][0], to_earth.row[0][0])};
 }
 
 int32_t AttitudeEstimator::gyro_bias_mdps(uint8_t axis) const {

@@ -26,6 +26,14 @@ struct ImuSample {
   bool mag_fresh;  ///< mag is new since the last call; when false it is not looked at
 };
 
+/// The orientation as three angles.
+struct AttitudeAngles {
+  Angle roll;     ///< > 0: left side up
+  Angle pitch;    ///< > 0: nose up, -16384..16384
+  Angle heading;  ///< counter-clockwise from east, seen from above; from the start pose without
+                  ///< magnetometer
+};
+
 class AttitudeEstimator {
  public:
   AttitudeEstimator() { reset(); }
@@ -42,10 +50,11 @@ class AttitudeEstimator {
   /// first usable sample.
   const Quaternion& orientation() const { return orientation_; }
 
-  Angle roll() const;     ///< > 0: left side up
-  Angle pitch() const;    ///< > 0: nose up, -16384..16384
-  Angle heading() const;  ///< counter-clockwise from east, seen from above; from the start pose
-                          ///< without magnetometer
+  /// Roll, pitch and heading at once: three arc tangents, so once a tick is enough.
+  AttitudeAngles angles() const;
+  Angle roll() const { return angles().roll; }
+  Angle pitch() const { return angles().pitch; }
+  Angle heading() const { return angles().heading; }
 
   /// Turn rate about the earth's vertical, bias removed, 65536 units = one turn a second; > 0
   /// counter-clockwise.

@@ -48,9 +48,10 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
   const bool tracks_at_rest =
       duty_left_ == 0 && duty_right_ == 0 && deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
-  pose_.roll = attitude_.roll();
-  pose_.pitch = attitude_.pitch();
-  pose_.heading = attitude_.heading();
+  const AttitudeAngles angles = attitude_.angles();
+  pose_.roll = angles.roll;
+  pose_.pitch = angles.pitch;
+  pose_.heading = angles.heading;
   odometry_.update(deltas.left, deltas.right, pose_.heading, pose_.pitch);
   pose_.x_mm = odometry_.x_mm();
   pose_.y_mm = odometry_.y_mm();
