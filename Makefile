@@ -35,6 +35,9 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wno
 COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I.
 DATA_DIR ?= $(CURDIR)/host_sim/data
 BOARDS_DIR ?= $(CURDIR)/boards
+FIRMWARE_DIR ?= $(abspath $(BUILD_ROOT))/firmware
+# MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
+MCU ?= yes
 VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash
@@ -42,8 +45,15 @@ TEST_PACKAGES := gtest_main
 BENCH_PACKAGES := benchmark
 
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
-CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp)
-HOST_SOURCES := $(wildcard hal/host/*.cpp host_sim/*/*.cpp)
+CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp firmware/leveling/grid/*.cpp)
+MCU_SOURCES := $(wildcard host_sim/mcu/*.cpp)
+MCU_STAND_IN := host_sim/mcu/without_simavr.cpp
+MCU_USED_yes := $(filter-out $(MCU_STAND_IN),$(MCU_SOURCES))
+MCU_USED_no := $(MCU_STAND_IN) host_sim/mcu/default_image.cpp host_sim/mcu/parity.cpp
+ifeq ($(MCU_USED_$(MCU)),)
+$(error MCU=$(MCU): yes or no)
+endif
+HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp)) $(MCU_USED_$(MCU))
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 STACK_LIBRARY_SOURCES := $(filter-out tools/avr_stack/main.cpp,$(wildcard tools/avr_stack/*.cpp))
@@ -67,7 +77,11 @@ help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make firmware  build the image for the robot          (BOARD=$(BOARD))"
-	@echo "make size      flash, RAM and stack of that image against the budget"
+	@echo "make size      flash, RAM, stack and longest tick of that image against the budget"
+	@echo "make arduino   the firmware as a library for the Arduino IDE (BOARD=$(BOARD))"
+	@echo "make flash     build it and bring it onto the board (BOARD=$(BOARD) PORT=/dev/ttyACM0)"
+	@echo "make fuses     the fuses the board should have       (PROGRAMMER=avr109|NAME: compare; WRITE=yes: write)"
+	@echo "make monitor   serial monitor on the board           (PORT=/dev/ttyACM0)"
 	@echo "make bench     real-time factor and ns per tick"
 	@echo "make lint      formatting and static analysis"
 	@echo "make format    clang-format over the tree"
@@ -86,6 +100,7 @@ firmware: deps
 	$(STEP) firmware-image
 size: deps
 	$(STEP) firmware-size
+	$(STEP) firmware-cycles
 bench: deps
 	$(STEP) run-bench
 lint: deps
@@ -116,7 +131,8 @@ $(B)/firmware.flags: FORCE
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 $(B)/link.flags: FORCE
 	@mkdir -p $(@D)
-	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) ; } > $@.new
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) ; \
+	   echo "$(if $(filter yes,$(MCU)),-lsimavr)" ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 # What the program knows of its surroundings; only the files that include them depend on them.
 $(B)/generated/version.h: FORCE
@@ -127,9 +143,20 @@ $(B)/generated/paths.h: FORCE
 	@mkdir -p $(@D)
 	@{ echo '// Where the data of this build lies.' ; echo 'namespace screed {' ; \
 	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
-	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; echo '}' ; } > $@.new
+	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; \
+	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; echo '}' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
-GENERATED := $(B)/generated/version.h $(B)/generated/paths.h
+# The constants of every board, under their folders' names.
+BOARDS := $(patsubst boards/%/board.h,%,$(wildcard boards/*/board.h))
+$(B)/generated/boards.h: FORCE
+	@mkdir -p $(@D)
+	@{ echo '// The boards of this build: for host_sim/experiment/board_table.cpp alone.' ; \
+	   echo '#include "firmware/robot/board_constants.h"' ; \
+	   for board in $(BOARDS) ; do echo "#define kBoard kBoard_$$board" ; echo "#include \"boards/$$board/board.h\"" ; \
+	     echo '#undef kBoard' ; done ; \
+	   echo '#define SCREED_BOARDS(X) $(foreach board,$(BOARDS),X($(board)))' ; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h
 
 # ---- host program ------------------------------------------------------------------------------------------------------------
 
@@ -142,9 +169,9 @@ $(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags -MMD -MP -c $< -o $@
 
-$(LIBRARY): $(call objects,$(LIBRARY_SOURCES))
+$(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
 	@rm -f $@
-	@ar rcs $@ $^
+	@ar rcs $@ $(filter %.o,$^)
 $(B)/libavr_stack.a: $(call objects,$(STACK_LIBRARY_SOURCES))
 	@rm -f $@
 	@ar rcs $@ $^
@@ -161,7 +188,9 @@ run-sim: $(SCREED)
 	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
 
 install:
-	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards run-install
+	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards FIRMWARE_DIR=$(PREFIX)/share/screed/firmware run-install
+	@for image in $(wildcard $(BUILD_ROOT)/firmware/*/screed.elf) ; do \
+	   install -v -D -m 644 $$image $(DESTDIR)$(PREFIX)/share/screed/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
 .PHONY: run-install
 run-install: $(SCREED)
 	install -D -m 755 $(SCREED) $(DESTDIR)$(PREFIX)/bin/screed
@@ -171,11 +200,15 @@ run-install: $(SCREED)
 # ---- the image for the microcontroller ---------------------------------------------------------------------------------------
 
 include hal/avr/firmware.mk
+include $(wildcard tools/arduino/arduino.mk)
 
 # ---- tests -------------------------------------------------------------------------------------------------------------------
 
 TESTS := $(B)/tests/unit_tests $(B)/tests/sitl_tests
+ifeq ($(MCU),yes)
 include $(wildcard tests/mcu/mcu_tests.mk)
+endif
+include tools/flash/flash.mk
 
 $(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	@echo "  LINK $@"

@@ -4,13 +4,22 @@
 #include "firmware/robot/robot.h"
 #include "hal/hal.h"
 
+/// On the AVR the robot has a fixed address: what lies further than 63 bytes into a stack frame
+/// costs 20 bytes of code to reach, every time. A host runs several robots, each on the stack of
+/// its thread.
+#ifdef __AVR__
+#define SCREED_RESIDENT static
+#else
+#define SCREED_RESIDENT
+#endif
+
 namespace screed {
 
 void main_loop() {
   hal::init();
-  Robot robot(hal::board_constants(), hal::parameters());
-  SensorSample sample{};
-  RobotOutput output{};
+  SCREED_RESIDENT Robot robot(hal::board_constants(), hal::parameters(), hal::parameters_intact());
+  SCREED_RESIDENT SensorSample sample{};
+  SCREED_RESIDENT RobotOutput output{};
   while (hal::wait_for_tick()) {
     hal::read_sensors(sample);
     robot.tick(sample, output);

@@ -25,6 +25,10 @@ const BoardConstants& board_constants();
 /// simulation.
 const Parameters& parameters();
 
+/// False when stored parameters were lost and parameters() are the defaults instead: nobody chose
+/// them, so the robot must not be armed with them.
+bool parameters_intact();
+
 /// Waits for the next control tick. On the robot this sleeps until the timer fires; in a simulation
 /// it advances the world by one tick, so that time belongs to the world and no wall clock decides a
 /// result. Returns false when there is no next tick (a simulation has ended); never false on the

@@ -28,6 +28,13 @@ enum FreshBit : uint8_t {
   kFreshBaro = 1 << 3,
 };
 
+/// Bits of SensorSample::chips_failing: the chip does not answer, or does not hold its settings.
+enum ChipBit : uint8_t {
+  kChipAccelMag = 1 << 0,
+  kChipGyro = 1 << 1,
+  kChipBaro = 1 << 2,
+};
+
 /// What the robot knows of the world at one tick.
 struct SensorSample {
   uint32_t time_us;        ///< time of this tick since start, wraps after 71.6 minutes
@@ -42,6 +49,10 @@ struct SensorSample {
   uint16_t last_tick_us;   ///< how long the previous tick's computation took
   uint8_t encoder_errors;  ///< missed quadrature edges since start, both sides, wraps
   uint8_t fresh;           ///< FreshBit set
+  uint8_t chips_failing;   ///< ChipBit set
+  uint8_t bus_errors;      ///< I2C transfers that failed, wraps
+  uint8_t radio_errors;    ///< received bytes that were lost, wraps
+  uint8_t reset_cause;     ///< why the program started; 0: power was switched on
   uint8_t radio_in_count;  ///< valid bytes in radio_in
   uint8_t radio_in[kRadioInCapacity];
 };

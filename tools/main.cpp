@@ -7,8 +7,11 @@
 
 #include "host_sim/core/errors.h"
 #include "tools/attitude_command.h"
+#include "tools/grid_command.h"
+#include "tools/parity_command.h"
 #include "tools/replay_command.h"
 #include "tools/sim_command.h"
+#include "tools/soil_command.h"
 #include "version.h"
 
 int main(int argc, char** argv) {
@@ -22,7 +25,10 @@ int main(int argc, char** argv) {
     std::function<int()> action;
     screed::register_sim_command(app, SCREED_VERSION, action);
     screed::register_replay_command(app, action);
+    screed::register_parity_command(app, action);
     screed::register_attitude_command(app, action);
+    screed::register_grid_command(app, SCREED_VERSION, action);
+    screed::register_soil_command(app, action);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
 #include "tools/progress_bar.h"
@@ -30,6 +31,9 @@ struct SimArguments {
   std::optional<std::string> duration;
   std::vector<std::string> sets;
   std::optional<std::string> out;
+  std::string hal = "native";
+  std::optional<std::string> board;
+  std::optional<std::string> elf;
   bool realtime = false;
   bool quiet = false;
   bool json = false;
@@ -45,11 +49,39 @@ std::string format(const char* pattern, double value) {
   return text;
 }
 
+void print_cycles(const CycleReport& c) {
+  const auto number = [](auto value) { return std::to_string(value); };
+  const auto cycles = [](double value) {
+    return format("%.0f", value) +
+           format(" (%.1f %%)", 100.0 * value / static_cast<double>(CycleReport::kTickCycles));
+  };
+  const auto row = [](const char* name, const std::string& value) {
+    std::printf("  %-26s %20s\n", name, value.c_str());
+  };
+  std::printf("\n  microcontroller, cycles (%% of a tick)\n");
+  row("longest tick", cycles(static_cast<double>(c.longest_tick_cycles)));
+  row("mean tick", cycles(c.mean_tick_cycles));
+  row("load, all that is not slept", format("%.1f %%", c.load * 100.0));
+  row("ticks missed", number(c.missed_ticks));
+  row("encoder edges", number(c.encoder_edges));
+  row("encoder edges missed", number(c.encoder_missing));
+  row("edge to its interrupt", number(c.encoder_latency_cycles));
+  row("bytes received, lost", number(c.uart_received) + ", " + number(c.uart_overruns));
+  row("resets", number(c.resets));
+  std::printf("  %-26s %12s %12s %12s\n", "interrupt", "count", "longest", "mean");
+  for (const CycleReport::Interrupt& it : c.interrupts) {
+    std::printf("  %-26s %12llu %12llu %12.0f\n", it.name.c_str(),
+                static_cast<unsigned long long>(it.count),
+                static_cast<unsigned long long>(it.longest_cycles), it.mean_cycles);
+  }
+}
+
 void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("\n%s, %s, seed %llu%s\n", experiment.experiment.name.c_str(),
               experiment.experiment.algorithm.c_str(),
               static_cast<unsigned long long>(experiment.experiment.seed),
-              s.stopped_early ? " (stopped early)" : "");
+              s.left_bed ? " (ended: the robot left the bed)"
+                         : (s.stopped_early ? " (stopped early)" : ""));
   std::printf("  %-26s %12s\n", "simulated time", format("%.1f s", s.time_s).c_str());
   std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
   std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());
@@ -76,6 +108,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
       "flat (below " + format("%g", experiment.experiment.flatness_deg) + " deg)";
   print_row(flat.c_str(), format("%.1f %%", s.flatness_before * 100.0),
             format("%.1f %%", s.flatness_after * 100.0));
+  if (s.cycles.has_value()) print_cycles(*s.cycles);
   std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
               s.content_hash.c_str());
 }
@@ -92,6 +125,12 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   options.stop = &interrupted;
   options.program_version = version;
   if (arguments.out.has_value()) options.out = *arguments.out;
+  if (arguments.board.has_value()) options.board = *arguments.board;
+  if (arguments.hal == "mcu") {
+    options.image = arguments.elf.value_or(default_image(options.board));
+  } else if (arguments.elf.has_value()) {
+    throw InputError("--elf needs --hal mcu");
+  }
   std::optional<ProgressBar> bar;
   if (!arguments.quiet) {
     bar.emplace(std::cerr);
@@ -135,6 +174,15 @@ void register_sim_command(CLI::App& root, const std::string& version,
       ->type_size(1)
       ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "run folder; must not exist yet");
+  command
+      ->add_option(
+          "--hal", arguments->hal,
+          "native: the firmware compiled for this machine; mcu: the image that is flashed, "
+          "under a cycle-accurate simulation of the microcontroller")
+      ->check(CLI::IsMember({"native", "mcu"}));
+  command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
+  command->add_option("--elf", arguments->elf,
+                      "with --hal mcu: the image; by default that of make firmware");
   command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
   command->add_flag("--quiet", arguments->quiet,
                     "no progress; print run folder and content hash alone");

@@ -1,3 +1,8 @@
 # Pololu A-Star 32U4 Robot Controller: what the build has to know.
 BOARD_MCU := atmega32u4
 BOARD_CLOCK_HZ := 16000000
+# As Pololu's boards.txt has them, so that every tool knows the board.
+BOARD_USB_VID := 0x1FFB
+BOARD_USB_PID := 0x2300
+BOARD_USB_MANUFACTURER := Pololu Corporation
+BOARD_USB_PRODUCT := Pololu A-Star 32U4

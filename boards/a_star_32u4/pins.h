@@ -23,11 +23,6 @@ using LeftEncoderB = Pin<kPortB, 7>;   // pin 11
 using RightEncoderA = Pin<kPortB, 1>;  // pin 15
 using RightEncoderB = Pin<kPortB, 2>;  // pin 16
 
-struct EncoderLevels {
-  QuadratureLevels left;
-  QuadratureLevels right;
-};
-
 inline void make_encoder_pins_inputs() {
   LeftEncoderA::set();  // pull-ups: a broken wire is a level that stands still
   LeftEncoderB::set();
@@ -35,11 +30,14 @@ inline void make_encoder_pins_inputs() {
   RightEncoderB::set();
 }
 
-/// Levels of one moment.
-inline EncoderLevels read_encoder_pins() {
+/// Both channels of one moment, by one read of the port.
+inline QuadratureLevels read_left_encoder() {
   const uint8_t port = PINB;
-  return {{(port & LeftEncoderA::kMask) != 0, (port & LeftEncoderB::kMask) != 0},
-          {(port & RightEncoderA::kMask) != 0, (port & RightEncoderB::kMask) != 0}};
+  return {(port & LeftEncoderA::kMask) != 0, (port & LeftEncoderB::kMask) != 0};
+}
+inline QuadratureLevels read_right_encoder() {
+  const uint8_t port = PINB;
+  return {(port & RightEncoderA::kMask) != 0, (port & RightEncoderB::kMask) != 0};
 }
 
 inline void enable_encoder_interrupts() {
@@ -56,7 +54,14 @@ constexpr bool kRedLedHigh = false;
 constexpr bool kYellowLedHigh = true;
 constexpr bool kGreenLedHigh = false;
 
+// Buttons; B and C share their pins with LEDs.
+using ButtonAPin = Pin<kPortB, 3>;  // pin 14
+using ButtonBPin = GreenLedPin;
+using ButtonCPin = RedLedPin;
+
 constexpr uint8_t kBatteryChannel = 6;  // A1 = PF6
+
+constexpr bool kHasBarometer = true;
 
 /// Where the robot's axis i (x forward, y left, z up) comes from: an axis of the chips, turned
 /// round or not.

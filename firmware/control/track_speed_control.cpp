@@ -23,13 +23,14 @@ constexpr int16_t kErrorLimit_dmm_per_s = 3000;
 
 }  // namespace
 
+SCREED_OUT_OF_LINE
 TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Parameters& parameters)
     : count_um_q4_(board.count_um_q4),
       nominal_mv_(board.motor_nominal_mv),
       kp_(parameters.speed_kp),
       ki_(parameters.speed_ki),
-      feed_forward_q8_(
-          static_cast<int16_t>(static_cast<int32_t>(kDutyMax) * 256 / board.full_speed_mm_per_s)) {}
+      feed_forward_q8_(static_cast<int16_t>(
+          quotient_u16(static_cast<uint32_t>(kDutyMax) * 256, board.full_speed_mm_per_s))) {}
 
 void TrackSpeedControl::release(int16_t counts) {
   integral_q16_ = 0;
@@ -74,7 +75,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   const uint16_t supply_mv = battery_mv < least_mv ? least_mv : battery_mv;
   const int32_t nominal_q4 = asr(static_cast<int32_t>(target_mm_per_s) * feed_forward_q8_, 4);
   const int32_t feed_forward_q10 =
-      nominal_q4 * static_cast<int32_t>((static_cast<uint32_t>(nominal_mv_) << 6) / supply_mv);
+      nominal_q4 *
+      static_cast<int32_t>(quotient_u16(static_cast<uint32_t>(nominal_mv_) << 6, supply_mv));
   // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
   const int32_t proportional_q8 = asr(static_cast<int32_t>(kp_) * error * 102, 6);
   const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);

@@ -147,7 +147,8 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
   const int32_t y = asr(-ax, 2);
   const int32_t length =
       static_cast<int32_t>(isqrt32(static_cast<uint32_t>(w * w + x * x + y * y)));
-  const int32_t scale = kQ30One / (length + 1);
+  const auto scale = static_cast<int32_t>(
+      quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1)));
   orientation_ = upside_down ? Quaternion{-x * scale, w * scale, 0, -y * scale}
                              : Quaternion{w * scale, x * scale, y * scale, 0};
   gravity_[0] = 0;

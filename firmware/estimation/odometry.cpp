@@ -15,6 +15,12 @@ int32_t times_q15(int32_t length, int16_t factor) {
   return scale_q16(length * 2, factor);
 }
 
+/// um / 1000, towards zero.
+SCREED_OUT_OF_LINE int32_t mm_from_um(int32_t um) {
+  const auto mm = static_cast<int32_t>(quotient_u32(abs_u32(um), 1000));
+  return um < 0 ? -mm : mm;
+}
+
 }  // namespace
 
 void Odometry::reset() {
@@ -40,10 +46,10 @@ void Odometry::update(int16_t counts_left, int16_t counts_right, Angle heading, 
 }
 
 int32_t Odometry::x_mm() const {
-  return x_um_ / 1000;
+  return mm_from_um(x_um_);
 }
 int32_t Odometry::y_mm() const {
-  return y_um_ / 1000;
+  return mm_from_um(y_um_);
 }
 
 }  // namespace screed

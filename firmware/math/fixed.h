@@ -12,8 +12,8 @@
 // Formats that one file alone needs are documented in that file.
 //
 // The AVR has an 8x8 multiplier and a 16-bit int: products here are built from 16x16 -> 32 bit
-// parts (about 25 cycles each there), never from 64-bit integers, and every operand is widened by
-// hand.
+// parts (25 cycles each there, by hand: gcc-avr 5.4 calls a helper of 50), never from 64-bit
+// integers, and every operand is widened by hand.
 #pragma once
 
 #include <stdint.h>
@@ -21,9 +21,19 @@
 /// Keeps a function that is called dozens of times out of line where flash is scarce; of no effect
 /// on the host.
 #ifdef __AVR__
+#define SCREED_CONSTEXPR_OFF_AVR inline
 #define SCREED_OUT_OF_LINE __attribute__((noinline))
 #else
+#define SCREED_CONSTEXPR_OFF_AVR constexpr
 #define SCREED_OUT_OF_LINE
+#endif
+
+/// A function of several statements that constant expressions may call. The Arduino IDE compiles as
+/// C++11, which knows no such functions: there it is an ordinary one.
+#if __cplusplus >= 201402L
+#define SCREED_CONSTEXPR14 constexpr
+#else
+#define SCREED_CONSTEXPR14 inline
 #endif
 
 namespace screed {
@@ -51,7 +61,7 @@ constexpr int32_t asr_round(int32_t value, uint8_t n) {
 }
 
 /// value limited to [low, high]; low <= high.
-constexpr int32_t clamp_i32(int32_t value, int32_t low, int32_t high) {
+SCREED_OUT_OF_LINE constexpr int32_t clamp_i32(int32_t value, int32_t low, int32_t high) {
   return value < low ? low : (value > high ? high : value);
 }
 
@@ -77,17 +87,70 @@ constexpr uint16_t abs_u16(int16_t value) {
 }
 
 /// Sum that stops at the ends of int32_t instead of overflowing.
-constexpr int32_t add_sat_i32(int32_t a, int32_t b) {
+SCREED_OUT_OF_LINE constexpr int32_t add_sat_i32(int32_t a, int32_t b) {
   return b > 0 ? (a > INT32_MAX - b ? INT32_MAX : a + b) : (a < INT32_MIN - b ? INT32_MIN : a + b);
 }
 
 /// The exact 32-bit product of two 16-bit numbers.
-constexpr int32_t mul_i16(int16_t a, int16_t b) {
+SCREED_CONSTEXPR_OFF_AVR int32_t mul_i16(int16_t a, int16_t b) {
+#ifdef __AVR__
+  int32_t result;
+  uint8_t zero;
+  asm("clr %[zero]\n\t"
+      "muls %B[a], %B[b]\n\t"
+      "movw %C[result], r0\n\t"
+      "mul %A[a], %A[b]\n\t"
+      "movw %A[result], r0\n\t"
+      "mulsu %B[a], %A[b]\n\t"
+      "sbc %D[result], %[zero]\n\t"
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mulsu %B[b], %A[a]\n\t"
+      "sbc %D[result], %[zero]\n\t"
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "clr r1\n\t"
+      : [result] "=&r"(result), [zero] "=&r"(zero)
+      : [a] "a"(a), [b] "a"(b)
+      : "r0");
+  return result;
+#else
   return static_cast<int32_t>(a) * static_cast<int32_t>(b);
+#endif
+}
+
+/// The exact 32-bit product of two unsigned 16-bit numbers.
+SCREED_CONSTEXPR_OFF_AVR uint32_t mul_u16(uint16_t a, uint16_t b) {
+#ifdef __AVR__
+  uint32_t result;
+  uint8_t zero;
+  asm("clr %[zero]\n\t"
+      "mul %B[a], %B[b]\n\t"
+      "movw %C[result], r0\n\t"
+      "mul %A[a], %A[b]\n\t"
+      "movw %A[result], r0\n\t"
+      "mul %B[a], %A[b]\n\t"
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mul %B[b], %A[a]\n\t"
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "clr r1\n\t"
+      : [result] "=&r"(result), [zero] "=&r"(zero)
+      : [a] "r"(a), [b] "r"(b)
+      : "r0");
+  return result;
+#else
+  return static_cast<uint32_t>(a) * b;
+#endif
 }
 
 /// a * b in Q15, rounded to nearest, halves up; -1 * -1 saturates to 32767.
-constexpr int16_t mul_q15(int16_t a, int16_t b) {
+SCREED_CONSTEXPR_OFF_AVR int16_t mul_q15(int16_t a, int16_t b) {
   return saturate_i16(asr_round(mul_i16(a, b), 15));
 }
 
@@ -103,9 +166,33 @@ constexpr uint16_t low_half(int32_t value) {
   return static_cast<uint16_t>(static_cast<uint32_t>(value) & 0xFFFFU);
 }
 
-/// Exact signed x unsigned product; one AVR library call.
-constexpr int32_t mul_su(int16_t a, uint16_t b) {
+/// Exact signed x unsigned product.
+SCREED_CONSTEXPR_OFF_AVR int32_t mul_su(int16_t a, uint16_t b) {
+#ifdef __AVR__
+  int32_t result;
+  uint8_t zero;
+  asm("clr %[zero]\n\t"
+      "mulsu %B[a], %B[b]\n\t"
+      "movw %C[result], r0\n\t"
+      "mul %A[a], %A[b]\n\t"
+      "movw %A[result], r0\n\t"
+      "mulsu %B[a], %A[b]\n\t"
+      "sbc %D[result], %[zero]\n\t"
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "mul %B[b], %A[a]\n\t"
+      "add %B[result], r0\n\t"
+      "adc %C[result], r1\n\t"
+      "adc %D[result], %[zero]\n\t"
+      "clr r1\n\t"
+      : [result] "=&r"(result), [zero] "=&r"(zero)
+      : [a] "a"(a), [b] "a"(b)
+      : "r0");
+  return result;
+#else
   return static_cast<int32_t>(a) * static_cast<int32_t>(b);
+#endif
 }
 
 }  // namespace detail
@@ -182,13 +269,52 @@ SCREED_OUT_OF_LINE inline int32_t scale_q16(int32_t a, int16_t k) {
 #endif
 }
 
+/// floor(a / b) when it fits 16 bits: the upper half of a must be less than b.
+SCREED_OUT_OF_LINE inline uint16_t quotient_u16(uint32_t a, uint16_t b) {
+#ifdef __AVR__
+  // gcc-avr's 32-bit division takes 650 cycles, this one 240: the remainder has 16 bits (and a
+  // carry), and only 16 bits of quotient are to be found.
+  uint16_t rest = static_cast<uint16_t>(a >> 16);
+  uint16_t quotient = static_cast<uint16_t>(a & 0xFFFFU);  // moves out above as the result moves in
+  uint8_t bits = 16;
+  asm("1:\n\t"
+      "lsl %A[quotient]\n\t"
+      "rol %B[quotient]\n\t"
+      "rol %A[rest]\n\t"
+      "rol %B[rest]\n\t"
+      "brcs 2f\n\t"
+      "cp %A[rest], %A[b]\n\t"
+      "cpc %B[rest], %B[b]\n\t"
+      "brcs 3f\n"
+      "2:\n\t"
+      "sub %A[rest], %A[b]\n\t"
+      "sbc %B[rest], %B[b]\n\t"
+      "inc %A[quotient]\n"
+      "3:\n\t"
+      "dec %[bits]\n\t"
+      "brne 1b\n\t"
+      : [quotient] "+r"(quotient), [rest] "+r"(rest), [bits] "+r"(bits)
+      : [b] "r"(b));
+  return quotient;
+#else
+  return static_cast<uint16_t>(a / b);
+#endif
+}
+
+/// floor(a / b), b > 0.
+SCREED_OUT_OF_LINE inline uint32_t quotient_u32(uint32_t a, uint16_t b) {
+  const auto high = static_cast<uint16_t>(a >> 16);
+  const uint32_t rest = (static_cast<uint32_t>(high % b) << 16) | (a & 0xFFFFU);
+  return (static_cast<uint32_t>(static_cast<uint16_t>(high / b)) << 16) | quotient_u16(rest, b);
+}
+
 /// floor((a * b + 2^29) / 2^30): the product of two Q30 numbers, the exact 64-bit product rounded
 /// to nearest, halves up. All of int32 x int32 is allowed as long as the result fits int32 (|a * b|
 /// < 2 in value).
-SCREED_OUT_OF_LINE constexpr int32_t mul_q30(int32_t a, int32_t b) {
+SCREED_OUT_OF_LINE SCREED_CONSTEXPR_OFF_AVR int32_t mul_q30(int32_t a, int32_t b) {
   // Schoolbook in base 2^16. Each partial sum below fits 32 bits for every a and b:
   // |signed x unsigned| <= 2^31 - 2^15 when positive, and what is added to it is below 2^16 + 2^13.
-  const uint32_t low = static_cast<uint32_t>(detail::low_half(a)) * detail::low_half(b);
+  const uint32_t low = mul_u16(detail::low_half(a), detail::low_half(b));
   const int32_t middle1 = detail::mul_su(detail::high_half(a), detail::low_half(b)) +
                           static_cast<int32_t>(low >> 16) + (static_cast<int32_t>(1) << 13);
   const int32_t middle2 = detail::mul_su(detail::high_half(b), detail::low_half(a)) +

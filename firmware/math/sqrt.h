@@ -3,11 +3,13 @@
 
 #include <stdint.h>
 
+#include "firmware/math/fixed.h"
+
 namespace screed {
 
 /// floor(sqrt(value)), exact for every value. Digit by digit, two bits of the radicand a step: no
 /// division.
-constexpr uint16_t isqrt32(uint32_t value) {
+SCREED_CONSTEXPR14 uint16_t isqrt32(uint32_t value) {
   uint32_t rest = value;
   uint32_t root = 0;
   for (uint32_t bit = static_cast<uint32_t>(1) << 30; bit != 0; bit >>= 2) {

@@ -10,8 +10,7 @@ namespace {
 
 /// a * b / 2^16 rounded to nearest: one factor is a fraction of 65536.
 uint16_t fraction_of(uint16_t a, uint16_t b) {
-  const uint32_t product = static_cast<uint32_t>(a) * b;
-  return static_cast<uint16_t>((product + 0x8000U) >> 16);
+  return static_cast<uint16_t>((mul_u16(a, b) + 0x8000U) >> 16);
 }
 
 /// sin of x quarter turns / 16384, x in 0..16384, as 0..32767.
@@ -23,7 +22,7 @@ int16_t sin_first_quadrant(uint16_t x) {
   constexpr uint16_t kC3 = 42324;
   constexpr uint16_t kC5 = 5197;
   constexpr uint16_t kC7 = 280;
-  const uint32_t square = (static_cast<uint32_t>(x) * x + 0x800U) >> 12;
+  const uint32_t square = (mul_u16(x, x) + 0x800U) >> 12;
   const uint16_t z2 =
       square > 0xFFFFU ? static_cast<uint16_t>(0xFFFFU) : static_cast<uint16_t>(square);
   const uint16_t p5 = static_cast<uint16_t>(kC5 - fraction_of(z2, kC7));
@@ -48,19 +47,25 @@ uint16_t atan_first_octant(uint16_t ratio) {
   const uint16_t p5 = static_cast<uint16_t>(kC5 - fraction_of(q2, p7));
   const uint16_t p3 = static_cast<uint16_t>(kC3 - fraction_of(q2, p5));
   const uint16_t p1 = static_cast<uint16_t>(kC1 - fraction_of(q2, p3));
-  return static_cast<uint16_t>((static_cast<uint32_t>(ratio) * p1 + 0x20000U) >> 18);
+  return static_cast<uint16_t>((mul_u16(ratio, p1) + 0x20000U) >> 18);
 }
 
 /// smaller / larger as a fraction of 65536, at most 65535. larger > 0, smaller <= larger.
 uint16_t ratio_q16(uint32_t smaller, uint32_t larger) {
-  while ((larger & 0x80000000U) ==
-         0) {  // keep 16 significant bits of the divisor whatever the length is
+  // Keep 16 significant bits of the divisor whatever the length is: whole bytes first, they are
+  // moves on the AVR.
+  while ((larger & 0xFF000000U) == 0) {
+    larger <<= 8;
+    smaller <<= 8;
+  }
+  while ((larger & 0x80000000U) == 0) {
     larger <<= 1;
     smaller <<= 1;
   }
-  const uint32_t divisor = (larger >> 16) + ((larger >> 15) & 1U);
-  const uint32_t ratio = smaller / divisor;
-  return ratio > 0xFFFFU ? static_cast<uint16_t>(0xFFFFU) : static_cast<uint16_t>(ratio);
+  const auto high = static_cast<uint16_t>(smaller >> 16);
+  const auto divisor = static_cast<uint16_t>((larger + 0x8000U) >> 16);
+  if (larger >= 0xFFFF8000U) return high;  // the divisor is 2^16
+  return high >= divisor ? static_cast<uint16_t>(0xFFFFU) : quotient_u16(smaller, divisor);
 }
 
 }  // namespace

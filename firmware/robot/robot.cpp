@@ -14,10 +14,10 @@ int32_t cos_tilt_q30(const Quaternion& q) {
 
 }  // namespace
 
-Robot::Robot(const BoardConstants& board, const Parameters& parameters)
+Robot::Robot(const BoardConstants& board, const Parameters& parameters, bool parameters_intact)
     : battery_uv_per_lsb_(board.battery_uv_per_lsb),
       odometry_(board.count_um_q4),
-      supervisor_(parameters),
+      supervisor_(parameters, parameters_intact),
       leveling_(parameters),
       drive_(board, parameters) {}
 
@@ -121,6 +121,7 @@ RequestResult Robot::command(const CanFrame& frame) {
 void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   SupervisorInput input{};
   input.fresh = sample.fresh;
+  input.chips_failing = sample.chips_failing;
   input.gyro = sample.gyro;
   input.accel = sample.accel;
   input.cos_tilt_q30 = cos_tilt_q30(attitude_.orientation());
@@ -177,8 +178,10 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
 }
 
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
-  battery_mv_ =
-      static_cast<uint16_t>((static_cast<uint32_t>(sample.battery) * battery_uv_per_lsb_) / 1000U);
+  // At most 65,535 mV: what the sensor can say (8184 LSB) is far below.
+  const uint32_t battery_uv = static_cast<uint32_t>(sample.battery) * battery_uv_per_lsb_;
+  battery_mv_ = battery_uv < static_cast<uint32_t>(1000) << 16 ? quotient_u16(battery_uv, 1000)
+                                                               : static_cast<uint16_t>(0xFFFFU);
   const Deltas deltas = count_deltas(sample);
 
   estimate_pose(sample, deltas);

@@ -19,7 +19,9 @@ namespace screed {
 
 class Robot {
  public:
-  Robot(const BoardConstants& board, const Parameters& parameters);
+  /// `parameters_intact` = false: the parameters stand in for lost ones; the robot refuses to be
+  /// armed.
+  Robot(const BoardConstants& board, const Parameters& parameters, bool parameters_intact = true);
 
   /// One control tick. The sample's encoder counts may start anywhere; the first tick takes them as
   /// zero.

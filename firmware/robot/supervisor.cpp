@@ -11,6 +11,7 @@ namespace {
 constexpr uint8_t kTiltTicks = 6;       // stop within 100 ms
 constexpr uint8_t kSilentTicks = 8;     // stop within 100 ms
 constexpr uint8_t kFrozenTicks = 18;    // stop within 200 ms
+constexpr uint8_t kChipTicks = 5;       // after the 40 ms until the barometer is read again
 constexpr uint8_t kBatteryTicks = 100;  // a start-up dip is not an empty battery
 constexpr uint16_t kLinkStopTicks = 50;
 constexpr uint16_t kLinkDisarmTicks = 150;
@@ -21,6 +22,9 @@ constexpr int32_t kLeastQuietAccel = 819;
 constexpr int32_t kMostQuietAccel = 1229;
 // A track that does not move below this duty is not stalled, it is asked for too little.
 constexpr int16_t kStallDuty = 240;
+// From this duty on a track is meant to move.
+constexpr int16_t kPushDuty = 60;
+constexpr uint8_t kReversals = 4;
 
 uint8_t count_up(uint8_t value) {
   return value < UINT8_MAX ? static_cast<uint8_t>(value + 1) : value;
@@ -29,20 +33,39 @@ uint16_t count_up(uint16_t value) {
   return value < UINT16_MAX ? static_cast<uint16_t>(value + 1) : value;
 }
 
-uint16_t stalled_for(uint16_t ticks, int16_t duty, int16_t counts) {
-  const bool pushing = duty >= kStallDuty || duty <= static_cast<int16_t>(-kStallDuty);
-  return pushing && counts == 0 ? count_up(ticks) : static_cast<uint16_t>(0);
-}
-
 }  // namespace
 
-Supervisor::Supervisor(const Parameters& parameters)
+void TrackWatch::tick(int16_t duty, int16_t counts) {
+  const int16_t push = duty < 0 ? static_cast<int16_t>(-duty) : duty;
+  const int16_t back = duty < 0 ? counts : static_cast<int16_t>(-counts);
+  const bool near = back >= -1 && back <= 1;
+  const int8_t behind = near ? static_cast<int8_t>(behind_ + back) : static_cast<int8_t>(-1);
+  if (push < kPushDuty || behind < 0 || behind > 1) {
+    behind_ = 0;
+    reversals_ = 0;
+    still_ticks_ = 0;
+    return;
+  }
+  behind_ = behind;
+  if (back != 0) reversals_ = count_up(reversals_);
+  still_ticks_ = push < kStallDuty ? static_cast<uint16_t>(0) : count_up(still_ticks_);
+}
+
+bool TrackWatch::to_and_fro() const {
+  return reversals_ >= kReversals;
+}
+
+static_assert(kFaultAccelMagChip == kChipAccelMag << 8 && kFaultGyroChip == kChipGyro << 8 &&
+                  kFaultBaroChip == kChipBaro << 8,
+              "faults of chips are their bits, shifted");
+
+Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
     : cos_tilt_limit_q15_(cos_q15(angle_from_centidegrees(parameters.tilt_limit))),
       battery_low_mv_(static_cast<uint16_t>(parameters.battery_low)),
       stall_ticks_(ticks_from_ms(parameters.stall_time)),
       standalone_ticks_(ticks_from_ms(parameters.standalone_delay)),
       standalone_(parameters.standalone != 0),
-      parameters_valid_(parameters.valid()) {
+      parameters_valid_(parameters_intact && parameters.valid()) {
   cos_tilt_limit_q30_ = static_cast<int32_t>(cos_tilt_limit_q15_) * 32768;
 }
 
@@ -91,10 +114,17 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
   if (frozen_gyro_ticks_ >= kFrozenTicks) found |= kFaultGyroFrozen;
 
-  stalled_left_ticks_ = stalled_for(stalled_left_ticks_, input.duty_left, input.counts_left);
-  stalled_right_ticks_ = stalled_for(stalled_right_ticks_, input.duty_right, input.counts_right);
-  if (stalled_left_ticks_ >= stall_ticks_) found |= kFaultStallLeft;
-  if (stalled_right_ticks_ >= stall_ticks_) found |= kFaultStallRight;
+  chip_ticks_ = input.chips_failing != 0 ? count_up(chip_ticks_) : static_cast<uint8_t>(0);
+  if (chip_ticks_ >= kChipTicks) {
+    found |= static_cast<uint16_t>(static_cast<uint16_t>(input.chips_failing & 0x07U) << 8);
+  }
+
+  left_.tick(input.duty_left, input.counts_left);
+  right_.tick(input.duty_right, input.counts_right);
+  if (left_.still_ticks() >= stall_ticks_) found |= kFaultStallLeft;
+  if (right_.still_ticks() >= stall_ticks_) found |= kFaultStallRight;
+  if (left_.to_and_fro()) found |= kFaultEncoderLeft;
+  if (right_.to_and_fro()) found |= kFaultEncoderRight;
 
   battery_ticks_ =
       input.battery_mv < battery_low_mv_ ? count_up(battery_ticks_) : static_cast<uint8_t>(0);

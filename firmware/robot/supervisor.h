@@ -33,8 +33,13 @@ enum FaultBit : uint16_t {
   kFaultStallLeft = 1 << 3,   ///< high duty, no motion
   kFaultStallRight = 1 << 4,
   kFaultBattery = 1 << 5,        ///< below battery_low
-  kFaultParameters = 1 << 6,     ///< a parameter is out of its range
+  kFaultParameters = 1 << 6,     ///< a parameter is out of its range, or the stored ones are lost
   kFaultEmergencyStop = 1 << 7,  ///< ESTOP received
+  kFaultAccelMagChip = 1 << 8,   ///< LSM303D does not answer or lost its settings
+  kFaultGyroChip = 1 << 9,       ///< L3GD20H
+  kFaultBaroChip = 1 << 10,      ///< LPS25H
+  kFaultEncoderLeft = 1 << 11,   ///< a driven track whose count steps to and fro: a broken wire
+  kFaultEncoderRight = 1 << 12,
 };
 
 /// Requests, from the ground station.
@@ -67,11 +72,30 @@ struct SupervisorInput {
   int16_t duty_right;
   int16_t counts_left;  ///< encoder counts since the last tick
   int16_t counts_right;
+  uint8_t chips_failing = 0;  ///< SensorSample::chips_failing
+};
+
+/// Watches one driven track for progress.
+///
+/// A track that is stuck makes no counts. One with a broken encoder wire makes counts that step to
+/// and fro, since the other channel alone tells no direction. Both look still; a track that moves,
+/// either way, leaves the place where it was last seen by two counts.
+class TrackWatch {
+ public:
+  void tick(int16_t duty, int16_t counts);
+  /// Ticks at high duty without progress.
+  uint16_t still_ticks() const { return still_ticks_; }
+  bool to_and_fro() const;
+
+ private:
+  uint16_t still_ticks_ = 0;
+  int8_t behind_ = 0;      ///< counts behind the farthest place reached in the direction pushed
+  uint8_t reversals_ = 0;  ///< steps to and fro since the last progress
 };
 
 class Supervisor {
  public:
-  explicit Supervisor(const Parameters& parameters);
+  explicit Supervisor(const Parameters& parameters, bool parameters_intact = true);
 
   /// One tick: looks for faults, watches the link, runs the stand-alone timer.
   void tick(const SupervisorInput& input);
@@ -114,8 +138,9 @@ class Supervisor {
   uint8_t silent_accel_ticks_ = 0;
   uint8_t frozen_gyro_ticks_ = 0;
   uint8_t battery_ticks_ = 0;
-  uint16_t stalled_left_ticks_ = 0;
-  uint16_t stalled_right_ticks_ = 0;
+  uint8_t chip_ticks_ = 0;
+  TrackWatch left_;
+  TrackWatch right_;
   int16_t last_gyro_[3] = {0, 0, 0};
 };
 

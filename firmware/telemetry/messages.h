@@ -29,6 +29,8 @@ enum MessageId : uint16_t {
   kIdMagRaw = 0x312,    ///< 3 x s16 LSB
   kIdBaro = 0x313,      ///< pressure u32 Pa/16 (24 bits used), temperature s16 0.01 degC
   kIdPower = 0x314,     ///< battery u16 mV, CPU load u8 %
+  kIdHealth = 0x315,    ///< reset cause in the header bits; failing chips u8, failed I2C transfers
+                        ///< u8, lost radio bytes u8, last tick u16 us
 };
 
 /// Operations of kIdCommand.

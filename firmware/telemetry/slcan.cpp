@@ -38,14 +38,15 @@ bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
   if (byte != '\r') {
     if (length_ < sizeof(line_)) {
       line_[length_++] = byte;
-    } else {
+    } else if (!too_long_) {
       too_long_ = true;
+      ++rejected_;
     }
     return false;
   }
   const bool frame_like = length_ > 0 && line_[0] == 't';
   const bool good = frame_like && !too_long_ && decode(frame);
-  if (frame_like && !good) ++rejected_;
+  if (frame_like && !too_long_ && !good) ++rejected_;
   length_ = 0;
   too_long_ = false;
   return good;

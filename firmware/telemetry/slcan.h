@@ -22,13 +22,13 @@ uint8_t slcan_encode(const CanFrame& frame, uint8_t* line);
 
 /// Collects bytes to lines and lines to frames. A line that is not exactly a data frame (other
 /// commands, wrong length, foreign characters, too long) is dropped; rejected() counts those that
-/// began like a frame.
+/// began like a frame, and those that are too long to be anything.
 class SlcanParser {
  public:
   /// Takes one byte. Returns true when it ended a well-formed frame, which is then in `frame`.
   bool feed(uint8_t byte, CanFrame& frame);
 
-  /// Frame-like lines that were not well-formed, wraps.
+  /// Lines counted as rejected, wraps.
   uint8_t rejected() const { return rejected_; }
 
  private:

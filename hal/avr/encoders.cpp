@@ -21,21 +21,26 @@ State state;
 
 }  // namespace
 
+#ifdef SCREED_RIGHT_ENCODER_ON_INT6
+// Each side is read by its own interrupt only: the two pins of a side are read one after the other,
+// and right after an edge of this side there is no next one in between.
 ISR(PCINT0_vect) {
-  const EncoderLevels levels = read_encoder_pins();
-  state.left.update(levels.left);
-  state.right.update(levels.right);
+  state.left.update(read_left_encoder());
 }
-
-#ifdef SCREED_ENCODER_USES_INT6
-ISR(INT6_vect, ISR_ALIASOF(PCINT0_vect));
+ISR(INT6_vect) {
+  state.right.update(read_right_encoder());
+}
+#else
+ISR(PCINT0_vect) {
+  state.left.update(read_left_encoder());
+  state.right.update(read_right_encoder());
+}
 #endif
 
 void encoders_init() {
   make_encoder_pins_inputs();
-  const EncoderLevels levels = read_encoder_pins();
-  state.left.start(levels.left);
-  state.right.start(levels.right);
+  state.left.start(read_left_encoder());
+  state.right.start(read_right_encoder());
   enable_encoder_interrupts();
 }
 

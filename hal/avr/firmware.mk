@@ -1,10 +1,10 @@
 # The image for the robot's microcontroller, and its budget. Included by the top Makefile.
 #
 #   make firmware [BOARD=...]   builds build/firmware/<board>/screed.elf and .hex, prints the budget
-#   make size [BOARD=...]       prints the budget again
+#   make size [BOARD=...]       prints the budget again, and the cycles of the longest tick
 #
-# Needs from there: B and BUILD_ROOT (folders), $(B)/avr_stack (tools/avr_stack), FORCE. A board is a folder boards/<board>
-# with board.h, pins.h and board.mk.
+# Needs from there: B and BUILD_ROOT (folders), $(B)/avr_stack (tools/avr_stack), FORCE, VERSION. A board is a folder
+# boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
 
 BOARD ?= a_star_32u4
 ifeq ($(wildcard boards/$(BOARD)/board.mk),)
@@ -12,14 +12,21 @@ $(error BOARD=$(BOARD): no folder boards/$(BOARD) with a board.mk; there are: $(
 endif
 include boards/$(BOARD)/board.mk
 
+AVR_CC ?= avr-gcc
 AVR_CXX ?= avr-g++
 AVR_OBJCOPY ?= avr-objcopy
 AVR_OBJDUMP ?= avr-objdump
 AVR_SIZE ?= avr-size
+AVR_NM ?= avr-nm
 
 # Most flash and RAM a program may use; RAM counts variables and the worst-case stack.
 FLASH_BUDGET := 28672
 RAM_BUDGET := 2560
+RAM_SPARE := 256
+# Where the core writes the bootloader's key while the program still runs (MAGIC_KEY_POS in its USBCore.h).
+BOOT_KEY_ADDRESS := 0x0800
+# Half of a tick.
+TICK_BUDGET_CYCLES := 80000
 
 FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
@@ -32,29 +39,69 @@ AVR_FLAGS := -std=c++14 -Os -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
   -mrelax -mstrict-X -fno-move-loop-invariants
 AVR_WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Werror
-AVR_INCLUDES := -I. -Iboards/$(BOARD)
+AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated
 AVR_LINK := -Wl,--gc-sections
+
+# The Arduino core of Debian's package arduino-core-avr: main(), USB and the serial line over it. Only what is used of it
+# reaches the image.
+ARDUINO_ROOT ?= /usr/share/arduino/hardware/arduino/avr
+ARDUINO_CORE := $(ARDUINO_ROOT)/cores/arduino
+ARDUINO_VARIANT := $(ARDUINO_ROOT)/variants/leonardo
+ARDUINO_SOURCES := CDC.cpp PluggableUSB.cpp USBCore.cpp main.cpp Print.cpp Stream.cpp abi.cpp wiring.c hooks.c
+ARDUINO_OBJECTS := $(patsubst %,$(FIRMWARE_BUILD)/arduino/%.o,$(ARDUINO_SOURCES))
+ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
+  -DUSB_VID=$(BOARD_USB_VID) -DUSB_PID=$(BOARD_USB_PID) -DUSB_MANUFACTURER='"$(BOARD_USB_MANUFACTURER)"' \
+  -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
 
 .PHONY: firmware-image firmware-size
 firmware-image: $(FIRMWARE_BUILD)/screed.hex firmware-size
 
+# What the analysis cannot see: targets of indirect calls. Its "never" lines hold as long as the core's serial line is the
+# only object with virtual functions.
+INDIRECT_CALLS := hal/avr/indirect_calls.txt
+ALLOWED_VTABLES := Serial_
+
 firmware-size: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
 	@echo "$(FIRMWARE_ELF)"
+	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | grep -vxF '$(ALLOWED_VTABLES)' || true) ; \
+	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which $(INDIRECT_CALLS) does not know" >&2 ; exit 1 ; }
 	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
-	  --flash-budget $(FLASH_BUDGET) --ram-budget $(RAM_BUDGET)
+	  --indirect-calls $(INDIRECT_CALLS) --flash-budget $(FLASH_BUDGET) --ram-budget $(RAM_BUDGET) \
+	  --ram-spare $(RAM_SPARE) --free-word $(BOOT_KEY_ADDRESS)
+
+# Longest tick and interrupts, measured in the simulator while the robot drives.
+.PHONY: firmware-cycles
+firmware-cycles: $(FIRMWARE_ELF) $(B)/avr_cycles
+	@$(B)/avr_cycles $(FIRMWARE_ELF) boards/$(BOARD)/wiring.ini --budget $(TICK_BUDGET_CYCLES)
+$(B)/avr_cycles: $(B)/tools/avr_cycles/main.o $(LIBRARY) $(B)/link.flags
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -o $@
 
 # Changes only when compiler or flags do, and then everything is built anew.
+define AVR_FLAGS_TEXT
+$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK) $(ARDUINO_FLAGS)
+endef
 $(FIRMWARE_BUILD)/avr.flags: FORCE
-	@mkdir -p $(@D)
-	@echo '$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK)' > $@.new
+	$(shell mkdir -p $(@D))$(file > $@.new,$(AVR_FLAGS_TEXT))
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
-$(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags
+$(FIRMWARE_BUILD)/generated/build_info.h: FORCE
+	@mkdir -p $(@D)
+	@{ echo '#define SCREED_VERSION "$(VERSION)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+
+$(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/generated/build_info.h
 	@mkdir -p $(@D)
 	@echo "  AVR  $<"
-	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) -MMD -MP -c $< -o $@
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(ARDUINO_FLAGS) -MMD -MP -c $< -o $@
 
-$(FIRMWARE_ELF): $(FIRMWARE_OBJECTS)
+$(FIRMWARE_BUILD)/arduino/%.cpp.o: $(ARDUINO_CORE)/%.cpp $(FIRMWARE_BUILD)/avr.flags
+	@mkdir -p $(@D)
+	@$(AVR_CXX) $(AVR_FLAGS) -std=gnu++11 -w $(ARDUINO_FLAGS) -c $< -o $@
+$(FIRMWARE_BUILD)/arduino/%.c.o: $(ARDUINO_CORE)/%.c $(FIRMWARE_BUILD)/avr.flags
+	@mkdir -p $(@D)
+	@$(AVR_CC) $(patsubst -std=%,-std=gnu11,$(filter-out -fno-rtti -fno-threadsafe-statics,$(AVR_FLAGS))) -w $(ARDUINO_FLAGS) -c $< -o $@
+
+$(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS)
 	@echo "  LINK $@"
 	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
 
@@ -66,5 +113,12 @@ $(FIRMWARE_BUILD)/%.lst: $(FIRMWARE_BUILD)/%.elf
 
 $(FIRMWARE_BUILD)/%.size: $(FIRMWARE_BUILD)/%.elf
 	@$(AVR_SIZE) -A $< > $@
+
+# The tests run the images of all boards.
+BOARDS := $(patsubst boards/%/board.mk,%,$(wildcard boards/*/board.mk))
+OTHER_IMAGES := $(patsubst %,$(BUILD_ROOT)/firmware/%/screed.elf,$(filter-out $(BOARD),$(BOARDS)))
+TEST_IMAGES += $(OTHER_IMAGES)
+$(OTHER_IMAGES): $(BUILD_ROOT)/firmware/%/screed.elf: FORCE
+	+@$(MAKE) --no-print-directory DEPS=no BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) BOARD=$* $@
 
 -include $(FIRMWARE_OBJECTS:.o=.d)

@@ -7,31 +7,33 @@
 #include "board.h"
 #include "firmware/robot/parameters.h"
 #include "hal/avr/battery.h"
+#include "hal/avr/buttons.h"
+#include "hal/avr/console.h"
 #include "hal/avr/encoders.h"
 #include "hal/avr/imu.h"
 #include "hal/avr/leds.h"
 #include "hal/avr/motors.h"
+#include "hal/avr/parameter_eeprom.h"
 #include "hal/avr/radio_uart.h"
+#include "hal/avr/reset_cause.h"
+#include "hal/avr/show.h"
+#include "hal/avr/stack_guard.h"
 #include "hal/avr/tick_timer.h"
+#include "hal/avr/usb_serial.h"
 #include "hal/avr/watchdog.h"
 
 namespace screed {
 namespace hal {
-namespace {
-
-const Parameters kDefaults;
-
-/// The bootloader leaves the USB controller running; its interrupts have no handler here.
-void usb_off() {
-  UDIEN = 0;
-  USBCON = _BV(FRZCLK);
-}
-
-}  // namespace
 
 void init() {
+  // The Arduino core has set up every timer, has interrupts on, and USB is attached by now.
+  cli();
   avr::motors_init();
-  usb_off();
+  TIMSK0 = 0;  // millis() stands still: 10 interrupts a tick less
+  avr::reset_cause_init();
+  avr::parameter_eeprom_init();
+  avr::show(avr::kShownStart, &avr::parameters_in_force());
+  avr::buttons_init();
   avr::leds_init();
   avr::encoders_init();
   avr::radio_uart_init();
@@ -47,10 +49,23 @@ const BoardConstants& board_constants() {
 }
 
 const Parameters& parameters() {
-  return kDefaults;
+  return avr::parameters_in_force();
+}
+
+bool parameters_intact() {
+  return avr::parameter_store_state() != StoreState::kCorrupt;
 }
 
 bool wait_for_tick() {
+  // What has time until the next tick.
+  avr::usb_serial_watch_for_upload();
+  avr::console_step();
+  avr::parameter_eeprom_step();
+  avr::stack_guard_step();
+  if (!avr::stack_intact()) {
+    avr::reset_will_be(avr::ResetCause::kStack);
+    avr::watchdog_reset_now();
+  }
   avr::tick_timer_wait();
   avr::watchdog_feed();
   return true;
@@ -65,13 +80,17 @@ void read_sensors(SensorSample& sample) {
   sample.encoder_errors = counts.errors;
   avr::imu_read(sample);
   sample.battery = avr::battery_read();
+  sample.radio_errors = avr::radio_uart_overruns();
+  sample.reset_cause = static_cast<uint8_t>(avr::reset_cause());
   sample.radio_in_count = avr::radio_uart_read(sample.radio_in, kRadioInCapacity);
+  avr::show(avr::kShownSample, &sample);
 }
 
 void write_outputs(const RobotOutput& output) {
   avr::motors_drive(output.duty_left, output.duty_right);
   avr::leds_write(output.leds);
   avr::radio_uart_write(output.radio_out, output.radio_out_count);
+  avr::show(avr::kShownOutput, &output);
 }
 
 }  // namespace hal

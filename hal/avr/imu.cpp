@@ -35,6 +35,8 @@ struct State {
   uint8_t setting;                 // the one checked in this round
   uint8_t register_value;          // what was read, then what is to be written
   uint8_t right_in_a_row[kChips];  // settings of a chip found right since the last wrong one
+  uint8_t failing;                 // ChipBit set: the last burst did not come
+  uint8_t errors;                  // transfers that failed
 };
 State state;
 
@@ -99,7 +101,7 @@ bool judge_setting(bool ok) {
 bool next_step(bool ok) {
   switch (state.step) {
     case kReadMag:
-      state.step = state.round % kBaroRounds == 0 ? kReadBaro : kCheckSetting;
+      state.step = kHasBarometer && state.round % kBaroRounds == 0 ? kReadBaro : kCheckSetting;
       return true;
     case kCheckSetting:
       if (judge_setting(ok)) {
@@ -124,6 +126,26 @@ uint8_t fresh_bit(Step step) {
 static_assert(kFreshGyro == 1 << kReadGyro && kFreshAccel == 1 << kReadAccel &&
                   kFreshMag == 1 << kReadMag && kFreshBaro == 1 << kReadBaro,
               "fresh_bit relies on the order");
+
+/// Remembers whether the chip that was to be read answered.
+void book_answer(bool ok) {
+  const uint8_t bit = state.step == kReadGyro    ? kChipGyro
+                      : state.step == kReadAccel ? kChipAccelMag
+                      : state.step == kReadBaro  ? kChipBaro
+                                                 : 0;
+  state.failing = static_cast<uint8_t>(ok ? state.failing & ~bit : state.failing | bit);
+}
+
+uint8_t chips_failing() {
+  uint8_t failing = state.failing;
+  for (uint8_t chip = 0; chip < kChips; ++chip) {
+    if (!configured(static_cast<Chip>(chip))) failing = static_cast<uint8_t>(failing | 1U << chip);
+  }
+  return failing;
+}
+static_assert(kChipAccelMag == 1 << kAccelMagChip && kChipGyro == 1 << kGyroChip &&
+                  kChipBaro == 1 << kBaroChip,
+              "chips_failing relies on the order");
 
 int16_t word_at(const uint8_t* bytes) {
   return static_cast<int16_t>(bytes[0] |
@@ -165,7 +187,12 @@ void take_baro(SensorSample& sample) {
 }  // namespace
 
 bool twi_done(bool ok, TwiTransfer& next) {
-  if (ok) state.arrived = static_cast<uint8_t>(state.arrived | fresh_bit(state.step));
+  if (ok) {
+    state.arrived = static_cast<uint8_t>(state.arrived | fresh_bit(state.step));
+  } else {
+    state.errors = static_cast<uint8_t>(state.errors + 1);
+  }
+  book_answer(ok);
   if (!next_step(ok)) {
     state.phase = kIdle;
     return false;
@@ -200,11 +227,15 @@ void imu_read(SensorSample& sample) {
   if (phase == kHanging) {
     twi_recover();
     state.arrived = 0;
+    state.failing = kChipAccelMag | kChipGyro | (kHasBarometer ? kChipBaro : 0);
+    state.errors = static_cast<uint8_t>(state.errors + 1);
   }
   take_vector(state.gyro, kGyroChip, kFreshGyro, sample.gyro, sample);
   take_vector(state.accel, kAccelMagChip, kFreshAccel, sample.accel, sample);
   take_vector(state.mag, kAccelMagChip, kFreshMag, sample.mag, sample);
   take_baro(sample);
+  sample.chips_failing = chips_failing();
+  sample.bus_errors = state.errors;
   state.arrived = 0;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     state.phase = kIdle;

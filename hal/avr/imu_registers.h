@@ -6,6 +6,8 @@
 #include <avr/pgmspace.h>
 #include <stdint.h>
 
+#include "pins.h"
+
 namespace screed {
 namespace avr {
 
@@ -54,7 +56,10 @@ constexpr Setting kSettings[] PROGMEM = {
     {kBaroChip, kWhoAmI, 0xBD},
     {kBaroChip, 0x20, 0xC4},  // CTRL1: on, 25 Hz, block data update
 };
-constexpr uint8_t kSettingCount = sizeof(kSettings) / sizeof(kSettings[0]);
+// Those of the barometer, which a board may not have, are the last ones.
+constexpr uint8_t kBaroSettings = 2;
+constexpr uint8_t kSettingCount =
+    sizeof(kSettings) / sizeof(kSettings[0]) - (kHasBarometer ? 0 : kBaroSettings);
 
 }  // namespace avr
 }  // namespace screed

@@ -27,6 +27,8 @@ struct Pin {
       clear();
     }
   }
+  /// What set() and clear() left.
+  static bool is_driven_high() { return (_MMIO_BYTE(kPort + 2) & kMask) != 0; }
   static bool is_high() { return (_MMIO_BYTE(kPort) & kMask) != 0; }
 };
 

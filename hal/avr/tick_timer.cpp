@@ -7,6 +7,7 @@
 #include <util/atomic.h>
 
 #include "hal/avr/imu.h"
+#include "hal/avr/watchdog.h"
 #include "hal/sample.h"
 
 namespace screed {
@@ -50,6 +51,7 @@ ISR(TIMER3_COMPA_vect) {
 
 ISR(TIMER3_COMPB_vect) {
   imu_start_round();
+  watchdog_look();
 }
 
 void tick_timer_init() {

@@ -27,13 +27,15 @@ using Sda = Pin<kPortD, 1>;
 // Written by the main program only while no transfer runs, by the interrupt while one runs.
 struct State {
   TwiTransfer transfer;
-  uint8_t done;  // bytes of transfer.data
+  uint8_t* at;   // the next byte of transfer.data
+  uint8_t left;  // bytes from there on
   bool register_sent;
 };
 State state;
 
 void rewind() {
-  state.done = 0;
+  state.at = state.transfer.data;
+  state.left = state.transfer.size;
   state.register_sent = false;
 }
 
@@ -47,16 +49,16 @@ void finish(bool ok) {
 
 /// Acknowledges every byte but the last.
 void receive_next() {
-  const bool last = state.done + 1 == state.transfer.size;
-  TWCR = last ? kGo : static_cast<uint8_t>(kGo | _BV(TWEA));
+  TWCR = state.left == 1 ? kGo : static_cast<uint8_t>(kGo | _BV(TWEA));
 }
 
 void send_next() {
-  if (state.done == state.transfer.size) {
+  if (state.left == 0) {
     finish(true);
     return;
   }
-  TWDR = state.transfer.data[state.done++];
+  --state.left;
+  TWDR = *state.at++;
   TWCR = kGo;
 }
 
@@ -68,8 +70,15 @@ void send(uint8_t byte) {
 }  // namespace
 
 ISR(TWI_vect) {
+  const uint8_t status = TW_STATUS;
+  if (status == TW_MR_DATA_ACK) {  // first, since two of three interrupts are
+    *state.at++ = TWDR;
+    --state.left;
+    receive_next();
+    return;
+  }
   const uint8_t address = static_cast<uint8_t>(state.transfer.address << 1);
-  switch (TW_STATUS) {
+  switch (status) {
     case TW_START:
       send(address | TW_WRITE);
       break;
@@ -90,12 +99,8 @@ ISR(TWI_vect) {
     case TW_MR_SLA_ACK:
       receive_next();
       break;
-    case TW_MR_DATA_ACK:
-      state.transfer.data[state.done++] = TWDR;
-      receive_next();
-      break;
     case TW_MR_DATA_NACK:
-      state.transfer.data[state.done] = TWDR;
+      *state.at = TWDR;
       finish(true);
       break;
     default:  // no device, arbitration lost, bus error

@@ -2,35 +2,48 @@
 #include "hal/avr/watchdog.h"
 
 #include <avr/interrupt.h>
-#include <avr/io.h>
 #include <avr/wdt.h>
 
 #include "hal/avr/motors.h"
+#include "hal/avr/reset_cause.h"
 
 namespace screed {
 namespace avr {
+namespace {
 
-/// After a watchdog reset the watchdog runs on with its shortest time, 15 ms: it has to stop before
-/// variables are set up.
-extern "C" void screed_stop_watchdog() __attribute__((naked, used, section(".init3")));
-extern "C" void screed_stop_watchdog() {
-  MCUSR = 0;  // WDRF would keep it running
-  wdt_disable();
-}
+constexpr uint8_t kMostLooks = 6;  // 60 ms
 
-// First time-out. The hardware clears WDIE: the second time-out resets.
-ISR(WDT_vect) {
-  motors_off();
-}
+volatile uint8_t looks;  // since the last feed
+
+}  // namespace
 
 void watchdog_init() {
-  wdt_enable(WDTO_60MS);
-  watchdog_feed();
+  wdt_enable(WDTO_120MS);
 }
 
 void watchdog_feed() {
   wdt_reset();
-  WDTCSR |= _BV(WDIE);
+  looks = 0;
+}
+
+// Not the watchdog's own interrupt: as long as that one is pending the hardware does not reset, so
+// a program that hangs with its interrupts off would hang for ever.
+void watchdog_look() {
+  const uint8_t now = static_cast<uint8_t>(looks + 1);
+  if (now < kMostLooks) {
+    looks = now;
+    return;
+  }
+  motors_off();
+  reset_will_be(ResetCause::kWatchdog);
+}
+
+void watchdog_reset_now() {
+  cli();
+  motors_off();
+  wdt_enable(WDTO_15MS);
+  for (;;) {
+  }
 }
 
 }  // namespace avr

@@ -12,6 +12,7 @@
 #include "firmware/robot/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/ini_file.h"
+#include "host_sim/soil/soil_parameters.h"
 #include "paths.h"
 
 namespace screed {
@@ -116,6 +117,11 @@ bool is_file_name(const std::string& text) {
              std::string::npos;
 }
 
+bool is_soil(const std::string& name) {
+  return std::any_of(soil_presets().begin(), soil_presets().end(),
+                     [&](const SoilParameters& known) { return known.name == name; });
+}
+
 bool not_empty(const std::string& text) {
   return !text.empty();
 }
@@ -176,9 +182,49 @@ std::vector<Key> make_keys() {
                           "the terrain repeats at its edges; the image must be tileable",
                           [](Experiment& e) -> bool& { return e.map.wrap; }));
   keys.push_back(text_key(
-      "map", "model", "rigid", "how the ground answers",
+      "map", "model", "rigid or scm",
+      "how the ground answers; scm: soil that gives way, see [soil]",
       [](Experiment& e) -> std::string& { return e.map.model; },
-      [](const std::string& text) { return text == "rigid"; }));
+      [](const std::string& text) { return text == "rigid" || text == "scm"; }));
+
+  keys.push_back(text_key(
+      "soil", "preset", "soft, viper, lete_sand, dry_sand, clay or ding_2011",
+      "model scm: a named soil", [](Experiment& e) -> std::string& { return e.soil.preset; },
+      is_soil));
+  keys.push_back(real_key("soil", "cell", "m", 0.001, 0.05, "model scm: side of a grid cell",
+                          [](Experiment& e) -> double& { return e.soil.cell_m; }));
+  keys.push_back(bool_key("soil", "bulldozing", "sunk material is pushed aside; false: compacted",
+                          [](Experiment& e) -> bool& { return e.soil.bulldozing; }));
+  keys.push_back(bool_key("soil", "avalanches", "slopes above the angle of repose slide",
+                          [](Experiment& e) -> bool& { return e.soil.avalanches; }));
+  using Optional = std::optional<double>;
+  keys.push_back(real_key("soil", "k_phi", "N/m^(n+2)", 0, 1e12,
+                          "Bekker's frictional modulus; left out: the preset's",
+                          [](Experiment& e) -> Optional& { return e.soil.k_phi; }));
+  keys.push_back(real_key("soil", "k_c", "N/m^(n+1)", 0, 1e12, "Bekker's cohesive modulus",
+                          [](Experiment& e) -> Optional& { return e.soil.k_c; }));
+  keys.push_back(real_key("soil", "n", "", 0.1, 2.5, "Bekker's exponent of sinkage",
+                          [](Experiment& e) -> Optional& { return e.soil.exponent; }));
+  keys.push_back(real_key("soil", "c", "Pa", 0, 1e7, "cohesion",
+                          [](Experiment& e) -> Optional& { return e.soil.cohesion_pa; }));
+  keys.push_back(real_key("soil", "phi", "deg", 0, 60, "angle of internal friction",
+                          [](Experiment& e) -> Optional& { return e.soil.friction_deg; }));
+  keys.push_back(real_key("soil", "K", "m", 1e-5, 1, "Janosi-Hanamoto shear modulus",
+                          [](Experiment& e) -> Optional& { return e.soil.shear_modulus_m; }));
+  keys.push_back(real_key("soil", "E", "Pa/m", 1e4, 1e12, "stiffness of unloading",
+                          [](Experiment& e) -> Optional& { return e.soil.elastic_pa_per_m; }));
+  keys.push_back(real_key("soil", "R", "Pa s/m", 0, 1e9, "damping of sinking",
+                          [](Experiment& e) -> Optional& { return e.soil.damping_pa_s_per_m; }));
+  keys.push_back(real_key("soil", "repose", "deg", 1, 60, "angle of repose",
+                          [](Experiment& e) -> Optional& { return e.soil.repose_deg; }));
+  keys.push_back(real_key("soil", "compaction", "", 0, 1,
+                          "share of the sunk volume that is compacted",
+                          [](Experiment& e) -> Optional& { return e.soil.compaction; }));
+  keys.push_back(real_key("soil", "drag_depth", "m", 0, 1,
+                          "thickness of the layer that a slipping surface takes along",
+                          [](Experiment& e) -> Optional& { return e.soil.drag_depth_m; }));
+  keys.push_back(real_key("soil", "slip_sinkage", "", 0, 2, "growth of n with slip",
+                          [](Experiment& e) -> Optional& { return e.soil.slip_sinkage; }));
 
   keys.push_back(text_key(
       "experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
@@ -327,6 +373,7 @@ std::string Experiment::text() const {
   for (const Key& key : keys()) {
     const std::optional<std::string> value = key.get(*this);
     if (!value.has_value()) continue;
+    if (key.section == "soil" && map.model != "scm") continue;  // decides nothing
     if (key.section != section) text += "\n[" + key.section + "]\n";
     section = key.section;
     text += key.name + " = " + *value + "\n";

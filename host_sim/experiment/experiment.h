@@ -41,8 +41,28 @@ struct Experiment {
     std::optional<double> max_slope_deg;
     double ramp_deg = 0.0;  ///< without an image: level ground inclined towards east
     bool wrap = false;
-    std::string model = "rigid";
+    std::string model = "rigid";  ///< rigid, or scm: soil that gives way
   } map;
+
+  /// Soil of the model scm: a named preset and what differs from it.
+  struct {
+    std::string preset = "viper";
+    double cell_m = 0.005;
+    bool bulldozing = true;
+    bool avalanches = true;
+    std::optional<double> k_phi;
+    std::optional<double> k_c;
+    std::optional<double> exponent;
+    std::optional<double> cohesion_pa;
+    std::optional<double> friction_deg;
+    std::optional<double> shear_modulus_m;
+    std::optional<double> elastic_pa_per_m;
+    std::optional<double> damping_pa_s_per_m;
+    std::optional<double> repose_deg;
+    std::optional<double> compaction;
+    std::optional<double> drag_depth_m;
+    std::optional<double> slip_sinkage;
+  } soil;
 
   struct {
     std::string name = "experiment";

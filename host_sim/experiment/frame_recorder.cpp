@@ -24,8 +24,8 @@ double slip(double surface, double ground) {
 
 }  // namespace
 
-Frame FrameRecorder::record(const World& world, const Robot& robot) {
-  const Vehicle& vehicle = world.vehicle();
+Frame FrameRecorder::record(const Plant& plant, const Robot& robot) {
+  const Vehicle& vehicle = plant.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Matrix3d& rotation = chassis.pose.linear();
   const Eigen::Vector3d position = chassis.pose.translation();
@@ -33,7 +33,7 @@ Frame FrameRecorder::record(const World& world, const Robot& robot) {
   const Eigen::Vector3d velocity = rotation.transpose() * chassis.velocity;
 
   Frame frame;
-  frame.time = world.time_s();
+  frame.time = plant.time_s();
   frame.x = position.x();
   frame.y = position.y();
   frame.z = position.z();
@@ -43,7 +43,7 @@ Frame FrameRecorder::record(const World& world, const Robot& robot) {
     frame.delta_theta = wrap_rad(attitude.heading - last_heading_);
     distance_m_ += (position - last_position_).norm();
   }
-  if (!world.terrain().inside(position.x(), position.y())) outside_s_ += 1.0 / kTickRate_hz;
+  if (!plant.terrain().inside(position.x(), position.y())) outside_s_ += 1.0 / kTickRate_hz;
   first_ = false;
   last_position_ = position;
   last_heading_ = attitude.heading;
@@ -68,8 +68,8 @@ Frame FrameRecorder::record(const World& world, const Robot& robot) {
   frame.slip_right = slip(frame.track_right, vehicle.ground_speed_m_per_s(kRight));
   frame.current_left = vehicle.current_a(kLeft);
   frame.current_right = vehicle.current_a(kRight);
-  frame.battery = world.battery().terminal_v;
-  frame.energy = world.battery().energy_j;
+  frame.battery = plant.battery().terminal_v;
+  frame.energy = plant.battery().energy_j;
   frame.est_pitch = robot.attitude().pitch() * kRadPerAngle;
   frame.est_roll = robot.attitude().roll() * kRadPerAngle;
   frame.est_heading = robot.attitude().heading() * kRadPerAngle;

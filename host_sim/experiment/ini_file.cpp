@@ -20,13 +20,10 @@ struct Reading {
   int line = 0;
   std::vector<IniEntry> entries;
   std::string complaint;  // exceptions must not pass through C code
-  int complaint_line = 0;
 
-  /// About the line that was read last; the first complaint counts.
+  /// About the line that was read last; reading ends there.
   void complain(const std::string& what) {
-    if (!complaint.empty()) return;
     complaint = name + ":" + std::to_string(line) + ": " + what;
-    complaint_line = line;
   }
 };
 
@@ -94,14 +91,12 @@ std::vector<IniEntry> read_ini_file(const std::filesystem::path& path) {
   if (!reading.file)
     throw InputError(path.string() + ": no such experiment file, or it cannot be read");
   const int bad_line = ini_parse_stream(read_line, &reading, take_entry, &reading);
-  // The first of two complaints is the one to tell.
-  if (!reading.complaint.empty() && (bad_line <= 0 || bad_line > reading.complaint_line)) {
-    throw InputError(reading.complaint);
-  }
+  // Our own complaint ends the reading, so a line that inih could not make sense of came before it.
   if (bad_line > 0) {
     throw InputError(reading.name + ":" + std::to_string(bad_line) +
                      ": neither [section] nor 'key = value' nor a comment");
   }
+  if (!reading.complaint.empty()) throw InputError(reading.complaint);
   if (bad_line < 0) throw InputError(reading.name + ": cannot be read");
   return std::move(reading.entries);
 }

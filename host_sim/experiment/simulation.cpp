@@ -9,7 +9,6 @@
 #include <ostream>
 #include <thread>
 
-#include "boards/a_star_32u4/board.h"
 #include "firmware/robot/robot.h"
 #include "hal/host/target.h"
 #include "host_sim/core/errors.h"
@@ -27,6 +26,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
+constexpr uint64_t kFlatnessTicks = 5 * kTickRate_hz;  // a look at the whole bed costs milliseconds
 constexpr uint64_t kPathTicks = kTickRate_hz / 10;  // a point of the drawn path ten times a second
 
 constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",
@@ -34,8 +34,9 @@ constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running
 constexpr const char* kLevelingStateNames[kLevelingStates] = {"idle", "walk",   "climb",
                                                               "spin", "return", "drive"};
 constexpr const char* kFaultNames[] = {
-    "tilt",        "IMU silent", "gyro frozen",   "left track stalled", "right track stalled",
-    "battery low", "parameters", "emergency stop"};
+    "tilt",         "IMU silent",   "gyro frozen",    "left track stalled", "right track stalled",
+    "battery low",  "parameters",   "emergency stop", "LSM303D fails",      "L3GD20H fails",
+    "LPS25H fails", "left encoder", "right encoder"};
 
 /// A text file of the run folder; RunError when the disk is full.
 class TextFile {
@@ -79,61 +80,68 @@ HeightMapView view_of(const HeightField& field, std::vector<int32_t>& heights) {
   return view;
 }
 
-/// The robot in the world, as the firmware's main loop sees it; records every tick.
+/// Takes what every tick gives and keeps it: frames, path, progress.
 ///
-/// Beside the robot of the main loop runs a second one on the same samples. The core is a pure
-/// function, so both must give the same bytes; the second one also shows its thoughts to the
-/// recorder, which the main loop's robot, behind its HAL, does not.
-class RecordingTarget : public hal::Target {
+/// Beside the robot that drives runs a second one on the same samples. The core is a pure function,
+/// so both must give the same bytes; the second one also shows its thoughts, which the other,
+/// behind its HAL or in its microcontroller, does not.
+class Recorder {
  public:
-  RecordingTarget(World& world, const Experiment& experiment, const SimulationOptions& options,
-                  SessionWriter& writer)
-      : world_(world),
+  Recorder(const Plant& plant, const Experiment& experiment, const SimulationOptions& options,
+           SessionWriter& writer)
+      : plant_(plant),
         options_(options),
-        parameters_(experiment.parameters),
-        shadow_(kBoard, parameters_),
+        shadow_(board_constants_of(options.board), experiment.parameters),
         writer_(writer),
-        last_tick_(
-            static_cast<uint64_t>(std::llround(experiment.experiment.duration_s * kTickRate_hz))),
         duration_s_(experiment.experiment.duration_s),
         flatness_deg_(experiment.experiment.flatness_deg),
-        flatness_(flatness(world.terrain(), flatness_deg_)) {}
+        flatness_(flatness(plant.terrain(), flatness_deg_)),
+        flatness_now_(flatness_),
+        begin_(std::chrono::steady_clock::now()) {}
 
-  void init() override { begin_ = std::chrono::steady_clock::now(); }
-  const BoardConstants& board_constants() override { return kBoard; }
-  const Parameters& parameters() override { return parameters_; }
+  /// The run is to end before its time.
+  bool stop_asked() const {
+    return left_bed() ||
+           (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed));
+  }
 
-  bool wait_for_tick() override {
-    stopped_early_ = options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
-    if (stopped_early_ || world_.ticks() >= last_tick_) return false;
-    world_.advance();
+  /// A bed of soil ends at its edges: who drives over them falls.
+  bool left_bed() const {
+    const Eigen::Vector3d place = plant_.vehicle().chassis().pose.translation();
+    return plant_.soil() != nullptr && !plant_.terrain().wrap() &&
+           !plant_.terrain().inside(place.x(), place.y());
+  }
+
+  /// The robot has read its sensors; the world stands as they saw it.
+  void begin_tick(const SensorSample& sample) {
+    sample_ = sample;
+    shadow_.tick(sample, expected_);
+    frame_ = recorder_.record(plant_, shadow_);
+  }
+
+  /// The robot has answered.
+  void end_tick(const RobotOutput& output) {
+    ++ticks_;
+    check_purity(output);
+    writer_.append(frame_, sample_, output);
+    if (ticks_ % kPathTicks == 1)
+      path_.push_back({frame_.x, frame_.y, static_cast<size_t>(frame_.leveling_state)});
+    if (plant_.soil() != nullptr && ticks_ % kFlatnessTicks == 0) {
+      flatness_now_ = flatness(plant_.terrain(), flatness_deg_);
+    }
+    if (options_.progress && ticks_ % kProgressTicks == 0) {
+      options_.progress({frame_.time, duration_s_, flatness_now_});
+    }
     if (options_.realtime) {
       std::this_thread::sleep_until(begin_ +
                                     std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                        std::chrono::duration<double>(world_.time_s())));
-    }
-    return true;
-  }
-
-  void read_sensors(SensorSample& sample) override { sample = world_.sample(); }
-
-  void write_outputs(const RobotOutput& output) override {
-    shadow_.tick(world_.sample(), expected_);
-    check_purity(output);
-    const Frame frame = recorder_.record(world_, shadow_);
-    writer_.append(frame, world_.sample(), output);
-    world_.apply(output);
-    if (world_.ticks() % kPathTicks == 1)
-      path_.push_back({frame.x, frame.y, static_cast<size_t>(frame.leveling_state)});
-    if (options_.progress && world_.ticks() % kProgressTicks == 0) {
-      options_.progress({world_.time_s(), duration_s_, flatness_});
+                                        std::chrono::duration<double>(plant_.time_s())));
     }
   }
 
   const Robot& robot() const { return shadow_; }
-  const FrameRecorder& recorder() const { return recorder_; }
+  const FrameRecorder& frames() const { return recorder_; }
   std::vector<PathPoint>& path() { return path_; }
-  bool stopped_early() const { return stopped_early_ && world_.ticks() < last_tick_; }
   double flatness_before() const { return flatness_; }
   double wall_s() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
@@ -148,24 +156,107 @@ class RecordingTarget : public hal::Target {
     const auto difference = first_difference(kOutputColumns, expected, got);
     if (difference.has_value()) {
       throw RunError("two robots answered the same samples differently in tick " +
-                     std::to_string(world_.ticks()) + ": " + *difference);
+                     std::to_string(ticks_) + ": " + *difference);
     }
   }
 
-  World& world_;
+  const Plant& plant_;
   const SimulationOptions& options_;
-  Parameters parameters_;
   Robot shadow_;
+  SensorSample sample_{};
   RobotOutput expected_{};
+  Frame frame_;
   SessionWriter& writer_;
   FrameRecorder recorder_;
   std::vector<PathPoint> path_;
-  uint64_t last_tick_;
+  uint64_t ticks_ = 0;
   double duration_s_;
   double flatness_deg_;
-  double flatness_;
-  bool stopped_early_ = false;
+  double flatness_;      ///< before the run
+  double flatness_now_;  ///< a few seconds old at most
   std::chrono::steady_clock::time_point begin_;
+};
+
+/// The robot in the world, as the firmware's main loop sees it.
+class NativeTarget : public hal::Target {
+ public:
+  NativeTarget(World& world, const Experiment& experiment, const SimulationOptions& options,
+               Recorder& recorder)
+      : world_(world),
+        board_(board_constants_of(options.board)),
+        parameters_(experiment.parameters),
+        recorder_(recorder),
+        last_tick_(
+            static_cast<uint64_t>(std::llround(experiment.experiment.duration_s * kTickRate_hz))) {}
+
+  void init() override {}
+  const BoardConstants& board_constants() override { return board_; }
+  const Parameters& parameters() override { return parameters_; }
+
+  bool wait_for_tick() override {
+    if (recorder_.stop_asked() || world_.ticks() >= last_tick_) return false;
+    world_.advance();
+    return true;
+  }
+
+  void read_sensors(SensorSample& sample) override {
+    sample = world_.sample();
+    recorder_.begin_tick(sample);
+  }
+
+  void write_outputs(const RobotOutput& output) override {
+    recorder_.end_tick(output);
+    world_.apply(output);
+  }
+
+ private:
+  World& world_;
+  const BoardConstants& board_;
+  Parameters parameters_;
+  Recorder& recorder_;
+  uint64_t last_tick_;
+};
+
+/// Runs the experiment to its end or until told to stop, with the firmware as it is compiled for
+/// the host or as the image. Built before the first file is made, so that wrong input leaves none.
+class Run {
+ public:
+  Run(const Experiment& experiment, const SimulationOptions& options, std::ostream* telemetry_log)
+      : experiment_(experiment), options_(options) {
+    if (options.image.has_value()) {
+      image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image);
+    } else {
+      world_ = make_world(experiment, telemetry_log, options.board);
+    }
+  }
+
+  const Plant& plant() const { return image_ ? image_->plant() : world_->plant(); }
+  const GroundStation& ground_station() const {
+    return image_ ? image_->ground_station() : std::as_const(*world_).ground_station();
+  }
+  std::optional<CycleReport> cycles() const {
+    return image_ ? std::optional(image_->cycles()) : std::nullopt;
+  }
+
+  void drive(Recorder& recorder) {
+    if (!image_) {
+      NativeTarget target(*world_, experiment_, options_, recorder);
+      hal::run_firmware(target);
+      return;
+    }
+    while (!recorder.stop_asked()) {
+      const SensorSample& sample = image_->run_to_sample();
+      if (plant().time_s() > experiment_.experiment.duration_s) break;
+      recorder.begin_tick(sample);
+      recorder.end_tick(image_->run_to_output());
+    }
+  }
+
+ private:
+  const Experiment& experiment_;
+  const SimulationOptions& options_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<CoSimulation> image_;
 };
 
 SessionInfo session_info(const Experiment& experiment, const SimulationOptions& options) {
@@ -174,20 +265,20 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
   info.experiment_name = experiment.experiment.name;
   info.experiment_text = experiment.text();
   info.seed = experiment.experiment.seed;
-  info.board_name = "a_star_32u4";
-  info.board = kBoard;
+  info.board_name = options.board;
+  info.board = board_constants_of(options.board);
   info.parameters = experiment.parameters;
   return info;
 }
 
 void write_pictures(const std::filesystem::path& folder, const HeightField& before,
-                    const World& world, const Experiment& experiment, std::vector<PathPoint> path) {
+                    const Plant& plant, const Experiment& experiment, std::vector<PathPoint> path) {
   PictureOptions options;
   options.title = experiment.experiment.name + ": before";
   write_height_map_picture(folder / "terrain_before.png", before, options);
 
   options.title = experiment.experiment.name + ": after " +
-                  std::to_string(std::lround(world.time_s())) + " s of " +
+                  std::to_string(std::lround(plant.time_s())) + " s of " +
                   experiment.experiment.algorithm;
   // The legend names the states that occurred, in their order.
   std::array<bool, kLevelingStates> occurred{};
@@ -199,10 +290,21 @@ void write_pictures(const std::filesystem::path& folder, const HeightField& befo
   }
   for (PathPoint& point : path) point.state = legend.at(point.state);
   options.path = std::move(path);
-  const ChassisState chassis = world.vehicle().chassis();
+  const ChassisState chassis = plant.vehicle().chassis();
   options.robot = RobotOutline{chassis.pose.translation().x(), chassis.pose.translation().y(),
                                attitude_of(chassis.pose.linear()).heading};
-  write_height_map_picture(folder / "terrain_after.png", world.terrain(), options);
+  write_height_map_picture(folder / "terrain_after.png", plant.terrain(), options);
+}
+
+/// The same surface on another grid. With wrap-around the cells still divide the bed.
+HeightField resampled(const HeightField& field, double cell_m) {
+  const double width = field.x_max() - field.x_min();
+  const double depth = field.y_max() - field.y_min();
+  const int extra = field.wrap() ? 0 : 1;
+  const int nx = static_cast<int>(std::lround(width / cell_m)) + extra;
+  const int ny = static_cast<int>(std::lround(depth / cell_m)) + extra;
+  return HeightField::from_function(nx, ny, width / (nx - extra), field.wrap(),
+                                    [&](double x, double y) { return field.at(x, y).height; });
 }
 
 nlohmann::ordered_json terrain_json(const TerrainStatistics& statistics, double flatness) {
@@ -239,10 +341,33 @@ std::string fault_names(uint16_t faults) {
   return names.empty() ? "none" : names;
 }
 
+SoilParameters make_soil(const Experiment& experiment) {
+  const auto& keys = experiment.soil;
+  SoilParameters soil = soil_preset(keys.preset);
+  const auto take = [](const std::optional<double>& value, double& parameter) {
+    if (value.has_value()) parameter = *value;
+  };
+  take(keys.k_phi, soil.k_phi);
+  take(keys.k_c, soil.k_c);
+  take(keys.exponent, soil.exponent);
+  take(keys.cohesion_pa, soil.cohesion_pa);
+  take(keys.friction_deg, soil.friction_deg);
+  take(keys.shear_modulus_m, soil.shear_modulus_m);
+  take(keys.elastic_pa_per_m, soil.elastic_pa_per_m);
+  take(keys.damping_pa_s_per_m, soil.damping_pa_s_per_m);
+  take(keys.repose_deg, soil.repose_deg);
+  take(keys.compaction, soil.compaction);
+  take(keys.drag_depth_m, soil.drag_depth_m);
+  take(keys.slip_sinkage, soil.slip_sinkage);
+  check_soil(soil);
+  return soil;
+}
+
 HeightField make_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
+  const bool soft = map.model == "scm";
   if (map.filename.empty()) {
-    const double spacing = map.size_m / 64.0;
+    const double spacing = soft ? experiment.soil.cell_m : map.size_m / 64.0;
     return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing)
                                : HeightField::ramp(map.size_m, spacing, map.ramp_deg);
   }
@@ -252,16 +377,21 @@ HeightField make_terrain(const Experiment& experiment) {
   options.smoothing_m = map.smoothing_m;
   options.max_slope_deg = map.max_slope_deg;
   options.wrap = map.wrap;
-  return HeightField::from_image(
+  HeightField image = HeightField::from_image(
       read_grey_image(find_data_file(experiment, map.filename, "[map] filename")), options);
+  return soft ? resampled(image, experiment.soil.cell_m) : image;
 }
 
-std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log) {
+namespace {
+
+Assembly make_model(const Experiment& experiment) {
   UrdfOptions urdf;
   if (experiment.vehicle.leg_angle_deg.has_value())
     urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
-  const Assembly model = import_urdf(find_model_file(experiment), urdf);
+  return import_urdf(find_model_file(experiment), urdf);
+}
 
+WorldOptions world_options(const Experiment& experiment) {
   WorldOptions options;
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
@@ -274,7 +404,7 @@ std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* te
   options.vehicle.tracks = experiment.vehicle.tracks;
   options.vehicle.track_friction = experiment.vehicle.track_friction;
   options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
-  if (!experiment.sensors.noise) options.imu = ImuErrors::none();
+  if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
   options.radio.delay_s = experiment.radio.delay_s;
   options.radio.loss = experiment.radio.loss;
   options.ground_station_arms = experiment.radio.ground_station;
@@ -282,12 +412,39 @@ std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* te
     options.drive = DriveOrder{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
   }
   options.lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
-  return std::make_unique<World>(make_terrain(experiment), model, kBoard, options, telemetry_log);
+  if (experiment.map.model == "scm") {
+    options.soil = make_soil(experiment);
+    options.soil_options.bulldozing = experiment.soil.bulldozing;
+    options.soil_options.avalanches = experiment.soil.avalanches;
+  }
+  return options;
+}
+
+}  // namespace
+
+std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
+                                  const std::string& board) {
+  return std::make_unique<World>(make_terrain(experiment), make_model(experiment),
+                                 board_constants_of(board), world_options(experiment),
+                                 telemetry_log);
+}
+
+std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
+                                                 std::ostream* telemetry_log,
+                                                 const std::string& board,
+                                                 const std::string& image) {
+  CoSimulationOptions options;
+  options.elf = image;
+  options.board = board;
+  options.parameters = experiment.parameters;
+  options.world = world_options(experiment);
+  return make_co_simulation(make_terrain(experiment), make_model(experiment), options,
+                            telemetry_log);
 }
 
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options) {
   // Everything that can be wrong with the input is found before the first file is made.
-  make_world(experiment, nullptr);
+  { const Run trial(experiment, options, nullptr); }
 
   RunFolder folder =
       options.out.has_value()
@@ -295,8 +452,10 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
           : RunFolder::numbered(experiment.output_directory_prefix, experiment.experiment.name);
   write_text(folder.path() / "experiment.ini", experiment.text());
   TextFile telemetry(folder.path() / "telemetry.log");
-  const std::unique_ptr<World> world = make_world(experiment, &telemetry.stream());
-  const HeightField before = world->terrain();
+  Run run(experiment, options, &telemetry.stream());
+  const Plant& plant = run.plant();
+  // As the experiment lays it out; the robot has settled into plant.terrain() already.
+  const HeightField before = make_terrain(experiment);
 
   SimulationSummary summary;
   summary.before = terrain_statistics(before);
@@ -304,41 +463,75 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   std::vector<int32_t> heights;
   writer.write_terrain_before(view_of(before, heights));
 
-  RecordingTarget target(*world, experiment, options, writer);
-  hal::run_firmware(target);
-  summary.wall_s = target.wall_s();
+  Recorder recorder(plant, experiment, options, writer);
+  run.drive(recorder);
+  summary.wall_s = recorder.wall_s();
 
-  writer.write_terrain_after(view_of(world->terrain(), heights));
+  writer.write_terrain_after(view_of(plant.terrain(), heights));
   summary.content_hash = writer.finish();
   telemetry.close();
 
   summary.folder = folder.final_path();
   summary.leftovers = folder.leftovers();
-  summary.stopped_early = target.stopped_early();
-  summary.time_s = world->time_s();
-  summary.distance_m = target.recorder().distance_m();
-  summary.outside_s = target.recorder().outside_s();
-  summary.energy_j = world->battery().energy_j;
-  summary.battery_v = world->battery().terminal_v;
-  summary.peaks = target.robot().leveling().peaks();
-  summary.state = state_name(target.robot().supervisor().state());
-  summary.faults = target.robot().supervisor().faults();
-  summary.telemetry_frames = world->ground_station().frames();
-  summary.after = terrain_statistics(world->terrain());
-  summary.flatness_before = target.flatness_before();
-  summary.flatness_after = flatness(world->terrain(), experiment.experiment.flatness_deg);
+  summary.left_bed = recorder.left_bed();
+  summary.stopped_early =
+      recorder.stop_asked() && plant.time_s() < experiment.experiment.duration_s;
+  summary.time_s = plant.time_s();
+  summary.distance_m = recorder.frames().distance_m();
+  summary.outside_s = recorder.frames().outside_s();
+  summary.energy_j = plant.battery().energy_j;
+  summary.battery_v = plant.battery().terminal_v;
+  summary.peaks = recorder.robot().leveling().peaks();
+  summary.state = state_name(recorder.robot().supervisor().state());
+  summary.faults = recorder.robot().supervisor().faults();
+  summary.telemetry_frames = run.ground_station().frames();
+  summary.after = terrain_statistics(plant.terrain());
+  summary.cycles = run.cycles();
+  summary.flatness_before = recorder.flatness_before();
+  summary.flatness_after = flatness(plant.terrain(), experiment.experiment.flatness_deg);
 
   export_frames_csv(SessionReader(folder.path() / "session.h5"), folder.path() / "frames.csv");
-  write_pictures(folder.path(), before, *world, experiment, std::move(target.path()));
+  write_pictures(folder.path(), before, plant, experiment, std::move(recorder.path()));
   write_text(folder.path() / "summary.json", summary_json(summary));
   folder.commit();
   return summary;
 }
 
+namespace {
+
+nlohmann::ordered_json json_of(const CycleReport& cycles) {
+  nlohmann::ordered_json interrupts;
+  for (const CycleReport::Interrupt& it : cycles.interrupts) {
+    interrupts[it.name] = {{"count", it.count},
+                           {"longest_cycles", it.longest_cycles},
+                           {"mean_cycles", it.mean_cycles}};
+  }
+  return {{"ticks", cycles.ticks},
+          {"longest_tick_cycles", cycles.longest_tick_cycles},
+          {"mean_tick_cycles", cycles.mean_tick_cycles},
+          {"missed_ticks", cycles.missed_ticks},
+          {"load", cycles.load},
+          {"encoder_latency_cycles", cycles.encoder_latency_cycles},
+          {"encoder_edges", cycles.encoder_edges},
+          {"encoder_edges_missed", cycles.encoder_missing},
+          {"uart_bytes_received", cycles.uart_received},
+          {"uart_bytes_lost", cycles.uart_overruns},
+          {"uart_bytes_sent", cycles.uart_sent},
+          {"resets", cycles.resets},
+          {"interrupts", interrupts}};
+}
+
+}  // namespace
+
+std::string cycles_json(const CycleReport& cycles) {
+  return json_of(cycles).dump(2) + "\n";
+}
+
 std::string summary_json(const SimulationSummary& summary) {
-  const nlohmann::ordered_json json = {
+  nlohmann::ordered_json json = {
       {"content_hash", summary.content_hash},
       {"stopped_early", summary.stopped_early},
+      {"left_bed", summary.left_bed},
       {"time_s", summary.time_s},
       {"distance_m", summary.distance_m},
       {"energy_j", summary.energy_j},
@@ -351,6 +544,7 @@ std::string summary_json(const SimulationSummary& summary) {
       {"terrain_before", terrain_json(summary.before, summary.flatness_before)},
       {"terrain_after", terrain_json(summary.after, summary.flatness_after)},
   };
+  if (summary.cycles.has_value()) json["microcontroller"] = json_of(*summary.cycles);
   return json.dump(2) + "\n";
 }
 

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "firmware/leveling/leveling.h"
+#include "host_sim/experiment/board_table.h"
 #include "host_sim/experiment/experiment.h"
+#include "host_sim/mcu/co_simulation.h"
 #include "host_sim/terrain/terrain_statistics.h"
 #include "host_sim/world/world.h"
 
@@ -33,12 +35,17 @@ struct SimulationOptions {
       nullptr;  ///< becomes true when the run is to end early, with everything saved
   std::function<void(const SimulationProgress&)> progress;  ///< called ten times a simulated second
   std::string program_version;
+  std::string board = kDefaultBoard;
+  /// The image that is to run under the microcontroller simulation; without it the firmware runs
+  /// natively.
+  std::optional<std::string> image;
 };
 
 struct SimulationSummary {
   std::filesystem::path folder;
   std::string content_hash;
   bool stopped_early = false;
+  bool left_bed = false;        ///< the run ended because the robot drove over the edge of the soil
   double time_s = 0.0;
   double wall_s = 0.0;  ///< of the loop alone: building the world and writing pictures do not count
   double distance_m = 0.0;  ///< length of the chassis' true path, in space
@@ -54,19 +61,31 @@ struct SimulationSummary {
   double flatness_before = 0.0;
   double flatness_after = 0.0;
   std::vector<std::filesystem::path>
-      leftovers;  ///< folders of interrupted runs that were passed over
+      leftovers;                      ///< folders of interrupted runs that were passed over
+  std::optional<CycleReport> cycles;  ///< of a run with an image
 
   double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
 };
 
+/// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
+SoilParameters make_soil(const Experiment& experiment);
 /// The terrain an experiment asks for.
 HeightField make_terrain(const Experiment& experiment);
-/// A world as the experiment describes it. telemetry_log may be null.
-std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log);
+/// A world as the experiment describes it, for a board of boards/. telemetry_log may be null.
+std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
+                                  const std::string& board = kDefaultBoard);
+/// The same world with the image running in it (co_simulation.h).
+std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
+                                                 std::ostream* telemetry_log,
+                                                 const std::string& board,
+                                                 const std::string& image);
 
 /// Runs to the end of the duration or until told to stop. Throws InputError before anything is
 /// written, RunError when the run cannot be saved; then nothing half-written stays behind.
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options);
+
+/// What the microcontroller's time went into, as JSON: deterministic as the run itself.
+std::string cycles_json(const CycleReport& cycles);
 
 /// The summary as JSON, as written to summary.json: all of the above but wall time and folder,
 /// which are not part of the result.

@@ -18,11 +18,19 @@ void RadioLink::send(uint64_t now_us, std::span<const uint8_t> bytes) {
 
 std::vector<uint8_t> RadioLink::receive(uint64_t now_us, size_t most) {
   std::vector<uint8_t> bytes;
-  while (!in_flight_.empty() && in_flight_.front().arrives_us <= now_us && bytes.size() < most) {
-    bytes.push_back(in_flight_.front().value);
-    in_flight_.pop_front();
+  while (bytes.size() < most) {
+    const std::optional<Byte> byte = receive_byte(now_us);
+    if (!byte.has_value()) break;
+    bytes.push_back(byte->value);
   }
   return bytes;
+}
+
+std::optional<RadioLink::Byte> RadioLink::receive_byte(uint64_t now_us) {
+  if (in_flight_.empty() || in_flight_.front().arrives_us > now_us) return std::nullopt;
+  const Byte byte = in_flight_.front();
+  in_flight_.pop_front();
+  return byte;
 }
 
 }  // namespace screed

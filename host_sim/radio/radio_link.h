@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,12 +29,14 @@ class RadioLink {
   /// Takes what has arrived by now, at most `most` bytes, in order.
   std::vector<uint8_t> receive(uint64_t now_us, size_t most);
 
- private:
   struct Byte {
     uint64_t arrives_us;
     uint8_t value;
   };
+  /// Takes the next byte, when it has arrived by now.
+  std::optional<Byte> receive_byte(uint64_t now_us);
 
+ private:
   RadioOptions options_;
   WorldRandom random_;
   std::deque<Byte> in_flight_;

@@ -16,10 +16,6 @@ constexpr double kMagLsb_mg = 0.160;
 constexpr uint32_t kMagTicks = 2;
 constexpr uint32_t kBaroTicks = 4;
 
-int16_t quantise(double value, double lsb) {
-  return static_cast<int16_t>(std::clamp(std::round(value / lsb), -32768.0, 32767.0));
-}
-
 Eigen::Vector3d normals(WorldRandom& random, double sigma) {
   // One after another: the order of draws is part of the result.
   const double x = random.normal();
@@ -29,6 +25,10 @@ Eigen::Vector3d normals(WorldRandom& random, double sigma) {
 }
 
 }  // namespace
+
+int16_t ImuModel::quantise(double value, double lsb) {
+  return static_cast<int16_t>(std::clamp(std::round(value / lsb), -32768.0, 32767.0));
+}
 
 ImuModel::ImuModel(uint64_t seed, const ImuErrors& errors)
     : errors_(errors),
@@ -49,13 +49,31 @@ Eigen::Vector3d ImuModel::earth_field_gauss() {
   return {0.0, kField_g * std::cos(kInclination), -kField_g * std::sin(kInclination)};
 }
 
-void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
+Eigen::Vector3d ImuModel::gyro_dps(const ImuTruth& truth) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
-  const Eigen::Vector3d gyro = (truth.mean_rate_rad_per_s * kDegrees).cwiseProduct(gyro_scale_) +
-                               gyro_bias_dps_ + normals(gyro_random_, errors_.gyro_noise_dps);
-  const Eigen::Vector3d accel =
-      (truth.mean_specific_force * (1000.0 / kGravity_m_per_s2)).cwiseProduct(accel_scale_) +
-      accel_bias_mg_ + normals(accel_random_, errors_.accel_noise_mg);
+  return (truth.mean_rate_rad_per_s * kDegrees).cwiseProduct(gyro_scale_) + gyro_bias_dps_ +
+         normals(gyro_random_, errors_.gyro_noise_dps);
+}
+
+Eigen::Vector3d ImuModel::accel_mg(const ImuTruth& truth) {
+  return (truth.mean_specific_force * (1000.0 / kGravity_m_per_s2)).cwiseProduct(accel_scale_) +
+         accel_bias_mg_ + normals(accel_random_, errors_.accel_noise_mg);
+}
+
+Eigen::Vector3d ImuModel::mag_mgauss(const ImuTruth& truth) {
+  return truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0) + mag_bias_mg_ +
+         normals(mag_random_, errors_.mag_noise_mg);
+}
+
+double ImuModel::pressure_hpa(const ImuTruth& truth) {
+  // 1013.25 hPa at height 0; 0.12 hPa a metre near the ground (barometric formula, linearised).
+  return 1013.25 - 0.1201 * truth.altitude_m + pressure_bias_hpa_ +
+         errors_.pressure_noise_hpa * baro_random_.normal();
+}
+
+void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
+  const Eigen::Vector3d gyro = gyro_dps(truth);
+  const Eigen::Vector3d accel = accel_mg(truth);
   for (int i = 0; i < 3; ++i) {
     sample.gyro[i] = quantise(gyro[i], kGyroLsb_dps);
     sample.accel[i] = quantise(accel[i], kAccelLsb_mg);
@@ -63,17 +81,13 @@ void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
   sample.fresh = kFreshGyro | kFreshAccel;
 
   if (ticks_ % kMagTicks == 0) {
-    const Eigen::Vector3d mag = truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0) +
-                                mag_bias_mg_ + normals(mag_random_, errors_.mag_noise_mg);
+    const Eigen::Vector3d mag = mag_mgauss(truth);
     for (int i = 0; i < 3; ++i) sample.mag[i] = quantise(mag[i], kMagLsb_mg);
     sample.fresh |= kFreshMag;
   }
   if (ticks_ % kBaroTicks == 0) {
-    // 1013.25 hPa at height 0; 0.12 hPa a metre near the ground (barometric formula, linearised).
-    const double pressure = 1013.25 - 0.1201 * truth.altitude_m + pressure_bias_hpa_ +
-                            errors_.pressure_noise_hpa * baro_random_.normal();
-    sample.pressure = static_cast<int32_t>(std::lround(pressure * 4096.0));
-    sample.temperature = static_cast<int16_t>(std::lround((20.0 - 42.5) * 480.0));
+    sample.pressure = static_cast<int32_t>(std::lround(pressure_hpa(truth) * 4096.0));
+    sample.temperature = static_cast<int16_t>(std::lround((kTemperature_degc - 42.5) * 480.0));
     sample.fresh |= kFreshBaro;
   }
   ++ticks_;

@@ -36,6 +36,13 @@ struct ImuErrors {
 
   /// No noise, bias or scale error: only quantisation and full scale remain.
   static ImuErrors none() { return {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}; }
+  /// As none(), but the gyro's last digit flickers: one that repeats itself to the bit is dead, and
+  /// the firmware does not arm with it.
+  static ImuErrors quiet() {
+    ImuErrors errors = none();
+    errors.gyro_noise_dps = 0.035;
+    return errors;
+  }
 };
 
 /// True motion over the last tick.
@@ -53,6 +60,17 @@ class ImuModel {
   /// Counts of gyro, accelerometer (every tick), magnetometer (50 Hz) and pressure (25 Hz), with
   /// the FreshBits that go with them.
   void measure(const ImuTruth& truth, SensorSample& sample);
+
+  // What each sensor feels, in the robot frame, before its chip makes counts of it; a call is a
+  // measurement with its own noise.
+  Eigen::Vector3d gyro_dps(const ImuTruth& truth);
+  Eigen::Vector3d accel_mg(const ImuTruth& truth);
+  Eigen::Vector3d mag_mgauss(const ImuTruth& truth);
+  double pressure_hpa(const ImuTruth& truth);
+  static constexpr double kTemperature_degc = 20.0;
+
+  /// The nearest count of a 16-bit sensor; saturates.
+  static int16_t quantise(double value, double lsb);
 
   /// The earth's field in world axes (east, north, up), gauss: declination 0, inclination 68
   /// degrees, as in Newfoundland.

@@ -31,6 +31,10 @@
   X(last_tick_us,    "us",           "computation time of the previous tick") \
   X(encoder_errors,  "count",        "missed quadrature edges, wraps") \
   X(fresh,           "",             "devices with a new measurement: 1 gyro, 2 accel, 4 mag, 8 baro") \
+  X(chips_failing,   "",             "chips that do not answer or lost their settings: 1 LSM303D, 2 L3GD20H, 4 LPS25H") \
+  X(bus_errors,      "count",        "I2C transfers that failed, wraps") \
+  X(radio_errors,    "byte",         "received bytes that were lost, wraps") \
+  X(reset_cause,     "",             "why the program started, 0: power-on") \
   X(radio_in_count,  "byte",         "valid bytes of radio_in") \
   X(radio_in,        "",             "bytes received since the last tick")
 

@@ -15,6 +15,11 @@ constexpr double kDampingRatio = 0.7;
 constexpr double kUpperSide =
     0.2;  // vertical part of the outward normal; above 0, so that a robot on its side counts
 
+// Below this speed slip means nothing, m/s.
+constexpr double kSlipSpeed = 1e-3;
+// Sine of the axles' inclination from which a unit lies on its side.
+constexpr double kOnItsSide = 0.8;
+
 }  // namespace
 
 void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
@@ -29,13 +34,20 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
     : geometry_(geometry),
       driven_(driven),
       motor_(motor),
-      centre_(0.5 * (geometry.front + geometry.rear)) {
+      centre_(0.5 * (geometry.front + geometry.rear)),
+      footprint_(Footprint::track(0.5 * (geometry.front - geometry.rear).norm(), geometry.radius,
+                                  geometry.width)),
+      side_footprint_(
+          Footprint::box({(geometry.front - geometry.rear).norm() + 2.0 * geometry.radius,
+                          geometry.width, 2.0 * geometry.radius})),
+      load_mass_(mass_kg) {
   const double radius = geometry.radius;
   const Eigen::Vector3d run = geometry.front - geometry.rear;
   const double length = run.norm();
   const Eigen::Vector3d forward =
       length > 0.0 ? Eigen::Vector3d(run / length) : Eigen::Vector3d::UnitX();
   const Eigen::Vector3d up = forward.cross(Eigen::Vector3d::UnitY());  // contour plane: forward, up
+  axes_ << forward, Eigen::Vector3d::UnitY(), up;
   const int half_points =
       std::max(8, static_cast<int>(std::lround(std::numbers::pi * radius / kSpacing_m)));
   const int run_points =
@@ -83,6 +95,7 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
 
 void RunningGear::halt() {
   speed_ = 0.0;
+  memory_ = {};
   for (size_t i = 0; i < points_.size(); ++i) let_go(i);
 }
 
@@ -141,6 +154,32 @@ void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrie
     ground_force_ += force.dot(along);
     normal_load_ += force.z();
   }
+}
+
+void RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double dt, Wrench& wrench) {
+  const Eigen::Vector3d arm = carrier.rotation * centre_;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = carrier.rotation * axes_;
+  pose.translation() = carrier.origin + arm;
+
+  FootprintMotion motion;
+  motion.velocity = carrier.velocity + carrier.omega.cross(arm);
+  motion.omega = carrier.omega;
+  motion.surface_speed = speed_;
+  motion.mass_kg = load_mass_;
+  const double ground_speed = motion.velocity.dot(pose.linear().col(0));
+  const double faster = std::max(std::abs(ground_speed), std::abs(speed_));
+  motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed_ - ground_speed) / faster) : 0.0;
+
+  const bool on_its_side = std::abs(pose.linear()(2, 1)) > kOnItsSide;
+  Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
+  if (on_its_side) motion.surface_speed = 0.0;
+  footprint.set_pose(pose);
+  const SoilReaction reaction = soil.press(footprint, motion, dt, memory_);
+  wrench.add(reaction.force, arm);
+  wrench.torque += reaction.torque;
+  ground_force_ = reaction.along_surface;
+  normal_load_ = reaction.normal_load;
 }
 
 void RunningGear::drive(double voltage, double dt) {

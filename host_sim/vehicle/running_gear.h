@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host_sim/soil/soil_bed.h"
 #include "host_sim/terrain/height_field.h"
 #include "host_sim/vehicle/gear_motor.h"
 #include "host_sim/vehicle/ground_contact.h"
@@ -55,6 +56,9 @@ class RunningGear {
 
   /// Contact forces of this step, added to `wrench`; remembers the ground's force along the belt.
   void contact(const HeightField& ground, const CarrierMotion& carrier, double dt, Wrench& wrench);
+
+  /// The same on soil that gives way: the unit's lower surface presses into it.
+  void contact(SoilBed& soil, const CarrierMotion& carrier, double dt, Wrench& wrench);
 
   /// Advances the surface speed with the motor at `voltage` (its terminals shorted at 0: the driver
   /// brakes).
@@ -100,6 +104,11 @@ class RunningGear {
   double speed_ = 0.0;
   double angle_ = 0.0;
   double current_ = 0.0;
+  Footprint footprint_;       ///< of the contour on soil, upright
+  Footprint side_footprint_;  ///< of a unit that lies on its side
+  Eigen::Matrix3d axes_;      ///< forward, left, up of the contour in the carrier's frame
+  ContactMemory memory_;
+  double load_mass_;           ///< the share of the robot that the unit carries, kg
   double ground_force_ = 0.0;  ///< of the ground on the surface, along the material's direction, N
   double normal_load_ = 0.0;
 };

@@ -64,6 +64,26 @@ void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose,
   }
 }
 
+// The box that stands for a shape on soil: itself, or the box round a cylinder or a mesh.
+void add_hull_box(const Shape& shape, const Eigen::Isometry3d& pose, std::vector<Footprint>& boxes,
+                  std::vector<Eigen::Isometry3d>& poses) {
+  Eigen::Isometry3d at = pose * shape.pose;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  if (const auto* box = std::get_if<Box>(&shape.geometry)) {
+    size = box->size;
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+    size = {2.0 * cylinder->radius, 2.0 * cylinder->radius, cylinder->length};
+  } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+    Eigen::AlignedBox3d bounds;
+    for (const Eigen::Vector3d& vertex : mesh->vertices) bounds.extend(vertex);
+    if (bounds.isEmpty()) return;
+    size = bounds.sizes();
+    at = at * Eigen::Translation3d(bounds.center());
+  }
+  boxes.push_back(Footprint::box(size));
+  poses.push_back(at);
+}
+
 // The cylinder a wheel rolls on: its radius and length.
 const Cylinder& wheel_cylinder(const AssemblyBody& wheel) {
   for (const Shape& shape : wheel.collision) {
@@ -157,10 +177,14 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
       const AssemblyBody& body = assembly.bodies[static_cast<size_t>(member)];
       if (is_wheel[static_cast<size_t>(member)]) continue;
       for (const Shape& shape : body.collision) {
-        add_hull_points(shape, carrier.rest.inverse() * body.pose, carrier.points);
+        const Eigen::Isometry3d at = carrier.rest.inverse() * body.pose;
+        add_hull_points(shape, at, carrier.points);
+        add_hull_box(shape, at, carrier.boxes, carrier.box_poses);
       }
     }
     carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
+    carrier.box_memories.assign(carrier.boxes.size(), ContactMemory{});
+    carrier.mass = inertia.mass;
     carrier.law.friction = options.chassis_friction;
     carrier.law.stiffness = mass_ * kGravity_m_per_s2 / (4.0 * kHullSinkIn_m);
     carrier.law.damping = std::sqrt(carrier.law.stiffness * mass_ / 4.0);
@@ -267,6 +291,7 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
     dBodySetLinearVel(carrier.body, 0, 0, 0);
     dBodySetAngularVel(carrier.body, 0, 0, 0);
     carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
+    carrier.box_memories.assign(carrier.boxes.size(), ContactMemory{});
   }
   for (Unit& unit : units_) unit.gear.halt();
 }
@@ -287,8 +312,55 @@ double Vehicle::resting_height(const HeightField& ground, double x, double y,
   return height;
 }
 
-void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
-                           double dt) {
+void Vehicle::hull_contact(Carrier& carrier, const HeightField& ground, const CarrierMotion& motion,
+                           double dt, Wrench& wrench) {
+  const double ceiling =
+      ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius) -
+      motion.origin.z();
+  const Eigen::RowVector3d upwards = motion.rotation.row(2);
+  GroundTouch touch;
+  for (size_t i = 0; i < carrier.points.size(); ++i) {
+    if (upwards.dot(carrier.points[i]) > ceiling) {
+      carrier.bristles[i].setZero();
+      continue;
+    }
+    const Eigen::Vector3d arm = motion.rotation * carrier.points[i];
+    if (!touches(ground, motion.origin + arm, touch)) {
+      carrier.bristles[i].setZero();
+      continue;
+    }
+    const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
+    wrench.add(contact_force(carrier.law, touch, velocity, dt, carrier.bristles[i]), arm);
+  }
+}
+
+void Vehicle::hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion& motion, double dt,
+                           Wrench& wrench) {
+  const double ceiling =
+      soil.surface().max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius);
+  for (size_t i = 0; i < carrier.boxes.size(); ++i) {
+    Eigen::Isometry3d pose = carrier.box_poses[i];
+    const Eigen::Vector3d arm = motion.rotation * pose.translation();
+    pose.linear() = motion.rotation * pose.linear();
+    pose.translation() = motion.origin + arm;
+    Footprint& box = carrier.boxes[i];
+    box.set_pose(pose);
+    if (pose.translation().z() - box.reach_down() > ceiling) {
+      carrier.box_memories[i] = {};
+      continue;
+    }
+    FootprintMotion moving;
+    moving.velocity = motion.velocity + motion.omega.cross(arm);
+    moving.omega = motion.omega;
+    moving.mass_kg = carrier.mass;
+    const SoilReaction reaction = soil.press(box, moving, dt, carrier.box_memories[i]);
+    wrench.add(reaction.force, arm);
+    wrench.torque += reaction.torque;
+  }
+}
+
+template <class Ground>
+void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt) {
   for (size_t c = 0; c < carriers_.size(); ++c) {
     Carrier& carrier = carriers_[c];
     CarrierMotion motion;
@@ -296,33 +368,25 @@ void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2
     motion.rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
     motion.velocity = to_eigen(dBodyGetLinearVel(carrier.body));
     motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
-    const double ceiling =
-        ground.max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius) -
-        motion.origin.z();
 
     Wrench wrench;
     for (Unit& unit : units_) {
       if (unit.carrier == c) unit.gear.contact(ground, motion, dt, wrench);
     }
-    GroundTouch touch;
-    const Eigen::RowVector3d upwards = motion.rotation.row(2);
-    for (size_t i = 0; i < carrier.points.size(); ++i) {
-      if (upwards.dot(carrier.points[i]) > ceiling) {
-        carrier.bristles[i].setZero();
-        continue;
-      }
-      const Eigen::Vector3d arm = motion.rotation * carrier.points[i];
-      if (!touches(ground, motion.origin + arm, touch)) {
-        carrier.bristles[i].setZero();
-        continue;
-      }
-      const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
-      wrench.add(contact_force(carrier.law, touch, velocity, dt, carrier.bristles[i]), arm);
-    }
+    hull_contact(carrier, ground, motion, dt, wrench);
     dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
     dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
   }
   for (Unit& unit : units_) unit.gear.drive(motor_voltage[static_cast<size_t>(unit.side)], dt);
+}
+
+void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
+                           double dt) {
+  apply(ground, motor_voltage, dt);
+}
+
+void Vehicle::apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt) {
+  apply(soil, motor_voltage, dt);
 }
 
 ChassisState Vehicle::chassis() const {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "host_sim/soil/soil_bed.h"
 #include "host_sim/terrain/height_field.h"
 #include "host_sim/vehicle/assembly.h"
 #include "host_sim/vehicle/gear_motor.h"
@@ -63,6 +64,9 @@ class Vehicle {
   void apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
                     double dt);
 
+  /// The same on soil that gives way; its end_step() is the caller's.
+  void apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt);
+
   ChassisState chassis() const;
   double mass_kg() const { return mass_; }
 
@@ -85,6 +89,10 @@ class Vehicle {
     std::vector<Eigen::Vector3d> points;  // of its hull, from the centre of mass
     std::vector<Eigen::Vector3d> bristles;
     ContactLaw law;
+    std::vector<Footprint> boxes;              // of the hull, on soil
+    std::vector<Eigen::Isometry3d> box_poses;  // in the frame of the centre of mass
+    std::vector<ContactMemory> box_memories;
+    double mass;
   };
   struct Unit {
     size_t carrier;
@@ -96,6 +104,12 @@ class Vehicle {
                     const VehicleOptions& options);
   void add_hinges(const Assembly& assembly);
   void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
+  static void hull_contact(Carrier& carrier, const HeightField& ground, const CarrierMotion& motion,
+                           double dt, Wrench& wrench);
+  static void hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion& motion, double dt,
+                           Wrench& wrench);
+  template <class Ground>
+  void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
   const RunningGear& encoder_gear(Side side) const;
 
   OdeWorld& world_;

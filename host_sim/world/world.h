@@ -15,29 +15,13 @@
 #include "host_sim/radio/ground_station.h"
 #include "host_sim/radio/radio_link.h"
 #include "host_sim/sensors/imu_model.h"
-#include "host_sim/terrain/height_field.h"
-#include "host_sim/vehicle/assembly.h"
-#include "host_sim/vehicle/gear_motor.h"
-#include "host_sim/vehicle/ode_world.h"
-#include "host_sim/vehicle/vehicle.h"
+#include "host_sim/world/plant.h"
 
 namespace screed {
 
-struct StartPose {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  std::optional<double>
-      z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
-  Attitude attitude = {0.0, 0.0, 0.0};
-};
-
-struct WorldOptions {
+struct WorldOptions : PlantOptions {
   uint64_t seed = 1;
-  double physics_step_s = 0.001;  ///< divides the tick of 10 ms
-  StartPose start;
-  VehicleOptions vehicle;
   ImuErrors imu;
-  Battery battery;
   RadioOptions radio;
   bool ground_station_arms = true;
   std::optional<DriveOrder> drive;
@@ -63,40 +47,30 @@ class World {
 
   uint64_t ticks() const { return ticks_; }
   double time_s() const { return static_cast<double>(ticks_) / kTickRate_hz; }
-  const HeightField& terrain() const { return terrain_; }
-  const Vehicle& vehicle() const { return vehicle_; }
-  const Battery& battery() const { return battery_; }
+  const Plant& plant() const { return plant_; }
+  const HeightField& terrain() const { return plant_.terrain(); }
+  const Vehicle& vehicle() const { return plant_.vehicle(); }
+  const Battery& battery() const { return plant_.battery(); }
   const GroundStation& ground_station() const { return ground_; }
   GroundStation& ground_station() { return ground_; }
   /// Picks the robot up and lays it on its left side where it is.
-  void lay_on_side();
+  void lay_on_side() { plant_.lay_on_side(); }
 
  private:
-  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
-  /// when it was switched on.
-  void settle();
   void step_physics();
   void measure();
   void exchange_radio();
-  Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
   uint64_t now_us() const { return ticks_ * kTickPeriod_us; }
 
   WorldOptions options_;
   BoardConstants board_;
-  HeightField terrain_;
-  OdeWorld ode_;
-  Vehicle vehicle_;
-  Battery battery_;
+  Plant plant_;
   ImuModel imu_;
   RadioLink uplink_;
   RadioLink downlink_;
   GroundStation ground_;
-  Eigen::Vector3d imu_position_;  ///< in the frame of Body
-  int steps_per_tick_;
   uint64_t ticks_ = 0;
   std::array<int16_t, 2> duty_ = {0, 0};
-  Eigen::Vector3d last_imu_velocity_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d rate_sum_ = Eigen::Vector3d::Zero();
   SensorSample sample_{};
 };
 

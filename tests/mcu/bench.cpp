@@ -11,25 +11,12 @@
 #include "tools/avr_stack/stack_analysis.h"
 
 namespace screed::mcu {
-namespace {
-
-struct Step {
-  bool a;
-  bool b;
-};
-/// A leads B.
-constexpr Step kForward[4] = {{false, false}, {true, false}, {true, true}, {false, true}};
-
-Step turn(int& phase, bool forward) {
-  phase = (phase + (forward ? 1 : 3)) % 4;
-  return kForward[phase];
-}
-
-}  // namespace
-
 unsigned computed_stack() {
   std::ifstream in(kScreedListing);
-  return avr_stack::analyze(avr_stack::Disassembly::read(in)).worst_case();
+  std::ifstream indirect(kIndirectCalls);
+  return avr_stack::analyze(avr_stack::Disassembly::read(in),
+                            avr_stack::read_indirect_calls(indirect))
+      .worst_case();
 }
 
 unsigned static_ram() {
@@ -38,49 +25,30 @@ unsigned static_ram() {
 }
 
 Bench::Bench()
-    : mcu(kScreedImage, static_cast<std::uint16_t>(static_ram())),
-      accel_mag(mcu, 0x1D),
-      gyro(mcu, 0x6B),
-      baro(mcu, 0x5D) {
-  power_up(accel_mag);
-  power_up(gyro);
-  power_up(baro);
-  mcu.set_adc_mv(6, 2400);  // 7.2 V behind the divider
-  for (const int bit : {4, 7, 1, 2}) mcu.set_pin('B', bit, false);
-}
-
-void Bench::power_up(I2cChip& chip) const {
-  chip.registers.fill(0);
-  chip.registers[0x0F] = &chip == &accel_mag ? 0x49 : &chip == &gyro ? 0xD7 : 0xBD;
-  if (&chip == &accel_mag) {
-    chip.registers[0x20] = 0x07;
-    chip.registers[0x24] = 0x18;
-    chip.registers[0x25] = 0x20;
-    chip.registers[0x26] = 0x01;
-  }
-  if (&chip == &gyro) chip.registers[0x20] = 0x07;
+    : board(kScreedImage, read_wiring(kWiring), static_cast<std::uint16_t>(static_ram())),
+      mcu(board.mcu),
+      accel_mag(board.accel_mag),
+      gyro(board.gyro),
+      baro(*board.baro) {
+  board.set_battery_v(7.2);
+  board.set_encoder(kLeft, left_count_);
+  board.set_encoder(kRight, right_count_);
 }
 
 void Bench::measure() {
   const int noise = ms_ % 7 - 3;
-  accel_mag.registers[0x27] = 0x0F;
-  accel_mag.set_vector(0x28, noise, -noise, accel_z + noise);
-  accel_mag.registers[0x07] = 0x0F;
-  accel_mag.set_vector(0x08, noise, 1250, -2500 + noise);
-  gyro.registers[0x27] = 0x0F;
-  gyro.set_vector(0x28, noise, 2 - noise, ms_ % 5 - 2);
-  baro.registers[0x27] = 0x03;
-  baro.set_vector(0x28, 0x5678, 0xDC3F, 0x00D8);  // pressure 0x3F5678, temperature 0xD8DC
+  board.feel_accel(0.244 * Eigen::Vector3d(noise, -noise, accel_z + noise));
+  board.feel_mag(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
+  board.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms_ % 5 - 2));
+  baro.measure(0x3F5678 / 4096.0, 42.5 + (0xD8DC - 0x10000) / 480.0);
 }
 
 int Bench::left_duty() const {
-  const int duty = mcu.word(kOcr1a);
-  return (mcu.memory(kPortD) & 0x40) != 0 ? -duty : duty;
+  return static_cast<int>(std::lround(400.0 * board.motor_share(kLeft)));
 }
 
 int Bench::right_duty() const {
-  const int duty = mcu.word(kOcr1b);
-  return (mcu.memory(kPortE) & 0x04) != 0 ? -duty : duty;
+  return static_cast<int>(std::lround(400.0 * board.motor_share(kRight)));
 }
 
 void Bench::turn_tracks() {
@@ -119,15 +87,13 @@ void Bench::command(CommandOp op, DriveArgument argument) {
 }
 
 void Bench::turn_left_encoder(bool forward) {
-  const Step step = turn(left_phase_, forward);
-  mcu.set_pin('B', 4, step.a);
-  mcu.set_pin('B', 7, step.b);
+  left_count_ += forward ? 1 : -1;
+  board.set_encoder(kLeft, left_count_);
 }
 
 void Bench::turn_right_encoder(bool forward) {
-  const Step step = turn(right_phase_, forward);
-  mcu.set_pin('B', 1, step.a);
-  mcu.set_pin('B', 2, step.b);
+  right_count_ += forward ? 1 : -1;
+  board.set_encoder(kRight, right_count_);
 }
 
 std::vector<CanFrame> Bench::frames(std::uint16_t id) {

@@ -5,17 +5,10 @@
 #include <vector>
 
 #include "hal/sample.h"
+#include "host_sim/mcu/board.h"
 #include "tests/mcu/ground_lines.h"
-#include "tests/mcu/i2c_chip.h"
-#include "tests/mcu/mcu.h"
 
 namespace screed::mcu {
-
-// Registers of the ATmega32U4 that the tests look at, as memory addresses.
-constexpr std::uint16_t kOcr1a = 0x88;
-constexpr std::uint16_t kOcr1b = 0x8A;
-constexpr std::uint16_t kPortD = 0x2B;
-constexpr std::uint16_t kPortE = 0x2E;
 
 class Bench {
  public:
@@ -28,9 +21,6 @@ class Bench {
 
   /// Sends a command and gives it time to act.
   void command(CommandOp op, DriveArgument argument = {0, 0});
-
-  /// Puts the chips into their state after power-up: default registers.
-  void power_up(I2cChip& chip) const;
 
   /// Turns an encoder by one state change.
   void turn_left_encoder(bool forward);
@@ -45,10 +35,11 @@ class Bench {
   /// The newest frame with `id` of the whole run; fails the test when there is none.
   CanFrame last_frame(std::uint16_t id) const;
 
-  Mcu mcu;
-  I2cChip accel_mag;
-  I2cChip gyro;
-  I2cChip baro;
+  Board board;
+  Mcu& mcu;
+  Lsm303d& accel_mag;
+  L3gd20h& gyro;
+  Lps25h& baro;
   bool ground_station = false;
   bool tracks_blocked = false;
   double tracks_pushed_mm_per_s = 0;  ///< on top of what the motors do
@@ -60,8 +51,8 @@ class Bench {
 
   GroundLines ground_;
   int ms_ = 0;
-  int left_phase_ = 0;
-  int right_phase_ = 0;
+  std::int64_t left_count_ = 0;
+  std::int64_t right_count_ = 0;
   double left_travel_ = 0;  // counts
   double right_travel_ = 0;
   std::size_t looked_at_ = 0;

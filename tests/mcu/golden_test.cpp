@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "host_sim/mcu/mcu.h"
 #include "tests/mcu/golden_vectors.h"
 #include "tests/mcu/images.h"
-#include "tests/mcu/mcu.h"
 
 namespace screed::mcu {
 namespace {

@@ -18,7 +18,7 @@ $(MCU_IMAGES): $(FIRMWARE_BUILD)/%.elf: $(FIRMWARE_BUILD)/tests/mcu/images/%.o $
 
 $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
-	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"'" > $@.new
+	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"' -DSCREED_INDIRECT_CALLS='\"$(abspath $(INDIRECT_CALLS))\"'" > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
 $(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags
@@ -28,6 +28,6 @@ $(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/te
 
 $(MCU_TESTS): $(MCU_TEST_OBJECTS) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	@echo "  LINK $@"
-	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -lsimavr $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
 
 -include $(MCU_TEST_OBJECTS:.o=.d) $(MCU_IMAGES:$(FIRMWARE_BUILD)/%.elf=$(FIRMWARE_BUILD)/tests/mcu/images/%.d)

@@ -66,6 +66,10 @@ class Mission {
     sample_.battery = static_cast<std::uint16_t>(numbers_.any() % 8185U);
     sample_.last_tick_us = static_cast<std::uint16_t>(numbers_.wide());
     sample_.fresh = static_cast<std::uint8_t>(numbers_.any() & 0x0FU);
+    sample_.chips_failing = static_cast<std::uint8_t>(numbers_.any() & 0x07U);
+    sample_.bus_errors = static_cast<std::uint8_t>(numbers_.any());
+    sample_.radio_errors = static_cast<std::uint8_t>(numbers_.any());
+    sample_.reset_cause = static_cast<std::uint8_t>(numbers_.any() & 0x0FU);
   }
 
   void hear(int tick) {

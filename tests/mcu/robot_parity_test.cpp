@@ -8,9 +8,9 @@
 
 #include "board.h"
 #include "firmware/robot/robot.h"
+#include "host_sim/mcu/mcu.h"
 #include "tests/mcu/golden_vectors.h"
 #include "tests/mcu/images.h"
-#include "tests/mcu/mcu.h"
 #include "tests/mcu/mission.h"
 #include "tests/mcu/sample_wire.h"
 

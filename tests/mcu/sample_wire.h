@@ -47,6 +47,10 @@ void put_sample(Link& link, const SensorSample& sample) {
   put_word(link, sample.last_tick_us);
   link.put(sample.encoder_errors);
   link.put(sample.fresh);
+  link.put(sample.chips_failing);
+  link.put(sample.bus_errors);
+  link.put(sample.radio_errors);
+  link.put(sample.reset_cause);
   link.put(sample.radio_in_count);
   for (uint8_t i = 0; i < sample.radio_in_count; ++i) link.put(sample.radio_in[i]);
 }
@@ -65,6 +69,10 @@ void get_sample(Link& link, SensorSample& sample) {
   sample.last_tick_us = get_word(link);
   sample.encoder_errors = link.get();
   sample.fresh = link.get();
+  sample.chips_failing = link.get();
+  sample.bus_errors = link.get();
+  sample.radio_errors = link.get();
+  sample.reset_cause = link.get();
   sample.radio_in_count = link.get();
   for (uint8_t i = 0; i < sample.radio_in_count; ++i) sample.radio_in[i] = link.get();
 }

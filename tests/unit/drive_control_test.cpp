@@ -15,15 +15,16 @@
 namespace screed {
 namespace {
 
-/// A robot whose tracks reach their speeds, and whose body turns by only a share of what they ask for.
+/// A robot whose tracks reach their speeds, and whose body turns by only a share of what they ask
+/// for.
 class SkidRobot {
  public:
   explicit SkidRobot(double grip, const Parameters& parameters = {})
       : grip_(grip), control_(kBoard, parameters) {}
 
   DriveOutput tick(const MotionCommand& command) {
-    const DriveMeasurement measured = {left_counts_, right_counts_, static_cast<int32_t>(std::lround(yaw_rate())),
-                                       7200};
+    const DriveMeasurement measured = {left_counts_, right_counts_,
+                                       static_cast<int32_t>(std::lround(yaw_rate())), 7200};
     const DriveOutput output = control_.tick(command, measured);
     left_counts_ = left_.step(output.duty_left);
     right_counts_ = right_.step(output.duty_right);
@@ -48,6 +49,7 @@ class SkidRobot {
     return sum / ticks;
   }
   DriveControl& control() { return control_; }
+  void set_grip(double grip) { grip_ = grip; }
 
  private:
   double grip_;
@@ -64,7 +66,8 @@ TEST(DriveControl, TurnsAsCommandedThoughTheTracksSlip) {
       SkidRobot robot(grip);
       const MotionCommand command = {80, yaw_rate_from_degrees(degrees_per_s)};
       robot.run(command, 300);
-      EXPECT_NEAR(robot.mean_yaw_rate(command, 100), command.yaw_rate, 0.05 * std::abs(command.yaw_rate))
+      EXPECT_NEAR(robot.mean_yaw_rate(command, 100), command.yaw_rate,
+                  0.05 * std::abs(command.yaw_rate))
           << grip << " " << degrees_per_s;
       EXPECT_NEAR(robot.speed(), 80.0, 8.0);
     }
@@ -72,7 +75,6 @@ TEST(DriveControl, TurnsAsCommandedThoughTheTracksSlip) {
 }
 
 TEST(DriveControl, DrivesStraightOnAfterASpin) {
-  // The spin leaves a large integral; at the speed of a climb the tracks have no room for it and for the speed at once.
   SkidRobot robot(0.6);
   robot.run({0, yaw_rate_from_degrees(90)}, 400);
   robot.run({200, 0}, 300);
@@ -80,8 +82,20 @@ TEST(DriveControl, DrivesStraightOnAfterASpin) {
   EXPECT_NEAR(robot.speed(), 200.0, 10.0);
 }
 
+TEST(DriveControl, DrivesStraightOnAfterItWasStuck) {
+  // Stuck in a turn the integral fills up; freed, the tracks have no room for that and for the
+  // speed of a climb at once. The integral must get out of this by itself.
+  SkidRobot robot(0.0);
+  robot.run({0, yaw_rate_from_degrees(30)}, 1000);
+  robot.set_grip(0.6);
+  robot.run({200, 0}, 300);
+  EXPECT_NEAR(robot.mean_yaw_rate({200, 0}, 100), 0.0, yaw_rate_from_degrees(1));
+  EXPECT_NEAR(robot.speed(), 200.0, 10.0);
+}
+
 TEST(DriveControl, ARobotThatCannotTurnIsNotDrivenFasterAndFaster) {
-  // Stuck: the body does not turn. The correction stays within 90 degrees/s, and freed, it comes back at once.
+  // Stuck: the body does not turn. The correction stays within 90 degrees/s, and freed, it comes
+  // back at once.
   SkidRobot stuck(0.0);
   const MotionCommand command = {0, yaw_rate_from_degrees(30)};
   stuck.run(command, 1000);
@@ -95,7 +109,8 @@ TEST(DriveControl, TargetsChangeByNoMoreThanTheAccelerationLimit) {
   parameters.accel_limit = 600;
   SkidRobot robot(0.8, parameters);
   TrackSpeeds last = {0, 0};
-  const MotionCommand commands[] = {{200, 0}, {-200, 8000}, {0, -16000}, {INT16_MAX, INT16_MAX}, {0, 0}};
+  const MotionCommand commands[] = {
+      {200, 0}, {-200, 8000}, {0, -16000}, {INT16_MAX, INT16_MAX}, {0, 0}};
   for (const MotionCommand& command : commands) {
     for (int tick = 0; tick < 100; ++tick) {
       robot.tick(command);

@@ -12,12 +12,14 @@
 namespace screed {
 namespace {
 
-constexpr uint16_t kAllIds[] = {kIdGroundHeartbeat, kIdEmergencyStop, kIdHeartbeat, kIdCommand, kIdCommandAck,
-                                kIdAttitude,        kIdLeveling,      kIdEncoders,  kIdMotors,  kIdOdometry,
-                                kIdAccelRaw,        kIdGyroRaw,       kIdMagRaw,    kIdBaro,    kIdPower};
+constexpr uint16_t kAllIds[] = {kIdGroundHeartbeat, kIdEmergencyStop, kIdHeartbeat, kIdCommand,
+                                kIdCommandAck,      kIdAttitude,      kIdLeveling,  kIdEncoders,
+                                kIdMotors,          kIdOdometry,      kIdAccelRaw,  kIdGyroRaw,
+                                kIdMagRaw,          kIdBaro,          kIdPower};
 
 TEST(E2e, CrcHasTheCheckValueOfAutosar) {
-  // AUTOSAR, Specification of CRC Routines: the table of CRC8H2F, and the check value over "123456789".
+  // AUTOSAR, Specification of CRC Routines: the table of CRC8H2F, and the check value over
+  // "123456789".
   struct Vector {
     std::vector<uint8_t> data;
     int crc;
@@ -33,12 +35,14 @@ TEST(E2e, CrcHasTheCheckValueOfAutosar) {
       {{0xFF, 0xFF, 0xFF, 0xFF}, 0x6C},
   };
   for (const Vector& vector : vectors) {
-    EXPECT_EQ(crc8_h2f(0xFF, vector.data.data(), static_cast<uint8_t>(vector.data.size())) ^ 0xFF, vector.crc);
+    EXPECT_EQ(crc8_h2f(0xFF, vector.data.data(), static_cast<uint8_t>(vector.data.size())) ^ 0xFF,
+              vector.crc);
   }
 }
 
 TEST(E2e, ProfileTwoVectorOfZeros) {
-  // AUTOSAR counts up before it sends: the first frame after start carries counter 1. Data id list of zeros.
+  // AUTOSAR counts up before it sends: the first frame after start carries counter 1. Data id list
+  // of zeros.
   const uint8_t data[8] = {0, 1, 0, 0, 0, 0, 0, 0};
   EXPECT_EQ(e2e_crc(0, data, 8), 0x45);
 }
@@ -73,7 +77,8 @@ TEST(E2e, EverySingleWrongBitIsFound) {
           uint8_t wrong[8];
           std::memcpy(wrong, data, 8);
           wrong[bit / 8] = static_cast<uint8_t>(wrong[bit / 8] ^ (1U << (bit % 8)));
-          ASSERT_FALSE(e2e_check(id, wrong, size)) << id << " " << static_cast<int>(size) << " bit " << bit;
+          ASSERT_FALSE(e2e_check(id, wrong, size))
+              << id << " " << static_cast<int>(size) << " bit " << bit;
         }
       }
     }
@@ -87,7 +92,8 @@ TEST(E2e, AFrameUnderAnotherIdIsFound) {
       e2e_protect(id, counter, data, 8);
       for (const uint16_t other : kAllIds) ASSERT_EQ(e2e_check(other, data, 8), other == id);
       // A wrong bit in the id's text digits.
-      for (int bit = 0; bit < 11; ++bit) ASSERT_FALSE(e2e_check(static_cast<uint16_t>(id ^ (1U << bit)), data, 8));
+      for (int bit = 0; bit < 11; ++bit)
+        ASSERT_FALSE(e2e_check(static_cast<uint16_t>(id ^ (1U << bit)), data, 8));
     }
   }
 }

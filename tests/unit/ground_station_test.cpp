@@ -77,7 +77,9 @@ TEST(GroundStation, SaysNothingElseBeforeItHearsTheRobot) {
 TEST(GroundStation, ArmsThenRunsThenDrives) {
   GroundStation ground(true, DriveOrder{0.1, -45.0}, nullptr);
   ground.receive(0, robot_heartbeat(RobotState::kDisarmed));
-  EXPECT_EQ(commands(ground), std::vector<int>(4, static_cast<int>(CommandOp::kArm)));  // four times a second until it is done
+  EXPECT_EQ(commands(ground),
+            std::vector<int>(
+                4, static_cast<int>(CommandOp::kArm)));  // four times a second until it is done
   ground.receive(0, robot_heartbeat(RobotState::kArmed));
   EXPECT_EQ(commands(ground), std::vector<int>(4, static_cast<int>(CommandOp::kRun)));
   ground.receive(0, robot_heartbeat(RobotState::kRunning));
@@ -121,7 +123,8 @@ TEST(GroundStation, DoesNotArmUnlessTold) {
 TEST(GroundStation, NoTickCarriesMoreThanOnePacketOfFourLines) {
   GroundStation ground(true, DriveOrder{}, nullptr);
   ground.receive(0, robot_heartbeat(RobotState::kRunning));
-  for (uint64_t tick = 0; tick < 1000; ++tick) EXPECT_LE(ground.transmit(tick * 10000).size(), kSlcanLineMax);
+  for (uint64_t tick = 0; tick < 1000; ++tick)
+    EXPECT_LE(ground.transmit(tick * 10000).size(), kSlcanLineMax);
 }
 
 /// The groups of a whole-line match, none when it does not match.
@@ -145,7 +148,8 @@ TEST(GroundStation, LogIsCandumpText) {
   GroundStation ground(false, std::nullopt, &log);
   ground.receive(1234567890123, robot_heartbeat(RobotState::kArmed));
   ground.receive(10000, line_of({kIdBaro, 8, {}}));
-  // candump -L: (seconds.microseconds) interface id#data, as in "(1436509052.249713) vcan0 044#2A366C2BBA".
+  // candump -L: (seconds.microseconds) interface id#data, as in "(1436509052.249713) vcan0
+  // 044#2A366C2BBA".
   const char* const line =
       "^\\(([0-9]{10})\\.([0-9]{6})\\) [A-Za-z][A-Za-z0-9]{0,14} ([0-9A-F]{3})#([0-9A-F]{0,16})$";
   ASSERT_EQ(groups(line, "(1436509052.249713) vcan0 044#2A366C2BBA").size(), 4U);

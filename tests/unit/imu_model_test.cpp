@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,10 +16,13 @@ constexpr double kOneG_counts = 1000.0 / 0.244;
 
 /// At rest in an attitude: gravity's reaction along the world's z.
 ImuTruth at_rest(const Eigen::Matrix3d& body_to_world) {
-  return {Eigen::Vector3d::Zero(), body_to_world.transpose() * Eigen::Vector3d(0.0, 0.0, kGravity), body_to_world, 0.0};
+  return {Eigen::Vector3d::Zero(), body_to_world.transpose() * Eigen::Vector3d(0.0, 0.0, kGravity),
+          body_to_world, 0.0};
 }
 
-Eigen::Matrix3d turn(double angle, const Eigen::Vector3d& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
+Eigen::Matrix3d turn(double angle, const Eigen::Vector3d& axis) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
 
 SensorSample measure(ImuModel& imu, const ImuTruth& truth) {
   SensorSample sample{};
@@ -120,7 +124,8 @@ TEST(ImuModel, PressureFallsWithHeight) {
   EXPECT_NEAR(42.5 + ideal(truth).temperature / 480.0, 20.0, 0.01);
   // International barometric formula.
   truth.altitude_m = 100.0;
-  EXPECT_NEAR(ideal(truth).pressure / 4096.0, 1013.25 * std::pow(1.0 - 0.0065 * 100.0 / 288.15, 5.255), 0.1);
+  EXPECT_NEAR(ideal(truth).pressure / 4096.0,
+              1013.25 * std::pow(1.0 - 0.0065 * 100.0 / 288.15, 5.255), 0.1);
 }
 
 struct Moments {
@@ -150,20 +155,26 @@ Moments moments(const ImuErrors& errors, Get get, uint64_t seed = 3) {
 }
 
 TEST(ImuModel, NoiseIsThatOfTheDataSheets) {
-  // L3GD20H 0.011 degrees/s/sqrt(Hz), LSM303D 150 ug/sqrt(Hz) and 5 mG; 50 Hz of bandwidth. Quantisation adds lsb / sqrt(12).
-  const auto with_quantisation = [](double sigma, double lsb) { return std::hypot(sigma, lsb / std::sqrt(12.0)); };
+  // L3GD20H 0.011 degrees/s/sqrt(Hz), LSM303D 150 ug/sqrt(Hz) and 5 mG; 50 Hz of bandwidth.
+  // Quantisation adds lsb / sqrt(12).
+  const auto with_quantisation = [](double sigma, double lsb) {
+    return std::hypot(sigma, lsb / std::sqrt(12.0));
+  };
   ImuErrors errors = ImuErrors::none();
   errors.gyro_noise_dps = ImuErrors{}.gyro_noise_dps;
   errors.accel_noise_mg = ImuErrors{}.accel_noise_mg;
   errors.mag_noise_mg = ImuErrors{}.mag_noise_mg;
   for (int axis = 0; axis < 3; ++axis) {
-    const Moments gyro = moments(errors, [axis](const SensorSample& s) { return s.gyro[axis] * 0.070 + 1e-12; });
+    const Moments gyro =
+        moments(errors, [axis](const SensorSample& s) { return s.gyro[axis] * 0.070 + 1e-12; });
     EXPECT_NEAR(gyro.sigma, with_quantisation(0.011 * std::sqrt(50.0), 0.070), 0.03 * 0.08);
     EXPECT_NEAR(gyro.mean, 0.0, 0.003);
-    const Moments accel = moments(errors, [axis](const SensorSample& s) { return s.accel[axis] * 0.244 + 1e-12; });
+    const Moments accel =
+        moments(errors, [axis](const SensorSample& s) { return s.accel[axis] * 0.244 + 1e-12; });
     EXPECT_NEAR(accel.sigma, with_quantisation(0.150 * std::sqrt(50.0), 0.244), 0.05 * 1.06);
     EXPECT_NEAR(accel.mean, axis == 2 ? 1000.0 : 0.0, 0.05);
-    const Moments mag = moments(errors, [axis](const SensorSample& s) { return s.mag[axis] * 0.160; });
+    const Moments mag =
+        moments(errors, [axis](const SensorSample& s) { return s.mag[axis] * 0.160; });
     EXPECT_NEAR(mag.sigma, with_quantisation(5.0, 0.160), 0.03 * 5.0);
   }
 }
@@ -193,6 +204,24 @@ TEST(ImuModel, BiasIsDrawnOncePerWorldWithItsSigma) {
   EXPECT_NEAR(std::sqrt(accel_x / kWorlds), 8.0, 8.0 * tolerance);
   // Along gravity the scale error adds 0.5 % of 1 g.
   EXPECT_NEAR(std::sqrt(accel_z / kWorlds), std::hypot(8.0, 5.0), std::hypot(8.0, 5.0) * tolerance);
+}
+
+TEST(ImuModel, QuietIsExactButNotFrozen) {
+  ImuModel imu(1, ImuErrors::quiet());
+  const ImuTruth truth = at_rest(Eigen::Matrix3d::Identity());
+  SensorSample last = measure(imu, truth);
+  int same = 0;
+  int longest = 0;
+  for (int tick = 0; tick < 10000; ++tick) {
+    const SensorSample now = measure(imu, truth);
+    EXPECT_EQ(now.accel[0], 0);
+    const bool repeated =
+        now.gyro[0] == last.gyro[0] && now.gyro[1] == last.gyro[1] && now.gyro[2] == last.gyro[2];
+    same = repeated ? same + 1 : 0;
+    longest = std::max(longest, same);
+    last = now;
+  }
+  EXPECT_LT(longest, 18);  // the supervisor's patience
 }
 
 TEST(ImuModel, SameSeedSameSamples) {

@@ -79,7 +79,8 @@ TEST(Kinematics, ExtremesDoNotOverflow) {
       for (const int16_t speed : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
         const TrackSpeeds tracks = kinematics.tracks(speed, rate, kLimit_mm_per_s);
         // A rate beyond half a turn a second counts as half a turn a second.
-        const double turn = std::clamp(turn_speed(tread_mm, rate < 0 ? -32767 : 32767), -250.0, 250.0);
+        const double turn =
+            std::clamp(turn_speed(tread_mm, rate < 0 ? -32767 : 32767), -250.0, 250.0);
         EXPECT_NEAR((tracks.right - tracks.left) / 2.0, turn, 0.51);
       }
     }

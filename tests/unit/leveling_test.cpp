@@ -1,4 +1,5 @@
-// The leveling algorithms: Algorithm 6, its successor with a spin on the peak, and the fence over both.
+// The leveling algorithms: Algorithm 6, its successor with a spin on the peak, and the fence over
+// both.
 #include "firmware/leveling/leveling.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,9 @@
 namespace screed {
 namespace {
 
-constexpr Angle degrees(double value) { return static_cast<Angle>(value * 65536.0 / 360.0); }
+constexpr Angle degrees(double value) {
+  return static_cast<Angle>(value * 65536.0 / 360.0);
+}
 
 Parameters parameters_of(LevelingAlgorithm algorithm) {
   Parameters parameters;
@@ -77,13 +80,14 @@ TEST(SpinOnPeak, SpinsOnceTheDeclineBegins) {
   Walker walker(parameters);
   EXPECT_EQ(walker.tick(2.0), LevelingState::kWalk);
   EXPECT_EQ(walker.tick(8.0), LevelingState::kClimb);
-  EXPECT_EQ(walker.tick(1.0), LevelingState::kClimb);   // no incline any more, no decline yet: straight on
+  EXPECT_EQ(walker.tick(1.0),
+            LevelingState::kClimb);  // no incline any more, no decline yet: straight on
   EXPECT_EQ(walker.tick(-0.9), LevelingState::kClimb);
   EXPECT_EQ(walker.motion.yaw_rate, 0);
   EXPECT_EQ(walker.tick(-1.1), LevelingState::kSpin);
   EXPECT_EQ(walker.leveling.peaks(), 1);
   EXPECT_EQ(walker.motion.speed_mm_per_s, 0);
-  EXPECT_NEAR(std::abs(walker.motion.yaw_rate), 90 * 65536 / 360, 1);
+  EXPECT_NEAR(std::abs(walker.motion.yaw_rate), 90.0 * 65536.0 / 360.0, 1);
   // Two seconds in all, whatever the pitch says meanwhile.
   EXPECT_EQ(walker.ticks_in(LevelingState::kSpin, 30.0), 199);
   EXPECT_EQ(walker.leveling.state(), LevelingState::kWalk);

@@ -40,7 +40,8 @@ TEST(Odometry, ASquareCloses) {
   for (int side = 0; side < 4; ++side) {
     for (int tick = 0; tick < 800; ++tick) odometry.update(2, 2, wrap_angle(side * 16384), 0);
     // Turns on the spot: the tracks run against each other and cover no distance.
-    for (int tick = 0; tick < 100; ++tick) odometry.update(-3, 3, wrap_angle(side * 16384 + tick * 163), 0);
+    for (int tick = 0; tick < 100; ++tick)
+      odometry.update(-3, 3, wrap_angle(side * 16384 + tick * 163), 0);
   }
   EXPECT_NEAR(odometry.x_mm(), 0, 1);
   EXPECT_NEAR(odometry.y_mm(), 0, 1);
@@ -48,7 +49,8 @@ TEST(Odometry, ASquareCloses) {
 }
 
 TEST(Odometry, ACircleHasItsDiameterAndCloses) {
-  // Heading of the middle of each tick, so that the polygon closes exactly; 3000 ticks of 5 counts on both tracks.
+  // Heading of the middle of each tick, so that the polygon closes exactly; 3000 ticks of 5 counts
+  // on both tracks.
   constexpr int kTicks = 3000;
   Odometry odometry(kCount_um_q4);
   int32_t north_most = 0;
@@ -64,8 +66,10 @@ TEST(Odometry, ACircleHasItsDiameterAndCloses) {
 TEST(Odometry, OnASlopeOnlyTheHorizontalPartCounts) {
   for (const int pitch_deg : {-30, 30, 60}) {
     Odometry odometry(kCount_um_q4);
-    for (int tick = 0; tick < 1000; ++tick) odometry.update(2, 2, 0, wrap_angle(pitch_deg * 65536 / 360));
-    EXPECT_NEAR(odometry.x_mm(), 2000 * kCount_mm * std::cos(pitch_deg * std::numbers::pi / 180.0), 1.0);
+    for (int tick = 0; tick < 1000; ++tick)
+      odometry.update(2, 2, 0, wrap_angle(pitch_deg * 65536 / 360));
+    EXPECT_NEAR(odometry.x_mm(), 2000 * kCount_mm * std::cos(pitch_deg * std::numbers::pi / 180.0),
+                1.0);
     EXPECT_NEAR(odometry.path_mm(), 2000 * kCount_mm, 1.0);
   }
 }

@@ -14,7 +14,8 @@ namespace {
 TEST(Parameters, DefaultsAreValidAndThoseOfTheTable) {
   const Parameters parameters;
   EXPECT_TRUE(parameters.valid());
-  for (const ParameterInfo& info : kParameterTable) EXPECT_EQ(parameters.*info.field, info.default_value) << info.name;
+  for (const ParameterInfo& info : kParameterTable)
+    EXPECT_EQ(parameters.*info.field, info.default_value) << info.name;
 }
 
 TEST(Parameters, EachIsCheckedAtBothEnds) {

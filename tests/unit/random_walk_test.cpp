@@ -36,7 +36,7 @@ TEST(RobotRandom, BothEndsAreReachedAndEvenlyOften) {
   EXPECT_EQ(seen.begin()->first, -2);
   EXPECT_EQ(seen.rbegin()->first, 3);
   // Five standard deviations of a binomial with p = 1/6 are 456.
-  for (const auto& [value, count] : seen) EXPECT_NEAR(count, kDraws / 6, 456) << value;
+  for (const auto& [value, count] : seen) EXPECT_NEAR(count, kDraws / 6.0, 456) << value;
 }
 
 TEST(RobotRandom, OneValueAndTheWholeRange) {

@@ -30,7 +30,9 @@ TestRobot driving_robot(int16_t speed) {
   return robot;
 }
 
-bool idle(const TestRobot& robot) { return robot.output.duty_left == 0 && robot.output.duty_right == 0; }
+bool idle(const TestRobot& robot) {
+  return robot.output.duty_left == 0 && robot.output.duty_right == 0;
+}
 
 TEST(Robot, DrivesNothingUntilItIsArmedAndRuns) {
   TestRobot robot(drive_parameters());
@@ -192,8 +194,9 @@ TEST(RobotFaults, EmergencyStopCutsThePowerInItsTick) {
 }
 
 TEST(RobotFaults, OneDeadEncoderFault21) {
-  // At half speed the controller first has to raise the duty to where standing still is a stall; the 300 ms of a stalled
-  // track (fault 24) hold there, the 200 ms of a dead encoder only near full speed.
+  // At half speed the controller first has to raise the duty to where standing still is a stall;
+  // the 300 ms of a stalled track (fault 24) hold there, the 200 ms of a dead encoder only near
+  // full speed.
   struct Case {
     int16_t speed;
     int deadline_ticks;
@@ -214,7 +217,8 @@ TEST(RobotFaults, OneDeadEncoderFault21) {
 TEST(RobotFaults, ShortAndForeignFramesAreHarmless) {
   TestRobot robot(drive_parameters());
   robot.run(600);
-  for (const uint16_t id : {kIdGroundHeartbeat, kIdEmergencyStop, kIdCommand, kIdHeartbeat, kIdBaro}) {
+  for (const uint16_t id :
+       {kIdGroundHeartbeat, kIdEmergencyStop, kIdCommand, kIdHeartbeat, kIdBaro}) {
     for (uint8_t size = 0; size <= 8; ++size) {
       CanFrame frame{id, size, {}};  // no protection at all
       frame.data[2] = 1;

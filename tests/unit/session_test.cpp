@@ -216,17 +216,22 @@ TEST(Record, RowsAreLittleEndianWithoutPadding) {
   sample.gyro[0] = -2;
   sample.pressure = -1;
   sample.encoder_errors = 0xAB;
+  sample.chips_failing = 1;
+  sample.bus_errors = 2;
+  sample.radio_errors = 3;
+  sample.reset_cause = 4;
   sample.radio_in_count = 2;
   std::fill(std::begin(sample.radio_in), std::end(sample.radio_in), std::uint8_t{0x55});
   const auto row = packed<kSampleBytes>(sample);
-  ASSERT_EQ(kSampleBytes, 4U + 3 * 6 + 4 + 5 * 2 + 3 + 64);
+  ASSERT_EQ(kSampleBytes, 4U + 3 * 6 + 4 + 5 * 2 + 7 + 64);
   EXPECT_EQ(std::vector<std::uint8_t>(row.begin(), row.begin() + 6),
             (std::vector<std::uint8_t>{1, 2, 3, 4, 0xFE, 0xFF}));
   EXPECT_EQ(std::vector<std::uint8_t>(row.begin() + 22, row.begin() + 26),
             std::vector<std::uint8_t>(4, 0xFF));
-  // encoder_errors, fresh, radio_in_count, two valid bytes, nothing behind them
-  EXPECT_EQ(std::vector<std::uint8_t>(row.begin() + 36, row.begin() + 42),
-            (std::vector<std::uint8_t>{0xAB, 0, 2, 0x55, 0x55, 0}));
+  // encoder_errors, fresh, failing chips, bus errors, radio errors, reset cause, radio_in_count,
+  // two valid bytes, nothing behind them
+  EXPECT_EQ(std::vector<std::uint8_t>(row.begin() + 36, row.begin() + 46),
+            (std::vector<std::uint8_t>{0xAB, 0, 1, 2, 3, 4, 2, 0x55, 0x55, 0}));
 
   Frame frame;
   frame.time = 1.0;
@@ -424,6 +429,8 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
                      static_cast<double>(s.encoder_left), static_cast<double>(s.encoder_right),
                      static_cast<double>(s.battery), static_cast<double>(s.last_tick_us),
                      static_cast<double>(s.encoder_errors), static_cast<double>(s.fresh),
+                     static_cast<double>(s.chips_failing), static_cast<double>(s.bus_errors),
+                     static_cast<double>(s.radio_errors), static_cast<double>(s.reset_cause),
                      static_cast<double>(s.radio_in_count)});
     for (int i = 0; i < kRadioInCapacity; ++i) {
       expected.push_back(i < s.radio_in_count ? s.radio_in[i] : 0);

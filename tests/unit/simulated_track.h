@@ -1,5 +1,5 @@
-// One motor with its track and encoder as a first-order lag, for tests of the speed loops: the speed follows the voltage with a
-// time constant, the encoder counts whole steps.
+// One motor with its track and encoder as a first-order lag, for tests of the speed loops: the
+// speed follows the voltage with a time constant, the encoder counts whole steps.
 #pragma once
 
 #include <cmath>

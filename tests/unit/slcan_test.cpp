@@ -35,7 +35,9 @@ Fed feed(const std::string& text) {
 TEST(Slcan, WritesLawicelLines) {
   EXPECT_EQ(line_of({0x7FF, 0, {}}), "t7FF0\r");
   EXPECT_EQ(line_of({0x001, 3, {0x00, 0xAB, 0x9F}}), "t001300AB9F\r");
-  EXPECT_EQ(line_of({0x210, 8, {1, 2, 3, 4, 5, 6, 7, 0xFE}}), "t2108010203040506" "07FE\r");
+  EXPECT_EQ(line_of({0x210, 8, {1, 2, 3, 4, 5, 6, 7, 0xFE}}),
+            "t2108010203040506"
+            "07FE\r");
 }
 
 TEST(Slcan, RoundTripOfEveryIdSizeAndByte) {
@@ -59,13 +61,16 @@ TEST(Slcan, LowerCaseIsRead) {
 }
 
 TEST(Slcan, TheLengthMustFit) {
-  const std::string whole = "t2108" "0102030405060708";
+  const std::string whole =
+      "t2108"
+      "0102030405060708";
   for (size_t length = 1; length < whole.size(); ++length) {
     const Fed fed = feed(whole.substr(0, length) + "\r");
     EXPECT_TRUE(fed.frames.empty()) << length;
     EXPECT_EQ(fed.rejected, 1) << length;
   }
-  for (const char* line : {"t2100AA\r", "t2101\r", "t21010\r", "t2101000\r", "t2109010203040506070809\r", "t210A\r"}) {
+  for (const char* line :
+       {"t2100AA\r", "t2101\r", "t21010\r", "t2101000\r", "t2109010203040506070809\r", "t210A\r"}) {
     const Fed fed = feed(line);
     EXPECT_TRUE(fed.frames.empty()) << line;
     EXPECT_EQ(fed.rejected, 1) << line;
@@ -73,7 +78,8 @@ TEST(Slcan, TheLengthMustFit) {
 }
 
 TEST(Slcan, ForeignCharactersAndIdsBeyondElevenBitsAreRejected) {
-  for (const char* line : {"t8001AA\r", "tFFF0\r", "t21G0\r", "t2 00\r", "t2101A/\r", "t2101:A\r", "t2101@A\r", "t2101`A\r", "t2101gA\r"}) {
+  for (const char* line : {"t8001AA\r", "tFFF0\r", "t21G0\r", "t2 00\r", "t2101A/\r", "t2101:A\r",
+                           "t2101@A\r", "t2101`A\r", "t2101gA\r"}) {
     const Fed fed = feed(line);
     EXPECT_TRUE(fed.frames.empty()) << line;
     EXPECT_EQ(fed.rejected, 1) << line;
@@ -88,7 +94,9 @@ TEST(Slcan, WhatSlcandSendsIsIgnoredAndDoesNotCount) {
 
 TEST(Slcan, LinesTooLongAreDroppedWholeAndTheNextIsRead) {
   // The first 21 characters of the long line alone would be a frame.
-  const std::string frame = "t2108" "0102030405060708";
+  const std::string frame =
+      "t2108"
+      "0102030405060708";
   const Fed fed = feed(frame + "A\r" + frame + std::string(1000, '0') + "\r" + "t2101AA\r");
   ASSERT_EQ(fed.frames.size(), 1U);
   EXPECT_EQ(fed.frames[0].size, 1);

@@ -1,4 +1,5 @@
-// The safe state machine: every request in every state, every fault with its deadline (ticks of 10 ms), latch, clear, stand-alone.
+// The safe state machine: every request in every state, every fault with its deadline (ticks of 10
+// ms), latch, clear, stand-alone.
 #include "firmware/robot/supervisor.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ class Watch {
   }
   void silent_tick() {
     if (!gyro_frozen) gyro[2] = gyro[2] == 0 ? 1 : 0;  // the noise of its last digit
-    const SupervisorInput input = {fresh,      gyro,      accel,       cos_tilt_q30, ready,
+    const SupervisorInput input = {fresh,      gyro,      accel,      cos_tilt_q30, ready,
                                    battery_mv, duty_left, duty_right, counts_left,  counts_right};
     supervisor.tick(input);
   }
@@ -68,8 +69,9 @@ class Watch {
   int16_t counts_right = 0;
 };
 
-constexpr RobotState kAllStates[] = {RobotState::kDisarmed, RobotState::kArmed, RobotState::kRunning,
-                                     RobotState::kStopped, RobotState::kFault};
+constexpr RobotState kAllStates[] = {RobotState::kDisarmed, RobotState::kArmed,
+                                     RobotState::kRunning, RobotState::kStopped,
+                                     RobotState::kFault};
 
 // ---- requests
 
@@ -87,9 +89,15 @@ TEST(Supervisor, EveryRequestInEveryState) {
       {Request::kArm, {kArmed, kArmed, kRunning, kStopped, kFault}, {kOk, kNo, kNo, kNo, kNo}},
       {Request::kRun, {kDisarmed, kRunning, kRunning, kRunning, kFault}, {kNo, kOk, kNo, kOk, kNo}},
       {Request::kStop, {kDisarmed, kArmed, kStopped, kStopped, kFault}, {kNo, kNo, kOk, kNo, kNo}},
-      {Request::kDisarm, {kDisarmed, kDisarmed, kDisarmed, kDisarmed, kFault}, {kOk, kOk, kOk, kOk, kNo}},
-      {Request::kClear, {kDisarmed, kArmed, kRunning, kStopped, kDisarmed}, {kNo, kNo, kNo, kNo, kOk}},
-      {Request::kEmergencyStop, {kFault, kFault, kFault, kFault, kFault}, {kOk, kOk, kOk, kOk, kOk}},
+      {Request::kDisarm,
+       {kDisarmed, kDisarmed, kDisarmed, kDisarmed, kFault},
+       {kOk, kOk, kOk, kOk, kNo}},
+      {Request::kClear,
+       {kDisarmed, kArmed, kRunning, kStopped, kDisarmed},
+       {kNo, kNo, kNo, kNo, kOk}},
+      {Request::kEmergencyStop,
+       {kFault, kFault, kFault, kFault, kFault},
+       {kOk, kOk, kOk, kOk, kOk}},
       {Request::kNone, {kDisarmed, kArmed, kRunning, kStopped, kFault}, {kNo, kNo, kNo, kNo, kNo}},
   };
   for (const Transition& row : table) {
@@ -98,8 +106,10 @@ TEST(Supervisor, EveryRequestInEveryState) {
       Watch watch;
       watch.bring_to(state);
       ASSERT_EQ(watch.supervisor.state(), state);
-      EXPECT_EQ(watch.supervisor.request(row.request), row.result[i]) << static_cast<int>(row.request) << " in " << i;
-      EXPECT_EQ(watch.supervisor.state(), row.after[i]) << static_cast<int>(row.request) << " in " << i;
+      EXPECT_EQ(watch.supervisor.request(row.request), row.result[i])
+          << static_cast<int>(row.request) << " in " << i;
+      EXPECT_EQ(watch.supervisor.state(), row.after[i])
+          << static_cast<int>(row.request) << " in " << i;
       EXPECT_EQ(watch.supervisor.faults() != 0, watch.supervisor.state() == kFault);
     }
   }
@@ -109,7 +119,8 @@ TEST(Supervisor, PowerOnlyWhileRunningOrStopping) {
   for (const RobotState state : kAllStates) {
     Watch watch;
     watch.bring_to(state);
-    EXPECT_EQ(watch.supervisor.powered(), state == RobotState::kRunning || state == RobotState::kStopped);
+    EXPECT_EQ(watch.supervisor.powered(),
+              state == RobotState::kRunning || state == RobotState::kStopped);
     EXPECT_EQ(watch.supervisor.running(), state == RobotState::kRunning);
   }
 }
@@ -185,7 +196,8 @@ TEST(SupervisorLink, ALongSilenceDoesNotWrapRound) {
   }
 }
 
-// ---- faults with deadlines. Each is latched, stops a running robot, and cannot be cleared while its cause is there.
+// ---- faults with deadlines. Each is latched, stops a running robot, and cannot be cleared while
+// its cause is there.
 
 struct FaultCase {
   const char* name;
@@ -198,7 +210,9 @@ const FaultCase kFaultCases[] = {
     // 27: stop within 100 ms
     {"tilt seen by the accelerometer", kFaultTilt, 10, [](Watch& w) { w.roll_to(60.0); }},
     {"tilt seen by the estimator", kFaultTilt, 10,
-     [](Watch& w) { w.cos_tilt_q30 = static_cast<int32_t>(kQ30One * std::cos(60.0 * std::numbers::pi / 180.0)); }},
+     [](Watch& w) {
+       w.cos_tilt_q30 = static_cast<int32_t>(kQ30One * std::cos(60.0 * std::numbers::pi / 180.0));
+     }},
     {"upside down", kFaultTilt, 10, [](Watch& w) { w.roll_to(180.0); }},
     // 15: stop within 100 ms
     {"gyro silent", kFaultImuSilent, 10, [](Watch& w) { w.fresh = kFreshAccel; }},
@@ -215,7 +229,8 @@ const FaultCase kFaultCases[] = {
 
 TEST(SupervisorFaults, StopWithinTheDeadlineAndStayLatched) {
   for (const FaultCase& fault : kFaultCases) {
-    for (const RobotState state : {RobotState::kArmed, RobotState::kRunning, RobotState::kStopped}) {
+    for (const RobotState state :
+         {RobotState::kArmed, RobotState::kRunning, RobotState::kStopped}) {
       Watch watch;
       watch.bring_to(state);
       for (int tick = 0; tick < 500; ++tick) watch.tick();
@@ -227,7 +242,8 @@ TEST(SupervisorFaults, StopWithinTheDeadlineAndStayLatched) {
       ASSERT_EQ(watch.supervisor.state(), RobotState::kFault) << fault.name;
       EXPECT_FALSE(watch.supervisor.powered());
       EXPECT_EQ(watch.supervisor.faults(), fault.bit) << fault.name;
-      EXPECT_EQ(watch.supervisor.request(Request::kClear), RequestResult::kFaultPresent) << fault.name;
+      EXPECT_EQ(watch.supervisor.request(Request::kClear), RequestResult::kFaultPresent)
+          << fault.name;
 
       // The cause goes: still latched until it is cleared, and then disarmed.
       const Supervisor kept = watch.supervisor;
@@ -307,7 +323,8 @@ TEST(SupervisorFaults, InMotionTheAccelerometerAloneIsNoWitness) {
     int16_t z;
     int16_t rate;
   };
-  for (const Force force : {Force{300, 100, 0}, Force{INT16_MIN, 0, 0}, Force{4098, 0, 3000}, Force{4098, 0, INT16_MIN}}) {
+  for (const Force force : {Force{300, 100, 0}, Force{INT16_MIN, 0, 0}, Force{4098, 0, 3000},
+                            Force{4098, 0, INT16_MIN}}) {
     Watch watch;
     watch.bring_to(RobotState::kRunning);
     watch.accel[0] = force.x;
@@ -424,7 +441,8 @@ TEST(SupervisorStandalone, OnceStoppedItStaysStopped) {
       for (int tick = 0; tick < 1000; ++tick) {
         watch.supervisor.request(Request::kClear);
         watch.tick();
-        ASSERT_FALSE(watch.supervisor.running()) << static_cast<int>(request) << " " << ticks_before;
+        ASSERT_FALSE(watch.supervisor.running())
+            << static_cast<int>(request) << " " << ticks_before;
       }
     }
   }

@@ -26,12 +26,14 @@ class TelemetryTest : public testing::Test {
     Downlink downlink;
     SlcanParser parser;
     for (int tick = 0; tick < ticks; ++tick) {
-      if (ack_period != 0 && tick % ack_period == 0) telemetry_.acknowledge(1, RequestResult::kNotReady);
+      if (ack_period != 0 && tick % ack_period == 0)
+        telemetry_.acknowledge(1, RequestResult::kNotReady);
       RobotOutput output{};
       telemetry_.tick(view_, output);
       EXPECT_LE(output.radio_out_count, kRadioOutCapacity);
       if (output.radio_out_count > 0) {
-        EXPECT_EQ(output.radio_out[output.radio_out_count - 1], '\r') << "not whole lines in tick " << tick;
+        EXPECT_EQ(output.radio_out[output.radio_out_count - 1], '\r')
+            << "not whole lines in tick " << tick;
       }
       downlink.bytes += output.radio_out_count;
       downlink.most_in_a_tick = std::max<int>(downlink.most_in_a_tick, output.radio_out_count);
@@ -64,14 +66,16 @@ class TelemetryTest : public testing::Test {
 
 // Messages a second as the protocol wants them.
 const std::map<uint16_t, size_t> kRates = {
-    {kIdHeartbeat, 5},  {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10}, {kIdOdometry, 10},
-    {kIdAccelRaw, 10},  {kIdGyroRaw, 10},  {kIdMagRaw, 2},    {kIdPower, 2},   {kIdBaro, 1},
+    {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20},
+    {kIdLeveling, 10}, {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},
+    {kIdMagRaw, 2},    {kIdPower, 2},     {kIdBaro, 1},      {kIdHealth, 2},
 };
 
 TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
   const Downlink downlink = run(1000);
   EXPECT_EQ(downlink.frames.size(), kRates.size());
-  for (const auto& [id, rate] : kRates) EXPECT_EQ(downlink.frames.at(id).size(), rate * 10) << std::hex << id;
+  for (const auto& [id, rate] : kRates)
+    EXPECT_EQ(downlink.frames.at(id).size(), rate * 10) << std::hex << id;
   EXPECT_LE(downlink.bytes, 5760 * 10 / 2);
 }
 

@@ -1,4 +1,5 @@
-// A Robot on its own: standing level with a well IMU, its tracks simulated as lags, and a ground station's frames to send.
+// A Robot on its own: standing level with a well IMU, its tracks simulated as lags, and a ground
+// station's frames to send.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,8 @@ class TestRobot {
     const int16_t counts_left = left.step(output.duty_left);
     const int16_t counts_right = right.step(output.duty_right);
     sample.encoder_left = static_cast<uint16_t>(sample.encoder_left + counts_left);
-    sample.encoder_right = static_cast<uint16_t>(sample.encoder_right + (right_encoder_dead ? 0 : counts_right));
+    sample.encoder_right =
+        static_cast<uint16_t>(sample.encoder_right + (right_encoder_dead ? 0 : counts_right));
     robot.tick(sample, output);
     ++ticks;
   }

@@ -22,7 +22,8 @@ TrackSpeedControl make_control(const Parameters& parameters = {}) {
 }
 
 TEST(SpeedObserver, SettlesOnTheSpeedOfASteadyRamp) {
-  for (const int16_t counts : std::initializer_list<int16_t>{-40, -17, -4, -1, 0, 1, 2, 4, 25, 40}) {
+  for (const int16_t counts :
+       std::initializer_list<int16_t>{-40, -17, -4, -1, 0, 1, 2, 4, 25, 40}) {
     TrackSpeedControl control = make_control();
     for (int tick = 0; tick < 200; ++tick) control.release(counts);
     EXPECT_NEAR(control.speed_dmm_per_s(), counts * kDmmPerCount, 2.0) << counts;
@@ -45,14 +46,16 @@ TEST(SpeedObserver, FractionsOfACountATickAreAveraged) {
 }
 
 TEST(SpeedObserver, StepResponseIsThatOfADoublePole) {
-  // Transfer function of an alpha-beta filter from position to speed with both poles at r: (1-r)^2 z (z-1) / (z-r)^2. A speed
-  // that begins in tick 0 is the position z^2 / (z-1)^2; its answer is 1 - (k+2) r^(k+1) + (k+1) r^(k+2).
+  // Transfer function of an alpha-beta filter from position to speed with both poles at r: (1-r)^2
+  // z (z-1) / (z-r)^2. A speed that begins in tick 0 is the position z^2 / (z-1)^2; its answer is 1
+  // - (k+2) r^(k+1) + (k+1) r^(k+2).
   const double r = 0.837;
   TrackSpeedControl control = make_control();
   const double final = 20 * kDmmPerCount;
   for (int k = 0; k < 60; ++k) {
     control.release(20);
-    const double expected = final * (1.0 - (k + 2) * std::pow(r, k + 1) + (k + 1) * std::pow(r, k + 2));
+    const double expected =
+        final * (1.0 - (k + 2) * std::pow(r, k + 1) + (k + 1) * std::pow(r, k + 2));
     EXPECT_NEAR(control.speed_dmm_per_s(), expected, 0.006 * final) << k;
   }
 }
@@ -103,7 +106,8 @@ TEST(TrackSpeedControl, FeedForwardMakesUpForTheBattery) {
 }
 
 TEST(TrackSpeedControl, DoesNotWindUpWhileItsDutyIsAtTheLimit) {
-  // A track held for 5 s, then freed: it comes back from the limit within the time the observer needs, not after 5 s.
+  // A track held for 5 s, then freed: it comes back from the limit within the time the observer
+  // needs, not after 5 s.
   TrackSpeedControl control = make_control();
   SimulatedTrack track;
   for (int tick = 0; tick < 500; ++tick) control.tick(100, 0, kNominal_mv);
@@ -124,7 +128,8 @@ TEST(TrackSpeedControl, AtRestTheDutyIsNone) {
   TrackSpeedControl control = make_control();
   SimulatedTrack track;
   int16_t counts = 0;
-  for (int tick = 0; tick < 200; ++tick) counts = track.step(control.tick(150, counts, kNominal_mv));
+  for (int tick = 0; tick < 200; ++tick)
+    counts = track.step(control.tick(150, counts, kNominal_mv));
   int16_t duty = 0;
   for (int tick = 0; tick < 100; ++tick) {
     duty = control.tick(0, counts, kNominal_mv);

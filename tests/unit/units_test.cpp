@@ -9,7 +9,8 @@ namespace screed {
 namespace {
 
 TEST(Units, TicksAreWholeAndRoundedDown) {
-  for (int32_t ms = 0; ms <= INT16_MAX; ++ms) ASSERT_EQ(ticks_from_ms(static_cast<int16_t>(ms)), ms / 10) << ms;
+  for (int32_t ms = 0; ms <= INT16_MAX; ++ms)
+    ASSERT_EQ(ticks_from_ms(static_cast<int16_t>(ms)), ms / 10) << ms;
 }
 
 TEST(Units, CentidegreesToAngle) {
@@ -23,7 +24,8 @@ TEST(Units, CentidegreesToAngle) {
 
 TEST(Units, AngleToCentidegreesIsTheFloor) {
   for (int32_t angle = INT16_MIN; angle <= INT16_MAX; ++angle) {
-    ASSERT_EQ(centidegrees_from_angle(static_cast<Angle>(angle)), std::floor(angle * 36000.0 / 65536.0));
+    ASSERT_EQ(centidegrees_from_angle(static_cast<Angle>(angle)),
+              std::floor(angle * 36000.0 / 65536.0));
   }
 }
 

@@ -37,7 +37,8 @@ uint64_t fnv1a(std::string_view text) {
 TEST(WorldRandom, IsPcg32) {
   // The reference is right: output of the demo program, seed 42, stream 54.
   ReferencePcg32 demo(42, 54);
-  for (const uint32_t expected : {0xa15c02b7U, 0x7b47f409U, 0xba1d3330U, 0x83d2f293U, 0xbfa4784bU, 0xcbed606eU}) {
+  for (const uint32_t expected :
+       {0xa15c02b7U, 0x7b47f409U, 0xba1d3330U, 0x83d2f293U, 0xbfa4784bU, 0xcbed606eU}) {
     ASSERT_EQ(demo.next(), expected);
   }
   for (const char* name : {"gyro", "uplink", ""}) {
@@ -75,7 +76,7 @@ TEST(WorldRandom, UniformIsWithinItsRangeAndEven) {
     sum += value;
   }
   EXPECT_NEAR(sum / kDraws, 0.5, 5.0 * 5.0 / std::sqrt(12.0 * kDraws));
-  for (const int bin : bins) EXPECT_NEAR(bin, kDraws / 10, 5.0 * std::sqrt(0.09 * kDraws));
+  for (const int bin : bins) EXPECT_NEAR(bin, kDraws / 10.0, 5.0 * std::sqrt(0.09 * kDraws));
 }
 
 TEST(WorldRandom, NormalHasItsMoments) {

@@ -130,6 +130,25 @@ std::string Disassembly::name_of(std::uint32_t address) const {
   return "0x" + std::string(text, end);
 }
 
+std::string Disassembly::plain_name_of(std::uint32_t address) const {
+  const std::string name = name_of(address);
+  return name.substr(0, name.find(" [clone "));
+}
+
+std::vector<std::uint32_t> Disassembly::find(const std::string& plain_name) const {
+  const bool prefix = plain_name.ends_with('*');
+  const std::string_view wanted =
+      std::string_view(plain_name).substr(0, plain_name.size() - (prefix ? 1 : 0));
+  std::vector<std::uint32_t> result;
+  for (const auto& [address, symbol] : symbols_) {
+    const std::string name = plain_name_of(address);
+    if (prefix ? symbol.starts_with(wanted) || name.starts_with(wanted) : name == wanted) {
+      result.push_back(address);
+    }
+  }
+  return result;
+}
+
 std::optional<Disassembly::Range> Disassembly::range_of(const std::string& symbol) const {
   for (auto at = symbols_.begin(); at != symbols_.end(); ++at) {
     if (at->second != symbol) continue;

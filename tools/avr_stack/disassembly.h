@@ -33,6 +33,12 @@ class Disassembly {
   /// Name of the symbol that holds `address`, demangled; its address in hex when none does.
   std::string name_of(std::uint32_t address) const;
 
+  /// As name_of(), without the " [clone ...]" of a copy that the compiler made.
+  std::string plain_name_of(std::uint32_t address) const;
+
+  /// Addresses of the symbols with this plain name; all that begin with it when it ends in '*'.
+  std::vector<std::uint32_t> find(const std::string& plain_name) const;
+
   /// First and one-past-last address of a symbol (mangled name); nothing when there is none.
   struct Range {
     std::uint32_t begin;

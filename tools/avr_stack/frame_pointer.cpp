@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::string_view kLow = "r28";
 constexpr std::string_view kHigh = "r29";
+// Always zero between the instructions of gcc (avr-gcc ABI).
+constexpr std::string_view kZero = "r1";
 
 /// Instructions whose first operand is only read.
 constexpr std::array<std::string_view, 14> kReaders = {"cp",   "cpc",   "cpi",  "cpse", "tst",
@@ -65,6 +67,9 @@ void FramePointer::step(const Instruction& instruction, std::int32_t height) {
     set(Kind::kLowSubtracted, value_, operand);
   } else if (what == "sbci" && !low && kind_ == Kind::kLowSubtracted) {
     set(Kind::kStack, wrap16(value_ + low_ + operand * 256));
+  } else if (what == "sbc" && !low && kind_ == Kind::kLowSubtracted &&
+             instruction.operands[1] == kZero) {
+    set(Kind::kStack, wrap16(value_ + low_));
   } else if (what == "ldi" && low) {
     set(Kind::kLowConstant);
   } else if (what == "ldi" && !low && kind_ == Kind::kLowConstant) {

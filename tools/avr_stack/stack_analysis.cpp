@@ -49,7 +49,8 @@ struct Depth {
 
 class Analysis {
  public:
-  explicit Analysis(const Disassembly& program) : program_(program) {}
+  Analysis(const Disassembly& program, const IndirectCalls& indirect)
+      : program_(program), indirect_(indirect) {}
 
   StackReport report();
 
@@ -57,12 +58,16 @@ class Analysis {
   const Depth& depth_of(std::uint32_t entry);
   Depth walk(std::uint32_t entry);
   std::vector<std::uint32_t> successors(const Instruction& instruction) const;
+  /// What a call instruction calls; nothing when it is no call.
+  std::vector<std::uint32_t> callees(const Instruction& instruction) const;
+  std::vector<std::uint32_t> indirect_targets(const Instruction& instruction) const;
   void step(const Instruction& instruction, State& state) const;
   StackPath path(std::uint32_t entry, std::string name, std::int32_t entry_bytes);
   const Instruction& instruction_at(std::uint32_t address) const;
   [[noreturn]] void refuse(const Instruction& instruction, const std::string& why) const;
 
   const Disassembly& program_;
+  const IndirectCalls& indirect_;
   std::map<std::uint32_t, Depth> done_;
   std::vector<std::uint32_t> active_;  // the functions being walked, outermost first
   bool in_interrupt_ = false;
@@ -93,9 +98,7 @@ const Instruction& Analysis::instruction_at(std::uint32_t address) const {
 std::vector<std::uint32_t> Analysis::successors(const Instruction& instruction) const {
   const std::string_view what = instruction.mnemonic;
   if (is_any(what, {"ret", "reti"})) return {};
-  if (is_any(what, {"icall", "ijmp", "eicall", "eijmp"})) {
-    refuse(instruction, "indirect call or jump");
-  }
+  if (is_any(what, {"ijmp", "eijmp"})) return indirect_targets(instruction);
   if (is_any(what, {"jmp", "rjmp"})) {
     if (!instruction.target) refuse(instruction, "jump to an unknown place");
     if (*instruction.target == kReset) return {};  // starts again with an empty stack
@@ -110,6 +113,29 @@ std::vector<std::uint32_t> Analysis::successors(const Instruction& instruction) 
     next.push_back(instruction_at(instruction.next()).next());
   }
   return next;
+}
+
+std::vector<std::uint32_t> Analysis::indirect_targets(const Instruction& instruction) const {
+  const auto listed = indirect_.find(program_.plain_name_of(instruction.address));
+  if (listed == indirect_.end()) refuse(instruction, "indirect call or jump");
+  std::vector<std::uint32_t> result;
+  for (const std::string& target : listed->second) {
+    const auto found = program_.find(target);
+    if (found.empty()) {
+      throw InputError("indirect calls: " + listed->first + " -> " + target +
+                       ": there is no such function in the image");
+    }
+    result.insert(result.end(), found.begin(), found.end());
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> Analysis::callees(const Instruction& instruction) const {
+  const std::string_view what = instruction.mnemonic;
+  if (is_any(what, {"icall", "eicall"})) return indirect_targets(instruction);
+  if (!is_any(what, {"call", "rcall"}) || instruction.target == instruction.next()) return {};
+  if (!instruction.target) refuse(instruction, "call of an unknown place");
+  return {*instruction.target};
 }
 
 void Analysis::step(const Instruction& instruction, State& state) const {
@@ -148,21 +174,15 @@ Depth Analysis::walk(std::uint32_t entry) {
       refuse(instruction, "an interrupt that lets others interrupt it");
     }
 
-    const bool calls =
-        is_any(instruction.mnemonic, {"call", "rcall"}) && instruction.target != instruction.next();
-    std::int32_t bytes = state.height;
-    if (calls) {
-      if (!instruction.target) refuse(instruction, "call of an unknown place");
-      if (std::find(active_.begin(), active_.end(), *instruction.target) != active_.end()) {
-        refuse(instruction, "recursion into " + program_.name_of(*instruction.target));
-      }
-      bytes += kReturnAddress + depth_of(*instruction.target).bytes;
+    if (state.height > deepest.bytes) {
+      deepest = {state.height, state.height, std::nullopt, instruction.address};
     }
-    if (bytes > deepest.bytes) {
-      deepest.bytes = bytes;
-      deepest.own_bytes = state.height;
-      deepest.callee = calls ? instruction.target : std::nullopt;
-      deepest.place = instruction.address;
+    for (const std::uint32_t callee : callees(instruction)) {
+      if (std::find(active_.begin(), active_.end(), callee) != active_.end()) {
+        refuse(instruction, "recursion into " + program_.name_of(callee));
+      }
+      const std::int32_t bytes = state.height + kReturnAddress + depth_of(callee).bytes;
+      if (bytes > deepest.bytes) deepest = {bytes, state.height, callee, instruction.address};
     }
 
     step(instruction, state);
@@ -239,8 +259,8 @@ StackReport Analysis::report() {
 
 }  // namespace
 
-StackReport analyze(const Disassembly& program) {
-  return Analysis(program).report();
+StackReport analyze(const Disassembly& program, const IndirectCalls& indirect) {
+  return Analysis(program, indirect).report();
 }
 
 }  // namespace screed::avr_stack

@@ -4,8 +4,9 @@
 // the height of the stack carried along: push and pop, calls (2 bytes of return address on devices
 // with up to 128 kB of flash), and frames that are made by writing the stack pointer from Y. Tail
 // jumps and falling into the next function are plain paths. What cannot be bounded is refused with
-// RunError and the place: recursion, indirect calls and jumps, a height that differs between two
-// paths to one instruction, a stack pointer from an unknown value, `sei` in an interrupt.
+// RunError and the place: recursion, indirect calls and jumps that are not listed, a height that
+// differs between two paths to one instruction, a stack pointer from an unknown value, `sei` in an
+// interrupt.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "tools/avr_stack/disassembly.h"
+#include "tools/avr_stack/indirect_calls.h"
 
 namespace screed::avr_stack {
 
@@ -40,7 +42,7 @@ struct StackReport {
 };
 
 /// Throws RunError when a bound does not exist or cannot be proved, InputError when the text is not
-/// a whole image with a vector table.
-StackReport analyze(const Disassembly& program);
+/// a whole image with a vector table, or when a listed target is not in it.
+StackReport analyze(const Disassembly& program, const IndirectCalls& indirect = {});
 
 }  // namespace screed::avr_stack

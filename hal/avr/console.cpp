@@ -1,0 +1,177 @@
+// A line console on the USB serial line.
+//
+//   v          version, board, health      p          all parameters, one a line: number, value
+//   p N        one parameter               p N VALUE  changes the draft
+//   d          the draft becomes the defaults
+//   w          writes the draft; it holds from the next start on
+//   r          restarts, unless the motors have power
+//
+// Numbers are those of the table in firmware/robot/parameters.h, from 0. Anything else is answered
+// with "?".
+#include "hal/avr/console.h"
+
+#include <avr/io.h>
+#include <avr/pgmspace.h>
+#include <string.h>
+
+#include "build_info.h"
+#include "hal/avr/buttons.h"
+#include "hal/avr/motors.h"
+#include "hal/avr/parameter_eeprom.h"
+#include "hal/avr/radio_uart.h"
+#include "hal/avr/reset_cause.h"
+#include "hal/avr/stack_guard.h"
+#include "hal/avr/usb_serial.h"
+#include "hal/avr/watchdog.h"
+
+namespace screed {
+namespace avr {
+namespace {
+
+constexpr uint8_t kInSize = 16;
+constexpr uint8_t kOutSize = 48;
+constexpr uint8_t kBytesPerStep = 16;
+constexpr uint8_t kNothingToList = kParameterCount;
+
+struct State {
+  uint8_t in[kInSize];
+  uint8_t in_count;  // kInSize: the line was too long
+  uint8_t out[kOutSize];
+  uint8_t out_count;
+  uint8_t list_at = kNothingToList;
+};
+State state;
+
+void say(uint8_t byte) {
+  if (state.out_count < kOutSize) state.out[state.out_count++] = byte;
+}
+
+void say_text(const char* text) {
+  for (uint8_t byte = pgm_read_byte(text); byte != 0; byte = pgm_read_byte(++text)) say(byte);
+}
+
+void say_number(int16_t value) {
+  uint16_t rest = static_cast<uint16_t>(value);
+  say(' ');
+  if (value < 0) {
+    say('-');
+    rest = static_cast<uint16_t>(0U - rest);
+  }
+  uint8_t digits[5];
+  uint8_t count = 0;
+  do {
+    digits[count++] = static_cast<uint8_t>('0' + rest % 10U);
+    rest /= 10U;
+  } while (rest != 0);
+  while (count > 0) say(digits[--count]);
+}
+
+/// The decimal number after the blanks at `at`, which moves behind it. False when there is none, or
+/// it does not fit.
+bool number(uint8_t& at, int16_t& value) {
+  while (at < state.in_count && state.in[at] == ' ') ++at;
+  const bool negative = at < state.in_count && state.in[at] == '-';
+  if (negative) ++at;
+  const uint8_t begin = at;
+  int32_t sum = 0;
+  while (at < state.in_count && state.in[at] >= '0' && state.in[at] <= '9' && sum <= INT16_MAX) {
+    sum = sum * 10 + (state.in[at++] - '0');
+  }
+  if (at == begin || sum > INT16_MAX) return false;
+  value = static_cast<int16_t>(negative ? -sum : sum);
+  return true;
+}
+
+int16_t* draft_value(uint8_t index) {
+  return reinterpret_cast<int16_t*>(&parameter_draft()) + index;
+}
+
+void say_parameter(uint8_t index) {
+  say('p');
+  say_number(index);
+  say_number(*draft_value(index));
+}
+
+bool parameter_command() {
+  if (state.in_count == 1) {
+    state.list_at = 0;
+    return true;
+  }
+  uint8_t at = 1;
+  int16_t index = 0;
+  if (!number(at, index) || index < 0 || index >= kParameterCount) return false;
+  if (at < state.in_count) {
+    int16_t value = 0;
+    if (!number(at, value) || at != state.in_count) return false;
+    *draft_value(static_cast<uint8_t>(index)) = value;
+  }
+  say_parameter(static_cast<uint8_t>(index));
+  return true;
+}
+
+void say_health() {
+  say_text(PSTR("screed " SCREED_VERSION " " SCREED_BOARD));
+  say_number(static_cast<int16_t>(reset_cause()));
+  say_number(static_cast<int16_t>(parameter_store_state()));
+  say_number(static_cast<int16_t>(stack_free()));
+  say_number(radio_uart_overruns());
+  say_number(buttons_read());
+}
+
+/// False: not understood, or not possible now.
+bool obey() {
+  const uint8_t command = state.in[0];
+  if (command == 'p') return parameter_command();
+  if (state.in_count != 1) return false;
+  switch (command) {
+    case 'v':
+      say_health();
+      return true;
+    case 'd':
+      parameter_draft_defaults();
+      break;
+    case 'w':
+      if (!parameter_save()) return false;
+      break;
+    case 'r':
+      if (motors_powered() || parameter_saving()) return false;
+      reset_will_be(ResetCause::kRequested);
+      watchdog_reset_now();
+    default:
+      return false;
+  }
+  say_text(PSTR("ok"));
+  return true;
+}
+
+void end_line() {
+  if (state.in_count != 0) {
+    if (state.in_count == kInSize || !obey()) say('?');
+    if (state.out_count != 0) say('\n');
+  }
+  state.in_count = 0;
+}
+
+}  // namespace
+
+void console_step() {
+  if (state.out_count == 0 && state.list_at < kNothingToList) {
+    say_parameter(state.list_at++);
+    say('\n');
+  }
+  if (state.out_count != 0) {
+    if (usb_serial_put(state.out, state.out_count)) state.out_count = 0;
+    return;
+  }
+  uint8_t byte = 0;
+  for (uint8_t i = 0; i < kBytesPerStep && usb_serial_get(byte); ++i) {
+    if (byte == '\r' || byte == '\n') {
+      end_line();
+      return;
+    }
+    if (state.in_count < kInSize) state.in[state.in_count++] = byte;
+  }
+}
+
+}  // namespace avr
+}  // namespace screed

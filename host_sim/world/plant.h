@@ -1,0 +1,94 @@
+// What the robot is driven in: terrain, bodies, motors and battery, advanced a physics step at a
+// time. Knows no clock but its own steps, no sensor counts and no firmware.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "host_sim/sensors/imu_model.h"
+#include "host_sim/soil/soil_bed.h"
+#include "host_sim/terrain/height_field.h"
+#include "host_sim/vehicle/assembly.h"
+#include "host_sim/vehicle/gear_motor.h"
+#include "host_sim/vehicle/ode_world.h"
+#include "host_sim/vehicle/vehicle.h"
+
+namespace screed {
+
+struct StartPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  std::optional<double>
+      z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
+  Attitude attitude = {0.0, 0.0, 0.0};
+};
+
+struct PlantOptions {
+  double physics_step_s = 0.001;  ///< divides the control tick of 10 ms
+  StartPose start;
+  VehicleOptions vehicle;
+  Battery battery;
+  std::optional<SoilParameters> soil;  ///< ground that gives way; without it the ground is rigid
+  SoilOptions soil_options;
+};
+
+class Plant {
+ public:
+  /// Throws InputError when the options do not fit together.
+  Plant(HeightField terrain, const Assembly& model, const PlantOptions& options);
+
+  /// One physics step with the motor drivers at these shares of the battery voltage, -1..1, left
+  /// and right; positive drives forward.
+  void step(const std::array<double, 2>& share);
+
+  /// True motion over the last control tick, whenever it is asked for. Throws RunError when the
+  /// physics has diverged.
+  ImuTruth motion() const;
+
+  /// Picks the robot up and lays it on its left side where it is.
+  void lay_on_side();
+
+  int steps_per_tick() const { return steps_per_tick_; }
+  double step_s() const { return step_s_; }
+  uint64_t steps() const { return steps_; }
+  double time_s() const;
+  /// The ground's surface as it is now.
+  const HeightField& terrain() const { return soil_ ? soil_->surface() : rigid_; }
+  /// Null on rigid ground.
+  const SoilBed* soil() const { return soil_ ? &*soil_ : nullptr; }
+  const Vehicle& vehicle() const { return vehicle_; }
+  const Battery& battery() const { return battery_; }
+
+ private:
+  struct Moment {
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of the IMU, world frame, m/s
+    Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< rad/s
+  };
+
+  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
+  /// when it was switched on.
+  void settle();
+  /// Forces, integration and soil of one physics step.
+  void step_bodies(const std::array<double, 2>& motor_voltage);
+  Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
+  /// The history says: the IMU has been moving at this velocity all the time.
+  void forget_motion(const Eigen::Vector3d& velocity);
+
+  double step_s_;
+  int steps_per_tick_;
+  HeightField rigid_;
+  std::optional<SoilBed> soil_;
+  OdeWorld ode_;
+  Vehicle vehicle_;
+  Battery battery_;
+  Eigen::Vector3d imu_position_;  ///< in the frame of Body
+  uint64_t steps_ = 0;
+  /// The last tick's moments and the one before; the newest stands at newest_.
+  std::vector<Moment> moments_;
+  size_t newest_ = 0;
+};
+
+}  // namespace screed

@@ -1,0 +1,281 @@
+// The parts of the board around the control loop: USB, console, parameters in EEPROM, reset cause,
+// watchdog, stack guard, buttons.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "firmware/robot/parameter_store.h"
+#include "firmware/robot/supervisor.h"
+#include "hal/avr/reset_cause.h"
+#include "host_sim/mcu/board.h"
+#include "tests/mcu/ground_lines.h"
+#include "tests/mcu/images.h"
+#include "tests/mcu/usb_host.h"
+
+extern "C" {
+#include <simavr/sim_avr.h>
+}
+
+namespace screed::mcu {
+namespace {
+
+using avr::ResetCause;
+
+constexpr std::uint8_t kPorf = 1;
+constexpr std::uint8_t kExtrf = 2;
+constexpr std::uint8_t kBorf = 4;
+
+class BoardParts : public testing::Test {
+ protected:
+  BoardParts() : board_(kScreedImage, read_wiring(kWiring)), mcu_(board_.mcu), usb_(mcu_) {}
+
+  void write_copy(std::uint8_t index, const ParameterCopy& copy) {
+    mcu_.write_eeprom(kParameterCopyAt(index), copy.bytes);
+  }
+  ParameterCopy read_copy(std::uint8_t index) const {
+    ParameterCopy copy{};
+    const std::vector<std::uint8_t> eeprom = mcu_.read_eeprom();
+    std::copy_n(eeprom.begin() + kParameterCopyAt(index), sizeof(copy.bytes), copy.bytes);
+    return copy;
+  }
+
+  void open_console() {
+    ASSERT_TRUE(usb_.plug_in());
+    ASSERT_TRUE(usb_.set_line(115200, true));
+    usb_.run_ms(30);
+  }
+  std::string ask(const std::string& line, double ms = 100) {
+    EXPECT_TRUE(usb_.send(line + "\n"));
+    return usb_.listen_ms(ms);
+  }
+  /// The numbers at the end of the answer to "v".
+  struct Health {
+    int reset_cause = -1;
+    int store = -1;
+    int stack_free = -1;
+    int overruns = -1;
+    int buttons = -1;
+  };
+  Health health() {
+    std::istringstream in(ask("v"));
+    std::string name;
+    std::string version;
+    std::string board;
+    Health it;
+    in >> name >> version >> board >> it.reset_cause >> it.store >> it.stack_free >> it.overruns >>
+        it.buttons;
+    EXPECT_EQ(name, "screed");
+    EXPECT_FALSE(in.fail());
+    return it;
+  }
+  int cause() { return health().reset_cause; }
+
+  Board board_;
+  Mcu& mcu_;
+  UsbHost usb_;
+};
+
+ParameterCopy encoded(const Parameters& parameters, std::uint16_t sequence) {
+  ParameterCopy copy{};
+  encode_parameters(parameters, sequence, copy);
+  return copy;
+}
+
+TEST_F(BoardParts, IsAnAStarOnTheUsbBus) {
+  mcu_.run_ms(50);
+  ASSERT_TRUE(usb_.plug_in());
+  const std::vector<std::uint8_t> descriptor = usb_.device_descriptor();
+  ASSERT_EQ(descriptor.size(), 18U);
+  EXPECT_EQ(descriptor[8] | descriptor[9] << 8, 0x1FFB);
+  EXPECT_EQ(descriptor[10] | descriptor[11] << 8, 0x2300);
+}
+
+TEST_F(BoardParts, EntersTheBootloaderWhenTheLineIsClosedAt1200Baud) {
+  mcu_.run_ms(50);
+  ASSERT_TRUE(usb_.plug_in());
+  ASSERT_TRUE(usb_.set_line(115200, true));
+  ASSERT_TRUE(usb_.set_line(115200, false));
+  usb_.run_ms(300);
+  EXPECT_EQ(mcu_.starts(), 1) << "closing at another speed is no touch";
+  ASSERT_TRUE(usb_.set_line(1200, true));
+  usb_.run_ms(300);
+  EXPECT_EQ(mcu_.starts(), 1) << "opening is no touch";
+  ASSERT_TRUE(usb_.set_line(1200, false));
+  usb_.run_ms(20);
+  // What the bootloader reads after the watchdog's reset.
+  EXPECT_EQ(mcu_.word(0x0800), 0x7777);
+  usb_.run_ms(180);
+  EXPECT_EQ(mcu_.starts(), 2);
+}
+
+TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
+  mcu_.run_ms(50);
+  open_console();
+  ASSERT_NE(ask("p 2"), "");
+  // The line stays open, the list of parameters is asked for again and again, and nobody fetches.
+  mcu_.clear_load();
+  const double begin_ms = mcu_.time_ms();
+  for (int i = 0; i < 5; ++i) {
+    usb_.send("p\n");
+    usb_.run_ms(200);
+  }
+  usb_.pull_out();
+  mcu_.run_ms(1000);
+  EXPECT_EQ(mcu_.starts(), 1);
+  EXPECT_NEAR(static_cast<double>(mcu_.ticks()), (mcu_.time_ms() - begin_ms) / 10, 2);
+  EXPECT_LT(mcu_.longest_tick(), kClock_hz / kTickRate_hz + 1500);
+}
+
+TEST_F(BoardParts, ChangesAndSavesParameters) {
+  mcu_.run_ms(50);
+  open_console();
+  EXPECT_EQ(ask("p 2"), "p 2 500\n");
+  EXPECT_EQ(ask("p 2 750"), "p 2 750\n");
+  EXPECT_EQ(ask("w", 1500), "ok\n");
+  for (const std::uint8_t index :
+       {std::uint8_t{0}, std::uint8_t{1}}) {  // a blank store gets both copies
+    const ParameterCopy copy = read_copy(index);
+    ASSERT_EQ(check_copy(copy), CopyState::kGood) << int{index};
+    Parameters stored;
+    decode_parameters(copy, stored);
+    EXPECT_EQ(stored.climb_threshold, 750);
+  }
+  EXPECT_EQ(ask("p 2 800"), "p 2 800\n");
+  EXPECT_EQ(ask("w", 1000), "ok\n");
+  EXPECT_EQ(copy_sequence(read_copy(0)), 1) << "the older copy is replaced";
+  EXPECT_EQ(copy_sequence(read_copy(1)), 0);
+  EXPECT_EQ(ask("d"), "ok\n");
+  EXPECT_EQ(ask("p 2"), "p 2 500\n");
+  usb_.send("r\n");
+  usb_.pull_out();
+  mcu_.run_ms(200);
+  EXPECT_EQ(mcu_.starts(), 2);
+  open_console();
+  EXPECT_EQ(ask("p 2"), "p 2 800\n");
+  EXPECT_EQ(cause(), static_cast<int>(ResetCause::kRequested));
+}
+
+TEST_F(BoardParts, RefusesNonsenseOnTheConsole) {
+  mcu_.run_ms(50);
+  open_console();
+  for (const char* line : {"x", "p 23", "p -1", "p 2 40000", "p 2 7x", "p x", "ww", "p 2 3 4",
+                           "pppppppppppppppppppppppppppppppppppppppppp"}) {
+    EXPECT_EQ(ask(line), "?\n") << line;
+  }
+  EXPECT_EQ(ask("p 2 32000"), "p 2 32000\n") << "a draft may be anything";
+  EXPECT_EQ(ask("w"), "?\n") << "but not be written";
+  EXPECT_EQ(check_copy(read_copy(0)), CopyState::kBlank);
+}
+
+TEST_F(BoardParts, StoredParametersAreInForce) {
+  Parameters parameters;
+  parameters.algorithm = 2;
+  write_copy(1, encoded(parameters, 5));
+  parameters.algorithm = 0;
+  write_copy(0, encoded(parameters, 4));
+  mcu_.run_ms(300);
+  const std::vector<CanFrame> frames = frames_in(mcu_.sent());
+  const auto leveling = std::find_if(frames.begin(), frames.end(),
+                                     [](const CanFrame& it) { return it.id == kIdLeveling; });
+  ASSERT_NE(leveling, frames.end());
+  EXPECT_EQ(leveling->data[2], 2);
+}
+
+TEST_F(BoardParts, WithoutAGoodCopyItRefusesToBeArmed) {
+  ParameterCopy bad = encoded(Parameters(), 5);
+  bad.bytes[9] ^= 0x04;
+  write_copy(0, bad);
+  write_copy(1, bad);
+  GroundLines ground;
+  for (int i = 0; i < 60; ++i) {
+    board_.feel_accel(0.244 * Eigen::Vector3d(i % 3, 0, 4096));
+    board_.feel_rate(0.070 * Eigen::Vector3d(i % 3 - 1, 0, i % 2));
+    mcu_.receive(ground.heartbeat(static_cast<std::uint32_t>(i) * 100));
+    mcu_.run_ms(100);
+  }
+  mcu_.receive(ground.command(CommandOp::kArm));
+  mcu_.run_ms(100);
+  const std::vector<CanFrame> frames = frames_in(mcu_.sent());
+  const auto answer = std::find_if(frames.begin(), frames.end(),
+                                   [](const CanFrame& it) { return it.id == kIdCommandAck; });
+  ASSERT_NE(answer, frames.end());
+  EXPECT_EQ(static_cast<RequestResult>(answer->data[3]), RequestResult::kFaultPresent);
+}
+
+TEST_F(BoardParts, KnowsWhyItStarted) {
+  mcu_.run_ms(100);
+  open_console();
+  EXPECT_EQ(cause(), static_cast<int>(ResetCause::kPowerOn)) << "RAM without a mark";
+  // What the bootloaders leave in MCUSR: Pololu's A-Star BORF only, Arduino's nothing.
+  const struct {
+    std::uint8_t flags;
+    ResetCause cause;
+  } cases[] = {{kBorf, ResetCause::kBrownOut},
+               {0, ResetCause::kExternal},
+               {kExtrf, ResetCause::kExternal},
+               {kPorf, ResetCause::kPowerOn},
+               {kPorf | kBorf, ResetCause::kPowerOn}};
+  for (const auto& it : cases) {
+    mcu_.reset(it.flags);
+    mcu_.run_ms(100);
+    open_console();
+    EXPECT_EQ(cause(), static_cast<int>(it.cause)) << "MCUSR " << int{it.flags};
+  }
+}
+
+TEST_F(BoardParts, TheWatchdogResetsAHungProgram) {
+  mcu_.run_ms(100);
+  mcu_.break_tick();
+  mcu_.run_ms(200);
+  EXPECT_GE(mcu_.starts(), 2);
+}
+
+TEST_F(BoardParts, TheWatchdogResetsAProgramThatHangsWithItsInterruptsOff) {
+  mcu_.run_ms(100);
+  // Timer 3's handler: cli, then a jump to itself.
+  avr_t* const avr = mcu_.simulator();
+  const std::uint8_t hang[] = {0xF8, 0x94, 0xFF, 0xCF};
+  std::copy(std::begin(hang), std::end(hang), avr->flash + kTimer3CompaVector * 4);
+  mcu_.run_ms(140);
+  EXPECT_EQ(mcu_.starts(), 2);
+}
+
+TEST_F(BoardParts, StopsWhenTheStackReachesTheVariables) {
+  mcu_.run_ms(100);
+  open_console();
+  // The canary: the first byte behind the variables is the lowest painted one.
+  std::uint16_t heap = kRamBegin;
+  while (heap < kRamEnd && mcu_.word(heap) != 0xA5A5) ++heap;
+  ASSERT_LT(heap, 0x0800);
+  mcu_.simulator()->data[heap] = 0;
+  usb_.run_ms(200);
+  EXPECT_EQ(mcu_.starts(), 2);
+  open_console();
+  EXPECT_EQ(cause(), static_cast<int>(ResetCause::kStack));
+}
+
+TEST_F(BoardParts, ReportsFreeStack) {
+  mcu_.run_ms(4000);
+  open_console();
+  const Health it = health();
+  EXPECT_GT(it.stack_free, 256);
+  EXPECT_LT(it.stack_free, 2560);
+  EXPECT_EQ(it.overruns, 0);
+}
+
+TEST_F(BoardParts, ReadsButtonsThatShareTheirPinsWithLeds) {
+  const PinName pins[] = {{'B', 3}, {'D', 5}, {'B', 0}};
+  for (const PinName pin : pins) mcu_.set_pin(pin, true);
+  mcu_.run_ms(100);
+  open_console();
+  EXPECT_EQ(health().buttons, 0);
+  for (int i = 0; i < 3; ++i) {
+    mcu_.set_pin(pins[i], false);
+    EXPECT_EQ(health().buttons, 1 << i);
+    mcu_.set_pin(pins[i], true);
+  }
+}
+
+}  // namespace
+}  // namespace screed::mcu

@@ -1,0 +1,170 @@
+// Faults of the hardware under the image that is flashed, driving in the world: the robot stops in
+// time, the tick keeps its deadline, and the ground station is told the cause.
+#include <gtest/gtest.h>
+
+#include "firmware/robot/supervisor.h"
+#include "firmware/telemetry/messages.h"
+#include "tests/mcu/image_drive.h"
+
+namespace screed::mcu {
+namespace {
+
+constexpr std::uint16_t kChipFaults = kFaultAccelMagChip | kFaultGyroChip | kFaultBaroChip;
+
+I2cChip& chip_of(ImageDrive& drive, ChipBit bit) {
+  Board& board = drive.world.board();
+  if (bit == kChipAccelMag) return board.accel_mag;
+  if (bit == kChipGyro) return board.gyro;
+  return *board.baro;
+}
+
+/// What the health message says of the chips.
+int failing_chips(const ImageDrive& drive) {
+  const std::vector<std::uint8_t> health = drive.last_frame(kIdHealth);
+  return health.size() == 7 ? health[2] : -1;
+}
+
+// 13
+TEST(Fault, DataLineHeldLowForFiveSecondsStopsTheRobot) {
+  ImageDrive drive;
+  drive.set_off();
+  drive.world.board().bus.hold_data();
+  const std::optional<double> stopped = drive.ms_until_stop();
+  ASSERT_TRUE(stopped.has_value());
+  EXPECT_LE(*stopped, 100.0);
+  drive.run(5.0);
+  EXPECT_FALSE(drive.powered());
+  EXPECT_EQ(drive.report().state, RobotState::kFault);
+  EXPECT_NE(drive.report().faults & (kChipFaults | kFaultImuSilent), 0);
+  EXPECT_EQ(failing_chips(drive), kChipAccelMag | kChipGyro | kChipBaro);
+  drive.expect_punctual();
+  // The bus comes back, and with it the numbers; the fault stays latched.
+  drive.world.board().bus.release_data();
+  drive.run(1.0);
+  EXPECT_EQ(failing_chips(drive), 0);
+  EXPECT_NE(drive.sample.fresh & kFreshGyro, 0);
+  EXPECT_EQ(drive.report().state, RobotState::kFault);
+  EXPECT_FALSE(drive.powered());
+}
+
+// 13
+TEST(Fault, ADeviceInTheMiddleOfAByteIsClockedFreeWithin25Ms) {
+  ImageDrive drive;
+  drive.set_off();
+  for (const unsigned clocks : {1U, 5U, 9U}) {
+    drive.world.board().bus.hold_data(clocks);
+    const std::optional<double> freed =
+        drive.ms_until([&] { return !drive.world.board().bus.data_held(); }, 1.0);
+    ASSERT_TRUE(freed.has_value());
+    EXPECT_LE(*freed, 25.0) << clocks << " clocks";
+    drive.run(1.0);
+    EXPECT_TRUE(drive.powered()) << "no reason to stop";
+    EXPECT_EQ(drive.report().state, RobotState::kRunning);
+  }
+  drive.expect_punctual();
+}
+
+// 14
+TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
+  for (const ChipBit bit : {kChipAccelMag, kChipGyro, kChipBaro}) {
+    ImageDrive drive;
+    chip_of(drive, bit).present = false;
+    for (int i = 0; i < 1200; ++i) {
+      drive.tick();
+      ASSERT_FALSE(drive.powered());
+    }
+    EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
+    EXPECT_EQ(failing_chips(drive), bit) << "says which chip";
+    drive.expect_punctual();
+    if (bit != kChipBaro) continue;
+    const std::vector<std::uint8_t> ack = drive.last_frame(kIdCommandAck);
+    ASSERT_EQ(ack.size(), 4U);
+    EXPECT_EQ(ack[3], static_cast<std::uint8_t>(RequestResult::kFaultPresent));
+  }
+}
+
+// 15
+TEST(Fault, AChipThatVanishesStopsTheRobotWithin100Ms) {
+  for (const ChipBit bit : {kChipAccelMag, kChipGyro, kChipBaro}) {
+    ImageDrive drive;
+    drive.set_off();
+    chip_of(drive, bit).present = false;
+    const std::optional<double> stopped = drive.ms_until_stop();
+    ASSERT_TRUE(stopped.has_value());
+    EXPECT_LE(*stopped, 100.0);
+    drive.run(1.0);
+    EXPECT_EQ(drive.report().state, RobotState::kFault);
+    EXPECT_EQ(drive.report().faults & kChipFaults, bit << 8);
+    EXPECT_EQ(failing_chips(drive), bit);
+    drive.expect_punctual();
+  }
+}
+
+TEST(Fault, AChipThatLosesItsSettingsStopsTheRobotAndIsConfiguredAgain) {
+  ImageDrive drive;
+  drive.set_off();
+  drive.world.board().gyro.power_up();
+  EXPECT_TRUE(drive.ms_until_stop().has_value());
+  drive.run(1.0);
+  EXPECT_NE(drive.report().faults & kFaultGyroChip, 0);
+  EXPECT_EQ(failing_chips(drive), 0);
+  EXPECT_NE(drive.sample.fresh & kFreshGyro, 0);
+}
+
+struct Broken {
+  Side side;
+  bool a;
+  bool b;
+  double speed_m_per_s;
+};
+
+// 21
+TEST(Fault, ABrokenEncoderStopsTheRobotWithin200Ms) {
+  for (const Broken& broken : {Broken{kLeft, true, false, 0.15}, Broken{kLeft, false, true, 0.15},
+                               Broken{kRight, true, false, 0.15}, Broken{kRight, false, true, 0.15},
+                               Broken{kLeft, true, false, 0.25}, Broken{kRight, false, true, 0.08},
+                               Broken{kLeft, true, true, 0.15}, Broken{kRight, true, true, 0.25}}) {
+    ImageDrive drive(1, broken.speed_m_per_s);
+    drive.set_off();
+    Board& board = drive.world.board();
+    if (broken.a) board.break_encoder_wire(broken.side, 0);
+    if (broken.b) board.break_encoder_wire(broken.side, 1);
+    const std::optional<double> stopped = drive.ms_until_stop();
+    ASSERT_TRUE(stopped.has_value());
+    EXPECT_LE(*stopped, 200.0) << (broken.side == kLeft ? "left " : "right ") << broken.a
+                               << broken.b << " at " << broken.speed_m_per_s;
+    drive.run(1.0);
+    const std::uint16_t of_side = broken.side == kLeft ? kFaultEncoderLeft | kFaultStallLeft
+                                                       : kFaultEncoderRight | kFaultStallRight;
+    EXPECT_EQ(drive.report().state, RobotState::kFault);
+    EXPECT_NE(drive.report().faults & of_side, 0);
+    EXPECT_EQ(drive.report().faults & ~of_side, 0) << "the other track is well";
+    drive.expect_punctual();
+  }
+}
+
+// 7
+TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
+  ImageDrive drive;
+  drive.set_off();
+  const std::uint8_t rejected_before = drive.last_frame(kIdHeartbeat).at(5);
+  drive.world.flood = true;
+  const std::optional<double> stopped = drive.ms_until_stop(4.0);
+  ASSERT_TRUE(stopped.has_value());
+  EXPECT_LE(*stopped, 1500.0) << "0.5 s without a heartbeat, then the ramp";
+  drive.run(2.0);
+  EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
+  const std::vector<std::uint8_t> heartbeat = drive.last_frame(kIdHeartbeat);
+  EXPECT_EQ(heartbeat.at(4), 0) << "link not alive";
+  EXPECT_GE(drive.world.cycles().uart_received, 15000U) << "no flood";
+  EXPECT_EQ(drive.world.cycles().uart_overruns, 0U);
+  drive.expect_punctual();
+  EXPECT_NE(heartbeat.at(5), rejected_before) << "rejected lines are not counted";
+  // No arming by itself when the line is free again.
+  drive.world.flood = false;
+  drive.run(2.0);
+  EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
+}
+
+}  // namespace
+}  // namespace screed::mcu

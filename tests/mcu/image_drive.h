@@ -1,0 +1,103 @@
+// The image that is flashed, driving in a world of physics, for tests: everything in reach.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "firmware/leveling/leveling.h"
+#include "host_sim/experiment/experiment.h"
+#include "host_sim/mcu/mcu_world.h"
+#include "host_sim/vehicle/urdf_importer.h"
+#include "tests/mcu/images.h"
+
+namespace screed::mcu {
+
+class ImageDrive {
+ public:
+  static constexpr double kSpeed_m_per_s = 0.15;
+
+  explicit ImageDrive(std::uint64_t seed = 1, double speed_m_per_s = kSpeed_m_per_s)
+      : world(HeightField::flat(20.0, 0.1), rover5(), options(seed, speed_m_per_s), &log) {}
+
+  /// One control tick of the program.
+  void tick() {
+    sample = world.run_to_sample();
+    output = world.run_to_output();
+  }
+  double time_ms() { return world.board().mcu.time_ms(); }
+  void run(double seconds) {
+    const double end = time_ms() + seconds * 1000.0;
+    while (time_ms() < end) tick();
+  }
+  /// Time until the condition holds after a tick, ms.
+  std::optional<double> ms_until(const std::function<bool()>& condition, double most_s) {
+    const double begin = time_ms();
+    while (time_ms() < begin + most_s * 1000.0) {
+      tick();
+      if (condition()) return time_ms() - begin;
+    }
+    return std::nullopt;
+  }
+  bool powered() {
+    return world.board().motor_share(kLeft) != 0.0 || world.board().motor_share(kRight) != 0.0;
+  }
+  /// Armed, running and at speed.
+  void set_off() {
+    ASSERT_TRUE(ms_until([this] { return report().state == RobotState::kRunning; }, 12.0));
+    run(3.0);
+    ASSERT_TRUE(powered());
+  }
+  std::optional<double> ms_until_stop(double most_s = 3.0) {
+    return ms_until([this] { return !powered(); }, most_s);
+  }
+
+  const RobotReport& report() const { return world.ground_station().report(); }
+  /// Payload of the newest frame of an id that came down the radio, as the log has it.
+  std::vector<std::uint8_t> last_frame(std::uint16_t id) const {
+    char name[8];
+    std::snprintf(name, sizeof name, " %03X#", static_cast<unsigned>(id));
+    const std::string text = log.str();
+    const std::size_t at = text.rfind(name);
+    std::vector<std::uint8_t> bytes;
+    if (at == std::string::npos) return bytes;
+    for (std::size_t i = at + 5; i + 1 < text.size() && text[i] != '\n'; i += 2) {
+      bytes.push_back(static_cast<std::uint8_t>(std::stoul(text.substr(i, 2), nullptr, 16)));
+    }
+    return bytes;
+  }
+  /// The tick never missed its deadline, and kept to its budget.
+  void expect_punctual() const {
+    const CycleReport cycles = world.cycles();
+    EXPECT_EQ(cycles.missed_ticks, 0U);
+    EXPECT_LE(cycles.longest_tick_cycles, CycleReport::kTickCycles / 2);
+    EXPECT_EQ(cycles.resets, 0);
+  }
+
+  std::ostringstream log;
+  McuWorld world;
+  SensorSample sample{};
+  RobotOutput output{};
+
+ private:
+  static const Assembly& rover5() {
+    static const Assembly model = import_urdf(find_model_file(Experiment{}));
+    return model;
+  }
+  static CoSimulationOptions options(std::uint64_t seed, double speed_m_per_s) {
+    CoSimulationOptions options;
+    options.elf = kScreedImage;
+    options.board = "a_star_32u4";
+    options.parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+    options.world.seed = seed;
+    options.world.drive = DriveOrder{speed_m_per_s, 0.0};
+    return options;
+  }
+};
+
+}  // namespace screed::mcu

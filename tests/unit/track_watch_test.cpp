@@ -1,0 +1,106 @@
+// The supervisor's witnesses of a track that does not move and of chips that fail.
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+
+#include "firmware/robot/supervisor.h"
+
+namespace screed {
+namespace {
+
+TEST(TrackWatch, CountsStepToAndFroWithABrokenWire) {
+  for (const int16_t duty : std::initializer_list<int16_t>{60, 240, -60, -400}) {
+    TrackWatch watch;
+    int ticks = 0;
+    while (!watch.to_and_fro() && ticks < 100) {
+      watch.tick(duty, static_cast<int16_t>(ticks % 2 == 0 ? 1 : -1));
+      ++ticks;
+    }
+    EXPECT_LE(ticks, 8) << duty;
+  }
+}
+
+TEST(TrackWatch, StepsThatCancelWithinATickAreAStandstill) {
+  TrackWatch watch;
+  for (int tick = 0; tick < 18; ++tick) {
+    const int16_t counts = tick == 0 || tick == 10 ? 1 : tick == 5 ? -1 : 0;
+    watch.tick(300, counts);
+  }
+  EXPECT_EQ(watch.still_ticks(), 17) << "only the first step was progress";
+}
+
+TEST(TrackWatch, MotionEitherWayIsNeither) {
+  for (const int16_t duty : std::initializer_list<int16_t>{60, 300, -300}) {
+    for (const int16_t counts : std::initializer_list<int16_t>{1, 3, -1, -3}) {
+      TrackWatch watch;
+      for (int tick = 0; tick < 200; ++tick) {
+        watch.tick(duty, tick % 4 == 0 ? counts : static_cast<int16_t>(0));
+        EXPECT_FALSE(watch.to_and_fro());
+        EXPECT_LT(watch.still_ticks(), 18);
+      }
+    }
+  }
+}
+
+TEST(TrackWatch, ATrackWithoutPowerMayRockAsItLikes) {
+  TrackWatch watch;
+  for (int tick = 0; tick < 200; ++tick)
+    watch.tick(59, static_cast<int16_t>(tick % 2 == 0 ? 1 : -1));
+  EXPECT_FALSE(watch.to_and_fro());
+  EXPECT_EQ(watch.still_ticks(), 0);
+}
+
+TEST(TrackWatch, GreatStepsDoNotOverflow) {
+  TrackWatch watch;
+  for (const int16_t counts : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX, INT16_MIN}) {
+    watch.tick(-kDutyMax, counts);
+    watch.tick(400, counts);
+  }
+  EXPECT_FALSE(watch.to_and_fro());
+}
+
+/// A tick of a healthy robot with these chips failing.
+void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
+  const int16_t gyro[3] = {static_cast<int16_t>(number % 2), 0, 0};
+  const int16_t accel[3] = {0, 0, 4098};
+  SupervisorInput input{};
+  input.fresh = kFreshGyro | kFreshAccel;
+  input.gyro = gyro;
+  input.accel = accel;
+  input.cos_tilt_q30 = kQ30One;
+  input.estimator_ready = true;
+  input.battery_mv = 7200;
+  input.chips_failing = chips_failing;
+  supervisor.heartbeat();
+  supervisor.tick(input);
+}
+
+TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
+  for (const uint8_t chip : {kChipAccelMag, kChipGyro, kChipBaro}) {
+    const Parameters parameters;
+    Supervisor supervisor(parameters);
+    for (int i = 0; i < 10; ++i) tick(supervisor, 0, i);
+    ASSERT_EQ(supervisor.request(Request::kArm), RequestResult::kDone);
+    ASSERT_EQ(supervisor.request(Request::kRun), RequestResult::kDone);
+    for (int i = 0; i < 4; ++i) tick(supervisor, chip, i);
+    EXPECT_TRUE(supervisor.running()) << "a hitch of the bus is no fault";
+    tick(supervisor, chip, 5);
+    EXPECT_EQ(supervisor.state(), RobotState::kFault);
+    EXPECT_EQ(supervisor.faults(), chip << 8);
+    // Latched; cleared once the chip is back.
+    EXPECT_EQ(supervisor.request(Request::kClear), RequestResult::kFaultPresent);
+    tick(supervisor, 0, 6);
+    EXPECT_EQ(supervisor.request(Request::kClear), RequestResult::kDone);
+  }
+}
+
+TEST(SupervisorChips, ARobotWithAFailingChipIsNotArmed) {
+  const Parameters parameters;
+  Supervisor supervisor(parameters);
+  for (int i = 0; i < 10; ++i) tick(supervisor, kChipBaro, i);
+  EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kFaultPresent);
+  EXPECT_EQ(supervisor.faults(), 0) << "nothing latched in a robot that nobody armed";
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,196 @@
+// screed_flash: brings an image onto the robot's board over USB, and checks the board's fuses. A
+// program of its own, not a part of `screed`: it needs neither the simulator nor its libraries, so
+// a machine beside the robot builds it in seconds.
+#include <CLI/CLI.hpp>
+
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "host_sim/core/errors.h"
+#include "tools/flash/avrdude.h"
+#include "tools/flash/board_port.h"
+#include "tools/flash/clock.h"
+#include "tools/flash/fuses.h"
+#include "tools/flash/usb_serial.h"
+
+namespace {
+
+using screed::InputError;
+using screed::RunError;
+namespace flash = screed::flash;
+
+struct Options {
+  std::string sketch_usb = "1ffb:2300";
+  std::string bootloader_usb = "1ffb:0101";
+  std::string port;
+  std::string image;
+  std::string low = "0xFF";
+  std::string high = "0xD0";
+  std::string extended = "0xC8";
+  std::string lock = "0xEF";
+  bool write_fuses = false;
+  double silence_s = 8.0;
+  double touch_s = 5.0;
+  flash::SystemRoots roots;
+  flash::Avrdude avrdude;
+};
+
+flash::BoardUsb board_usb(const Options& options) {
+  return {flash::parse_usb_id(options.sketch_usb), flash::parse_usb_id(options.bootloader_usb)};
+}
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(seconds * 1e3));
+}
+
+/// Finds the board and brings it into its bootloader; `avrdude` then talks to it there.
+void connect_to_bootloader(const Options& options, flash::Avrdude& avrdude) {
+  const auto usb = board_usb(options);
+  const auto board = flash::find_board(options.roots, usb, options.port);
+  flash::Patience patience;
+  patience.after_touch = milliseconds(options.touch_s);
+  const auto tell = [](const std::string& line) { std::cout << line << std::endl; };
+  const auto port =
+      flash::bootloader_port(board, options.roots, usb, patience, flash::machine_clock(), tell);
+  avrdude.programmer = flash::kBootloaderProtocol;
+  avrdude.port = port.string();
+}
+
+void write_image(const Options& options) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(options.image, error))
+    throw InputError("no image " + options.image + ": make firmware builds it");
+  flash::Avrdude avrdude = options.avrdude;
+  connect_to_bootloader(options, avrdude);
+  std::cout << "writing " << options.image << " through " << avrdude.port << std::endl;
+  const unsigned bytes = flash::write_flash(avrdude, options.image);
+  std::cout << bytes << " bytes written and verified; the board starts them now\n";
+}
+
+void print_port(const Options& options) {
+  std::cout << flash::find_board(options.roots, board_usb(options), options.port).device.string()
+            << "\n";
+}
+
+void compare_fuses(const flash::Fuses& wanted, const flash::Fuses& found) {
+  std::string wrong;
+  for (const auto& fuse : flash::kFuseBytes) {
+    const auto value = [&](const flash::Fuses& fuses) {
+      return flash::hex_byte(fuses.*fuse.member);
+    };
+    std::cout << fuse.name << " fuse: should be " << value(wanted) << ", is " << value(found)
+              << "\n";
+    if (!flash::same(fuse, wanted, found))
+      wrong += (wrong.empty() ? "" : ", ") + std::string(fuse.name);
+  }
+  if (!wrong.empty()) throw RunError("the board's fuses differ from what they should be: " + wrong);
+  std::cout << "the fuses are right (bits that do not exist read as 1)\n";
+}
+
+void fuses(const Options& options) {
+  const flash::Fuses wanted = {flash::parse_hex_byte(options.low, "low fuse"),
+                               flash::parse_hex_byte(options.high, "high fuse"),
+                               flash::parse_hex_byte(options.extended, "extended fuse"),
+                               flash::parse_hex_byte(options.lock, "lock byte")};
+  flash::Avrdude avrdude = options.avrdude;
+  const bool through_bootloader = avrdude.programmer == flash::kBootloaderProtocol;
+  if (options.write_fuses && avrdude.programmer.empty())
+    throw InputError("WRITE=yes needs PROGRAMMER=..., an ISP programmer that avrdude knows");
+  if (options.write_fuses && through_bootloader)
+    throw InputError(
+        "PROGRAMMER=avr109, the bootloader, can read fuses but not write them: that takes "
+        "an ISP programmer");
+  if (avrdude.programmer.empty()) {
+    avrdude.programmer = "PROGRAMMER";
+    std::cout << flash::explanation(wanted) << "\nto write them with an ISP programmer:\n  "
+              << flash::fuse_command(avrdude, wanted)
+              << "\nto compare them with the board's, which writes nothing: PROGRAMMER=avr109 (the "
+                 "bootloader, over USB) or an ISP programmer's name\n";
+    return;
+  }
+  if (through_bootloader) {
+    connect_to_bootloader(options, avrdude);
+  } else {
+    avrdude.port = options.port;
+  }
+  if (options.write_fuses) flash::write_fuses(avrdude, wanted);
+  compare_fuses(wanted, flash::read_fuses(avrdude));
+}
+
+void add_usb_options(CLI::App& command, Options& options) {
+  command
+      .add_option("--sketch-usb", options.sketch_usb, "USB id of the board while its sketch runs")
+      ->capture_default_str();
+  command.add_option("--bootloader-usb", options.bootloader_usb, "USB id of its bootloader")
+      ->capture_default_str();
+  command.add_option("--port", options.port,
+                     "serial port; without it the board is looked for on USB");
+  command.add_option("--sys", options.roots.sys, "the kernel's devices")->capture_default_str();
+  command.add_option("--dev", options.roots.dev, "device files")->capture_default_str();
+}
+
+void add_avrdude_options(CLI::App& command, Options& options) {
+  add_usb_options(command, options);
+  command.add_option("--mcu", options.avrdude.mcu, "avrdude's name of the part")->required();
+  command.add_option("--avrdude", options.avrdude.program, "the program")->capture_default_str();
+  command
+      .add_option("--silence", options.silence_s, "seconds without a word before avrdude is ended")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command.add_option("--touch-wait", options.touch_s, "seconds to wait for the bootloader a touch")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command.add_flag("--verbose", options.avrdude.show_output, "show what avrdude says");
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("Flashes the robot's board over USB", "screed_flash");
+  app.require_subcommand(1);
+
+  auto* write = app.add_subcommand("write", "find the board, start its bootloader, write, verify");
+  write->add_option("image", options.image, "Intel HEX file")->required();
+  add_avrdude_options(*write, options);
+
+  auto* port = app.add_subcommand("port", "print the board's serial port");
+  add_usb_options(*port, options);
+
+  auto* fuse = app.add_subcommand("fuses", "print the board's fuses, or compare them");
+  add_avrdude_options(*fuse, options);
+  fuse->add_option("--low", options.low)->capture_default_str();
+  fuse->add_option("--high", options.high)->capture_default_str();
+  fuse->add_option("--extended", options.extended)->capture_default_str();
+  fuse->add_option("--lock", options.lock)->capture_default_str();
+  fuse->add_option("--programmer", options.avrdude.programmer,
+                   "avrdude's name of an ISP programmer, or avr109 for the bootloader");
+  fuse->add_flag("--write", options.write_fuses, "write them first");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    throw InputError(std::string(error.what()) + " (see screed_flash --help)");
+  }
+  options.avrdude.longest_silence = milliseconds(options.silence_s);
+  if (*write) write_image(options);
+  if (*port) print_port(options);
+  if (*fuse) fuses(options);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  constexpr int kFailed = 1;
+  constexpr int kWrongInput = 2;
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    std::cerr << "screed_flash: " << error.what() << "\n";
+    return kWrongInput;
+  } catch (const std::exception& error) {
+    std::cerr << "screed_flash: " << error.what() << "\n";
+    return kFailed;
+  }
+}
