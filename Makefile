@@ -219,7 +219,7 @@ $(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flag
 
 .PHONY: run-tests
 run-tests: $(SCREED) $(TESTS) $(TEST_IMAGES)
-	@SCREED_PROGRAM=$(CURDIR)/$(SCREED) tests/run.sh $(TESTS)
+	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(TESTS)
 
 # ---- benchmarks --------------------------------------------------------------------------------------------------------------
 

@@ -45,7 +45,7 @@ struct SimulationSummary {
   std::filesystem::path folder;
   std::string content_hash;
   bool stopped_early = false;
-  bool left_bed = false;        ///< the run ended because the robot drove over the edge of the soil
+  bool left_bed = false;  ///< the run ended because the robot drove over the edge of the soil
   double time_s = 0.0;
   double wall_s = 0.0;  ///< of the loop alone: building the world and writing pictures do not count
   double distance_m = 0.0;  ///< length of the chassis' true path, in space

@@ -193,8 +193,8 @@ FigureFiles write_figure(const std::filesystem::path& folder, const GridFigure& 
   chart.subtitle = std::to_string(config.noise.width) + "x" + std::to_string(config.noise.height) +
                    " cells, " + std::to_string(config.agents) + " agents, " + std::to_string(runs) +
                    " runs a point; bars: 95 % confidence of the mean";
-  const FigureFiles files{folder / ("figure-" + figure.name + ".csv"),
-                          folder / ("figure-" + figure.name + ".svg")};
+  FigureFiles files{folder / ("figure-" + figure.name + ".csv"),
+                    folder / ("figure-" + figure.name + ".svg")};
   write_text(files.csv, csv);
   write_chart(files.svg, chart);
   return files;

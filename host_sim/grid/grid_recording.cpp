@@ -25,7 +25,8 @@ h5::Handle growing_table(hid_t file, const char* name, hid_t type, hsize_t agent
   const h5::Handle space(H5Screate_simple(2, size, most), H5Sclose, name);
   const h5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
   // About 256 kB a chunk at most, however many agents there are.
-  const hsize_t chunk[2] = {std::clamp<hsize_t>(65536 / agents, 1, kChunkCycles), agents};
+  const hsize_t rows = std::clamp<hsize_t>(65536 / std::max<hsize_t>(1, agents), 1, kChunkCycles);
+  const hsize_t chunk[2] = {rows, agents};
   h5::check(H5Pset_chunk(creation.get(), 2, chunk), name);
   h5::check(H5Pset_shuffle(creation.get()), name);
   h5::check(H5Pset_deflate(creation.get(), 4), name);

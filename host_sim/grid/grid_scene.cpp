@@ -16,8 +16,6 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/picture/color_map.h"
 
-extern char** environ;
-
 namespace screed {
 namespace {
 
@@ -179,6 +177,7 @@ bool render_scene(const std::filesystem::path& picture, const std::vector<GridFr
                                     "-D",
                                     "-GA"};
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

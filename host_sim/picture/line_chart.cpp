@@ -162,7 +162,7 @@ Ticks ticks_around(Range& range, int about) {
   const double first = std::floor(range.low / ticks.step + kSlack);
   const double last = std::ceil(range.high / ticks.step - kSlack);
   ticks.values.clear();
-  for (double i = first; i <= last; i += 1.0) ticks.values.push_back(i * ticks.step);
+  for (int i = 0; first + i <= last; ++i) ticks.values.push_back((first + i) * ticks.step);
   range.low = ticks.values.front();
   range.high = ticks.values.back();
   return ticks;

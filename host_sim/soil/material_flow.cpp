@@ -47,6 +47,10 @@ void MaterialFlow::wake(size_t node) {
   ++queue_size_;
 }
 
+void MaterialFlow::wake_all() {
+  for (size_t node = 0; node < nodes(); ++node) wake(node);
+}
+
 void MaterialFlow::change(size_t node, Height units) {
   set_height(node, height(node) + units);
   reference_[node] += units;

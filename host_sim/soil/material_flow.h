@@ -40,6 +40,8 @@ class MaterialFlow {
   /// Sets what is in hand down, in equal parts, on the free neighbours of covered nodes; keeps it
   /// in hand when there are none.
   void set_down();
+  /// Looks at every slope again, as on a bed that nobody has touched yet.
+  void wake_all();
   /// Slides slopes above the angle of repose, at most `most` moves; returns the moves made.
   int64_t slide(int64_t most);
   /// Forgets which nodes are covered: the step is over.

@@ -11,7 +11,12 @@ namespace screed {
 class PressureTable {
  public:
   PressureTable() = default;
-  explicit PressureTable(double exponent) : exponent_(exponent), power_(kSteps + 2) {
+  explicit PressureTable(double exponent) { set_exponent(exponent); }
+
+  /// Tabulates another exponent. Allocates only the first time.
+  void set_exponent(double exponent) {
+    exponent_ = exponent;
+    power_.resize(kSteps + 2);
     for (int i = 0; i < kSteps + 2; ++i)
       power_[static_cast<size_t>(i)] = std::pow(i / kPerMetre, exponent);
   }

@@ -16,6 +16,7 @@ constexpr double kMostAcceleration = 500.0;
 // Elastic stiffness of a long footprint times its area, at most, times dt^2 / mass: an explicit
 // spring is stable up to 4.
 constexpr double kStableStiffness = 0.3;
+constexpr double kExponentStep = 0.005;
 // Below this speed a body does not roll into new soil, m/s.
 constexpr double kRolling = 1e-3;
 // How much deeper a body may go in one step than in the last, for the bound on what unloaded soil
@@ -252,12 +253,16 @@ SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& m
   const int iy0 = cell_of(centre.y() - reach.y(), field.y_min());
   const int iy1 = cell_of(centre.y() + reach.y(), field.y_min());
 
-  // Slip-sinkage changes the exponent with the slip of the moment; a table in steps of 0.01 would
-  // do, a fresh one is exact.
-  PressureTable slipping;
-  if (soil_.slip_sinkage > 0.0 && motion.slip > 0.0)
-    slipping = PressureTable(soil_.exponent + soil_.slip_sinkage * motion.slip);
-  const PressureTable& table = soil_.slip_sinkage > 0.0 && motion.slip > 0.0 ? slipping : table_;
+  // Slip-sinkage raises the exponent with the slip of the moment; steps of 0.005 are finer than
+  // anybody knows it.
+  const bool slips = soil_.slip_sinkage > 0.0 && motion.slip > 0.0;
+  if (slips) {
+    const double exponent =
+        std::round((soil_.exponent + soil_.slip_sinkage * motion.slip) / kExponentStep) *
+        kExponentStep;
+    if (exponent != slipping_.exponent()) slipping_.set_exponent(exponent);
+  }
+  const PressureTable& table = slips ? slipping_ : table_;
 
   const double speed = motion.velocity.dot(footprint.pose().linear().col(0));
   if (speed * memory.travel_m < 0.0) memory.travel_m = 0.0;
@@ -416,6 +421,7 @@ void SoilBed::end_step() {
 }
 
 int64_t SoilBed::settle(int64_t most) {
+  flow_.wake_all();
   return flow_.slide(most);
 }
 

@@ -138,6 +138,7 @@ class SoilBed {
   SoilOptions options_;
   MaterialFlow flow_;
   PressureTable table_;
+  PressureTable slipping_;  // of the exponent that slip-sinkage made of it
   double tan_friction_;
   double cell_area_;
   int samples_;  // along one side of a cell

@@ -20,7 +20,9 @@ double flank_deg(const HeightField& surface, const ReposeTest& test, double dx, 
   const double top = surface.at(test.centre_x_m, test.centre_y_m).height;
   double high = 0.0;
   double low = 0.0;
-  for (double way = 0.0; way < 0.5 * test.size_m; way += step) {
+  const int steps = static_cast<int>(0.5 * test.size_m / step);
+  for (int i = 0; i < steps; ++i) {
+    const double way = i * step;
     const double height = surface.at(test.centre_x_m + way * dx, test.centre_y_m + way * dy).height;
     if (height >= 0.75 * top) high = way;
     if (height >= 0.25 * top) low = way;

@@ -120,17 +120,20 @@ class Testbed {
 };
 
 std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
+  std::vector<std::string> fields;
+  std::string field;
   bool quoted = false;
   for (const char c : line) {
     if (c == '"') {
       quoted = !quoted;
     } else if (c == ',' && !quoted) {
-      fields.emplace_back();
+      fields.push_back(field);
+      field.clear();
     } else if (c != '\r') {
-      fields.back() += c;
+      field += c;
     }
   }
+  fields.push_back(field);
   return fields;
 }
 
@@ -140,6 +143,7 @@ WheelTestResult run_wheel(const WheelTest& test) {
   check(test);
   Testbed testbed(test);
   std::vector<WheelPass> passes;
+  passes.reserve(static_cast<size_t>(test.passes));
   for (int i = 0; i < test.passes; ++i) passes.push_back(testbed.pass());
   return {passes, testbed.bed().balance(), testbed.bed().surface()};
 }
@@ -154,19 +158,27 @@ std::vector<MeasuredWheel> read_measured_wheels(const std::string& file,
   std::vector<MeasuredWheel> rows;
   for (int number = 2; std::getline(in, line); ++number) {
     const std::vector<std::string> fields = split(line);
+    const auto fail = [&](const std::string& what) {
+      throw InputError(file + ":" + std::to_string(number) + ": " + what);
+    };
     const auto text = [&](const char* name) -> const std::string& {
       const auto at =
           static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      if (at < names.size() && at < fields.size()) return fields[at];
-      throw InputError(file + ":" + std::to_string(number) + ": column " + name + " is missing");
+      if (at >= names.size() || at >= fields.size()) {
+        fail(std::string("column ") + name + " is missing");
+      }
+      return fields[at];
     };
     const auto value = [&](const char* name) {
       const std::string& field = text(name);
       double result = 0.0;
       const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), result);
-      if (error == std::errc() && end == field.data() + field.size()) return result;
-      throw InputError(file + ":" + std::to_string(number) + ": " + name + " is '" + field +
-                       "', a number is needed");
+      if (error != std::errc() || end != field.data() + field.size()) {
+        std::string what = name;
+        what.append(" is '").append(field).append("', a number is needed");
+        fail(what);
+      }
+      return result;
     };
     if (!text("case_id").starts_with(prefix)) continue;
     rows.push_back(

@@ -126,9 +126,7 @@ TEST(SoilBedTest, SteepTerrainSlidesUntouched) {
   test.cell_m = 0.01;
   test.tap_m = 0.0;
   const ReposeResult result = collapse(test);
-  if (result.moves == 0) {
-    GTEST_SKIP() << "MISSED: a new bed's slopes are not looked at before something touches them";
-  }
+  EXPECT_GT(result.moves, 1000);
   EXPECT_LE(result.excess_units, 1.0);
   EXPECT_EQ(result.volume_error, 0);
 }
@@ -179,9 +177,6 @@ TEST(SoilBedTest, SteadySteppingAllocatesNothing) {
     const long before = allocations.load();
     drive(1500);
     const long after = allocations.load();
-    if (slip_sinkage > 0.0 && after != before) {
-      GTEST_SKIP() << "MISSED with slip-sinkage: " << after - before << " in 1500 steps";
-    }
     EXPECT_EQ(after, before) << "slip_sinkage " << slip_sinkage;
   }
 }
