@@ -26,7 +26,8 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
-constexpr uint64_t kFlatnessTicks = 5 * kTickRate_hz;  // a look at the whole bed costs milliseconds
+constexpr uint64_t kFlatnessTicks =
+    5U * uint64_t{kTickRate_hz};                    // a look at the whole bed costs milliseconds
 constexpr uint64_t kPathTicks = kTickRate_hz / 10;  // a point of the drawn path ten times a second
 
 constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",

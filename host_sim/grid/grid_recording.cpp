@@ -38,8 +38,8 @@ h5::Handle growing_table(hid_t file, const char* name, hid_t type, hsize_t agent
 template <class T>
 void append_rows(const h5::Handle& table, hid_t type, hsize_t& rows, hsize_t agents,
                  std::vector<T>& buffer) {
+  if (buffer.empty() || agents == 0) return;
   const hsize_t added = buffer.size() / agents;
-  if (added == 0) return;
   const hsize_t size[2] = {rows + added, agents};
   h5::check(H5Dset_extent(table.get(), size), "cannot extend a table");
   const h5::Handle file_space(H5Dget_space(table.get()), H5Sclose, "cannot append");

@@ -322,7 +322,7 @@ class Drawing {
                      std::fabs(from - to), color(index), 2.0);
       error_bar(center, point, kInk);
       const std::string value = tick_text(point.y, value_decimals());
-      if (chart_.value_labels && letters(value) * kLetterWidth < width * 1.1) {
+      if (chart_.value_labels && letters(value) * kLetterWidth < width * 1.25) {
         svg_.text(center, y_(point.y + point.error) - 6.0, value, 11.0, kInk, "middle");
       }
     }

@@ -159,7 +159,9 @@ std::vector<MeasuredWheel> read_measured_wheels(const std::string& file,
   for (int number = 2; std::getline(in, line); ++number) {
     const std::vector<std::string> fields = split(line);
     const auto fail = [&](const std::string& what) {
-      throw InputError(file + ":" + std::to_string(number) + ": " + what);
+      std::string message = file;
+      message.append(":").append(std::to_string(number)).append(": ").append(what);
+      throw InputError(message);
     };
     const auto text = [&](const char* name) -> const std::string& {
       const auto at =

@@ -232,6 +232,25 @@ TEST(LineChart, DrawsEveryPointWithItsErrorBar) {
   EXPECT_EQ(count("<polyline"), 1);
   EXPECT_EQ(count("stroke-width=\"1.4\""), 6);  // two error bars of three strokes
   EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
+  // The upright stroke of the first error bar, y = 9 to 11, against the way through 10 and 20.
+  double x[3];
+  double y[3];
+  ASSERT_EQ(std::sscanf(svg.c_str() + svg.find("points=\""), "points=\"%lf,%lf %lf,%lf %lf,%lf",
+                        &x[0], &y[0], &x[1], &y[1], &x[2], &y[2]),
+            6);
+  const size_t end = svg.find("stroke-width=\"1.4\"");
+  double x1 = 0.0;
+  double y1 = 0.0;
+  double x2 = 0.0;
+  double y2 = 0.0;
+  ASSERT_EQ(std::sscanf(svg.c_str() + svg.rfind("<line", end),
+                        "<line x1=\"%lf\" y1=\"%lf\" x2=\"%lf\" y2=\"%lf\"", &x1, &y1, &x2, &y2),
+            4);
+  const double unit_px = (y[0] - y[1]) / 10.0;
+  EXPECT_EQ(x1, x[0]);
+  EXPECT_EQ(x2, x[0]);
+  EXPECT_NEAR(y1, y[0] - unit_px, 0.02);
+  EXPECT_NEAR(y2, y[0] + unit_px, 0.02);
   EXPECT_EQ(chart_svg(chart), svg);
 }
 

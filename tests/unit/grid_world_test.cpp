@@ -148,7 +148,9 @@ void expect_measures(const GridWorld& world, const GridStopRule& stop, GridBorde
   ASSERT_NEAR(world.deviation(), deviation, 1e-9);
   bool steep = false;
   const auto at = [&](int x, int y) {
-    return static_cast<double>(terrain.heights[static_cast<size_t>(y * terrain.width + x)]);
+    return static_cast<double>(
+        terrain.heights[static_cast<size_t>(y) * static_cast<size_t>(terrain.width) +
+                        static_cast<size_t>(x)]);
   };
   for (int y = 0; y < terrain.height; ++y) {
     for (int x = 0; x < terrain.width; ++x) {
@@ -356,7 +358,7 @@ Means means(const GridConfig& base, int runs) {
   Means means;
   for (int i = 0; i < runs; ++i) {
     GridConfig config = base;
-    config.seed = static_cast<uint64_t>(i + 1);
+    config.seed = static_cast<uint64_t>(i) + 1;
     const GridResult result = run_grid(config);
     means.cycles += static_cast<double>(result.cycles) / runs;
     means.units += static_cast<double>(result.units) / runs;

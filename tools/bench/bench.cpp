@@ -45,7 +45,7 @@ void firmware_tick(benchmark::State& state) {
   Robot robot(kBoard, first_drive().parameters);
   RobotOutput output{};
   size_t next = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     robot.tick(samples[next], output);
     benchmark::DoNotOptimize(output);
     next = next + 1 == samples.size() ? 0 : next + 1;
@@ -60,7 +60,7 @@ void world_tick(benchmark::State& state) {
   const std::unique_ptr<World> world = make_world(experiment, nullptr);
   Robot robot(kBoard, experiment.parameters);
   RobotOutput output{};
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     world->advance();
     robot.tick(world->sample(), output);
     world->apply(output);
@@ -80,7 +80,7 @@ void recorded_run(benchmark::State& state) {
       std::filesystem::temp_directory_path() / ("screed-bench-" + std::to_string(getpid()));
   double simulated = 0.0;
   double wall = 0.0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     SimulationOptions options;
     options.out = folder;
     const SimulationSummary summary = run_simulation(experiment, options);

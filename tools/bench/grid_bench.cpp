@@ -25,7 +25,7 @@ void grid_cycle(benchmark::State& state, GridAlgorithm algorithm, int side, int 
   constexpr uint64_t kLongest = 20'000;
   GridConfig config = config_of(algorithm, side, agents);
   auto run = std::make_unique<GridRun>(config);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     run->cycle();
     if (run->finished() || run->cycles() == kLongest) {
       state.PauseTiming();
