@@ -422,7 +422,7 @@ void print_points_json(const std::vector<SweepPoint>& points,
 }
 
 std::filesystem::path results_folder(const std::string& out) {
-  const std::filesystem::path folder = out.empty() ? "out/grid" : out;
+  std::filesystem::path folder = out.empty() ? "out/grid" : out;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());

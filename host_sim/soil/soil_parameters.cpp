@@ -27,8 +27,8 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
 }  // namespace
 
 const std::vector<SoilParameters>& soil_presets() {
-  // soft and viper: loose sands of planetary rover studies; lete_sand, dry_sand, clay: Wong, Theory
-  // of Ground Vehicles, table 2.3; ding_2011: the simulant of Ding et al., Journal of
+  // soft and viper: loose sands of rover studies, origin not verified; lete_sand, dry_sand, clay:
+  // Wong, Theory of Ground Vehicles, table 2.3; ding_2011: the simulant of Ding et al., Journal of
   // Terramechanics 48(1), 2011. The stiffness of unloading is not in these sources: chosen so that
   // the elastic part of the sinkage stays small.
   static const std::vector<SoilParameters> presets = {
