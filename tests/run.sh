@@ -24,6 +24,7 @@ done
 
 passed=0
 failed=0
+skipped=0
 for name in "${jobs_begun[@]}"; do
   for ((shard = 0; shard < shards; ++shard)); do
     base=$folder/$name.$shard
@@ -36,10 +37,16 @@ for name in "${jobs_begun[@]}"; do
       [ "$failures" -eq 0 ] && failures=1 && echo "$name, shard $shard: ended with status $status"
       [ "$tests" -lt "$failures" ] && tests=$failures
     fi
-    passed=$((passed + tests - failures))
+    # A skipped test has not passed: it is said, and not counted.
+    skips=$(grep -c '"result": "SKIPPED"' "$base.json" 2> /dev/null || true)
+    skips=${skips:-0}
+    [ "$skips" -gt 0 ] && grep -A1 ': Skipped$' "$base.log"
+    skipped=$((skipped + skips))
+    passed=$((passed + tests - failures - skips))
     failed=$((failed + failures))
   done
 done
 
+[ "$skipped" -gt 0 ] && echo "$skipped skipped"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
