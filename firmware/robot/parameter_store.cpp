@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "firmware/math/crc16.h"
 #include "firmware/telemetry/messages.h"
 
 namespace screed {
@@ -14,19 +15,8 @@ constexpr uint8_t value_at(uint8_t index) {
   return static_cast<uint8_t>(kParameterHeaderSize + 2U * index);
 }
 
-/// CRC-16/CCITT-FALSE: polynomial 0x1021, initial value 0xFFFF, not reflected.
 uint16_t crc_of(const ParameterCopy& copy) {
-  uint16_t crc = 0xFFFF;
-  for (uint8_t i = 0; i < kCrcAt; ++i) {
-    crc = static_cast<uint16_t>(crc ^
-                                static_cast<uint16_t>(static_cast<uint16_t>(copy.bytes[i]) << 8));
-    for (uint8_t bit = 0; bit < 8; ++bit) {
-      const bool carry = (crc & 0x8000U) != 0;
-      crc = static_cast<uint16_t>(crc << 1);
-      if (carry) crc = static_cast<uint16_t>(crc ^ 0x1021U);
-    }
-  }
-  return crc;
+  return crc16_ccitt(copy.bytes, kCrcAt);
 }
 
 }  // namespace

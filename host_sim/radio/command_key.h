@@ -1,0 +1,40 @@
+// The key that commands are signed with, as a ground station holds it: text, and a file.
+//
+// A key file is one line of text: 32 hexadecimal digits of the key, a blank, and the robot's id.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "firmware/security/credentials.h"
+
+namespace screed {
+
+struct CommandKey {
+  std::array<uint8_t, kSipHashKeySize> bytes{};
+  uint8_t robot_id = 1;
+
+  bool operator==(const CommandKey&) const = default;
+};
+
+/// What simulated robots and ground stations use unless told otherwise: bytes 0 to 15, known to
+/// everybody. Not for a robot.
+CommandKey test_key();
+
+/// "000102...0F 1" and back. Throws InputError that names `where` and what is allowed.
+std::string key_text(const CommandKey& key);
+CommandKey parse_key(const std::string& text, const std::string& where);
+
+/// Throws InputError when the file cannot be read, or others may read it (its mode must be 0600 or
+/// 0400).
+CommandKey read_key_file(const std::filesystem::path& file);
+/// Creates the file with mode 0600, never over one that is there: a key that is lost locks its
+/// robot until somebody comes with a USB cable. Throws InputError.
+void write_key_file(const std::filesystem::path& file, const CommandKey& key);
+
+/// As a robot that has it holds it, in its start number `boot_epoch`.
+Credentials credentials_of(const CommandKey& key, uint16_t boot_epoch = 1);
+
+}  // namespace screed
