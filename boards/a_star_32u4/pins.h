@@ -2,6 +2,8 @@
 // Source: Pololu, "A-Star 32U4 User's Guide" 6, and the schematic of the robot controller.
 #pragma once
 
+#include "boards/common/pololu_32u4_pins.h"
+#include "hal/avr/axis_of_chip.h"
 #include "hal/avr/pin.h"
 #include "hal/avr/quadrature.h"
 
@@ -46,29 +48,8 @@ inline void enable_encoder_interrupts() {
   PCICR = _BV(PCIE0);
 }
 
-// LEDs and the level that lights them.
-using RedLedPin = Pin<kPortB, 0>;     // pin 17
-using YellowLedPin = Pin<kPortC, 7>;  // pin 13
-using GreenLedPin = Pin<kPortD, 5>;
-constexpr bool kRedLedHigh = false;
-constexpr bool kYellowLedHigh = true;
-constexpr bool kGreenLedHigh = false;
-
-// Buttons; B and C share their pins with LEDs.
-using ButtonAPin = Pin<kPortB, 3>;  // pin 14
-using ButtonBPin = GreenLedPin;
-using ButtonCPin = RedLedPin;
-
-constexpr uint8_t kBatteryChannel = 6;  // A1 = PF6
-
 constexpr bool kHasBarometer = true;
 
-/// Where the robot's axis i (x forward, y left, z up) comes from: an axis of the chips, turned
-/// round or not.
-struct AxisOfChip {
-  uint8_t index;
-  bool reversed;
-};
 // The AltIMU-10 v4 lies flat, components up, its printed x arrow forward. Its printed axes hold for
 // LSM303D and L3GD20H alike. The accelerometer shows +1 g on the axis that points up, as
 // SensorSample wants it.

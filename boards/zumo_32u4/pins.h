@@ -3,6 +3,8 @@
 // Encoders, Buttons) and its "Zumo 32U4 User's Guide" 3.
 #pragma once
 
+#include "boards/common/pololu_32u4_pins.h"
+#include "hal/avr/axis_of_chip.h"
 #include "hal/avr/pin.h"
 #include "hal/avr/quadrature.h"
 
@@ -48,29 +50,8 @@ inline void enable_encoder_interrupts() {
   EIMSK = _BV(INT6);
 }
 
-// LEDs and the level that lights them.
-using RedLedPin = Pin<kPortB, 0>;     // pin 17
-using YellowLedPin = Pin<kPortC, 7>;  // pin 13
-using GreenLedPin = Pin<kPortD, 5>;
-constexpr bool kRedLedHigh = false;
-constexpr bool kYellowLedHigh = true;
-constexpr bool kGreenLedHigh = false;
-
-// Buttons; B and C share their pins with LEDs.
-using ButtonAPin = Pin<kPortB, 3>;  // pin 14
-using ButtonBPin = GreenLedPin;
-using ButtonCPin = RedLedPin;
-
-constexpr uint8_t kBatteryChannel = 6;  // A1 = PF6
-
 constexpr bool kHasBarometer = false;
 
-/// Where the robot's axis i (x forward, y left, z up) comes from: an axis of the chips, turned
-/// round or not.
-struct AxisOfChip {
-  uint8_t index;
-  bool reversed;
-};
 // LSM303D and L3GD20H lie on the main board with x forward, y left, z up: Pololu's example
 // "Balancing" takes -a.x for up while the robot stands on its nose, and g.y > 0 for nose down. (The
 // comment in "FaceUphill" has the sign of x the other way round; its code does not use x.)
