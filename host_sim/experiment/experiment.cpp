@@ -132,7 +132,7 @@ std::vector<Key> make_keys() {
       "", "output_directory_prefix", "a folder", "where run folders are made",
       [](Experiment& e) -> std::string& { return e.output_directory_prefix; }, not_empty));
 
-  keys.push_back(bool_key("vehicle", "tracks", "belts round the wheels; false: the wheels alone",
+  keys.push_back(bool_key("vehicle", "tracks", "tracks round the wheels; false: four driven wheels",
                           [](Experiment& e) -> bool& { return e.vehicle.tracks; }));
   keys.push_back(text_key(
       "vehicle", "model", "a URDF file, or rover5", "the robot",

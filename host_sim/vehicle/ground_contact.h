@@ -40,19 +40,21 @@ inline bool touches(const HeightField& ground, const Eigen::Vector3d& position,
   return true;
 }
 
-/// Force on a surface point that touches the ground and moves at `velocity` relative to it (belt
-/// motion included). `bristle` is the state of the point, world frame, m; it becomes zero when the
-/// point is being pulled out and bears nothing.
+/// Force on a surface point that touches the ground. The surface moves at `velocity` over it, belt
+/// motion included; the place of the touch sinks in at `body_velocity`, without it: a wheel that
+/// rolls does not press deeper where its rim goes down. `bristle` is the state of the point, world
+/// frame, m; it becomes zero when the point is being pulled out and bears nothing.
 inline Eigen::Vector3d contact_force(const ContactLaw& law, const GroundTouch& touch,
+                                     const Eigen::Vector3d& body_velocity,
                                      const Eigen::Vector3d& velocity, double dt,
                                      Eigen::Vector3d& bristle) {
-  const double normal_speed = velocity.dot(touch.normal);
-  const double normal_force = law.stiffness * touch.depth - law.damping * normal_speed;
+  const double normal_force =
+      law.stiffness * touch.depth - law.damping * body_velocity.dot(touch.normal);
   if (normal_force <= 0.0) {
     bristle.setZero();
     return Eigen::Vector3d::Zero();
   }
-  const Eigen::Vector3d sliding = velocity - normal_speed * touch.normal;
+  const Eigen::Vector3d sliding = velocity - velocity.dot(touch.normal) * touch.normal;
   bristle += sliding * dt;
   bristle -= bristle.dot(touch.normal) * touch.normal;
   Eigen::Vector3d tangential = -law.stiffness * bristle - law.damping * sliding;

@@ -1,5 +1,4 @@
-// One unit of running gear: contact points along a contour, and the degree of freedom of its
-// surface.
+// Contact points along the contour of a belt or a wheel.
 #include "host_sim/vehicle/running_gear.h"
 
 #include <algorithm>
@@ -9,8 +8,10 @@
 namespace screed {
 namespace {
 
-constexpr double kSpacing_m = 0.0125;  // of contact points along the contour
-constexpr double kSinkIn_m = 0.0004;   // under the unit's own load on level ground
+constexpr double kSpacing_m = 0.0125;  // of contact points along a belt
+// Of those round a wheel, in radii: the ground touches a few millimetres of it.
+constexpr double kWheelSpacing = 0.1;
+constexpr double kSinkIn_m = 0.0004;  // under the unit's own load on level ground
 constexpr double kDampingRatio = 0.7;
 constexpr double kUpperSide =
     0.2;  // vertical part of the outward normal; above 0, so that a robot on its side counts
@@ -29,18 +30,15 @@ void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& ou
   along_.push_back(along);
 }
 
-RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const GearMotor& motor,
-                         double friction, double load_n, double mass_kg)
+RunningGear::RunningGear(const RunningGearGeometry& geometry, double friction, const GearLoad& load)
     : geometry_(geometry),
-      driven_(driven),
-      motor_(motor),
+      load_(load),
       centre_(0.5 * (geometry.front + geometry.rear)),
       footprint_(Footprint::track(0.5 * (geometry.front - geometry.rear).norm(), geometry.radius,
                                   geometry.width)),
       side_footprint_(
           Footprint::box({(geometry.front - geometry.rear).norm() + 2.0 * geometry.radius,
-                          geometry.width, 2.0 * geometry.radius})),
-      load_mass_(mass_kg) {
+                          geometry.width, 2.0 * geometry.radius})) {
   const double radius = geometry.radius;
   const Eigen::Vector3d run = geometry.front - geometry.rear;
   const double length = run.norm();
@@ -48,8 +46,9 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
       length > 0.0 ? Eigen::Vector3d(run / length) : Eigen::Vector3d::UnitX();
   const Eigen::Vector3d up = forward.cross(Eigen::Vector3d::UnitY());  // contour plane: forward, up
   axes_ << forward, Eigen::Vector3d::UnitY(), up;
+  const double spacing = length > 0.0 ? kSpacing_m : kWheelSpacing * radius;
   const int half_points =
-      std::max(8, static_cast<int>(std::lround(std::numbers::pi * radius / kSpacing_m)));
+      std::max(8, static_cast<int>(std::lround(std::numbers::pi * radius / spacing)));
   const int run_points =
       length > 0.0 ? std::max(1, static_cast<int>(std::lround(length / kSpacing_m))) : 0;
   spacing_ = std::numbers::pi * radius / half_points;
@@ -83,18 +82,17 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, bool driven, const
   carried_ = bristles_;
   bent_.assign(points_.size(), 0);
 
-  // On level ground the belt's lower run carries the load; of a wheel the lowest two or three
-  // points of each row.
-  const double carrying = rows_ * (run_points > 0 ? run_points : 2);
+  // On level ground the belt's lower run carries the load. A wheel that has sunk in by d touches
+  // over 2 sqrt(2 R d), and the mean depth there is 2/3 d.
+  const double patch = 2.0 * std::sqrt(2.0 * radius * kSinkIn_m);
+  const double carrying =
+      rows_ * (run_points > 0 ? static_cast<double>(run_points) : 2.0 / 3.0 * patch / spacing_);
   law_.friction = friction;
-  law_.stiffness = load_n / (kSinkIn_m * carrying);
-  law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * mass_kg / carrying);
-  const double inertia = geometry.spin_inertia_kg_m2 + (driven ? motor.inertia_kg_m2 : 0.0);
-  mass_ = inertia / (radius * radius);
+  law_.stiffness = load.weight_n / (kSinkIn_m * carrying);
+  law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * load.mass_kg / carrying);
 }
 
-void RunningGear::halt() {
-  speed_ = 0.0;
+void RunningGear::let_go() {
   memory_ = {};
   for (size_t i = 0; i < points_.size(); ++i) let_go(i);
 }
@@ -109,16 +107,16 @@ void RunningGear::let_go(size_t point) {
 // The brush model's transport: what a point's material has been bent so far comes with it from the
 // neighbour it passed before. First-order upwind; a belt at 0.25 m/s moves 2 % of the spacing in a
 // step of 1 ms.
-void RunningGear::carry_bristles(double dt) {
-  const double share = std::min(1.0, std::abs(speed_) * dt / spacing_);
+void RunningGear::carry_bristles(double speed, double dt) {
+  const double share = std::min(1.0, std::abs(speed) * dt / spacing_);
   if (share == 0.0) return;
   const size_t row_points = points_.size() / static_cast<size_t>(rows_);
   carried_.swap(bristles_);
   for (size_t row = 0; row < static_cast<size_t>(rows_); ++row) {
     const size_t begin = row * row_points;
     for (size_t i = 0; i < row_points; ++i) {
-      const size_t before = begin + (speed_ > 0.0 ? (i == 0 ? row_points - 1 : i - 1)
-                                                  : (i + 1 == row_points ? 0 : i + 1));
+      const size_t before = begin + (speed > 0.0 ? (i == 0 ? row_points - 1 : i - 1)
+                                                 : (i + 1 == row_points ? 0 : i + 1));
       const size_t here = begin + i;
       if ((bent_[here] | bent_[before]) == 0) continue;  // both zero, in both buffers
       bristles_[here] = carried_[here] + share * (carried_[before] - carried_[here]);
@@ -127,10 +125,10 @@ void RunningGear::carry_bristles(double dt) {
   }
 }
 
-void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrier, double dt,
-                          Wrench& wrench) {
-  carry_bristles(dt);
-  ground_force_ = 0.0;
+double RunningGear::contact(const HeightField& ground, const CarrierMotion& carrier, double speed,
+                            double dt, Wrench& wrench) {
+  carry_bristles(speed, dt);
+  double along_surface = 0.0;
   normal_load_ = 0.0;
   GroundTouch touch;
   // A height field has no overhangs: a point on the upper side of the contour has a lower one right
@@ -148,15 +146,18 @@ void RunningGear::contact(const HeightField& ground, const CarrierMotion& carrie
     }
     bent_[i] = 1;
     const Eigen::Vector3d along = carrier.rotation * along_[i];
-    const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(arm) + speed_ * along;
-    const Eigen::Vector3d force = contact_force(law_, touch, velocity, dt, bristles_[i]);
+    const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(arm);
+    const Eigen::Vector3d force =
+        contact_force(law_, touch, velocity, velocity + speed * along, dt, bristles_[i]);
     wrench.add(force, arm);
-    ground_force_ += force.dot(along);
+    along_surface += force.dot(along);
     normal_load_ += force.z();
   }
+  return along_surface;
 }
 
-void RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double dt, Wrench& wrench) {
+double RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double speed, double dt,
+                            Wrench& wrench) {
   const Eigen::Vector3d arm = carrier.rotation * centre_;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = carrier.rotation * axes_;
@@ -165,11 +166,11 @@ void RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double dt
   FootprintMotion motion;
   motion.velocity = carrier.velocity + carrier.omega.cross(arm);
   motion.omega = carrier.omega;
-  motion.surface_speed = speed_;
-  motion.mass_kg = load_mass_;
+  motion.surface_speed = speed;
+  motion.mass_kg = load_.least_mass_kg;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
-  const double faster = std::max(std::abs(ground_speed), std::abs(speed_));
-  motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed_ - ground_speed) / faster) : 0.0;
+  const double faster = std::max(std::abs(ground_speed), std::abs(speed));
+  motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed - ground_speed) / faster) : 0.0;
 
   const bool on_its_side = std::abs(pose.linear()(2, 1)) > kOnItsSide;
   Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
@@ -178,30 +179,8 @@ void RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double dt
   const SoilReaction reaction = soil.press(footprint, motion, dt, memory_);
   wrench.add(reaction.force, arm);
   wrench.torque += reaction.torque;
-  ground_force_ = reaction.along_surface;
   normal_load_ = reaction.normal_load;
-}
-
-void RunningGear::drive(double voltage, double dt) {
-  const double radius = geometry_.radius;
-  // m dv/dt = torque_per_ampere (V - k v / r) / (R r) + ground - friction; back-EMF implicit,
-  // friction never past rest.
-  double push = ground_force_;
-  double resist = 0.0;
-  double friction = 0.02;  // N, bearings of an undriven wheel
-  if (driven_) {
-    const double gain = motor_.torque_per_ampere() / (motor_.resistance_ohm * radius);
-    push += gain * voltage;
-    resist = gain * motor_.back_emf_v_s / radius;
-    friction = motor_.friction_torque() / radius;
-  }
-  const double pushed = speed_ + push * dt / mass_;
-  const double stopped_by = friction * dt / mass_;
-  speed_ = std::abs(pushed) <= stopped_by
-               ? 0.0
-               : (pushed - std::copysign(stopped_by, pushed)) / (1.0 + resist * dt / mass_);
-  angle_ += speed_ * dt / radius;
-  current_ = driven_ ? motor_.current(voltage, speed_ / radius) : 0.0;
+  return reaction.along_surface;
 }
 
 }  // namespace screed

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "host_sim/core/errors.h"
@@ -97,6 +98,25 @@ const AssemblyJoint* joint_to(const Assembly& assembly, int child) {
     if (joint.child == child) return &joint;
   }
   return nullptr;
+}
+
+// What one of four wheels feels of the robot when it pitches or rolls, kg.
+double least_mass_on_wheels(const Assembly& assembly) {
+  std::vector<int> all(assembly.bodies.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Inertia inertia = composed_inertia(assembly, all);
+  const Eigen::Matrix3d axes = inertia.pose.linear();
+  const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
+  Eigen::Vector3d square = Eigen::Vector3d::Zero();
+  for (const auto& side : kWheels) {
+    for (const char* wheel : side) {
+      const auto index = static_cast<size_t>(assembly.body_index(wheel));
+      const Eigen::Vector3d arm =
+          assembly.bodies[index].pose.translation() - inertia.pose.translation();
+      square += arm.cwiseProduct(arm);
+    }
+  }
+  return std::min(tensor(0, 0) / square.y(), tensor(1, 1) / square.x());
 }
 
 }  // namespace
@@ -236,47 +256,46 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
 
   double side_y[2] = {0.0, 0.0};
   const double units = options.tracks ? 2.0 : 4.0;
-  const double load = mass_ * kGravity_m_per_s2 / units;
+  GearLoad load{mass_ * kGravity_m_per_s2 / units, mass_ / units, mass_ / units};
+  if (!options.tracks) load.least_mass_kg = std::min(load.mass_kg, least_mass_on_wheels(assembly));
   for (const Side side : {kLeft, kRight}) {
     const Wheel front = wheel_named(kWheels[side][0]);
     const Wheel rear = wheel_named(kWheels[side][1]);
     side_y[side] = (carriers_[front.carrier].rest * front.centre).y();
-    const auto add = [&](const Wheel& a, const Wheel& b, double spin_inertia, bool driven) {
-      RunningGearGeometry geometry;
-      geometry.front = a.centre;
-      geometry.rear = b.centre;
-      geometry.radius = a.cylinder.radius;
-      geometry.width = a.cylinder.length;
-      geometry.spin_inertia_kg_m2 = spin_inertia;
-      units_.push_back({a.carrier, side,
-                        RunningGear(geometry, driven, options.motor, options.track_friction, load,
-                                    mass_ / units)});
+    const int motors = (front.driven ? 1 : 0) + (rear.driven ? 1 : 0);
+    if (motors == 0) {
+      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] +
+                       "' or '" + kWheels[side][1] +
+                       "'; a revolute joint with <limit velocity=\"1.0\"> is one");
+    }
+    const auto add_shaft = [&](int of_it, double spin_inertia) {
+      shafts_.push_back({side, DriveShaft(options.motor, of_it, spin_inertia)});
+      return shafts_.size() - 1;
+    };
+    const auto add_unit = [&](const Wheel& a, const Wheel& b, size_t shaft) {
+      const RunningGearGeometry geometry{a.centre, b.centre, a.cylinder.radius, a.cylinder.length};
+      units_.push_back({a.carrier, shaft, RunningGear(geometry, options.track_friction, load)});
       Carrier& carrier = carriers_[a.carrier];
       for (const Eigen::Vector3d& point : units_.back().gear.points()) {
         carrier.radius = std::max(carrier.radius, point.norm());
       }
     };
-    const size_t first = units_.size();
+    encoder_unit_[static_cast<size_t>(side)] = units_.size();
     if (options.tracks) {
       if (front.carrier != rear.carrier) {
         throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] +
                          "' and '" + kWheels[side][1] +
                          "' on the same rigid body; with joints between them set tracks = false");
       }
-      add(front, rear, front.spin_inertia + rear.spin_inertia, front.driven || rear.driven);
+      add_unit(front, rear, add_shaft(motors, front.spin_inertia + rear.spin_inertia));
+    } else if (motors == 2) {
+      add_unit(front, front, add_shaft(1, front.spin_inertia));
+      add_unit(rear, rear, add_shaft(1, rear.spin_inertia));
     } else {
-      add(front, front, front.spin_inertia, front.driven);
-      add(rear, rear, rear.spin_inertia, rear.driven);
+      const size_t both = add_shaft(motors, front.spin_inertia + rear.spin_inertia);
+      add_unit(front, front, both);
+      add_unit(rear, rear, both);
     }
-    const auto driven =
-        std::find_if(units_.begin() + static_cast<std::ptrdiff_t>(first), units_.end(),
-                     [](const Unit& unit) { return unit.gear.driven(); });
-    if (driven == units_.end()) {
-      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] +
-                       "' or '" + kWheels[side][1] +
-                       "'; a revolute joint with <limit velocity=\"1.0\"> is one");
-    }
-    encoder_unit_[static_cast<size_t>(side)] = static_cast<size_t>(driven - units_.begin());
   }
   tread_ = side_y[kLeft] - side_y[kRight];
 }
@@ -293,7 +312,8 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
     carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
     carrier.box_memories.assign(carrier.boxes.size(), ContactMemory{});
   }
-  for (Unit& unit : units_) unit.gear.halt();
+  for (Shaft& shaft : shafts_) shaft.shaft.halt();
+  for (Unit& unit : units_) unit.gear.let_go();
 }
 
 double Vehicle::resting_height(const HeightField& ground, double x, double y,
@@ -330,7 +350,7 @@ void Vehicle::hull_contact(Carrier& carrier, const HeightField& ground, const Ca
       continue;
     }
     const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
-    wrench.add(contact_force(carrier.law, touch, velocity, dt, carrier.bristles[i]), arm);
+    wrench.add(contact_force(carrier.law, touch, velocity, velocity, dt, carrier.bristles[i]), arm);
   }
 }
 
@@ -361,6 +381,7 @@ void Vehicle::hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion&
 
 template <class Ground>
 void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt) {
+  for (Shaft& shaft : shafts_) shaft.torque = 0.0;
   for (size_t c = 0; c < carriers_.size(); ++c) {
     Carrier& carrier = carriers_[c];
     CarrierMotion motion;
@@ -371,13 +392,19 @@ void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, 
 
     Wrench wrench;
     for (Unit& unit : units_) {
-      if (unit.carrier == c) unit.gear.contact(ground, motion, dt, wrench);
+      if (unit.carrier != c) continue;
+      Shaft& shaft = shafts_[unit.shaft];
+      const double radius = unit.gear.radius_m();
+      const double speed = shaft.shaft.omega_rad_per_s() * radius;
+      shaft.torque += radius * unit.gear.contact(ground, motion, speed, dt, wrench);
     }
     hull_contact(carrier, ground, motion, dt, wrench);
     dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
     dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
   }
-  for (Unit& unit : units_) unit.gear.drive(motor_voltage[static_cast<size_t>(unit.side)], dt);
+  for (Shaft& shaft : shafts_) {
+    shaft.shaft.step(motor_voltage[static_cast<size_t>(shaft.side)], shaft.torque, dt);
+  }
 }
 
 void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
@@ -402,30 +429,26 @@ ChassisState Vehicle::chassis() const {
   return state;
 }
 
-const RunningGear& Vehicle::encoder_gear(Side side) const {
-  return units_[encoder_unit_[static_cast<size_t>(side)]].gear;
-}
-
 double Vehicle::track_speed_m_per_s(Side side) const {
-  return encoder_gear(side).speed_m_per_s();
+  return shaft_of(side).omega_rad_per_s() * wheel_radius_m(side);
 }
 double Vehicle::shaft_angle_rad(Side side) const {
-  return encoder_gear(side).angle_rad();
+  return shaft_of(side).angle_rad();
 }
 double Vehicle::wheel_radius_m(Side side) const {
-  return encoder_gear(side).radius_m();
+  return unit_of(side).gear.radius_m();
 }
 
 double Vehicle::current_a(Side side) const {
   double sum = 0.0;
-  for (const Unit& unit : units_) {
-    if (unit.side == side) sum += unit.gear.current_a();
+  for (const Shaft& shaft : shafts_) {
+    if (shaft.side == side) sum += shaft.shaft.current_a();
   }
   return sum;
 }
 
 double Vehicle::ground_speed_m_per_s(Side side) const {
-  const Unit& unit = units_[encoder_unit_[static_cast<size_t>(side)]];
+  const Unit& unit = unit_of(side);
   const Carrier& carrier = carriers_[unit.carrier];
   const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
   const Eigen::Vector3d arm = rotation * unit.gear.centre();

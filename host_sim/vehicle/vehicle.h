@@ -2,8 +2,8 @@
 // contact with the ground.
 //
 // Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
-// them and turn in their running gear (running_gear.h). Other revolute joints are ODE hinges. All
-// ground forces are our own (ground_contact.h).
+// them and turn on shafts (drive_shaft.h) under their running gear (running_gear.h). Other revolute
+// joints are ODE hinges. All ground forces are our own (ground_contact.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,6 +14,7 @@
 #include "host_sim/soil/soil_bed.h"
 #include "host_sim/terrain/height_field.h"
 #include "host_sim/vehicle/assembly.h"
+#include "host_sim/vehicle/drive_shaft.h"
 #include "host_sim/vehicle/gear_motor.h"
 #include "host_sim/vehicle/ode_world.h"
 #include "host_sim/vehicle/running_gear.h"
@@ -21,7 +22,9 @@
 namespace screed {
 
 struct VehicleOptions {
-  bool tracks = true;           ///< a belt round the wheels of each side; false: single wheels
+  /// A belt round the wheels of each side. false: the wheels alone, all four driven; a wheel
+  /// without a motor of its own is geared to the other one of its side.
+  bool tracks = true;
   double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
   double chassis_friction = 0.4;
   GearMotor motor;
@@ -94,9 +97,14 @@ class Vehicle {
     std::vector<ContactMemory> box_memories;
     double mass;
   };
+  struct Shaft {
+    Side side;
+    DriveShaft shaft;
+    double torque = 0.0;  // of the ground in this step, N m
+  };
   struct Unit {
     size_t carrier;
-    Side side;
+    size_t shaft;
     RunningGear gear;
   };
 
@@ -110,11 +118,14 @@ class Vehicle {
                            Wrench& wrench);
   template <class Ground>
   void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
-  const RunningGear& encoder_gear(Side side) const;
+  /// The driven unit that stands for its side, and the shaft with the encoder.
+  const Unit& unit_of(Side side) const { return units_[encoder_unit_[static_cast<size_t>(side)]]; }
+  const DriveShaft& shaft_of(Side side) const { return shafts_[unit_of(side).shaft].shaft; }
 
   OdeWorld& world_;
   std::vector<Carrier> carriers_;
   std::vector<size_t> carrier_of_body_;  // of each body of the assembly
+  std::vector<Shaft> shafts_;
   std::vector<Unit> units_;
   size_t chassis_carrier_ = 0;
   std::array<size_t, 2> encoder_unit_{};

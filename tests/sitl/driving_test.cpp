@@ -63,24 +63,6 @@ TEST(DrivingOnSlopes, ClimbsTwentyDegrees) {
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
 
-// Without belts only the front wheels pull. Uphill they carry the smaller share of the weight,
-// (cos/2 - sin h/L) of it with the centre of mass h above the ground: friction 0.8 is enough for 10
-// degrees, and not for 20.
-TEST(DrivingOnSlopes, FrontWheelsAlonePullAsMuchAsTheirLoadAllows) {
-  const auto climbed = [](double slope_deg) {
-    WorldOptions options = drive_options(0.1, 0.0);
-    options.start.x_m = -4.0;
-    options.vehicle.tracks = false;
-    TestDrive drive(HeightField::ramp(10.0, 0.1, slope_deg), options);
-    EXPECT_TRUE(drive.start());
-    const Eigen::Vector3d begin = drive.position();
-    drive.run(10.0);
-    return drive.position().x() - begin.x();
-  };
-  EXPECT_GT(climbed(10.0), 0.85);
-  EXPECT_LT(climbed(20.0), 0.2);
-}
-
 TEST(DrivingOnSlopes, StandsStillOnASlopeWhenStopped) {
   WorldOptions options;
   options.ground_station_arms = false;

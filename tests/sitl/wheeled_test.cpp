@@ -1,0 +1,166 @@
+// The robot on its four wheels alone: two motors, each geared to both wheels of its side.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/sitl/test_drive.h"
+
+namespace screed::testing {
+namespace {
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+constexpr double kStep_s = 0.001;
+
+WorldOptions wheels(double speed_m_per_s, double yaw_rate_deg_per_s) {
+  WorldOptions options = drive_options(speed_m_per_s, yaw_rate_deg_per_s);
+  options.vehicle.tracks = false;
+  return options;
+}
+
+Plant wheeled_plant(HeightField ground, const WorldOptions& options = wheels(0.0, 0.0)) {
+  return Plant(std::move(ground), rover5(), options);
+}
+
+void run(Plant& plant, double seconds, double left, double right) {
+  const int64_t steps = std::lround(seconds / kStep_s);
+  for (int64_t i = 0; i < steps; ++i) plant.step({left, right});
+}
+
+TEST(WheeledRover, DrivesStraightAtTheOrderedSpeed) {
+  TestDrive drive(HeightField::flat(10.0, 0.1), wheels(0.1, 0.0));
+  ASSERT_TRUE(drive.start());
+  drive.run(1.0);
+  const Eigen::Vector3d begin = drive.position();
+  drive.run(10.0);
+  const Eigen::Vector3d way = drive.position() - begin;
+  EXPECT_NEAR(way.norm(), 1.0, 0.05);
+  EXPECT_NEAR(drive.attitude().pitch, 0.0, 0.5 * kDeg);
+  EXPECT_EQ(drive.robot.supervisor().faults(), 0);
+}
+
+TEST(WheeledRover, RollsAtTheSpeedOfItsWheels) {
+  Plant plant = wheeled_plant(HeightField::flat(10.0, 0.1));
+  run(plant, 1.0, 0.5, 0.5);
+  const double begin = plant.vehicle().chassis().pose.translation().x();
+  const double angle = plant.vehicle().shaft_angle_rad(kLeft);
+  run(plant, 3.0, 0.5, 0.5);
+  const double rolled = (plant.vehicle().shaft_angle_rad(kLeft) - angle) * 0.03;
+  EXPECT_NEAR(plant.vehicle().chassis().pose.translation().x() - begin, rolled, 0.02 * rolled);
+}
+
+// Turning in place every wheel slides sideways: with wheel spacing L and tread B, equal loads and
+// Coulomb friction the moments balance when the slip s along the wheels is (L/B) of the sideways
+// one, w L / 2 (L/B): the robot turns at 1 / (1 + (L/B)^2) of the kinematic rate. Belts of the same
+// length, loaded evenly all along, turn faster.
+TEST(WheeledRover, SkidTurnFollowsTheMomentBalance) {
+  Plant plant = wheeled_plant(HeightField::flat(10.0, 0.1));
+  run(plant, 2.0, -0.6, 0.6);
+  double turned = 0.0;
+  const double angle = plant.vehicle().shaft_angle_rad(kRight);
+  for (int i = 0; i < 3000; ++i) {
+    plant.step({-0.6, 0.6});
+    turned += plant.vehicle().chassis().omega_body.z() * kStep_s;
+  }
+  const double tread = plant.vehicle().tread_m();
+  const double kinematic = (plant.vehicle().shaft_angle_rad(kRight) - angle) * 0.03 / (0.5 * tread);
+  const double expected = 1.0 / (1.0 + std::pow(0.185 / tread, 2));
+  EXPECT_NEAR(turned / kinematic, expected, 0.05 * expected);
+}
+
+// The gyroscope closes the loop: the ordered rate is kept however much the wheels slip.
+TEST(WheeledRover, KeepsTheOrderedTurnRate) {
+  TestDrive drive(HeightField::flat(10.0, 0.1), wheels(0.0, 30.0));
+  ASSERT_TRUE(drive.start());
+  drive.run(3.0);
+  double turned = 0.0;
+  for (int i = 0; i < 3 * kTickRate_hz; ++i) {
+    drive.tick();
+    turned += drive.yaw_rate() / kTickRate_hz;
+  }
+  EXPECT_NEAR(turned / kDeg, 90.0, 0.05 * 90.0);
+}
+
+TEST(WheeledRover, ClimbsTwentyDegrees) {
+  WorldOptions options = wheels(0.1, 0.0);
+  options.start.x_m = -4.0;
+  TestDrive drive(HeightField::ramp(10.0, 0.1, 20.0), options);
+  ASSERT_TRUE(drive.start());
+  const Eigen::Vector3d begin = drive.position();
+  drive.run(20.0);
+  const Eigen::Vector3d way = drive.position() - begin;
+  EXPECT_NEAR(way.norm(), 2.0, 0.1);
+  EXPECT_NEAR(way.z(), way.norm() * std::sin(20.0 * kDeg), 0.01);
+  EXPECT_EQ(drive.robot.supervisor().faults(), 0);
+}
+
+// What the shafts put out is found again as height, less what slip and the tyres' damping take.
+TEST(WheeledRover, WorkOfTheShaftsLiftsTheRobot) {
+  WorldOptions options = wheels(0.0, 0.0);
+  options.start.x_m = -2.0;
+  options.start.attitude.pitch = 10.0 * kDeg;
+  Plant plant = wheeled_plant(HeightField::ramp(10.0, 0.1, 10.0), options);
+  run(plant, 1.0, 0.7, 0.7);
+  const GearMotor motor;
+  const double begin = plant.vehicle().chassis().pose.translation().z();
+  double work = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    plant.step({0.7, 0.7});
+    for (const Side side : {kLeft, kRight}) {
+      const double torque =
+          motor.torque_per_ampere() * plant.vehicle().current_a(side) - motor.friction_torque();
+      work += torque * plant.vehicle().track_speed_m_per_s(side) / 0.03 * kStep_s;
+    }
+  }
+  const double lifted = plant.vehicle().mass_kg() * kGravity_m_per_s2 *
+                        (plant.vehicle().chassis().pose.translation().z() - begin);
+  EXPECT_GT(lifted, 1.0);
+  EXPECT_GT(work, lifted);
+  EXPECT_LT(work, 1.15 * lifted);
+}
+
+TEST(WheeledRover, StandsStill) {
+  WorldOptions options = wheels(0.0, 0.0);
+  options.start.attitude.pitch = 20.0 * kDeg;
+  Plant plant = wheeled_plant(HeightField::ramp(10.0, 0.1, 20.0), options);
+  const Eigen::Vector3d begin = plant.vehicle().chassis().pose.translation();
+  run(plant, 10.0, 0.0, 0.0);
+  EXPECT_LT((plant.vehicle().chassis().pose.translation() - begin).norm(), 1e-4);
+  EXPECT_LT(plant.vehicle().chassis().velocity.norm(), 1e-6);
+}
+
+// On firm sand the wheels slip a little, on loose sand a lot: they sink in by some millimetres.
+TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
+  struct Expected {
+    const char* soil;
+    double least_way_m;  // of the 0.8 m that the wheels roll
+  };
+  for (const Expected& expected :
+       {Expected{"lete_sand", 0.6}, Expected{"viper", 0.4}, Expected{"dry_sand", 0.25}}) {
+    SCOPED_TRACE(expected.soil);
+    WorldOptions options = wheels(0.1, 0.0);
+    options.soil = soil_preset(expected.soil);
+    options.start.x_m = -0.7;
+    TestDrive drive(HeightField::flat(2.0, 0.005), options);
+    ASSERT_TRUE(drive.start());
+    const Eigen::Vector3d begin = drive.position();
+    double steepest = 0.0;
+    double fastest = 0.0;  // up or down
+    for (int i = 0; i < 8 * kTickRate_hz; ++i) {
+      drive.tick();
+      steepest =
+          std::max({steepest, std::abs(drive.attitude().pitch), std::abs(drive.attitude().roll)});
+      fastest = std::max(fastest, std::abs(drive.world.vehicle().chassis().velocity.z()));
+    }
+    const double way = (drive.position() - begin).norm();
+    EXPECT_GT(way, expected.least_way_m);
+    EXPECT_LT(way, 0.8 * 1.05);
+    EXPECT_LT(steepest, 5.0 * kDeg);
+    EXPECT_LT(fastest, 0.05);
+    EXPECT_EQ(drive.world.plant().soil()->balance().error(), 0);
+    EXPECT_EQ(drive.robot.supervisor().faults(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace screed::testing
