@@ -13,6 +13,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
+#include "host_sim/link/outside_port.h"
 #include "tools/progress_bar.h"
 
 namespace screed {
@@ -34,6 +35,8 @@ struct SimArguments {
   std::string hal = "native";
   std::optional<std::string> board;
   std::optional<std::string> elf;
+  std::optional<std::string> can;
+  std::optional<std::string> pty;
   bool realtime = false;
   bool quiet = false;
   bool json = false;
@@ -121,7 +124,18 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   const Experiment experiment = read_experiment(arguments.file, overrides);
 
   SimulationOptions options;
-  options.realtime = arguments.realtime;
+  PortGroup ports;
+  if (arguments.can.has_value()) ports.add(std::make_unique<CanPort>(*arguments.can));
+  if (arguments.pty.has_value()) {
+    auto terminal = std::make_unique<TerminalPort>(
+        arguments.pty->empty() ? std::nullopt
+                               : std::optional<std::filesystem::path>(*arguments.pty));
+    std::cerr << "serial port " << terminal->device().string() << "\n";
+    ports.add(std::move(terminal));
+  }
+  if (!ports.empty()) options.ground_port = &ports;
+  // Other programs live by the clock.
+  options.realtime = arguments.realtime || !ports.empty();
   options.stop = &interrupted;
   options.program_version = version;
   if (arguments.out.has_value()) options.out = *arguments.out;
@@ -183,6 +197,15 @@ void register_sim_command(CLI::App& root, const std::string& version,
   command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
   command->add_option("--elf", arguments->elf,
                       "with --hal mcu: the image; by default that of make firmware");
+  command->add_option("--can", arguments->can,
+                      "publish the radio's frames on this CAN interface and take commands from it; "
+                      "implies --realtime");
+  command
+      ->add_option("--pty", arguments->pty,
+                   "offer the radio as a virtual serial port, like that of an XBee, with a "
+                   "symbolic link LINK to it; implies --realtime")
+      ->type_name("LINK")
+      ->expected(0, 1);
   command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
   command->add_flag("--quiet", arguments->quiet,
                     "no progress; print run folder and content hash alone");

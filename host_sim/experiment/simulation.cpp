@@ -225,9 +225,10 @@ class Run {
   Run(const Experiment& experiment, const SimulationOptions& options, std::ostream* telemetry_log)
       : experiment_(experiment), options_(options) {
     if (options.image.has_value()) {
-      image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image);
+      image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image,
+                                  options.ground_port);
     } else {
-      world_ = make_world(experiment, telemetry_log, options.board);
+      world_ = make_world(experiment, telemetry_log, options.board, options.ground_port);
     }
   }
 
@@ -392,8 +393,9 @@ Assembly make_model(const Experiment& experiment) {
   return import_urdf(find_model_file(experiment), urdf);
 }
 
-WorldOptions world_options(const Experiment& experiment) {
+WorldOptions world_options(const Experiment& experiment, GroundPort* ground_port) {
   WorldOptions options;
+  options.ground_port = ground_port;
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
   options.start.x_m = experiment.vehicle.x_m;
@@ -424,21 +426,21 @@ WorldOptions world_options(const Experiment& experiment) {
 }  // namespace
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const std::string& board) {
+                                  const std::string& board, GroundPort* ground_port) {
   return std::make_unique<World>(make_terrain(experiment), make_model(experiment),
-                                 board_constants_of(board), world_options(experiment),
+                                 board_constants_of(board), world_options(experiment, ground_port),
                                  telemetry_log);
 }
 
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,
-                                                 const std::string& board,
-                                                 const std::string& image) {
+                                                 const std::string& board, const std::string& image,
+                                                 GroundPort* ground_port) {
   CoSimulationOptions options;
   options.elf = image;
   options.board = board;
   options.parameters = experiment.parameters;
-  options.world = world_options(experiment);
+  options.world = world_options(experiment, ground_port);
   return make_co_simulation(make_terrain(experiment), make_model(experiment), options,
                             telemetry_log);
 }

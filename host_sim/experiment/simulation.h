@@ -34,6 +34,9 @@ struct SimulationOptions {
   const std::atomic<bool>* stop =
       nullptr;  ///< becomes true when the run is to end early, with everything saved
   std::function<void(const SimulationProgress&)> progress;  ///< called ten times a simulated second
+  /// Programs outside at the ground end of the radio; may be null. What they send is in the
+  /// recorded samples, so that the run replays; running it again is another run.
+  GroundPort* ground_port = nullptr;
   std::string program_version;
   std::string board = kDefaultBoard;
   /// The image that is to run under the microcontroller simulation; without it the firmware runs
@@ -73,12 +76,13 @@ SoilParameters make_soil(const Experiment& experiment);
 HeightField make_terrain(const Experiment& experiment);
 /// A world as the experiment describes it, for a board of boards/. telemetry_log may be null.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const std::string& board = kDefaultBoard);
+                                  const std::string& board = kDefaultBoard,
+                                  GroundPort* ground_port = nullptr);
 /// The same world with the image running in it (co_simulation.h).
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,
-                                                 const std::string& board,
-                                                 const std::string& image);
+                                                 const std::string& board, const std::string& image,
+                                                 GroundPort* ground_port = nullptr);
 
 /// Runs to the end of the duration or until told to stop. Throws InputError before anything is
 /// written, RunError when the run cannot be saved; then nothing half-written stays behind.

@@ -40,6 +40,7 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
       uplink_(options.world.seed, "uplink", options.world.radio),
       downlink_(options.world.seed, "downlink", options.world.radio),
       ground_(options.world.ground_station_arms, options.world.drive, telemetry_log),
+      ground_end_(options.world.ground_port),
       board_(options.elf, wiring_of(options.board)),
       chip_clock_(options.world.seed, "chip clocks"),
       noise_(options.world.seed, "flood") {
@@ -85,8 +86,7 @@ void McuWorld::begin_tick() {
     plant_.lay_on_side();
   }
   const std::uint64_t at_us = us_at(plant_.steps());
-  uplink_.send(at_us, ground_.transmit(at_us));
-  ground_.receive(at_us, downlink_.receive(at_us, SIZE_MAX));
+  ground_end_.tick(at_us, ground_, uplink_, downlink_);
 }
 
 void McuWorld::begin_step() {

@@ -64,6 +64,7 @@ class McuWorld : public CoSimulation {
   RadioLink uplink_;
   RadioLink downlink_;
   GroundStation ground_;
+  GroundEnd ground_end_;
   Board board_;
   WorldRandom chip_clock_;
   WorldRandom noise_;

@@ -14,7 +14,8 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
       imu_(options.seed, options.imu),
       uplink_(options.seed, "uplink", options.radio),
       downlink_(options.seed, "downlink", options.radio),
-      ground_(options.ground_station_arms, options.drive, telemetry_log) {}
+      ground_(options.ground_station_arms, options.drive, telemetry_log),
+      ground_end_(options.ground_port) {}
 
 void World::step_physics() {
   const std::array<double, 2> share = {static_cast<double>(duty_[kLeft]) / kDutyMax,
@@ -38,12 +39,11 @@ void World::measure() {
 }
 
 void World::exchange_radio() {
-  uplink_.send(now_us(), ground_.transmit(now_us()));
+  ground_end_.tick(now_us(), ground_, uplink_, downlink_);
   const std::vector<uint8_t> arrived = uplink_.receive(now_us(), kRadioInCapacity);
   sample_.radio_in_count = static_cast<uint8_t>(arrived.size());
   std::fill(std::copy(arrived.begin(), arrived.end(), sample_.radio_in),
             sample_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));
-  ground_.receive(now_us(), downlink_.receive(now_us(), SIZE_MAX));
 }
 
 void World::advance() {

@@ -12,6 +12,7 @@
 
 #include "firmware/robot/board_constants.h"
 #include "hal/sample.h"
+#include "host_sim/radio/ground_end.h"
 #include "host_sim/radio/ground_station.h"
 #include "host_sim/radio/radio_link.h"
 #include "host_sim/sensors/imu_model.h"
@@ -25,6 +26,8 @@ struct WorldOptions : PlantOptions {
   RadioOptions radio;
   bool ground_station_arms = true;
   std::optional<DriveOrder> drive;
+  /// Programs outside at the ground end of the radio; may be null, must outlive the world.
+  GroundPort* ground_port = nullptr;
   double encoder_counts_per_turn = 1000.0 / 3.0;
   /// The robot is laid on its left side at this time, s: a fault to inject.
   std::optional<double> lay_on_side_at_s;
@@ -69,6 +72,7 @@ class World {
   RadioLink uplink_;
   RadioLink downlink_;
   GroundStation ground_;
+  GroundEnd ground_end_;
   uint64_t ticks_ = 0;
   std::array<int16_t, 2> duty_ = {0, 0};
   SensorSample sample_{};
