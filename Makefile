@@ -76,6 +76,7 @@ LIBRARY := $(B)/libscreed.a
 help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
+	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
 	@echo "make firmware  build the image for the robot          (BOARD=$(BOARD))"
 	@echo "make size      flash, RAM, stack and longest tick of that image against the budget"
 	@echo "make arduino   the firmware as a library for the Arduino IDE (BOARD=$(BOARD))"
@@ -209,6 +210,7 @@ ifeq ($(MCU),yes)
 include $(wildcard tests/mcu/mcu_tests.mk)
 endif
 include tools/flash/flash.mk
+include tests/can/can.mk
 
 $(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	@echo "  LINK $@"

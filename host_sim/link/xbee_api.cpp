@@ -91,16 +91,16 @@ std::vector<uint8_t> encode_xbee(const XbeeFrame& frame, XbeeApiMode mode) {
 std::optional<XbeePacket> received_packet(const XbeeFrame& frame) {
   // Bytes of the address, and where data and RSSI stand.
   struct Layout {
-    XbeeFrameType type;
     size_t address_bytes;
-    bool rssi;  ///< behind the address
     size_t data_at;
+    XbeeFrameType type;
+    bool rssi;  ///< behind the address
   };
   constexpr Layout kLayouts[] = {
-      {XbeeFrameType::kReceive64, 8, true, 10},
-      {XbeeFrameType::kReceive16, 2, true, 4},
-      {XbeeFrameType::kReceive, 8, false, 11},
-      {XbeeFrameType::kReceiveExplicit, 8, false, 17},
+      {8, 10, XbeeFrameType::kReceive64, true},
+      {2, 4, XbeeFrameType::kReceive16, true},
+      {8, 11, XbeeFrameType::kReceive, false},
+      {8, 17, XbeeFrameType::kReceiveExplicit, false},
   };
   const auto* const layout = std::find_if(std::begin(kLayouts), std::end(kLayouts),
                                           [&](const Layout& l) { return l.type == frame.type; });

@@ -25,13 +25,16 @@ std::vector<uint8_t> text(const std::string& characters) {
 }
 
 class LinkTest : public ::testing::Test {
- protected:
+ public:
   LinkTest() {
     std::string pattern = (fs::temp_directory_path() / "screed-link-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
   }
+  LinkTest(const LinkTest&) = delete;
+  LinkTest& operator=(const LinkTest&) = delete;
   ~LinkTest() override { fs::remove_all(folder_); }
 
+ protected:
   /// What arrives until there are `count` frames or nothing more comes.
   static std::vector<LinkFrame> frames_of(Link& link, size_t count = 1) {
     std::vector<LinkFrame> frames;
@@ -226,7 +229,7 @@ TEST_F(LinkTest, RobotsBehindOneRadioAreToldApart) {
   // The line of each robot comes in two packets, and the packets take turns.
   const auto packet = [&](uint8_t robot, uint8_t rssi, const std::string& data) {
     XbeeFrame frame{XbeeFrameType::kReceive16, {0x00, robot, rssi, 0x00}};
-    frame.content.insert(frame.content.end(), data.begin(), data.end());
+    for (const char character : data) frame.content.push_back(static_cast<uint8_t>(character));
     device.write(encode_xbee(frame, XbeeApiMode::kEscaped));
   };
   packet(1, 40, "t2103AA");
