@@ -32,7 +32,7 @@ endif
 # -ffp-contract=off: the same bits with and without fused multiply-add.
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor \
             -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
-COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I.
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I. -I$(BUILD_ROOT)/generated
 DATA_DIR ?= $(CURDIR)/host_sim/data
 BOARDS_DIR ?= $(CURDIR)/boards
 FIRMWARE_DIR ?= $(abspath $(BUILD_ROOT))/firmware
@@ -56,12 +56,13 @@ endif
 HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp)) $(MCU_USED_$(MCU))
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
+SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))
 STACK_LIBRARY_SOURCES := $(filter-out tools/avr_stack/main.cpp,$(wildcard tools/avr_stack/*.cpp))
 UNIT_SOURCES := $(wildcard tests/unit/*.cpp)
 SITL_SOURCES := $(wildcard tests/sitl/*.cpp)
 BENCH_SOURCES := $(wildcard tools/bench/*.cpp)
 CPP_FILES := $(shell find firmware hal host_sim tools tests boards -name '*.cpp' -o -name '*.h' 2>/dev/null | LC_ALL=C sort)
-TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) tools/main.cpp $(wildcard tools/avr_stack/main.cpp) \
+TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/schema/main.cpp $(wildcard tools/avr_stack/main.cpp) \
                 $(UNIT_SOURCES) $(SITL_SOURCES) $(BENCH_SOURCES)
 
 objects = $(patsubst %.cpp,$(B)/%.o,$(1))
@@ -118,6 +119,8 @@ format: deps
 clean:
 	rm -rf $(BUILD_ROOT)
 
+include tools/schema/schema.mk
+
 # ---- compiler flags in response files: rebuilt when they change, and pkg-config runs once. -idirafter: foreign headers
 # are system headers (no warnings), and a package that names /usr/include does not upset the compiler's own order ------------------------------------
 
@@ -157,11 +160,11 @@ $(B)/generated/boards.h: FORCE
 	     echo '#undef kBoard' ; done ; \
 	   echo '#define SCREED_BOARDS(X) $(foreach board,$(BOARDS),X($(board)))' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
-GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(SCHEMA_HEADERS)
 
 # ---- host program ------------------------------------------------------------------------------------------------------------
 
-$(B)/firmware/%.o: firmware/%.cpp $(B)/firmware.flags
+$(B)/firmware/%.o: firmware/%.cpp $(B)/firmware.flags | $(SCHEMA_HEADERS)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/firmware.flags -MMD -MP -c $< -o $@
@@ -212,7 +215,7 @@ endif
 include tools/flash/flash.mk
 include tests/can/can.mk
 
-$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
+$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	@echo "  LINK $@"
 	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
 $(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flags
@@ -248,6 +251,6 @@ $(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED
 	  | { grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$$' || true; }
 	@touch $@
 
-ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
+ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
                  $(SITL_SOURCES) $(BENCH_SOURCES))
 -include $(ALL_OBJECTS:.o=.d)

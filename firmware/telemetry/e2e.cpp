@@ -22,12 +22,12 @@ uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size) {
 
 void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size) {
   data[1] = static_cast<uint8_t>((data[1] & 0xF0U) | (counter & 0x0FU));
-  data[0] = e2e_crc(e2e_data_id(can_id, counter), data, size);
+  data[0] = e2e_crc(e2e_data_id(can_id), data, size);
 }
 
 bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size) {
   if (size < 3 || size > 8) return false;
-  return data[0] == e2e_crc(e2e_data_id(can_id, data[1] & 0x0FU), data, size);
+  return data[0] == e2e_crc(e2e_data_id(can_id), data, size);
 }
 
 }  // namespace screed

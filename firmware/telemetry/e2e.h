@@ -12,10 +12,12 @@ namespace screed {
 /// CRC-8H2F of `size` bytes, continuing from `crc` (start with 0xFF, xor the end with 0xFF).
 uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size);
 
-/// The data id of a CAN id at a counter value: makes a frame that was delivered under another id
-/// fail its check.
-constexpr uint8_t e2e_data_id(uint16_t can_id, uint8_t counter) {
-  return static_cast<uint8_t>((can_id >> 8) * 31U + (can_id & 0xFFU) + counter * 17U);
+/// The data id of a CAN id: makes a frame that was delivered under another id fail its check. Ids
+/// that differ in one hexadecimal digit have different data ids. The standard's list of a data id
+/// for each counter value holds 16 times the same one: were they different, a wrong digit of the
+/// counter would change data and data id together, and some of those changes cancel out.
+constexpr uint8_t e2e_data_id(uint16_t can_id) {
+  return static_cast<uint8_t>((can_id >> 8) * 31U + (can_id & 0xFFU));
 }
 
 /// Byte 0 of a protected frame: the CRC over data[1..size) and a data id (in the standard:
@@ -26,9 +28,8 @@ uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size);
 /// the message.
 void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size);
 
-/// True when the CRC is right for this id and size. A frame of the header alone (size 2) is
-/// refused: there the CRC misses some single wrong bits of the counter, since they change the data
-/// id too.
+/// True when the CRC is right for this id and size. A frame of the header alone (size 2) says
+/// nothing and is refused.
 bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size);
 
 }  // namespace screed

@@ -13,105 +13,107 @@ struct Schedule {
   uint8_t first;   ///< tick of the first one: spreads the load
 };
 
-// In order of importance. A full tick delays the lower lines by one tick; 117 lines a second of 200
-// possible, 2498 bytes.
+// In order of importance. A full tick delays the lower lines by one tick; 118 lines a second of 200
+// possible.
 constexpr Schedule kSchedule[kTelemetryMessages] = {
     {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2},  {kIdMotors, 5, 3},
     {kIdLeveling, 10, 4},  {kIdOdometry, 10, 6}, {kIdAccelRaw, 10, 8}, {kIdGyroRaw, 10, 9},
     {kIdPower, 50, 14},    {kIdMagRaw, 50, 24},  {kIdBaro, 100, 34},   {kIdHealth, 50, 44},
+    {kIdLink, 100, 54},
 };
-
-uint8_t header_bits(uint8_t value) {
-  return static_cast<uint8_t>(value << 4);
-}
-
-void put_vector(uint8_t* at, const int16_t (&vector)[3]) {
-  for (const int16_t component : vector) {
-    put_s16(at, component);
-    at += 2;
-  }
-}
 
 /// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.
 int16_t centidegrees_per_s(YawRate rate) {
   return centidegrees_from_angle(rate);
 }
 
-// Fills size and data[2..]; the protection header is written afterwards.
+// Fills size and data; the protection is written afterwards.
+template <typename Message>
+void set(CanFrame& frame, const Message& message) {
+  frame.size = Message::kSize;
+  message.pack(frame.data);
+}
+
+// The three raw vectors have one layout: their code is in the image once.
+void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
+  set(frame, message::AccelRaw{vector[0], vector[1], vector[2]});
+}
+
 SCREED_OUT_OF_LINE void fill(CanFrame& frame, const TelemetryView& view) {
-  uint8_t* const payload = frame.data + kE2eHeaderSize;
   const SensorSample& sample = *view.sample;
-  frame.size = 8;
-  frame.data[1] = 0;
   switch (frame.id) {
-    case kIdHeartbeat:
-      frame.data[1] = header_bits(static_cast<uint8_t>(view.state));
-      put_u16(payload, view.faults);
-      payload[2] = view.link_alive ? 1 : 0;
-      payload[3] = view.rejected_lines;
-      frame.size = 6;
+    case kIdHeartbeat: {
+      message::Heartbeat it{};
+      it.state = static_cast<uint8_t>(view.state);
+      it.faults = view.faults;
+      it.link_quality = view.link_alive ? 100 : 0;
+      set(frame, it);
       break;
+    }
     case kIdAttitude:
-      put_s16(payload, view.roll_cdeg);
-      put_s16(payload + 2, view.pitch_cdeg);
-      put_u16(payload + 4, view.heading_cdeg);
+      set(frame, message::Attitude{view.roll_cdeg, view.pitch_cdeg, view.heading_cdeg});
       break;
-    case kIdLeveling:
-      frame.data[1] = header_bits(static_cast<uint8_t>(view.leveling_state));
-      payload[0] = static_cast<uint8_t>(view.algorithm);
-      payload[1] = static_cast<uint8_t>(view.peaks & 0xFFU);
-      put_s16(payload + 2, view.motion.speed_mm_per_s);
-      put_s16(payload + 4, centidegrees_per_s(view.motion.yaw_rate));
+    case kIdLeveling: {
+      message::Leveling it{};
+      it.state = static_cast<uint8_t>(view.leveling_state);
+      it.algorithm = static_cast<uint8_t>(view.algorithm);
+      it.peaks = static_cast<uint8_t>(view.peaks & 0xFFU);
+      it.speed = view.motion.speed_mm_per_s;
+      it.turn_rate = centidegrees_per_s(view.motion.yaw_rate);
+      set(frame, it);
       break;
+    }
     case kIdEncoders:
-      put_u16(payload, sample.encoder_left);
-      put_u16(payload + 2, sample.encoder_right);
-      put_u16(payload + 4, kTickPeriod_us / 4);
+      set(frame, message::Encoders{sample.encoder_left, sample.encoder_right, kTickPeriod_us / 4});
       break;
     case kIdMotors:
-      put_s16(payload, view.duty_left);
-      put_s16(payload + 2, view.duty_right);
-      payload[4] = sample.encoder_errors;
-      frame.size = 7;
+      set(frame, message::Motors{view.duty_left, view.duty_right, sample.encoder_errors});
       break;
     case kIdOdometry:
-      put_s16(payload, saturate_i16(view.x_mm));
-      put_s16(payload + 2, saturate_i16(view.y_mm));
-      put_u16(payload + 4, view.heading_cdeg);
+      set(frame,
+          message::Odometry{saturate_i16(view.x_mm), saturate_i16(view.y_mm), view.heading_cdeg});
       break;
     case kIdAccelRaw:
-      put_vector(payload, sample.accel);
+      set_vector(frame, sample.accel);
       break;
     case kIdGyroRaw:
-      put_vector(payload, sample.gyro);
+      set_vector(frame, sample.gyro);
       break;
     case kIdMagRaw:
-      put_vector(payload, sample.mag);
+      set_vector(frame, sample.mag);
       break;
     case kIdPower: {
       const uint16_t load = static_cast<uint16_t>(sample.last_tick_us / (kTickPeriod_us / 100U));
-      put_u16(payload, view.battery_mv);
-      payload[2] = static_cast<uint8_t>(load > 255 ? 255 : load);
-      frame.size = 5;
+      set(frame, message::Power{view.battery_mv, static_cast<uint8_t>(load > 255 ? 255 : load)});
       break;
     }
-    case kIdHealth:
-      frame.data[1] = header_bits(sample.reset_cause);
-      payload[0] = sample.chips_failing;
-      payload[1] = sample.bus_errors;
-      payload[2] = sample.radio_errors;
-      put_u16(payload + 3, sample.last_tick_us);
-      frame.size = 7;
+    case kIdHealth: {
+      message::Health it{};
+      it.reset_cause = sample.reset_cause;
+      it.chips_failing = sample.chips_failing;
+      it.i2c_errors = sample.bus_errors;
+      it.uart_errors = sample.radio_errors;
+      it.last_tick = sample.last_tick_us;
+      set(frame, it);
       break;
+    }
+    case kIdLink: {
+      message::Link it{};
+      it.lines_rejected = view.rejected_lines;
+      set(frame, it);
+      break;
+    }
     case kIdBaro:
     default: {
       const uint16_t from_zero =
           quotient_u16(static_cast<uint32_t>(abs_u16(sample.temperature)) * 5U, 24);
+      message::Baro it{};
       // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
-      put_u32(payload, (static_cast<uint32_t>(sample.pressure) * 25U) >> 6);
+      it.pressure = (static_cast<uint32_t>(sample.pressure) * 25U) >> 6;
       // 42.5 degC + raw/480, in 0.01 degC
-      put_s16(payload + 4,
-              static_cast<int16_t>(sample.temperature < 0 ? 4250 - from_zero : 4250 + from_zero));
+      it.temperature =
+          static_cast<int16_t>(sample.temperature < 0 ? 4250 - from_zero : 4250 + from_zero);
+      set(frame, it);
       break;
     }
   }
@@ -141,9 +143,7 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
   CanFrame frame{};
   if (ack_op_ != 0) {
     frame.id = kIdCommandAck;
-    frame.size = 4;
-    frame.data[2] = ack_op_;
-    frame.data[3] = static_cast<uint8_t>(ack_result_);
+    set(frame, message::CommandAck{ack_op_, 0, static_cast<uint8_t>(ack_result_), 0});
     emit(frame, ack_counter_, output);
     ack_op_ = 0;
   }

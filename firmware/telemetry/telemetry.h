@@ -32,7 +32,7 @@ struct TelemetryView {
   uint16_t battery_mv;
 };
 
-constexpr uint8_t kTelemetryMessages = 12;
+constexpr uint8_t kTelemetryMessages = 13;
 
 class Telemetry {
  public:

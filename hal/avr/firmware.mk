@@ -39,7 +39,7 @@ AVR_FLAGS := -std=c++14 -Os -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
   -mrelax -mstrict-X -fno-move-loop-invariants
 AVR_WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Werror
-AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated
+AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_ROOT)/generated
 AVR_LINK := -Wl,--gc-sections
 
 # The Arduino core of Debian's package arduino-core-avr: main(), USB and the serial line over it. Only what is used of it
@@ -89,7 +89,7 @@ $(FIRMWARE_BUILD)/generated/build_info.h: FORCE
 	@{ echo '#define SCREED_VERSION "$(VERSION)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
-$(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/generated/build_info.h
+$(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/generated/build_info.h $(SCHEMA_HEADERS)
 	@mkdir -p $(@D)
 	@echo "  AVR  $<"
 	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(ARDUINO_FLAGS) -MMD -MP -c $< -o $@

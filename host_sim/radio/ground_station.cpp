@@ -28,10 +28,11 @@ void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
     return;
   }
   ++frames_;
-  if (frame.id == kIdHeartbeat && frame.size >= 4) {
+  if (frame.id == kIdHeartbeat && frame.size == message::Heartbeat::kSize) {
+    const message::Heartbeat heartbeat = message::Heartbeat::unpack(frame.data);
     report_.heard = true;
-    report_.state = static_cast<RobotState>(frame.data[1] >> 4);
-    report_.faults = get_u16(frame.data + kE2eHeaderSize);
+    report_.state = static_cast<RobotState>(heartbeat.state);
+    report_.faults = heartbeat.faults;
     if (report_.state == RobotState::kRunning) started_ = true;
   }
   if (log_ == nullptr) return;
@@ -69,11 +70,8 @@ void GroundStation::add_command(CommandOp op, const DriveArgument* argument,
 std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
   std::vector<uint8_t> lines;
   if (ticks_ % kHeartbeatTicks == 0) {
-    CanFrame frame{};
-    frame.id = kIdGroundHeartbeat;
-    frame.size = 6;
-    put_u32(frame.data + kE2eHeaderSize, static_cast<uint32_t>(now_us / 1000U));
-    add_frame(frame, heartbeat_counter_, lines);
+    add_frame(frame_of(message::GroundHeartbeat{static_cast<uint32_t>(now_us / 1000U)}),
+              heartbeat_counter_, lines);
   }
   // Commands between heartbeats, so that no packet holds both.
   if (ticks_ % kCommandTicks == kCommandTicks / 2 && report_.heard) {

@@ -200,7 +200,7 @@ TEST_F(BoardParts, WithoutAGoodCopyItRefusesToBeArmed) {
   const auto answer = std::find_if(frames.begin(), frames.end(),
                                    [](const CanFrame& it) { return it.id == kIdCommandAck; });
   ASSERT_NE(answer, frames.end());
-  EXPECT_EQ(static_cast<RequestResult>(answer->data[3]), RequestResult::kFaultPresent);
+  EXPECT_EQ(static_cast<RequestResult>(answer->data[4]), RequestResult::kFaultPresent);
 }
 
 TEST_F(BoardParts, KnowsWhyItStarted) {

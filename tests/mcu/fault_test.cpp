@@ -78,8 +78,8 @@ TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
     drive.expect_punctual();
     if (bit != kChipBaro) continue;
     const std::vector<std::uint8_t> ack = drive.last_frame(kIdCommandAck);
-    ASSERT_EQ(ack.size(), 4U);
-    EXPECT_EQ(ack[3], static_cast<std::uint8_t>(RequestResult::kFaultPresent));
+    ASSERT_EQ(ack.size(), message::CommandAck::kSize);
+    EXPECT_EQ(ack[4], static_cast<std::uint8_t>(RequestResult::kFaultPresent));
   }
 }
 
@@ -147,7 +147,7 @@ TEST(Fault, ABrokenEncoderStopsTheRobotWithin200Ms) {
 TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
   ImageDrive drive;
   drive.set_off();
-  const std::uint8_t rejected_before = drive.last_frame(kIdHeartbeat).at(5);
+  const std::uint8_t rejected_before = drive.last_frame(kIdLink).at(4);
   drive.world.flood = true;
   const std::optional<double> stopped = drive.ms_until_stop(4.0);
   ASSERT_TRUE(stopped.has_value());
@@ -155,11 +155,11 @@ TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
   drive.run(2.0);
   EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
   const std::vector<std::uint8_t> heartbeat = drive.last_frame(kIdHeartbeat);
-  EXPECT_EQ(heartbeat.at(4), 0) << "link not alive";
+  EXPECT_EQ(heartbeat.at(7), 0) << "link not alive";
   EXPECT_GE(drive.world.cycles().uart_received, 15000U) << "no flood";
   EXPECT_EQ(drive.world.cycles().uart_overruns, 0U);
   drive.expect_punctual();
-  EXPECT_NE(heartbeat.at(5), rejected_before) << "rejected lines are not counted";
+  EXPECT_NE(drive.last_frame(kIdLink).at(4), rejected_before) << "rejected lines are not counted";
   // No arming by itself when the line is free again.
   drive.world.flood = false;
   drive.run(2.0);

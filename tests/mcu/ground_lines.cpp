@@ -16,11 +16,7 @@ std::vector<std::uint8_t> line_of(CanFrame frame, std::uint8_t& counter) {
 }  // namespace
 
 std::vector<std::uint8_t> GroundLines::heartbeat(std::uint32_t time_ms) {
-  CanFrame frame{};
-  frame.id = kIdGroundHeartbeat;
-  frame.size = 6;
-  put_u32(frame.data + kE2eHeaderSize, time_ms);
-  return line_of(frame, heartbeat_counter_);
+  return line_of(frame_of(message::GroundHeartbeat{time_ms}), heartbeat_counter_);
 }
 
 std::vector<std::uint8_t> GroundLines::command(CommandOp op, DriveArgument argument) {

@@ -21,7 +21,7 @@ $(B)/tests/mcu.flags: FORCE
 	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"' -DSCREED_INDIRECT_CALLS='\"$(abspath $(INDIRECT_CALLS))\"'" > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
-$(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags
+$(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags -MMD -MP -c $< -o $@

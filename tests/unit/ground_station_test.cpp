@@ -21,10 +21,10 @@ std::vector<uint8_t> line_of(CanFrame frame, uint8_t counter = 0) {
 }
 
 std::vector<uint8_t> robot_heartbeat(RobotState state, uint16_t faults = 0) {
-  CanFrame frame{kIdHeartbeat, 6, {}};
-  frame.data[1] = static_cast<uint8_t>(static_cast<unsigned>(state) << 4);
-  put_u16(frame.data + 2, faults);
-  return line_of(frame);
+  message::Heartbeat heartbeat{};
+  heartbeat.state = static_cast<uint8_t>(state);
+  heartbeat.faults = faults;
+  return line_of(frame_of(heartbeat));
 }
 
 /// The frames of a second's transmissions, by tick.
@@ -161,7 +161,7 @@ TEST(GroundStation, LogIsCandumpText) {
   EXPECT_EQ(parts[0], "0001234567");
   EXPECT_EQ(parts[1], "890123");
   EXPECT_EQ(parts[2], "010");
-  EXPECT_EQ(parts[3].size(), 12U);
+  EXPECT_EQ(parts[3].size(), 16U);
   ASSERT_TRUE(std::getline(lines, text));
   parts = groups(line, text);
   ASSERT_EQ(parts.size(), 4U) << text;

@@ -66,9 +66,9 @@ class TelemetryTest : public testing::Test {
 
 // Messages a second as the protocol wants them.
 const std::map<uint16_t, size_t> kRates = {
-    {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20},
-    {kIdLeveling, 10}, {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},
-    {kIdMagRaw, 2},    {kIdPower, 2},     {kIdBaro, 1},      {kIdHealth, 2},
+    {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10},
+    {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},  {kIdMagRaw, 2},  {kIdPower, 2},
+    {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},
 };
 
 TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
@@ -104,9 +104,10 @@ TEST_F(TelemetryTest, AnAcknowledgementIsSentOnceInTheNextTick) {
   const Downlink first = run(1);
   ASSERT_EQ(first.frames.count(kIdCommandAck), 1U);
   const CanFrame& frame = first.frames.at(kIdCommandAck).front();
-  EXPECT_EQ(frame.size, 4);
-  EXPECT_EQ(frame.data[2], 1);
-  EXPECT_EQ(frame.data[3], 2);
+  EXPECT_EQ(frame.size, message::CommandAck::kSize);
+  const auto ack = message::CommandAck::unpack(frame.data);
+  EXPECT_EQ(ack.op, static_cast<uint8_t>(message::CommandAckOp::kArm));
+  EXPECT_EQ(ack.result, static_cast<uint8_t>(message::CommandAckResult::kFaultPresent));
   EXPECT_EQ(run(100).frames.count(kIdCommandAck), 0U);
 }
 
@@ -114,12 +115,17 @@ TEST_F(TelemetryTest, Heartbeat) {
   view_.state = RobotState::kStopped;
   view_.faults = 0x1234;
   view_.link_alive = true;
-  view_.rejected_lines = 200;
   const uint8_t* at = payload(kIdHeartbeat);
   EXPECT_EQ(get_u16(at), 0x1234);
-  EXPECT_EQ(at[2], 1);
-  EXPECT_EQ(at[3], 200);
+  EXPECT_EQ(at[5], 100);
   EXPECT_EQ(header_bits(kIdHeartbeat), 3);
+  view_.link_alive = false;
+  EXPECT_EQ(payload(kIdHeartbeat)[5], 0);
+}
+
+TEST_F(TelemetryTest, Link) {
+  view_.rejected_lines = 200;
+  EXPECT_EQ(payload(kIdLink)[2], 200);
 }
 
 TEST_F(TelemetryTest, AttitudeAndOdometry) {

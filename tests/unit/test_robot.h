@@ -53,9 +53,7 @@ class TestRobot {
   }
 
   CanFrame heartbeat() {
-    CanFrame frame{kIdGroundHeartbeat, 6, {}};
-    put_u32(frame.data + 2, sample.time_us / 1000);
-    return protect(frame, heartbeat_counter);
+    return protect(frame_of(message::GroundHeartbeat{sample.time_us / 1000}), heartbeat_counter);
   }
   CanFrame command(CommandOp op, DriveArgument argument = {0, 0}) {
     CanFrame frame{kIdCommand, 6, {}};
@@ -65,7 +63,7 @@ class TestRobot {
   }
   CanFrame emergency_stop() {
     uint8_t counter = 0;
-    return protect({kIdEmergencyStop, 3, {}}, counter);
+    return protect(frame_of(message::EmergencyStop{}), counter);
   }
   static CanFrame protect(CanFrame frame, uint8_t& counter) {
     e2e_protect(frame.id, counter, frame.data, frame.size);

@@ -6,7 +6,8 @@
 
 ARDUINO_ZIP := $(BUILD_ROOT)/arduino/Screed-$(VERSION).zip
 ARDUINO_TEST_ELF := $(BUILD_ROOT)/arduino/example.elf
-ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE hal/hal.h hal/sample.h $(wildcard firmware/*.* firmware/*/*.* hal/avr/*.* boards/*/*.h)
+ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE hal/hal.h hal/sample.h $(wildcard firmware/*.* firmware/*/*.* hal/avr/*.* boards/*/*.h) \
+  $(GENERATED_FOLDER)/schema/messages.h
 
 .PHONY: arduino arduino-library
 arduino: deps
@@ -15,7 +16,7 @@ arduino-library: $(ARDUINO_ZIP)
 	@echo "$(ARDUINO_ZIP)"
 
 $(ARDUINO_ZIP): $(ARDUINO_PACKED)
-	@tools/arduino/pack.sh $(BOARD) $(VERSION) $@
+	@tools/arduino/pack.sh $(BOARD) $(VERSION) $(GENERATED_FOLDER) $@
 
 $(ARDUINO_TEST_ELF): $(ARDUINO_ZIP) tools/arduino/build.sh
 	@echo "  IDE  $@"

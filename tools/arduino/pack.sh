@@ -1,5 +1,5 @@
 #!/bin/bash
-# pack.sh BOARD VERSION OUT.zip: packs the firmware as a library that the Arduino IDE takes as it is.
+# pack.sh BOARD VERSION GENERATED OUT.zip: packs the firmware as a library that the Arduino IDE takes as it is.
 #
 # The IDE compiles every source below src/ with src/ as the only include folder. So the sources keep their paths below src/,
 # and src/pins.h, src/board.h and src/build_info.h lead to the board the library is packed for.
@@ -7,7 +7,8 @@ set -euo pipefail
 
 board=$1
 version=$2
-out=$(realpath -m "$3")
+generated=$3
+out=$(realpath -m "$4")
 here=$(dirname "$0")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -25,6 +26,7 @@ find firmware hal/avr boards \( -name '*.h' -o -name '*.cpp' \) -not -path 'firm
   | xargs -0 cp --parents -t "$src"
 cp --parents hal/hal.h hal/sample.h "$src"
 rm "$src/hal/avr/main.cpp"  # the sketch takes its place
+install -D -m 644 "$generated/schema/messages.h" "$src/schema/messages.h"
 cp "$here/Screed.h" "$src"
 
 { echo '// The board this library was packed for: change it here and in pins.h.' ; echo "#include \"boards/$board/board.h\"" ; } > "$src/board.h"

@@ -1,0 +1,69 @@
+// The schema compiler: reads a DBC file, refuses what it does not allow, and writes what is made of
+// it. Exit codes: 0 done, 1 a file could not be written, 2 the schema is wrong.
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "tools/schema/host_tables.h"
+#include "tools/schema/message_code.h"
+#include "tools/schema/schema_check.h"
+
+namespace screed::schema {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: schema_compiler SCHEMA.dbc [--messages FILE] [--tables FILE]\n"
+    "  --messages    C++ structures with pack() and unpack()\n"
+    "  --tables      C++ tables for the host\n";
+
+std::string content_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Writes a file, unless it says so already: what depends on it is then not built anew.
+void write(const std::string& path, const std::string& text) {
+  if (content_of(path) == text && std::filesystem::exists(path)) return;
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw RunError(path + ": cannot be written");
+}
+
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments.size() % 2 == 0) throw InputError(kUsage);
+  const Database database = read_dbc(arguments[0]);
+  check_schema(database);
+  const std::map<std::string, std::function<void(const std::string&)>> actions = {
+      {"--messages", [&](const std::string& path) { write(path, message_code(database)); }},
+      {"--tables", [&](const std::string& path) { write(path, host_tables(database)); }},
+  };
+  for (size_t i = 1; i < arguments.size(); i += 2) {
+    const auto action = actions.find(arguments[i]);
+    if (action == actions.end()) throw InputError(arguments[i] + " is not known\n" + kUsage);
+    action->second(arguments[i + 1]);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace screed::schema
+
+int main(int argc, char** argv) {
+  try {
+    return screed::schema::run({argv + 1, argv + argc});
+  } catch (const screed::InputError& error) {
+    std::cerr << error.what() << "\n";
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "schema_compiler: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,30 @@
+# The schema of the radio's messages and what is made of it. Included by the top Makefile, before the first use of what it makes.
+#
+#   firmware/telemetry/screed.dbc -> build/generated/schema/messages.h   pack and unpack, for the microcontroller and the host
+#                                    build/generated/schema/tables.h     names, units, scales, for the host
+#
+# Needs from there: BUILD_ROOT, WARNINGS.
+
+SCHEMA := firmware/telemetry/screed.dbc
+GENERATED_FOLDER := $(BUILD_ROOT)/generated
+SCHEMA_COMPILER := $(BUILD_ROOT)/schema/schema_compiler
+SCHEMA_SOURCES := $(wildcard tools/schema/*.cpp)
+SCHEMA_OBJECTS := $(SCHEMA_SOURCES:%.cpp=$(BUILD_ROOT)/schema/%.o)
+SCHEMA_HEADERS := $(GENERATED_FOLDER)/schema/messages.h $(GENERATED_FOLDER)/schema/tables.h
+
+# The compiler is built once for every kind of build, and before everything else.
+$(BUILD_ROOT)/schema/%.o: %.cpp tools/schema/schema.mk
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) -std=c++20 -O1 $(WARNINGS) -I. -MMD -MP -c $< -o $@
+$(SCHEMA_COMPILER): $(SCHEMA_OBJECTS)
+	@$(CXX) $^ -o $@.$$$$ && mv $@.$$$$ $@
+
+# The stamp is new when the compiler has run; the headers only when they changed.
+$(GENERATED_FOLDER)/schema.stamp: $(SCHEMA) $(SCHEMA_COMPILER)
+	@mkdir -p $(GENERATED_FOLDER)/schema
+	@$(SCHEMA_COMPILER) $(SCHEMA) --messages $(GENERATED_FOLDER)/schema/messages.h --tables $(GENERATED_FOLDER)/schema/tables.h
+	@touch $@
+$(SCHEMA_HEADERS): $(GENERATED_FOLDER)/schema.stamp ;
+
+-include $(SCHEMA_OBJECTS:.o=.d)
