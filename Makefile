@@ -61,9 +61,10 @@ STACK_LIBRARY_SOURCES := $(filter-out tools/avr_stack/main.cpp,$(wildcard tools/
 UNIT_SOURCES := $(wildcard tests/unit/*.cpp)
 SITL_SOURCES := $(wildcard tests/sitl/*.cpp)
 BENCH_SOURCES := $(wildcard tools/bench/*.cpp)
+TERRAIN_BENCH_SOURCES := $(wildcard tools/bench/terrain/*.cpp)
 CPP_FILES := $(shell find firmware hal host_sim tools tests boards -name '*.cpp' -o -name '*.h' 2>/dev/null | LC_ALL=C sort)
 TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/schema/main.cpp $(wildcard tools/avr_stack/main.cpp) \
-                $(UNIT_SOURCES) $(SITL_SOURCES) $(BENCH_SOURCES)
+                $(UNIT_SOURCES) $(SITL_SOURCES) $(BENCH_SOURCES) $(TERRAIN_BENCH_SOURCES)
 
 objects = $(patsubst %.cpp,$(B)/%.o,$(1))
 SCREED := $(B)/screed
@@ -71,7 +72,7 @@ LIBRARY := $(B)/libscreed.a
 
 # ---- entry points -----------------------------------------------------------------------------------------------------------
 
-.PHONY: help sim test firmware size bench lint format deps clean install build FORCE
+.PHONY: help sim test firmware size bench bench-terrain lint format deps clean install build FORCE
 .DEFAULT_GOAL := help
 
 help:
@@ -85,6 +86,7 @@ help:
 	@echo "make fuses     the fuses the board should have       (PROGRAMMER=avr109|NAME: compare; WRITE=yes: write)"
 	@echo "make monitor   serial monitor on the board           (PORT=/dev/ttyACM0)"
 	@echo "make bench     real-time factor and ns per tick"
+	@echo "make bench-terrain  time and memory of a frame on every terrain, beside the thesis'"
 	@echo "make lint      formatting and static analysis"
 	@echo "make format    clang-format over the tree"
 	@echo "make build     build/$(BUILD)/screed, the host program (BUILD=release|debug|asan)"
@@ -105,6 +107,8 @@ size: deps
 	$(STEP) firmware-cycles
 bench: deps
 	$(STEP) run-bench
+bench-terrain: deps
+	$(STEP) run-bench-terrain
 lint: deps
 	$(STEP) -k run-lint
 build: deps
@@ -235,6 +239,13 @@ $(B)/bench: $(call objects,$(BENCH_SOURCES)) $(LIBRARY) $(B)/link.flags
 run-bench: $(B)/bench
 	@$(B)/bench --benchmark_counters_tabular=true $(ARGS)
 
+$(B)/terrain_bench: $(call objects,$(TERRAIN_BENCH_SOURCES)) $(LIBRARY) $(B)/link.flags
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -o $@
+.PHONY: run-bench-terrain
+run-bench-terrain: $(B)/terrain_bench
+	@$(B)/terrain_bench --out $(OUT)/bench-terrain $(ARGS)
+
 # ---- lint --------------------------------------------------------------------------------------------------------------------
 
 .PHONY: run-lint check-format
@@ -252,5 +263,5 @@ $(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED
 	@touch $@
 
 ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
-                 $(SITL_SOURCES) $(BENCH_SOURCES))
+                 $(SITL_SOURCES) $(BENCH_SOURCES) $(TERRAIN_BENCH_SOURCES))
 -include $(ALL_OBJECTS:.o=.d)

@@ -25,6 +25,7 @@
 #include "host_sim/grid/grid_scene.h"
 #include "host_sim/grid/grid_sweep.h"
 #include "host_sim/grid/grid_text_view.h"
+#include "host_sim/scene/povray.h"
 
 namespace screed {
 namespace {
@@ -470,6 +471,7 @@ int run_many(const GridOptions& options) {
 
 int run_command(GridOptions options, bool runs_given, const std::string& version) {
   if (!(options.speed > 0.0)) throw InputError("grid: speed must be more than 0 cycles a second");
+  if (!options.render.empty()) check_picture_name(options.render);
   if (options.render_width < 100 || options.render_width > 8000) {
     throw InputError("grid: render-width = " + std::to_string(options.render_width) +
                      "; allowed is 100 to 8000 px");

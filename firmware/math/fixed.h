@@ -91,31 +91,38 @@ SCREED_OUT_OF_LINE constexpr int32_t add_sat_i32(int32_t a, int32_t b) {
   return b > 0 ? (a > INT32_MAX - b ? INT32_MAX : a + b) : (a < INT32_MIN - b ? INT32_MIN : a + b);
 }
 
+#ifdef __AVR__
+// In line, since gcc-avr calls its library for products of 16-bit numbers and saves registers for
+// that. The partial products of bytes are added at their places. The instruction of each says which
+// of its bytes carry a sign: muls both, mulsu the first, mul none. A signed one at 2^8 borrows from
+// the uppermost byte.
+#define SCREED_AVR_AT_2_8(instruction, x, y, borrow) \
+  instruction " %B[" x "], %A[" y "]\n\t" borrow     \
+              "add %B[result], r0\n\t"               \
+              "adc %C[result], r1\n\t"               \
+              "adc %D[result], %[zero]\n\t"
+#define SCREED_AVR_SIGNED_AT_2_8(x, y) \
+  SCREED_AVR_AT_2_8("mulsu", x, y, "sbc %D[result], %[zero]\n\t")
+#define SCREED_AVR_UNSIGNED_AT_2_8(x, y) SCREED_AVR_AT_2_8("mul", x, y, "")
+#define SCREED_AVR_PRODUCT(Result, registers, at_2_16, at_2_8_a, at_2_8_b) \
+  Result result;                                                           \
+  uint8_t zero;                                                            \
+  asm("clr %[zero]\n\t" at_2_16                                            \
+      " %B[a], %B[b]\n\t"                                                  \
+      "movw %C[result], r0\n\t"                                            \
+      "mul %A[a], %A[b]\n\t"                                               \
+      "movw %A[result], r0\n\t" at_2_8_a at_2_8_b "clr r1\n\t"             \
+      : [result] "=&r"(result), [zero] "=&r"(zero)                         \
+      : [a] registers(a), [b] registers(b)                                 \
+      : "r0");                                                             \
+  return result
+#endif
+
 /// The exact 32-bit product of two 16-bit numbers.
 SCREED_CONSTEXPR_OFF_AVR int32_t mul_i16(int16_t a, int16_t b) {
 #ifdef __AVR__
-  int32_t result;
-  uint8_t zero;
-  asm("clr %[zero]\n\t"
-      "muls %B[a], %B[b]\n\t"
-      "movw %C[result], r0\n\t"
-      "mul %A[a], %A[b]\n\t"
-      "movw %A[result], r0\n\t"
-      "mulsu %B[a], %A[b]\n\t"
-      "sbc %D[result], %[zero]\n\t"
-      "add %B[result], r0\n\t"
-      "adc %C[result], r1\n\t"
-      "adc %D[result], %[zero]\n\t"
-      "mulsu %B[b], %A[a]\n\t"
-      "sbc %D[result], %[zero]\n\t"
-      "add %B[result], r0\n\t"
-      "adc %C[result], r1\n\t"
-      "adc %D[result], %[zero]\n\t"
-      "clr r1\n\t"
-      : [result] "=&r"(result), [zero] "=&r"(zero)
-      : [a] "a"(a), [b] "a"(b)
-      : "r0");
-  return result;
+  SCREED_AVR_PRODUCT(int32_t, "a", "muls", SCREED_AVR_SIGNED_AT_2_8("a", "b"),
+                     SCREED_AVR_SIGNED_AT_2_8("b", "a"));
 #else
   return static_cast<int32_t>(a) * static_cast<int32_t>(b);
 #endif
@@ -124,37 +131,31 @@ SCREED_CONSTEXPR_OFF_AVR int32_t mul_i16(int16_t a, int16_t b) {
 /// The exact 32-bit product of two unsigned 16-bit numbers.
 SCREED_CONSTEXPR_OFF_AVR uint32_t mul_u16(uint16_t a, uint16_t b) {
 #ifdef __AVR__
-  uint32_t result;
-  uint8_t zero;
-  asm("clr %[zero]\n\t"
-      "mul %B[a], %B[b]\n\t"
-      "movw %C[result], r0\n\t"
-      "mul %A[a], %A[b]\n\t"
-      "movw %A[result], r0\n\t"
-      "mul %B[a], %A[b]\n\t"
-      "add %B[result], r0\n\t"
-      "adc %C[result], r1\n\t"
-      "adc %D[result], %[zero]\n\t"
-      "mul %B[b], %A[a]\n\t"
-      "add %B[result], r0\n\t"
-      "adc %C[result], r1\n\t"
-      "adc %D[result], %[zero]\n\t"
-      "clr r1\n\t"
-      : [result] "=&r"(result), [zero] "=&r"(zero)
-      : [a] "r"(a), [b] "r"(b)
-      : "r0");
-  return result;
+  SCREED_AVR_PRODUCT(uint32_t, "r", "mul", SCREED_AVR_UNSIGNED_AT_2_8("a", "b"),
+                     SCREED_AVR_UNSIGNED_AT_2_8("b", "a"));
 #else
   return static_cast<uint32_t>(a) * b;
 #endif
 }
 
-/// a * b in Q15, rounded to nearest, halves up; -1 * -1 saturates to 32767.
-SCREED_CONSTEXPR_OFF_AVR int16_t mul_q15(int16_t a, int16_t b) {
-  return saturate_i16(asr_round(mul_i16(a, b), 15));
+namespace detail {
+
+/// Exact signed x unsigned product.
+SCREED_CONSTEXPR_OFF_AVR int32_t mul_su(int16_t a, uint16_t b) {
+#ifdef __AVR__
+  SCREED_AVR_PRODUCT(int32_t, "a", "mulsu", SCREED_AVR_SIGNED_AT_2_8("a", "b"),
+                     SCREED_AVR_UNSIGNED_AT_2_8("b", "a"));
+#else
+  return static_cast<int32_t>(a) * static_cast<int32_t>(b);
+#endif
 }
 
-namespace detail {
+#ifdef __AVR__
+#undef SCREED_AVR_PRODUCT
+#undef SCREED_AVR_SIGNED_AT_2_8
+#undef SCREED_AVR_UNSIGNED_AT_2_8
+#undef SCREED_AVR_AT_2_8
+#endif
 
 /// floor(value / 2^16); a plain move on the AVR.
 constexpr int16_t high_half(int32_t value) {
@@ -166,36 +167,12 @@ constexpr uint16_t low_half(int32_t value) {
   return static_cast<uint16_t>(static_cast<uint32_t>(value) & 0xFFFFU);
 }
 
-/// Exact signed x unsigned product.
-SCREED_CONSTEXPR_OFF_AVR int32_t mul_su(int16_t a, uint16_t b) {
-#ifdef __AVR__
-  int32_t result;
-  uint8_t zero;
-  asm("clr %[zero]\n\t"
-      "mulsu %B[a], %B[b]\n\t"
-      "movw %C[result], r0\n\t"
-      "mul %A[a], %A[b]\n\t"
-      "movw %A[result], r0\n\t"
-      "mulsu %B[a], %A[b]\n\t"
-      "sbc %D[result], %[zero]\n\t"
-      "add %B[result], r0\n\t"
-      "adc %C[result], r1\n\t"
-      "adc %D[result], %[zero]\n\t"
-      "mul %B[b], %A[a]\n\t"
-      "add %B[result], r0\n\t"
-      "adc %C[result], r1\n\t"
-      "adc %D[result], %[zero]\n\t"
-      "clr r1\n\t"
-      : [result] "=&r"(result), [zero] "=&r"(zero)
-      : [a] "a"(a), [b] "a"(b)
-      : "r0");
-  return result;
-#else
-  return static_cast<int32_t>(a) * static_cast<int32_t>(b);
-#endif
-}
-
 }  // namespace detail
+
+/// a * b in Q15, rounded to nearest, halves up; -1 * -1 saturates to 32767.
+SCREED_CONSTEXPR_OFF_AVR int16_t mul_q15(int16_t a, int16_t b) {
+  return saturate_i16(asr_round(mul_i16(a, b), 15));
+}
 
 /// floor((a * k + 2^15) / 2^16): a wide number times a Q16 factor within +-1/2 (or half of a Q15
 /// factor), the exact product rounded to nearest, halves up. All of int32 x int16 is allowed.

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <memory>
+#include <istream>
+#include <sstream>
 #include <system_error>
 
 #include "host_sim/core/errors.h"
@@ -15,7 +16,7 @@ namespace {
 
 // inih hands over no line numbers, but asks for the file line by line: this counts them.
 struct Reading {
-  std::ifstream file;
+  std::istream& input;
   std::string name;
   int line = 0;
   std::vector<IniEntry> entries;
@@ -39,7 +40,7 @@ bool has_more_than_section(const std::string& line) {
 char* read_line(char* buffer, int size, void* stream) {
   auto& reading = *static_cast<Reading*>(stream);
   std::string text;
-  if (!reading.complaint.empty() || !std::getline(reading.file, text)) return nullptr;
+  if (!reading.complaint.empty() || !std::getline(reading.input, text)) return nullptr;
   ++reading.line;
   // inih joins indented lines to the value before them; in an experiment file an indented line is a
   // line.
@@ -79,26 +80,33 @@ int take_entry(void* user, const char* section, const char* name, const char* va
   return 1;
 }
 
+std::vector<IniEntry> read_stream(std::istream& input, const std::string& name) {
+  Reading reading{input, name, 0, {}, {}};
+  const int bad_line = ini_parse_stream(read_line, &reading, take_entry, &reading);
+  // Our own complaint ends the reading, so a line that inih could not make sense of came before it.
+  if (bad_line > 0) {
+    throw InputError(name + ":" + std::to_string(bad_line) +
+                     ": neither [section] nor 'key = value' nor a comment");
+  }
+  if (!reading.complaint.empty()) throw InputError(reading.complaint);
+  if (bad_line < 0) throw InputError(name + ": cannot be read");
+  return std::move(reading.entries);
+}
+
 }  // namespace
 
 std::vector<IniEntry> read_ini_file(const std::filesystem::path& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(path.string() + ": is a folder, not an experiment file");
-  Reading reading;
-  reading.name = path.string();
-  reading.file.open(path);
-  if (!reading.file)
-    throw InputError(path.string() + ": no such experiment file, or it cannot be read");
-  const int bad_line = ini_parse_stream(read_line, &reading, take_entry, &reading);
-  // Our own complaint ends the reading, so a line that inih could not make sense of came before it.
-  if (bad_line > 0) {
-    throw InputError(reading.name + ":" + std::to_string(bad_line) +
-                     ": neither [section] nor 'key = value' nor a comment");
-  }
-  if (!reading.complaint.empty()) throw InputError(reading.complaint);
-  if (bad_line < 0) throw InputError(reading.name + ": cannot be read");
-  return std::move(reading.entries);
+  std::ifstream file(path);
+  if (!file) throw InputError(path.string() + ": no such experiment file, or it cannot be read");
+  return read_stream(file, path.string());
+}
+
+std::vector<IniEntry> read_ini_text(const std::string& text, const std::string& name) {
+  std::istringstream input(text);
+  return read_stream(input, name);
 }
 
 IniEntry parse_override(const std::string& text) {

@@ -18,6 +18,8 @@ struct IniEntry {
 /// Reads a file: [sections], key = value, comments after ; or #. Throws InputError, naming file and
 /// line, for a missing file, a line that is neither of these, and a key that is given twice.
 std::vector<IniEntry> read_ini_file(const std::filesystem::path& path);
+/// The same from a text; messages call it `name`.
+std::vector<IniEntry> read_ini_text(const std::string& text, const std::string& name);
 
 /// "section.key=value", as on the command line; a key without a section stands before the first.
 /// Throws InputError.

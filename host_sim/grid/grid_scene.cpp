@@ -1,20 +1,13 @@
 // POV-Ray scenes of the grid world.
 #include "host_sim/grid/grid_scene.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/picture/color_map.h"
+#include "host_sim/scene/pov_text.h"
+#include "host_sim/scene/povray.h"
 
 namespace screed {
 namespace {
@@ -22,13 +15,6 @@ namespace {
 constexpr double kGap = 0.12;         ///< of the width of all frames, between two
 constexpr double kHeightScale = 0.8;  ///< a voxel is a little flatter than wide
 constexpr double kAspect = 0.42;      ///< height of the picture to its width, for two frames
-
-template <class... Values>
-std::string line(const char* pattern, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 /// Stacks and agents of one frame, its west side at x = left. POV-Ray: x east, y up, z north.
 class FrameText {
@@ -61,14 +47,15 @@ class FrameText {
   }
 
   void box(int x, int y, int from, int to, double gap) {
-    out_ += line("box { <%.3f,%.3f,%.3f>, <%.3f,%.3f,%.3f> texture { T%d } }\n", left_ + x + gap,
-                 kHeightScale * from, y + gap, left_ + x + 1 - gap, kHeightScale * to - gap,
-                 y + 1 - gap, to);
+    out_ += pov_line("box { <%.3f,%.3f,%.3f>, <%.3f,%.3f,%.3f> texture { T%d } }\n",
+                     left_ + x + gap, kHeightScale * from, y + gap, left_ + x + 1 - gap,
+                     kHeightScale * to - gap, y + 1 - gap, to);
   }
 
   void place(const FrameAgent& agent) {
     const double base = kHeightScale * height(agent.x, agent.y);
-    out_ += line("object { %s translate <%.3f,%.3f,%.3f> }\n", agent.carries ? "Loaded" : "Empty",
+    out_ +=
+        pov_line("object { %s translate <%.3f,%.3f,%.3f> }\n", agent.carries ? "Loaded" : "Empty",
                  left_ + agent.x + 0.5, base + 0.75, agent.y + 0.5);
   }
 
@@ -90,13 +77,13 @@ std::string icosahedron(const char* name, const char* pigment, double radius) {
                                  {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
                                  {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                  {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-  std::string text = line("#declare %s = mesh2 {\n  vertex_vectors { 12", name);
+  std::string text = pov_line("#declare %s = mesh2 {\n  vertex_vectors { 12", name);
   for (const auto& corner : corners) {
-    text += line(", <%.4f,%.4f,%.4f>", corner[0], corner[1], corner[2]);
+    text += pov_line(", <%.4f,%.4f,%.4f>", corner[0], corner[1], corner[2]);
   }
   text += " }\n  face_indices { 20";
-  for (const auto& face : kFaces) text += line(", <%d,%d,%d>", face[0], face[1], face[2]);
-  return text + line(" }\n  texture { pigment { rgb %s } finish { Shine } }\n}\n", pigment);
+  for (const auto& face : kFaces) text += pov_line(", <%d,%d,%d>", face[0], face[1], face[2]);
+  return text + pov_line(" }\n  texture { pigment { rgb %s } finish { Shine } }\n}\n", pigment);
 }
 
 }  // namespace
@@ -128,22 +115,22 @@ std::string scene_text(const std::vector<GridFrame>& frames) {
       "background { color srgb <0.97,0.975,0.98> }\n";
   // Looking north and down, a little from the west, as far away as everything needs to be seen.
   const double distance = all * 1.18;
-  text += line(
+  text += pov_line(
       "camera { location <%.2f,%.2f,%.2f> look_at <%.2f,%.2f,%.2f> angle 43 right "
       "x*image_width/image_height }\n",
       all * 0.47, distance * 0.78, -distance * 0.80, all * 0.5, tallest * kHeightScale * 0.3,
       depth * 0.42);
-  text += line(
+  text += pov_line(
       "light_source { <%.2f,%.2f,%.2f> rgb 0.92 area_light <%.2f,0,0>, <0,0,%.2f>, 4, 4 "
       "adaptive 1 }\n",
       -all * 0.5, all * 1.3, -all * 0.35, all * 0.12, all * 0.12);
-  text += line("light_source { <%.2f,%.2f,%.2f> rgb 0.34 shadowless }\n", all * 1.2, all * 1.0,
-               -all * 1.2);
+  text += pov_line("light_source { <%.2f,%.2f,%.2f> rgb 0.34 shadowless }\n", all * 1.2, all * 1.0,
+                   -all * 1.2);
   text +=
       "plane { y, -0.02 texture { pigment { srgb <0.93,0.935,0.94> } finish { diffuse 0.9 } } }\n";
   for (int level = 1; level <= tallest; ++level) {
     const Color color = height_color((level - 0.5) / tallest);
-    text += line(
+    text += pov_line(
         "#declare T%d = texture { pigment { srgb <%.4f,%.4f,%.4f> } finish { ambient 0 "
         "diffuse 0.9 } }\n",
         level, color.red, color.green, color.blue);
@@ -160,42 +147,12 @@ std::string scene_text(const std::vector<GridFrame>& frames) {
 
 bool render_scene(const std::filesystem::path& picture, const std::vector<GridFrame>& frames,
                   int width_px) {
-  std::filesystem::path scene = picture;
-  scene.replace_extension(".pov");
-  std::ofstream file(scene, std::ios::binary);
-  file << scene_text(frames);
-  file.close();
-  if (!file.good()) throw RunError(scene.string() + ": cannot be written");
-
   const double aspect = frames.size() == 1 ? 0.75 : kAspect;
-  std::vector<std::string> words = {"povray",
-                                    "+I" + scene.string(),
-                                    "+O" + picture.string(),
-                                    "+W" + std::to_string(width_px),
-                                    "+H" + std::to_string(std::lround(width_px * aspect)),
-                                    "+A0.2",
-                                    "-D",
-                                    "-GA"};
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, "povray", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error == ENOENT) return false;
-  if (error != 0) throw RunError(std::string("povray: ") + std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw RunError("povray could not render " + scene.string());
-  }
-  return true;
+  PovrayJob job(picture);
+  job.write_scene(scene_text(frames));
+  const bool rendered = job.render(width_px, static_cast<int>(std::lround(width_px * aspect)));
+  job.publish();
+  return rendered;
 }
 
 }  // namespace screed

@@ -17,9 +17,9 @@ inline constexpr int kLargestSceneSide = 256;
 /// heights of the first. Throws InputError for no frame or a grid too large.
 std::string scene_text(const std::vector<GridFrame>& frames);
 
-/// Writes `picture` with the extension .pov and renders it to `picture` (PNG), `width_px` wide.
-/// Returns false when there is no povray on the path: then only the scene is written. Throws
-/// RunError when a file cannot be written or povray fails.
+/// Writes `picture` with the extension .pov and renders it to `picture` (.png or .jpg), `width_px`
+/// wide. Returns false when there is no povray on the path: then only the scene is written. Throws
+/// as PovrayJob.
 bool render_scene(const std::filesystem::path& picture, const std::vector<GridFrame>& frames,
                   int width_px);
 

@@ -13,6 +13,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/mcu/board.h"
 #include "host_sim/mcu/wiring.h"
+#include "tools/program.h"
 
 namespace {
 
@@ -97,21 +98,10 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Cycles of the longest control tick of an AVR image, in the simulator");
+  CLI::App app("Cycles of the longest control tick of an AVR image, in the simulator",
+               "avr_cycles");
   app.add_option("image", options.image, "ELF file")->required();
   app.add_option("wiring", options.wiring, "boards/<board>/wiring.ini")->required();
   app.add_option("--budget", options.budget, "cycles")->capture_default_str();
-  try {
-    app.parse(argc, argv);
-    return run(options);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "avr_cycles: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "avr_cycles: %s\n", error.what());
-    return 1;
-  }
+  return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

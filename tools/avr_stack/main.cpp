@@ -12,6 +12,7 @@
 #include "tools/avr_stack/image_size.h"
 #include "tools/avr_stack/indirect_calls.h"
 #include "tools/avr_stack/stack_analysis.h"
+#include "tools/program.h"
 
 namespace {
 
@@ -105,7 +106,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Worst-case stack and memory budget of a linked AVR image");
+  CLI::App app("Worst-case stack and memory budget of a linked AVR image", "avr_stack");
   app.add_option("disassembly", options.disassembly,
                  "output of avr-objdump -d, - for standard input")
       ->required();
@@ -119,17 +120,5 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--free-word", options.free_word,
                  "address of two bytes of RAM that neither variables nor stack may reach");
-  try {
-    app.parse(argc, argv);
-    return run(options);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "avr_stack: %s\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "avr_stack: %s\n", error.what());
-    return 1;
-  }
+  return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

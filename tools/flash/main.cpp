@@ -3,7 +3,6 @@
 // a machine beside the robot builds it in seconds.
 #include <CLI/CLI.hpp>
 
-#include <exception>
 #include <iostream>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "tools/flash/clock.h"
 #include "tools/flash/fuses.h"
 #include "tools/flash/usb_serial.h"
+#include "tools/program.h"
 
 namespace {
 
@@ -144,7 +144,9 @@ void add_avrdude_options(CLI::App& command, Options& options) {
   command.add_flag("--verbose", options.avrdude.show_output, "show what avrdude says");
 }
 
-int run(int argc, char** argv) {
+}  // namespace
+
+int main(int argc, char** argv) {
   Options options;
   CLI::App app("Flashes the robot's board over USB", "screed_flash");
   app.require_subcommand(1);
@@ -166,31 +168,11 @@ int run(int argc, char** argv) {
                    "avrdude's name of an ISP programmer, or avr109 for the bootloader");
   fuse->add_flag("--write", options.write_fuses, "write them first");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    throw InputError(std::string(error.what()) + " (see screed_flash --help)");
-  }
-  options.avrdude.longest_silence = milliseconds(options.silence_s);
-  if (*write) write_image(options);
-  if (*port) print_port(options);
-  if (*fuse) fuses(options);
-  return 0;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  constexpr int kFailed = 1;
-  constexpr int kWrongInput = 2;
-  try {
-    return run(argc, argv);
-  } catch (const InputError& error) {
-    std::cerr << "screed_flash: " << error.what() << "\n";
-    return kWrongInput;
-  } catch (const std::exception& error) {
-    std::cerr << "screed_flash: " << error.what() << "\n";
-    return kFailed;
-  }
+  return screed::run_program(app, argc, argv, [&] {
+    options.avrdude.longest_silence = milliseconds(options.silence_s);
+    if (*write) write_image(options);
+    if (*port) print_port(options);
+    if (*fuse) fuses(options);
+    return 0;
+  });
 }

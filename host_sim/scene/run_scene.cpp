@@ -1,0 +1,192 @@
+// From a session to a scene.
+#include "host_sim/scene/run_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/experiment/experiment.h"
+#include "host_sim/experiment/ini_file.h"
+#include "host_sim/scene/ground_scene.h"
+#include "host_sim/scene/povray.h"
+#include "host_sim/scene/robot_scene.h"
+#include "host_sim/session/session_reader.h"
+#include "host_sim/terrain/grey_image.h"
+#include "host_sim/vehicle/urdf_importer.h"
+#include "host_sim/vehicle/vehicle.h"
+
+namespace screed {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kFieldOfView_deg = 40.0;
+constexpr double kPathRadius =
+    0.0022;  // of the line that shows the way, to the distance it is seen from
+
+std::filesystem::path session_of(const std::filesystem::path& run) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(run, error)) return run;
+  std::filesystem::path file = run / "session.h5";
+  if (!std::filesystem::exists(file, error)) {
+    throw InputError(run.string() + ": is not the folder of a run: there is no session.h5 in it");
+  }
+  return file;
+}
+
+/// What the scene needs of the experiment that was in force.
+struct Setup {
+  Experiment experiment;  ///< only the vehicle's keys that are read below, and the folder
+  std::string soil;       ///< preset; "" for ground that does not give way
+};
+
+Setup setup_of(const SessionInfo& info, const std::filesystem::path& folder) {
+  Setup setup;
+  setup.experiment.folder = folder;
+  bool soft = false;
+  // Not read_experiment(): a session of an older program may have keys that are gone by now.
+  for (const IniEntry& entry : read_ini_text(info.experiment_text, "the session's experiment")) {
+    const std::string name = entry.section + "." + entry.key;
+    if (name == "vehicle.model") setup.experiment.vehicle.model = entry.value;
+    if (name == "vehicle.tracks") setup.experiment.vehicle.tracks = entry.value == "true";
+    if (name == "vehicle.leg_angle" && !entry.value.empty()) {
+      setup.experiment.vehicle.leg_angle_deg = std::stod(entry.value);
+    }
+    if (name == "map.model") soft = entry.value != "rigid";
+    if (name == "soil.preset") setup.soil = entry.value;
+  }
+  if (!soft) setup.soil.clear();
+  return setup;
+}
+
+/// The robot's way to a frame.
+struct Way {
+  Frame frame;
+  std::vector<Eigen::Vector2d> path;
+  std::array<double, 2> travel_m{};
+};
+
+Way way_to(const SessionReader& session, std::uint64_t last) {
+  constexpr std::uint64_t kBlockRows = 1024;
+  constexpr double kPathStep_m = 0.01;
+  Way way;
+  std::vector<Frame> frames;
+  const double dt = 1.0 / session.info().tick_rate_hz;
+  for (std::uint64_t first = 0; first <= last; first += frames.size()) {
+    frames.resize(std::min(kBlockRows, last + 1 - first));
+    session.read(first, std::span(frames));
+    for (const Frame& frame : frames) {
+      way.travel_m[0] += std::isfinite(frame.track_left) ? frame.track_left * dt : 0.0;
+      way.travel_m[1] += std::isfinite(frame.track_right) ? frame.track_right * dt : 0.0;
+      const Eigen::Vector2d at(frame.x, frame.y);
+      if (way.path.empty() || (at - way.path.back()).norm() >= kPathStep_m) way.path.push_back(at);
+    }
+  }
+  way.frame = frames.back();
+  way.path.emplace_back(way.frame.x, way.frame.y);
+  return way;
+}
+
+std::uint64_t frame_number(const SessionReader& session, const RunSceneOptions& options,
+                           const std::filesystem::path& run) {
+  const auto count = static_cast<std::int64_t>(session.frames());
+  if (count == 0) throw InputError(run.string() + ": no frame was recorded");
+  const std::int64_t asked = options.frame.value_or(-1);
+  const std::int64_t frame = asked < 0 ? count + asked : asked;
+  if (frame < 0 || frame >= count) {
+    throw InputError("frame = " + std::to_string(asked) + "; " + run.string() +
+                     " has frames 0 to " + std::to_string(count - 1));
+  }
+  return static_cast<std::uint64_t>(frame);
+}
+
+struct Ground {
+  HeightMap now;
+  std::optional<HeightMap> before;
+  bool is_later = false;
+};
+
+Ground ground_at(const SessionReader& session, std::uint64_t frame, bool soft,
+                 const std::filesystem::path& run) {
+  Ground ground;
+  ground.before = session.terrain_before();
+  if (!ground.before) throw InputError(run.string() + ": the session holds no height map");
+  const auto after = session.terrain_after();
+  if (frame == 0 || !soft || !after) {
+    ground.now = *ground.before;
+  } else {
+    ground.now = *after;
+    ground.is_later = frame + 1 < session.frames();
+  }
+  return ground;
+}
+
+void write_raster(const std::filesystem::path& file, const GreyRaster& raster) {
+  write_grey16_png(file, raster.width, raster.height, raster.samples);
+}
+
+}  // namespace
+
+RunSceneResult render_run(const std::filesystem::path& run, const std::filesystem::path& picture,
+                          const RunSceneOptions& options) {
+  const SessionReader session(session_of(run));
+  if (!session.complete()) {
+    throw InputError(run.string() + ": the run did not end; only whole runs are drawn");
+  }
+  RunSceneResult result;
+  result.frame = frame_number(session, options, run);
+  const Setup setup = setup_of(session.info(), run);
+  const auto& vehicle = setup.experiment.vehicle;
+  UrdfOptions urdf;
+  if (vehicle.leg_angle_deg) urdf.leg_angle_rad = *vehicle.leg_angle_deg * kRadPerDeg;
+  const Assembly robot =
+      import_urdf(options.model ? *options.model : find_model_file(setup.experiment), urdf);
+
+  const Way way = way_to(session, result.frame);
+  RobotPose pose;
+  pose.body.linear() = rotation_from({way.frame.roll, way.frame.pitch, way.frame.yaw});
+  pose.body.translation() << way.frame.x, way.frame.y, way.frame.z;
+  pose.travel_m = way.travel_m;
+  if (!pose.body.matrix().allFinite()) {
+    throw InputError(run.string() + ": frame " + std::to_string(result.frame) +
+                     " has no pose of the robot");
+  }
+
+  const Ground ground = ground_at(session, result.frame, !setup.soil.empty(), run);
+  result.ground_is_later = ground.is_later;
+  const GroundSurface surface(ground.now);
+  CameraPlace place = options.camera;
+  Eigen::Vector3d target = pose.body.translation() - Eigen::Vector3d(0.0, 0.0, 0.02);
+  double heading = way.frame.yaw;
+  if (place.whole_bed) {
+    target << surface.x_min() + surface.width_m() / 2, surface.y_min() + surface.depth_m() / 2,
+        0.5 * (surface.lowest_m() + surface.highest_m());
+    heading = 0.0;
+    place.distance_m = 1.75 * std::max(surface.width_m(), surface.depth_m());
+  }
+  const SceneCamera camera =
+      camera_at(place, target, heading, [&](double x, double y) { return surface.height_m(x, y); });
+
+  PovrayJob job(picture);
+  result.scene = job.scene();
+  GroundFiles files;
+  files.heights = job.name_with("_ground.png");
+  write_raster(job.in_the_making(files.heights), height_raster(surface));
+  const GreyRaster change = change_raster(surface, *ground.before);
+  if (!change.samples.empty()) {
+    files.change = job.name_with("_turned.png");
+    write_raster(job.in_the_making(files.change), change);
+  }
+  job.write_scene(
+      "// Made by `screed render`. Metres; x east, y north, z up.\n#version 3.7;\n"
+      "global_settings { assumed_gamma 1.0 }\n" +
+      camera_text(camera, kFieldOfView_deg) + ground_text(surface, files, soil_look(setup.soil)) +
+      (options.path ? path_text(way.path, surface, kPathRadius * place.distance_m) : "") +
+      robot_text(robot, vehicle.tracks, pose));
+  if (!options.pov_only) result.rendered = job.render(options.width_px, options.height_px);
+  job.publish();
+  return result;
+}
+
+}  // namespace screed

@@ -1,0 +1,77 @@
+// The program as a user meets it, in a folder of its own: a fixture for tests that run it.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace screed::testing {
+
+/// How a run of the program ended.
+struct Result {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* program = std::getenv("SCREED_PROGRAM");
+    ASSERT_NE(program, nullptr)
+        << "SCREED_PROGRAM names the program under test; `make test` sets it";
+    program_ = program;
+    root_ = std::filesystem::temp_directory_path() /
+            ("screed-program-" + std::to_string(getpid()) + "-" +
+             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(root_);
+    std::filesystem::create_directories(root_);
+  }
+  void TearDown() override { std::filesystem::remove_all(root_); }
+
+  std::string read(const std::filesystem::path& path) const {
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(root_ / name) << text;
+  }
+
+  /// Runs in root_; `before` is shell text in front of the program.
+  Result run(const std::string& arguments, const std::string& before = "") const {
+    const std::string command = "cd '" + root_.string() + "' && { " + before + " '" + program_ +
+                                "' " + arguments + "; } > '" + log("out") + "' 2> '" + log("err") +
+                                "' < /dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("out")), read(log("err"))};
+  }
+  std::string log(const char* which) const { return root_.string() + "." + which; }
+
+  /// One line that says all of `parts`, this exit code, and no folder of a run, half or whole.
+  void expect_refused(const Result& result, int exit_code,
+                      const std::vector<std::string>& parts) const {
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << " in: " << result.err;
+    EXPECT_FALSE(std::filesystem::exists(root_ / "out"));
+    for (const auto& entry : std::filesystem::directory_iterator(root_)) {
+      EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+    }
+  }
+
+  std::string program_;
+  std::filesystem::path root_;
+};
+
+}  // namespace screed::testing

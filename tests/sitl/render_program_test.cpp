@@ -1,0 +1,121 @@
+// `screed render` as a user meets it. POV-Ray itself is used where it is installed, and a stand-in
+// where a test needs it to be missing or to fail.
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "host_sim/terrain/grey_image.h"
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+class Render : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    write("e.ini",
+          "[experiment]\nduration = 2\nalgorithm = drive\n[map]\nsize = 1\nmodel = scm\n[soil]\n"
+          "cell = 0.02\n");
+    ASSERT_EQ(run("sim e.ini --quiet --out run").exit_code, 0);
+    std::filesystem::create_directories(root_ / "bin");
+  }
+
+  /// A program of that text under the name povray.
+  void put_povray(const std::string& script) const {
+    const std::filesystem::path file = root_ / "bin" / "povray";
+    std::ofstream(file) << "#!/bin/sh\n" << script;
+    ASSERT_EQ(chmod(file.c_str(), 0755), 0);
+  }
+  /// With nothing but bin/ on the path.
+  Result render(const std::string& arguments) const {
+    return run("render " + arguments, "PATH='" + (root_ / "bin").string() + "'");
+  }
+  /// Files and folders in the folder of the test, beside those of SetUp().
+  std::vector<std::string> files(const std::string& folder = ".") const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(root_ / folder)) {
+      const std::string name = entry.path().filename();
+      if (name != "e.ini" && name != "run" && name != "bin") names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(Render, WithoutPovrayLeavesTheScene) {
+  const Result result = render("run --frame 150 --out p.png");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "frame 150: p.pov (no picture: povray is not installed)\n");
+  EXPECT_EQ(files(), (Names{"p.pov", "p_ground.png", "p_turned.png"}));
+  const GreyImage ground = read_grey_image(root_ / "p_ground.png");
+  EXPECT_EQ(ground.width, 51);
+  EXPECT_EQ(ground.bit_depth, 16);
+}
+
+TEST_F(Render, RunsPovrayBesideTheScene) {
+  put_povray(
+      "for word; do case $word in +I*) cp \"${word#+I}\" copy; esac; done\n"
+      "for word; do case $word in +O*) echo \"$*\" > \"${word#+O}\"; esac; done\nrm copy\n");
+  // The scene's own images are found from where povray runs.
+  const Result result =
+      run("render run --out pictures.d/p.png --width 320 --height 200 --frame -200",
+          "mkdir pictures.d; PATH='" + (root_ / "bin").string() + ":/usr/bin:/bin'");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "frame 0: pictures.d/p.png\n");
+  EXPECT_EQ(files("pictures.d"), (Names{"p.png", "p.pov", "p_ground.png"}));
+  const std::string arguments = read(root_ / "pictures.d" / "p.png");
+  for (const char* part : {"+Ip.pov", "+Op.png", "+W320", "+H200"}) {
+    EXPECT_NE(arguments.find(part), std::string::npos) << part << " in: " << arguments;
+  }
+}
+
+TEST_F(Render, PovrayThatFailsLeavesNothing) {
+  put_povray("echo 'p.pov line 7: Parse Error: no such thing' >&2\nexit 1\n");
+  const Result result = render("run --out p.png");
+  expect_refused(result, 1, {"povray", "p.pov", "Parse Error: no such thing"});
+  EXPECT_EQ(files(), Names{});
+}
+
+TEST_F(Render, SceneOnly) {
+  put_povray("exit 1\n");
+  const Result result = render("run --pov-only");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(root_ / "run" / "frame_last.pov"));
+  EXPECT_FALSE(std::filesystem::exists(root_ / "run" / "frame_last.png"));
+}
+
+TEST_F(Render, RefusesInOneLineAndLeavesNothing) {
+  write("half.h5", read(root_ / "run" / "session.h5").substr(0, 20000));
+  std::filesystem::create_directories(root_ / "run" / "empty");
+  expect_refused(render("run --frame 200 --out p.png"), 2, {"frame = 200", "0 to 199"});
+  expect_refused(render("run --frame -201 --out p.png"), 2, {"frame = -201", "0 to 199"});
+  expect_refused(render("run --frame one --out p.png"), 2, {"--frame", "one"});
+  expect_refused(render("nowhere --out p.png"), 2, {"nowhere", "no such"});
+  expect_refused(render("run/empty --out p.png"), 2, {"run/empty", "not the folder of a run"});
+  expect_refused(render("e.ini --out p.png"), 2, {"e.ini"});
+  expect_refused(render("half.h5 --out p.png"), 2, {"half.h5"});
+  expect_refused(render("run --out p.bmp"), 2, {"p.bmp", ".png"});
+  expect_refused(render("run --out p.png --camera behind"), 2, {"behind", "front", "AZIMUTH"});
+  expect_refused(render("run --out p.png --width 7"), 2, {"7", "16 to 8000"});
+  expect_refused(render("run --out p.png --model gone.urdf"), 2, {"gone.urdf"});
+  expect_refused(render("run --out no_folder/p.png"), 1, {"no_folder/p.png"});
+  EXPECT_EQ(files(), Names{"half.h5"});
+}
+
+TEST_F(Render, RealPovrayDrawsIt) {
+  if (std::system("povray --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "povray is missing";
+  const Result result = run("render run --out p.png --width 96 --height 60");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string png = read(root_ / "p.png");
+  ASSERT_GT(png.size(), 2000u);  // more than a sky
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  // Width and height stand behind the first chunk's name.
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\0\x60\0\0\0\x3c", 8));
+}
+
+}  // namespace
+}  // namespace screed::testing

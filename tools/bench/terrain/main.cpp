@@ -1,0 +1,203 @@
+// `make bench-terrain`: runs every case in a child process; prints the table, writes CSV and
+// charts.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/picture/line_chart.h"
+#include "tools/bench/terrain/terrain_bench.h"
+#include "tools/program.h"
+
+namespace {
+
+using namespace screed;
+using terrain_bench::Case;
+using terrain_bench::Measurement;
+
+struct Options {
+  std::string out = "out/bench-terrain";
+  std::uint64_t frames = 1000;
+  double seconds = 60.0;
+  std::string bed;  ///< of a child: it measures one case and prints it as JSON
+  std::vector<std::string> set;
+};
+
+/// A case and what came of it; nothing where this program has no such terrain.
+struct Row {
+  Case bench;
+  std::optional<Measurement> measured;
+};
+
+void print_measurement(const Options& options) {
+  const Measurement m =
+      terrain_bench::measure(options.bed, options.set, options.frames, options.seconds);
+  std::printf("%s\n", nlohmann::json({{"frames", m.frames},
+                                      {"wall_ms", m.wall_ms},
+                                      {"processor_ms", m.processor_ms},
+                                      {"memory_mb", m.memory_mb},
+                                      {"elements", m.elements}})
+                          .dump()
+                          .c_str());
+}
+
+std::optional<Measurement> measure_in_child(const Case& bench, const std::string& bed,
+                                            const Options& options) {
+  // The words hold no quotes: they are ours.
+  std::string command = "'" + std::filesystem::read_symlink("/proc/self/exe").string() +
+                        "' --bed '" + bed + "' --frames " + std::to_string(options.frames) +
+                        " --seconds " + std::to_string(options.seconds);
+  for (const std::string& text : bench.overrides) command += " --set '" + text + "'";
+  std::FILE* child = popen((command + " 2>/dev/null").c_str(), "r");
+  if (child == nullptr) throw RunError("no child process can be started");
+  std::string said;
+  std::array<char, 512> part{};
+  while (std::fgets(part.data(), part.size(), child) != nullptr) said += part.data();
+  const int status = pclose(child);
+  constexpr int kWrongInput = 2;
+  const bool may_be_missing = bench.threads > 1 || bench.terrain == "particles";
+  if (may_be_missing && WIFEXITED(status) && WEXITSTATUS(status) == kWrongInput) {
+    return std::nullopt;
+  }
+  if (status != 0) throw RunError("a case failed: " + command);
+  const auto json = nlohmann::json::parse(said);
+  return Measurement{json["frames"], json["wall_ms"], json["processor_ms"], json["memory_mb"],
+                     json["elements"]};
+}
+
+void print_head() {
+  std::printf(
+      "| terrain | bed, m | heights or particles | threads | ms a frame | processor ms | "
+      "thesis, ms | times faster | memory, MB |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+}
+
+void print_row(const Row& row) {
+  std::printf("| %s | %.1f | ", row.bench.terrain.c_str(), row.bench.size_m);
+  if (!row.measured) {
+    std::printf("| %d | not available | | | | |\n", row.bench.threads);
+    return;
+  }
+  const Measurement& m = *row.measured;
+  const auto thesis_s = terrain_bench::thesis_frame_s(row.bench.terrain, row.bench.size_m);
+  std::printf("%llu | %d | %.3f | %.3f | ", static_cast<unsigned long long>(m.elements),
+              row.bench.threads, m.wall_ms, m.processor_ms);
+  if (thesis_s) {
+    std::printf("%.0f | %.0f | ", *thesis_s * 1e3, *thesis_s * 1e3 / m.wall_ms);
+  } else {
+    std::printf("figure only | | ");
+  }
+  std::printf("%.0f |\n", m.memory_mb);
+  std::fflush(stdout);
+}
+
+void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) {
+  std::ofstream file(path);
+  file << "terrain,bed_m,threads,elements,frames,wall_ms,processor_ms,memory_mb\n";
+  for (const Row& row : rows) {
+    if (!row.measured) continue;
+    const Measurement& m = *row.measured;
+    file << '"' << row.bench.terrain << "\"," << row.bench.size_m << ',' << row.bench.threads << ','
+         << m.elements << ',' << m.frames << ',' << m.wall_ms << ',' << m.processor_ms << ','
+         << m.memory_mb << '\n';
+  }
+  file.close();
+  if (!file) throw RunError(path.string() + ": cannot be written");
+}
+
+/// One group of bars a bed, one bar a terrain and number of threads. Nothing when no row passes.
+void write_bars(const std::filesystem::path& path, const std::vector<Row>& rows, const char* title,
+                const char* axis, double Measurement::*value, bool (*wanted)(const Case&)) {
+  Chart chart;
+  chart.kind = ChartKind::kBars;
+  chart.title = title;
+  chart.y_label = axis;
+  chart.x_label = "bed";
+  chart.value_labels = true;
+  for (const Row& row : rows) {
+    if (!row.measured || !wanted(row.bench)) continue;
+    char bed[30];
+    std::snprintf(bed, sizeof bed, "%.1f m", row.bench.size_m);
+    const auto place = std::find(chart.categories.begin(), chart.categories.end(), bed);
+    const auto group = static_cast<double>(place - chart.categories.begin());
+    if (place == chart.categories.end()) chart.categories.emplace_back(bed);
+    std::string label = row.bench.terrain;
+    if (row.bench.threads > 1) label += ", " + std::to_string(row.bench.threads) + " threads";
+    auto series = std::find_if(chart.series.begin(), chart.series.end(),
+                               [&](const ChartSeries& s) { return s.label == label; });
+    if (series == chart.series.end()) {
+      chart.series.push_back({label, {}, true});
+      series = chart.series.end() - 1;
+    }
+    series->points.push_back({group, (*row.measured).*value});
+  }
+  if (!chart.series.empty()) write_chart(path, chart);
+}
+
+void write_charts(const std::filesystem::path& folder, const std::vector<Row>& rows) {
+  const auto one_thread = [](const Case& bench) { return bench.threads == 1; };
+  const auto soft = [](const Case& bench) {
+    return bench.threads == 1 && bench.terrain != "particles";
+  };
+  const auto particles = [](const Case& bench) { return bench.terrain == "particles"; };
+  const char* time = "ms a frame";
+  const char* memory = "MB";
+  write_bars(folder / "figure_5.6.svg", rows, "Time of a frame, as Figure 5.6", time,
+             &Measurement::wall_ms, one_thread);
+  write_bars(folder / "figure_5.6_soil.svg", rows, "Time of a frame without particles", time,
+             &Measurement::wall_ms, soft);
+  write_bars(folder / "figure_5.7.svg", rows, "Memory, as Figure 5.7", memory,
+             &Measurement::memory_mb, one_thread);
+  write_bars(folder / "figure_5.8.svg", rows, "Time of a frame on particles, as Figure 5.8", time,
+             &Measurement::wall_ms, particles);
+  write_bars(folder / "figure_5.9.svg", rows, "Memory with particles, as Figure 5.9", memory,
+             &Measurement::memory_mb, particles);
+}
+
+int run(const Options& options) {
+  if (!options.bed.empty()) {
+    print_measurement(options);
+    return 0;
+  }
+  const std::filesystem::path folder = options.out;
+  const std::filesystem::path bed = terrain_bench::write_bed(folder);
+  std::vector<Row> rows;
+  print_head();
+  for (const Case& bench : terrain_bench::all_cases()) {
+    rows.push_back({bench, measure_in_child(bench, bed.string(), options)});
+    print_row(rows.back());
+  }
+  write_csv(folder / "terrain.csv", rows);
+  write_charts(folder, rows);
+  std::printf("\ntable and charts: %s\n", folder.c_str());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Time and memory of a frame on every terrain: thesis figures 5.6 to 5.9 again",
+               "terrain_bench");
+  app.add_option("--out", options.out, "folder for table and charts")->capture_default_str();
+  app.add_option("--frames", options.frames, "frames to time, a case")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--seconds", options.seconds, "longest time to go on timing, a case")
+      ->check(CLI::Range(0.1, 36000.0))
+      ->capture_default_str();
+  app.add_option("--bed", options.bed, "measure one case here: its experiment file");
+  app.add_option("--set", options.set, "what is different in it, section.key=value")
+      ->allow_extra_args(false);
+  return run_program(app, argc, argv, [&] { return run(options); });
+}

@@ -1,0 +1,156 @@
+// Cases and their measurement.
+#include "tools/bench/terrain/terrain_bench.h"
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <memory>
+#include <numbers>
+
+#include "firmware/robot/robot.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/experiment/board_table.h"
+#include "host_sim/experiment/experiment.h"
+#include "host_sim/experiment/simulation.h"
+#include "host_sim/terrain/grey_image.h"
+
+namespace screed::terrain_bench {
+namespace {
+
+constexpr double kSizes_m[] = {1.5, 3.0, 6.0};  // 18, 36, 72 units of the thesis
+constexpr int kImageSide = 600;
+constexpr double kRelief_m = 5.0 / 12.0;  // 5 units
+
+std::string number(double value) {
+  char text[30];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+/// One hill in the middle of the bed, half of the bed's volume filled: the mean height then gives
+/// the thesis' numbers of particles.
+void write_hill(const std::filesystem::path& file) {
+  std::vector<uint16_t> samples;
+  const auto wave = [](int i) {
+    return 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * i / (kImageSide - 1));
+  };
+  for (int row = 0; row < kImageSide; ++row) {
+    for (int column = 0; column < kImageSide; ++column) {
+      samples.push_back(
+          static_cast<uint16_t>(std::lround(65535.0 * 0.5 * (wave(row) + wave(column)))));
+    }
+  }
+  write_grey16_png(file, kImageSide, kImageSide, samples);
+}
+
+double processor_s() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// VmHWM of /proc/self/status.
+double peak_memory_mb() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word) {
+    double kib = 0.0;
+    if (word == "VmHWM:" && status >> kib) return kib * 1024.0 / 1e6;
+  }
+  throw RunError("/proc/self/status has no VmHWM");
+}
+
+}  // namespace
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  const auto add = [&](const char* terrain, int threads, double size_m,
+                       std::vector<std::string> overrides) {
+    overrides.push_back("map.size=" + number(size_m));
+    if (threads > 1) overrides.push_back("physics.threads=" + std::to_string(threads));
+    cases.push_back({terrain, size_m, threads, std::move(overrides)});
+  };
+  for (const double size : kSizes_m) add("rigid", 1, size, {"map.model=rigid"});
+  // The thesis' mesh has the height map's 600 x 600 points at any size ...
+  for (const double size : kSizes_m) {
+    add("SCM, 600 x 600", 1, size,
+        {"map.model=scm", "soil.cell=" + number(size / (kImageSide - 1))});
+  }
+  // ... and a soil of equal detail everywhere is the fairer question.
+  for (const double size : kSizes_m) {
+    add("SCM, 5 mm", 1, size, {"map.model=scm", "soil.cell=0.005"});
+  }
+  for (const int threads : {1, 2}) {
+    for (const double size : kSizes_m) add("particles", threads, size, {"map.model=particles"});
+  }
+  return cases;
+}
+
+std::optional<double> thesis_frame_s(const std::string& terrain, double size_m) {
+  if (terrain == "particles" && size_m == 3.0) return 8.98;  // chapter 2, "as described in 5.4.1"
+  return std::nullopt;
+}
+
+std::filesystem::path write_bed(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
+  write_hill(folder / "hill.png");
+  std::filesystem::path bed = folder / "bed.ini";
+  std::ofstream file(bed);
+  file << "; The bed of `make bench-terrain`: one hill, and the robot going round on it.\n"
+       << "[map]\nfilename = hill.png\nscale = " << number(kRelief_m)
+       << "\n[experiment]\nname = bench_terrain\nalgorithm = drive\nduration = 3600\n"
+       << "[drive]\nspeed = 0.1\nyaw_rate = 20\n";
+  file.close();
+  if (!file) throw RunError(bed.string() + ": cannot be written");
+  return bed;
+}
+
+Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
+                    std::uint64_t most_frames, double longest_s) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::uint64_t kLongestStart = 20U * std::uint64_t{kTickRate_hz};
+  constexpr std::uint64_t kWarmUp = kTickRate_hz;  // driving, not timed
+  const Experiment experiment = read_experiment(bed, overrides);
+  const std::unique_ptr<World> world = make_world(experiment, nullptr);
+  Robot robot(board_constants_of(kDefaultBoard), experiment.parameters);
+  RobotOutput output{};
+  const auto frame = [&] {
+    world->advance();
+    robot.tick(world->sample(), output);
+    world->apply(output);
+  };
+  while (robot.supervisor().state() != RobotState::kRunning) {
+    if (world->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
+    frame();
+  }
+  for (std::uint64_t i = 0; i < kWarmUp; ++i) frame();
+
+  Measurement result;
+  const Eigen::Vector3d start = world->vehicle().chassis().pose.translation();
+  double farthest_m = 0.0;
+  const Clock::time_point begin = Clock::now();
+  const double processor_begin = processor_s();
+  const auto wall_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  while (result.frames < most_frames && wall_s() < longest_s) {
+    frame();
+    ++result.frames;
+    farthest_m =
+        std::max(farthest_m, (world->vehicle().chassis().pose.translation() - start).norm());
+  }
+  const double frames = static_cast<double>(result.frames);
+  result.wall_ms = 1e3 * wall_s() / frames;
+  result.processor_ms = 1e3 * (processor_s() - processor_begin) / frames;
+  // A robot that stands costs less than one that drives.
+  if (farthest_m < 1e-4 * frames) throw RunError("the robot did not drive while it was timed");
+  result.memory_mb = peak_memory_mb();
+  result.elements = static_cast<std::uint64_t>(world->terrain().nx()) *
+                    static_cast<std::uint64_t>(world->terrain().ny());
+  return result;
+}
+
+}  // namespace screed::terrain_bench

@@ -1,0 +1,46 @@
+// The thesis' performance figures 5.6 to 5.9 again: one case is a terrain of one kind and size
+// under the driving robot. Each runs in a process of its own, so that its memory can be told.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace screed::terrain_bench {
+
+struct Case {
+  std::string terrain;  ///< as the table calls it
+  double size_m;
+  int threads;
+  /// What makes the experiment of this case from the common one: "section.key=value".
+  std::vector<std::string> overrides;
+};
+
+/// All of them, in the order of the table.
+std::vector<Case> all_cases();
+
+/// What a case took.
+struct Measurement {
+  std::uint64_t frames = 0;    ///< of 10 ms of simulated time each: firmware, ten physics steps
+  double wall_ms = 0.0;        ///< mean of a frame
+  double processor_ms = 0.0;   ///< mean of a frame, all threads together
+  double memory_mb = 0.0;      ///< most that the process ever had resident, 10^6 bytes
+  std::uint64_t elements = 0;  ///< heights or particles
+};
+
+/// What the thesis says in words about a frame of that terrain and size, s; most of its results are
+/// drawn only.
+std::optional<double> thesis_frame_s(const std::string& terrain, double size_m);
+
+/// Writes the common experiment (bed.ini) and its 600 x 600 height map into `folder`.
+std::filesystem::path write_bed(const std::filesystem::path& folder);
+
+/// Runs the experiment with these overrides in this process: until the robot drives, then frames
+/// are timed, at most so many and for so long. Throws InputError where this program has no such
+/// terrain.
+Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
+                    std::uint64_t most_frames, double longest_s);
+
+}  // namespace screed::terrain_bench
