@@ -22,6 +22,8 @@ struct FootprintPoint {
 
 class Footprint {
  public:
+  enum class Kind { kTrack, kBox, kDisc };
+
   /// A belt round two wheels, or with half_length 0 one wheel: a capsule in the local x-z plane,
   /// `width` along local y.
   static Footprint track(double half_length, double radius, double width);
@@ -32,6 +34,12 @@ class Footprint {
 
   void set_pose(const Eigen::Isometry3d& pose);
   const Eigen::Isometry3d& pose() const { return pose_; }
+
+  Kind kind() const { return kind_; }
+  /// Half extents in local axes; of a track half the distance of its axles, half its width, 0.
+  const Eigen::Vector3d& half() const { return half_; }
+  /// Of a track's wheels or a disc, m.
+  double radius() const { return radius_; }
 
   /// Half of the extent in x and y of the world around pose().translation().
   Eigen::Vector2d reach() const;
@@ -53,7 +61,6 @@ class Footprint {
   bool at(double x, double y, double edge, FootprintPoint& point) const;
 
  private:
-  enum class Kind { kTrack, kBox, kDisc };
   Footprint(Kind kind, const Eigen::Vector3d& half, double radius)
       : kind_(kind), half_(half), radius_(radius) {
     set_pose(Eigen::Isometry3d::Identity());
