@@ -122,6 +122,10 @@ bool is_soil(const std::string& name) {
                      [&](const SoilParameters& known) { return known.name == name; });
 }
 
+bool is_ground(const std::string& name) {
+  return name == "rigid" || name == "scm" || name == "particles" || name == "static_particles";
+}
+
 bool not_empty(const std::string& text) {
   return !text.empty();
 }
@@ -182,10 +186,28 @@ std::vector<Key> make_keys() {
                           "the terrain repeats at its edges; the image must be tileable",
                           [](Experiment& e) -> bool& { return e.map.wrap; }));
   keys.push_back(text_key(
-      "map", "model", "rigid or scm",
-      "how the ground answers; scm: soil that gives way, see [soil]",
-      [](Experiment& e) -> std::string& { return e.map.model; },
-      [](const std::string& text) { return text == "rigid" || text == "scm"; }));
+      "map", "model", "rigid, scm, particles or static_particles",
+      "how the ground answers; scm: soil that gives way, see [soil]; particles: a bed of spheres",
+      [](Experiment& e) -> std::string& { return e.map.model; }, is_ground));
+  keys.push_back(real_key("map", "particle_radius", "m", 0.001, 0.5,
+                          "model particles: of every particle",
+                          [](Experiment& e) -> double& { return e.map.particle_radius_m; }));
+
+  keys.push_back(real_key("particles", "depth", "m", 0, 10,
+                          "of the bed below the image's black; of level ground",
+                          [](Experiment& e) -> double& { return e.particles.depth_m; }));
+  keys.push_back(real_key("particles", "density", "kg/m^3", 10, 20000, "of a particle",
+                          [](Experiment& e) -> double& { return e.particles.density_kg_per_m3; }));
+  keys.push_back(real_key("particles", "friction", "", 0, 5,
+                          "Coulomb friction between particles, and on the walls",
+                          [](Experiment& e) -> double& { return e.particles.friction; }));
+  keys.push_back(real_key("particles", "rolling", "", 0, 5,
+                          "resistance to rolling, as a share of the radius",
+                          [](Experiment& e) -> double& { return e.particles.rolling; }));
+
+  keys.push_back(real_key("raygrid", "resolution", "1/m", 2, 2000,
+                          "model particles: rays a metre that read the height map",
+                          [](Experiment& e) -> double& { return e.raygrid.resolution_per_m; }));
 
   keys.push_back(text_key(
       "soil", "preset", "soft, viper, lete_sand, dry_sand, clay or ding_2011",
@@ -294,6 +316,13 @@ const std::vector<Key>& keys() {
   return table;
 }
 
+/// Keys of a kind of ground that the experiment does not have.
+bool decides_nothing(const Key& key, const std::string& model, bool of_particles) {
+  if (key.section == "soil") return model != "scm";
+  return !of_particles &&
+         (key.section == "particles" || key.section == "raygrid" || key.name == "particle_radius");
+}
+
 std::string full_name(const std::string& section, const std::string& key) {
   return section.empty() ? key : "[" + section + "] " + key;
 }
@@ -373,7 +402,7 @@ std::string Experiment::text() const {
   for (const Key& key : keys()) {
     const std::optional<std::string> value = key.get(*this);
     if (!value.has_value()) continue;
-    if (key.section == "soil" && map.model != "scm") continue;  // decides nothing
+    if (decides_nothing(key, map.model, map.of_particles())) continue;
     if (key.section != section) text += "\n[" + key.section + "]\n";
     section = key.section;
     text += key.name + " = " + *value + "\n";

@@ -41,8 +41,24 @@ struct Experiment {
     std::optional<double> max_slope_deg;
     double ramp_deg = 0.0;  ///< without an image: level ground inclined towards east
     bool wrap = false;
-    std::string model = "rigid";  ///< rigid, or scm: soil that gives way
+    /// rigid, scm: soil that gives way, particles, or static_particles: those that never move
+    std::string model = "rigid";
+    double particle_radius_m = 0.0125;
+
+    bool of_particles() const { return model == "particles" || model == "static_particles"; }
   } map;
+
+  /// What the particles of the models particles and static_particles are, and how many lie there.
+  struct {
+    double depth_m = 0.1;  ///< of the bed below the image's black
+    double density_kg_per_m3 = 2600.0;
+    double friction = 0.6;
+    double rolling = 0.1;
+  } particles;
+
+  struct {
+    double resolution_per_m = 200.0;  ///< rays a metre that read the height map of particles
+  } raygrid;
 
   /// Soil of the model scm: a named preset and what differs from it.
   struct {

@@ -25,6 +25,7 @@ namespace screed {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr int kLevelBedNodes = 65;  // a side, of a bed of particles without an image
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
 constexpr uint64_t kFlatnessTicks =
     5U * uint64_t{kTickRate_hz};                    // a look at the whole bed costs milliseconds
@@ -106,10 +107,10 @@ class Recorder {
            (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed));
   }
 
-  /// A bed of soil ends at its edges: who drives over them falls.
+  /// A bed of soil or particles ends at its edges: who drives over them falls.
   bool left_bed() const {
     const Eigen::Vector3d place = plant_.vehicle().chassis().pose.translation();
-    return plant_.soil() != nullptr && !plant_.terrain().wrap() &&
+    return plant_.ground_is_loose() && !plant_.terrain().wrap() &&
            !plant_.terrain().inside(place.x(), place.y());
   }
 
@@ -127,7 +128,7 @@ class Recorder {
     writer_.append(frame_, sample_, output);
     if (ticks_ % kPathTicks == 1)
       path_.push_back({frame_.x, frame_.y, static_cast<size_t>(frame_.leveling_state)});
-    if (plant_.soil() != nullptr && ticks_ % kFlatnessTicks == 0) {
+    if (plant_.ground_is_loose() && ticks_ % kFlatnessTicks == 0) {
       flatness_now_ = flatness(plant_.terrain(), flatness_deg_);
     }
     if (options_.progress && ticks_ % kProgressTicks == 0) {
@@ -309,6 +310,13 @@ HeightField resampled(const HeightField& field, double cell_m) {
                                     [&](double x, double y) { return field.at(x, y).height; });
 }
 
+void raise(HeightField& field, double by_m) {
+  const auto units = static_cast<Height>(std::lround(by_m / kHeightUnit_m));
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) field.set_node(ix, iy, field.node(ix, iy) + units);
+  }
+}
+
 nlohmann::ordered_json terrain_json(const TerrainStatistics& statistics, double flatness) {
   return {{"lowest_m", statistics.lowest_m},
           {"highest_m", statistics.highest_m},
@@ -368,6 +376,15 @@ SoilParameters make_soil(const Experiment& experiment) {
 HeightField make_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
   const bool soft = map.model == "scm";
+  if (map.filename.empty() && map.of_particles()) {
+    const double rise = std::tan(map.ramp_deg * kRadPerDeg);
+    const int nodes = kLevelBedNodes;
+    return HeightField::from_function(nodes, nodes, map.size_m / (nodes - (map.wrap ? 0 : 1)),
+                                      map.wrap, [&](double x, double /*y*/) {
+                                        return std::max(0.0,
+                                                        experiment.particles.depth_m + x * rise);
+                                      });
+  }
   if (map.filename.empty()) {
     const double spacing = soft ? experiment.soil.cell_m : map.size_m / 64.0;
     return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing)
@@ -381,6 +398,7 @@ HeightField make_terrain(const Experiment& experiment) {
   options.wrap = map.wrap;
   HeightField image = HeightField::from_image(
       read_grey_image(find_data_file(experiment, map.filename, "[map] filename")), options);
+  if (map.of_particles()) raise(image, experiment.particles.depth_m);
   return soft ? resampled(image, experiment.soil.cell_m) : image;
 }
 
@@ -420,6 +438,17 @@ WorldOptions world_options(const Experiment& experiment, GroundPort* ground_port
     options.soil_options.bulldozing = experiment.soil.bulldozing;
     options.soil_options.avalanches = experiment.soil.avalanches;
   }
+  if (experiment.map.of_particles()) {
+    ParticleOptions particles;
+    particles.material.radius_m = experiment.map.particle_radius_m;
+    particles.material.density_kg_per_m3 = experiment.particles.density_kg_per_m3;
+    particles.material.friction = experiment.particles.friction;
+    particles.material.rolling = experiment.particles.rolling;
+    particles.ray_spacing_m = 1.0 / experiment.raygrid.resolution_per_m;
+    particles.seed = experiment.experiment.seed;
+    particles.fixed = experiment.map.model == "static_particles";
+    options.particles = particles;
+  }
   return options;
 }
 
@@ -457,8 +486,10 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   TextFile telemetry(folder.path() / "telemetry.log");
   Run run(experiment, options, &telemetry.stream());
   const Plant& plant = run.plant();
-  // As the experiment lays it out; the robot has settled into plant.terrain() already.
-  const HeightField before = make_terrain(experiment);
+  // As the experiment lays it out; the robot has settled into plant.terrain() already. Particles
+  // lie as they fell.
+  const HeightField before =
+      plant.particles() != nullptr ? plant.terrain() : make_terrain(experiment);
 
   SimulationSummary summary;
   summary.before = terrain_statistics(before);

@@ -184,8 +184,10 @@ std::vector<Eigen::Vector3d> lay_spheres(const std::vector<int>& counts, const B
     }
     for (const int stack : order) {
       if (counts[static_cast<size_t>(stack)] <= layer) continue;
-      const double x = (2 * (stack % extent.stacks_x) + 1) * radius_m - 0.5 * extent.width_m;
-      const double y = (2 * (stack / extent.stacks_x) + 1) * radius_m - 0.5 * extent.depth_m;
+      const int column = stack % extent.stacks_x;
+      const int row = stack / extent.stacks_x;
+      const double x = (2 * column + 1) * radius_m - 0.5 * extent.width_m;
+      const double y = (2 * row + 1) * radius_m - 0.5 * extent.depth_m;
       const double off_x = random.uniform(-kScatter, kScatter) * radius_m;
       const double off_y = random.uniform(-kScatter, kScatter) * radius_m;
       deposit.let_down(x + off_x, y + off_y);

@@ -389,8 +389,7 @@ int32_t ParticleBed::gear_number(const Footprint* solid) {
   return kGear - static_cast<int32_t>(at - gear_.begin());
 }
 
-SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& motion,
-                                double friction, double dt) {
+SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& motion, double dt) {
   const double radius = options_.material.radius_m;
   const Eigen::Vector3d centre = solid.pose().translation();
   const Eigen::Matrix3d& axes = solid.pose().linear();
@@ -425,7 +424,7 @@ SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& m
     ContactBristle passing{};
     Slot* const slot = take_slot(particle, gear);
     const SphereForce push =
-        law_.force(touch, friction, dt, slot == nullptr ? passing : slot->bristle);
+        law_.force(touch, motion.friction, dt, slot == nullptr ? passing : slot->bristle);
     if (state_[i] == kAwake) {
       force_[i] += push.force;
       moment_[i] += push.moment - near.distance * touch.normal.cross(push.force);

@@ -49,9 +49,8 @@ class ParticleBed {
               const ParticleOptions& options);
 
   /// Running gear or hull against the particles in this step; forces act on both. Every body
-  /// before step(). `friction`: Coulomb coefficient between the two.
-  SoilReaction press(const Footprint& solid, const FootprintMotion& motion, double friction,
-                     double dt);
+  /// before step(). A solid is known by its address, which must not change.
+  SoilReaction press(const Footprint& solid, const FootprintMotion& motion, double dt);
   /// One step of at most longest_step_s().
   void step(double dt);
   double longest_step_s() const { return SphereLaw::longest_step_s(options_.material); }
@@ -60,6 +59,8 @@ class ParticleBed {
 
   /// The height map as it is now: under each ray the highest surface of a particle, or the floor.
   const HeightField& surface() const;
+  /// The floor below the particles, for bodies: level, at height 0, without end.
+  const HeightField& floor() const { return floor_; }
 
   const ParticleOptions& options() const { return options_; }
   const BedExtent& extent() const { return extent_; }
@@ -141,6 +142,7 @@ class ParticleBed {
   std::vector<const Footprint*> gear_;
   uint64_t steps_ = 1;
 
+  HeightField floor_{2, 2, 1.0, false};
   // The height map, and the columns of the grid in which it may be out of date.
   mutable HeightField surface_;
   mutable std::vector<uint8_t> stale_;

@@ -46,7 +46,8 @@ struct FootprintMotion {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< of the body without the wheel's spin, rad/s
   double surface_speed =
       0.0;  ///< of the belt over its wheels, forward drive positive: below it goes backward, m/s
-  double slip = 0.0;  ///< for slip-sinkage, 0..1
+  double slip = 0.0;      ///< for slip-sinkage, 0..1
+  double friction = 0.8;  ///< Coulomb's, against particles; soil has its own
   double mass_kg =
       1.0;  ///< that the footprint carries; infinite: the motion is imposed, whatever the force
 };

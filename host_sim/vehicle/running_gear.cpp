@@ -156,8 +156,7 @@ double RunningGear::contact(const HeightField& ground, const CarrierMotion& carr
   return along_surface;
 }
 
-double RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double speed, double dt,
-                            Wrench& wrench) {
+RunningGear::Pressing RunningGear::pressing(const CarrierMotion& carrier, double speed) const {
   const Eigen::Vector3d arm = carrier.rotation * centre_;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = carrier.rotation * axes_;
@@ -167,20 +166,39 @@ double RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double 
   motion.velocity = carrier.velocity + carrier.omega.cross(arm);
   motion.omega = carrier.omega;
   motion.surface_speed = speed;
+  motion.friction = law_.friction;
   motion.mass_kg = load_.least_mass_kg;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
   const double faster = std::max(std::abs(ground_speed), std::abs(speed));
   motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed - ground_speed) / faster) : 0.0;
 
-  const bool on_its_side = std::abs(pose.linear()(2, 1)) > kOnItsSide;
+  return {pose, motion, arm};
+}
+
+double RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double speed, double dt,
+                            Wrench& wrench) {
+  Pressing solid = pressing(carrier, speed);
+  const bool on_its_side = std::abs(solid.pose.linear()(2, 1)) > kOnItsSide;
   Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
-  if (on_its_side) motion.surface_speed = 0.0;
-  footprint.set_pose(pose);
-  const SoilReaction reaction = soil.press(footprint, motion, dt, memory_);
-  wrench.add(reaction.force, arm);
+  if (on_its_side) solid.motion.surface_speed = 0.0;
+  footprint.set_pose(solid.pose);
+  const SoilReaction reaction = soil.press(footprint, solid.motion, dt, memory_);
+  wrench.add(reaction.force, solid.arm);
   wrench.torque += reaction.torque;
   normal_load_ = reaction.normal_load;
   return reaction.along_surface;
+}
+
+double RunningGear::contact(ParticleBed& particles, const CarrierMotion& carrier, double speed,
+                            double dt, Wrench& wrench) {
+  const double of_floor = contact(particles.floor(), carrier, speed, dt, wrench);
+  const Pressing solid = pressing(carrier, speed);
+  footprint_.set_pose(solid.pose);
+  const SoilReaction reaction = particles.press(footprint_, solid.motion, dt);
+  wrench.add(reaction.force, solid.arm);
+  wrench.torque += reaction.torque;
+  normal_load_ += reaction.normal_load;
+  return of_floor + reaction.along_surface;
 }
 
 }  // namespace screed

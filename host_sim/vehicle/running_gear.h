@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host_sim/particles/particle_bed.h"
 #include "host_sim/soil/soil_bed.h"
 #include "host_sim/terrain/height_field.h"
 #include "host_sim/vehicle/ground_contact.h"
@@ -65,6 +66,10 @@ class RunningGear {
   double contact(SoilBed& soil, const CarrierMotion& carrier, double speed, double dt,
                  Wrench& wrench);
 
+  /// The same on particles, and on the floor where there are none.
+  double contact(ParticleBed& particles, const CarrierMotion& carrier, double speed, double dt,
+                 Wrench& wrench);
+
   /// Lets go of the ground.
   void let_go();
 
@@ -75,6 +80,13 @@ class RunningGear {
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
+  struct Pressing {  // the unit's solid as it moves in this step
+    Eigen::Isometry3d pose;
+    FootprintMotion motion;
+    Eigen::Vector3d arm;  // of its centre, from the carrier's centre of mass, world frame
+  };
+
+  Pressing pressing(const CarrierMotion& carrier, double speed) const;
   void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
                  const Eigen::Vector3d& along);
   void carry_bristles(double speed, double dt);

@@ -379,6 +379,26 @@ void Vehicle::hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion&
   }
 }
 
+void Vehicle::hull_contact(Carrier& carrier, ParticleBed& particles, const CarrierMotion& motion,
+                           double dt, Wrench& wrench) {
+  hull_contact(carrier, particles.floor(), motion, dt, wrench);
+  for (size_t i = 0; i < carrier.boxes.size(); ++i) {
+    Eigen::Isometry3d pose = carrier.box_poses[i];
+    const Eigen::Vector3d arm = motion.rotation * pose.translation();
+    pose.linear() = motion.rotation * pose.linear();
+    pose.translation() = motion.origin + arm;
+    Footprint& box = carrier.boxes[i];
+    box.set_pose(pose);
+    FootprintMotion moving;
+    moving.velocity = motion.velocity + motion.omega.cross(arm);
+    moving.omega = motion.omega;
+    moving.friction = carrier.law.friction;
+    const SoilReaction reaction = particles.press(box, moving, dt);
+    wrench.add(reaction.force, arm);
+    wrench.torque += reaction.torque;
+  }
+}
+
 template <class Ground>
 void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt) {
   for (Shaft& shaft : shafts_) shaft.torque = 0.0;
@@ -414,6 +434,11 @@ void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2
 
 void Vehicle::apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt) {
   apply(soil, motor_voltage, dt);
+}
+
+void Vehicle::apply_forces(ParticleBed& particles, const std::array<double, 2>& motor_voltage,
+                           double dt) {
+  apply(particles, motor_voltage, dt);
 }
 
 ChassisState Vehicle::chassis() const {

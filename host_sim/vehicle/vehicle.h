@@ -70,6 +70,9 @@ class Vehicle {
   /// The same on soil that gives way; its end_step() is the caller's.
   void apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt);
 
+  /// The same on particles; their step() is the caller's.
+  void apply_forces(ParticleBed& particles, const std::array<double, 2>& motor_voltage, double dt);
+
   ChassisState chassis() const;
   double mass_kg() const { return mass_; }
 
@@ -116,6 +119,8 @@ class Vehicle {
                            double dt, Wrench& wrench);
   static void hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion& motion, double dt,
                            Wrench& wrench);
+  static void hull_contact(Carrier& carrier, ParticleBed& particles, const CarrierMotion& motion,
+                           double dt, Wrench& wrench);
   template <class Ground>
   void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
   /// The driven unit that stands for its side, and the shaft with the encoder.

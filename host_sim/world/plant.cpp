@@ -41,6 +41,10 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
       imu_position_(imu_position(model)),
       moments_(static_cast<size_t>(steps_per_tick_) + 1) {
   if (options.soil.has_value()) soil_.emplace(rigid_, *options.soil, options.soil_options);
+  if (options.particles.has_value()) {
+    particles_.emplace(rigid_, *options.particles);
+    particle_steps_ = static_cast<int>(std::ceil(step_s_ / particles_->longest_step_s()));
+  }
   const StartPose& start = options.start;
   const Eigen::Matrix3d rotation = rotation_from(start.attitude);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -56,6 +60,11 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
   if (!start.z_m.has_value()) settle();
 }
 
+const HeightField& Plant::terrain() const {
+  if (particles_) return particles_->surface();
+  return soil_ ? soil_->surface() : rigid_;
+}
+
 void Plant::settle() {
   constexpr double kSettle_s = 1.5;
   const auto steps = static_cast<int>(std::lround(kSettle_s / step_s_));
@@ -69,6 +78,15 @@ void Plant::step_bodies(const std::array<double, 2>& motor_voltage) {
   if (soil_) {
     vehicle_.apply_forces(*soil_, motor_voltage, step_s_);
     soil_->end_step();
+  } else if (particles_) {
+    // Light spheres on stiff contacts need shorter steps than the robot.
+    const double dt = step_s_ / particle_steps_;
+    for (int i = 0; i < particle_steps_; ++i) {
+      vehicle_.apply_forces(*particles_, motor_voltage, dt);
+      particles_->step(dt);
+      ode_.step(dt);
+    }
+    return;
   } else {
     vehicle_.apply_forces(rigid_, motor_voltage, step_s_);
   }

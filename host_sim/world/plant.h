@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "host_sim/particles/particle_bed.h"
 #include "host_sim/sensors/imu_model.h"
 #include "host_sim/soil/soil_bed.h"
 #include "host_sim/terrain/height_field.h"
@@ -33,6 +34,7 @@ struct PlantOptions {
   Battery battery;
   std::optional<SoilParameters> soil;  ///< ground that gives way; without it the ground is rigid
   SoilOptions soil_options;
+  std::optional<ParticleOptions> particles;  ///< ground of spheres, as high as the terrain
 };
 
 class Plant {
@@ -56,9 +58,12 @@ class Plant {
   uint64_t steps() const { return steps_; }
   double time_s() const;
   /// The ground's surface as it is now.
-  const HeightField& terrain() const { return soil_ ? soil_->surface() : rigid_; }
-  /// Null on rigid ground.
+  const HeightField& terrain() const;
+  /// Null on ground of another kind.
   const SoilBed* soil() const { return soil_ ? &*soil_ : nullptr; }
+  const ParticleBed* particles() const { return particles_ ? &*particles_ : nullptr; }
+  /// Whether the ground gives way and, without wrap-around, ends at the edges of its bed.
+  bool ground_is_loose() const { return soil_.has_value() || particles_.has_value(); }
   const Vehicle& vehicle() const { return vehicle_; }
   const Battery& battery() const { return battery_; }
 
@@ -81,6 +86,8 @@ class Plant {
   int steps_per_tick_;
   HeightField rigid_;
   std::optional<SoilBed> soil_;
+  std::optional<ParticleBed> particles_;
+  int particle_steps_ = 1;  // in one physics step
   OdeWorld ode_;
   Vehicle vehicle_;
   Battery battery_;

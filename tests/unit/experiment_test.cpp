@@ -132,6 +132,8 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
       std::vector<std::string> room;
       // Soil decides nothing on rigid ground, and is not written then.
       if (row.section == "soil") room = {"map.model=scm"};
+      if (row.section == "particles" || row.section == "raygrid" || row.key == "particle_radius")
+        room = {"map.model=particles"};
       if (row.key == "walk_speed_min") room = {"parameters.walk_speed_max=250"};
       if (row.key == "walk_speed_max") room = {"parameters.walk_speed_min=0"};
       if (row.key == "walk_leg_min") room = {"parameters.walk_leg_max=20000"};
