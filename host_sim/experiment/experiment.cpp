@@ -282,10 +282,27 @@ std::vector<Key> make_keys() {
                "noise, bias and scale errors as in the data sheets; false: quantisation alone",
                [](Experiment& e) -> bool& { return e.sensors.noise; }));
 
-  keys.push_back(real_key("radio", "delay", "s", 0, 10, "of a byte, one way",
+  keys.push_back(real_key("radio", "delay", "s", 0, 10,
+                          "of a packet, from its end in one module to its way out of the other",
                           [](Experiment& e) -> double& { return e.radio.delay_s; }));
   keys.push_back(real_key("radio", "loss", "", 0, 1, "probability that a packet is lost",
                           [](Experiment& e) -> double& { return e.radio.loss; }));
+  keys.push_back(real_key("radio", "bit_errors", "", 0, 1,
+                          "probability that a bit of an arriving byte is wrong",
+                          [](Experiment& e) -> double& { return e.radio.bit_errors; }));
+  keys.push_back(real_key("radio", "duplication", "", 0, 1,
+                          "probability that an arriving packet comes twice",
+                          [](Experiment& e) -> double& { return e.radio.duplication; }));
+  keys.push_back(real_key("radio", "range", "m", 0.1, 100000,
+                          "distance at which half of the full packets are lost; left out: none is "
+                          "too far",
+                          [](Experiment& e) -> std::optional<double>& { return e.radio.range_m; }));
+  keys.push_back(real_key("radio", "baud", "baud", 1200, 1e6,
+                          "of the serial lines at the modules, 10 bits a byte",
+                          [](Experiment& e) -> double& { return e.radio.baud; }));
+  keys.push_back(real_key("radio", "packet_pause", "characters", 1, 255,
+                          "silence that ends a packet (the XBee's parameter RO)",
+                          [](Experiment& e) -> double& { return e.radio.packet_pause; }));
   keys.push_back(bool_key("radio", "ground_station", "the ground station arms and starts the robot",
                           [](Experiment& e) -> bool& { return e.radio.ground_station; }));
 

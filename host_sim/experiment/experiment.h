@@ -101,6 +101,11 @@ struct Experiment {
   struct {
     double delay_s = 0.012;
     double loss = 0.0;
+    double bit_errors = 0.0;
+    double duplication = 0.0;
+    std::optional<double> range_m;
+    double baud = 58823.5;
+    double packet_pause = 3.0;
     bool ground_station = true;
   } radio;
 

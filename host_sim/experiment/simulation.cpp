@@ -428,6 +428,11 @@ WorldOptions world_options(const Experiment& experiment, GroundPort* ground_port
   if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
   options.radio.delay_s = experiment.radio.delay_s;
   options.radio.loss = experiment.radio.loss;
+  options.radio.bit_errors = experiment.radio.bit_errors;
+  options.radio.duplication = experiment.radio.duplication;
+  options.radio.range_m = experiment.radio.range_m;
+  options.radio.bytes_per_s = experiment.radio.baud / 10.0;
+  options.radio.pause_characters = experiment.radio.packet_pause;
   options.ground_station_arms = experiment.radio.ground_station;
   if (experiment.experiment.algorithm == "drive") {
     options.drive = DriveOrder{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};

@@ -14,10 +14,6 @@
 namespace screed::mcu {
 namespace {
 
-// XBee, transparent mode: a packet ends with a pause of three characters, or when it is full
-// (parameters RO = 3 and NP = 100).
-constexpr std::size_t kPacketBytes = 100;
-constexpr std::uint64_t kPauseCharacters = 3;
 // No healthy program is silent for so long, not even through a reset by the watchdog.
 constexpr std::uint64_t kPatience_us = 2'000'000;
 
@@ -41,6 +37,7 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
       downlink_(options.world.seed, "downlink", options.world.radio),
       ground_(options.world.ground_station_arms, options.world.drive, telemetry_log),
       ground_end_(options.world.ground_port),
+      station_m_(plant_.vehicle().chassis().pose.translation()),
       board_(options.elf, wiring_of(options.board)),
       chip_clock_(options.world.seed, "chip clocks"),
       noise_(options.world.seed, "flood") {
@@ -54,11 +51,7 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
     board_.set_encoder(side, static_cast<std::int64_t>(std::floor(position_.at(side))));
   }
   board_.set_battery_v(plant_.battery().terminal_v);
-  board_.mcu.on_sent([this](std::uint8_t byte) {
-    packet_.push_back(byte);
-    last_sent_ = board_.mcu.cycle();
-    if (packet_.size() == kPacketBytes) send_packet();
-  });
+  board_.mcu.on_sent([this](std::uint8_t byte) { downlink_.send(now_us(), {&byte, 1}); });
 }
 
 std::uint64_t McuWorld::us_at(std::uint64_t steps) const {
@@ -74,11 +67,6 @@ double McuWorld::encoder_position(Side side) const {
          options_.world.encoder_counts_per_turn;
 }
 
-void McuWorld::send_packet() {
-  downlink_.send(now_us(), packet_);
-  packet_.clear();
-}
-
 void McuWorld::begin_tick() {
   ++ticks_;
   const std::optional<double>& lay = options_.world.lay_on_side_at_s;
@@ -86,15 +74,14 @@ void McuWorld::begin_tick() {
     plant_.lay_on_side();
   }
   const std::uint64_t at_us = us_at(plant_.steps());
+  const Eigen::Vector3d way = plant_.vehicle().chassis().pose.translation() - station_m_;
+  uplink_.set_distance(way.norm());
+  downlink_.set_distance(way.norm());
   ground_end_.tick(at_us, ground_, uplink_, downlink_);
 }
 
 void McuWorld::begin_step() {
   if (plant_.steps() % static_cast<std::uint64_t>(plant_.steps_per_tick()) == 0) begin_tick();
-  if (!packet_.empty() &&
-      board_.mcu.cycle() - last_sent_ > kPauseCharacters * board_.mcu.cycles_per_character()) {
-    send_packet();
-  }
   const std::uint64_t begin_us = us_at(plant_.steps());
   plant_.step({board_.motor_share(kLeft), board_.motor_share(kRight)});
   const std::uint64_t end_us = us_at(plant_.steps());

@@ -53,7 +53,6 @@ class McuWorld : public CoSimulation {
                         double end_us);
   void add_radio(std::uint64_t begin_us, std::uint64_t end_us);
   void happen(const Event& event);
-  void send_packet();
   double encoder_position(Side side) const;
   std::uint64_t us_at(std::uint64_t steps) const;
   std::uint64_t now_us() const;
@@ -65,6 +64,7 @@ class McuWorld : public CoSimulation {
   RadioLink downlink_;
   GroundStation ground_;
   GroundEnd ground_end_;
+  Eigen::Vector3d station_m_;  ///< the ground station stands where the robot starts
   Board board_;
   WorldRandom chip_clock_;
   WorldRandom noise_;
@@ -77,8 +77,6 @@ class McuWorld : public CoSimulation {
   std::uint64_t step_begin_ = 0;  ///< cycles
   std::uint64_t step_end_ = 0;
   std::optional<ImuTruth> motion_;  ///< of this step, once somebody asked
-  std::vector<std::uint8_t> packet_;
-  std::uint64_t last_sent_ = 0;  ///< cycle
   double flood_us_ = 0.0;
   std::uint64_t ticks_ = 0;
 };

@@ -15,7 +15,8 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
       uplink_(options.seed, "uplink", options.radio),
       downlink_(options.seed, "downlink", options.radio),
       ground_(options.ground_station_arms, options.drive, telemetry_log),
-      ground_end_(options.ground_port) {}
+      ground_end_(options.ground_port),
+      station_m_(plant_.vehicle().chassis().pose.translation()) {}
 
 void World::step_physics() {
   const std::array<double, 2> share = {static_cast<double>(duty_[kLeft]) / kDutyMax,
@@ -39,6 +40,9 @@ void World::measure() {
 }
 
 void World::exchange_radio() {
+  const Eigen::Vector3d way = vehicle().chassis().pose.translation() - station_m_;
+  uplink_.set_distance(way.norm());
+  downlink_.set_distance(way.norm());
   ground_end_.tick(now_us(), ground_, uplink_, downlink_);
   const std::vector<uint8_t> arrived = uplink_.receive(now_us(), kRadioInCapacity);
   sample_.radio_in_count = static_cast<uint8_t>(arrived.size());

@@ -73,6 +73,7 @@ class World {
   RadioLink downlink_;
   GroundStation ground_;
   GroundEnd ground_end_;
+  Eigen::Vector3d station_m_;  ///< the ground station stands where the robot starts
   uint64_t ticks_ = 0;
   std::array<int16_t, 2> duty_ = {0, 0};
   SensorSample sample_{};

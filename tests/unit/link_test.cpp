@@ -303,8 +303,8 @@ class GroundEndTest : public ::testing::Test {
   uint64_t now_us_ = 10000;
   RecordingPort port_;
   GroundStation station_{false, std::nullopt, nullptr};
-  RadioLink uplink_{1, "uplink", {0.0, 0.0, 1e6}};
-  RadioLink downlink_{1, "downlink", {0.0, 0.0, 1e6}};
+  RadioLink uplink_{1, "uplink", {0.0, 0.0, 1e9}};
+  RadioLink downlink_{1, "downlink", {0.0, 0.0, 1e9}};
   GroundEnd end_{&port_};
 };
 
