@@ -45,7 +45,7 @@ TEST_PACKAGES := gtest_main
 BENCH_PACKAGES := benchmark
 
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
-CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp firmware/leveling/grid/*.cpp)
+CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp firmware/leveling/grid/*.cpp nn/infer/*.cpp)
 MCU_SOURCES := $(wildcard host_sim/mcu/*.cpp)
 MCU_STAND_IN := host_sim/mcu/without_simavr.cpp
 MCU_USED_yes := $(filter-out $(MCU_STAND_IN),$(MCU_SOURCES))
@@ -53,7 +53,7 @@ MCU_USED_no := $(MCU_STAND_IN) host_sim/mcu/default_image.cpp host_sim/mcu/parit
 ifeq ($(MCU_USED_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
-HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp)) $(MCU_USED_$(MCU))
+HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp)) $(MCU_USED_$(MCU))
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))
@@ -62,7 +62,7 @@ UNIT_SOURCES := $(wildcard tests/unit/*.cpp)
 SITL_SOURCES := $(wildcard tests/sitl/*.cpp)
 BENCH_SOURCES := $(wildcard tools/bench/*.cpp)
 TERRAIN_BENCH_SOURCES := $(wildcard tools/bench/terrain/*.cpp)
-CPP_FILES := $(shell find firmware hal host_sim tools tests boards -name '*.cpp' -o -name '*.h' 2>/dev/null | LC_ALL=C sort)
+CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' 2>/dev/null | LC_ALL=C sort)
 TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/schema/main.cpp $(wildcard tools/avr_stack/main.cpp) \
                 $(UNIT_SOURCES) $(SITL_SOURCES) $(BENCH_SOURCES) $(TERRAIN_BENCH_SOURCES)
 
@@ -258,7 +258,7 @@ check-format:
 $(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  TIDY $<"
-	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/%,$<),$(B)/firmware.flags,$(B)/host.flags)) 2>&1 \
+	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/% nn/infer/%,$<),$(B)/firmware.flags,$(B)/host.flags)) 2>&1 \
 	  | { grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$$' || true; }
 	@touch $@
 

@@ -30,7 +30,7 @@ TICK_BUDGET_CYCLES := 80000
 
 FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
-FIRMWARE_SOURCES := $(sort $(wildcard firmware/*.cpp firmware/*/*.cpp hal/avr/*.cpp))
+FIRMWARE_SOURCES := $(sort $(wildcard firmware/*.cpp firmware/*/*.cpp nn/infer/*.cpp hal/avr/*.cpp))
 FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and no motion of loop

@@ -9,6 +9,7 @@ constexpr const char* kScreedSizes = SCREED_IMAGE_FOLDER "/screed.size";
 constexpr const char* kIndirectCalls = SCREED_INDIRECT_CALLS;
 constexpr const char* kWiring = SCREED_WIRING;
 constexpr const char* kGoldenImage = SCREED_IMAGE_FOLDER "/golden.elf";
+constexpr const char* kNetworkImage = SCREED_IMAGE_FOLDER "/network.elf";
 constexpr const char* kRobotImage = SCREED_IMAGE_FOLDER "/robot.elf";
 
 }  // namespace screed::mcu

@@ -1,0 +1,35 @@
+// From a trained network in floating point to the integers of nn/infer: the scale of every layer is
+// the finest whose sums provably fit 32 bits.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nn/model/integer_network.h"
+
+namespace screed::nn {
+
+/// y = tanh(W x + b), or y = W x + b where linear. Batch normalisation and the steepness of an
+/// activation are already part of W and b. Values lie within (-1, 1); a linear output beyond is
+/// cut.
+struct FloatLayer {
+  std::size_t inputs = 0;
+  std::size_t outputs = 0;
+  bool linear = false;
+  std::vector<double> weights;  ///< outputs x inputs, a row a node
+  std::vector<double> bias;     ///< outputs
+};
+
+/// What the float network gives, for comparison.
+std::vector<double> run(const std::vector<FloatLayer>& network, std::vector<double> values);
+
+/// Throws InputError, which names the layer, when dimensions do not fit together, a number is not
+/// finite, or weights are too large for any scale (the weights of a node may add up to 65,000).
+IntegerNetwork quantise(const std::vector<FloatLayer>& network);
+
+/// The activation that stands for a value, -1 to 1: floor(2^15 value), limited to int16_t.
+std::int16_t to_activation(double value);
+/// (q + 1/2) / 2^15
+double to_value(std::int16_t activation);
+
+}  // namespace screed::nn
