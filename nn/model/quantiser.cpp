@@ -81,6 +81,7 @@ std::vector<double> run(const std::vector<FloatLayer>& network, std::vector<doub
 
 IntegerNetwork quantise(const std::vector<FloatLayer>& network) {
   std::vector<IntegerLayer> layers;
+  layers.reserve(network.size());
   for (const FloatLayer& layer : network) layers.push_back(finest(layer, layers.size() + 1));
   return IntegerNetwork(std::move(layers));
 }
