@@ -168,7 +168,7 @@ GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boar
 
 # ---- host program ------------------------------------------------------------------------------------------------------------
 
-$(B)/firmware/%.o: firmware/%.cpp $(B)/firmware.flags | $(SCHEMA_HEADERS)
+$(call objects,$(CORE_SOURCES)): $(B)/%.o: %.cpp $(B)/firmware.flags | $(SCHEMA_HEADERS)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/firmware.flags -MMD -MP -c $< -o $@
