@@ -43,6 +43,8 @@ VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash
 TEST_PACKAGES := gtest_main
 BENCH_PACKAGES := benchmark
+# Headers of these are known to single files.
+LINK_PACKAGES := zlib librsvg-2.0
 
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
 CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp firmware/leveling/grid/*.cpp nn/infer/*.cpp)
@@ -57,13 +59,15 @@ HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))
+LAB_LIBRARY_SOURCES := $(filter-out tools/telemetry_lab/main.cpp,$(wildcard tools/telemetry_lab/*.cpp))
 STACK_LIBRARY_SOURCES := $(filter-out tools/avr_stack/main.cpp,$(wildcard tools/avr_stack/*.cpp))
 UNIT_SOURCES := $(wildcard tests/unit/*.cpp)
 SITL_SOURCES := $(wildcard tests/sitl/*.cpp)
 BENCH_SOURCES := $(wildcard tools/bench/*.cpp)
 TERRAIN_BENCH_SOURCES := $(wildcard tools/bench/terrain/*.cpp)
 CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' 2>/dev/null | LC_ALL=C sort)
-TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/schema/main.cpp $(wildcard tools/avr_stack/main.cpp) \
+TIDY_SOURCES := $(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/schema/main.cpp \
+                $(LAB_LIBRARY_SOURCES) tools/telemetry_lab/main.cpp $(wildcard tools/avr_stack/main.cpp) \
                 $(UNIT_SOURCES) $(SITL_SOURCES) $(BENCH_SOURCES) $(TERRAIN_BENCH_SOURCES)
 
 objects = $(patsubst %.cpp,$(B)/%.o,$(1))
@@ -139,7 +143,7 @@ $(B)/firmware.flags: FORCE
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 $(B)/link.flags: FORCE
 	@mkdir -p $(@D)
-	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) ; \
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
 	   echo "$(if $(filter yes,$(MCU)),-lsimavr)" ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 # What the program knows of its surroundings; only the files that include them depend on them.
@@ -175,7 +179,10 @@ $(call objects,$(CORE_SOURCES)): $(B)/%.o: %.cpp $(B)/firmware.flags | $(SCHEMA_
 $(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
-	@$(CXX) @$(B)/host.flags -MMD -MP -c $< -o $@
+	@$(CXX) @$(B)/host.flags $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
+# librsvg's flags for the one file that knows it.
+RSVG_FLAGS = $(shell pkg-config --cflags librsvg-2.0 | sed 's/-I/-idirafter /g')
+$(B)/host_sim/picture/svg_png.o $(B)/host_sim/picture/svg_png.tidy: EXTRA_FLAGS = $(RSVG_FLAGS)
 
 $(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
 	@rm -f $@
@@ -203,7 +210,7 @@ install:
 run-install: $(SCREED)
 	install -D -m 755 $(SCREED) $(DESTDIR)$(PREFIX)/bin/screed
 	mkdir -p $(DESTDIR)$(PREFIX)/share/screed
-	cp -r host_sim/data/. boards $(DESTDIR)$(PREFIX)/share/screed/
+	cp -r host_sim/data/. boards $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(DESTDIR)$(PREFIX)/share/screed/
 
 # ---- the image for the microcontroller ---------------------------------------------------------------------------------------
 
@@ -217,9 +224,10 @@ ifeq ($(MCU),yes)
 include $(wildcard tests/mcu/mcu_tests.mk)
 endif
 include tools/flash/flash.mk
+include tools/telemetry_lab/telemetry_lab.mk
 include tests/can/can.mk
 
-$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
+$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	@echo "  LINK $@"
 	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
 $(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flags
@@ -249,7 +257,7 @@ run-bench-terrain: $(B)/terrain_bench
 # ---- lint --------------------------------------------------------------------------------------------------------------------
 
 .PHONY: run-lint check-format
-run-lint: check-format $(patsubst %.cpp,$(B)/%.tidy,$(TIDY_SOURCES))
+run-lint: check-format check-telemetry-page $(patsubst %.cpp,$(B)/%.tidy,$(TIDY_SOURCES))
 	@echo "lint: $(words $(TIDY_SOURCES)) sources clean"
 check-format:
 	@clang-format --dry-run -Werror $(CPP_FILES)
@@ -258,10 +266,10 @@ check-format:
 $(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  TIDY $<"
-	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/% nn/infer/%,$<),$(B)/firmware.flags,$(B)/host.flags)) 2>&1 \
+	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/% nn/infer/%,$<),$(B)/firmware.flags,$(B)/host.flags)) $(EXTRA_FLAGS) 2>&1 \
 	  | { grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$$' || true; }
 	@touch $@
 
-ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
+ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES) tools/telemetry_lab/main.cpp tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
                  $(SITL_SOURCES) $(BENCH_SOURCES) $(TERRAIN_BENCH_SOURCES))
 -include $(ALL_OBJECTS:.o=.d)

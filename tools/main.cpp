@@ -3,8 +3,10 @@
 #include <functional>
 
 #include "tools/attitude_command.h"
+#include "tools/decode_command.h"
 #include "tools/grid_command.h"
 #include "tools/parity_command.h"
+#include "tools/plot_command.h"
 #include "tools/program.h"
 #include "tools/render_command.h"
 #include "tools/replay_command.h"
@@ -22,6 +24,8 @@ int main(int argc, char** argv) {
   screed::register_render_command(app, action);
   screed::register_parity_command(app, action);
   screed::register_attitude_command(app, action);
+  screed::register_decode_command(app, action);
+  screed::register_plot_command(app, action);
   screed::register_grid_command(app, SCREED_VERSION, action);
   screed::register_soil_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });

@@ -2,10 +2,10 @@
 #include "host_sim/radio/ground_station.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "firmware/telemetry/e2e.h"
 #include "hal/sample.h"
+#include "host_sim/telemetry/candump_log.h"
 
 namespace screed {
 namespace {
@@ -36,17 +36,7 @@ void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
     if (report_.state == RobotState::kRunning) started_ = true;
   }
   if (log_ == nullptr) return;
-  char line[64];
-  int length = std::snprintf(line, sizeof line, "(%010llu.%06llu) screed0 %03X#",
-                             static_cast<unsigned long long>(now_us / 1000000U),
-                             static_cast<unsigned long long>(now_us % 1000000U),
-                             static_cast<unsigned>(frame.id));
-  for (int i = 0; i < frame.size; ++i) {
-    length += std::snprintf(line + length, sizeof line - static_cast<size_t>(length), "%02X",
-                            static_cast<unsigned>(frame.data[i]));
-  }
-  line[length++] = '\n';
-  log_->write(line, length);
+  *log_ << candump_line(now_us, "screed0", frame);
 }
 
 void GroundStation::add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines) {

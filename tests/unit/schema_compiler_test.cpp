@@ -5,9 +5,11 @@
 
 #include "host_sim/core/errors.h"
 #include "tools/schema/dbc.h"
+#include "tools/schema/documentation.h"
 #include "tools/schema/host_tables.h"
 #include "tools/schema/message_code.h"
 #include "tools/schema/schema_check.h"
+#include "tools/schema/wireshark_tables.h"
 
 namespace screed::schema {
 namespace {
@@ -215,6 +217,43 @@ TEST(SchemaCompiler, WritesTheCodeOfTheFieldsPlace) {
   const std::string tables = host_tables(it);
   EXPECT_NE(tables.find("\"ATTITUDE\", \"attitude\""), std::string::npos) << tables;
   EXPECT_NE(tables.find("16, 16, true, 2, 1, 0, {}}"), std::string::npos) << tables;
+}
+
+TEST(SchemaCompiler, WritesWiresharksTablesWithGapsAndAllRobots) {
+  const auto tables = wireshark_tables(parse_dbc("it.dbc", kRight));
+  const auto has = [&](const char* table, const std::string& line) {
+    return tables.at(table).find("\n" + line + "\n") != std::string::npos;
+  };
+  EXPECT_TRUE(has("Signal_PDU_identifiers", R"("210","ATTITUDE")"));
+  EXPECT_TRUE(has("Signal_PDU_signal_list",
+                  R"("210","5","3","roll [deg]","attitude.roll","int","FALSE","16","16",)"
+                  R"("0.01","0","FALSE","-1","FALSE")"))
+      << tables.at("Signal_PDU_signal_list");
+  EXPECT_TRUE(has("Signal_PDU_signal_list",
+                  R"("210","5","4","unused","attitude.unused4","uint","FALSE","32","32",)"
+                  R"("1","0","FALSE","-1","TRUE")"));
+  EXPECT_TRUE(has("Signal_PDU_signal_values", R"("210","2","2","1","1","busy")"));
+  EXPECT_TRUE(has("Signal_PDU_Binding_CAN", R"("210","0","210")"));
+  EXPECT_TRUE(has("Signal_PDU_Binding_CAN", R"("2f0","0","210")"));
+  EXPECT_FALSE(has("Signal_PDU_Binding_CAN", R"("200","0","210")"));
+}
+
+TEST(SchemaCompiler, RenewsThePageBetweenItsMarks) {
+  const Database it = parse_dbc("it.dbc", kRight);
+  const std::string marks =
+      "before\n<!-- messages: made by `make telemetry-page` -->\nold\n<!-- end of messages "
+      "-->\nafter\n";
+  const std::string page = renewed_page("it.md", marks, it);
+  EXPECT_EQ(page.substr(0, 7), "before\n");
+  EXPECT_EQ(page.substr(page.size() - 6), "after\n");
+  EXPECT_EQ(page.find("old"), std::string::npos);
+  EXPECT_NE(page.find("| 0x210 | ATTITUDE | robot | on occasion | 8 | Where the robot points. |\n"),
+            std::string::npos)
+      << page;
+  EXPECT_NE(page.find("|  | mode | 12..15 | u4 |  |  | 0 `idle`, 1 `busy` |\n"), std::string::npos)
+      << page;
+  EXPECT_EQ(renewed_page("it.md", page, it), page) << "made anew it is the same";
+  EXPECT_THROW(renewed_page("it.md", "no marks", it), InputError);
 }
 
 }  // namespace

@@ -11,17 +11,23 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "tools/schema/documentation.h"
 #include "tools/schema/host_tables.h"
 #include "tools/schema/message_code.h"
 #include "tools/schema/schema_check.h"
+#include "tools/schema/wireshark_tables.h"
 
 namespace screed::schema {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: schema_compiler SCHEMA.dbc [--messages FILE] [--tables FILE]\n"
+    "usage: schema_compiler SCHEMA.dbc [--messages FILE] [--tables FILE] [--wireshark FOLDER]\n"
+    "                       [--document FILE] [--check-document FILE]\n"
     "  --messages    C++ structures with pack() and unpack()\n"
-    "  --tables      C++ tables for the host\n";
+    "  --tables      C++ tables for the host\n"
+    "  --wireshark   a configuration profile for Wireshark and tshark\n"
+    "  --document    renews the tables in a page\n"
+    "  --check-document  fails when they are not up to date\n";
 
 std::string content_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -44,6 +50,23 @@ int run(const std::vector<std::string>& arguments) {
   const std::map<std::string, std::function<void(const std::string&)>> actions = {
       {"--messages", [&](const std::string& path) { write(path, message_code(database)); }},
       {"--tables", [&](const std::string& path) { write(path, host_tables(database)); }},
+      {"--wireshark",
+       [&](const std::string& path) {
+         for (const auto& [name, text] : wireshark_tables(database)) {
+           write((std::filesystem::path(path) / name).string(), text);
+         }
+       }},
+      {"--document",
+       [&](const std::string& path) {
+         write(path, renewed_page(path, content_of(path), database));
+       }},
+      {"--check-document",
+       [&](const std::string& path) {
+         if (renewed_page(path, content_of(path), database) != content_of(path)) {
+           throw InputError(path + ": its tables are not those of " + database.file +
+                            "; `make telemetry-page` renews them");
+         }
+       }},
   };
   for (size_t i = 1; i < arguments.size(); i += 2) {
     const auto action = actions.find(arguments[i]);

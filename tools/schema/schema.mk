@@ -2,6 +2,7 @@
 #
 #   firmware/telemetry/screed.dbc -> build/generated/schema/messages.h   pack and unpack, for the microcontroller and the host
 #                                    build/generated/schema/tables.h     names, units, scales, for the host
+#                                    build/generated/wireshark           a profile for Wireshark and tshark
 #
 # Needs from there: BUILD_ROOT, WARNINGS.
 
@@ -22,9 +23,18 @@ $(SCHEMA_COMPILER): $(SCHEMA_OBJECTS)
 
 # The stamp is new when the compiler has run; the headers only when they changed.
 $(GENERATED_FOLDER)/schema.stamp: $(SCHEMA) $(SCHEMA_COMPILER)
-	@mkdir -p $(GENERATED_FOLDER)/schema
-	@$(SCHEMA_COMPILER) $(SCHEMA) --messages $(GENERATED_FOLDER)/schema/messages.h --tables $(GENERATED_FOLDER)/schema/tables.h
+	@mkdir -p $(GENERATED_FOLDER)/schema $(GENERATED_FOLDER)/wireshark
+	@$(SCHEMA_COMPILER) $(SCHEMA) --messages $(GENERATED_FOLDER)/schema/messages.h --tables $(GENERATED_FOLDER)/schema/tables.h \
+	  --wireshark $(GENERATED_FOLDER)/wireshark
 	@touch $@
 $(SCHEMA_HEADERS): $(GENERATED_FOLDER)/schema.stamp ;
+
+# The tables in the page for people.
+TELEMETRY_PAGE := docs/telemetry.md
+.PHONY: telemetry-page check-telemetry-page
+telemetry-page: $(SCHEMA_COMPILER)
+	@$(SCHEMA_COMPILER) $(SCHEMA) --document $(TELEMETRY_PAGE)
+check-telemetry-page: $(SCHEMA_COMPILER)
+	@$(SCHEMA_COMPILER) $(SCHEMA) --check-document $(TELEMETRY_PAGE)
 
 -include $(SCHEMA_OBJECTS:.o=.d)

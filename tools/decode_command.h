@@ -1,0 +1,27 @@
+// `screed decode LOG --csv|--mcap`: a log of CAN frames as tables or as an MCAP file.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace screed {
+
+struct DecodeOptions {
+  std::string log;  ///< as candump -L writes it; "-": standard input
+  bool csv = false;
+  bool mcap = false;     ///< one of both
+  std::string out;       ///< folder of the tables, or the file; empty: beside the log
+  bool numbers = false;  ///< CSV: named values as numbers
+};
+
+/// Decodes what can be read, prints the files written to `out`, and the account of the log to
+/// `err`. Returns 0, or 1 when lines or frames of the log were damaged. Throws InputError when the
+/// log cannot be opened, RunError when a file cannot be written.
+int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& err);
+
+/// Adds the subcommand; its callback sets `action` to what is to be run after parsing.
+void register_decode_command(CLI::App& root, std::function<int()>& action);
+
+}  // namespace screed

@@ -1,0 +1,18 @@
+// The messages as a configuration profile of Wireshark and tshark: tables of its Signal PDU
+// dissector, which decodes CAN frames by them.
+//
+// Source: Wireshark 4.0, epan/dissectors/packet-signal-pdu.c and its descriptions of the tables.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "tools/schema/dbc.h"
+
+namespace screed::schema {
+
+/// The files of the profile of a checked database: name and text. The ids of all 15 robots lead to
+/// the messages.
+std::map<std::string, std::string> wireshark_tables(const Database& database);
+
+}  // namespace screed::schema
