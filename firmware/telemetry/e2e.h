@@ -12,12 +12,16 @@ namespace screed {
 /// CRC-8H2F of `size` bytes, continuing from `crc` (start with 0xFF, xor the end with 0xFF).
 uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size);
 
-/// The data id of a CAN id: makes a frame that was delivered under another id fail its check. Ids
-/// that differ in one hexadecimal digit have different data ids. The standard's list of a data id
-/// for each counter value holds 16 times the same one: were they different, a wrong digit of the
-/// counter would change data and data id together, and some of those changes cancel out.
+/// The data id of a CAN id: makes a frame that was delivered under another id fail its check.
+///
+/// The three bits above the lower byte are folded in so that they act on the CRC like bits of the
+/// data that no other bit acts like: up to three wrong bits anywhere in id, data and CRC are found,
+/// as the polynomial promises for the data alone. The standard's list of a data id for each
+/// counter value holds 16 times the same one: were they different, a wrong digit of the counter
+/// would change data and data id together, and some of those changes cancel out.
 constexpr uint8_t e2e_data_id(uint16_t can_id) {
-  return static_cast<uint8_t>((can_id >> 8) * 31U + (can_id & 0xFFU));
+  return static_cast<uint8_t>(can_id ^ (can_id >> 8) ^ (can_id >> 7 & 0x0EU) ^
+                              (can_id >> 5 & 0x38U));
 }
 
 /// Byte 0 of a protected frame: the CRC over data[1..size) and a data id (in the standard:

@@ -114,6 +114,34 @@ TEST(E2e, EverySingleWrongDigitIsFoundInMessagesOfEveryRobot) {
   }
 }
 
+TEST(E2e, UpToThreeWrongBitsOfIdDataAndCrcAreFound) {
+  // The check is linear: what one wrong bit does to it does not depend on the frame.
+  for (uint8_t size = 3; size <= 8; ++size) {
+    uint8_t data[8] = {};
+    e2e_protect(0, 0, data, size);
+    const auto wrong_crc = [&](uint16_t id, int bit) {
+      uint8_t wrong[8];
+      std::memcpy(wrong, data, 8);
+      if (bit >= 0) wrong[bit / 8] = static_cast<uint8_t>(wrong[bit / 8] ^ (1U << (bit % 8)));
+      return wrong[0] ^ e2e_crc(e2e_data_id(id), wrong, size);
+    };
+    std::vector<int> effects;
+    for (unsigned bit = 0; bit < 11; ++bit) {
+      effects.push_back(wrong_crc(static_cast<uint16_t>(1U << bit), -1));
+    }
+    for (int bit = 0; bit < size * 8; ++bit) effects.push_back(wrong_crc(0, bit));
+    for (size_t i = 0; i < effects.size(); ++i) {
+      ASSERT_NE(effects[i], 0);
+      for (size_t j = 0; j < i; ++j) {
+        ASSERT_NE(effects[i] ^ effects[j], 0) << i << " " << j;
+        for (size_t k = 0; k < j; ++k) {
+          ASSERT_NE(effects[i] ^ effects[j] ^ effects[k], 0) << i << " " << j << " " << k;
+        }
+      }
+    }
+  }
+}
+
 TEST(E2e, AFrameUnderAnotherIdIsFound) {
   uint8_t data[8] = {0, 0, 1, 2, 3, 4, 5, 6};
   for (const uint16_t id : kAllIds) {
