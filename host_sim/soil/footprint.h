@@ -7,17 +7,33 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace screed {
 
-struct FootprintPoint {
-  double share;            ///< 0..1: how much of a small square at (x, y) the body covers
-  double height;           ///< of the lower surface, m
-  Eigen::Vector3d normal;  ///< into the body, unit length, normal.z() > 0
-  double flat_within;      ///< the surface is plane at least this far around, m
-  double passed_forward;   ///< lowest height of the body that passed over (x, y) when it came along
-                           ///< its local x, m
-  double passed_backward;  ///< the same when it came the other way
+/// A body's lower surface at many places at once, one array a property.
+struct FootprintPlaces {
+  // Asked for:
+  std::vector<double> x;
+  std::vector<double> y;
+  // Answered:
+  std::vector<double> share;    ///< 0..1: how much of a small square at (x, y) the body covers
+  std::vector<double> height;   ///< of the lower surface, m; what follows means nothing at share 0
+  std::vector<double> slope_x;  ///< horizontal parts of the normal into the body, over its vertical
+  std::vector<double> slope_y;
+  std::vector<double> flat_within;  ///< the surface is plane at least this far around, m
+  std::vector<double> passed;       ///< lowest height of the body over (x, y) on its way there, m
+
+  /// Begins anew, with room for so many. Room is kept: allocates only when it was never as much.
+  void clear(size_t room);
+  void add(double at_x, double at_y) {
+    x[count] = at_x;
+    y[count] = at_y;
+    ++count;
+  }
+  size_t count = 0;
 };
 
 class Footprint {
@@ -43,6 +59,15 @@ class Footprint {
 
   /// Half of the extent in x and y of the world around pose().translation().
   Eigen::Vector2d reach() const;
+  /// Half of the extent, in x and y of the world around pose().translation(), of what reaches below
+  /// a level in the world's z, at least; negative when nothing does.
+  Eigen::Vector2d reach_below(double level) const;
+  /// Of a circle round pose().translation() that holds the body seen from above, m.
+  double radius_from_above() const;
+  /// Width across a track of a square of this side, along the world's axes, m.
+  double across(double edge) const {
+    return edge * (std::abs(pose_.linear()(0, 1)) + std::abs(pose_.linear()(1, 1)));
+  }
   /// How far the body reaches down from pose().translation(), at most, m.
   double reach_down() const;
   /// Whether the touched area is a disc: then the b of Bekker's formula is its radius, else the
@@ -55,19 +80,24 @@ class Footprint {
   /// The shorter side (or radius) of the body itself, a first guess at b, m.
   double narrow() const;
 
-  /// `edge`: side of the small square, m; the share falls linearly across the body's side over this
-  /// length, so that sums over a lattice of such squares are exact for edges along the lattice.
-  /// Returns false when the body does not cover the square at all.
-  bool at(double x, double y, double edge, FootprintPoint& point) const;
+  /// Answers for all places. `edge`: side of the small square, m; the share falls linearly across
+  /// the body's side over this length, so that sums over a lattice of such squares are exact for
+  /// edges along the lattice. `came`: the way along local x that the body came, m, signed; it
+  /// passed over no place that is further away.
+  void surface(double edge, double came, FootprintPlaces& places) const;
+  /// No place that a square of this side can share with the body reaches lower than this where its
+  /// middle lies outside, m.
+  double lowest_at_rim(double edge) const;
 
  private:
   Footprint(Kind kind, const Eigen::Vector3d& half, double radius)
       : kind_(kind), half_(half), radius_(radius) {
     set_pose(Eigen::Isometry3d::Identity());
   }
-  bool at_track(const Eigen::Vector3d& local, double edge, FootprintPoint& point) const;
-  bool at_box(const Eigen::Vector3d& local, double edge, FootprintPoint& point) const;
-  bool at_disc(const Eigen::Vector3d& local, double edge, FootprintPoint& point) const;
+  template <bool kBelt>
+  void track_surface(double edge, double came, FootprintPlaces& places) const;
+  void box_surface(double edge, FootprintPlaces& places) const;
+  void disc_surface(double edge, FootprintPlaces& places) const;
 
   Eigen::Vector3d world_reach() const;
 

@@ -1,7 +1,9 @@
 // Material in whole units.
 #include "host_sim/soil/material_flow.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace screed {
@@ -11,6 +13,7 @@ struct Step {
   int dx;
   int dy;
 };
+constexpr double kStanding_m_per_s = 1e-3;  // below it a body goes nowhere
 constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                  {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
 
@@ -57,10 +60,35 @@ void MaterialFlow::change(size_t node, Height units) {
   wake(node);
 }
 
+size_t MaterialFlow::begin_footprint(double way_x, double way_y) {
+  const double length = std::hypot(way_x, way_y);
+  const double scale = length > kStanding_m_per_s ? 1.0 / length : 0.0;
+  footprints_.push_back({covered_list_.size(), way_x * scale, way_y * scale, 0});
+  return footprints_.size() - 1;
+}
+
+void MaterialFlow::cover(size_t node, int ix, int iy) {
+  if (covered_[node] != 0) return;
+  covered_[node] = 1;
+  covered_list_.push_back({node, ix, iy});
+}
+
 void MaterialFlow::sink(size_t node, Height units) {
   set_height(node, height(node) - units);
   in_hand_ += units;
   wake(node);
+}
+
+void MaterialFlow::compact(int64_t units) {
+  in_hand_ -= units;
+  const int64_t old = std::min(units, left_over_);
+  left_over_ -= old;
+  units -= old;
+  for (Pressing& footprint : footprints_) {
+    const int64_t here = std::min(units, footprint.units);
+    footprint.units -= here;
+    units -= here;
+  }
 }
 
 void MaterialFlow::move(size_t from, size_t to, Height units) {
@@ -68,40 +96,61 @@ void MaterialFlow::move(size_t from, size_t to, Height units) {
   change(to, units);
 }
 
-void MaterialFlow::cover(int ix, int iy) {
-  const int64_t node = node_at(ix, iy);
-  if (node < 0 || covered_[static_cast<size_t>(node)] != 0) return;
-  covered_[static_cast<size_t>(node)] = 1;
-  covered_list_.push_back(static_cast<size_t>(node));
+void MaterialFlow::set_down() {
+  for (size_t i = 0; i < footprints_.size(); ++i) {
+    Pressing& footprint = footprints_[i];
+    footprint.units += left_over_;
+    left_over_ = 0;
+    if (footprint.units == 0) continue;
+    const size_t end = i + 1 < footprints_.size() ? footprints_[i + 1].begin : covered_list_.size();
+    left_over_ = footprint.units - spread(footprint, end);
+    footprint.units = 0;
+  }
 }
 
-void MaterialFlow::set_down() {
-  if (in_hand_ == 0) return;
+/// Returns the units set down: all or none.
+int64_t MaterialFlow::spread(const Pressing& footprint, size_t end) {
   ring_.clear();
-  for (const size_t node : covered_list_) {
+  const auto ahead = [&](const Place& place) {
+    return place.ix * footprint.way_x + place.iy * footprint.way_y;
+  };
+  double rear = std::numeric_limits<double>::infinity();
+  for (size_t i = footprint.begin; i < end; ++i) {
+    const Place& here = covered_list_[i];
+    rear = std::min(rear, ahead(here));
     for (const Step& step : kNeighbours) {
-      const int64_t beside = node_at(column(node) + step.dx, row(node) + step.dy);
-      if (beside < 0) continue;
-      const auto place = static_cast<size_t>(beside);
-      if (covered_[place] != 0 || in_ring_[place] != 0) continue;
-      in_ring_[place] = 1;
+      Place place{0, here.ix + step.dx, here.iy + step.dy};
+      const int64_t node = node_at(place.ix, place.iy);
+      if (node < 0) continue;
+      place.node = static_cast<size_t>(node);
+      if (covered_[place.node] != 0 || in_ring_[place.node] != 0) continue;
+      in_ring_[place.node] = 1;
       ring_.push_back(place);
     }
   }
-  for (const size_t place : ring_) in_ring_[place] = 0;
-  if (ring_.empty()) return;
+  for (const Place& place : ring_) in_ring_[place.node] = 0;
+  if (ring_.empty()) return 0;
+  // Behind the footprint lies its rut.
+  constexpr double kRounding = 1e-6;
+  const auto behind = [&](const Place& place) { return ahead(place) < rear - kRounding; };
+  const auto open = static_cast<size_t>(
+      std::count_if(ring_.begin(), ring_.end(), [&](const Place& p) { return !behind(p); }));
+  if (open > 0 && open < ring_.size()) {
+    ring_.erase(std::remove_if(ring_.begin(), ring_.end(), behind), ring_.end());
+  }
   const auto places = static_cast<int64_t>(ring_.size());
-  const int64_t each = in_hand_ / places;
-  const int64_t rest = in_hand_ % places;
+  const int64_t each = footprint.units / places;
+  const int64_t rest = footprint.units % places;
   // What does not divide goes to a few places, each step to others.
   const auto first = static_cast<int64_t>(turn_ % ring_.size());
   turn_ += static_cast<uint64_t>(rest);
   for (int64_t i = 0; i < places; ++i) {
-    const int64_t behind = i >= first ? i - first : i - first + places;
-    const int64_t units = each + (behind < rest ? 1 : 0);
-    if (units != 0) change(ring_[static_cast<size_t>(i)], static_cast<Height>(units));
+    const int64_t after = i >= first ? i - first : i - first + places;
+    const int64_t units = each + (after < rest ? 1 : 0);
+    if (units != 0) change(ring_[static_cast<size_t>(i)].node, static_cast<Height>(units));
   }
-  in_hand_ = 0;
+  in_hand_ -= footprint.units;
+  return footprint.units;
 }
 
 int64_t MaterialFlow::slide(int64_t most) {
@@ -136,11 +185,14 @@ int64_t MaterialFlow::slide(int64_t most) {
 
 void MaterialFlow::uncover() {
   // What a body stood on may slide now.
-  for (const size_t node : covered_list_) {
-    covered_[node] = 0;
-    wake(node);
+  for (const Place& place : covered_list_) {
+    covered_[place.node] = 0;
+    wake(place.node);
   }
   covered_list_.clear();
+  // What could not be set down waits.
+  for (const Pressing& footprint : footprints_) left_over_ += footprint.units;
+  footprints_.clear();
 }
 
 }  // namespace screed

@@ -3,20 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+
+#include "host_sim/soil/pair.h"
 
 namespace screed {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s^2
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Bounds of the acceleration that everything but the soil gives a footprint, m/s^2: a guess from
-// the last step, kept sane.
-constexpr double kMostAcceleration = 500.0;
-// Elastic stiffness of a long footprint times its area, at most, times dt^2 / mass: an explicit
-// spring is stable up to 4.
+// Elastic stiffness of a long footprint that does not tilt by itself, times its area, at most,
+// times dt^2 / mass: an explicit spring is stable up to 4.
 constexpr double kStableStiffness = 0.3;
-constexpr double kExponentStep = 0.005;
+constexpr double kExponentStep = 0.005;  // finer than anybody knows it
 // Below this speed a body does not roll into new soil, m/s.
 constexpr double kRolling = 1e-3;
 // How much deeper a body may go in one step than in the last, for the bound on what unloaded soil
@@ -25,25 +24,12 @@ constexpr double kStepSinkage_m = 0.001;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
 
-/// Whether a corner of the cell at (x, y) lies under a body whose rim passes beside the cell's
-/// middle.
-bool at_rim(const Footprint& footprint, double x, double y, double spacing) {
-  FootprintPoint point;
-  for (const double dx : {-0.5, 0.5}) {
-    for (const double dy : {-0.5, 0.5}) {
-      if (footprint.at(x + dx * spacing, y + dy * spacing, spacing, point)) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options)
     : soil_(soil),
       options_(options),
       flow_(std::move(surface), soil.repose_deg),
-      table_(soil.exponent),
       tan_friction_(std::tan(soil.friction_deg * kDegree)) {
   check_soil(soil);
   const double spacing = flow_.surface().spacing_m();
@@ -51,177 +37,364 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
   // Even, so that one place in each row and column can be spread evenly.
   samples_ =
       2 * std::max(1, static_cast<int>(std::ceil(0.5 * spacing / options.sample_spacing_m - 1e-9)));
+  for (int j = 0; j < samples_; ++j) {
+    const double edge = spacing / samples_;
+    const double first = 0.5 * (edge - spacing);
+    rook_x_.push_back(first + (2 * j + 1) % (samples_ + 1) * edge);
+    rook_y_.push_back(first + j * edge);
+  }
   volume_before_ = flow_.surface().height_sum();
-  touched_.assign(flow_.nodes(), 0);
-  shear_along_.assign(flow_.nodes(), 0.0F);
-  shear_across_.assign(flow_.nodes(), 0.0F);
-  share_.assign(flow_.nodes(), 0.0F);
+  traces_.resize(flow_.nodes());
+  const auto more = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
+  for (int i = 0; i <= more; ++i) tables_.emplace_back(soil.exponent + i * kExponentStep);
 }
 
 VolumeBalance SoilBed::balance() const {
   return {volume_before_, flow_.surface().height_sum(), compacted_, flow_.in_hand()};
 }
 
-// Means over a cell of what Bekker's law gives at a lattice of places in it, as if the soil had
-// been untouched before this contact.
-bool SoilBed::sample(const Footprint& footprint, int ix, int iy, const PressureTable& table,
-                     const Law& law, double travel, Lattice lattice, Cell& cell) const {
-  const double bekker = law.bekker;
-  const double elastic = law.elastic;
-  const HeightField& field = flow_.surface();
-  const double spacing = field.spacing_m();
-  const double x = field.node_x(ix);
-  const double y = field.node_y(iy);
-  const double reference = flow_.reference(cell.node) * kHeightUnit_m;
-  const double compliance = 1.0 / elastic;
-  const Eigen::Vector3d& centre = footprint.pose().translation();
-  const Eigen::Vector3d forward = footprint.pose().linear().col(0);
-  const bool radial = options_.normal_stress == NormalStress::kRadial;
+SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
+                            ContactMemory& memory) {
+  PressingBody body;
+  body.mass_kg = motion.mass_kg;
+  body.centre = footprint.pose().translation();
+  body.velocity = motion.velocity;
+  body.omega = motion.omega;
+  SoilContact contact{&footprint, &memory, motion.surface_speed, motion.slip};
+  press(body, {&contact, 1}, dt, memory.alone);
+  return contact.reaction;
+}
 
-  cell.share = cell.pressed = cell.pressure = cell.rate = 0.0;
-  double lead = 0.0;
-  cell.lift.setZero();
-  cell.moment.setZero();
-  cell.arm.setZero();
-  cell.normal.setZero();
-  FootprintPoint point;
-  const int rows = lattice == Lattice::kMiddle ? 1 : samples_;
-  const int columns = lattice == Lattice::kFull ? samples_ : 1;
-  const double edge = spacing / rows;
-  const bool mirror = ((ix + iy) & 1) != 0;  // every other cell mirrors the rook's places
-  for (int j = 0; j < rows; ++j) {
-    const double py = y + (j + 0.5) * edge - 0.5 * spacing;
-    const int rook = lattice == Lattice::kRook ? (2 * j + 1) % (samples_ + 1) : 0;
-    for (int k = 0; k < columns; ++k) {
-      const int i = lattice == Lattice::kFull ? k : (mirror ? rows - 1 - rook : rook);
-      const double px = x + (i + 0.5) * edge - 0.5 * spacing;
-      if (!footprint.at(px, py, edge, point)) continue;
-      const double depth = reference - point.height;
-      // Deepest so far: where the surface rises again, what has passed before, if it came from
-      // there.
-      double lowest = point.height;
-      if (std::abs((px - centre.x()) * forward.x() + (py - centre.y()) * forward.y()) <=
-          std::abs(travel) + spacing) {
-        lowest =
-            travel > 0.0 ? point.passed_forward : (travel < 0.0 ? point.passed_backward : lowest);
-      }
-      const double deepest = reference - lowest;
-      if (deepest <= 0.0) continue;
-      // Bekker's curve starts steeper than the soil's own stiffness when n < 1.
-      const double loaded = std::min(bekker * table.power(deepest), elastic * deepest);
-      cell.pressed += point.share * std::max(0.0, deepest - loaded * compliance);
-      const double now = loaded - elastic * (deepest - depth);
-      if (now <= 0.0) continue;
-      const double weight = point.share * now;
-      const Eigen::Vector3d arm(px - centre.x(), py - centre.y(), point.height - centre.z());
-      const Eigen::Vector3d lift = radial
-                                       ? Eigen::Vector3d(weight / point.normal.z() * point.normal)
-                                       : Eigen::Vector3d(0.0, 0.0, weight);
-      cell.share += point.share;
-      lead += point.share * (arm.x() * forward.x() + arm.y() * forward.y());
-      cell.pressure += weight;
-      cell.rate += point.share * loaded / deepest;
-      cell.lift += lift;
-      cell.moment += arm.cross(lift);
-      cell.arm += weight * arm;
-      cell.normal += weight * point.normal;
+void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, double dt,
+                    BodyMemory& memory) {
+  cell_count_ = 0;
+  ranges_.clear();
+  springs_.clear();
+  const bool imposed = !std::isfinite(body.mass_kg);
+  const bool tilts = !body.inverse_inertia.isZero(0.0);
+  for (SoilContact& contact : contacts) {
+    const Footprint& footprint = *contact.footprint;
+    ContactMemory& kept = *contact.memory;
+    const Eigen::Vector3d arm = footprint.pose().translation() - body.centre;
+    const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
+    const double speed = velocity.dot(footprint.pose().linear().col(0));
+    if (speed * kept.travel_m < 0.0) kept.travel_m = 0.0;
+    kept.travel_m += speed * dt;
+    double elastic = soil_.elastic_pa_per_m;
+    if (footprint.extended() && !tilts && !imposed) {
+      // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step bears.
+      const double area = std::max(kept.patch_area_m2, cell_area_);
+      elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
+    }
+    ranges_.push_back(find_cells(contact, elastic));
+    const Range& range = ranges_.back();
+    if (range.begin == range.end) {
+      kept = {};
+      continue;
+    }
+    measure_patch(footprint, range.begin, kept);
+    ranges_.back().footprint = flow_.begin_footprint(velocity.x(), velocity.y());
+    for (size_t i = range.begin; i < range.end; ++i) {
+      const Cell& cell = cells_[i];
+      flow_.cover(cell.node, cell.ix, cell.iy);
+      springs_.push_back({cell_area_ * (cell.pressure + elastic * (cell.pressed - cell.sunk)),
+                          cell_area_ * elastic * cell.share, cell_area_ * cell.pressure,
+                          cell_area_ * cell.rate, cell.arm.x() + arm.x(), cell.arm.y() + arm.y()});
     }
   }
-  if (cell.pressure <= 0.0) return false;
-  cell.arm /= cell.pressure;
-  cell.lead = cell.arm.head<2>().dot(forward.head<2>()) - lead / cell.share;
-  cell.normal.normalize();
-  const double mean = 1.0 / (rows * columns);
-  cell.share *= mean;
-  cell.pressed *= mean;
-  cell.pressure *= mean;
-  cell.rate *= mean * table.exponent();
-  cell.lift *= mean;
-  cell.moment *= mean;
+  if (springs_.empty()) {
+    memory = {};
+    return;
+  }
+  solve_sinking(body, dt, springs_, memory);
+  for (size_t i = 0; i < contacts.size(); ++i) react(ranges_[i], body, contacts[i], dt);
+}
+
+/// The cells that a footprint touches, sampled.
+SoilBed::Range SoilBed::find_cells(const SoilContact& contact, double elastic) {
+  const Footprint& footprint = *contact.footprint;
+  const ContactMemory& memory = *contact.memory;
+  const double spacing = flow_.surface().spacing_m();
+  // Slip-sinkage raises the exponent with the slip of the moment.
+  const double more = std::clamp(contact.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
+  const PowerTable& table = tables_[static_cast<size_t>(std::lround(more))];
+  // The patch of the last step decides this step's b; at the first touch the body itself does.
+  const double b = memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, 1e-3) : footprint.narrow();
+  const Law law{soil_.k_phi + soil_.k_c / b, elastic, &table};
+
+  // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
+  // there is no contact.
+  const double rise = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
+  find_candidates(footprint, rise);
+  size_t needed = 0;
+  for (const Candidate& candidate : candidates_) needed += places_of(candidate.lattice);
+  places_.clear(needed);
+  for (const Candidate& candidate : candidates_) add_places(candidate);
+  const double travel = memory.travel_m;
+  footprint.surface(spacing / samples_,
+                    travel == 0.0 ? 0.0 : travel + std::copysign(spacing, travel), places_);
+  Range range{cell_count_, cell_count_, law, 0};
+  if (cells_.size() < cell_count_ + candidates_.size()) {
+    cells_.resize(cell_count_ + candidates_.size());
+  }
+  size_t first = 0;
+  for (const Candidate& candidate : candidates_) {
+    if (sample(footprint, candidate, first, law, cells_[cell_count_])) ++cell_count_;
+    first += places_of(candidate.lattice);
+  }
+  range.end = cell_count_;
+  return range;
+}
+
+/// The cells that a footprint may touch.
+void SoilBed::find_candidates(const Footprint& footprint, double rise) {
+  const HeightField& field = flow_.surface();
+  const double spacing = field.spacing_m();
+  const Eigen::Vector3d centre = footprint.pose().translation();
+  // The bound by tiles of the field covers this circle.
+  const double radius = footprint.radius_from_above();
+  const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rise;
+  candidates_.clear();
+  const Eigen::Vector2d reach = footprint.reach_below(highest);
+  if (reach.x() < 0.0) return;
+  const auto cell_of = [&](double coordinate, double begin) {
+    return static_cast<int>(std::floor((coordinate - begin) / spacing + 0.5));
+  };
+  int ix0 = cell_of(centre.x() - reach.x(), field.x_min());
+  int ix1 = cell_of(centre.x() + reach.x(), field.x_min());
+  int iy0 = cell_of(centre.y() - reach.y(), field.y_min());
+  int iy1 = cell_of(centre.y() + reach.y(), field.y_min());
+  if (!field.wrap()) {
+    ix0 = std::max(ix0, 0);
+    iy0 = std::max(iy0, 0);
+    ix1 = std::min(ix1, field.nx() - 1);
+    iy1 = std::min(iy1, field.ny() - 1);
+  }
+  if (ix1 < ix0 || iy1 < iy0) return;
+  places_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
+  for (int iy = iy0; iy <= iy1; ++iy) {
+    for (int ix = ix0; ix <= ix1; ++ix) places_.add(field.node_x(ix), field.node_y(iy));
+  }
+  // A cell turned against the body reaches further across it.
+  const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.across(spacing);
+  footprint.surface(edge, 0.0, places_);
+  const double rim = footprint.lowest_at_rim(spacing);
+  size_t i = 0;
+  for (int iy = iy0; iy <= iy1; ++iy) {
+    for (int ix = ix0; ix <= ix1; ++ix, ++i) {
+      const auto node = static_cast<size_t>(flow_.node_at(ix, iy));
+      const double ground = flow_.height(node) * kHeightUnit_m + rise;
+      Lattice lattice = Lattice::kRook;
+      if (places_.share[i] > 0.0) {
+        // The lower surface of a convex body is a convex function: it lies above its tangent plane
+        // at the middle of the cell.
+        const double fall =
+            (std::abs(places_.slope_x[i]) + std::abs(places_.slope_y[i])) * 0.5 * spacing;
+        if (places_.height[i] - fall > ground) continue;
+        if (places_.share[i] < 1.0) {
+          lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kRook;
+        } else if (places_.flat_within[i] > 0.75 * spacing) {
+          lattice = Lattice::kMiddle;
+        }
+      } else if (rim > ground) {
+        continue;
+      }
+      candidates_.push_back({node, ix, iy, lattice});
+    }
+  }
+}
+
+size_t SoilBed::places_of(Lattice lattice) const {
+  const auto samples = static_cast<size_t>(samples_);
+  if (lattice == Lattice::kMiddle) return 2;  // the same place twice: they are taken in pairs
+  return lattice == Lattice::kRook ? samples : samples * samples;
+}
+
+void SoilBed::add_places(const Candidate& candidate) {
+  const HeightField& field = flow_.surface();
+  const double x = field.node_x(candidate.ix);
+  const double y = field.node_y(candidate.iy);
+  if (candidate.lattice == Lattice::kMiddle) {
+    places_.add(x, y);
+    places_.add(x, y);
+    return;
+  }
+  if (candidate.lattice == Lattice::kFull) {
+    for (const double dy : rook_y_) {
+      for (const double dx : rook_y_) places_.add(x + dx, y + dy);
+    }
+    return;
+  }
+  const bool mirror = ((candidate.ix + candidate.iy) & 1) != 0;  // every other cell mirrors them
+  const double sense = mirror ? -1.0 : 1.0;
+  for (size_t i = 0; i < rook_x_.size(); ++i) places_.add(x + sense * rook_x_[i], y + rook_y_[i]);
+}
+
+/// Where the body covers less or more of a cell than a step ago, the plastic sinkage of what it
+/// covers and of the rest is told anew; their sum stays.
+void SoilBed::remember_cover(Trace& trace, double covered, double sunk) const {
+  double before = static_cast<double>(trace.covered);
+  double beside = static_cast<double>(trace.beside);
+  double old = static_cast<double>(trace.old);
+  if (fresh(trace)) {
+    // What was pressed in an earlier contact lies below this body, as far as it covers it.
+    old = sunk / std::max({covered, before, 1e-3});
+    beside = sunk - covered * old;
+    trace.share = trace.along = trace.across = 0.0F;
+  } else if (covered < before) {
+    beside = sunk - covered * (sunk - beside) / before;
+  } else if (covered > before) {
+    const double rest = before < 1.0 ? beside / (1.0 - before) : 0.0;
+    old = (before * old + (covered - before) * rest) / covered;
+    beside -= (covered - before) * rest;
+  }
+  trace.covered = static_cast<float>(covered);
+  trace.beside = static_cast<float>(beside);
+  trace.old = static_cast<float>(old);
+}
+
+/// Means over a cell of what Bekker's law gives at a lattice of places in it, as if nothing but
+/// earlier contacts had touched it.
+bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
+                     const Law& law, Cell& cell) {
+  const size_t count = places_of(candidate.lattice);
+  const double mean = 1.0 / static_cast<double>(count);
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  const double forward_x = footprint.pose().linear()(0, 0);
+  const double forward_y = footprint.pose().linear()(1, 0);
+  const double reference = flow_.reference(candidate.node) * kHeightUnit_m;
+  cell.sunk = reference - flow_.height(candidate.node) * kHeightUnit_m;
+  double covered = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (size_t i = first; i < first + count; ++i) {
+    covered += places_.share[i];
+    if (places_.share[i] > 0.0) lowest = std::min(lowest, places_.passed[i]);
+  }
+  if (lowest >= reference) return false;
+  Trace& trace = traces_[candidate.node];
+  remember_cover(trace, covered * mean, cell.sunk);
+  const double old = static_cast<double>(trace.old);
+  const double elastic = law.elastic;
+  const double compliance = 1.0 / elastic;
+  const double exponent = law.table->exponent();
+
+  const Pair zero = both(0.0);
+  const Pair level = both(reference);
+  const Pair bekker = both(law.bekker);
+  const Pair stiffness = both(elastic);
+  const Pair before = both(old);
+  const Pair cx = both(centre.x());
+  const Pair cy = both(centre.y());
+  const Pair cz = both(centre.z());
+  Pair shares = zero;
+  Pair depths = zero;
+  Pair pressures = zero;
+  Pair rates = zero;
+  Pair x_shares = zero;
+  Pair y_shares = zero;
+  Pair lifts_x = zero;
+  Pair lifts_y = zero;
+  Pair arms_x = zero;
+  Pair arms_y = zero;
+  Pair arms_z = zero;
+  Pair z_lifts_x = zero;
+  Pair z_lifts_y = zero;
+  Pair twists = zero;
+  for (size_t i = first; i < first + count; i += 2) {
+    const Pair part = load(&places_.share[i]);
+    const auto over = part > zero;
+    const Pair height = load(&places_.height[i]);
+    // Deepest so far: where the surface rises again, what has passed before.
+    const Pair passed = load(&places_.passed[i]);
+    const Pair deepest = over ? greater(zero, level - passed) : zero;
+    // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
+    const Pair virgin = bekker * Pair{law.table->power(deepest[0]), law.table->power(deepest[1])};
+    const Pair stiff = stiffness * (deepest - before);
+    const auto yields = virgin < stiff;
+    const Pair loaded = greater(zero, yields ? virgin : stiff);
+    depths += part * greater(before, deepest - loaded * both(compliance));
+    const Pair now = loaded - stiffness * (height - passed);
+    const Pair bears = over & (now > zero) ? part : zero;
+    const Pair weight = bears > zero ? part * now : zero;
+    const Pair x = load(&places_.x[i]) - cx;
+    const Pair y = load(&places_.y[i]) - cy;
+    const Pair z = height - cz;
+    const Pair wx = bears > zero ? weight * load(&places_.slope_x[i]) : zero;
+    const Pair wy = bears > zero ? weight * load(&places_.slope_y[i]) : zero;
+    const Pair arm_z = bears > zero ? z : zero;
+    shares += bears;
+    pressures += weight;
+    rates += bears * (yields ? both(exponent) * virgin / greater(deepest, both(1e-9)) : stiffness);
+    x_shares += bears * x;
+    y_shares += bears * y;
+    lifts_x += wx;
+    lifts_y += wy;
+    arms_x += weight * x;
+    arms_y += weight * y;
+    arms_z += weight * arm_z;
+    z_lifts_x += arm_z * wx;
+    z_lifts_y += arm_z * wy;
+    twists += x * wy - y * wx;
+  }
+  const double share = sum(shares);
+  const double pressure = sum(pressures);
+  if (pressure <= 0.0) return false;
+  const double per_pressure = 1.0 / pressure;
+  cell.node = candidate.node;
+  cell.ix = candidate.ix;
+  cell.iy = candidate.iy;
+  cell.share = share * mean;
+  cell.pressed = sum(depths) * mean + static_cast<double>(trace.beside);
+  cell.pressure = pressure * mean;
+  cell.rate = sum(rates) * mean;
+  cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;
+  cell.lead = cell.arm.x() * forward_x + cell.arm.y() * forward_y -
+              (sum(x_shares) * forward_x + sum(y_shares) * forward_y) / share;
+  // Vertical stress has no horizontal part; it shears in the horizontal all the same.
+  const bool radial = options_.normal_stress == NormalStress::kRadial;
+  cell.slope_x = sum(lifts_x) * per_pressure;
+  cell.slope_y = sum(lifts_y) * per_pressure;
+  cell.moment << cell.arm.y(), -cell.arm.x(), 0.0;
+  if (radial) {
+    cell.moment += per_pressure * Eigen::Vector3d(-sum(z_lifts_y), sum(z_lifts_x), sum(twists));
+  }
   return true;
 }
 
 // Second moments of the touched area: a rectangle of sides a and b has variances a^2/12 and b^2/12,
 // a disc r^2/4.
-void SoilBed::measure_patch(const Footprint& footprint, double edge, ContactMemory& memory) const {
+void SoilBed::measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const {
+  const double edge = flow_.surface().spacing_m();
   double area = 0.0;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Cell& cell : cells_) {
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  double own = 0.0;
+  for (size_t i = begin; i < cell_count_; ++i) {
+    const Cell& cell = cells_[i];
+    const double cx = cell.arm.x();
+    const double cy = cell.arm.y();
     area += cell.share;
-    mean += cell.share * cell.arm.head<2>();
+    x += cell.share * cx;
+    y += cell.share * cy;
+    xx += cell.share * cx * cx;
+    xy += cell.share * cx * cy;
+    yy += cell.share * cy * cy;
+    own += cell.share * cell.share;
   }
   memory.patch_area_m2 = area * cell_area_;
-  if (area <= 0.0) return;
-  mean /= area;
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const Cell& cell : cells_) {
-    const Eigen::Vector2d offset = cell.arm.head<2>() - mean;
-    // A cell spreads its share over itself.
-    spread += cell.share * (offset * offset.transpose() +
-                            edge * edge * cell.share / 12.0 * Eigen::Matrix2d::Identity());
-  }
-  spread /= area;
-  const double half_trace = 0.5 * spread.trace();
+  // A cell spreads its share over itself.
+  own *= edge * edge / 12.0;
+  const double vxx = (xx + own - x * x / area) / area;
+  const double vyy = (yy + own - y * y / area) / area;
+  const double vxy = (xy - x * y / area) / area;
+  const double half_trace = 0.5 * (vxx + vyy);
   const double smaller =
-      half_trace - std::sqrt(std::max(0.0, half_trace * half_trace - spread.determinant()));
+      half_trace - std::sqrt(std::max(0.0, 0.25 * (vxx - vyy) * (vxx - vyy) + vxy * vxy));
   const double narrow = std::sqrt(std::max(0.0, smaller));
   memory.patch_b_m = footprint.round() ? 2.0 * narrow : std::sqrt(12.0) * narrow;
-}
-
-// Pressure of a cell when the body has sunk by `sinking` more: that of virgin soil, or less where
-// the soil was pressed before.
-double SoilBed::pressure_after(const Cell& cell, const Law& law, double sinking) {
-  const double elastic =
-      cell.pressure + law.elastic * (cell.pressed - cell.sunk + sinking * cell.share);
-  const double virgin = cell.pressure + cell.rate * sinking;
-  return std::max(0.0, std::min(elastic, virgin));
-}
-
-// The way that the body sinks in this step: end of step implicit, m (x - v dt) / dt^2 = external
-// force - soil's force after x. The soil's side rises with x, so Newton's steps inside a shrinking
-// bracket find it. Without it unloading, some hundred times stiffer than loading, would chatter or
-// would have to be softened.
-double SoilBed::solve_sinking(const FootprintMotion& motion, const ContactMemory& memory,
-                              const Law& law, double dt) const {
-  if (!std::isfinite(motion.mass_kg)) return 0.0;
-  const double inertia = motion.mass_kg / (dt * dt);
-  const double speed = -motion.velocity.z();
-  // What pushes the body down besides the soil, as the last step showed it.
-  double external = kGravity;
-  if (memory.touching) {
-    const double acceleration =
-        (motion.velocity.z() - memory.velocity_z) / dt - memory.force_z / motion.mass_kg;
-    external = std::clamp(-acceleration, -kMostAcceleration, kMostAcceleration);
-  }
-  const double free = speed * dt + external * dt * dt;
-  const auto residual = [&](double sinking, double& slope) {
-    double force = inertia * (sinking - free);
-    slope = inertia;
-    for (const Cell& cell : cells_) {
-      const double elastic =
-          cell.pressure + law.elastic * (cell.pressed - cell.sunk + sinking * cell.share);
-      const double virgin = cell.pressure + cell.rate * sinking;
-      if (elastic <= 0.0 || virgin <= 0.0) continue;
-      force += cell_area_ * std::min(elastic, virgin);
-      slope += cell_area_ * (elastic < virgin ? law.elastic * cell.share : cell.rate);
-    }
-    return force;
-  };
-  // The soil only pushes up: the body sinks at most as far as it would without soil.
-  double high = free;
-  double low = -std::abs(free) - 1e-3;
-  double slope = 0.0;
-  while (residual(low, slope) > 0.0) low *= 4.0;
-  double sinking = std::clamp(0.0, low, high);
-  for (int i = 0; i < 40; ++i) {
-    const double force = residual(sinking, slope);
-    (force > 0.0 ? high : low) = sinking;
-    double next = sinking - force / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - sinking) < 1e-11) return next;
-    sinking = next;
-  }
-  return sinking;
 }
 
 // A slipping surface takes a layer of soil along: what leaves a cell enters the next one, so that
@@ -238,146 +411,88 @@ void SoilBed::drag(const Cell& cell, double way_x, double way_y) {
   carry(way_y, 0, 1);
 }
 
-SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
-                            ContactMemory& memory) {
-  SoilReaction reaction;
-  const HeightField& field = flow_.surface();
-  const double spacing = field.spacing_m();
-  const Eigen::Vector3d centre = footprint.pose().translation();
-  const Eigen::Vector2d reach = footprint.reach();
-  const auto cell_of = [&](double coordinate, double begin) {
-    return static_cast<int>(std::floor((coordinate - begin) / spacing + 0.5));
-  };
-  const int ix0 = cell_of(centre.x() - reach.x(), field.x_min());
-  const int ix1 = cell_of(centre.x() + reach.x(), field.x_min());
-  const int iy0 = cell_of(centre.y() - reach.y(), field.y_min());
-  const int iy1 = cell_of(centre.y() + reach.y(), field.y_min());
-
-  // Slip-sinkage raises the exponent with the slip of the moment; steps of 0.005 are finer than
-  // anybody knows it.
-  const bool slips = soil_.slip_sinkage > 0.0 && motion.slip > 0.0;
-  if (slips) {
-    const double exponent =
-        std::round((soil_.exponent + soil_.slip_sinkage * motion.slip) / kExponentStep) *
-        kExponentStep;
-    if (exponent != slipping_.exponent()) slipping_.set_exponent(exponent);
-  }
-  const PressureTable& table = slips ? slipping_ : table_;
-
-  const double speed = motion.velocity.dot(footprint.pose().linear().col(0));
-  if (speed * memory.travel_m < 0.0) memory.travel_m = 0.0;
-  memory.travel_m += speed * dt;
-  // The patch of the last step decides this step's b; at the first touch the body itself does.
-  const double b = memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, 1e-3) : footprint.narrow();
-  Law law;
-  law.bekker = soil_.k_phi + soil_.k_c / b;
-  law.elastic = soil_.elastic_pa_per_m;
-  if (footprint.extended() && std::isfinite(motion.mass_kg)) {
-    // solve_sinking() cannot see a long footprint pitch and roll: there unloading is as stiff as an
-    // explicit step bears.
-    const double area = std::max(memory.patch_area_m2, cell_area_);
-    law.elastic = std::min(law.elastic, kStableStiffness * motion.mass_kg / (dt * dt * area));
-  }
-
-  // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
-  // there is no contact.
-  const double rise = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / law.elastic;
-
-  cells_.clear();
-  FootprintPoint point;
-  for (int iy = iy0; iy <= iy1; ++iy) {
-    for (int ix = ix0; ix <= ix1; ++ix) {
-      const int64_t node = flow_.node_at(ix, iy);
-      if (node < 0) continue;
-      Cell cell;
-      cell.node = static_cast<size_t>(node);
-      cell.ix = ix;
-      cell.iy = iy;
-      // The lower surface of a convex body is a convex function: it lies above its tangent plane at
-      // the middle of the cell.
-      Lattice lattice = Lattice::kRook;
-      if (footprint.at(field.node_x(ix), field.node_y(iy), 2.0 * spacing, point)) {
-        const double fall = (std::abs(point.normal.x()) + std::abs(point.normal.y())) /
-                            point.normal.z() * 0.5 * spacing;
-        if (point.height - fall > flow_.height(cell.node) * kHeightUnit_m + rise) continue;
-        if (point.share < 1.0) {
-          lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kRook;
-        } else if (point.flat_within > 0.75 * spacing) {
-          lattice = Lattice::kMiddle;
-        }
-      } else if (!at_rim(footprint, field.node_x(ix), field.node_y(iy), spacing)) {
-        continue;
-      }
-      if (!sample(footprint, ix, iy, table, law, memory.travel_m, lattice, cell)) continue;
-      cell.sunk = (flow_.reference(cell.node) - flow_.height(cell.node)) * kHeightUnit_m;
-      cells_.push_back(cell);
-      flow_.cover(ix, iy);
-    }
-  }
-  if (cells_.empty()) {
-    memory = {};
-    return reaction;
-  }
-  measure_patch(footprint, spacing, memory);
-  const double sinking = solve_sinking(motion, memory, law, dt);
+/// What gives way in a footprint's cells, and their forces.
+void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& contact, double dt) {
+  contact.reaction = {};
+  SoilReaction& reaction = contact.reaction;
+  if (range.begin == range.end) return;
   const bool radial = options_.normal_stress == NormalStress::kRadial;
-  const Eigen::Vector3d vertical = Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d axle = footprint.pose().linear().col(1);
+  const Eigen::Isometry3d& pose = contact.footprint->pose();
+  const Eigen::Vector3d centre = pose.translation();
+  const Eigen::Vector3d axle = pose.linear().col(1);
+  const Eigen::Vector3d forward = pose.linear().col(0);
+  const Eigen::Vector3d middle = body.velocity + body.omega.cross(centre - body.centre);
+  const double speed = middle.dot(forward);
+  const double per_speed = std::abs(speed) > kRolling ? 1.0 / speed : 0.0;
+  const double elastic = range.law.elastic;
+  const double units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
+  const double per_shear_modulus = 1.0 / soil_.shear_modulus_m;
+  int64_t sunk_units = 0;
 
-  for (const Cell& cell : cells_) {
-    const size_t node = cell.node;
-    const double pressure = pressure_after(cell, law, sinking);
-    const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(cell.arm);
-    // What the elastic part does not explain is plastic: virgin soil gave way.
-    const double plastic =
-        cell.pressed - cell.sunk + sinking * cell.share - (pressure - cell.pressure) / law.elastic;
-    const auto units = static_cast<Height>(std::lround(plastic / kHeightUnit_m));
-    if (pressure > 0.0 && units > 0) flow_.sink(node, units);
+  for (size_t i = range.begin; i < range.end; ++i) {
+    const Cell& cell = cells_[i];
+    Trace& trace = traces_[cell.node];
+    const double sinking = springs_[i].sinking;
+    const double along_elastic =
+        cell.pressure + elastic * (cell.pressed - cell.sunk + sinking * cell.share);
+    const double pressure =
+        std::max(0.0, std::min(along_elastic, cell.pressure + cell.rate * sinking));
+    // What the elastic part does not explain is plastic: soil gave way.
+    const auto units =
+        static_cast<Height>(std::lrint((along_elastic - pressure) * units_per_pressure));
     if (pressure <= 0.0) {
-      touched_[node] = 0;
+      // Not touching: the next contact finds what this one left.
+      trace.step = 0;
       continue;
     }
+    if (units > 0) {
+      flow_.sink(cell.node, units);
+      sunk_units += units;
+    }
+    const Eigen::Vector3d velocity = middle + body.omega.cross(cell.arm);
     const double damped =
         pressure + soil_.damping_pa_s_per_m * std::max(0.0, -velocity.z()) * cell.share;
 
+    const double per_length =
+        1.0 / std::sqrt(1.0 + cell.slope_x * cell.slope_x + cell.slope_y * cell.slope_y);
+    const Eigen::Vector3d face(cell.slope_x * per_length, cell.slope_y * per_length, per_length);
     const Eigen::Vector3d along =
-        axle.cross(cell.normal);  // forward along the surface, at right angles to the axle
-    const Eigen::Vector3d surface = velocity - motion.surface_speed * along;
-    const Eigen::Vector3d& normal =
-        radial ? cell.normal : vertical;  // of the plane in which the soil shears
-    const Eigen::Vector3d lengthwise = axle.cross(normal).normalized();
+        axle.cross(face);  // forward along the surface, at right angles to the axle
+    const Eigen::Vector3d surface = velocity - contact.surface_speed * along;
+    // Normal of the plane in which the soil shears.
+    const Eigen::Vector3d normal = radial ? face : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d lengthwise = (radial ? along : axle.cross(normal)).normalized();
     const Eigen::Vector3d sideways = normal.cross(lengthwise);
 
     // Shear displacement: the mean over the touching part of the cell. What has just come into
     // touch starts at zero.
-    const bool fresh = touched_[node] == 0 || touched_[node] + 1 < step_;
-    const double kept =
-        fresh ? 0.0 : std::min(static_cast<double>(share_[node]), cell.share) / cell.share;
+    const double kept = std::min(static_cast<double>(trace.share), cell.share) / cell.share;
     const double grown = dt * 0.5 * (1.0 + kept);
     const double slide_along = surface.dot(lengthwise);
     const double slide_across = surface.dot(sideways);
-    const double mean_along = static_cast<double>(shear_along_[node]) * kept + slide_along * grown;
-    const double mean_across =
-        static_cast<double>(shear_across_[node]) * kept + slide_across * grown;
-    touched_[node] = step_;
-    share_[node] = static_cast<float>(cell.share);
-    shear_along_[node] = static_cast<float>(mean_along);
-    shear_across_[node] = static_cast<float>(mean_across);
+    const double mean_along = static_cast<double>(trace.along) * kept + slide_along * grown;
+    const double mean_across = static_cast<double>(trace.across) * kept + slide_across * grown;
+    trace.step = step_;
+    trace.share = static_cast<float>(cell.share);
+    trace.along = static_cast<float>(mean_along);
+    trace.across = static_cast<float>(mean_across);
 
     // Where the pressure is higher the soil has sheared for longer, by the way between the two
     // means of place.
-    const double lag = std::abs(speed) > kRolling ? -cell.lead / speed : 0.0;
-    const Eigen::Vector3d shear = (mean_along + slide_along * lag) * lengthwise +
-                                  (mean_across + slide_across * lag) * sideways;
-    const double length = shear.norm();
-    Eigen::Vector3d force = (damped / cell.pressure * cell_area_) * cell.lift;
-    Eigen::Vector3d torque = (damped / cell.pressure * cell_area_) * cell.moment;
-    reaction.normal_load += force.z();
+    const double lag = -cell.lead * per_speed;
+    const double j_along = mean_along + slide_along * lag;
+    const double j_across = mean_across + slide_across * lag;
+    const double length = std::sqrt(j_along * j_along + j_across * j_across);
+    const double load = damped * cell_area_;
+    Eigen::Vector3d force(0.0, 0.0, load);
+    if (radial) force << load * cell.slope_x, load * cell.slope_y, load;
+    Eigen::Vector3d torque = load * cell.moment;
+    reaction.normal_load += load;
     if (length > 0.0) {
       const double strength = soil_.cohesion_pa * cell.share + damped * tan_friction_;
-      const double mobilised = 1.0 - std::exp(-length / soil_.shear_modulus_m);
-      const double tau = strength * mobilised;
-      const Eigen::Vector3d traction = (-tau * cell_area_ / normal.z() / length) * shear;
+      const double mobilised = 1.0 - std::exp(-length * per_shear_modulus);
+      const Eigen::Vector3d traction = (-strength * mobilised * cell_area_ / normal.z() / length) *
+                                       (j_along * lengthwise + j_across * sideways);
       force += traction;
       torque += cell.arm.cross(traction);
       reaction.along_surface -= traction.dot(along);
@@ -391,27 +506,24 @@ SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& m
     reaction.torque += torque;
     reaction.area += cell.share * cell_area_;
     reaction.sinkage = std::max(
-        reaction.sinkage, flow_.reference(node) * kHeightUnit_m - (centre.z() + cell.arm.z()));
+        reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m - (centre.z() + cell.arm.z()));
   }
-  memory.touching = true;
-  memory.sinkage = reaction.sinkage;
-  memory.velocity_z = motion.velocity.z();
-  memory.force_z = reaction.force.z();
-  return reaction;
+  flow_.push(range.footprint, sunk_units);
+  contact.memory->sinkage = reaction.sinkage;
 }
 
 void SoilBed::end_step() {
   const int64_t sunk = flow_.in_hand();
   if (!options_.bulldozing) {
     compacted_ += sunk;
-    flow_.take_from_hand(sunk);
+    flow_.compact(sunk);
   } else {
     if (soil_.compaction > 0.0 && sunk > 0) {
       compaction_rest_ += soil_.compaction * static_cast<double>(sunk);
       const auto units = std::min(sunk, static_cast<int64_t>(compaction_rest_));
       compaction_rest_ -= static_cast<double>(units);
       compacted_ += units;
-      flow_.take_from_hand(units);
+      flow_.compact(units);
     }
     flow_.set_down();
   }

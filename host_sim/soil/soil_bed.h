@@ -16,11 +16,13 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "host_sim/soil/footprint.h"
 #include "host_sim/soil/material_flow.h"
-#include "host_sim/soil/pressure_table.h"
+#include "host_sim/soil/power_table.h"
+#include "host_sim/soil/sinking.h"
+#include "host_sim/soil/soil_contact.h"
 #include "host_sim/soil/soil_parameters.h"
 #include "host_sim/terrain/height_field.h"
 
@@ -39,41 +41,6 @@ struct SoilOptions {
   double sample_spacing_m = 0.00125;  ///< of the places inside a cell, at most
 };
 
-/// Motion of the pressing surface: that of the body plus the speed of its belt or rim.
-struct FootprintMotion {
-  Eigen::Vector3d velocity =
-      Eigen::Vector3d::Zero();                      ///< of the footprint's centre, world frame, m/s
-  Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< of the body without the wheel's spin, rad/s
-  double surface_speed =
-      0.0;  ///< of the belt over its wheels, forward drive positive: below it goes backward, m/s
-  double slip = 0.0;      ///< for slip-sinkage, 0..1
-  double friction = 0.8;  ///< Coulomb's, against particles; soil has its own
-  double mass_kg =
-      1.0;  ///< that the footprint carries; infinite: the motion is imposed, whatever the force
-};
-
-/// Force and torque on the footprint, world frame, torque about its centre; what drives it; what it
-/// rests on.
-struct SoilReaction {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  double along_surface = 0.0;  ///< force of the ground along the belt's direction of motion, N
-  double normal_load = 0.0;    ///< vertical part of the normal forces, N
-  double sinkage = 0.0;        ///< greatest depth below the reference level, m
-  double area = 0.0;           ///< touched, projected to the horizontal, m^2
-};
-
-/// What a footprint remembers from step to step.
-struct ContactMemory {
-  double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
-  double patch_area_m2 = 0.0;
-  bool touching = false;
-  double sinkage = 0.0;     ///< greatest depth in the last step, m
-  double travel_m = 0.0;    ///< way along local x since touching or turning back, signed
-  double velocity_z = 0.0;  ///< of the last step, m/s
-  double force_z = 0.0;     ///< of the soil in the last step, N
-};
-
 /// Volumes in units of height times cells. Always: heights_now = heights_before - compacted -
 /// in_hand.
 struct VolumeBalance {
@@ -88,7 +55,11 @@ class SoilBed {
  public:
   SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options = {});
 
-  /// One footprint in this step. Every footprint of a step before end_step().
+  /// A body in this step, with all its footprints: how it sinks and tilts on them is solved
+  /// together. Every body of a step before end_step().
+  void press(const PressingBody& body, std::span<SoilContact> contacts, double dt,
+             BodyMemory& memory);
+  /// A footprint by itself: it sinks and does not tilt.
   SoilReaction press(const Footprint& footprint, const FootprintMotion& motion, double dt,
                      ContactMemory& memory);
   /// Ends a step: what was sunk is set down beside the footprints, slopes slide.
@@ -101,58 +72,89 @@ class SoilBed {
   VolumeBalance balance() const;
 
  private:
-  enum class Lattice {  // the places of a cell where the body's surface is looked at
-    kMiddle,            // one: below a plane
+  enum class Lattice : uint8_t {  // the places of a cell where the body's surface is looked at
+    kMiddle,                      // one: below a plane
     kRook,  // one in each row and column: sees what varies along or across as finely as all
     kFull,  // all: at the rim of a body with corners
   };
   struct Law {       // of the soil under one footprint in one step
     double bekker;   // k_c / b + k_phi
     double elastic;  // E, Pa/m
+    const PowerTable* table;
   };
-  struct Cell {  // one cell under the footprint, sampled
+  /// What a node remembers of the last contact. Displacements are means over the touching part.
+  struct Trace {
+    uint32_t step = 0;     // of that contact
+    float share = 0.0F;    // of the cell that touched
+    float along = 0.0F;    // shear displacement along the belt, m
+    float across = 0.0F;   // and across it
+    float covered = 0.0F;  // share of the cell below the body
+    float old = 0.0F;      // plastic sinkage of that part before the contact, m
+    float beside = 0.0F;   // plastic sinkage of the rest, times its share, m
+  };
+  struct Candidate {
     size_t node;
     int ix;
     int iy;
-    double share;          // of the cell that bears
-    double pressed;        // plastic sinkage of the cell when it was virgin before this contact, m
-    double pressure;       // mean pressure of virgin soil, Pa
-    double rate;           // of that pressure with further sinking, Pa/m
-    Eigen::Vector3d lift;  // mean of pressure times normal / normal.z
-    Eigen::Vector3d moment;  // mean of arm x the same
+    Lattice lattice;
+  };
+  struct Cell {  // one cell under a footprint, sampled
+    size_t node;
+    int ix;
+    int iy;
+    double share;     // of the cell that bears
+    double pressed;   // plastic sinkage that virgin soil would have by this contact, m
+    double pressure;  // mean pressure of virgin soil, Pa
+    double rate;      // of that pressure with further sinking, Pa/m
+    double slope_x;   // horizontal force of the normal stress, over its vertical force
+    double slope_y;
+    Eigen::Vector3d moment;  // of mean pressure, about the footprint's centre
     Eigen::Vector3d arm;     // mean place of the pressure, from the footprint's centre
-    Eigen::Vector3d normal;  // mean, unit length
     double lead;  // mean place of the pressure ahead of the mean place of the touching part, along
                   // local x, m
     double sunk;  // plastic sinkage, m
   };
+  struct Range {  // of one footprint among cells_
+    size_t begin;
+    size_t end;
+    Law law;
+    size_t footprint;  // as flow_ numbers them
+  };
 
-  bool sample(const Footprint& footprint, int ix, int iy, const PressureTable& table,
-              const Law& law, double travel, Lattice lattice, Cell& cell) const;
+  Range find_cells(const SoilContact& contact, double elastic);
+  void find_candidates(const Footprint& footprint, double rise);
+  void add_places(const Candidate& candidate);
+  bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
+              Cell& cell);
+  void remember_cover(Trace& trace, double covered, double sunk) const;
+  void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
+  void react(const Range& range, const PressingBody& body, SoilContact& contact, double dt);
+  size_t places_of(Lattice lattice) const;
   void drag(const Cell& cell, double way_x, double way_y);
-  void measure_patch(const Footprint& footprint, double edge, ContactMemory& memory) const;
-  static double pressure_after(const Cell& cell, const Law& law, double sinking);
-  double solve_sinking(const FootprintMotion& motion, const ContactMemory& memory, const Law& law,
-                       double dt) const;
+  bool fresh(const Trace& trace) const { return trace.step == 0 || trace.step + 1 < step_; }
 
   SoilParameters soil_;
   SoilOptions options_;
   MaterialFlow flow_;
-  PressureTable table_;
-  PressureTable slipping_;  // of the exponent that slip-sinkage made of it
+  std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
   double cell_area_;
-  int samples_;  // along one side of a cell
+  int samples_;                 // along one side of a cell
+  std::vector<double> rook_x_;  // places in a cell, one in each row and column, from its middle, m
+  std::vector<double> rook_y_;
   int64_t volume_before_;
   int64_t compacted_ = 0;
   double compaction_rest_ = 0.0;
   uint32_t step_ = 1;
-  std::vector<uint32_t> touched_;  // step of the last contact
-  std::vector<float>
-      shear_along_;  // mean shear displacement of the touching part along the belt, m
-  std::vector<float> shear_across_;  // and across it
-  std::vector<float> share_;         // of the cell that touched in the last contact
-  std::vector<Cell> cells_;          // of the footprint being pressed
+  std::vector<Trace> traces_;
+
+  // Of the body being pressed; kept for their room.
+  FootprintPlaces places_;
+  std::vector<Candidate> candidates_;
+  std::vector<Cell> cells_;  // the first cell_count_ of them
+  size_t cell_count_ = 0;
+  std::vector<SoilSpring> springs_;
+  std::vector<Range> ranges_;
 };
 
 }  // namespace screed

@@ -37,6 +37,7 @@ SoilRobot::SoilRobot(SoilBed& bed, const SoilRobotShape& shape, double x, double
   const Eigen::Vector3d centre = to_eigen(all.c);
   dMassTranslate(&all, -centre.x(), -centre.y(), -centre.z());
   dBodySetMass(body_, &all);
+  inverse_inertia_ = rotation_to_eigen(all.I).inverse();
   // The highest ground below a wheel decides where the level robot touches.
   double ground = -std::numeric_limits<double>::infinity();
   for (Wheel& wheel : wheels_) {
@@ -50,11 +51,13 @@ void SoilRobot::step(double left_m_per_s, double right_m_per_s, double dt) {
   const Eigen::Vector3d origin = position();
   const Eigen::Matrix3d axes = rotation();
   const Eigen::Vector3d speed = velocity();
-  FootprintMotion motion;
-  motion.omega = to_eigen(dBodyGetAngularVel(body_));
-  motion.mass_kg = mass_ / static_cast<double>(wheels_.size());
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  PressingBody body;
+  body.mass_kg = mass_;
+  body.inverse_inertia = axes * inverse_inertia_ * axes.transpose();
+  body.centre = origin;
+  body.velocity = speed;
+  body.omega = to_eigen(dBodyGetAngularVel(body_));
+  std::array<SoilContact, 4> contacts;
   for (size_t i = 0; i < wheels_.size(); ++i) {
     Wheel& wheel = wheels_[i];
     const Eigen::Vector3d arm = axes * wheel.place;
@@ -62,15 +65,23 @@ void SoilRobot::step(double left_m_per_s, double right_m_per_s, double dt) {
     pose.linear() = axes;
     pose.translation() = origin + arm;
     wheel.footprint.set_pose(pose);
-    motion.velocity = speed + motion.omega.cross(arm);
-    motion.surface_speed = i % 2 == 0 ? left_m_per_s : right_m_per_s;
-    const double ground = motion.velocity.dot(axes.col(0));
-    const double faster = std::max(std::abs(ground), std::abs(motion.surface_speed));
-    motion.slip =
-        faster > kSlipSpeed ? std::min(1.0, std::abs(motion.surface_speed - ground) / faster) : 0.0;
-    const SoilReaction reaction = bed_.press(wheel.footprint, motion, dt, wheel.memory);
-    force += reaction.force;
-    torque += arm.cross(reaction.force) + reaction.torque;
+    SoilContact& contact = contacts[i];
+    contact.footprint = &wheel.footprint;
+    contact.memory = &wheel.memory;
+    contact.surface_speed = i % 2 == 0 ? left_m_per_s : right_m_per_s;
+    const double ground = (speed + body.omega.cross(arm)).dot(axes.col(0));
+    const double faster = std::max(std::abs(ground), std::abs(contact.surface_speed));
+    contact.slip = faster > kSlipSpeed
+                       ? std::min(1.0, std::abs(contact.surface_speed - ground) / faster)
+                       : 0.0;
+  }
+  bed_.press(body, contacts, dt, memory_);
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (const SoilContact& contact : contacts) {
+    const Eigen::Vector3d arm = contact.footprint->pose().translation() - origin;
+    force += contact.reaction.force;
+    torque += arm.cross(contact.reaction.force) + contact.reaction.torque;
   }
   bed_.end_step();
   load_ = force.z();

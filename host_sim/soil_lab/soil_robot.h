@@ -47,6 +47,8 @@ class SoilRobot {
   dBodyID body_;
   std::array<Wheel, 4> wheels_;
   double mass_ = 0.0;
+  Eigen::Matrix3d inverse_inertia_;  // about the centre of mass, in the body's axes
+  BodyMemory memory_;
   double load_ = 0.0;
 };
 

@@ -91,6 +91,8 @@ class HeightField {
 
   /// 0 <= ix < nx, 0 <= iy < ny: not checked.
   [[nodiscard]] Height node(int ix, int iy) const { return heights_[index(ix, iy)]; }
+  /// The same by place in the row-by-row order: iy nx + ix, not checked.
+  [[nodiscard]] Height node(size_t index) const { return heights_[index]; }
   void set_node(int ix, int iy, Height height) {
     heights_[index(ix, iy)] = height;
     Height& highest = tile_highest_[tile_index(ix / kTileNodes, iy / kTileNodes)];

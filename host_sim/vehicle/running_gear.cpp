@@ -167,26 +167,24 @@ RunningGear::Pressing RunningGear::pressing(const CarrierMotion& carrier, double
   motion.omega = carrier.omega;
   motion.surface_speed = speed;
   motion.friction = law_.friction;
-  motion.mass_kg = load_.least_mass_kg;
+  motion.mass_kg = load_.mass_kg;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
   const double faster = std::max(std::abs(ground_speed), std::abs(speed));
   motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed - ground_speed) / faster) : 0.0;
-
   return {pose, motion, arm};
 }
 
-double RunningGear::contact(SoilBed& soil, const CarrierMotion& carrier, double speed, double dt,
-                            Wrench& wrench) {
-  Pressing solid = pressing(carrier, speed);
+SoilContact RunningGear::soil_contact(const CarrierMotion& carrier, double speed) {
+  const Pressing solid = pressing(carrier, speed);
   const bool on_its_side = std::abs(solid.pose.linear()(2, 1)) > kOnItsSide;
   Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
-  if (on_its_side) solid.motion.surface_speed = 0.0;
   footprint.set_pose(solid.pose);
-  const SoilReaction reaction = soil.press(footprint, solid.motion, dt, memory_);
-  wrench.add(reaction.force, solid.arm);
-  wrench.torque += reaction.torque;
-  normal_load_ = reaction.normal_load;
-  return reaction.along_surface;
+  SoilContact contact;
+  contact.footprint = &footprint;
+  contact.memory = &memory_;
+  contact.surface_speed = on_its_side ? 0.0 : speed;
+  contact.slip = solid.motion.slip;
+  return contact;
 }
 
 double RunningGear::contact(ParticleBed& particles, const CarrierMotion& carrier, double speed,

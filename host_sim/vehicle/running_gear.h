@@ -47,9 +47,6 @@ struct RunningGearGeometry {
 struct GearLoad {
   double weight_n = 1.0;  ///< on level ground; sets the stiffness, so that it sinks in 0.4 mm
   double mass_kg = 0.1;   ///< share of the robot's mass, for the damping
-  /// Mass that the ground feels when the robot moves up and down, pitches or rolls, whichever is
-  /// least.
-  double least_mass_kg = 0.1;
 };
 
 class RunningGear {
@@ -62,9 +59,11 @@ class RunningGear {
   double contact(const HeightField& ground, const CarrierMotion& carrier, double speed, double dt,
                  Wrench& wrench);
 
-  /// The same on soil that gives way: the unit's lower surface presses into it.
-  double contact(SoilBed& soil, const CarrierMotion& carrier, double speed, double dt,
-                 Wrench& wrench);
+  /// On soil that gives way: the unit's lower surface as a footprint of the carrier; valid until
+  /// the next call.
+  SoilContact soil_contact(const CarrierMotion& carrier, double speed);
+  /// Remembers the soil's answer to it.
+  void answered(const SoilReaction& reaction) { normal_load_ = reaction.normal_load; }
 
   /// The same on particles, and on the floor where there are none.
   double contact(ParticleBed& particles, const CarrierMotion& carrier, double speed, double dt,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 #include "host_sim/core/errors.h"
@@ -100,25 +99,6 @@ const AssemblyJoint* joint_to(const Assembly& assembly, int child) {
   return nullptr;
 }
 
-// What one of four wheels feels of the robot when it pitches or rolls, kg.
-double least_mass_on_wheels(const Assembly& assembly) {
-  std::vector<int> all(assembly.bodies.size());
-  std::iota(all.begin(), all.end(), 0);
-  const Inertia inertia = composed_inertia(assembly, all);
-  const Eigen::Matrix3d axes = inertia.pose.linear();
-  const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
-  Eigen::Vector3d square = Eigen::Vector3d::Zero();
-  for (const auto& side : kWheels) {
-    for (const char* wheel : side) {
-      const auto index = static_cast<size_t>(assembly.body_index(wheel));
-      const Eigen::Vector3d arm =
-          assembly.bodies[index].pose.translation() - inertia.pose.translation();
-      square += arm.cwiseProduct(arm);
-    }
-  }
-  return std::min(tensor(0, 0) / square.y(), tensor(1, 1) / square.x());
-}
-
 }  // namespace
 
 Attitude attitude_of(const Eigen::Matrix3d& r) {
@@ -205,6 +185,7 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
     carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
     carrier.box_memories.assign(carrier.boxes.size(), ContactMemory{});
     carrier.mass = inertia.mass;
+    carrier.inverse_inertia = tensor.inverse();
     carrier.law.friction = options.chassis_friction;
     carrier.law.stiffness = mass_ * kGravity_m_per_s2 / (4.0 * kHullSinkIn_m);
     carrier.law.damping = std::sqrt(carrier.law.stiffness * mass_ / 4.0);
@@ -256,8 +237,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
 
   double side_y[2] = {0.0, 0.0};
   const double units = options.tracks ? 2.0 : 4.0;
-  GearLoad load{mass_ * kGravity_m_per_s2 / units, mass_ / units, mass_ / units};
-  if (!options.tracks) load.least_mass_kg = std::min(load.mass_kg, least_mass_on_wheels(assembly));
+  const GearLoad load{mass_ * kGravity_m_per_s2 / units, mass_ / units};
   for (const Side side : {kLeft, kRight}) {
     const Wheel front = wheel_named(kWheels[side][0]);
     const Wheel rear = wheel_named(kWheels[side][1]);
@@ -311,6 +291,7 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
     dBodySetAngularVel(carrier.body, 0, 0, 0);
     carrier.bristles.assign(carrier.points.size(), Eigen::Vector3d::Zero());
     carrier.box_memories.assign(carrier.boxes.size(), ContactMemory{});
+    carrier.soil_memory = {};
   }
   for (Shaft& shaft : shafts_) shaft.shaft.halt();
   for (Unit& unit : units_) unit.gear.let_go();
@@ -354,28 +335,59 @@ void Vehicle::hull_contact(Carrier& carrier, const HeightField& ground, const Ca
   }
 }
 
-void Vehicle::hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion& motion, double dt,
-                           Wrench& wrench) {
+/// Adds the boxes of the hull that may touch.
+void Vehicle::hull_footprints(Carrier& carrier, const SoilBed& soil, const CarrierMotion& motion) {
   const double ceiling =
       soil.surface().max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius);
   for (size_t i = 0; i < carrier.boxes.size(); ++i) {
     Eigen::Isometry3d pose = carrier.box_poses[i];
-    const Eigen::Vector3d arm = motion.rotation * pose.translation();
+    pose.translation() = motion.origin + motion.rotation * pose.translation();
     pose.linear() = motion.rotation * pose.linear();
-    pose.translation() = motion.origin + arm;
     Footprint& box = carrier.boxes[i];
     box.set_pose(pose);
     if (pose.translation().z() - box.reach_down() > ceiling) {
       carrier.box_memories[i] = {};
       continue;
     }
-    FootprintMotion moving;
-    moving.velocity = motion.velocity + motion.omega.cross(arm);
-    moving.omega = motion.omega;
-    moving.mass_kg = carrier.mass;
-    const SoilReaction reaction = soil.press(box, moving, dt, carrier.box_memories[i]);
-    wrench.add(reaction.force, arm);
-    wrench.torque += reaction.torque;
+    SoilContact contact;
+    contact.footprint = &box;
+    contact.memory = &carrier.box_memories[i];
+    soil_contacts_.push_back(contact);
+  }
+}
+
+void Vehicle::ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
+                             Wrench& wrench) {
+  Carrier& pressing = carriers_[carrier];
+  soil_contacts_.clear();
+  for (Unit& unit : units_) {
+    if (unit.carrier != carrier) continue;
+    const double speed = shafts_[unit.shaft].shaft.omega_rad_per_s() * unit.gear.radius_m();
+    soil_contacts_.push_back(unit.gear.soil_contact(motion, speed));
+  }
+  const size_t gear = soil_contacts_.size();
+  hull_footprints(pressing, soil, motion);
+
+  PressingBody body;
+  // What hangs on it by hinges rests on it, too: never less than its units' share of the robot.
+  body.mass_kg = std::max(pressing.mass,
+                          mass_ * static_cast<double>(gear) / static_cast<double>(units_.size()));
+  body.inverse_inertia = motion.rotation * pressing.inverse_inertia * motion.rotation.transpose();
+  body.centre = motion.origin;
+  body.velocity = motion.velocity;
+  body.omega = motion.omega;
+  soil.press(body, soil_contacts_, dt, pressing.soil_memory);
+
+  for (const SoilContact& contact : soil_contacts_) {
+    wrench.add(contact.reaction.force, contact.footprint->pose().translation() - motion.origin);
+    wrench.torque += contact.reaction.torque;
+  }
+  size_t i = 0;
+  for (Unit& unit : units_) {
+    if (unit.carrier != carrier) continue;
+    const SoilReaction& reaction = soil_contacts_[i++].reaction;
+    shafts_[unit.shaft].torque += unit.gear.radius_m() * reaction.along_surface;
+    unit.gear.answered(reaction);
   }
 }
 
@@ -400,6 +412,19 @@ void Vehicle::hull_contact(Carrier& carrier, ParticleBed& particles, const Carri
 }
 
 template <class Ground>
+void Vehicle::ground_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
+                             Wrench& wrench) {
+  for (Unit& unit : units_) {
+    if (unit.carrier != carrier) continue;
+    Shaft& shaft = shafts_[unit.shaft];
+    const double radius = unit.gear.radius_m();
+    const double speed = shaft.shaft.omega_rad_per_s() * radius;
+    shaft.torque += radius * unit.gear.contact(ground, motion, speed, dt, wrench);
+  }
+  hull_contact(carriers_[carrier], ground, motion, dt, wrench);
+}
+
+template <class Ground>
 void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt) {
   for (Shaft& shaft : shafts_) shaft.torque = 0.0;
   for (size_t c = 0; c < carriers_.size(); ++c) {
@@ -411,14 +436,7 @@ void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, 
     motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
 
     Wrench wrench;
-    for (Unit& unit : units_) {
-      if (unit.carrier != c) continue;
-      Shaft& shaft = shafts_[unit.shaft];
-      const double radius = unit.gear.radius_m();
-      const double speed = shaft.shaft.omega_rad_per_s() * radius;
-      shaft.torque += radius * unit.gear.contact(ground, motion, speed, dt, wrench);
-    }
-    hull_contact(carrier, ground, motion, dt, wrench);
+    ground_contact(ground, c, motion, dt, wrench);
     dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
     dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
   }

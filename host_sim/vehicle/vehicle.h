@@ -98,7 +98,9 @@ class Vehicle {
     std::vector<Footprint> boxes;              // of the hull, on soil
     std::vector<Eigen::Isometry3d> box_poses;  // in the frame of the centre of mass
     std::vector<ContactMemory> box_memories;
+    BodyMemory soil_memory;
     double mass;
+    Eigen::Matrix3d inverse_inertia;  // in its own axes
   };
   struct Shaft {
     Side side;
@@ -117,10 +119,14 @@ class Vehicle {
   void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
   static void hull_contact(Carrier& carrier, const HeightField& ground, const CarrierMotion& motion,
                            double dt, Wrench& wrench);
-  static void hull_contact(Carrier& carrier, SoilBed& soil, const CarrierMotion& motion, double dt,
-                           Wrench& wrench);
   static void hull_contact(Carrier& carrier, ParticleBed& particles, const CarrierMotion& motion,
                            double dt, Wrench& wrench);
+  void hull_footprints(Carrier& carrier, const SoilBed& soil, const CarrierMotion& motion);
+  template <class Ground>
+  void ground_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
+                      Wrench& wrench);
+  void ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
+                      Wrench& wrench);
   template <class Ground>
   void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
   /// The driven unit that stands for its side, and the shaft with the encoder.
@@ -132,6 +138,7 @@ class Vehicle {
   std::vector<size_t> carrier_of_body_;  // of each body of the assembly
   std::vector<Shaft> shafts_;
   std::vector<Unit> units_;
+  std::vector<SoilContact> soil_contacts_;  // of one carrier in one step; kept for its room
   size_t chassis_carrier_ = 0;
   std::array<size_t, 2> encoder_unit_{};
   double mass_ = 0.0;

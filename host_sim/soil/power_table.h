@@ -1,0 +1,59 @@
+// Bekker's z^n as a table: the power is asked for a thousand times a step.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace screed {
+
+/// z^n for z >= 0 by linear interpolation between places whose distance grows with z: 32 in each
+/// octave from 2^-24 m (60 nm) to 1 m. Relative error below 5e-4 for n <= 2.5 (3e-5 for 0.5 and
+/// 1.1). Below 60 nm a straight line to 0, above 1 m the last one goes on.
+class PowerTable {
+ public:
+  PowerTable() = default;
+  explicit PowerTable(double exponent) { set_exponent(exponent); }
+
+  /// Tabulates another exponent. Allocates only the first time.
+  void set_exponent(double exponent) {
+    exponent_ = exponent;
+    lines_.resize(kLines);
+    double low = 0.0;
+    double low_power = 0.0;
+    for (int64_t i = 0; i < kLines; ++i) {
+      const double high = std::bit_cast<double>((kFirst + i) << kDropped);
+      const double high_power = std::pow(high, exponent);
+      Line& line = lines_[static_cast<size_t>(i)];
+      line.slope = (high_power - low_power) / (high - low);
+      line.offset = high_power - line.slope * high;
+      low = high;
+      low_power = high_power;
+    }
+  }
+
+  double exponent() const { return exponent_; }
+  double power(double z) const {
+    // A double's leading bits are its octave and place in it.
+    int64_t i = (std::bit_cast<int64_t>(z) >> kDropped) - kFirst + 1;
+    i = i < 0 ? 0 : i;
+    i = i < kLines ? i : kLines - 1;
+    const Line& line = lines_[static_cast<size_t>(i)];
+    return line.offset + z * line.slope;
+  }
+
+ private:
+  struct Line {
+    double offset;
+    double slope;
+  };
+  static constexpr int kDropped = 52 - 5;
+  static constexpr int64_t kFirst = std::bit_cast<int64_t>(0x1p-24) >> kDropped;
+  static constexpr int64_t kLines = (std::bit_cast<int64_t>(1.0) >> kDropped) - kFirst + 1;
+
+  double exponent_ = 1.0;
+  std::vector<Line> lines_;
+};
+
+}  // namespace screed
