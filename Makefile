@@ -90,6 +90,9 @@ help:
 	@echo "make fuses     the fuses the board should have       (PROGRAMMER=avr109|NAME: compare; WRITE=yes: write)"
 	@echo "make monitor   serial monitor on the board           (PORT=/dev/ttyACM0)"
 	@echo "make bench     real-time factor and ns per tick"
+	@echo "make bench-decode  frames a second of screed decode, beside tshark"
+	@echo "make damage    wrong frames that damaged lines of the radio bring forth"
+	@echo "make fuzz      fuzz everything that reads bytes      (EXECUTIONS=200000)"
 	@echo "make bench-terrain  time and memory of a frame on every terrain, beside the thesis'"
 	@echo "make lint      formatting and static analysis"
 	@echo "make format    clang-format over the tree"
@@ -225,6 +228,7 @@ include $(wildcard tests/mcu/mcu_tests.mk)
 endif
 include tools/flash/flash.mk
 include tools/telemetry_lab/telemetry_lab.mk
+include tests/fuzz/fuzz.mk
 include tests/can/can.mk
 
 $(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags

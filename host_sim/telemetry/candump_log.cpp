@@ -3,13 +3,13 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "host_sim/core/errors.h"
 
 namespace screed {
 namespace {
 
-constexpr size_t kBufferBytes = 1U << 20U;
 constexpr uint8_t kNotHex = 0xFF;
 
 constexpr struct HexTable {
@@ -126,10 +126,11 @@ void CandumpReader::Closer::operator()(std::FILE* file) const {
 }
 
 CandumpReader::CandumpReader(const std::string& path)
-    : path_(path),
-      file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")),
-      buffer_(kBufferBytes) {
-  if (file_ == nullptr) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+    : CandumpReader(path, path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {}
+
+CandumpReader::CandumpReader(std::string path, std::FILE* file, size_t buffer_bytes)
+    : path_(std::move(path)), file_(file), buffer_(buffer_bytes) {
+  if (file_ == nullptr) throw InputError(path_ + ": cannot be read: " + std::strerror(errno));
 }
 
 bool CandumpReader::fill() {

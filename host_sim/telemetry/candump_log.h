@@ -38,8 +38,13 @@ LineKind parse_candump_line(std::string_view line, LoggedFrame& frame);
 /// Reads a log of any size and content, line by line.
 class CandumpReader {
  public:
+  static constexpr size_t kBufferBytes = 1U << 20U;
+
   /// "-" reads standard input. Throws InputError when the file cannot be opened.
   explicit CandumpReader(const std::string& path);
+  /// Reads an open file, which it closes. path: what messages call it. buffer_bytes: a longer line
+  /// is unreadable.
+  CandumpReader(std::string path, std::FILE* file, size_t buffer_bytes = kBufferBytes);
 
   /// The next line that is not empty; false at the end. Throws InputError when reading fails.
   bool next(LineKind& kind, LoggedFrame& frame);

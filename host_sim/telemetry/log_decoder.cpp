@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cstring>
+#include <utility>
 
 namespace screed {
 
@@ -23,7 +24,7 @@ std::string DecodeAccount::text() const {
   return text;
 }
 
-LogDecoder::LogDecoder(const std::string& path) : reader_(path) {
+LogDecoder::LogDecoder(CandumpReader reader) : reader_(std::move(reader)) {
   counters_.fill(-1);
 }
 
@@ -59,6 +60,7 @@ bool LogDecoder::next(DecodedFrame& decoded) {
       case FrameFault::kWrongCrc:
         ++account_.wrong_crcs;
         continue;
+      case FrameFault::kWrongWay:  // a log holds both ways
       case FrameFault::kNone:
         break;
     }

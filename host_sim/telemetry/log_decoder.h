@@ -39,7 +39,8 @@ struct DecodeAccount {
 class LogDecoder {
  public:
   /// As CandumpReader.
-  explicit LogDecoder(const std::string& path);
+  explicit LogDecoder(const std::string& path) : LogDecoder(CandumpReader(path)) {}
+  explicit LogDecoder(CandumpReader reader);
 
   /// The next message; false at the end of the log. Nothing in a log makes it throw.
   bool next(DecodedFrame& frame);

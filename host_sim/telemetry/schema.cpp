@@ -124,4 +124,10 @@ FrameFault check_frame(const CanFrame& frame) {
   return FrameFault::kNone;
 }
 
+FrameFault check_received(const CanFrame& frame, bool uplink) {
+  const MessageInfo* const message = find_message(frame.id);
+  if (message != nullptr && message->uplink != uplink) return FrameFault::kWrongWay;
+  return check_frame(frame);
+}
+
 }  // namespace screed

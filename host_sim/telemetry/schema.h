@@ -94,10 +94,14 @@ enum class FrameFault : uint8_t {
   kUnknownId,
   kWrongSize,  ///< not the size that the schema says
   kWrongCrc,
+  kWrongWay,  ///< a message of the ground's where a robot's was to come, or the other way round
 };
 
-/// Checks a frame against the schema: the one rule by which every host program accepts frames. The
-/// MAC of an authenticated message is not looked at.
+/// Checks a frame against the schema. The MAC of an authenticated message is not looked at.
 FrameFault check_frame(const CanFrame& frame);
+
+/// The rule for what comes from the radio. uplink: it comes from the ground. The way matters: a
+/// COMMAND has no CRC, so a wrong bit in its id could else make a message of a robot of it.
+FrameFault check_received(const CanFrame& frame, bool uplink);
 
 }  // namespace screed

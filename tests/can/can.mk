@@ -8,5 +8,6 @@
 test-can: deps
 	$(STEP) run-test-can
 
-run-test-can: $(SCREED)
-	@SCREED_PROGRAM=$(abspath $(SCREED)) SCREED_CAN_BUILD=$(abspath $(BUILD_ROOT)/can) DEPS=$(DEPS) tests/can/run.sh
+run-test-can: $(SCREED) $(B)/telemetry_lab
+	@SCREED_PROGRAM=$(abspath $(SCREED)) TELEMETRY_LAB_PROGRAM=$(abspath $(B)/telemetry_lab) \
+	  SCREED_WIRESHARK_PROFILE=$(abspath $(GENERATED_FOLDER)/wireshark) SCREED_CAN_BUILD=$(abspath $(BUILD_ROOT)/can) DEPS=$(DEPS) tests/can/run.sh

@@ -9,7 +9,12 @@ namespace {
 
 TEST(Corruption, RandomFramesAreAccepted) {
   RandomFrames frames(3);
-  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(RandomFrames::accepts(frames.next()));
+  for (int i = 0; i < 2000; ++i) {
+    const bool uplink = i % 2 != 0;
+    const CanFrame frame = frames.next(uplink);
+    ASSERT_TRUE(RandomFrames::accepts(frame, uplink));
+    ASSERT_FALSE(RandomFrames::accepts(frame, !uplink));
+  }
 }
 
 TEST(Corruption, NoWrongFrameOfOneWrongBitOrByte) {

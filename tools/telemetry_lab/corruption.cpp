@@ -125,7 +125,8 @@ std::vector<CorruptionResult> damage_lines(uint64_t lines, uint64_t seed) {
     result.damage = way.name;
     TwoLines text;
     for (; result.lines < lines; ++result.lines) {
-      const CanFrame sent[2] = {frames.next(), frames.next()};
+      const bool uplink = (result.lines & 1U) != 0;
+      const CanFrame sent[2] = {frames.next(uplink), frames.next(uplink)};
       uint8_t line[kSlcanLineMax];
       text.first_size = slcan_encode(sent[0], line);
       text.bytes.assign(line, line + text.first_size);
@@ -137,7 +138,7 @@ std::vector<CorruptionResult> damage_lines(uint64_t lines, uint64_t seed) {
       for (const uint8_t byte : text.bytes) {
         if (!parser.feed(byte, got) || same(got, sent[0]) || same(got, sent[1])) continue;
         ++result.wrong_lines;
-        if (RandomFrames::accepts(got)) ++result.wrong_frames;
+        if (RandomFrames::accepts(got, uplink)) ++result.wrong_frames;
       }
     }
     results.push_back(result);

@@ -10,10 +10,9 @@ namespace screed {
 
 struct CorruptionResult {
   std::string damage;         ///< "one wrong bit", ...
-  uint64_t lines = 0;         ///< damaged lines
-  uint64_t wrong_lines = 0;   ///< frames taken from lines that a parser without length check and
-                              ///< CRC would have to believe: the parser alone
-  uint64_t wrong_frames = 0;  ///< accepted by all checks, and not a frame that was sent
+  uint64_t lines = 0;         ///< damaged lines, half of them of the uplink
+  uint64_t wrong_lines = 0;   ///< frames that were not sent and passed the line parser
+  uint64_t wrong_frames = 0;  ///< those of them that a receiver accepts
 };
 
 /// Damages `lines` lines in each of the ways. The same seed gives the same result.

@@ -25,7 +25,17 @@ void expected_mac(const CanFrame& frame, uint8_t (&mac)[kSipHashSize]) {
 }  // namespace
 
 CanFrame RandomFrames::next() {
-  const MessageInfo& message = messages()[random_.next() % messages().size()];
+  return fill(messages()[random_.next() % messages().size()]);
+}
+
+CanFrame RandomFrames::next(bool uplink) {
+  for (;;) {
+    const MessageInfo& message = messages()[random_.next() % messages().size()];
+    if (message.uplink == uplink) return fill(message);
+  }
+}
+
+CanFrame RandomFrames::fill(const MessageInfo& message) {
   CanFrame frame{};
   frame.id = id_of_node(message.id, static_cast<uint8_t>(1 + random_.next() % 3));
   frame.size = message.size;
@@ -46,8 +56,8 @@ CanFrame RandomFrames::next() {
   return frame;
 }
 
-bool RandomFrames::accepts(const CanFrame& frame) {
-  if (check_frame(frame) != FrameFault::kNone) return false;
+bool RandomFrames::accepts(const CanFrame& frame, bool uplink) {
+  if (check_received(frame, uplink) != FrameFault::kNone) return false;
   if (find_message(frame.id)->protected_by_crc) return true;
   uint8_t mac[kSipHashSize];
   expected_mac(frame, mac);

@@ -17,11 +17,16 @@ class RandomFrames {
 
   /// A message of the schema, each as often; robots 1 to 3. Half of the bytes are edges.
   CanFrame next();
+  /// One that goes up, or one that goes down.
+  CanFrame next(bool uplink);
 
-  /// A receiver would take it: known id, right size, right CRC or, for a COMMAND, right MAC.
-  static bool accepts(const CanFrame& frame);
+  /// A receiver would take it: known id, right way, right size, right CRC or, for a COMMAND, right
+  /// MAC.
+  static bool accepts(const CanFrame& frame, bool uplink);
 
  private:
+  CanFrame fill(const MessageInfo& message);
+
   WorldRandom random_;
   std::array<uint8_t, 2048> counters_{};
 };
