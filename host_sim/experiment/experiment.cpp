@@ -139,6 +139,24 @@ std::vector<Key> make_keys() {
   keys.push_back(bool_key("vehicle", "tracks", "tracks round the wheels; false: four driven wheels",
                           [](Experiment& e) -> bool& { return e.vehicle.tracks; }));
   keys.push_back(text_key(
+      "vehicle", "track_model", "belt or chain", "what a track is; chain: links round its wheels",
+      [](Experiment& e) -> std::string& { return e.vehicle.track_model; },
+      [](const std::string& text) { return text == "belt" || text == "chain"; }));
+  keys.push_back({"vehicle", "track_links", "", "an integer 0..400",
+                  "track_model chain: links of each side; 0: as many as are about 10 mm long",
+                  [](Experiment& e, const std::string& text) {
+                    int links = 0;
+                    if (!parse_number(text, links) || links < 0 || links > 400) return false;
+                    e.vehicle.track_links = links;
+                    return true;
+                  },
+                  [](const Experiment& e) -> std::optional<std::string> {
+                    return std::to_string(e.vehicle.track_links);
+                  }});
+  keys.push_back(real_key("vehicle", "track_tension", "N", 1, 50,
+                          "track_model chain: tension of the chain at rest",
+                          [](Experiment& e) -> double& { return e.vehicle.track_tension_n; }));
+  keys.push_back(text_key(
       "vehicle", "model", "a URDF file, or rover5", "the robot",
       [](Experiment& e) -> std::string& { return e.vehicle.model; }, not_empty));
   keys.push_back(real_key("vehicle", "x", "m", -500, 500, "start position, east",

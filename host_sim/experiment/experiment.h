@@ -21,7 +21,10 @@ struct Experiment {
 
   struct {
     bool tracks = true;
-    std::string model = "rover5";  ///< a URDF file, or the name of one in boards/
+    std::string track_model = "belt";  ///< or chain: links round the wheels
+    int track_links = 0;               ///< of a chain, each side; 0: of about 10 mm
+    double track_tension_n = 10.0;     ///< of a chain at rest
+    std::string model = "rover5";      ///< a URDF file, or the name of one in boards/
     double x_m = 0.0;
     double y_m = 0.0;
     std::optional<double> z_m;

@@ -423,6 +423,10 @@ WorldOptions world_options(const Experiment& experiment, GroundPort* ground_port
                             experiment.vehicle.pitch_deg * kRadPerDeg,
                             experiment.vehicle.heading_deg * kRadPerDeg};
   options.vehicle.tracks = experiment.vehicle.tracks;
+  options.vehicle.track_model =
+      experiment.vehicle.track_model == "chain" ? TrackModel::kChain : TrackModel::kBelt;
+  options.vehicle.chain.links = experiment.vehicle.track_links;
+  options.vehicle.chain.tension_n = experiment.vehicle.track_tension_n;
   options.vehicle.track_friction = experiment.vehicle.track_friction;
   options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
   if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();

@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kHullSpacing_m = 0.04;  // of contact points on boxes
 constexpr double kHullSinkIn_m = 0.001;  // when four points carry the whole robot
+// How much easier soil has to think a body tilts whose chains follow it a step late (measured:
+// calm from 1.5 on, chatter at 1).
+constexpr double kChainYields = 2.0;
 
 const char* const kWheels[2][2] = {{"fl_Wheel", "bl_Wheel"}, {"fr_Wheel", "br_Wheel"}};
 
@@ -99,6 +102,24 @@ const AssemblyJoint* joint_to(const Assembly& assembly, int child) {
   return nullptr;
 }
 
+// The wheels carry the mass of the tracks in the model: a chain has its own.
+Assembly without_chains(Assembly assembly, double chain_kg) {
+  for (const auto& side : kWheels) {
+    for (const char* wheel : side) {
+      Inertia& inertia = assembly.bodies[static_cast<size_t>(assembly.body_index(wheel))].inertia;
+      const double left = inertia.mass - 0.5 * chain_kg;
+      if (left <= 0.0) {
+        throw InputError(std::string("robot model: a chain of ") + std::to_string(chain_kg) +
+                         " kg is heavier than its two wheels; '" + wheel + "' has " +
+                         std::to_string(inertia.mass) + " kg");
+      }
+      inertia.tensor *= left / inertia.mass;
+      inertia.mass = left;
+    }
+  }
+  return assembly;
+}
+
 }  // namespace
 
 Attitude attitude_of(const Eigen::Matrix3d& r) {
@@ -125,6 +146,14 @@ Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions
                        assembly.bodies[static_cast<size_t>(joint.child)].name +
                        "'; only fl_Wheel, fr_Wheel, bl_Wheel and br_Wheel can be driven");
     }
+  }
+  if (options.tracks && options.track_model == TrackModel::kChain) {
+    const Assembly without = without_chains(assembly, options.chain.mass_kg);
+    mass_ = 2.0 * options.chain.mass_kg;
+    add_carriers(without, is_wheel, options);
+    add_hinges(without);
+    add_running_gear(without, options);
+    return;
   }
   add_carriers(assembly, is_wheel, options);
   add_hinges(assembly);
@@ -260,13 +289,27 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
         carrier.radius = std::max(carrier.radius, point.norm());
       }
     };
-    encoder_unit_[static_cast<size_t>(side)] = units_.size();
-    if (options.tracks) {
-      if (front.carrier != rear.carrier) {
-        throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] +
-                         "' and '" + kWheels[side][1] +
-                         "' on the same rigid body; with joints between them set tracks = false");
-      }
+    // The encoder is on the first motor's shaft, front before rear.
+    const Wheel& motored = front.driven ? front : rear;
+    sides_[static_cast<size_t>(side)] = {motored.carrier, shafts_.size(), motored.centre,
+                                         motored.cylinder.radius};
+    if (options.tracks && front.carrier != rear.carrier) {
+      throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] + "' and '" +
+                       kWheels[side][1] +
+                       "' on the same rigid body; with joints between them set tracks = false");
+    }
+    if (options.tracks)
+      sides_[static_cast<size_t>(side)].centre = 0.5 * (front.centre + rear.centre);
+    if (options.tracks && options.track_model == TrackModel::kChain) {
+      const size_t of_front = add_shaft(front.driven ? 1 : 0, front.spin_inertia);
+      const size_t of_rear = add_shaft(rear.driven ? 1 : 0, rear.spin_inertia);
+      if (!front.driven) sides_[static_cast<size_t>(side)].shaft = of_rear;
+      const RunningGearGeometry geometry{front.centre, rear.centre, front.cylinder.radius,
+                                         front.cylinder.length};
+      chains_.push_back({front.carrier,
+                         {of_front, of_rear},
+                         ChainTrack(geometry, options.chain, options.track_friction, load)});
+    } else if (options.tracks) {
       add_unit(front, rear, add_shaft(motors, front.spin_inertia + rear.spin_inertia));
     } else if (motors == 2) {
       add_unit(front, front, add_shaft(1, front.spin_inertia));
@@ -295,6 +338,7 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
   }
   for (Shaft& shaft : shafts_) shaft.shaft.halt();
   for (Unit& unit : units_) unit.gear.let_go();
+  for (Chain& chain : chains_) chain.track.reset();
 }
 
 double Vehicle::resting_height(const HeightField& ground, double x, double y,
@@ -309,6 +353,11 @@ double Vehicle::resting_height(const HeightField& ground, double x, double y,
   }
   for (const Unit& unit : units_) {
     for (const Eigen::Vector3d& point : unit.gear.points()) rest_on(carriers_[unit.carrier], point);
+  }
+  for (const Chain& chain : chains_) {
+    for (const Eigen::Vector3d& point : chain.track.points()) {
+      rest_on(carriers_[chain.carrier], point);
+    }
   }
   return height;
 }
@@ -336,6 +385,15 @@ void Vehicle::hull_contact(Carrier& carrier, const HeightField& ground, const Ca
 }
 
 /// Adds the boxes of the hull that may touch.
+template <class Step>
+void Vehicle::step_chains(size_t carrier, Step step) {
+  for (Chain& chain : chains_) {
+    if (chain.carrier != carrier) continue;
+    const std::array<double, 2> torque = step(chain);
+    for (const size_t wheel : {0U, 1U}) shafts_[chain.shafts[wheel]].torque += torque[wheel];
+  }
+}
+
 void Vehicle::hull_footprints(Carrier& carrier, const SoilBed& soil, const CarrierMotion& motion) {
   const double ceiling =
       soil.surface().max_height_within(motion.origin.x(), motion.origin.y(), carrier.radius);
@@ -365,14 +423,19 @@ void Vehicle::ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion&
     const double speed = shafts_[unit.shaft].shaft.omega_rad_per_s() * unit.gear.radius_m();
     soil_contacts_.push_back(unit.gear.soil_contact(motion, speed));
   }
+  for (Chain& chain : chains_) {
+    if (chain.carrier == carrier) soil_contacts_.push_back(chain.track.soil_contact(motion));
+  }
   const size_t gear = soil_contacts_.size();
   hull_footprints(pressing, soil, motion);
 
   PressingBody body;
   // What hangs on it by hinges rests on it, too: never less than its units' share of the robot.
-  body.mass_kg = std::max(pressing.mass,
-                          mass_ * static_cast<double>(gear) / static_cast<double>(units_.size()));
-  body.inverse_inertia = motion.rotation * pressing.inverse_inertia * motion.rotation.transpose();
+  body.mass_kg = std::max(pressing.mass, mass_ * static_cast<double>(gear) /
+                                             static_cast<double>(units_.size() + chains_.size()));
+  const double yields = chains_.empty() ? 1.0 : kChainYields;
+  body.inverse_inertia =
+      yields * motion.rotation * pressing.inverse_inertia * motion.rotation.transpose();
   body.centre = motion.origin;
   body.velocity = motion.velocity;
   body.omega = motion.omega;
@@ -389,6 +452,9 @@ void Vehicle::ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion&
     shafts_[unit.shaft].torque += unit.gear.radius_m() * reaction.along_surface;
     unit.gear.answered(reaction);
   }
+  step_chains(carrier, [&](Chain& chain) {
+    return chain.track.step(soil_contacts_[i++].reaction, motion, wheel_rates(chain), dt, wrench);
+  });
 }
 
 void Vehicle::hull_contact(Carrier& carrier, ParticleBed& particles, const CarrierMotion& motion,
@@ -421,7 +487,15 @@ void Vehicle::ground_contact(Ground& ground, size_t carrier, const CarrierMotion
     const double speed = shaft.shaft.omega_rad_per_s() * radius;
     shaft.torque += radius * unit.gear.contact(ground, motion, speed, dt, wrench);
   }
+  step_chains(carrier, [&](Chain& chain) {
+    return chain.track.step(ground, motion, wheel_rates(chain), dt, wrench);
+  });
   hull_contact(carriers_[carrier], ground, motion, dt, wrench);
+}
+
+ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
+  return {shafts_[chain.shafts[0]].shaft.omega_rad_per_s(),
+          shafts_[chain.shafts[1]].shaft.omega_rad_per_s()};
 }
 
 template <class Ground>
@@ -479,7 +553,11 @@ double Vehicle::shaft_angle_rad(Side side) const {
   return shaft_of(side).angle_rad();
 }
 double Vehicle::wheel_radius_m(Side side) const {
-  return unit_of(side).gear.radius_m();
+  return of(side).radius;
+}
+
+const ChainTrack* Vehicle::chain(Side side) const {
+  return chains_.empty() ? nullptr : &chains_[static_cast<size_t>(side)].track;
 }
 
 double Vehicle::current_a(Side side) const {
@@ -491,10 +569,9 @@ double Vehicle::current_a(Side side) const {
 }
 
 double Vehicle::ground_speed_m_per_s(Side side) const {
-  const Unit& unit = unit_of(side);
-  const Carrier& carrier = carriers_[unit.carrier];
+  const Carrier& carrier = carriers_[of(side).carrier];
   const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
-  const Eigen::Vector3d arm = rotation * unit.gear.centre();
+  const Eigen::Vector3d arm = rotation * of(side).centre;
   const Eigen::Vector3d velocity = to_eigen(dBodyGetLinearVel(carrier.body)) +
                                    to_eigen(dBodyGetAngularVel(carrier.body)).cross(arm);
   return rotation.col(0).dot(velocity);

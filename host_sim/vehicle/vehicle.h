@@ -14,6 +14,7 @@
 #include "host_sim/soil/soil_bed.h"
 #include "host_sim/terrain/height_field.h"
 #include "host_sim/vehicle/assembly.h"
+#include "host_sim/vehicle/chain_track.h"
 #include "host_sim/vehicle/drive_shaft.h"
 #include "host_sim/vehicle/gear_motor.h"
 #include "host_sim/vehicle/ode_world.h"
@@ -21,10 +22,17 @@
 
 namespace screed {
 
+enum class TrackModel {
+  kBelt,   ///< a contour of fixed shape whose surface moves (running_gear.h)
+  kChain,  ///< links round the wheels (chain_track.h)
+};
+
 struct VehicleOptions {
-  /// A belt round the wheels of each side. false: the wheels alone, all four driven; a wheel
+  /// A track round the wheels of each side. false: the wheels alone, all four driven; a wheel
   /// without a motor of its own is geared to the other one of its side.
   bool tracks = true;
+  TrackModel track_model = TrackModel::kBelt;
+  ChainOptions chain;
   double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
   double chassis_friction = 0.4;
   GearMotor motor;
@@ -82,6 +90,8 @@ class Vehicle {
   double shaft_angle_rad(Side side) const;
   double current_a(Side side) const;
   double wheel_radius_m(Side side) const;
+  /// The side's links; null without tracks, or with a belt.
+  const ChainTrack* chain(Side side) const;
   /// Distance between the centre lines of left and right running gear.
   double tread_m() const { return tread_; }
   /// Speed over the ground at the middle of the side's running gear, along Body's x, m/s.
@@ -112,6 +122,17 @@ class Vehicle {
     size_t shaft;
     RunningGear gear;
   };
+  struct Chain {
+    size_t carrier;
+    std::array<size_t, 2> shafts;  // of front and rear wheel
+    ChainTrack track;
+  };
+  struct SideGear {  // where a side's motion is measured
+    size_t carrier;
+    size_t shaft;            // with the encoder
+    Eigen::Vector3d centre;  // from the carrier's centre of mass
+    double radius;
+  };
 
   void add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
                     const VehicleOptions& options);
@@ -127,20 +148,24 @@ class Vehicle {
                       Wrench& wrench);
   void ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
                       Wrench& wrench);
+  /// The chains of a carrier; `step` takes a Chain and returns the torques on its wheels.
+  template <class Step>
+  void step_chains(size_t carrier, Step step);
+  ChainTrack::WheelRates wheel_rates(const Chain& chain) const;
   template <class Ground>
   void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
-  /// The driven unit that stands for its side, and the shaft with the encoder.
-  const Unit& unit_of(Side side) const { return units_[encoder_unit_[static_cast<size_t>(side)]]; }
-  const DriveShaft& shaft_of(Side side) const { return shafts_[unit_of(side).shaft].shaft; }
+  const SideGear& of(Side side) const { return sides_[static_cast<size_t>(side)]; }
+  const DriveShaft& shaft_of(Side side) const { return shafts_[of(side).shaft].shaft; }
 
   OdeWorld& world_;
   std::vector<Carrier> carriers_;
   std::vector<size_t> carrier_of_body_;  // of each body of the assembly
   std::vector<Shaft> shafts_;
   std::vector<Unit> units_;
+  std::vector<Chain> chains_;               // none, or one a side: left, right
   std::vector<SoilContact> soil_contacts_;  // of one carrier in one step; kept for its room
   size_t chassis_carrier_ = 0;
-  std::array<size_t, 2> encoder_unit_{};
+  std::array<SideGear, 2> sides_{};
   double mass_ = 0.0;
   double tread_ = 0.0;
 };

@@ -13,6 +13,8 @@ namespace screed {
 namespace {
 
 constexpr double kTick_s = 1.0 / kTickRate_hz;
+// The motion of chassis and wheels enters a chain a step late (chain_track.h).
+constexpr double kLongestChainStep_s = 0.001;
 
 int steps_in_tick(double physics_step_s) {
   const double steps = kTick_s / physics_step_s;
@@ -40,6 +42,10 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
       battery_(options.battery),
       imu_position_(imu_position(model)),
       moments_(static_cast<size_t>(steps_per_tick_) + 1) {
+  if (vehicle_.chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
+    throw InputError("[physics] step = " + std::to_string(step_s_) +
+                     " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
+  }
   if (options.soil.has_value()) soil_.emplace(rigid_, *options.soil, options.soil_options);
   if (options.particles.has_value()) {
     particles_.emplace(rigid_, *options.particles);

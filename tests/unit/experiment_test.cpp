@@ -116,6 +116,7 @@ std::vector<std::string> good_values(const Row& row) {
   if (!ends_of(row.allowed).empty()) return ends_of(row.allowed);
   if (row.key == "algorithm") return {"drive", "spin_on_peak"};
   if (row.key == "model" && row.section == "map") return {"rigid", "scm"};
+  if (row.key == "track_model") return {"chain"};
   if (row.key == "preset") return {"clay", "ding_2011"};
   return {"Some-name_1"};
 }
