@@ -63,7 +63,22 @@ class Deposit {
     set_down({x, y, height});
   }
 
-  std::vector<Eigen::Vector3d> take() { return std::move(centres_); }
+  /// The centres, column after column of the grid, each from below.
+  std::vector<Eigen::Vector3d> take() {
+    std::vector<int32_t> order(centres_.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto place = [this](int32_t i) {
+      return std::pair(grid_.column_of_cell(grid_.cell_of(i)),
+                       centres_[static_cast<size_t>(i)].z());
+    };
+    std::sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
+      return std::pair(place(a), a) < std::pair(place(b), b);
+    });
+    std::vector<Eigen::Vector3d> sorted;
+    sorted.reserve(order.size());
+    for (const int32_t i : order) sorted.push_back(centres_[static_cast<size_t>(i)]);
+    return sorted;
+  }
 
  private:
   static constexpr double kDiagonal = 0.70710678118654752;

@@ -28,7 +28,8 @@ std::vector<int> stack_counts(const HeightField& top, const BedExtent& extent, d
 
 /// Centres of the particles: layer after layer, in each layer one stack after the other in random
 /// order, each particle is let down near the middle of its stack and rolls into the hollow that it
-/// finds there. None overlap; each rests on others, the floor or a wall.
+/// finds there. None overlap; each rests on others, the floor or a wall. They are numbered stack by
+/// stack: who lies near has a near number.
 std::vector<Eigen::Vector3d> lay_spheres(const std::vector<int>& counts, const BedExtent& extent,
                                          double radius_m, uint64_t seed);
 

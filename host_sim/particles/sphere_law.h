@@ -3,10 +3,12 @@
 // limit of its own. The bristles remember, so that a pile stands still instead of creeping.
 //
 // Normal and sliding part: Cundall and Strack 1979. Rolling part: the elastic-plastic spring and
-// dashpot of Ai et al. 2011 (model C), with the stiffness of Iwashita and Oda 1998.
+// dashpot of Ai et al. 2011 (model C), with the stiffness of Iwashita and Oda 1998 for moments up
+// to half the radius times the force: stiffer, light spheres would need shorter steps.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,7 +21,7 @@ struct ParticleMaterial {
   double friction = 0.6;              ///< Coulomb coefficient between particles, and on the walls
   double rolling = 0.1;  ///< rolling moment's limit over normal force and radius: rounded gravel
   double stiffness_pa = 4.0e5;  ///< normal stiffness over radius; far softer than stone (see docs)
-  double damping_ratio = 0.4;   ///< of the normal spring between two particles: restitution 0.25
+  double damping_ratio = 0.4;   ///< of the normal spring between two particles: restitution 0.36
 
   double mass_kg() const {
     return 4.0 / 3.0 * std::numbers::pi * radius_m * radius_m * radius_m * density_kg_per_m3;
@@ -54,7 +56,8 @@ class SphereLaw {
   explicit SphereLaw(const ParticleMaterial& material)
       : stiffness_(material.stiffness_n_per_m()),
         rolling_arm_(material.rolling * material.radius_m),
-        roll_stiffness_(2.25 * stiffness_ * rolling_arm_ * rolling_arm_),
+        roll_stiffness_(2.25 * stiffness_ *
+                        square(std::min(rolling_arm_, 0.5 * material.radius_m))),
         roll_damping_(2.0 * kRollDampingRatio *
                       std::sqrt(roll_stiffness_ * 0.5 * material.inertia_kg_m2())),
         damping_(2.0 * material.damping_ratio * std::sqrt(stiffness_ * 0.5 * material.mass_kg())) {}
@@ -94,6 +97,7 @@ class SphereLaw {
   static constexpr double kShearShare = 0.5;  // of the normal spring and damper
   static constexpr double kRollDampingRatio = 0.3;
 
+  static double square(double a) { return a * a; }
   static Eigen::Vector3d load(const float* v) { return {v[0], v[1], v[2]}; }
   static void store(const Eigen::Vector3d& from, float* v) {
     for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(from[i]);

@@ -3,10 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 
 #include "host_sim/soil_lab/repose_pile.h"
@@ -14,33 +11,7 @@
 #include "host_sim/vehicle/urdf_importer.h"
 #include "host_sim/vehicle/vehicle.h"
 #include "paths.h"
-
-namespace {
-
-std::atomic<long> allocations{0};
-
-}  // namespace
-
-// Every allocation of this program is counted. GCC takes malloc and free in replaced operators for
-// a mismatch where it inlines one side only.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-#endif
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
+#include "tests/unit/allocations.h"
 
 namespace screed {
 namespace {
@@ -178,9 +149,9 @@ TEST(SoilBedTest, SteadySteppingAllocatesNothing) {
       for (int i = 0; i < steps; ++i) robot.step(0.15, 0.2, kStep_s);
     };
     drive(1500);
-    const long before = allocations.load();
+    const long before = testing::allocations();
     drive(1500);
-    const long after = allocations.load();
+    const long after = testing::allocations();
     EXPECT_EQ(after, before) << "slip_sinkage " << slip_sinkage;
   }
 }
