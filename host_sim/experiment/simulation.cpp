@@ -484,8 +484,10 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
 }
 
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options) {
-  // Everything that can be wrong with the input is found before the first file is made.
-  { const Run trial(experiment, options, nullptr); }
+  // Everything that can be wrong with the input is found before the first file is made; the log
+  // gets its file afterwards.
+  std::ostream telemetry_log(nullptr);
+  Run run(experiment, options, &telemetry_log);
 
   RunFolder folder =
       options.out.has_value()
@@ -493,7 +495,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
           : RunFolder::numbered(experiment.output_directory_prefix, experiment.experiment.name);
   write_text(folder.path() / "experiment.ini", experiment.text());
   TextFile telemetry(folder.path() / "telemetry.log");
-  Run run(experiment, options, &telemetry.stream());
+  telemetry_log.rdbuf(telemetry.stream().rdbuf());
   const Plant& plant = run.plant();
   // As the experiment lays it out; the robot has settled into plant.terrain() already. Particles
   // lie as they fell.
@@ -512,6 +514,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
 
   writer.write_terrain_after(view_of(plant.terrain(), heights));
   summary.content_hash = writer.finish();
+  if (!telemetry_log) telemetry.stream().setstate(std::ios::failbit);
   telemetry.close();
 
   summary.folder = folder.final_path();

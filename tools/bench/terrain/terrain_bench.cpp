@@ -25,7 +25,7 @@ constexpr int kImageSide = 600;
 constexpr double kRelief_m = 5.0 / 12.0;  // 5 units
 // Scales at which the hill has the thesis' numbers of particles, 30,642, 112,570 and 490,379: its
 // terrain is not published. Stacks are whole, so the numbers come out within a few.
-constexpr double kParticleScales_m[] = {0.4256, 0.3909, 0.4257};
+constexpr double kParticleScales_m[] = {0.425003, 0.390863, 0.425548};
 
 std::string number(double value) {
   char text[30];
