@@ -98,7 +98,9 @@ class SphereLaw {
   static constexpr double kRollDampingRatio = 0.3;
 
   static double square(double a) { return a * a; }
-  static Eigen::Vector3d load(const float* v) { return {v[0], v[1], v[2]}; }
+  static Eigen::Vector3d load(const float* v) {
+    return Eigen::Map<const Eigen::Vector3f>(v).cast<double>();
+  }
   static void store(const Eigen::Vector3d& from, float* v) {
     for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(from[i]);
   }

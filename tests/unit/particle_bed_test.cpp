@@ -203,7 +203,7 @@ TEST(ParticleBed, PacksAsDenselyAsPouredSpheres) {
   const double half = 0.2;
   double volume = 0.0;
   for (size_t i = 0; i < bed.size(); ++i) {
-    const Eigen::Vector3d at = bed.place(i);
+    const Eigen::Vector3d& at = bed.place(i);
     if (at.head<2>().cwiseAbs().maxCoeff() > half) continue;
     // A ball that a horizontal plane cuts: the spherical segment between low and high.
     const auto below = [&](double plane) {
@@ -393,6 +393,7 @@ TEST(ParticleBed, SameSeedGivesTheSameBitsEverywhere) {
   EXPECT_NE(once, rolled_over(2));
   std::vector<std::string> side_by_side(3);
   std::vector<std::thread> threads;
+  threads.reserve(side_by_side.size());
   for (std::string& result : side_by_side) {
     threads.emplace_back([&result] { result = rolled_over(1); });
   }
@@ -408,7 +409,7 @@ TEST(SolidTouch, IsTheNearestPlaceOfTheSurface) {
   const Footprint solids[] = {Footprint::track(0.06, 0.03, 0.04), Footprint::wheel(0.03, 0.02),
                               Footprint::box({0.1, 0.06, 0.04}), Footprint::disc(0.04, 0.03)};
   const auto holds = [](const Footprint& solid, const Eigen::Vector3d& p) {
-    const Eigen::Vector3d h = solid.half();
+    const Eigen::Vector3d& h = solid.half();
     switch (solid.kind()) {
       case Footprint::Kind::kTrack:
         return std::abs(p.y()) <= h.y() &&

@@ -199,9 +199,13 @@ TEST(ParticleMotion, BouncesWithTheRestitutionOfItsDamping) {
 TEST(ParticleMotion, WallsContainWhatIsThrownAtThem) {
   WorldRandom random(1, "test");
   std::vector<Eigen::Vector3d> centres;
-  for (int i = 0; i < 300; ++i) {
-    centres.emplace_back(0.03 * (i % 10) - 0.135, 0.03 * (i / 10 % 10) - 0.135,
-                         0.03 * (i / 100) + 0.05);
+  centres.reserve(300);
+  for (int layer = 0; layer < 3; ++layer) {
+    for (int row = 0; row < 10; ++row) {
+      for (int column = 0; column < 10; ++column) {
+        centres.emplace_back(0.03 * column - 0.135, 0.03 * row - 0.135, 0.03 * layer + 0.05);
+      }
+    }
   }
   const BedExtent extent = box(0.3);
   ParticleBed bed(centres, extent, 1.0, {});
@@ -213,7 +217,7 @@ TEST(ParticleMotion, WallsContainWhatIsThrownAtThem) {
   for (int k = 0; k < 20; ++k) {
     run(bed, 0.1);
     for (size_t i = 0; i < bed.size(); ++i) {
-      const Eigen::Vector3d at = bed.place(i);
+      const Eigen::Vector3d& at = bed.place(i);
       ASSERT_LT(at.head<2>().cwiseAbs().maxCoeff(), 0.15 - kRadius + 0.007);
       ASSERT_GT(at.z(), kRadius - 0.007);
     }
