@@ -1,0 +1,78 @@
+// A URDF file as XML whose rules have been checked: elements with their lines, links and joints by
+// name. Part of urdf_importer; knows no urdfdom, no meshes and no bodies.
+#pragma once
+
+#include <tinyxml.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace screed::urdf_parts {
+
+// What the XML says about links and joints, in the order of the file.
+struct LinkElement {
+  std::string name;
+  const TiXmlElement* xml = nullptr;
+  int parent_joint = -1;
+};
+
+struct JointElement {
+  std::string name;
+  std::string type;
+  const TiXmlElement* xml = nullptr;
+  int parent = -1;
+  int child = -1;
+};
+
+struct Outline {
+  std::vector<LinkElement> links;
+  std::vector<JointElement> joints;
+};
+
+template <typename Index>
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+template <typename Item>
+int index_of(const std::vector<Item>& items, std::string_view name) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string to_text(double value);
+std::string in_quotes(std::string_view text);
+std::string attribute(const TiXmlElement& element, const char* name);
+/// Numbers separated by spaces; empty when one of them is no plain decimal number.
+std::vector<double> parse_numbers(std::string_view text);
+
+// Every complaint about the file goes through here: one line with the file, the line in it and the
+// link or joint.
+class Complaint {
+ public:
+  explicit Complaint(std::filesystem::path file) : file_(std::move(file)) {}
+
+  [[noreturn]] void about_file(const std::string& what) const;
+  [[noreturn]] void at_row(int row, const std::string& what) const;
+  [[noreturn]] void at_element(const TiXmlElement& element, const std::string& what) const;
+
+ private:
+  std::filesystem::path file_;
+};
+
+/// Reads the file and refuses what is no URDF text.
+void parse_xml(const std::filesystem::path& file, const Complaint& complain, TiXmlDocument& xml);
+/// Checks every number and shape below a link or a joint.
+void check_values(const TiXmlElement& parent, const Complaint& complain);
+/// Links and joints of the robot, with the names that a robot needs.
+Outline read_outline(const TiXmlElement& robot, const Complaint& complain);
+/// Refuses cycles and a second root.
+void check_tree(const Outline& outline, const Complaint& complain);
+
+}  // namespace screed::urdf_parts
