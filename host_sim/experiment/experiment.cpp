@@ -157,7 +157,8 @@ std::vector<Key> make_keys() {
                           "track_model chain: tension of the chain at rest",
                           [](Experiment& e) -> double& { return e.vehicle.track_tension_n; }));
   keys.push_back(text_key(
-      "vehicle", "model", "a URDF file, or rover5", "the robot",
+      "vehicle", "model", "a URDF file, rover5 or board",
+      "the robot; board: the one the board is built into",
       [](Experiment& e) -> std::string& { return e.vehicle.model; }, not_empty));
   keys.push_back(real_key("vehicle", "x", "m", -500, 500, "start position, east",
                           [](Experiment& e) -> double& { return e.vehicle.x_m; }));
@@ -475,7 +476,8 @@ std::filesystem::path find_data_file(const Experiment& experiment, const std::st
   throw InputError(std::string(key) + " = '" + name + "': no such file; looked for " + looked);
 }
 
-std::filesystem::path find_model_file(const Experiment& experiment) {
+std::filesystem::path find_model_file(const Experiment& experiment, const std::string& board) {
+  if (experiment.vehicle.model == "board") return board_model(board);
   // Figure 5.3 calls the chassis Dagu5.
   if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
     return std::filesystem::path(kBoardsFolder) / "a_star_32u4" / "rover5.urdf";

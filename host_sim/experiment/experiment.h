@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "firmware/robot/parameters.h"
+#include "host_sim/experiment/board_table.h"
 
 namespace screed {
 
@@ -24,7 +25,7 @@ struct Experiment {
     std::string track_model = "belt";  ///< or chain: links round the wheels
     int track_links = 0;               ///< of a chain, each side; 0: of about 10 mm
     double track_tension_n = 10.0;     ///< of a chain at rest
-    std::string model = "rover5";      ///< a URDF file, or the name of one in boards/
+    std::string model = "board";  ///< a URDF file, rover5, or board: the board's own
     double x_m = 0.0;
     double y_m = 0.0;
     std::optional<double> z_m;
@@ -136,8 +137,9 @@ int16_t algorithm_number(const std::string& name);
 /// else in the project's data folders. Throws InputError that lists where it looked.
 std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
                                      const char* key);
-/// The URDF of [vehicle] model.
-std::filesystem::path find_model_file(const Experiment& experiment);
+/// The URDF of [vehicle] model, on a robot with this board.
+std::filesystem::path find_model_file(const Experiment& experiment,
+                                      const std::string& board = kDefaultBoard);
 
 /// One line a key: section.key, unit, default, allowed values, meaning; for docs and `screed sim
 /// --keys`.

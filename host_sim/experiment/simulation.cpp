@@ -404,15 +404,19 @@ HeightField make_terrain(const Experiment& experiment) {
 
 namespace {
 
-Assembly make_model(const Experiment& experiment) {
+Assembly make_model(const Experiment& experiment, const std::string& board) {
   UrdfOptions urdf;
   if (experiment.vehicle.leg_angle_deg.has_value())
     urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
-  return import_urdf(find_model_file(experiment), urdf);
+  return import_urdf(find_model_file(experiment, board), urdf);
 }
 
-WorldOptions world_options(const Experiment& experiment, GroundPort* ground_port) {
+WorldOptions world_options(const Experiment& experiment, const std::string& board,
+                           GroundPort* ground_port) {
   WorldOptions options;
+  const BoardMotor motor = board_motor(board);
+  options.vehicle.motor = motor.motor;
+  options.encoder_counts_per_turn = motor.counts_per_turn;
   options.ground_port = ground_port;
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
@@ -465,9 +469,9 @@ WorldOptions world_options(const Experiment& experiment, GroundPort* ground_port
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const std::string& board, GroundPort* ground_port) {
-  return std::make_unique<World>(make_terrain(experiment), make_model(experiment),
-                                 board_constants_of(board), world_options(experiment, ground_port),
-                                 telemetry_log);
+  return std::make_unique<World>(make_terrain(experiment), make_model(experiment, board),
+                                 board_constants_of(board),
+                                 world_options(experiment, board, ground_port), telemetry_log);
 }
 
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
@@ -478,8 +482,8 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
   options.elf = image;
   options.board = board;
   options.parameters = experiment.parameters;
-  options.world = world_options(experiment, ground_port);
-  return make_co_simulation(make_terrain(experiment), make_model(experiment), options,
+  options.world = world_options(experiment, board, ground_port);
+  return make_co_simulation(make_terrain(experiment), make_model(experiment, board), options,
                             telemetry_log);
 }
 

@@ -140,8 +140,9 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   const auto& vehicle = setup.experiment.vehicle;
   UrdfOptions urdf;
   if (vehicle.leg_angle_deg) urdf.leg_angle_rad = *vehicle.leg_angle_deg * kRadPerDeg;
-  const Assembly robot =
-      import_urdf(options.model ? *options.model : find_model_file(setup.experiment), urdf);
+  const Assembly robot = import_urdf(
+      options.model ? *options.model : find_model_file(setup.experiment, session.info().board_name),
+      urdf);
 
   const Way way = way_to(session, result.frame);
   RobotPose pose;
