@@ -292,6 +292,8 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   Pair rates = zero;
   Pair x_shares = zero;
   Pair y_shares = zero;
+  Pair tilts_x = zero;
+  Pair tilts_y = zero;
   Pair lifts_x = zero;
   Pair lifts_y = zero;
   Pair arms_x = zero;
@@ -319,14 +321,18 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
     const Pair x = load(&places_.x[i]) - cx;
     const Pair y = load(&places_.y[i]) - cy;
     const Pair z = height - cz;
-    const Pair wx = bears > zero ? weight * load(&places_.slope_x[i]) : zero;
-    const Pair wy = bears > zero ? weight * load(&places_.slope_y[i]) : zero;
+    const Pair slope_x = bears > zero ? load(&places_.slope_x[i]) : zero;
+    const Pair slope_y = bears > zero ? load(&places_.slope_y[i]) : zero;
+    const Pair wx = weight * slope_x;
+    const Pair wy = weight * slope_y;
     const Pair arm_z = bears > zero ? z : zero;
     shares += bears;
     pressures += weight;
     rates += bears * (yields ? both(exponent) * virgin / greater(deepest, both(1e-9)) : stiffness);
     x_shares += bears * x;
     y_shares += bears * y;
+    tilts_x += bears * slope_x;
+    tilts_y += bears * slope_y;
     lifts_x += wx;
     lifts_y += wy;
     arms_x += weight * x;
@@ -352,6 +358,8 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
               (sum(x_shares) * forward_x + sum(y_shares) * forward_y) / share;
   // Vertical stress has no horizontal part; it shears in the horizontal all the same.
   const bool radial = options_.normal_stress == NormalStress::kRadial;
+  cell.tilt_x = sum(tilts_x) / share;
+  cell.tilt_y = sum(tilts_y) / share;
   cell.slope_x = sum(lifts_x) * per_pressure;
   cell.slope_y = sum(lifts_y) * per_pressure;
   cell.moment << cell.arm.y(), -cell.arm.x(), 0.0;
@@ -427,6 +435,8 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
   const double elastic = range.law.elastic;
   const double units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
   const double per_shear_modulus = 1.0 / soil_.shear_modulus_m;
+  const Eigen::Vector3d level_way = axle.cross(Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d level_side = Eigen::Vector3d::UnitZ().cross(level_way);
   int64_t sunk_units = 0;
 
   for (size_t i = range.begin; i < range.end; ++i) {
@@ -453,23 +463,29 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     const double damped =
         pressure + soil_.damping_pa_s_per_m * std::max(0.0, -velocity.z()) * cell.share;
 
-    const double per_length =
-        1.0 / std::sqrt(1.0 + cell.slope_x * cell.slope_x + cell.slope_y * cell.slope_y);
-    const Eigen::Vector3d face(cell.slope_x * per_length, cell.slope_y * per_length, per_length);
+    // Forces act where the pressure is, the surface slides where it touches: two means of its
+    // slope.
+    const double steep = std::sqrt(1.0 + cell.slope_x * cell.slope_x + cell.slope_y * cell.slope_y);
     const Eigen::Vector3d along =
-        axle.cross(face);  // forward along the surface, at right angles to the axle
-    const Eigen::Vector3d surface = velocity - contact.surface_speed * along;
-    // Normal of the plane in which the soil shears.
-    const Eigen::Vector3d normal = radial ? face : Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d lengthwise = (radial ? along : axle.cross(normal)).normalized();
-    const Eigen::Vector3d sideways = normal.cross(lengthwise);
+        axle.cross(Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0) / steep);
+    const double per_length =
+        1.0 / std::sqrt(1.0 + cell.tilt_x * cell.tilt_x + cell.tilt_y * cell.tilt_y);
+    const Eigen::Vector3d face(cell.tilt_x * per_length, cell.tilt_y * per_length, per_length);
+    // Forward along the surface, at right angles to the axle.
+    const Eigen::Vector3d tread = axle.cross(face);
+    const Eigen::Vector3d surface = velocity - contact.surface_speed * tread;
+    const double slide_along = surface.dot(radial ? tread : level_way);
+    const double slide_across = surface.dot(radial ? face.cross(tread) : level_side);
+    // Directions in the plane in which the soil shears.
+    const Eigen::Vector3d normal = radial ? Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0)
+                                          : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d lengthwise = radial ? along : level_way;
+    const Eigen::Vector3d sideways = radial ? normal.cross(along) / steep : level_side;
 
     // Shear displacement: the mean over the touching part of the cell. What has just come into
     // touch starts at zero.
     const double kept = std::min(static_cast<double>(trace.share), cell.share) / cell.share;
     const double grown = dt * 0.5 * (1.0 + kept);
-    const double slide_along = surface.dot(lengthwise);
-    const double slide_across = surface.dot(sideways);
     const double mean_along = static_cast<double>(trace.along) * kept + slide_along * grown;
     const double mean_across = static_cast<double>(trace.across) * kept + slide_across * grown;
     trace.step = step_;
@@ -491,8 +507,9 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     if (length > 0.0) {
       const double strength = soil_.cohesion_pa * cell.share + damped * tan_friction_;
       const double mobilised = 1.0 - std::exp(-length * per_shear_modulus);
-      const Eigen::Vector3d traction = (-strength * mobilised * cell_area_ / normal.z() / length) *
-                                       (j_along * lengthwise + j_across * sideways);
+      const Eigen::Vector3d traction =
+          (-strength * mobilised * cell_area_ * (radial ? steep : 1.0) / length) *
+          (j_along * lengthwise + j_across * sideways);
       force += traction;
       torque += cell.arm.cross(traction);
       reaction.along_surface -= traction.dot(along);

@@ -108,6 +108,8 @@ class SoilBed {
     double rate;      // of that pressure with further sinking, Pa/m
     double slope_x;   // horizontal force of the normal stress, over its vertical force
     double slope_y;
+    double tilt_x;  // the same of the surface alone, mean over the touching part
+    double tilt_y;
     Eigen::Vector3d moment;  // of mean pressure, about the footprint's centre
     Eigen::Vector3d arm;     // mean place of the pressure, from the footprint's centre
     double lead;  // mean place of the pressure ahead of the mean place of the touching part, along
