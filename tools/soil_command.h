@@ -1,4 +1,4 @@
-// `screed soil plate|wheel|robot|repose`: the reference tests of the deformable soil.
+// `screed soil plate|wheel|robot|repose|dig`: the reference tests of the deformable soil.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -12,7 +12,11 @@
 namespace screed {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kPlaces = 4;  // the same paths; the figures are those of the plain build
+#else
 constexpr int kPlaces = 64;
+#endif
 
 PlateTest plate_in(const char* soil) {
   PlateTest test;
@@ -112,7 +116,6 @@ TEST(SoilPlateTest, UnloadingFollowsEAndSinkageStays) {
     double before = 0.0;
     int way = 0;  // which part of the way: down, up, down
     for (const PlatePoint& point : run) {
-      if (point.depth_m < 0.25e-3) continue;  // the engine's table of z^n is coarse there
       if (way == 0 && point.depth_m < before) way = 1;
       if (way == 1 && point.depth_m > before) way = 2;
       before = point.depth_m;

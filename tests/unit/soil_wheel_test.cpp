@@ -12,6 +12,12 @@
 namespace screed {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 constexpr NormalStress kBoth[] = {NormalStress::kRadial, NormalStress::kVertical};
 constexpr double kSlips[] = {0.0, 0.2, 0.4};
 
@@ -80,11 +86,7 @@ TEST(SoilWheelLimitTest, RefusesALoadThatSinksToTheAxle) {
 }
 
 // Required: sinkage 2 % at 5 mm, 1 % at 2.5 mm; drawbar pull 0.005 of the load.
-// Reached: sinkage 0.5 %; drawbar pull at 2.5 mm. At 5 mm MISSED by three of six: radial slip 0
-// (0.0063), vertical slip 0.2 (0.0059) and 0.4 (0.0060); their bound is what is reached.
 TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
-  constexpr double kRequired = 0.005;  // of the load
-  constexpr double kReached = 0.0065;
   for (const double cell : {0.005, 0.0025}) {
     const double sinkage_error = cell == 0.005 ? 0.02 : 0.01;
     for (const NormalStress stress : kBoth) {
@@ -93,12 +95,9 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
         const WheelReaction limit = wheel_limit(test.wheel, test.soil, stress);
         const WheelTestResult result = run_wheel(test);
         const WheelPass& pass = result.passes[0];
-        const bool missed =
-            cell == 0.005 && (stress == NormalStress::kRadial ? slip == 0.0 : slip > 0.0);
         EXPECT_NEAR(pass.sinkage_m / limit.sinkage_m, 1.0, sinkage_error)
             << name(stress) << ", slip " << slip << ", cell " << cell;
-        EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n,
-                    (missed ? kReached : kRequired) * test.wheel.load_n)
+        EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n, 0.005 * test.wheel.load_n)
             << name(stress) << ", slip " << slip << ", cell " << cell;
         EXPECT_NEAR(pass.torque_nm, limit.torque_nm, 0.01 * test.wheel.load_n * 0.03)
             << name(stress) << ", slip " << slip << ", cell " << cell;
@@ -115,6 +114,7 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
 // yaw).
 TEST(SoilWheelTest, PlaceAndYawOnTheGridDoNotMatter) {
   for (const double yaw_deg : {0.0, 17.0, 45.0, 90.0, -63.0, 180.0}) {
+    if (kSanitized && yaw_deg != 17.0) continue;  // the rest repeats it elsewhere
     const bool square = std::fmod(yaw_deg, 90.0) == 0.0;
     for (const double offset : {0.0, 0.0013, 0.0025}) {
       WheelTest test = wheel_on("viper", 0.2, NormalStress::kRadial, 0.005);
@@ -134,7 +134,7 @@ TEST(SoilWheelTest, PlaceAndYawOnTheGridDoNotMatter) {
 
 // Along its own rut the wheel meets soil that gives only at E until it is as deep as before: it
 // sinks on, but by a third of the first pass. The limit of that, too, is known; the engine's second
-// pass stays within 6 % of its depth (drawbar pull: 0.04 of the load off with radial stress, see
+// pass stays within 2 % of its depth (drawbar pull: 0.014 of the load off with radial stress, see
 // docs/soil.md).
 TEST(SoilWheelTest, ASecondPassSinksMuchLess) {
   for (const NormalStress stress : kBoth) {
@@ -145,7 +145,7 @@ TEST(SoilWheelTest, ASecondPassSinksMuchLess) {
     EXPECT_NEAR(passes[0].rut_m / limit.rut_m, 1.0, 0.02);  // it persists
     test.wheel.rut_m = limit.rut_m;
     limit = wheel_limit(test.wheel, test.soil, stress);
-    EXPECT_NEAR(passes[1].sinkage_m / limit.sinkage_m, 1.0, 0.06) << name(stress);
+    EXPECT_NEAR(passes[1].sinkage_m / limit.sinkage_m, 1.0, 0.02) << name(stress);
     EXPECT_LT(passes[1].sinkage_m - passes[0].rut_m, 0.4 * passes[0].sinkage_m) << name(stress);
     EXPECT_GT(passes[1].sinkage_m, passes[0].rut_m) << name(stress);
   }

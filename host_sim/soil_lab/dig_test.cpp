@@ -1,0 +1,242 @@
+// The digging robot.
+#include "host_sim/soil_lab/dig_test.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/soil_lab/check_range.h"
+#include "host_sim/vehicle/ode_world.h"
+
+namespace screed {
+namespace {
+
+// About the Rover: 1.2 kg on two belts.
+constexpr double kMass_kg = 1.2;
+constexpr double kHalfBelt_m = 0.055;
+constexpr double kWheelRadius_m = 0.03;
+constexpr double kBeltWidth_m = 0.04;
+constexpr double kTread_m = 0.18;
+constexpr double kBodyAboveAxles_m = 0.01;
+const Eigen::Vector3d kBody_m(0.20, 0.14, 0.06);
+
+constexpr double kSettle_s = 0.5;
+constexpr double kSlip = 0.6;
+// The mound: a cone's flank at 20 degrees, cut off at this height.
+constexpr double kMound_m = 0.08;
+constexpr double kMoundSlope_rad = 20.0 * std::numbers::pi / 180.0;
+constexpr double kAverage_m = 0.025;
+
+double start_x(const DigTest& test) {
+  return test.manoeuvre == Manoeuvre::kSpin ? 0.0 : -0.5 * test.size_m + 0.17;
+}
+
+HeightField ground_before(const DigTest& test, double floor_m) {
+  const int nodes = static_cast<int>(std::lround(test.size_m / test.cell_m)) + 1;
+  const bool mound = test.manoeuvre == Manoeuvre::kCharge;
+  return HeightField::from_function(nodes, nodes, test.cell_m, false, [&](double x, double y) {
+    if (!mound) return floor_m;
+    const double flank = kMound_m / std::tan(kMoundSlope_rad);
+    const double out = std::max(0.0, std::hypot(x - 0.12, y) - 0.06);
+    return floor_m + kMound_m * std::max(0.0, 1.0 - out / flank);
+  });
+}
+
+void check(const DigTest& test) {
+  check_range("dig", "cell", test.cell_m, 0.001, 0.02);
+  check_range("dig", "step", test.step_s, 1e-5, 0.01);
+  check_range("dig", "depth", test.depth_m, 0.02, 1.0);
+  check_range("dig", "size", test.size_m, 0.5, 5.0);
+  check_range("dig", "speed", test.track_m_per_s, 0.01, 1.0);
+  check_range("dig", "duration", test.duration_s, 0.1, 600.0);
+}
+
+/// Presses the belts into the ground in one step: fills in the reactions.
+using Press = std::function<void(const PressingBody&, std::array<SoilContact, 2>&, double dt)>;
+
+class DiggingRobot {
+ public:
+  DiggingRobot(double x, double ground_m) : body_(dBodyCreate(world_.id())) {
+    dMass mass;
+    dMassSetBoxTotal(&mass, kMass_kg, kBody_m.x(), kBody_m.y(), kBody_m.z());
+    dBodySetMass(body_, &mass);
+    inverse_inertia_ = rotation_to_eigen(mass.I).inverse();
+    dBodySetPosition(body_, x, 0.0, ground_m + kWheelRadius_m + kBodyAboveAxles_m);
+  }
+
+  void step(const Press& press, const std::array<double, 2>& belts, double hold_m_per_s,
+            double dt) {
+    PressingBody body;
+    const Eigen::Matrix3d axes = rotation();
+    body.mass_kg = kMass_kg;
+    body.inverse_inertia = axes * inverse_inertia_ * axes.transpose();
+    body.centre = position();
+    body.velocity = to_eigen(dBodyGetLinearVel(body_));
+    body.omega = to_eigen(dBodyGetAngularVel(body_));
+    std::array<SoilContact, 2> contacts;
+    for (size_t i = 0; i < 2; ++i) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.linear() = axes;
+      const double side = i == 0 ? 0.5 : -0.5;
+      pose.translation() =
+          body.centre + axes * Eigen::Vector3d(0.0, side * kTread_m, -kBodyAboveAxles_m);
+      belts_[i].set_pose(pose);
+      contacts[i].footprint = &belts_[i];
+      contacts[i].memory = &memories_[i];
+      contacts[i].surface_speed = belts[i];
+      contacts[i].slip = hold_m_per_s > 0.0 ? kSlip : 0.0;
+    }
+    press(body, contacts, dt);
+    for (const SoilContact& contact : contacts) {
+      const Eigen::Vector3d& force = contact.reaction.force;
+      const Eigen::Vector3d arm = contact.footprint->pose().translation() - body.centre;
+      const Eigen::Vector3d torque = arm.cross(force) + contact.reaction.torque;
+      dBodyAddForce(body_, force.x(), force.y(), force.z());
+      dBodyAddTorque(body_, torque.x(), torque.y(), torque.z());
+    }
+    if (hold_m_per_s > 0.0) {
+      // A winch at the middle of the body that lets it go no faster and keeps it on its line.
+      const double gain = 0.1 * kMass_kg / dt;
+      const Eigen::Vector3d pull(-gain * (body.velocity.x() - hold_m_per_s),
+                                 -gain * body.velocity.y(), 0.0);
+      dBodyAddForce(body_, pull.x(), pull.y(), 0.0);
+      dBodyAddTorque(body_, 0.0, 0.0, -0.1 / dt * body.omega.z() / body.inverse_inertia(2, 2));
+    }
+    world_.step(dt);
+    turned_ += body.omega.z() * dt;
+  }
+
+  Eigen::Vector3d position() const { return to_eigen(dBodyGetPosition(body_)); }
+  Eigen::Matrix3d rotation() const { return rotation_to_eigen(dBodyGetRotation(body_)); }
+  double turned_rad() const { return turned_; }
+  BodyMemory& memory() { return memory_; }
+
+ private:
+  OdeWorld world_;
+  dBodyID body_;
+  Eigen::Matrix3d inverse_inertia_;
+  BodyMemory memory_;
+  std::array<Footprint, 2> belts_{Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m),
+                                  Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m)};
+  std::array<ContactMemory, 2> memories_;
+  double turned_ = 0.0;
+};
+
+/// Means over squares, on the same nodes.
+std::vector<double> averaged(const HeightField& field) {
+  const int half = static_cast<int>(std::lround(0.5 * kAverage_m / field.spacing_m()));
+  const auto place = [&](int ix, int iy) {
+    return static_cast<size_t>(iy) * static_cast<size_t>(field.nx()) + static_cast<size_t>(ix);
+  };
+  std::vector<double> means(place(0, field.ny()));
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) {
+      double sum = 0.0;
+      int count = 0;
+      for (int y = std::max(0, iy - half); y <= std::min(field.ny() - 1, iy + half); ++y) {
+        for (int x = std::max(0, ix - half); x <= std::min(field.nx() - 1, ix + half); ++x) {
+          sum += field.node(x, y);
+          ++count;
+        }
+      }
+      means[place(ix, iy)] = sum / count * kHeightUnit_m;
+    }
+  }
+  return means;
+}
+
+void measure(DigResult& result, const Eigen::Vector3d& end) {
+  const HeightField& field = result.before;
+  const std::vector<double> before = averaged(result.before);
+  const std::vector<double> after = averaged(result.after);
+  const double area = field.spacing_m() * field.spacing_m();
+  size_t i = 0;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix, ++i) {
+      const double rise = after[i] - before[i];
+      const double dx = field.node_x(ix) - end.x();
+      const double away = std::hypot(dx, field.node_y(iy) - end.y());
+      result.highest_m = std::max(result.highest_m, rise);
+      result.deepest_m = std::max(result.deepest_m, -rise);
+      const double volume = std::abs(rise) * area;
+      (rise > 0.0 ? result.raised_m3 : result.sunk_m3) += volume;
+      (rise > 0.0 ? result.raised_radius_m : result.sunk_radius_m) += volume * away;
+      if (rise > 0.0 && dx < 0.0) result.behind_share += volume;
+    }
+  }
+  if (result.raised_m3 > 0.0) {
+    result.raised_radius_m /= result.raised_m3;
+    result.behind_share /= result.raised_m3;
+  }
+  if (result.sunk_m3 > 0.0) result.sunk_radius_m /= result.sunk_m3;
+}
+
+/// Drives the manoeuvre; `ground` is asked for before and after the drive, the robot standing on
+/// it.
+DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press& press,
+                const std::function<HeightField()>& ground) {
+  for (double time = 0.0; time < kSettle_s; time += dt) robot.step(press, {0.0, 0.0}, 0.0, dt);
+  const Eigen::Vector3d start = robot.position();
+  DigResult result{ground(), HeightField::flat(1.0, 0.1)};
+  const double v = test.track_m_per_s;
+  const bool spin = test.manoeuvre == Manoeuvre::kSpin;
+  const double hold = test.manoeuvre == Manoeuvre::kSlip ? (1.0 - kSlip) * v : 0.0;
+  const std::array<double, 2> belts = {spin ? -v : v, v};
+  const double edge = 0.5 * test.size_m - 0.17;
+  const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
+  for (int64_t i = 0; i < steps; ++i) {
+    robot.step(press, belts, hold, dt);
+    const Eigen::Vector3d place = robot.position();
+    result.pitch_rad =
+        std::max(result.pitch_rad, std::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
+    if (std::max(std::abs(place.x()), std::abs(place.y())) > edge + 0.01) break;
+  }
+  result.after = ground();
+  const Eigen::Vector3d end = robot.position();
+  result.way_m = (end - start).head<2>().norm();
+  result.turned_rad = robot.turned_rad();
+  result.lower_by_m = start.z() - end.z();
+  measure(result, end);
+  return result;
+}
+
+}  // namespace
+
+DigResult dig_soil(const DigTest& test) {
+  check(test);
+  SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
+  bed.settle();
+  DiggingRobot robot(start_x(test), 0.0);
+  const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
+                          double dt) {
+    bed.press(body, contacts, dt, robot.memory());
+    bed.end_step();
+  };
+  return drive(test, robot, test.step_s, press, [&] { return bed.surface(); });
+}
+
+DigResult dig_particles(const DigTest& test) {
+  check(test);
+  ParticleOptions options;
+  options.material = test.particle;
+  options.ray_spacing_m = test.cell_m;
+  options.seed = test.seed;
+  ParticleBed bed(ground_before(test, test.depth_m), options);
+  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
+  const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
+                          double dt) {
+    for (SoilContact& contact : contacts) {
+      FootprintMotion motion;
+      const Eigen::Vector3d arm = contact.footprint->pose().translation() - body.centre;
+      motion.velocity = body.velocity + body.omega.cross(arm);
+      motion.omega = body.omega;
+      motion.surface_speed = contact.surface_speed;
+      contact.reaction = bed.press(*contact.footprint, motion, dt);
+    }
+    bed.step(dt);
+  };
+  return drive(test, robot, bed.longest_step_s(), press, [&] { return bed.surface(); });
+}
+
+}  // namespace screed
