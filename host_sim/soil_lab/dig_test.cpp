@@ -124,37 +124,33 @@ class DiggingRobot {
 };
 
 /// Means over squares, on the same nodes.
-std::vector<double> averaged(const HeightField& field) {
+HeightField averaged(const HeightField& field) {
   const int half = static_cast<int>(std::lround(0.5 * kAverage_m / field.spacing_m()));
-  const auto place = [&](int ix, int iy) {
-    return static_cast<size_t>(iy) * static_cast<size_t>(field.nx()) + static_cast<size_t>(ix);
-  };
-  std::vector<double> means(place(0, field.ny()));
+  HeightField means = field;
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
-      double sum = 0.0;
-      int count = 0;
+      int64_t sum = 0;
+      int64_t count = 0;
       for (int y = std::max(0, iy - half); y <= std::min(field.ny() - 1, iy + half); ++y) {
         for (int x = std::max(0, ix - half); x <= std::min(field.nx() - 1, ix + half); ++x) {
           sum += field.node(x, y);
           ++count;
         }
       }
-      means[place(ix, iy)] = sum / count * kHeightUnit_m;
+      means.set_node(ix, iy, static_cast<Height>(sum / count));
     }
   }
+  means.refresh_bounds();
   return means;
 }
 
 void measure(DigResult& result, const Eigen::Vector3d& end) {
   const HeightField& field = result.before;
-  const std::vector<double> before = averaged(result.before);
-  const std::vector<double> after = averaged(result.after);
   const double area = field.spacing_m() * field.spacing_m();
-  size_t i = 0;
   for (int iy = 0; iy < field.ny(); ++iy) {
-    for (int ix = 0; ix < field.nx(); ++ix, ++i) {
-      const double rise = after[i] - before[i];
+    for (int ix = 0; ix < field.nx(); ++ix) {
+      const double rise =
+          (static_cast<double>(result.after.node(ix, iy)) - field.node(ix, iy)) * kHeightUnit_m;
       const double dx = field.node_x(ix) - end.x();
       const double away = std::hypot(dx, field.node_y(iy) - end.y());
       result.highest_m = std::max(result.highest_m, rise);
@@ -176,9 +172,9 @@ void measure(DigResult& result, const Eigen::Vector3d& end) {
 /// it.
 DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press& press,
                 const std::function<HeightField()>& ground) {
+  DigResult result{averaged(ground()), HeightField::flat(1.0, 0.1)};
   for (double time = 0.0; time < kSettle_s; time += dt) robot.step(press, {0.0, 0.0}, 0.0, dt);
   const Eigen::Vector3d start = robot.position();
-  DigResult result{ground(), HeightField::flat(1.0, 0.1)};
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
   const double hold = test.manoeuvre == Manoeuvre::kSlip ? (1.0 - kSlip) * v : 0.0;
@@ -192,7 +188,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press
         std::max(result.pitch_rad, std::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
     if (std::max(std::abs(place.x()), std::abs(place.y())) > edge + 0.01) break;
   }
-  result.after = ground();
+  result.after = averaged(ground());
   const Eigen::Vector3d end = robot.position();
   result.way_m = (end - start).head<2>().norm();
   result.turned_rad = robot.turned_rad();

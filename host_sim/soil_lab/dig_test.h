@@ -31,8 +31,9 @@ struct DigTest {
   uint64_t seed = 1;           ///< of the particles' layout
 };
 
-/// Of the height maps before and after, both averaged over squares of 25 mm: single particles do
-/// not count. The robot starts at the origin (spin), or west of it, heading east.
+/// Of the height maps before the robot was put down and after its drive, both averaged over
+/// squares of 25 mm: single particles do not count. The robot starts at the origin (spin), or west
+/// of it, heading east.
 struct DigResult {
   HeightField before;
   HeightField after;
