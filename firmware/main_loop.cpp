@@ -17,7 +17,8 @@ namespace screed {
 
 void main_loop() {
   hal::init();
-  SCREED_RESIDENT Robot robot(hal::board_constants(), hal::parameters(), hal::parameters_intact());
+  SCREED_RESIDENT Robot robot(hal::board_constants(), hal::parameters(), hal::credentials(),
+                              hal::parameters_intact());
   SCREED_RESIDENT SensorSample sample{};
   SCREED_RESIDENT RobotOutput output{};
   while (hal::wait_for_tick()) {

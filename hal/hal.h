@@ -10,6 +10,7 @@
 namespace screed {
 
 struct BoardConstants;  // firmware/robot/board_constants.h
+struct Credentials;     // firmware/security/credentials.h
 struct Parameters;      // firmware/robot/parameters.h
 
 namespace hal {
@@ -22,8 +23,11 @@ void init();
 const BoardConstants& board_constants();
 
 /// The parameters this robot starts with: stored ones on the robot, those of the experiment in a
-/// simulation.
+/// simulation. Read once, at the start.
 const Parameters& parameters();
+
+/// What this start authenticates commands with. Constant while the program runs.
+const Credentials& credentials();
 
 /// False when stored parameters were lost and parameters() are the defaults instead: nobody chose
 /// them, so the robot must not be armed with them.
@@ -39,7 +43,7 @@ bool wait_for_tick();
 /// its old numbers and its FreshBit stays clear.
 void read_sensors(SensorSample& sample);
 
-/// Applies motor duty and LEDs, and queues the radio bytes. Never blocks.
+/// Applies motor duty and LEDs, queues the radio bytes, begins to store a parameter. Never blocks.
 void write_outputs(const RobotOutput& output);
 
 }  // namespace hal

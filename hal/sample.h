@@ -17,8 +17,9 @@ constexpr uint16_t kTickPeriod_us = 10000;
 /// Most bytes the radio can have received between two ticks: 57,600 baud is 57.6 bytes a tick; the
 /// rest is slack for jitter.
 constexpr uint8_t kRadioInCapacity = 64;
-/// Most bytes the core hands to the radio in one tick: two whole telemetry lines of 22 bytes.
-constexpr uint8_t kRadioOutCapacity = 44;
+/// Most bytes the core hands to the radio in one tick: a packet of four whole telemetry lines of 22
+/// bytes. The next tick has none: they take 15.3 ms.
+constexpr uint8_t kRadioOutCapacity = 88;
 
 /// Bits of SensorSample::fresh: the device delivered a new measurement since the last tick.
 enum FreshBit : uint8_t {
@@ -72,6 +73,10 @@ struct RobotOutput {
   int16_t duty_left;   ///< -kDutyMax..kDutyMax
   int16_t duty_right;  ///< -kDutyMax..kDutyMax
   uint8_t leds;        ///< LedBit set
+  /// A parameter to keep over restarts: its number in the table, from 1; 0: none. At most one in
+  /// 1.5 s: an EEPROM is slow.
+  uint8_t store_parameter;
+  int16_t store_value;
   uint8_t radio_out_count;
   uint8_t radio_out[kRadioOutCapacity];  ///< whole lines only
 };

@@ -5,6 +5,7 @@
 #include "tools/attitude_command.h"
 #include "tools/decode_command.h"
 #include "tools/grid_command.h"
+#include "tools/key_command.h"
 #include "tools/parity_command.h"
 #include "tools/plot_command.h"
 #include "tools/program.h"
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   screed::register_sim_command(app, SCREED_VERSION, action);
   screed::register_replay_command(app, action);
   screed::register_render_command(app, action);
+  screed::register_key_command(app, action);
   screed::register_parity_command(app, action);
   screed::register_attitude_command(app, action);
   screed::register_decode_command(app, action);

@@ -74,13 +74,14 @@ int run_parity_command(const Arguments& arguments) {
   const double seconds = arguments.minutes * 60.0;
   const auto begin = std::chrono::steady_clock::now();
   const ParityResult result =
-      run_parity(*image, board, experiment.parameters, seconds, [&](const ParityResult& so_far) {
-        if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
-          bar->show(so_far.simulated_s, seconds,
-                    std::to_string(so_far.differing_bytes) + " bytes differ");
-        }
-        return true;
-      });
+      run_parity(*image, board, experiment.parameters, credentials_of(experiment), seconds,
+                 [&](const ParityResult& so_far) {
+                   if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
+                     bar->show(so_far.simulated_s, seconds,
+                               std::to_string(so_far.differing_bytes) + " bytes differ");
+                   }
+                   return true;
+                 });
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double factor = wall_s > 0.0 ? result.simulated_s / wall_s : 0.0;

@@ -70,14 +70,6 @@ int32_t with_mean_bits(int16_t value) {
   return asr(static_cast<int32_t>(moved), 16 - kMeanBits);
 }
 
-/// change q: a rotation about earth axes, in the format of scaled_product.
-Quaternion earth_side_product(const SmallQuaternion& change, const Quaternion& q) {
-  const SmallQuaternion reverse = {change.w, static_cast<int16_t>(-change.x),
-                                   static_cast<int16_t>(-change.y),
-                                   static_cast<int16_t>(-change.z)};
-  return conjugate(scaled_product(conjugate(q), reverse));
-}
-
 /// A half angle in Q24, limited so that it can be negated.
 int16_t limited(int32_t half_angle, int32_t limit) {
   return static_cast<int16_t>(clamp_i32(half_angle, -limit, limit));
@@ -149,8 +141,8 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
       static_cast<int32_t>(isqrt32(static_cast<uint32_t>(w * w + x * x + y * y)));
   const auto scale = static_cast<int32_t>(
       quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1)));
-  orientation_ = upside_down ? Quaternion{-x * scale, w * scale, 0, -y * scale}
-                             : Quaternion{w * scale, x * scale, y * scale, 0};
+  orientation_ = upside_down ? Quaternion{-x, w, 0, -y} : Quaternion{w, x, y, 0};
+  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] *= scale;
   gravity_[0] = 0;
   gravity_[1] = 0;
   gravity_[2] = kCountsPerG << kGravityBits;
@@ -233,10 +225,7 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   const SmallQuaternion change = {static_cast<int16_t>(-asr(s, 2)), sine[0], sine[1],
                                   sine[2]};                        // 17 digits
   const Quaternion turned = scaled_product(orientation_, change);  // Q31
-  orientation_.w += asr(turned.w, 1);
-  orientation_.x += asr(turned.x, 1);
-  orientation_.y += asr(turned.y, 1);
-  orientation_.z += asr(turned.z, 1);
+  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] += asr(components(turned)[i], 1);
 }
 
 void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
@@ -265,8 +254,8 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
     mag_samples_ = 1;
     const Angle half = static_cast<Angle>(asr(error, 1));
     const Quaternion turned =
-        earth_side_product({cos_q15(half), 0, 0, sin_q15(half)}, orientation_);
-    orientation_ = {turned.w * 2, turned.x * 2, turned.y * 2, turned.z * 2};
+        scaled_reverse_product({cos_q15(half), 0, 0, sin_q15(half)}, orientation_);
+    for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] = components(turned)[i] * 2;
     return 0;
   }
   const int32_t gain = mag_samples_ < kHeadingStartSamples
@@ -280,11 +269,10 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
 /// Turns the estimate about the earth's axes, and the filtered gravity with it, so that nothing is
 /// corrected twice.
 void AttitudeEstimator::correct(const SmallQuaternion& correction) {
-  const Quaternion turned = earth_side_product(correction, orientation_);  // Q38
-  orientation_.w += asr_round(turned.w, 8);
-  orientation_.x += asr_round(turned.x, 8);
-  orientation_.y += asr_round(turned.y, 8);
-  orientation_.z += asr_round(turned.z, 8);
+  const Quaternion turned = scaled_reverse_product(correction, orientation_);  // Q38
+  for (uint8_t i = 0; i < 4; ++i) {
+    components(orientation_)[i] += asr_round(components(turned)[i], 8);
+  }
   // Only the vertical component moves anything: the others are what is left of the last correction.
   // Doubled for the whole angle; with the digits of scale_q16 and Q24 that leaves 2^7.
   gravity_[0] += asr_round(scale_q16(gravity_[2], correction.y) * 2, 8);

@@ -1,9 +1,11 @@
 // CRC-16/CCITT-FALSE, bit by bit: flash is dearer than time.
 #include "firmware/math/crc16.h"
 
+#include "firmware/math/fixed.h"
+
 namespace screed {
 
-uint16_t crc16_ccitt(const uint8_t* data, uint8_t size) {
+SCREED_OUT_OF_LINE uint16_t crc16_ccitt(const uint8_t* data, uint8_t size) {
   uint16_t crc = 0xFFFF;
   for (uint8_t i = 0; i < size; ++i) {
     crc = static_cast<uint16_t>(crc ^ static_cast<uint16_t>(static_cast<uint16_t>(data[i]) << 8));

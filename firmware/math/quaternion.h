@@ -15,6 +15,14 @@ struct Quaternion {
   int32_t z;
 };
 
+/// The components in their order, for loops.
+inline int32_t* components(Quaternion& q) {
+  return &q.w;
+}
+inline const int32_t* components(const Quaternion& q) {
+  return &q.w;
+}
+
 constexpr Quaternion kIdentityQuaternion = {static_cast<int32_t>(1) << 30, 0, 0, 0};
 
 /// A small change of an orientation: what is added to the quaternion 1, all four below 1/2 in the
@@ -35,10 +43,8 @@ struct RotationMatrix {
 /// 16) out for a change in Qn. The length of the change must be below 32768, that of q at most 1.9.
 Quaternion scaled_product(const Quaternion& q, const SmallQuaternion& change);
 
-/// The conjugate, (w, -x, -y, -z): the inverse of a rotation.
-constexpr Quaternion conjugate(const Quaternion& q) {
-  return {q.w, -q.x, -q.y, -q.z};
-}
+/// change q / 2^16, likewise: a change seen from the earth.
+Quaternion scaled_reverse_product(const SmallQuaternion& change, const Quaternion& q);
 
 /// The matrix of a unit quaternion; error of an element below 4 units (2.4e-4).
 RotationMatrix rotation_matrix(const Quaternion& q);

@@ -7,6 +7,11 @@
 
 #include <stdint.h>
 
+/// Robots that run without a ground station unless told otherwise: make firmware STANDALONE=yes.
+#ifndef SCREED_STANDALONE
+#define SCREED_STANDALONE 0
+#endif
+
 // clang-format off
 //  name                    unit         min    max  default  meaning
 #define SCREED_PARAMETERS(X) \
@@ -31,7 +36,7 @@
   X(tilt_limit,             "0.01 deg", 1000,  9000,   5000, "inclination at which the robot stops and latches a fault") \
   X(battery_low,            "mV",          0, 12000,   6000, "stop below this voltage; 0: never") \
   X(stall_time,             "ms",         50,  5000,    180, "a track at high duty that does not move for this long is stalled") \
-  X(standalone,             "",            0,     1,      0, "1: arm and run after power-up without a ground station") \
+  X(standalone,             "",            0,     1, SCREED_STANDALONE, "1: arm and run after power-up without a ground station") \
   X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run")
 // clang-format on
 
@@ -43,14 +48,7 @@ struct Parameters {
 #undef SCREED_FIELD
 
   /// True when every value lies in its range; a robot with any other parameters refuses to arm.
-  bool valid() const {
-    bool ok = true;
-#define SCREED_CHECK(name, unit, min, max, value, meaning) \
-  ok = ok && (name) >= static_cast<int16_t>(min) && (name) <= static_cast<int16_t>(max);
-    SCREED_PARAMETERS(SCREED_CHECK)
-#undef SCREED_CHECK
-    return ok && walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;
-  }
+  bool valid() const;
 };
 
 }  // namespace screed

@@ -1,11 +1,34 @@
 // The robot: the whole firmware core as one object.
 #include "firmware/robot/robot.h"
 
+#include <string.h>
+
+#include "firmware/math/crc16.h"
 #include "firmware/math/units.h"
+#include "firmware/robot/parameter_store.h"
 #include "firmware/telemetry/e2e.h"
 
 namespace screed {
 namespace {
+
+// The EEPROM takes a byte a tick, and two copies at first.
+constexpr uint8_t kStoreTicks = 150;
+static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
+
+static_assert(
+    static_cast<uint8_t>(GateResult::kNoKey) == static_cast<uint8_t>(RequestResult::kNoKey) &&
+        static_cast<uint8_t>(GateResult::kBadMac) == static_cast<uint8_t>(RequestResult::kBadMac) &&
+        static_cast<uint8_t>(GateResult::kLockedOut) ==
+            static_cast<uint8_t>(RequestResult::kLockedOut) &&
+        static_cast<uint8_t>(GateResult::kUsedUp) == static_cast<uint8_t>(RequestResult::kUsedUp),
+    "refusals travel under the numbers of the schema");
+static_assert(static_cast<uint8_t>(Request::kArm) == static_cast<uint8_t>(CommandOp::kArm) &&
+                  static_cast<uint8_t>(Request::kRun) == static_cast<uint8_t>(CommandOp::kRun) &&
+                  static_cast<uint8_t>(Request::kStop) == static_cast<uint8_t>(CommandOp::kStop) &&
+                  static_cast<uint8_t>(Request::kDisarm) ==
+                      static_cast<uint8_t>(CommandOp::kDisarm) &&
+                  static_cast<uint8_t>(Request::kClear) == static_cast<uint8_t>(CommandOp::kClear),
+              "these commands are requests of the same number");
 
 // 1 - 2 (x^2 + y^2): the element of the rotation matrix that is the cosine of the inclination.
 int32_t cos_tilt_q30(const Quaternion& q) {
@@ -14,15 +37,19 @@ int32_t cos_tilt_q30(const Quaternion& q) {
 
 }  // namespace
 
-Robot::Robot(const BoardConstants& board, const Parameters& parameters, bool parameters_intact)
-    : battery_uv_per_lsb_(board.battery_uv_per_lsb),
+Robot::Robot(const BoardConstants& board, const Parameters& parameters,
+             const Credentials& credentials, bool parameters_intact)
+    : board_(board),
+      parameters_(parameters),
       odometry_(board.count_um_q4),
       supervisor_(parameters, parameters_intact),
       leveling_(parameters),
-      drive_(board, parameters) {}
+      drive_(board, parameters),
+      gate_(credentials) {}
 
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
   if (first_tick_) {
+    event(message::EventCode::kStarted, sample.reset_cause);
     last_left_ = sample.encoder_left;
     last_right_ = sample.encoder_right;
     first_tick_ = false;
@@ -46,15 +73,18 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
   imu.mag_fresh = (sample.fresh & kFreshMag) != 0;
   // Turning tracks are no standstill, however evenly the robot turns.
   const bool tracks_at_rest =
-      duty_left_ == 0 && duty_right_ == 0 && deltas.left == 0 && deltas.right == 0;
+      view_.duty_left == 0 && view_.duty_right == 0 && deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
   const AttitudeAngles angles = attitude_.angles();
-  pose_.roll = angles.roll;
-  pose_.pitch = angles.pitch;
-  pose_.heading = angles.heading;
-  odometry_.update(deltas.left, deltas.right, pose_.heading, pose_.pitch);
-  pose_.x_mm = odometry_.x_mm();
-  pose_.y_mm = odometry_.y_mm();
+  pitch_ = angles.pitch;
+  heading_ = angles.heading;
+  view_.roll_cdeg = centidegrees_from_angle(angles.roll);
+  view_.pitch_cdeg = centidegrees_from_angle(pitch_);
+  view_.heading_cdeg = static_cast<uint16_t>(
+      (static_cast<uint32_t>(static_cast<uint16_t>(heading_)) * 36000U) >> 16);
+  odometry_.update(deltas.left, deltas.right, heading_, pitch_);
+  view_.x_mm = odometry_.x_mm();
+  view_.y_mm = odometry_.y_mm();
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -67,55 +97,145 @@ void Robot::receive(const SensorSample& sample) {
 }
 
 void Robot::handle(const CanFrame& frame) {
-  if (frame.id != kIdGroundHeartbeat && frame.id != kIdCommand && frame.id != kIdEmergencyStop) {
-    return;
-  }
-  if (!e2e_check(frame.id, frame.data, frame.size)) {
-    ++rejected_frames_;
-    return;
-  }
-  const uint8_t counter = frame.data[1] & 0x0FU;
   switch (frame.id) {
-    case kIdEmergencyStop:
-      supervisor_.request(Request::kEmergencyStop);
-      break;
+    case kIdCommand:
+      // Its MAC protects it. Looked at when there is time for that; a second one meanwhile is lost.
+      if (frame.size != kCommandSize || command_waits_) break;
+      memcpy(command_, frame.data, kCommandSize);
+      command_waits_ = true;
+      ++view_.frames_received;
+      return;
     case kIdGroundHeartbeat:
-      // A sender whose counter stands still has crashed: not a sign of life.
-      if (counter != ground_counter_) supervisor_.heartbeat();
-      ground_counter_ = counter;
-      break;
-    default:
-      // The counter tells a repeated line from a new command.
-      if (frame.size == 6 && counter != command_counter_) {
-        telemetry_.acknowledge(frame.data[2], command(frame));
+    case kIdEmergencyStop:
+    case kIdParamStage:
+      if (!e2e_check(frame.id, frame.data, frame.size)) break;
+      ++view_.frames_received;
+      if (frame.id == kIdEmergencyStop) {
+        supervisor_.request(Request::kEmergencyStop);
+      } else if (frame.id == kIdParamStage) {
+        memcpy(staged_, frame.data + kE2eHeaderSize, kStagedSize);
+      } else {
+        const uint8_t counter = frame.data[1] & 0x0FU;
+        // A sender whose counter stands still has crashed: not a sign of life.
+        if (counter != ground_counter_) {
+          supervisor_.heartbeat();
+          ++view_.ground_heartbeats;
+        }
+        ground_counter_ = counter;
+        view_.ground_time_ms = get_u16(frame.data + kE2eHeaderSize);
       }
-      command_counter_ = counter;
-      break;
+      return;
+    default:
+      return;  // for somebody else
+  }
+  ++view_.rejected_frames;
+}
+
+// A MAC and a packet of telemetry in one tick would be the longest tick of all.
+void Robot::take_command() {
+  gate_.tick();
+  if (store_ticks_ != 0) --store_ticks_;
+  if (!command_waits_ || telemetry_.packet_due()) return;
+  command_waits_ = false;
+  const GateResult checked = gate_.check(kIdCommand, command_);
+  if (checked == GateResult::kRepeated) {
+    telemetry_.queue(frame_of(answer_));
+    return;
+  }
+  const bool accepted = checked == GateResult::kAccepted;
+  const RequestResult result = accepted ? obey(command_) : static_cast<RequestResult>(checked);
+  const message::CommandAck answer = {command_[0], command_[kCommandFreshnessAt],
+                                      static_cast<uint8_t>(result), detail_of(result)};
+  telemetry_.queue(frame_of(answer));
+  if (accepted) answer_ = answer;
+  if (checked == GateResult::kBadMac && gate_.locked_ticks() != 0) {
+    event(message::EventCode::kLockedOut, gate_.locked_ticks());
   }
 }
 
-RequestResult Robot::command(const CanFrame& frame) {
-  switch (static_cast<CommandOp>(frame.data[2])) {
+uint16_t Robot::detail_of(RequestResult result) const {
+  switch (result) {
+    case RequestResult::kFaultPresent:
+      return supervisor_.present_faults();
+    case RequestResult::kLockedOut:
+      return gate_.locked_ticks();
+    case RequestResult::kBadMac:
+    case RequestResult::kUsedUp:
+      return gate_.counter();
+    case RequestResult::kBadArgument:
+      return kParameterCount;
+    default:
+      return 0;
+  }
+}
+
+void Robot::event(message::EventCode code, int32_t argument) {
+  telemetry_.queue(frame_of(message::Event{static_cast<uint16_t>(code), argument}));
+}
+
+RequestResult Robot::obey(const uint8_t* data) {
+  const uint8_t* const argument = data + 1;
+  switch (static_cast<CommandOp>(data[0])) {
     case CommandOp::kArm:
-      return supervisor_.request(Request::kArm);
     case CommandOp::kRun:
-      return supervisor_.request(Request::kRun);
     case CommandOp::kStop:
-      return supervisor_.request(Request::kStop);
     case CommandOp::kDisarm:
-      return supervisor_.request(Request::kDisarm);
     case CommandOp::kClear:
-      return supervisor_.request(Request::kClear);
+      return supervisor_.request(static_cast<Request>(data[0]));
     case CommandOp::kDrive: {
-      const DriveArgument argument = get_drive_argument(frame.data + 3);
+      if (!supervisor_.running() || leveling_.algorithm() != LevelingAlgorithm::kDrive) {
+        return RequestResult::kWrongState;
+      }
+      const DriveArgument drive = get_drive_argument(argument);
       // 0.1 degree/s -> angle units/s
-      const int32_t rate = asr(static_cast<int32_t>(argument.turn_ddeg_per_s) * 9321, 9);
-      drive_command_ = {argument.speed_mm_per_s,
+      const int32_t rate = asr(static_cast<int32_t>(drive.turn_ddeg_per_s) * 9321, 9);
+      drive_command_ = {drive.speed_mm_per_s,
                         static_cast<YawRate>(clamp_i32(rate, -INT16_MAX, INT16_MAX))};
       return RequestResult::kDone;
     }
+    case CommandOp::kParameterRead:
+      return send_parameter(get_u16(argument));
+    case CommandOp::kParameterCommit:
+      return commit_parameter(argument[0], get_u16(argument + 1));
   }
-  return RequestResult::kWrongState;
+  return RequestResult::kBadArgument;
+}
+
+int16_t& Robot::parameter(uint8_t index) {
+  return reinterpret_cast<int16_t*>(&parameters_)[index];
+}
+
+RequestResult Robot::send_parameter(uint16_t index) {
+  if (index >= kParameterCount) return RequestResult::kBadArgument;
+  telemetry_.queue(frame_of(message::ParamValue{index, parameter(static_cast<uint8_t>(index))}));
+  return RequestResult::kDone;
+}
+
+// What was staged is not signed, but the command that names it is: with the index given there is
+// one value of 16 bits to a CRC of 16.
+RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
+  if (supervisor_.state() != RobotState::kDisarmed) return RequestResult::kWrongState;
+  if (store_ticks_ != 0) return RequestResult::kBusy;
+  const int32_t value = get_s32(staged_ + 2);
+  const auto value_16 = static_cast<int16_t>(value);
+  if (get_u16(staged_) != index || index >= kParameterCount || value_16 != value ||
+      crc16_ccitt(staged_, kSignedOfStaged) != crc) {
+    return RequestResult::kBadArgument;
+  }
+  int16_t& parameter = this->parameter(index);
+  const int16_t before = parameter;
+  parameter = value_16;
+  if (!parameters_.valid()) {
+    parameter = before;
+    return RequestResult::kBadArgument;
+  }
+  supervisor_.configure(parameters_);
+  leveling_ = Leveling(parameters_);
+  drive_ = DriveControl(board_, parameters_);
+  store_parameter_ = static_cast<uint8_t>(index + 1U);
+  store_value_ = value_16;
+  store_ticks_ = kStoreTicks;
+  return RequestResult::kDone;
 }
 
 void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
@@ -126,9 +246,9 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.accel = sample.accel;
   input.cos_tilt_q30 = cos_tilt_q30(attitude_.orientation());
   input.estimator_ready = attitude_.ready();
-  input.battery_mv = battery_mv_;
-  input.duty_left = duty_left_;
-  input.duty_right = duty_right_;
+  input.battery_mv = view_.battery_mv;
+  input.duty_left = view_.duty_left;
+  input.duty_right = view_.duty_right;
   input.counts_left = deltas.left;
   input.counts_right = deltas.right;
   supervisor_.tick(input);
@@ -136,68 +256,79 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
 
 void Robot::choose_motion() {
   const bool running = supervisor_.running();
-  if (running && !was_running_) leveling_.start();
-  was_running_ = running;
+  if (running && view_.state != RobotState::kRunning) {  // the state of the tick before
+    leveling_.start();
+    // The site lies round the place where the run began. One that goes on after a stop is the same
+    // run: otherwise the site would wander with every stop.
+    if (view_.state != RobotState::kStopped) {
+      odometry_.reset();
+      view_.x_mm = 0;
+      view_.y_mm = 0;
+    }
+  }
   if (!running) {
-    motion_ = {0, 0};
+    view_.motion = {0, 0};
     drive_command_ = {0, 0};
     return;
   }
-  const LevelingInput input = {pose_.pitch, pose_.heading, pose_.x_mm, pose_.y_mm};
-  motion_ = leveling_.tick(input, drive_command_);
+  const LevelingInput input = {pitch_, heading_, view_.x_mm, view_.y_mm};
+  view_.motion = leveling_.tick(input, drive_command_);
 }
 
 void Robot::report(const SensorSample& sample, RobotOutput& output) {
-  TelemetryView view{};
-  view.sample = &sample;
-  view.roll_cdeg = centidegrees_from_angle(pose_.roll);
-  view.pitch_cdeg = centidegrees_from_angle(pose_.pitch);
-  view.heading_cdeg = static_cast<uint16_t>(
-      (static_cast<uint32_t>(static_cast<uint16_t>(pose_.heading)) * 36000U) >> 16);
-  view.x_mm = pose_.x_mm;
-  view.y_mm = pose_.y_mm;
-  view.duty_left = duty_left_;
-  view.duty_right = duty_right_;
-  view.motion = motion_;
-  view.state = supervisor_.state();
-  view.faults = supervisor_.faults();
-  view.link_alive = supervisor_.link_alive();
-  view.rejected_lines = static_cast<uint8_t>(parser_.rejected() + rejected_frames_);
-  view.algorithm = leveling_.algorithm();
-  view.leveling_state = leveling_.state();
-  view.peaks = leveling_.peaks();
-  view.battery_mv = battery_mv_;
-  telemetry_.tick(view, output);
+  view_.sample = &sample;
+  view_.faults = supervisor_.faults();
+  const RobotState state = supervisor_.state();
+  if (state != view_.state) {
+    view_.state = state;
+    event(message::EventCode::kState,
+          static_cast<int32_t>(view_.faults) * 256 + static_cast<uint8_t>(state));
+  }
+  view_.link_alive = supervisor_.link_alive();
+  view_.boot_epoch = gate_.boot_epoch();
+  view_.freshness = gate_.counter();
+  view_.rejected_lines = parser_.rejected();
+  view_.rejected_commands = gate_.refused();
+  view_.algorithm = leveling_.algorithm();
+  view_.leveling_state = leveling_.state();
+  view_.peaks = leveling_.peaks();
+  telemetry_.tick(view_, output);
 
-  output.duty_left = duty_left_;
-  output.duty_right = duty_right_;
+  output.store_parameter = store_parameter_;
+  output.store_value = store_value_;
+  store_parameter_ = 0;
+  output.duty_left = view_.duty_left;
+  output.duty_right = view_.duty_right;
   // Yellow: motors may move. Red: fault. Green: the ground station is heard.
   output.leds = static_cast<uint8_t>((supervisor_.powered() ? kLedYellow : 0) |
-                                     (view.state == RobotState::kFault ? kLedRed : 0) |
-                                     (view.link_alive ? kLedGreen : 0));
+                                     (view_.state == RobotState::kFault ? kLedRed : 0) |
+                                     (view_.link_alive ? kLedGreen : 0));
 }
 
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   // At most 65,535 mV: what the sensor can say (8184 LSB) is far below.
-  const uint32_t battery_uv = static_cast<uint32_t>(sample.battery) * battery_uv_per_lsb_;
-  battery_mv_ = battery_uv < static_cast<uint32_t>(1000) << 16 ? quotient_u16(battery_uv, 1000)
-                                                               : static_cast<uint16_t>(0xFFFFU);
+  const uint32_t battery_uv = static_cast<uint32_t>(sample.battery) * board_.battery_uv_per_lsb;
+  view_.battery_mv = battery_uv < static_cast<uint32_t>(1000) << 16
+                         ? quotient_u16(battery_uv, 1000)
+                         : static_cast<uint16_t>(0xFFFFU);
   const Deltas deltas = count_deltas(sample);
 
   estimate_pose(sample, deltas);
   receive(sample);
+  take_command();
   supervise(sample, deltas);
   choose_motion();
 
-  const DriveMeasurement measured = {deltas.left, deltas.right, attitude_.yaw_rate(), battery_mv_};
+  const DriveMeasurement measured = {deltas.left, deltas.right, attitude_.yaw_rate(),
+                                     view_.battery_mv};
   if (supervisor_.powered()) {
-    const DriveOutput duty = drive_.tick(motion_, measured);
-    duty_left_ = duty.duty_left;
-    duty_right_ = duty.duty_right;
+    const DriveOutput duty = drive_.tick(view_.motion, measured);
+    view_.duty_left = duty.duty_left;
+    view_.duty_right = duty.duty_right;
   } else {
     drive_.idle(measured);
-    duty_left_ = 0;
-    duty_right_ = 0;
+    view_.duty_left = 0;
+    view_.duty_right = 0;
   }
   report(sample, output);
 }

@@ -12,6 +12,7 @@
 #include "firmware/robot/board_constants.h"
 #include "firmware/robot/parameters.h"
 #include "firmware/robot/supervisor.h"
+#include "firmware/security/command_gate.h"
 #include "firmware/telemetry/telemetry.h"
 #include "hal/sample.h"
 
@@ -21,7 +22,8 @@ class Robot {
  public:
   /// `parameters_intact` = false: the parameters stand in for lost ones; the robot refuses to be
   /// armed.
-  Robot(const BoardConstants& board, const Parameters& parameters, bool parameters_intact = true);
+  Robot(const BoardConstants& board, const Parameters& parameters, const Credentials& credentials,
+        bool parameters_intact = true);
 
   /// One control tick. The sample's encoder counts may start anywhere; the first tick takes them as
   /// zero.
@@ -33,7 +35,9 @@ class Robot {
   const Supervisor& supervisor() const { return supervisor_; }
   const Leveling& leveling() const { return leveling_; }
   const DriveControl& drive() const { return drive_; }
-  const MotionCommand& motion() const { return motion_; }
+  const MotionCommand& motion() const { return view_.motion; }
+  const Parameters& parameters() const { return parameters_; }
+  const CommandGate& gate() const { return gate_; }
 
  private:
   struct Deltas {
@@ -41,25 +45,26 @@ class Robot {
     int16_t right;
   };
 
-  // Asked for once a tick: on the AVR an angle costs 1500 cycles, a position a division.
-  struct Pose {
-    Angle roll;
-    Angle pitch;
-    Angle heading;
-    int32_t x_mm;
-    int32_t y_mm;
-  };
+  static constexpr uint8_t kStagedSize = 6;      ///< u16, s32
+  static constexpr uint8_t kSignedOfStaged = 4;  ///< index and lower half of the value
 
   Deltas count_deltas(const SensorSample& sample);
   void estimate_pose(const SensorSample& sample, const Deltas& deltas);
   void receive(const SensorSample& sample);
   void handle(const CanFrame& frame);
-  RequestResult command(const CanFrame& frame);
+  void take_command();
+  RequestResult obey(const uint8_t* data);
+  int16_t& parameter(uint8_t index);
+  RequestResult send_parameter(uint16_t index);
+  RequestResult commit_parameter(uint8_t index, uint16_t crc);
+  uint16_t detail_of(RequestResult result) const;
+  void event(message::EventCode code, int32_t argument);
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void choose_motion();
   void report(const SensorSample& sample, RobotOutput& output);
 
-  uint16_t battery_uv_per_lsb_;
+  BoardConstants board_;
+  Parameters parameters_;
   AttitudeEstimator attitude_;
   Odometry odometry_;
   Supervisor supervisor_;
@@ -67,19 +72,24 @@ class Robot {
   DriveControl drive_;
   SlcanParser parser_;
   Telemetry telemetry_;
-  Pose pose_ = {0, 0, 0, 0, 0};
-  MotionCommand motion_ = {0, 0};         ///< what the body is to do now
+  CommandGate gate_;
+  // What the robot does and has found out, as it is told: asked for once a tick, since on the AVR
+  // an angle costs 1500 cycles and a position a division.
+  TelemetryView view_ = {};
+  Angle heading_ = 0;
+  Angle pitch_ = 0;
   MotionCommand drive_command_ = {0, 0};  ///< last CommandOp::kDrive
-  uint16_t battery_mv_ = 0;
   uint16_t last_left_ = 0;
   uint16_t last_right_ = 0;
-  int16_t duty_left_ = 0;
-  int16_t duty_right_ = 0;
-  uint8_t rejected_frames_ = 0;
+  uint8_t command_[kCommandSize] = {};  ///< waits for its tick
+  message::CommandAck answer_ = {};     ///< to the last command that was accepted
+  uint8_t staged_[kStagedSize] = {};    ///< index and value of a PARAM_STAGE
+  uint8_t store_parameter_ = 0;         ///< as RobotOutput
+  int16_t store_value_ = 0;
+  uint8_t store_ticks_ = 0;        ///< until the EEPROM takes another parameter
   uint8_t ground_counter_ = 0xFF;  ///< alive counter of the last ground heartbeat; 0xFF: none yet
-  uint8_t command_counter_ = 0xFF;
+  bool command_waits_ = false;
   bool first_tick_ = true;
-  bool was_running_ = false;
 };
 
 }  // namespace screed

@@ -60,13 +60,18 @@ static_assert(kFaultAccelMagChip == kChipAccelMag << 8 && kFaultGyroChip == kChi
               "faults of chips are their bits, shifted");
 
 Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
-    : cos_tilt_limit_q15_(cos_q15(angle_from_centidegrees(parameters.tilt_limit))),
-      battery_low_mv_(static_cast<uint16_t>(parameters.battery_low)),
-      stall_ticks_(ticks_from_ms(parameters.stall_time)),
-      standalone_ticks_(ticks_from_ms(parameters.standalone_delay)),
-      standalone_(parameters.standalone != 0),
-      parameters_valid_(parameters_intact && parameters.valid()) {
+    : parameters_intact_(parameters_intact) {
+  configure(parameters);
+}
+
+void Supervisor::configure(const Parameters& parameters) {
+  cos_tilt_limit_q15_ = cos_q15(angle_from_centidegrees(parameters.tilt_limit));
   cos_tilt_limit_q30_ = static_cast<int32_t>(cos_tilt_limit_q15_) * 32768;
+  battery_low_mv_ = static_cast<uint16_t>(parameters.battery_low);
+  stall_ticks_ = ticks_from_ms(parameters.stall_time);
+  standalone_ticks_ = ticks_from_ms(parameters.standalone_delay);
+  standalone_ = parameters.standalone != 0;
+  parameters_valid_ = parameters_intact_ && parameters.valid();
 }
 
 bool Supervisor::link_alive() const {
@@ -178,6 +183,8 @@ RequestResult Supervisor::request(Request request) {
     case Request::kArm:
       if (state_ != RobotState::kDisarmed) return RequestResult::kWrongState;
       if (present_ != 0) return RequestResult::kFaultPresent;
+      // What the next look at the link would undo is not done in the first place.
+      if (!standalone_ && !link_alive()) return RequestResult::kNoLink;
       if (!estimator_ready_) return RequestResult::kNotReady;
       state_ = RobotState::kArmed;
       return RequestResult::kDone;
@@ -185,6 +192,7 @@ RequestResult Supervisor::request(Request request) {
       if (state_ != RobotState::kArmed && state_ != RobotState::kStopped) {
         return RequestResult::kWrongState;
       }
+      if (!standalone_ && !link_alive()) return RequestResult::kNoLink;
       state_ = RobotState::kRunning;
       return RequestResult::kDone;
     case Request::kStop:

@@ -12,6 +12,7 @@
 
 #include "firmware/math/fixed.h"
 #include "firmware/robot/parameters.h"
+#include "firmware/telemetry/messages.h"
 #include "hal/sample.h"
 
 namespace screed {
@@ -53,13 +54,8 @@ enum class Request : uint8_t {
   kEmergencyStop = 6
 };
 
-/// Answer to a request.
-enum class RequestResult : uint8_t {
-  kDone = 0,
-  kWrongState = 1,    ///< not possible in this state
-  kFaultPresent = 2,  ///< a cause of a fault is present
-  kNotReady = 3,      ///< the attitude estimator has not settled yet
-};
+/// Answer to a request; its names come from the schema.
+using RequestResult = message::CommandAckResult;
 
 struct SupervisorInput {
   uint8_t fresh;         ///< SensorSample::fresh
@@ -96,6 +92,8 @@ class TrackWatch {
 class Supervisor {
  public:
   explicit Supervisor(const Parameters& parameters, bool parameters_intact = true);
+  /// Other parameters, for a robot at rest.
+  void configure(const Parameters& parameters);
 
   /// One tick: looks for faults, watches the link, runs the stand-alone timer.
   void tick(const SupervisorInput& input);
@@ -110,6 +108,8 @@ class Supervisor {
   bool powered() const { return state_ == RobotState::kRunning || state_ == RobotState::kStopped; }
   /// Latched causes; non-zero exactly in kFault.
   uint16_t faults() const { return latched_; }
+  /// Causes that are there now, latched or not.
+  uint16_t present_faults() const { return present_; }
   /// The ground station was heard within the last 0.5 s.
   bool link_alive() const;
 
@@ -125,6 +125,7 @@ class Supervisor {
   uint16_t stall_ticks_;
   uint16_t standalone_ticks_;
   bool standalone_;
+  bool parameters_intact_;
   bool parameters_valid_;
 
   RobotState state_ = RobotState::kDisarmed;

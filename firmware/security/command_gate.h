@@ -19,13 +19,14 @@
 
 namespace screed {
 
+/// Refusals have the numbers they travel with in COMMAND_ACK.
 enum class GateResult : uint8_t {
-  kAccepted,
-  kRepeated,  ///< the command that was accepted last, once more: not to be done again
-  kNoKey,
-  kBadMac,
-  kLockedOut,
-  kUsedUp,  ///< no counter is left in this start
+  kAccepted = 0,
+  kNoKey = 5,
+  kBadMac = 6,
+  kLockedOut = 7,
+  kUsedUp = 8,      ///< no counter is left in this start
+  kRepeated = 255,  ///< the command that was accepted last, once more: not to be done again
 };
 
 class CommandGate {

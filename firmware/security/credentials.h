@@ -10,7 +10,7 @@ namespace screed {
 
 struct Credentials {
   uint8_t key[kSipHashKeySize];
-  uint8_t robot_id;     ///< tells robots with the same key apart
+  uint8_t robot_id;     ///< stands behind the key; tells robots with the same key apart
   bool key_set;         ///< false: no key, or a damaged one; no command is accepted
   uint16_t boot_epoch;  ///< number of this start, 1..65535; never the same twice
 };

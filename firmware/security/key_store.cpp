@@ -1,38 +1,46 @@
-// Key and boot epoch as bytes of an EEPROM.
+// Key and number of starts as bytes of an EEPROM.
 #include "firmware/security/key_store.h"
 
 #include <string.h>
 
 #include "firmware/math/crc16.h"
-#include "firmware/telemetry/messages.h"
+#include "firmware/telemetry/bytes.h"
 
 namespace screed {
 namespace {
 
-constexpr uint8_t kCrcAt = kKeyRecordSize - 2;
+/// 0: nothing valid.
+uint16_t get_epoch(const CredentialRecord& record, uint8_t odd) {
+  const uint8_t* const slot = record.bytes + kEpochSlotOf(odd);
+  const uint16_t epoch = get_u16(slot);
+  return get_u16(slot + 2) == static_cast<uint16_t>(~epoch) ? epoch : static_cast<uint16_t>(0);
+}
 
 }  // namespace
 
-void encode_key(const Credentials& credentials, uint8_t (&record)[kKeyRecordSize]) {
-  memcpy(record, credentials.key, kSipHashKeySize);
-  record[kSipHashKeySize] = credentials.robot_id;
-  put_u16(record + kCrcAt, crc16_ccitt(record, kCrcAt));
-}
-
-void decode_key(const uint8_t (&record)[kKeyRecordSize], Credentials& credentials) {
-  memcpy(credentials.key, record, kSipHashKeySize);
-  credentials.robot_id = record[kSipHashKeySize];
-  credentials.key_set = get_u16(record + kCrcAt) == crc16_ccitt(record, kCrcAt);
-}
-
-void encode_epoch(uint16_t epoch, uint8_t (&slot)[kEpochSlotSize]) {
+void put_epoch(CredentialRecord& record, uint16_t epoch) {
+  uint8_t* const slot = record.bytes + kEpochSlotOf(epoch);
   put_u16(slot, epoch);
   put_u16(slot + 2, static_cast<uint16_t>(~epoch));
 }
 
-uint16_t decode_epoch(const uint8_t (&slot)[kEpochSlotSize]) {
-  const uint16_t epoch = get_u16(slot);
-  return get_u16(slot + 2) == static_cast<uint16_t>(~epoch) ? epoch : static_cast<uint16_t>(0);
+void put_key(CredentialRecord& record, const uint8_t* key) {
+  memcpy(record.bytes, key, kKeySize);
+  put_u16(record.bytes + kKeySize, crc16_ccitt(record.bytes, kKeySize));
+}
+
+bool begin_start(CredentialRecord& record, Credentials& credentials) {
+  memcpy(credentials.key, record.bytes, kKeySize);
+  const bool key_set = get_u16(record.bytes + kKeySize) == crc16_ccitt(record.bytes, kKeySize);
+  const uint16_t even = get_epoch(record, 0);
+  const uint16_t odd = get_epoch(record, 1);
+  const uint16_t last = even > odd ? even : odd;
+  const bool used_up = last == UINT16_MAX;
+  const bool lost = last == 0 && key_set;
+  credentials.boot_epoch = used_up ? last : static_cast<uint16_t>(last + 1U);
+  credentials.key_set = key_set && !used_up && !lost;
+  put_epoch(record, credentials.boot_epoch);
+  return !used_up && !lost;
 }
 
 }  // namespace screed

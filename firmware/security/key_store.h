@@ -1,16 +1,17 @@
 // How the key and the number of starts lie in the robot's EEPROM. Pure bytes: the robot's driver
 // (hal/avr/credential_eeprom.cpp) and a host that prepares an EEPROM both use this file.
 //
-//   0x110  16  key
-//   0x120  u8  robot id
-//   0x121  u16 CRC-16/CCITT-FALSE of the bytes before it; wrong: there is no key
-//   0x130  u16 boot epoch of a start with an even one, u16 its complement
-//   0x134  the same, of a start with an odd one
+//   byte 0   16   key
+//   byte 16  u8   robot id
+//   byte 17  u16  CRC-16/CCITT-FALSE of the bytes before it; wrong: there is no key
+//   byte 19  u16  number of the last start with an even one, u16 its complement
+//   byte 23  u16  number of the last start with an odd one, u16 its complement
 //
-// Every start writes the slot it did not find the higher number in: power that fails meanwhile
-// leaves the other one, and the start whose number was torn has accepted no command yet. 65,535
-// starts wear a cell 33,000 times, a third of what it bears; after them no command is accepted any
-// more. All numbers are little endian.
+// Every start writes its number over that of two starts before: power that fails meanwhile leaves
+// the other one, and the start whose number was torn has accepted no command yet. 65,535 starts
+// wear a cell 33,000 times, a third of what it bears; after them no command is accepted any more.
+// Nor is one when both numbers are damaged, until a key is set anew: old commands would be fresh
+// again. All numbers are little endian.
 #pragma once
 
 #include <stdint.h>
@@ -19,22 +20,30 @@
 
 namespace screed {
 
-constexpr uint16_t kKeyRecordAt = 0x110;
-constexpr uint8_t kKeyRecordSize = kSipHashKeySize + 1 + 2;
+constexpr uint8_t kKeySize = kSipHashKeySize + 1;  ///< key and robot id
 constexpr uint8_t kEpochSlotSize = 4;
-constexpr uint16_t kLastBootEpoch = UINT16_MAX;
+constexpr uint8_t kCredentialRecordSize = kKeySize + 2 + 2 * kEpochSlotSize;
+/// Address of its first byte, behind the parameters.
+constexpr uint16_t kCredentialRecordAt = 0x110;
 
-/// Address of the slot in which a boot epoch lies.
-constexpr uint16_t kEpochSlotAt(uint16_t epoch) {
-  return static_cast<uint16_t>(0x130 + (epoch & 1U) * kEpochSlotSize);
+struct CredentialRecord {
+  uint8_t bytes[kCredentialRecordSize];
+};
+
+/// Place of the number of a start in the record.
+constexpr uint8_t kEpochSlotOf(uint16_t epoch) {
+  return static_cast<uint8_t>(kKeySize + 2U + (epoch & 1U) * kEpochSlotSize);
 }
 
-void encode_key(const Credentials& credentials, uint8_t (&record)[kKeyRecordSize]);
-/// Fills key, robot id and key_set.
-void decode_key(const uint8_t (&record)[kKeyRecordSize], Credentials& credentials);
+/// Begins a start: reads the record and puts the number of this start into it. True: the slot of
+/// that number has to be written before a command may be accepted.
+bool begin_start(CredentialRecord& record, Credentials& credentials);
 
-void encode_epoch(uint16_t epoch, uint8_t (&slot)[kEpochSlotSize]);
-/// 0: nothing valid.
-uint16_t decode_epoch(const uint8_t (&slot)[kEpochSlotSize]);
+/// Puts the number of a start into its slot.
+void put_epoch(CredentialRecord& record, uint16_t epoch);
+
+/// Puts key and robot id, kKeySize bytes, into the record of a start that has begun. All of it has
+/// to be written.
+void put_key(CredentialRecord& record, const uint8_t* key);
 
 }  // namespace screed

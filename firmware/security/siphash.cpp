@@ -2,7 +2,10 @@
 // round), and what is a row of additions with carry is written as that.
 #include "firmware/security/siphash.h"
 
+#include <string.h>
+
 #include "firmware/math/fixed.h"
+#include "firmware/math/rom.h"
 
 namespace screed {
 namespace {
@@ -12,9 +15,13 @@ constexpr uint8_t kWord = 8;
 constexpr uint8_t kState = 4 * kWord;
 
 /// "somepseudorandomlygeneratedbytes", each word from its end.
-constexpr uint8_t kInitial[kState] = {'u', 'e', 's', 'p', 'e', 'm', 'o', 's', 'm', 'o', 'd',
-                                      'n', 'a', 'r', 'o', 'd', 'a', 'r', 'e', 'n', 'e', 'g',
-                                      'y', 'l', 's', 'e', 't', 'y', 'b', 'd', 'e', 't'};
+const uint8_t kInitial[kState] SCREED_ROM = {'u', 'e', 's', 'p', 'e', 'm', 'o', 's', 'm', 'o', 'd',
+                                             'n', 'a', 'r', 'o', 'd', 'a', 'r', 'e', 'n', 'e', 'g',
+                                             'y', 'l', 's', 'e', 't', 'y', 'b', 'd', 'e', 't'};
+
+SCREED_OUT_OF_LINE void exclusive_or(uint8_t* word, const uint8_t* other) {
+  for (uint8_t i = 0; i < kWord; ++i) word[i] = static_cast<uint8_t>(word[i] ^ other[i]);
+}
 
 /// A quarter of a round: a += b; b = b rotated left by whole bytes, then right by bits; b ^= a.
 #ifdef __AVR__
@@ -135,7 +142,7 @@ void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
 #endif
 
 /// Rotation by 32 bits.
-void swap_halves(uint8_t* word) {
+SCREED_OUT_OF_LINE void swap_halves(uint8_t* word) {
   for (uint8_t i = 0; i < kWord / 2; ++i) {
     const uint8_t byte = word[i];
     word[i] = word[i + kWord / 2];
@@ -162,7 +169,7 @@ SCREED_OUT_OF_LINE void rounds(uint8_t* v, uint8_t count) {
 void siphash_2_4(const uint8_t* key, const uint8_t* message, uint8_t size, uint8_t* hash) {
   uint8_t v[kState];
   for (uint8_t i = 0; i < kState; ++i) {
-    v[i] = static_cast<uint8_t>(kInitial[i] ^ key[i % kSipHashKeySize]);
+    v[i] = static_cast<uint8_t>(rom_u8(kInitial + i) ^ key[i % kSipHashKeySize]);
   }
   // The last block ends with the size of the message.
   const uint8_t last = static_cast<uint8_t>(size | (kWord - 1U));
@@ -170,16 +177,15 @@ void siphash_2_4(const uint8_t* key, const uint8_t* message, uint8_t size, uint8
     uint8_t block[kWord];
     for (uint8_t i = 0; i < kWord; ++i, ++at) {
       block[i] = at < size ? message[at] : at == last ? size : static_cast<uint8_t>(0);
-      v[3 * kWord + i] = static_cast<uint8_t>(v[3 * kWord + i] ^ block[i]);
     }
+    exclusive_or(v + 3 * kWord, block);
     rounds(v, 2);
-    for (uint8_t i = 0; i < kWord; ++i) v[i] = static_cast<uint8_t>(v[i] ^ block[i]);
+    exclusive_or(v, block);
   }
   v[2 * kWord] = static_cast<uint8_t>(v[2 * kWord] ^ 0xFFU);
   rounds(v, 4);
-  for (uint8_t i = 0; i < kWord; ++i) {
-    hash[i] = static_cast<uint8_t>(v[i] ^ v[i + kWord] ^ v[i + 2 * kWord] ^ v[i + 3 * kWord]);
-  }
+  memcpy(hash, v, kWord);
+  for (uint8_t word = 1; word < 4; ++word) exclusive_or(hash, v + word * kWord);
 }
 
 }  // namespace screed

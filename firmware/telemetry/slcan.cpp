@@ -34,6 +34,13 @@ uint8_t slcan_encode(const CanFrame& frame, uint8_t* line) {
   return at;
 }
 
+bool slcan_byte(const uint8_t* digits, uint8_t& byte) {
+  const uint8_t high = hex_value(digits[0]);
+  const uint8_t low = hex_value(digits[1]);
+  byte = static_cast<uint8_t>((high << 4) | low);
+  return high != kNotHex && low != kNotHex;
+}
+
 bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
   if (byte != '\r') {
     if (length_ < sizeof(line_)) {
@@ -64,10 +71,7 @@ bool SlcanParser::decode(CanFrame& frame) const {
   frame.id = static_cast<uint16_t>((nibbles[0] << 8) | (nibbles[1] << 4) | nibbles[2]);
   frame.size = nibbles[3];
   for (uint8_t i = 0; i < frame.size; ++i) {
-    const uint8_t high = hex_value(line_[5 + 2 * i]);
-    const uint8_t low = hex_value(line_[6 + 2 * i]);
-    if (high == kNotHex || low == kNotHex) return false;
-    frame.data[i] = static_cast<uint8_t>((high << 4) | low);
+    if (!slcan_byte(line_ + 5 + 2 * i, frame.data[i])) return false;
   }
   return true;
 }

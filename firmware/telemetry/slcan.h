@@ -20,6 +20,9 @@ constexpr uint8_t kSlcanLineMax = 22;
 /// characters; no final 0.
 uint8_t slcan_encode(const CanFrame& frame, uint8_t* line);
 
+/// The byte of two hexadecimal digits; false when they are none.
+bool slcan_byte(const uint8_t* digits, uint8_t& byte);
+
 /// Collects bytes to lines and lines to frames. A line that is not exactly a data frame (other
 /// commands, wrong length, foreign characters, too long) is dropped; rejected() counts those that
 /// began like a frame, and those that are too long to be anything.

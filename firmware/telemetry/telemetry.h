@@ -1,5 +1,10 @@
-// The downlink: which frame is due when, and its bytes. At most two lines a tick, so that the
-// radio's 57.6 bytes a tick hold them.
+// The downlink: which frame is due when, and its bytes.
+//
+// The radio module sends what it was given when the line falls silent, at most 100 bytes at once,
+// and what is lost is lost as a whole. So lines are handed over in packets of whole lines, at most
+// four (88 bytes), every second tick: they take 15.3 of 20 ms. What happened once goes first, then
+// what is due by its rate, in order of importance, as far as the byte budget goes: half of what the
+// line carries.
 #pragma once
 
 #include <stdint.h>
@@ -25,35 +30,57 @@ struct TelemetryView {
   RobotState state;
   uint16_t faults;
   bool link_alive;
+  uint8_t ground_heartbeats;  ///< valid ones since start, wraps
+  uint16_t ground_time_ms;    ///< lower 16 bits of the last one's time
+  uint16_t boot_epoch;
+  uint16_t freshness;        ///< counter of the last command that was accepted
+  uint16_t frames_received;  ///< of the uplink, accepted
   uint8_t rejected_lines;
+  uint8_t rejected_frames;
+  uint8_t rejected_commands;
   LevelingAlgorithm algorithm;
   LevelingState leveling_state;
   uint16_t peaks;
   uint16_t battery_mv;
 };
 
-constexpr uint8_t kTelemetryMessages = 13;
+constexpr uint8_t kTelemetryMessages = 14;  ///< sent by their rate
+constexpr uint8_t kUrgentMessages = 3;      ///< sent when there is something to say
 
 class Telemetry {
  public:
-  /// Queues the acknowledgement of a command for the next tick; a second one before that replaces
-  /// it.
-  void acknowledge(uint8_t op, RequestResult result);
+  static constexpr uint8_t kPacketTicks = 2;
+  /// Half of 57,600 baud for the time of a packet.
+  static constexpr uint8_t kPacketBudget = 57;
 
-  /// One tick: writes the lines that are due into output.radio_out, whole lines only. What does not
-  /// fit waits for the next tick.
+  /// Queues a frame (COMMAND_ACK, PARAM_VALUE or EVENT) to go before all others, its protection
+  /// still missing. Dropped when four are waiting.
+  void queue(const CanFrame& frame);
+
+  /// tick() will hand over a packet: there is more to compute than in other ticks.
+  bool packet_due() const { return next_packet_ == 0; }
+
+  /// One tick: writes the lines of a packet into output.radio_out, when it is time for one, whole
+  /// lines only. What does not fit waits for the next one.
   void tick(const TelemetryView& view, RobotOutput& output);
 
  private:
-  void emit(CanFrame& frame, uint8_t& counter, RobotOutput& output);
+  static constexpr uint8_t kQueue = 4;
 
-  uint16_t due_ = 0;  ///< a bit a message: it waits for room
+  void emit(CanFrame& frame, uint8_t message, RobotOutput& output);
+  bool room(const RobotOutput& output) const;
+  void fill(CanFrame& frame, const TelemetryView& view);
+
+  CanFrame queue_[kQueue] = {};
+  uint8_t queued_ = 0;
+  uint8_t next_packet_ = 0;  ///< ticks
+  uint8_t credit_ = 0;       ///< bytes
+  uint16_t due_ = 0;         ///< a bit a message: it waits for room
   uint8_t countdown_[kTelemetryMessages] = {};
-  uint8_t counter_[kTelemetryMessages] = {};
+  uint8_t counter_[kTelemetryMessages + kUrgentMessages] = {};
   bool started_ = false;
-  uint8_t ack_counter_ = 0;
-  uint8_t ack_op_ = 0;  ///< 0: nothing to acknowledge
-  RequestResult ack_result_ = RequestResult::kDone;
+  uint8_t heartbeats_before_ = 0;  ///< TelemetryView::ground_heartbeats at the last LINK
+  uint16_t longest_tick_us_ = 0;   ///< since the last HEALTH
 };
 
 }  // namespace screed

@@ -5,6 +5,9 @@
 //   d          the draft becomes the defaults
 //   w          writes the draft; it holds from the next start on
 //   r          restarts, unless the motors have power
+//   k          is there a key (0, 1), the robot's id, number of this start
+//   kKEYID     stores a key: 32 hexadecimal digits, 2 of the robot's id; it holds from the next
+//              start on, and is never shown
 //
 // Numbers are those of the table in firmware/robot/parameters.h, from 0. Anything else is answered
 // with "?".
@@ -15,7 +18,9 @@
 #include <string.h>
 
 #include "build_info.h"
+#include "firmware/telemetry/slcan.h"
 #include "hal/avr/buttons.h"
+#include "hal/avr/credential_eeprom.h"
 #include "hal/avr/motors.h"
 #include "hal/avr/parameter_eeprom.h"
 #include "hal/avr/radio_uart.h"
@@ -28,7 +33,7 @@ namespace screed {
 namespace avr {
 namespace {
 
-constexpr uint8_t kInSize = 16;
+constexpr uint8_t kInSize = 1 + 2 * kKeySize + 1;
 constexpr uint8_t kOutSize = 48;
 constexpr uint8_t kBytesPerStep = 16;
 constexpr uint8_t kNothingToList = kParameterCount;
@@ -73,12 +78,16 @@ bool number(uint8_t& at, int16_t& value) {
   const bool negative = at < state.in_count && state.in[at] == '-';
   if (negative) ++at;
   const uint8_t begin = at;
-  int32_t sum = 0;
-  while (at < state.in_count && state.in[at] >= '0' && state.in[at] <= '9' && sum <= INT16_MAX) {
-    sum = sum * 10 + (state.in[at++] - '0');
+  uint16_t sum = 0;
+  while (at < state.in_count && sum <= INT16_MAX) {
+    const uint8_t digit = static_cast<uint8_t>(state.in[at] - '0');
+    if (digit > 9 || sum > INT16_MAX / 10) break;
+    sum = static_cast<uint16_t>(sum * 10U + digit);
+    ++at;
   }
   if (at == begin || sum > INT16_MAX) return false;
-  value = static_cast<int16_t>(negative ? -sum : sum);
+  value = static_cast<int16_t>(sum);
+  if (negative) value = static_cast<int16_t>(-value);
   return true;
 }
 
@@ -109,6 +118,29 @@ bool parameter_command() {
   return true;
 }
 
+void say_ok() {
+  say_text(PSTR("ok"));
+}
+
+bool key_command() {
+  if (state.in_count == 1) {
+    say('k');
+    say_number(credentials().key_set ? 1 : 0);
+    say_number(credentials().robot_id);
+    say_number(static_cast<int16_t>(credentials().boot_epoch));
+    return true;
+  }
+  if (state.in_count != 1 + 2 * kKeySize) return false;
+  uint8_t key[kKeySize];
+  for (uint8_t i = 0; i < kKeySize; ++i) {
+    const uint8_t* const digits = state.in + 1 + 2 * i;
+    if (!slcan_byte(digits, key[i])) return false;
+  }
+  if (!credential_eeprom_store(key)) return false;
+  say_ok();
+  return true;
+}
+
 void say_health() {
   say_text(PSTR("screed " SCREED_VERSION " " SCREED_BOARD));
   say_number(static_cast<int16_t>(reset_cause()));
@@ -122,6 +154,7 @@ void say_health() {
 bool obey() {
   const uint8_t command = state.in[0];
   if (command == 'p') return parameter_command();
+  if (command == 'k') return key_command();
   if (state.in_count != 1) return false;
   switch (command) {
     case 'v':
@@ -140,7 +173,7 @@ bool obey() {
     default:
       return false;
   }
-  say_text(PSTR("ok"));
+  say_ok();
   return true;
 }
 

@@ -9,6 +9,7 @@
 #include "hal/avr/battery.h"
 #include "hal/avr/buttons.h"
 #include "hal/avr/console.h"
+#include "hal/avr/credential_eeprom.h"
 #include "hal/avr/encoders.h"
 #include "hal/avr/imu.h"
 #include "hal/avr/leds.h"
@@ -32,7 +33,8 @@ void init() {
   TIMSK0 = 0;  // millis() stands still: 10 interrupts a tick less
   avr::reset_cause_init();
   avr::parameter_eeprom_init();
-  avr::show(avr::kShownStart, &avr::parameters_in_force());
+  avr::credential_eeprom_init();
+  avr::show(avr::kShownStart, &avr::parameter_draft());
   avr::buttons_init();
   avr::leds_init();
   avr::encoders_init();
@@ -49,7 +51,11 @@ const BoardConstants& board_constants() {
 }
 
 const Parameters& parameters() {
-  return avr::parameters_in_force();
+  return avr::parameter_draft();
+}
+
+const Credentials& credentials() {
+  return avr::credentials();
 }
 
 bool parameters_intact() {
@@ -90,6 +96,9 @@ void write_outputs(const RobotOutput& output) {
   avr::motors_drive(output.duty_left, output.duty_right);
   avr::leds_write(output.leds);
   avr::radio_uart_write(output.radio_out, output.radio_out_count);
+  if (output.store_parameter != 0) {
+    avr::parameter_store(output.store_parameter, output.store_value);
+  }
   avr::show(avr::kShownOutput, &output);
 }
 

@@ -9,17 +9,18 @@ namespace avr {
 /// Reads the store; called once, before the others.
 void parameter_eeprom_init();
 
-/// The parameters this start works with. They stay as they are until the next start.
-const Parameters& parameters_in_force();
 StoreState parameter_store_state();
 
-/// A draft: begins as the parameters in force; what is written by the next save.
+/// What a save writes. Begins as what was stored, or the defaults: the parameters of this start.
 Parameters& parameter_draft();
 void parameter_draft_defaults();
 
 /// Begins to write the draft, one byte a tick; the new parameters hold from the next start on.
 /// False when the draft is out of its range, or a write is under way.
 bool parameter_save();
+/// The same with one more change: a parameter by its number in the table, from 1.
+bool parameter_store(uint8_t number, int16_t value);
+/// The EEPROM is being written, by this or by others.
 bool parameter_saving();
 
 /// Writes the next byte when the EEPROM is ready; called once a tick, never waits.

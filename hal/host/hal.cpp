@@ -21,6 +21,9 @@ const BoardConstants& board_constants() {
 const Parameters& parameters() {
   return current->parameters();
 }
+const Credentials& credentials() {
+  return current->credentials();
+}
 bool parameters_intact() {
   return true;  // those of an experiment are checked when it is read
 }

@@ -7,6 +7,7 @@
 
 #include "firmware/robot/board_constants.h"
 #include "firmware/robot/parameters.h"
+#include "firmware/security/credentials.h"
 #include "hal/sample.h"
 
 namespace screed {
@@ -19,6 +20,7 @@ class Target {
   virtual void init() = 0;
   virtual const BoardConstants& board_constants() = 0;
   virtual const Parameters& parameters() = 0;
+  virtual const Credentials& credentials() = 0;
   virtual bool wait_for_tick() = 0;
   virtual void read_sensors(SensorSample& sample) = 0;
   virtual void write_outputs(const RobotOutput& output) = 0;

@@ -18,6 +18,8 @@
 namespace screed {
 namespace {
 
+constexpr const char* kNoKey = "none";
+
 /// One key of an experiment file: how its value is read, written back and described.
 struct Key {
   std::string section;
@@ -124,6 +126,16 @@ bool is_soil(const std::string& name) {
 
 bool is_ground(const std::string& name) {
   return name == "rigid" || name == "scm" || name == "particles" || name == "static_particles";
+}
+
+bool is_key(const std::string& text) {
+  if (text == kNoKey) return true;
+  try {
+    parse_key(text, "");
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 bool not_empty(const std::string& text) {
@@ -325,6 +337,21 @@ std::vector<Key> make_keys() {
   keys.push_back(bool_key("radio", "ground_station", "the ground station arms and starts the robot",
                           [](Experiment& e) -> bool& { return e.radio.ground_station; }));
 
+  keys.push_back(text_key(
+      "radio", "key",
+      "32 hexadecimal digits, then a blank and the robot's id if it is not 1; or none",
+      "of robot and ground station; left out: the test key 00 01 .. 0F; none: the robot has no key",
+      [](Experiment& e) -> std::string& { return e.radio.key; }, is_key));
+  keys.push_back({"radio", "boot_epoch", "", "an integer 2..65535",
+                  "number of the robot's start, part of every command's freshness",
+                  [](Experiment& e, const std::string& text) {
+                    return parse_number(text, e.radio.boot_epoch) &&
+                           e.radio.boot_epoch >= kFirstBootEpoch;
+                  },
+                  [](const Experiment& e) -> std::optional<std::string> {
+                    return std::to_string(e.radio.boot_epoch);
+                  }});
+
   keys.push_back(real_key("physics", "step", "s", 1e-5, 0.01, "of the integration; divides 0.01 s",
                           [](Experiment& e) -> double& { return e.physics.step_s; }));
 
@@ -424,6 +451,17 @@ void check(const Experiment& experiment, const std::string& source) {
 }
 
 }  // namespace
+
+CommandKey ground_key_of(const Experiment& experiment) {
+  const std::string& key = experiment.radio.key;
+  return key.empty() || key == kNoKey ? test_key() : parse_key(key, "[radio] key");
+}
+
+Credentials credentials_of(const Experiment& experiment) {
+  Credentials credentials = credentials_of(ground_key_of(experiment), experiment.radio.boot_epoch);
+  credentials.key_set = experiment.radio.key != kNoKey;
+  return credentials;
+}
 
 int16_t algorithm_number(const std::string& name) {
   for (const AlgorithmName& known : kAlgorithms) {

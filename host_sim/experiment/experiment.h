@@ -14,6 +14,7 @@
 
 #include "firmware/robot/parameters.h"
 #include "host_sim/experiment/board_table.h"
+#include "host_sim/radio/command_key.h"
 
 namespace screed {
 
@@ -111,6 +112,8 @@ struct Experiment {
     double baud = 58823.5;
     double packet_pause = 3.0;
     bool ground_station = true;
+    std::string key;                        ///< of robot and ground station; empty: the test key
+    uint16_t boot_epoch = kFirstBootEpoch;  ///< number of the robot's start
   } radio;
 
   struct {
@@ -129,6 +132,11 @@ struct Experiment {
 /// Reads `path` and applies `overrides` ("section.key=value") on top. Throws InputError.
 Experiment read_experiment(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides = {});
+
+/// The robot's key and number of its start; without a key when the experiment says so.
+Credentials credentials_of(const Experiment& experiment);
+/// What the ground station signs with: the robot's key, or the test key.
+CommandKey ground_key_of(const Experiment& experiment);
 
 /// The algorithm's number in the parameter table. Throws InputError for an unknown name.
 int16_t algorithm_number(const std::string& name);

@@ -1,6 +1,7 @@
 // Runs an experiment.
 #include "host_sim/experiment/simulation.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <fstream>
@@ -24,6 +25,7 @@
 namespace screed {
 namespace {
 
+constexpr double kLineBytesPerS = 5760.0;  // 57,600 baud
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kLevelBedNodes = 65;  // a side, of a bed of particles without an image
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
@@ -93,7 +95,8 @@ class Recorder {
            SessionWriter& writer)
       : plant_(plant),
         options_(options),
-        shadow_(board_constants_of(options.board), experiment.parameters),
+        shadow_(board_constants_of(options.board), experiment.parameters,
+                credentials_of(experiment)),
         writer_(writer),
         duration_s_(experiment.experiment.duration_s),
         flatness_deg_(experiment.experiment.flatness_deg),
@@ -124,6 +127,9 @@ class Recorder {
   /// The robot has answered.
   void end_tick(const RobotOutput& output) {
     ++ticks_;
+    radio_bytes_ += output.radio_out_count;
+    radio_lines_ += static_cast<uint64_t>(
+        std::count(output.radio_out, output.radio_out + output.radio_out_count, '\r'));
     check_purity(output);
     writer_.append(frame_, sample_, output);
     if (ticks_ % kPathTicks == 1)
@@ -145,6 +151,8 @@ class Recorder {
   const FrameRecorder& frames() const { return recorder_; }
   std::vector<PathPoint>& path() { return path_; }
   double flatness_before() const { return flatness_; }
+  uint64_t radio_lines() const { return radio_lines_; }
+  uint64_t radio_bytes() const { return radio_bytes_; }
   double wall_s() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
@@ -171,6 +179,8 @@ class Recorder {
   SessionWriter& writer_;
   FrameRecorder recorder_;
   std::vector<PathPoint> path_;
+  uint64_t radio_lines_ = 0;
+  uint64_t radio_bytes_ = 0;
   uint64_t ticks_ = 0;
   double duration_s_;
   double flatness_deg_;
@@ -187,6 +197,7 @@ class NativeTarget : public hal::Target {
       : world_(world),
         board_(board_constants_of(options.board)),
         parameters_(experiment.parameters),
+        credentials_(credentials_of(experiment)),
         recorder_(recorder),
         last_tick_(
             static_cast<uint64_t>(std::llround(experiment.experiment.duration_s * kTickRate_hz))) {}
@@ -194,6 +205,7 @@ class NativeTarget : public hal::Target {
   void init() override {}
   const BoardConstants& board_constants() override { return board_; }
   const Parameters& parameters() override { return parameters_; }
+  const Credentials& credentials() override { return credentials_; }
 
   bool wait_for_tick() override {
     if (recorder_.stop_asked() || world_.ticks() >= last_tick_) return false;
@@ -215,6 +227,7 @@ class NativeTarget : public hal::Target {
   World& world_;
   const BoardConstants& board_;
   Parameters parameters_;
+  Credentials credentials_;
   Recorder& recorder_;
   uint64_t last_tick_;
 };
@@ -271,6 +284,7 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
   info.board_name = options.board;
   info.board = board_constants_of(options.board);
   info.parameters = experiment.parameters;
+  info.credentials = credentials_of(experiment);
   return info;
 }
 
@@ -441,6 +455,7 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
   options.radio.range_m = experiment.radio.range_m;
   options.radio.bytes_per_s = experiment.radio.baud / 10.0;
   options.radio.pause_characters = experiment.radio.packet_pause;
+  options.ground_key = ground_key_of(experiment);
   options.ground_station_arms = experiment.radio.ground_station;
   if (experiment.experiment.algorithm == "drive") {
     options.drive = DriveOrder{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
@@ -482,6 +497,7 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
   options.elf = image;
   options.board = board;
   options.parameters = experiment.parameters;
+  options.credentials = credentials_of(experiment);
   options.world = world_options(experiment, board, ground_port);
   return make_co_simulation(make_terrain(experiment), make_model(experiment, board), options,
                             telemetry_log);
@@ -535,6 +551,10 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.state = state_name(recorder.robot().supervisor().state());
   summary.faults = recorder.robot().supervisor().faults();
   summary.telemetry_frames = run.ground_station().frames();
+  summary.telemetry_frames_damaged = run.ground_station().rejected_frames();
+  summary.telemetry_frames_sent = recorder.radio_lines();
+  summary.telemetry_share =
+      static_cast<double>(recorder.radio_bytes()) / (plant.time_s() * kLineBytesPerS);
   summary.after = terrain_statistics(plant.terrain());
   summary.cycles = run.cycles();
   summary.flatness_before = recorder.flatness_before();
@@ -591,6 +611,9 @@ std::string summary_json(const SimulationSummary& summary) {
       {"state", summary.state},
       {"faults", fault_names(summary.faults)},
       {"telemetry_frames", summary.telemetry_frames},
+      {"telemetry_frames_sent", summary.telemetry_frames_sent},
+      {"telemetry_frames_damaged", summary.telemetry_frames_damaged},
+      {"telemetry_share", summary.telemetry_share},
       {"terrain_before", terrain_json(summary.before, summary.flatness_before)},
       {"terrain_after", terrain_json(summary.after, summary.flatness_after)},
   };

@@ -58,7 +58,10 @@ struct SimulationSummary {
   int peaks = 0;
   std::string state;  ///< of the supervisor at the end
   uint16_t faults = 0;
-  uint64_t telemetry_frames = 0;
+  uint64_t telemetry_frames = 0;          ///< that reached the ground whole
+  uint64_t telemetry_frames_sent = 0;     ///< lines the robot handed to its radio
+  uint64_t telemetry_frames_damaged = 0;  ///< that reached the ground with a wrong check
+  double telemetry_share = 0.0;           ///< of what the radio's line carries, 0..1
   TerrainStatistics before;
   TerrainStatistics after;
   double flatness_before = 0.0;

@@ -35,6 +35,7 @@ struct CoSimulationOptions {
   std::string elf;
   std::string board = "a_star_32u4";  ///< a folder in boards/
   Parameters parameters;              ///< stored in the EEPROM before the program starts
+  Credentials credentials = credentials_of(test_key());  ///< likewise
   WorldOptions world;
 };
 

@@ -35,7 +35,8 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
       imu_(options.world.seed, options.world.imu),
       uplink_(options.world.seed, "uplink", options.world.radio),
       downlink_(options.world.seed, "downlink", options.world.radio),
-      ground_(options.world.ground_station_arms, options.world.drive, telemetry_log),
+      ground_(options.world.ground_station_arms, options.world.drive, telemetry_log,
+              options.world.ground_key),
       ground_end_(options.world.ground_port),
       station_m_(plant_.vehicle().chassis().pose.translation()),
       board_(options.elf, wiring_of(options.board)),
@@ -46,6 +47,7 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
   for (std::uint8_t i = 0; i < kParameterCopies; ++i) {
     board_.mcu.write_eeprom(kParameterCopyAt(i), copy.bytes);
   }
+  board_.mcu.write_eeprom(kCredentialRecordAt, credential_record(options.credentials).bytes);
   for (const Side side : {kLeft, kRight}) {
     position_.at(side) = encoder_position(side);
     board_.set_encoder(side, static_cast<std::int64_t>(std::floor(position_.at(side))));

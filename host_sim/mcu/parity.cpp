@@ -9,10 +9,10 @@
 namespace screed {
 
 ParityResult run_parity(CoSimulation& image, const BoardConstants& board,
-                        const Parameters& parameters, double seconds,
-                        const std::function<bool(const ParityResult&)>& go_on) {
+                        const Parameters& parameters, const Credentials& credentials,
+                        double seconds, const std::function<bool(const ParityResult&)>& go_on) {
   ParityResult result;
-  Robot robot(board, parameters);
+  Robot robot(board, parameters, credentials);
   RobotOutput expected_output{};  // one for all ticks, as in the main loop
   std::array<std::uint8_t, kOutputBytes> expected{};
   std::array<std::uint8_t, kOutputBytes> got{};

@@ -23,7 +23,7 @@ struct ParityResult {
 
 /// Runs until the world's clock has passed `seconds`, or `go_on` returns false.
 ParityResult run_parity(CoSimulation& image, const BoardConstants& board,
-                        const Parameters& parameters, double seconds,
-                        const std::function<bool(const ParityResult&)>& go_on);
+                        const Parameters& parameters, const Credentials& credentials,
+                        double seconds, const std::function<bool(const ParityResult&)>& go_on);
 
 }  // namespace screed

@@ -102,4 +102,19 @@ Credentials credentials_of(const CommandKey& key, uint16_t boot_epoch) {
   return credentials;
 }
 
+CommandKey command_key_of(const Credentials& credentials) {
+  CommandKey key;
+  std::copy_n(credentials.key, key.bytes.size(), key.bytes.begin());
+  key.robot_id = credentials.robot_id;
+  return key;
+}
+
+CredentialRecord credential_record(const Credentials& credentials) {
+  CredentialRecord record{};
+  // A start numbers itself one above what it finds.
+  put_epoch(record, static_cast<uint16_t>(credentials.boot_epoch - 1U));
+  if (credentials.key_set) put_key(record, credentials.key);
+  return record;
+}
+
 }  // namespace screed

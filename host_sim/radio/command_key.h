@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "firmware/security/credentials.h"
+#include "firmware/security/key_store.h"
 
 namespace screed {
 
@@ -34,7 +34,14 @@ CommandKey read_key_file(const std::filesystem::path& file);
 /// robot until somebody comes with a USB cable. Throws InputError.
 void write_key_file(const std::filesystem::path& file, const CommandKey& key);
 
-/// As a robot that has it holds it, in its start number `boot_epoch`.
-Credentials credentials_of(const CommandKey& key, uint16_t boot_epoch = 1);
+/// The first start in which a robot can have a key: it was set in the one before.
+constexpr uint16_t kFirstBootEpoch = 2;
+
+/// As a robot that has it holds it, in its start number boot_epoch.
+Credentials credentials_of(const CommandKey& key, uint16_t boot_epoch = kFirstBootEpoch);
+/// The key of a robot.
+CommandKey command_key_of(const Credentials& credentials);
+/// The EEPROM of that robot, before this start.
+CredentialRecord credential_record(const Credentials& credentials);
 
 }  // namespace screed

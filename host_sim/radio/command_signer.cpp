@@ -16,9 +16,10 @@ constexpr int kMostAhead = 200;
 }  // namespace
 
 void CommandSigner::hear(const CanFrame& frame) {
-  if (frame.id != kIdHeartbeat || frame.size != 8) return;
-  const uint16_t epoch = get_u16(frame.data + 4);
-  const uint16_t counter = get_u16(frame.data + 6);
+  if (frame.id != kIdHeartbeat || frame.size != message::Heartbeat::kSize) return;
+  const auto heartbeat = message::Heartbeat::unpack(frame.data);
+  const uint16_t epoch = heartbeat.boot_epoch;
+  const uint16_t counter = heartbeat.freshness;
   const bool behind = counter > counter_;
   if (epoch != boot_epoch_ || behind || counter_ - counter > kMostAhead) counter_ = counter;
   boot_epoch_ = epoch;

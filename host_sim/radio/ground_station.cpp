@@ -35,6 +35,10 @@ void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
     report_.faults = heartbeat.faults;
     if (report_.state == RobotState::kRunning) started_ = true;
   }
+  if (frame.id == kIdCommandAck && frame.size == message::CommandAck::kSize) {
+    report_.answer = message::CommandAck::unpack(frame.data);
+  }
+  signer_.hear(frame);
   if (log_ == nullptr) return;
   *log_ << candump_line(now_us, "screed0", frame);
 }
@@ -42,19 +46,13 @@ void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
 void GroundStation::add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines) {
   e2e_protect(frame.id, counter, frame.data, frame.size);
   counter = static_cast<uint8_t>((counter + 1) & 0x0F);
+  add_line(frame, lines);
+}
+
+void GroundStation::add_line(const CanFrame& frame, std::vector<uint8_t>& lines) {
   uint8_t line[kSlcanLineMax];
   const uint8_t length = slcan_encode(frame, line);
   lines.insert(lines.end(), line, line + length);
-}
-
-void GroundStation::add_command(CommandOp op, const DriveArgument* argument,
-                                std::vector<uint8_t>& lines) {
-  CanFrame frame{};
-  frame.id = kIdCommand;
-  frame.size = 6;
-  frame.data[2] = static_cast<uint8_t>(op);
-  if (argument != nullptr) put_drive_argument(frame.data + 3, *argument);
-  add_frame(frame, command_counter_, lines);
 }
 
 std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
@@ -65,14 +63,17 @@ std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
   }
   // Commands between heartbeats, so that no packet holds both.
   if (ticks_ % kCommandTicks == kCommandTicks / 2 && report_.heard) {
-    if (report_.state == RobotState::kDisarmed && arm_ && !started_)
-      add_command(CommandOp::kArm, nullptr, lines);
-    if (report_.state == RobotState::kArmed && arm_) add_command(CommandOp::kRun, nullptr, lines);
+    if (report_.state == RobotState::kDisarmed && arm_ && !started_) {
+      add_line(signer_.sign(CommandOp::kArm), lines);
+    }
+    if (report_.state == RobotState::kArmed && arm_) {
+      add_line(signer_.sign(CommandOp::kRun), lines);
+    }
     if (report_.state == RobotState::kRunning && drive_.has_value()) {
       const DriveArgument argument = {
           static_cast<int16_t>(std::lround(drive_->speed_m_per_s * 1000.0)),
           static_cast<int16_t>(std::lround(drive_->yaw_rate_deg_per_s * 10.0))};
-      add_command(CommandOp::kDrive, &argument, lines);
+      add_line(signer_.sign(CommandOp::kDrive, argument), lines);
     }
   }
   ++ticks_;

@@ -13,6 +13,7 @@
 #include "firmware/robot/supervisor.h"
 #include "firmware/telemetry/messages.h"
 #include "firmware/telemetry/slcan.h"
+#include "host_sim/radio/command_signer.h"
 
 namespace screed {
 
@@ -27,13 +28,16 @@ struct RobotReport {
   bool heard = false;
   RobotState state = RobotState::kDisarmed;
   uint16_t faults = 0;
+  /// The last answer to a command.
+  std::optional<message::CommandAck> answer;
 };
 
 class GroundStation {
  public:
   /// log may be null. arm: arm and start the robot as soon as it is ready.
-  GroundStation(bool arm, std::optional<DriveOrder> drive, std::ostream* log)
-      : arm_(arm), drive_(drive), log_(log) {}
+  GroundStation(bool arm, std::optional<DriveOrder> drive, std::ostream* log,
+                const CommandKey& key = test_key())
+      : arm_(arm), drive_(drive), log_(log), signer_(key) {}
 
   /// Takes what came down since the last tick.
   void receive(uint64_t now_us, std::span<const uint8_t> bytes);
@@ -48,11 +52,12 @@ class GroundStation {
  private:
   void take(uint64_t now_us, const CanFrame& frame);
   void add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines);
-  void add_command(CommandOp op, const DriveArgument* argument, std::vector<uint8_t>& lines);
+  static void add_line(const CanFrame& frame, std::vector<uint8_t>& lines);
 
   bool arm_;
   std::optional<DriveOrder> drive_;
   std::ostream* log_;
+  CommandSigner signer_;
   SlcanParser parser_;
   RobotReport report_;
   uint64_t frames_ = 0;
@@ -60,7 +65,6 @@ class GroundStation {
   uint64_t ticks_ = 0;
   bool started_ = false;  ///< the robot has been running: it is not started twice
   uint8_t heartbeat_counter_ = 0;
-  uint8_t command_counter_ = 0;
 };
 
 }  // namespace screed

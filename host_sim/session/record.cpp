@@ -86,8 +86,8 @@ std::string element_text(ColumnType type, const std::uint8_t* bytes) {
                                                 const RobotOutput& output) {
   [[maybe_unused]] const auto& [a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15,
                                 a16, a17, a18] = sample;
-  [[maybe_unused]] const auto& [b1, b2, b3, b4, b5] = output;
-  static_assert(kSampleColumns.size() == 18 && kOutputColumns.size() == 5);
+  [[maybe_unused]] const auto& [b1, b2, b3, b4, b5, b6, b7] = output;
+  static_assert(kSampleColumns.size() == 18 && kOutputColumns.size() == 7);
 }
 
 }  // namespace

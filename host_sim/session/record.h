@@ -42,6 +42,8 @@
   X(duty_left,       "1/400",        "motor duty, -400..400") \
   X(duty_right,      "1/400",        "motor duty, -400..400") \
   X(leds,            "",             "lit LEDs: 1 yellow, 2 green, 4 red") \
+  X(store_parameter, "",             "number of a parameter to store, from 1; 0: none") \
+  X(store_value,     "",             "its value") \
   X(radio_out_count, "byte",         "valid bytes of radio_out") \
   X(radio_out,       "",             "bytes queued for the radio")
 // clang-format on

@@ -36,7 +36,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file) {
   result.unchanged = !result.complete || !session.missing_columns().empty() ||
                      session.compute_content_hash() == session.content_hash();
 
-  Robot robot(info.board, info.parameters);
+  Robot robot(info.board, info.parameters, info.credentials);
   RobotOutput output{};  // one for all ticks, as in the main loop
   ContentHash hash;
   std::array<std::uint8_t, kOutputBytes> expected{};

@@ -35,6 +35,9 @@ SessionHash::SessionHash(const SessionInfo& info) {
     info_.add(parameter.name);
     info_.add(info.parameters.*parameter.field);
   }
+  info_.add(key_text(command_key_of(info.credentials)));
+  info_.add(info.credentials.key_set);
+  info_.add(info.credentials.boot_epoch);
 }
 
 void SessionHash::set_terrain_before(const HeightMapView& map) {

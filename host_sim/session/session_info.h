@@ -10,6 +10,7 @@
 #include "firmware/robot/board_constants.h"
 #include "firmware/robot/parameters.h"
 #include "hal/sample.h"
+#include "host_sim/radio/command_key.h"
 
 namespace screed {
 
@@ -23,6 +24,7 @@ struct SessionInfo {
   std::string board_name;
   BoardConstants board{};
   Parameters parameters;
+  Credentials credentials = credentials_of(test_key());
 };
 
 /// A grid of integer heights: heights[iy * nx + ix] stands at (origin_x + ix * spacing, origin_y +

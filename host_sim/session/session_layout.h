@@ -30,6 +30,10 @@ inline constexpr char kHashAttribute[] = "content_hash";
 
 inline constexpr char kParametersGroup[] = "parameters";
 inline constexpr char kBoardGroup[] = "board";
+inline constexpr char kCredentialsGroup[] = "credentials";
+inline constexpr char kKeyAttribute[] = "key";  ///< hexadecimal digits and robot id
+inline constexpr char kKeySetAttribute[] = "key_set";
+inline constexpr char kBootEpochAttribute[] = "boot_epoch";
 inline constexpr char kTerrainGroup[] = "terrain";
 inline constexpr char kTerrainBefore[] = "before";
 inline constexpr char kTerrainAfter[] = "after";

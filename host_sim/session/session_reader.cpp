@@ -94,6 +94,13 @@ SessionInfo read_info(hid_t file, std::vector<std::string>& missing_parameters) 
     info.board.*field.field =
         narrow<std::uint16_t>(h5::read_int64(board.get(), field.name), field.name);
   }
+  const h5::Handle credentials(H5Gopen2(file, layout::kCredentialsGroup, H5P_DEFAULT), H5Gclose,
+                               "cannot read group 'credentials'");
+  info.credentials = credentials_of(
+      parse_key(h5::read_string(credentials.get(), layout::kKeyAttribute), "credentials"),
+      narrow<std::uint16_t>(h5::read_int64(credentials.get(), layout::kBootEpochAttribute),
+                            layout::kBootEpochAttribute));
+  info.credentials.key_set = h5::read_int64(credentials.get(), layout::kKeySetAttribute) != 0;
   return info;
 }
 

@@ -129,6 +129,13 @@ void write_info(hid_t file, const SessionInfo& info) {
   for (const layout::BoardField& field : layout::kBoardFields) {
     write_with_unit(board.get(), field.name, info.board.*field.field, field.unit);
   }
+  const h5::Handle credentials = create_group(file, layout::kCredentialsGroup);
+  h5::write_attribute(credentials.get(), layout::kKeyAttribute,
+                      key_text(command_key_of(info.credentials)));
+  h5::write_attribute(credentials.get(), layout::kKeySetAttribute,
+                      std::int64_t{info.credentials.key_set ? 1 : 0});
+  h5::write_attribute(credentials.get(), layout::kBootEpochAttribute,
+                      std::int64_t{info.credentials.boot_epoch});
 }
 
 }  // namespace

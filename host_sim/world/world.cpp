@@ -14,7 +14,7 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
       imu_(options.seed, options.imu),
       uplink_(options.seed, "uplink", options.radio),
       downlink_(options.seed, "downlink", options.radio),
-      ground_(options.ground_station_arms, options.drive, telemetry_log),
+      ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key),
       ground_end_(options.ground_port),
       station_m_(plant_.vehicle().chassis().pose.translation()) {}
 

@@ -26,6 +26,7 @@ struct WorldOptions : PlantOptions {
   RadioOptions radio;
   bool ground_station_arms = true;
   std::optional<DriveOrder> drive;
+  CommandKey ground_key = test_key();  ///< what the ground station signs with
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
   GroundPort* ground_port = nullptr;
   double encoder_counts_per_turn = 1000.0 / 3.0;

@@ -30,6 +30,7 @@ Bench::Bench()
       accel_mag(board.accel_mag),
       gyro(board.gyro),
       baro(*board.baro) {
+  mcu.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
   board.set_battery_v(7.2);
   board.set_encoder(kLeft, left_count_);
   board.set_encoder(kRight, right_count_);
@@ -82,6 +83,7 @@ void Bench::run_ms(int ms) {
 }
 
 void Bench::command(CommandOp op, DriveArgument argument) {
+  ground_.hear(last_frame(kIdHeartbeat));
   mcu.receive(ground_.command(op, argument));
   run_ms(50);
 }

@@ -187,6 +187,7 @@ TEST_F(BoardParts, WithoutAGoodCopyItRefusesToBeArmed) {
   bad.bytes[9] ^= 0x04;
   write_copy(0, bad);
   write_copy(1, bad);
+  mcu_.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
   GroundLines ground;
   for (int i = 0; i < 60; ++i) {
     board_.feel_accel(0.244 * Eigen::Vector3d(i % 3, 0, 4096));
@@ -201,6 +202,37 @@ TEST_F(BoardParts, WithoutAGoodCopyItRefusesToBeArmed) {
                                    [](const CanFrame& it) { return it.id == kIdCommandAck; });
   ASSERT_NE(answer, frames.end());
   EXPECT_EQ(static_cast<RequestResult>(answer->data[4]), RequestResult::kFaultPresent);
+}
+
+TEST_F(BoardParts, TakesAKeyOverUsbForTheNextStart) {
+  mcu_.run_ms(100);
+  open_console();
+  EXPECT_EQ(ask("k"), "k 0 255 1\n") << "an erased EEPROM";
+  EXPECT_EQ(ask("k00"), "?\n");
+  EXPECT_EQ(ask("k000102030405060708090A0B0C0D0E0FG1"), "?\n");
+  EXPECT_EQ(ask("k000102030405060708090a0B0C0D0E0F01", 600), "ok\n");
+  EXPECT_EQ(ask("k"), "k 0 255 1\n") << "not yet, and never shown";
+  const std::vector<std::uint8_t> eeprom = mcu_.read_eeprom();
+  CredentialRecord record{};
+  std::copy_n(eeprom.begin() + kCredentialRecordAt, kCredentialRecordSize, record.bytes);
+  Credentials next{};
+  EXPECT_TRUE(begin_start(record, next));
+  EXPECT_TRUE(next.key_set);
+  EXPECT_EQ(command_key_of(next), test_key());
+  EXPECT_EQ(next.boot_epoch, kFirstBootEpoch);
+}
+
+TEST_F(BoardParts, EveryStartHasItsNumber) {
+  mcu_.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
+  for (int start = 0; start < 5; ++start) {
+    mcu_.run_ms(300);
+    const std::vector<CanFrame> frames = frames_in(mcu_.sent());
+    const auto last = std::find_if(frames.rbegin(), frames.rend(),
+                                   [](const CanFrame& it) { return it.id == kIdHeartbeat; });
+    ASSERT_NE(last, frames.rend());
+    EXPECT_EQ(message::Heartbeat::unpack(last->data).boot_epoch, kFirstBootEpoch + start);
+    mcu_.reset(0);
+  }
 }
 
 TEST_F(BoardParts, KnowsWhyItStarted) {

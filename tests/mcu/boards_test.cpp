@@ -102,6 +102,7 @@ TEST_P(EachBoard, TurnsLeftWithTheRightTrackForward) {
   ParameterCopy copy{};
   encode_parameters(parameters, 1, copy);
   board_.mcu.write_eeprom(kParameterCopyAt(0), copy.bytes);
+  board_.mcu.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
   run_ms(6000);
   board_.mcu.receive(ground_.command(CommandOp::kArm));
   run_ms(50);

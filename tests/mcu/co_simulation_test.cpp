@@ -38,8 +38,9 @@ TEST(CoSimulation, HostAndImageGiveTheSameBytes) {
   ImageDrive drive;
   Parameters parameters;
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
-  const ParityResult result = run_parity(drive.world, board_constants_of("a_star_32u4"), parameters,
-                                         15.0, [](const ParityResult&) { return true; });
+  const ParityResult result =
+      run_parity(drive.world, board_constants_of("a_star_32u4"), parameters,
+                 credentials_of(test_key()), 15.0, [](const ParityResult&) { return true; });
   EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
   EXPECT_GT(result.ticks, 1490U);
   EXPECT_GT(result.driving_ticks, 500U);
@@ -50,8 +51,9 @@ TEST(CoSimulation, ParityFindsADifference) {
   Parameters parameters;
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   parameters.speed_kp = 25;  // the image has 24
-  const ParityResult result = run_parity(drive.world, board_constants_of("a_star_32u4"), parameters,
-                                         10.0, [](const ParityResult&) { return true; });
+  const ParityResult result =
+      run_parity(drive.world, board_constants_of("a_star_32u4"), parameters,
+                 credentials_of(test_key()), 10.0, [](const ParityResult&) { return true; });
   EXPECT_GT(result.differing_bytes, 0U);
   ASSERT_TRUE(result.first_difference_tick.has_value());
   EXPECT_GT(*result.first_difference_tick, 500U) << "while the robot stands, kp means nothing";

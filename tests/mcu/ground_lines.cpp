@@ -6,26 +6,28 @@
 namespace screed::mcu {
 namespace {
 
-std::vector<std::uint8_t> line_of(CanFrame frame, std::uint8_t& counter) {
-  e2e_protect(frame.id, counter, frame.data, frame.size);
-  counter = static_cast<std::uint8_t>((counter + 1) & 0x0F);
+std::vector<std::uint8_t> line_of(const CanFrame& frame) {
   std::uint8_t line[kSlcanLineMax];
   return {line, line + slcan_encode(frame, line)};
 }
 
 }  // namespace
 
+GroundLines::GroundLines() : signer_(test_key()) {
+  message::Heartbeat heartbeat{};
+  heartbeat.boot_epoch = kFirstBootEpoch;
+  hear(frame_of(heartbeat));
+}
+
 std::vector<std::uint8_t> GroundLines::heartbeat(std::uint32_t time_ms) {
-  return line_of(frame_of(message::GroundHeartbeat{time_ms}), heartbeat_counter_);
+  CanFrame frame = frame_of(message::GroundHeartbeat{time_ms});
+  e2e_protect(frame.id, heartbeat_counter_, frame.data, frame.size);
+  heartbeat_counter_ = static_cast<std::uint8_t>((heartbeat_counter_ + 1) & 0x0F);
+  return line_of(frame);
 }
 
 std::vector<std::uint8_t> GroundLines::command(CommandOp op, DriveArgument argument) {
-  CanFrame frame{};
-  frame.id = kIdCommand;
-  frame.size = 6;
-  frame.data[2] = static_cast<std::uint8_t>(op);
-  put_drive_argument(frame.data + 3, argument);
-  return line_of(frame, command_counter_);
+  return line_of(signer_.sign(op, argument));
 }
 
 std::vector<CanFrame> frames_in(const std::vector<std::uint8_t>& bytes) {

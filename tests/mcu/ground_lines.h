@@ -5,17 +5,23 @@
 #include <vector>
 
 #include "firmware/telemetry/messages.h"
+#include "host_sim/radio/command_signer.h"
 
 namespace screed::mcu {
 
 class GroundLines {
  public:
+  /// Signs with the test key, for a robot in its first start with that key; hear() a heartbeat of
+  /// the robot when it is not.
+  GroundLines();
+  void hear(const CanFrame& frame) { signer_.hear(frame); }
+
   std::vector<std::uint8_t> heartbeat(std::uint32_t time_ms);
   std::vector<std::uint8_t> command(CommandOp op, DriveArgument argument = {0, 0});
 
  private:
   std::uint8_t heartbeat_counter_ = 0;
-  std::uint8_t command_counter_ = 0;
+  CommandSigner signer_;
 };
 
 /// The frames among received bytes whose check is right, in order.

@@ -13,6 +13,7 @@
 #include "tests/mcu/images.h"
 #include "tests/mcu/mission.h"
 #include "tests/mcu/sample_wire.h"
+#include "tests/mcu/test_credentials.h"
 
 namespace screed::mcu {
 namespace {
@@ -24,7 +25,7 @@ struct Bytes {
 
 TEST(RobotParity, McuAgreesWithHostForEveryTickOfAMission) {
   const Parameters parameters;
-  Robot robot(kBoard, parameters);
+  Robot robot(kBoard, parameters, kTestCredentials);
   Mission mission;
   Mcu mcu(kRobotImage);
   mcu.run_ms(1);

@@ -82,6 +82,8 @@ void put_output(Link& link, const RobotOutput& output) {
   put_word(link, static_cast<uint16_t>(output.duty_left));
   put_word(link, static_cast<uint16_t>(output.duty_right));
   link.put(output.leds);
+  link.put(output.store_parameter);
+  put_word(link, static_cast<uint16_t>(output.store_value));
   link.put(output.radio_out_count);
   for (uint8_t i = 0; i < output.radio_out_count; ++i) link.put(output.radio_out[i]);
 }

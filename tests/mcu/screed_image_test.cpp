@@ -25,7 +25,7 @@ void expect_healthy(const Bench& bench) {
 }
 
 RobotState state_of(const CanFrame& heartbeat) {
-  return static_cast<RobotState>(heartbeat.data[1] >> 4);
+  return static_cast<RobotState>(message::Heartbeat::unpack(heartbeat.data).state);
 }
 
 std::int16_t value_at(const CanFrame& frame, std::size_t index) {

@@ -30,7 +30,8 @@ class TestDrive {
  public:
   TestDrive(HeightField terrain, const WorldOptions& options,
             const Parameters& parameters = drive_parameters())
-      : world(std::move(terrain), rover5(), kBoard, options, nullptr), robot(kBoard, parameters) {}
+      : world(std::move(terrain), rover5(), kBoard, options, nullptr),
+        robot(kBoard, parameters, credentials_of(test_key())) {}
 
   void tick() {
     world.advance();

@@ -13,10 +13,10 @@ namespace {
 
 /// The robot's heartbeat as far as the signer reads it.
 CanFrame heartbeat(uint16_t epoch, uint16_t counter) {
-  CanFrame frame{kIdHeartbeat, 8, {}};
-  put_u16(frame.data + 4, epoch);
-  put_u16(frame.data + 6, counter);
-  return frame;
+  message::Heartbeat heartbeat{};
+  heartbeat.boot_epoch = epoch;
+  heartbeat.freshness = counter;
+  return frame_of(heartbeat);
 }
 
 struct Pair {

@@ -117,6 +117,9 @@ std::vector<std::string> good_values(const Row& row) {
   if (row.key == "algorithm") return {"drive", "spin_on_peak"};
   if (row.key == "model" && row.section == "map") return {"rigid", "scm"};
   if (row.key == "track_model") return {"chain"};
+  if (row.section == "radio" && row.key == "key") {
+    return {"none", "0123456789abcdef0123456789ABCDEF 200"};
+  }
   if (row.key == "preset") return {"clay", "ding_2011"};
   return {"Some-name_1"};
 }

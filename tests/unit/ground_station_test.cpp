@@ -39,7 +39,7 @@ std::vector<Sent> transmit(GroundStation& ground, uint64_t ticks) {
     CanFrame frame{};
     for (const uint8_t byte : ground.transmit(tick * 10000)) {
       if (parser.feed(byte, frame)) {
-        EXPECT_TRUE(e2e_check(frame.id, frame.data, frame.size));
+        EXPECT_TRUE(frame.id == kIdCommand || e2e_check(frame.id, frame.data, frame.size));
         sent.push_back({tick, frame});
       }
     }
@@ -51,7 +51,7 @@ std::vector<Sent> transmit(GroundStation& ground, uint64_t ticks) {
 std::vector<int> commands(GroundStation& ground, uint64_t ticks = 100) {
   std::vector<int> ops;
   for (const Sent& sent : transmit(ground, ticks)) {
-    if (sent.frame.id == kIdCommand) ops.push_back(sent.frame.data[2]);
+    if (sent.frame.id == kIdCommand) ops.push_back(sent.frame.data[0]);
   }
   return ops;
 }
@@ -88,8 +88,8 @@ TEST(GroundStation, ArmsThenRunsThenDrives) {
   for (const Sent& one : sent) {
     if (one.frame.id != kIdCommand) continue;
     ++drives;
-    EXPECT_EQ(one.frame.data[2], static_cast<uint8_t>(CommandOp::kDrive));
-    const DriveArgument argument = get_drive_argument(one.frame.data + 3);
+    EXPECT_EQ(one.frame.data[0], static_cast<uint8_t>(CommandOp::kDrive));
+    const DriveArgument argument = get_drive_argument(one.frame.data + 1);
     EXPECT_EQ(argument.speed_mm_per_s, 100);
     EXPECT_EQ(argument.turn_ddeg_per_s, -450);
   }
@@ -200,6 +200,26 @@ TEST(GroundStation, BringsARealRobotToRun) {
   EXPECT_EQ(ground.report().state, RobotState::kRunning);
   EXPECT_EQ(robot.robot.motion().speed_mm_per_s, 100);
   EXPECT_EQ(ground.rejected_frames(), 0U);
+  ASSERT_TRUE(ground.report().answer.has_value());
+  EXPECT_EQ(ground.report().answer->op, static_cast<uint8_t>(CommandOp::kDrive));
+  EXPECT_EQ(ground.report().answer->result, static_cast<uint8_t>(RequestResult::kDone));
+}
+
+TEST(GroundStation, WithAnotherKeyTheRobotStaysDisarmed) {
+  CommandKey key = test_key();
+  key.bytes[0] ^= 0x80U;
+  GroundStation ground(true, std::nullopt, nullptr, key);
+  TestRobot robot;
+  robot.heartbeats = false;
+  for (uint64_t tick = 0; tick < 2000; ++tick) {
+    const std::vector<uint8_t> up = ground.transmit(tick * 10000);
+    robot.queue.insert(robot.queue.end(), up.begin(), up.end());
+    robot.tick();
+    ground.receive(tick * 10000, {robot.output.radio_out, robot.output.radio_out_count});
+  }
+  EXPECT_EQ(robot.state(), RobotState::kDisarmed);
+  ASSERT_TRUE(ground.report().answer.has_value());
+  EXPECT_EQ(ground.report().answer->result, static_cast<uint8_t>(RequestResult::kLockedOut));
 }
 
 }  // namespace

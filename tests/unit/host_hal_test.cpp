@@ -11,6 +11,7 @@
 #include "firmware/robot/robot.h"
 #include "hal/hal.h"
 #include "hal/host/target.h"
+#include "host_sim/radio/command_key.h"
 
 namespace screed {
 namespace {
@@ -30,6 +31,10 @@ class FakeTarget : public hal::Target {
   const Parameters& parameters() override {
     calls += 'p';
     return parameters_;
+  }
+  const Credentials& credentials() override {
+    calls += 'c';
+    return credentials_;
   }
   bool wait_for_tick() override {
     calls += 'w';
@@ -55,6 +60,7 @@ class FakeTarget : public hal::Target {
 
  private:
   Parameters parameters_;
+  Credentials credentials_ = credentials_of(test_key());
   int ticks_;
   int tick_ = 0;
 };
@@ -64,13 +70,13 @@ TEST(HostHal, TheMainLoopCallsInOrder) {
   hal::run_firmware(target);
   // The order in which board and parameters are asked for is the compiler's.
   EXPECT_EQ(target.calls.substr(0, 1), "i");
-  EXPECT_EQ(target.calls.substr(3), "wrowrow");
+  EXPECT_EQ(target.calls.substr(4), "wrowrow");
 }
 
 TEST(HostHal, WhatTheRobotSaysReachesTheTarget) {
   FakeTarget target(50);
   hal::run_firmware(target);
-  Robot robot(kBoard, Parameters{});
+  Robot robot(kBoard, Parameters{}, credentials_of(test_key()));
   FakeTarget samples(50);
   std::vector<uint8_t> expected;
   SensorSample sample{};
@@ -89,7 +95,7 @@ TEST(HostHal, ATargetMayRunAnotherAndGoesOnAfterwards) {
   FakeTarget outer(3);
   outer.inner = &inner;
   hal::run_firmware(outer);
-  EXPECT_EQ(outer.calls.substr(3), "wrowrowrow");
+  EXPECT_EQ(outer.calls.substr(4), "wrowrowrow");
   EXPECT_EQ(inner.calls.substr(0, 1), "i");
 }
 
@@ -101,7 +107,7 @@ TEST(HostHal, AnErrorOfTheTargetPassesThroughAndLeavesTheThreadUsable) {
   EXPECT_THROW(hal::run_firmware(outer), std::runtime_error);
   FakeTarget next(5);
   EXPECT_NO_THROW(hal::run_firmware(next));
-  EXPECT_EQ(next.calls.size(), 3U + 5U * 3U + 1U);
+  EXPECT_EQ(next.calls.size(), 4U + 5U * 3U + 1U);
 }
 
 TEST(HostHal, ThreadsHaveARobotEach) {

@@ -17,55 +17,93 @@ TEST(Crc16, CatalogueValue) {
   EXPECT_EQ(crc16_ccitt(digits, sizeof digits), 0x29B1);
 }
 
-TEST(KeyStore, AKeyComesBackAndADamagedOneIsNone) {
+CommandKey some_key() {
   CommandKey key = test_key();
   key.robot_id = 42;
-  uint8_t record[kKeyRecordSize];
-  encode_key(credentials_of(key), record);
+  return key;
+}
+
+TEST(KeyStore, AKeyComesBackAndADamagedOneIsNone) {
+  const CredentialRecord record = credential_record(credentials_of(some_key(), 77));
+  CredentialRecord started = record;
   Credentials read{};
-  decode_key(record, read);
+  EXPECT_TRUE(begin_start(started, read));
   EXPECT_TRUE(read.key_set);
-  EXPECT_TRUE(std::equal(key.bytes.begin(), key.bytes.end(), read.key));
-  EXPECT_EQ(read.robot_id, 42);
-  for (int bit = 0; bit < 8 * kKeyRecordSize; ++bit) {
-    record[bit / 8] = static_cast<uint8_t>(record[bit / 8] ^ (1U << (bit % 8)));
-    decode_key(record, read);
+  EXPECT_EQ(command_key_of(read), some_key());
+  EXPECT_EQ(read.boot_epoch, 77);
+  for (int bit = 0; bit < 8 * (kKeySize + 2); ++bit) {
+    CredentialRecord damaged = record;
+    damaged.bytes[bit / 8] = static_cast<uint8_t>(damaged.bytes[bit / 8] ^ (1U << (bit % 8)));
+    EXPECT_TRUE(begin_start(damaged, read));
     EXPECT_FALSE(read.key_set) << bit;
-    record[bit / 8] = static_cast<uint8_t>(record[bit / 8] ^ (1U << (bit % 8)));
+    EXPECT_EQ(read.boot_epoch, 77) << bit;
   }
 }
 
-TEST(KeyStore, AnErasedEepromHoldsNoKeyAndNoEpoch) {
+TEST(KeyStore, AnErasedEepromHoldsNoKeyAndItsFirstStartIsOne) {
   for (const int byte : {0x00, 0xFF}) {
-    uint8_t record[kKeyRecordSize];
-    std::fill(std::begin(record), std::end(record), static_cast<uint8_t>(byte));
+    CredentialRecord record{};
+    std::fill(std::begin(record.bytes), std::end(record.bytes), static_cast<uint8_t>(byte));
     Credentials read{};
-    decode_key(record, read);
+    EXPECT_TRUE(begin_start(record, read));
     EXPECT_FALSE(read.key_set);
-    uint8_t slot[kEpochSlotSize];
-    std::fill(std::begin(slot), std::end(slot), static_cast<uint8_t>(byte));
-    EXPECT_EQ(decode_epoch(slot), 0);
+    EXPECT_EQ(read.boot_epoch, 1);
+    // A key is set; the next start has it.
+    put_key(record, credentials_of(some_key()).key);
+    EXPECT_TRUE(begin_start(record, read));
+    EXPECT_TRUE(read.key_set);
+    EXPECT_EQ(command_key_of(read), some_key());
+    EXPECT_EQ(read.boot_epoch, kFirstBootEpoch);
   }
 }
 
-TEST(KeyStore, EpochsUseTwoSlotsByTurnsBesideTheParameters) {
-  for (const int start : {3, 4, 255, 256, 257, 65534, 65535}) {
-    const auto epoch = static_cast<uint16_t>(start);
-    uint8_t slot[kEpochSlotSize];
-    encode_epoch(epoch, slot);
-    EXPECT_EQ(decode_epoch(slot), epoch);
-    EXPECT_NE(kEpochSlotAt(epoch), kEpochSlotAt(static_cast<uint16_t>(epoch + 1U)));
-    // Power fails after 1, 2 or 3 of its bytes are written over those of two starts before.
-    for (int written = 0; written < kEpochSlotSize; ++written) {
-      uint8_t torn[kEpochSlotSize];
-      encode_epoch(static_cast<uint16_t>(epoch - 2U), torn);
-      std::copy_n(slot, written, torn);
-      const uint16_t found = decode_epoch(torn);  // nothing, the old one, or already the new one
-      EXPECT_TRUE(found == 0 || found == epoch - 2 || found == epoch) << epoch << " " << written;
-    }
+TEST(KeyStore, NoTwoStartsHaveTheSameNumberWhereverPowerFails) {
+  CredentialRecord eeprom = credential_record(credentials_of(some_key()));
+  uint16_t last = 0;
+  for (int start = 0; start < 1200; ++start) {
+    CredentialRecord record = eeprom;
+    Credentials credentials{};
+    ASSERT_TRUE(begin_start(record, credentials));
+    const uint8_t slot = kEpochSlotOf(credentials.boot_epoch);
+    const int written = start % 5;  // bytes until power fails; 4: it does not
+    std::copy_n(record.bytes + slot, written, eeprom.bytes + slot);
+    if (written < kEpochSlotSize) continue;  // it accepts no command before its number is written
+    ASSERT_TRUE(credentials.key_set);
+    ASSERT_GT(credentials.boot_epoch, last);
+    last = credentials.boot_epoch;
   }
-  EXPECT_GE(kKeyRecordAt, kParameterCopyAt(kParameterCopies));
-  EXPECT_GE(kEpochSlotAt(0), kKeyRecordAt + kKeyRecordSize);
+  EXPECT_GE(last, 200);
+}
+
+TEST(KeyStore, WithoutANumberTheKeyIsRefusedUntilItIsSetAnew) {
+  CredentialRecord record = credential_record(credentials_of(some_key(), 500));
+  std::fill_n(record.bytes + kEpochSlotOf(0), 2 * kEpochSlotSize, static_cast<uint8_t>(0xFF));
+  const CredentialRecord eeprom = record;
+  Credentials read{};
+  EXPECT_FALSE(begin_start(record, read)) << "nothing is written: the next start is not better";
+  EXPECT_FALSE(read.key_set);
+  record = eeprom;
+  EXPECT_FALSE(begin_start(record, read));
+  EXPECT_FALSE(read.key_set);
+  put_key(record, credentials_of(test_key()).key);
+  EXPECT_TRUE(begin_start(record, read));
+  EXPECT_TRUE(read.key_set);
+  EXPECT_EQ(read.boot_epoch, 2);
+}
+
+TEST(KeyStore, TheLastNumberIsTheEnd) {
+  CredentialRecord record = credential_record(credentials_of(some_key(), UINT16_MAX));
+  Credentials read{};
+  EXPECT_TRUE(begin_start(record, read));
+  EXPECT_TRUE(read.key_set);
+  EXPECT_EQ(read.boot_epoch, UINT16_MAX);
+  EXPECT_FALSE(begin_start(record, read));
+  EXPECT_FALSE(read.key_set);
+}
+
+TEST(KeyStore, LiesBehindTheParameters) {
+  EXPECT_GE(kCredentialRecordAt, kParameterCopyAt(kParameterCopies));
+  EXPECT_LE(kCredentialRecordAt + kCredentialRecordSize, 1024) << "the EEPROM's size";
 }
 
 }  // namespace

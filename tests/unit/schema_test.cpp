@@ -191,10 +191,6 @@ TEST(Schema, NamesAreThoseOfTheFirmware) {
                                    {n(RobotState::kRunning), "running"},
                                    {n(RobotState::kStopped), "stopped"},
                                    {n(RobotState::kFault), "fault"}});
-  expect_names("command_ack.result", {{n(RequestResult::kDone), "done"},
-                                      {n(RequestResult::kWrongState), "wrong_state"},
-                                      {n(RequestResult::kFaultPresent), "fault_present"},
-                                      {n(RequestResult::kNotReady), "not_ready"}});
   expect_names("leveling.state", {{n(LevelingState::kIdle), "idle"},
                                   {n(LevelingState::kWalk), "walk"},
                                   {n(LevelingState::kClimb), "climb"},

@@ -442,7 +442,8 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   for (const RobotOutput& o : run.outputs) {
     expected.insert(expected.end(),
                     {static_cast<double>(o.duty_left), static_cast<double>(o.duty_right),
-                     static_cast<double>(o.leds), static_cast<double>(o.radio_out_count)});
+                     static_cast<double>(o.leds), static_cast<double>(o.store_parameter),
+                     static_cast<double>(o.store_value), static_cast<double>(o.radio_out_count)});
     for (int i = 0; i < kRadioOutCapacity; ++i) {
       expected.push_back(i < o.radio_out_count ? o.radio_out[i] : 0);
     }
@@ -692,7 +693,7 @@ TEST_F(SessionTest, TooManyRadioBytesAreRefused) {
   std::vector<RobotOutput> outputs(2);
   const SessionReader reader(file_);
   expect_line(message_of<InputError>([&] { reader.read(0, std::span(outputs)); }), file_,
-              "row 1: 45 radio bytes");
+              "row 1: 89 radio bytes");
 }
 
 // --- what goes wrong while writing ---
@@ -894,7 +895,7 @@ Recording robot_run(std::size_t ticks) {
   Recording run = random_run(ticks);
   run.info.parameters = Parameters{};
   run.info.parameters.standalone = 1;
-  Robot robot(run.info.board, run.info.parameters);
+  Robot robot(run.info.board, run.info.parameters, run.info.credentials);
   RobotOutput output{};
   for (std::size_t i = 0; i < ticks; ++i) {
     SensorSample& sample = run.samples[i];

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -26,8 +27,7 @@ class TelemetryTest : public testing::Test {
     Downlink downlink;
     SlcanParser parser;
     for (int tick = 0; tick < ticks; ++tick) {
-      if (ack_period != 0 && tick % ack_period == 0)
-        telemetry_.acknowledge(1, RequestResult::kNotReady);
+      if (ack_period != 0 && tick % ack_period == 0) acknowledge(RequestResult::kNotReady);
       RobotOutput output{};
       telemetry_.tick(view_, output);
       EXPECT_LE(output.radio_out_count, kRadioOutCapacity);
@@ -46,6 +46,10 @@ class TelemetryTest : public testing::Test {
     }
     EXPECT_EQ(parser.rejected(), 0);
     return downlink;
+  }
+  void acknowledge(RequestResult result) {
+    telemetry_.queue(frame_of(message::CommandAck{static_cast<uint8_t>(CommandOp::kArm), 7,
+                                                  static_cast<uint8_t>(result), 0x1234}));
   }
   /// The payload of the first frame of an id.
   const uint8_t* payload(uint16_t id) {
@@ -68,10 +72,11 @@ class TelemetryTest : public testing::Test {
 const std::map<uint16_t, size_t> kRates = {
     {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10},
     {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},  {kIdMagRaw, 2},  {kIdPower, 2},
-    {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},
+    {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},      {kIdTime, 1},
 };
 
 TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
+  run(1);
   const Downlink downlink = run(1000);
   EXPECT_EQ(downlink.frames.size(), kRates.size());
   for (const auto& [id, rate] : kRates)
@@ -79,15 +84,43 @@ TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
   EXPECT_LE(downlink.bytes, 5760 * 10 / 2);
 }
 
-TEST_F(TelemetryTest, AcknowledgementsDelayButDoNotDisplace) {
+TEST_F(TelemetryTest, AnswersDelayButDoNotDisplace) {
   run(3);
-  const Downlink downlink = run(10000, 7);
+  const Downlink downlink = run(10000, 10);
   for (const auto& [id, rate] : kRates) {
     const size_t sent = downlink.frames.at(id).size();
     EXPECT_GE(sent, rate * 100 - 1) << std::hex << id;
     EXPECT_LE(sent, rate * 100 + 1) << std::hex << id;
   }
-  EXPECT_EQ(downlink.frames.at(kIdCommandAck).size(), 1429U);
+  EXPECT_EQ(downlink.frames.at(kIdCommandAck).size(), 1000U);
+  EXPECT_LE(downlink.bytes, 5760 * 100 / 2);
+}
+
+TEST_F(TelemetryTest, MoreThanTheBudgetIsNeverSentAndTheImportantComesFirst) {
+  const Downlink downlink = run(10000, 1);
+  EXPECT_LE(downlink.bytes, 5760 * 100 / 2 + 100);
+  EXPECT_EQ(downlink.frames.at(kIdHeartbeat).size(), 500U);
+  EXPECT_GE(downlink.frames.at(kIdCommandAck).size(), 5000U);
+}
+
+TEST_F(TelemetryTest, PacketsAreWholeLinesAtMostFourAndThenTheLineIsIdle) {
+  int since = 100;
+  int most = 0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    if (tick % 5 == 0) acknowledge(RequestResult::kDone);
+    const bool due = telemetry_.packet_due();
+    RobotOutput output{};
+    telemetry_.tick(view_, output);
+    const auto lines =
+        std::count(output.radio_out, output.radio_out + output.radio_out_count, '\r');
+    EXPECT_LE(lines, 4);
+    most = std::max(most, static_cast<int>(lines));
+    // 88 characters take 15.3 ms.
+    EXPECT_TRUE(output.radio_out_count == 0 || since >= 2) << tick;
+    EXPECT_TRUE(output.radio_out_count == 0 || due) << tick;
+    since = output.radio_out_count == 0 ? since + 1 : 1;
+  }
+  EXPECT_EQ(most, 4);
 }
 
 TEST_F(TelemetryTest, CountersRiseByOne) {
@@ -100,14 +133,16 @@ TEST_F(TelemetryTest, CountersRiseByOne) {
 }
 
 TEST_F(TelemetryTest, AnAcknowledgementIsSentOnceInTheNextTick) {
-  telemetry_.acknowledge(static_cast<uint8_t>(CommandOp::kArm), RequestResult::kFaultPresent);
+  acknowledge(RequestResult::kFaultPresent);
   const Downlink first = run(1);
   ASSERT_EQ(first.frames.count(kIdCommandAck), 1U);
   const CanFrame& frame = first.frames.at(kIdCommandAck).front();
   EXPECT_EQ(frame.size, message::CommandAck::kSize);
   const auto ack = message::CommandAck::unpack(frame.data);
   EXPECT_EQ(ack.op, static_cast<uint8_t>(message::CommandAckOp::kArm));
+  EXPECT_EQ(ack.freshness, 7);
   EXPECT_EQ(ack.result, static_cast<uint8_t>(message::CommandAckResult::kFaultPresent));
+  EXPECT_EQ(ack.detail, 0x1234);
   EXPECT_EQ(run(100).frames.count(kIdCommandAck), 0U);
 }
 
@@ -115,17 +150,55 @@ TEST_F(TelemetryTest, Heartbeat) {
   view_.state = RobotState::kStopped;
   view_.faults = 0x1234;
   view_.link_alive = true;
-  const uint8_t* at = payload(kIdHeartbeat);
-  EXPECT_EQ(get_u16(at), 0x1234);
-  EXPECT_EQ(at[5], 100);
-  EXPECT_EQ(header_bits(kIdHeartbeat), 3);
+  view_.boot_epoch = 0x5678;
+  view_.freshness = 0x9ABC;
+  downlink_ = run(100);
+  auto heartbeat = message::Heartbeat::unpack(downlink_.frames[kIdHeartbeat].front().data);
+  EXPECT_EQ(heartbeat.state, 3);
+  EXPECT_EQ(heartbeat.faults, 0x1234);
+  EXPECT_EQ(heartbeat.link_alive, 1);
+  EXPECT_EQ(heartbeat.boot_epoch, 0x5678);
+  EXPECT_EQ(heartbeat.freshness, 0x9ABC);
   view_.link_alive = false;
-  EXPECT_EQ(payload(kIdHeartbeat)[5], 0);
+  downlink_ = run(100);
+  heartbeat = message::Heartbeat::unpack(downlink_.frames[kIdHeartbeat].front().data);
+  EXPECT_EQ(heartbeat.link_alive, 0);
+  EXPECT_EQ(heartbeat.state, 3);
 }
 
-TEST_F(TelemetryTest, Link) {
+TEST_F(TelemetryTest, LinkAndTime) {
+  view_.frames_received = 1000;
   view_.rejected_lines = 200;
-  EXPECT_EQ(payload(kIdLink)[2], 200);
+  view_.rejected_frames = 201;
+  view_.rejected_commands = 202;
+  view_.ground_time_ms = 4321;
+  for (const int heard : {5, 3, 0, 9}) {  // heartbeats since the last message
+    view_.ground_heartbeats = static_cast<uint8_t>(view_.ground_heartbeats + heard);
+    downlink_ = run(100);
+    const auto link = message::Link::unpack(downlink_.frames[kIdLink].front().data);
+    EXPECT_EQ(link.quality, std::min(100, 20 * heard));
+    EXPECT_EQ(link.frames_received, 1000);
+    EXPECT_EQ(link.lines_rejected, 200);
+    EXPECT_EQ(link.frames_rejected, 201);
+    EXPECT_EQ(link.commands_rejected, 202);
+  }
+  sample_.time_us = 4000000123U;
+  downlink_ = run(100);
+  const auto time = message::Time::unpack(downlink_.frames[kIdTime].front().data);
+  EXPECT_EQ(time.time, 4000000U);
+  EXPECT_EQ(time.echo, 4321);
+}
+
+TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
+  run(100);
+  sample_.last_tick_us = 5000;
+  run(1);
+  sample_.last_tick_us = 100;
+  const Downlink downlink = run(199);
+  const std::vector<CanFrame>& frames = downlink.frames.at(kIdHealth);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_EQ(message::Health::unpack(frames[0].data).longest_tick, 5000);
+  EXPECT_EQ(message::Health::unpack(frames[1].data).longest_tick, 100);
 }
 
 TEST_F(TelemetryTest, AttitudeAndOdometry) {

@@ -3,18 +3,22 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "boards/a_star_32u4/board.h"
 #include "firmware/robot/robot.h"
 #include "firmware/telemetry/e2e.h"
+#include "host_sim/radio/command_signer.h"
 #include "tests/unit/simulated_track.h"
 
 namespace screed {
 
 class TestRobot {
  public:
-  explicit TestRobot(const Parameters& parameters = {}) : robot(kBoard, parameters) {
+  explicit TestRobot(const Parameters& parameters = {})
+      : robot(kBoard, parameters, credentials_of(test_key())), signer(test_key()) {
+    signer.hear(frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0}));
     sample.accel[2] = 4098;
     sample.mag[1] = 1217;
     sample.mag[2] = -3013;
@@ -56,10 +60,7 @@ class TestRobot {
     return protect(frame_of(message::GroundHeartbeat{sample.time_us / 1000}), heartbeat_counter);
   }
   CanFrame command(CommandOp op, DriveArgument argument = {0, 0}) {
-    CanFrame frame{kIdCommand, 6, {}};
-    frame.data[2] = static_cast<uint8_t>(op);
-    put_drive_argument(frame.data + 3, argument);
-    return protect(frame, command_counter);
+    return signer.sign(op, argument);
   }
   CanFrame emergency_stop() {
     uint8_t counter = 0;
@@ -75,18 +76,32 @@ class TestRobot {
     const uint8_t length = slcan_encode(frame, line);
     queue.insert(queue.end(), line, line + length);
   }
+  /// Runs until a command is answered, at most 10 ticks.
+  std::optional<message::CommandAck> answer() {
+    for (int i = 0; i < 10; ++i) {
+      tick();
+      SlcanParser parser;
+      CanFrame frame{};
+      for (uint8_t at = 0; at < output.radio_out_count; ++at) {
+        if (parser.feed(output.radio_out[at], frame) && frame.id == kIdCommandAck) {
+          return message::CommandAck::unpack(frame.data);
+        }
+      }
+    }
+    return std::nullopt;
+  }
   RobotState state() const { return robot.supervisor().state(); }
 
   Robot robot;
   SensorSample sample{};
   RobotOutput output{};
+  CommandSigner signer;
   SimulatedTrack left;
   SimulatedTrack right;
   std::vector<uint8_t> queue;
   bool heartbeats = true;
   bool right_encoder_dead = false;
   uint8_t heartbeat_counter = 0;
-  uint8_t command_counter = 0;
   int ticks = 0;
 };
 

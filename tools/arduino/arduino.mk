@@ -16,7 +16,7 @@ arduino-library: $(ARDUINO_ZIP)
 	@echo "$(ARDUINO_ZIP)"
 
 $(ARDUINO_ZIP): $(ARDUINO_PACKED)
-	@tools/arduino/pack.sh $(BOARD) $(VERSION) $(GENERATED_FOLDER) $@
+	@SMALLER="$(SMALLER)" tools/arduino/pack.sh $(BOARD) $(VERSION) $(GENERATED_FOLDER) $@
 
 $(ARDUINO_TEST_ELF): $(ARDUINO_ZIP) tools/arduino/build.sh
 	@echo "  IDE  $@"

@@ -42,7 +42,9 @@ mkdir -p "$objects/core"
 avr-gcc-ar rcs "$folder/core.a" "$objects"/core/*.o
 mkdir -p "$(dirname "$out")"
 mapfile -t linked < <(find "$objects" -name '*.o' -not -path "$objects/core/*" | LC_ALL=C sort)
-avr-gcc -w -Os -g -flto -fuse-linker-plugin -Wl,--gc-sections -mmcu=atmega32u4 -o "$out" "${linked[@]}" "$folder/core.a" -lm
+read -ra flags <<< "$(sed -n 's/^ldflags=//p' "$library/library.properties")"  # {compiler.libraries.ldflags}
+avr-gcc -w -Os -g -flto -fuse-linker-plugin -Wl,--gc-sections -mmcu=atmega32u4 -o "$out" "${linked[@]}" "${flags[@]}" \
+  "$folder/core.a" -lm
 flash=$(avr-size -A "$out" | awk '$1 == ".text" || $1 == ".data" {sum += $2} END {print sum}')
 echo "$out: $flash of 28672 B of flash"
 [ "$flash" -le 28672 ]

@@ -13,6 +13,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/mcu/board.h"
 #include "host_sim/mcu/wiring.h"
+#include "host_sim/radio/command_signer.h"
 #include "tools/program.h"
 
 namespace {
@@ -29,36 +30,35 @@ struct Options {
   std::uint64_t budget = CycleReport::kTickCycles / 2;
 };
 
+std::vector<std::uint8_t> line(const CanFrame& frame) {
+  std::uint8_t text[kSlcanLineMax];
+  return {text, text + slcan_encode(frame, text)};
+}
+
 /// The ground station's side: heartbeats, and the commands that make the robot drive.
 class Ground {
  public:
+  Ground() : signer_(test_key()) {
+    message::Heartbeat first{};
+    first.boot_epoch = kFirstBootEpoch;
+    signer_.hear(frame_of(first));
+  }
   std::vector<std::uint8_t> heartbeat() {
-    CanFrame frame{};
-    frame.id = kIdGroundHeartbeat;
-    frame.size = 6;
-    return line(frame, heartbeats_);
+    CanFrame frame = frame_of(message::GroundHeartbeat{});
+    e2e_protect(frame.id, heartbeats_, frame.data, frame.size);
+    heartbeats_ = static_cast<std::uint8_t>((heartbeats_ + 1) & 0x0F);
+    return line(frame);
   }
-  std::vector<std::uint8_t> command(CommandOp op) {
-    CanFrame frame{};
-    frame.id = kIdCommand;
-    frame.size = 6;
-    frame.data[2] = static_cast<std::uint8_t>(op);
-    return line(frame, commands_);
-  }
+  std::vector<std::uint8_t> command(CommandOp op) { return line(signer_.sign(op)); }
 
  private:
-  static std::vector<std::uint8_t> line(CanFrame& frame, std::uint8_t& counter) {
-    e2e_protect(frame.id, counter, frame.data, frame.size);
-    counter = static_cast<std::uint8_t>((counter + 1) & 0x0F);
-    std::uint8_t text[kSlcanLineMax];
-    return {text, text + slcan_encode(frame, text)};
-  }
+  CommandSigner signer_;
   std::uint8_t heartbeats_ = 0;
-  std::uint8_t commands_ = 0;
 };
 
 int run(const Options& options) {
   mcu::Board board(options.image, mcu::read_wiring(options.wiring));
+  board.mcu.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
   Ground ground;
   double travel[2] = {0, 0};
   for (int ms = 0; ms < kStandStill_ms + kDrive_ms; ++ms) {
@@ -73,6 +73,10 @@ int run(const Options& options) {
     if (ms % 100 == 0) board.mcu.receive(ground.heartbeat());
     if (ms == kStandStill_ms) board.mcu.receive(ground.command(CommandOp::kArm));
     if (ms == kStandStill_ms + 50) board.mcu.receive(ground.command(CommandOp::kRun));
+    // As often as a ground station may, at a different phase of the packets every time.
+    if (ms > kStandStill_ms + 50 && ms % 237 == 0) {
+      board.mcu.receive(ground.command(CommandOp::kRun));
+    }
     board.mcu.run_ms(1);
   }
   board.check();

@@ -4,12 +4,13 @@
 #include "board.h"
 #include "tests/mcu/images/serial_link.h"
 #include "tests/mcu/sample_wire.h"
+#include "tests/mcu/test_credentials.h"
 
 int main() {
   using namespace screed;
   SerialLink link;
   const Parameters parameters;
-  Robot robot(kBoard, parameters);
+  Robot robot(kBoard, parameters, kTestCredentials);
   SensorSample sample{};
   RobotOutput output{};
   for (;;) {
