@@ -25,7 +25,7 @@ const std::vector<SensorSample>& recorded_samples() {
   static const std::vector<SensorSample> samples = [] {
     const Experiment experiment = first_drive();
     const std::unique_ptr<World> world = make_world(experiment, nullptr);
-    Robot robot(kBoard, experiment.parameters);
+    Robot robot(kBoard, experiment.parameters, credentials_of(experiment));
     RobotOutput output{};
     std::vector<SensorSample> recorded;
     for (int i = 0; i < 60 * kTickRate_hz; ++i) {
@@ -42,7 +42,7 @@ const std::vector<SensorSample>& recorded_samples() {
 /// One tick of the firmware core on the host.
 void firmware_tick(benchmark::State& state) {
   const std::vector<SensorSample>& samples = recorded_samples();
-  Robot robot(kBoard, first_drive().parameters);
+  Robot robot(kBoard, first_drive().parameters, credentials_of(test_key()));
   RobotOutput output{};
   size_t next = 0;
   while (state.KeepRunning()) {
@@ -58,7 +58,7 @@ BENCHMARK(firmware_tick);
 void world_tick(benchmark::State& state) {
   const Experiment experiment = first_drive();
   const std::unique_ptr<World> world = make_world(experiment, nullptr);
-  Robot robot(kBoard, experiment.parameters);
+  Robot robot(kBoard, experiment.parameters, credentials_of(experiment));
   RobotOutput output{};
   while (state.KeepRunning()) {
     world->advance();

@@ -124,7 +124,8 @@ Measurement measure(const std::filesystem::path& bed, const std::vector<std::str
   constexpr std::uint64_t kWarmUp = kTickRate_hz;  // driving, not timed
   const Experiment experiment = read_experiment(bed, overrides);
   const std::unique_ptr<World> world = make_world(experiment, nullptr);
-  Robot robot(board_constants_of(kDefaultBoard), experiment.parameters);
+  Robot robot(board_constants_of(kDefaultBoard), experiment.parameters,
+              credentials_of(experiment));
   RobotOutput output{};
   const auto frame = [&] {
     world->advance();
