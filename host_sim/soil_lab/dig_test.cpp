@@ -173,7 +173,8 @@ void measure(DigResult& result, const Eigen::Vector3d& end) {
 DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press& press,
                 const std::function<HeightField()>& ground) {
   DigResult result{averaged(ground()), HeightField::flat(1.0, 0.1)};
-  for (double time = 0.0; time < kSettle_s; time += dt) robot.step(press, {0.0, 0.0}, 0.0, dt);
+  const auto settling = static_cast<int>(std::lround(kSettle_s / dt));
+  for (int i = 0; i < settling; ++i) robot.step(press, {0.0, 0.0}, 0.0, dt);
   const Eigen::Vector3d start = robot.position();
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
