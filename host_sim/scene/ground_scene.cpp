@@ -45,7 +45,7 @@ std::string soil_texture(const GroundSurface& ground, const GroundFiles& files,
   };
   std::string text = "#declare Firm = texture { " + tones(1.0) + grain(0.25) + finish + " }\n";
   if (files.change.empty()) return text + "#declare Soil = texture { Firm }\n";
-  text += "#declare Turned = texture { " + tones(0.80) + grain(0.55) + finish + " }\n";
+  text += "#declare Turned = texture { " + tones(0.70) + grain(0.50) + finish + " }\n";
   // The image covers the unit square of x and y. What moves and stretches it onto the bed acts on
   // the textures in the map too, so they are moved the other way before.
   const std::string undo =

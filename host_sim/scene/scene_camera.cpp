@@ -81,7 +81,7 @@ SceneCamera camera_at(const CameraPlace& place, const Eigen::Vector3d& target, d
 
 std::string camera_text(const SceneCamera& camera, double field_of_view_deg) {
   constexpr double kSunDistance_m = 100.0;
-  constexpr double kSunElevation = 30.0 * kRadPerDeg;
+  constexpr double kSunElevation = 27.0 * kRadPerDeg;
   const Eigen::Vector3d back = camera.location - camera.target;
   const double azimuth = std::atan2(back.y(), back.x());
   // Clockwise from behind the viewer is to the left of who looks at the target.
@@ -94,7 +94,7 @@ std::string camera_text(const SceneCamera& camera, double field_of_view_deg) {
       pov_line("\n  sky z up z right -x*image_width/image_height angle %.1f\n", field_of_view_deg) +
       "  look_at " + pov_vector(camera.target) + "\n}\n";
   text += "light_source { " + pov_vector(camera.target + sun) +
-          " rgb <2.05,1.90,1.66> area_light <5,0,0>, <0,5,0>, 5, 5 adaptive 1 circular "
+          " rgb <2.05,1.90,1.66> area_light <6,0,0>, <0,6,0>, 5, 5 adaptive 1 circular "
           "orient }\n";
   text +=
       "light_source { " + pov_vector(camera.target + fill) + " rgb <0.30,0.36,0.46> shadowless }\n";
