@@ -116,7 +116,7 @@ std::string scene_text(const std::vector<GridFrame>& frames) {
   // Looking north and down, a little from the west, as far away as everything needs to be seen.
   const double distance = all * 1.18;
   text += pov_line(
-      "camera { location <%.2f,%.2f,%.2f> look_at <%.2f,%.2f,%.2f> angle 43 right "
+      "camera { location <%.2f,%.2f,%.2f> look_at <%.2f,%.2f,%.2f> angle 46 right "
       "x*image_width/image_height }\n",
       all * 0.47, distance * 0.78, -distance * 0.80, all * 0.5, tallest * kHeightScale * 0.3,
       depth * 0.42);

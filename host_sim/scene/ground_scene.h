@@ -44,7 +44,7 @@ struct SoilLook {
   Color light;
   Color dark;
 };
-/// The look of a soil by the name of its preset; "" is hard ground.
+/// The look of a soil by the name of its preset; "gravel" for particles, "" for hard ground.
 SoilLook soil_look(const std::string& preset);
 
 /// A grey image that the scene needs: 16 bits for heights.

@@ -38,13 +38,15 @@ std::filesystem::path session_of(const std::filesystem::path& run) {
 /// What the scene needs of the experiment that was in force.
 struct Setup {
   Experiment experiment;  ///< only the vehicle's keys that are read below, and the folder
-  std::string soil;       ///< preset; "" for ground that does not give way
+  std::string soil;       ///< for soil_look()
+  bool soft = false;      ///< the ground gives way
 };
 
 Setup setup_of(const SessionInfo& info, const std::filesystem::path& folder) {
   Setup setup;
   setup.experiment.folder = folder;
-  bool soft = false;
+  std::string ground = "rigid";
+  std::string preset;
   // Not read_experiment(): a session of an older program may have keys that are gone by now.
   for (const IniEntry& entry : read_ini_text(info.experiment_text, "the session's experiment")) {
     const std::string name = entry.section + "." + entry.key;
@@ -53,10 +55,12 @@ Setup setup_of(const SessionInfo& info, const std::filesystem::path& folder) {
     if (name == "vehicle.leg_angle" && !entry.value.empty()) {
       setup.experiment.vehicle.leg_angle_deg = std::stod(entry.value);
     }
-    if (name == "map.model") soft = entry.value != "rigid";
-    if (name == "soil.preset") setup.soil = entry.value;
+    if (name == "map.model") ground = entry.value;
+    if (name == "soil.preset") preset = entry.value;
   }
-  if (!soft) setup.soil.clear();
+  setup.soft = ground != "rigid";
+  if (ground == "scm") setup.soil = preset;
+  if (ground == "particles" || ground == "static_particles") setup.soil = "gravel";
   return setup;
 }
 
@@ -154,7 +158,7 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
                      " has no pose of the robot");
   }
 
-  const Ground ground = ground_at(session, result.frame, !setup.soil.empty(), run);
+  const Ground ground = ground_at(session, result.frame, setup.soft, run);
   result.ground_is_later = ground.is_later;
   const GroundSurface surface(ground.now);
   CameraPlace place = options.camera;

@@ -20,12 +20,18 @@ dWorldID create_world() {
 
 }  // namespace
 
-OdeWorld::OdeWorld() : world_(create_world()) {
+// Without an implementation of its own a world steps on one that all worlds share: two that step at
+// the same time then end the program.
+OdeWorld::OdeWorld()
+    : world_(create_world()), threading_(dThreadingAllocateSelfThreadedImplementation()) {
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_),
+                                       threading_);
   dWorldSetGravity(world_, 0.0, 0.0, -kGravity_m_per_s2);
 }
 
 OdeWorld::~OdeWorld() {
   dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
 }
 
 }  // namespace screed

@@ -8,7 +8,7 @@
 namespace screed {
 
 /// An ODE world with gravity. ODE keeps global state (memory, dRandSetSeed): nothing here uses its
-/// random numbers.
+/// random numbers. Worlds of different threads may step at the same time.
 class OdeWorld {
  public:
   OdeWorld();
@@ -22,6 +22,7 @@ class OdeWorld {
 
  private:
   dWorldID world_;
+  dThreadingImplementationID threading_;
 };
 
 /// Standard gravity, m/s^2.

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 #include <numbers>
+#include <vector>
 
 #include "tests/sitl/test_drive.h"
 
@@ -34,6 +36,19 @@ struct Bench {
   OdeWorld ode;
   Vehicle vehicle;
 };
+
+TEST(VehiclePhysics, WorldsOfSeveralThreadsStepAtTheSameTime) {
+  const auto drive = [] {
+    Bench bench(HeightField::flat(10.0, 0.1));
+    bench.put_down(0.0, 0.0);
+    bench.run(2.0, 5.0, 4.0);
+    return Eigen::Vector3d(bench.vehicle.chassis().pose.translation());
+  };
+  const Eigen::Vector3d alone = drive();
+  std::vector<std::future<Eigen::Vector3d>> worlds;
+  for (int i = 0; i < 4; ++i) worlds.push_back(std::async(std::launch::async, drive));
+  for (auto& world : worlds) EXPECT_EQ(world.get(), alone);
+}
 
 TEST(VehiclePhysics, FallsFreely) {
   Bench bench(HeightField::flat(10.0, 0.1));

@@ -1,12 +1,13 @@
 // Cases and their measurement.
 #include "tools/bench/terrain/terrain_bench.h"
 
-#include <sys/resource.h>
-
+#include <algorithm>
+#include <barrier>
 #include <chrono>
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <numbers>
 
@@ -73,7 +74,6 @@ std::vector<Case> all_cases() {
   const auto add = [&](const char* terrain, int threads, double size_m,
                        std::vector<std::string> overrides) {
     overrides.push_back("map.size=" + number(size_m));
-    if (threads > 1) overrides.push_back("physics.threads=" + std::to_string(threads));
     cases.push_back({terrain, size_m, threads, std::move(overrides)});
   };
   for (const double size : kSizes_m) add("rigid", 1, size, {"map.model=rigid"});
@@ -83,8 +83,10 @@ std::vector<Case> all_cases() {
         {"map.model=scm", "soil.cell=" + number(size / (kImageSide - 1))});
   }
   // ... and a soil of equal detail everywhere is the fairer question.
-  for (const double size : kSizes_m) {
-    add("SCM, 5 mm", 1, size, {"map.model=scm", "soil.cell=0.005"});
+  for (const int threads : {1, 2}) {
+    for (const double size : kSizes_m) {
+      add("SCM, 5 mm", threads, size, {"map.model=scm", "soil.cell=0.005"});
+    }
   }
   for (const int threads : {1, 2}) {
     for (size_t i = 0; i < std::size(kSizes_m); ++i) {
@@ -117,49 +119,93 @@ std::filesystem::path write_bed(const std::filesystem::path& folder) {
   return bed;
 }
 
-Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
-                    std::uint64_t most_frames, double longest_s) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::uint64_t kLongestStart = 20U * std::uint64_t{kTickRate_hz};
-  constexpr std::uint64_t kWarmUp = kTickRate_hz;  // driving, not timed
-  const Experiment experiment = read_experiment(bed, overrides);
-  const std::unique_ptr<World> world = make_world(experiment, nullptr);
-  Robot robot(board_constants_of(kDefaultBoard), experiment.parameters,
-              credentials_of(experiment));
-  RobotOutput output{};
-  const auto frame = [&] {
-    world->advance();
-    robot.tick(world->sample(), output);
-    world->apply(output);
-  };
-  while (robot.supervisor().state() != RobotState::kRunning) {
-    if (world->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
-    frame();
-  }
-  for (std::uint64_t i = 0; i < kWarmUp; ++i) frame();
+namespace {
 
-  Measurement result;
-  const Eigen::Vector3d start = world->vehicle().chassis().pose.translation();
-  double farthest_m = 0.0;
-  const Clock::time_point begin = Clock::now();
-  const double processor_begin = processor_s();
-  const auto wall_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  while (result.frames < most_frames && wall_s() < longest_s) {
-    frame();
-    ++result.frames;
-    farthest_m =
-        std::max(farthest_m, (world->vehicle().chassis().pose.translation() - start).norm());
+/// A world with its robot, in a thread of its own.
+class Drive {
+ public:
+  explicit Drive(const Experiment& experiment)
+      : world_(make_world(experiment, nullptr)),
+        robot_(board_constants_of(kDefaultBoard), experiment.parameters,
+               credentials_of(experiment)) {}
+
+  void frame() {
+    world_->advance();
+    robot_.tick(world_->sample(), output_);
+    world_->apply(output_);
   }
-  const double frames = static_cast<double>(result.frames);
-  result.wall_ms = 1e3 * wall_s() / frames;
-  result.processor_ms = 1e3 * (processor_s() - processor_begin) / frames;
-  // A robot that stands costs less than one that drives.
-  if (farthest_m < 1e-4 * frames) throw RunError("the robot did not drive while it was timed");
+
+  void start() {
+    constexpr std::uint64_t kLongestStart = 20U * std::uint64_t{kTickRate_hz};
+    constexpr std::uint64_t kWarmUp = kTickRate_hz;  // driving, not timed
+    while (robot_.supervisor().state() != RobotState::kRunning) {
+      if (world_->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
+      frame();
+    }
+    for (std::uint64_t i = 0; i < kWarmUp; ++i) frame();
+  }
+
+  Eigen::Vector3d place() const { return world_->vehicle().chassis().pose.translation(); }
+
+  std::uint64_t elements() const {
+    if (const ParticleBed* particles = world_->plant().particles()) return particles->size();
+    return static_cast<std::uint64_t>(world_->terrain().nx()) *
+           static_cast<std::uint64_t>(world_->terrain().ny());
+  }
+
+ private:
+  std::unique_ptr<World> world_;
+  Robot robot_;
+  RobotOutput output_{};
+};
+
+}  // namespace
+
+Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
+                    int threads, std::uint64_t most_frames, double longest_s) {
+  using Clock = std::chrono::steady_clock;
+  const Experiment experiment = read_experiment(bed, overrides);
+  Measurement result;
+  Clock::time_point begin;
+  double processor_begin = 0.0;
+  std::barrier all_drive(threads, [&]() noexcept {
+    begin = Clock::now();
+    processor_begin = processor_s();
+  });
+  const auto wall_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  std::vector<std::future<std::uint64_t>> worlds;
+  for (int i = 0; i < threads; ++i) {
+    worlds.push_back(std::async(std::launch::async, [&, i] {
+      std::optional<Drive> drive;
+      try {
+        drive.emplace(experiment);
+        drive->start();
+      } catch (...) {
+        all_drive.arrive_and_drop();
+        throw;
+      }
+      all_drive.arrive_and_wait();
+      const Eigen::Vector3d from = drive->place();
+      double farthest_m = 0.0;
+      std::uint64_t frames = 0;
+      while (frames < most_frames && wall_s() < longest_s) {
+        drive->frame();
+        ++frames;
+        farthest_m = std::max(farthest_m, (drive->place() - from).norm());
+      }
+      // A robot that stands costs less than one that drives.
+      if (farthest_m < std::min(1e-4 * static_cast<double>(frames), 0.05)) {
+        throw RunError("the robot did not drive while it was timed");
+      }
+      if (i == 0) result.elements = drive->elements();
+      return frames;
+    }));
+  }
+  for (auto& world : worlds) result.frames += world.get();
+  result.wall_ms = 1e3 * wall_s() / static_cast<double>(result.frames);
+  result.processor_ms =
+      1e3 * (processor_s() - processor_begin) / static_cast<double>(result.frames);
   result.memory_mb = peak_memory_mb();
-  const ParticleBed* particles = world->plant().particles();
-  result.elements = particles != nullptr ? particles->size()
-                                         : static_cast<std::uint64_t>(world->terrain().nx()) *
-                                               static_cast<std::uint64_t>(world->terrain().ny());
   return result;
 }
 

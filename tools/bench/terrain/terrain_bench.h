@@ -13,6 +13,8 @@ namespace screed::terrain_bench {
 struct Case {
   std::string terrain;  ///< as the table calls it
   double size_m;
+  /// Worlds, a thread each: no terrain shares its work between threads, but worlds share nothing,
+  /// so several run at once.
   int threads;
   /// What makes the experiment of this case from the common one: "section.key=value".
   std::vector<std::string> overrides;
@@ -24,10 +26,10 @@ std::vector<Case> all_cases();
 /// What a case took.
 struct Measurement {
   std::uint64_t frames = 0;    ///< of 10 ms of simulated time each: firmware, ten physics steps
-  double wall_ms = 0.0;        ///< mean of a frame
-  double processor_ms = 0.0;   ///< mean of a frame, all threads together
+  double wall_ms = 0.0;        ///< time by the number of frames of all worlds
+  double processor_ms = 0.0;   ///< mean of a frame
   double memory_mb = 0.0;      ///< most that the process ever had resident, 10^6 bytes
-  std::uint64_t elements = 0;  ///< heights or particles
+  std::uint64_t elements = 0;  ///< heights or particles of a world
 };
 
 /// What the thesis says in words about a frame of that terrain and size, s; most of its results are
@@ -37,10 +39,9 @@ std::optional<double> thesis_frame_s(const std::string& terrain, double size_m);
 /// Writes the common experiment (bed.ini) and its 600 x 600 height map into `folder`.
 std::filesystem::path write_bed(const std::filesystem::path& folder);
 
-/// Runs the experiment with these overrides in this process: until the robot drives, then frames
-/// are timed, at most so many and for so long. Throws InputError where this program has no such
-/// terrain.
+/// Runs the experiment with these overrides in this process, once in every thread: until the robot
+/// drives, then frames are timed, at most so many in a world and for so long.
 Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
-                    std::uint64_t most_frames, double longest_s);
+                    int threads, std::uint64_t most_frames, double longest_s);
 
 }  // namespace screed::terrain_bench
