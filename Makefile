@@ -40,7 +40,7 @@ FIRMWARE_DIR ?= $(abspath $(BUILD_ROOT))/firmware
 MCU ?= yes
 VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
-PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash
+PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
 TEST_PACKAGES := gtest_main
 BENCH_PACKAGES := benchmark
 # Headers of these are known to single files.

@@ -3,14 +3,17 @@
 #include <functional>
 
 #include "tools/attitude_command.h"
+#include "tools/calibrate_command.h"
 #include "tools/decode_command.h"
 #include "tools/grid_command.h"
 #include "tools/key_command.h"
+#include "tools/monitor_command.h"
 #include "tools/parity_command.h"
 #include "tools/plot_command.h"
 #include "tools/program.h"
 #include "tools/render_command.h"
 #include "tools/replay_command.h"
+#include "tools/send_command.h"
 #include "tools/sim_command.h"
 #include "tools/soil_command.h"
 #include "version.h"
@@ -29,6 +32,9 @@ int main(int argc, char** argv) {
   screed::register_decode_command(app, action);
   screed::register_plot_command(app, action);
   screed::register_grid_command(app, SCREED_VERSION, action);
+  screed::register_monitor_command(app, action);
+  screed::register_send_command(app, action);
+  screed::register_calibrate_command(app, action);
   screed::register_soil_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });
 }

@@ -1,9 +1,7 @@
 // `screed sim FILE`.
 #include "tools/sim_command.h"
 
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -14,17 +12,11 @@
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
 #include "host_sim/link/outside_port.h"
+#include "tools/interrupt.h"
 #include "tools/progress_bar.h"
 
 namespace screed {
 namespace {
-
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
-
-extern "C" void on_interrupt(int) {
-  interrupted.store(true);
-}
 
 struct SimArguments {
   std::string file;
@@ -136,7 +128,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   if (!ports.empty()) options.ground_port = &ports;
   // Other programs live by the clock.
   options.realtime = arguments.realtime || !ports.empty();
-  options.stop = &interrupted;
+  options.stop = &interrupted();
   options.program_version = version;
   if (arguments.out.has_value()) options.out = *arguments.out;
   if (arguments.board.has_value()) options.board = *arguments.board;
@@ -154,8 +146,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     };
   }
 
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  catch_interrupts();
   const SimulationSummary summary = run_simulation(experiment, options);
   if (bar.has_value()) bar->finish();
   for (const auto& leftover : summary.leftovers) {

@@ -312,6 +312,14 @@ std::vector<Key> make_keys() {
       bool_key("sensors", "noise",
                "noise, bias and scale errors as in the data sheets; false: quantisation alone",
                [](Experiment& e) -> bool& { return e.sensors.noise; }));
+  keys.push_back(
+      bool_key("sensors", "calibrated",
+               "what a calibration leaves of the chips' biases; false: as the chips come",
+               [](Experiment& e) -> bool& { return e.sensors.calibrated; }));
+  keys.push_back(bool_key(
+      "sensors", "handled",
+      "the IMU feels a person turning the robot over, as screed calibrate asks; the robot stands",
+      [](Experiment& e) -> bool& { return e.sensors.handled; }));
 
   keys.push_back(real_key("radio", "delay", "s", 0, 10,
                           "of a packet, from its end in one module to its way out of the other",

@@ -101,6 +101,8 @@ struct Experiment {
 
   struct {
     bool noise = true;
+    bool calibrated = true;
+    bool handled = false;
   } sensors;
 
   struct {

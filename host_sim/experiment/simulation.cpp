@@ -447,7 +447,9 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
   options.vehicle.chain.tension_n = experiment.vehicle.track_tension_n;
   options.vehicle.track_friction = experiment.vehicle.track_friction;
   options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
+  if (!experiment.sensors.calibrated) options.imu = ImuErrors::uncalibrated();
   if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
+  options.handled = experiment.sensors.handled;
   options.radio.delay_s = experiment.radio.delay_s;
   options.radio.loss = experiment.radio.loss;
   options.radio.bit_errors = experiment.radio.bit_errors;

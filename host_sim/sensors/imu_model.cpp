@@ -24,6 +24,19 @@ Eigen::Vector3d normals(WorldRandom& random, double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
+/// Symmetric, about 1.
+Eigen::Matrix3d soft_iron(uint64_t seed, double sigma) {
+  WorldRandom random(seed, "soft iron");
+  const Eigen::Vector3d along = normals(random, sigma);
+  const Eigen::Vector3d across = normals(random, sigma);
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  matrix.diagonal() += along;
+  matrix(0, 1) = matrix(1, 0) = across.x();
+  matrix(0, 2) = matrix(2, 0) = across.y();
+  matrix(1, 2) = matrix(2, 1) = across.z();
+  return matrix;
+}
+
 }  // namespace
 
 int16_t ImuModel::quantise(double value, double lsb) {
@@ -41,6 +54,7 @@ ImuModel::ImuModel(uint64_t seed, const ImuErrors& errors)
       accel_bias_mg_(normals(accel_random_, errors.accel_bias_mg)),
       accel_scale_(Eigen::Vector3d::Ones() + normals(accel_random_, errors.accel_scale)),
       mag_bias_mg_(normals(mag_random_, errors.mag_bias_mg)),
+      mag_soft_iron_(soft_iron(seed, errors.mag_soft_iron)),
       pressure_bias_hpa_(errors.pressure_bias_hpa * baro_random_.normal()) {}
 
 Eigen::Vector3d ImuModel::earth_field_gauss() {
@@ -61,8 +75,8 @@ Eigen::Vector3d ImuModel::accel_mg(const ImuTruth& truth) {
 }
 
 Eigen::Vector3d ImuModel::mag_mgauss(const ImuTruth& truth) {
-  return truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0) + mag_bias_mg_ +
-         normals(mag_random_, errors_.mag_noise_mg);
+  const Eigen::Vector3d field = truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0);
+  return mag_soft_iron_ * field + mag_bias_mg_ + normals(mag_random_, errors_.mag_noise_mg);
 }
 
 double ImuModel::pressure_hpa(const ImuTruth& truth) {

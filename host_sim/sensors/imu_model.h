@@ -29,13 +29,25 @@ struct ImuErrors {
   double accel_scale = 0.005;
   // LSM303D: 5 mG RMS.
   double mag_noise_mg = 5.0;
-  double mag_bias_mg = 10.0;  // hard iron left after calibration
+  double mag_bias_mg = 10.0;   // hard iron left after calibration
+  double mag_soft_iron = 0.0;  // of each element of the matrix that the field goes through
   // LPS25H: 0.01 hPa RMS with its internal average.
   double pressure_noise_hpa = 0.01;
   double pressure_bias_hpa = 0.2;
 
   /// No noise, bias or scale error: only quantisation and full scale remain.
-  static ImuErrors none() { return {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}; }
+  static ImuErrors none() { return {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}; }
+  /// As the chips come: typical offsets of the data sheets, and the hard and soft iron of a robot's
+  /// own steel round the magnetometer.
+  static ImuErrors uncalibrated() {
+    ImuErrors errors;
+    errors.gyro_bias_dps = 8.0;
+    errors.accel_bias_mg = 40.0;
+    errors.accel_scale = 0.01;
+    errors.mag_bias_mg = 120.0;
+    errors.mag_soft_iron = 0.03;
+    return errors;
+  }
   /// As none(), but the gyro's last digit flickers: one that repeats itself to the bit is dead, and
   /// the firmware does not arm with it.
   static ImuErrors quiet() {
@@ -87,6 +99,7 @@ class ImuModel {
   Eigen::Vector3d accel_bias_mg_;
   Eigen::Vector3d accel_scale_;
   Eigen::Vector3d mag_bias_mg_;
+  Eigen::Matrix3d mag_soft_iron_;
   double pressure_bias_hpa_;
   uint32_t ticks_ = 0;
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/sensors/handling.h"
+
 namespace screed {
 World::World(HeightField terrain, const Assembly& model, const BoardConstants& board,
              const WorldOptions& options, std::ostream* telemetry_log)
@@ -25,7 +27,7 @@ void World::step_physics() {
 }
 
 void World::measure() {
-  imu_.measure(plant_.motion(), sample_);
+  imu_.measure(options_.handled ? handled_motion(time_s()) : plant_.motion(), sample_);
 
   const auto counts = [&](Side side) {
     const double turns = vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);

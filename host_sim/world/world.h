@@ -29,6 +29,8 @@ struct WorldOptions : PlantOptions {
   CommandKey ground_key = test_key();  ///< what the ground station signs with
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
   GroundPort* ground_port = nullptr;
+  /// The IMU feels a person turning the robot over (handling.h) instead of its own motion.
+  bool handled = false;
   double encoder_counts_per_turn = 1000.0 / 3.0;
   /// The robot is laid on its left side at this time, s: a fault to inject.
   std::optional<double> lay_on_side_at_s;

@@ -39,5 +39,83 @@ frames sim.candump > got
 cmp expected got || fail "candump has $(wc -l < got) frames, the simulator's log $(wc -l < expected)"
 pass "candump saw all $(wc -l < got) frames of a simulated robot"
 
+# --- screed monitor reads what cansend wrote -------------------------------------------------------------------------------------
+screed monitor --can vcan0 --listen --plain --duration 5 --log monitor.candump > monitor.txt &
+monitor=$!
+until grep -q 'link vcan0 is up' monitor.txt; do sleep 0.2; done
+# A heartbeat, and an attitude of 12.34, -5 and 90 degrees, with their checksums; the same with one wrong bit; something foreign.
+for frame in 010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01; do cansend vcan0 $frame; done
+wait $monitor || fail "screed monitor ended with $?"
+grep -q 'attitude: roll 12.34 deg pitch -5.00 deg heading 90.00 deg' monitor.txt || { cat monitor.txt; fail "cansend's frame is not shown"; }
+grep -q '4 frames, 1 damaged, 1 unknown' monitor.txt || { cat monitor.txt; fail "damaged and unknown frames are not counted"; }
+frames monitor.candump | head -n 4 | tr '\n' ' ' > got
+grep -q '^010#1103000007000000 210#AE03D2040CFE2823 210#AF03D2040CFE2823 7FF#01 $' got || { cat got; fail "the monitor's log differs"; }
+pass "screed monitor shows and logs what cansend wrote, and counts what is damaged"
+canplayer -I monitor.candump vcan0=vcan0 || fail "canplayer does not read the monitor's log"
+pass "canplayer plays the monitor's log"
+
+# --- the interface goes down and up under simulator and monitor ------------------------------------------------------------------
+screed sim /screed/experiments/first_drive.ini --can vcan0 --duration 40 --out /tmp/run2 --quiet > /dev/null &
+sim=$!
+screed monitor --can vcan0 --plain --listen --duration 30 > monitor.txt &
+monitor=$!
+until grep -q 'robot 1: ' monitor.txt; do sleep 0.5; done
+ip link set vcan0 down
+sleep 2
+grep -q 'is down' monitor.txt || { cat monitor.txt; fail "the monitor does not say that the interface is down"; }
+ip link set vcan0 up
+sleep 3
+before=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
+sleep 3
+after=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
+[ "${after:-0}" -gt "${before:-0}" ] || { cat monitor.txt; fail "no frames after the interface came back ($before, $after)"; }
+pass "simulator and monitor go on after the interface was down ($before frames, then $after)"
+# The interface is taken away and made anew.
+ip link del vcan0
+sleep 1
+ip link add dev vcan0 type vcan && ip link set vcan0 up
+sleep 4
+again=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
+[ "$again" -gt "$after" ] || { cat monitor.txt; fail "no frames after the interface was made anew ($after, $again)"; }
+pass "and after it was taken away and made anew ($again)"
+
+# --- screed send, and the robot's answer -----------------------------------------------------------------------------------------
+screed send --can vcan0 param get climb_speed > sent.txt || { cat sent.txt; fail "screed send param get: $?"; }
+grep -q 'climb_speed = 200 mm/s' sent.txt || { cat sent.txt; fail "wrong parameter"; }
+screed send --can vcan0 estop > sent.txt || { cat sent.txt; fail "screed send estop: $?"; }
+grep -q 'robot 1 has stopped' sent.txt || { cat sent.txt; fail "no word of the stop"; }
+status=0
+screed send --can vcan0 run > sent.txt || status=$?
+[ $status -eq 1 ] || fail "a refused command ended with $status"
+grep -q 'run: refused: ' sent.txt || { cat sent.txt; fail "no reason for the refusal"; }
+pass "screed send: a parameter, an emergency stop, and a refusal: $(cat sent.txt)"
+kill -INT $monitor $sim
+wait $monitor $sim
+
+# --- slcand makes the virtual serial port a CAN interface -------------------------------------------------------------------------
+screed sim /screed/experiments/first_drive.ini --pty /dev/radio --duration 20 --out /tmp/run3 --quiet > /dev/null &
+sim=$!
+while [ ! -e /dev/radio ]; do sleep 0.2; done
+slcand -o -c -s6 radio slcan0 || fail "slcand: $?"
+for wait in 1 2 3 4 5; do ip link set slcan0 up 2> /dev/null && break; sleep 1; done
+candump -r 4194304 -d -L slcan0 > slcan.candump &
+dump=$!
+sleep 6
+cansend slcan0 001#B70100 || fail "cansend on slcan0"
+sleep 4
+kill $dump
+frames slcan.candump > got
+[ "$(wc -l < got)" -gt 400 ] || fail "only $(wc -l < got) frames through slcand"
+grep -q "^010#......80" got || { tail -n 3 got; fail "the emergency stop of cansend did not reach the robot"; }
+pass "slcand: $(wc -l < got) frames, and cansend stops the robot"
+kill $sim
+wait $sim
+# Whatever slcand brought, the simulator's ground station has in its log, in that order.
+frames run3/telemetry.log > expected
+grep -v '^001#' got | awk 'NR == FNR { log_line[n++] = $0; next }
+  { while (i < n && log_line[i] != $0) i++; if (i == n) { print "line " FNR ": " $0; exit 1 } i++ }' expected - ||
+  fail "a frame through slcand is not the simulator's"
+pass "they are the simulator's, in its order"
+
 echo "guest: $checks checks passed"
 end 42

@@ -1,0 +1,66 @@
+// What an IMU's raw measurements say about its errors: gyro bias at rest, accelerometer offset and
+// scale from six positions, magnetometer ellipsoid. Pure least squares; knows no robot and no link.
+//
+// Every fit refuses data that cannot tell what it is asked for, with one line for the person who
+// holds the robot.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace screed {
+
+/// Corrected = matrix * (raw - offset).
+struct VectorCorrection {
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+
+  Eigen::Vector3d apply(const Eigen::Vector3d& raw) const { return matrix * (raw - offset); }
+};
+
+struct VectorFit {
+  VectorCorrection correction;
+  double radius = 0.0;  ///< length that corrected vectors have
+  /// Relative RMS deviation of the lengths from their mean: of the raw vectors, of those with the
+  /// offset alone taken away, and of the corrected ones.
+  double residual_before = 0.0;
+  double residual_offset = 0.0;
+  double residual_after = 0.0;
+};
+
+struct GyroFit {
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();       ///< unit of the samples
+  Eigen::Vector3d deviation = Eigen::Vector3d::Zero();  ///< of a single sample
+};
+
+/// Mean at rest. `most_deviation`: of an axis, above which the robot was moved, in the unit of the
+/// samples. Throws RunError: fewer than 20 samples, or moved.
+GyroFit fit_gyro(std::span<const Eigen::Vector3d> samples, double most_deviation);
+
+/// The six positions: which way is up in the robot's frame.
+enum class Position { kLevel, kUpsideDown, kNoseUp, kNoseDown, kLeftUp, kRightUp };
+constexpr size_t kPositions = 6;
+const char* position_name(Position position);
+
+/// The position that a specific force shows; nothing when it is more than 30 degrees from each.
+std::optional<Position> position_of(const Eigen::Vector3d& force);
+
+/// Offset and scale of each axis from the mean force in each position, by the rule that every
+/// corrected one has the length `gravity` (Gauss-Newton; positions need not be exact). Throws
+/// RunError when the lengths differ so much that the sensor, or the person, is at fault.
+VectorFit fit_accelerometer(const std::array<Eigen::Vector3d, kPositions>& forces, double gravity);
+
+/// The ellipsoid through the samples: its centre is the hard iron, the symmetric matrix that makes
+/// a sphere of it the soft iron. Keeps the mean radius. Least squares of the algebraic distance in
+/// centred and scaled coordinates. Throws RunError when there are fewer than 20 samples, when they
+/// do not reach round (all in a plane, a patch of the sphere), or when they lie on no ellipsoid.
+VectorFit fit_ellipsoid(std::span<const Eigen::Vector3d> samples);
+
+/// Share of the directions round `centre` in which there is a sample: 0..1, by 26 even patches.
+double coverage(std::span<const Eigen::Vector3d> samples, const Eigen::Vector3d& centre);
+
+}  // namespace screed

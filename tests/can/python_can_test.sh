@@ -1,0 +1,21 @@
+#!/bin/bash
+# python3-can at the virtual serial port of a simulated robot.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+# Debian's python, where Debian's packages are.
+python=/usr/bin/python3
+tools/install-deps.sh yes tests/can/debian-packages.txt || true
+$python -c 'import can' 2> /dev/null || { echo "python3-can is not installed and cannot be: apt install python3-can"; exit 77; }
+
+work=$(mktemp -d)
+"$SCREED_PROGRAM" sim host_sim/data/experiments/first_drive.ini --pty "$work/radio" --duration 60 --out "$work/run" --quiet > "$work/sim.log" 2>&1 &
+sim=$!
+trap 'kill $sim 2> /dev/null || true; rm -rf "$work"' EXIT
+for _ in $(seq 100); do [ -e "$work/radio" ] && break; sleep 0.1; done
+$python tests/can/python_can_test.py "$work/radio"
+kill -INT $sim
+wait $sim
+# What came from outside is in the recording: it replays to the same bytes.
+"$SCREED_PROGRAM" replay "$work/run/session.h5" | grep -q "outputs identical"
+$python -c 'import can; print("python-can", can.__version__, "hears the robot at its rates and stops it; the run replays")'
