@@ -72,15 +72,20 @@ Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
 }
 
 void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
-  ImuSample imu{};
+  ImuSample imu;  // all of it is written below
   auto* const to = reinterpret_cast<int16_t*>(&imu);
   const auto* const from = reinterpret_cast<const int16_t*>(
       reinterpret_cast<const uint8_t*>(&sample) + offsetof(SensorSample, gyro));
   const auto* const offset = reinterpret_cast<const int16_t*>(
       reinterpret_cast<const uint8_t*>(&parameters_) + offsetof(Parameters, gyro_offset_x));
-  // Saturates: a shock must not change its sign.
-  for (uint8_t i = 0; i < kImuCounts; ++i)
-    to[i] = saturate_i16(static_cast<int32_t>(from[i]) - offset[i]);
+  for (uint8_t i = 0; i < kImuCounts; ++i) {
+    const auto raw = static_cast<uint16_t>(from[i]);
+    const auto shift = static_cast<uint16_t>(offset[i]);
+    const auto corrected = static_cast<uint16_t>(raw - shift);
+    // One so near to the sensor's limit that it would change its sign stays as it is.
+    const bool wrapped = (((raw ^ shift) & (raw ^ corrected)) & 0x8000U) != 0;
+    to[i] = static_cast<int16_t>(wrapped ? raw : corrected);
+  }
   imu.mag_fresh = (sample.fresh & kFreshMag) != 0;
   // Turning tracks are no standstill, however evenly the robot turns.
   const bool tracks_at_rest =
