@@ -2,6 +2,8 @@
 // long.
 #include "firmware/robot/parameters.h"
 
+#include <stddef.h>
+
 #include "firmware/math/rom.h"
 
 namespace screed {
@@ -9,11 +11,12 @@ namespace {
 
 const int16_t kRanges[][2] SCREED_ROM = {
 #define SCREED_RANGE(name, unit, min, max, value, meaning) {min, max},
-    SCREED_PARAMETERS(SCREED_RANGE)
+    SCREED_TUNED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
 };
 constexpr uint8_t kCount = sizeof(kRanges) / sizeof(kRanges[0]);
-static_assert(sizeof(Parameters) == kCount * sizeof(int16_t), "parameters are numbers alone");
+static_assert(offsetof(Parameters, gyro_offset_x) == kCount * sizeof(int16_t),
+              "parameters are numbers alone, those with a range first");
 
 }  // namespace
 
