@@ -2,8 +2,6 @@
 // long.
 #include "firmware/robot/parameters.h"
 
-#include <stddef.h>
-
 #include "firmware/math/rom.h"
 
 namespace screed {
@@ -11,12 +9,11 @@ namespace {
 
 const int16_t kRanges[][2] SCREED_ROM = {
 #define SCREED_RANGE(name, unit, min, max, value, meaning) {min, max},
-    SCREED_TUNED_PARAMETERS(SCREED_RANGE)
+    SCREED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
 };
 constexpr uint8_t kCount = sizeof(kRanges) / sizeof(kRanges[0]);
-static_assert(offsetof(Parameters, gyro_offset_x) == kCount * sizeof(int16_t),
-              "parameters are numbers alone, those with a range first");
+static_assert(sizeof(Parameters) == kCount * sizeof(int16_t), "parameters are numbers alone");
 
 }  // namespace
 

@@ -14,7 +14,7 @@
 
 // clang-format off
 //  name                    unit         min    max  default  meaning
-#define SCREED_TUNED_PARAMETERS(X) \
+#define SCREED_PARAMETERS(X) \
   X(algorithm,              "",            0,     2,      1, "leveling algorithm: 0 drive (ground commands), 1 hill sensing, 2 spin on the peak") \
   X(random_seed,            "",            0, 32767,      1, "seed of the random walk") \
   X(climb_threshold,        "0.01 deg",  100,  4500,    500, "pitch above which a hill is being climbed (epsilon of Algorithm 6)") \
@@ -38,20 +38,6 @@
   X(stall_time,             "ms",         50,  5000,    180, "a track at high duty that does not move for this long is stalled") \
   X(standalone,             "",            0,     1, SCREED_STANDALONE, "1: arm and run after power-up without a ground station") \
   X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run")
-
-// What a calibration finds. Any value is allowed: a range of each would cost flash that there is not.
-#define SCREED_OFFSETS(X) \
-  X(gyro_offset_x,          "70 mdps",  INT16_MIN, INT16_MAX, 0, "what the gyro says at rest (screed calibrate)") \
-  X(gyro_offset_y,          "70 mdps",  INT16_MIN, INT16_MAX, 0, "likewise") \
-  X(gyro_offset_z,          "70 mdps",  INT16_MIN, INT16_MAX, 0, "likewise") \
-  X(accel_offset_x,         "0.244 mg", INT16_MIN, INT16_MAX, 0, "offset of the accelerometer (screed calibrate)") \
-  X(accel_offset_y,         "0.244 mg", INT16_MIN, INT16_MAX, 0, "likewise") \
-  X(accel_offset_z,         "0.244 mg", INT16_MIN, INT16_MAX, 0, "likewise") \
-  X(mag_offset_x,           "0.16 mG",  INT16_MIN, INT16_MAX, 0, "hard iron round the magnetometer (screed calibrate)") \
-  X(mag_offset_y,           "0.16 mG",  INT16_MIN, INT16_MAX, 0, "likewise") \
-  X(mag_offset_z,           "0.16 mG",  INT16_MIN, INT16_MAX, 0, "likewise")
-
-#define SCREED_PARAMETERS(X) SCREED_TUNED_PARAMETERS(X) SCREED_OFFSETS(X)
 // clang-format on
 
 namespace screed {

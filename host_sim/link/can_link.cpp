@@ -72,12 +72,7 @@ CanLink::CanLink(const std::string& interface) : interface_(interface) {
     }
     throw RunError(interface + ": no CAN socket: " + std::strerror(errno));
   }
-  // 11-bit data frames, and every kind of error frame.
-  const can_filter filter = {0, CAN_EFF_FLAG | CAN_RTR_FLAG};
-  const can_err_mask_t errors = CAN_ERR_MASK;
   const int on = 1;
-  setsockopt(socket_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, &filter, sizeof filter);
-  setsockopt(socket_.get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
   setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMP, &on, sizeof on);
   setsockopt(socket_.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
   setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
@@ -102,6 +97,12 @@ bool CanLink::bind_socket() {
   index_ = if_nametoindex(interface_.c_str());
   address.can_ifindex = static_cast<int>(index_);
   if (index_ == 0) return false;
+  // Set at every binding: the kernel forgets them with an interface that is taken away.
+  // 11-bit data frames, and every kind of error frame.
+  const can_filter filter = {0, CAN_EFF_FLAG | CAN_RTR_FLAG};
+  const can_err_mask_t errors = CAN_ERR_MASK;
+  setsockopt(socket_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, &filter, sizeof filter);
+  setsockopt(socket_.get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
   return bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 

@@ -22,6 +22,7 @@ for module in can can-raw can-dev vcan slcan; do
 done
 ip link add dev vcan0 type vcan && ip link set vcan0 up || fail "no vcan0"
 cd /tmp
+touch monitor.txt
 
 # Lines of a candump log without time and interface.
 frames() { sed -n 's/^([0-9.]*) [^ ]* //p' "$1"; }
@@ -55,9 +56,9 @@ canplayer -I monitor.candump vcan0=vcan0 || fail "canplayer does not read the mo
 pass "canplayer plays the monitor's log"
 
 # --- the interface goes down and up under simulator and monitor ------------------------------------------------------------------
-screed sim /screed/experiments/first_drive.ini --can vcan0 --duration 40 --out /tmp/run2 --quiet > /dev/null &
+screed sim /screed/experiments/first_drive.ini --can vcan0 --duration 90 --out /tmp/run2 --quiet > /dev/null &
 sim=$!
-screed monitor --can vcan0 --plain --listen --duration 30 > monitor.txt &
+screed monitor --can vcan0 --plain --listen --duration 35 > monitor.txt &
 monitor=$!
 until grep -q 'robot 1: ' monitor.txt; do sleep 0.5; done
 ip link set vcan0 down
@@ -74,6 +75,8 @@ pass "simulator and monitor go on after the interface was down ($before frames, 
 ip link del vcan0
 sleep 1
 ip link add dev vcan0 type vcan && ip link set vcan0 up
+sleep 4
+after=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
 sleep 4
 again=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n 1)
 [ "$again" -gt "$after" ] || { cat monitor.txt; fail "no frames after the interface was made anew ($after, $again)"; }
