@@ -26,7 +26,7 @@ struct Experiment {
     std::string track_model = "belt";  ///< or chain: links round the wheels
     int track_links = 0;               ///< of a chain, each side; 0: of about 10 mm
     double track_tension_n = 10.0;     ///< of a chain at rest
-    std::string model = "board";  ///< a URDF file, rover5, or board: the board's own
+    std::string model = "board";       ///< a URDF file, rover5, or board: the board's own
     double x_m = 0.0;
     double y_m = 0.0;
     std::optional<double> z_m;

@@ -164,11 +164,10 @@ TEST(RobotView, WhatHappensIsSaidInWords) {
   std::vector<std::string> words;
   for (const RobotView::Happening& happening : robot->happenings())
     words.push_back(happening.words);
-  EXPECT_EQ(words,
-            (std::vector<std::string>{"the robot restarted, start 8", "fault gone: stall left",
-                                      "state: disarmed", "arm: fault present",
-                                      "fault: stall left: high duty, no motion",
-                                      "state: fault", "state: disarmed"}));
+  EXPECT_EQ(words, (std::vector<std::string>{
+                       "the robot restarted, start 8", "fault gone: stall left", "state: disarmed",
+                       "arm: fault present", "fault: stall left: high duty, no motion",
+                       "state: fault", "state: disarmed"}));
 }
 
 // ---- the dashboard
