@@ -109,7 +109,7 @@ sleep 4
 kill $dump
 frames slcan.candump > got
 [ "$(wc -l < got)" -gt 400 ] || fail "only $(wc -l < got) frames through slcand"
-grep -q "^010#......80" got || { tail -n 3 got; fail "the emergency stop of cansend did not reach the robot"; }
+grep -q "^010#....80" got || { tail -n 3 got; fail "the emergency stop of cansend did not reach the robot"; }
 pass "slcand: $(wc -l < got) frames, and cansend stops the robot"
 kill $sim
 wait $sim
