@@ -115,7 +115,7 @@ kill $sim
 wait $sim
 # Whatever slcand brought, the simulator's ground station has in its log, in that order.
 frames run3/telemetry.log > expected
-grep -v '^001#' got | awk 'NR == FNR { log_line[n++] = $0; next }
+grep -v '^001#' got | awk 'BEGIN { i = 0; n = 0 } NR == FNR { log_line[n++] = $0; next }
   { while (i < n && log_line[i] != $0) i++; if (i == n) { print "line " FNR ": " $0; exit 1 } i++ }' expected - ||
   fail "a frame through slcand is not the simulator's"
 pass "they are the simulator's, in its order"
