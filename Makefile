@@ -15,6 +15,7 @@ BUILD ?= release
 DEPS ?= yes
 BOARD ?= a_star_32u4
 EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
+SESSIONS ?= $(wildcard host_sim/data/experiments/sessions/*.ini)
 ARGS ?=
 PREFIX ?= /usr/local
 
@@ -81,6 +82,7 @@ LIBRARY := $(B)/libscreed.a
 
 help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
+	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
 	@echo "make firmware  build the image for the robot          (BOARD=$(BOARD))"
@@ -105,6 +107,8 @@ help:
 STEP = +@$(MAKE) --no-print-directory BUILD=$(BUILD) BOARD=$(BOARD) DEPS=no
 sim: deps
 	$(STEP) run-sim
+sessions: deps
+	$(STEP) run-sessions
 test: deps
 	$(STEP) run-tests
 firmware: deps
@@ -204,6 +208,9 @@ $(B)/avr_stack: $(B)/tools/avr_stack/main.o $(B)/libavr_stack.a $(B)/link.flags
 .PHONY: run-sim
 run-sim: $(SCREED)
 	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
+.PHONY: sessions run-sessions
+run-sessions: $(SCREED)
+	@$(SCREED) record $(SESSIONS) --out $(OUT)/sessions $(ARGS)
 
 install:
 	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards FIRMWARE_DIR=$(PREFIX)/share/screed/firmware run-install

@@ -5,9 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -26,16 +24,10 @@
 #include "host_sim/grid/grid_sweep.h"
 #include "host_sim/grid/grid_text_view.h"
 #include "host_sim/scene/povray.h"
+#include "tools/interrupt.h"
 
 namespace screed {
 namespace {
-
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
-
-extern "C" void on_grid_interrupt(int) {
-  interrupted.store(true);
-}
 
 struct GridOptions {
   GridConfig config;
@@ -295,7 +287,7 @@ int run_one(const GridOptions& options, const std::string& version) {
                    run.world().lowest(), run.world().highest(), options.speed);
       view->show(frame_of(run), run.progress().progress);
     }
-    while (!run.finished() && !interrupted) {
+    while (!run.finished() && !interrupted()) {
       run.cycle();
       if (recorder) recorder->add_cycle(run);
       if (curve) curve->add(run, false);
@@ -334,7 +326,7 @@ int run_replay(const GridOptions& options) {
       view->show(replay.frame(), static_cast<double>(replay.frame().cycle) / all);
     };
     if (view) show();
-    while (!replay.finished() && !interrupted) {
+    while (!replay.finished() && !interrupted()) {
       replay.cycle();
       if (view && (replay.finished() || replay.frame().cycle % view->cycles_a_frame() == 0)) show();
     }
@@ -365,7 +357,7 @@ SweepOptions sweep_options(const GridOptions& options) {
   SweepOptions sweep;
   sweep.runs = options.runs;
   sweep.threads = options.threads;
-  sweep.stop = &interrupted;
+  sweep.stop = &interrupted();
   if (!options.quiet && isatty(STDERR_FILENO) == 1) {
     sweep.progress = [](size_t done, size_t all) {
       std::fprintf(stderr, "\r%zu of %zu runs%s", done, all, done == all ? "\033[2K\r" : "");
@@ -483,8 +475,7 @@ int run_command(GridOptions options, bool runs_given, const std::string& version
   if (!options.replay.empty() && !(options.record + options.curve).empty()) {
     throw InputError("grid: --replay does not go with --record or --curve");
   }
-  std::signal(SIGINT, on_grid_interrupt);
-  std::signal(SIGTERM, on_grid_interrupt);
+  catch_interrupts();
   if (!options.figure.empty()) {
     if (!runs_given) options.runs = 30;
     return run_figure(options);

@@ -11,11 +11,14 @@
 #include "tools/parity_command.h"
 #include "tools/plot_command.h"
 #include "tools/program.h"
+#include "tools/record_command.h"
 #include "tools/render_command.h"
 #include "tools/replay_command.h"
 #include "tools/send_command.h"
+#include "tools/session_command.h"
 #include "tools/sim_command.h"
 #include "tools/soil_command.h"
+#include "tools/terrain_command.h"
 #include "version.h"
 
 int main(int argc, char** argv) {
@@ -36,5 +39,8 @@ int main(int argc, char** argv) {
   screed::register_send_command(app, action);
   screed::register_calibrate_command(app, action);
   screed::register_soil_command(app, action);
+  screed::register_record_command(app, SCREED_VERSION, action);
+  screed::register_session_command(app, action);
+  screed::register_terrain_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });
 }

@@ -14,6 +14,18 @@ constexpr int kWidth = 28;
 constexpr std::chrono::milliseconds kTerminalInterval(100);
 constexpr std::chrono::seconds kLogInterval(10);
 
+/// Minutes and seconds, and hours when there are some.
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long>(std::max(0.0, std::min(seconds, 3.6e6)) + 0.5);
+  char text[32];
+  if (whole >= 3600) {
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
+  }
+  return text;
+}
+
 }  // namespace
 
 ProgressBar::ProgressBar(std::ostream& out)
@@ -45,9 +57,12 @@ void ProgressBar::draw() {
   const int full = static_cast<int>(share * kWidth);
   std::string bar;
   for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "░";
+  const double speed = wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0;
   char text[200];
-  std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s", share * 100.0, time_s_,
-                duration_s_, wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0, note_.c_str());
+  std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s left  %s", share * 100.0,
+                time_s_, duration_s_, speed,
+                clock_text(speed > 0.0 ? (duration_s_ - time_s_) / speed : 0.0).c_str(),
+                note_.c_str());
   out_ << (terminal_ ? "\r" : "") << bar << text << (terminal_ ? "\033[K" : "\n") << std::flush;
 }
 

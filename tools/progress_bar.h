@@ -12,7 +12,8 @@ class ProgressBar {
  public:
   explicit ProgressBar(std::ostream& out);
 
-  /// Shows simulated time, real-time factor since the first call, and `note`. Cheap when called
+  /// Shows simulated time, real-time factor since the first call, the time that is left at this
+  /// speed, and `note`. Cheap when called
   /// often: draws ten times a second at most.
   void show(double time_s, double duration_s, const std::string& note);
   /// Draws the last state and ends the line.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "host_sim/session/replay.h"
+#include "host_sim/session/run_folder.h"
 
 namespace screed {
 namespace {
@@ -16,11 +17,6 @@ struct Options {
   std::string run;
   bool json = false;
 };
-
-std::filesystem::path session_file(const std::filesystem::path& run) {
-  std::error_code error;
-  return std::filesystem::is_directory(run, error) ? run / "session.h5" : run;
-}
 
 void print_json(const std::string& run, const ReplayResult& result) {
   nlohmann::ordered_json json;

@@ -12,26 +12,21 @@
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
 #include "host_sim/link/outside_port.h"
-#include "tools/interrupt.h"
-#include "tools/progress_bar.h"
+#include "tools/succession.h"
 
 namespace screed {
 namespace {
 
 struct SimArguments {
-  std::string file;
+  SuccessionArguments runs;
   std::optional<std::string> seed;
   std::optional<std::string> duration;
-  std::vector<std::string> sets;
-  std::optional<std::string> out;
   std::string hal = "native";
   std::optional<std::string> board;
   std::optional<std::string> elf;
   std::optional<std::string> can;
   std::optional<std::string> pty;
   bool realtime = false;
-  bool quiet = false;
-  bool json = false;
 };
 
 void print_row(const char* name, const std::string& before, const std::string& after) {
@@ -109,11 +104,10 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
 }
 
 int run_sim(const SimArguments& arguments, const std::string& version) {
-  std::vector<std::string> overrides = arguments.sets;
+  std::vector<std::string> overrides;
   if (arguments.seed.has_value()) overrides.push_back("experiment.seed=" + *arguments.seed);
   if (arguments.duration.has_value())
     overrides.push_back("experiment.duration=" + *arguments.duration);
-  const Experiment experiment = read_experiment(arguments.file, overrides);
 
   SimulationOptions options;
   PortGroup ports;
@@ -128,38 +122,27 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   if (!ports.empty()) options.ground_port = &ports;
   // Other programs live by the clock.
   options.realtime = arguments.realtime || !ports.empty();
-  options.stop = &interrupted();
   options.program_version = version;
-  if (arguments.out.has_value()) options.out = *arguments.out;
   if (arguments.board.has_value()) options.board = *arguments.board;
   if (arguments.hal == "mcu") {
     options.image = arguments.elf.value_or(default_image(options.board));
   } else if (arguments.elf.has_value()) {
     throw InputError("--elf needs --hal mcu");
   }
-  std::optional<ProgressBar> bar;
-  if (!arguments.quiet) {
-    bar.emplace(std::cerr);
-    options.progress = [&bar](const SimulationProgress& progress) {
-      bar->show(progress.time_s, progress.duration_s,
-                format("flat %.1f %%", progress.flatness * 100.0));
-    };
-  }
 
-  catch_interrupts();
-  const SimulationSummary summary = run_simulation(experiment, options);
-  if (bar.has_value()) bar->finish();
-  for (const auto& leftover : summary.leftovers) {
-    std::cerr << "note: " << leftover.string()
-              << " is left of a run that did not end; remove it when it is not needed\n";
-  }
-  if (arguments.json) {
-    std::cout << summary_json(summary);
-  } else if (!arguments.quiet) {
-    print_table(experiment, summary);
-  } else {
-    std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
-  }
+  std::vector<SimulationSummary> summaries;
+  run_in_succession(arguments.runs, overrides, options,
+                    [&](const Experiment& experiment, const SimulationSummary& summary) {
+                      summaries.push_back(summary);
+                      if (arguments.runs.json) return;
+                      if (!arguments.runs.quiet) {
+                        print_table(experiment, summary);
+                      } else {
+                        std::printf("%s %s\n", summary.folder.c_str(),
+                                    summary.content_hash.c_str());
+                      }
+                    });
+  if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.files.size() > 1);
   return 0;
 }
 
@@ -170,15 +153,10 @@ void register_sim_command(CLI::App& root, const std::string& version,
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command =
       root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
-  command->add_option("FILE", arguments->file, "experiment file (INI)");
+  add_succession_options(*command, arguments->runs);
   command->add_option("--seed", arguments->seed, "seed of the world; overrides [experiment] seed");
   command->add_option("--duration", arguments->duration,
                       "simulated seconds; overrides [experiment] duration");
-  command
-      ->add_option("--set", arguments->sets, "override a key: section.key=value; may be repeated")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  command->add_option("--out", arguments->out, "run folder; must not exist yet");
   command
       ->add_option(
           "--hal", arguments->hal,
@@ -198,9 +176,6 @@ void register_sim_command(CLI::App& root, const std::string& version,
       ->type_name("LINK")
       ->expected(0, 1);
   command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
-  command->add_flag("--quiet", arguments->quiet,
-                    "no progress; print run folder and content hash alone");
-  command->add_flag("--json", arguments->json, "print the summary as JSON");
   auto list_keys = std::make_shared<bool>(false);
   command->add_flag("--keys", *list_keys, "list every key of an experiment file and stop");
   command->callback([arguments, list_keys, version, &action] {
@@ -213,7 +188,7 @@ void register_sim_command(CLI::App& root, const std::string& version,
       };
       return;
     }
-    if (arguments->file.empty()) throw CLI::RequiredError("FILE");
+    if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
     action = [arguments, version] { return run_sim(*arguments, version); };
   });
 }

@@ -17,7 +17,13 @@ Leveling::Leveling(const Parameters& parameters)
       spin_rate_(yaw_rate_from_degrees(parameters.spin_rate)),
       spin_ticks_(ticks_from_ms(parameters.spin_time)),
       walk_(parameters),
-      fence_(parameters.site_radius, parameters.walk_speed_max) {}
+      fence_(parameters.site_radius, parameters.walk_speed_max)
+#if SCREED_TRAINING_DRIVE
+      ,
+      training_(parameters)
+#endif
+{
+}
 
 void Leveling::start() {
   state_ = LevelingState::kIdle;
@@ -79,6 +85,13 @@ MotionCommand Leveling::tick(const LevelingInput& input, const MotionCommand& dr
     enter(LevelingState::kDrive);
     return drive;
   }
+#if SCREED_TRAINING_DRIVE
+  if (algorithm_ == LevelingAlgorithm::kTraining) {
+    const MotionCommand motion = training_.tick();
+    enter(training_.finished() ? LevelingState::kDone : LevelingState::kTraining);
+    return motion;
+  }
+#endif
   // A spin stays where it is; everything else obeys the fence.
   if (state_ != LevelingState::kSpin && fence_.outside(input.x_mm, input.y_mm)) {
     enter(LevelingState::kReturn);

@@ -11,6 +11,7 @@
 #include "firmware/control/kinematics.h"
 #include "firmware/leveling/random_walk.h"
 #include "firmware/leveling/site_fence.h"
+#include "firmware/leveling/training_drive.h"
 #include "firmware/robot/parameters.h"
 
 namespace screed {
@@ -27,25 +28,28 @@ enum class LevelingAlgorithm : uint8_t {
   kDrive = 0,        ///< no algorithm: the ground station commands the motion
   kHillSensing = 1,  ///< Algorithm 6
   kSpinOnPeak = 2,   ///< its successor in 7.1.1
+  kTraining = 3,     ///< Algorithm 5: no leveling, the drive that training data is recorded on
 };
 
 /// What an algorithm is doing; recorded and shown to people.
 enum class LevelingState : uint8_t {
   kIdle = 0,
-  kWalk = 1,    ///< random walk
-  kClimb = 2,   ///< straight on, up an incline
-  kSpin = 3,    ///< spinning on a peak
-  kReturn = 4,  ///< outside the site, driving back
-  kDrive = 5,   ///< following the ground station
+  kWalk = 1,      ///< random walk
+  kClimb = 2,     ///< straight on, up an incline
+  kSpin = 3,      ///< spinning on a peak
+  kReturn = 4,    ///< outside the site, driving back
+  kDrive = 5,     ///< following the ground station
+  kTraining = 6,  ///< a block of Algorithm 5
+  kDone = 7,      ///< all of its blocks are driven
 };
-constexpr uint8_t kLevelingStates = 6;
+constexpr uint8_t kLevelingStates = 8;
 
 class Leveling {
  public:
   explicit Leveling(const Parameters& parameters);
 
-  /// Starts a run: the state begins anew. Random sequence, fence and the side of the next spin go
-  /// on.
+  /// Starts a run: the state begins anew. Random sequence, fence, the side of the next spin and
+  /// what is left of a training drive go on.
   void start();
 
   /// One tick of the selected algorithm. `drive` is what the ground station commands, used by
@@ -71,6 +75,9 @@ class Leveling {
   uint16_t spin_ticks_;
   RandomWalk walk_;
   SiteFence fence_;
+#if SCREED_TRAINING_DRIVE
+  TrainingDrive training_;
+#endif
   LevelingState state_ = LevelingState::kIdle;
   uint16_t ticks_in_state_ = 0;  ///< this one included; in a climb since the last incline
   uint16_t peaks_ = 0;

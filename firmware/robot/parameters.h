@@ -7,6 +7,18 @@
 
 #include <stdint.h>
 
+// Whether the training drive is there. Not in a microcontroller's image: it drives blindly, which
+// simulated terrain without edges bears and a site does not, and flash is scarce (the drive takes
+// 434 bytes). An image without it takes algorithm 3 for an invalid parameter and refuses to arm;
+// -DSCREED_TRAINING_DRIVE=1 brings it in.
+#ifndef SCREED_TRAINING_DRIVE
+#ifdef __AVR__
+#define SCREED_TRAINING_DRIVE 0
+#else
+#define SCREED_TRAINING_DRIVE 1
+#endif
+#endif
+
 /// Robots that run without a ground station unless told otherwise: make firmware STANDALONE=yes.
 #ifndef SCREED_STANDALONE
 #define SCREED_STANDALONE 0
@@ -15,8 +27,9 @@
 // clang-format off
 //  name                    unit         min    max  default  meaning
 #define SCREED_PARAMETERS(X) \
-  X(algorithm,              "",            0,     2,      1, "leveling algorithm: 0 drive (ground commands), 1 hill sensing, 2 spin on the peak") \
-  X(random_seed,            "",            0, 32767,      1, "seed of the random walk") \
+  X(algorithm,              "",            0, 2 + SCREED_TRAINING_DRIVE,     1, "leveling algorithm: 0 drive (ground commands), 1 hill sensing, 2 spin on the peak, 3 training drive (Algorithm 5)") \
+  X(random_seed,            "",            0, 32767,      1, "seed of the random walk and of the training drive") \
+  X(training_block,         "tick",        1, 32767,   2000, "training drive: length of each of the eight blocks of Algorithm 5") \
   X(climb_threshold,        "0.01 deg",  100,  4500,    500, "pitch above which a hill is being climbed (epsilon of Algorithm 6)") \
   X(climb_hysteresis,       "0.01 deg",    0,  1000,    100, "pitch must fall this far below the threshold before the climb counts as over") \
   X(climb_speed,            "mm/s",       20,   250,    200, "speed while climbing (v_climb of Algorithm 6)") \

@@ -10,6 +10,7 @@
 
 #include "firmware/leveling/leveling.h"
 #include "firmware/robot/parameter_table.h"
+#include "hal/sample.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/ini_file.h"
 #include "host_sim/soil/soil_parameters.h"
@@ -97,6 +98,23 @@ Key text_key(const char* section, const char* name, const char* allowed, const c
   return {section, name, "", allowed, meaning, set, get};
 }
 
+/// A key that is not written back when another one holds in its place.
+Key in_force_unless(Key key, bool (*replaced)(const Experiment&)) {
+  key.get = [get = std::move(key.get), replaced](const Experiment& experiment) {
+    return replaced(experiment) ? std::nullopt : get(experiment);
+  };
+  return key;
+}
+
+constexpr const char* kUnitsKey = "units";
+constexpr const char* kSandboxKey = "chrono_data_path";
+constexpr double kSandboxUnitsPerMetre = 12.0;
+constexpr uint32_t kMostFrames = 8U * INT16_MAX;  // eight blocks of a parameter's range
+
+bool is_units(const std::string& text) {
+  return text == "si" || text == "sandbox";
+}
+
 struct AlgorithmName {
   const char* name;
   LevelingAlgorithm algorithm;
@@ -104,6 +122,7 @@ struct AlgorithmName {
 constexpr AlgorithmName kAlgorithms[] = {
     {"drive", LevelingAlgorithm::kDrive},
     {"hill_sensing", LevelingAlgorithm::kHillSensing},
+    {"random", LevelingAlgorithm::kTraining},
     {"spin_on_peak", LevelingAlgorithm::kSpinOnPeak},
 };
 
@@ -147,6 +166,12 @@ std::vector<Key> make_keys() {
   keys.push_back(text_key(
       "", "output_directory_prefix", "a folder", "where run folders are made",
       [](Experiment& e) -> std::string& { return e.output_directory_prefix; }, not_empty));
+  const auto not_kept = [](const Experiment&) -> std::optional<std::string> { return {}; };
+  keys.push_back({"", kUnitsKey, "", "si or sandbox",
+                  "sandbox: a file of the thesis' simulator, see below",
+                  [](Experiment&, const std::string& text) { return is_units(text); }, not_kept});
+  keys.push_back({"", kSandboxKey, "", "a folder", "not used; marks a file of units = sandbox",
+                  [](Experiment&, const std::string& text) { return !text.empty(); }, not_kept});
 
   keys.push_back(bool_key("vehicle", "tracks", "tracks round the wheels; false: four driven wheels",
                           [](Experiment& e) -> bool& { return e.vehicle.tracks; }));
@@ -200,8 +225,18 @@ std::vector<Key> make_keys() {
   keys.push_back(text_key(
       "map", "filename", "a grey PNG or BMP file", "height map; left out: level ground, or a ramp",
       [](Experiment& e) -> std::string& { return e.map.filename; }, not_empty));
-  keys.push_back(real_key("map", "size", "m", 0.1, 1000, "length of the bed's longer side",
-                          [](Experiment& e) -> double& { return e.map.size_m; }));
+  // Of two keys that stand for the same the later one holds; only that one is written back.
+  Key size = real_key("map", "size", "m", 0.1, 1000, "length of the bed's longer side",
+                      [](Experiment& e) -> double& {
+                        e.map.xy_scale.reset();
+                        return e.map.size_m;
+                      });
+  keys.push_back(
+      in_force_unless(size, [](const Experiment& e) { return e.map.xy_scale.has_value(); }));
+  keys.push_back(
+      real_key("map", "xy_scale", "m", 1e-5, 100,
+               "in place of size: width of a pixel; of particles: stacks a pixel, without unit",
+               [](Experiment& e) -> std::optional<double>& { return e.map.xy_scale; }));
   keys.push_back(real_key("map", "scale", "m", 0.0001, 100, "height of white",
                           [](Experiment& e) -> double& { return e.map.scale_m; }));
   keys.push_back(real_key("map", "smoothing", "m", 0, 1,
@@ -283,10 +318,30 @@ std::vector<Key> make_keys() {
       "experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
       [](Experiment& e) -> std::string& { return e.experiment.name; }, is_file_name));
   keys.push_back(text_key(
-      "experiment", "algorithm", "drive, hill_sensing or spin_on_peak", "what the firmware does",
+      "experiment", "algorithm", "drive, hill_sensing, random or spin_on_peak",
+      "what the firmware does; random: Algorithm 5, the drive for training data",
       [](Experiment& e) -> std::string& { return e.experiment.algorithm; }, is_algorithm));
-  keys.push_back(real_key("experiment", "duration", "s", 0.01, 1e6, "simulated time",
-                          [](Experiment& e) -> double& { return e.experiment.duration_s; }));
+  Key duration = real_key("experiment", "duration", "s", 0.01, 1e6, "simulated time",
+                          [](Experiment& e) -> double& {
+                            e.experiment.frames.reset();
+                            return e.experiment.duration_s;
+                          });
+  keys.push_back(in_force_unless(
+      duration, [](const Experiment& e) { return e.experiment.frames.has_value(); }));
+  keys.push_back(
+      {"experiment", "frames", "0.01 s", "a multiple of 8, 8.." + std::to_string(kMostFrames),
+       "in place of duration; algorithm random: the n of Algorithm 5",
+       [](Experiment& e, const std::string& text) {
+         uint32_t frames = 0;
+         if (!parse_number(text, frames) || frames < 8 || frames > kMostFrames || frames % 8 != 0)
+           return false;
+         e.experiment.frames = frames;
+         return true;
+       },
+       [](const Experiment& e) -> std::optional<std::string> {
+         if (!e.experiment.frames.has_value()) return std::nullopt;
+         return std::to_string(*e.experiment.frames);
+       }});
   keys.push_back(
       {"experiment", "seed", "", "an integer 0..18446744073709551615",
        "of every random generator of the world",
@@ -364,7 +419,8 @@ std::vector<Key> make_keys() {
                           [](Experiment& e) -> double& { return e.physics.step_s; }));
 
   for (const ParameterInfo& info : kParameterTable) {
-    if (std::string(info.name) == "algorithm") continue;  // [experiment] algorithm, by name
+    // Said in [experiment]: algorithm by its name, and frames.
+    if (info.field == &Parameters::algorithm || info.field == &Parameters::training_block) continue;
     keys.push_back({"parameters", info.name, info.unit,
                     "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max),
                     info.meaning,
@@ -441,6 +497,77 @@ void apply(Experiment& experiment, const IniEntry& entry, const std::string& sou
   }
 }
 
+/// Whether a file is one of the thesis' simulator: it says so, or it has the key that only those
+/// files have. Leaves a note.
+bool is_sandbox(const std::vector<IniEntry>& entries, const std::string& source,
+                Experiment& experiment) {
+  const auto find = [&](const char* key) {
+    return std::find_if(entries.begin(), entries.end(), [&](const IniEntry& entry) {
+      return entry.section.empty() && entry.key == key;
+    });
+  };
+  const auto units = find(kUnitsKey);
+  const auto chrono = find(kSandboxKey);
+  if (chrono == entries.end()) return units != entries.end() && units->value == "sandbox";
+  const std::string where = source + ":" + std::to_string(chrono->line) + ": ";
+  if (units != entries.end()) {
+    experiment.notes.push_back(where + kSandboxKey + " is not used");
+    return units->value == "sandbox";
+  }
+  experiment.notes.push_back(where + kSandboxKey +
+                             " is not used; with it the file counts as one of Sandbox: lengths in "
+                             "units of 1/12 m, y upwards ('units = si' says otherwise)");
+  return true;
+}
+
+/// An entry of a Sandbox file (thesis Figure 5.3) as one of ours: lengths from its unit of 1/12 m,
+/// axes from x east, y up, z south. What is no number stays for the ordinary check.
+IniEntry from_sandbox(IniEntry entry) {
+  constexpr double kUnit_m = 1.0 / kSandboxUnitsPerMetre;
+  struct Length {
+    const char* section;
+    const char* key;
+    const char* ours;
+    double factor;
+  };
+  static constexpr Length kLengths[] = {
+      {"vehicle", "x", "x", kUnit_m},
+      {"vehicle", "y", "z", kUnit_m},
+      {"vehicle", "z", "y", -kUnit_m},
+      {"map", "scale", "scale", kUnit_m},
+      {"map", "size", "size", kUnit_m},
+      {"map", "smoothing", "smoothing", kUnit_m},
+      {"map", "particle_radius", "particle_radius", kUnit_m},
+      {"raygrid", "resolution", "resolution", 1.0 / kUnit_m},
+  };
+  if (entry.section == "map" && entry.key == "model" && entry.value == "particle")
+    entry.value = "particles";
+  for (const Length& length : kLengths) {
+    double value = 0.0;
+    if (entry.section != length.section || entry.key != length.key) continue;
+    entry.key = length.ours;
+    if (parse_number(entry.value, value)) entry.value = shortest(value * length.factor);
+    break;
+  }
+  return entry;
+}
+
+/// The n of Algorithm 5, from frames or from the duration.
+void set_training_length(Experiment& experiment, const std::string& source) {
+  auto& frames = experiment.experiment.frames;
+  if (!frames.has_value()) {
+    const double wanted = std::floor(experiment.experiment.duration_s * kTickRate_hz / 8.0) * 8.0;
+    if (wanted < 8.0 || wanted > kMostFrames) {
+      throw InputError(source +
+                       ": [experiment] duration = " + shortest(experiment.experiment.duration_s) +
+                       " s: algorithm random needs 0.08 s to " +
+                       shortest(kMostFrames / double{kTickRate_hz}) + " s");
+    }
+    frames = static_cast<uint32_t>(wanted);
+  }
+  experiment.parameters.training_block = static_cast<int16_t>(*frames / 8);
+}
+
 /// What no single key can tell.
 void check(const Experiment& experiment, const std::string& source) {
   const Parameters& p = experiment.parameters;
@@ -497,9 +624,21 @@ Experiment read_experiment(const std::filesystem::path& path,
   Experiment experiment;
   experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
   const std::string source = path.string();
-  for (const IniEntry& entry : read_ini_file(path)) apply(experiment, entry, source);
+  const std::vector<IniEntry> entries = read_ini_file(path);
+  const bool sandbox = is_sandbox(entries, source, experiment);
+  // Its terrains have no edges: who leaves on one side comes back on the other (thesis 5.1.4).
+  experiment.map.wrap = sandbox;
+  if (sandbox) experiment.particles.depth_m = 0.0;
+  for (const IniEntry& entry : entries)
+    apply(experiment, sandbox ? from_sandbox(entry) : entry, source);
+  // A pixel's width is a length; of particles the key is a share.
+  if (sandbox && experiment.map.xy_scale.has_value() && !experiment.map.of_particles())
+    *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
   for (const std::string& text : overrides) apply(experiment, parse_override(text), source);
   experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
+  if (experiment.experiment.algorithm == "random") set_training_length(experiment, source);
+  if (experiment.experiment.frames.has_value())
+    experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};
   check(experiment, source);
   return experiment;
 }

@@ -41,6 +41,8 @@ struct Experiment {
   struct {
     std::string filename;  ///< a grey image; empty: level ground
     double size_m = 3.0;
+    /// In place of size: metres a pixel of the image (rigid, scm).
+    std::optional<double> xy_scale;
     double scale_m = 0.2;
     double smoothing_m = 0.0;
     std::optional<double> max_slope_deg;
@@ -89,6 +91,8 @@ struct Experiment {
     std::string name = "experiment";
     std::string algorithm = "hill_sensing";
     double duration_s = 60.0;
+    /// In place of duration, control ticks; the n of algorithm random, for which it is always set.
+    std::optional<uint32_t> frames;
     uint64_t seed = 1;
     double flatness_deg = 5.0;  ///< epsilon of the thesis' flatness, as a slope
     std::optional<double> lay_on_side_at_s;
@@ -123,6 +127,10 @@ struct Experiment {
   } physics;
 
   Parameters parameters;
+
+  /// What the reader of the file should be told: keys that were understood in another way than
+  /// they look. Not part of text().
+  std::vector<std::string> notes;
 
   /// Where the file stood: relative file names are looked for here first. Not part of text().
   std::filesystem::path folder = ".";

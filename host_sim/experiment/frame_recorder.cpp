@@ -37,15 +37,17 @@ Frame FrameRecorder::record(const Plant& plant, const Robot& robot) {
   frame.x = position.x();
   frame.y = position.y();
   frame.z = position.z();
+  // As travelled: a teleport is no motion.
+  const Eigen::Vector3d travelled = plant.place_travelled();
   if (!first_) {
-    frame.delta_x = position.x() - last_position_.x();
-    frame.delta_y = position.y() - last_position_.y();
+    frame.delta_x = travelled.x() - last_travelled_.x();
+    frame.delta_y = travelled.y() - last_travelled_.y();
     frame.delta_theta = wrap_rad(attitude.heading - last_heading_);
-    distance_m_ += (position - last_position_).norm();
+    distance_m_ += (travelled - last_travelled_).norm();
   }
   if (!plant.terrain().inside(position.x(), position.y())) outside_s_ += 1.0 / kTickRate_hz;
   first_ = false;
-  last_position_ = position;
+  last_travelled_ = travelled;
   last_heading_ = attitude.heading;
 
   const TrackSpeeds& targets = robot.drive().targets();
@@ -66,6 +68,10 @@ Frame FrameRecorder::record(const Plant& plant, const Robot& robot) {
   frame.track_right = vehicle.track_speed_m_per_s(kRight);
   frame.slip_left = slip(frame.track_left, vehicle.ground_speed_m_per_s(kLeft));
   frame.slip_right = slip(frame.track_right, vehicle.ground_speed_m_per_s(kRight));
+  frame.sinkage_left = vehicle.sinkage_m(kLeft);
+  frame.sinkage_right = vehicle.sinkage_m(kRight);
+  frame.load_left = vehicle.load_n(kLeft);
+  frame.load_right = vehicle.load_n(kRight);
   frame.current_left = vehicle.current_a(kLeft);
   frame.current_right = vehicle.current_a(kRight);
   frame.battery = plant.battery().terminal_v;
@@ -78,6 +84,8 @@ Frame FrameRecorder::record(const Plant& plant, const Robot& robot) {
   frame.state = static_cast<int32_t>(robot.supervisor().state());
   frame.leveling_state = static_cast<int32_t>(robot.leveling().state());
   frame.faults = robot.supervisor().faults();
+  frame.beds_x = static_cast<int32_t>(plant.beds_passed()[0]);
+  frame.beds_y = static_cast<int32_t>(plant.beds_passed()[1]);
   return frame;
 }
 

@@ -18,7 +18,7 @@ class FrameRecorder {
 
  private:
   bool first_ = true;
-  Eigen::Vector3d last_position_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_travelled_ = Eigen::Vector3d::Zero();
   double last_heading_ = 0.0;
   double distance_m_ = 0.0;
   double outside_s_ = 0.0;

@@ -12,8 +12,10 @@
 
 #include "firmware/robot/robot.h"
 #include "hal/host/target.h"
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/frame_recorder.h"
+#include "host_sim/experiment/height_watch.h"
 #include "host_sim/picture/terrain_picture.h"
 #include "host_sim/session/csv_export.h"
 #include "host_sim/session/record.h"
@@ -30,13 +32,15 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kLevelBedNodes = 65;  // a side, of a bed of particles without an image
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
 constexpr uint64_t kFlatnessTicks =
-    5U * uint64_t{kTickRate_hz};                    // a look at the whole bed costs milliseconds
+    5U * uint64_t{kTickRate_hz};  // a look at the whole bed costs milliseconds
+// How long a training drive may take beyond its frames: to arm and to start.
+constexpr uint64_t kMostIdleTicks = 60U * uint64_t{kTickRate_hz};
 constexpr uint64_t kPathTicks = kTickRate_hz / 10;  // a point of the drawn path ten times a second
 
 constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",
                                                    "fault"};
-constexpr const char* kLevelingStateNames[kLevelingStates] = {"idle", "walk",   "climb",
-                                                              "spin", "return", "drive"};
+constexpr const char* kLevelingStateNames[kLevelingStates] = {
+    "idle", "walk", "climb", "spin", "return", "drive", "training", "done"};
 constexpr const char* kFaultNames[] = {
     "tilt",         "IMU silent",   "gyro frozen",    "left track stalled", "right track stalled",
     "battery low",  "parameters",   "emergency stop", "LSM303D fails",      "L3GD20H fails",
@@ -60,12 +64,6 @@ class TextFile {
   std::ofstream file_;
 };
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  TextFile file(path);
-  file.stream() << text;
-  file.close();
-}
-
 HeightMapView view_of(const HeightField& field, std::vector<int32_t>& heights) {
   heights.clear();
   heights.reserve(static_cast<size_t>(field.nx()) * static_cast<size_t>(field.ny()));
@@ -84,6 +82,22 @@ HeightMapView view_of(const HeightField& field, std::vector<int32_t>& heights) {
   return view;
 }
 
+/// The soil as it is used: the preset with what the experiment changed.
+std::vector<SoilAttribute> attributes_of(const SoilParameters& soil) {
+  return {{"k_phi", "N/m^(n+2)", soil.k_phi},
+          {"k_c", "N/m^(n+1)", soil.k_c},
+          {"n", "", soil.exponent},
+          {"c", "Pa", soil.cohesion_pa},
+          {"phi", "deg", soil.friction_deg},
+          {"K", "m", soil.shear_modulus_m},
+          {"E", "Pa/m", soil.elastic_pa_per_m},
+          {"R", "Pa s/m", soil.damping_pa_s_per_m},
+          {"repose", "deg", soil.repose_deg},
+          {"compaction", "", soil.compaction},
+          {"drag_depth", "m", soil.drag_depth_m},
+          {"slip_sinkage", "", soil.slip_sinkage}};
+}
+
 /// Takes what every tick gives and keeps it: frames, path, progress.
 ///
 /// Beside the robot that drives runs a second one on the same samples. The core is a pure function,
@@ -98,15 +112,36 @@ class Recorder {
         shadow_(board_constants_of(options.board), experiment.parameters,
                 credentials_of(experiment)),
         writer_(writer),
+        training_frames_(experiment.experiment.algorithm == "random"
+                             ? uint64_t{experiment.experiment.frames.value()}
+                             : 0),
         duration_s_(experiment.experiment.duration_s),
         flatness_deg_(experiment.experiment.flatness_deg),
         flatness_(flatness(plant.terrain(), flatness_deg_)),
         flatness_now_(flatness_),
-        begin_(std::chrono::steady_clock::now()) {}
+        begin_(std::chrono::steady_clock::now()) {
+    if (!options.heights) return;
+    watch_.emplace(plant.terrain());
+    std::vector<int32_t> heights;
+    writer.record_heights(view_of(plant.terrain(), heights));
+  }
 
-  /// The run is to end before its time.
+  /// The run has lasted as long as it was to: Algorithm 5 has driven all its frames, any other
+  /// algorithm the duration.
+  bool done() const {
+    if (training_frames_ == 0)
+      return ticks_ >= static_cast<uint64_t>(std::llround(duration_s_ * kTickRate_hz));
+    return driven_ == training_frames_ || ticks_ >= training_frames_ + kMostIdleTicks;
+  }
+
+  /// A training drive that a fault has ended: nobody clears it.
+  bool given_up() const {
+    return training_frames_ != 0 && shadow_.supervisor().state() == RobotState::kFault;
+  }
+
+  /// The run is to end, in time or before.
   bool stop_asked() const {
-    return left_bed() ||
+    return done() || given_up() || left_bed() ||
            (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed));
   }
 
@@ -122,6 +157,9 @@ class Recorder {
     sample_ = sample;
     shadow_.tick(sample, expected_);
     frame_ = recorder_.record(plant_, shadow_);
+    if (shadow_.leveling().state() == LevelingState::kTraining && shadow_.supervisor().running())
+      ++driven_;
+    if (watch_) changes_ = watch_->changes(plant_.terrain());
   }
 
   /// The robot has answered.
@@ -131,14 +169,17 @@ class Recorder {
     radio_lines_ += static_cast<uint64_t>(
         std::count(output.radio_out, output.radio_out + output.radio_out_count, '\r'));
     check_purity(output);
-    writer_.append(frame_, sample_, output);
+    writer_.append(frame_, sample_, output, changes_);
+    height_changes_ += changes_.size();
     if (ticks_ % kPathTicks == 1)
       path_.push_back({frame_.x, frame_.y, static_cast<size_t>(frame_.leveling_state)});
     if (plant_.ground_is_loose() && ticks_ % kFlatnessTicks == 0) {
       flatness_now_ = flatness(plant_.terrain(), flatness_deg_);
     }
-    if (options_.progress && ticks_ % kProgressTicks == 0) {
-      options_.progress({frame_.time, duration_s_, flatness_now_});
+    if (options_.progress && (ticks_ % kProgressTicks == 0 || done())) {
+      options_.progress(
+          {training_frames_ != 0 ? static_cast<double>(driven_) / kTickRate_hz : frame_.time,
+           duration_s_, flatness_now_});
     }
     if (options_.realtime) {
       std::this_thread::sleep_until(begin_ +
@@ -153,6 +194,8 @@ class Recorder {
   double flatness_before() const { return flatness_; }
   uint64_t radio_lines() const { return radio_lines_; }
   uint64_t radio_bytes() const { return radio_bytes_; }
+  uint64_t driven() const { return driven_; }
+  uint64_t height_changes() const { return height_changes_; }
   double wall_s() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
@@ -181,7 +224,12 @@ class Recorder {
   std::vector<PathPoint> path_;
   uint64_t radio_lines_ = 0;
   uint64_t radio_bytes_ = 0;
+  std::optional<HeightWatch> watch_;
+  std::span<const HeightChange> changes_;
+  uint64_t height_changes_ = 0;
   uint64_t ticks_ = 0;
+  uint64_t training_frames_;  ///< of Algorithm 5; 0 under another algorithm
+  uint64_t driven_ = 0;       ///< of them, so far
   double duration_s_;
   double flatness_deg_;
   double flatness_;      ///< before the run
@@ -198,9 +246,7 @@ class NativeTarget : public hal::Target {
         board_(board_constants_of(options.board)),
         parameters_(experiment.parameters),
         credentials_(credentials_of(experiment)),
-        recorder_(recorder),
-        last_tick_(
-            static_cast<uint64_t>(std::llround(experiment.experiment.duration_s * kTickRate_hz))) {}
+        recorder_(recorder) {}
 
   void init() override {}
   const BoardConstants& board_constants() override { return board_; }
@@ -208,7 +254,7 @@ class NativeTarget : public hal::Target {
   const Credentials& credentials() override { return credentials_; }
 
   bool wait_for_tick() override {
-    if (recorder_.stop_asked() || world_.ticks() >= last_tick_) return false;
+    if (recorder_.stop_asked()) return false;
     world_.advance();
     return true;
   }
@@ -229,7 +275,6 @@ class NativeTarget : public hal::Target {
   Parameters parameters_;
   Credentials credentials_;
   Recorder& recorder_;
-  uint64_t last_tick_;
 };
 
 /// Runs the experiment to its end or until told to stop, with the firmware as it is compiled for
@@ -239,6 +284,11 @@ class Run {
   Run(const Experiment& experiment, const SimulationOptions& options, std::ostream* telemetry_log)
       : experiment_(experiment), options_(options) {
     if (options.image.has_value()) {
+      if (experiment.experiment.algorithm == "random") {
+        throw InputError(
+            "[experiment] algorithm = random is not part of the microcontroller's image; it runs "
+            "without --hal mcu");
+      }
       image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image,
                                   options.ground_port);
     } else {
@@ -387,6 +437,19 @@ SoilParameters make_soil(const Experiment& experiment) {
   return soil;
 }
 
+namespace {
+
+/// Length of the longer side, of so many pixels: given as such or by a pixel's width; of particles
+/// by the stacks a pixel (thesis 5.1.3 and Table 5.2: as many particles side by side).
+double size_of_bed(const Experiment& experiment, int pixels) {
+  const auto& map = experiment.map;
+  if (!map.xy_scale.has_value()) return map.size_m;
+  if (map.of_particles()) return pixels * *map.xy_scale * 2.0 * map.particle_radius_m;
+  return (map.wrap ? pixels : pixels - 1) * *map.xy_scale;
+}
+
+}  // namespace
+
 HeightField make_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
   const bool soft = map.model == "scm";
@@ -404,16 +467,17 @@ HeightField make_terrain(const Experiment& experiment) {
     return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing)
                                : HeightField::ramp(map.size_m, spacing, map.ramp_deg);
   }
+  const GreyImage image =
+      read_grey_image(find_data_file(experiment, map.filename, "[map] filename"));
   HeightFieldOptions options;
-  options.size_m = map.size_m;
+  options.size_m = size_of_bed(experiment, std::max(image.width, image.height));
   options.scale_m = map.scale_m;
   options.smoothing_m = map.smoothing_m;
   options.max_slope_deg = map.max_slope_deg;
   options.wrap = map.wrap;
-  HeightField image = HeightField::from_image(
-      read_grey_image(find_data_file(experiment, map.filename, "[map] filename")), options);
-  if (map.of_particles()) raise(image, experiment.particles.depth_m);
-  return soft ? resampled(image, experiment.soil.cell_m) : image;
+  HeightField field = HeightField::from_image(image, options);
+  if (map.of_particles()) raise(field, experiment.particles.depth_m);
+  return soft ? resampled(field, experiment.soil.cell_m) : field;
 }
 
 namespace {
@@ -505,6 +569,10 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                             telemetry_log);
 }
 
+void check_simulation(const Experiment& experiment, const SimulationOptions& options) {
+  const Run trial(experiment, options, nullptr);
+}
+
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options) {
   // Everything that can be wrong with the input is found before the first file is made; the log
   // gets its file afterwards.
@@ -514,8 +582,9 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   RunFolder folder =
       options.out.has_value()
           ? RunFolder::at(*options.out)
-          : RunFolder::numbered(experiment.output_directory_prefix, experiment.experiment.name);
-  write_text(folder.path() / "experiment.ini", experiment.text());
+          : RunFolder::numbered(options.root.value_or(experiment.output_directory_prefix),
+                                experiment.experiment.name);
+  write_file(folder.path() / "experiment.ini", experiment.text());
   TextFile telemetry(folder.path() / "telemetry.log");
   telemetry_log.rdbuf(telemetry.stream().rdbuf());
   const Plant& plant = run.plant();
@@ -529,6 +598,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   SessionWriter writer(folder.path() / "session.h5", session_info(experiment, options));
   std::vector<int32_t> heights;
   writer.write_terrain_before(view_of(before, heights));
+  if (plant.soil() != nullptr) writer.write_soil(attributes_of(plant.soil()->soil()));
 
   Recorder recorder(plant, experiment, options, writer);
   run.drive(recorder);
@@ -542,8 +612,9 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.folder = folder.final_path();
   summary.leftovers = folder.leftovers();
   summary.left_bed = recorder.left_bed();
-  summary.stopped_early =
-      recorder.stop_asked() && plant.time_s() < experiment.experiment.duration_s;
+  summary.stopped_early = !recorder.done();
+  summary.training_frames = recorder.driven();
+  summary.height_changes = recorder.height_changes();
   summary.time_s = plant.time_s();
   summary.distance_m = recorder.frames().distance_m();
   summary.outside_s = recorder.frames().outside_s();
@@ -562,9 +633,10 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.flatness_before = recorder.flatness_before();
   summary.flatness_after = flatness(plant.terrain(), experiment.experiment.flatness_deg);
 
-  export_frames_csv(SessionReader(folder.path() / "session.h5"), folder.path() / "frames.csv");
+  if (options.table)
+    export_frames_csv(SessionReader(folder.path() / "session.h5"), folder.path() / "frames.csv");
   write_pictures(folder.path(), before, plant, experiment, std::move(recorder.path()));
-  write_text(folder.path() / "summary.json", summary_json(summary));
+  write_file(folder.path() / "summary.json", summary_json(summary));
   folder.commit();
   return summary;
 }
@@ -610,6 +682,8 @@ std::string summary_json(const SimulationSummary& summary) {
       {"outside_bed_s", summary.outside_s},
       {"battery_v", summary.battery_v},
       {"peaks", summary.peaks},
+      {"training_frames", summary.training_frames},
+      {"height_changes", summary.height_changes},
       {"state", summary.state},
       {"faults", fault_names(summary.faults)},
       {"telemetry_frames", summary.telemetry_frames},

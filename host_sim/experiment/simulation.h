@@ -28,8 +28,9 @@ struct SimulationProgress {
 };
 
 struct SimulationOptions {
-  std::optional<std::filesystem::path>
-      out;                ///< the run folder; without it a numbered one in output_directory_prefix
+  std::optional<std::filesystem::path> out;  ///< the run folder; without it a numbered one
+  /// Where numbered ones are made; without it in output_directory_prefix.
+  std::optional<std::filesystem::path> root;
   bool realtime = false;  ///< sleep so that simulated time does not outrun the clock
   const std::atomic<bool>* stop =
       nullptr;  ///< becomes true when the run is to end early, with everything saved
@@ -37,6 +38,10 @@ struct SimulationOptions {
   /// Programs outside at the ground end of the radio; may be null. What they send is in the
   /// recorded samples, so that the run replays; running it again is another run.
   GroundPort* ground_port = nullptr;
+  /// Record the height map tick by tick, for training data.
+  bool heights = false;
+  /// Write frames.csv beside the session; it can be exported later as well.
+  bool table = true;
   std::string program_version;
   std::string board = kDefaultBoard;
   /// The image that is to run under the microcontroller simulation; without it the firmware runs
@@ -48,6 +53,10 @@ struct SimulationSummary {
   std::filesystem::path folder;
   std::string content_hash;
   bool stopped_early = false;
+  /// Frames that Algorithm 5 drove; 0 under another algorithm.
+  uint64_t training_frames = 0;
+  /// Changes of single heights, when they were recorded.
+  uint64_t height_changes = 0;
   bool left_bed = false;  ///< the run ended because the robot drove over the edge of the soil
   double time_s = 0.0;
   double wall_s = 0.0;  ///< of the loop alone: building the world and writing pictures do not count
@@ -86,6 +95,9 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,
                                                  const std::string& board, const std::string& image,
                                                  GroundPort* ground_port = nullptr);
+
+/// Throws InputError when the experiment cannot be run, as run_simulation would.
+void check_simulation(const Experiment& experiment, const SimulationOptions& options);
 
 /// Runs to the end of the duration or until told to stop. Throws InputError before anything is
 /// written, RunError when the run cannot be saved; then nothing half-written stays behind.

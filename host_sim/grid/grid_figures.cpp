@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
@@ -104,16 +104,6 @@ Summary summary_of(const std::vector<GridResult>& runs, double (*value)(const Gr
   return summarise(values);
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::ofstream file(fresh, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file.good()) std::filesystem::rename(fresh, path, error);
-  if (!file.good() || error) throw RunError(path.string() + ": cannot be written");
-}
-
 }  // namespace
 
 const std::vector<std::string>& grid_figure_names() {
@@ -195,7 +185,7 @@ FigureFiles write_figure(const std::filesystem::path& folder, const GridFigure& 
                    " runs a point; bars: 95 % confidence of the mean";
   FigureFiles files{folder / ("figure-" + figure.name + ".csv"),
                     folder / ("figure-" + figure.name + ".svg")};
-  write_text(files.csv, csv);
+  write_file(files.csv, csv);
   write_chart(files.svg, chart);
   return files;
 }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <string_view>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/picture/color_map.h"
 #include "host_sim/picture/map_frame.h"
@@ -356,18 +356,7 @@ std::string chart_svg(const Chart& chart) {
 }
 
 void write_chart(const std::filesystem::path& path, const Chart& chart) {
-  const std::string text = chart_svg(chart);
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::ofstream file(fresh, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file.good()) std::filesystem::rename(fresh, path, error);
-  if (!file.good() || error) {
-    std::error_code ignored;
-    std::filesystem::remove(fresh, ignored);
-    throw RunError(path.string() + ": cannot be written");
-  }
+  write_file(path, chart_svg(chart));
 }
 
 }  // namespace screed

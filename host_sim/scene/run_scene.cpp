@@ -116,6 +116,10 @@ Ground ground_at(const SessionReader& session, std::uint64_t frame, bool soft,
   Ground ground;
   ground.before = session.terrain_before();
   if (!ground.before) throw InputError(run.string() + ": the session holds no height map");
+  if (session.has_heights()) {
+    ground.now = session.heights_after(frame + 1);
+    return ground;
+  }
   const auto after = session.terrain_after();
   if (frame == 0 || !soft || !after) {
     ground.now = *ground.before;

@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <memory>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
-#include "host_sim/core/errors.h"
-#include "host_sim/session/record.h"
+#include "firmware/leveling/leveling.h"
+#include "host_sim/core/atomic_file.h"
 
 namespace screed {
 namespace {
@@ -20,13 +20,9 @@ namespace {
 constexpr std::uint64_t kBlockRows = 1024;
 constexpr std::size_t kNumberChars = 32;  // longest shortest double is 24 characters
 
-struct CloseFile {
-  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-};
-
-std::string header() {
-  std::string line;
-  for (const Column& column : kFrameColumns) {
+std::string header(std::span<const Column> columns, bool numbered) {
+  std::string line = numbered ? "frame" : "";
+  for (const Column& column : columns) {
     if (!line.empty()) line += ',';
     line += column.name;
     if (*column.unit != '\0') line += std::string(" [") + column.unit + "]";
@@ -41,48 +37,93 @@ char* put(char* cursor, T value) {
   return cursor;
 }
 
-char* put_line(char* cursor, const Frame& frame) {
-#define SCREED_PUT(type, name, unit, meaning) cursor = put(cursor, frame.name);
-  SCREED_FRAME_COLUMNS(SCREED_PUT)
-#undef SCREED_PUT
+template <class T>
+T taken_from(const std::uint8_t* bytes) {
+  T value{};
+  std::memcpy(&value, bytes, sizeof(value));  // rows are little endian, and so are our hosts
+  return value;
+}
+
+char* put_line(char* cursor, std::span<const Column> columns, const Frame& frame) {
+  std::array<std::uint8_t, kFrameBytes> row{};
+  pack(frame, row);
+  for (const Column& column : columns) {
+    const std::uint8_t* bytes = &row[column.offset];
+    cursor = column.type == ColumnType::kDouble ? put(cursor, taken_from<double>(bytes))
+                                                : put(cursor, taken_from<std::int32_t>(bytes));
+  }
   cursor[-1] = '\n';
   return cursor;
 }
 
-bool write_all(const SessionReader& session, std::FILE* file) {
-  const std::string first_line = header();
-  if (std::fwrite(first_line.data(), 1, first_line.size(), file) != first_line.size()) return false;
+void write_rows(const SessionReader& session, std::span<const Column> columns,
+                const FrameRange& range, bool numbered, AtomicFile& file) {
+  file.write(header(columns, numbered));
   std::vector<Frame> frames;
-  std::vector<char> text(kBlockRows * kFrameColumns.size() * (kNumberChars + 1));
-  for (std::uint64_t first = 0; first < session.frames(); first += kBlockRows) {
-    frames.resize(std::min(kBlockRows, session.frames() - first));
-    session.read(first, std::span(frames));
+  std::vector<char> text(kBlockRows * (columns.size() + 1) * (kNumberChars + 1));
+  for (std::uint64_t done = 0; done < range.count; done += kBlockRows) {
+    frames.resize(std::min(kBlockRows, range.count - done));
+    session.read(range.first + done, std::span(frames));
     char* cursor = text.data();
-    for (const Frame& frame : frames) cursor = put_line(cursor, frame);
-    const auto size = static_cast<std::size_t>(cursor - text.data());
-    if (std::fwrite(text.data(), 1, size, file) != size) return false;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (numbered) cursor = put(cursor, range.first + done + i);
+      cursor = put_line(cursor, columns, frames[i]);
+    }
+    file.write(std::string_view(text.data(), static_cast<std::size_t>(cursor - text.data())));
   }
-  return std::fflush(file) == 0;
 }
+
+static_assert(std::all_of(kFrameColumns.begin(), kFrameColumns.end(),
+                          [](const Column& column) {
+                            return column.type == ColumnType::kDouble ||
+                                   column.type == ColumnType::kInt32;
+                          }),
+              "put_line knows no other type");
 
 }  // namespace
 
+std::span<const Column> table_5_1_columns() {
+  static const std::vector<Column> columns = [] {
+    std::vector<Column> found;
+    for (const char* name : {"x", "y", "delta_x", "delta_y", "delta_theta", "v_left", "v_right",
+                             "pitch", "roll", "linear", "angular"}) {
+      found.push_back(*std::find_if(
+          kFrameColumns.begin(), kFrameColumns.end(),
+          [&](const Column& column) { return std::string_view(column.name) == name; }));
+    }
+    return found;
+  }();
+  return columns;
+}
+
 void export_frames_csv(const SessionReader& session, const std::filesystem::path& csv) {
-  std::filesystem::path partial = csv;
-  partial += ".partial";
-  std::error_code error;
-  {
-    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(partial.c_str(), "wb"));
-    if (file == nullptr || !write_all(session, file.get())) {
-      error.assign(errno, std::generic_category());
+  AtomicFile file(csv);
+  write_rows(session, kFrameColumns, {0, session.frames()}, false, file);
+  file.commit();
+}
+
+void export_columns_csv(const SessionReader& session, std::span<const Column> columns,
+                        const FrameRange& range, const std::filesystem::path& csv) {
+  AtomicFile file(csv);
+  write_rows(session, columns, range, true, file);
+  file.commit();
+}
+
+FrameRange training_frames(const SessionReader& session) {
+  FrameRange range;
+  std::vector<Frame> frames;
+  bool begun = false;
+  for (std::uint64_t first = 0; first < session.frames(); first += kBlockRows) {
+    frames.resize(std::min(kBlockRows, session.frames() - first));
+    session.read(first, std::span(frames));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (frames[i].leveling_state != static_cast<std::int32_t>(LevelingState::kTraining)) continue;
+      if (!begun) range.first = first + i;
+      begun = true;
+      range.count = first + i + 1 - range.first;
     }
   }
-  if (!error) std::filesystem::rename(partial, csv, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw RunError(csv.string() + ": cannot write the table: " + error.message());
-  }
+  return range;
 }
 
 }  // namespace screed

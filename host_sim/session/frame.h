@@ -12,11 +12,11 @@
 //  type      name            unit      meaning
 #define SCREED_FRAME_COLUMNS(X) \
   X(double,   time,           "s",      "simulated time at the end of the tick") \
-  X(double,   x,              "m",      "chassis position, world (Table 5.1)") \
+  X(double,   x,              "m",      "chassis position, world; on the bed when it wraps around (Table 5.1)") \
   X(double,   y,              "m",      "chassis position, world (Table 5.1)") \
   X(double,   z,              "m",      "chassis position, world") \
-  X(double,   delta_x,        "m",      "change of x since the previous frame (Table 5.1)") \
-  X(double,   delta_y,        "m",      "change of y since the previous frame (Table 5.1)") \
+  X(double,   delta_x,        "m",      "change of x since the previous frame, without teleports (Table 5.1)") \
+  X(double,   delta_y,        "m",      "change of y since the previous frame, without teleports (Table 5.1)") \
   X(double,   delta_theta,    "rad",    "change of yaw since the previous frame (Table 5.1)") \
   X(double,   v_left,         "rad/s",  "left drive wheel, as commanded by the kinematics (Table 5.1)") \
   X(double,   v_right,        "rad/s",  "right drive wheel, as commanded by the kinematics (Table 5.1)") \
@@ -35,6 +35,10 @@
   X(double,   track_right,    "m/s",    "speed of the right track over its wheels") \
   X(double,   slip_left,      "1",      "longitudinal slip of the left track, (track - ground) / max of both, -1..1") \
   X(double,   slip_right,     "1",      "longitudinal slip of the right track") \
+  X(double,   sinkage_left,   "m",      "depth of the left running gear below the undisturbed soil, 0 on rigid ground") \
+  X(double,   sinkage_right,  "m",      "depth of the right running gear") \
+  X(double,   load_left,      "N",      "what the left running gear carries, vertically") \
+  X(double,   load_right,     "N",      "what the right running gear carries") \
   X(double,   current_left,   "A",      "motor current") \
   X(double,   current_right,  "A",      "motor current") \
   X(double,   battery,        "V",      "battery terminal voltage") \
@@ -46,7 +50,9 @@
   X(double,   odometry_y,     "m",      "position as the firmware estimates it, from the start pose") \
   X(int32_t,  state,          "",       "supervisor state (firmware/robot/supervisor.h)") \
   X(int32_t,  leveling_state, "",       "state of the leveling algorithm (firmware/leveling/leveling.h)") \
-  X(int32_t,  faults,         "",       "latched fault bits (firmware/robot/supervisor.h)")
+  X(int32_t,  faults,         "",       "latched fault bits (firmware/robot/supervisor.h)") \
+  X(int32_t,  beds_x,         "",       "teleports eastwards so far: the way made is x plus this times the bed's width") \
+  X(int32_t,  beds_y,         "",       "teleports northwards so far")
 // clang-format on
 
 namespace screed {

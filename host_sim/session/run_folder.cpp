@@ -31,6 +31,11 @@ bool is_taken(const fs::path& path) {
 
 }  // namespace
 
+fs::path session_file(const fs::path& run) {
+  std::error_code error;
+  return fs::is_directory(run, error) ? run / "session.h5" : run;
+}
+
 RunFolder::RunFolder(RunFolder&& other) noexcept
     : final_(std::move(other.final_)),
       partial_(std::move(other.partial_)),

@@ -8,6 +8,9 @@
 
 namespace screed {
 
+/// The session of a run that a user names by its folder or by the file itself.
+std::filesystem::path session_file(const std::filesystem::path& run);
+
 /// While a run goes on its folder is `<name>.partial`. commit() gives it its name; without commit()
 /// the destructor removes it. A `.partial` of another run, interrupted or still going on, is never
 /// touched.

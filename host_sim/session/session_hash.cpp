@@ -5,23 +5,6 @@
 #include "host_sim/session/session_layout.h"
 
 namespace screed {
-namespace {
-
-std::string terrain_hash(const HeightMapView& map) {
-  const HeightMapGeometry& g = map.geometry;
-  ContentHash hash;
-  hash.add(g.nx);
-  hash.add(g.ny);
-  hash.add(g.unit_m);
-  hash.add(g.spacing_m);
-  hash.add(g.origin_x_m);
-  hash.add(g.origin_y_m);
-  hash.add(g.wrap);
-  for (const std::int32_t height : map.heights) hash.add(height);
-  return hash.hex();
-}
-
-}  // namespace
 
 SessionHash::SessionHash(const SessionInfo& info) {
   info_.add(info.seed);
@@ -41,11 +24,11 @@ SessionHash::SessionHash(const SessionInfo& info) {
 }
 
 void SessionHash::set_terrain_before(const HeightMapView& map) {
-  terrain_before_ = terrain_hash(map);
+  terrain_before_ = layout::map_hash(map);
 }
 
 void SessionHash::set_terrain_after(const HeightMapView& map) {
-  terrain_after_ = terrain_hash(map);
+  terrain_after_ = layout::map_hash(map);
 }
 
 std::string SessionHash::hex(std::uint64_t frames) const {
@@ -57,6 +40,8 @@ std::string SessionHash::hex(std::uint64_t frames) const {
   hash.add(outputs_.hex());
   hash.add(terrain_before_);
   hash.add(terrain_after_);
+  // Not of a session without: its hash stays what it was.
+  if (!heights_.empty()) hash.add(heights_);
   return hash.hex();
 }
 

@@ -51,4 +51,23 @@ struct HeightMap {
   HeightMapView view() const { return {geometry, heights}; }
 };
 
+/// One number of the soil.
+struct SoilAttribute {
+  const char* name;
+  const char* unit;
+  double value;
+};
+
+/// What a tick did to one height of a map.
+struct HeightChange {
+  std::uint32_t node = 0;  ///< iy * nx + ix
+  std::int32_t by = 0;     ///< height units
+};
+
+/// In height units.
+struct HeightExtremes {
+  std::int32_t lowest = 0;
+  std::int32_t highest = 0;
+};
+
 }  // namespace screed

@@ -8,6 +8,7 @@
 #include "firmware/robot/board_constants.h"
 #include "host_sim/session/hdf5_handle.h"
 #include "host_sim/session/record.h"
+#include "host_sim/session/session_info.h"
 
 namespace screed::layout {
 
@@ -37,6 +38,13 @@ inline constexpr char kBootEpochAttribute[] = "boot_epoch";
 inline constexpr char kTerrainGroup[] = "terrain";
 inline constexpr char kTerrainBefore[] = "before";
 inline constexpr char kTerrainAfter[] = "after";
+inline constexpr char kHeightsGroup[] = "heights";
+inline constexpr char kHeightKeys[] = "key_frames";
+inline constexpr char kHeightKeyTicks[] = "key_frame_ticks";
+inline constexpr char kHeightNodes[] = "change_nodes";
+inline constexpr char kHeightChanges[] = "changes";
+inline constexpr char kHeightEnds[] = "change_ends";
+inline constexpr char kSoilGroup[] = "soil";
 
 struct TableLayout {
   const char* dataset;
@@ -67,5 +75,18 @@ hid_t element_type(ColumnType type);
 /// The compound type of a row as record.h packs it: the same in the file and in memory, so nothing
 /// is converted.
 h5::Handle row_type(std::span<const Column> columns);
+
+/// Creation options: chunked, shuffled, deflated, and without time stamps, so that equal runs give
+/// equal files.
+h5::Handle compressed(std::span<const hsize_t> chunk);
+/// Without time stamps.
+h5::Handle create_group(hid_t file, const char* name);
+
+/// How a map lies in the world, as attributes of its dataset.
+void write_geometry(hid_t dataset, const HeightMapGeometry& geometry);
+/// The same from a file. Throws h5::Hdf5Failure for a size that no bed has.
+HeightMapGeometry read_geometry(hid_t dataset, hsize_t nx, hsize_t ny);
+/// A hash over a map and how it lies.
+std::string map_hash(const HeightMapView& map);
 
 }  // namespace screed::layout

@@ -11,6 +11,7 @@
 #include "firmware/robot/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/session/hdf5_handle.h"
+#include "host_sim/session/height_series.h"
 #include "host_sim/session/record.h"
 #include "host_sim/session/session_hash.h"
 #include "host_sim/session/session_layout.h"
@@ -23,7 +24,7 @@ using h5::Hdf5Failure;
 constexpr std::uint64_t kBlockRows = 1024;
 
 template <class Action>
-auto or_input_error(const std::filesystem::path& path, Action&& action) {
+decltype(auto) or_input_error(const std::filesystem::path& path, Action&& action) {
   try {
     return action();
   } catch (const Hdf5Failure& failure) {
@@ -216,16 +217,8 @@ HeightMap read_map(hid_t group, const char* name) {
     throw Hdf5Failure(std::string("terrain '") + name + "' is not a grid of integers");
   }
   H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
-  constexpr hsize_t kMost = 1U << 16;  // 16 GB of heights: a file that says more is damaged
-  if (size[0] > kMost || size[1] > kMost) {
-    throw Hdf5Failure(std::string("terrain '") + name + "' has an impossible size");
-  }
   HeightMap map;
-  map.geometry = {
-      static_cast<std::uint32_t>(size[1]),          static_cast<std::uint32_t>(size[0]),
-      h5::read_double(dataset.get(), "unit_m"),     h5::read_double(dataset.get(), "spacing_m"),
-      h5::read_double(dataset.get(), "origin_x_m"), h5::read_double(dataset.get(), "origin_y_m"),
-      h5::read_uint64(dataset.get(), "wrap") != 0};
+  map.geometry = layout::read_geometry(dataset.get(), size[1], size[0]);
   map.heights.resize(size[0] * size[1]);
   h5::check(
       H5Dread(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, map.heights.data()),
@@ -243,16 +236,22 @@ class SessionReader::Impl {
         info_(read_info(file_.get(), missing_parameters_)),
         frames_(file_.get(), layout::kFramesTable, true),
         samples_(file_.get(), layout::kSamplesTable, false),
-        outputs_(file_.get(), layout::kOutputsTable, false) {
+        outputs_(file_.get(), layout::kOutputsTable, false),
+        heights_(HeightSeriesReader::open(file_.get())) {
     for (const Column* column : frames_.missing()) missing_columns_.emplace_back(column->name);
     // A run that was killed may have written one table further than another.
     rows_ = std::min({frames_.rows(), samples_.rows(), outputs_.rows()});
+    if (heights_) rows_ = std::min(rows_, heights_->ticks());
     if (h5::has_attribute(file_.get(), layout::kHashAttribute)) {
       hash_ = h5::read_string(file_.get(), layout::kHashAttribute);
       const std::uint64_t frames = h5::read_uint64(file_.get(), layout::kFramesAttribute);
       if (frames_.rows() != frames || samples_.rows() != frames || outputs_.rows() != frames) {
         throw Hdf5Failure("the tables do not have the " + std::to_string(frames) +
                           " rows they should have");
+      }
+      if (heights_ && heights_->ticks() != frames) {
+        throw Hdf5Failure("the recorded heights do not have the " + std::to_string(frames) +
+                          " ticks they should have");
       }
     }
   }
@@ -288,7 +287,9 @@ class SessionReader::Impl {
     return read_map(group.get(), name);
   }
 
-  std::string compute_hash() const {
+  HeightSeriesReader* heights() { return heights_ ? &*heights_ : nullptr; }
+
+  std::string compute_hash() {
     SessionHash hash(info_);
     for (std::uint64_t first = 0; first < rows_; first += kBlockRows) {
       const std::uint64_t count = std::min(kBlockRows, rows_ - first);
@@ -298,6 +299,7 @@ class SessionReader::Impl {
     }
     if (const auto map = terrain(layout::kTerrainBefore)) hash.set_terrain_before(map->view());
     if (const auto map = terrain(layout::kTerrainAfter)) hash.set_terrain_after(map->view());
+    if (heights_) hash.set_heights(heights_->hash());
     return hash.hex(rows_);
   }
 
@@ -331,6 +333,7 @@ class SessionReader::Impl {
   Table frames_;
   Table samples_;
   Table outputs_;
+  std::optional<HeightSeriesReader> heights_;
   std::uint64_t rows_ = 0;
   std::string hash_;
 };
@@ -384,6 +387,23 @@ std::optional<HeightMap> SessionReader::terrain_before() const {
 
 std::optional<HeightMap> SessionReader::terrain_after() const {
   return or_input_error(impl_->path(), [&] { return impl_->terrain(layout::kTerrainAfter); });
+}
+
+bool SessionReader::has_heights() const {
+  return impl_->heights() != nullptr;
+}
+
+std::uint64_t SessionReader::height_changes() const {
+  return has_heights() ? impl_->heights()->changes() : 0;
+}
+
+const HeightMap& SessionReader::heights_after(std::uint64_t ticks) const {
+  return or_input_error(impl_->path(),
+                        [&]() -> const HeightMap& { return impl_->heights()->after(ticks); });
+}
+
+HeightExtremes SessionReader::height_extremes() const {
+  return or_input_error(impl_->path(), [&] { return impl_->heights()->extremes(); });
 }
 
 std::string SessionReader::compute_content_hash() const {

@@ -47,6 +47,16 @@ class SessionReader {
   std::optional<HeightMap> terrain_before() const;
   std::optional<HeightMap> terrain_after() const;
 
+  /// Whether the height map was recorded tick by tick. The rest of this block may only be called
+  /// when it was.
+  bool has_heights() const;
+  /// The map after so many ticks, 0..frames(); valid until the next call. Going forward is cheap.
+  const HeightMap& heights_after(std::uint64_t ticks) const;
+  /// The lowest and highest height of any tick; looks through the whole series.
+  HeightExtremes height_extremes() const;
+  /// Number of single changes in the series.
+  std::uint64_t height_changes() const;
+
   /// The hash over what the file holds now: equal to content_hash() unless the file was edited or
   /// columns are missing.
   std::string compute_content_hash() const;

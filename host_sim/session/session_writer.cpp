@@ -4,31 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "firmware/robot/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/session/hdf5_handle.h"
+#include "host_sim/session/height_series.h"
 #include "host_sim/session/record.h"
 #include "host_sim/session/session_hash.h"
 #include "host_sim/session/session_layout.h"
 
 namespace screed {
 namespace {
-
-constexpr unsigned kDeflateLevel =
-    1;  // higher levels cost ticks and save a few percent (docs/sessions.md)
-
-/// Chunked, shuffled, deflated, and without time stamps, so that equal runs give equal files.
-template <std::size_t N>
-h5::Handle dataset_options(const std::array<hsize_t, N>& chunk) {
-  h5::Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot create a table");
-  h5::check(H5Pset_chunk(options.get(), static_cast<int>(N), chunk.data()), "cannot set chunks");
-  h5::check(H5Pset_shuffle(options.get()), "cannot set the shuffle filter");
-  h5::check(H5Pset_deflate(options.get(), kDeflateLevel), "cannot set the deflate filter");
-  h5::check(H5Pset_obj_track_times(options.get(), false), "cannot switch off time stamps");
-  return options;
-}
 
 /// A growing table and the rows that wait to be written.
 class Table {
@@ -41,7 +30,8 @@ class Table {
     const hsize_t rows = 0;
     const hsize_t limit = H5S_UNLIMITED;
     const h5::Handle space(H5Screate_simple(1, &rows, &limit), H5Sclose, name_);
-    const h5::Handle options = dataset_options(std::array<hsize_t, 1>{SessionWriter::kBlockRows});
+    const h5::Handle options =
+        layout::compressed(std::array<hsize_t, 1>{SessionWriter::kBlockRows});
     dataset_ = {
         H5Dcreate2(file, name_, type_.get(), space.get(), H5P_DEFAULT, options.get(), H5P_DEFAULT),
         H5Dclose, name_};
@@ -84,12 +74,6 @@ class Table {
   std::vector<std::uint8_t> buffer_;
 };
 
-h5::Handle create_group(hid_t file, const char* name) {
-  const h5::Handle options(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, name);
-  h5::check(H5Pset_obj_track_times(options.get(), false), name);
-  return {H5Gcreate2(file, name, H5P_DEFAULT, options.get(), H5P_DEFAULT), H5Gclose, name};
-}
-
 h5::Handle create_file(const std::filesystem::path& file) {
   h5::quiet();
   const h5::Handle options(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot create a file");
@@ -120,16 +104,16 @@ void write_info(hid_t file, const SessionInfo& info) {
   h5::write_attribute(file, layout::kBoardNameAttribute, info.board_name);
   h5::write_attribute(file, layout::kFramesAttribute, std::uint64_t{0});
 
-  const h5::Handle parameters = create_group(file, layout::kParametersGroup);
+  const h5::Handle parameters = layout::create_group(file, layout::kParametersGroup);
   for (const ParameterInfo& parameter : kParameterTable) {
     write_with_unit(parameters.get(), parameter.name, info.parameters.*parameter.field,
                     parameter.unit);
   }
-  const h5::Handle board = create_group(file, layout::kBoardGroup);
+  const h5::Handle board = layout::create_group(file, layout::kBoardGroup);
   for (const layout::BoardField& field : layout::kBoardFields) {
     write_with_unit(board.get(), field.name, info.board.*field.field, field.unit);
   }
-  const h5::Handle credentials = create_group(file, layout::kCredentialsGroup);
+  const h5::Handle credentials = layout::create_group(file, layout::kCredentialsGroup);
   h5::write_attribute(credentials.get(), layout::kKeyAttribute,
                       key_text(command_key_of(info.credentials)));
   h5::write_attribute(credentials.get(), layout::kKeySetAttribute,
@@ -145,7 +129,7 @@ class SessionWriter::Impl {
   Impl(std::filesystem::path path, const SessionInfo& info)
       : path_(std::move(path)),
         file_(create_file(path_)),
-        terrain_(create_group(file_.get(), layout::kTerrainGroup)),
+        terrain_(layout::create_group(file_.get(), layout::kTerrainGroup)),
         frames_(file_.get(), layout::kFramesTable),
         samples_(file_.get(), layout::kSamplesTable),
         outputs_(file_.get(), layout::kOutputsTable),
@@ -157,8 +141,17 @@ class SessionWriter::Impl {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t frames() const { return written_ + waiting_; }
 
+  void record_heights(const HeightMapView& map) {
+    if (frames() != 0 || heights_.has_value()) {
+      throw std::logic_error("heights are recorded from the first tick on");
+    }
+    heights_.emplace(file_.get(), map);
+  }
+
   /// True when a whole block waits.
-  bool append(const Frame& frame, const SensorSample& sample, const RobotOutput& output) {
+  bool append(const Frame& frame, const SensorSample& sample, const RobotOutput& output,
+              std::span<const HeightChange> changes) {
+    if (heights_) heights_->append(changes);
     pack(frame, FrameRow(frames_.row(waiting_), kFrameBytes));
     pack(sample, SampleRow(samples_.row(waiting_), kSampleBytes));
     pack(output, OutputRow(outputs_.row(waiting_), kOutputBytes));
@@ -173,9 +166,22 @@ class SessionWriter::Impl {
     frames_.write(written_, waiting_);
     samples_.write(written_, waiting_);
     outputs_.write(written_, waiting_);
+    if (heights_) heights_->write();
     written_ += waiting_;
     waiting_ = 0;
     h5::write_attribute(file_.get(), layout::kFramesAttribute, written_);
+    flush();
+  }
+
+  void write_soil(std::span<const SoilAttribute> soil) {
+    const h5::Handle group = layout::create_group(file_.get(), layout::kSoilGroup);
+    for (const SoilAttribute& attribute : soil) {
+      h5::write_attribute(group.get(), attribute.name, attribute.value);
+      if (*attribute.unit != '\0') {
+        h5::write_attribute(group.get(), (std::string(attribute.name) + ".unit").c_str(),
+                            std::string(attribute.unit));
+      }
+    }
     flush();
   }
 
@@ -186,18 +192,14 @@ class SessionWriter::Impl {
     const std::array<hsize_t, 2> chunk{std::clamp<hsize_t>(g.ny, 1, kTile),
                                        std::clamp<hsize_t>(g.nx, 1, kTile)};
     const h5::Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose, name);
-    const h5::Handle options = dataset_options(chunk);
+    const h5::Handle options = layout::compressed(chunk);
     h5::Handle dataset(H5Dcreate2(terrain_.get(), name, H5T_STD_I32LE, space.get(), H5P_DEFAULT,
                                   options.get(), H5P_DEFAULT),
                        H5Dclose, name);
     h5::check(H5Dwrite(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                        map.heights.data()),
               name);
-    h5::write_attribute(dataset.get(), "unit_m", g.unit_m);
-    h5::write_attribute(dataset.get(), "spacing_m", g.spacing_m);
-    h5::write_attribute(dataset.get(), "origin_x_m", g.origin_x_m);
-    h5::write_attribute(dataset.get(), "origin_y_m", g.origin_y_m);
-    h5::write_attribute(dataset.get(), "wrap", std::uint64_t{g.wrap ? 1U : 0U});
+    layout::write_geometry(dataset.get(), g);
     dataset.close(name);
     flush();
   }
@@ -206,6 +208,10 @@ class SessionWriter::Impl {
 
   std::string finish() {
     write_block();
+    if (heights_) {
+      hash_.set_heights(heights_->hash());
+      heights_->close();
+    }
     std::string hash = hash_.hex(written_);
     frames_.close();
     samples_.close();
@@ -226,6 +232,7 @@ class SessionWriter::Impl {
   Table frames_;
   Table samples_;
   Table outputs_;
+  std::optional<HeightSeriesWriter> heights_;
   SessionHash hash_;
   std::uint64_t written_ = 0;
   std::size_t waiting_ = 0;
@@ -264,10 +271,19 @@ SessionWriter& SessionWriter::operator=(SessionWriter&&) noexcept = default;
 SessionWriter::~SessionWriter() = default;
 
 void SessionWriter::append(const Frame& frame, const SensorSample& sample,
-                           const RobotOutput& output) {
-  if (impl_->append(frame, sample, output)) {
-    or_run_error(impl_->path(), [&] { impl_->write_block(); });
-  }
+                           const RobotOutput& output, std::span<const HeightChange> changes) {
+  or_run_error(impl_->path(), [&] {
+    if (impl_->append(frame, sample, output, changes)) impl_->write_block();
+  });
+}
+
+void SessionWriter::record_heights(const HeightMapView& map) {
+  check_map(map);
+  or_run_error(impl_->path(), [&] { impl_->record_heights(map); });
+}
+
+void SessionWriter::write_soil(std::span<const SoilAttribute> soil) {
+  or_run_error(impl_->path(), [&] { impl_->write_soil(soil); });
 }
 
 void SessionWriter::write_terrain_before(const HeightMapView& map) {

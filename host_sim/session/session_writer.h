@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "hal/sample.h"
@@ -26,8 +27,17 @@ class SessionWriter {
   /// Without finish() the file stays as that of an unfinished run, up to the last whole block.
   ~SessionWriter();
 
-  /// Records one tick. Throws RunError when a block cannot be written (disk full).
-  void append(const Frame& frame, const SensorSample& sample, const RobotOutput& output);
+  /// Begins to record the height map, with the map before the first tick. Before append(), once.
+  void record_heights(const HeightMapView& map);
+
+  /// Records one tick, and what it did to the recorded heights, each at most once. Throws RunError
+  /// when a block cannot be written (disk full).
+  void append(const Frame& frame, const SensorSample& sample, const RobotOutput& output,
+              std::span<const HeightChange> changes = {});
+
+  /// What the ground is made of: at most once. Not part of the content hash, which has the
+  /// experiment's text.
+  void write_soil(std::span<const SoilAttribute> soil);
 
   /// The terrain as the run found it and left it: each at most once, at any time before finish().
   void write_terrain_before(const HeightMapView& map);

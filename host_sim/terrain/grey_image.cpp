@@ -2,7 +2,6 @@
 #include "host_sim/terrain/grey_image.h"
 
 #include <png.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -14,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 
 // Only the BMP reader, private to this file: other libraries bring an stb_image of their own.
@@ -255,47 +255,6 @@ GreyImage read_bmp(const fs::path& path, std::span<const uint8_t> bytes) {
   throw RunError(path.string() + ": cannot be written: " + reason);
 }
 
-/// A file under a temporary name beside its final one; removed unless it was committed.
-class PartialFile {
- public:
-  explicit PartialFile(const fs::path& path)
-      : path_(path), partial_(path.string() + "." + std::to_string(getpid()) + ".partial") {
-    std::error_code ignored;
-    const fs::file_status status = fs::status(path, ignored);
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-      cannot_write(path, "is not a regular file");
-    }
-    file_ = std::fopen(partial_.c_str(), "wb");
-    if (file_ == nullptr) cannot_write(path, std::strerror(errno));
-  }
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-  ~PartialFile() {
-    if (file_ != nullptr) static_cast<void>(std::fclose(file_));
-    if (committed_) return;
-    std::error_code ignored;
-    fs::remove(partial_, ignored);
-  }
-
-  [[nodiscard]] std::FILE* file() const { return file_; }
-
-  void commit() {
-    const int closed = std::fclose(file_);  // also flushes: a full disk may show only here
-    file_ = nullptr;
-    if (closed != 0) cannot_write(path_, std::strerror(errno));
-    std::error_code error;
-    fs::rename(partial_, path_, error);
-    if (error) cannot_write(path_, error.message());
-    committed_ = true;
-  }
-
- private:
-  fs::path path_;
-  fs::path partial_;
-  std::FILE* file_ = nullptr;
-  bool committed_ = false;
-};
-
 struct PngWriter {
   std::array<char, 128> error{};
   png_structp png = nullptr;
@@ -312,7 +271,7 @@ void take_png_bytes(png_structp png, png_bytep source, size_t count) {
   if (std::fwrite(source, 1, count, file) != count) png_error(png, std::strerror(errno));
 }
 
-void flush_png_bytes(png_structp /*png*/) {}  // PartialFile::commit flushes
+void flush_png_bytes(png_structp /*png*/) {}  // AtomicFile::commit flushes
 
 struct PngLayout {
   int width;
@@ -347,16 +306,16 @@ void write_png(const fs::path& path, const PngLayout& layout, std::span<const ui
     rows[row] = const_cast<png_bytep>(raw.data() + row * row_bytes);  // libpng does not write there
   }
 
-  PartialFile partial(path);
+  AtomicFile file(path);
   PngWriter writer;
   writer.png =
       png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer.error, on_png_error, on_png_warning);
   writer.info = writer.png != nullptr ? png_create_info_struct(writer.png) : nullptr;
   if (writer.info == nullptr) cannot_write(path, "out of memory for the PNG writer");
-  if (!write_png_rows(writer, partial.file(), layout, rows.data())) {
+  if (!write_png_rows(writer, file.stream(), layout, rows.data())) {
     cannot_write(path, writer.error.data());
   }
-  partial.commit();
+  file.commit();
 }
 
 }  // namespace
@@ -376,6 +335,49 @@ void write_grey16_png(const fs::path& path, int width, int height,
     raw[2 * i + 1] = static_cast<uint8_t>(samples[i] & 0xFF);
   }
   write_png(path, {width, height, 16, PNG_COLOR_TYPE_GRAY}, raw);
+}
+
+void write_grey8_bmp(const fs::path& path, int width, int height,
+                     std::span<const uint16_t> samples) {
+  if (width < 1 || height < 1 ||
+      samples.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) {
+    throw std::invalid_argument("write_grey8_bmp: samples do not fit the image size");
+  }
+  constexpr uint32_t kPaletteBytes = 4 * 256;
+  constexpr uint32_t kHeaderBytes = 14 + 40;
+  const size_t row_bytes = (static_cast<size_t>(width) + 3) / 4 * 4;
+  const size_t image_bytes = row_bytes * static_cast<size_t>(height);
+  std::vector<uint8_t> bytes = {'B', 'M'};
+  bytes.reserve(kHeaderBytes + kPaletteBytes + image_bytes);
+  const auto put = [&](uint32_t value, int count) {
+    for (int i = 0; i < count; ++i) bytes.push_back(static_cast<uint8_t>(value >> (8 * i)));
+  };
+  put(kHeaderBytes + kPaletteBytes + static_cast<uint32_t>(image_bytes), 4);
+  put(0, 4);
+  put(kHeaderBytes + kPaletteBytes, 4);
+  put(40, 4);  // BITMAPINFOHEADER
+  put(static_cast<uint32_t>(width), 4);
+  put(static_cast<uint32_t>(height), 4);  // positive: the bottom row comes first
+  put(1, 2);
+  put(8, 2);
+  put(0, 4);  // not compressed
+  put(static_cast<uint32_t>(image_bytes), 4);
+  put(2835, 4);  // 72 dots an inch
+  put(2835, 4);
+  put(256, 4);
+  put(0, 4);
+  for (uint32_t grey = 0; grey < 256; ++grey) put(grey * 0x010101U, 4);
+  for (int row = height - 1; row >= 0; --row) {
+    const auto line = samples.subspan(static_cast<size_t>(row) * static_cast<size_t>(width),
+                                      static_cast<size_t>(width));
+    for (const uint16_t sample : line) {
+      bytes.push_back(static_cast<uint8_t>((sample * 255U + 32767U) / 65535U));
+    }
+    bytes.insert(bytes.end(), row_bytes - static_cast<size_t>(width), 0);
+  }
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
 }
 
 void write_rgb_png(const fs::path& path, int width, int height, std::span<const uint8_t> rgb) {

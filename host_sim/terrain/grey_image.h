@@ -34,6 +34,11 @@ GreyImage read_grey_image(const std::filesystem::path& path);
 void write_grey16_png(const std::filesystem::path& path, int width, int height,
                       std::span<const uint16_t> samples);
 
+/// Writes an 8-bit grey BMP with a palette, as the thesis' height maps are: the upper 8 bits of
+/// width * height 16-bit samples, rounded, row 0 = top. Otherwise as above.
+void write_grey8_bmp(const std::filesystem::path& path, int width, int height,
+                     std::span<const uint16_t> samples);
+
 /// Writes an 8-bit RGB PNG from width * height * 3 bytes, row 0 = top. Otherwise as above.
 void write_rgb_png(const std::filesystem::path& path, int width, int height,
                    std::span<const uint8_t> rgb);

@@ -116,6 +116,7 @@ HeightField::HeightField(int nx, int ny, double spacing_m, bool wrap)
   tiles_y_ = (ny + kTileNodes - 1) / kTileNodes;
   heights_.assign(static_cast<size_t>(nx) * static_cast<size_t>(ny), 0);
   tile_highest_.assign(static_cast<size_t>(tiles_x_) * static_cast<size_t>(tiles_y_), 0);
+  tile_revisions_.assign(tile_highest_.size(), 0);
 }
 
 HeightField HeightField::from_image(const GreyImage& image, const HeightFieldOptions& options) {

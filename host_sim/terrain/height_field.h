@@ -95,9 +95,18 @@ class HeightField {
   [[nodiscard]] Height node(size_t index) const { return heights_[index]; }
   void set_node(int ix, int iy, Height height) {
     heights_[index(ix, iy)] = height;
-    Height& highest = tile_highest_[tile_index(ix / kTileNodes, iy / kTileNodes)];
+    const size_t tile = tile_index(ix / kTileNodes, iy / kTileNodes);
+    ++tile_revisions_[tile];
+    Height& highest = tile_highest_[tile];
     if (height > highest) highest = height;
   }
+
+  /// For whoever follows the changes of a field: the bed in tiles of kTileNodes x kTileNodes nodes
+  /// (those at the east and north edge are cut off), row by row from the south, and how often a
+  /// node of each was set (modulo 2^32).
+  static constexpr int kTileNodes = 16;
+  [[nodiscard]] int tiles_x() const { return tiles_x_; }
+  [[nodiscard]] const std::vector<uint32_t>& tile_revisions() const { return tile_revisions_; }
 
   /// 0 <= ix < cells_x, 0 <= iy < cells_y: not checked.
   [[nodiscard]] CellHeights cell(int ix, int iy) const {
@@ -132,8 +141,6 @@ class HeightField {
   [[nodiscard]] int64_t height_sum() const;
 
  private:
-  static constexpr int kTileNodes = 16;
-
   struct Axis {
     int nodes;
     double begin_m;        // the west or south edge
@@ -172,6 +179,7 @@ class HeightField {
   int tiles_y_;
   std::vector<Height> heights_;       // row by row from the south
   std::vector<Height> tile_highest_;  // an upper bound of each kTileNodes x kTileNodes nodes
+  std::vector<uint32_t> tile_revisions_;
 };
 
 inline HeightField::Place HeightField::locate_clamped(double node, const Axis& axis) const {

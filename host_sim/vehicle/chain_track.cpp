@@ -374,6 +374,7 @@ SoilContact ChainTrack::soil_contact(const CarrierMotion& carrier) {
 void ChainTrack::pull_on_lower_run(const SoilReaction& soil, const Frame& frame, double dt,
                                    Wrench& wrench) {
   normal_load_ = soil.normal_load;
+  sinkage_ = soil.sinkage;
   if (std::abs(frame.axes(2, 1)) > kOnItsSide) return;
   const double below = frame.axes(2, 2) < 0.0 ? 1.0 : -1.0;
   const auto in_lower_run = [&](const Vector2& pin) {

@@ -63,6 +63,8 @@ class ChainTrack {
   double radius_m() const { return geometry_.radius; }
   const Eigen::Vector3d& centre() const { return centre_; }
   double normal_load_n() const { return normal_load_; }
+  /// Greatest depth below the undisturbed soil, 0 on other ground.
+  double sinkage_m() const { return sinkage_; }
   /// Corners of the shoes at rest, in the frame of the carrier's centre of mass.
   std::vector<Eigen::Vector3d> points() const;
 
@@ -158,6 +160,7 @@ class ChainTrack {
   std::vector<Bite> bites_;
   std::vector<Eigen::Vector3d> ground_force_;  // on each pin, for the guides
   double normal_load_ = 0.0;
+  double sinkage_ = 0.0;
 
   Footprint footprint_;
   Footprint side_footprint_;

@@ -63,7 +63,10 @@ class RunningGear {
   /// the next call.
   SoilContact soil_contact(const CarrierMotion& carrier, double speed);
   /// Remembers the soil's answer to it.
-  void answered(const SoilReaction& reaction) { normal_load_ = reaction.normal_load; }
+  void answered(const SoilReaction& reaction) {
+    normal_load_ = reaction.normal_load;
+    sinkage_ = reaction.sinkage;
+  }
 
   /// The same on particles, and on the floor where there are none.
   double contact(ParticleBed& particles, const CarrierMotion& carrier, double speed, double dt,
@@ -74,6 +77,8 @@ class RunningGear {
 
   double radius_m() const { return geometry_.radius; }
   double normal_load_n() const { return normal_load_; }
+  /// Greatest depth below the undisturbed soil, 0 on rigid ground.
+  double sinkage_m() const { return sinkage_; }
   const Eigen::Vector3d& centre() const { return centre_; }
   /// The contour's points in the frame of the carrier's centre of mass.
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
@@ -112,6 +117,7 @@ class RunningGear {
   Eigen::Matrix3d axes_;      ///< forward, left, up of the contour in the carrier's frame
   ContactMemory memory_;
   double normal_load_ = 0.0;
+  double sinkage_ = 0.0;
 };
 
 }  // namespace screed

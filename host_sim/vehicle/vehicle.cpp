@@ -341,6 +341,13 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
   for (Chain& chain : chains_) chain.track.reset();
 }
 
+void Vehicle::shift(double dx_m, double dy_m) {
+  for (const Carrier& carrier : carriers_) {
+    const dReal* at = dBodyGetPosition(carrier.body);
+    dBodySetPosition(carrier.body, at[0] + dx_m, at[1] + dy_m, at[2]);
+  }
+}
+
 double Vehicle::resting_height(const HeightField& ground, double x, double y,
                                const Eigen::Matrix3d& rotation) const {
   double height = -std::numeric_limits<double>::infinity();
@@ -566,6 +573,22 @@ double Vehicle::current_a(Side side) const {
     if (shaft.side == side) sum += shaft.shaft.current_a();
   }
   return sum;
+}
+
+double Vehicle::load_n(Side side) const {
+  double sum = chain(side) != nullptr ? chain(side)->normal_load_n() : 0.0;
+  for (const Unit& unit : units_) {
+    if (shafts_[unit.shaft].side == side) sum += unit.gear.normal_load_n();
+  }
+  return sum;
+}
+
+double Vehicle::sinkage_m(Side side) const {
+  double deepest = chain(side) != nullptr ? chain(side)->sinkage_m() : 0.0;
+  for (const Unit& unit : units_) {
+    if (shafts_[unit.shaft].side == side) deepest = std::max(deepest, unit.gear.sinkage_m());
+  }
+  return deepest;
 }
 
 double Vehicle::ground_speed_m_per_s(Side side) const {

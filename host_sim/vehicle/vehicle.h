@@ -65,6 +65,8 @@ class Vehicle {
 
   /// Puts the robot somewhere, at rest. Passive joints go back to zero.
   void place(const Eigen::Isometry3d& pose);
+  /// Moves the whole robot sideways as it is: motion, joints and grip stay.
+  void shift(double dx_m, double dy_m);
   /// Height of Body's origin at which the lowest contact point just touches the ground, for this
   /// attitude at (x, y).
   double resting_height(const HeightField& ground, double x, double y,
@@ -92,6 +94,9 @@ class Vehicle {
   double wheel_radius_m(Side side) const;
   /// The side's links; null without tracks, or with a belt.
   const ChainTrack* chain(Side side) const;
+  /// What the side's running gear carries, vertically, and how deep it sinks in (its deepest unit).
+  double load_n(Side side) const;
+  double sinkage_m(Side side) const;
   /// Distance between the centre lines of left and right running gear.
   double tread_m() const { return tread_; }
   /// Speed over the ground at the middle of the side's running gear, along Body's x, m/s.

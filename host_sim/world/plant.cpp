@@ -63,6 +63,8 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
   vehicle_.place(pose);
+  wrap_around();
+  beds_passed_ = {0, 0};
   if (!start.z_m.has_value()) settle();
 }
 
@@ -97,6 +99,39 @@ void Plant::step_bodies(const std::array<double, 2>& motor_voltage) {
     vehicle_.apply_forces(rigid_, motor_voltage, step_s_);
   }
   ode_.step(step_s_);
+  wrap_around();
+}
+
+void Plant::wrap_around() {
+  if (!rigid_.wrap()) return;
+  const Eigen::Vector3d at = vehicle_.chassis().pose.translation();
+  const auto beds_off = [](double coordinate, double size) {
+    // Half open, so that a robot on the very edge stays where it is put.
+    return coordinate >= -0.5 * size && coordinate < 0.5 * size
+               ? 0.0
+               : std::floor(coordinate / size + 0.5);
+  };
+  const std::array<double, 2> size = bed_size();
+  const double east = beds_off(at.x(), size[0]);
+  const double north = beds_off(at.y(), size[1]);
+  if (east == 0.0 && north == 0.0) return;
+  // A place that is no number stays: motion() says that the physics diverged.
+  if (!std::isfinite(east) || !std::isfinite(north)) return;
+  vehicle_.shift(-east * size[0], -north * size[1]);
+  beds_passed_[0] += static_cast<int64_t>(east);
+  beds_passed_[1] += static_cast<int64_t>(north);
+}
+
+std::array<double, 2> Plant::bed_size() const {
+  if (particles_) return {particles_->extent().width_m, particles_->extent().depth_m};
+  return {rigid_.x_max() - rigid_.x_min(), rigid_.y_max() - rigid_.y_min()};
+}
+
+Eigen::Vector3d Plant::place_travelled() const {
+  const std::array<double, 2> size = bed_size();
+  return vehicle_.chassis().pose.translation() +
+         Eigen::Vector3d(static_cast<double>(beds_passed_[0]) * size[0],
+                         static_cast<double>(beds_passed_[1]) * size[1], 0.0);
 }
 
 Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {

@@ -65,6 +65,12 @@ class Plant {
   /// Whether the ground gives way and, without wrap-around, ends at the edges of its bed.
   bool ground_is_loose() const { return soil_.has_value() || particles_.has_value(); }
   const Vehicle& vehicle() const { return vehicle_; }
+  /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
+  /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,
+  /// so that the way it made is its place plus these times the bed's size.
+  const std::array<int64_t, 2>& beds_passed() const { return beds_passed_; }
+  /// The chassis' place as if there had been no teleport, m.
+  Eigen::Vector3d place_travelled() const;
   const Battery& battery() const { return battery_; }
 
  private:
@@ -76,6 +82,10 @@ class Plant {
   /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
   /// when it was switched on.
   void settle();
+  /// Of the bed, east and north, m: what it repeats after when it does.
+  std::array<double, 2> bed_size() const;
+  /// Teleports the robot when it has left the bed.
+  void wrap_around();
   /// Forces, integration and soil of one physics step.
   void step_bodies(const std::array<double, 2>& motor_voltage);
   Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
@@ -93,6 +103,7 @@ class Plant {
   Battery battery_;
   Eigen::Vector3d imu_position_;  ///< in the frame of Body
   uint64_t steps_ = 0;
+  std::array<int64_t, 2> beds_passed_ = {0, 0};
   /// The last tick's moments and the one before; the newest stands at newest_.
   std::vector<Moment> moments_;
   size_t newest_ = 0;

@@ -13,6 +13,7 @@
 #include "host_sim/session/session_reader.h"
 #include "paths.h"
 #include "tests/sitl/test_drive.h"
+#include "tests/temp_folder.h"
 
 namespace screed::testing {
 namespace {
@@ -20,16 +21,10 @@ namespace {
 class Simulation : public ::testing::Test {
  protected:
   void SetUp() override {
-    root_ = std::filesystem::temp_directory_path() /
-            ("screed-simulation-" + std::to_string(getpid()) + "-" +
-             ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(root_);
-    std::filesystem::create_directories(root_);
     experiment_ =
         read_experiment(std::filesystem::path(kDataFolder) / "experiments" / "first_drive.ini",
                         {"experiment.duration=8", "parameters.climb_threshold=300"});
   }
-  void TearDown() override { std::filesystem::remove_all(root_); }
 
   SimulationSummary run(const std::string& name) {
     SimulationOptions options;
@@ -43,7 +38,8 @@ class Simulation : public ::testing::Test {
     return text.str();
   }
 
-  std::filesystem::path root_;
+  TempFolder temporary_;
+  std::filesystem::path root_ = temporary_.path();
   Experiment experiment_;
 };
 

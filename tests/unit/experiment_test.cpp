@@ -14,6 +14,7 @@
 
 #include "firmware/robot/parameter_table.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/experiment/simulation.h"
 
 namespace screed {
 namespace {
@@ -114,7 +115,7 @@ std::string value_in(const std::string& text, const Row& row) {
 std::vector<std::string> good_values(const Row& row) {
   if (row.allowed == "true or false") return {row.value == "true" ? "false" : "true"};
   if (!ends_of(row.allowed).empty()) return ends_of(row.allowed);
-  if (row.key == "algorithm") return {"drive", "spin_on_peak"};
+  if (row.key == "algorithm") return {"drive", "spin_on_peak"};  // random needs frames: below
   if (row.key == "model" && row.section == "map") return {"rigid", "scm"};
   if (row.key == "track_model") return {"chain"};
   if (row.section == "radio" && row.key == "key") {
@@ -131,6 +132,7 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
   for (const Row& row : all) {
     EXPECT_TRUE(seen.insert(row.section + "." + row.key).second)
         << row.key << " stands in the table twice";
+    if (row.key == "units" || row.key == "chrono_data_path") continue;  // tests of their own
     for (const std::string& value : good_values(row)) {
       // Ordered pairs have a check of their own.
       std::vector<std::string> room;
@@ -158,7 +160,8 @@ TEST_F(ExperimentFile, ValuesBeyondTheirEndsAreRefused) {
     std::vector<std::string> bad = {""};
     if (!ends.empty()) {
       bad.insert(bad.end(), {"x", "1x", "nan", "inf", "1e999", "--1", "1 2", "0x10"});
-      const double step = row.allowed.rfind("an integer", 0) == 0 ? 1.0 : 1e-3;
+      const bool whole = row.allowed.rfind("an integer", 0) == 0 || row.key == "frames";
+      const double step = whole ? 1.0 : 1e-3;
       const auto beyond = [&](double value) {
         std::ostringstream text;
         text.precision(12);
@@ -173,9 +176,10 @@ TEST_F(ExperimentFile, ValuesBeyondTheirEndsAreRefused) {
     }
     if (row.key == "seed") bad.insert(bad.end(), {"18446744073709551616", "-1", "1.5"});
     if (row.allowed == "true or false") bad.insert(bad.end(), {"1", "True", "yes"});
+    if (row.key == "frames") bad.insert(bad.end(), {"12", "80.0"});
     if (row.allowed.rfind("an integer", 0) == 0) bad.insert(bad.end(), {"1.5", "99999"});
     if (row.key == "seed") bad.erase(std::find(bad.begin(), bad.end(), "99999"));
-    if (row.key == "algorithm") bad.insert(bad.end(), {"1", "random", "Drive"});
+    if (row.key == "algorithm") bad.insert(bad.end(), {"1", "Random", "Drive"});
     if (row.key == "name") bad.insert(bad.end(), {"a/b", "..", "a b", std::string(65, 'a')});
     for (const std::string& value : bad) {
       const std::string message = complaint(file_with(row, value));
@@ -194,7 +198,8 @@ TEST_F(ExperimentFile, UnknownNamesSayWhatIsKnown) {
             "FILE:2: unknown key 'sped' in [drive]; known are speed, yaw_rate");
   EXPECT_EQ(
       complaint("tracks = true\n"),
-      "FILE:1: unknown key 'tracks' before the first section; known are output_directory_prefix");
+      "FILE:1: unknown key 'tracks' before the first section; known are output_directory_prefix, "
+      "units, chrono_data_path");
   const std::string section = complaint("\n\n[vehicel]\nx = 1\n");
   EXPECT_EQ(section.rfind("FILE:4: unknown section [vehicel]; known are [vehicle], [map], ", 0), 0U)
       << section;
@@ -234,12 +239,102 @@ TEST_F(ExperimentFile, TheAlgorithmReachesTheParameters) {
   EXPECT_EQ(read("").parameters.algorithm, 1);
   EXPECT_EQ(read("[experiment]\nalgorithm = spin_on_peak\n").parameters.algorithm, 2);
   EXPECT_EQ(algorithm_number("hill_sensing"), 1);
-  EXPECT_THROW(algorithm_number("random"), InputError);
+  EXPECT_EQ(algorithm_number("random"), 3);
+  EXPECT_THROW(algorithm_number("Random"), InputError);
+}
+
+TEST_F(ExperimentFile, TheTrainingDriveTakesItsLengthFromFramesOrDuration) {
+  const Experiment frames = read("[experiment]\nalgorithm = random\nframes = 64000\n");
+  EXPECT_EQ(frames.parameters.algorithm, 3);
+  EXPECT_EQ(frames.parameters.training_block, 8000);
+  EXPECT_EQ(frames.experiment.duration_s, 640.0);
+  const Experiment duration = read("[experiment]\nalgorithm = random\nduration = 20.05\n");
+  EXPECT_EQ(duration.experiment.frames, 2000U);
+  EXPECT_EQ(duration.parameters.training_block, 250);
+  EXPECT_EQ(read("[experiment]\nframes = 800\n").experiment.duration_s, 8.0);
+  EXPECT_TRUE(contains(complaint("[experiment]\nalgorithm = random\nduration = 1e5\n"),
+                       "duration = 1e+05 s: algorithm random needs 0.08 s to"));
+}
+
+TEST_F(ExperimentFile, OfTwoKeysForTheSameTheLaterOneHolds) {
+  EXPECT_FALSE(read("[experiment]\nframes = 800\nduration = 3\n").experiment.frames.has_value());
+  EXPECT_EQ(read("[experiment]\nduration = 3\n", {"experiment.frames=80"}).experiment.duration_s,
+            0.8);
+  EXPECT_FALSE(read("[map]\nxy_scale = 0.01\nsize = 3\n").map.xy_scale.has_value());
+  const std::string text = read("[map]\nsize = 3\nxy_scale = 0.01\n").text();
+  EXPECT_TRUE(contains(text, "\nxy_scale = 0.01\n")) << text;
+  EXPECT_FALSE(contains(text, "\nsize = ")) << text;
+}
+
+TEST_F(ExperimentFile, AFileOfSandboxIsReadInItsUnitsAndAxes) {
+  // Units of 1/12 m, x east, y up, z south; terrain without edges.
+  const char* text =
+      "[vehicle]\nx = -20\ny = 8\nz = -18\n[map]\nscale = 5\nxy_scale = 0.12\n[drive]\nspeed = "
+      "0.2\n";
+  for (const char* first : {"chrono_data_path = ../data/\n", "units = sandbox\n",
+                            "units = sandbox\nchrono_data_path = ../data/\n"}) {
+    const Experiment e = read(std::string(first) + text);
+    EXPECT_NEAR(e.vehicle.x_m, -20.0 / 12.0, 1e-12);
+    EXPECT_NEAR(e.vehicle.y_m, 1.5, 1e-12);
+    EXPECT_NEAR(e.vehicle.z_m.value(), 8.0 / 12.0, 1e-12);
+    EXPECT_NEAR(e.map.scale_m, 5.0 / 12.0, 1e-12);
+    EXPECT_NEAR(e.map.xy_scale.value(), 0.01, 1e-12);
+    EXPECT_TRUE(e.map.wrap);
+    EXPECT_EQ(e.drive.speed_m_per_s, 0.2);  // a section that Sandbox does not have
+    // What is written back is in SI units, and says the same.
+    const Experiment again = read(e.text());
+    EXPECT_EQ(again.text(), e.text());
+    EXPECT_EQ(again.vehicle.x_m, e.vehicle.x_m);
+    EXPECT_TRUE(again.map.wrap);
+  }
+  const Experiment si = read("units = si\nchrono_data_path = ../data/\n[vehicle]\nx = -20\n");
+  EXPECT_EQ(si.vehicle.x_m, -20.0);
+  EXPECT_FALSE(si.map.wrap);
+  EXPECT_EQ(si.notes.size(), 1U);
+  EXPECT_EQ(read("units = sandbox\n[vehicle]\nx = -20\n", {"vehicle.x=1"}).vehicle.x_m, 1.0);
+  const std::string wrong = complaint("chrono_data_path = ../data/\n[vehicle]\nx = east\n");
+  EXPECT_TRUE(contains(wrong, "FILE:3: [vehicle] x = 'east'")) << wrong;
+}
+
+// The file as it is printed, spaces at the ends of its lines and all. Its bed is the large one of
+// Table 5.2: 72 x 72 units of 1/12 m.
+TEST_F(ExperimentFile, Figure53IsAcceptedAsPrinted) {
+  const Experiment e = read_experiment("host_sim/data/experiments/figure_5_3.ini");
+  EXPECT_EQ(e.output_directory_prefix, "./tracked_noplow_static/");
+  EXPECT_TRUE(e.vehicle.tracks);
+  EXPECT_EQ(find_model_file(e).filename(), "rover5.urdf");
+  EXPECT_NEAR(e.vehicle.x_m, -20.0 / 12.0, 1e-12);
+  EXPECT_NEAR(e.vehicle.y_m, 20.0 / 12.0, 1e-12);
+  EXPECT_NEAR(e.vehicle.z_m.value(), 8.0 / 12.0, 1e-12);
+  EXPECT_EQ(e.vehicle.heading_deg, 0.0);
+  EXPECT_EQ(e.map.filename, "terrain_large.bmp");
+  EXPECT_NEAR(e.map.scale_m, 5.0 / 12.0, 1e-12);
+  EXPECT_NEAR(e.map.particle_radius_m, 0.0125, 1e-12);
+  EXPECT_EQ(e.map.xy_scale, 0.4);
+  EXPECT_EQ(e.map.model, "particles");
+  EXPECT_EQ(e.particles.depth_m, 0.0);
+  EXPECT_TRUE(e.map.wrap);
+  EXPECT_NEAR(e.raygrid.resolution_per_m, 24.0, 1e-12);
+  EXPECT_EQ(e.experiment.name, "sparse_random");
+  EXPECT_EQ(e.parameters.algorithm, 3);
+  const HeightField bed = make_terrain(e);
+  EXPECT_NEAR(bed.x_max() - bed.x_min(), 6.0, 1e-9);
+  EXPECT_TRUE(bed.inside(e.vehicle.x_m, e.vehicle.y_m));
+}
+
+TEST_F(ExperimentFile, ThePathOfChronosDataIsNotedAndNotUsed) {
+  const Experiment experiment = read("; a comment\nchrono_data_path = ../data/\n");
+  ASSERT_EQ(experiment.notes.size(), 1U);
+  EXPECT_TRUE(contains(experiment.notes[0], ":2: chrono_data_path is not used"));
+  EXPECT_TRUE(contains(experiment.notes[0], "1/12 m"));
+  EXPECT_EQ(experiment.notes[0].find('\n'), std::string::npos);
 }
 
 TEST_F(ExperimentFile, EveryParameterOfTheFirmwareHasAKeyOfItsOwn) {
   for (const ParameterInfo& info : kParameterTable) {
-    if (std::string(info.name) == "algorithm") continue;
+    // Said in [experiment].
+    if (std::string(info.name) == "algorithm" || std::string(info.name) == "training_block")
+      continue;
     const std::string name = info.name;
     const int16_t value = name == "walk_speed_min" || name == "walk_leg_min" ? info.min : info.max;
     const Experiment experiment =
@@ -288,7 +383,8 @@ TEST_F(ExperimentFile, DataFilesAreLookedForBesideTheExperimentFirst) {
 
 TEST_F(ExperimentFile, TheExperimentsThatComeWithTheProjectAreRight) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("host_sim/data/experiments")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator("host_sim/data/experiments")) {
     if (entry.path().extension() != ".ini") continue;
     EXPECT_NO_THROW(read_experiment(entry.path())) << entry.path();
     ++count;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
@@ -24,24 +25,12 @@ fs::path image_path(const std::string& name) {
   return fs::path(__FILE__).parent_path().parent_path() / "data" / "images" / name;
 }
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 const std::vector<uint16_t> kGrey8 = {0, 1, 2, 3, 64, 128, 192, 254, 255, 10, 20, 30};
 const std::vector<uint16_t> kGrey16 = {0,     1,     255,   256,  4660,  32768,
                                        43981, 65534, 65535, 1000, 20000, 30000};
 
 class GreyImageTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "grey_image_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
@@ -51,7 +40,8 @@ class GreyImageTest : public testing::Test {
         std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  fs::path folder_;
+  TempFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 void expect_image(const std::string& name, int width, int height, int bit_depth,
@@ -99,7 +89,7 @@ TEST_F(GreyImageTest, ReadsGreyBmp) {
 }
 
 TEST_F(GreyImageTest, ReadsBmpStoredFromTheTop) {
-  std::string bytes = bytes_of(image_path("grey24.bmp"));
+  std::string bytes = read_text(image_path("grey24.bmp"));
   bytes.replace(22, 4, "\xFD\xFF\xFF\xFF", 4);  // height -3
   const GreyImage image = read_grey_image(write("top_down.bmp", bytes));
   EXPECT_EQ(image.height, 3);
@@ -118,7 +108,7 @@ TEST_F(GreyImageTest, RefusesColourAndAlpha) {
 TEST_F(GreyImageTest, RefusesOtherKindsOfBmp) {
   expect_refused(image_path("grey1.bmp"), "1 bits a pixel");
   expect_refused(image_path("grey8_rle.bmp"), ": compressed BMP");
-  std::string bytes = bytes_of(image_path("grey24.bmp"));
+  std::string bytes = read_text(image_path("grey24.bmp"));
   bytes[14] = 12;  // the header of OS/2
   expect_refused(write("os2.bmp", bytes), "unknown header of 12 bytes");
 }
@@ -133,7 +123,7 @@ TEST_F(GreyImageTest, RefusesWhatIsNoImageFile) {
 
 TEST_F(GreyImageTest, RefusesEveryTruncation) {
   for (const char* name : {"grey16.png", "grey16_interlaced.png", "grey8.bmp", "grey24.bmp"}) {
-    const std::string bytes = bytes_of(image_path(name));
+    const std::string bytes = read_text(image_path(name));
     for (size_t length = 0; length < bytes.size(); ++length) {
       SCOPED_TRACE(length);
       EXPECT_THROW(read_grey_image(write(name, bytes.substr(0, length))), InputError) << name;
@@ -143,7 +133,7 @@ TEST_F(GreyImageTest, RefusesEveryTruncation) {
 
 TEST_F(GreyImageTest, RefusesEveryFlippedByteOfAPng) {
   for (const char* name : {"grey16.png", "grey16_gamma.png"}) {  // with an optional chunk, too
-    const std::string bytes = bytes_of(image_path(name));
+    const std::string bytes = read_text(image_path(name));
     for (size_t place = 0; place < bytes.size(); ++place) {
       std::string corrupt = bytes;
       corrupt[place] = static_cast<char>(corrupt[place] ^ 0x10);
@@ -154,20 +144,20 @@ TEST_F(GreyImageTest, RefusesEveryFlippedByteOfAPng) {
 }
 
 TEST_F(GreyImageTest, NamesTheWrongCheckSum) {
-  std::string bytes = bytes_of(image_path("grey16.png"));
+  std::string bytes = read_text(image_path("grey16.png"));
   constexpr size_t kDataCheckSum = 77;
   bytes[kDataCheckSum] = static_cast<char>(bytes[kDataCheckSum] ^ 1);
   expect_refused(write("crc.png", bytes), "CRC error");
 }
 
 TEST_F(GreyImageTest, RefusesAbsurdSizes) {
-  const std::string png = bytes_of(image_path("grey16.png"));
+  const std::string png = read_text(image_path("grey16.png"));
   const auto png_with_width = [&](const std::string& width) {
     return write("size.png", std::string(png).replace(16, 4, width));
   };
   expect_refused(png_with_width(std::string(4, '\0')), "image size 0 x 3");
   expect_refused(png_with_width(std::string("\0\0\x40\x01", 4)), "image size 16385 x 3");
-  const std::string bmp = bytes_of(image_path("grey24.bmp"));
+  const std::string bmp = read_text(image_path("grey24.bmp"));
   const auto bmp_with_height = [&](const std::string& height) {
     return write("size.bmp", std::string(bmp).replace(22, 4, height));
   };
@@ -176,7 +166,7 @@ TEST_F(GreyImageTest, RefusesAbsurdSizes) {
 }
 
 TEST_F(GreyImageTest, RefusesBmpWithBrokenPalette) {
-  const std::string bytes = bytes_of(image_path("grey8.bmp"));
+  const std::string bytes = read_text(image_path("grey8.bmp"));
   std::string small = bytes;
   small.replace(46, 4, std::string("\x0A\0\0\0", 4));  // 10 colours, pixels up to 255
   expect_refused(write("small_palette.bmp", small), "points past the palette");

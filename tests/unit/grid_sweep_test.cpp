@@ -15,30 +15,15 @@
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_sweep.h"
 #include "host_sim/picture/line_chart.h"
+#include "tests/temp_folder.h"
 
 namespace screed::testing {
 namespace {
 
 class GridFiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("screed-grid-" + std::to_string(getpid()) + "-" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  static std::string read(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-  static void write(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-  }
-
-  std::filesystem::path folder_;
+  TempFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path();
 };
 
 std::vector<SweepPoint> small_sweep() {
@@ -66,7 +51,7 @@ TEST_F(GridSweep, IsBitIdenticalForAnyNumberOfThreads) {
   const SweepResult five = run_sweep(small_sweep(), options_of(folder_ / "five", 5));
   EXPECT_TRUE(one.complete);
   EXPECT_EQ(one.results, five.results);
-  EXPECT_EQ(read(folder_ / "one"), read(folder_ / "five"));
+  EXPECT_EQ(read_text(folder_ / "one"), read_text(folder_ / "five"));
   // Each run is the one that its seed gives alone.
   GridConfig config = small_sweep()[1].config;
   config.seed += 7;
@@ -85,7 +70,7 @@ TEST_F(GridSweep, GoesOnWhereItStopped) {
   EXPECT_GE(kept, 5U);
   EXPECT_LT(kept, 24U);
   // The power failed in the middle of a line.
-  write(folder_ / "broken", read(folder_ / "broken") + "1,11,12,1,3");
+  write_text(folder_ / "broken", read_text(folder_ / "broken") + "1,11,12,1,3");
   options.stop = nullptr;
   size_t began_with = 0;
   options.progress = [&began_with](size_t done, size_t) {
@@ -95,7 +80,7 @@ TEST_F(GridSweep, GoesOnWhereItStopped) {
   EXPECT_TRUE(resumed.complete);
   EXPECT_EQ(resumed.resumed, kept);
   EXPECT_EQ(began_with, kept + 1);
-  EXPECT_EQ(read(folder_ / "broken"), read(folder_ / "whole"));
+  EXPECT_EQ(read_text(folder_ / "broken"), read_text(folder_ / "whole"));
 }
 
 TEST_F(GridSweep, MoreRunsAreAddedToThoseThatAreThere) {
@@ -114,10 +99,10 @@ TEST_F(GridSweep, RefusesFilesOfOthers) {
   auto other = small_sweep();
   other[1].config.p_pick_up = 0.31;
   EXPECT_THROW(run_sweep(other, options_of(folder_ / "runs", 1, 1)), InputError);
-  write(folder_ / "letter", "Dear Madam,\nthank you\nfor nothing\n");
+  write_text(folder_ / "letter", "Dear Madam,\nthank you\nfor nothing\n");
   EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_ / "letter", 1)), InputError);
-  EXPECT_EQ(read(folder_ / "letter"), "Dear Madam,\nthank you\nfor nothing\n");
-  write(folder_ / "runs", read(folder_ / "runs") + "0,1,2,3\n");
+  EXPECT_EQ(read_text(folder_ / "letter"), "Dear Madam,\nthank you\nfor nothing\n");
+  write_text(folder_ / "runs", read_text(folder_ / "runs") + "0,1,2,3\n");
   EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_ / "runs", 1, 3)), InputError);
   EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_ / "none" / "runs", 1)), RunError);
   EXPECT_THROW(run_sweep(small_sweep(), options_of({}, 1, 0)), InputError);
@@ -183,9 +168,9 @@ TEST_F(GridRecording, ReplaysEveryCycle) {
 
 TEST_F(GridRecording, OverwritesNothingAndLeavesNothingHalf) {
   const GridRun run((GridConfig()));
-  write(folder_ / "taken.h5", "mine");
+  write_text(folder_ / "taken.h5", "mine");
   EXPECT_THROW(GridRecorder(folder_ / "taken.h5", run, "test"), InputError);
-  EXPECT_EQ(read(folder_ / "taken.h5"), "mine");
+  EXPECT_EQ(read_text(folder_ / "taken.h5"), "mine");
   { const GridRecorder abandoned(folder_ / "run.h5", run, "test"); }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run.h5.partial"));
@@ -194,7 +179,7 @@ TEST_F(GridRecording, OverwritesNothingAndLeavesNothingHalf) {
 
 TEST_F(GridRecording, RefusesWhatIsNoRecording) {
   EXPECT_THROW(GridReplay(folder_ / "missing.h5"), InputError);
-  write(folder_ / "text.h5", "no HDF5 at all");
+  write_text(folder_ / "text.h5", "no HDF5 at all");
   EXPECT_THROW(GridReplay(folder_ / "text.h5"), InputError);
   const hid_t other =
       H5Fcreate((folder_ / "other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -211,8 +196,8 @@ TEST_F(GridRecording, RefusesWhatIsNoRecording) {
     recorder.add_cycle(run);
   }
   recorder.finish(run);
-  std::string bytes = read(folder_ / "run.h5");
-  write(folder_ / "short.h5", bytes.substr(0, bytes.size() / 2));
+  std::string bytes = read_text(folder_ / "run.h5");
+  write_text(folder_ / "short.h5", bytes.substr(0, bytes.size() / 2));
   EXPECT_THROW(GridReplay(folder_ / "short.h5"), InputError);
 }
 

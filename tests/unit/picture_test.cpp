@@ -15,27 +15,17 @@
 #include "host_sim/picture/map_frame.h"
 #include "host_sim/picture/path_overlay.h"
 #include "host_sim/picture/terrain_picture.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 class PictureTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "picture_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  TempFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 PictureOptions small_picture() {
@@ -167,15 +157,15 @@ TEST_F(PictureTest, SameInputGivesTheSameBytes) {
   const HeightField field = HeightField::ramp(1.5, 0.02, 10.0);
   write_height_map_picture(folder_ / "a.png", field, small_picture());
   write_height_map_picture(folder_ / "b.png", field, small_picture());
-  EXPECT_GT(bytes_of(folder_ / "a.png").size(), 5000U);
-  EXPECT_EQ(bytes_of(folder_ / "a.png"), bytes_of(folder_ / "b.png"));
+  EXPECT_GT(read_text(folder_ / "a.png").size(), 5000U);
+  EXPECT_EQ(read_text(folder_ / "a.png"), read_text(folder_ / "b.png"));
 }
 
 TEST_F(PictureTest, EveryPartChangesThePicture) {
   const HeightField field = HeightField::ramp(1.5, 0.02, 10.0);
   const auto drawn = [&](const PictureOptions& options) {
     write_height_map_picture(folder_ / "picture.png", field, options);
-    return bytes_of(folder_ / "picture.png");
+    return read_text(folder_ / "picture.png");
   };
   const std::string whole = drawn(small_picture());
   PictureOptions options = small_picture();
@@ -216,7 +206,7 @@ TEST_F(PictureTest, DifferenceNeedsTheSameGrid) {
   write_difference_picture(folder_ / "same.png", before, after, small_picture());
   after.set_node(30, 30, after.node(30, 30) + (1 << 20));
   write_difference_picture(folder_ / "changed.png", before, after, small_picture());
-  EXPECT_NE(bytes_of(folder_ / "same.png"), bytes_of(folder_ / "changed.png"));
+  EXPECT_NE(read_text(folder_ / "same.png"), read_text(folder_ / "changed.png"));
   const HeightField grid(20, 20, 0.1, false);
   for (const HeightField& other :
        {HeightField(21, 20, 0.1, false), HeightField(20, 21, 0.1, false),

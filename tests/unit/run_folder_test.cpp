@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "host_sim/core/errors.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
@@ -18,21 +19,8 @@ namespace fs = std::filesystem;
 
 class RunFolderTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "screed-run-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    base_ = name;
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
-  static void put(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
-
-  static std::string get(const fs::path& file) {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
-  fs::path base_;
+  TempFolder folder_;
+  fs::path base_ = folder_.path();
 };
 
 template <class Error>
@@ -52,11 +40,11 @@ void expect_text(const std::string& message, const std::string& part) {
 
 TEST_F(RunFolderTest, AppearsOnlyWithCommit) {
   RunFolder folder = RunFolder::at(base_ / "run");
-  put(folder.path() / "file", "text");
+  write_text(folder.path() / "file", "text");
   EXPECT_EQ(folder.path(), base_ / "run.partial");
   EXPECT_FALSE(fs::exists(base_ / "run"));
   folder.commit();
-  EXPECT_EQ(get(base_ / "run" / "file"), "text");
+  EXPECT_EQ(read_text(base_ / "run" / "file"), "text");
   EXPECT_FALSE(fs::exists(base_ / "run.partial"));
 }
 
@@ -69,7 +57,7 @@ TEST_F(RunFolderTest, WithoutCommitNothingStays) {
   {
     const RunFolder folder = RunFolder::at(base_ / "a" / "b" / "run");
     fs::create_directory(folder.path() / "sub");
-    put(folder.path() / "sub" / "file", "text");
+    write_text(folder.path() / "sub" / "file", "text");
   }
   EXPECT_TRUE(fs::is_empty(base_));
 }
@@ -77,9 +65,9 @@ TEST_F(RunFolderTest, WithoutCommitNothingStays) {
 TEST_F(RunFolderTest, ParentsInUseStayWhenARunFails) {
   {
     const RunFolder folder = RunFolder::at(base_ / "a" / "run");
-    put(base_ / "a" / "other", "text");
+    write_text(base_ / "a" / "other", "text");
   }
-  EXPECT_EQ(get(base_ / "a" / "other"), "text");
+  EXPECT_EQ(read_text(base_ / "a" / "other"), "text");
   EXPECT_FALSE(fs::exists(base_ / "a" / "run.partial"));
 }
 
@@ -95,45 +83,45 @@ TEST_F(RunFolderTest, MovedFolderIsRemovedOnce) {
 TEST_F(RunFolderTest, AnEmptyFolderMayBeNamed) {
   fs::create_directory(base_ / "run");
   RunFolder folder = RunFolder::at((base_ / "run").string() + "/");
-  put(folder.path() / "file", "text");
+  write_text(folder.path() / "file", "text");
   EXPECT_TRUE(fs::is_empty(base_ / "run"));
   folder.commit();
-  EXPECT_EQ(get(base_ / "run" / "file"), "text");
+  EXPECT_EQ(read_text(base_ / "run" / "file"), "text");
 }
 
 TEST_F(RunFolderTest, ALinkToAnEmptyFolderMayBeNamed) {
   fs::create_directory(base_ / "real");
   fs::create_directory_symlink(base_ / "real", base_ / "link");
   RunFolder folder = RunFolder::at(base_ / "link");
-  put(folder.path() / "file", "text");
+  write_text(folder.path() / "file", "text");
   folder.commit();
-  EXPECT_EQ(get(base_ / "real" / "file"), "text");
+  EXPECT_EQ(read_text(base_ / "real" / "file"), "text");
   EXPECT_TRUE(fs::is_symlink(base_ / "link"));
 }
 
 TEST_F(RunFolderTest, AFullFolderIsRefusedAndKept) {
   fs::create_directory(base_ / "run");
-  put(base_ / "run" / "file", "precious");
+  write_text(base_ / "run" / "file", "precious");
   expect_text(message_of<InputError>([&] { RunFolder::at(base_ / "run"); }), "not empty");
-  EXPECT_EQ(get(base_ / "run" / "file"), "precious");
+  EXPECT_EQ(read_text(base_ / "run" / "file"), "precious");
   EXPECT_FALSE(fs::exists(base_ / "run.partial"));
 }
 
 TEST_F(RunFolderTest, AFileOfThatNameIsRefusedAndKept) {
-  put(base_ / "run", "precious");
+  write_text(base_ / "run", "precious");
   expect_text(message_of<InputError>([&] { RunFolder::at(base_ / "run"); }), "not a folder");
-  EXPECT_EQ(get(base_ / "run"), "precious");
+  EXPECT_EQ(read_text(base_ / "run"), "precious");
 }
 
 TEST_F(RunFolderTest, AParentThatIsAFileIsRefused) {
-  put(base_ / "file", "precious");
+  write_text(base_ / "file", "precious");
   const std::string message =
       message_of<InputError>([&] { RunFolder::at(base_ / "file" / "sub" / "run"); });
   expect_text(message, (base_ / "file").string());
   expect_text(message, "not a folder");
   expect_text(message_of<InputError>([&] { RunFolder::numbered(base_ / "file", "hill"); }),
               "not a folder");
-  EXPECT_EQ(get(base_ / "file"), "precious");
+  EXPECT_EQ(read_text(base_ / "file"), "precious");
 }
 
 TEST_F(RunFolderTest, AnEmptyOrRootNameIsRefused) {
@@ -144,11 +132,11 @@ TEST_F(RunFolderTest, AnEmptyOrRootNameIsRefused) {
 
 TEST_F(RunFolderTest, ALeftOverPartialIsReportedAndKept) {
   fs::create_directory(base_ / "run.partial");
-  put(base_ / "run.partial" / "session.h5", "precious");
+  write_text(base_ / "run.partial" / "session.h5", "precious");
   const std::string message = message_of<InputError>([&] { RunFolder::at(base_ / "run"); });
   expect_text(message, (base_ / "run.partial").string());
   expect_text(message, "unfinished");
-  EXPECT_EQ(get(base_ / "run.partial" / "session.h5"), "precious");
+  EXPECT_EQ(read_text(base_ / "run.partial" / "session.h5"), "precious");
 }
 
 TEST_F(RunFolderTest, NumbersAreTheLowestFreeOnes) {
@@ -166,13 +154,13 @@ TEST_F(RunFolderTest, NumbersAreTheLowestFreeOnes) {
 
 TEST_F(RunFolderTest, NumbersPassOverLeftOversAndNameThem) {
   fs::create_directories(base_ / "hill-0001.partial");
-  put(base_ / "hill-0001.partial" / "session.h5", "precious");
+  write_text(base_ / "hill-0001.partial" / "session.h5", "precious");
   RunFolder folder = RunFolder::numbered(base_, "hill");
   EXPECT_EQ(folder.final_path(), base_ / "hill-0002");
   ASSERT_EQ(folder.leftovers().size(), 1U);
   EXPECT_EQ(folder.leftovers().front(), base_ / "hill-0001.partial");
   folder.commit();
-  EXPECT_EQ(get(base_ / "hill-0001.partial" / "session.h5"), "precious");
+  EXPECT_EQ(read_text(base_ / "hill-0001.partial" / "session.h5"), "precious");
 }
 
 TEST_F(RunFolderTest, AnExperimentNameMustBeAFileName) {
@@ -184,14 +172,14 @@ TEST_F(RunFolderTest, AnExperimentNameMustBeAFileName) {
 TEST_F(RunFolderTest, ACompleteRunIsKeptWhenItsNameWasTakenMeanwhile) {
   {
     RunFolder folder = RunFolder::at(base_ / "run");
-    put(folder.path() / "file", "complete");
+    write_text(folder.path() / "file", "complete");
     fs::create_directory(base_ / "run");
-    put(base_ / "run" / "other", "precious");
+    write_text(base_ / "run" / "other", "precious");
     const std::string message = message_of<RunError>([&] { folder.commit(); });
     expect_text(message, (base_ / "run.partial").string());
   }
-  EXPECT_EQ(get(base_ / "run.partial" / "file"), "complete");
-  EXPECT_EQ(get(base_ / "run" / "other"), "precious");
+  EXPECT_EQ(read_text(base_ / "run.partial" / "file"), "complete");
+  EXPECT_EQ(read_text(base_ / "run" / "other"), "precious");
 }
 
 // In a child process, since permissions do not bind root.

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
@@ -32,26 +33,17 @@ std::string contents(const std::string& file) {
   return text.str();
 }
 
-// A folder of this process alone, gone when it ends.
-class TemporaryFolder {
+// One folder for all tests of this process, gone when it ends.
+class ModelFolder : public TempFolder {
  public:
-  TemporaryFolder() : path_(testing::TempDir() + "screed_urdf_test_XXXXXX") {
-    if (mkdtemp(path_.data()) == nullptr) throw RunError("cannot create " + path_);
-    std::filesystem::copy_file("tests/data/urdf/unit_cube.obj", path_ + "/unit_cube.obj");
+  ModelFolder() {
+    std::filesystem::copy_file("tests/data/urdf/unit_cube.obj", path() / "unit_cube.obj");
   }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 std::string written_file() {
-  static const TemporaryFolder folder;
-  return folder.path() + "/robot.urdf";
+  static const ModelFolder folder;
+  return folder.path() / "robot.urdf";
 }
 
 std::string write(const std::string& text) {

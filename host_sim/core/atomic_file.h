@@ -1,0 +1,43 @@
+// A file that appears under its name complete or not at all: written beside it and then renamed.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace screed {
+
+/// A file of that name stays as it was until commit(), and for ever without it. Every function
+/// throws RunError, one line with the path and the reason, when the file cannot be written: folder
+/// missing, disk full, `path` is no regular file.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
+
+  void write(std::string_view text);
+  void write(std::span<const std::uint8_t> bytes);
+
+  /// For libraries that write by themselves; what the stream refuses shows in commit() at the
+  /// latest.
+  std::FILE* stream() { return file_; }
+
+  /// Gives the file its name.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path partial_;
+  std::FILE* file_ = nullptr;
+  bool committed_ = false;
+};
+
+/// A whole file at once.
+void write_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace screed
