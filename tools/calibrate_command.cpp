@@ -3,14 +3,12 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <deque>
 #include <iostream>
 #include <memory>
 
-#include "firmware/robot/parameter_table.h"
 #include "host_sim/calibration/imu_collector.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/link/command_session.h"
@@ -205,16 +203,8 @@ class Calibration {
     throw RunError("the robot is not disarmed but '" + state() + "'; nothing was changed");
   }
 
-  static bool robot_knows(const std::string& name) {
-    return std::any_of(std::begin(kParameterTable), std::end(kParameterTable),
-                       [&](const ParameterInfo& info) { return name == info.name; });
-  }
-
   int store(const ImuCalibration& calibration) {
-    const std::vector<CalibrationParameter> parameters = calibration_parameters(calibration);
-    if (!robot_knows(parameters.front().name))
-      throw RunError("this firmware has no parameters for offsets; nothing was stored");
-    for (const CalibrationParameter& parameter : parameters) {
+    for (const CalibrationParameter& parameter : calibration_parameters(calibration)) {
       const uint16_t index = parameter_index(parameter.name);
       parameter_value(index, std::to_string(parameter.value));
       wait_until_disarmed();

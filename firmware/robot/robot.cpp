@@ -1,6 +1,7 @@
 // The robot: the whole firmware core as one object.
 #include "firmware/robot/robot.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "firmware/math/crc16.h"
@@ -35,6 +36,13 @@ int32_t cos_tilt_q30(const Quaternion& q) {
   return kQ30One - (mul_q30(q.x, q.x) + mul_q30(q.y, q.y)) * 2;
 }
 
+constexpr uint8_t kImuCounts = 9;
+static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * sizeof(int16_t) &&
+                  offsetof(ImuSample, mag) == 6 * sizeof(int16_t) &&
+                  offsetof(Parameters, mag_offset_z) ==
+                      offsetof(Parameters, gyro_offset_x) + 8 * sizeof(int16_t),
+              "gyro, accelerometer and magnetometer follow each other everywhere");
+
 }  // namespace
 
 Robot::Robot(const BoardConstants& board, const Parameters& parameters,
@@ -64,11 +72,19 @@ Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
 }
 
 void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
-  ImuSample imu{};
-  for (uint8_t i = 0; i < 3; ++i) {
-    imu.gyro[i] = sample.gyro[i];
-    imu.accel[i] = sample.accel[i];
-    imu.mag[i] = sample.mag[i];
+  ImuSample imu;  // all of it is written below
+  auto* const to = reinterpret_cast<int16_t*>(&imu);
+  const auto* const from = reinterpret_cast<const int16_t*>(
+      reinterpret_cast<const uint8_t*>(&sample) + offsetof(SensorSample, gyro));
+  const auto* const offset = reinterpret_cast<const int16_t*>(
+      reinterpret_cast<const uint8_t*>(&parameters_) + offsetof(Parameters, gyro_offset_x));
+  for (uint8_t i = 0; i < kImuCounts; ++i) {
+    const auto raw = static_cast<uint16_t>(from[i]);
+    const auto shift = static_cast<uint16_t>(offset[i]);
+    const auto corrected = static_cast<uint16_t>(raw - shift);
+    // One so near to the sensor's limit that it would change its sign stays as it is.
+    const bool wrapped = (((raw ^ shift) & (raw ^ corrected)) & 0x8000U) != 0;
+    to[i] = static_cast<int16_t>(wrapped ? raw : corrected);
   }
   imu.mag_fresh = (sample.fresh & kFreshMag) != 0;
   // Turning tracks are no standstill, however evenly the robot turns.

@@ -2,6 +2,7 @@
 // round), and what is a row of additions with carry is written as that.
 #include "firmware/security/siphash.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "firmware/math/fixed.h"
@@ -152,8 +153,8 @@ SCREED_OUT_OF_LINE void swap_halves(uint8_t* word) {
 
 SCREED_OUT_OF_LINE void rounds(uint8_t* v, uint8_t count) {
   uint8_t* const v1 = v + kWord;
-  uint8_t* const v2 = v + 2 * kWord;
-  uint8_t* const v3 = v + 3 * kWord;
+  uint8_t* const v2 = v + size_t{2} * kWord;
+  uint8_t* const v3 = v + size_t{3} * kWord;
   for (; count > 0; --count) {
     mix(v, v1, 2, 3);  // 13
     swap_halves(v);
@@ -178,14 +179,14 @@ void siphash_2_4(const uint8_t* key, const uint8_t* message, uint8_t size, uint8
     for (uint8_t i = 0; i < kWord; ++i, ++at) {
       block[i] = at < size ? message[at] : at == last ? size : static_cast<uint8_t>(0);
     }
-    exclusive_or(v + 3 * kWord, block);
+    exclusive_or(v + size_t{3} * kWord, block);
     rounds(v, 2);
     exclusive_or(v, block);
   }
-  v[2 * kWord] = static_cast<uint8_t>(v[2 * kWord] ^ 0xFFU);
+  v[size_t{2} * kWord] = static_cast<uint8_t>(v[size_t{2} * kWord] ^ 0xFFU);
   rounds(v, 4);
   memcpy(hash, v, kWord);
-  for (uint8_t word = 1; word < 4; ++word) exclusive_or(hash, v + word * kWord);
+  for (uint8_t word = 1; word < 4; ++word) exclusive_or(hash, v + size_t{word} * kWord);
 }
 
 }  // namespace screed

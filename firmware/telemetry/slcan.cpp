@@ -1,6 +1,8 @@
 // CAN frames as text lines.
 #include "firmware/telemetry/slcan.h"
 
+#include <stddef.h>
+
 namespace screed {
 namespace {
 
@@ -71,7 +73,7 @@ bool SlcanParser::decode(CanFrame& frame) const {
   frame.id = static_cast<uint16_t>((nibbles[0] << 8) | (nibbles[1] << 4) | nibbles[2]);
   frame.size = nibbles[3];
   for (uint8_t i = 0; i < frame.size; ++i) {
-    if (!slcan_byte(line_ + 5 + 2 * i, frame.data[i])) return false;
+    if (!slcan_byte(line_ + 5 + size_t{2} * i, frame.data[i])) return false;
   }
   return true;
 }

@@ -88,6 +88,12 @@ void Bench::command(CommandOp op, DriveArgument argument) {
   run_ms(50);
 }
 
+void Bench::set_parameter(std::uint8_t index, std::int16_t value) {
+  ground_.hear(last_frame(kIdHeartbeat));
+  mcu.receive(ground_.parameter(index, value));
+  run_ms(50);
+}
+
 void Bench::turn_left_encoder(bool forward) {
   left_count_ += forward ? 1 : -1;
   board.set_encoder(kLeft, left_count_);

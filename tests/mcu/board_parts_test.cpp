@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "firmware/robot/parameter_store.h"
+#include "firmware/robot/parameter_table.h"
 #include "firmware/robot/supervisor.h"
 #include "hal/avr/reset_cause.h"
 #include "host_sim/mcu/board.h"
@@ -127,11 +128,19 @@ TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
   EXPECT_LT(mcu_.longest_tick(), kClock_hz / kTickRate_hz + 1500);
 }
 
+/// The number by which the console knows a parameter.
+std::size_t index_of(const std::string& name) {
+  const auto* const at = std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
+                                      [&](const ParameterInfo& info) { return name == info.name; });
+  return static_cast<std::size_t>(at - std::begin(kParameterTable));
+}
+
 TEST_F(BoardParts, ChangesAndSavesParameters) {
   mcu_.run_ms(50);
   open_console();
-  EXPECT_EQ(ask("p 2"), "p 2 500\n");
-  EXPECT_EQ(ask("p 2 750"), "p 2 750\n");
+  const std::string threshold = "p " + std::to_string(index_of("climb_threshold"));
+  EXPECT_EQ(ask(threshold), threshold + " 500\n");
+  EXPECT_EQ(ask(threshold + " 750"), threshold + " 750\n");
   EXPECT_EQ(ask("w", 1500), "ok\n");
   for (const std::uint8_t index :
        {std::uint8_t{0}, std::uint8_t{1}}) {  // a blank store gets both copies
@@ -141,29 +150,32 @@ TEST_F(BoardParts, ChangesAndSavesParameters) {
     decode_parameters(copy, stored);
     EXPECT_EQ(stored.climb_threshold, 750);
   }
-  EXPECT_EQ(ask("p 2 800"), "p 2 800\n");
+  EXPECT_EQ(ask(threshold + " 800"), threshold + " 800\n");
   EXPECT_EQ(ask("w", 1000), "ok\n");
   EXPECT_EQ(copy_sequence(read_copy(0)), 1) << "the older copy is replaced";
   EXPECT_EQ(copy_sequence(read_copy(1)), 0);
   EXPECT_EQ(ask("d"), "ok\n");
-  EXPECT_EQ(ask("p 2"), "p 2 500\n");
+  EXPECT_EQ(ask(threshold), threshold + " 500\n");
   usb_.send("r\n");
   usb_.pull_out();
   mcu_.run_ms(200);
   EXPECT_EQ(mcu_.starts(), 2);
   open_console();
-  EXPECT_EQ(ask("p 2"), "p 2 800\n");
+  EXPECT_EQ(ask(threshold), threshold + " 800\n");
   EXPECT_EQ(cause(), static_cast<int>(ResetCause::kRequested));
 }
 
 TEST_F(BoardParts, RefusesNonsenseOnTheConsole) {
   mcu_.run_ms(50);
   open_console();
-  for (const char* line : {"x", "p 23", "p -1", "p 2 40000", "p 2 7x", "p x", "ww", "p 2 3 4",
-                           "pppppppppppppppppppppppppppppppppppppppppp"}) {
+  const std::string beyond = "p " + std::to_string(kParameterCount);
+  for (const std::string& line :
+       std::vector<std::string>{"x", beyond, "p -1", "p 2 40000", "p 2 7x", "p x", "ww", "p 2 3 4",
+                                "pppppppppppppppppppppppppppppppppppppppppp"}) {
     EXPECT_EQ(ask(line), "?\n") << line;
   }
-  EXPECT_EQ(ask("p 2 32000"), "p 2 32000\n") << "a draft may be anything";
+  const std::string threshold = "p " + std::to_string(index_of("climb_threshold")) + " 32000";
+  EXPECT_EQ(ask(threshold), threshold + "\n") << "a draft may be anything";
   EXPECT_EQ(ask("w"), "?\n") << "but not be written";
   EXPECT_EQ(check_copy(read_copy(0)), CopyState::kBlank);
 }

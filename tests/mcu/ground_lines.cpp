@@ -1,6 +1,7 @@
 // What a ground station sends and receives.
 #include "tests/mcu/ground_lines.h"
 
+#include "firmware/math/crc16.h"
 #include "firmware/telemetry/e2e.h"
 
 namespace screed::mcu {
@@ -28,6 +29,22 @@ std::vector<std::uint8_t> GroundLines::heartbeat(std::uint32_t time_ms) {
 
 std::vector<std::uint8_t> GroundLines::command(CommandOp op, DriveArgument argument) {
   return line_of(signer_.sign(op, argument));
+}
+
+std::vector<std::uint8_t> GroundLines::parameter(std::uint8_t index, std::int16_t value) {
+  CanFrame stage = frame_of(message::ParamStage{index, value});
+  e2e_protect(stage.id, stage_counter_, stage.data, stage.size);
+  stage_counter_ = static_cast<std::uint8_t>((stage_counter_ + 1) & 0x0F);
+  std::uint8_t bound[4];  // index and value, which the signed command binds by their CRC
+  put_u16(bound, index);
+  put_u16(bound + 2, static_cast<std::uint16_t>(value));
+  const std::uint32_t crc = crc16_ccitt(bound, sizeof bound);
+  std::vector<std::uint8_t> lines = line_of(stage);
+  for (const std::uint8_t byte :
+       line_of(signer_.sign(CommandOp::kParameterCommit, index | crc << 8))) {
+    lines.push_back(byte);
+  }
+  return lines;
 }
 
 std::vector<CanFrame> frames_in(const std::vector<std::uint8_t>& bytes) {

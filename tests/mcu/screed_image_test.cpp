@@ -268,6 +268,13 @@ TEST(ScreedImage, WatchdogStopsAHungProgramAndResetsIt) {
 TEST(ScreedImage, UsesMostOfTheComputedStack) {
   Bench bench;
   set_off(bench);
+  // The deepest way of the main program: a parameter comes into force.
+  bench.command(CommandOp::kStop);
+  bench.run_ms(1000);
+  bench.command(CommandOp::kDisarm);
+  bench.set_parameter(1, 7);
+  EXPECT_EQ(message::CommandAck::unpack(bench.last_frame(kIdCommandAck).data).result, 0)
+      << "the robot refused it";
   EXPECT_LE(bench.mcu.stack_used(), computed_stack());
   // The deepest interrupt is that of USB, and no host is plugged in here.
   EXPECT_GE(bench.mcu.stack_used(), computed_stack() * 7 / 10)

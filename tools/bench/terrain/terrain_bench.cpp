@@ -99,7 +99,8 @@ std::vector<Case> all_cases() {
 }
 
 std::optional<double> thesis_frame_s(const std::string& terrain, double size_m) {
-  if (terrain == "particles" && size_m == 3.0) return 8.98;  // chapter 1, "as described in Section 5.4.1"
+  if (terrain == "particles" && size_m == 3.0)
+    return 8.98;  // chapter 1, "as described in Section 5.4.1"
   return std::nullopt;
 }
 
