@@ -120,7 +120,7 @@ VectorFit fit_accelerometer(const std::array<Eigen::Vector3d, kPositions>& force
     Eigen::Matrix<double, kPositions, 1> error;
     for (size_t i = 0; i < kPositions; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      const Eigen::Vector3d force = forces.at(i);
+      const Eigen::Vector3d& force = forces.at(i);
       const Eigen::Vector3d corrected = scale.cwiseProduct(force - offset);
       const double length = corrected.norm();
       error[row] = length - gravity;

@@ -95,7 +95,8 @@ void TextCanvas::curve(int x, int y, int width, int height, std::span<const Curv
   const int dots_y = height * kDotsY;
   std::vector<uint8_t> bits(static_cast<size_t>(width) * static_cast<size_t>(height));
   const auto dot = [&](int px, int py) {
-    const auto cell = static_cast<size_t>(py / kDotsY * width + px / kDotsX);
+    const auto cell = static_cast<size_t>(py / kDotsY) * static_cast<size_t>(width) +
+                      static_cast<size_t>(px / kDotsX);
     bits[cell] = static_cast<uint8_t>(
         bits[cell] |
         kDotBits.at(static_cast<size_t>(py % kDotsY)).at(static_cast<size_t>(px % kDotsX)));
@@ -127,7 +128,8 @@ void TextCanvas::curve(int x, int y, int width, int height, std::span<const Curv
   }
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
-      const uint8_t set = bits[static_cast<size_t>(row * width + column)];
+      const uint8_t set =
+          bits[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)];
       if (set != 0) put(x + column, y + row, kBraille + set, TextStyle::kCurve);
     }
   }

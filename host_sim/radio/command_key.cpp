@@ -17,7 +17,7 @@
 namespace screed {
 namespace {
 
-constexpr size_t kDigits = 2U * kSipHashKeySize;
+constexpr size_t kDigits = size_t{2} * kSipHashKeySize;
 
 template <class Number>
 bool parse(const std::string& text, size_t at, size_t count, int base, Number& value) {
