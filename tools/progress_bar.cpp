@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -16,7 +17,7 @@ constexpr std::chrono::seconds kLogInterval(10);
 
 /// Minutes and seconds, and hours when there are some.
 std::string clock_text(double seconds) {
-  const auto whole = static_cast<long>(std::max(0.0, std::min(seconds, 3.6e6)) + 0.5);
+  const long whole = std::lround(std::max(0.0, std::min(seconds, 3.6e6)));
   char text[32];
   if (whole >= 3600) {
     std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);

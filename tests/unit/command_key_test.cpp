@@ -14,7 +14,7 @@ namespace screed {
 namespace {
 
 class KeyFile : public testing::Test {
- protected:
+ public:
   KeyFile() {
     folder_ = std::filesystem::path(testing::TempDir()) /
               (std::string("screed_key_") +
@@ -23,6 +23,8 @@ class KeyFile : public testing::Test {
     std::filesystem::create_directories(folder_);
   }
   ~KeyFile() override { std::filesystem::remove_all(folder_); }
+
+ protected:
   std::filesystem::path file() const { return folder_ / "key"; }
 
   std::filesystem::path folder_;

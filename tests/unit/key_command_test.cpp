@@ -22,7 +22,7 @@ struct Console {
     if (line.empty()) return "";
     std::vector<std::string>& left = answers[line[0]];
     if (left.empty()) return "";
-    const std::string answer = left.front();
+    std::string answer = left.front();
     if (left.size() > 1) left.erase(left.begin());
     return answer;
   }

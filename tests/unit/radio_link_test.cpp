@@ -139,7 +139,9 @@ TEST(RadioLink, BitsAreWrongAtTheirRate) {
     link.send(static_cast<uint64_t>(i) * 1000, bytes(100));
     const std::vector<uint8_t> arrived = link.receive(static_cast<uint64_t>(i) * 1000 + 999, 1000);
     ASSERT_EQ(arrived.size(), 100U);
-    for (size_t k = 0; k < 100; ++k) wrong += __builtin_popcount(arrived[k] ^ static_cast<int>(k));
+    for (size_t k = 0; k < 100; ++k) {
+      wrong += __builtin_popcount(static_cast<unsigned>(arrived[k] ^ static_cast<uint8_t>(k)));
+    }
   }
   EXPECT_NEAR(wrong, kRate * 8 * kBytes, five_sigma(kRate, 8.0 * kBytes));
   EXPECT_EQ(link.counts().wrong_bits, static_cast<uint64_t>(wrong));
