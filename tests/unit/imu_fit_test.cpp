@@ -57,6 +57,7 @@ struct Ellipsoid {
                                        double sigma = 0.0) const {
     WorldRandom random(1, "ellipsoid");
     std::vector<Eigen::Vector3d> all;
+    all.reserve(on.size());
     for (const Eigen::Vector3d& direction : on)
       all.emplace_back(centre + soft * (field * direction) + noise(random, sigma));
     return all;
@@ -180,6 +181,7 @@ TEST(AccelerometerFit, PositionsAreKnownByWhatPointsUp) {
 TEST(GyroFit, TheBiasIsTheMeanAtRest) {
   WorldRandom random(3, "gyro");
   std::vector<Eigen::Vector3d> samples;
+  samples.reserve(400);
   const Eigen::Vector3d bias(0.6, -1.2, 0.3);
   for (int i = 0; i < 400; ++i) samples.emplace_back(bias + noise(random, 0.08));
   const GyroFit fit = fit_gyro(samples, 0.5);

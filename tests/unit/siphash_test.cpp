@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdio>
+#include <numeric>
 #include <string>
 
 namespace screed {
@@ -33,12 +34,12 @@ constexpr std::array<const char*, 64> kVectors = {
 
 TEST(SipHash, PublishedVectors) {
   std::array<uint8_t, kSipHashKeySize> key{};
-  for (uint8_t i = 0; i < key.size(); ++i) key.at(i) = i;
+  std::iota(key.begin(), key.end(), uint8_t{0});
   std::array<uint8_t, 64> message{};
-  for (uint8_t i = 0; i < message.size(); ++i) message.at(i) = i;
-  for (uint8_t size = 0; size < kVectors.size(); ++size) {
+  std::iota(message.begin(), message.end(), uint8_t{0});
+  for (size_t size = 0; size < kVectors.size(); ++size) {
     std::array<uint8_t, kSipHashSize> hash{};
-    siphash_2_4(key.data(), message.data(), size, hash.data());
+    siphash_2_4(key.data(), message.data(), static_cast<uint8_t>(size), hash.data());
     std::string text;
     for (const uint8_t byte : hash) {
       char digits[3];
