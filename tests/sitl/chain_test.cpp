@@ -11,7 +11,6 @@ namespace screed::testing {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
-constexpr double kStep_s = 0.001;
 
 WorldOptions chains(double speed_m_per_s = 0.0, double yaw_rate_deg_per_s = 0.0) {
   WorldOptions options = drive_options(speed_m_per_s, yaw_rate_deg_per_s);
