@@ -175,6 +175,7 @@ Measurement measure(const std::filesystem::path& bed, const std::vector<std::str
   });
   const auto wall_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   std::vector<std::future<std::uint64_t>> worlds;
+  worlds.reserve(static_cast<size_t>(threads));
   for (int i = 0; i < threads; ++i) {
     worlds.push_back(std::async(std::launch::async, [&, i] {
       std::optional<Drive> drive;
