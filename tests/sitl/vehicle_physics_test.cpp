@@ -46,6 +46,7 @@ TEST(VehiclePhysics, WorldsOfSeveralThreadsStepAtTheSameTime) {
   };
   const Eigen::Vector3d alone = drive();
   std::vector<std::future<Eigen::Vector3d>> worlds;
+  worlds.reserve(4);
   for (int i = 0; i < 4; ++i) worlds.push_back(std::async(std::launch::async, drive));
   for (auto& world : worlds) EXPECT_EQ(world.get(), alone);
 }
