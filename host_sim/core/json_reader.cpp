@@ -1,0 +1,158 @@
+// A place in the document is built while walking down to it.
+#include "host_sim/core/json_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+std::string in_words(const std::initializer_list<std::string_view>& words) {
+  std::string text;
+  for (const std::string_view word : words) {
+    if (!text.empty()) text += ", ";
+    text += word;
+  }
+  return text;
+}
+
+std::string in_digits(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+/// The value as it stands in the file, cut where it is long.
+std::string shown(const nlohmann::json& value) {
+  std::string text =
+      value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 40);
+  return text;
+}
+
+}  // namespace
+
+nlohmann::json read_json_text(const std::string& text, const std::string& name) {
+  try {
+    return nlohmann::json::parse(text, nullptr, true, true);
+  } catch (const nlohmann::json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    throw InputError(name + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
+                     ": is no JSON");
+  }
+}
+
+nlohmann::json read_json_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || std::filesystem::is_directory(file)) {
+    throw InputError(file.string() + ": cannot be read");
+  }
+  return read_json_text(text.str(), file.string());
+}
+
+JsonValue::JsonValue(const nlohmann::json& value, std::string file)
+    : value_(&value), file_(std::move(file)) {}
+
+JsonValue::JsonValue(const nlohmann::json& value, std::string file, std::string place)
+    : value_(&value), file_(std::move(file)), place_(std::move(place)) {}
+
+void JsonValue::refuse(const std::string& what) const {
+  throw InputError(file_ + ": " + (place_.empty() ? "" : place_ + ": ") + what);
+}
+
+const nlohmann::json& JsonValue::object() const {
+  if (!value_->is_object()) refuse(shown(*value_) + "; allowed is an object");
+  return *value_;
+}
+
+void JsonValue::only(std::initializer_list<std::string_view> allowed) const {
+  for (const auto& [name, value] : object().items()) {
+    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
+      refuse("'" + name + "' is not known; allowed is " + in_words(allowed));
+    }
+  }
+}
+
+bool JsonValue::has(std::string_view name) const {
+  return object().contains(std::string(name));
+}
+
+JsonValue JsonValue::at(std::string_view name) const {
+  const auto found = object().find(std::string(name));
+  if (found == value_->end()) refuse("'" + std::string(name) + "' is missing");
+  return {*found, file_, place_.empty() ? std::string(name) : place_ + "." + std::string(name)};
+}
+
+std::vector<std::string> JsonValue::names() const {
+  std::vector<std::string> found;
+  for (const auto& [name, value] : object().items()) found.push_back(name);
+  return found;
+}
+
+std::vector<JsonValue> JsonValue::list(std::size_t least, std::size_t most) const {
+  if (!value_->is_array()) refuse(shown(*value_) + "; allowed is a list");
+  if (value_->size() < least || value_->size() > most) {
+    const std::string range = least == most ? std::to_string(least)
+                              : most == SIZE_MAX
+                                  ? std::to_string(least) + " or more"
+                                  : std::to_string(least) + " to " + std::to_string(most);
+    refuse(std::to_string(value_->size()) + " values; allowed is " + range);
+  }
+  std::vector<JsonValue> values;
+  values.reserve(value_->size());
+  for (const nlohmann::json& value : *value_) {
+    values.push_back({value, file_, place_ + "[" + std::to_string(values.size()) + "]"});
+  }
+  return values;
+}
+
+std::string JsonValue::text() const {
+  if (!value_->is_string()) refuse(shown(*value_) + "; allowed is a text");
+  return value_->get<std::string>();
+}
+
+std::string JsonValue::one_of(std::initializer_list<std::string_view> allowed) const {
+  std::string value = text();
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
+    refuse("'" + value + "'; allowed is " + in_words(allowed));
+  }
+  return value;
+}
+
+bool JsonValue::flag() const {
+  if (!value_->is_boolean()) refuse(shown(*value_) + "; allowed is true or false");
+  return value_->get<bool>();
+}
+
+std::int64_t JsonValue::integer(std::int64_t least, std::int64_t greatest) const {
+  const bool fits = value_->is_number_unsigned()
+                        ? value_->get<std::uint64_t>() <= static_cast<std::uint64_t>(INT64_MAX)
+                        : value_->is_number_integer();
+  if (!fits || value_->get<std::int64_t>() < least || value_->get<std::int64_t>() > greatest) {
+    refuse(shown(*value_) + "; allowed is an integer " + std::to_string(least) + " to " +
+           std::to_string(greatest));
+  }
+  return value_->get<std::int64_t>();
+}
+
+std::uint64_t JsonValue::unsigned_integer() const {
+  if (!value_->is_number_unsigned()) refuse(shown(*value_) + "; allowed is an integer from 0");
+  return value_->get<std::uint64_t>();
+}
+
+double JsonValue::number(double least, double greatest) const {
+  const double value = value_->is_number() ? value_->get<double>() : std::nan("");
+  if (!(value >= least && value <= greatest)) {
+    refuse(shown(*value_) + "; allowed is a number " + in_digits(least) + " to " +
+           in_digits(greatest));
+  }
+  return value;
+}
+
+}  // namespace screed

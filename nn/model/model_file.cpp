@@ -1,0 +1,309 @@
+// A list of numbers is written on one line, so that a model's difference to another can be read.
+#include "nn/model/model_file.h"
+
+#include <cfloat>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host_sim/core/atomic_file.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/core/json_reader.h"
+#include "host_sim/core/random.h"
+
+namespace screed::nn {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "screed-network-model";
+constexpr std::size_t kMostNetworks = 64;
+constexpr std::size_t kMostLayers = 255;
+
+template <class T>
+std::vector<T> integers(const JsonValue& list, std::size_t count) {
+  std::vector<T> result;
+  result.reserve(count);
+  for (const JsonValue& value : list.list(count, count)) {
+    result.push_back(static_cast<T>(
+        value.integer(std::numeric_limits<T>::min(), std::numeric_limits<T>::max())));
+  }
+  return result;
+}
+
+std::vector<double> doubles(const JsonValue& list, std::size_t count) {
+  std::vector<double> result;
+  result.reserve(count);
+  for (const JsonValue& value : list.list(count, count)) {
+    result.push_back(value.number(-DBL_MAX, DBL_MAX));
+  }
+  return result;
+}
+
+std::string not_empty(const JsonValue& value) {
+  std::string text = value.text();
+  if (text.empty()) value.refuse("an empty text; allowed is a name");
+  return text;
+}
+
+std::vector<ModelChannel> channels(const JsonValue& list, std::size_t count, bool output) {
+  std::vector<ModelChannel> result;
+  for (const JsonValue& value : list.list(count, count)) {
+    if (output) {
+      value.only({"feature", "middle", "half_range", "baseline"});
+    } else {
+      value.only({"feature", "middle", "half_range"});
+    }
+    ModelChannel channel;
+    channel.feature = not_empty(value.at("feature"));
+    channel.middle = value.at("middle").number(-DBL_MAX, DBL_MAX);
+    channel.half_range = value.at("half_range").number(DBL_MIN, DBL_MAX);
+    if (value.has("baseline")) channel.baseline = not_empty(value.at("baseline"));
+    result.push_back(channel);
+  }
+  return result;
+}
+
+IntegerNetwork integer_network(const JsonValue& list) {
+  std::vector<IntegerLayer> layers;
+  for (const JsonValue& value : list.list(1, kMostLayers)) {
+    value.only({"inputs", "outputs", "activation", "gain_shift", "weights", "bias"});
+    IntegerLayer layer;
+    layer.inputs = static_cast<std::uint8_t>(value.at("inputs").integer(1, kMostInputs));
+    layer.outputs = static_cast<std::uint8_t>(value.at("outputs").integer(1, kMostInputs));
+    layer.linear = value.at("activation").one_of({"tanh", "linear"}) == "linear";
+    layer.gain_shift = static_cast<std::uint8_t>(value.at("gain_shift").integer(0, kMostGainShift));
+    for (const JsonValue& row : value.at("weights").list(layer.outputs, layer.outputs)) {
+      const auto weights = integers<std::int16_t>(row, layer.inputs);
+      layer.weights.insert(layer.weights.end(), weights.begin(), weights.end());
+    }
+    layer.bias = integers<std::int32_t>(value.at("bias"), layer.outputs);
+    layers.push_back(std::move(layer));
+  }
+  try {
+    return IntegerNetwork(std::move(layers));
+  } catch (const InputError& error) {
+    list.refuse(error.what());
+  }
+}
+
+std::vector<FloatLayer> trained_layers(const JsonValue& list, const IntegerNetwork& network) {
+  std::vector<FloatLayer> layers;
+  for (const JsonValue& value : list.list(network.layers().size(), network.layers().size())) {
+    value.only({"weights", "bias"});
+    const IntegerLayer& integer = network.layers()[layers.size()];
+    FloatLayer layer{integer.inputs, integer.outputs, integer.linear, {}, {}};
+    for (const JsonValue& row : value.at("weights").list(layer.outputs, layer.outputs)) {
+      const std::vector<double> weights = doubles(row, layer.inputs);
+      layer.weights.insert(layer.weights.end(), weights.begin(), weights.end());
+    }
+    layer.bias = doubles(value.at("bias"), layer.outputs);
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+std::vector<GoldenVector> checked_golden(const JsonValue& list, const IntegerNetwork& network) {
+  std::vector<GoldenVector> vectors;
+  std::vector<std::int16_t> out(network.outputs());
+  for (const JsonValue& value : list.list(1)) {
+    value.only({"in", "out"});
+    GoldenVector vector{integers<std::int16_t>(value.at("in"), network.inputs()),
+                        integers<std::int16_t>(value.at("out"), network.outputs())};
+    network.run(vector.in, out);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (out[i] != vector.out[i]) {
+        value.at("out").refuse("the network gives " + std::to_string(out[i]) + " as output " +
+                               std::to_string(i + 1) + " where the file says " +
+                               std::to_string(vector.out[i]) +
+                               "; they must be equal (the file was changed or damaged)");
+      }
+    }
+    vectors.push_back(std::move(vector));
+  }
+  return vectors;
+}
+
+ModelNetwork model_network(const JsonValue& value) {
+  value.only({"inputs", "outputs", "layers", "trained", "golden"});
+  IntegerNetwork network = integer_network(value.at("layers"));
+  ModelNetwork result{channels(value.at("inputs"), network.inputs(), false),
+                      channels(value.at("outputs"), network.outputs(), true),
+                      network,
+                      {},
+                      checked_golden(value.at("golden"), network)};
+  if (value.has("trained")) result.trained = trained_layers(value.at("trained"), network);
+  return result;
+}
+
+std::vector<ModelStage> model_stages(const JsonValue& list) {
+  std::vector<ModelStage> stages;
+  for (const JsonValue& value : list.list()) {
+    value.only({"stage", "value"});
+    stages.push_back({not_empty(value.at("stage")), value.at("value").number(-DBL_MAX, DBL_MAX)});
+  }
+  return stages;
+}
+
+Model model_of(const JsonValue& root) {
+  if (!root.has("format") || root.at("format").text() != kFormat) {
+    root.refuse(std::string("is no network model; allowed is a file with \"format\": \"") +
+                kFormat + "\"");
+  }
+  root.at("format_version").integer(1, kModelFormatVersion);
+  root.only({"format", "format_version", "name", "description", "seed", "training_data", "stages",
+             "networks"});
+  Model model;
+  model.name = not_empty(root.at("name"));
+  model.description = root.at("description").text();
+  model.seed = root.at("seed").unsigned_integer();
+  model.training_data = root.at("training_data").text();
+  model.stages = model_stages(root.at("stages"));
+  for (const JsonValue& value : root.at("networks").list(1, kMostNetworks)) {
+    model.networks.push_back(model_network(value));
+  }
+  return model;
+}
+
+// ---- writing
+
+template <class T>
+Json rows(const std::vector<T>& weights, std::size_t inputs) {
+  Json result = Json::array();
+  for (std::size_t first = 0; first < weights.size(); first += inputs) {
+    const auto begin = weights.begin() + static_cast<std::ptrdiff_t>(first);
+    result.push_back(std::vector<T>(begin, begin + static_cast<std::ptrdiff_t>(inputs)));
+  }
+  return result;
+}
+
+Json channels_json(const std::vector<ModelChannel>& channels) {
+  Json result = Json::array();
+  for (const ModelChannel& channel : channels) {
+    Json one = {{"feature", channel.feature},
+                {"middle", channel.middle},
+                {"half_range", channel.half_range}};
+    if (!channel.baseline.empty()) one["baseline"] = channel.baseline;
+    result.push_back(one);
+  }
+  return result;
+}
+
+Json network_json(const ModelNetwork& network) {
+  Json layers = Json::array();
+  for (const IntegerLayer& layer : network.network.layers()) {
+    layers.push_back({{"inputs", layer.inputs},
+                      {"outputs", layer.outputs},
+                      {"activation", layer.linear ? "linear" : "tanh"},
+                      {"gain_shift", layer.gain_shift},
+                      {"weights", rows(layer.weights, layer.inputs)},
+                      {"bias", layer.bias}});
+  }
+  Json result = {{"inputs", channels_json(network.inputs)},
+                 {"outputs", channels_json(network.outputs)},
+                 {"layers", layers}};
+  if (!network.trained.empty()) {
+    Json trained = Json::array();
+    for (const FloatLayer& layer : network.trained) {
+      trained.push_back({{"weights", rows(layer.weights, layer.inputs)}, {"bias", layer.bias}});
+    }
+    result["trained"] = trained;
+  }
+  Json golden = Json::array();
+  for (const GoldenVector& vector : network.golden) {
+    golden.push_back({{"in", vector.in}, {"out", vector.out}});
+  }
+  result["golden"] = golden;
+  return result;
+}
+
+bool is_flat(const Json& value) {
+  for (const auto& element : value) {
+    if (element.is_array() || (element.is_object() && !is_flat(element))) return false;
+  }
+  return true;
+}
+
+/// Like dump(2), but with innermost lists and objects, and golden vectors, on one line.
+void put(std::string& text, const Json& value, const std::string& indent) {
+  const bool golden = value.is_object() && value.size() == 2 && value.contains("in");
+  if (!value.is_structured() || is_flat(value) || golden) {
+    text += value.dump();
+    return;
+  }
+  const std::string inner = indent + " ";
+  text += value.is_array() ? "[" : "{";
+  bool first = true;
+  for (const auto& [name, element] : value.items()) {
+    text += (first ? "\n" : ",\n") + inner;
+    if (value.is_object()) text += Json(name).dump() + ": ";
+    put(text, element, inner);
+    first = false;
+  }
+  text += "\n" + indent + (value.is_array() ? "]" : "}");
+}
+
+}  // namespace
+
+const ModelNetwork& Model::with_output(const std::string& feature) const {
+  std::string known;
+  for (const ModelNetwork& network : networks) {
+    for (const ModelChannel& output : network.outputs) {
+      if (output.feature == feature) return network;
+      known += (known.empty() ? "" : ", ") + output.feature;
+    }
+  }
+  throw InputError("model " + name + ": no output '" + feature + "'; it has " + known);
+}
+
+std::vector<GoldenVector> golden_vectors(const IntegerNetwork& network, std::size_t count,
+                                         std::uint64_t seed) {
+  WorldRandom random(seed, "golden vectors");
+  std::vector<GoldenVector> vectors;
+  const auto add = [&](auto&& value) {
+    GoldenVector vector;
+    for (std::size_t i = 0; i < network.inputs(); ++i) vector.in.push_back(value());
+    vector.out.resize(network.outputs());
+    network.run(vector.in, vector.out);
+    vectors.push_back(std::move(vector));
+  };
+  for (const int edge : {INT16_MIN, -1, 0, INT16_MAX}) {
+    add([&] { return static_cast<std::int16_t>(edge); });
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    add([&] { return static_cast<std::int16_t>(random.next() >> 16U); });
+  }
+  return vectors;
+}
+
+Model parse_model(const std::string& text, const std::string& name) {
+  const nlohmann::json json = read_json_text(text, name);
+  return model_of(JsonValue(json, name));
+}
+
+Model read_model(const std::filesystem::path& file) {
+  const nlohmann::json json = read_json_file(file);
+  return model_of(JsonValue(json, file.string()));
+}
+
+std::string model_text(const Model& model) {
+  Json stages = Json::array();
+  for (const ModelStage& stage : model.stages) {
+    stages.push_back({{"stage", stage.stage}, {"value", stage.value}});
+  }
+  Json networks = Json::array();
+  for (const ModelNetwork& network : model.networks) networks.push_back(network_json(network));
+  const Json root = {{"format", kFormat},  {"format_version", kModelFormatVersion},
+                     {"name", model.name}, {"description", model.description},
+                     {"seed", model.seed}, {"training_data", model.training_data},
+                     {"stages", stages},   {"networks", networks}};
+  std::string text;
+  put(text, root, "");
+  return text + "\n";
+}
+
+void write_model(const std::filesystem::path& file, const Model& model) {
+  write_file(file, model_text(model));
+}
+
+}  // namespace screed::nn

@@ -1,0 +1,121 @@
+// A model's file: what is written is read, and whatever does not fit is refused with its place.
+#include "nn/model/model_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/core/random.h"
+
+namespace screed::nn {
+namespace {
+
+Model small_model() {
+  WorldRandom random(5, "model file test");
+  std::vector<FloatLayer> layers = {{2, 3, false, {}, {}}, {3, 1, true, {}, {}}};
+  for (FloatLayer& layer : layers) {
+    for (std::size_t i = 0; i < layer.inputs * layer.outputs; ++i) {
+      layer.weights.push_back(random.uniform(-0.6, 0.6));
+    }
+    for (std::size_t i = 0; i < layer.outputs; ++i) layer.bias.push_back(random.uniform(-0.1, 0.1));
+  }
+  Model model;
+  model.name = "small";
+  model.description = "two layers for a test";
+  model.seed = 18446744073709551615U;
+  model.training_data = "00112233445566778899aabbccddeeff";
+  model.stages = {{"mean", 250.0}};
+  const IntegerNetwork network = quantise(layers);
+  model.networks.push_back({{{"v_left", 0.5, 8.0, ""}, {"pitch", 0.0, 0.7, ""}},
+                            {{"v", 0.1, 0.15, "kinematic_v"}},
+                            network,
+                            layers,
+                            golden_vectors(network, 3, 1)});
+  return model;
+}
+
+/// The line with which the changed text of the small model is refused.
+std::string refusal(const std::string& what, const std::string& by) {
+  std::string text = model_text(small_model());
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  text.replace(at, what.size(), by);
+  try {
+    parse_model(text, "m.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ModelFile, WhatIsWrittenIsRead) {
+  const Model model = small_model();
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "screed_model_file_test.json";
+  write_model(file, model);
+  const Model again = read_model(file);
+  std::filesystem::remove(file);
+  EXPECT_EQ(model_text(again), model_text(model));
+  EXPECT_EQ(again.seed, model.seed);
+  ASSERT_EQ(again.networks.size(), 1U);
+  EXPECT_EQ(again.networks[0].network.layers()[0].weights,
+            model.networks[0].network.layers()[0].weights);
+  EXPECT_EQ(again.networks[0].network.layers()[1].linear, true);
+  EXPECT_EQ(again.networks[0].trained[0].weights, model.networks[0].trained[0].weights);
+  EXPECT_EQ(again.networks[0].outputs[0].baseline, "kinematic_v");
+  EXPECT_EQ(again.stages[0].stage, "mean");
+  EXPECT_EQ(again.with_output("v").inputs[1].feature, "pitch");
+  EXPECT_THROW(static_cast<void>(again.with_output("delta_theta")), InputError);
+}
+
+TEST(ModelFile, ScalesGoBothWays) {
+  const ModelChannel channel{"v", 0.1, 0.2, ""};
+  EXPECT_EQ(channel.activation(0.1), 0);
+  EXPECT_EQ(channel.activation(0.2), 16384);
+  EXPECT_EQ(channel.activation(9.0), INT16_MAX);
+  EXPECT_EQ(channel.activation(-9.0), INT16_MIN);
+  EXPECT_NEAR(channel.value(channel.activation(0.17)), 0.17, 0.2 / 32768);
+}
+
+TEST(ModelFile, RefusesWithFilePlaceAndWhatIsAllowed) {
+  EXPECT_EQ(refusal("screed-network-model", "something-else"),
+            "m.json: is no network model; allowed is a file with \"format\": "
+            "\"screed-network-model\"");
+  EXPECT_EQ(refusal("\"format_version\": 1", "\"format_version\": 2"),
+            "m.json: format_version: 2; allowed is an integer 1 to 1");
+  EXPECT_EQ(refusal("\"name\": \"small\"", "\"name\": 3"), "m.json: name: 3; allowed is a text");
+  EXPECT_EQ(refusal("\"gain_shift\": 0", "\"gain_shift\": 15"),
+            "m.json: networks[0].layers[0].gain_shift: 15; allowed is an integer 0 to 14");
+  EXPECT_EQ(refusal("\"activation\": \"tanh\"", "\"activation\": \"relu\""),
+            "m.json: networks[0].layers[0].activation: 'relu'; allowed is tanh, linear");
+  EXPECT_EQ(refusal("\"outputs\": 1,", "\"outputs\": 2,"),
+            "m.json: networks[0].layers[1].weights: 1 values; allowed is 2");
+  EXPECT_EQ(refusal("\"half_range\":8.0", "\"half_range\":0.0"),
+            "m.json: networks[0].inputs[0].half_range: 0.0; allowed is a number 2.22507e-308 to "
+            "1.79769e+308");
+  EXPECT_EQ(refusal("\"seed\"", "\"sead\"").substr(0, 36), "m.json: 'sead' is not known; allowed");
+  EXPECT_EQ(refusal("]\n}", "]"), "m.json:64: is no JSON");
+}
+
+TEST(ModelFile, AWeightThatWasChangedShowsInTheGoldenVectors) {
+  const std::string text = model_text(small_model());
+  const std::size_t at = text.find("\"weights\": [") + 12;
+  const std::size_t digit = text.find_first_of("123456789", at);
+  std::string changed = text;
+  changed[digit] = text[digit] == '1' ? '2' : '1';
+  try {
+    parse_model(changed, "m.json");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("m.json: networks[0].golden["), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(ModelFile, AMissingFileIsNamed) {
+  EXPECT_THROW(read_model("no_such_model.json"), InputError);
+}
+
+}  // namespace
+}  // namespace screed::nn
