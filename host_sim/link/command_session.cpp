@@ -154,17 +154,20 @@ std::optional<int32_t> CommandSession::read_parameter(uint16_t index,
   return std::nullopt;
 }
 
+void CommandSession::start_write(uint16_t index, int32_t value) {
+  const CanFrame staged = frame_of(message::ParamStage{index, value});
+  constexpr uint8_t kSignedSize = 4;  // index and lower half of the value
+  const uint16_t crc = crc16_ccitt(staged.data + kE2eHeaderSize, kSignedSize);
+  start(CommandOp::kParameterCommit,
+        static_cast<uint32_t>(index & 0xFFU) | static_cast<uint32_t>(crc) << 8U);
+  staged_ = staged;
+}
+
 std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int32_t value) {
-  const message::ParamStage stage = {index, value};
-  const CanFrame staged = frame_of(stage);
-  constexpr uint8_t kStagedSize = 6;
-  const uint16_t crc = crc16_ccitt(staged.data + kE2eHeaderSize, kStagedSize);
-  const uint32_t argument = static_cast<uint32_t>(index & 0xFFU) | static_cast<uint32_t>(crc) << 8U;
   std::optional<CommandAnswer> answer;
   int stagings = 0;
   for (int attempt = 0; attempt < kMostBusyAnswers; ++attempt) {
-    start(CommandOp::kParameterCommit, argument);
-    staged_ = staged;
+    start_write(index, value);
     while (waiting_) pump(kPump);
     answer = take_answer();
     if (!answer.has_value() || answer->done()) break;

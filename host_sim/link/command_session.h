@@ -57,6 +57,8 @@ class CommandSession {
   /// Signs and sends a command; one that is still waiting is given up. Before ready() the command
   /// waits for a heartbeat; it is given up as one that is not answered.
   void start(CommandOp op, uint32_t argument = 0);
+  /// Likewise: stages the value of a parameter and commits it.
+  void start_write(uint16_t index, int32_t value);
   /// A command is on its way.
   bool waiting() const { return waiting_; }
   /// The answer to the command started last, once; nothing while waiting, or when none came.

@@ -86,7 +86,7 @@ class FakeRobot : public Link {
       if (busy-- > 0) return Result::kBusy;
       const CanFrame staged = frame_of(stage_);
       if (stage_.index != frame.data[1] ||
-          crc16_ccitt(staged.data + 2, 6) != get_u16(frame.data + 2)) {
+          crc16_ccitt(staged.data + 2, 4) != get_u16(frame.data + 2)) {
         return Result::kBadArgument;
       }
       parameter = stage_.value;
