@@ -124,8 +124,10 @@ void CanLink::look_at_interface() {
     case InterfaceState::kMissing:
     case InterfaceState::kNoCan:
       index_ = 0;
+      bus_off_ = false;  // a controller that was stopped starts anew
       return set_down("the interface is gone; waiting for it to come back");
     case InterfaceState::kDown:
+      bus_off_ = false;
       return set_down("the interface is down (ip link set " + interface_ + " up)");
     case InterfaceState::kUp:
       break;

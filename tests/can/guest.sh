@@ -55,6 +55,32 @@ pass "screed monitor shows and logs what cansend wrote, and counts what is damag
 canplayer -I monitor.candump vcan0=vcan0 || fail "canplayer does not read the monitor's log"
 pass "canplayer plays the monitor's log"
 
+# --- a controller goes bus off and restarts: error frames as its driver writes them, since vcan has no errors of its own ------------
+shown() { # text, times
+  for attempt in $(seq 60); do
+    [ "$(grep -c "$1" monitor.txt)" -ge "$2" ] && return
+    sleep 0.2
+  done
+  cat monitor.txt
+  fail "the monitor does not say: $1"
+}
+screed monitor --can vcan0 --listen --plain --duration 60 > monitor.txt &
+monitor=$!
+shown 'link vcan0 is up' 1
+cansend vcan0 20000040#0000000000000000
+shown 'bus off' 1
+cansend vcan0 20000100#0000000000000000
+shown 'link vcan0 is up' 2
+cansend vcan0 20000040#0000000000000000
+shown 'bus off' 2
+ip link set vcan0 down
+shown 'is down (ip link' 1
+ip link set vcan0 up
+shown 'link vcan0 is up' 3
+kill -INT $monitor
+wait $monitor
+pass "screed monitor tells of bus off, of the restart, and of an interface that was set up anew by hand"
+
 # --- the interface goes down and up under simulator and monitor ------------------------------------------------------------------
 screed sim /screed/experiments/first_drive.ini --can vcan0 --duration 90 --out /tmp/run2 --quiet > /dev/null &
 sim=$!
