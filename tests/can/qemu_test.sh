@@ -45,7 +45,7 @@ install -m 755 tests/can/guest.sh "$root/init"
 (cd "$root" && find . | LC_ALL=C sort | cpio --quiet -o -H newc) > "$work/initramfs"
 
 status=0
-timeout 170 qemu-system-x86_64 -M pc -accel tcg -m 1024 -smp 2 -nodefaults -no-reboot -display none -serial stdio \
+timeout 600 qemu-system-x86_64 -M pc -accel tcg -m 1024 -smp 2 -nodefaults -no-reboot -display none -serial stdio \
   -device isa-debug-exit,iobase=0xf4,iosize=0x04 -kernel "$kernel"/boot/vmlinuz-* -initrd "$work/initramfs" \
   -append "console=ttyS0 quiet panic=-1 rdinit=/init" < /dev/null | tee "$work/console.log" || status=${PIPESTATUS[0]}
 # isa-debug-exit makes value * 2 + 1 of what guest.sh writes: 42 for a pass.
