@@ -39,12 +39,12 @@ class AttitudeEstimator {
   AttitudeEstimator() { reset(); }
 
   /// Forgets everything, the gyroscope bias as well.
-  void reset();
+  SCREED_OUT_OF_LINE void reset();
 
   /// Advances by one tick. `may_be_at_rest` = false forbids to take this sample for standstill: a
   /// caller that drives or sees its wheels turn says so, else a slow even turn (its rate steady
   /// within 2 degrees/s) is learned as bias.
-  void update(const ImuSample& sample, bool may_be_at_rest = true);
+  SCREED_OUT_OF_LINE void update(const ImuSample& sample, bool may_be_at_rest = true);
 
   /// Sensor to earth (ENU, y to magnetic north), Q30, length 1 within 2e-4. Identity before the
   /// first usable sample.

@@ -35,7 +35,7 @@ FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax and -mstrict-X make the code smaller.
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
-SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge
+SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-ipa-cp no-ipa-sra
 AVR_FLAGS := -std=c++14 -Os -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
   -mrelax -mstrict-X $(SMALLER:%=-f%)
@@ -52,7 +52,7 @@ AVR_LINK := -Wl,--gc-sections
 ARDUINO_ROOT ?= /usr/share/arduino/hardware/arduino/avr
 ARDUINO_CORE := $(ARDUINO_ROOT)/cores/arduino
 ARDUINO_VARIANT := $(ARDUINO_ROOT)/variants/leonardo
-ARDUINO_SOURCES := CDC.cpp PluggableUSB.cpp USBCore.cpp main.cpp Print.cpp Stream.cpp abi.cpp wiring.c hooks.c
+ARDUINO_SOURCES := CDC.cpp PluggableUSB.cpp USBCore.cpp main.cpp Print.cpp Stream.cpp abi.cpp hooks.c
 ARDUINO_OBJECTS := $(patsubst %,$(FIRMWARE_BUILD)/arduino/%.o,$(ARDUINO_SOURCES))
 ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_VID=$(BOARD_USB_VID) -DUSB_PID=$(BOARD_USB_PID) -DUSB_MANUFACTURER='"$(BOARD_USB_MANUFACTURER)"' \

@@ -27,10 +27,11 @@ namespace screed {
 namespace hal {
 
 void init() {
-  // The Arduino core has set up every timer, has interrupts on, and USB is attached by now.
+  // USB is attached by now. With this library's init() interrupts are off; a sketch that brings in
+  // the Arduino core's own has them on, and 10 a tick for millis(), which stands still from now on.
   cli();
   avr::motors_init();
-  TIMSK0 = 0;  // millis() stands still: 10 interrupts a tick less
+  TIMSK0 = 0;
   avr::reset_cause_init();
   avr::parameter_eeprom_init();
   avr::credential_eeprom_init();
