@@ -18,11 +18,14 @@ std::string example() {
       .string();
 }
 
+/// What is felt changes seldom: the two images are a few cycles apart in time, and one that reads
+/// while it changes would differ.
 void run(Board& board, int ms) {
   for (int i = 0; i < ms; ++i) {
-    const int noise = i % 7 - 3;
+    const int step = i / 45;
+    const int noise = step % 7 - 3;
     board.feel_accel(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
-    board.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, i % 5 - 2));
+    board.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, step % 5 - 2));
     board.mcu.run_ms(1);
   }
 }
