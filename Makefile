@@ -56,7 +56,7 @@ MCU_USED_no := $(MCU_STAND_IN) host_sim/mcu/default_image.cpp host_sim/mcu/parit
 ifeq ($(MCU_USED_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
-HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp)) $(MCU_USED_$(MCU))
+HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp nn/data/*.cpp nn/training/*.cpp)) $(MCU_USED_$(MCU))
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))
@@ -175,6 +175,10 @@ $(B)/generated/boards.h: FORCE
 	     echo '#undef kBoard' ; done ; \
 	   echo '#define SCREED_BOARDS(X) $(foreach board,$(BOARDS),X($(board)))' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+# tiny-dnn looks for stb in a folder of its own sources, which Debian's package leaves out.
+$(B)/tiny_dnn/third_party/stb:
+	@mkdir -p $(@D)
+	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
 GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(SCHEMA_HEADERS)
 
 # ---- host program ------------------------------------------------------------------------------------------------------------
@@ -187,6 +191,10 @@ $(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
+# tiny-dnn for the files that know it.
+TINY_DNN_FILES := $(shell grep -l '"nn/training/tiny_dnn.h"' nn/training/*.cpp tools/bench/*.cpp)
+$(TINY_DNN_FILES:%.cpp=$(B)/%.o) $(TINY_DNN_FILES:%.cpp=$(B)/%.tidy): EXTRA_FLAGS = -idirafter $(B)/tiny_dnn
+$(TINY_DNN_FILES:%.cpp=$(B)/%.o) $(TINY_DNN_FILES:%.cpp=$(B)/%.tidy): | $(B)/tiny_dnn/third_party/stb
 # librsvg's flags for the one file that knows it.
 RSVG_FLAGS = $(shell pkg-config --cflags librsvg-2.0 | sed 's/-I/-idirafter /g')
 $(B)/host_sim/picture/svg_png.o $(B)/host_sim/picture/svg_png.tidy: EXTRA_FLAGS = $(RSVG_FLAGS)

@@ -139,8 +139,17 @@ ModelNetwork model_network(const JsonValue& value) {
 std::vector<ModelStage> model_stages(const JsonValue& list) {
   std::vector<ModelStage> stages;
   for (const JsonValue& value : list.list()) {
-    value.only({"stage", "value"});
-    stages.push_back({not_empty(value.at("stage")), value.at("value").number(-DBL_MAX, DBL_MAX)});
+    value.only({"stage", "feature", "low", "high", "value", "run_time"});
+    ModelStage stage;
+    stage.stage = not_empty(value.at("stage"));
+    if (value.has("feature")) {
+      stage.feature = not_empty(value.at("feature"));
+      stage.low = value.at("low").number(-DBL_MAX, DBL_MAX);
+      stage.high = value.at("high").number(stage.low, DBL_MAX);
+    }
+    if (value.has("value")) stage.value = value.at("value").number(-DBL_MAX, DBL_MAX);
+    stage.run_time = value.at("run_time").flag();
+    stages.push_back(stage);
   }
   return stages;
 }
@@ -166,6 +175,19 @@ Model model_of(const JsonValue& root) {
 }
 
 // ---- writing
+
+Json stage_json(const ModelStage& stage) {
+  Json json = {{"stage", stage.stage}};
+  if (!stage.feature.empty()) {
+    json["feature"] = stage.feature;
+    json["low"] = stage.low;
+    json["high"] = stage.high;
+  } else if (stage.value != 0.0) {
+    json["value"] = stage.value;
+  }
+  json["run_time"] = stage.run_time;
+  return json;
+}
 
 template <class T>
 Json rows(const std::vector<T>& weights, std::size_t inputs) {
@@ -288,9 +310,7 @@ Model read_model(const std::filesystem::path& file) {
 
 std::string model_text(const Model& model) {
   Json stages = Json::array();
-  for (const ModelStage& stage : model.stages) {
-    stages.push_back({{"stage", stage.stage}, {"value", stage.value}});
-  }
+  for (const ModelStage& stage : model.stages) stages.push_back(stage_json(stage));
   Json networks = Json::array();
   for (const ModelNetwork& network : model.networks) networks.push_back(network_json(network));
   const Json root = {{"format", kFormat},  {"format_version", kModelFormatVersion},

@@ -45,19 +45,22 @@ struct ModelNetwork {
   std::vector<GoldenVector> golden;
 };
 
-/// What happens at run time to an input before it is scaled, or to all of them: a stage of
-/// nn/data/stages.h with its one number, which is the width, the alpha or the step.
+/// A stage of the pre-processing (nn/data/stages.h) with what it learned from the training data.
 struct ModelStage {
   std::string stage;
-  double value = 0.0;
+  std::string feature;  ///< of a stage that drops frames, else empty
+  double low = 0.0;     ///< outside of which they are dropped
+  double high = 0.0;
+  double value = 0.0;     ///< width, alpha or step of the others
+  bool run_time = false;  ///< a running world applies it to the inputs, in their order
 };
 
 struct Model {
   std::string name;
-  std::string description;    ///< how it was made, one line
-  std::uint64_t seed = 0;     ///< of the training
-  std::string training_data;  ///< hash over what it was trained on
-  std::vector<ModelStage> stages;
+  std::string description;         ///< how it was made, one line
+  std::uint64_t seed = 0;          ///< of the training
+  std::string training_data;       ///< hash over what it was trained on
+  std::vector<ModelStage> stages;  ///< in their order; "normalise" is the channels' scale
   std::vector<ModelNetwork> networks;
 
   /// The network with this output. Throws InputError when there is none.

@@ -25,7 +25,8 @@ Model small_model() {
   model.description = "two layers for a test";
   model.seed = 18446744073709551615U;
   model.training_data = "00112233445566778899aabbccddeeff";
-  model.stages = {{"mean", 250.0}};
+  model.stages = {{"remove_beyond", "pitch", -1.22, 1.22, 0.0, false},
+                  {"mean", "", 0.0, 0.0, 250.0, true}};
   const IntegerNetwork network = quantise(layers);
   model.networks.push_back({{{"v_left", 0.5, 8.0, ""}, {"pitch", 0.0, 0.7, ""}},
                             {{"v", 0.1, 0.15, "kinematic_v"}},
@@ -64,7 +65,10 @@ TEST(ModelFile, WhatIsWrittenIsRead) {
   EXPECT_EQ(again.networks[0].network.layers()[1].linear, true);
   EXPECT_EQ(again.networks[0].trained[0].weights, model.networks[0].trained[0].weights);
   EXPECT_EQ(again.networks[0].outputs[0].baseline, "kinematic_v");
-  EXPECT_EQ(again.stages[0].stage, "mean");
+  ASSERT_EQ(again.stages.size(), 2U);
+  EXPECT_EQ(again.stages[0].high, 1.22);
+  EXPECT_EQ(again.stages[1].value, 250.0);
+  EXPECT_TRUE(again.stages[1].run_time);
   EXPECT_EQ(again.with_output("v").inputs[1].feature, "pitch");
   EXPECT_THROW(static_cast<void>(again.with_output("delta_theta")), InputError);
 }

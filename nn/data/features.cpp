@@ -1,0 +1,105 @@
+// The table of features.
+#include "nn/data/features.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "host_sim/core/errors.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr std::size_t kMostFramesAgo = 1000;
+
+/// Heading in the middle of the step that ended with this frame.
+double middle_yaw(const Frame& frame) {
+  return frame.yaw - 0.5 * frame.delta_theta;
+}
+
+constexpr Feature kFeatures[] = {
+    // Thesis 6.2.1 and 6.3.1: inputs
+    {"v_left", "rad/s", "left drive wheel, as commanded", 1,
+     [](const FrameWindow& w) { return w.now().v_left; }},
+    {"v_right", "rad/s", "right drive wheel, as commanded", 1,
+     [](const FrameWindow& w) { return w.now().v_right; }},
+    {"pitch", "rad", "nose up positive", 1, [](const FrameWindow& w) { return w.now().pitch; }},
+    {"roll", "rad", "left side up positive", 1, [](const FrameWindow& w) { return w.now().roll; }},
+    // and outputs
+    {"v", "m/frame", "way in the plane, never negative", 1,
+     [](const FrameWindow& w) { return std::hypot(w.now().delta_x, w.now().delta_y); }},
+    {"delta_theta", "rad/frame", "change of heading", 1,
+     [](const FrameWindow& w) { return w.now().delta_theta; }},
+    {"delta_x", "m/frame", "way eastwards", 1,
+     [](const FrameWindow& w) { return w.now().delta_x; }},
+    {"delta_y", "m/frame", "way northwards", 1,
+     [](const FrameWindow& w) { return w.now().delta_y; }},
+    // Beyond the thesis
+    {"linear", "m/s", "desired speed", 1, [](const FrameWindow& w) { return w.now().linear; }},
+    {"angular", "rad/s", "desired rate of turn", 1,
+     [](const FrameWindow& w) { return w.now().angular; }},
+    {"forward", "m/frame", "way along the heading", 1,
+     [](const FrameWindow& w) {
+       const double yaw = middle_yaw(w.now());
+       return w.now().delta_x * std::cos(yaw) + w.now().delta_y * std::sin(yaw);
+     }},
+    {"sideways", "m/frame", "way to the left of the heading", 1,
+     [](const FrameWindow& w) {
+       const double yaw = middle_yaw(w.now());
+       return w.now().delta_y * std::cos(yaw) - w.now().delta_x * std::sin(yaw);
+     }},
+};
+
+}  // namespace
+
+std::span<const Feature> features() {
+  return kFeatures;
+}
+
+NamedFeature::Term NamedFeature::term_of(std::string_view text) {
+  const std::size_t at = text.find('@');
+  const std::string_view base = text.substr(0, at);
+  const Feature* found = nullptr;
+  for (const Feature& feature : kFeatures) {
+    if (base == feature.name) found = &feature;
+  }
+  if (found == nullptr) {
+    std::string known;
+    for (const Feature& feature : kFeatures) known += std::string(", ") + feature.name;
+    throw InputError("feature '" + std::string(text) + "' is not known; allowed is " +
+                     known.substr(2) + ", each also as NAME@FRAMES_AGO, and NAME-NAME");
+  }
+  std::size_t ago = 0;
+  if (at != std::string_view::npos) {
+    const char* end = text.data() + text.size();
+    const auto result = std::from_chars(text.data() + at + 1, end, ago);
+    if (result.ec != std::errc() || result.ptr != end || ago > kMostFramesAgo) {
+      throw InputError("feature '" + std::string(text) +
+                       "': allowed behind the @ is an integer 0 to " +
+                       std::to_string(kMostFramesAgo));
+    }
+  }
+  return {found, ago};
+}
+
+NamedFeature::NamedFeature(const std::string& name) : name_(name) {
+  const std::size_t minus = name.find('-');
+  terms_.push_back(term_of(std::string_view(name).substr(0, minus)));
+  if (minus != std::string::npos) {
+    terms_.push_back(term_of(std::string_view(name).substr(minus + 1)));
+  }
+}
+
+std::size_t NamedFeature::frames() const {
+  std::size_t most = 0;
+  for (const Term& term : terms_) most = std::max(most, term.feature->frames + term.ago);
+  return most;
+}
+
+double NamedFeature::value(const FrameWindow& window) const {
+  const auto of = [&](const Term& term) { return term.feature->value(window.until(term.ago)); };
+  return terms_.size() == 1 ? of(terms_[0]) : of(terms_[0]) - of(terms_[1]);
+}
+
+}  // namespace screed::nn

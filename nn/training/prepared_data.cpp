@@ -1,0 +1,138 @@
+// Tables to examples.
+#include "nn/training/prepared_data.h"
+
+#include <algorithm>
+
+#include "host_sim/core/content_hash.h"
+
+namespace screed::nn {
+namespace {
+
+namespace fs = std::filesystem;
+
+TestTables test_of(const TestSession& test, const std::vector<std::string>& features,
+                   const Preprocessing& preprocessing, const fs::path& sessions) {
+  TestTables tables;
+  tables.label = test.label;
+  tables.smoothed = read_features(find_session(sessions, test.session), features);
+  tables.raw = tables.smoothed;
+  preprocessing.apply(tables.smoothed);
+  preprocessing.apply(tables.raw, Preprocessing::Extent::kUpToNormalisation);
+  return tables;
+}
+
+std::string hash_of(const std::vector<FeatureTable>& tables) {
+  ContentHash hash;
+  for (const FeatureTable& table : tables) {
+    hash.add(std::uint64_t{table.rows()});
+    for (std::size_t i = 0; i < table.names.size(); ++i) {
+      hash.add(table.names[i]);
+      for (const double value : table.columns[i]) hash.add(value);
+    }
+  }
+  return hash.hex();
+}
+
+/// What was learned, from a model's file.
+Preprocessing preprocessing_of(const Model& model) {
+  std::vector<StageConfiguration> stages;
+  std::vector<Bounds> bounds;
+  for (const ModelStage& stage : model.stages) {
+    stages.push_back({stage.stage, stage.feature, stage.low, stage.high, stage.value});
+    if (!stage.feature.empty()) bounds.push_back({stage.feature, stage.low, stage.high});
+  }
+  std::vector<FeatureScale> scales;
+  const auto add = [&](const std::string& feature, const ModelChannel& channel) {
+    if (std::none_of(scales.begin(), scales.end(),
+                     [&](const FeatureScale& scale) { return scale.feature == feature; })) {
+      scales.push_back({feature, channel.middle, channel.half_range});
+    }
+  };
+  for (const ModelNetwork& network : model.networks) {
+    for (const ModelChannel& channel : network.inputs) add(channel.feature, channel);
+    for (const ModelChannel& channel : network.outputs) {
+      add(channel.baseline.empty() ? channel.feature : channel.feature + "-" + channel.baseline,
+          channel);
+    }
+  }
+  return {std::move(stages), std::move(bounds), std::move(scales)};
+}
+
+}  // namespace
+
+std::vector<std::string> learned_outputs(const NetworkConfiguration& network) {
+  if (network.outputs.size() == 1) return {network.learned_output()};
+  return network.outputs;
+}
+
+PreparedData prepare(const TrainingConfiguration& configuration, const fs::path& sessions) {
+  PreparedData data;
+  data.preprocessing = Preprocessing(configuration.stages);
+  const std::vector<std::string> features = configuration.features();
+  for (const std::string& name : configuration.train) {
+    data.training.push_back(read_features(find_session(sessions, name), features));
+    data.training_frames += data.training.back().rows();
+  }
+  data.preprocessing.learn(data.training);
+  for (const TestSession& test : configuration.test) {
+    data.tests.push_back(test_of(test, features, data.preprocessing, sessions));
+  }
+  data.hash = hash_of(data.training);
+  return data;
+}
+
+std::vector<TestTables> prepare_tests(const TrainingConfiguration& configuration,
+                                      const Model& model, const fs::path& sessions) {
+  const Preprocessing preprocessing = preprocessing_of(model);
+  std::vector<TestTables> tests;
+  for (const TestSession& test : configuration.test) {
+    tests.push_back(test_of(test, configuration.features(), preprocessing, sessions));
+  }
+  return tests;
+}
+
+Examples examples_of(const std::vector<const FeatureTable*>& tables,
+                     const std::vector<std::string>& inputs,
+                     const std::vector<std::string>& outputs) {
+  Examples examples{inputs.size(), outputs.size(), {}, {}};
+  const auto add = [](const FeatureTable& table, const std::vector<std::string>& names,
+                      std::vector<float>& to) {
+    std::vector<const std::vector<double>*> columns;
+    columns.reserve(names.size());
+    for (const std::string& name : names) columns.push_back(&table.column(name));
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      for (const std::vector<double>* column : columns) {
+        to.push_back(static_cast<float>((*column)[row]));
+      }
+    }
+  };
+  for (const FeatureTable* table : tables) {
+    add(*table, inputs, examples.in);
+    add(*table, outputs, examples.out);
+  }
+  return examples;
+}
+
+std::vector<ModelStage> model_stages(const TrainingConfiguration& configuration,
+                                     const Preprocessing& preprocessing) {
+  std::vector<ModelStage> stages;
+  std::size_t bounds = 0;
+  for (const StageConfiguration& stage : preprocessing.stages()) {
+    ModelStage learned;
+    learned.stage = stage.stage;
+    if (!stage.feature.empty()) {
+      learned.feature = stage.feature;
+      learned.low = preprocessing.bounds()[bounds].low;
+      learned.high = preprocessing.bounds()[bounds].high;
+      ++bounds;
+    } else {
+      learned.value = stage.value;
+    }
+    learned.run_time = std::find(configuration.run_time.begin(), configuration.run_time.end(),
+                                 stage.stage) != configuration.run_time.end();
+    stages.push_back(learned);
+  }
+  return stages;
+}
+
+}  // namespace screed::nn

@@ -1,0 +1,50 @@
+// The data of a training: sessions read, pre-processed, and cut into examples for a network.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nn/data/stages.h"
+#include "nn/model/model_file.h"
+#include "nn/training/configuration.h"
+#include "nn/training/network_trainer.h"
+
+namespace screed::nn {
+
+struct TestTables {
+  std::string label;
+  FeatureTable smoothed;  ///< all stages
+  FeatureTable raw;       ///< outliers out and normalised, no more
+};
+
+struct PreparedData {
+  Preprocessing preprocessing{{}};
+  std::vector<FeatureTable> training;
+  std::vector<TestTables> tests;
+  std::size_t training_frames = 0;  ///< before outliers went
+  std::string hash;                 ///< over the training examples
+};
+
+/// Reads the sessions of the configuration from a folder (nn/data/feature_table.h). Statistics come
+/// from the training sessions alone. Throws InputError.
+PreparedData prepare(const TrainingConfiguration& configuration,
+                     const std::filesystem::path& sessions);
+
+/// The tests alone, by the stages and scales that a model carries.
+std::vector<TestTables> prepare_tests(const TrainingConfiguration& configuration,
+                                      const Model& model, const std::filesystem::path& sessions);
+
+/// All rows of these tables, one table after the other, for one network.
+Examples examples_of(const std::vector<const FeatureTable*>& tables,
+                     const std::vector<std::string>& inputs,
+                     const std::vector<std::string>& outputs);
+
+/// Stages with what they learned, for the model's file.
+std::vector<ModelStage> model_stages(const TrainingConfiguration& configuration,
+                                     const Preprocessing& preprocessing);
+
+/// The features that the network's outputs are compared with.
+std::vector<std::string> learned_outputs(const NetworkConfiguration& network);
+
+}  // namespace screed::nn
