@@ -21,9 +21,6 @@ void write_line(const fs::path& file, const std::string& line) {
 }  // namespace
 
 FakeUsb::FakeUsb() {
-  std::string name = fs::temp_directory_path() / "screed_usb_XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  folder_ = name;
   fs::create_directories(folder_ / "sys/class/tty");
   fs::create_directories(folder_ / "dev");
   // What else every machine has: the USB host itself, and a UART that is not on USB.
@@ -34,11 +31,6 @@ FakeUsb::FakeUsb() {
   fs::create_directories(uart);
   fs::create_directory_symlink("../../../serial8250", uart / "device");
   fs::create_directory_symlink(uart, folder_ / "sys/class/tty/ttyS0");
-}
-
-FakeUsb::~FakeUsb() {
-  std::error_code error;
-  fs::remove_all(folder_, error);
 }
 
 fs::path FakeUsb::socket_folder(const std::string& socket) const {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/temp_folder.h"
 #include "tools/flash/usb_serial.h"
 
 namespace screed::flash {
@@ -12,9 +13,6 @@ namespace screed::flash {
 class FakeUsb {
  public:
   FakeUsb();
-  ~FakeUsb();
-  FakeUsb(const FakeUsb&) = delete;
-  FakeUsb& operator=(const FakeUsb&) = delete;
 
   /// A device in `socket` ("1-1.2") whose port /dev/`tty` is `port`, or no file at all when empty.
   void plug_in(const std::string& socket, UsbId id, const std::string& tty,
@@ -27,7 +25,8 @@ class FakeUsb {
 
  private:
   std::filesystem::path socket_folder(const std::string& socket) const;
-  std::filesystem::path folder_;
+  TempFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path();
 };
 
 /// The port of a running sketch: knows at which baud rate it was opened and whether it was closed.

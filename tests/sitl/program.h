@@ -3,15 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/temp_folder.h"
 
 namespace screed::testing {
 
@@ -29,22 +28,13 @@ class Program : public ::testing::Test {
     ASSERT_NE(program, nullptr)
         << "SCREED_PROGRAM names the program under test; `make test` sets it";
     program_ = program;
-    root_ = std::filesystem::temp_directory_path() /
-            ("screed-program-" + std::to_string(getpid()) + "-" +
-             ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(root_);
+    root_ = folder_.path() / "run";
     std::filesystem::create_directories(root_);
   }
-  void TearDown() override { std::filesystem::remove_all(root_); }
 
-  std::string read(const std::filesystem::path& path) const {
-    std::ifstream file(path, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
+  static std::string read(const std::filesystem::path& path) { return read_text(path); }
   void write(const std::string& name, const std::string& text) const {
-    std::ofstream(root_ / name) << text;
+    write_text(root_ / name, text);
   }
 
   /// Runs in root_; `before` is shell text in front of the program.
@@ -55,6 +45,7 @@ class Program : public ::testing::Test {
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("out")), read(log("err"))};
   }
+  /// Beside the folder, where no test looks for what the program left.
   std::string log(const char* which) const { return root_.string() + "." + which; }
 
   /// One line that says all of `parts`, this exit code, and no folder of a run, half or whole.
@@ -72,6 +63,9 @@ class Program : public ::testing::Test {
 
   std::string program_;
   std::filesystem::path root_;
+
+ private:
+  const TempFolder folder_;
 };
 
 }  // namespace screed::testing

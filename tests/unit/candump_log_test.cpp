@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "host_sim/core/errors.h"
-#include "tests/unit/scratch_folder.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
@@ -93,7 +93,7 @@ class CandumpReading : public testing::Test {
     }
     return content;
   }
-  ScratchFolder scratch_;
+  TempFolder scratch_;
 };
 
 const std::string kLine = "(0000000001.000000) can0 123#00\n";

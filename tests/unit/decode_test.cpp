@@ -13,7 +13,7 @@
 #include "firmware/telemetry/messages.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/telemetry/log_decoder.h"
-#include "tests/unit/scratch_folder.h"
+#include "tests/temp_folder.h"
 #include "tools/decode_command.h"
 #include "tools/plot_command.h"
 
@@ -66,7 +66,7 @@ class Decode : public testing::Test {
     return read_file(scratch_.path() / "radio_csv" / (std::string(name) + ".csv"));
   }
 
-  ScratchFolder scratch_;
+  TempFolder scratch_;
   std::ostringstream out_;
   std::ostringstream err_;
 };

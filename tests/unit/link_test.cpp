@@ -13,6 +13,7 @@
 #include "host_sim/link/pseudo_terminal.h"
 #include "host_sim/link/serial_link.h"
 #include "host_sim/radio/ground_end.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
@@ -25,15 +26,6 @@ std::vector<uint8_t> text(const std::string& characters) {
 }
 
 class LinkTest : public ::testing::Test {
- public:
-  LinkTest() {
-    std::string pattern = (fs::temp_directory_path() / "screed-link-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  LinkTest(const LinkTest&) = delete;
-  LinkTest& operator=(const LinkTest&) = delete;
-  ~LinkTest() override { fs::remove_all(folder_); }
-
  protected:
   /// What arrives until there are `count` frames or nothing more comes.
   static std::vector<LinkFrame> frames_of(Link& link, size_t count = 1) {
@@ -42,7 +34,8 @@ class LinkTest : public ::testing::Test {
     return frames;
   }
 
-  fs::path folder_;
+  const TempFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(LinkTest, LinesOfASerialPortBecomeFrames) {
