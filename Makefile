@@ -45,7 +45,7 @@ PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 n
 TEST_PACKAGES := gtest_main
 BENCH_PACKAGES := benchmark
 # Headers of these are known to single files.
-LINK_PACKAGES := zlib librsvg-2.0
+LINK_PACKAGES := zlib librsvg-2.0 sdl2
 
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
 CORE_SOURCES := $(wildcard firmware/*.cpp firmware/*/*.cpp firmware/leveling/grid/*.cpp nn/infer/*.cpp)
@@ -57,7 +57,7 @@ ifeq ($(MCU_USED_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
 HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp nn/data/*.cpp nn/training/*.cpp)) $(MCU_USED_$(MCU))
-TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp))
+TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp tools/viewer/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))
 LAB_LIBRARY_SOURCES := $(filter-out tools/telemetry_lab/main.cpp,$(wildcard tools/telemetry_lab/*.cpp))
@@ -198,6 +198,10 @@ $(TINY_DNN_FILES:%.cpp=$(B)/%.o) $(TINY_DNN_FILES:%.cpp=$(B)/%.tidy): | $(B)/tin
 # librsvg's flags for the one file that knows it.
 RSVG_FLAGS = $(shell pkg-config --cflags librsvg-2.0 | sed 's/-I/-idirafter /g')
 $(B)/host_sim/picture/svg_png.o $(B)/host_sim/picture/svg_png.tidy: EXTRA_FLAGS = $(RSVG_FLAGS)
+
+# SDL's, likewise.
+SDL_FLAGS = $(shell pkg-config --cflags sdl2 | sed 's/-I/-idirafter /g')
+$(B)/tools/viewer/window.o $(B)/tools/viewer/window.tidy: EXTRA_FLAGS = $(SDL_FLAGS)
 
 $(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
 	@rm -f $@

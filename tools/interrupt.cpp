@@ -20,6 +20,10 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
+void interrupt() {
+  flag.store(true);
+}
+
 const std::atomic<bool>& interrupted() {
   return flag;
 }

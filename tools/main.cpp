@@ -19,6 +19,7 @@
 #include "tools/sim_command.h"
 #include "tools/soil_command.h"
 #include "tools/terrain_command.h"
+#include "tools/view_command.h"
 #include "version.h"
 
 int main(int argc, char** argv) {
@@ -42,5 +43,6 @@ int main(int argc, char** argv) {
   screed::register_record_command(app, SCREED_VERSION, action);
   screed::register_session_command(app, action);
   screed::register_terrain_command(app, action);
+  screed::register_view_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });
 }

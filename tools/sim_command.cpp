@@ -12,7 +12,11 @@
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
 #include "host_sim/link/outside_port.h"
+#include "tools/interrupt.h"
 #include "tools/succession.h"
+#include "tools/view_options.h"
+#include "tools/viewer/keyboard_driver.h"
+#include "tools/viewer/live_viewer.h"
 
 namespace screed {
 namespace {
@@ -27,6 +31,15 @@ struct SimArguments {
   std::optional<std::string> can;
   std::optional<std::string> pty;
   bool realtime = false;
+  bool heights = false;
+  bool view = false;
+  ViewArguments viewer;
+};
+
+/// Who looks on at a run, and may drive in it.
+struct Watching {
+  std::unique_ptr<viewer::KeyboardDriver> driver;
+  std::unique_ptr<viewer::LiveViewer> viewer;
 };
 
 void print_row(const char* name, const std::string& before, const std::string& after) {
@@ -123,6 +136,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   // Other programs live by the clock.
   options.realtime = arguments.realtime || !ports.empty();
   options.program_version = version;
+  options.heights = arguments.heights;
   if (arguments.board.has_value()) options.board = *arguments.board;
   if (arguments.hal == "mcu") {
     options.image = arguments.elf.value_or(default_image(options.board));
@@ -130,19 +144,45 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     throw InputError("--elf needs --hal mcu");
   }
 
+  const std::optional<viewer::ViewerOptions> view =
+      viewer_options(arguments.viewer, arguments.view);
+  const bool several = arguments.runs.files.size() > 1;
+  if (several && view.has_value() && !view->window)
+    throw InputError("--screenshot and --film are for one experiment at a time");
+  Watching watching;
+  const Prepare prepare = [&](const Experiment& experiment, SimulationOptions& of_run) {
+    if (!view.has_value()) return;
+    watching.viewer.reset();
+    watching.driver = std::make_unique<viewer::KeyboardDriver>(
+        ground_key_of(experiment), algorithm_number(experiment.experiment.algorithm),
+        of_run.ground_port);
+    watching.viewer = std::make_unique<viewer::LiveViewer>(experiment, of_run.board, *view,
+                                                           *watching.driver, interrupt);
+    of_run.ground_port = watching.driver.get();
+    of_run.onlooker = watching.viewer.get();
+    // The viewer keeps the pace.
+    of_run.realtime = of_run.realtime && !view->window;
+  };
+
   std::vector<SimulationSummary> summaries;
-  run_in_succession(arguments.runs, overrides, options,
-                    [&](const Experiment& experiment, const SimulationSummary& summary) {
-                      summaries.push_back(summary);
-                      if (arguments.runs.json) return;
-                      if (!arguments.runs.quiet) {
-                        print_table(experiment, summary);
-                      } else {
-                        std::printf("%s %s\n", summary.folder.c_str(),
-                                    summary.content_hash.c_str());
-                      }
-                    });
-  if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.files.size() > 1);
+  run_in_succession(
+      arguments.runs, overrides, options,
+      [&](const Experiment& experiment, const SimulationSummary& summary) {
+        summaries.push_back(summary);
+        if (arguments.runs.json) return;
+        if (!arguments.runs.quiet) {
+          print_table(experiment, summary);
+        } else {
+          std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
+        }
+      },
+      prepare);
+  if (arguments.runs.json) std::cout << json_of(summaries, several);
+  if (watching.viewer) {
+    std::cout << std::flush;
+    if (!several) watching.viewer->hold("The run has ended and is saved. Q closes the window.");
+    if (view->frames.has_value()) std::cerr << watching.viewer->times().text() << "\n";
+  }
   return 0;
 }
 
@@ -176,6 +216,11 @@ void register_sim_command(CLI::App& root, const std::string& version,
       ->type_name("LINK")
       ->expected(0, 1);
   command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
+  command->add_flag("--heights", arguments->heights,
+                    "record the height map tick by tick, for `screed view` and for training");
+  command->add_flag("--view", arguments->view,
+                    "show the run in a window while it goes on; arrow keys drive (H: all keys)");
+  add_view_options(*command, arguments->viewer);
   auto list_keys = std::make_shared<bool>(false);
   command->add_flag("--keys", *list_keys, "list every key of an experiment file and stop");
   command->callback([arguments, list_keys, version, &action] {

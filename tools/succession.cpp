@@ -58,7 +58,7 @@ void add_succession_options(CLI::App& command, SuccessionArguments& arguments) {
 
 void run_in_succession(const SuccessionArguments& arguments,
                        const std::vector<std::string>& overrides, SimulationOptions options,
-                       const Report& report) {
+                       const Report& report, const Prepare& prepare) {
   std::vector<std::string> all = arguments.sets;
   all.insert(all.end(), overrides.begin(), overrides.end());
   const std::vector<Experiment> experiments = read_all(arguments, all);
@@ -83,7 +83,9 @@ void run_in_succession(const SuccessionArguments& arguments,
                                             std::to_string(experiments.size()) + " " +
                                             experiments[i].experiment.name + "  "
                                       : "";
-    report(experiments[i], run_one(experiments[i], options, arguments.quiet, label));
+    SimulationOptions of_run = options;
+    if (prepare) prepare(experiments[i], of_run);
+    report(experiments[i], run_one(experiments[i], of_run, arguments.quiet, label));
   }
 }
 

@@ -27,6 +27,9 @@ void add_succession_options(CLI::App& command, SuccessionArguments& arguments);
 /// Called after each run.
 using Report = std::function<void(const Experiment&, const SimulationSummary&)>;
 
+/// Called before each run, with the options of that run.
+using Prepare = std::function<void(const Experiment&, SimulationOptions&)>;
+
 /// Reads and checks all files, then runs them one after the other, each in a world of its own;
 /// tells on stderr what the user should know. `overrides` hold for all. Of one file --out is the
 /// run folder, of several the folder in which each makes one of its own. Ctrl-C ends the run that
@@ -34,7 +37,7 @@ using Report = std::function<void(const Experiment&, const SimulationSummary&)>;
 /// anything is wrong with one of the files.
 void run_in_succession(const SuccessionArguments& arguments,
                        const std::vector<std::string>& overrides, SimulationOptions options,
-                       const Report& report);
+                       const Report& report, const Prepare& prepare = {});
 
 /// The summaries as the commands print them under --json: of one file its object, of several an
 /// array.

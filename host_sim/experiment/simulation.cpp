@@ -120,6 +120,7 @@ class Recorder {
         flatness_(flatness(plant.terrain(), flatness_deg_)),
         flatness_now_(flatness_),
         begin_(std::chrono::steady_clock::now()) {
+    if (options.onlooker != nullptr) options.onlooker->begin(plant.terrain());
     if (!options.heights) return;
     watch_.emplace(plant.terrain());
     std::vector<int32_t> heights;
@@ -181,6 +182,7 @@ class Recorder {
           {training_frames_ != 0 ? static_cast<double>(driven_) / kTickRate_hz : frame_.time,
            duration_s_, flatness_now_});
     }
+    if (options_.onlooker != nullptr) options_.onlooker->see(frame_, plant_.terrain());
     if (options_.realtime) {
       std::this_thread::sleep_until(begin_ +
                                     std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -480,14 +482,14 @@ HeightField make_terrain(const Experiment& experiment) {
   return soft ? resampled(field, experiment.soil.cell_m) : field;
 }
 
-namespace {
-
-Assembly make_model(const Experiment& experiment, const std::string& board) {
+Assembly make_robot_model(const Experiment& experiment, const std::string& board) {
   UrdfOptions urdf;
   if (experiment.vehicle.leg_angle_deg.has_value())
     urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
   return import_urdf(find_model_file(experiment, board), urdf);
 }
+
+namespace {
 
 WorldOptions world_options(const Experiment& experiment, const std::string& board,
                            GroundPort* ground_port) {
@@ -550,7 +552,7 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const std::string& board, GroundPort* ground_port) {
-  return std::make_unique<World>(make_terrain(experiment), make_model(experiment, board),
+  return std::make_unique<World>(make_terrain(experiment), make_robot_model(experiment, board),
                                  board_constants_of(board),
                                  world_options(experiment, board, ground_port), telemetry_log);
 }
@@ -565,7 +567,7 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
   options.parameters = experiment.parameters;
   options.credentials = credentials_of(experiment);
   options.world = world_options(experiment, board, ground_port);
-  return make_co_simulation(make_terrain(experiment), make_model(experiment, board), options,
+  return make_co_simulation(make_terrain(experiment), make_robot_model(experiment, board), options,
                             telemetry_log);
 }
 
@@ -603,6 +605,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   Recorder recorder(plant, experiment, options, writer);
   run.drive(recorder);
   summary.wall_s = recorder.wall_s();
+  if (options.onlooker != nullptr) options.onlooker->end();
 
   writer.write_terrain_after(view_of(plant.terrain(), heights));
   summary.content_hash = writer.finish();

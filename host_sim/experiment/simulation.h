@@ -14,6 +14,7 @@
 #include "firmware/leveling/leveling.h"
 #include "host_sim/experiment/board_table.h"
 #include "host_sim/experiment/experiment.h"
+#include "host_sim/experiment/onlooker.h"
 #include "host_sim/mcu/co_simulation.h"
 #include "host_sim/terrain/terrain_statistics.h"
 #include "host_sim/world/world.h"
@@ -38,6 +39,8 @@ struct SimulationOptions {
   /// Programs outside at the ground end of the radio; may be null. What they send is in the
   /// recorded samples, so that the run replays; running it again is another run.
   GroundPort* ground_port = nullptr;
+  /// Looks on; may be null.
+  SimulationOnlooker* onlooker = nullptr;
   /// Record the height map tick by tick, for training data.
   bool heights = false;
   /// Write frames.csv beside the session; it can be exported later as well.
@@ -86,6 +89,8 @@ struct SimulationSummary {
 SoilParameters make_soil(const Experiment& experiment);
 /// The terrain an experiment asks for.
 HeightField make_terrain(const Experiment& experiment);
+/// The robot of an experiment, on a board of boards/. Throws InputError.
+Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard);
 /// A world as the experiment describes it, for a board of boards/. telemetry_log may be null.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const std::string& board = kDefaultBoard,

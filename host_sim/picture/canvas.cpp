@@ -150,6 +150,17 @@ void Canvas::set_row(int x, int y, std::span<const Color> colors) {
   cairo_surface_mark_dirty(cairo_->surface);
 }
 
+std::span<uint32_t> Canvas::pixels() {
+  cairo_surface_flush(cairo_->surface);
+  // Rows of 32-bit pixels are never padded.
+  return {reinterpret_cast<uint32_t*>(cairo_image_surface_get_data(cairo_->surface)),
+          static_cast<size_t>(width_) * static_cast<size_t>(height_)};
+}
+
+void Canvas::release_pixels() {
+  cairo_surface_mark_dirty(cairo_->surface);
+}
+
 void Canvas::clip(const PixelBox& box) {
   cairo_->trace(box);
   cairo_clip(cairo_->context);

@@ -51,6 +51,15 @@ constexpr std::array<Lab, 6> kHeightAnchors = {{
     {0.94, 0.006, 0.022},    // pale dune
 }};
 
+constexpr std::array<Lab, 6> kSlopeAnchors = {{
+    {0.93, -0.018, 0.008},  // pale mint
+    {0.87, -0.020, 0.070},  // straw
+    {0.77, 0.045, 0.110},   // amber
+    {0.63, 0.125, 0.085},   // vermilion
+    {0.46, 0.135, 0.025},   // crimson
+    {0.30, 0.075, -0.015},  // dark wine
+}};
+
 constexpr std::array<Lab, 5> kDifferenceAnchors = {{
     {0.42, -0.030, -0.120},
     {0.69, -0.030, -0.080},
@@ -81,6 +90,10 @@ Color with_alpha(Color color, double alpha) {
 
 Color height_color(double t) {
   return along(kHeightAnchors, t);
+}
+
+Color slope_color(double t) {
+  return along(kSlopeAnchors, t);
 }
 
 Color difference_color(double t) {

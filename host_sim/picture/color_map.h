@@ -21,6 +21,10 @@ Color with_alpha(Color color, double alpha);
 /// rises evenly, so equal steps of height look equal, also in grey print.
 Color height_color(double t);
 
+/// Slopes: level ground pale and cool, over sand and orange to dark wine as t goes from 0 to 1
+/// (clamped). Lightness falls evenly.
+Color slope_color(double t);
+
 /// Differences: t = -1 blue (cut), 0 near white, +1 red-brown (fill), clamped; both sides equally
 /// light at equal distance from 0.
 Color difference_color(double t);

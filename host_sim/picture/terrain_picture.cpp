@@ -8,6 +8,7 @@
 #include "host_sim/picture/canvas.h"
 #include "host_sim/picture/map_frame.h"
 #include "host_sim/picture/path_overlay.h"
+#include "host_sim/picture/relief.h"
 #include "host_sim/terrain/terrain_statistics.h"
 
 namespace screed {
@@ -52,13 +53,8 @@ void check(const PictureOptions& options) {
   }
 }
 
-struct Gradient {
-  double x;
-  double y;
-};
-
 /// Central difference over two cells: smooth where the bilinear gradient jumps from cell to cell.
-Gradient smooth_gradient(const HeightField& field, double x, double y) {
+Relief smooth_gradient(const HeightField& field, double x, double y) {
   const double reach = field.spacing_m();
   const auto low = [&](double at, double edge) {
     return field.wrap() ? at - reach : std::max(at - reach, edge);
@@ -74,24 +70,13 @@ Gradient smooth_gradient(const HeightField& field, double x, double y) {
           (field.at(x, north).height - field.at(x, south).height) / (north - south)};
 }
 
-/// Lambert's law for light from the north-west, 45 degrees high; 1 = as bright as level ground.
-double light(const Gradient& slope, double exaggeration) {
-  const double gx = slope.x * exaggeration;
-  const double gy = slope.y * exaggeration;
-  // Towards the light: (-1/2, 1/2, 1/sqrt 2); the surface's normal: (-gx, -gy, 1).
-  const double toward = 0.5 * gx - 0.5 * gy + std::sqrt(0.5);
-  const double facing = toward / std::sqrt(gx * gx + gy * gy + 1.0);
-  return std::max(0.0, facing) / std::sqrt(0.5);
-}
-
 Color shaded(Color color, double brightness, double strength) {
   const double factor = 1.0 + strength * (brightness - 1.0);
   return {color.red * factor, color.green * factor, color.blue * factor};
 }
 
 /// How much of a pixel a contour line covers, 0..1, for lines at multiples of `interval`.
-double contour_cover(double height, const Gradient& slope, double interval,
-                     double metres_per_pixel) {
+double contour_cover(double height, const Relief& slope, double interval, double metres_per_pixel) {
   constexpr double kHalfWidth_px = 0.5;
   const double rise_per_pixel = std::hypot(slope.x, slope.y) * metres_per_pixel;
   if (rise_per_pixel < 1e-4 * interval) return 0.0;  // level ground is no line
@@ -187,7 +172,7 @@ void write_height_map_picture(const std::filesystem::path& path, const HeightFie
     constexpr double kShadeStrength = 0.75;
     constexpr double kContourStrength = 0.22;
     const double height = field.at(x, y).height;
-    const Gradient slope = smooth_gradient(field, x, y);
+    const Relief slope = smooth_gradient(field, x, y);
     const double ink = kContourStrength * contour_cover(height, slope, interval, metres_per_pixel);
     return shaded(color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
   });

@@ -3,24 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/experiment/ini_file.h"
+#include "host_sim/experiment/run_setup.h"
 #include "host_sim/scene/ground_scene.h"
 #include "host_sim/scene/povray.h"
 #include "host_sim/scene/robot_scene.h"
 #include "host_sim/session/session_reader.h"
 #include "host_sim/terrain/grey_image.h"
-#include "host_sim/vehicle/urdf_importer.h"
 #include "host_sim/vehicle/vehicle.h"
 
 namespace screed {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kFieldOfView_deg = 40.0;
 constexpr double kPathRadius =
     0.0022;  // of the line that shows the way, to the distance it is seen from
@@ -35,33 +31,10 @@ std::filesystem::path session_of(const std::filesystem::path& run) {
   return file;
 }
 
-/// What the scene needs of the experiment that was in force.
-struct Setup {
-  Experiment experiment;  ///< only the vehicle's keys that are read below, and the folder
-  std::string soil;       ///< for soil_look()
-  bool soft = false;      ///< the ground gives way
-};
-
-Setup setup_of(const SessionInfo& info, const std::filesystem::path& folder) {
-  Setup setup;
-  setup.experiment.folder = folder;
-  std::string ground = "rigid";
-  std::string preset;
-  // Not read_experiment(): a session of an older program may have keys that are gone by now.
-  for (const IniEntry& entry : read_ini_text(info.experiment_text, "the session's experiment")) {
-    const std::string name = entry.section + "." + entry.key;
-    if (name == "vehicle.model") setup.experiment.vehicle.model = entry.value;
-    if (name == "vehicle.tracks") setup.experiment.vehicle.tracks = entry.value == "true";
-    if (name == "vehicle.leg_angle" && !entry.value.empty()) {
-      setup.experiment.vehicle.leg_angle_deg = std::stod(entry.value);
-    }
-    if (name == "map.model") ground = entry.value;
-    if (name == "soil.preset") preset = entry.value;
-  }
-  setup.soft = ground != "rigid";
-  if (ground == "scm") setup.soil = preset;
-  if (ground == "particles" || ground == "static_particles") setup.soil = "gravel";
-  return setup;
+/// For soil_look().
+std::string soil_name(const RunSetup& setup) {
+  if (setup.ground == "scm") return setup.soil;
+  return setup.ground == "particles" || setup.ground == "static_particles" ? "gravel" : "";
 }
 
 /// The robot's way to a frame.
@@ -144,13 +117,8 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   }
   RunSceneResult result;
   result.frame = frame_number(session, options, run);
-  const Setup setup = setup_of(session.info(), run);
-  const auto& vehicle = setup.experiment.vehicle;
-  UrdfOptions urdf;
-  if (vehicle.leg_angle_deg) urdf.leg_angle_rad = *vehicle.leg_angle_deg * kRadPerDeg;
-  const Assembly robot = import_urdf(
-      options.model ? *options.model : find_model_file(setup.experiment, session.info().board_name),
-      urdf);
+  const RunSetup setup = setup_of(session.info(), run);
+  const Assembly robot = robot_model(setup, session.info().board_name, options.model);
 
   const Way way = way_to(session, result.frame);
   RobotPose pose;
@@ -162,7 +130,7 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
                      " has no pose of the robot");
   }
 
-  const Ground ground = ground_at(session, result.frame, setup.soft, run);
+  const Ground ground = ground_at(session, result.frame, setup.ground != "rigid", run);
   result.ground_is_later = ground.is_later;
   const GroundSurface surface(ground.now);
   CameraPlace place = options.camera;
@@ -190,9 +158,10 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   job.write_scene(
       "// Made by `screed render`. Metres; x east, y north, z up.\n#version 3.7;\n"
       "global_settings { assumed_gamma 1.0 }\n" +
-      camera_text(camera, kFieldOfView_deg) + ground_text(surface, files, soil_look(setup.soil)) +
+      camera_text(camera, kFieldOfView_deg) +
+      ground_text(surface, files, soil_look(soil_name(setup))) +
       (options.path ? path_text(way.path, surface, kPathRadius * place.distance_m) : "") +
-      robot_text(robot, vehicle.tracks, pose));
+      robot_text(robot, setup.experiment.vehicle.tracks, pose));
   if (!options.pov_only) result.rendered = job.render(options.width_px, options.height_px);
   job.publish();
   return result;

@@ -1,0 +1,135 @@
+// The viewer as a user meets it: beside a running simulation and on a recorded run. Windows are
+// opened on SDL's dummy screen, one on a real X server.
+#include <string>
+
+#include "host_sim/session/session_reader.h"
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+class View : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    write("e.ini",
+          "[vehicle]\nh = 30\n[experiment]\nname = small\nduration = 3\nalgorithm = drive\n"
+          "[map]\nsize = 1\nmodel = scm\n[soil]\ncell = 0.02\n[drive]\nspeed = 0.1\n");
+  }
+
+  /// On a screen that nobody sees.
+  Result on_dummy(const std::string& arguments) const {
+    return run(arguments, "SDL_VIDEODRIVER=dummy");
+  }
+  std::string hash(const std::string& folder) const {
+    return SessionReader(root_ / folder / "session.h5").content_hash();
+  }
+  /// Of the IHDR chunk.
+  std::pair<int, int> png_size(const std::filesystem::path& file) const {
+    const std::string bytes = read(file);
+    if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0) return {0, 0};
+    const auto number = [&](size_t at) {
+      return static_cast<unsigned char>(bytes[at]) << 8 | static_cast<unsigned char>(bytes[at + 1]);
+    };
+    return {number(18), number(22)};
+  }
+  Frame last_frame(const std::string& folder) const {
+    const SessionReader session(root_ / folder / "session.h5");
+    Frame frame;
+    session.read(session.frames() - 1, std::span(&frame, 1));
+    return frame;
+  }
+};
+
+TEST_F(View, ARunThatIsWatchedIsTheRunThatNobodyWatched) {
+  ASSERT_EQ(run("sim e.ini --quiet --out alone").exit_code, 0);
+  const Result watched = on_dummy(
+      "sim e.ini --quiet --out watched --view --frames 1000 --follow --press m@1 --press h@2");
+  ASSERT_EQ(watched.exit_code, 0) << watched.err;
+  EXPECT_NE(watched.err.find(" frames, "), std::string::npos) << watched.err;
+  EXPECT_EQ(hash("watched"), hash("alone"));
+  for (const char* file : {"session.h5", "telemetry.log", "frames.csv", "summary.json",
+                           "experiment.ini", "terrain_after.png"}) {
+    EXPECT_EQ(read(root_ / "watched" / file), read(root_ / "alone" / file)) << file;
+  }
+}
+
+TEST_F(View, PicturesNeedNoScreen) {
+  const Result result =
+      run("sim e.ini --quiet --out r --screenshot p.png --at 1.5 --shading slope --size 700x500",
+          "SDL_VIDEODRIVER=none");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(png_size(root_ / "p.png"), (std::pair<int, int>(700, 500)));
+  // The run goes on to its end, and the recording shows the same moment.
+  EXPECT_EQ(SessionReader(root_ / "r" / "session.h5").frames(), 300U);
+  ASSERT_EQ(run("sim e.ini --quiet --heights --out h").exit_code, 0);
+  ASSERT_EQ(run("view h --screenshot q.png --at 1.5").exit_code, 0);
+  ASSERT_EQ(run("view h --screenshot end.png").exit_code, 0);
+  EXPECT_NE(read(root_ / "q.png"), read(root_ / "end.png"));
+  ASSERT_EQ(run("view h --screenshot again.png --at 1.5").exit_code, 0);
+  EXPECT_EQ(read(root_ / "again.png"), read(root_ / "q.png"));
+}
+
+TEST_F(View, TheKeyboardDrivesOverTheRadio) {
+  write("hills.ini",
+        "[experiment]\nname = hills\nduration = 12\nalgorithm = hill_sensing\n[map]\nsize = 3\n");
+  ASSERT_EQ(run("sim hills.ini --quiet --out alone").exit_code, 0);
+  const Result driven = run("sim hills.ini --quiet --out driven --press Up@6-30 --press Left@9-10");
+  ASSERT_EQ(driven.exit_code, 0) << driven.err;
+  EXPECT_NE(hash("driven"), hash("alone"));
+  const Frame frame = last_frame("driven");
+  EXPECT_EQ(frame.leveling_state, 5);  // drive
+  EXPECT_NEAR(frame.linear, 0.18, 0.001);
+  EXPECT_GT(frame.velocity_x, 0.1);
+  const Result replayed = run("replay driven");
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
+
+  // And hands back.
+  const Result returned =
+      run("sim hills.ini --quiet --out returned --press Up@6-8 --press Backspace@8");
+  ASSERT_EQ(returned.exit_code, 0) << returned.err;
+  EXPECT_EQ(last_frame("returned").leveling_state, 1);  // walk
+  EXPECT_EQ(last_frame("returned").state, 2);           // running
+}
+
+TEST_F(View, ClosingTheWindowEndsTheRunAndSavesIt) {
+  const Result result =
+      on_dummy("sim e.ini --quiet --out r --view --frames 1000 --press q@1 --heights");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(SessionReader(root_ / "r" / "session.h5").frames(), 100U);
+  EXPECT_TRUE(SessionReader(root_ / "r" / "session.h5").complete());
+}
+
+TEST_F(View, ARecordedRunIsPlayedAndFilmed) {
+  ASSERT_EQ(run("sim e.ini --quiet --heights --out r").exit_code, 0);
+  const Result played =
+      on_dummy("view r --frames 90 --press Right@0.5 --press 3@1 --press Space@2 --press Home@1.7");
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_EQ(played.err.rfind("90 frames, ", 0), 0U) << played.err;
+  ASSERT_EQ(run("view r --film film --speed 8").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(root_ / "film" / "frame_000009.png"));
+  EXPECT_LE(std::distance(std::filesystem::directory_iterator(root_ / "film"), {}), 12);
+}
+
+TEST_F(View, WhatIsWrongIsSaidInOneLine) {
+  expect_refused(run("sim e.ini --view", "SDL_VIDEODRIVER=none"), 1,
+                 {"the viewer", "--screenshot"});
+  expect_refused(run("sim e.ini --press Wide@3"), 2, {"--press", "Wide@3", "Up@3-5.5"});
+  expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "640x420"});
+  expect_refused(run("sim e.ini --at 3"), 2, {"--at", "--screenshot"});
+  expect_refused(run("sim e.ini e.ini --screenshot p.png"), 2, {"one experiment"});
+  expect_refused(run("view nowhere --screenshot p.png"), 2, {"nowhere"});
+}
+
+TEST_F(View, OnARealScreenTheWindowClosesAtAKey) {
+  const Result result = run("", "export SCREED='" + program_ +
+                                    "'; xvfb-run -a bash -c '"
+                                    "\"$SCREED\" sim e.ini --set experiment.duration=600 --view "
+                                    "--quiet --out r & xdotool search --sync --name Screed:.small "
+                                    "key q; wait $!'; true");
+  EXPECT_TRUE(SessionReader(root_ / "r" / "session.h5").complete()) << result.out << result.err;
+  EXPECT_LT(SessionReader(root_ / "r" / "session.h5").frames(), 60000U);
+}
+
+}  // namespace
+}  // namespace screed::testing
