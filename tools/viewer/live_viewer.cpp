@@ -6,6 +6,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/experiment/simulation.h"
+#include "tools/interrupt.h"
 
 namespace screed::viewer {
 namespace {
@@ -120,7 +121,7 @@ void LiveViewer::keep_pace(double time_s) {
       const double rate = controls.pace == 0.0 ? kFullPaceFramesPerSecond : Stage::kFramesPerSecond;
       next_show_ = std::max(next_show_ + seconds(1.0 / rate), now);
     }
-    if (controls.closed) return;
+    if (controls.closed || interrupted()) return;
     if (controls.paused) {
       anchor_.reset();
       if (controls.steps > 0) {
@@ -144,7 +145,7 @@ void LiveViewer::end() {
 void LiveViewer::hold(const std::string& notice) {
   if (!options_.window || options_.frames.has_value()) return;
   stage_->set_notice(notice);
-  while (!stage_->controls().closed) {
+  while (!stage_->controls().closed && !interrupted()) {
     stage_->show();
     stage_->take_input(time_s_, kPausedWait_ms);
   }
