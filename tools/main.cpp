@@ -8,6 +8,7 @@
 #include "tools/grid_command.h"
 #include "tools/key_command.h"
 #include "tools/monitor_command.h"
+#include "tools/nn_command.h"
 #include "tools/parity_command.h"
 #include "tools/plot_command.h"
 #include "tools/program.h"
@@ -44,5 +45,6 @@ int main(int argc, char** argv) {
   screed::register_session_command(app, action);
   screed::register_terrain_command(app, action);
   screed::register_view_command(app, action);
+  screed::register_nn_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });
 }

@@ -52,6 +52,11 @@ void ProgressBar::show(double time_s, double duration_s, const std::string& note
   draw();
 }
 
+void ProgressBar::show_share(double share, const std::string& note) {
+  is_share_ = true;
+  show(share, 1.0, note);
+}
+
 void ProgressBar::draw() {
   const double wall = std::chrono::duration<double>(shown_ - begin_).count();
   const double share = duration_s_ > 0.0 ? std::clamp(time_s_ / duration_s_, 0.0, 1.0) : 0.0;
@@ -60,10 +65,14 @@ void ProgressBar::draw() {
   for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "░";
   const double speed = wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0;
   char text[200];
-  std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s left  %s", share * 100.0,
-                time_s_, duration_s_, speed,
-                clock_text(speed > 0.0 ? (duration_s_ - time_s_) / speed : 0.0).c_str(),
-                note_.c_str());
+  const std::string left = clock_text(speed > 0.0 ? (duration_s_ - time_s_) / speed : 0.0);
+  if (is_share_) {
+    std::snprintf(text, sizeof text, " %3.0f %%  %s left  %s", share * 100.0, left.c_str(),
+                  note_.c_str());
+  } else {
+    std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s left  %s", share * 100.0,
+                  time_s_, duration_s_, speed, left.c_str(), note_.c_str());
+  }
   out_ << (terminal_ ? "\r" : "") << bar << text << (terminal_ ? "\033[K" : "\n") << std::flush;
 }
 

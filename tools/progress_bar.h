@@ -16,6 +16,8 @@ class ProgressBar {
   /// speed, and `note`. Cheap when called
   /// often: draws ten times a second at most.
   void show(double time_s, double duration_s, const std::string& note);
+  /// The same for work that is not simulated time: the share that is done, 0 to 1.
+  void show_share(double share, const std::string& note);
   /// Draws the last state and ends the line.
   void finish();
 
@@ -25,6 +27,7 @@ class ProgressBar {
   std::ostream& out_;
   bool terminal_;
   bool begun_ = false;
+  bool is_share_ = false;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double begin_time_s_ = 0.0;

@@ -104,6 +104,10 @@ class Svg {
     out_ += "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"" + number(radius) +
             "\" fill=\"" + color + "\" stroke=\"#ffffff\" stroke-width=\"1.2\"/>\n";
   }
+  void dot(double x, double y, const std::string& color) {
+    out_ += "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"1.6\" fill=\"" + color +
+            "\" fill-opacity=\"0.45\"/>\n";
+  }
   void rectangle(double x, double y, double width, double height, const std::string& color,
                  double round) {
     out_ += "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(width) +
@@ -302,6 +306,10 @@ class Drawing {
     std::vector<std::pair<double, double>> way;
     way.reserve(series.points.size());
     for (const ChartPoint& point : series.points) way.emplace_back(x_(point.x), y_(point.y));
+    if (!series.joined) {
+      for (const auto& [x, y] : way) svg_.dot(x, y, color(index));
+      return;
+    }
     if (way.size() > 1) svg_.polyline(way, color(index));
     for (size_t i = 0; i < way.size(); ++i) {
       error_bar(way[i].first, series.points[i], color(index));

@@ -18,6 +18,7 @@ struct ChartSeries {
   std::string label;  ///< in the legend; empty: not there
   std::vector<ChartPoint> points;
   bool markers = true;  ///< a dot at every point; for lines
+  bool joined = true;   ///< a line through the points; without, small dots alone: a scatter plot
 };
 
 enum class ChartKind {

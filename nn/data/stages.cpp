@@ -227,7 +227,8 @@ void Preprocessing::apply(FeatureTable& table, Extent extent) const {
       remove_outside(table, bounds_[next_bounds++]);
     } else if (stage.stage == kNormalise) {
       normalise(table, scales_);
-    } else if (extent == Extent::kAll) {
+    } else if (extent == Extent::kAll ||
+               (extent == Extent::kNotRounded && stage.stage != kQuantise)) {
       transform(table, stage);
     }
   }

@@ -64,9 +64,9 @@ class Preprocessing {
   /// processed. Throws InputError when nothing is left or a feature never changes.
   void learn(std::vector<FeatureTable>& training);
 
-  /// Which of the stages apply: those without smoothing and rounding give the raw data of an
+  /// Which of the stages apply: all; all but rounding; without smoothing either, the raw data of an
   /// evaluation.
-  enum class Extent : std::uint8_t { kAll, kUpToNormalisation };
+  enum class Extent : std::uint8_t { kAll, kNotRounded, kRaw };
   /// Needs learn() or learned values.
   void apply(FeatureTable& table, Extent extent = Extent::kAll) const;
 

@@ -59,8 +59,8 @@ std::vector<double> predict(const std::vector<FloatLayer>& network, const Exampl
     Matrix values(examples.inputs, rows);
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t i = 0; i < examples.inputs; ++i) {
-        values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(row)) =
-            static_cast<double>(examples.in[(first + row) * examples.inputs + i]);
+        values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(row)) = std::clamp(
+            static_cast<double>(examples.in[(first + row) * examples.inputs + i]), -1.0, 1.0);
       }
     }
     for (const FloatLayer& layer : network) {

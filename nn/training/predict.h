@@ -9,8 +9,8 @@
 
 namespace screed::nn {
 
-/// Outputs of a network in floating point, a row an example, within -1 and 1 as the integers have
-/// it.
+/// Outputs of a network in floating point, a row an example; inputs and outputs are cut at -1 and 1
+/// as the integers have it.
 std::vector<double> predict(const std::vector<FloatLayer>& network, const Examples& examples);
 /// The same in the integers of the robot.
 std::vector<double> predict(const IntegerNetwork& network, const Examples& examples);

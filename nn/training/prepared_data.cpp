@@ -2,6 +2,8 @@
 #include "nn/training/prepared_data.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <string_view>
 
 #include "host_sim/core/content_hash.h"
 
@@ -10,15 +12,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TestTables test_of(const TestSession& test, const std::vector<std::string>& features,
-                   const Preprocessing& preprocessing, const fs::path& sessions) {
-  TestTables tables;
-  tables.label = test.label;
-  tables.smoothed = read_features(find_session(sessions, test.session), features);
-  tables.raw = tables.smoothed;
-  preprocessing.apply(tables.smoothed);
-  preprocessing.apply(tables.raw, Preprocessing::Extent::kUpToNormalisation);
-  return tables;
+bool has_stage(const Preprocessing& preprocessing, std::initializer_list<std::string_view> names) {
+  return std::any_of(preprocessing.stages().begin(), preprocessing.stages().end(),
+                     [&](const StageConfiguration& stage) {
+                       return std::find(names.begin(), names.end(), stage.stage) != names.end();
+                     });
+}
+
+/// The session in every form that its stages make different.
+void add_tests(const TestSession& test, const std::vector<std::string>& features,
+               const Preprocessing& preprocessing, const fs::path& sessions,
+               std::vector<TestTable>& tests) {
+  using Extent = Preprocessing::Extent;
+  const FeatureTable recorded = read_features(find_session(sessions, test.session), features);
+  const auto add = [&](const char* form, Extent extent) {
+    tests.push_back({test.label, form, recorded});
+    preprocessing.apply(tests.back().table, extent);
+  };
+  const bool smooths = has_stage(preprocessing, {"mean", "exponential"});
+  const bool rounds = has_stage(preprocessing, {"quantise"});
+  add("as trained", Extent::kAll);
+  if (smooths && rounds) add("smoothed", Extent::kNotRounded);
+  if (smooths || rounds) add("raw", Extent::kRaw);
 }
 
 std::string hash_of(const std::vector<FeatureTable>& tables) {
@@ -75,18 +90,18 @@ PreparedData prepare(const TrainingConfiguration& configuration, const fs::path&
   }
   data.preprocessing.learn(data.training);
   for (const TestSession& test : configuration.test) {
-    data.tests.push_back(test_of(test, features, data.preprocessing, sessions));
+    add_tests(test, features, data.preprocessing, sessions, data.tests);
   }
   data.hash = hash_of(data.training);
   return data;
 }
 
-std::vector<TestTables> prepare_tests(const TrainingConfiguration& configuration,
-                                      const Model& model, const fs::path& sessions) {
+std::vector<TestTable> prepare_tests(const TrainingConfiguration& configuration, const Model& model,
+                                     const fs::path& sessions) {
   const Preprocessing preprocessing = preprocessing_of(model);
-  std::vector<TestTables> tests;
+  std::vector<TestTable> tests;
   for (const TestSession& test : configuration.test) {
-    tests.push_back(test_of(test, configuration.features(), preprocessing, sessions));
+    add_tests(test, configuration.features(), preprocessing, sessions, tests);
   }
   return tests;
 }

@@ -12,16 +12,17 @@
 
 namespace screed::nn {
 
-struct TestTables {
-  std::string label;
-  FeatureTable smoothed;  ///< all stages
-  FeatureTable raw;       ///< outliers out and normalised, no more
+/// A test session in one of the forms in which it is compared.
+struct TestTable {
+  std::string label;  ///< of the session
+  std::string form;   ///< "as trained", "smoothed" or "raw"
+  FeatureTable table;
 };
 
 struct PreparedData {
   Preprocessing preprocessing{{}};
   std::vector<FeatureTable> training;
-  std::vector<TestTables> tests;
+  std::vector<TestTable> tests;     ///< the first: the first test session as trained
   std::size_t training_frames = 0;  ///< before outliers went
   std::string hash;                 ///< over the training examples
 };
@@ -32,8 +33,8 @@ PreparedData prepare(const TrainingConfiguration& configuration,
                      const std::filesystem::path& sessions);
 
 /// The tests alone, by the stages and scales that a model carries.
-std::vector<TestTables> prepare_tests(const TrainingConfiguration& configuration,
-                                      const Model& model, const std::filesystem::path& sessions);
+std::vector<TestTable> prepare_tests(const TrainingConfiguration& configuration, const Model& model,
+                                     const std::filesystem::path& sessions);
 
 /// All rows of these tables, one table after the other, for one network.
 Examples examples_of(const std::vector<const FeatureTable*>& tables,

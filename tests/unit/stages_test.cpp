@@ -104,7 +104,7 @@ TEST(Stages, WhatTrainingTaughtIsAppliedToOthers) {
   EXPECT_EQ(test.frames, (std::vector<std::uint64_t>{101, 102}));
   EXPECT_NEAR(test.columns[0][0], 0.8, 1e-12);
   EXPECT_NEAR(test.columns[0][1], 0.0, 1e-12);
-  stages.apply(raw, Preprocessing::Extent::kUpToNormalisation);
+  stages.apply(raw, Preprocessing::Extent::kRaw);
   EXPECT_NEAR(raw.columns[0][0], 0.9, 1e-12);
   EXPECT_NEAR(raw.columns[0][1], 0.15, 1e-12);
 }

@@ -1,0 +1,48 @@
+// A whole training: every network of a configuration in a thread of its own, with checkpoints.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nn/model/model_file.h"
+#include "nn/training/prepared_data.h"
+
+namespace screed::nn {
+
+/// Mean squared errors after an epoch.
+struct EpochLoss {
+  double training = 0.0;
+  double test = 0.0;  ///< on the first test session, as trained
+};
+
+struct TrainedNetwork {
+  std::vector<FloatLayer> layers;  ///< of the epoch that is kept
+  std::size_t kept_epoch = 0;      ///< counts from 1
+  std::vector<EpochLoss> losses;   ///< an epoch each
+};
+
+struct TrainingOptions {
+  /// Where checkpoints lie, a file a network; they are written every fiftieth part of the epochs.
+  std::optional<std::filesystem::path> checkpoints;
+  bool resume = false;  ///< go on from the checkpoints where there are some
+  /// Told after every epoch, from any thread but never from two at once: the share of all epochs
+  /// that is done, and what is new.
+  std::function<void(double share, const std::string& note)> progress;
+  const std::atomic<bool>* stop = nullptr;  ///< ends the training behind an epoch
+};
+
+/// In the order of the configuration's networks. The same configuration, seed and data give the
+/// same bits, whatever the threads do, and whether or not it was resumed on the way. Throws
+/// InputError for a checkpoint of another training, RunError when it was stopped.
+std::vector<TrainedNetwork> train(const TrainingConfiguration& configuration,
+                                  const PreparedData& data, const TrainingOptions& options);
+
+/// Quantised, with names, scales, stages and golden vectors.
+Model make_model(const TrainingConfiguration& configuration, const PreparedData& data,
+                 const std::vector<TrainedNetwork>& networks);
+
+}  // namespace screed::nn
