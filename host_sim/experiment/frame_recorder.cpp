@@ -24,8 +24,8 @@ double slip(double surface, double ground) {
 
 }  // namespace
 
-Frame FrameRecorder::record(const Plant& plant, const Robot& robot) {
-  const Vehicle& vehicle = plant.vehicle();
+Frame FrameRecorder::record(const Surroundings& plant, const Robot& robot) {
+  const VehicleState& vehicle = plant.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Matrix3d& rotation = chassis.pose.linear();
   const Eigen::Vector3d position = chassis.pose.translation();

@@ -3,14 +3,14 @@
 
 #include "firmware/robot/robot.h"
 #include "host_sim/session/frame.h"
-#include "host_sim/world/plant.h"
+#include "host_sim/world/surroundings.h"
 
 namespace screed {
 
 class FrameRecorder {
  public:
   /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
-  Frame record(const Plant& plant, const Robot& robot);
+  Frame record(const Surroundings& plant, const Robot& robot);
 
   /// Length of the chassis' path so far, m, and the time it was not on the bed, s.
   double distance_m() const { return distance_m_; }

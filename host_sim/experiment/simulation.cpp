@@ -105,8 +105,8 @@ std::vector<SoilAttribute> attributes_of(const SoilParameters& soil) {
 /// behind its HAL or in its microcontroller, does not.
 class Recorder {
  public:
-  Recorder(const Plant& plant, const Experiment& experiment, const SimulationOptions& options,
-           SessionWriter& writer)
+  Recorder(const Surroundings& plant, const Experiment& experiment,
+           const SimulationOptions& options, SessionWriter& writer)
       : plant_(plant),
         options_(options),
         shadow_(board_constants_of(options.board), experiment.parameters,
@@ -215,7 +215,7 @@ class Recorder {
     }
   }
 
-  const Plant& plant_;
+  const Surroundings& plant_;
   const SimulationOptions& options_;
   Robot shadow_;
   SensorSample sample_{};
@@ -294,11 +294,12 @@ class Run {
       image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image,
                                   options.ground_port);
     } else {
-      world_ = make_world(experiment, telemetry_log, options.board, options.ground_port);
+      world_ = make_world(experiment, telemetry_log, options.board, options.ground_port,
+                          options.surroundings);
     }
   }
 
-  const Plant& plant() const { return image_ ? image_->plant() : world_->plant(); }
+  const Surroundings& plant() const { return image_ ? image_->plant() : world_->plant(); }
   const GroundStation& ground_station() const {
     return image_ ? image_->ground_station() : std::as_const(*world_).ground_station();
   }
@@ -341,7 +342,8 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
 }
 
 void write_pictures(const std::filesystem::path& folder, const HeightField& before,
-                    const Plant& plant, const Experiment& experiment, std::vector<PathPoint> path) {
+                    const Surroundings& plant, const Experiment& experiment,
+                    std::vector<PathPoint> path) {
   PictureOptions options;
   options.title = experiment.experiment.name + ": before";
   write_height_map_picture(folder / "terrain_before.png", before, options);
@@ -551,10 +553,16 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
 }  // namespace
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const std::string& board, GroundPort* ground_port) {
+                                  const std::string& board, GroundPort* ground_port,
+                                  const SurroundingsFactory& surroundings) {
+  const WorldOptions options = world_options(experiment, board, ground_port);
+  if (surroundings) {
+    return std::make_unique<World>(
+        surroundings(make_terrain(experiment), make_robot_model(experiment, board), options),
+        board_constants_of(board), options, telemetry_log);
+  }
   return std::make_unique<World>(make_terrain(experiment), make_robot_model(experiment, board),
-                                 board_constants_of(board),
-                                 world_options(experiment, board, ground_port), telemetry_log);
+                                 board_constants_of(board), options, telemetry_log);
 }
 
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
@@ -589,7 +597,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   write_file(folder.path() / "experiment.ini", experiment.text());
   TextFile telemetry(folder.path() / "telemetry.log");
   telemetry_log.rdbuf(telemetry.stream().rdbuf());
-  const Plant& plant = run.plant();
+  const Surroundings& plant = run.plant();
   // As the experiment lays it out; the robot has settled into plant.terrain() already. Particles
   // lie as they fell.
   const HeightField before =
@@ -600,7 +608,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   SessionWriter writer(folder.path() / "session.h5", session_info(experiment, options));
   std::vector<int32_t> heights;
   writer.write_terrain_before(view_of(before, heights));
-  if (plant.soil() != nullptr) writer.write_soil(attributes_of(plant.soil()->soil()));
+  if (experiment.map.model == "scm") writer.write_soil(attributes_of(make_soil(experiment)));
 
   Recorder recorder(plant, experiment, options, writer);
   run.drive(recorder);

@@ -21,6 +21,11 @@
 
 namespace screed {
 
+/// Makes what a robot is driven in from the ground, the robot and the options of an experiment.
+/// Throws InputError when they do not suit.
+using SurroundingsFactory = std::function<std::unique_ptr<Surroundings>(
+    HeightField terrain, const Assembly& model, const PlantOptions& options)>;
+
 /// What is told while a run goes on.
 struct SimulationProgress {
   double time_s;
@@ -50,6 +55,8 @@ struct SimulationOptions {
   /// The image that is to run under the microcontroller simulation; without it the firmware runs
   /// natively.
   std::optional<std::string> image;
+  /// Makes what the robot is driven in, in place of physics; may be empty.
+  SurroundingsFactory surroundings;
 };
 
 struct SimulationSummary {
@@ -94,7 +101,8 @@ Assembly make_robot_model(const Experiment& experiment, const std::string& board
 /// A world as the experiment describes it, for a board of boards/. telemetry_log may be null.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const std::string& board = kDefaultBoard,
-                                  GroundPort* ground_port = nullptr);
+                                  GroundPort* ground_port = nullptr,
+                                  const SurroundingsFactory& surroundings = {});
 /// The same world with the image running in it (co_simulation.h).
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,

@@ -21,7 +21,7 @@ class McuWorld : public CoSimulation {
 
   const SensorSample& run_to_sample() override;
   const RobotOutput& run_to_output() override;
-  const Plant& plant() const override { return plant_; }
+  const Surroundings& plant() const override { return plant_; }
   const GroundStation& ground_station() const override { return ground_; }
   CycleReport cycles() const override { return board_.cycles(); }
 

@@ -19,6 +19,8 @@ class DriveShaft {
   void step(double voltage, double torque_n_m, double dt);
   /// Stops it at once.
   void halt() { omega_ = 0.0; }
+  /// Lets it turn at this speed from now on.
+  void spin(double omega_rad_per_s) { omega_ = omega_rad_per_s; }
 
   bool driven() const { return motors_ > 0; }
   double omega_rad_per_s() const { return omega_; }

@@ -19,6 +19,7 @@
 #include "host_sim/vehicle/gear_motor.h"
 #include "host_sim/vehicle/ode_world.h"
 #include "host_sim/vehicle/running_gear.h"
+#include "host_sim/vehicle/vehicle_state.h"
 
 namespace screed {
 
@@ -38,26 +39,7 @@ struct VehicleOptions {
   GearMotor motor;
 };
 
-enum Side : int { kLeft = 0, kRight = 1 };
-
-/// Pose and motion of the frame of `Body` (x forward, y left, z up).
-struct ChassisState {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< Body to world
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the frame's origin, world frame, m/s
-  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, Body frame
-};
-
-/// Roll (left side up), pitch (nose up), heading (counter-clockwise from east), rad.
-struct Attitude {
-  double roll;
-  double pitch;
-  double heading;
-};
-Attitude attitude_of(const Eigen::Matrix3d& body_to_world);
-/// The inverse: heading first, then pitch, then roll.
-Eigen::Matrix3d rotation_from(const Attitude& attitude);
-
-class Vehicle {
+class Vehicle : public VehicleState {
  public:
   /// Throws InputError when the model cannot be driven: no motor wheel on a side, motor joints on
   /// other bodies, a wheel without a cylinder to roll on.
@@ -83,24 +65,20 @@ class Vehicle {
   /// The same on particles; their step() is the caller's.
   void apply_forces(ParticleBed& particles, const std::array<double, 2>& motor_voltage, double dt);
 
-  ChassisState chassis() const;
+  ChassisState chassis() const override;
   double mass_kg() const { return mass_; }
 
-  /// Of the side's driven unit: surface speed over the wheels, angle of the encoder's shaft, motor
-  /// current (all motors of the side).
-  double track_speed_m_per_s(Side side) const;
-  double shaft_angle_rad(Side side) const;
-  double current_a(Side side) const;
-  double wheel_radius_m(Side side) const;
+  double track_speed_m_per_s(Side side) const override;
+  double shaft_angle_rad(Side side) const override;
+  double current_a(Side side) const override;
+  double wheel_radius_m(Side side) const override;
   /// The side's links; null without tracks, or with a belt.
   const ChainTrack* chain(Side side) const;
-  /// What the side's running gear carries, vertically, and how deep it sinks in (its deepest unit).
-  double load_n(Side side) const;
-  double sinkage_m(Side side) const;
+  double load_n(Side side) const override;
+  double sinkage_m(Side side) const override;
   /// Distance between the centre lines of left and right running gear.
   double tread_m() const { return tread_; }
-  /// Speed over the ground at the middle of the side's running gear, along Body's x, m/s.
-  double ground_speed_m_per_s(Side side) const;
+  double ground_speed_m_per_s(Side side) const override;
 
  private:
   struct Carrier {  // one ODE body

@@ -1,5 +1,5 @@
-// What the robot is driven in: terrain, bodies, motors and battery, advanced a physics step at a
-// time. Knows no clock but its own steps, no sensor counts and no firmware.
+// What the robot is driven in, as physics: terrain, bodies, motors and battery, advanced a physics
+// step at a time. Knows no clock but its own steps, no sensor counts and no firmware.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,6 +16,7 @@
 #include "host_sim/vehicle/gear_motor.h"
 #include "host_sim/vehicle/ode_world.h"
 #include "host_sim/vehicle/vehicle.h"
+#include "host_sim/world/surroundings.h"
 
 namespace screed {
 
@@ -37,41 +38,27 @@ struct PlantOptions {
   std::optional<ParticleOptions> particles;  ///< ground of spheres, as high as the terrain
 };
 
-class Plant {
+class Plant : public Surroundings {
  public:
   /// Throws InputError when the options do not fit together.
   Plant(HeightField terrain, const Assembly& model, const PlantOptions& options);
 
-  /// One physics step with the motor drivers at these shares of the battery voltage, -1..1, left
-  /// and right; positive drives forward.
-  void step(const std::array<double, 2>& share);
+  void step(const std::array<double, 2>& share) override;
+  ImuTruth motion() const override;
+  void lay_on_side() override;
 
-  /// True motion over the last control tick, whenever it is asked for. Throws RunError when the
-  /// physics has diverged.
-  ImuTruth motion() const;
-
-  /// Picks the robot up and lays it on its left side where it is.
-  void lay_on_side();
-
-  int steps_per_tick() const { return steps_per_tick_; }
+  int steps_per_tick() const override { return steps_per_tick_; }
   double step_s() const { return step_s_; }
-  uint64_t steps() const { return steps_; }
-  double time_s() const;
-  /// The ground's surface as it is now.
-  const HeightField& terrain() const;
-  /// Null on ground of another kind.
-  const SoilBed* soil() const { return soil_ ? &*soil_ : nullptr; }
-  const ParticleBed* particles() const { return particles_ ? &*particles_ : nullptr; }
-  /// Whether the ground gives way and, without wrap-around, ends at the edges of its bed.
-  bool ground_is_loose() const { return soil_.has_value() || particles_.has_value(); }
-  const Vehicle& vehicle() const { return vehicle_; }
-  /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
-  /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,
-  /// so that the way it made is its place plus these times the bed's size.
-  const std::array<int64_t, 2>& beds_passed() const { return beds_passed_; }
-  /// The chassis' place as if there had been no teleport, m.
-  Eigen::Vector3d place_travelled() const;
-  const Battery& battery() const { return battery_; }
+  uint64_t steps() const override { return steps_; }
+  double time_s() const override;
+  const HeightField& terrain() const override;
+  const SoilBed* soil() const override { return soil_ ? &*soil_ : nullptr; }
+  const ParticleBed* particles() const override { return particles_ ? &*particles_ : nullptr; }
+  bool ground_is_loose() const override { return soil_.has_value() || particles_.has_value(); }
+  const Vehicle& vehicle() const override { return vehicle_; }
+  const std::array<int64_t, 2>& beds_passed() const override { return beds_passed_; }
+  Eigen::Vector3d place_travelled() const override;
+  const Battery& battery() const override { return battery_; }
 
  private:
   struct Moment {

@@ -10,24 +10,29 @@
 namespace screed {
 World::World(HeightField terrain, const Assembly& model, const BoardConstants& board,
              const WorldOptions& options, std::ostream* telemetry_log)
+    : World(std::make_unique<Plant>(std::move(terrain), model, options), board, options,
+            telemetry_log) {}
+
+World::World(std::unique_ptr<Surroundings> plant, const BoardConstants& board,
+             const WorldOptions& options, std::ostream* telemetry_log)
     : options_(options),
       board_(board),
-      plant_(std::move(terrain), model, options),
+      plant_(std::move(plant)),
       imu_(options.seed, options.imu),
       uplink_(options.seed, "uplink", options.radio),
       downlink_(options.seed, "downlink", options.radio),
       ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key),
       ground_end_(options.ground_port),
-      station_m_(plant_.vehicle().chassis().pose.translation()) {}
+      station_m_(plant_->vehicle().chassis().pose.translation()) {}
 
 void World::step_physics() {
   const std::array<double, 2> share = {static_cast<double>(duty_[kLeft]) / kDutyMax,
                                        static_cast<double>(duty_[kRight]) / kDutyMax};
-  for (int i = 0; i < plant_.steps_per_tick(); ++i) plant_.step(share);
+  for (int i = 0; i < plant_->steps_per_tick(); ++i) plant_->step(share);
 }
 
 void World::measure() {
-  imu_.measure(options_.handled ? handled_motion(time_s()) : plant_.motion(), sample_);
+  imu_.measure(options_.handled ? handled_motion(time_s()) : plant_->motion(), sample_);
 
   const auto counts = [&](Side side) {
     const double turns = vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);

@@ -1,4 +1,5 @@
-// One robot in one world of physics, advanced a control tick at a time.
+// One robot in one world, of physics or of what stands in for it, advanced a control tick at a
+// time.
 //
 // The world owns its clock and its seeded generators; nothing in it looks at the wall clock or at
 // global random state, so the same configuration gives the same bytes on every run and any number
@@ -7,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <ostream>
 
@@ -42,6 +44,10 @@ class World {
   /// not fit together.
   World(HeightField terrain, const Assembly& model, const BoardConstants& board,
         const WorldOptions& options, std::ostream* telemetry_log);
+  /// The same with the robot in surroundings of another kind; of the options only those count that
+  /// are not the plant's.
+  World(std::unique_ptr<Surroundings> plant, const BoardConstants& board,
+        const WorldOptions& options, std::ostream* telemetry_log);
 
   /// Advances physics, sensors and radio by one control tick. Throws RunError when the physics has
   /// diverged.
@@ -53,14 +59,14 @@ class World {
 
   uint64_t ticks() const { return ticks_; }
   double time_s() const { return static_cast<double>(ticks_) / kTickRate_hz; }
-  const Plant& plant() const { return plant_; }
-  const HeightField& terrain() const { return plant_.terrain(); }
-  const Vehicle& vehicle() const { return plant_.vehicle(); }
-  const Battery& battery() const { return plant_.battery(); }
+  const Surroundings& plant() const { return *plant_; }
+  const HeightField& terrain() const { return plant_->terrain(); }
+  const VehicleState& vehicle() const { return plant_->vehicle(); }
+  const Battery& battery() const { return plant_->battery(); }
   const GroundStation& ground_station() const { return ground_; }
   GroundStation& ground_station() { return ground_; }
   /// Picks the robot up and lays it on its left side where it is.
-  void lay_on_side() { plant_.lay_on_side(); }
+  void lay_on_side() { plant_->lay_on_side(); }
 
  private:
   void step_physics();
@@ -70,7 +76,7 @@ class World {
 
   WorldOptions options_;
   BoardConstants board_;
-  Plant plant_;
+  std::unique_ptr<Surroundings> plant_;
   ImuModel imu_;
   RadioLink uplink_;
   RadioLink downlink_;
