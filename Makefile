@@ -36,6 +36,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wno
 COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I. -I$(BUILD_ROOT)/generated
 DATA_DIR ?= $(CURDIR)/host_sim/data
 BOARDS_DIR ?= $(CURDIR)/boards
+MODELS_DIR ?= $(CURDIR)/nn/models
 FIRMWARE_DIR ?= $(abspath $(BUILD_ROOT))/firmware
 # MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
 MCU ?= yes
@@ -56,7 +57,7 @@ MCU_USED_no := $(MCU_STAND_IN) host_sim/mcu/default_image.cpp host_sim/mcu/parit
 ifeq ($(MCU_USED_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
-HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp nn/data/*.cpp nn/training/*.cpp)) $(MCU_USED_$(MCU))
+HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp nn/data/*.cpp nn/training/*.cpp nn/surrogate/*.cpp)) $(MCU_USED_$(MCU))
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp tools/viewer/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))
@@ -83,6 +84,7 @@ LIBRARY := $(B)/libscreed.a
 help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
+	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (an hour)"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
 	@echo "make firmware  build the image for the robot          (BOARD=$(BOARD))"
@@ -163,6 +165,7 @@ $(B)/generated/paths.h: FORCE
 	@{ echo '// Where the data of this build lies.' ; echo 'namespace screed {' ; \
 	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
 	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; \
+	   echo 'inline constexpr const char* kModelsFolder = "$(MODELS_DIR)";' ; \
 	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; echo '}' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 # The constants of every board, under their folders' names.
@@ -224,15 +227,25 @@ run-sim: $(SCREED)
 run-sessions: $(SCREED)
 	@$(SCREED) record $(SESSIONS) --out $(OUT)/sessions $(ARGS)
 
+.PHONY: surrogate-v3 run-surrogate-v3
+V3_SESSIONS := host_sim/data/experiments/sessions/v3
+surrogate-v3: deps
+	$(STEP) run-surrogate-v3
+run-surrogate-v3: $(SCREED)
+	@$(SCREED) record $(V3_SESSIONS)/*.ini --out $(OUT)/sessions/v3
+	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(OUT)/sessions/v3 --out $(OUT)/v3.json
+	@$(SCREED) nn rollout $(OUT)/sessions/v3/e_*-0001 --model $(OUT)/v3.json --fit $(OUT)/sessions/v3/t_viper-0001 \
+	   --fit $(OUT)/sessions/v3/t_dry_sand-0001 --fit $(OUT)/sessions/v3/t_clay-0001 --starts 60 --out $(OUT)/rollouts
+
 install:
-	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards FIRMWARE_DIR=$(PREFIX)/share/screed/firmware run-install
+	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards MODELS_DIR=$(PREFIX)/share/screed/models FIRMWARE_DIR=$(PREFIX)/share/screed/firmware run-install
 	@for image in $(wildcard $(BUILD_ROOT)/firmware/*/screed.elf) ; do \
 	   install -v -D -m 644 $$image $(DESTDIR)$(PREFIX)/share/screed/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
 .PHONY: run-install
 run-install: $(SCREED)
 	install -D -m 755 $(SCREED) $(DESTDIR)$(PREFIX)/bin/screed
 	mkdir -p $(DESTDIR)$(PREFIX)/share/screed
-	cp -r host_sim/data/. boards $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(DESTDIR)$(PREFIX)/share/screed/
+	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(DESTDIR)$(PREFIX)/share/screed/
 
 # ---- the image for the microcontroller ---------------------------------------------------------------------------------------
 

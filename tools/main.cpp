@@ -9,6 +9,7 @@
 #include "tools/key_command.h"
 #include "tools/monitor_command.h"
 #include "tools/nn_command.h"
+#include "tools/nn_motion_command.h"
 #include "tools/parity_command.h"
 #include "tools/plot_command.h"
 #include "tools/program.h"
@@ -46,5 +47,6 @@ int main(int argc, char** argv) {
   screed::register_terrain_command(app, action);
   screed::register_view_command(app, action);
   screed::register_nn_command(app, action);
+  screed::register_nn_motion_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });
 }

@@ -12,6 +12,9 @@
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
 #include "host_sim/link/outside_port.h"
+#include "nn/model/model_file.h"
+#include "nn/surrogate/default_model.h"
+#include "nn/surrogate/surrogate_plant.h"
 #include "tools/interrupt.h"
 #include "tools/succession.h"
 #include "tools/view_options.h"
@@ -28,6 +31,7 @@ struct SimArguments {
   std::string hal = "native";
   std::optional<std::string> board;
   std::optional<std::string> elf;
+  std::optional<std::string> model;
   std::optional<std::string> can;
   std::optional<std::string> pty;
   bool realtime = false;
@@ -143,6 +147,17 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   } else if (arguments.elf.has_value()) {
     throw InputError("--elf needs --hal mcu");
   }
+  if (arguments.hal == "surrogate") {
+    const auto model = std::make_shared<const nn::Model>(
+        nn::read_model(arguments.model.has_value() ? std::filesystem::path(*arguments.model)
+                                                   : nn::default_model_file()));
+    options.surroundings = [model](HeightField terrain, const Assembly& robot,
+                                   const PlantOptions& plant) {
+      return std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
+    };
+  } else if (arguments.model.has_value()) {
+    throw InputError("--model needs --hal surrogate");
+  }
 
   const std::optional<viewer::ViewerOptions> view =
       viewer_options(arguments.viewer, arguments.view);
@@ -202,10 +217,12 @@ void register_sim_command(CLI::App& root, const std::string& version,
           "--hal", arguments->hal,
           "native: the firmware compiled for this machine; mcu: the image that is flashed, "
           "under a cycle-accurate simulation of the microcontroller")
-      ->check(CLI::IsMember({"native", "mcu"}));
+      ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
   command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
   command->add_option("--elf", arguments->elf,
                       "with --hal mcu: the image; by default that of make firmware");
+  command->add_option("--model", arguments->model,
+                      "with --hal surrogate: the model file; by default the one that comes along");
   command->add_option("--can", arguments->can,
                       "publish the radio's frames on this CAN interface and take commands from it; "
                       "implies --realtime");

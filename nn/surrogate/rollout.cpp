@@ -1,0 +1,255 @@
+#include "nn/surrogate/rollout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "firmware/leveling/leveling.h"
+#include "firmware/robot/robot.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/experiment/board_table.h"
+#include "host_sim/experiment/experiment.h"
+#include "host_sim/experiment/simulation.h"
+#include "host_sim/session/session_reader.h"
+#include "host_sim/vehicle/urdf_importer.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr std::size_t kPathFrames = 10;
+constexpr double kMeanVoltage = 7.5;  // from energy to charge
+
+HeightField field_of(const HeightMap& map) {
+  HeightField field(static_cast<int>(map.geometry.nx), static_cast<int>(map.geometry.ny),
+                    map.geometry.spacing_m, map.geometry.wrap);
+  std::size_t node = 0;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) field.set_node(ix, iy, map.heights[node++]);
+  }
+  return field;
+}
+
+/// A session as a rollout needs it, all rows at once.
+struct Recording {
+  SessionReader session;
+  Experiment experiment;
+  SoilParameters soil;
+  std::vector<Frame> frames;
+  std::vector<SensorSample> samples;
+  std::uint64_t first = 0;  ///< row with Algorithm 5's first frame
+  std::vector<PlanarPose> poses;
+  std::vector<FrameMotion> motions;
+  std::vector<double> ways;  ///< made since the first row, m
+
+  explicit Recording(const std::filesystem::path& folder)
+      : session(folder / "session.h5"), experiment(read_experiment(folder / "experiment.ini")) {
+    if (experiment.map.model != "scm" || !session.has_heights()) {
+      throw InputError(folder.string() +
+                       ": rollouts need a session on soil (scm) with its heights, as screed "
+                       "record makes it");
+    }
+    soil = make_soil(experiment);
+    frames.resize(session.frames());
+    samples.resize(session.frames());
+    session.read(0, std::span(frames));
+    session.read(0, std::span(samples));
+    PlanarPose pose{frames[0].x, frames[0].y, frames[0].yaw};
+    for (const Frame& frame : frames) {
+      const double middle = pose.heading_rad + 0.5 * frame.delta_theta;
+      const double c = std::cos(middle);
+      const double s = std::sin(middle);
+      motions.push_back({frame.delta_x * c + frame.delta_y * s,
+                         frame.delta_y * c - frame.delta_x * s, frame.delta_theta});
+      pose.move(motions.back());
+      poses.push_back(pose);
+      ways.push_back((ways.empty() ? 0.0 : ways.back()) + std::hypot(frame.delta_x, frame.delta_y));
+    }
+    while (first < frames.size() &&
+           frames[first].leveling_state != static_cast<std::int32_t>(LevelingState::kTraining)) {
+      ++first;
+    }
+    if (first + 3 >= frames.size()) {
+      throw InputError(folder.string() + ": Algorithm 5 drove no frame of it");
+    }
+  }
+
+  DrivingState state(std::uint64_t row, double counts_per_turn) const {
+    const Frame& frame = frames[row];
+    DrivingState state;
+    state.pose = poses[row];
+    state.last = motions[row];
+    state.before_last = motions[row - 1];
+    state.track_speed_m_per_s = {frame.track_left, frame.track_right};
+    const auto angle = [&](std::uint16_t count) {
+      return (count + 0.5) / counts_per_turn * 2.0 * std::numbers::pi;
+    };
+    state.shaft_angle_rad = {angle(samples[row].encoder_left), angle(samples[row].encoder_right)};
+    state.battery.terminal_v = frame.battery;
+    state.battery.drawn_c = frame.energy / kMeanVoltage;
+    state.battery.energy_j = frame.energy;
+    return state;
+  }
+};
+
+/// Follows the recorded path and notes errors on the way.
+class Checker {
+ public:
+  Checker(const Recording& recording, std::uint64_t start) : recording_(recording) {
+    rollout_.start = start;
+  }
+  /// The stand-in's pose at a row. False: all ways are made.
+  bool note(std::uint64_t row, const PlanarPose& pose) {
+    if ((row - rollout_.start) % kPathFrames == 0) rollout_.path.push_back(pose);
+    if (recording_.frames[row].angular != 0.0) straight_ = false;
+    const double way = recording_.ways[row] - recording_.ways[rollout_.start];
+    while (next_ < kRolloutWays_m.size() && way >= kRolloutWays_m.at(next_)) {
+      const PlanarPose& real = recording_.poses[row];
+      rollout_.checks.at(next_) = {
+          true, straight_,
+          std::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m) / kRolloutWays_m.at(next_),
+          std::abs(pose.heading_rad - real.heading_rad)};
+      ++next_;
+    }
+    return next_ < kRolloutWays_m.size();
+  }
+  Rollout take() { return std::move(rollout_); }
+
+ private:
+  const Recording& recording_;
+  Rollout rollout_;
+  std::size_t next_ = 0;
+  bool straight_ = true;
+};
+
+Rollout by_tracks(const Recording& recording, std::uint64_t start, std::uint64_t end,
+                  const HeightField& ground, Surrogate robot) {
+  const Frame& now = recording.frames[start];
+  robot.set_soil(0, recording.soil);
+  robot.place(0, recording.poses[start], recording.motions[start], recording.motions[start - 1]);
+  robot.set_tracks(0, now.track_left, now.track_right);
+  Checker checker(recording, start);
+  for (std::uint64_t row = start + 1; row < end; ++row) {
+    const Frame& frame = recording.frames[row];
+    robot.step(ground, {&frame.track_left, 1}, {&frame.track_right, 1});
+    if (!checker.note(row, robot.pose(0))) break;
+  }
+  return checker.take();
+}
+
+Rollout by_firmware(const Recording& recording, std::uint64_t start, std::uint64_t end,
+                    SurrogatePlant& plant, Robot firmware, RobotOutput output, ImuModel imu,
+                    double counts_per_turn) {
+  plant.set_state(recording.state(start, counts_per_turn));
+  const auto counts = [&](Side side) {
+    const double turns = plant.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+    return static_cast<std::uint16_t>(
+        static_cast<std::int64_t>(std::floor(turns * counts_per_turn)) & 0xFFFF);
+  };
+  const double volt_per_lsb = recording.session.info().board.battery_uv_per_lsb * 1e-6;
+  Checker checker(recording, start);
+  for (std::uint64_t row = start + 1; row < end; ++row) {
+    const std::array<double, 2> share = {static_cast<double>(output.duty_left) / kDutyMax,
+                                         static_cast<double>(output.duty_right) / kDutyMax};
+    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(share);
+    if (!checker.note(row, plant.pose())) break;
+    // Time and radio as they were.
+    SensorSample sample = recording.samples[row];
+    imu.measure(plant.motion(), sample);
+    sample.encoder_left = counts(kLeft);
+    sample.encoder_right = counts(kRight);
+    sample.battery = static_cast<std::uint16_t>(
+        std::clamp(std::round(plant.battery().terminal_v / volt_per_lsb), 0.0, 8.0 * 1023.0));
+    firmware.tick(sample, output);
+  }
+  return checker.take();
+}
+
+ImuErrors imu_errors(const Experiment& experiment) {
+  if (!experiment.sensors.noise) return ImuErrors::quiet();
+  return experiment.sensors.calibrated ? ImuErrors{} : ImuErrors::uncalibrated();
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+SessionRollouts roll_out(const std::filesystem::path& session_folder,
+                         const std::vector<StandIn>& stand_ins, const RolloutOptions& options) {
+  const Recording recording(session_folder);
+  const SessionInfo& info = recording.session.info();
+  const double counts_per_turn = board_motor(info.board_name).counts_per_turn;
+  const Assembly model =
+      import_urdf(find_model_file(recording.experiment, info.board_name), UrdfOptions{});
+  PlantOptions plant_options;
+  plant_options.soil = recording.soil;
+  plant_options.vehicle.motor = board_motor(info.board_name).motor;
+
+  SessionRollouts result;
+  result.source = info.experiment_name;
+  result.by_stand_in.resize(stand_ins.size());
+  Robot firmware(info.board, info.parameters, info.credentials);
+  RobotOutput output{};
+  ImuModel imu(recording.experiment.experiment.seed, imu_errors(recording.experiment));
+  ImuTruth at_rest{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),
+                   0.0};
+  const std::uint64_t rows = recording.frames.size();
+  const std::uint64_t begin = recording.first + 2;
+  std::size_t started = 0;
+  for (std::uint64_t row = 0; row < rows && started < options.starts; ++row) {
+    firmware.tick(recording.samples[row], output);
+    SensorSample unused{};
+    imu.measure(at_rest, unused);  // so that its generators stand where they stood
+    if (row < begin + (rows - begin) * started / options.starts) continue;
+    ++started;
+    // A start from which not even the first way is made tells nothing.
+    const std::uint64_t end = std::min(rows, row + 1 + options.most_frames);
+    if (recording.ways[end - 1] - recording.ways[row] < kRolloutWays_m[0]) continue;
+    const HeightField ground = field_of(recording.session.heights_after(row + 1));
+    for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+      if (options.drive == RolloutDrive::kTracks) {
+        result.by_stand_in[i].push_back(
+            by_tracks(recording, row, end, ground, stand_ins[i].robot()));
+      } else {
+        SurrogatePlant plant(ground, model, plant_options, stand_ins[i].robot());
+        result.by_stand_in[i].push_back(
+            by_firmware(recording, row, end, plant, firmware, output, imu, counts_per_turn));
+      }
+    }
+    std::vector<PlanarPose> real;
+    for (std::uint64_t at = row + kPathFrames; at < end; at += kPathFrames) {
+      real.push_back(recording.poses[at]);
+      if (recording.ways[at] - recording.ways[row] > kRolloutWays_m.back()) break;
+    }
+    result.real.push_back(std::move(real));
+  }
+  return result;
+}
+
+Rollout apart(const std::filesystem::path& session_folder, const std::filesystem::path& other) {
+  const Recording recording(session_folder);
+  const Recording twin(other);
+  const PlanarPose& begin = recording.poses[recording.first];
+  const PlanarPose& twin_begin = twin.poses[twin.first];
+  Checker checker(recording, recording.first);
+  const std::uint64_t frames =
+      std::min(recording.frames.size() - recording.first, twin.frames.size() - twin.first);
+  for (std::uint64_t i = 1; i < frames; ++i) {
+    PlanarPose pose = twin.poses[twin.first + i];
+    pose.x_m += begin.x_m - twin_begin.x_m;
+    pose.y_m += begin.y_m - twin_begin.y_m;
+    pose.heading_rad += begin.heading_rad - twin_begin.heading_rad;
+    if (!checker.note(recording.first + i, pose)) break;
+  }
+  return checker.take();
+}
+
+}  // namespace screed::nn

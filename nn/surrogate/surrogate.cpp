@@ -1,0 +1,282 @@
+#include "nn/surrogate/surrogate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "host_sim/core/errors.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr double kFrame_s = 0.01;
+constexpr double kActivationOfOne = 32768.0;
+constexpr double kFloorBias = 65536.0;  // makes what is rounded towards zero positive
+
+[[noreturn]] void refuse(const Model& model, const std::string& what) {
+  throw InputError("model '" + model.name + "': " + what);
+}
+
+std::string known_inputs() {
+  std::string names;
+  for (const SignalInfo& info : signals()) {
+    names += (names.empty() ? "" : ", ") + std::string(info.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
+                   double y_m, double cos_heading, double sin_heading) {
+  const auto height = [&](double x, double y) { return ground.at(x, y).height; };
+  return support_on(height, geometry, x_m, y_m, cos_heading, sin_heading);
+}
+
+void PlanarPose::move(const FrameMotion& motion) {
+  const double middle = heading_rad + 0.5 * motion.turn_rad;
+  const double c = std::cos(middle);
+  const double s = std::sin(middle);
+  x_m += motion.forward_m * c - motion.sideways_m * s;
+  y_m += motion.forward_m * s + motion.sideways_m * c;
+  heading_rad += motion.turn_rad;
+}
+
+FrameMotion SkidKinematics::motion(double left_m_per_s, double right_m_per_s) const {
+  return {0.5 * (left_m_per_s + right_m_per_s) * speed_share * kFrame_s, 0.0,
+          (right_m_per_s - left_m_per_s) / tread_m * kFrame_s};
+}
+
+Surrogate::Surrogate(const SkidKinematics& kinematics, const SupportGeometry& geometry,
+                     std::size_t robots)
+    : geometry_(geometry),
+      robots_(robots),
+      kinematics_(kinematics),
+      signals_(kSignals * robots),
+      x_(robots),
+      y_(robots),
+      heading_(robots),
+      cos_(robots, 1.0),
+      sin_(robots),
+      motion_{std::vector<double>(robots), std::vector<double>(robots),
+              std::vector<double>(robots)} {}
+
+Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::size_t robots,
+                     Arithmetic arithmetic, std::optional<BatchKernel> kernel)
+    : Surrogate(SkidKinematics{}, geometry, robots) {
+  kinematics_.reset();
+  arithmetic_ = arithmetic;
+  std::size_t most_inputs = 0;
+  std::size_t most_outputs = 0;
+  std::array<bool, 3> known{};
+  for (const ModelNetwork& from : model.networks) {
+    Network network{
+        kernel.has_value() ? BatchNetwork(from.network, *kernel) : BatchNetwork(from.network),
+        {},
+        {},
+        from.trained};
+    const auto signal = [&](const std::string& name, const char* what) {
+      const std::optional<Signal> found = signal_named(name);
+      if (!found.has_value()) {
+        refuse(model, std::string(what) + " '" + name +
+                          "' is not known to the surrogate world; allowed is " + known_inputs());
+      }
+      return row_of(*found);
+    };
+    for (const ModelChannel& channel : from.inputs) {
+      const double scale = kActivationOfOne / channel.half_range;
+      network.inputs.push_back({signal(channel.feature, "input"), scale, -channel.middle * scale,
+                                channel.half_range, channel.middle, std::nullopt});
+    }
+    bool useful = false;
+    for (const ModelChannel& channel : from.outputs) {
+      Output output = Output::kWay;
+      if (channel.feature == "forward") output = Output::kForward;
+      if (channel.feature == "sideways") output = Output::kSideways;
+      if (channel.feature == "delta_theta") output = Output::kTurn;
+      if (output == Output::kWay && channel.feature != "v") {
+        refuse(model, "output '" + channel.feature +
+                          "' is not known to the surrogate world; allowed is forward, sideways, "
+                          "delta_theta, v");
+      }
+      known.at(output == Output::kWay ? 0 : static_cast<std::size_t>(output)) = true;
+      useful = true;
+      Channel to{static_cast<std::size_t>(output),
+                 0.0,
+                 0.0,
+                 channel.half_range,
+                 channel.middle,
+                 std::nullopt};
+      if (!channel.baseline.empty()) to.baseline = signal(channel.baseline, "baseline");
+      network.outputs.push_back(to);
+    }
+    if (!useful) continue;
+    if (arithmetic == Arithmetic::kFloat && from.trained.empty()) {
+      refuse(model, "has no network in floating point");
+    }
+    most_inputs = std::max(most_inputs, network.inputs.size());
+    most_outputs = std::max(most_outputs, network.outputs.size());
+    networks_.push_back(std::move(network));
+  }
+  if (!known[0] || !known[2]) {
+    refuse(model, "foretells no motion; needed are forward (or v) and delta_theta");
+  }
+  in_.resize(most_inputs * robots_);
+  out_.resize(most_outputs * robots_);
+}
+
+void Surrogate::place(std::size_t robot, const PlanarPose& pose, const FrameMotion& last,
+                      const FrameMotion& before_last) {
+  x_[robot] = pose.x_m;
+  y_[robot] = pose.y_m;
+  heading_[robot] = pose.heading_rad;
+  row(Signal::kForward1)[robot] = last.forward_m;
+  row(Signal::kSideways1)[robot] = last.sideways_m;
+  row(Signal::kTurn1)[robot] = last.turn_rad;
+  row(Signal::kForward2)[robot] = before_last.forward_m;
+  row(Signal::kSideways2)[robot] = before_last.sideways_m;
+  row(Signal::kTurn2)[robot] = before_last.turn_rad;
+}
+
+void Surrogate::set_soil(std::size_t robot, const SoilParameters& soil) {
+  const std::array<double, kSoilSignals> values = soil_signals(soil);
+  for (std::size_t i = 0; i < kSoilSignals; ++i) {
+    signals_[(row_of(kFirstSoilSignal) + i) * robots_ + robot] = values.at(i);
+  }
+}
+
+void Surrogate::set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s) {
+  row(Signal::kTrackLeft)[robot] = left_m_per_s;
+  row(Signal::kTrackRight)[robot] = right_m_per_s;
+}
+
+void Surrogate::feel_ground(const HeightField& ground) {
+  double* pitch = row(Signal::kPitch);
+  double* roll = row(Signal::kRoll);
+  for (std::size_t i = 0; i < robots_; ++i) {
+    cos_[i] = std::cos(heading_[i]);
+    sin_[i] = std::sin(heading_[i]);
+    const Support support = support_at(ground, geometry_, x_[i], y_[i], cos_[i], sin_[i]);
+    pitch[i] = support.pitch;
+    roll[i] = support.roll;
+  }
+}
+
+void Surrogate::take(const Channel& channel, const std::int16_t* activations) {
+  const double* baseline =
+      channel.baseline.has_value() ? &signals_[*channel.baseline * robots_] : nullptr;
+  const bool way = channel.row == static_cast<std::size_t>(Output::kWay);
+  std::vector<double>& values = motion_.at(way ? 0 : channel.row);
+  const double step = channel.half_range / kActivationOfOne;
+  const double middle = channel.middle + 0.5 * step;
+  const double* left = row(Signal::kTrackLeft);
+  const double* right = row(Signal::kTrackRight);
+  for (std::size_t i = 0; i < robots_; ++i) {
+    double value = middle + step * activations[i];
+    if (baseline != nullptr) value += baseline[i];
+    // A way has no sign; the tracks have (thesis 6.1).
+    if (way && left[i] + right[i] < 0.0) value = -value;
+    values[i] = value;
+  }
+}
+
+void Surrogate::foretell(const Network& network) {
+  for (std::size_t input = 0; input < network.inputs.size(); ++input) {
+    const Channel& channel = network.inputs[input];
+    const double* from = &signals_[channel.row * robots_];
+    std::int16_t* to = &in_[input * robots_];
+    for (std::size_t i = 0; i < robots_; ++i) {
+      const double q = std::clamp(from[i] * channel.scale + channel.offset, -kActivationOfOne,
+                                  kActivationOfOne - 1.0);
+      to[i] = static_cast<std::int16_t>(static_cast<std::int32_t>(q + kFloorBias) -
+                                        static_cast<std::int32_t>(kFloorBias));
+    }
+  }
+  network.batch.run(in_.data(), out_.data(), robots_, robots_);
+  for (std::size_t output = 0; output < network.outputs.size(); ++output) {
+    take(network.outputs[output], &out_[output * robots_]);
+  }
+}
+
+void Surrogate::foretell_in_float(const Network& network) {
+  for (std::size_t i = 0; i < robots_; ++i) {
+    std::vector<double> values;
+    for (const Channel& channel : network.inputs) {
+      values.push_back(std::clamp(
+          (signals_[channel.row * robots_ + i] - channel.middle) / channel.half_range, -1.0, 1.0));
+    }
+    values = run(network.trained, std::move(values));
+    for (std::size_t output = 0; output < network.outputs.size(); ++output) {
+      const Channel& channel = network.outputs[output];
+      const bool way = channel.row == static_cast<std::size_t>(Output::kWay);
+      double value = channel.middle + channel.half_range * std::clamp(values[output], -1.0, 1.0);
+      if (channel.baseline.has_value()) value += signals_[*channel.baseline * robots_ + i];
+      if (way && row(Signal::kTrackLeft)[i] + row(Signal::kTrackRight)[i] < 0.0) value = -value;
+      motion_.at(way ? 0 : channel.row)[i] = value;
+    }
+  }
+}
+
+void Surrogate::move() {
+  const auto shift = [&](Signal last, Signal before, const std::vector<double>& now) {
+    std::copy_n(row(last), robots_, row(before));
+    std::copy_n(now.data(), robots_, row(last));
+  };
+  shift(Signal::kForward1, Signal::kForward2, motion_[0]);
+  shift(Signal::kSideways1, Signal::kSideways2, motion_[1]);
+  shift(Signal::kTurn1, Signal::kTurn2, motion_[2]);
+  for (std::size_t i = 0; i < robots_; ++i) {
+    PlanarPose pose{x_[i], y_[i], heading_[i]};
+    pose.move({motion_[0][i], motion_[1][i], motion_[2][i]});
+    x_[i] = pose.x_m;
+    y_[i] = pose.y_m;
+    heading_[i] = pose.heading_rad;
+  }
+}
+
+void Surrogate::feel_tracks(std::span<const double> left_m_per_s,
+                            std::span<const double> right_m_per_s) {
+  std::copy_n(row(Signal::kTrackLeft), 2 * robots_, row(Signal::kTrackLeft1));
+  std::copy_n(left_m_per_s.data(), robots_, row(Signal::kTrackLeft));
+  std::copy_n(right_m_per_s.data(), robots_, row(Signal::kTrackRight));
+  const double* tracks = row(Signal::kTrackLeft);
+  double* wheels = row(Signal::kWheelLeft);
+  for (std::size_t i = 0; i < 2 * robots_; ++i) wheels[i] = tracks[i] / geometry_.wheel_radius_m;
+}
+
+void Surrogate::answer() {
+  if (kinematics_.has_value()) {
+    for (std::size_t i = 0; i < robots_; ++i) {
+      const FrameMotion motion =
+          kinematics_->motion(row(Signal::kTrackLeft)[i], row(Signal::kTrackRight)[i]);
+      motion_[0][i] = motion.forward_m;
+      motion_[1][i] = motion.sideways_m;
+      motion_[2][i] = motion.turn_rad;
+    }
+  }
+  for (const Network& network : networks_) {
+    if (arithmetic_ == Arithmetic::kFloat) {
+      foretell_in_float(network);
+    } else {
+      foretell(network);
+    }
+  }
+  move();
+}
+
+void Surrogate::step(const HeightField& ground, std::span<const double> left_m_per_s,
+                     std::span<const double> right_m_per_s) {
+  feel_tracks(left_m_per_s, right_m_per_s);
+  feel_ground(ground);
+  answer();
+}
+
+void Surrogate::step_on_slope(double pitch, double roll, std::span<const double> left_m_per_s,
+                              std::span<const double> right_m_per_s) {
+  feel_tracks(left_m_per_s, right_m_per_s);
+  std::fill_n(row(Signal::kPitch), robots_, pitch);
+  std::fill_n(row(Signal::kRoll), robots_, roll);
+  answer();
+}
+
+}  // namespace screed::nn

@@ -1,0 +1,138 @@
+// Robots whose motion a network foretells in place of physics, frame by frame (thesis 6.1), many at
+// once: a row a signal, a column a robot. Knows no motors, no sensors and no firmware.
+//
+// A frame is 10 ms. Pitch and roll come from the height map under the tracks, the network answers
+// with the way forward, the way sideways and the turn, and these move the robot's pose:
+//   x += forward cos(theta + turn/2) - sideways sin(theta + turn/2), y likewise, theta += turn.
+// All arithmetic up to the network's outputs is exact, so any number of robots give the same bits
+// one by one and together.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host_sim/terrain/height_field.h"
+#include "nn/batch/batch_network.h"
+#include "nn/model/model_file.h"
+#include "nn/surrogate/signals.h"
+#include "nn/surrogate/support.h"
+
+namespace screed::nn {
+
+Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
+                   double y_m, double cos_heading, double sin_heading);
+
+/// A frame's motion in the robot's own axes.
+struct FrameMotion {
+  double forward_m = 0.0;
+  double sideways_m = 0.0;
+  double turn_rad = 0.0;
+};
+
+struct PlanarPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_rad = 0.0;  ///< not wrapped
+
+  void move(const FrameMotion& motion);
+};
+
+/// Motion from track speeds by two constants: what a network is compared with. No slip: a share of
+/// 1 and the real tread.
+struct SkidKinematics {
+  double speed_share = 1.0;  ///< of the tracks' mean speed
+  double tread_m = 0.127;    ///< that turns as much as the robot does
+
+  FrameMotion motion(double left_m_per_s, double right_m_per_s) const;
+};
+
+class Surrogate {
+ public:
+  enum class Arithmetic : std::uint8_t {
+    kInteger,  ///< that of the robot, batched
+    kFloat,    ///< the network as it was trained, for comparison; slow
+  };
+
+  /// Throws InputError when an input or output of the model is not known here, or when the network
+  /// in floating point is asked for and not in the model.
+  Surrogate(const Model& model, const SupportGeometry& geometry, std::size_t robots,
+            Arithmetic arithmetic = Arithmetic::kInteger,
+            std::optional<BatchKernel> kernel = std::nullopt);
+  Surrogate(const SkidKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots);
+
+  std::size_t robots() const { return robots_; }
+
+  /// Puts a robot somewhere with what it has just done: the last frame's motion and the one before.
+  void place(std::size_t robot, const PlanarPose& pose, const FrameMotion& last = {},
+             const FrameMotion& before_last = {});
+  void set_soil(std::size_t robot, const SoilParameters& soil);
+  /// The speeds of its tracks before the first frame.
+  void set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s);
+
+  /// One frame of all robots; the speeds their tracks have at its end, a number a robot. Robots do
+  /// not feel each other.
+  void step(const HeightField& ground, std::span<const double> left_m_per_s,
+            std::span<const double> right_m_per_s);
+
+  /// The same, all robots on ground of this inclination.
+  void step_on_slope(double pitch, double roll, std::span<const double> left_m_per_s,
+                     std::span<const double> right_m_per_s);
+
+  PlanarPose pose(std::size_t robot) const { return {x_[robot], y_[robot], heading_[robot]}; }
+  /// Of the last frame.
+  FrameMotion motion(std::size_t robot) const {
+    return {row(Signal::kForward1)[robot], row(Signal::kSideways1)[robot],
+            row(Signal::kTurn1)[robot]};
+  }
+  /// The ground's inclination that the last frame felt.
+  double pitch(std::size_t robot) const { return row(Signal::kPitch)[robot]; }
+  double roll(std::size_t robot) const { return row(Signal::kRoll)[robot]; }
+
+ private:
+  enum class Output : std::uint8_t { kForward, kSideways, kTurn, kWay };
+  struct Channel {
+    std::size_t row;  ///< signal, or Output
+    double scale;     ///< activation = value * scale + offset, in steps of 2^-15
+    double offset;
+    double half_range;
+    double middle;
+    std::optional<std::size_t> baseline;  ///< row of a signal
+  };
+  struct Network {
+    BatchNetwork batch;
+    std::vector<Channel> inputs;
+    std::vector<Channel> outputs;
+    std::vector<FloatLayer> trained;
+  };
+
+  double* row(Signal signal) { return &signals_[row_of(signal) * robots_]; }
+  const double* row(Signal signal) const { return &signals_[row_of(signal) * robots_]; }
+  void feel_tracks(std::span<const double> left_m_per_s, std::span<const double> right_m_per_s);
+  void feel_ground(const HeightField& ground);
+  void answer();
+  void foretell(const Network& network);
+  void foretell_in_float(const Network& network);
+  void take(const Channel& channel, const std::int16_t* activations);
+  void move();
+
+  SupportGeometry geometry_;
+  std::size_t robots_;
+  Arithmetic arithmetic_ = Arithmetic::kInteger;
+  std::optional<SkidKinematics> kinematics_;
+  std::vector<Network> networks_;
+  std::vector<double> signals_;  ///< kSignals rows
+  std::vector<double> x_;
+  std::vector<double> y_;
+  std::vector<double> heading_;
+  std::vector<double> cos_;
+  std::vector<double> sin_;
+  std::array<std::vector<double>, 3> motion_;  ///< the new frame's: forward, sideways, turn
+  std::vector<std::int16_t> in_;
+  std::vector<std::int16_t> out_;
+};
+
+}  // namespace screed::nn

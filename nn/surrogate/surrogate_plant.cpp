@@ -1,0 +1,243 @@
+#include "nn/surrogate/surrogate_plant.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "hal/sample.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/vehicle/ode_world.h"
+#include "host_sim/vehicle/vehicle.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr double kFrame_s = 1.0 / kTickRate_hz;
+// Fitted to motor currents on four soils (docs/networks.md): what the ground takes from a track, as
+// shares of the weight it bears, while driving and while the robot is turned on the spot.
+constexpr double kRollingShare = 0.03;
+constexpr double kTurningShare = 0.11;
+constexpr double kRollingSpeed_m_per_s = 0.01;  // at which they are felt in full
+constexpr double kTurningRate_rad_per_s = 0.3;
+// Of wheels and track, and what of the robot's mass a track feels when it speeds up.
+constexpr double kTurnedInertia_kg_m2 = 1.8e-4;
+// A track bridges what four points of the ground feel: share of the way to the new stance that the
+// body goes in a frame.
+constexpr double kStanceShare = 0.3;
+
+Surrogate for_one(const Model& network) {
+  return {network, SupportGeometry{}, 1};
+}
+
+int64_t beds_off(double coordinate, double size) {
+  return static_cast<int64_t>(std::floor(coordinate / size + 0.5));
+}
+
+}  // namespace
+
+SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
+                               const PlantOptions& options, const Model& network)
+    : SurrogatePlant(std::move(terrain), model, options, for_one(network)) {}
+
+SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
+                               const PlantOptions& options, Surrogate robot)
+    : ground_(std::move(terrain)),
+      imu_position_(Eigen::Vector3d::Zero()),
+      robot_(std::move(robot)),
+      shafts_{DriveShaft(options.vehicle.motor, 1, kTurnedInertia_kg_m2),
+              DriveShaft(options.vehicle.motor, 1, kTurnedInertia_kg_m2)},
+      battery_(options.battery),
+      vehicle_(*this) {
+  if (!options.soil.has_value()) {
+    throw InputError(
+        "the surrogate world knows soil alone: [map] model = scm, or another --hal than surrogate");
+  }
+  if (!options.vehicle.tracks || options.vehicle.track_model != TrackModel::kBelt) {
+    throw InputError(
+        "the surrogate world knows tracks alone: [vehicle] tracks = true and track_model = belt, "
+        "or another --hal than surrogate");
+  }
+  // Bodies that are never stepped: their measures are wanted.
+  OdeWorld world;
+  const Vehicle bodies(world, model, options.vehicle);
+  const HeightField level = HeightField::flat(1.0, 0.5);
+  standing_height_m_ = bodies.resting_height(level, 0.0, 0.0, Eigen::Matrix3d::Identity());
+  tread_m_ = bodies.tread_m();
+  mass_kg_ = bodies.mass_kg();
+  geometry_.wheel_radius_m = bodies.wheel_radius_m(kLeft);
+  const int imu = model.body_index("Imu");
+  if (imu >= 0) imu_position_ = model.bodies[static_cast<size_t>(imu)].pose.translation();
+
+  robot_.set_soil(0, *options.soil);
+  DrivingState start;
+  start.pose = {options.start.x_m, options.start.y_m, options.start.attitude.heading};
+  start.battery = options.battery;
+  set_state(start);
+}
+
+void SurrogatePlant::set_state(const DrivingState& state) {
+  robot_.place(0, state.pose, state.last, state.before_last);
+  robot_.set_tracks(0, state.track_speed_m_per_s[kLeft], state.track_speed_m_per_s[kRight]);
+  for (const Side side : {kLeft, kRight}) {
+    const auto i = static_cast<size_t>(side);
+    shafts_[i].spin(state.track_speed_m_per_s[i] / geometry_.wheel_radius_m);
+    angle_offset_rad_[i] = state.shaft_angle_rad[i] - shafts_[i].angle_rad();
+  }
+  battery_ = state.battery;
+  now_ = stance_on_ground();
+  before_ = now_;
+  const double c = std::cos(state.pose.heading_rad);
+  const double s = std::sin(state.pose.heading_rad);
+  velocity_ << (state.last.forward_m * c - state.last.sideways_m * s) / kFrame_s,
+      (state.last.forward_m * s + state.last.sideways_m * c) / kFrame_s, 0.0;
+  imu_velocity_ = velocity_;
+  imu_velocity_before_ = velocity_;
+  rate_body_ << 0.0, 0.0, state.last.turn_rad / kFrame_s;
+  beds_passed_ = {0, 0};
+  if (ground_.wrap()) {
+    beds_passed_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
+                    beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
+  }
+}
+
+double SurrogatePlant::resistance(Side side) const {
+  const double weight = 0.5 * mass_kg_ * kGravity_m_per_s2;
+  const double speed = vehicle_.track_speed_m_per_s(side);
+  const double turn =
+      (vehicle_.track_speed_m_per_s(kRight) - vehicle_.track_speed_m_per_s(kLeft)) / tread_m_;
+  const double against_turn = side == kRight ? 1.0 : -1.0;
+  const double force =
+      weight *
+      (std::sin(now_.attitude.pitch) + kRollingShare * std::tanh(speed / kRollingSpeed_m_per_s) +
+       kTurningShare * against_turn * std::tanh(turn / kTurningRate_rad_per_s));
+  return force * geometry_.wheel_radius_m;
+}
+
+void SurrogatePlant::step(const std::array<double, 2>& share) {
+  constexpr double kStep_s = kFrame_s / kStepsPerTick;
+  double current = 0.0;
+  for (const Side side : {kLeft, kRight}) {
+    const auto i = static_cast<size_t>(side);
+    current += std::max(0.0, share[i] * shafts_[i].current_a());
+  }
+  const std::array<double, 2> torque = {-resistance(kLeft), -resistance(kRight)};
+  for (size_t i = 0; i < shafts_.size(); ++i) {
+    // On a slope a braked track stands: what the ground takes is friction as well.
+    shafts_[i].step(share[i] * battery_.terminal_v, on_side_ ? 0.0 : torque[i], kStep_s);
+  }
+  battery_.step(current, kStep_s);
+  ++steps_;
+  if (steps_ % kStepsPerTick == 0) end_frame();
+}
+
+SurrogatePlant::Stance SurrogatePlant::stance_on_ground() const {
+  const PlanarPose pose = robot_.pose(0);
+  const Support support = support_at(ground_, geometry_, pose.x_m, pose.y_m,
+                                     std::cos(pose.heading_rad), std::sin(pose.heading_rad));
+  return {{support.roll, support.pitch, pose.heading_rad},
+          {pose.x_m, pose.y_m, support.height_m + standing_height_m_}};
+}
+
+void SurrogatePlant::stand_still() {
+  before_ = now_;
+  velocity_.setZero();
+  imu_velocity_before_.setZero();
+  imu_velocity_.setZero();
+  rate_body_.setZero();
+}
+
+void SurrogatePlant::end_frame() {
+  if (on_side_) {
+    stand_still();
+    return;
+  }
+  const double left = vehicle_.track_speed_m_per_s(kLeft);
+  const double right = vehicle_.track_speed_m_per_s(kRight);
+  robot_.step(ground_, {&left, 1}, {&right, 1});
+
+  before_ = now_;
+  now_ = stance_on_ground();
+  const auto part = [](double from, double to) { return from + kStanceShare * (to - from); };
+  now_.attitude.pitch = part(before_.attitude.pitch, now_.attitude.pitch);
+  now_.attitude.roll = part(before_.attitude.roll, now_.attitude.roll);
+  now_.place.z() = part(before_.place.z(), now_.place.z());
+
+  const Eigen::Matrix3d from = rotation_from(before_.attitude);
+  const Eigen::Matrix3d to = rotation_from(now_.attitude);
+  const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * to));
+  rate_body_ = turned.angle() / kFrame_s * turned.axis();
+  velocity_ = (now_.place - before_.place) / kFrame_s;
+  imu_velocity_before_ = imu_velocity_;
+  imu_velocity_ = velocity_ + (to - from) * imu_position_ / kFrame_s;
+  if (ground_.wrap()) {
+    beds_passed_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
+                    beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
+  }
+}
+
+double SurrogatePlant::time_s() const {
+  return static_cast<double>(steps_) / (kStepsPerTick * static_cast<double>(kTickRate_hz));
+}
+
+ImuTruth SurrogatePlant::motion() const {
+  ImuTruth truth;
+  truth.body_to_world = rotation_from(now_.attitude);
+  truth.mean_rate_rad_per_s = rate_body_;
+  truth.mean_specific_force =
+      truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kFrame_s +
+                                         kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
+  truth.altitude_m = now_.place.z();
+  return truth;
+}
+
+void SurrogatePlant::lay_on_side() {
+  on_side_ = true;
+  now_.attitude.roll = -std::numbers::pi / 2.0;
+  now_.attitude.pitch = 0.0;
+  stand_still();
+}
+
+Eigen::Vector3d SurrogatePlant::place_travelled() const {
+  return now_.place;
+}
+
+ChassisState SurrogatePlant::Body::chassis() const {
+  ChassisState state;
+  state.pose.linear() = rotation_from(plant_.now_.attitude);
+  state.pose.translation() = plant_.now_.place;
+  if (plant_.ground_.wrap()) {
+    const HeightField& ground = plant_.ground_;
+    state.pose.translation().x() -=
+        static_cast<double>(plant_.beds_passed_[0]) * (ground.x_max() - ground.x_min());
+    state.pose.translation().y() -=
+        static_cast<double>(plant_.beds_passed_[1]) * (ground.y_max() - ground.y_min());
+  }
+  state.velocity = plant_.velocity_;
+  state.omega_body = plant_.rate_body_;
+  return state;
+}
+
+double SurrogatePlant::Body::track_speed_m_per_s(Side side) const {
+  return plant_.shafts_[static_cast<size_t>(side)].omega_rad_per_s() *
+         plant_.geometry_.wheel_radius_m;
+}
+double SurrogatePlant::Body::shaft_angle_rad(Side side) const {
+  const auto i = static_cast<size_t>(side);
+  return plant_.shafts_[i].angle_rad() + plant_.angle_offset_rad_[i];
+}
+double SurrogatePlant::Body::current_a(Side side) const {
+  return plant_.shafts_[static_cast<size_t>(side)].current_a();
+}
+double SurrogatePlant::Body::wheel_radius_m(Side /*side*/) const {
+  return plant_.geometry_.wheel_radius_m;
+}
+double SurrogatePlant::Body::load_n(Side /*side*/) const {
+  return plant_.on_side_ ? 0.0 : 0.5 * plant_.mass_kg_ * kGravity_m_per_s2;
+}
+double SurrogatePlant::Body::ground_speed_m_per_s(Side side) const {
+  const Eigen::Matrix3d rotation = rotation_from(plant_.now_.attitude);
+  const double arm = (side == kLeft ? 0.5 : -0.5) * plant_.tread_m_;
+  return rotation.col(0).dot(plant_.velocity_) - plant_.rate_body_.z() * arm;
+}
+
+}  // namespace screed::nn

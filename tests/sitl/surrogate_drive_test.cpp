@@ -1,0 +1,132 @@
+// The firmware drives in a world where a network stands in for the physics, and notices nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "host_sim/core/errors.h"
+#include "nn/surrogate/surrogate_plant.h"
+#include "tests/sitl/program.h"
+#include "tests/sitl/test_drive.h"
+
+namespace screed {
+namespace {
+
+using testing::drive_parameters;
+using testing::rover5;
+
+WorldOptions on_soil() {
+  WorldOptions options;
+  options.soil = soil_preset("viper");
+  return options;
+}
+
+std::unique_ptr<nn::SurrogatePlant> plant_of(HeightField ground, const WorldOptions& options,
+                                             const nn::SkidKinematics& kinematics = {}) {
+  return std::make_unique<nn::SurrogatePlant>(std::move(ground), rover5(), options,
+                                              nn::Surrogate(kinematics, nn::SupportGeometry{}, 1));
+}
+
+struct SurrogateDrive {
+  SurrogateDrive(HeightField ground, const WorldOptions& options)
+      : world(plant_of(std::move(ground), options), kBoard, options, nullptr),
+        robot(kBoard, drive_parameters(), credentials_of(test_key())) {}
+
+  void run(double seconds) {
+    for (int64_t i = 0; i < std::lround(seconds * kTickRate_hz); ++i) {
+      world.advance();
+      robot.tick(world.sample(), output);
+      world.apply(output);
+    }
+  }
+  Eigen::Vector3d place() const { return world.plant().place_travelled(); }
+
+  World world;
+  Robot robot;
+  RobotOutput output{};
+};
+
+TEST(SurrogateDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
+  WorldOptions options = on_soil();
+  options.drive = DriveOrder{0.1, 0.0};
+  SurrogateDrive drive(HeightField::flat(20.0, 0.1), options);
+  drive.run(8.0);
+  ASSERT_TRUE(drive.robot.supervisor().running());
+  const Eigen::Vector3d begin = drive.place();
+  drive.run(10.0);
+  EXPECT_NEAR((drive.place() - begin).norm(), 1.0, 0.02);
+  EXPECT_NEAR(drive.robot.odometry().x_mm() * 1e-3, drive.place().x(), 0.1);
+  EXPECT_EQ(drive.robot.supervisor().faults(), 0);
+}
+
+TEST(SurrogateDrive, FirmwareTurnsAtTheCommandedRateAndSensorsFeelTheSlope) {
+  WorldOptions options = on_soil();
+  options.drive = DriveOrder{0.0, 30.0};
+  SurrogateDrive drive(HeightField::ramp(20.0, 0.1, 6.0), options);
+  drive.run(8.0);
+  const double before = attitude_of(drive.world.vehicle().chassis().pose.linear()).heading;
+  drive.run(2.0);
+  const double after = attitude_of(drive.world.vehicle().chassis().pose.linear()).heading;
+  constexpr double kRadPerDeg = 3.141592653589793 / 180.0;
+  EXPECT_NEAR(std::remainder(after - before, 360.0 * kRadPerDeg), 60.0 * kRadPerDeg,
+              4.0 * kRadPerDeg);
+  const Attitude truth = attitude_of(drive.world.vehicle().chassis().pose.linear());
+  EXPECT_NEAR(drive.robot.attitude().pitch() * 3.141592653589793 / 32768.0, truth.pitch,
+              2.0 * kRadPerDeg);
+  EXPECT_NEAR(drive.robot.attitude().roll() * 3.141592653589793 / 32768.0, truth.roll,
+              2.0 * kRadPerDeg);
+}
+
+TEST(SurrogateDrive, WrapsAroundAndKeepsTheWayMade) {
+  WorldOptions options = on_soil();
+  options.drive = DriveOrder{0.2, 0.0};
+  SurrogateDrive drive(
+      HeightField::from_function(32, 32, 0.05, true, [](double, double) { return 0.0; }), options);
+  drive.run(20.0);
+  EXPECT_GT(drive.place().x(), 1.6);
+  EXPECT_GT(drive.world.plant().beds_passed()[0], 0);
+  EXPECT_LT(std::abs(drive.world.vehicle().chassis().pose.translation().x()), 0.81);
+}
+
+TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {
+  WorldOptions options = on_soil();
+  options.drive = DriveOrder{0.1, 0.0};
+  SurrogateDrive drive(HeightField::flat(20.0, 0.1), options);
+  drive.run(8.0);
+  drive.world.lay_on_side();
+  const Eigen::Vector3d begin = drive.place();
+  drive.run(3.0);
+  EXPECT_NE(drive.robot.supervisor().faults(), 0);
+  EXPECT_EQ((drive.place() - begin).norm(), 0.0);
+}
+
+TEST(SurrogateDrive, OnlyTracksOnSoil) {
+  WorldOptions rigid = on_soil();
+  rigid.soil.reset();
+  EXPECT_THROW(plant_of(HeightField::flat(2.0, 0.1), rigid), InputError);
+  WorldOptions wheels = on_soil();
+  wheels.vehicle.tracks = false;
+  EXPECT_THROW(plant_of(HeightField::flat(2.0, 0.1), wheels), InputError);
+}
+
+using Surrogate = testing::Program;
+
+TEST_F(Surrogate, RunsRecordsAndReplaysAndTheSameSeedGivesTheSameHash) {
+  write("e.ini",
+        "[map]\nmodel = scm\nsize = 4\n[experiment]\nname = e\nalgorithm = drive\nduration = 12\n");
+  const testing::Result a = run("sim e.ini --hal surrogate --quiet --out a");
+  const testing::Result b = run("sim e.ini --hal surrogate --quiet --out b");
+  ASSERT_EQ(a.exit_code, 0) << a.err;
+  EXPECT_EQ(a.out.substr(a.out.find(' ')), b.out.substr(b.out.find(' ')));
+  const testing::Result replay = run("replay a");
+  EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
+}
+
+TEST_F(Surrogate, RefusesRigidGroundAndAForeignModel) {
+  write("e.ini", "[experiment]\nname = e\nduration = 1\n");
+  expect_refused(run("sim e.ini --hal surrogate"), 2, {"soil", "scm"});
+  expect_refused(run("sim e.ini --model x.json"), 2, {"--model", "--hal surrogate"});
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,214 @@
+// Robots whose motion is foretold: kinematics against closed forms, and many at once against one by
+// one.
+#include "nn/surrogate/surrogate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/core/random.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr double kHalf = 1.0 / 65536.0;  // of an activation's step
+
+HeightField hills() {
+  return HeightField::from_function(64, 64, 0.04, true, [](double x, double y) {
+    return 0.02 * std::sin(x * 2.0 * std::numbers::pi / 2.56) *
+           std::cos(y * 4.0 * std::numbers::pi / 2.56);
+  });
+}
+
+ModelChannel channel(const char* feature, double half_range, const char* baseline = "") {
+  return {feature, 0.0, half_range, baseline};
+}
+
+/// y = W x + b.
+Model linear_model(std::vector<ModelChannel> inputs, std::vector<ModelChannel> outputs,
+                   std::vector<double> weights, std::vector<double> bias) {
+  const std::vector<FloatLayer> layers = {
+      {inputs.size(), outputs.size(), true, std::move(weights), std::move(bias)}};
+  Model model;
+  model.name = "linear";
+  model.networks.push_back({std::move(inputs), std::move(outputs), quantise(layers), layers, {}});
+  return model;
+}
+
+Model random_model() {
+  WorldRandom random(5, "random model");
+  std::vector<ModelChannel> inputs;
+  for (const SignalInfo& info : signals()) inputs.push_back(channel(info.name, 0.3));
+  inputs[row_of(Signal::kSoilStiffness)].middle = 6.0;
+  std::vector<FloatLayer> layers;
+  const std::vector<std::size_t> widths = {kSignals, 12, 3};
+  for (std::size_t i = 1; i < widths.size(); ++i) {
+    FloatLayer layer{widths[i - 1], widths[i], i == 2, {}, {}};
+    for (std::size_t n = 0; n < layer.inputs * layer.outputs; ++n) {
+      layer.weights.push_back(random.uniform(-0.7, 0.7));
+    }
+    for (std::size_t n = 0; n < layer.outputs; ++n) layer.bias.push_back(random.uniform(-0.3, 0.3));
+    layers.push_back(layer);
+  }
+  Model model;
+  model.name = "random";
+  model.networks.push_back({inputs,
+                            {channel("forward", 0.002, "forward@1"), channel("sideways", 0.001),
+                             channel("delta_theta", 0.02, "delta_theta@2")},
+                            quantise(layers),
+                            layers,
+                            {}});
+  return model;
+}
+
+TEST(Surrogate, FeelsTheInclinationOfAPlane) {
+  const double rise = std::tan(7.0 * std::numbers::pi / 180.0);
+  const HeightField ramp = HeightField::ramp(4.0, 0.05, 7.0);
+  const SupportGeometry geometry;
+  for (const double heading : {0.0, 0.5, 2.0, -2.5}) {
+    const Support support =
+        support_at(ramp, geometry, 0.31, -0.2, std::cos(heading), std::sin(heading));
+    EXPECT_NEAR(support.pitch, std::atan(rise * std::cos(heading)), 1e-6);
+    EXPECT_NEAR(support.roll, std::atan(-rise * std::sin(heading)), 1e-6);
+    EXPECT_NEAR(support.height_m, 0.31 * rise, 1e-6);
+  }
+}
+
+TEST(Surrogate, WithoutSlipDrivesTheArcOfItsTracks) {
+  const HeightField ground = HeightField::flat(10.0, 0.1);
+  Surrogate robot(SkidKinematics{}, SupportGeometry{}, 1);
+  robot.place(0, {1.0, 2.0, 0.7});
+  const double left = 0.1;
+  const double right = 0.14;
+  constexpr int kFrames = 500;
+  for (int i = 0; i < kFrames; ++i) robot.step(ground, {&left, 1}, {&right, 1});
+  // Chords of a circle.
+  const double chord = 0.0012;
+  const double turn = 0.04 / 0.127 * 0.01;
+  const double way = chord * std::sin(kFrames * turn / 2.0) / std::sin(turn / 2.0);
+  const double towards = 0.7 + kFrames * turn / 2.0;
+  EXPECT_NEAR(robot.pose(0).x_m, 1.0 + way * std::cos(towards), 1e-12);
+  EXPECT_NEAR(robot.pose(0).y_m, 2.0 + way * std::sin(towards), 1e-12);
+  EXPECT_NEAR(robot.pose(0).heading_rad, 0.7 + kFrames * turn, 1e-12);
+}
+
+TEST(Surrogate, TakesWaySidewaysAndTurnFromTheNetwork) {
+  // forward = 0.008 m/s of 0.5 (left + right), sideways = 0.1 roll a frame, turn grows by 0.001.
+  const Model model =
+      linear_model({channel("track_left", 0.3), channel("track_right", 0.3), channel("roll", 0.2)},
+                   {channel("forward", 0.01), channel("sideways", 0.01),
+                    channel("delta_theta", 0.01, "delta_theta@1")},
+                   {0.12, 0.12, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.1});
+  const HeightField ramp = HeightField::ramp(4.0, 0.05, 5.0);
+  Surrogate robot(model, SupportGeometry{}, 1);
+  robot.place(0, {0.0, 0.0, -std::numbers::pi / 2.0});  // the slope rises to its left
+  const double left = 0.1;
+  const double right = 0.2;
+  robot.step(ramp, {&left, 1}, {&right, 1});
+  const double roll = 5.0 * std::numbers::pi / 180.0;
+  EXPECT_NEAR(robot.roll(0), roll, 1e-6);
+  EXPECT_NEAR(robot.motion(0).forward_m, 0.0012, 0.01 * 4 * kHalf);
+  EXPECT_NEAR(robot.motion(0).sideways_m, 0.025 * roll, 0.01 * 4 * kHalf);
+  EXPECT_NEAR(robot.motion(0).turn_rad, 0.001, 0.01 * 4 * kHalf);
+  robot.step(ramp, {&left, 1}, {&right, 1});
+  EXPECT_NEAR(robot.motion(0).turn_rad, 0.002, 0.01 * 8 * kHalf);
+}
+
+TEST(Surrogate, GivesAWayWithoutSignThatOfTheTracks) {
+  const Model model =
+      linear_model({channel("v_left", 10.0)}, {channel("v", 0.01), channel("delta_theta", 0.01)},
+                   {0.0, 0.0}, {0.25, 0.0});
+  const HeightField ground = HeightField::flat(4.0, 0.1);
+  Surrogate robot(model, SupportGeometry{}, 1);
+  const double back = -0.1;
+  const double ahead = 0.1;
+  robot.step(ground, {&back, 1}, {&back, 1});
+  EXPECT_NEAR(robot.motion(0).forward_m, -0.0025, 1e-6);
+  robot.step(ground, {&ahead, 1}, {&ahead, 1});
+  EXPECT_NEAR(robot.motion(0).forward_m, 0.0025, 1e-6);
+}
+
+TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
+  const Model model = random_model();
+  const HeightField ground = hills();
+  constexpr std::size_t kRobots = 67;  // blocks of 16 and 32, and a rest
+  constexpr int kFrames = 40;
+  WorldRandom random(9, "robots");
+  std::vector<PlanarPose> places;
+  std::vector<double> left;
+  std::vector<double> right;
+  for (std::size_t i = 0; i < kRobots; ++i) {
+    places.push_back(
+        {random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), random.uniform(-7.0, 7.0)});
+    left.push_back(random.uniform(-0.25, 0.25));
+    right.push_back(random.uniform(-0.25, 0.25));
+  }
+  const auto soil = [](std::size_t i) { return soil_presets()[i % soil_presets().size()]; };
+  std::vector<PlanarPose> alone;
+  for (std::size_t i = 0; i < kRobots; ++i) {
+    Surrogate robot(model, SupportGeometry{}, 1, Surrogate::Arithmetic::kInteger,
+                    BatchKernel::kScalar);
+    robot.place(0, places[i]);
+    robot.set_soil(0, soil(i));
+    for (int frame = 0; frame < kFrames; ++frame) {
+      robot.step(ground, {&left[i], 1}, {&right[i], 1});
+    }
+    alone.push_back(robot.pose(0));
+  }
+  for (const BatchKernel kernel : batch_kernels()) {
+    Surrogate robots(model, SupportGeometry{}, kRobots, Surrogate::Arithmetic::kInteger, kernel);
+    for (std::size_t i = 0; i < kRobots; ++i) {
+      robots.place(i, places[i]);
+      robots.set_soil(i, soil(i));
+    }
+    for (int frame = 0; frame < kFrames; ++frame) robots.step(ground, left, right);
+    for (std::size_t i = 0; i < kRobots; ++i) {
+      ASSERT_EQ(robots.pose(i).x_m, alone[i].x_m) << batch_kernel_name(kernel) << " " << i;
+      ASSERT_EQ(robots.pose(i).y_m, alone[i].y_m);
+      ASSERT_EQ(robots.pose(i).heading_rad, alone[i].heading_rad);
+    }
+  }
+}
+
+TEST(Surrogate, IntegersFollowTheFloatingNetwork) {
+  const Model model = random_model();
+  const HeightField ground = hills();
+  Surrogate integers(model, SupportGeometry{}, 1);
+  Surrogate floating(model, SupportGeometry{}, 1, Surrogate::Arithmetic::kFloat);
+  for (Surrogate* robot : {&integers, &floating}) robot->set_soil(0, soil_preset("viper"));
+  const double left = 0.12;
+  const double right = 0.1;
+  for (int frame = 0; frame < 5; ++frame) {
+    integers.step(ground, {&left, 1}, {&right, 1});
+    floating.step(ground, {&left, 1}, {&right, 1});
+    EXPECT_NEAR(integers.motion(0).forward_m, floating.motion(0).forward_m, 1e-5);
+    EXPECT_NEAR(integers.motion(0).turn_rad, floating.motion(0).turn_rad, 1e-4);
+  }
+}
+
+TEST(Surrogate, RefusesWhatItDoesNotKnow) {
+  const SupportGeometry geometry;
+  const auto make = [&](const Model& model, Surrogate::Arithmetic arithmetic) {
+    return Surrogate(model, geometry, 1, arithmetic);
+  };
+  const Model input =
+      linear_model({channel("colour", 1.0)}, {channel("forward", 1.0), channel("delta_theta", 1.0)},
+                   {0.0, 0.0}, {0.0, 0.0});
+  EXPECT_THROW(make(input, Surrogate::Arithmetic::kInteger), InputError);
+  const Model output =
+      linear_model({channel("pitch", 1.0)}, {channel("delta_x", 1.0)}, {0.0}, {0.0});
+  EXPECT_THROW(make(output, Surrogate::Arithmetic::kInteger), InputError);
+  const Model half = linear_model({channel("pitch", 1.0)}, {channel("forward", 1.0)}, {0.0}, {0.0});
+  EXPECT_THROW(make(half, Surrogate::Arithmetic::kInteger), InputError);
+  Model integers =
+      linear_model({channel("pitch", 1.0)}, {channel("forward", 1.0), channel("delta_theta", 1.0)},
+                   {0.0, 0.0}, {0.0, 0.0});
+  integers.networks[0].trained.clear();
+  EXPECT_NO_THROW(make(integers, Surrogate::Arithmetic::kInteger));
+  EXPECT_THROW(make(integers, Surrogate::Arithmetic::kFloat), InputError);
+}
+
+}  // namespace
+}  // namespace screed::nn

@@ -1,0 +1,45 @@
+// A frame of a robot in the surrogate world: pitch and roll from the height map, the network, the
+// pose. Thesis 6.4: 285 us (Alexi V1) and 22,500 us (V2).
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "host_sim/core/random.h"
+#include "nn/model/model_file.h"
+#include "nn/surrogate/default_model.h"
+#include "nn/surrogate/surrogate.h"
+
+namespace screed {
+namespace {
+
+/// So many robots, spread over a bed of 10 m with 512 x 512 nodes.
+void surrogate_frame(benchmark::State& state) {
+  const auto robots = static_cast<std::size_t>(state.range(0));
+  const nn::Model model = nn::read_model(nn::default_model_file());
+  const HeightField ground = HeightField::from_function(
+      512, 512, 0.02, true,
+      [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });
+  nn::Surrogate surrogate(model, nn::SupportGeometry{}, robots);
+  WorldRandom random(1, "bench");
+  std::vector<double> left;
+  std::vector<double> right;
+  for (std::size_t i = 0; i < robots; ++i) {
+    surrogate.place(
+        i, {random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-3.0, 3.0)});
+    surrogate.set_soil(i, soil_preset("viper"));
+    left.push_back(random.uniform(0.05, 0.2));
+    right.push_back(random.uniform(0.05, 0.2));
+  }
+  while (state.KeepRunning()) {
+    surrogate.step(ground, left, right);
+    benchmark::ClobberMemory();
+  }
+  state.counters["s_per_robot_frame"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(robots),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(surrogate_frame)->Arg(1)->Arg(32)->Arg(1024);
+
+}  // namespace
+}  // namespace screed

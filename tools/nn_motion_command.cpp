@@ -1,0 +1,297 @@
+#include "tools/nn_motion_command.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/picture/line_chart.h"
+#include "nn/model/model_file.h"
+#include "nn/surrogate/default_model.h"
+#include "nn/surrogate/rollout.h"
+#include "nn/training/motion_configuration.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPercent = 100.0;
+constexpr double kDegrees = 57.29577951308232;
+constexpr std::size_t kProgressSteps = 250;
+
+struct MotionArguments {
+  std::string configuration;
+  std::string sessions = "out/sessions";
+  std::string out;
+  std::optional<std::uint64_t> steps;
+};
+
+void print_r2(const char* what, const std::array<double, 3>& r2) {
+  std::printf("  %-34s %10.4f %10.4f %10.4f\n", what, r2[0], r2[1], r2[2]);
+}
+
+int run_motion(const MotionArguments& arguments) {
+  nn::MotionConfiguration configuration = nn::read_motion_configuration(arguments.configuration);
+  if (arguments.steps.has_value()) configuration.training.steps = *arguments.steps;
+  const std::vector<nn::MotionSeries> train =
+      nn::read_motion_sessions(arguments.sessions, configuration.train);
+  const std::vector<nn::MotionSeries> test =
+      nn::read_motion_sessions(arguments.sessions, configuration.test);
+  std::size_t frames = 0;
+  for (const nn::MotionSeries& one : train) frames += one.frames.size();
+  std::printf("%s: %zu sessions, %zu frames\n", configuration.name.c_str(), train.size(), frames);
+
+  nn::MotionTrainer trainer(configuration.training);
+  double loss = 0.0;
+  for (std::size_t step = 1; step <= configuration.training.steps; ++step) {
+    loss += trainer.step(train) / kProgressSteps;
+    if (step % kProgressSteps == 0) {
+      std::printf("  step %6zu   mean loss %.5f\n", step, loss);
+      std::fflush(stdout);
+      loss = 0.0;
+    }
+  }
+  const nn::Model model = nn::motion_model(configuration, trainer, train);
+  nn::write_model(arguments.out, model);
+  std::printf("\n  %-34s %10s %10s %10s\n", "R2 of one frame, unsmoothed", "forward", "sideways",
+              "turn");
+  for (const nn::MotionSeries& one : test) {
+    print_r2(one.source.c_str(), nn::one_frame_r2(model, one));
+    print_r2("  as in the frame before", nn::unchanged_r2(one));
+  }
+  std::printf("\n  model         %s\n", arguments.out.c_str());
+  return 0;
+}
+
+struct RolloutArguments {
+  std::vector<std::string> sessions;
+  std::vector<std::string> models;
+  std::vector<std::string> fit;
+  std::size_t starts = 20;
+  std::string drive = "firmware";
+  std::string out;
+};
+
+struct Column {
+  std::vector<double> place;
+  std::vector<double> heading;
+};
+
+/// Errors of all rollouts of a stand-in after one of the ways: of straight ways, or of others.
+Column column_of(const std::vector<nn::SessionRollouts>& all, std::size_t stand_in, std::size_t way,
+                 bool straight) {
+  Column column;
+  for (const nn::SessionRollouts& session : all) {
+    for (const nn::Rollout& rollout : session.by_stand_in[stand_in]) {
+      const nn::RolloutCheck& check = rollout.checks.at(way);
+      if (!check.reached || check.straight != straight) continue;
+      column.place.push_back(kPercent * check.place_error);
+      column.heading.push_back(kDegrees * check.heading_error_rad);
+    }
+  }
+  return column;
+}
+
+void print_table(const std::vector<nn::SessionRollouts>& all,
+                 const std::vector<nn::StandIn>& stand_ins, bool straight) {
+  std::printf("  %-24s", straight ? "straight ways" : "ways with turns");
+  for (const double way : nn::kRolloutWays_m) std::printf(" | %26.0f m", way);
+  std::printf("\n  %-24s", "");
+  for (std::size_t i = 0; i < nn::kRolloutWays_m.size(); ++i) {
+    std::printf(" | %4s %7s %7s %7s", "n", "place", "p90", "head");
+  }
+  std::printf("\n");
+  for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+    std::printf("  %-24s", stand_ins[i].name.c_str());
+    for (std::size_t way = 0; way < nn::kRolloutWays_m.size(); ++way) {
+      const Column column = column_of(all, i, way, straight);
+      std::printf(" | %4zu %6.2f%% %6.2f%% %6.1f\u00b0", column.place.size(),
+                  nn::quantile(column.place, 0.5), nn::quantile(column.place, 0.9),
+                  nn::quantile(column.heading, 0.5));
+    }
+    std::printf("\n");
+  }
+}
+
+/// How far the integers lead from the numbers they were made from: distance of the robots at the
+/// end of every rollout's way, in per cent of it.
+void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t integers,
+                      std::size_t floats, const std::string& name) {
+  std::vector<double> apart;
+  for (const nn::SessionRollouts& session : all) {
+    for (std::size_t i = 0; i < session.real.size(); ++i) {
+      const auto& a = session.by_stand_in[integers][i].path;
+      const auto& b = session.by_stand_in[floats][i].path;
+      double way = 0.0;
+      for (std::size_t k = 1; k < a.size(); ++k) {
+        way += std::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
+      }
+      apart.push_back(kPercent *
+                      std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) / way);
+    }
+  }
+  std::printf("  %s, integers from floating point: median %.4f %%, p90 %.4f %% of the way\n",
+              name.c_str(), nn::quantile(apart, 0.5), nn::quantile(apart, 0.9));
+}
+
+void draw(const fs::path& folder, const nn::SessionRollouts& session,
+          const std::vector<nn::StandIn>& stand_ins, const std::string& drive) {
+  constexpr std::size_t kMostPictures = 3;
+  for (std::size_t i = 0; i < std::min(kMostPictures, session.real.size()); ++i) {
+    const std::size_t which =
+        i * session.real.size() / std::min(kMostPictures, session.real.size());
+    Chart chart;
+    chart.title = session.source + ", from frame " +
+                  std::to_string(session.by_stand_in[0][which].start) + ", " + drive + " drive";
+    chart.subtitle = "paths from above: the physics, and what stands in for it";
+    chart.x_label = "east, m";
+    chart.y_label = "north, m";
+    chart.from_zero = false;
+    const auto add = [&](const std::string& label, const std::vector<nn::PlanarPose>& path) {
+      ChartSeries series{label, {}, false};
+      for (const nn::PlanarPose& pose : path) series.points.push_back({pose.x_m, pose.y_m});
+      if (!series.points.empty()) chart.series.push_back(std::move(series));
+    };
+    add("physics", session.real[which]);
+    for (std::size_t s = 0; s < stand_ins.size(); ++s) {
+      add(stand_ins[s].name, session.by_stand_in[s][which].path);
+    }
+    const fs::path file =
+        folder / (session.source + "-" + drive + "-" + std::to_string(i + 1) + ".svg");
+    write_chart(file, chart);
+    std::printf("  %s\n", file.c_str());
+  }
+}
+
+int run_rollout(const RolloutArguments& arguments) {
+  nn::RolloutOptions options;
+  options.starts = arguments.starts;
+  options.drive =
+      arguments.drive == "tracks" ? nn::RolloutDrive::kTracks : nn::RolloutDrive::kFirmware;
+  const nn::SupportGeometry geometry;
+  std::vector<nn::StandIn> stand_ins = {
+      {"no slip", [=] { return nn::Surrogate(nn::SkidKinematics{}, geometry, 1); }}};
+  std::vector<nn::MotionSeries> fitted;
+  for (const std::string& folder : arguments.fit) {
+    fitted.push_back(nn::read_motion_series(folder));
+  }
+  if (!fitted.empty()) {
+    const nn::SkidKinematics kinematics = nn::fitted_kinematics(fitted);
+    std::printf("constant slip: %.3f of the tracks' speed, tread of %.3f m\n",
+                kinematics.speed_share, kinematics.tread_m);
+    stand_ins.push_back({"constant slip", [=] { return nn::Surrogate(kinematics, geometry, 1); }});
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;  // integers, floats
+  std::vector<std::string> models = arguments.models;
+  if (models.empty()) models.push_back(nn::default_model_file().string());
+  for (const std::string& file : models) {
+    const auto model = std::make_shared<const nn::Model>(nn::read_model(file));
+    stand_ins.push_back({model->name, [=] { return nn::Surrogate(*model, geometry, 1); }});
+    if (model->networks.front().trained.empty()) continue;
+    pairs.emplace_back(stand_ins.size() - 1, stand_ins.size());
+    stand_ins.push_back(
+        {model->name + ", floating",
+         [=] { return nn::Surrogate(*model, geometry, 1, nn::Surrogate::Arithmetic::kFloat); }});
+  }
+  std::vector<nn::SessionRollouts> all;
+  for (const std::string& folder : arguments.sessions) {
+    all.push_back(nn::roll_out(folder, stand_ins, options));
+    std::printf("\n%s, %s drive\n", all.back().source.c_str(), arguments.drive.c_str());
+    for (const bool straight : {true, false}) print_table({all.back()}, stand_ins, straight);
+  }
+  if (all.size() > 1) {
+    std::printf("\nall sessions\n");
+    for (const bool straight : {true, false}) print_table(all, stand_ins, straight);
+  }
+  std::printf("\n");
+  for (const auto& [integers, floats] : pairs) {
+    print_divergence(all, integers, floats, stand_ins[integers].name);
+  }
+  if (!arguments.out.empty()) {
+    fs::create_directories(arguments.out);
+    for (const nn::SessionRollouts& session : all) {
+      draw(arguments.out, session, stand_ins, arguments.drive);
+    }
+  }
+  return 0;
+}
+
+struct ApartArguments {
+  std::vector<std::string> sessions;
+};
+
+int run_apart(const ApartArguments& arguments) {
+  if (arguments.sessions.size() % 2 != 0) {
+    throw InputError("screed nn apart: an odd number of sessions; allowed are pairs");
+  }
+  nn::SessionRollouts pairs;
+  pairs.by_stand_in.resize(1);
+  for (std::size_t i = 0; i < arguments.sessions.size(); i += 2) {
+    pairs.by_stand_in[0].push_back(nn::apart(arguments.sessions[i], arguments.sessions[i + 1]));
+  }
+  for (const bool straight : {true, false}) {
+    print_table({pairs}, {{"physics", {}}}, straight);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
+  const std::vector<CLI::App*> there =
+      root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
+  CLI::App* nn = there.empty() ? nullptr : there.front();
+  if (nn == nullptr) {
+    nn = root.add_subcommand("nn", "Networks: from recorded sessions to the robot");
+    nn->require_subcommand(1);
+  }
+
+  auto motion = std::make_shared<MotionArguments>();
+  CLI::App* motion_command =
+      nn->add_subcommand("motion", "Train a network of motion on its own predictions");
+  motion_command->add_option("CONFIGURATION", motion->configuration, "a JSON file")->required();
+  motion_command->add_option("--sessions", motion->sessions, "folder with the recorded sessions")
+      ->capture_default_str();
+  motion_command->add_option("--steps", motion->steps, "in place of the configuration's");
+  motion_command->add_option("--out", motion->out, "the model file to write")->required();
+  motion_command->callback(
+      [motion, &action] { action = [motion] { return run_motion(*motion); }; });
+
+  auto rollout = std::make_shared<RolloutArguments>();
+  CLI::App* rollout_command =
+      nn->add_subcommand("rollout", "Let networks drive beside recorded physics, and compare");
+  rollout_command->add_option("SESSION", rollout->sessions, "run folders of screed record")
+      ->required();
+  rollout_command->add_option("--model", rollout->models,
+                              "model files; by default the one of screed sim --hal surrogate");
+  rollout_command->add_option("--fit", rollout->fit,
+                              "run folders that the constant slip is fitted to");
+  rollout_command->add_option("--starts", rollout->starts, "rollouts a session")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  rollout_command
+      ->add_option("--drive", rollout->drive,
+                   "firmware: it drives and feels the network's motion; tracks: they turn as "
+                   "recorded")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"firmware", "tracks"}));
+  rollout_command->add_option("--out", rollout->out, "folder for pictures of some paths");
+  rollout_command->callback(
+      [rollout, &action] { action = [rollout] { return run_rollout(*rollout); }; });
+
+  auto apart = std::make_shared<ApartArguments>();
+  CLI::App* apart_command = nn->add_subcommand(
+      "apart", "How far pairs of recorded sessions come apart: physics beside physics");
+  apart_command->add_option("SESSION", apart->sessions, "run folders of screed record, in pairs")
+      ->required();
+  apart_command->callback([apart, &action] { action = [apart] { return run_apart(*apart); }; });
+}
+
+}  // namespace screed
