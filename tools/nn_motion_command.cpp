@@ -179,6 +179,7 @@ int run_rollout(const RolloutArguments& arguments) {
   std::vector<nn::StandIn> stand_ins = {
       {"no slip", [=] { return nn::Surrogate(nn::SkidKinematics{}, geometry, 1); }}};
   std::vector<nn::MotionSeries> fitted;
+  fitted.reserve(arguments.fit.size());
   for (const std::string& folder : arguments.fit) {
     fitted.push_back(nn::read_motion_series(folder));
   }

@@ -94,6 +94,7 @@ MotionConfiguration read_motion_configuration(const std::filesystem::path& file)
 std::vector<MotionSeries> read_motion_sessions(const std::filesystem::path& folder,
                                                const std::vector<std::string>& names) {
   std::vector<MotionSeries> series;
+  series.reserve(names.size());
   for (const std::string& name : names) {
     series.push_back(read_motion_series(find_session(folder, name).parent_path()));
   }
