@@ -85,6 +85,7 @@ help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
 	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (an hour)"
+	@echo "make surrogate  train, evaluate and export the networks of the thesis  (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
 	@echo "make firmware  build the image for the robot          (BOARD=$(BOARD))"
@@ -262,6 +263,7 @@ include tools/flash/flash.mk
 include tools/telemetry_lab/telemetry_lab.mk
 include tests/fuzz/fuzz.mk
 include tests/can/can.mk
+include nn/training/training.mk
 
 $(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	@echo "  LINK $@"
@@ -278,7 +280,7 @@ run-tests: $(SCREED) $(TESTS) $(TEST_IMAGES)
 
 $(B)/bench: $(call objects,$(BENCH_SOURCES)) $(LIBRARY) $(B)/link.flags
 	@echo "  LINK $@"
-	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(BENCH_PACKAGES)) -o $@
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(BENCH_PACKAGES)) -lfixedfann -o $@
 .PHONY: run-bench
 run-bench: $(B)/bench
 	@$(B)/bench --benchmark_counters_tabular=true $(ARGS)

@@ -10,6 +10,7 @@ constexpr const char* kIndirectCalls = SCREED_INDIRECT_CALLS;
 constexpr const char* kWiring = SCREED_WIRING;
 constexpr const char* kGoldenImage = SCREED_IMAGE_FOLDER "/golden.elf";
 constexpr const char* kNetworkImage = SCREED_IMAGE_FOLDER "/network.elf";
+constexpr const char* kModelImage = SCREED_IMAGE_FOLDER "/model.elf";
 constexpr const char* kRobotImage = SCREED_IMAGE_FOLDER "/robot.elf";
 
 }  // namespace screed::mcu

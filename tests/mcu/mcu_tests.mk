@@ -16,6 +16,12 @@ $(MCU_IMAGES): $(FIRMWARE_BUILD)/%.elf: $(FIRMWARE_BUILD)/tests/mcu/images/%.o $
 	@echo "  LINK $@"
 	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
 
+# Models as headers for the microcontroller.
+$(FIRMWARE_BUILD)/generated/models/%.h: nn/models/%.json $(SCREED)
+	@mkdir -p $(@D)
+	@$(SCREED) nn export $< --header $@
+$(FIRMWARE_BUILD)/tests/mcu/images/model.o: $(FIRMWARE_BUILD)/generated/models/v1.h
+
 $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
 	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"' -DSCREED_INDIRECT_CALLS='\"$(abspath $(INDIRECT_CALLS))\"'" > $@.new

@@ -50,5 +50,13 @@ TEST_F(NetworkImage, NetworksOfTheThesisStayWithinTheirCycles) {
   EXPECT_LE(deep, 26'500U);
 }
 
+TEST(ModelImage, GoldenVectorsOfAnExportedModelComeOut) {
+  Mcu mcu(kModelImage);
+  mcu.run_until_sent(5, 1'000);
+  EXPECT_FALSE(mcu.alive());
+  // Two networks: vectors, and how many were wrong.
+  EXPECT_EQ(mcu.sent(), (std::vector<std::uint8_t>{12, 0, 12, 0}));
+}
+
 }  // namespace
 }  // namespace screed::mcu
