@@ -66,9 +66,11 @@ void put_network(std::string& text, const ModelNetwork& network) {
   for (std::size_t i = 0; i < integers.layers().size(); ++i) {
     const DenseShape shape = integers.layers()[i].shape();
     const std::string to = i + 1 == integers.layers().size() ? "out" : from == "a" ? "b" : "a";
-    text += "  dense<" + std::to_string(shape.inputs) + ", " + std::to_string(shape.outputs) +
-            ", " + std::to_string(shape.mode) + ">(" + name + "_parameters + " +
-            std::to_string(begins[i]) + ", " + from + ", " + to + ");\n";
+    char call[80];
+    std::snprintf(call, sizeof call, "  dense<%d, %d, %d>(", shape.inputs, shape.outputs,
+                  shape.mode);
+    text.append(call).append(name).append("_parameters + ").append(std::to_string(begins[i]));
+    text.append(", ").append(from).append(", ").append(to).append(");\n");
     from = to;
   }
   text += "}\n\n";

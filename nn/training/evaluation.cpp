@@ -90,7 +90,7 @@ std::string file_name(const TestTable& test, const std::string& output, const ch
 }
 
 fs::path write_both(const fs::path& folder, const std::string& name, const Chart& chart) {
-  const fs::path svg = folder / (name + ".svg");
+  fs::path svg = folder / (name + ".svg");
   const std::string text = chart_svg(chart);
   write_file(svg, text);
   write_svg_as_png(folder / (name + ".png"), text);
