@@ -21,6 +21,7 @@
 #include "tools/sim_command.h"
 #include "tools/soil_command.h"
 #include "tools/terrain_command.h"
+#include "tools/terrain_net_command.h"
 #include "tools/view_command.h"
 #include "version.h"
 
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   screed::register_record_command(app, SCREED_VERSION, action);
   screed::register_session_command(app, action);
   screed::register_terrain_command(app, action);
+  screed::register_terrain_net_command(app, action);
   screed::register_view_command(app, action);
   screed::register_nn_command(app, action);
   screed::register_nn_motion_command(app, action);

@@ -1,0 +1,94 @@
+// Strides out of a session.
+#include "nn/terrain/drive_strides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/experiment/run_setup.h"
+#include "host_sim/session/height_export.h"
+#include "host_sim/session/run_folder.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr const char* kWheels[4] = {"fl_Wheel", "fr_Wheel", "bl_Wheel", "br_Wheel"};
+
+}  // namespace
+
+std::array<WheelPlace, 4> wheel_places(const Assembly& robot) {
+  std::array<WheelPlace, 4> places;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const int index = robot.body_index(kWheels[i]);
+    if (index < 0) throw InputError(std::string("robot model: no wheel '") + kWheels[i] + "'");
+    const AssemblyBody& body = robot.bodies[static_cast<std::size_t>(index)];
+    const Eigen::Vector3d at = body.pose.translation();
+    places[i] = {at.x(), at.y(), 0.0, i < 2};
+    for (const Shape& shape : body.collision) {
+      const auto* cylinder = std::get_if<Cylinder>(&shape.geometry);
+      if (cylinder != nullptr) places[i].radius_m = cylinder->radius;
+    }
+    if (places[i].radius_m <= 0.0) {
+      throw InputError(std::string("robot model: '") + kWheels[i] + "' has no collision cylinder");
+    }
+  }
+  return places;
+}
+
+DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_file(run)) {
+  if (!session_.has_heights()) {
+    throw InputError(run.string() +
+                     ": the heights were not recorded; screed record and sim --heights keep them");
+  }
+  wheels_ = wheel_places(robot_model(setup_of(session_.info(), run), session_.info().board_name));
+  const double tick_s = 1.0 / session_.info().tick_rate_hz;
+  std::vector<Frame> frames(session_.frames());
+  constexpr std::size_t kBlock = 1024;
+  for (std::size_t at = 0; at < frames.size(); at += kBlock) {
+    session_.read(at, std::span(frames).subspan(at, std::min(kBlock, frames.size() - at)));
+  }
+  constexpr std::int32_t kRunning = 2;
+  while (first_frame_ < frames.size() && frames[first_frame_].state != kRunning) ++first_frame_;
+  for (std::size_t begin = first_frame_; begin + kStrideFrames <= frames.size();
+       begin += kStrideFrames) {
+    Stride stride;
+    double dx = 0.0;
+    double dy = 0.0;
+    for (std::size_t i = begin; i < begin + kStrideFrames; ++i) {
+      dx += frames[i].delta_x;
+      dy += frames[i].delta_y;
+      stride.turn_rad += frames[i].delta_theta;
+      stride.track_m[0] += frames[i].track_left * tick_s;
+      stride.track_m[1] += frames[i].track_right * tick_s;
+    }
+    const Frame& end = frames[begin + kStrideFrames - 1];
+    stride.x_m = end.x;
+    stride.y_m = end.y;
+    stride.yaw_rad = end.yaw;
+    stride.forward_m = std::cos(end.yaw) * dx + std::sin(end.yaw) * dy;
+    stride.sideways_m = -std::sin(end.yaw) * dx + std::cos(end.yaw) * dy;
+    stride.v_left = end.v_left;
+    stride.v_right = end.v_right;
+    stride.pitch = end.pitch;
+    stride.roll = end.roll;
+    strides_.push_back(stride);
+  }
+  if (strides_.empty()) throw InputError(run.string() + ": the robot never ran");
+}
+
+HeightField DriveStrides::first_ground() const {
+  return field_of(session_.heights_after(first_frame_));
+}
+
+void DriveStrides::advance(std::size_t i, HeightField& ground) const {
+  const HeightMap& after = session_.heights_after(first_frame_ + (i + 1) * kStrideFrames);
+  const auto nodes_x = static_cast<std::size_t>(ground.nx());
+  for (std::size_t node = 0; node < after.heights.size(); ++node) {
+    if (after.heights[node] == ground.node(node)) continue;
+    ground.set_node(static_cast<int>(node % nodes_x), static_cast<int>(node / nodes_x),
+                    after.heights[node]);
+  }
+}
+
+}  // namespace screed::nn

@@ -1,0 +1,64 @@
+// A recorded drive in strides of a few frames: where the robot went, how far its wheels turned, and
+// what that did to the ground. What networks of the terrain learn from and are compared with.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "host_sim/session/session_reader.h"
+#include "host_sim/terrain/height_field.h"
+#include "host_sim/vehicle/assembly.h"
+
+namespace screed::nn {
+
+/// Frames of a stride: 50 ms, in which the robot comes about as far as a cell of the ground.
+inline constexpr std::uint64_t kStrideFrames = 5;
+
+/// Where a wheel stands under the robot, m: x forward, y left.
+struct WheelPlace {
+  double x = 0.0;
+  double y = 0.0;
+  double radius_m = 0.0;
+  bool front = false;
+};
+/// Front left, front right, rear left, rear right. Throws InputError when the model lacks one.
+std::array<WheelPlace, 4> wheel_places(const Assembly& robot);
+
+struct Stride {
+  double x_m = 0.0;  ///< at its end, on the bed
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+  double forward_m = 0.0;  ///< during it, in the robot's axes at its end
+  double sideways_m = 0.0;
+  double turn_rad = 0.0;
+  std::array<double, 2> track_m{};  ///< way of the wheels' surfaces, left and right
+  double v_left = 0.0;              ///< Table 5.1, at its end: rad/s, rad
+  double v_right = 0.0;
+  double pitch = 0.0;
+  double roll = 0.0;
+};
+
+class DriveStrides {
+ public:
+  /// Throws InputError when the run cannot be read or its heights were not recorded.
+  explicit DriveStrides(const std::filesystem::path& run);
+
+  std::size_t size() const { return strides_.size(); }
+  const Stride& operator[](std::size_t i) const { return strides_[i]; }
+  const std::array<WheelPlace, 4>& wheels() const { return wheels_; }
+
+  /// The ground before the first stride.
+  HeightField first_ground() const;
+  /// Brings a field that shows the ground before stride i to the ground after it.
+  void advance(std::size_t i, HeightField& ground) const;
+
+ private:
+  SessionReader session_;
+  std::uint64_t first_frame_ = 0;  ///< the robot stands until here
+  std::array<WheelPlace, 4> wheels_{};
+  std::vector<Stride> strides_;
+};
+
+}  // namespace screed::nn

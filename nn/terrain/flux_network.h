@@ -1,0 +1,109 @@
+// What a wheel does to the ground in a stride, as soil that moves between neighbouring cells of a
+// patch under it. Every flux takes from one cell what it gives to the next, in whole units of
+// height: the volume of the ground stays the same to the last bit, whatever the weights are.
+//
+// One small network, the same for every cell of every wheel: how far the cells round it reach into
+// the wheel, where it lies under the wheel, how the wheel moves -> a tanh layer -> the fluxes out
+// of its front and its left side.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "host_sim/terrain/height_field.h"
+#include "nn/terrain/drive_strides.h"
+
+namespace screed::nn {
+
+class FluxNetwork {
+ public:
+  static constexpr int kCellsX = 22;  ///< along the robot
+  static constexpr int kCellsY = 16;  ///< across
+  static constexpr double kCell_m = 0.005;
+  static constexpr std::size_t kCells = std::size_t{kCellsX} * kCellsY;
+  /// Cells round a cell that its fluxes depend on, either way.
+  static constexpr int kReachX = 2;
+  static constexpr int kReachY = 4;
+  static constexpr int kSeenX = kCellsX + 2 * kReachX;  ///< cells that are looked at
+  static constexpr int kSeenY = kCellsY + 2 * kReachY;
+  static constexpr std::size_t kSeen = std::size_t{kSeenX} * kSeenY;
+  static constexpr std::size_t kMotions = 8;
+  static constexpr std::size_t kSight = kSeen + kMotions;  ///< of a patch
+  static constexpr std::size_t kAround = std::size_t{2 * kReachX + 1} * (2 * kReachY + 1);
+  static constexpr std::size_t kInputs = kAround + 2 + kMotions;  ///< of a cell
+  static constexpr std::size_t kFluxesX = std::size_t{kCellsX - 1} * kCellsY;
+  static constexpr std::size_t kFluxes = kFluxesX + std::size_t{kCellsX} * (kCellsY - 1);
+  /// One in the outputs is so many metres of height.
+  static constexpr double kOutput_m = 0.0005;
+
+  /// Weights at random, from the seed.
+  FluxNetwork(std::size_t hidden, std::uint64_t seed);
+  /// Throws InputError when the file is no such network.
+  static FluxNetwork read(const std::filesystem::path& file);
+  void write(const std::filesystem::path& file) const;
+
+  std::size_t hidden() const { return hidden_; }
+  std::size_t weights() const { return first_.size() + second_.size(); }
+  /// A row a hidden node: weights of its inputs, then its bias.
+  std::vector<float>& first() { return first_; }
+  /// A row for the flux forward, one for the flux to the left: hidden nodes, then the bias.
+  std::vector<float>& second() { return second_; }
+
+  /// The cells of the patch under a wheel in the world, by the stride's end; y mirrored for wheels
+  /// on the right, so that one network does for both sides.
+  struct Patch {
+    double x_m;  ///< its middle
+    double y_m;
+    double cos_yaw;
+    double sin_yaw;
+    bool mirrored;
+
+    std::array<double, 2> cell(int ix, int iy) const;
+  };
+  static Patch patch_under(const WheelPlace& wheel, const Stride& stride);
+  /// What the wheels stand on.
+  struct Footing {
+    std::array<double, 4> height_m{};  ///< of the ground under each, a mean over its footprint
+    /// Over the plane of the robot's pitch and roll through the two that stand highest: those carry
+    /// a stiff robot; a wheel far below hangs in the air.
+    std::array<double, 4> support_m{};
+  };
+  static Footing footing(const HeightField& ground, const std::array<WheelPlace, 4>& wheels,
+                         const Stride& stride);
+  /// kSight numbers: the ground round a wheel and its motion.
+  static void look(const HeightField& ground, const Patch& patch, const WheelPlace& wheel,
+                   double height_m, double support_m, const Stride& stride, std::span<float> sight);
+  /// kInputs numbers: what a cell's fluxes depend on.
+  static void inputs_of(std::span<const float> sight, int ix, int iy, float* inputs);
+
+  /// kFluxes numbers: positive towards larger ix or iy.
+  void answer(std::span<const float> sight, std::span<float> fluxes) const;
+
+  /// Moves the soil under all wheels.
+  void act(HeightField& ground, const std::array<WheelPlace, 4>& wheels,
+           const Stride& stride) const;
+
+ private:
+  std::size_t hidden_;
+  std::vector<float> first_;
+  std::vector<float> second_;
+};
+
+/// Of flux i: the cells it leads from and to.
+struct FluxSides {
+  std::size_t from;
+  std::size_t to;
+  std::size_t row;  ///< 0: forward, 1: to the left
+};
+FluxSides sides_of(std::size_t flux);
+
+/// Takes units of height from the ground round one place and gives them to another, spread over the
+/// four nodes round each; the sum over all nodes stays the same.
+void move_soil(HeightField& ground, const std::array<double, 2>& from,
+               const std::array<double, 2>& to, Height units);
+
+}  // namespace screed::nn

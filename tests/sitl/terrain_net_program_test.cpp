@@ -1,0 +1,49 @@
+// `screed terrain-net` as a user meets it, on a drive of a few seconds.
+#include <sstream>
+#include <string>
+
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+class TerrainNet : public Program {};
+
+TEST_F(TerrainNet, LearnsFromARunAndIsComparedWithIt) {
+  write("e.ini",
+        "[vehicle]\ntracks = false\n[experiment]\nname = small\nduration = 9\nalgorithm = drive\n"
+        "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n[drive]\nspeed = 0.1\n");
+  ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  const Result learned = run("terrain-net train run --out n.json --every 4 --epochs 2 --hidden 4");
+  ASSERT_EQ(learned.exit_code, 0) << learned.err;
+  EXPECT_NE(learned.err.find("epoch 2: "), std::string::npos) << learned.err;
+  const Result compared = run("terrain-net compare n.json run --pictures p");
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_TRUE(std::filesystem::exists(root_ / "p" / "run.png"));
+  // The volume, in units, is the fifth figure: kept by the fluxes to the last one.
+  const size_t row = compared.out.find("fluxes");
+  ASSERT_NE(row, std::string::npos) << compared.out;
+  std::istringstream figures(compared.out.substr(row + 6));
+  double error = 0.0;
+  double outside = 0.0;
+  double moved = 0.0;
+  double volume = 0.0;
+  long long units = 1;
+  figures >> error >> outside >> moved >> volume >> units;
+  EXPECT_GT(moved, 0.0) << compared.out;
+  EXPECT_EQ(units, 0) << compared.out;
+}
+
+TEST_F(TerrainNet, WhatIsWrongIsSaidInOneLine) {
+  write("e.ini", "[experiment]\nduration = 0.1\n[map]\nsize = 1\n");
+  ASSERT_EQ(run("sim e.ini --quiet --out run").exit_code, 0);
+  const Result no_heights = run("terrain-net train run");
+  EXPECT_EQ(no_heights.exit_code, 2);
+  EXPECT_NE(no_heights.err.find("heights were not recorded"), std::string::npos) << no_heights.err;
+  const Result no_network = run("terrain-net compare e.ini run");
+  EXPECT_EQ(no_network.exit_code, 2);
+  EXPECT_NE(no_network.err.find("e.ini"), std::string::npos) << no_network.err;
+}
+
+}  // namespace
+}  // namespace screed::testing

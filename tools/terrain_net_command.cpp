@@ -1,0 +1,233 @@
+// Training and comparing networks of the terrain.
+#include "tools/terrain_net_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/picture/canvas.h"
+#include "host_sim/picture/map_frame.h"
+#include "nn/terrain/flux_network.h"
+#include "nn/terrain/flux_trainer.h"
+#include "nn/terrain/ground_comparison.h"
+#include "nn/terrain/window_network.h"
+#include "tools/viewer/camera.h"
+#include "tools/viewer/ground_image.h"
+#include "tools/viewer/pixel_drawing.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TrainOptions {
+  std::vector<std::string> runs;
+  std::string out = "flux.json";
+  std::size_t hidden = 32;
+  std::size_t every = 3;
+  std::size_t epochs = 10;
+  std::uint64_t seed = 1;
+};
+
+struct CompareOptions {
+  std::string network;
+  std::vector<std::string> runs;
+  std::vector<std::string> window;
+  std::size_t epochs = 10;
+  double seconds = 40.0;
+  std::string pictures;
+};
+
+void print_epoch(std::size_t epoch, double mse_mm2) {
+  std::cerr << "epoch " << epoch + 1 << ": " << mse_mm2 << " mm^2\n";
+}
+
+int run_train(const TrainOptions& options) {
+  nn::FluxExamples examples;
+  for (const std::string& run : options.runs) {
+    add_examples(nn::DriveStrides(run), options.every, examples);
+  }
+  nn::FluxNetwork network(options.hidden, options.seed);
+  double squares = 0.0;
+  for (const float change : examples.changes)
+    squares += static_cast<double>(change) * static_cast<double>(change);
+  constexpr double kOutput_mm = nn::FluxNetwork::kOutput_m * 1e3;
+  std::cerr << examples.rows() << " examples, " << network.weights()
+            << " weights; without a network: "
+            << squares / static_cast<double>(examples.changes.size()) * kOutput_mm * kOutput_mm
+            << " mm^2\n";
+  train(network, examples, options.epochs, options.seed, print_epoch);
+  network.write(options.out);
+  std::cout << options.out << "\n";
+  return 0;
+}
+
+void print_row(const std::string& who, const HeightField& before, const HeightField& real,
+               const HeightField& ground, const std::vector<nn::Stride>& way) {
+  const nn::GroundComparison c = nn::compare(before, real, ground);
+  const nn::RutCount ruts = nn::count_ruts(before, ground, way);
+  std::printf("  %-10s %12.3f %12.3f %12.1f %12.4f %14lld %8.2f\n", who.c_str(), c.error_mm,
+              c.outside_mm, c.moved_cm3, c.volume_cm3, static_cast<long long>(c.volume_units),
+              ruts.mean);
+}
+
+std::vector<HeightChange> changes_between(const HeightField& from, const HeightField& to) {
+  std::vector<HeightChange> changes;
+  const auto nodes = static_cast<std::size_t>(from.nx()) * static_cast<std::size_t>(from.ny());
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (to.node(i) != from.node(i)) {
+      changes.push_back({static_cast<uint32_t>(i), to.node(i) - from.node(i)});
+    }
+  }
+  return changes;
+}
+
+/// What was changed along the way, a panel each, all in the colours of the first.
+void draw_changes(const fs::path& file, const HeightField& before,
+                  const std::vector<std::pair<std::string, const HeightField*>>& grounds,
+                  const std::vector<nn::Stride>& way) {
+  constexpr double kRobot_m = 0.2;
+  constexpr double kWidth_px = 1000.0;
+  constexpr double kTitle_px = 30.0;
+  Ground area{1e9, -1e9, 1e9, -1e9};
+  for (const nn::Stride& stride : way) {
+    area.x_min = std::min(area.x_min, stride.x_m - kRobot_m);
+    area.x_max = std::max(area.x_max, stride.x_m + kRobot_m);
+    area.y_min = std::min(area.y_min, stride.y_m - kRobot_m);
+    area.y_max = std::max(area.y_max, stride.y_m + kRobot_m);
+  }
+  const double scale = kWidth_px / (area.x_max - area.x_min);
+  const double height = std::floor(scale * (area.y_max - area.y_min));
+  Canvas canvas(static_cast<int>(kWidth_px),
+                static_cast<int>(grounds.size()) * static_cast<int>(height + kTitle_px),
+                {1.0, 1.0, 1.0});
+  viewer::GroundImage image(before);
+  const HeightField* shown = &before;
+  double top = 0.0;
+  for (const auto& [name, ground] : grounds) {
+    image.update(*ground, changes_between(*shown, *ground));
+    shown = ground;
+    image.paint(*ground, viewer::Shading::kChange);
+    viewer::Camera camera;
+    camera.set_box({0.0, top + kTitle_px, kWidth_px, height});
+    camera.zoom(scale / camera.scale(), camera.middle());
+    camera.look_at(0.5 * (area.x_min + area.x_max), 0.5 * (area.y_min + area.y_max));
+    viewer::draw_ground({canvas.pixels(), canvas.width()}, camera, image,
+                        {before.x_min(), before.y_min(), before.spacing_m(), before.wrap()},
+                        0x00FFFFFFU);
+    canvas.release_pixels();
+    const double end_mm = image.scale(viewer::Shading::kChange).high;
+    canvas.text({8.0, top + 21.0}, name, {.size_px = 16.0, .bold = true});
+    canvas.text({kWidth_px - 8.0, top + 21.0},
+                "blue: lowered, red: raised, by up to " + number_text(end_mm, 0) + " mm;  " +
+                    number_text(area.x_max - area.x_min, 2) + " m wide",
+                {.size_px = 13.0, .align = TextAlign::kRight});
+    top += height + kTitle_px;
+  }
+  canvas.write_png(file);
+}
+
+void compare_on(const std::string& run, const nn::FluxNetwork& network,
+                const nn::WindowNetwork* window, const CompareOptions& options) {
+  const nn::DriveStrides drive(run);
+  const HeightField before = drive.first_ground();
+  HeightField real = before;
+  HeightField by_flux = before;
+  HeightField by_window = before;
+  std::vector<float> last(nn::WindowNetwork::kCells);
+  std::vector<nn::Stride> way;
+  constexpr double kStridesPerSecond = 100.0 / nn::kStrideFrames;
+  const std::size_t strides =
+      std::min(drive.size(), static_cast<std::size_t>(options.seconds * kStridesPerSecond));
+  for (std::size_t i = 0; i < strides; ++i) {
+    way.push_back(drive[i]);
+    drive.advance(i, real);
+    network.act(by_flux, drive.wheels(), drive[i]);
+    if (window != nullptr) window->act(by_window, drive[i], last);
+  }
+  const nn::GroundComparison c = nn::compare(before, real, real);
+  std::printf("%s: %zu strides, touched %.3f m^2, changed there by %.3f mm RMS\n", run.c_str(),
+              strides, c.touched_m2, c.true_change_mm);
+  std::printf("  %-10s %12s %12s %12s %12s %14s %8s\n", "", "RMSE mm", "outside mm", "moved cm3",
+              "volume cm3", "volume units", "ruts");
+  print_row("recorded", before, real, real, way);
+  print_row("no change", before, real, before, way);
+  print_row("fluxes", before, real, by_flux, way);
+  if (window != nullptr) print_row("window", before, real, by_window, way);
+  if (options.pictures.empty()) return;
+  fs::create_directories(options.pictures);
+  std::vector<std::pair<std::string, const HeightField*>> grounds = {{"recorded", &real},
+                                                                     {"fluxes", &by_flux}};
+  if (window != nullptr) grounds.emplace_back("window", &by_window);
+  draw_changes(fs::path(options.pictures) / (fs::path(run).filename().string() + ".png"), before,
+               grounds, way);
+}
+
+int run_compare(const CompareOptions& options) {
+  const nn::FluxNetwork network = nn::FluxNetwork::read(options.network);
+  std::unique_ptr<nn::WindowNetwork> window;
+  if (!options.window.empty()) {
+    std::vector<std::unique_ptr<nn::DriveStrides>> drives;
+    std::vector<const nn::DriveStrides*> pointers;
+    for (const std::string& run : options.window) {
+      drives.push_back(std::make_unique<nn::DriveStrides>(run));
+      pointers.push_back(drives.back().get());
+    }
+    constexpr std::uint64_t kSeed = 1;
+    window = std::make_unique<nn::WindowNetwork>(pointers, options.epochs, kSeed, print_epoch);
+  }
+  for (const std::string& run : options.runs) compare_on(run, network, window.get(), options);
+  return 0;
+}
+
+}  // namespace
+
+void register_terrain_net_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* command = root.add_subcommand(
+      "terrain-net", "Networks that foretell what wheels do to the ground (thesis 6.3.1)");
+  command->require_subcommand(1);
+
+  const auto train = std::make_shared<TrainOptions>();
+  CLI::App* train_command =
+      command->add_subcommand("train", "Teach a network of fluxes from recorded runs");
+  train_command->add_option("RUN", train->runs, "runs with recorded heights")->required();
+  train_command->add_option("--out", train->out, "the network's file")->capture_default_str();
+  train_command->add_option("--hidden", train->hidden, "nodes of the hidden layer")
+      ->check(CLI::Range(1, 512))
+      ->capture_default_str();
+  train_command->add_option("--every", train->every, "one stride of so many is an example")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  train_command->add_option("--epochs", train->epochs)->capture_default_str();
+  train_command->add_option("--seed", train->seed)->capture_default_str();
+  train_command->callback([train, &action] { action = [train] { return run_train(*train); }; });
+
+  const auto compared = std::make_shared<CompareOptions>();
+  CLI::App* compare_command = command->add_subcommand(
+      "compare", "Let networks change the ground along recorded drives, and compare it");
+  compare_command->add_option("NETWORK", compared->network, "file of train")->required();
+  compare_command->add_option("RUN", compared->runs, "runs to compare with")->required();
+  compare_command
+      ->add_option("--window", compared->window,
+                   "train the network of the thesis on this run, and compare it as well; may be "
+                   "repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  compare_command->add_option("--epochs", compared->epochs, "of that training")
+      ->capture_default_str();
+  compare_command->add_option("--seconds", compared->seconds, "of each run")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  compare_command->add_option("--pictures", compared->pictures,
+                              "folder for pictures of what was changed");
+  compare_command->callback(
+      [compared, &action] { action = [compared] { return run_compare(*compared); }; });
+}
+
+}  // namespace screed
