@@ -212,6 +212,7 @@ class MotionTrainer::Impl {
 
   std::vector<Stretch> first_stretches(const std::vector<MotionSeries>& series) const {
     std::vector<Stretch> stretches;
+    stretches.reserve(series.size());
     for (const MotionSeries& one : series) stretches.push_back(stretch(one, 0.0));
     return stretches;
   }
