@@ -78,7 +78,7 @@ LIBRARY := $(B)/libscreed.a
 
 # ---- entry points -----------------------------------------------------------------------------------------------------------
 
-.PHONY: help sim test firmware size bench bench-terrain lint format deps clean install build FORCE
+.PHONY: help sim test firmware size bench bench-terrain soil-same-bits lint format deps clean install build FORCE
 .DEFAULT_GOAL := help
 
 help:
@@ -99,6 +99,7 @@ help:
 	@echo "make damage    wrong frames that damaged lines of the radio bring forth"
 	@echo "make fuzz      fuzz everything that reads bytes      (EXECUTIONS=200000)"
 	@echo "make bench-terrain  time and memory of a frame on every terrain, beside the thesis'"
+	@echo "make soil-same-bits  the soil compiled with -O1 and -O3 leaves the same bytes"
 	@echo "make lint      formatting and static analysis"
 	@echo "make format    clang-format over the tree"
 	@echo "make build     build/$(BUILD)/screed, the host program (BUILD=release|debug|asan)"
@@ -123,6 +124,8 @@ bench: deps
 	$(STEP) run-bench
 bench-terrain: deps
 	$(STEP) run-bench-terrain
+soil-same-bits: deps
+	$(STEP) run-soil-same-bits
 lint: deps
 	$(STEP) -k run-lint
 build: deps
@@ -291,6 +294,10 @@ $(B)/terrain_bench: $(call objects,$(TERRAIN_BENCH_SOURCES)) $(LIBRARY) $(B)/lin
 .PHONY: run-bench-terrain
 run-bench-terrain: $(B)/terrain_bench
 	@$(B)/terrain_bench --out $(OUT)/bench-terrain $(ARGS)
+
+.PHONY: run-soil-same-bits
+run-soil-same-bits: $(SCREED)
+	@tools/soil_same_bits.sh $(B)
 
 # ---- lint --------------------------------------------------------------------------------------------------------------------
 

@@ -13,6 +13,7 @@ void register_soil_command(CLI::App& root, std::function<int()>& action) {
   add_soil_robot(*command, action);
   add_soil_repose(*command, action);
   add_soil_dig(*command, action);
+  add_soil_match(*command, action);
 }
 
 }  // namespace screed

@@ -88,6 +88,7 @@ SoilOptions SoilArguments::options() const {
       normal_stress == "radial" ? NormalStress::kRadial : NormalStress::kVertical;
   options.bulldozing = bulldozing;
   options.avalanches = avalanches;
+  options.follow_slopes = follow_slopes;
   options.sample_spacing_m = sample_spacing_m;
   return options;
 }
@@ -131,6 +132,8 @@ void add_soil_options(CLI::App& command, SoilArguments& common) {
   command.add_flag("--bulldozing,!--no-bulldozing", common.bulldozing,
                    "sunk material is pushed aside; else compacted");
   command.add_flag("--avalanches,!--no-avalanches", common.avalanches, "steep slopes slide");
+  command.add_flag("--follow-slopes,!--no-follow-slopes", common.follow_slopes,
+                   "bodies came along their way; else level");
   command.add_option("--sample-spacing", common.sample_spacing_m, "of places inside a cell, m");
   command.add_option("--cell", common.cell_m, "of the grid, m");
   command.add_option("--step", common.step_s, "s");
@@ -155,6 +158,7 @@ nlohmann::json soil_json(const SoilArguments& common) {
           {"normal_stress", common.normal_stress},
           {"bulldozing", common.bulldozing},
           {"avalanches", common.avalanches},
+          {"follow_slopes", common.follow_slopes},
           {"cell_m", common.cell_m},
           {"step_s", common.step_s}};
 }

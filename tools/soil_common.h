@@ -40,6 +40,7 @@ struct SoilArguments {
   std::string normal_stress = "radial";
   bool bulldozing = false;
   bool avalanches = false;
+  bool follow_slopes = false;
   double sample_spacing_m = SoilOptions{}.sample_spacing_m;
   double cell_m = 0.005;
   double step_s = 1e-3;
@@ -71,5 +72,6 @@ void add_soil_wheel(CLI::App& soil, std::function<int()>& action);
 void add_soil_robot(CLI::App& soil, std::function<int()>& action);
 void add_soil_repose(CLI::App& soil, std::function<int()>& action);
 void add_soil_dig(CLI::App& soil, std::function<int()>& action);
+void add_soil_match(CLI::App& soil, std::function<int()>& action);
 
 }  // namespace screed

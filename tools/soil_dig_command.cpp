@@ -79,6 +79,8 @@ int run_dig(DigArguments a) {
   add("sunk_distance_mm", result.sunk_radius_m * kMilli, "%.1f");
   add("raised_distance_mm", result.raised_radius_m * kMilli, "%.1f");
   add("raised_behind_share", result.behind_share, "%.3f");
+  add("time_s", result.time_s, "%.2f");
+  if (a.test.manoeuvre == Manoeuvre::kSlip) add("pull_n", result.pull_n, "%.2f");
   add("way_m", result.way_m, "%.4f");
   add("turned_deg", result.turned_rad * kDegrees, "%.1f");
   add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
@@ -104,7 +106,8 @@ void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<DigArguments>();
   CLI::App* command = soil.add_subcommand(
       "dig", "A tracked robot digs: moved volume, depth, where the material went");
-  a->common.bulldozing = a->common.avalanches = true;
+  a->common.bulldozing = a->common.avalanches = a->common.follow_slopes = true;
+  a->common.preset = "gravel";
   add_soil_options(*command, a->common);
   a->test.particle.radius_m = 0.0075;
   command->add_option("--manoeuvre", a->manoeuvre, "spin, charge (a mound of 20 degrees), slip");
@@ -116,6 +119,7 @@ void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
   command->add_option("--track-speed", a->test.track_m_per_s, "of the belts, m/s");
   command->add_option("--duration", a->test.duration_s, "s");
   command->add_option("--seed", a->test.seed, "of the particles' layout");
+  command->add_option("--beds", a->test.beds, "of particles, whose heights are averaged");
   command->add_option("--fit-raised", a->fit_cm3,
                       "fit --drag-depth so that so much is raised, cm^3; scm");
   command->add_option("--charts", a->common.charts, "folder for a PNG of what changed");

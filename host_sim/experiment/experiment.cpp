@@ -276,7 +276,7 @@ std::vector<Key> make_keys() {
                           [](Experiment& e) -> double& { return e.raygrid.resolution_per_m; }));
 
   keys.push_back(text_key(
-      "soil", "preset", "soft, viper, lete_sand, dry_sand, clay or ding_2011",
+      "soil", "preset", "soft, viper, lete_sand, dry_sand, clay, ding_2011 or gravel",
       "model scm: a named soil", [](Experiment& e) -> std::string& { return e.soil.preset; },
       is_soil));
   keys.push_back(real_key("soil", "cell", "m", 0.001, 0.05, "model scm: side of a grid cell",
@@ -285,6 +285,10 @@ std::vector<Key> make_keys() {
                           [](Experiment& e) -> bool& { return e.soil.bulldozing; }));
   keys.push_back(bool_key("soil", "avalanches", "slopes above the angle of repose slide",
                           [](Experiment& e) -> bool& { return e.soil.avalanches; }));
+  keys.push_back(bool_key("soil", "follow_slopes",
+                          "ruts uphill and downhill are as deep as on the level; false: too deep "
+                          "below belts going downhill",
+                          [](Experiment& e) -> bool& { return e.soil.follow_slopes; }));
   using Optional = std::optional<double>;
   keys.push_back(real_key("soil", "k_phi", "N/m^(n+2)", 0, 1e12,
                           "Bekker's frictional modulus; left out: the preset's",
@@ -309,7 +313,7 @@ std::vector<Key> make_keys() {
                           "share of the sunk volume that is compacted",
                           [](Experiment& e) -> Optional& { return e.soil.compaction; }));
   keys.push_back(real_key("soil", "drag_depth", "m", 0, 1,
-                          "thickness of the layer that a slipping surface takes along",
+                          "thickness of the layer that a slipping surface digs away",
                           [](Experiment& e) -> Optional& { return e.soil.drag_depth_m; }));
   keys.push_back(real_key("soil", "slip_sinkage", "", 0, 2, "growth of n with slip",
                           [](Experiment& e) -> Optional& { return e.soil.slip_sinkage; }));

@@ -535,6 +535,7 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
     options.soil = make_soil(experiment);
     options.soil_options.bulldozing = experiment.soil.bulldozing;
     options.soil_options.avalanches = experiment.soil.avalanches;
+    options.soil_options.follow_slopes = experiment.soil.follow_slopes;
   }
   if (experiment.map.of_particles()) {
     ParticleOptions particles;

@@ -213,22 +213,6 @@ std::string ground_text(const GroundSurface& ground, const GroundFiles& files,
   return text + pov_line(kTable, floor);
 }
 
-std::string particles_text(std::span<const Eigen::Vector3f> centres, double radius_m,
-                           const SoilLook& look) {
-  if (centres.empty()) throw InputError("a bed without particles cannot be drawn");
-  std::string text = "#declare Grain = texture { pigment { bozo scale 0.013 color_map { [0.2 " +
-                     pov_color(look.dark) + "] [0.8 " + pov_color(look.light) +
-                     "] } } normal { bumps 0.3 scale 0.002 } finish { ambient 0 diffuse 0.9 } }\n";
-  text += "union {\n";
-  float lowest = centres.front().z();
-  for (const Eigen::Vector3f& centre : centres) {
-    lowest = std::min(lowest, centre.z());
-    text += "sphere { " + pov_vector(centre.cast<double>()) + pov_line(", %.5f }\n", radius_m);
-  }
-  text += "  texture { Grain }\n}\n";
-  return text + pov_line(kTable, static_cast<double>(lowest) - radius_m);
-}
-
 std::string path_text(std::span<const Eigen::Vector2d> path, const GroundSurface& ground,
                       double radius_m) {
   constexpr double kJump_m = 0.2;

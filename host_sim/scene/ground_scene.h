@@ -69,10 +69,6 @@ struct GroundFiles {
 std::string ground_text(const GroundSurface& ground, const GroundFiles& files,
                         const SoilLook& look);
 
-/// Balls of one radius, on a plane table.
-std::string particles_text(std::span<const Eigen::Vector3f> centres, double radius_m,
-                           const SoilLook& look);
-
 /// A thin line over the ground along these places; it breaks where two of them are further apart
 /// than the robot can drive between them.
 std::string path_text(std::span<const Eigen::Vector2d> path, const GroundSurface& ground,

@@ -40,11 +40,6 @@ void Footprint::set_pose(const Eigen::Isometry3d& pose) {
   up_ = to_local_.col(2);
   square_ = up_.x() * up_.x() + up_.z() * up_.z();
   root_ = std::sqrt(square_);
-  for (const int wheel : {0, 1}) {
-    const double axle = wheel == 0 ? -half_.x() : half_.x();
-    lowest_at_[wheel] = axle - radius_ * up_.x() / root_;
-    lowest_[wheel] = pose_.translation().z() + axle * up_.x() - radius_ * root_;
-  }
 }
 
 Eigen::Vector3d Footprint::world_reach() const {
@@ -115,7 +110,7 @@ void FootprintPlaces::clear(size_t room) {
   }
 }
 
-void Footprint::surface(double edge, double came, FootprintPlaces& places) const {
+void Footprint::surface(double edge, const FootprintWay& came, FootprintPlaces& places) const {
   if (places.count % 2 != 0) {  // whole pairs
     places.x[places.count] = places.x[places.count - 1];
     places.y[places.count] = places.y[places.count - 1];
@@ -139,7 +134,8 @@ void Footprint::surface(double edge, double came, FootprintPlaces& places) const
 
 // Two places at a time, without branches.
 template <bool kBelt>
-void Footprint::track_surface(double edge, double came, FootprintPlaces& places) const {
+void Footprint::track_surface(double edge, const FootprintWay& came,
+                              FootprintPlaces& places) const {
   if (square_ < 1e-6) {  // lying on its side: the caller uses a box
     std::fill(places.share.begin(), places.share.end(), 0.0);
     return;
@@ -172,9 +168,23 @@ void Footprint::track_surface(double edge, double came, FootprintPlaces& places)
   const Pair per_uz = both(has_run ? 1.0 / up_.z() : 0.0);
   const double side = up_.z() > 0.0 ? -1.0 : 1.0;
   const Pair run_z = both(side * radius_);
-  // A wheel's lowest point has passed where it is ahead, in the sense in which the body came.
-  const Pair sense = both(came > 0.0 ? 1.0 : -1.0);
-  const Pair reach = both(std::abs(came));
+  // On its way each wheel swept down to a plane along the way that touches it from below, and has
+  // passed where the touching point is ahead, in the sense in which the body came. In local axes
+  // the plane is z = rise * x - deep.
+  const Pair sense = both(came.along_m > 0.0 ? 1.0 : -1.0);
+  const Pair rise = both(came.rise);
+  const double slant = std::sqrt(1.0 + came.rise * came.rise);
+  const double climb = up_.z() - came.rise * up_.x();  // of a vertical line against that plane
+  const bool across_way = std::abs(climb) > kSteep;
+  const Pair reach = both(across_way ? std::abs(came.along_m) : -1.0);
+  const Pair per_climb = both(across_way ? 1.0 / climb : 0.0);
+  Pair deep[2];
+  Pair touch[2];
+  for (const int wheel : {0, 1}) {
+    const double axle = wheel == 0 ? -half_.x() : half_.x();
+    deep[wheel] = both(came.rise * axle - side * radius_ * slant);
+    touch[wheel] = both(axle - side * radius_ * came.rise / slant);
+  }
   // Normals over their vertical part, of local (nx, 0, nz): nx and nz times these, world x, y, z.
   const Pair x0 = both(axes(0, 0));
   const Pair y0 = both(axes(1, 0));
@@ -228,12 +238,11 @@ void Footprint::track_surface(double edge, double came, FootprintPlaces& places)
     store((nx * y0 + nz * y2) * per_wz, &places.slope_y[i]);
     store(flat, &places.flat_within[i]);
     const Pair here = lx + t * ux;
-    const Pair tilt = across * uy;
     Pair low = height;
     for (const int wheel : {0, 1}) {
       if (!kBelt && wheel == 1) break;
-      const auto ahead = sense * (both(lowest_at_[wheel]) - here) > zero;
-      low = smaller(low, ahead ? both(lowest_[wheel]) + tilt : height);
+      const auto ahead = sense * (touch[wheel] - here) > zero;
+      low = smaller(low, ahead ? cz + (rise * lx - deep[wheel] - lz) * per_climb : height);
     }
     store(magnitude(lx) <= reach ? low : height, &places.passed[i]);
   }

@@ -36,6 +36,12 @@ struct FootprintPlaces {
   size_t count = 0;
 };
 
+/// The way that a body came, in its own axes.
+struct FootprintWay {
+  double along_m = 0.0;  ///< along local x, signed: it passed over no place that is further away
+  double rise = 0.0;     ///< along local z, over the way along local x
+};
+
 class Footprint {
  public:
   enum class Kind { kTrack, kBox, kDisc };
@@ -82,9 +88,8 @@ class Footprint {
 
   /// Answers for all places. `edge`: side of the small square, m; the share falls linearly across
   /// the body's side over this length, so that sums over a lattice of such squares are exact for
-  /// edges along the lattice. `came`: the way along local x that the body came, m, signed; it
-  /// passed over no place that is further away.
-  void surface(double edge, double came, FootprintPlaces& places) const;
+  /// edges along the lattice.
+  void surface(double edge, const FootprintWay& came, FootprintPlaces& places) const;
   /// No place that a square of this side can share with the body reaches lower than this where its
   /// middle lies outside, m.
   double lowest_at_rim(double edge) const;
@@ -95,7 +100,7 @@ class Footprint {
     set_pose(Eigen::Isometry3d::Identity());
   }
   template <bool kBelt>
-  void track_surface(double edge, double came, FootprintPlaces& places) const;
+  void track_surface(double edge, const FootprintWay& came, FootprintPlaces& places) const;
   void box_surface(double edge, FootprintPlaces& places) const;
   void disc_surface(double edge, FootprintPlaces& places) const;
 
@@ -109,10 +114,8 @@ class Footprint {
   Eigen::Vector3d up_;  ///< the world's vertical in local axes
 
   // Of a track, once a pose instead of once a place.
-  double square_ = 1.0;       ///< of the vertical's part in the x-z plane
-  double root_ = 1.0;         ///< of square_
-  double lowest_at_[2] = {};  ///< local x of the lowest points of rear and front wheel
-  double lowest_[2] = {};     ///< their heights at local y = 0, m
+  double square_ = 1.0;  ///< of the vertical's part in the x-z plane
+  double root_ = 1.0;    ///< of square_
 };
 
 }  // namespace screed

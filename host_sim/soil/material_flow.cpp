@@ -13,6 +13,7 @@ struct Step {
   int dx;
   int dy;
 };
+constexpr int kThrows = 48;                 // places tried for what a footprint dug in one step
 constexpr double kStanding_m_per_s = 1e-3;  // below it a body goes nowhere
 constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                  {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -96,7 +97,32 @@ void MaterialFlow::move(size_t from, size_t to, Height units) {
   change(to, units);
 }
 
+int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacted) {
+  double all = 0.0;
+  for (const Sheared& here : sheared_) all += here.weight;
+  if (!(all > 0.0) || units <= 0) {
+    sheared_.clear();
+    return 0;
+  }
+  const double per_weight = static_cast<double>(units) / all;
+  double passed = 0.0;
+  int64_t taken = 0;
+  for (size_t i = 0; i < sheared_.size(); ++i) {
+    passed += sheared_[i].weight;
+    const bool last = i + 1 == sheared_.size();
+    const int64_t until = last ? units : std::min(units, static_cast<int64_t>(passed * per_weight));
+    if (until > taken) change(sheared_[i].node, -static_cast<Height>(until - taken));
+    taken = until;
+  }
+  sheared_.clear();
+  in_hand_ += units - compacted;
+  dug_.push_back({patch, units - compacted});
+  return compacted;
+}
+
 void MaterialFlow::set_down() {
+  for (const Dug& dug : dug_) left_over_ += dug.units - spread_dug(dug);
+  dug_.clear();
   for (size_t i = 0; i < footprints_.size(); ++i) {
     Pressing& footprint = footprints_[i];
     footprint.units += left_over_;
@@ -106,6 +132,42 @@ void MaterialFlow::set_down() {
     left_over_ = footprint.units - spread(footprint, end);
     footprint.units = 0;
   }
+}
+
+/// On some places around the footprint, other ones each time, so that in a few steps all have got
+/// the same: a low-discrepancy sequence over the rectangle and its band. Returns the units set
+/// down: all or none.
+int64_t MaterialFlow::spread_dug(const Dug& dug) {
+  // Of the plastic number: the two-dimensional golden ratio.
+  constexpr uint32_t kAlong = 3242174889U;
+  constexpr uint32_t kAcross = 2447445414U;
+  constexpr double kPerTurn = 1.0 / 4294967296.0;
+  const DugPatch& patch = dug.patch;
+  const double length = patch.half_length + patch.band;
+  const double width = patch.half_width + patch.band;
+  const double per_spacing = 1.0 / surface_.spacing_m();
+  heap_.clear();
+  for (int i = 0; i < kThrows; ++i) {
+    ++throws_;
+    const double along = length * (2.0 * (throws_ * kAlong) * kPerTurn - 1.0);
+    const double across = width * (2.0 * (throws_ * kAcross) * kPerTurn - 1.0);
+    if (std::abs(along) < patch.half_length && std::abs(across) < patch.half_width) continue;
+    const double x = patch.centre.x() + along * patch.forward.x() - across * patch.forward.y();
+    const double y = patch.centre.y() + along * patch.forward.y() + across * patch.forward.x();
+    const int64_t node =
+        node_at(static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
+                static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5)));
+    if (node < 0 || covered_[static_cast<size_t>(node)] != 0) continue;
+    heap_.push_back(static_cast<size_t>(node));
+  }
+  if (heap_.empty()) return 0;
+  const auto places = static_cast<int64_t>(heap_.size());
+  for (int64_t i = 0; i < places; ++i) {
+    const int64_t units = dug.units * (i + 1) / places - dug.units * i / places;
+    if (units != 0) change(heap_[static_cast<size_t>(i)], static_cast<Height>(units));
+  }
+  in_hand_ -= dug.units;
+  return dug.units;
 }
 
 /// Returns the units set down: all or none.

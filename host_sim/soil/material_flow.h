@@ -2,6 +2,7 @@
 // drags it, lets slopes slide.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,6 +10,15 @@
 #include "host_sim/terrain/height_field.h"
 
 namespace screed {
+
+/// The rectangle that a footprint touches, seen from above.
+struct DugPatch {
+  Eigen::Vector2d centre;
+  Eigen::Vector2d forward;  ///< unit length
+  double half_length;       ///< m
+  double half_width;        ///< m
+  double band;              ///< what is dug is set down as far as this around it, m
+};
 
 class MaterialFlow {
  public:
@@ -43,12 +53,20 @@ class MaterialFlow {
   /// those behind it left out: there lies the rut. Keeps it in hand when there are none.
   void set_down();
 
-  /// Moves `units` from one node to another; the reference moves with the material.
-  void move(size_t from, size_t to, Height units);
+  /// The current footprint slips over the soil of this node, that much in comparison with others.
+  void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
+  /// Takes `units` from below the current footprint, from where it slips most the most; the
+  /// reference goes down with the surface. So many of them are `compacted` and gone, the others in
+  /// hand until they are set down around it. Returns the units that are gone: 0 when it slips
+  /// nowhere, and then none were taken.
+  int64_t dig(const DugPatch& patch, int64_t units, int64_t compacted);
   /// Looks at every slope again, as on a bed that nobody has touched yet.
   void wake_all();
   /// Slides slopes above the angle of repose, at most `most` moves; returns the moves made.
   int64_t slide(int64_t most);
+  /// Whether the slopes round a node are still to be looked at.
+  bool waits(size_t node) const { return awake_[node] != 0; }
+  size_t waiting() const { return queue_size_; }
   /// Forgets which nodes are covered: the step is over.
   void uncover();
 
@@ -63,6 +81,8 @@ class MaterialFlow {
     surface_.set_node(column(node), row(node), height);
   }
   void change(size_t node, Height units);
+  /// Moves `units` from one node to another; the reference moves with the material.
+  void move(size_t from, size_t to, Height units);
   void wake(size_t node);
 
   struct Place {
@@ -76,7 +96,12 @@ class MaterialFlow {
     double way_y;
     int64_t units;  // in hand
   };
+  struct Dug {  // to be set down around it
+    DugPatch patch;
+    int64_t units;
+  };
   int64_t spread(const Pressing& footprint, size_t end);
+  int64_t spread_dug(const Dug& dug);
 
   HeightField surface_;
   std::vector<Height> reference_;
@@ -88,6 +113,14 @@ class MaterialFlow {
   std::vector<Place> covered_list_;
   std::vector<Pressing> footprints_;
   int64_t left_over_ = 0;  // in hand from earlier steps
+  struct Sheared {
+    size_t node;
+    double weight;
+  };
+  std::vector<Sheared> sheared_;  // by the current footprint
+  std::vector<Dug> dug_;
+  uint32_t throws_ = 0;  // places tried so far for what was dug
+  std::vector<size_t> heap_;
   std::vector<Place> ring_;
   std::vector<uint8_t> in_ring_;
   std::vector<uint8_t> awake_;

@@ -23,6 +23,28 @@ constexpr double kRolling = 1e-3;
 constexpr double kStepSinkage_m = 0.001;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
+// Greatest rise of a way over itself: what drops has not driven there.
+constexpr double kSteepestWay = 1.0;
+constexpr double kUpright = 1e-3;  // the vertical part of a body's own vertical that counts
+
+/// A footprint goes on by this way, world frame, m. Its rise is a mean over its own length, the
+/// more recent way counting more, or that of a level way.
+void go_on(const Footprint& footprint, const Eigen::Vector3d& way, bool follow_slopes,
+           FootprintWay& came) {
+  const Eigen::Matrix3d& axes = footprint.pose().linear();
+  const double along = way.dot(axes.col(0));
+  if (along * came.along_m < 0.0) came = {};
+  came.along_m += along;
+  if (!follow_slopes) {
+    came.rise = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
+    return;
+  }
+  const double length = footprint.half().x() + footprint.radius();
+  const double share = std::abs(along) / length;
+  const double most = kSteepestWay * std::abs(along);
+  const double up = std::clamp(way.dot(axes.col(2)), -most, most) / length;
+  came.rise = share < 1.0 ? came.rise + (along < 0.0 ? -up : up) - share * came.rise : 0.0;
+}
 
 }  // namespace
 
@@ -77,9 +99,7 @@ void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, d
     ContactMemory& kept = *contact.memory;
     const Eigen::Vector3d arm = footprint.pose().translation() - body.centre;
     const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
-    const double speed = velocity.dot(footprint.pose().linear().col(0));
-    if (speed * kept.travel_m < 0.0) kept.travel_m = 0.0;
-    kept.travel_m += speed * dt;
+    go_on(footprint, velocity * dt, options_.follow_slopes, kept.came);
     double elastic = soil_.elastic_pa_per_m;
     if (footprint.extended() && !tilts && !imposed) {
       // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step bears.
@@ -130,9 +150,9 @@ SoilBed::Range SoilBed::find_cells(const SoilContact& contact, double elastic) {
   for (const Candidate& candidate : candidates_) needed += places_of(candidate.lattice);
   places_.clear(needed);
   for (const Candidate& candidate : candidates_) add_places(candidate);
-  const double travel = memory.travel_m;
-  footprint.surface(spacing / samples_,
-                    travel == 0.0 ? 0.0 : travel + std::copysign(spacing, travel), places_);
+  FootprintWay came = memory.came;
+  if (came.along_m != 0.0) came.along_m += std::copysign(spacing, came.along_m);
+  footprint.surface(spacing / samples_, came, places_);
   Range range{cell_count_, cell_count_, law, 0};
   if (cells_.size() < cell_count_ + candidates_.size()) {
     cells_.resize(cell_count_ + candidates_.size());
@@ -177,7 +197,7 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.across(spacing);
-  footprint.surface(edge, 0.0, places_);
+  footprint.surface(edge, {}, places_);
   const double rim = footprint.lowest_at_rim(spacing);
   size_t i = 0;
   for (int iy = iy0; iy <= iy1; ++iy) {
@@ -405,18 +425,47 @@ void SoilBed::measure_patch(const Footprint& footprint, size_t begin, ContactMem
   memory.patch_b_m = footprint.round() ? 2.0 * narrow : std::sqrt(12.0) * narrow;
 }
 
-// A slipping surface takes a layer of soil along: what leaves a cell enters the next one, so that
-// the belt carries soil from its front to its end, where it stays.
-void SoilBed::drag(const Cell& cell, double way_x, double way_y) {
-  const double units_per_way = soil_.drag_depth_m / flow_.surface().spacing_m() / kHeightUnit_m;
-  const auto carry = [&](double way, int dx, int dy) {
-    const auto units = static_cast<Height>(std::abs(way) * units_per_way);
-    const int64_t to =
-        flow_.node_at(cell.ix + (way > 0.0 ? dx : -dx), cell.iy + (way > 0.0 ? dy : -dy));
-    if (units > 0 && to >= 0) flow_.move(cell.node, static_cast<size_t>(to), units);
+void SoilBed::Digging::add(const Cell& cell, double slide_along, double slide_across,
+                           double mobilised) {
+  const double along = cell.arm.dot(forward);
+  const double across = cell.arm.dot(side);
+  share += cell.share;
+  first_along += cell.share * along;
+  first_across += cell.share * across;
+  second_along += cell.share * along * along;
+  second_across += cell.share * across * across;
+  swept += cell.share * mobilised * std::hypot(slide_along, slide_across);
+}
+
+// A layer of the soil goes along with a slipping surface: slip times depth times the footprint's
+// width a second. It comes from under the whole of the footprint and heaves the ground around it,
+// as far as the footprint is wide.
+void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt) {
+  if (digging.share <= 0.0) return;
+  const double edge = flow_.surface().spacing_m();
+  const double per_share = 1.0 / digging.share;
+  const double along = digging.first_along * per_share;
+  const double across = digging.first_across * per_share;
+  const auto half_side = [&](double second, double mean) {
+    return 0.5 * std::sqrt(12.0 * std::max(0.0, second * per_share - mean * mean) + edge * edge);
   };
-  carry(way_x, 1, 0);
-  carry(way_y, 0, 1);
+  DugPatch patch;
+  patch.forward = digging.forward.head<2>();
+  patch.centre = (pose.translation() + along * digging.forward + across * digging.side).head<2>();
+  patch.half_length = half_side(digging.second_along, along);
+  patch.half_width = half_side(digging.second_across, across);
+  patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
+  const double volume =
+      soil_.drag_depth_m * dt * per_share * 2.0 * digging.swept * patch.half_width;
+  dig_rest_ += volume / (cell_area_ * kHeightUnit_m);
+  const auto units = static_cast<int64_t>(dig_rest_);
+  dig_rest_ -= static_cast<double>(units);
+  // Sheared soil settles too; nothing is set down where nothing is pushed aside.
+  const double lost = options_.bulldozing ? soil_.compaction : 1.0;
+  compaction_rest_ += lost * static_cast<double>(units);
+  const auto compacted = std::min(units, static_cast<int64_t>(compaction_rest_));
+  compaction_rest_ -= static_cast<double>(compacted);
+  compacted_ += flow_.dig(patch, units, compacted);
 }
 
 /// What gives way in a footprint's cells, and their forces.
@@ -438,6 +487,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
   const Eigen::Vector3d level_way = axle.cross(Eigen::Vector3d::UnitZ()).normalized();
   const Eigen::Vector3d level_side = Eigen::Vector3d::UnitZ().cross(level_way);
   int64_t sunk_units = 0;
+  Digging digging(level_way, level_side);
 
   for (size_t i = range.begin; i < range.end; ++i) {
     const Cell& cell = cells_[i];
@@ -514,9 +564,8 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
       torque += cell.arm.cross(traction);
       reaction.along_surface -= traction.dot(along);
       if (soil_.drag_depth_m > 0.0) {
-        const Eigen::Vector3d way =
-            (slide_along * lengthwise + slide_across * sideways) * (dt * mobilised * cell.share);
-        drag(cell, way.x(), way.y());
+        digging.add(cell, slide_along, slide_across, mobilised);
+        flow_.shear(cell.node, cell.share * mobilised * std::hypot(slide_along, slide_across));
       }
     }
     reaction.force += force;
@@ -526,6 +575,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
         reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m - (centre.z() + cell.arm.z()));
   }
   flow_.push(range.footprint, sunk_units);
+  if (soil_.drag_depth_m > 0.0) dig(digging, pose, dt);
   contact.memory->sinkage = reaction.sinkage;
 }
 
@@ -545,6 +595,7 @@ void SoilBed::end_step() {
     flow_.set_down();
   }
   if (options_.avalanches) flow_.slide(kSlidesPerStep);
+  slopes_left_ = options_.avalanches ? flow_.waiting() : 0;
   flow_.uncover();
   ++step_;
 }

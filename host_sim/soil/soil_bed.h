@@ -38,6 +38,9 @@ struct SoilOptions {
   NormalStress normal_stress = NormalStress::kRadial;
   bool bulldozing = true;  ///< sunk and dragged material moves; false: it is compacted where it was
   bool avalanches = true;  ///< slopes above the angle of repose slide
+  /// Where a body passed, it is taken to have come along its way, uphill or downhill. false: level,
+  /// as if it had come at its present height, by which long belts sink too deep downhill.
+  bool follow_slopes = false;
   double sample_spacing_m = 0.00125;  ///< of the places inside a cell, at most
 };
 
@@ -68,6 +71,11 @@ class SoilBed {
   int64_t settle(int64_t most = INT64_MAX);
 
   const HeightField& surface() const { return flow_.surface(); }
+  /// Whether the slopes round a node are still to be looked at: a body stood on it in the last step
+  /// and held it, or more slid than a step has time for; then slopes_left() was not 0.
+  bool slope_waits(int ix, int iy) const { return flow_.waits(flow_.index(ix, iy)); }
+  /// Nodes that the last step had no time for.
+  size_t slopes_left() const { return slopes_left_; }
   const SoilParameters& soil() const { return soil_; }
   VolumeBalance balance() const;
 
@@ -123,6 +131,21 @@ class SoilBed {
     size_t footprint;  // as flow_ numbers them
   };
 
+  /// How a footprint slips over what it touches: sums over its cells, each times its share.
+  struct Digging {
+    Digging(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
+        : forward(along), side(across) {}
+    void add(const Cell& cell, double slide_along, double slide_across, double mobilised);
+    Eigen::Vector3d forward;  // level, unit length
+    Eigen::Vector3d side;
+    double share = 0.0;
+    double first_along = 0.0;  // of the cells' places
+    double first_across = 0.0;
+    double second_along = 0.0;
+    double second_across = 0.0;
+    double swept = 0.0;  // of their mobilised slip
+  };
+
   Range find_cells(const SoilContact& contact, double elastic);
   void find_candidates(const Footprint& footprint, double rise);
   void add_places(const Candidate& candidate);
@@ -131,8 +154,8 @@ class SoilBed {
   void remember_cover(Trace& trace, double covered, double sunk) const;
   void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
   void react(const Range& range, const PressingBody& body, SoilContact& contact, double dt);
+  void dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt);
   size_t places_of(Lattice lattice) const;
-  void drag(const Cell& cell, double way_x, double way_y);
   bool fresh(const Trace& trace) const { return trace.step == 0 || trace.step + 1 < step_; }
 
   SoilParameters soil_;
@@ -147,6 +170,8 @@ class SoilBed {
   int64_t volume_before_;
   int64_t compacted_ = 0;
   double compaction_rest_ = 0.0;
+  double dig_rest_ = 0.0;
+  size_t slopes_left_ = 0;
   uint32_t step_ = 1;
   std::vector<Trace> traces_;
 

@@ -44,9 +44,9 @@ struct BodyMemory {
 struct ContactMemory {
   double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
   double patch_area_m2 = 0.0;
-  double sinkage = 0.0;   ///< greatest depth in the last step, m
-  double travel_m = 0.0;  ///< way along local x since touching or turning back, signed
-  BodyMemory alone;       ///< of a footprint that is pressed by itself
+  double sinkage = 0.0;  ///< greatest depth in the last step, m
+  FootprintWay came;     ///< since touching or turning back; its rise is that of late
+  BodyMemory alone;      ///< of a footprint that is pressed by itself
 };
 
 /// A rigid body that stands on soil with one footprint or several, in one step.

@@ -24,6 +24,15 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
   return s;
 }
 
+/// What a bed of particles of 15 mm is like (docs/soil.md, Digging).
+SoilParameters gravel() {
+  SoilParameters s = soil("gravel", 867e3, 0.0, 0.9, 0.0, 25.0, 0.0023, 2e6);
+  s.repose_deg = 34.4;
+  s.compaction = 0.45;
+  s.drag_depth_m = 0.0026;
+  return s;
+}
+
 }  // namespace
 
 const std::vector<SoilParameters>& soil_presets() {
@@ -38,6 +47,7 @@ const std::vector<SoilParameters>& soil_presets() {
       soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 2e8),
       soil("clay", 692.15e3, 13.19e3, 0.5, 4.14e3, 13.0, 0.010, 2e8),
       soil("ding_2011", 2407.4e3, 15.6e3, 1.1, 250.0, 31.9, 0.011, 2e8),
+      gravel(),
   };
   return presets;
 }

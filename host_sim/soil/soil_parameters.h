@@ -23,14 +23,13 @@ struct SoilParameters {
   double damping_pa_s_per_m = 0.0;  ///< R, on the speed of sinking, >= 0
   double repose_deg = 30.0;         ///< angle of repose of loose material, 1..60
   double compaction =
-      0.0;  ///< share of the sunk volume that is compacted, 0..1; the rest is pushed aside
-  double drag_depth_m =
-      0.0;  ///< thickness of the layer that moves with a slipping surface, >= 0; 0: none
+      0.0;  ///< share of the sunk and dug volume that is compacted, 0..1; the rest moves aside
+  double drag_depth_m = 0.0;  ///< of the layer that a slipping surface digs away, >= 0; 0: none
   double slip_sinkage =
       0.0;  ///< exponent n grows by this times the slip (Ding et al. 2011), 0..2; 0: none
 };
 
-/// Named soils: soft, viper, lete_sand, dry_sand, clay, ding_2011.
+/// Named soils: soft, viper, lete_sand, dry_sand, clay, ding_2011, gravel.
 const std::vector<SoilParameters>& soil_presets();
 /// Throws InputError, listing the known names.
 const SoilParameters& soil_preset(std::string_view name);

@@ -23,6 +23,7 @@ const Eigen::Vector3d kBody_m(0.20, 0.14, 0.06);
 
 constexpr double kSettle_s = 0.5;
 constexpr double kSlip = 0.6;
+constexpr double kWinch_s = 0.05;  // in which the winch makes good an error of speed
 // The mound: a cone's flank at 20 degrees, cut off at this height.
 constexpr double kMound_m = 0.08;
 constexpr double kMoundSlope_rad = 20.0 * std::numbers::pi / 180.0;
@@ -50,6 +51,7 @@ void check(const DigTest& test) {
   check_range("dig", "size", test.size_m, 0.5, 5.0);
   check_range("dig", "speed", test.track_m_per_s, 0.01, 1.0);
   check_range("dig", "duration", test.duration_s, 0.1, 600.0);
+  check_range("dig", "beds", test.beds, 1, 64);
 }
 
 /// Presses the belts into the ground in one step: fills in the reactions.
@@ -96,11 +98,14 @@ class DiggingRobot {
       dBodyAddTorque(body_, torque.x(), torque.y(), torque.z());
     }
     if (hold_m_per_s > 0.0) {
-      // A winch at the middle of the body that lets it go no faster and keeps it on its line.
+      // A winch at the middle of the body that holds this speed, whatever it takes, and keeps the
+      // body on its line.
       const double gain = 0.1 * kMass_kg / dt;
-      const Eigen::Vector3d pull(-gain * (body.velocity.x() - hold_m_per_s),
-                                 -gain * body.velocity.y(), 0.0);
+      const double faster = body.velocity.x() - hold_m_per_s;
+      winch_n_ += gain * faster * dt / kWinch_s;
+      const Eigen::Vector3d pull(-gain * faster - winch_n_, -gain * body.velocity.y(), 0.0);
       dBodyAddForce(body_, pull.x(), pull.y(), 0.0);
+      held_ -= pull.x() * dt;
       dBodyAddTorque(body_, 0.0, 0.0, -0.1 / dt * body.omega.z() / body.inverse_inertia(2, 2));
     }
     world_.step(dt);
@@ -110,6 +115,7 @@ class DiggingRobot {
   Eigen::Vector3d position() const { return to_eigen(dBodyGetPosition(body_)); }
   Eigen::Matrix3d rotation() const { return rotation_to_eigen(dBodyGetRotation(body_)); }
   double turned_rad() const { return turned_; }
+  double held_ns() const { return held_; }  ///< the winch's force over time
   BodyMemory& memory() { return memory_; }
 
  private:
@@ -121,6 +127,8 @@ class DiggingRobot {
                                   Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m)};
   std::array<ContactMemory, 2> memories_;
   double turned_ = 0.0;
+  double winch_n_ = 0.0;
+  double held_ = 0.0;
 };
 
 /// Means over squares, on the same nodes.
@@ -144,15 +152,15 @@ HeightField averaged(const HeightField& field) {
   return means;
 }
 
-void measure(DigResult& result, const Eigen::Vector3d& end) {
+void measure(DigResult& result) {
   const HeightField& field = result.before;
   const double area = field.spacing_m() * field.spacing_m();
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
       const double rise =
           (static_cast<double>(result.after.node(ix, iy)) - field.node(ix, iy)) * kHeightUnit_m;
-      const double dx = field.node_x(ix) - end.x();
-      const double away = std::hypot(dx, field.node_y(iy) - end.y());
+      const double dx = field.node_x(ix) - result.end_x_m;
+      const double away = std::hypot(dx, field.node_y(iy) - result.end_y_m);
       result.highest_m = std::max(result.highest_m, rise);
       result.deepest_m = std::max(result.deepest_m, -rise);
       const double volume = std::abs(rise) * area;
@@ -184,6 +192,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press
   const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
   for (int64_t i = 0; i < steps; ++i) {
     robot.step(press, belts, hold, dt);
+    result.time_s += dt;
     const Eigen::Vector3d place = robot.position();
     result.pitch_rad =
         std::max(result.pitch_rad, std::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
@@ -191,10 +200,12 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press
   }
   result.after = averaged(ground());
   const Eigen::Vector3d end = robot.position();
+  result.end_x_m = end.x();
+  result.end_y_m = end.y();
   result.way_m = (end - start).head<2>().norm();
+  result.pull_n = robot.held_ns() / result.time_s;
   result.turned_rad = robot.turned_rad();
   result.lower_by_m = start.z() - end.z();
-  measure(result, end);
   return result;
 }
 
@@ -210,15 +221,18 @@ DigResult dig_soil(const DigTest& test) {
     bed.press(body, contacts, dt, robot.memory());
     bed.end_step();
   };
-  return drive(test, robot, test.step_s, press, [&] { return bed.surface(); });
+  DigResult result = drive(test, robot, test.step_s, press, [&] { return bed.surface(); });
+  measure(result);
+  return result;
 }
 
-DigResult dig_particles(const DigTest& test) {
-  check(test);
+namespace {
+
+DigResult dig_one_bed(const DigTest& test, uint64_t seed) {
   ParticleOptions options;
   options.material = test.particle;
   options.ray_spacing_m = test.cell_m;
-  options.seed = test.seed;
+  options.seed = seed;
   ParticleBed bed(ground_before(test, test.depth_m), options);
   DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
   const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
@@ -234,6 +248,40 @@ DigResult dig_particles(const DigTest& test) {
     bed.step(dt);
   };
   return drive(test, robot, bed.longest_step_s(), press, [&] { return bed.surface(); });
+}
+
+constexpr double DigResult::*kMeans[] = {
+    &DigResult::end_x_m, &DigResult::end_y_m,    &DigResult::time_s,     &DigResult::pull_n,
+    &DigResult::way_m,   &DigResult::turned_rad, &DigResult::lower_by_m, &DigResult::pitch_rad};
+
+template <typename Change>
+void change_nodes(HeightField& field, const Change& change) {
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) field.set_node(ix, iy, change(ix, iy));
+  }
+}
+
+}  // namespace
+
+DigResult dig_particles(const DigTest& test) {
+  check(test);
+  DigResult mean = dig_one_bed(test, test.seed);
+  for (int i = 1; i < test.beds; ++i) {
+    const DigResult one = dig_one_bed(test, test.seed + static_cast<uint64_t>(i));
+    for (double DigResult::*figure : kMeans) mean.*figure += one.*figure;
+    for (HeightField DigResult::*map : {&DigResult::before, &DigResult::after}) {
+      change_nodes(mean.*map, [&](int x, int y) {
+        return static_cast<Height>((mean.*map).node(x, y) + (one.*map).node(x, y));
+      });
+    }
+  }
+  for (double DigResult::*figure : kMeans) mean.*figure /= test.beds;
+  for (HeightField DigResult::*map : {&DigResult::before, &DigResult::after}) {
+    change_nodes(mean.*map, [&](int x, int y) { return (mean.*map).node(x, y) / test.beds; });
+    (mean.*map).refresh_bounds();
+  }
+  measure(mean);
+  return mean;
 }
 
 }  // namespace screed

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <thread>
+#include <vector>
 
 #include "host_sim/soil_lab/repose_pile.h"
 #include "host_sim/soil_lab/soil_robot.h"
@@ -35,9 +39,10 @@ HeightField waves(double size_m, double cell_m, double relief_m, bool wrap) {
 /// bed with edges and on one without, whatever share is compacted.
 TEST(SoilBedTest, VolumeIsExactWhileDriving) {
   for (const bool wrap : {false, true}) {
-    for (const double compaction : {0.0, 0.37}) {
+    for (const auto& [compaction, drag_depth_m] : {std::pair{0.0, 0.0}, {0.37, 0.002}}) {
       SoilParameters soil = soil_preset("viper");
       soil.compaction = compaction;
+      soil.drag_depth_m = drag_depth_m;
       SoilBed bed(waves(1.5, 0.01, 0.04, wrap), soil);
       const int64_t before = bed.balance().now;
       SoilRobot robot(bed, {}, 0.2, 0.1);
@@ -100,6 +105,47 @@ TEST(SoilBedTest, SlopesSettleAtTheAngleOfRepose) {
   }
 }
 
+/// Greatest excess over the angle of repose, in units of height, of two neighbours of which none
+/// waits to be looked at.
+double forgotten_excess_units(const SoilBed& bed) {
+  const HeightField& field = bed.surface();
+  const double slope = std::tan(bed.soil().repose_deg * std::numbers::pi / 180.0);
+  double most = -std::numeric_limits<double>::infinity();
+  for (int y = 0; y < field.ny(); ++y) {
+    for (int x = 0; x < field.nx(); ++x) {
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
+        const int beside_x = (x + dx) % field.nx();
+        const int beside_y = (y + dy + field.ny()) % field.ny();
+        const double excess = std::abs(field.node(x, y) - field.node(beside_x, beside_y)) -
+                              slope * field.spacing_m() * std::hypot(dx, dy) / kHeightUnit_m;
+        if (excess <= most) continue;
+        if (bed.slope_waits(x, y) || bed.slope_waits(beside_x, beside_y)) continue;
+        most = excess;
+      }
+    }
+  }
+  return most;
+}
+
+// While a robot drives, after every step: no slope is above the angle of repose by more than a unit
+// but where the robot stands, as its wheels hold what lies below and beside them. No step of this
+// drive has more to slide than it has time for.
+TEST(SoilBedTest, SlopesStayBelowTheAngleOfReposeWhileDriving) {
+  for (const char* name : {"viper", "gravel"}) {
+    SoilBed bed(waves(1.0, 0.01, 0.04, true), soil_preset(name));
+    bed.settle();
+    SoilRobot robot(bed, {}, 0.2, 0.1);
+    for (int i = 0; i < 2000; ++i) {
+      robot.step(i % 1000 < 700 ? 0.2 : -0.2, 0.2, kStep_s);
+      ASSERT_EQ(bed.slopes_left(), 0U) << name << ", step " << i;
+      ASSERT_LE(forgotten_excess_units(bed), 1.0) << name << ", step " << i;
+    }
+    bed.end_step();  // without the robot
+    bed.end_step();
+    EXPECT_LE(repose_excess_units(bed.surface(), bed.soil().repose_deg), 1.0) << name;
+  }
+}
+
 TEST(SoilBedTest, SteepTerrainSlidesUntouched) {
   ReposeTest test;
   test.soil = soil_preset("viper");
@@ -122,10 +168,10 @@ struct DrivenRun {
   Eigen::Vector3d place;
 };
 
-DrivenRun fixed_run(double size_m) {
+DrivenRun fixed_run(double size_m, const char* soil = "viper") {
   // Cells of a power of two: then the nodes of beds of any size lie at the same bits.
   constexpr double kCell_m = 0x1p-8;
-  SoilBed bed(HeightField::flat(size_m, kCell_m), soil_preset("viper"));
+  SoilBed bed(HeightField::flat(size_m, kCell_m), soil_preset(soil));
   SoilRobot robot(bed, {}, 0.0, 0.0);
   for (int i = 0; i < 2500; ++i) robot.step(0.15, 0.2, kStep_s);
   return {surface_hash(bed.surface()), robot.position()};
@@ -138,16 +184,29 @@ TEST(SoilBedTest, TheSameRunGivesTheSameBits) {
   EXPECT_EQ(first.place, second.place);
 }
 
+// Worlds side by side share nothing.
+TEST(SoilBedTest, AnyNumberOfThreadsGivesTheSameBits) {
+  const DrivenRun alone = fixed_run(1.5, "gravel");
+  std::array<DrivenRun, 3> together;
+  std::vector<std::thread> threads;
+  threads.reserve(together.size());
+  for (DrivenRun& run : together) threads.emplace_back([&run] { run = fixed_run(1.5, "gravel"); });
+  for (std::thread& thread : threads) thread.join();
+  for (const DrivenRun& run : together) {
+    EXPECT_EQ(run.hash, alone.hash);
+    EXPECT_EQ(run.place, alone.place);
+  }
+}
+
 TEST(SoilBedTest, TheBedsSizeDoesNotMatter) {
   EXPECT_EQ(fixed_run(1.5).place, fixed_run(3.0).place);
 }
 
 // What is touched reaches its greatest size early; from then on nothing is allocated.
 TEST(SoilBedTest, SteadySteppingAllocatesNothing) {
-  SoilParameters soil = soil_preset("viper");
-  soil.slip_sinkage = 0.3;
-  for (const double slip_sinkage : {0.0, 0.3}) {
-    soil.slip_sinkage = slip_sinkage;
+  SoilParameters sinks = soil_preset("viper");
+  sinks.slip_sinkage = 0.3;
+  for (const SoilParameters& soil : {soil_preset("viper"), sinks, soil_preset("gravel")}) {
     SoilBed bed(HeightField::flat(1.5, 0.005), soil);
     SoilRobot robot(bed, {}, -0.3, 0.0);
     const auto drive = [&](int steps) {
@@ -157,7 +216,55 @@ TEST(SoilBedTest, SteadySteppingAllocatesNothing) {
     const long before = testing::allocations();
     drive(1500);
     const long after = testing::allocations();
-    EXPECT_EQ(after, before) << "slip_sinkage " << slip_sinkage;
+    EXPECT_EQ(after, before) << soil.name << ", slip_sinkage " << soil.slip_sinkage;
+  }
+}
+
+/// Greatest depth, at right angles to the slope, of the rut that a belt or wheel leaves which goes
+/// down or up a slope, always so deep in it.
+double rut_on_slope(const Footprint& shape, double slope_deg, double depth_m, double sense) {
+  constexpr double kSpeed = 0.1;
+  SoilOptions options;
+  options.bulldozing = options.avalanches = false;
+  options.follow_slopes = true;
+  SoilBed bed(HeightField::ramp(1.0, 0.005, slope_deg), soil_preset("viper"), options);
+  const HeightField before = bed.surface();
+  Footprint footprint = shape;
+  ContactMemory memory;
+  FootprintMotion motion;
+  motion.mass_kg = std::numeric_limits<double>::infinity();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(-slope_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitY())
+                      .toRotationMatrix();
+  motion.velocity = sense * kSpeed * pose.linear().col(0);
+  for (int i = 0; i < 1500; ++i) {
+    pose.translation() = pose.linear().col(0) * (sense * kSpeed * (2 * i * kStep_s - 1.5)) +
+                         pose.linear().col(2) * (shape.radius() - depth_m);
+    footprint.set_pose(pose);
+    bed.press(footprint, motion, 2.0 * kStep_s, memory);
+    bed.end_step();
+  }
+  double deepest = 0.0;
+  for (int iy = 0; iy < before.ny(); ++iy) {
+    for (int ix = 0; ix < before.nx(); ++ix) {
+      const double fall =
+          (static_cast<double>(before.node(ix, iy)) - bed.surface().node(ix, iy)) * kHeightUnit_m;
+      deepest = std::max(deepest, fall * pose.linear()(2, 2));
+    }
+  }
+  return deepest;
+}
+
+// What lies below a belt that goes downhill was never as low as the belt's front end is by now.
+TEST(SoilBedTest, ARutIsAsDeepDownhillAsOnTheLevel) {
+  for (const Footprint& shape :
+       {Footprint::track(0.07, 0.03, 0.04), Footprint::wheel(0.03, 0.025)}) {
+    for (const double slope_deg : {-20.0, 0.0, 10.0}) {
+      for (const double sense : {1.0, -1.0}) {
+        EXPECT_NEAR(rut_on_slope(shape, slope_deg, 0.004, sense), 0.004, 0.0005)
+            << slope_deg << " degrees, sense " << sense << ", half length " << shape.half().x();
+      }
+    }
   }
 }
 
