@@ -216,7 +216,9 @@ void register_sim_command(CLI::App& root, const std::string& version,
       ->add_option(
           "--hal", arguments->hal,
           "native: the firmware compiled for this machine; mcu: the image that is flashed, "
-          "under a cycle-accurate simulation of the microcontroller")
+          "under a cycle-accurate simulation of the microcontroller; surrogate: the native one "
+          "where "
+          "a network stands in for the physics")
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
   command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
   command->add_option("--elf", arguments->elf,

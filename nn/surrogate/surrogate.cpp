@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "host_sim/core/errors.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kFrame_s = 0.01;
 constexpr double kActivationOfOne = 32768.0;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFloorBias = 65536.0;  // makes what is rounded towards zero positive
 
 [[noreturn]] void refuse(const Model& model, const std::string& what) {
@@ -86,7 +88,8 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
     for (const ModelChannel& channel : from.inputs) {
       const double scale = kActivationOfOne / channel.half_range;
       network.inputs.push_back({signal(channel.feature, "input"), scale, -channel.middle * scale,
-                                channel.half_range, channel.middle, std::nullopt});
+                                channel.half_range, channel.middle, std::nullopt, -kNoLimit,
+                                kNoLimit});
     }
     bool useful = false;
     for (const ModelChannel& channel : from.outputs) {
@@ -106,8 +109,17 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
                  0.0,
                  channel.half_range,
                  channel.middle,
-                 std::nullopt};
-      if (!channel.baseline.empty()) to.baseline = signal(channel.baseline, "baseline");
+                 std::nullopt,
+                 -kNoLimit,
+                 kNoLimit};
+      if (!channel.baseline.empty()) {
+        to.baseline = signal(channel.baseline, "baseline");
+        for (const Channel& input : network.inputs) {
+          if (input.row != *to.baseline) continue;
+          to.lowest = input.middle - input.half_range;
+          to.highest = input.middle + input.half_range;
+        }
+      }
       network.outputs.push_back(to);
     }
     if (!useful) continue;
@@ -173,7 +185,8 @@ void Surrogate::take(const Channel& channel, const std::int16_t* activations) {
   const double* right = row(Signal::kTrackRight);
   for (std::size_t i = 0; i < robots_; ++i) {
     double value = middle + step * activations[i];
-    if (baseline != nullptr) value += baseline[i];
+    if (baseline != nullptr)
+      value = std::clamp(value + baseline[i], channel.lowest, channel.highest);
     // A way has no sign; the tracks have (thesis 6.1).
     if (way && left[i] + right[i] < 0.0) value = -value;
     values[i] = value;
@@ -210,7 +223,10 @@ void Surrogate::foretell_in_float(const Network& network) {
       const Channel& channel = network.outputs[output];
       const bool way = channel.row == static_cast<std::size_t>(Output::kWay);
       double value = channel.middle + channel.half_range * std::clamp(values[output], -1.0, 1.0);
-      if (channel.baseline.has_value()) value += signals_[*channel.baseline * robots_ + i];
+      if (channel.baseline.has_value()) {
+        value = std::clamp(value + signals_[*channel.baseline * robots_ + i], channel.lowest,
+                           channel.highest);
+      }
       if (way && row(Signal::kTrackLeft)[i] + row(Signal::kTrackRight)[i] < 0.0) value = -value;
       motion_.at(way ? 0 : channel.row)[i] = value;
     }

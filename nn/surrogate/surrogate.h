@@ -101,6 +101,10 @@ class Surrogate {
     double half_range;
     double middle;
     std::optional<std::size_t> baseline;  ///< row of a signal
+    /// Of an output with a baseline: what the network can be told of it in the next frame. Without
+    /// these ends a network that goes on adding would run away.
+    double lowest;
+    double highest;
   };
   struct Network {
     BatchNetwork batch;

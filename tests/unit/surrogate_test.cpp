@@ -130,6 +130,21 @@ TEST(Surrogate, GivesAWayWithoutSignThatOfTheTracks) {
   EXPECT_NEAR(robot.motion(0).forward_m, 0.0025, 1e-6);
 }
 
+TEST(Surrogate, DoesNotRunAwayWhenTheNetworkGoesOnAdding) {
+  const Model model =
+      linear_model({channel("forward@1", 0.005)},
+                   {channel("forward", 0.001, "forward@1"), channel("delta_theta", 0.01)},
+                   {0.0, 0.0}, {0.9, 0.0});
+  const HeightField ground = HeightField::flat(4.0, 0.1);
+  const double still = 0.0;
+  for (const Surrogate::Arithmetic arithmetic :
+       {Surrogate::Arithmetic::kInteger, Surrogate::Arithmetic::kFloat}) {
+    Surrogate robot(model, SupportGeometry{}, 1, arithmetic);
+    for (int frame = 0; frame < 50; ++frame) robot.step(ground, {&still, 1}, {&still, 1});
+    EXPECT_EQ(robot.motion(0).forward_m, 0.005);
+  }
+}
+
 TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
   const Model model = random_model();
   const HeightField ground = hills();
