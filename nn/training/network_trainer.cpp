@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "host_sim/core/errors.h"
@@ -27,7 +27,6 @@ using Tanh = tiny_dnn::linear_layer<tiny_dnn::activation::tan_h>;
 constexpr float kVarianceFloor = 1e-5F;
 constexpr float kRunningShare = 0.99F;
 constexpr std::size_t kChunkBatches = 64;  ///< that are copied for tiny-dnn at a time
-constexpr std::size_t kOutputsAtOnce = 256;
 
 /// y = scale x + offset, a node: what Keras' batch normalisation has and tiny-dnn's has not.
 class ScaleLayer : public tiny_dnn::layer {
@@ -164,12 +163,9 @@ class NetworkTrainer::Impl {
   std::vector<float> outputs(const Examples& examples) {
     net_.set_netphase(tiny_dnn::net_phase::test);
     std::vector<float> result;
-    for (std::size_t first = 0; first < examples.rows(); first += kOutputsAtOnce) {
-      const std::size_t end = std::min(examples.rows(), first + kOutputsAtOnce);
-      for (std::size_t row = first; row < end; ++row) {
-        const vec_t out = net_.predict(row_of(examples.in, examples.inputs, row));
-        result.insert(result.end(), out.begin(), out.end());
-      }
+    for (std::size_t row = 0; row < examples.rows(); ++row) {
+      const vec_t out = net_.predict(row_of(examples.in, examples.inputs, row));
+      result.insert(result.end(), out.begin(), out.end());
     }
     return result;
   }

@@ -5,6 +5,7 @@
 #include <fixedfann.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,11 @@ void ours_scalar(benchmark::State& state, bool deep) {
 }
 
 void ours_batched(benchmark::State& state, bool deep, BatchKernel kernel) {
+  const std::vector<BatchKernel> kernels = batch_kernels();
+  if (std::find(kernels.begin(), kernels.end(), kernel) == kernels.end()) {
+    state.SkipWithError("this processor does not have it");
+    return;
+  }
   const BatchNetwork network(quantise(layers(deep)), kernel);
   WorldRandom random(2, "bench");
   std::vector<std::int16_t> in(kInputs * kRobots);
@@ -159,25 +165,20 @@ void eigen_float_batched(benchmark::State& state, bool deep) {
   per_robot(state, kRobots);
 }
 
-const int registered = [] {
-  for (const bool deep : {false, true}) {
-    const std::string shape = deep ? "v2_13x7/" : "v1_4_20_1/";
-    const auto add = [&](const std::string& name, auto run) {
-      benchmark::RegisterBenchmark(("network/" + shape + name).c_str(),
-                                   [=](benchmark::State& state) { run(state, deep); });
-    };
-    add("ours_scalar", ours_scalar);
-    for (const BatchKernel kernel : batch_kernels()) {
-      add(std::string("ours_batched_") + batch_kernel_name(kernel),
-          [=](benchmark::State& state, bool is_deep) { ours_batched(state, is_deep, kernel); });
-    }
-    add("tiny_dnn", tiny_dnn_float);
-    add("fann_fixed", fann_fixed);
-    add("eigen_float", eigen_float);
-    add("eigen_float_batched", eigen_float_batched);
-  }
-  return 0;
-}();
+BENCHMARK_CAPTURE(ours_scalar, v1_4_20_1, false);
+BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx2, false, BatchKernel::kAvx2);
+BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx512, false, BatchKernel::kAvx512);
+BENCHMARK_CAPTURE(tiny_dnn_float, v1_4_20_1, false);
+BENCHMARK_CAPTURE(fann_fixed, v1_4_20_1, false);
+BENCHMARK_CAPTURE(eigen_float, v1_4_20_1, false);
+BENCHMARK_CAPTURE(eigen_float_batched, v1_4_20_1, false);
+BENCHMARK_CAPTURE(ours_scalar, v2_13x7, true);
+BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx2, true, BatchKernel::kAvx2);
+BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx512, true, BatchKernel::kAvx512);
+BENCHMARK_CAPTURE(tiny_dnn_float, v2_13x7, true);
+BENCHMARK_CAPTURE(fann_fixed, v2_13x7, true);
+BENCHMARK_CAPTURE(eigen_float, v2_13x7, true);
+BENCHMARK_CAPTURE(eigen_float_batched, v2_13x7, true);
 
 }  // namespace
 }  // namespace screed::nn
