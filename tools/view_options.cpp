@@ -41,7 +41,7 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
       ->check(CLI::NonNegativeNumber);
   command
       .add_option("--film", arguments.film,
-                  "folder for PNGs of the whole run, 25 a simulated second (a --speed: divided)")
+                  "folder for PNGs of the whole run: a film of 25 frames a second, at --speed")
       ->group(kGroup);
   command.add_option("--shading", arguments.shading, "what the colours of the ground say at first")
       ->group(kGroup)

@@ -68,7 +68,7 @@ void LiveViewer::see(const Frame& frame, const HeightField& ground) {
   if (!options_.window) {
     stage_->take_input(time_s_, 0);
     steer();
-    if (stage_->controls().film) stage_->show();
+    if (stage_->film_is_due()) stage_->show();
   } else if (options_.frames.has_value()) {
     show_counted(time_s_);
   } else {

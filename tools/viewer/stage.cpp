@@ -221,6 +221,14 @@ void Stage::show() {
   save_on_demand();
 }
 
+bool Stage::film_is_due() const {
+  if (!controls_.film) return false;
+  if (!filmed_until_s_.has_value() || status_.time_s < *filmed_until_s_) return true;
+  constexpr double kRounding_s = 1e-9;
+  const double pace = controls_.pace > 0.0 ? controls_.pace : 1.0;
+  return status_.time_s >= *filmed_until_s_ + pace / kFilmFramesPerSecond - kRounding_s;
+}
+
 void Stage::save_on_demand() {
   if (controls_.screenshot) {
     controls_.screenshot = false;
@@ -231,15 +239,8 @@ void Stage::save_on_demand() {
     drawing_.canvas().write_png(name);
     std::cerr << "picture " << name << "\n";
   }
-  if (!controls_.film) {
-    filmed_until_s_.reset();
-    return;
-  }
-  const double time_s = status_.time_s;
-  if (filmed_until_s_.has_value() &&
-      time_s < *filmed_until_s_ + 1.0 / kFilmFramesPerSecond - 1e-9 && time_s >= *filmed_until_s_) {
-    return;
-  }
+  if (!controls_.film) filmed_until_s_.reset();
+  if (!film_is_due()) return;
   const std::filesystem::path folder = options_.film.empty() ? "film" : options_.film;
   if (film_frames_ == 0) {
     std::error_code error;
@@ -248,7 +249,7 @@ void Stage::save_on_demand() {
     std::cerr << "film " << folder.string() << "/frame_000001.png ...\n";
   }
   drawing_.canvas().write_png(folder / numbered("frame_", ++film_frames_));
-  filmed_until_s_ = time_s;
+  filmed_until_s_ = status_.time_s;
 }
 
 void Stage::save(const std::filesystem::path& file) {

@@ -83,6 +83,8 @@ class Stage {
   /// Takes what the user does; waits at most so long for it. A time of the run goes with it: the
   /// script's keys up to it are pressed.
   void take_input(double time_s, int wait_ms);
+  /// A film is recorded and its next frame is due: 25 a second of it, at the pace that is set.
+  bool film_is_due() const;
   /// Draws, shows, films.
   void show();
   /// All frames that were asked for have been shown.
