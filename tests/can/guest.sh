@@ -111,7 +111,8 @@ pass "and after it was taken away and made anew ($again)"
 # --- screed send, and the robot's answer -----------------------------------------------------------------------------------------
 screed send --can vcan0 param get climb_speed > sent.txt || { cat sent.txt; fail "screed send param get: $?"; }
 grep -q 'climb_speed = 200 mm/s' sent.txt || { cat sent.txt; fail "wrong parameter"; }
-screed send --can vcan0 param set climb_speed 150 > sent.txt || { cat sent.txt; fail "screed send param set: $?"; }
+screed send --can vcan0 disarm > sent.txt || { cat sent.txt; fail "screed send disarm failed"; }
+screed send --can vcan0 param set climb_speed 150 > sent.txt || { cat sent.txt; fail "screed send param set failed"; }
 screed send --can vcan0 param get climb_speed > sent.txt || { cat sent.txt; fail "screed send param get: $?"; }
 grep -q 'climb_speed = 150 mm/s' sent.txt || { cat sent.txt; fail "the parameter was not written"; }
 screed send --can vcan0 estop > sent.txt || { cat sent.txt; fail "screed send estop: $?"; }
