@@ -12,10 +12,10 @@ SURROGATE_SESSIONS ?= $(sort $(wildcard host_sim/data/experiments/sessions/v1_*.
 surrogate: deps
 	$(STEP) run-surrogate
 run-surrogate: $(SCREED)
-	@for file in $(SURROGATE_SESSIONS) ; do session=$(OUT)/sessions/$$(basename $$file .ini) ; \
+	@set -e ; for file in $(SURROGATE_SESSIONS) ; do session=$(OUT)/sessions/$$(basename $$file .ini) ; \
 	  ls $$session/session.h5 $$session-[0-9]*/session.h5 > /dev/null 2>&1 || \
 	    $(SCREED) record $$file --out $$session $(if $(FRAMES),--frames $(FRAMES)) ; done
-	@for model in $(MODELS) ; do \
+	@set -e ; for model in $(MODELS) ; do \
 	  echo "== $$model" ; \
 	  $(SCREED) nn train nn/configurations/$$model.json --sessions $(OUT)/sessions --out $(OUT)/nn/$$model $(ARGS) ; \
 	  $(SCREED) nn eval $(OUT)/nn/$$model/model.json nn/configurations/$$model.json --sessions $(OUT)/sessions \

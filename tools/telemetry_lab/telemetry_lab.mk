@@ -5,7 +5,6 @@
 #
 # Needs from there: B, SCREED, LIBRARY, STEP, objects, GENERATED_FOLDER.
 
-FRAMES ?= 1000000
 LINES ?= 10000000
 TELEMETRY_LAB := $(B)/telemetry_lab
 
@@ -16,7 +15,7 @@ damage: deps
 	$(STEP) run-damage
 
 run-bench-decode: $(SCREED) $(TELEMETRY_LAB)
-	@tools/telemetry_lab/bench_decode.sh $(SCREED) $(TELEMETRY_LAB) $(GENERATED_FOLDER)/wireshark $(FRAMES)
+	@tools/telemetry_lab/bench_decode.sh $(SCREED) $(TELEMETRY_LAB) $(GENERATED_FOLDER)/wireshark $(or $(FRAMES),1000000)
 run-damage: $(TELEMETRY_LAB)
 	@$(TELEMETRY_LAB) damage $(LINES)
 
