@@ -84,7 +84,7 @@ LIBRARY := $(B)/libscreed.a
 help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
-	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (an hour)"
+	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (half an hour)"
 	@echo "make surrogate  train, evaluate and export the networks of the thesis  (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
