@@ -307,8 +307,9 @@ run-lint: check-format check-telemetry-page $(patsubst %.cpp,$(B)/%.tidy,$(TIDY_
 check-format:
 	@clang-format --dry-run -Werror $(CPP_FILES)
 
-# A stamp a source, renewed when the source or a header of it changed (the .d file of the object says which).
-$(B)/%.tidy: %.cpp $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED)
+# A stamp a source, renewed when the source or a header of it changed: the object is, too, then (its .d file says which
+# headers those are), so the stamp asks for the object.
+$(B)/%.tidy: %.cpp $(B)/%.o $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  TIDY $<"
 	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/% nn/infer/%,$<),$(B)/firmware.flags,$(B)/host.flags)) $(EXTRA_FLAGS) 2>&1 \

@@ -55,7 +55,7 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
   const Eigen::Matrix3d rotation = rotation_from(start.attitude);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = rotation;
-  const double resting = vehicle_.resting_height(this->terrain(), start.x_m, start.y_m, rotation);
+  const double resting = vehicle_.resting_height(Plant::terrain(), start.x_m, start.y_m, rotation);
   pose.translation() << start.x_m, start.y_m, start.z_m.value_or(resting);
   if (start.z_m.has_value() && *start.z_m < resting - 0.01) {
     throw InputError("[vehicle] z = " + std::to_string(*start.z_m) +
@@ -195,7 +195,7 @@ void Plant::lay_on_side() {
   attitude.roll = -std::numbers::pi / 2.0;
   attitude.pitch = 0.0;
   pose.linear() = rotation_from(attitude);
-  pose.translation().z() = vehicle_.resting_height(this->terrain(), pose.translation().x(),
+  pose.translation().z() = vehicle_.resting_height(Plant::terrain(), pose.translation().x(),
                                                    pose.translation().y(), pose.linear());
   vehicle_.place(pose);
   // A hand, not an impact: the accelerometer sees the new attitude, no jerk.
