@@ -18,6 +18,13 @@ double middle_yaw(const Frame& frame) {
   return frame.yaw - 0.5 * frame.delta_theta;
 }
 
+double mean_wheel(const Frame& frame) {
+  return 0.5 * (frame.v_left + frame.v_right);
+}
+double wheel_difference(const Frame& frame) {
+  return frame.v_right - frame.v_left;
+}
+
 constexpr Feature kFeatures[] = {
     // Thesis 6.2.1 and 6.3.1: inputs
     {"v_left", "rad/s", "left drive wheel, as commanded", 1,
@@ -49,6 +56,29 @@ constexpr Feature kFeatures[] = {
        const double yaw = middle_yaw(w.now());
        return w.now().delta_y * std::cos(yaw) - w.now().delta_x * std::sin(yaw);
      }},
+    // Products and amounts, to be formed before a stage smooths: a mean over several headings on a
+    // slope, or over ahead and back, has lost them.
+    {"speed", "rad/s", "amount of the mean of both wheels, as commanded", 1,
+     [](const FrameWindow& w) { return std::abs(mean_wheel(w.now())); }},
+    {"spin", "rad/s", "amount of the wheels' difference, as commanded", 1,
+     [](const FrameWindow& w) { return std::abs(wheel_difference(w.now())); }},
+    {"climb", "rad/s", "slope along the heading times the wheels' mean: > 0 uphill", 1,
+     [](const FrameWindow& w) { return std::sin(w.now().pitch) * mean_wheel(w.now()); }},
+    {"lean", "rad/s", "slope across times the wheels' difference", 1,
+     [](const FrameWindow& w) { return std::sin(w.now().roll) * wheel_difference(w.now()); }},
+    {"slide", "rad/s", "slope across times the wheels' mean", 1,
+     [](const FrameWindow& w) { return std::sin(w.now().roll) * mean_wheel(w.now()); }},
+    {"pivot", "rad/s", "slope along the heading times the wheels' difference", 1,
+     [](const FrameWindow& w) { return std::sin(w.now().pitch) * wheel_difference(w.now()); }},
+    // What a gyro says; a world without one yet does not know them.
+    {"yaw_rate", "rad/s", "amount, about the chassis' upward axis", 1,
+     [](const FrameWindow& w) { return std::abs(w.now().rate_z); }},
+    {"pitch_rate", "rad/s", "amount, about its leftward axis", 1,
+     [](const FrameWindow& w) { return std::abs(w.now().rate_y); }},
+    {"roll_rate", "rad/s", "amount, about its forward axis", 1,
+     [](const FrameWindow& w) { return std::abs(w.now().rate_x); }},
+    {"arc", "rad2/s2", "speed times yaw_rate", 1,
+     [](const FrameWindow& w) { return std::abs(mean_wheel(w.now()) * w.now().rate_z); }},
 };
 
 }  // namespace

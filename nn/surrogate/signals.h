@@ -25,6 +25,11 @@ enum class Signal : std::uint8_t {
   kTrackRight,
   kTrackLeft1,
   kTrackRight1,
+  kTrackLeft2,
+  kTrackRight2,
+  kForwardSettling,
+  kSidewaysSettling,
+  kTurnSettling,
   kWheelLeft,
   kWheelRight,
   kPitch,
@@ -36,7 +41,7 @@ enum class Signal : std::uint8_t {
   kSoilShear,
   kSoilSinkage,
 };
-inline constexpr std::size_t kSignals = 20;
+inline constexpr std::size_t kSignals = 25;
 
 struct SignalInfo {
   Signal signal;

@@ -76,7 +76,8 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
         kernel.has_value() ? BatchNetwork(from.network, *kernel) : BatchNetwork(from.network),
         {},
         {},
-        from.trained};
+        from.trained,
+        {}};
     const auto signal = [&](const std::string& name, const char* what) {
       const std::optional<Signal> found = signal_named(name);
       if (!found.has_value()) {
@@ -90,6 +91,8 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
       network.inputs.push_back({signal(channel.feature, "input"), scale, -channel.middle * scale,
                                 channel.half_range, channel.middle, std::nullopt, -kNoLimit,
                                 kNoLimit});
+      InputStages stages(model.stages, robots_);
+      if (!stages.empty()) network.stages.push_back(std::move(stages));
     }
     bool useful = false;
     for (const ModelChannel& channel : from.outputs) {
@@ -133,6 +136,7 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
   if (!known[0] || !known[2]) {
     refuse(model, "foretells no motion; needed are forward (or v) and delta_theta");
   }
+  if (!networks_.front().stages.empty()) prepared_.resize(most_inputs * robots_);
   in_.resize(most_inputs * robots_);
   out_.resize(most_outputs * robots_);
 }
@@ -148,6 +152,9 @@ void Surrogate::place(std::size_t robot, const PlanarPose& pose, const FrameMoti
   row(Signal::kForward2)[robot] = before_last.forward_m;
   row(Signal::kSideways2)[robot] = before_last.sideways_m;
   row(Signal::kTurn2)[robot] = before_last.turn_rad;
+  for (Network& network : networks_) {
+    for (InputStages& stages : network.stages) stages.forget(robot);
+  }
 }
 
 void Surrogate::set_soil(std::size_t robot, const SoilParameters& soil) {
@@ -158,8 +165,12 @@ void Surrogate::set_soil(std::size_t robot, const SoilParameters& soil) {
 }
 
 void Surrogate::set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s) {
-  row(Signal::kTrackLeft)[robot] = left_m_per_s;
-  row(Signal::kTrackRight)[robot] = right_m_per_s;
+  for (const Signal left : {Signal::kTrackLeft, Signal::kTrackLeft1}) {
+    row(left)[robot] = left_m_per_s;
+  }
+  for (const Signal right : {Signal::kTrackRight, Signal::kTrackRight1}) {
+    row(right)[robot] = right_m_per_s;
+  }
 }
 
 void Surrogate::feel_ground(const HeightField& ground) {
@@ -193,14 +204,29 @@ void Surrogate::take(const Channel& channel, const std::int16_t* activations) {
   }
 }
 
-void Surrogate::foretell(const Network& network) {
-  for (std::size_t input = 0; input < network.inputs.size(); ++input) {
+void Surrogate::prepare_inputs(Network& network) {
+  for (std::size_t input = 0; input < network.stages.size(); ++input) {
     const Channel& channel = network.inputs[input];
     const double* from = &signals_[channel.row * robots_];
+    double* to = &prepared_[input * robots_];
+    for (std::size_t i = 0; i < robots_; ++i) {
+      to[i] = (from[i] - channel.middle) / channel.half_range;
+    }
+    network.stages[input].apply({to, robots_});
+  }
+}
+
+void Surrogate::foretell(const Network& network) {
+  const bool prepared = !network.stages.empty();
+  for (std::size_t input = 0; input < network.inputs.size(); ++input) {
+    const Channel& channel = network.inputs[input];
+    const double* from = prepared ? &prepared_[input * robots_] : &signals_[channel.row * robots_];
+    const double scale = prepared ? kActivationOfOne : channel.scale;
+    const double offset = prepared ? 0.0 : channel.offset;
     std::int16_t* to = &in_[input * robots_];
     for (std::size_t i = 0; i < robots_; ++i) {
-      const double q = std::clamp(from[i] * channel.scale + channel.offset, -kActivationOfOne,
-                                  kActivationOfOne - 1.0);
+      const double q =
+          std::clamp(from[i] * scale + offset, -kActivationOfOne, kActivationOfOne - 1.0);
       to[i] = static_cast<std::int16_t>(static_cast<std::int32_t>(q + kFloorBias) -
                                         static_cast<std::int32_t>(kFloorBias));
     }
@@ -214,9 +240,13 @@ void Surrogate::foretell(const Network& network) {
 void Surrogate::foretell_in_float(const Network& network) {
   for (std::size_t i = 0; i < robots_; ++i) {
     std::vector<double> values;
-    for (const Channel& channel : network.inputs) {
-      values.push_back(std::clamp(
-          (signals_[channel.row * robots_ + i] - channel.middle) / channel.half_range, -1.0, 1.0));
+    for (std::size_t input = 0; input < network.inputs.size(); ++input) {
+      const Channel& channel = network.inputs[input];
+      const double value =
+          network.stages.empty()
+              ? (signals_[channel.row * robots_ + i] - channel.middle) / channel.half_range
+              : prepared_[input * robots_ + i];
+      values.push_back(std::clamp(value, -1.0, 1.0));
     }
     values = run(network.trained, std::move(values));
     for (std::size_t output = 0; output < network.outputs.size(); ++output) {
@@ -252,6 +282,7 @@ void Surrogate::move() {
 
 void Surrogate::feel_tracks(std::span<const double> left_m_per_s,
                             std::span<const double> right_m_per_s) {
+  std::copy_n(row(Signal::kTrackLeft1), 2 * robots_, row(Signal::kTrackLeft2));
   std::copy_n(row(Signal::kTrackLeft), 2 * robots_, row(Signal::kTrackLeft1));
   std::copy_n(left_m_per_s.data(), robots_, row(Signal::kTrackLeft));
   std::copy_n(right_m_per_s.data(), robots_, row(Signal::kTrackRight));
@@ -260,7 +291,30 @@ void Surrogate::feel_tracks(std::span<const double> left_m_per_s,
   for (std::size_t i = 0; i < 2 * robots_; ++i) wheels[i] = tracks[i] / geometry_.wheel_radius_m;
 }
 
+void Surrogate::swing() {
+  const double* left = row(Signal::kTrackLeft);
+  const double* right = row(Signal::kTrackRight);
+  const double* left1 = row(Signal::kTrackLeft1);
+  const double* right1 = row(Signal::kTrackRight1);
+  const double* left2 = row(Signal::kTrackLeft2);
+  const double* right2 = row(Signal::kTrackRight2);
+  const double* last = row(Signal::kForward1);
+  const double* before = row(Signal::kForward2);
+  double* to = row(Signal::kForwardSettling);
+  for (std::size_t i = 0; i < robots_; ++i) {
+    const FrameMotion now = kUsualSkid.motion(left[i], right[i]);
+    const FrameMotion now1 = kUsualSkid.motion(left1[i], right1[i]);
+    const FrameMotion now2 = kUsualSkid.motion(left2[i], right2[i]);
+    const std::size_t side = robots_ + i;
+    const std::size_t turn = 2 * robots_ + i;
+    to[i] = settling(last[i], before[i], now.forward_m, now1.forward_m, now2.forward_m);
+    to[side] = settling(last[side], before[side], 0.0, 0.0, 0.0);
+    to[turn] = settling(last[turn], before[turn], now.turn_rad, now1.turn_rad, now2.turn_rad);
+  }
+}
+
 void Surrogate::answer() {
+  swing();
   if (kinematics_.has_value()) {
     for (std::size_t i = 0; i < robots_; ++i) {
       const FrameMotion motion =
@@ -270,7 +324,8 @@ void Surrogate::answer() {
       motion_[2][i] = motion.turn_rad;
     }
   }
-  for (const Network& network : networks_) {
+  for (Network& network : networks_) {
+    prepare_inputs(network);
     if (arithmetic_ == Arithmetic::kFloat) {
       foretell_in_float(network);
     } else {

@@ -18,6 +18,7 @@
 #include "host_sim/terrain/height_field.h"
 #include "nn/batch/batch_network.h"
 #include "nn/model/model_file.h"
+#include "nn/surrogate/input_stages.h"
 #include "nn/surrogate/signals.h"
 #include "nn/surrogate/support.h"
 
@@ -49,6 +50,21 @@ struct SkidKinematics {
 
   FrameMotion motion(double left_m_per_s, double right_m_per_s) const;
 };
+
+/// What tracks on soil do more or less whatever the soil, and how a robot that does otherwise comes
+/// back to it: in a swing on its springy ground contact that dies out within a tenth of a second.
+/// With d the motion less that of kUsualSkid, d(t) = kSwingLast d(t-1) + kSwingBefore d(t-2). A
+/// network that adds to it cannot run away, and one that adds nothing is still right in the mean.
+inline constexpr SkidKinematics kUsualSkid = {0.96, 0.275};
+inline constexpr double kSwingLast = 1.7;
+inline constexpr double kSwingBefore = -0.75;
+
+/// The next value of one of the three motions by that, from those of the last two frames and of
+/// kUsualSkid in the three.
+constexpr double settling(double last, double before_last, double skid, double skid_last,
+                          double skid_before_last) {
+  return skid + kSwingLast * (last - skid_last) + kSwingBefore * (before_last - skid_before_last);
+}
 
 class Surrogate {
  public:
@@ -111,13 +127,16 @@ class Surrogate {
     std::vector<Channel> inputs;
     std::vector<Channel> outputs;
     std::vector<FloatLayer> trained;
+    std::vector<InputStages> stages;  ///< one an input; none: the model has no stage of run time
   };
 
   double* row(Signal signal) { return &signals_[row_of(signal) * robots_]; }
   const double* row(Signal signal) const { return &signals_[row_of(signal) * robots_]; }
   void feel_tracks(std::span<const double> left_m_per_s, std::span<const double> right_m_per_s);
+  void swing();
   void feel_ground(const HeightField& ground);
   void answer();
+  void prepare_inputs(Network& network);
   void foretell(const Network& network);
   void foretell_in_float(const Network& network);
   void take(const Channel& channel, const std::int16_t* activations);
@@ -135,6 +154,7 @@ class Surrogate {
   std::vector<double> cos_;
   std::vector<double> sin_;
   std::array<std::vector<double>, 3> motion_;  ///< the new frame's: forward, sideways, turn
+  std::vector<double> prepared_;  ///< normalised inputs behind the stages of run time, by input
   std::vector<std::int16_t> in_;
   std::vector<std::int16_t> out_;
 };

@@ -23,12 +23,19 @@ std::vector<std::string> names_of(const JsonValue& list) {
 std::vector<ModelChannel> channels_of(const JsonValue& list, bool output) {
   std::vector<ModelChannel> channels;
   for (const JsonValue& value : list.list(1, 255)) {
-    value.only({"feature", "middle", "half_range"});
+    if (output) {
+      value.only({"feature", "half_range", "baseline"});
+    } else {
+      value.only({"feature", "middle", "half_range"});
+    }
     ModelChannel channel;
     channel.feature = value.at("feature").text();
     if (value.has("middle")) channel.middle = value.at("middle").number(-1e9, 1e9);
     channel.half_range = value.at("half_range").number(1e-12, 1e9);
-    if (output) channel.baseline = channel.feature + "@1";
+    if (output) {
+      channel.baseline =
+          value.has("baseline") ? value.at("baseline").text() : channel.feature + "@1";
+    }
     channels.push_back(channel);
   }
   return channels;
@@ -69,7 +76,8 @@ MotionConfiguration read_motion_configuration(const std::filesystem::path& file)
   const nlohmann::json json = read_json_file(file);
   const JsonValue root(json, file.string());
   root.only({"name", "about", "seed", "train", "test", "inputs", "outputs", "hidden", "window",
-             "batch", "steps", "learning_rate", "mean_weight"});
+             "batch", "steps", "learning_rate", "frame_weight", "mean_weight", "mean_knee",
+             "mirror"});
   MotionConfiguration result;
   result.name = root.at("name").text();
   result.about = root.at("about").text();
@@ -87,7 +95,10 @@ MotionConfiguration read_motion_configuration(const std::filesystem::path& file)
   training.batch = static_cast<std::size_t>(root.at("batch").integer(1, 10000));
   training.steps = static_cast<std::size_t>(root.at("steps").integer(1, 10000000));
   training.learning_rate = root.at("learning_rate").number(1e-9, 1.0);
+  if (root.has("frame_weight")) training.frame_weight = root.at("frame_weight").number(0.0, 1e6);
   training.mean_weight = root.at("mean_weight").number(0.0, 1e6);
+  if (root.has("mean_knee")) training.mean_knee = root.at("mean_knee").number(1e-9, 1e6);
+  if (root.has("mirror")) training.mirror = root.at("mirror").flag();
   return result;
 }
 

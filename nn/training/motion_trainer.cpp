@@ -10,6 +10,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "nn/surrogate/signals.h"
+#include "nn/surrogate/surrogate.h"
 #include "nn/training/parameter_update.h"
 #include "nn/training/tiny_dnn.h"
 
@@ -26,7 +27,6 @@ constexpr std::size_t kMotions = 3;  // forward, sideways, turn
 // What an error is measured in, and where it stops counting by its square.
 constexpr std::array<double, kMotions> kErrorUnit = {0.002, 0.001, 0.02};
 constexpr double kFrameKnee = 0.1;
-constexpr double kMeanKnee = 0.02;
 constexpr double kLongestGradient = 0.5;
 constexpr double kRisingShare = 0.1;
 constexpr double kLastRate = 0.001;
@@ -66,10 +66,10 @@ Source source_of(const ModelChannel& channel) {
   return source;
 }
 
-double recorded(Signal signal, const MotionSeries& series, std::size_t frame,
+double recorded(Signal signal, const std::vector<MotionFrame>& frames, std::size_t frame,
                 const std::array<double, kSoilSignals>& soil) {
-  const MotionFrame& now = series.frames[frame];
-  const MotionFrame& before = series.frames[frame - 1];
+  const MotionFrame& now = frames[frame];
+  const MotionFrame& before = frames[frame - 1];
   switch (signal) {
     case Signal::kTrackLeft:
       return now.track_left_m_per_s;
@@ -79,6 +79,10 @@ double recorded(Signal signal, const MotionSeries& series, std::size_t frame,
       return before.track_left_m_per_s;
     case Signal::kTrackRight1:
       return before.track_right_m_per_s;
+    case Signal::kTrackLeft2:
+      return frames[frame - 2].track_left_m_per_s;
+    case Signal::kTrackRight2:
+      return frames[frame - 2].track_right_m_per_s;
     case Signal::kWheelLeft:
       return now.track_left_m_per_s / SupportGeometry{}.wheel_radius_m;
     case Signal::kWheelRight:
@@ -98,10 +102,39 @@ double motion_of(const MotionFrame& frame, std::size_t motion) {
   return all.at(motion);
 }
 
+/// As if left were right.
+MotionFrame mirrored(const MotionFrame& frame) {
+  MotionFrame other = frame;
+  other.motion.sideways_m = -frame.motion.sideways_m;
+  other.motion.turn_rad = -frame.motion.turn_rad;
+  std::swap(other.track_left_m_per_s, other.track_right_m_per_s);
+  other.roll = -frame.roll;
+  return other;
+}
+
+/// Frames to drive along, and two before them.
 struct Stretch {
-  const MotionSeries* series;
+  std::vector<MotionFrame> frames;
   std::array<double, kSoilSignals> soil;
-  std::size_t begin;  ///< its first frame
+};
+constexpr std::size_t kBefore = 2;
+
+/// What a motion is told a difference to: constant + last x the last frame's + before_last x that
+/// of the frame before.
+struct Baseline {
+  bool settles = false;
+  double last() const { return settles ? kSwingLast : 1.0; }
+  double before_last() const { return settles ? kSwingBefore : 0.0; }
+  double constant(const Stretch& stretch, std::size_t frame, std::size_t motion) const {
+    if (!settles) return 0.0;
+    const auto skid = [&](std::size_t ago) {
+      const MotionFrame& at = stretch.frames[frame - ago];
+      const FrameMotion usual = kUsualSkid.motion(at.track_left_m_per_s, at.track_right_m_per_s);
+      const std::array<double, kMotions> all = {usual.forward_m, 0.0, usual.turn_rad};
+      return all.at(motion);
+    };
+    return settling(0.0, 0.0, skid(0), skid(1), skid(2));
+  }
 };
 
 }  // namespace
@@ -116,11 +149,14 @@ class MotionTrainer::Impl {
       throw InputError("training: outputs must be forward, sideways, delta_theta");
     }
     for (std::size_t i = 0; i < kMotions; ++i) {
-      if (training.outputs[i].feature != names.at(i) ||
-          training.outputs[i].baseline != std::string(names.at(i)) + "@1" ||
-          training.outputs[i].middle != 0.0) {
-        throw InputError("training: output " + std::to_string(i + 1) + " must be " + names.at(i) +
-                         " with itself a frame ago as its baseline and 0 as its middle");
+      const ModelChannel& output = training.outputs[i];
+      const std::string name = names.at(i);
+      baselines_.at(i).settles = output.baseline == name + "_settling";
+      if (output.feature != name || output.middle != 0.0 ||
+          (output.baseline != name + "@1" && !baselines_.at(i).settles)) {
+        throw InputError("training: output " + std::to_string(i + 1) + " must be " + name +
+                         " with " + name + "@1 or " + name +
+                         "_settling as its baseline and 0 as its middle");
       }
     }
     build();
@@ -138,6 +174,9 @@ class MotionTrainer::Impl {
         at -= static_cast<double>(series[chosen++].frames.size());
       }
       stretches.push_back(stretch(series[chosen], random_.uniform()));
+      if (training_.mirror && stretches.size() % 2 == 0) {
+        for (MotionFrame& frame : stretches.back().frames) frame = mirrored(frame);
+      }
     }
     const double loss = propagate(stretches, true);
     update();
@@ -200,14 +239,15 @@ class MotionTrainer::Impl {
 
   /// A stretch somewhere in a series; where: 0 to 1.
   Stretch stretch(const MotionSeries& series, double where) const {
-    constexpr std::size_t kBefore = 2;
     const std::size_t last = series.frames.size() - training_.window;
     if (series.frames.size() < training_.window + kBefore + 1) {
       throw InputError("training: session " + series.source + " is shorter than a stretch");
     }
     const auto begin =
         kBefore + static_cast<std::size_t>(where * static_cast<double>(last - kBefore));
-    return {&series, soil_signals(series.soil), begin};
+    const auto from = series.frames.begin() + static_cast<std::ptrdiff_t>(begin - kBefore);
+    return {{from, from + static_cast<std::ptrdiff_t>(training_.window + kBefore)},
+            soil_signals(series.soil)};
   }
 
   std::vector<Stretch> first_stretches(const std::vector<MotionSeries>& series) const {
@@ -250,8 +290,7 @@ class MotionTrainer::Impl {
     for (std::size_t b = 0; b < batch; ++b) {
       for (std::size_t k = 0; k < 2; ++k) {
         for (std::size_t m = 0; m < kMotions; ++m) {
-          driven[k][b].at(m) =
-              motion_of(stretches[b].series->frames[stretches[b].begin + k - 2], m);
+          driven[k][b].at(m) = motion_of(stretches[b].frames[k], m);
         }
       }
     }
@@ -259,10 +298,10 @@ class MotionTrainer::Impl {
       for (std::size_t b = 0; b < batch; ++b) {
         for (std::size_t i = 0; i < inputs_.size(); ++i) {
           const Source& from = inputs_[i];
+          const Stretch& along = stretches[b];
           const double value = from.own < kMotions
                                    ? driven[k + 2 - from.ago][b].at(from.own)
-                                   : recorded(from.signal, *stretches[b].series,
-                                              stretches[b].begin + k, stretches[b].soil);
+                                   : recorded(from.signal, along.frames, k + kBefore, along.soil);
           activations_[k][0][b][i] =
               static_cast<float>(std::clamp((value - from.middle) / from.half_range, -1.0, 1.0));
         }
@@ -270,8 +309,11 @@ class MotionTrainer::Impl {
       forward(k);
       for (std::size_t b = 0; b < batch; ++b) {
         for (std::size_t m = 0; m < kMotions; ++m) {
+          const Baseline& baseline = baselines_.at(m);
           driven[k + 2][b].at(m) =
-              driven[k + 1][b].at(m) +
+              baseline.constant(stretches[b], k + kBefore, m) +
+              baseline.last() * driven[k + 1][b].at(m) +
+              baseline.before_last() * driven[k][b].at(m) +
               training_.outputs[m].half_range * static_cast<double>(activations_[k].back()[b][m]);
         }
       }
@@ -279,7 +321,8 @@ class MotionTrainer::Impl {
 
     // Errors of frames and of means, in units of kErrorUnit.
     double loss = 0.0;
-    const double frame_share = 1.0 / static_cast<double>(window * batch * kMotions);
+    const double frame_share =
+        training_.frame_weight / static_cast<double>(window * batch * kMotions);
     const double mean_share = training_.mean_weight / static_cast<double>(batch * kMotions);
     std::vector<std::vector<std::array<double, kMotions>>> slope(
         window + 2, std::vector<std::array<double, kMotions>>(batch));
@@ -287,14 +330,14 @@ class MotionTrainer::Impl {
       for (std::size_t m = 0; m < kMotions; ++m) {
         double sum = 0.0;
         for (std::size_t k = 0; k < window; ++k) {
-          const double real = motion_of(stretches[b].series->frames[stretches[b].begin + k], m);
+          const double real = motion_of(stretches[b].frames[k + kBefore], m);
           const double error = (driven[k + 2][b].at(m) - real) / kErrorUnit.at(m);
           const Huber of_frame = huber(error, kFrameKnee);
           loss += frame_share * of_frame.loss;
           slope[k + 2][b].at(m) = frame_share * of_frame.slope / kErrorUnit.at(m);
           sum += error;
         }
-        const Huber of_mean = huber(sum / static_cast<double>(window), kMeanKnee);
+        const Huber of_mean = huber(sum / static_cast<double>(window), training_.mean_knee);
         loss += mean_share * of_mean.loss;
         for (std::size_t k = 0; k < window; ++k) {
           slope[k + 2][b].at(m) +=
@@ -309,7 +352,8 @@ class MotionTrainer::Impl {
         for (std::size_t m = 0; m < kMotions; ++m) {
           slopes_.back()[b][m] =
               static_cast<float>(slope[k + 2][b].at(m) * training_.outputs[m].half_range);
-          slope[k + 1][b].at(m) += slope[k + 2][b].at(m);  // the baseline
+          slope[k + 1][b].at(m) += baselines_.at(m).last() * slope[k + 2][b].at(m);
+          slope[k][b].at(m) += baselines_.at(m).before_last() * slope[k + 2][b].at(m);
         }
       }
       backward(k);
@@ -387,6 +431,7 @@ class MotionTrainer::Impl {
   MotionTraining training_;
   WorldRandom random_;
   std::vector<Source> inputs_;
+  std::array<Baseline, kMotions> baselines_;
   std::vector<std::size_t> widths_;  ///< inputs, hidden layers, outputs
   std::vector<std::shared_ptr<tiny_dnn::layer>> layers_;
   std::vector<tensor_t> parameters_;  ///< a layer's weights, then its biases

@@ -15,14 +15,19 @@
 namespace screed::nn {
 
 struct MotionTraining {
-  std::vector<ModelChannel> inputs;   ///< names of nn/surrogate/signals.h
-  std::vector<ModelChannel> outputs;  ///< forward, sideways, delta_theta, each with a baseline
+  std::vector<ModelChannel> inputs;  ///< names of nn/surrogate/signals.h
+  /// forward, sideways, delta_theta, each with a baseline: itself a frame ago (NAME@1), or what it
+  /// would settle to (NAME_settling, nn/surrogate/surrogate.h).
+  std::vector<ModelChannel> outputs;
   std::vector<std::size_t> hidden = {20, 20};  ///< nodes a hidden layer, tanh
   std::size_t window = 60;                     ///< frames of a stretch
   std::size_t batch = 64;                      ///< stretches at a time
   std::size_t steps = 2500;
   double learning_rate = 0.003;  ///< Adam's at its highest; rises for a tenth of the steps, falls
-  double mean_weight = 1.0;      ///< of the error of a stretch's mean motion, beside the frames'
+  double frame_weight = 1.0;     ///< of the errors of frames
+  double mean_weight = 1.0;      ///< of the error of a stretch's mean motion
+  double mean_knee = 0.02;       ///< of that error, from where on it does not count by its square
+  bool mirror = false;           ///< half of the stretches are driven with left and right exchanged
   std::uint64_t seed = 1;
 };
 

@@ -35,8 +35,9 @@ MotionTraining small_training() {
   return training;
 }
 
-/// A robot that lags behind its slipping tracks.
-MotionSeries lagging_robot(std::uint64_t seed) {
+/// A robot that lags behind its slipping tracks. One that turns left alone slips more the slower
+/// it turns, which is another law for right turns to whoever has not seen any.
+MotionSeries lagging_robot(std::uint64_t seed, bool only_left_turns = false) {
   WorldRandom random(seed, "lagging robot");
   MotionSeries series;
   series.soil = soil_preset("viper");
@@ -48,8 +49,10 @@ MotionSeries lagging_robot(std::uint64_t seed) {
     if (frame % 50 == 0) {
       left = random.uniform(-0.2, 0.2);
       right = random.uniform(-0.2, 0.2);
+      if (only_left_turns && left > right) std::swap(left, right);
     }
-    const FrameMotion wanted = slip.motion(left, right);
+    FrameMotion wanted = slip.motion(left, right);
+    if (only_left_turns) wanted.turn_rad *= wanted.turn_rad / 0.02;
     motion.forward_m += 0.2 * (wanted.forward_m - motion.forward_m);
     motion.sideways_m = 0.0;
     motion.turn_rad += 0.2 * (wanted.turn_rad - motion.turn_rad);
@@ -58,9 +61,31 @@ MotionSeries lagging_robot(std::uint64_t seed) {
   return series;
 }
 
-TEST(MotionTrainer, GradientIsThatOfTheLoss) {
+MotionTraining settling_training() {
+  MotionTraining training = small_training();
+  for (ModelChannel& output : training.outputs) {
+    output.baseline = output.feature + "_settling";
+    output.half_range *= 1.0 - kSwingLast - kSwingBefore;  // which the swing adds up to the whole
+  }
+  return training;
+}
+
+/// The same robot as a mirror shows it.
+MotionSeries mirror_image(MotionSeries series) {
+  for (MotionFrame& frame : series.frames) {
+    frame.motion.sideways_m = -frame.motion.sideways_m;
+    frame.motion.turn_rad = -frame.motion.turn_rad;
+    frame.roll = -frame.roll;
+    std::swap(frame.track_left_m_per_s, frame.track_right_m_per_s);
+  }
+  return series;
+}
+
+class GradientOf : public ::testing::TestWithParam<bool> {};
+
+TEST_P(GradientOf, IsThatOfTheLoss) {
   const std::vector<MotionSeries> series = {lagging_robot(1), lagging_robot(2)};
-  MotionTrainer trainer(small_training());
+  MotionTrainer trainer(GetParam() ? settling_training() : small_training());
   const std::vector<std::vector<float>> gradient = trainer.gradient(series);
   ASSERT_EQ(gradient.size(), 4U);
   constexpr float kStep = 0.004F;
@@ -80,6 +105,21 @@ TEST(MotionTrainer, GradientIsThatOfTheLoss) {
           << array << " " << i;
     }
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(MotionTrainer, GradientOf, ::testing::Bool());
+
+TEST(MotionTrainer, KnowsFromLeftTurnsWhatRightTurnsAreWhenItMirrors) {
+  const MotionSeries left_turns = lagging_robot(6, true);
+  MotionTraining training = small_training();
+  training.steps = 200;
+  const auto loss_on_right_turns = [&](bool mirror) {
+    training.mirror = mirror;
+    MotionTrainer trainer(training);
+    for (std::size_t step = 0; step < training.steps; ++step) trainer.step({left_turns});
+    return trainer.loss({mirror_image(left_turns)});
+  };
+  EXPECT_LT(loss_on_right_turns(true), 0.5 * loss_on_right_turns(false));
 }
 
 TEST(MotionTrainer, LearnsALawAndTheSameSeedLearnsTheSame) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "host_sim/core/errors.h"
@@ -121,6 +122,29 @@ TEST(Stages, RefuseWithPlaceAndWhatIsAllowed) {
   EXPECT_THROW(
       learned(R"([{"stage": "remove_beyond", "feature": "v", "low": 5, "high": 6}])", {1.0}),
       InputError);
+}
+
+TEST(Features, ProductsAndAmountsAreOfTheFrameItself) {
+  Frame frame;
+  frame.v_left = -6.0;
+  frame.v_right = 2.0;
+  frame.pitch = -0.3;
+  frame.roll = 0.4;
+  frame.rate_x = -0.1;
+  frame.rate_y = 0.2;
+  frame.rate_z = -1.5;
+  const FrameWindow now({&frame, 1});
+  const auto value = [&](const char* name) { return NamedFeature(name).value(now); };
+  EXPECT_EQ(value("speed"), 2.0);
+  EXPECT_EQ(value("spin"), 8.0);
+  EXPECT_NEAR(value("climb"), 2.0 * std::sin(0.3), 1e-12);  // backwards up a slope
+  EXPECT_NEAR(value("lean"), 8.0 * std::sin(0.4), 1e-12);
+  EXPECT_NEAR(value("slide"), -2.0 * std::sin(0.4), 1e-12);
+  EXPECT_NEAR(value("pivot"), -8.0 * std::sin(0.3), 1e-12);
+  EXPECT_EQ(value("roll_rate"), 0.1);
+  EXPECT_EQ(value("pitch_rate"), 0.2);
+  EXPECT_EQ(value("yaw_rate"), 1.5);
+  EXPECT_EQ(value("arc"), 3.0);
 }
 
 TEST(Features, LookBackAndSubtract) {

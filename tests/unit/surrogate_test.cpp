@@ -145,6 +145,40 @@ TEST(Surrogate, DoesNotRunAwayWhenTheNetworkGoesOnAdding) {
   }
 }
 
+/// A network that always answers so much, beside the swing back to slipping tracks.
+Model settling_model(double forward, double turn) {
+  return linear_model({channel("pitch", 1.0)},
+                      {channel("forward", 0.0001, "forward_settling"),
+                       channel("sideways", 0.0001, "sideways_settling"),
+                       channel("delta_theta", 0.001, "delta_theta_settling")},
+                      {0.0, 0.0, 0.0}, {forward / 0.0001, 0.0, turn / 0.001});
+}
+
+TEST(Surrogate, SwingsBackToSlippingTracksAndWhatTheNetworkAdds) {
+  const HeightField ground = HeightField::flat(4.0, 0.1);
+  const double left = 0.1;
+  const double right = 0.15;
+  const FrameMotion skid = kUsualSkid.motion(left, right);
+  constexpr double kForward = 2e-5;
+  constexpr double kTurn = -1e-4;
+  Surrogate robot(settling_model(kForward, kTurn), SupportGeometry{}, 1);
+  robot.place(0, {}, {0.002, 0.0004, 0.01}, {0.001, 0.0002, -0.01});
+  robot.set_tracks(0, left, right);
+  robot.step(ground, {&left, 1}, {&right, 1});
+  EXPECT_NEAR(
+      robot.motion(0).forward_m,
+      skid.forward_m + 1.7 * (0.002 - skid.forward_m) - 0.75 * (0.001 - skid.forward_m) + kForward,
+      1e-8);
+  EXPECT_NEAR(robot.motion(0).sideways_m, 1.7 * 0.0004 - 0.75 * 0.0002, 1e-8);
+  EXPECT_NEAR(robot.motion(0).turn_rad,
+              skid.turn_rad + 1.7 * (0.01 - skid.turn_rad) - 0.75 * (-0.01 - skid.turn_rad) + kTurn,
+              1e-7);
+  for (int frame = 0; frame < 200; ++frame) robot.step(ground, {&left, 1}, {&right, 1});
+  EXPECT_NEAR(robot.motion(0).forward_m, skid.forward_m + 20.0 * kForward, 2e-7);
+  EXPECT_NEAR(robot.motion(0).sideways_m, 0.0, 2e-7);
+  EXPECT_NEAR(robot.motion(0).turn_rad, skid.turn_rad + 20.0 * kTurn, 2e-6);
+}
+
 TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
   const Model model = random_model();
   const HeightField ground = hills();
@@ -183,6 +217,81 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
       ASSERT_EQ(robots.pose(i).x_m, alone[i].x_m) << batch_kernel_name(kernel) << " " << i;
       ASSERT_EQ(robots.pose(i).y_m, alone[i].y_m);
       ASSERT_EQ(robots.pose(i).heading_rad, alone[i].heading_rad);
+    }
+  }
+}
+
+/// forward = 0.01 times the normalised speed of the left track.
+Model staged_model(std::vector<ModelStage> stages) {
+  Model model = linear_model({channel("track_left", 0.2)},
+                             {channel("forward", 0.01), channel("delta_theta", 0.01)}, {0.5, 0.0},
+                             {0.0, 0.0});
+  for (ModelStage& stage : stages) stage.run_time = true;
+  model.stages = std::move(stages);
+  return model;
+}
+
+/// The normalised input that reached the network, at each of these speeds.
+std::vector<double> felt(const Model& model, const std::vector<double>& speeds,
+                         Surrogate::Arithmetic arithmetic = Surrogate::Arithmetic::kInteger) {
+  const HeightField ground = HeightField::flat(4.0, 0.1);
+  Surrogate robot(model, SupportGeometry{}, 1, arithmetic);
+  std::vector<double> felt;
+  for (const double speed : speeds) {
+    robot.step(ground, {&speed, 1}, {&speed, 1});
+    felt.push_back(robot.motion(0).forward_m / 0.005);
+  }
+  return felt;
+}
+
+void expect_felt(const Model& model, const std::vector<double>& speeds,
+                 const std::vector<double>& wanted) {
+  for (const Surrogate::Arithmetic arithmetic :
+       {Surrogate::Arithmetic::kInteger, Surrogate::Arithmetic::kFloat}) {
+    const std::vector<double> got = felt(model, speeds, arithmetic);
+    for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(got[i], wanted[i], 2e-4) << i;
+  }
+}
+
+TEST(Surrogate, AppliesTheStagesOfRunTimeToItsInputsInTheirOrder) {
+  const ModelStage mean{"mean", "", 0.0, 0.0, 3.0, false};
+  const ModelStage exponential{"exponential", "", 0.0, 0.0, 0.25, false};
+  const ModelStage quantise{"quantise", "", 0.0, 0.0, 0.2, false};
+  const std::vector<double> speeds = {0.1, 0.04, 0.16, 0.0, 0.0};  // 0.5, 0.2, 0.8, 0, 0
+  expect_felt(staged_model({mean}), speeds, {0.5, 0.35, 0.5, 1.0 / 3.0, 0.8 / 3.0});
+  expect_felt(staged_model({exponential}), speeds, {0.5, 0.425, 0.51875, 0.3890625, 0.291796875});
+  expect_felt(staged_model({{"normalise", "", 0.0, 0.0, 0.0, false}, mean, quantise}), speeds,
+              {0.4, 0.2, 0.4, 0.2, 0.2});
+  expect_felt(staged_model({quantise, mean}), speeds, {0.4, 0.3, 1.4 / 3.0, 1.0 / 3.0, 0.8 / 3.0});
+  EXPECT_THROW(felt(staged_model({{"remove_far", "v", 0.0, 1.0, 0.0, false}}), speeds), InputError);
+}
+
+TEST(Surrogate, StagesThatAreNotOfRunTimeChangeNothing) {
+  Model model = staged_model({{"mean", "", 0.0, 0.0, 3.0, false}});
+  model.stages[0].run_time = false;
+  expect_felt(model, {0.1, 0.04}, {0.5, 0.2});
+}
+
+TEST(Surrogate, SmoothsEveryRobotByItself) {
+  const Model model = staged_model(
+      {{"exponential", "", 0.0, 0.0, 0.25, false}, {"mean", "", 0.0, 0.0, 4.0, false}});
+  const HeightField ground = HeightField::flat(4.0, 0.1);
+  constexpr std::size_t kRobots = 5;
+  Surrogate together(model, SupportGeometry{}, kRobots);
+  std::vector<Surrogate> alone(kRobots, Surrogate(model, SupportGeometry{}, 1));
+  WorldRandom random(3, "speeds");
+  for (int frame = 0; frame < 20; ++frame) {
+    std::vector<double> speeds;
+    for (std::size_t i = 0; i < kRobots; ++i) speeds.push_back(random.uniform(-0.2, 0.2));
+    if (frame == 10) {  // put elsewhere, it begins anew
+      together.place(2, {1.0, 0.0, 0.0});
+      alone[2] = Surrogate(model, SupportGeometry{}, 1);
+      alone[2].place(0, {1.0, 0.0, 0.0});
+    }
+    together.step(ground, speeds, speeds);
+    for (std::size_t i = 0; i < kRobots; ++i) {
+      alone[i].step(ground, {&speeds[i], 1}, {&speeds[i], 1});
+      ASSERT_EQ(together.motion(i).forward_m, alone[i].motion(0).forward_m) << frame << " " << i;
     }
   }
 }
