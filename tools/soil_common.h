@@ -40,7 +40,7 @@ struct SoilArguments {
   std::string normal_stress = "radial";
   bool bulldozing = false;
   bool avalanches = false;
-  bool follow_slopes = false;
+  bool follow_slopes = SoilOptions{}.follow_slopes;
   double sample_spacing_m = SoilOptions{}.sample_spacing_m;
   double cell_m = 0.005;
   double step_s = 1e-3;

@@ -106,7 +106,7 @@ void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<DigArguments>();
   CLI::App* command = soil.add_subcommand(
       "dig", "A tracked robot digs: moved volume, depth, where the material went");
-  a->common.bulldozing = a->common.avalanches = a->common.follow_slopes = true;
+  a->common.bulldozing = a->common.avalanches = true;
   a->common.preset = "gravel";
   add_soil_options(*command, a->common);
   a->test.particle.radius_m = 0.0075;

@@ -73,7 +73,7 @@ struct Experiment {
     double cell_m = 0.005;
     bool bulldozing = true;
     bool avalanches = true;
-    bool follow_slopes = false;
+    bool follow_slopes = true;
     std::optional<double> k_phi;
     std::optional<double> k_c;
     std::optional<double> exponent;

@@ -111,6 +111,14 @@ void FootprintPlaces::clear(size_t room) {
 }
 
 void Footprint::surface(double edge, const FootprintWay& came, FootprintPlaces& places) const {
+  surface(edge, &came, places);
+}
+
+void Footprint::surface(double edge, FootprintPlaces& places) const {
+  surface(edge, nullptr, places);
+}
+
+void Footprint::surface(double edge, const FootprintWay* came, FootprintPlaces& places) const {
   if (places.count % 2 != 0) {  // whole pairs
     places.x[places.count] = places.x[places.count - 1];
     places.y[places.count] = places.y[places.count - 1];
@@ -134,7 +142,7 @@ void Footprint::surface(double edge, const FootprintWay& came, FootprintPlaces& 
 
 // Two places at a time, without branches.
 template <bool kBelt>
-void Footprint::track_surface(double edge, const FootprintWay& came,
+void Footprint::track_surface(double edge, const FootprintWay* came,
                               FootprintPlaces& places) const {
   if (square_ < 1e-6) {  // lying on its side: the caller uses a box
     std::fill(places.share.begin(), places.share.end(), 0.0);
@@ -171,19 +179,20 @@ void Footprint::track_surface(double edge, const FootprintWay& came,
   // On its way each wheel swept down to a plane along the way that touches it from below, and has
   // passed where the touching point is ahead, in the sense in which the body came. In local axes
   // the plane is z = rise * x - deep.
-  const Pair sense = both(came.along_m > 0.0 ? 1.0 : -1.0);
-  const Pair rise = both(came.rise);
-  const double slant = std::sqrt(1.0 + came.rise * came.rise);
-  const double climb = up_.z() - came.rise * up_.x();  // of a vertical line against that plane
+  const FootprintWay way = came != nullptr ? *came : FootprintWay{};
+  const Pair sense = both(way.along_m > 0.0 ? 1.0 : -1.0);
+  const Pair rise = both(way.rise);
+  const double slant = std::sqrt(1.0 + way.rise * way.rise);
+  const double climb = up_.z() - way.rise * up_.x();  // of a vertical line against that plane
   const bool across_way = std::abs(climb) > kSteep;
-  const Pair reach = both(across_way ? std::abs(came.along_m) : -1.0);
+  const Pair reach = both(across_way ? std::abs(way.along_m) : -1.0);
   const Pair per_climb = both(across_way ? 1.0 / climb : 0.0);
   Pair deep[2];
   Pair touch[2];
   for (const int wheel : {0, 1}) {
     const double axle = wheel == 0 ? -half_.x() : half_.x();
-    deep[wheel] = both(came.rise * axle - side * radius_ * slant);
-    touch[wheel] = both(axle - side * radius_ * came.rise / slant);
+    deep[wheel] = both(way.rise * axle - side * radius_ * slant);
+    touch[wheel] = both(axle - side * radius_ * way.rise / slant);
   }
   // Normals over their vertical part, of local (nx, 0, nz): nx and nz times these, world x, y, z.
   const Pair x0 = both(axes(0, 0));
@@ -237,6 +246,7 @@ void Footprint::track_surface(double edge, const FootprintWay& came,
     store((nx * x0 + nz * x2) * per_wz, &places.slope_x[i]);
     store((nx * y0 + nz * y2) * per_wz, &places.slope_y[i]);
     store(flat, &places.flat_within[i]);
+    if (came == nullptr) continue;
     const Pair here = lx + t * ux;
     Pair low = height;
     for (const int wheel : {0, 1}) {

@@ -90,6 +90,8 @@ class Footprint {
   /// the body's side over this length, so that sums over a lattice of such squares are exact for
   /// edges along the lattice.
   void surface(double edge, const FootprintWay& came, FootprintPlaces& places) const;
+  /// The same without `passed`, which then means nothing.
+  void surface(double edge, FootprintPlaces& places) const;
   /// No place that a square of this side can share with the body reaches lower than this where its
   /// middle lies outside, m.
   double lowest_at_rim(double edge) const;
@@ -100,7 +102,8 @@ class Footprint {
     set_pose(Eigen::Isometry3d::Identity());
   }
   template <bool kBelt>
-  void track_surface(double edge, const FootprintWay& came, FootprintPlaces& places) const;
+  void track_surface(double edge, const FootprintWay* came, FootprintPlaces& places) const;
+  void surface(double edge, const FootprintWay* came, FootprintPlaces& places) const;
   void box_surface(double edge, FootprintPlaces& places) const;
   void disc_surface(double edge, FootprintPlaces& places) const;
 

@@ -34,23 +34,6 @@ MaterialFlow::MaterialFlow(HeightField surface, double repose_deg) : surface_(st
   queue_.resize(count);
 }
 
-int64_t MaterialFlow::node_at(int ix, int iy) const {
-  const int nx = surface_.nx();
-  const int ny = surface_.ny();
-  if (!surface_.wrap())
-    return ix < 0 || iy < 0 || ix >= nx || iy >= ny ? -1 : static_cast<int64_t>(index(ix, iy));
-  return static_cast<int64_t>(index(((ix % nx) + nx) % nx, ((iy % ny) + ny) % ny));
-}
-
-void MaterialFlow::wake(size_t node) {
-  if (awake_[node] != 0) return;
-  awake_[node] = 1;
-  size_t end = queue_begin_ + queue_size_;
-  if (end >= queue_.size()) end -= queue_.size();
-  queue_[end] = node;
-  ++queue_size_;
-}
-
 void MaterialFlow::wake_all() {
   for (size_t node = 0; node < nodes(); ++node) wake(node);
 }
@@ -66,18 +49,6 @@ size_t MaterialFlow::begin_footprint(double way_x, double way_y) {
   const double scale = length > kStanding_m_per_s ? 1.0 / length : 0.0;
   footprints_.push_back({covered_list_.size(), way_x * scale, way_y * scale, 0});
   return footprints_.size() - 1;
-}
-
-void MaterialFlow::cover(size_t node, int ix, int iy) {
-  if (covered_[node] != 0) return;
-  covered_[node] = 1;
-  covered_list_.push_back({node, ix, iy});
-}
-
-void MaterialFlow::sink(size_t node, Height units) {
-  set_height(node, height(node) - units);
-  in_hand_ += units;
-  wake(node);
 }
 
 void MaterialFlow::compact(int64_t units) {

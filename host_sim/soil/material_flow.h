@@ -30,7 +30,16 @@ class MaterialFlow {
     return static_cast<size_t>(iy) * static_cast<size_t>(surface_.nx()) + static_cast<size_t>(ix);
   }
   /// The node at (ix, iy) with the field's wrap-around, or nothing (-1) outside a field without it.
-  int64_t node_at(int ix, int iy) const;
+  int64_t node_at(int ix, int iy) const {
+    return on_field(ix, iy) || surface_.wrap() ? static_cast<int64_t>(node_on(ix, iy)) : -1;
+  }
+  /// The same of a place on the field or of a field with wrap-around: not checked.
+  size_t node_on(int ix, int iy) const {
+    if (on_field(ix, iy)) return index(ix, iy);
+    const int nx = surface_.nx();
+    const int ny = surface_.ny();
+    return index(((ix % nx) + nx) % nx, ((iy % ny) + ny) % ny);
+  }
 
   Height height(size_t node) const { return surface_.node(node); }
   /// Level from which sinkage counts.
@@ -40,10 +49,23 @@ class MaterialFlow {
   /// follows until the next one is its. Returns its number.
   size_t begin_footprint(double way_x, double way_y);
   /// It stands on this node: nothing slides onto or off it. `ix` and `iy` without wrap-around.
-  void cover(size_t node, int ix, int iy);
+  void cover(size_t node, int ix, int iy) {
+    if (covered_[node] != 0) return;
+    covered_[node] = 1;
+    covered_list_.push_back({node, ix, iy});
+  }
   /// Pushes a node's surface down by `units`: they are in hand until set down. The reference stays:
-  /// it is sinkage.
-  void sink(size_t node, Height units);
+  /// it is sinkage. `ix` and `iy` without wrap-around.
+  void sink(size_t node, int ix, int iy, Height units) {
+    const Height lower = height(node) - units;
+    if (on_field(ix, iy)) {  // quicker than telling column and row by division
+      surface_.set_node(ix, iy, lower);
+    } else {
+      set_height(node, lower);
+    }
+    in_hand_ += units;
+    wake(node);
+  }
   /// Tells how much a footprint has sunk in this step.
   void push(size_t footprint, int64_t units) { footprints_[footprint].units += units; }
   int64_t in_hand() const { return in_hand_; }
@@ -71,6 +93,9 @@ class MaterialFlow {
   void uncover();
 
  private:
+  bool on_field(int ix, int iy) const {
+    return ix >= 0 && iy >= 0 && ix < surface_.nx() && iy < surface_.ny();
+  }
   int column(size_t node) const {
     return static_cast<int>(static_cast<uint32_t>(node) % static_cast<uint32_t>(surface_.nx()));
   }
@@ -83,7 +108,14 @@ class MaterialFlow {
   void change(size_t node, Height units);
   /// Moves `units` from one node to another; the reference moves with the material.
   void move(size_t from, size_t to, Height units);
-  void wake(size_t node);
+  void wake(size_t node) {
+    if (awake_[node] != 0) return;
+    awake_[node] = 1;
+    size_t end = queue_begin_ + queue_size_;
+    if (end >= queue_.size()) end -= queue_.size();
+    queue_[end] = node;
+    ++queue_size_;
+  }
 
   struct Place {
     size_t node;

@@ -197,12 +197,12 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.across(spacing);
-  footprint.surface(edge, {}, places_);
+  footprint.surface(edge, places_);
   const double rim = footprint.lowest_at_rim(spacing);
   size_t i = 0;
   for (int iy = iy0; iy <= iy1; ++iy) {
     for (int ix = ix0; ix <= ix1; ++ix, ++i) {
-      const auto node = static_cast<size_t>(flow_.node_at(ix, iy));
+      const size_t node = flow_.node_on(ix, iy);
       const double ground = flow_.height(node) * kHeightUnit_m + rise;
       Lattice lattice = Lattice::kRook;
       if (places_.share[i] > 0.0) {
@@ -277,7 +277,17 @@ void SoilBed::remember_cover(Trace& trace, double covered, double sunk) const {
 /// earlier contacts had touched it.
 bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
                      const Law& law, Cell& cell) {
+  // A single pair, as on fine grids, needs no loop.
   const size_t count = places_of(candidate.lattice);
+  return count == 2 ? sample<2>(footprint, candidate, first, count, law, cell)
+                    : sample<0>(footprint, candidate, first, count, law, cell);
+}
+
+/// `places`: known to the compiler, or 0.
+template <size_t places>
+bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
+                     size_t number, const Law& law, Cell& cell) {
+  const size_t count = places != 0 ? places : number;
   const double mean = 1.0 / static_cast<double>(count);
   const Eigen::Vector3d& centre = footprint.pose().translation();
   const double forward_x = footprint.pose().linear()(0, 0);
@@ -471,8 +481,8 @@ void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double 
 /// What gives way in a footprint's cells, and their forces.
 void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& contact, double dt) {
   contact.reaction = {};
-  SoilReaction& reaction = contact.reaction;
   if (range.begin == range.end) return;
+  SoilReaction reaction;  // by itself, so that the sums stay in registers
   const bool radial = options_.normal_stress == NormalStress::kRadial;
   const Eigen::Isometry3d& pose = contact.footprint->pose();
   const Eigen::Vector3d centre = pose.translation();
@@ -506,7 +516,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
       continue;
     }
     if (units > 0) {
-      flow_.sink(cell.node, units);
+      flow_.sink(cell.node, cell.ix, cell.iy, units);
       sunk_units += units;
     }
     const Eigen::Vector3d velocity = middle + body.omega.cross(cell.arm);
@@ -577,6 +587,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
   flow_.push(range.footprint, sunk_units);
   if (soil_.drag_depth_m > 0.0) dig(digging, pose, dt);
   contact.memory->sinkage = reaction.sinkage;
+  contact.reaction = reaction;
 }
 
 void SoilBed::end_step() {

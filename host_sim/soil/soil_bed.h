@@ -39,8 +39,9 @@ struct SoilOptions {
   bool bulldozing = true;  ///< sunk and dragged material moves; false: it is compacted where it was
   bool avalanches = true;  ///< slopes above the angle of repose slide
   /// Where a body passed, it is taken to have come along its way, uphill or downhill. false: level,
-  /// as if it had come at its present height, by which long belts sink too deep downhill.
-  bool follow_slopes = false;
+  /// as if it had come at its present height, by which long belts sink too deep downhill (the
+  /// simpler model, for comparisons).
+  bool follow_slopes = true;
   double sample_spacing_m = 0.00125;  ///< of the places inside a cell, at most
 };
 
@@ -151,6 +152,9 @@ class SoilBed {
   void add_places(const Candidate& candidate);
   bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
               Cell& cell);
+  template <size_t places>
+  bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, size_t number,
+              const Law& law, Cell& cell);
   void remember_cover(Trace& trace, double covered, double sunk) const;
   void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
   void react(const Range& range, const PressingBody& body, SoilContact& contact, double dt);

@@ -226,7 +226,6 @@ double rut_on_slope(const Footprint& shape, double slope_deg, double depth_m, do
   constexpr double kSpeed = 0.1;
   SoilOptions options;
   options.bulldozing = options.avalanches = false;
-  options.follow_slopes = true;
   SoilBed bed(HeightField::ramp(1.0, 0.005, slope_deg), soil_preset("viper"), options);
   const HeightField before = bed.surface();
   Footprint footprint = shape;

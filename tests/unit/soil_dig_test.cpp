@@ -11,7 +11,6 @@ DigResult dig(Manoeuvre manoeuvre, double cell_m, double spin_s = 10.0, bool dra
   test.manoeuvre = manoeuvre;
   test.soil = soil_preset("gravel");
   if (!dragging) test.soil.drag_depth_m = 0.0;
-  test.options.follow_slopes = true;
   test.cell_m = cell_m;
   test.duration_s = manoeuvre == Manoeuvre::kSpin ? spin_s : 10.0;
   return dig_soil(test);
