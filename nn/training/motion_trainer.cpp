@@ -154,9 +154,9 @@ class MotionTrainer::Impl {
       baselines_.at(i).settles = output.baseline == name + "_settling";
       if (output.feature != name || output.middle != 0.0 ||
           (output.baseline != name + "@1" && !baselines_.at(i).settles)) {
-        throw InputError("training: output " + std::to_string(i + 1) + " must be " + name +
-                         " with " + name + "@1 or " + name +
-                         "_settling as its baseline and 0 as its middle");
+        std::string wanted = "training: output " + std::to_string(i + 1) + " must be NAME with ";
+        wanted += "NAME@1 or NAME_settling as its baseline and 0 as its middle; NAME is " + name;
+        throw InputError(wanted);
       }
     }
     build();
