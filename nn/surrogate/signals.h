@@ -34,6 +34,12 @@ enum class Signal : std::uint8_t {
   kWheelRight,
   kPitch,
   kRoll,
+  kSpeed,
+  kSpin,
+  kClimb,
+  kLean,
+  kSlide,
+  kPivot,
   kSoilStiffness,
   kSoilExponent,
   kSoilCohesion,
@@ -41,7 +47,7 @@ enum class Signal : std::uint8_t {
   kSoilShear,
   kSoilSinkage,
 };
-inline constexpr std::size_t kSignals = 25;
+inline constexpr std::size_t kSignals = 31;
 
 struct SignalInfo {
   Signal signal;

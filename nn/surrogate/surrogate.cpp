@@ -91,6 +91,10 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
       network.inputs.push_back({signal(channel.feature, "input"), scale, -channel.middle * scale,
                                 channel.half_range, channel.middle, std::nullopt, -kNoLimit,
                                 kNoLimit});
+      const std::size_t from_row = network.inputs.back().row;
+      if (from_row >= row_of(Signal::kSpeed) && from_row <= row_of(Signal::kPivot)) {
+        products_wanted_ = true;
+      }
       InputStages stages(model.stages, robots_);
       if (!stages.empty()) network.stages.push_back(std::move(stages));
     }
@@ -313,8 +317,26 @@ void Surrogate::swing() {
   }
 }
 
+void Surrogate::feel_products() {
+  const double* left = row(Signal::kWheelLeft);
+  const double* right = row(Signal::kWheelRight);
+  for (std::size_t i = 0; i < robots_; ++i) {
+    const double mean = 0.5 * (left[i] + right[i]);
+    const double difference = right[i] - left[i];
+    const double along = std::sin(row(Signal::kPitch)[i]);
+    const double across = std::sin(row(Signal::kRoll)[i]);
+    row(Signal::kSpeed)[i] = std::abs(mean);
+    row(Signal::kSpin)[i] = std::abs(difference);
+    row(Signal::kClimb)[i] = along * mean;
+    row(Signal::kLean)[i] = across * difference;
+    row(Signal::kSlide)[i] = across * mean;
+    row(Signal::kPivot)[i] = along * difference;
+  }
+}
+
 void Surrogate::answer() {
   swing();
+  if (products_wanted_) feel_products();
   if (kinematics_.has_value()) {
     for (std::size_t i = 0; i < robots_; ++i) {
       const FrameMotion motion =

@@ -134,6 +134,7 @@ class Surrogate {
   const double* row(Signal signal) const { return &signals_[row_of(signal) * robots_]; }
   void feel_tracks(std::span<const double> left_m_per_s, std::span<const double> right_m_per_s);
   void swing();
+  void feel_products();
   void feel_ground(const HeightField& ground);
   void answer();
   void prepare_inputs(Network& network);
@@ -147,7 +148,8 @@ class Surrogate {
   Arithmetic arithmetic_ = Arithmetic::kInteger;
   std::optional<SkidKinematics> kinematics_;
   std::vector<Network> networks_;
-  std::vector<double> signals_;  ///< kSignals rows
+  bool products_wanted_ = false;  ///< an input is one of those from kSpeed to kPivot
+  std::vector<double> signals_;   ///< kSignals rows
   std::vector<double> x_;
   std::vector<double> y_;
   std::vector<double> heading_;

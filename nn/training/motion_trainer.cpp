@@ -59,6 +59,14 @@ Source source_of(const ModelChannel& channel) {
   }
   Source source{*signal, channel.middle, channel.half_range, kMotions, 0};
   const std::size_t row = row_of(*signal);
+  const auto among = [&](Signal first, Signal last) {
+    return row >= row_of(first) && row <= row_of(last);
+  };
+  if (among(Signal::kForwardSettling, Signal::kTurnSettling) ||
+      among(Signal::kSpeed, Signal::kPivot)) {
+    throw InputError("training: input '" + channel.feature +
+                     "' is not one that a network of motion learns from");
+  }
   if (row <= row_of(Signal::kTurn2)) {
     source.own = row % kMotions;
     source.ago = 1 + row / kMotions;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "nn/training/motion_configuration.h"
 
@@ -120,6 +121,17 @@ TEST(MotionTrainer, KnowsFromLeftTurnsWhatRightTurnsAreWhenItMirrors) {
     return trainer.loss({mirror_image(left_turns)});
   };
   EXPECT_LT(loss_on_right_turns(true), 0.5 * loss_on_right_turns(false));
+}
+
+TEST(MotionTrainer, RefusesInputsAndBaselinesThatItCannotLearnWith) {
+  for (const char* wrong : {"colour", "climb", "forward_settling"}) {
+    MotionTraining training = small_training();
+    training.inputs[0].feature = wrong;
+    EXPECT_THROW(MotionTrainer{training}, InputError) << wrong;
+  }
+  MotionTraining training = small_training();
+  training.outputs[0].baseline = "sideways_settling";
+  EXPECT_THROW(MotionTrainer{training}, InputError);
 }
 
 TEST(MotionTrainer, LearnsALawAndTheSameSeedLearnsTheSame) {

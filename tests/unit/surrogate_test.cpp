@@ -9,6 +9,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
+#include "nn/data/features.h"
 
 namespace screed::nn {
 namespace {
@@ -264,6 +265,26 @@ TEST(Surrogate, AppliesTheStagesOfRunTimeToItsInputsInTheirOrder) {
               {0.4, 0.2, 0.4, 0.2, 0.2});
   expect_felt(staged_model({quantise, mean}), speeds, {0.4, 0.3, 1.4 / 3.0, 1.0 / 3.0, 0.8 / 3.0});
   EXPECT_THROW(felt(staged_model({{"remove_far", "v", 0.0, 1.0, 0.0, false}}), speeds), InputError);
+}
+
+TEST(Surrogate, FeelsProductsOfWheelsAndSlopeAsTheFeaturesSayThem) {
+  Frame frame;
+  frame.pitch = 0.2;
+  frame.roll = -0.1;
+  const double left = -0.12;
+  const double right = 0.06;
+  frame.v_left = left / SupportGeometry{}.wheel_radius_m;
+  frame.v_right = right / SupportGeometry{}.wheel_radius_m;
+  for (const char* name : {"speed", "spin", "climb", "lean", "slide", "pivot"}) {
+    const Model model =
+        linear_model({channel(name, 10.0)}, {channel("forward", 10.0), channel("delta_theta", 1.0)},
+                     {1.0, 0.0}, {0.0, 0.0});
+    Surrogate robot(model, SupportGeometry{}, 1);
+    robot.step_on_slope(frame.pitch, frame.roll, {&left, 1}, {&right, 1});
+    EXPECT_NEAR(robot.motion(0).forward_m, NamedFeature(name).value(FrameWindow({&frame, 1})),
+                10.0 * 4 * kHalf)
+        << name;
+  }
 }
 
 TEST(Surrogate, StagesThatAreNotOfRunTimeChangeNothing) {
