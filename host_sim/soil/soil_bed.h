@@ -165,6 +165,8 @@ class SoilBed {
   SoilParameters soil_;
   SoilOptions options_;
   MaterialFlow flow_;
+  /// Of Bekker's exponent, finer than anybody knows it.
+  static constexpr double kExponentStep = 0.005;
   std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
   double cell_area_;
