@@ -85,6 +85,7 @@ help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
 	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (half an hour)"
+	@echo "make terrain-tracks  train what tracks do to the ground of the surrogate world, on V3's sessions (half an hour)"
 	@echo "make surrogate  train, evaluate and export the networks of the thesis  (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
@@ -240,6 +241,15 @@ run-surrogate-v3: $(SCREED)
 	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(OUT)/sessions/v3 --out $(OUT)/v3.json
 	@$(SCREED) nn rollout $(OUT)/sessions/v3/e_*-0001 --model $(OUT)/v3.json --fit $(OUT)/sessions/v3/t_viper-0001 \
 	   --fit $(OUT)/sessions/v3/t_dry_sand-0001 --fit $(OUT)/sessions/v3/t_clay-0001 --starts 60 --out $(OUT)/rollouts
+
+.PHONY: terrain-tracks run-terrain-tracks
+terrain-tracks: deps
+	$(STEP) run-terrain-tracks
+run-terrain-tracks: $(SCREED)
+	@ls $(OUT)/sessions/v3/*/session.h5 > /dev/null 2>&1 || $(SCREED) record $(V3_SESSIONS)/*.ini --out $(OUT)/sessions/v3
+	@$(SCREED) terrain-net train-tracks $(OUT)/sessions/v3/t_*-0001 --out $(OUT)/terrain_tracks.json \
+	   $(patsubst %,--test %,$(wildcard $(OUT)/sessions/v3/e_*-0001)) $(ARGS)
+	@$(SCREED) terrain-net compare $(OUT)/terrain_tracks.json $(OUT)/sessions/v3/e_*-0001 --from 10 --pictures $(OUT)/terrain
 
 install:
 	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards MODELS_DIR=$(PREFIX)/share/screed/models FIRMWARE_DIR=$(PREFIX)/share/screed/firmware run-install

@@ -32,6 +32,8 @@ struct SimArguments {
   std::optional<std::string> board;
   std::optional<std::string> elf;
   std::optional<std::string> model;
+  std::optional<std::string> ruts_model;
+  bool no_ruts = false;
   std::optional<std::string> can;
   std::optional<std::string> pty;
   bool realtime = false;
@@ -151,12 +153,20 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     const auto model = std::make_shared<const nn::Model>(
         nn::read_model(arguments.model.has_value() ? std::filesystem::path(*arguments.model)
                                                    : nn::default_model_file()));
-    options.surroundings = [model](HeightField terrain, const Assembly& robot,
-                                   const PlantOptions& plant) {
-      return std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
+    std::shared_ptr<const nn::BearingNetwork> bearing;
+    if (!arguments.no_ruts) {
+      bearing = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(
+          arguments.ruts_model.has_value() ? std::filesystem::path(*arguments.ruts_model)
+                                           : nn::default_bearing_file()));
+    }
+    options.surroundings = [model, bearing](HeightField terrain, const Assembly& robot,
+                                            const PlantOptions& plant) {
+      auto world = std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
+      if (bearing) world->let_give_way(bearing);
+      return world;
     };
-  } else if (arguments.model.has_value()) {
-    throw InputError("--model needs --hal surrogate");
+  } else if (arguments.model.has_value() || arguments.ruts_model.has_value() || arguments.no_ruts) {
+    throw InputError("--model, --ruts-model and --no-ruts need --hal surrogate");
   }
 
   const std::optional<viewer::ViewerOptions> view =
@@ -225,6 +235,12 @@ void register_sim_command(CLI::App& root, const std::string& version,
                       "with --hal mcu: the image; by default that of make firmware");
   command->add_option("--model", arguments->model,
                       "with --hal surrogate: the model file; by default the one that comes along");
+  command->add_option("--ruts-model", arguments->ruts_model,
+                      "with --hal surrogate: the network of what tracks do to the ground; by "
+                      "default the one that comes along");
+  command
+      ->add_flag("--no-ruts", arguments->no_ruts, "with --hal surrogate: the ground stays as it is")
+      ->excludes("--ruts-model");
   command->add_option("--can", arguments->can,
                       "publish the radio's frames on this CAN interface and take commands from it; "
                       "implies --realtime");

@@ -8,4 +8,8 @@ std::filesystem::path default_model_file() {
   return std::filesystem::path(kModelsFolder) / "v3.json";
 }
 
+std::filesystem::path default_bearing_file() {
+  return std::filesystem::path(kModelsFolder) / "terrain_tracks.json";
+}
+
 }  // namespace screed::nn

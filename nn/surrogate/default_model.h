@@ -1,4 +1,4 @@
-// The model that stands in for the physics when nobody names another one.
+// The models that stand in for the physics when nobody names others.
 #pragma once
 
 #include <filesystem>
@@ -6,5 +6,7 @@
 namespace screed::nn {
 
 std::filesystem::path default_model_file();
+/// The network of what bears tracks (nn/terrain) that goes with it.
+std::filesystem::path default_bearing_file();
 
 }  // namespace screed::nn

@@ -42,6 +42,7 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
 SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
                                const PlantOptions& options, Surrogate robot)
     : ground_(std::move(terrain)),
+      tracks_(track_geometry(model)),
       imu_position_(Eigen::Vector3d::Zero()),
       robot_(std::move(robot)),
       shafts_{DriveShaft(options.vehicle.motor, 1, kTurnedInertia_kg_m2),
@@ -68,11 +69,49 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
   const int imu = model.body_index("Imu");
   if (imu >= 0) imu_position_ = model.bodies[static_cast<size_t>(imu)].pose.translation();
 
-  robot_.set_soil(0, *options.soil);
+  soil_ = *options.soil;
+  robot_.set_soil(0, soil_);
   DrivingState start;
   start.pose = {options.start.x_m, options.start.y_m, options.start.attitude.heading};
   start.battery = options.battery;
   set_state(start);
+}
+
+void SurrogatePlant::let_give_way(std::shared_ptr<const BearingNetwork> network,
+                                  const HeightField* sunk) {
+  bearing_ = std::move(network);
+  if (pressed_) return;
+  pressed_ = sunk != nullptr ? std::make_unique<TrackGround>(ground_, *sunk, soil_, tracks_)
+                             : std::make_unique<TrackGround>(ground_, soil_, tracks_);
+  ground_ = HeightField::flat(1.0, 0.5);
+}
+
+/// A stride's ways in the robot's axes at its end. A robot that stands has pressed what it stands
+/// on.
+void SurrogatePlant::press_ground() {
+  constexpr std::uint64_t kStandingStrides = 10;
+  constexpr double kStill = 1e-6;  // m, rad
+  const PlanarPose pose = robot_.pose(0);
+  const double c = std::cos(pose.heading_rad);
+  const double s = std::sin(pose.heading_rad);
+  const double dx = pose.x_m - stride_begin_.x_m;
+  const double dy = pose.y_m - stride_begin_.y_m;
+  Stride stride;
+  stride.x_m = pose.x_m;
+  stride.y_m = pose.y_m;
+  stride.yaw_rad = pose.heading_rad;
+  stride.forward_m = c * dx + s * dy;
+  stride.sideways_m = c * dy - s * dx;
+  stride.turn_rad = pose.heading_rad - stride_begin_.heading_rad;
+  stride.track_m = stride_tracks_m_;
+  stride_begin_ = pose;
+  stride_tracks_m_ = {};
+  stride_frames_ = 0;
+  const bool still = std::abs(stride.forward_m) + std::abs(stride.sideways_m) < kStill &&
+                     std::abs(stride.turn_rad) < kStill;
+  still_strides_ = still ? still_strides_ + 1 : 0;
+  if (still_strides_ > kStandingStrides) return;
+  pressed_->step(stride, bearing_.get());
 }
 
 void SurrogatePlant::set_state(const DrivingState& state) {
@@ -84,6 +123,10 @@ void SurrogatePlant::set_state(const DrivingState& state) {
     angle_offset_rad_[i] = state.shaft_angle_rad[i] - shafts_[i].angle_rad();
   }
   battery_ = state.battery;
+  stride_begin_ = state.pose;
+  stride_tracks_m_ = {};
+  stride_frames_ = 0;
+  still_strides_ = 0;
   now_ = stance_on_ground();
   before_ = now_;
   const double c = std::cos(state.pose.heading_rad);
@@ -94,9 +137,9 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   imu_velocity_before_ = velocity_;
   rate_body_ << 0.0, 0.0, state.last.turn_rad / kFrame_s;
   beds_passed_ = {0, 0};
-  if (ground_.wrap()) {
-    beds_passed_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
-                    beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
+  if (ground().wrap()) {
+    beds_passed_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
+                    beds_off(now_.place.y(), ground().y_max() - ground().y_min())};
   }
 }
 
@@ -132,7 +175,7 @@ void SurrogatePlant::step(const std::array<double, 2>& share) {
 
 SurrogatePlant::Stance SurrogatePlant::stance_on_ground() const {
   const PlanarPose pose = robot_.pose(0);
-  const Support support = support_at(ground_, geometry_, pose.x_m, pose.y_m,
+  const Support support = support_at(ground(), geometry_, pose.x_m, pose.y_m,
                                      std::cos(pose.heading_rad), std::sin(pose.heading_rad));
   return {{support.roll, support.pitch, pose.heading_rad},
           {pose.x_m, pose.y_m, support.height_m + standing_height_m_}};
@@ -153,7 +196,12 @@ void SurrogatePlant::end_frame() {
   }
   const double left = vehicle_.track_speed_m_per_s(kLeft);
   const double right = vehicle_.track_speed_m_per_s(kRight);
-  robot_.step(ground_, {&left, 1}, {&right, 1});
+  robot_.step(ground(), {&left, 1}, {&right, 1});
+  if (pressed_) {
+    stride_tracks_m_[kLeft] += left * kFrame_s;
+    stride_tracks_m_[kRight] += right * kFrame_s;
+    if (++stride_frames_ == kStrideFrames) press_ground();
+  }
 
   before_ = now_;
   now_ = stance_on_ground();
@@ -169,9 +217,9 @@ void SurrogatePlant::end_frame() {
   velocity_ = (now_.place - before_.place) / kFrame_s;
   imu_velocity_before_ = imu_velocity_;
   imu_velocity_ = velocity_ + (to - from) * imu_position_ / kFrame_s;
-  if (ground_.wrap()) {
-    beds_passed_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
-                    beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
+  if (ground().wrap()) {
+    beds_passed_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
+                    beds_off(now_.place.y(), ground().y_max() - ground().y_min())};
   }
 }
 
@@ -205,8 +253,8 @@ ChassisState SurrogatePlant::Body::chassis() const {
   ChassisState state;
   state.pose.linear() = rotation_from(plant_.now_.attitude);
   state.pose.translation() = plant_.now_.place;
-  if (plant_.ground_.wrap()) {
-    const HeightField& ground = plant_.ground_;
+  const HeightField& ground = plant_.ground();
+  if (ground.wrap()) {
     state.pose.translation().x() -=
         static_cast<double>(plant_.beds_passed_[0]) * (ground.x_max() - ground.x_min());
     state.pose.translation().y() -=

@@ -2,12 +2,13 @@
 // are, below them tracks whose motion the network turns into the robot's. The firmware, its sensors
 // and its radio notice nothing.
 //
-// The ground bears and inclines the robot and is not changed by it, unless somebody outside changes
-// it between two frames (ground()).
+// The ground bears and inclines the robot. With a network of what bears tracks (nn/terrain) it
+// gives way below them, a stride of five frames at a time; without one it stays as it is.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "host_sim/vehicle/assembly.h"
@@ -15,6 +16,7 @@
 #include "host_sim/world/plant.h"
 #include "host_sim/world/surroundings.h"
 #include "nn/surrogate/surrogate.h"
+#include "nn/terrain/track_ground.h"
 
 namespace screed::nn {
 
@@ -38,6 +40,11 @@ class SurrogatePlant : public Surroundings {
   SurrogatePlant(HeightField terrain, const Assembly& model, const PlantOptions& options,
                  Surrogate robot);
 
+  /// From now on the tracks press the ground, by this network or, when it is null, in closed form.
+  /// `sunk`: by how much earlier passes did, where that is known (TrackGround::sunk).
+  void let_give_way(std::shared_ptr<const BearingNetwork> network,
+                    const HeightField* sunk = nullptr);
+
   /// Goes on from there.
   void set_state(const DrivingState& state);
 
@@ -48,7 +55,7 @@ class SurrogatePlant : public Surroundings {
   int steps_per_tick() const override { return kStepsPerTick; }
   uint64_t steps() const override { return steps_; }
   double time_s() const override;
-  const HeightField& terrain() const override { return ground_; }
+  const HeightField& terrain() const override { return ground(); }
   const SoilBed* soil() const override { return nullptr; }
   const ParticleBed* particles() const override { return nullptr; }
   bool ground_is_loose() const override { return true; }
@@ -57,8 +64,8 @@ class SurrogatePlant : public Surroundings {
   Eigen::Vector3d place_travelled() const override;
   const Battery& battery() const override { return battery_; }
 
-  /// For whoever lets the ground give way: heights may be changed between two ticks.
-  HeightField& ground() { return ground_; }
+  /// The ground below the tracks; null while it does not give way.
+  const TrackGround* pressed() const { return pressed_.get(); }
   /// Where the robot is, places as travelled.
   PlanarPose pose() const { return robot_.pose(0); }
   FrameMotion last_motion() const { return robot_.motion(0); }
@@ -93,8 +100,18 @@ class SurrogatePlant : public Surroundings {
   void end_frame();
   Stance stance_on_ground() const;
   void stand_still();
+  const HeightField& ground() const { return pressed_ ? pressed_->surface() : ground_; }
+  void press_ground();
 
-  HeightField ground_;
+  HeightField ground_;  ///< unless pressed_ holds it
+  SoilParameters soil_;
+  TrackGeometry tracks_;
+  std::unique_ptr<TrackGround> pressed_;
+  std::shared_ptr<const BearingNetwork> bearing_;
+  PlanarPose stride_begin_;  ///< since the ground was last pressed
+  std::array<double, 2> stride_tracks_m_{};
+  std::uint64_t stride_frames_ = 0;
+  std::uint64_t still_strides_ = 0;
   SupportGeometry geometry_;
   double standing_height_m_ = 0.0;
   double tread_m_ = 0.0;

@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/run_setup.h"
+#include "host_sim/experiment/simulation.h"
 #include "host_sim/session/height_export.h"
 #include "host_sim/session/run_folder.h"
 
@@ -41,7 +43,12 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
     throw InputError(run.string() +
                      ": the heights were not recorded; screed record and sim --heights keep them");
   }
-  wheels_ = wheel_places(robot_model(setup_of(session_.info(), run), session_.info().board_name));
+  const RunSetup setup = setup_of(session_.info(), run);
+  robot_ = robot_model(setup, session_.info().board_name);
+  wheels_ = wheel_places(robot_);
+  tracks_ = setup.experiment.vehicle.tracks;
+  on_soil_ = setup.ground == "scm";
+  if (on_soil_) soil_ = make_soil(read_experiment(run / "experiment.ini"));
   const double tick_s = 1.0 / session_.info().tick_rate_hz;
   std::vector<Frame> frames(session_.frames());
   constexpr std::size_t kBlock = 1024;
@@ -65,6 +72,7 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
     const Frame& end = frames[begin + kStrideFrames - 1];
     stride.x_m = end.x;
     stride.y_m = end.y;
+    stride.z_m = end.z;
     stride.yaw_rad = end.yaw;
     stride.forward_m = std::cos(end.yaw) * dx + std::sin(end.yaw) * dy;
     stride.sideways_m = -std::sin(end.yaw) * dx + std::cos(end.yaw) * dy;
@@ -78,7 +86,11 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
 }
 
 HeightField DriveStrides::first_ground() const {
-  return field_of(session_.heights_after(first_frame_));
+  return ground_after(0);
+}
+
+HeightField DriveStrides::ground_after(std::size_t strides) const {
+  return field_of(session_.heights_after(first_frame_ + strides * kStrideFrames));
 }
 
 void DriveStrides::advance(std::size_t i, HeightField& ground) const {

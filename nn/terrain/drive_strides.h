@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "host_sim/session/session_reader.h"
+#include "host_sim/soil/soil_parameters.h"
 #include "host_sim/terrain/height_field.h"
 #include "host_sim/vehicle/assembly.h"
 
@@ -15,6 +17,7 @@ namespace screed::nn {
 
 /// Frames of a stride: 50 ms, in which the robot comes about as far as a cell of the ground.
 inline constexpr std::uint64_t kStrideFrames = 5;
+inline constexpr double kStrideRate_hz = 100.0 / kStrideFrames;
 
 /// Where a wheel stands under the robot, m: x forward, y left.
 struct WheelPlace {
@@ -29,6 +32,7 @@ std::array<WheelPlace, 4> wheel_places(const Assembly& robot);
 struct Stride {
   double x_m = 0.0;  ///< at its end, on the bed
   double y_m = 0.0;
+  double z_m = 0.0;
   double yaw_rad = 0.0;
   double forward_m = 0.0;  ///< during it, in the robot's axes at its end
   double sideways_m = 0.0;
@@ -48,15 +52,27 @@ class DriveStrides {
   std::size_t size() const { return strides_.size(); }
   const Stride& operator[](std::size_t i) const { return strides_[i]; }
   const std::array<WheelPlace, 4>& wheels() const { return wheels_; }
+  const Assembly& robot() const { return robot_; }
+  /// Meaningless where on_soil() is false.
+  const SoilParameters& soil() const { return soil_; }
+  bool on_soil() const { return on_soil_; }
+  bool tracks() const { return tracks_; }
+  const std::string& name() const { return session_.info().experiment_name; }
 
   /// The ground before the first stride.
   HeightField first_ground() const;
+  /// The ground after so many strides.
+  HeightField ground_after(std::size_t strides) const;
   /// Brings a field that shows the ground before stride i to the ground after it.
   void advance(std::size_t i, HeightField& ground) const;
 
  private:
   SessionReader session_;
   std::uint64_t first_frame_ = 0;  ///< the robot stands until here
+  Assembly robot_;
+  SoilParameters soil_;
+  bool on_soil_ = false;
+  bool tracks_ = false;
   std::array<WheelPlace, 4> wheels_{};
   std::vector<Stride> strides_;
 };

@@ -3,8 +3,11 @@
 
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/session/session_reader.h"
+#include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
 #include "tests/sitl/program.h"
 #include "tests/sitl/test_drive.h"
@@ -100,6 +103,59 @@ TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {
   EXPECT_EQ((drive.place() - begin).norm(), 0.0);
 }
 
+/// Ten minutes in circles on a bed without end, whose ground gives way.
+HeightField driven_ground(const HeightField& bed) {
+  WorldOptions options = on_soil();
+  options.drive = DriveOrder{0.12, 9.0};
+  auto plant = plant_of(bed, options);
+  plant->let_give_way(std::make_shared<const nn::BearingNetwork>(
+      nn::BearingNetwork::read(nn::default_bearing_file())));
+  const nn::SurrogatePlant& world_plant = *plant;
+  World world(std::move(plant), kBoard, options, nullptr);
+  Robot robot(kBoard, drive_parameters(), credentials_of(test_key()));
+  RobotOutput output{};
+  for (int i = 0; i < 600 * kTickRate_hz; ++i) {
+    world.advance();
+    robot.tick(world.sample(), output);
+    world.apply(output);
+  }
+  EXPECT_EQ(robot.supervisor().faults(), 0);
+  EXPECT_EQ(world_plant.terrain().height_sum() + world_plant.pressed()->in_hand(),
+            bed.height_sum());
+  return world_plant.terrain();
+}
+
+TEST(SurrogateDrive, TenMinutesOfRutsKeepTheVolumeAndTheBits) {
+  const HeightField bed = HeightField::from_function(256, 256, 0.01, true, [](double x, double y) {
+    return 0.01 * std::sin(4.9 * x) * std::cos(4.9 * y);
+  });
+  const HeightField once = driven_ground(bed);
+  const HeightField again = driven_ground(bed);
+  size_t changed = 0;
+  for (size_t node = 0; node < 256U * 256U; ++node) {
+    ASSERT_EQ(once.node(node), again.node(node));
+    changed += once.node(node) != bed.node(node) ? 1 : 0;
+  }
+  EXPECT_GT(changed, 2000U);
+}
+
+TEST(SurrogateDrive, PitchAndRollComeFromTheRuttedGround) {
+  WorldOptions options = on_soil();
+  options.soil = soil_preset("soft");
+  auto plant = plant_of(HeightField::flat(4.0, 0.01), options);
+  plant->let_give_way(nullptr);
+  const double before = plant->vehicle().chassis().pose.translation().z();
+  for (int i = 0; i < 2000; ++i) plant->step({0.4, -0.4});
+  double deviation = 0.0;
+  for (int iy = 0; iy < plant->terrain().ny(); ++iy) {
+    for (int ix = 0; ix < plant->terrain().nx(); ++ix) {
+      deviation = std::max(deviation, plant->terrain().node(ix, iy) * kHeightUnit_m);
+    }
+  }
+  EXPECT_GT(deviation, 0.001);  // what tracks turning on the spot heap up
+  EXPECT_NE(plant->vehicle().chassis().pose.translation().z(), before);
+}
+
 TEST(SurrogateDrive, OnlyTracksOnSoil) {
   WorldOptions rigid = on_soil();
   rigid.soil.reset();
@@ -122,10 +178,30 @@ TEST_F(Surrogate, RunsRecordsAndReplaysAndTheSameSeedGivesTheSameHash) {
   EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
 }
 
+TEST_F(Surrogate, RutsAppearAreRecordedAndCanBeLeftOut) {
+  write("e.ini",
+        "[map]\nmodel = scm\nsize = 4\n[soil]\npreset = soft\ncell = 0.02\n[experiment]\n"
+        "name = e\nalgorithm = drive\nduration = 14\n");
+  ASSERT_EQ(run("sim e.ini --hal surrogate --heights --quiet --out ruts").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --hal surrogate --heights --no-ruts --quiet --out none").exit_code, 0);
+  const SessionReader ruts(root_ / "ruts" / "session.h5");
+  const SessionReader none(root_ / "none" / "session.h5");
+  EXPECT_GT(ruts.height_changes(), 1000U);
+  EXPECT_EQ(none.height_changes(), 0U);
+  const HeightMap first = ruts.heights_after(0);
+  const HeightMap last = ruts.heights_after(ruts.frames());
+  EXPECT_EQ(last.heights, ruts.terrain_after()->heights);
+  EXPECT_EQ(std::accumulate(first.heights.begin(), first.heights.end(), int64_t{0}),
+            std::accumulate(last.heights.begin(), last.heights.end(), int64_t{0}));
+  EXPECT_EQ(run("replay ruts").exit_code, 0);
+}
+
 TEST_F(Surrogate, RefusesRigidGroundAndAForeignModel) {
   write("e.ini", "[experiment]\nname = e\nduration = 1\n");
   expect_refused(run("sim e.ini --hal surrogate"), 2, {"soil", "scm"});
   expect_refused(run("sim e.ini --model x.json"), 2, {"--model", "--hal surrogate"});
+  expect_refused(run("sim e.ini --no-ruts"), 2, {"--no-ruts", "--hal surrogate"});
+  expect_refused(run("sim e.ini --hal surrogate --ruts-model e.ini"), 2, {"e.ini"});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate.h"
+#include "nn/terrain/track_ground.h"
 
 namespace screed {
 namespace {
@@ -40,6 +41,31 @@ void surrogate_frame(benchmark::State& state) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(surrogate_frame)->Arg(1)->Arg(32)->Arg(1024);
+
+/// The same with ground that gives way below one robot: a stride of five frames at a time.
+void surrogate_ruts(benchmark::State& state) {
+  constexpr double kWay_m = 0.0075;
+  constexpr double kTurn_rad = 0.003;
+  const nn::BearingNetwork network = nn::BearingNetwork::read(nn::default_bearing_file());
+  const HeightField ground = HeightField::from_function(
+      2048, 2048, 0.005, true,
+      [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });
+  nn::TrackGround pressed(ground, soil_preset("ding_2011"), nn::TrackGeometry{});
+  nn::Stride stride;
+  stride.forward_m = kWay_m;
+  stride.turn_rad = kTurn_rad;
+  stride.track_m = {kWay_m, kWay_m};
+  while (state.KeepRunning()) {
+    stride.yaw_rad += kTurn_rad;
+    stride.x_m += std::cos(stride.yaw_rad) * kWay_m;
+    stride.y_m += std::sin(stride.yaw_rad) * kWay_m;
+    pressed.step(stride, &network);
+  }
+  state.counters["s_per_robot_frame"] =
+      benchmark::Counter(static_cast<double>(state.iterations() * nn::kStrideFrames),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(surrogate_ruts);
 
 }  // namespace
 }  // namespace screed
