@@ -57,7 +57,7 @@ MCU_USED_no := $(MCU_STAND_IN) host_sim/mcu/default_image.cpp host_sim/mcu/parit
 ifeq ($(MCU_USED_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
-HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp nn/data/*.cpp nn/training/*.cpp nn/surrogate/*.cpp nn/terrain/*.cpp)) $(MCU_USED_$(MCU))
+HOST_SOURCES := $(filter-out $(MCU_SOURCES),$(wildcard hal/host/*.cpp host_sim/*/*.cpp nn/model/*.cpp nn/batch/*.cpp nn/data/*.cpp nn/training/*.cpp nn/surrogate/*.cpp nn/terrain/*.cpp nn/slip/*.cpp)) $(MCU_USED_$(MCU))
 TOOL_SOURCES := $(filter-out tools/main.cpp,$(wildcard tools/*.cpp tools/viewer/*.cpp))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(TOOL_SOURCES)
 SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(wildcard tools/schema/*.cpp))

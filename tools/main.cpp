@@ -10,6 +10,7 @@
 #include "tools/monitor_command.h"
 #include "tools/nn_command.h"
 #include "tools/nn_motion_command.h"
+#include "tools/nn_stuck_command.h"
 #include "tools/parity_command.h"
 #include "tools/plot_command.h"
 #include "tools/program.h"
@@ -50,5 +51,6 @@ int main(int argc, char** argv) {
   screed::register_view_command(app, action);
   screed::register_nn_command(app, action);
   screed::register_nn_motion_command(app, action);
+  screed::register_nn_stuck_command(app, action);
   return screed::run_program(app, argc, argv, [&] { return action(); });
 }

@@ -19,10 +19,11 @@ int16_t approach(int16_t value, int16_t target, int16_t step) {
 DriveControl::DriveControl(const BoardConstants& board, const Parameters& parameters)
     : kinematics_(board.tread_mm),
       left_(board, parameters),
-      right_(board, parameters),
+      right_(left_),
       full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
       step_mm_per_s_(
-          static_cast<int16_t>((parameters.accel_limit + kTickRate_hz - 1) / kTickRate_hz)),
+          static_cast<int16_t>(static_cast<uint16_t>(parameters.accel_limit + kTickRate_hz - 1) /
+                               static_cast<uint16_t>(kTickRate_hz))),
       yaw_kp_(parameters.yaw_kp),
       yaw_ki_(parameters.yaw_ki) {}
 

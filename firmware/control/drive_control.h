@@ -5,6 +5,7 @@
 // kinematics split it over the tracks.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
@@ -28,6 +29,10 @@ class DriveControl {
  public:
   DriveControl(const BoardConstants& board, const Parameters& parameters);
 
+  /// Builds one anew in its place. Assigned, it would be built in the main loop's stack frame
+  /// first, and what lies there beyond 63 bytes costs flash wherever it is used.
+  static void* operator new(size_t /*size*/, void* place) noexcept { return place; }
+
   /// Drives: one tick towards `command`.
   DriveOutput tick(const MotionCommand& command, const DriveMeasurement& measured);
 
@@ -39,6 +44,8 @@ class DriveControl {
   /// Observed track speeds, 0.1 mm/s.
   int16_t speed_left_dmm_per_s() const { return left_.speed_dmm_per_s(); }
   int16_t speed_right_dmm_per_s() const { return right_.speed_dmm_per_s(); }
+  const TrackMotion& left() const { return left_.motion(); }
+  const TrackMotion& right() const { return right_.motion(); }
 
  private:
   int32_t corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate);

@@ -25,7 +25,8 @@ constexpr int16_t kErrorLimit_dmm_per_s = 3000;
 
 SCREED_OUT_OF_LINE
 TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Parameters& parameters)
-    : count_um_q4_(board.count_um_q4),
+    : TrackSpeedMemory(),
+      count_um_q4_(board.count_um_q4),
       nominal_mv_(board.motor_nominal_mv),
       kp_(parameters.speed_kp),
       ki_(parameters.speed_ki),
@@ -36,6 +37,7 @@ void TrackSpeedControl::release(int16_t counts) {
   integral_q16_ = 0;
   halfway_q4_ = 0;
   expected_q4_ = 0;
+  motion_.effort = 0;
   observe(counts);
 }
 
@@ -54,20 +56,21 @@ void TrackSpeedControl::observe(int16_t counts) {
   // shift in two parts.
   speed_q12_ += asr(asr(error, 2) * kBeta_q12, 10);
   // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16
-  speed_dmm_per_s_ = saturate_i16(asr(speed_q12_ * static_cast<int32_t>(count_um_q4_), 16));
+  motion_.speed_dmm_per_s = saturate_i16(asr(speed_q12_ * static_cast<int32_t>(count_um_q4_), 16));
 }
 
 int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv) {
   observe(counts);
   expect(target_mm_per_s);
-  const bool standing = speed_dmm_per_s_ < kStanding_dmm_per_s &&
-                        speed_dmm_per_s_ > static_cast<int16_t>(-kStanding_dmm_per_s);
+  const bool standing = motion_.speed_dmm_per_s < kStanding_dmm_per_s &&
+                        motion_.speed_dmm_per_s > static_cast<int16_t>(-kStanding_dmm_per_s);
   if (target_mm_per_s == 0 && standing) {
     integral_q16_ = 0;
+    motion_.effort = 0;
     return 0;
   }
 
-  const int32_t error = clamp_i32(asr_round(expected_q4_, 4) - speed_dmm_per_s_,
+  const int32_t error = clamp_i32(asr_round(expected_q4_, 4) - motion_.speed_dmm_per_s,
                                   -kErrorLimit_dmm_per_s, kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is.
@@ -90,8 +93,10 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
     integral_q16_ = clamp_i32(integral_q16_ + asr(static_cast<int32_t>(ki_) * error * 131, 5),
                               -kIntegralLimit_q16, kIntegralLimit_q16);
   }
-  return static_cast<int16_t>(clamp_i32(without_integral + asr(integral_q16_, 16),
-                                        -static_cast<int32_t>(kDutyMax), kDutyMax));
+  const auto duty = static_cast<int16_t>(clamp_i32(without_integral + asr(integral_q16_, 16),
+                                                   -static_cast<int32_t>(kDutyMax), kDutyMax));
+  motion_.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));
+  return duty;
 }
 
 }  // namespace screed

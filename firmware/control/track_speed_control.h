@@ -10,12 +10,24 @@
 
 #include <stdint.h>
 
+#include "firmware/estimation/slip_watch.h"
 #include "firmware/robot/board_constants.h"
 #include "firmware/robot/parameters.h"
 
 namespace screed {
 
-class TrackSpeedControl {
+/// What the control of a track remembers, zero at the start: zeroed at once, which takes less
+/// flash.
+struct TrackSpeedMemory {
+  int32_t lag_q12_;       ///< counts by which the observed position trails the encoder
+  int32_t speed_q12_;     ///< counts a tick
+  int32_t halfway_q4_;    ///< target behind one lag, 0.1 mm/s
+  int32_t expected_q4_;   ///< target as the observer would show it, 0.1 mm/s
+  int32_t integral_q16_;  ///< duty
+  TrackMotion motion_;    ///< as others see it
+};
+
+class TrackSpeedControl : private TrackSpeedMemory {
  public:
   TrackSpeedControl(const BoardConstants& board, const Parameters& parameters);
 
@@ -28,7 +40,8 @@ class TrackSpeedControl {
   void release(int16_t counts);
 
   /// Observed speed, 0.1 mm/s.
-  int16_t speed_dmm_per_s() const { return speed_dmm_per_s_; }
+  int16_t speed_dmm_per_s() const { return motion_.speed_dmm_per_s; }
+  const TrackMotion& motion() const { return motion_; }
 
  private:
   void observe(int16_t counts);
@@ -38,13 +51,7 @@ class TrackSpeedControl {
   uint16_t nominal_mv_;
   int16_t kp_;
   int16_t ki_;
-  int16_t feed_forward_q8_;   ///< duty per mm/s at the nominal voltage
-  int32_t lag_q12_ = 0;       ///< counts by which the observed position trails the encoder
-  int32_t speed_q12_ = 0;     ///< counts a tick
-  int32_t halfway_q4_ = 0;    ///< target behind one lag, 0.1 mm/s
-  int32_t expected_q4_ = 0;   ///< target as the observer would show it, 0.1 mm/s
-  int32_t integral_q16_ = 0;  ///< duty
-  int16_t speed_dmm_per_s_ = 0;
+  int16_t feed_forward_q8_;  ///< duty per mm/s at the nominal voltage
 };
 
 }  // namespace screed

@@ -6,6 +6,8 @@
 // rounded as well: what they leave stays in the filter.
 #include "firmware/estimation/attitude.h"
 
+#include <stddef.h>
+
 #include "firmware/math/fixed.h"
 #include "firmware/math/sqrt.h"
 
@@ -78,22 +80,8 @@ int16_t limited(int32_t half_angle, int32_t limit) {
 }  // namespace
 
 void AttitudeEstimator::reset() {
+  static_cast<AttitudeState&>(*this) = AttitudeState{};
   orientation_ = kIdentityQuaternion;
-  for (uint8_t i = 0; i < 3; ++i) {
-    gravity_[i] = 0;
-    slope_[i] = 0;
-    bias_[i] = 0;
-    gyro_mean_[i] = 0;
-    accel_mean_[i] = 0;
-    carry_[i] = 0;
-    half_angle_[i] = 0;
-  }
-  yaw_rate_ = 0;
-  ticks_ = 0;
-  mag_samples_ = 0;
-  mag_age_ = 0;
-  rest_ticks_ = 0;
-  bias_samples_ = 0;
 }
 
 void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
@@ -151,20 +139,18 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
 
 /// Follows the short means and counts the ticks of standstill.
 void AttitudeEstimator::detect_rest(const ImuSample& sample, bool may_be_at_rest) {
+  static_assert(offsetof(ImuSample, accel) == 3 * sizeof(int16_t), "the gyro's counts go before");
+  const auto* const counts = reinterpret_cast<const int16_t*>(&sample);
   bool quiet = may_be_at_rest;
-  for (uint8_t i = 0; i < 3; ++i) {
-    const int32_t gyro = with_mean_bits(sample.gyro[i]);
-    const int32_t accel = with_mean_bits(sample.accel[i]);
-    if (ticks_ == 0) {
-      gyro_mean_[i] = gyro;
-      accel_mean_[i] = accel;
-    }
-    const int32_t gyro_change = gyro - gyro_mean_[i];
-    const int32_t accel_change = accel - accel_mean_[i];
-    gyro_mean_[i] += asr_round(gyro_change, kMeanShift);
-    accel_mean_[i] += asr_round(accel_change, kMeanShift);
-    if (abs_u32(gyro_change) > kRestGyro || abs_u32(accel_change) > kRestAccel ||
-        abs_u32(gyro_mean_[i]) > kRestGyroMean) {
+  for (uint8_t i = 0; i < 6; ++i) {
+    const bool of_gyro = i < 3;
+    const int32_t count = with_mean_bits(counts[i]);
+    int32_t mean = ticks_ == 0 ? count : mean_[i];
+    const int32_t change = count - mean;
+    mean += asr_round(change, kMeanShift);
+    mean_[i] = mean;
+    if (abs_u32(change) > (of_gyro ? kRestGyro : kRestAccel) ||
+        (of_gyro && abs_u32(mean) > kRestGyroMean)) {
       quiet = false;
     }
   }
@@ -187,7 +173,7 @@ void AttitudeEstimator::learn_bias_at_rest() {
   if (bias_samples_ < kBiasTicks) ++bias_samples_;
   const int16_t gain = mean_gain_q16(bias_samples_);
   for (uint8_t i = 0; i < 3; ++i) {
-    bias_[i] += scale_q16(scale_q16(gyro_mean_[i] * 8, kMeanToBias) - bias_[i], gain);
+    bias_[i] += scale_q16(scale_q16(mean_[i] * 8, kMeanToBias) - bias_[i], gain);
   }
 }
 
@@ -292,7 +278,7 @@ AttitudeAngles AttitudeEstimator::angles() const {
   const int16_t up = to_earth.row[2][2];
   const uint16_t level = isqrt32(static_cast<uint32_t>(mul_i16(left, left) + mul_i16(up, up)));
   return {atan2_angle(left, up), atan2_angle(to_earth.row[2][0], static_cast<int32_t>(level)),
-          atan2_angle(to_earth.row[1][0], to_earth.row[0][0])};
+          atan2_angle(to_earth.row[1][0], to_earth.row[0][0]), to_earth.row[2][0]};
 }
 
 int32_t AttitudeEstimator::gyro_bias_mdps(uint8_t axis) const {

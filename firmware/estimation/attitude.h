@@ -32,9 +32,30 @@ struct AttitudeAngles {
   Angle pitch;    ///< > 0: nose up, -16384..16384
   Angle heading;  ///< counter-clockwise from east, seen from above; from the start pose without
                   ///< magnetometer
+  int16_t sin_pitch_q14;
 };
 
-class AttitudeEstimator {
+/// What the estimator remembers, all of it zero after a reset but the orientation. By itself so
+/// that it is forgotten at once: member by member that takes 100 bytes of flash more.
+struct AttitudeState {
+  Quaternion orientation_;
+  int32_t gravity_[3];  // filtered acceleration in the earth frame, counts, 14 binary digits
+  int32_t slope_[3];    // change of gravity_ a tick, counts, 22 binary digits
+  int32_t bias_[3];     // half angle in radians a tick, 33 binary digits
+  int32_t mean_[6];     // short means for the rest detection, counts, 14 binary digits: gyro,
+                        // then accelerometer
+  int32_t yaw_rate_;
+  uint16_t
+      carry_[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
+  int16_t half_angle_[3];  // rotation of this tick, half angle in radians, 17 binary digits
+  uint16_t ticks_;         // since the alignment, stops at kStartTicks; 0: not aligned yet
+  uint16_t mag_samples_;   // taken in, stops at kHeadingStartSamples
+  uint8_t mag_age_;        // ticks since the last magnetometer sample
+  uint8_t rest_ticks_;     // stops at kRestTicks
+  uint8_t bias_samples_;   // taken at rest, stops at kBiasTicks
+};
+
+class AttitudeEstimator : private AttitudeState {
  public:
   AttitudeEstimator() { reset(); }
 
@@ -86,22 +107,6 @@ class AttitudeEstimator {
   void filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]);
   int16_t heading_correction(const RotationMatrix& to_earth, const int16_t (&mag)[3]);
   void correct(const SmallQuaternion& correction);
-
-  Quaternion orientation_;
-  int32_t gravity_[3];     // filtered acceleration in the earth frame, counts, 14 binary digits
-  int32_t slope_[3];       // change of gravity_ a tick, counts, 22 binary digits
-  int32_t bias_[3];        // half angle in radians a tick, 33 binary digits
-  int32_t gyro_mean_[3];   // short mean for the rest detection, counts, 14 binary digits
-  int32_t accel_mean_[3];  // the same
-  int32_t yaw_rate_;
-  uint16_t
-      carry_[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
-  int16_t half_angle_[3];  // rotation of this tick, half angle in radians, 17 binary digits
-  uint16_t ticks_;         // since the alignment, stops at kStartTicks; 0: not aligned yet
-  uint16_t mag_samples_;   // taken in, stops at kHeadingStartSamples
-  uint8_t mag_age_;        // ticks since the last magnetometer sample
-  uint8_t rest_ticks_;     // stops at kRestTicks
-  uint8_t bias_samples_;   // taken at rest, stops at kBiasTicks
 };
 
 }  // namespace screed

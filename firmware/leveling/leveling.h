@@ -6,6 +6,7 @@
 // A new algorithm is a new file, a value of LevelingAlgorithm and a case in leveling.cpp.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
@@ -47,6 +48,10 @@ constexpr uint8_t kLevelingStates = 8;
 class Leveling {
  public:
   explicit Leveling(const Parameters& parameters);
+
+  /// Builds one anew in its place. Assigned, it would be built in the main loop's stack frame
+  /// first, and what lies there beyond 63 bytes costs flash wherever it is used.
+  static void* operator new(size_t /*size*/, void* place) noexcept { return place; }
 
   /// Starts a run: the state begins anew. Random sequence, fence, the side of the next spin and
   /// what is left of a training drive go on.

@@ -55,6 +55,17 @@ constexpr int32_t asr(int32_t value, uint8_t n) {
   return value >> n;
 }
 
+/// floor(value / 2^n) of a short number, n in 0..15.
+constexpr int16_t asr_i16(int16_t value, uint8_t n) {
+  return static_cast<int16_t>(value >> n);
+}
+
+/// |value| as unsigned, right for INT16_MIN as well, without 32 bits.
+SCREED_OUT_OF_LINE constexpr uint16_t abs_i16(int16_t value) {
+  return value < 0 ? static_cast<uint16_t>(0U - static_cast<uint16_t>(value))
+                   : static_cast<uint16_t>(value);
+}
+
 /// value / 2^n rounded to nearest, halves up. n in 1..31; |value| + 2^(n-1) must fit 32 bits.
 constexpr int32_t asr_round(int32_t value, uint8_t n) {
   return asr(value + (static_cast<int32_t>(1) << (n - 1)), n);

@@ -16,7 +16,7 @@ using YawRate = int16_t;
 
 /// 0.01 degree -> angle units; error below 0.01 %. Any int16_t up to +-17999 (less than half a
 /// turn).
-constexpr Angle angle_from_centidegrees(int16_t centidegrees) {
+SCREED_OUT_OF_LINE constexpr Angle angle_from_centidegrees(int16_t centidegrees) {
   return static_cast<Angle>(asr(static_cast<int32_t>(centidegrees) * 59652, 15));
 }
 
@@ -26,12 +26,12 @@ constexpr int16_t centidegrees_from_angle(Angle angle) {
 }
 
 /// degrees/s -> angle units/s; +-179 degrees/s.
-constexpr YawRate yaw_rate_from_degrees(int16_t degrees_per_s) {
+SCREED_OUT_OF_LINE constexpr YawRate yaw_rate_from_degrees(int16_t degrees_per_s) {
   return static_cast<YawRate>(asr(static_cast<int32_t>(degrees_per_s) * 46603, 8));
 }
 
 /// ms -> control ticks, rounded down; 0..32767 ms.
-constexpr uint16_t ticks_from_ms(int16_t ms) {
+SCREED_OUT_OF_LINE constexpr uint16_t ticks_from_ms(int16_t ms) {
   return static_cast<uint16_t>((static_cast<uint32_t>(ms) * 52429U) >>
                                19);  // exact for all 0..43698
 }

@@ -2,12 +2,12 @@
 // long.
 #include "firmware/robot/parameters.h"
 
-#include "firmware/math/rom.h"
+#include "nn/infer/program_memory.h"
 
 namespace screed {
 namespace {
 
-const int16_t kRanges[][2] SCREED_ROM = {
+const int16_t kRanges[][2] SCREED_NN_PROGRAM_MEMORY = {
 #define SCREED_RANGE(name, unit, min, max, value, meaning) {min, max},
     SCREED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
@@ -20,7 +20,9 @@ static_assert(sizeof(Parameters) == kCount * sizeof(int16_t), "parameters are nu
 bool Parameters::valid() const {
   const auto* value = reinterpret_cast<const int16_t*>(this);
   for (uint8_t i = 0; i < kCount; ++i, ++value) {
-    if (*value < rom_i16(&kRanges[i][0]) || *value > rom_i16(&kRanges[i][1])) return false;
+    if (*value < nn::read_program_i16(&kRanges[i][0]) ||
+        *value > nn::read_program_i16(&kRanges[i][1]))
+      return false;
   }
   return walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;
 }

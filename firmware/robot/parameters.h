@@ -59,7 +59,8 @@
   X(mag_offset_y,           "0.16 mG",  -8000,  8000,      0, "likewise") \
   X(mag_offset_z,           "0.16 mG",  -8000,  8000,      0, "likewise") \
   X(standalone,             "",            0,     1, SCREED_STANDALONE, "1: arm and run after power-up without a ground station") \
-  X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run")
+  X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run") \
+  X(stuck_time,             "ms",          0, 30000,      0, "stop with a fault when dug in or hung up for this long; 0: only tell")
 // clang-format on
 
 namespace screed {

@@ -47,20 +47,22 @@ static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * 
 
 Robot::Robot(const BoardConstants& board, const Parameters& parameters,
              const Credentials& credentials, bool parameters_intact)
-    : board_(board),
+    : RobotMemory(),
+      board_(board),
       parameters_(parameters),
       odometry_(board.count_um_q4),
       supervisor_(parameters, parameters_intact),
       leveling_(parameters),
       drive_(board, parameters),
+      slip_watch_(board.tread_mm),
       gate_(credentials) {}
 
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
-  if (first_tick_) {
+  if (!started_) {
     event(message::EventCode::kStarted, sample.reset_cause);
     last_left_ = sample.encoder_left;
     last_right_ = sample.encoder_right;
-    first_tick_ = false;
+    started_ = true;
   }
   // Modulo 2^16: a wrap of the counters has no effect.
   const Deltas deltas = {
@@ -94,6 +96,8 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
   const AttitudeAngles angles = attitude_.angles();
   pitch_ = angles.pitch;
   heading_ = angles.heading;
+  sin_pitch_q14_ = angles.sin_pitch_q14;
+  accel_x_ = imu.accel[0];
   view_.roll_cdeg = centidegrees_from_angle(angles.roll);
   view_.pitch_cdeg = centidegrees_from_angle(pitch_);
   view_.heading_cdeg = static_cast<uint16_t>(
@@ -131,7 +135,7 @@ void Robot::handle(const CanFrame& frame) {
       } else if (frame.id == kIdParamStage) {
         memcpy(staged_, frame.data + kE2eHeaderSize, kStagedSize);
       } else {
-        const uint8_t counter = frame.data[1] & 0x0FU;
+        const auto counter = static_cast<uint8_t>((frame.data[1] & 0x0FU) + 1U);
         // A sender whose counter stands still has crashed: not a sign of life.
         if (counter != ground_counter_) {
           supervisor_.heartbeat();
@@ -246,8 +250,8 @@ RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
     return RequestResult::kBadArgument;
   }
   supervisor_.configure(parameters_);
-  leveling_ = Leveling(parameters_);
-  drive_ = DriveControl(board_, parameters_);
+  new (&leveling_) Leveling(parameters_);
+  new (&drive_) DriveControl(board_, parameters_);
   store_parameter_ = static_cast<uint8_t>(index + 1U);
   store_value_ = value_16;
   store_ticks_ = kStoreTicks;
@@ -267,6 +271,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.duty_right = view_.duty_right;
   input.counts_left = deltas.left;
   input.counts_right = deltas.right;
+  input.stuck = view_.stuck != 0;
   supervisor_.tick(input);
 }
 
@@ -289,6 +294,13 @@ void Robot::choose_motion() {
   }
   const LevelingInput input = {pitch_, heading_, view_.x_mm, view_.y_mm};
   view_.motion = leveling_.tick(input, drive_command_);
+}
+
+void Robot::watch_slip() {
+  slip_watch_.tick(drive_.left(), drive_.right(), accel_x_, sin_pitch_q14_, attitude_.yaw_rate(),
+                   telemetry_.packet_due());
+  view_.slip = slip_watch_.slips() ? 1 : 0;
+  view_.stuck = slip_watch_.stuck() ? 1 : 0;
 }
 
 void Robot::report(const SensorSample& sample, RobotOutput& output) {
@@ -346,6 +358,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
     view_.duty_left = 0;
     view_.duty_right = 0;
   }
+  watch_slip();
   report(sample, output);
 }
 

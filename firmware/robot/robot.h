@@ -8,6 +8,7 @@
 #include "firmware/control/drive_control.h"
 #include "firmware/estimation/attitude.h"
 #include "firmware/estimation/odometry.h"
+#include "firmware/estimation/slip_watch.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/robot/board_constants.h"
 #include "firmware/robot/parameters.h"
@@ -18,7 +19,33 @@
 
 namespace screed {
 
-class Robot {
+/// What a robot remembers beside its parts, zero at the start. By itself so that it is zeroed at
+/// once: member by member that takes 150 bytes of flash more.
+struct RobotMemory {
+  static constexpr uint8_t kStagedSize = 6;  ///< u16, s32
+
+  // What the robot does and has found out, as it is told: asked for once a tick, since on the AVR
+  // an angle costs 1500 cycles and a position a division.
+  TelemetryView view_;
+  Angle heading_;
+  Angle pitch_;
+  int16_t sin_pitch_q14_;
+  int16_t accel_x_;
+  MotionCommand drive_command_;  ///< last CommandOp::kDrive
+  uint16_t last_left_;
+  uint16_t last_right_;
+  uint8_t command_[kCommandSize];  ///< waits for its tick
+  message::CommandAck answer_;     ///< to the last command that was accepted
+  uint8_t staged_[kStagedSize];    ///< index and value of a PARAM_STAGE
+  uint8_t store_parameter_;        ///< as RobotOutput
+  int16_t store_value_;
+  uint8_t store_ticks_;     ///< until the EEPROM takes another parameter
+  uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
+  bool command_waits_;
+  bool started_;  ///< the first tick is over
+};
+
+class Robot : private RobotMemory {
  public:
   /// `parameters_intact` = false: the parameters stand in for lost ones; the robot refuses to be
   /// armed.
@@ -38,6 +65,7 @@ class Robot {
   const MotionCommand& motion() const { return view_.motion; }
   const Parameters& parameters() const { return parameters_; }
   const CommandGate& gate() const { return gate_; }
+  const SlipWatch& slip_watch() const { return slip_watch_; }
 
  private:
   struct Deltas {
@@ -45,7 +73,6 @@ class Robot {
     int16_t right;
   };
 
-  static constexpr uint8_t kStagedSize = 6;      ///< u16, s32
   static constexpr uint8_t kSignedOfStaged = 4;  ///< index and lower half of the value
 
   Deltas count_deltas(const SensorSample& sample);
@@ -61,6 +88,7 @@ class Robot {
   void event(message::EventCode code, int32_t argument);
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void choose_motion();
+  void watch_slip();
   void report(const SensorSample& sample, RobotOutput& output);
 
   BoardConstants board_;
@@ -70,26 +98,10 @@ class Robot {
   Supervisor supervisor_;
   Leveling leveling_;
   DriveControl drive_;
+  SlipWatch slip_watch_;
   SlcanParser parser_;
   Telemetry telemetry_;
   CommandGate gate_;
-  // What the robot does and has found out, as it is told: asked for once a tick, since on the AVR
-  // an angle costs 1500 cycles and a position a division.
-  TelemetryView view_ = {};
-  Angle heading_ = 0;
-  Angle pitch_ = 0;
-  MotionCommand drive_command_ = {0, 0};  ///< last CommandOp::kDrive
-  uint16_t last_left_ = 0;
-  uint16_t last_right_ = 0;
-  uint8_t command_[kCommandSize] = {};  ///< waits for its tick
-  message::CommandAck answer_ = {};     ///< to the last command that was accepted
-  uint8_t staged_[kStagedSize] = {};    ///< index and value of a PARAM_STAGE
-  uint8_t store_parameter_ = 0;         ///< as RobotOutput
-  int16_t store_value_ = 0;
-  uint8_t store_ticks_ = 0;        ///< until the EEPROM takes another parameter
-  uint8_t ground_counter_ = 0xFF;  ///< alive counter of the last ground heartbeat; 0xFF: none yet
-  bool command_waits_ = false;
-  bool first_tick_ = true;
 };
 
 }  // namespace screed

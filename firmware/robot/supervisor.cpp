@@ -33,6 +33,12 @@ uint16_t count_up(uint16_t value) {
   return value < UINT16_MAX ? static_cast<uint16_t>(value + 1) : value;
 }
 
+/// Counts the ticks that something goes on for, and tells whether it has done so for long enough.
+SCREED_OUT_OF_LINE bool lasts(bool now, uint8_t& ticks, uint8_t enough) {
+  ticks = now ? count_up(ticks) : static_cast<uint8_t>(0);
+  return ticks >= enough;
+}
+
 }  // namespace
 
 void TrackWatch::tick(int16_t duty, int16_t counts) {
@@ -60,7 +66,8 @@ static_assert(kFaultAccelMagChip == kChipAccelMag << 8 && kFaultGyroChip == kChi
               "faults of chips are their bits, shifted");
 
 Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
-    : parameters_intact_(parameters_intact) {
+    : SupervisorMemory(), parameters_intact_(parameters_intact) {
+  ticks_since_heartbeat_ = UINT16_MAX;
   configure(parameters);
 }
 
@@ -69,6 +76,7 @@ void Supervisor::configure(const Parameters& parameters) {
   cos_tilt_limit_q30_ = static_cast<int32_t>(cos_tilt_limit_q15_) * 32768;
   battery_low_mv_ = static_cast<uint16_t>(parameters.battery_low);
   stall_ticks_ = ticks_from_ms(parameters.stall_time);
+  stuck_ticks_ = ticks_from_ms(parameters.stuck_time);
   standalone_ticks_ = ticks_from_ms(parameters.standalone_delay);
   standalone_ = parameters.standalone != 0;
   parameters_valid_ = parameters_intact_ && parameters.valid();
@@ -99,14 +107,11 @@ bool Supervisor::tilted(const SupervisorInput& input) {
 uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   uint16_t found = parameters_valid_ ? 0 : static_cast<uint16_t>(kFaultParameters);
 
-  tilt_ticks_ = tilted(input) ? count_up(tilt_ticks_) : static_cast<uint8_t>(0);
-  if (tilt_ticks_ >= kTiltTicks) found |= kFaultTilt;
+  if (lasts(tilted(input), tilt_ticks_, kTiltTicks)) found |= kFaultTilt;
 
   const bool new_gyro = (input.fresh & kFreshGyro) != 0;
-  silent_gyro_ticks_ = new_gyro ? static_cast<uint8_t>(0) : count_up(silent_gyro_ticks_);
-  silent_accel_ticks_ =
-      (input.fresh & kFreshAccel) != 0 ? static_cast<uint8_t>(0) : count_up(silent_accel_ticks_);
-  if (silent_gyro_ticks_ >= kSilentTicks || silent_accel_ticks_ >= kSilentTicks) {
+  if (lasts(!new_gyro, silent_gyro_ticks_, kSilentTicks)) found |= kFaultImuSilent;
+  if (lasts((input.fresh & kFreshAccel) == 0, silent_accel_ticks_, kSilentTicks)) {
     found |= kFaultImuSilent;
   }
 
@@ -119,8 +124,7 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
   if (frozen_gyro_ticks_ >= kFrozenTicks) found |= kFaultGyroFrozen;
 
-  chip_ticks_ = input.chips_failing != 0 ? count_up(chip_ticks_) : static_cast<uint8_t>(0);
-  if (chip_ticks_ >= kChipTicks) {
+  if (lasts(input.chips_failing != 0, chip_ticks_, kChipTicks)) {
     found |= static_cast<uint16_t>(static_cast<uint16_t>(input.chips_failing & 0x07U) << 8);
   }
 
@@ -131,9 +135,12 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (left_.to_and_fro()) found |= kFaultEncoderLeft;
   if (right_.to_and_fro()) found |= kFaultEncoderRight;
 
-  battery_ticks_ =
-      input.battery_mv < battery_low_mv_ ? count_up(battery_ticks_) : static_cast<uint8_t>(0);
-  if (battery_ticks_ >= kBatteryTicks) found |= kFaultBattery;
+  stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
+  if (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_) found |= kFaultStuck;
+
+  if (lasts(input.battery_mv < battery_low_mv_, battery_ticks_, kBatteryTicks)) {
+    found |= kFaultBattery;
+  }
   return found;
 }
 

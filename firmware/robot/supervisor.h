@@ -41,6 +41,7 @@ enum FaultBit : uint16_t {
   kFaultBaroChip = 1 << 10,      ///< LPS25H
   kFaultEncoderLeft = 1 << 11,   ///< a driven track whose count steps to and fro: a broken wire
   kFaultEncoderRight = 1 << 12,
+  kFaultStuck = 1 << 13,  ///< dug in or hung up for longer than stuck_time allows
 };
 
 /// Requests, from the ground station.
@@ -69,6 +70,7 @@ struct SupervisorInput {
   int16_t counts_left;  ///< encoder counts since the last tick
   int16_t counts_right;
   uint8_t chips_failing = 0;  ///< SensorSample::chips_failing
+  bool stuck = false;         ///< the tracks turn and the robot does not move (slip_watch.h)
 };
 
 /// Watches one driven track for progress.
@@ -89,7 +91,28 @@ class TrackWatch {
   uint8_t reversals_ = 0;  ///< steps to and fro since the last progress
 };
 
-class Supervisor {
+/// What the supervisor remembers, zero at the start but the time without a heartbeat: zeroed at
+/// once, which takes less flash.
+struct SupervisorMemory {
+  RobotState state_;
+  uint16_t latched_;
+  uint16_t present_;  ///< causes seen in the last tick
+  bool estimator_ready_;
+  uint16_t ticks_since_heartbeat_;
+  uint16_t ticks_since_start_;
+  uint8_t tilt_ticks_;
+  uint8_t silent_gyro_ticks_;
+  uint8_t silent_accel_ticks_;
+  uint8_t frozen_gyro_ticks_;
+  uint8_t battery_ticks_;
+  uint8_t chip_ticks_;
+  uint16_t stuck_for_;  ///< ticks
+  TrackWatch left_;
+  TrackWatch right_;
+  int16_t last_gyro_[3];
+};
+
+class Supervisor : private SupervisorMemory {
  public:
   explicit Supervisor(const Parameters& parameters, bool parameters_intact = true);
   /// Other parameters, for a robot at rest.
@@ -123,26 +146,11 @@ class Supervisor {
   int16_t cos_tilt_limit_q15_;
   uint16_t battery_low_mv_;
   uint16_t stall_ticks_;
+  uint16_t stuck_ticks_;
   uint16_t standalone_ticks_;
   bool standalone_;
   bool parameters_intact_;
   bool parameters_valid_;
-
-  RobotState state_ = RobotState::kDisarmed;
-  uint16_t latched_ = 0;
-  uint16_t present_ = 0;  ///< causes seen in the last tick
-  bool estimator_ready_ = false;
-  uint16_t ticks_since_heartbeat_ = UINT16_MAX;
-  uint16_t ticks_since_start_ = 0;
-  uint8_t tilt_ticks_ = 0;
-  uint8_t silent_gyro_ticks_ = 0;
-  uint8_t silent_accel_ticks_ = 0;
-  uint8_t frozen_gyro_ticks_ = 0;
-  uint8_t battery_ticks_ = 0;
-  uint8_t chip_ticks_ = 0;
-  TrackWatch left_;
-  TrackWatch right_;
-  int16_t last_gyro_[3] = {0, 0, 0};
 };
 
 }  // namespace screed

@@ -36,9 +36,13 @@ void set(CanFrame& frame, const Message& message) {
   message.pack(frame.data);
 }
 
-// The three raw vectors have one layout: their code is in the image once.
+// Six messages are three numbers of 16 bits each: their code is in the image once.
+SCREED_OUT_OF_LINE void set_words(CanFrame& frame, int16_t first, int16_t second, int16_t third) {
+  set(frame, message::AccelRaw{first, second, third});
+}
+
 void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
-  set(frame, message::AccelRaw{vector[0], vector[1], vector[2]});
+  set_words(frame, vector[0], vector[1], vector[2]);
 }
 
 }  // namespace
@@ -57,7 +61,7 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       break;
     }
     case kIdAttitude:
-      set(frame, message::Attitude{view.roll_cdeg, view.pitch_cdeg, view.heading_cdeg});
+      set_words(frame, view.roll_cdeg, view.pitch_cdeg, static_cast<int16_t>(view.heading_cdeg));
       break;
     case kIdLeveling: {
       message::Leveling it{};
@@ -70,14 +74,17 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       break;
     }
     case kIdEncoders:
-      set(frame, message::Encoders{sample.encoder_left, sample.encoder_right, kTickPeriod_us / 4});
+      set_words(frame, static_cast<int16_t>(sample.encoder_left),
+                static_cast<int16_t>(sample.encoder_right),
+                static_cast<int16_t>(kTickPeriod_us / 4));
       break;
     case kIdMotors:
-      set(frame, message::Motors{view.duty_left, view.duty_right, sample.encoder_errors});
+      set(frame, message::Motors{view.slip, view.stuck, view.duty_left, view.duty_right,
+                                 sample.encoder_errors});
       break;
     case kIdOdometry:
-      set(frame,
-          message::Odometry{saturate_i16(view.x_mm), saturate_i16(view.y_mm), view.heading_cdeg});
+      set_words(frame, saturate_i16(view.x_mm), saturate_i16(view.y_mm),
+                static_cast<int16_t>(view.heading_cdeg));
       break;
     case kIdAccelRaw:
       set_vector(frame, sample.accel);

@@ -26,6 +26,8 @@ struct TelemetryView {
   int32_t y_mm;
   int16_t duty_left;
   int16_t duty_right;
+  uint8_t slip;   ///< 1: the tracks move much more than the robot
+  uint8_t stuck;  ///< 1: and have done so for long
   MotionCommand motion;
   RobotState state;
   uint16_t faults;
@@ -47,8 +49,26 @@ struct TelemetryView {
 constexpr uint8_t kTelemetryMessages = 14;  ///< sent by their rate
 constexpr uint8_t kUrgentMessages = 3;      ///< sent when there is something to say
 
-class Telemetry {
+/// What the downlink remembers, zero at the start: zeroed at once, which takes less flash.
+struct TelemetryMemory {
+  static constexpr uint8_t kQueue = 4;
+
+  CanFrame queue_[kQueue];
+  uint8_t queued_;
+  uint8_t next_packet_;  ///< ticks
+  uint8_t credit_;       ///< bytes
+  uint16_t due_;         ///< a bit a message: it waits for room
+  uint8_t countdown_[kTelemetryMessages];
+  uint8_t counter_[kTelemetryMessages + kUrgentMessages];
+  bool started_;
+  uint8_t heartbeats_before_;  ///< TelemetryView::ground_heartbeats at the last LINK
+  uint16_t longest_tick_us_;   ///< since the last HEALTH
+};
+
+class Telemetry : private TelemetryMemory {
  public:
+  Telemetry() : TelemetryMemory() {}
+
   static constexpr uint8_t kPacketTicks = 2;
   /// Half of 57,600 baud for the time of a packet.
   static constexpr uint8_t kPacketBudget = 57;
@@ -65,22 +85,9 @@ class Telemetry {
   void tick(const TelemetryView& view, RobotOutput& output);
 
  private:
-  static constexpr uint8_t kQueue = 4;
-
   void emit(CanFrame& frame, uint8_t message, RobotOutput& output);
   bool room(const RobotOutput& output) const;
   void fill(CanFrame& frame, const TelemetryView& view);
-
-  CanFrame queue_[kQueue] = {};
-  uint8_t queued_ = 0;
-  uint8_t next_packet_ = 0;  ///< ticks
-  uint8_t credit_ = 0;       ///< bytes
-  uint16_t due_ = 0;         ///< a bit a message: it waits for room
-  uint8_t countdown_[kTelemetryMessages] = {};
-  uint8_t counter_[kTelemetryMessages + kUrgentMessages] = {};
-  bool started_ = false;
-  uint8_t heartbeats_before_ = 0;  ///< TelemetryView::ground_heartbeats at the last LINK
-  uint16_t longest_tick_us_ = 0;   ///< since the last HEALTH
 };
 
 }  // namespace screed

@@ -13,6 +13,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/ini_file.h"
+#include "host_sim/experiment/trap.h"
 #include "host_sim/soil/soil_parameters.h"
 #include "paths.h"
 
@@ -360,6 +361,18 @@ std::vector<Key> make_keys() {
       "experiment", "lay_on_side_at", "s", 0.01, 1e6,
       "fault: the robot is laid on its side at this time",
       [](Experiment& e) -> std::optional<double>& { return e.experiment.lay_on_side_at_s; }));
+
+  keys.push_back(text_key(
+      "trap", "kind", "none, wall, slope, trench, hump or ruts",
+      "a place where robots get stuck: a wall, a slope or a trench all round the start; a hump "
+      "between the tracks, ruts under them, in front of it",
+      [](Experiment& e) -> std::string& { return e.trap.kind; }, is_trap));
+  keys.push_back(real_key("trap", "distance", "m", -10, 10,
+                          "from the start to where it begins; ruts may begin behind it",
+                          [](Experiment& e) -> double& { return e.trap.distance_m; }));
+  keys.push_back(real_key("trap", "size", "m or deg", 0.001, 60,
+                          "height or depth in m, of a slope its angle in degrees",
+                          [](Experiment& e) -> double& { return e.trap.size; }));
 
   keys.push_back(real_key("drive", "speed", "m/s", -0.5, 0.5, "algorithm drive: commanded speed",
                           [](Experiment& e) -> double& { return e.drive.speed_m_per_s; }));

@@ -63,6 +63,13 @@ struct Experiment {
     double rolling = 0.1;
   } particles;
 
+  /// A place that the robot does not get out of, in front of its start (trap.h).
+  struct {
+    std::string kind = "none";
+    double distance_m = 0.5;
+    double size = 0.1;  ///< m; of a slope degrees
+  } trap;
+
   struct {
     double resolution_per_m = 200.0;  ///< rays a metre that read the height map of particles
   } raygrid;

@@ -16,6 +16,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/frame_recorder.h"
 #include "host_sim/experiment/height_watch.h"
+#include "host_sim/experiment/trap.h"
 #include "host_sim/picture/terrain_picture.h"
 #include "host_sim/session/csv_export.h"
 #include "host_sim/session/record.h"
@@ -41,10 +42,20 @@ constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running
                                                    "fault"};
 constexpr const char* kLevelingStateNames[kLevelingStates] = {
     "idle", "walk", "climb", "spin", "return", "drive", "training", "done"};
-constexpr const char* kFaultNames[] = {
-    "tilt",         "IMU silent",   "gyro frozen",    "left track stalled", "right track stalled",
-    "battery low",  "parameters",   "emergency stop", "LSM303D fails",      "L3GD20H fails",
-    "LPS25H fails", "left encoder", "right encoder"};
+constexpr const char* kFaultNames[] = {"tilt",
+                                       "IMU silent",
+                                       "gyro frozen",
+                                       "left track stalled",
+                                       "right track stalled",
+                                       "battery low",
+                                       "parameters",
+                                       "emergency stop",
+                                       "LSM303D fails",
+                                       "L3GD20H fails",
+                                       "LPS25H fails",
+                                       "left encoder",
+                                       "right encoder",
+                                       "stuck"};
 
 /// A text file of the run folder; RunError when the disk is full.
 class TextFile {
@@ -454,7 +465,9 @@ double size_of_bed(const Experiment& experiment, int pixels) {
 
 }  // namespace
 
-HeightField make_terrain(const Experiment& experiment) {
+namespace {
+
+HeightField untrapped_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
   const bool soft = map.model == "scm";
   if (map.filename.empty() && map.of_particles()) {
@@ -482,6 +495,14 @@ HeightField make_terrain(const Experiment& experiment) {
   HeightField field = HeightField::from_image(image, options);
   if (map.of_particles()) raise(field, experiment.particles.depth_m);
   return soft ? resampled(field, experiment.soil.cell_m) : field;
+}
+
+}  // namespace
+
+HeightField make_terrain(const Experiment& experiment) {
+  HeightField field = untrapped_terrain(experiment);
+  set_trap(experiment, field);
+  return field;
 }
 
 Assembly make_robot_model(const Experiment& experiment, const std::string& board) {

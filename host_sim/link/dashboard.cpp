@@ -134,7 +134,15 @@ void draw_values(TextCanvas& page, const DashboardInput& input, const RobotView&
 
   Panel algorithm = panel("algorithm");
   algorithm.line("algorithm", robot.text("leveling.algorithm"));
-  algorithm.line("doing", robot.text("leveling.state"), TextStyle::kTitle);
+  const bool stuck = robot.value("motors.stuck").value_or(0.0) != 0.0;
+  const bool slips = robot.value("motors.slip").value_or(0.0) != 0.0;
+  algorithm.line("doing",
+                 robot.text("leveling.state") + (stuck   ? ", STUCK"
+                                                 : slips ? ", tracks slip"
+                                                         : ""),
+                 stuck   ? TextStyle::kAlarm
+                 : slips ? TextStyle::kWarning
+                         : TextStyle::kTitle);
   algorithm.line("speed, turn", robot.text("leveling.speed") + " mm/s, " +
                                     robot.text("leveling.turn_rate") + " deg/s");
   algorithm.line("peaks", robot.text("leveling.peaks"));

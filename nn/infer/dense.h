@@ -56,6 +56,9 @@ void screed_nn_dense7(const int16_t* in, int16_t* out, const uint8_t* parameters
                       uint8_t mode);
 void screed_nn_dense(const int16_t* in, int16_t* out, const uint8_t* parameters, uint8_t outputs,
                      uint8_t mode, uint8_t inputs);
+/// The same for linear layers alone: brings no table of tanh into the image.
+void screed_nn_dense_linear(const int16_t* in, int16_t* out, const uint8_t* parameters,
+                            uint8_t outputs, uint8_t mode, uint8_t inputs);
 }
 #endif
 
@@ -64,7 +67,9 @@ void screed_nn_dense(const int16_t* in, int16_t* out, const uint8_t* parameters,
 template <uint8_t kInputs, uint8_t kOutputs, uint8_t kMode>
 inline void dense(const uint8_t* parameters, const int16_t* in, int16_t* out) {
 #ifdef __AVR__
-  if (kInputs == 4) {
+  if ((kMode & kLinear) != 0) {
+    screed_nn_dense_linear(in, out, parameters, kOutputs, kMode, kInputs);
+  } else if (kInputs == 4) {
     screed_nn_dense4(in, out, parameters, kOutputs, kMode);
   } else if (kInputs == 7) {
     screed_nn_dense7(in, out, parameters, kOutputs, kMode);

@@ -82,9 +82,9 @@ asm(R"(
   sbc r19, r25
 .endm
 
-; z = the sum's upper word after a shift to the left that stops at the ends; y = tanh(z), stored
+; z = the sum's upper word after a shift to the left that stops at the ends; y = tanh(z), or z in a linear layer, stored
 ; uses r20, r28, r29 and, for the parameters' address, r16 and r17
-.macro screed_nn_finish
+.macro screed_nn_finish with_tanh
   mov r20, r23
   andi r20, 0x0F
   breq 3f
@@ -104,6 +104,7 @@ asm(R"(
   ldi r18, 0x00
   ldi r19, 0x80
 3:
+.if \with_tanh
   sbrc r23, 6
   rjmp 5f
   bst r19, 7
@@ -135,6 +136,7 @@ asm(R"(
   com r18
   com r19
 5:
+.endif
   st X+, r18
   st X+, r19
 .endm
@@ -181,7 +183,7 @@ asm(R"(
     screed_nn_mac screed_nn_r, screed_nn_r + 1
     .set screed_nn_r, screed_nn_r + 2
   .endr
-  screed_nn_finish
+  screed_nn_finish 1
   dec r22
   breq 7f
   rjmp 6b
@@ -200,10 +202,11 @@ screed_nn_dense_resident screed_nn_dense4, 4
 screed_nn_dense_resident screed_nn_dense7, 7
 
 ; a layer whose inputs are loaded for each node; r14 holds their number, r12:13 their address, r2, r3 the input, r4 0x80
-  .section .text.screed_nn_dense,"ax",@progbits
-  .global screed_nn_dense
-  .type screed_nn_dense, @function
-screed_nn_dense:
+.macro screed_nn_dense_streamed name, with_tanh
+  .section .text.\name,"ax",@progbits
+  .global \name
+  .type \name, @function
+\name:
   screed_nn_push 2, 5
   push r12
   push r13
@@ -233,7 +236,7 @@ screed_nn_dense:
   screed_nn_mac r2, r3
   dec r5
   brne 8b
-  screed_nn_finish
+  screed_nn_finish \with_tanh
   dec r22
   breq 7f
   rjmp 6b
@@ -247,7 +250,12 @@ screed_nn_dense:
   pop r12
   screed_nn_pop 2, 5
   ret
-  .size screed_nn_dense, . - screed_nn_dense
+  .size \name, . - \name
+.endm
+
+screed_nn_dense_streamed screed_nn_dense, 1
+; without the table of tanh
+screed_nn_dense_streamed screed_nn_dense_linear, 0
 
   .section .text
 )");

@@ -10,7 +10,7 @@
 namespace screed {
 namespace nn {
 
-extern "C" const int16_t screed_nn_tanh_table[129] SCREED_NN_PROGRAM_MEMORY;
+extern "C" const int16_t screed_nn_tanh_table[129];  // in program memory
 
 }  // namespace nn
 }  // namespace screed

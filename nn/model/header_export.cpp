@@ -98,7 +98,7 @@ std::string model_header(const Model& model) {
   std::string text = "// Model " + model.name + ": " + model.description +
                      "\n// Written by `screed nn export`; training data " + model.training_data +
                      ", seed " + std::to_string(model.seed) +
-                     ".\n#pragma once\n\n#include \"nn/infer/dense.h\"\n"
+                     ".\n#pragma once\n\n// clang-format off\n#include \"nn/infer/dense.h\"\n"
                      "#include \"nn/infer/program_memory.h\"\n\n"
                      "namespace screed {\nnamespace nn {\nnamespace model_" +
                      identifier(model.name) + " {\n\n";

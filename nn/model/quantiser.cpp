@@ -73,6 +73,8 @@ std::vector<double> run(const std::vector<FloatLayer>& network, std::vector<doub
         sum += layer.weights[node * layer.inputs + i] * values[i];
       }
       next[node] = layer.linear ? sum : std::tanh(sum);
+      // In integers a linear node ends at -1 and 1; of results that is part of the rounding error.
+      if (&layer != &network.back()) next[node] = std::clamp(next[node], -1.0, 1.0);
     }
     values = std::move(next);
   }

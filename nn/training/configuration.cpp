@@ -65,7 +65,7 @@ class Keys {
 const std::initializer_list<std::string_view> kNetworkKeys = {
     "inputs",  "outputs",      "baseline",   "hidden",    "output",        "steepness",
     "weights", "weight_range", "batch_norm", "optimiser", "learning_rate", "final_rate",
-    "l2",      "batch",        "epochs",     "patience",  "keep"};
+    "l2",      "batch",        "epochs",     "patience",  "keep",          "nodes"};
 
 NetworkConfiguration network_of(const JsonValue& value, const JsonValue* common) {
   value.only(kNetworkKeys);
@@ -81,6 +81,9 @@ NetworkConfiguration network_of(const JsonValue& value, const JsonValue* common)
     for (const JsonValue& nodes : v.list(0, kMostNodes)) {
       network.hidden.push_back(static_cast<std::size_t>(nodes.integer(1, kMostNodes)));
     }
+  });
+  keys.if_there("nodes", [&](const JsonValue& v) {
+    network.limited = v.one_of({"tanh", "limited"}) == "limited";
   });
   keys.if_there("output", [&](const JsonValue& v) {
     network.linear_output = v.one_of({"tanh", "linear"}) == "linear";

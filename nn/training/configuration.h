@@ -29,8 +29,11 @@ struct NetworkConfiguration {
   std::vector<std::string> outputs;
   std::string baseline;  ///< feature that the (single) output is learned as a difference to, or ""
   std::vector<std::size_t> hidden;  ///< nodes a hidden layer, all with tanh
-  bool linear_output = false;       ///< otherwise tanh
-  double steepness = 1.0;           ///< tanh(steepness x)
+  /// Hidden nodes are linear and cut at -1 and 1 (a "hard" tanh), which takes no table on the
+  /// robot.
+  bool limited = false;
+  bool linear_output = false;  ///< otherwise tanh
+  double steepness = 1.0;      ///< tanh(steepness x)
   Initialisation initialisation = Initialisation::kNormalised;
   double initial_range = 0.05;
   BatchNormalisation batch_normalisation = BatchNormalisation::kNone;

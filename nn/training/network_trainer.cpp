@@ -24,6 +24,19 @@ using tiny_dnn::vec_t;
 using Dense = tiny_dnn::fully_connected_layer<tiny_dnn::activation::identity>;
 using Tanh = tiny_dnn::linear_layer<tiny_dnn::activation::tan_h>;
 
+/// What nn/infer does to a linear node: cut at -1 and 1. Behind the ends a little of the gradient
+/// goes on, so that a node that is always cut can come back.
+class CutAtOne : public tiny_dnn::activation::function {
+ public:
+  float f(const vec_t& v, std::size_t index) const override {
+    return std::clamp(v[index], -1.0F, 1.0F);
+  }
+  using function::df;
+  float df(float y) const override { return std::abs(y) < 1.0F ? 1.0F : 0.05F; }
+  std::pair<float, float> scale() const override { return {-1.0F, 1.0F}; }
+};
+using Limited = tiny_dnn::linear_layer<CutAtOne>;
+
 constexpr float kVarianceFloor = 1e-5F;
 constexpr float kRunningShare = 0.99F;
 constexpr std::size_t kChunkBatches = 64;  ///< that are copied for tiny-dnn at a time
@@ -238,6 +251,7 @@ class NetworkTrainer::Impl {
     std::shared_ptr<batch_normalization_layer> norm;
     std::shared_ptr<ScaleLayer> scale;
     std::shared_ptr<Tanh> tanh;
+    std::shared_ptr<Limited> limited;
   };
 
   void build() {
@@ -266,7 +280,11 @@ class NetworkTrainer::Impl {
         stage.scale = std::make_shared<ScaleLayer>(out);
         net_ << *stage.scale;
       }
-      if (!stage.linear) {
+      if (!stage.linear && configuration_.limited) {
+        stage.limited =
+            std::make_shared<Limited>(out, static_cast<float>(configuration_.steepness));
+        net_ << *stage.limited;
+      } else if (!stage.linear) {
         stage.tanh = std::make_shared<Tanh>(out, static_cast<float>(configuration_.steepness));
         net_ << *stage.tanh;
       }
@@ -324,7 +342,7 @@ class NetworkTrainer::Impl {
   }
 
   FloatLayer folded(const Stage& stage) const {
-    FloatLayer layer{stage.inputs, stage.outputs, stage.linear, {}, {}};
+    FloatLayer layer{stage.inputs, stage.outputs, stage.linear || stage.limited != nullptr, {}, {}};
     const vec_t& weights = *stage.dense->weights()[0];
     const vec_t& bias = *stage.dense->weights()[1];
     std::pair<vec_t, vec_t> moments;

@@ -233,7 +233,8 @@ TEST(Schema, FlagsAreThoseOfTheFirmware) {
                                                      {kFaultGyroChip, "gyro_chip"},
                                                      {kFaultBaroChip, "baro_chip"},
                                                      {kFaultEncoderLeft, "encoder_left"},
-                                                     {kFaultEncoderRight, "encoder_right"}};
+                                                     {kFaultEncoderRight, "encoder_right"},
+                                                     {kFaultStuck, "stuck"}};
   size_t flags = 0;
   for (const SignalInfo& it : find_message(uint16_t{kIdHeartbeat})->signals) {
     flags += it.flags[0] != '\0';

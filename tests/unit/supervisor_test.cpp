@@ -23,8 +23,9 @@ class Watch {
   }
   void silent_tick() {
     if (!gyro_frozen) gyro[2] = gyro[2] == 0 ? 1 : 0;  // the noise of its last digit
-    const SupervisorInput input = {fresh,      gyro,      accel,      cos_tilt_q30, ready,
-                                   battery_mv, duty_left, duty_right, counts_left,  counts_right};
+    const SupervisorInput input = {fresh,       gyro,         accel,     cos_tilt_q30,
+                                   ready,       battery_mv,   duty_left, duty_right,
+                                   counts_left, counts_right, 0,         stuck};
     supervisor.tick(input);
   }
   /// Ticks until the robot has left the state, at most `most`.
@@ -67,6 +68,7 @@ class Watch {
   int16_t duty_right = 0;
   int16_t counts_left = 0;
   int16_t counts_right = 0;
+  bool stuck = false;
 };
 
 constexpr RobotState kAllStates[] = {RobotState::kDisarmed, RobotState::kArmed,
@@ -458,6 +460,27 @@ TEST(SupervisorStandalone, AFaultEndsItForGood) {
   for (int tick = 0; tick < 20; ++tick) watch.tick();
   EXPECT_EQ(watch.supervisor.request(Request::kClear), RequestResult::kDone);
   EXPECT_EQ(watch.ticks_in(RobotState::kDisarmed, 1000), 1000);
+}
+
+TEST(Supervisor, StopsARobotThatIsStuckForTooLong) {
+  Parameters parameters;
+  parameters.stuck_time = 2000;
+  Watch watch(parameters);
+  watch.bring_to(RobotState::kRunning);
+  watch.stuck = true;
+  for (int tick = 0; tick < 150; ++tick) watch.tick();
+  watch.stuck = false;  // it came free
+  watch.tick();
+  watch.stuck = true;
+  EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 1000), 200);
+  EXPECT_EQ(watch.supervisor.faults(), kFaultStuck);
+}
+
+TEST(Supervisor, OnlyTellsOfAStuckRobotByDefault) {
+  Watch watch;
+  watch.bring_to(RobotState::kRunning);
+  watch.stuck = true;
+  EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 6000), 6000);
 }
 
 TEST(SupervisorStandalone, OffByDefault) {

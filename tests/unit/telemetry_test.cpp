@@ -244,6 +244,14 @@ TEST_F(TelemetryTest, EncodersAndMotors) {
   EXPECT_EQ(get_s16(at), -400);
   EXPECT_EQ(get_s16(at + 2), 400);
   EXPECT_EQ(at[4], 77);
+  EXPECT_EQ(header_bits(kIdMotors), 0);
+}
+
+TEST_F(TelemetryTest, SlipAndStuckTravelWithTheMotors) {
+  view_.slip = 1;
+  EXPECT_EQ(header_bits(kIdMotors), 1);
+  view_.stuck = 1;
+  EXPECT_EQ(header_bits(kIdMotors), 3);
 }
 
 TEST_F(TelemetryTest, RawVectors) {

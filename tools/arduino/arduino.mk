@@ -6,7 +6,7 @@
 
 ARDUINO_ZIP := $(BUILD_ROOT)/arduino/Screed-$(VERSION).zip
 ARDUINO_TEST_ELF := $(BUILD_ROOT)/arduino/example.elf
-ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE hal/hal.h hal/sample.h $(wildcard firmware/*.* firmware/*/*.* hal/avr/*.* boards/*/*.h) \
+ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE hal/hal.h hal/sample.h $(wildcard firmware/*.* firmware/*/*.* nn/infer/*.* hal/avr/*.* boards/*/*.h) \
   $(GENERATED_FOLDER)/schema/messages.h
 
 .PHONY: arduino arduino-library

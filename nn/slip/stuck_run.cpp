@@ -1,0 +1,138 @@
+// Runs and their figures.
+#include "nn/slip/stuck_run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "firmware/robot/robot.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/experiment/simulation.h"
+#include "host_sim/world/world.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr std::size_t kSecond = kTickRate_hz;
+constexpr double kSmoothing = 1.0 / 8.0;
+constexpr float kLeastSpeed = 0.03F;  ///< of tracks that count as driven, m/s
+constexpr double kHalfTread_m = 0.0975;
+
+SlipTick tick_of(const World& world, const Robot& robot) {
+  const VehicleState& vehicle = world.vehicle();
+  const ChassisState chassis = vehicle.chassis();
+  const Eigen::Vector3d velocity = chassis.pose.linear().transpose() * chassis.velocity;
+  const double left = vehicle.track_speed_m_per_s(kLeft);
+  const double right = vehicle.track_speed_m_per_s(kRight);
+  const SlipWatch& watch = robot.slip_watch();
+  SlipTick tick{};
+  std::copy_n(watch.network_inputs(), kSlipInputs, tick.inputs.begin());
+  tick.running = robot.supervisor().running();
+  const DriveControl& drive = robot.drive();
+  tick.looked = std::max(std::abs(drive.speed_left_dmm_per_s()),
+                         std::abs(drive.speed_right_dmm_per_s())) >= SlipWatch::kSlowest_dmm_per_s;
+  tick.speed = static_cast<float>(velocity.x());
+  tick.turn = static_cast<float>(chassis.omega_body.z() * kHalfTread_m);
+  tick.faster = static_cast<float>(std::max(std::abs(left), std::abs(right)));
+  tick.backwards = left + right < 0.0;
+  tick.slips = watch.slips();
+  tick.stuck = watch.stuck();
+  tick.stalled = (robot.supervisor().faults() & (kFaultStallLeft | kFaultStallRight)) != 0;
+  return tick;
+}
+
+/// Share of the faster track's way that the chassis made between two ticks.
+double share_between(const SlipRun& run, std::size_t begin, std::size_t end) {
+  double way = 0.0;
+  double turn = 0.0;
+  double of_track = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    way += static_cast<double>(run.ticks[i].speed);
+    turn += static_cast<double>(run.ticks[i].turn);
+    of_track += static_cast<double>(run.ticks[i].faster);
+  }
+  return of_track <= 0.0 ? 1.0 : (std::abs(way) + std::abs(turn)) / of_track;
+}
+
+}  // namespace
+
+SlipRun drive(const StuckScenario& scenario) {
+  SlipRun run{scenario, {}, {}};
+  const Experiment& e = scenario.experiment;
+  try {
+    const std::unique_ptr<World> world = make_world(e, nullptr);
+    Robot robot(board_constants_of(kDefaultBoard), e.parameters, credentials_of(e));
+    RobotOutput output{};
+    const auto ticks =
+        static_cast<std::size_t>(std::lround(e.experiment.duration_s * kTickRate_hz));
+    run.ticks.reserve(ticks);
+    for (std::size_t i = 0; i < ticks; ++i) {
+      world->advance();
+      robot.tick(world->sample(), output);
+      run.ticks.push_back(tick_of(*world, robot));
+      world->apply(output);
+      if (robot.supervisor().faults() != 0) break;
+    }
+  } catch (const RunError& error) {
+    run.failure = error.what();
+  }
+  return run;
+}
+
+std::optional<std::size_t> dug_in_at(const SlipRun& run) {
+  double speed = 0.0;
+  double turn = 0.0;
+  double faster = 0.0;
+  for (std::size_t i = 0; i + kSecond <= run.ticks.size(); ++i) {
+    const SlipTick& tick = run.ticks[i];
+    speed += (static_cast<double>(tick.speed) - speed) * kSmoothing;
+    turn += (static_cast<double>(tick.turn) - turn) * kSmoothing;
+    faster += (static_cast<double>(tick.faster) - faster) * kSmoothing;
+    if (!tick.running || tick.faster < kLeastSpeed) continue;
+    if (std::abs(speed) + std::abs(turn) > (kDugInShare + 0.05) * faster) continue;
+    if (share_between(run, i, i + kSecond) < kDugInShare) return i;
+  }
+  return std::nullopt;
+}
+
+DugInResult detection_of(const SlipRun& run, std::size_t dug_in) {
+  const std::size_t begin = dug_in > kSecond ? dug_in - kSecond : 0;
+  const std::size_t end = std::min(dug_in + kSecond + 1, run.ticks.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!run.ticks[i].stuck && !run.ticks[i].stalled) continue;
+    return {true, i > dug_in ? static_cast<double>(i - dug_in) / kTickRate_hz : 0.0};
+  }
+  return {};
+}
+
+FreeResult alarms_of(const SlipRun& run) {
+  FreeResult result;
+  for (std::size_t i = 0; i < run.ticks.size(); ++i) {
+    if (run.ticks[i].looked && run.ticks[i].running) result.driven_s += 1.0 / kTickRate_hz;
+    if (i == 0 || !run.ticks[i].stuck || run.ticks[i - 1].stuck) continue;
+    const std::size_t begin = i > kSecond / 2 ? i - kSecond / 2 : 0;
+    const std::size_t end = std::min(i + kSecond / 2, run.ticks.size());
+    if (share_between(run, begin, end) > kFreeShare) {
+      ++result.false_alarms;
+    } else {
+      ++result.other_alarms;
+    }
+  }
+  return result;
+}
+
+std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads) {
+  std::vector<SlipRun> runs(scenarios.size());
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < scenarios.size(); i = next++) runs[i] = drive(scenarios[i]);
+  };
+  std::vector<std::thread> others;
+  for (unsigned i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& thread : others) thread.join();
+  return runs;
+}
+
+}  // namespace screed::nn

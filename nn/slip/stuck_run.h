@@ -1,0 +1,62 @@
+// A drive of the firmware in a simulated world, and how its slip watch did in it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/estimation/slip_watch.h"
+#include "nn/slip/stuck_scenario.h"
+
+namespace screed::nn {
+
+/// What one tick was in truth, and to the robot.
+struct SlipTick {
+  std::array<std::int16_t, kSlipInputs> inputs;  ///< of the network
+  bool running;
+  bool looked;     ///< the tracks were fast enough for the network
+  float speed;     ///< of the chassis, forward, m/s
+  float turn;      ///< of the chassis, as speed of a track, m/s
+  float faster;    ///< speed of the faster track, m/s, not negative
+  bool backwards;  ///< the tracks drive backwards on the whole
+  bool slips;      ///< the watch says so
+  bool stuck;      ///< likewise
+  bool stalled;    ///< the supervisor's stall faults: the tracks do not turn either
+};
+
+/// Drives until its end, a fault, or the physics' failure (told in `failure`).
+struct SlipRun {
+  StuckScenario scenario;
+  std::vector<SlipTick> ticks;
+  std::string failure;
+};
+SlipRun drive(const StuckScenario& scenario);
+
+/// Dug in: over the next second the chassis makes less than this of the way that the faster track
+/// makes, and it has begun: at this moment it moves so as well.
+inline constexpr double kDugInShare = 0.2;
+/// An alarm is false when the chassis made more than this within half a second of it.
+inline constexpr double kFreeShare = 0.4;
+
+/// The first tick at which the robot is dug in.
+std::optional<std::size_t> dug_in_at(const SlipRun& run);
+
+struct DugInResult {
+  bool detected = false;  ///< stuck (or a stall) was told from 1 s before to 1 s after
+  double delay_s = 0.0;   ///< not negative
+};
+DugInResult detection_of(const SlipRun& run, std::size_t dug_in);
+
+struct FreeResult {
+  double driven_s = 0.0;  ///< with tracks fast enough to look at
+  int false_alarms = 0;   ///< that began while the robot moved
+  int other_alarms = 0;   ///< that began while it hardly did: slip, or dug in without a trap
+};
+FreeResult alarms_of(const SlipRun& run);
+
+/// As many runs as scenarios, on as many threads; results in the scenarios' order.
+std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads);
+
+}  // namespace screed::nn

@@ -1,0 +1,105 @@
+// Which ground, which way of driving, which trap.
+#include "nn/slip/stuck_scenario.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/core/random.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr const char* kGrounds[] = {"rigid",    "rigid", "soft",      "viper", "lete_sand",
+                                    "dry_sand", "clay",  "ding_2011", "gravel"};
+constexpr const char* kTerrains[] = {"terrain_a.png", "terrain_b.png"};
+constexpr const char* kTraps[] = {"wall", "slope", "hump", "trench", "ruts", "ruts"};
+constexpr std::size_t kStartsInRuts = 4;  ///< the first of the two "ruts"
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+enum class Way : std::uint8_t { kRandom, kArc, kStraight };
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed, bool trapped)
+      : random_(seed, trapped ? "trapped drive" : "free drive") {}
+  double between(double low, double high) { return random_.uniform(low, high); }
+  std::size_t below(std::size_t count) {
+    return static_cast<std::size_t>((std::uint64_t{random_.next()} * count) >> 32U);
+  }
+  bool one_in_two() { return below(2) == 0; }
+
+ private:
+  WorldRandom random_;
+};
+
+void choose_ground(Draw& draw, Experiment& e, std::string& ground) {
+  ground = kGrounds[draw.below(std::size(kGrounds))];
+  e.vehicle.track_friction = draw.between(0.6, 0.9);
+  if (ground == "rigid") return;
+  e.map.model = "scm";
+  e.soil.preset = ground;
+  e.soil.follow_slopes = true;
+  e.soil.cell_m = 0.02;
+  e.soil.slip_sinkage = draw.between(0.0, 0.4);
+  e.soil.drag_depth_m = draw.between(0.0, 0.003);
+}
+
+void choose_terrain(Draw& draw, Experiment& e, bool trapped) {
+  e.map.filename = kTerrains[draw.below(std::size(kTerrains))];
+  e.map.size_m = trapped ? 6.0 : 10.0;
+  e.map.smoothing_m = draw.between(0.05, 0.2);
+  e.map.max_slope_deg = draw.between(0.5, trapped ? 4.0 : 8.0);
+  e.map.wrap = true;
+  e.vehicle.x_m = draw.between(-1.0, 1.0);
+  e.vehicle.y_m = draw.between(-1.0, 1.0);
+  e.vehicle.heading_deg = draw.between(-180.0, 180.0);
+}
+
+void choose_trap(Draw& draw, Experiment& e, const std::string& ground, Way& way, bool& spins) {
+  const std::size_t trap = draw.below(std::size(kTraps));
+  e.trap.kind = kTraps[trap];
+  e.trap.distance_m = trap == kStartsInRuts ? -0.25 : draw.between(0.25, 0.6);
+  if (e.trap.kind == "wall") {
+    e.trap.size = draw.between(0.08, 0.2);
+  } else if (e.trap.kind == "slope") {
+    e.trap.size = ground == "rigid"
+                      ? std::atan(e.vehicle.track_friction) * kDegPerRad + draw.between(2.0, 6.0)
+                      : draw.between(26.0, 34.0);
+  } else {
+    e.trap.size = draw.between(0.045, 0.08);
+  }
+  // A hump and ruts are met straight on; who stands in ruts may try to turn.
+  if (e.trap.kind == "hump" || e.trap.kind == "ruts") way = Way::kStraight;
+  spins = trap == kStartsInRuts && draw.one_in_two();
+}
+
+}  // namespace
+
+StuckScenario stuck_scenario(std::uint64_t seed, bool trapped, double duration_s) {
+  Draw draw(seed, trapped);
+  StuckScenario scenario;
+  scenario.trapped = trapped;
+  Experiment& e = scenario.experiment;
+  e.experiment.name = trapped ? "trapped" : "free";
+  e.experiment.seed = seed;
+  e.experiment.duration_s = duration_s;
+  choose_ground(draw, e, scenario.ground);
+  choose_terrain(draw, e, trapped);
+  Way way = static_cast<Way>(draw.below(3));
+  bool spins = false;
+  if (trapped) choose_trap(draw, e, scenario.ground, way, spins);
+  e.drive.speed_m_per_s = draw.between(0.08, 0.2);
+  const double side = draw.one_in_two() ? 1.0 : -1.0;
+  const double rate = draw.between(5.0, 30.0);
+  if (way == Way::kArc) e.drive.yaw_rate_deg_per_s = side * rate;
+  if (spins) {
+    if (draw.one_in_two()) e.drive.speed_m_per_s = 0.0;
+    e.drive.yaw_rate_deg_per_s = side * (rate + 20.0);
+  }
+  e.experiment.algorithm = way == Way::kRandom ? "hill_sensing" : "drive";
+  e.parameters.algorithm = algorithm_number(e.experiment.algorithm);
+  e.parameters.random_seed = static_cast<int16_t>(seed % 32767 + 1);
+  return scenario;
+}
+
+}  // namespace screed::nn
