@@ -367,12 +367,17 @@ std::vector<Key> make_keys() {
       "a place where robots get stuck: a wall, a slope or a trench all round the start; a hump "
       "between the tracks, ruts under them, in front of it",
       [](Experiment& e) -> std::string& { return e.trap.kind; }, is_trap));
-  keys.push_back(real_key("trap", "distance", "m", -10, 10,
-                          "from the start to where it begins; ruts may begin behind it",
-                          [](Experiment& e) -> double& { return e.trap.distance_m; }));
-  keys.push_back(real_key("trap", "size", "m or deg", 0.001, 60,
-                          "height or depth in m, of a slope its angle in degrees",
-                          [](Experiment& e) -> double& { return e.trap.size; }));
+  const auto no_trap = [](const Experiment& e) { return e.trap.kind == "none"; };
+  keys.push_back(in_force_unless(
+      real_key("trap", "distance", "m", -10, 10,
+               "from the start to where it begins, 0.5 if left out; ruts may begin behind it",
+               [](Experiment& e) -> double& { return e.trap.distance_m; }),
+      no_trap));
+  keys.push_back(in_force_unless(
+      real_key("trap", "size", "m or deg", 0.001, 60,
+               "height or depth in m, 0.1 if left out; of a slope its angle in degrees",
+               [](Experiment& e) -> double& { return e.trap.size; }),
+      no_trap));
 
   keys.push_back(real_key("drive", "speed", "m/s", -0.5, 0.5, "algorithm drive: commanded speed",
                           [](Experiment& e) -> double& { return e.drive.speed_m_per_s; }));

@@ -15,6 +15,8 @@ namespace screed::nn {
 namespace {
 
 constexpr std::size_t kSecond = kTickRate_hz;
+constexpr std::size_t kAfterwards = 2 * kSecond;  ///< driven on after it was dug in
+constexpr std::size_t kLookTicks = 25;
 constexpr double kSmoothing = 1.0 / 8.0;
 constexpr float kLeastSpeed = 0.03F;  ///< of tracks that count as driven, m/s
 constexpr double kHalfTread_m = 0.0975;
@@ -73,6 +75,11 @@ SlipRun drive(const StuckScenario& scenario) {
       run.ticks.push_back(tick_of(*world, robot));
       world->apply(output);
       if (robot.supervisor().faults() != 0) break;
+      // What comes later is asked by nobody.
+      if (scenario.trapped && i % kLookTicks == 0) {
+        const auto begin = dug_in_at(run);
+        if (begin && i >= *begin + kAfterwards) break;
+      }
     }
   } catch (const RunError& error) {
     run.failure = error.what();

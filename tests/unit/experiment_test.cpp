@@ -122,6 +122,7 @@ std::vector<std::string> good_values(const Row& row) {
     return {"none", "0123456789abcdef0123456789ABCDEF 200"};
   }
   if (row.key == "preset") return {"clay", "ding_2011"};
+  if (row.section == "trap") return {"wall", "ruts"};
   return {"Some-name_1"};
 }
 
@@ -140,6 +141,7 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
       if (row.section == "soil") room = {"map.model=scm"};
       if (row.section == "particles" || row.section == "raygrid" || row.key == "particle_radius")
         room = {"map.model=particles"};
+      if (row.section == "trap" && row.key != "kind") room = {"trap.kind=wall"};
       if (row.key == "walk_speed_min") room = {"parameters.walk_speed_max=250"};
       if (row.key == "walk_speed_max") room = {"parameters.walk_speed_min=0"};
       if (row.key == "walk_leg_min") room = {"parameters.walk_leg_max=20000"};

@@ -64,7 +64,7 @@ TEST(SlipWatch, OneThatStopsWhileItsTracksGoOnIsStuckWithinASecond) {
     drive.go(speed, 5.0, 1.0, 5);
     ASSERT_FALSE(drive.watch.stuck()) << speed;
     // It runs into something: 0.2 s of braking that the tracks do not show.
-    const TrackMotion track = {static_cast<int16_t>(speed * 10.0), 40};
+    const TrackMotion track = {static_cast<int16_t>(speed * 10.0), 60};
     const auto braking = static_cast<int16_t>(-speed / 200.0 / 9.80665 * kCountsPerG);
     for (int i = 0; i < 100; ++i)
       drive.watch.tick(track, track, i < 20 ? braking : 0, 0, 0, i % 2 == 0);
