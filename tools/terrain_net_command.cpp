@@ -99,6 +99,7 @@ void print_errors(const std::vector<std::string>& runs, const Segments& drives,
   const auto middle = [](const std::vector<nn::DriveSegment>& segments,
                          const nn::BearingNetwork* by) {
     std::vector<double> shares;
+    shares.reserve(segments.size());
     for (const nn::DriveSegment& segment : segments) shares.push_back(error_share(segment, by));
     std::sort(shares.begin(), shares.end());
     return 0.5 * (shares[(shares.size() - 1) / 2] + shares[shares.size() / 2]);
