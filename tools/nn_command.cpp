@@ -244,10 +244,18 @@ int run_features() {
 
 }  // namespace
 
-void register_nn_command(CLI::App& root, std::function<int()>& action) {
-  auto arguments = std::make_shared<NnArguments>();
+CLI::App* nn_command(CLI::App& root) {
+  const std::vector<CLI::App*> there =
+      root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
+  if (!there.empty()) return there.front();
   CLI::App* nn = root.add_subcommand("nn", "Networks: from recorded sessions to the robot");
   nn->require_subcommand(1);
+  return nn;
+}
+
+void register_nn_command(CLI::App& root, std::function<int()>& action) {
+  auto arguments = std::make_shared<NnArguments>();
+  CLI::App* nn = nn_command(root);
   const auto add = [&](const char* name, const char* help, int (*run)(const NnArguments&)) {
     CLI::App* command = nn->add_subcommand(name, help);
     command->callback([arguments, run, &action] { action = [=] { return run(*arguments); }; });

@@ -6,6 +6,9 @@
 
 namespace screed {
 
+/// `screed nn`, made when it is not there: other files put commands of their own under it.
+CLI::App* nn_command(CLI::App& root);
+
 void register_nn_command(CLI::App& root, std::function<int()>& action);
 
 }  // namespace screed

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/quantile.h"
 #include "host_sim/picture/line_chart.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/rollout.h"
 #include "nn/training/motion_configuration.h"
+#include "tools/nn_command.h"
 
 namespace screed {
 namespace {
@@ -113,8 +115,8 @@ void print_table(const std::vector<nn::SessionRollouts>& all,
     for (std::size_t way = 0; way < nn::kRolloutWays_m.size(); ++way) {
       const Column column = column_of(all, i, way, straight);
       std::printf(" | %4zu %6.2f%% %6.2f%% %6.1f\u00b0", column.place.size(),
-                  nn::quantile(column.place, 0.5), nn::quantile(column.place, 0.9),
-                  nn::quantile(column.heading, 0.5));
+                  quantile(column.place, 0.5), quantile(column.place, 0.9),
+                  quantile(column.heading, 0.5));
     }
     std::printf("\n");
   }
@@ -138,7 +140,7 @@ void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t i
     }
   }
   std::printf("  %s, integers from floating point: median %.4f %%, p90 %.4f %% of the way\n",
-              name.c_str(), nn::quantile(apart, 0.5), nn::quantile(apart, 0.9));
+              name.c_str(), quantile(apart, 0.5), quantile(apart, 0.9));
 }
 
 void draw(const fs::path& folder, const nn::SessionRollouts& session,
@@ -246,13 +248,7 @@ int run_apart(const ApartArguments& arguments) {
 }  // namespace
 
 void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
-  const std::vector<CLI::App*> there =
-      root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
-  CLI::App* nn = there.empty() ? nullptr : there.front();
-  if (nn == nullptr) {
-    nn = root.add_subcommand("nn", "Networks: from recorded sessions to the robot");
-    nn->require_subcommand(1);
-  }
+  CLI::App* nn = nn_command(root);
 
   auto motion = std::make_shared<MotionArguments>();
   CLI::App* motion_command =

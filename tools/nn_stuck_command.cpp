@@ -9,12 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "host_sim/core/atomic_file.h"
-#include "host_sim/core/errors.h"
-#include "host_sim/experiment/simulation.h"
+#include "host_sim/core/quantile.h"
 #include "nn/slip/slip_training.h"
 #include "nn/slip/stuck_run.h"
 #include "nn/slip/stuck_scenario.h"
+#include "tools/nn_command.h"
 
 namespace screed {
 namespace {
@@ -29,7 +28,7 @@ struct StuckArguments {
   std::string train;
   std::size_t epochs = 60;
   std::size_t hidden = 8;
-  std::string list;
+  std::string experiment;
   bool json = false;
 };
 
@@ -91,14 +90,7 @@ Figures figures_of(const std::vector<nn::SlipRun>& trapped, const std::vector<nn
     add(figures.free, result);
     add(figures.free_by_ground[run.scenario.ground], result);
   }
-  std::sort(figures.delays_s.begin(), figures.delays_s.end());
   return figures;
-}
-
-double quantile(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return 0.0;
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(sorted.size()));
-  return sorted[std::min(at, sorted.size() - 1)];
 }
 
 double rate(const Share& share) {
@@ -113,8 +105,10 @@ void print(const StuckArguments& arguments, const Figures& figures) {
   std::printf("%zu drives into a trap, %d of them dug in\n", arguments.runs, figures.all.dug_in);
   std::printf("  detected within 1 s     %d, %.1f %% (must be 95 %%)\n", figures.all.detected,
               100.0 * rate(figures.all));
-  std::printf("  delay                   %.2f s median, %.2f s 95 %%\n",
-              quantile(figures.delays_s, 0.5), quantile(figures.delays_s, 0.95));
+  if (!figures.delays_s.empty()) {
+    std::printf("  delay                   %.2f s median, %.2f s 95 %%\n",
+                quantile(figures.delays_s, 0.5), quantile(figures.delays_s, 0.95));
+  }
   for (const auto& [trap, share] : figures.by_trap) {
     std::printf("  %-22s  %d of %d\n", trap.c_str(), share.detected, share.dug_in);
   }
@@ -157,8 +151,8 @@ void print_json(const StuckArguments& arguments, const Figures& figures) {
 }
 
 int run_stuck(const StuckArguments& arguments) {
-  if (!arguments.list.empty()) {
-    const bool trapped = arguments.list == "trapped";
+  if (!arguments.experiment.empty()) {
+    const bool trapped = arguments.experiment == "trapped";
     const auto scenario =
         nn::stuck_scenario(arguments.seed, trapped, trapped ? kTrapped_s : arguments.free_s);
     std::cout << scenario.experiment.text();
@@ -193,13 +187,7 @@ int run_stuck(const StuckArguments& arguments) {
 }  // namespace
 
 void register_nn_stuck_command(CLI::App& root, std::function<int()>& action) {
-  const std::vector<CLI::App*> there =
-      root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
-  CLI::App* nn = there.empty() ? nullptr : there.front();
-  if (nn == nullptr) {
-    nn = root.add_subcommand("nn", "Networks: from recorded sessions to the robot");
-    nn->require_subcommand(1);
-  }
+  CLI::App* nn = nn_command(root);
   auto arguments = std::make_shared<StuckArguments>();
   CLI::App* command = nn->add_subcommand(
       "stuck", "How the robot's slip and stuck flags do in seeded drives with and without traps");
@@ -219,7 +207,7 @@ void register_nn_stuck_command(CLI::App& root, std::function<int()>& action) {
   command->add_option("--hidden", arguments->hidden, "nodes of the hidden layer")
       ->capture_default_str();
   command
-      ->add_option("--experiment", arguments->list,
+      ->add_option("--experiment", arguments->experiment,
                    "print the experiment of the first seed: trapped or free")
       ->check(CLI::IsMember({"trapped", "free"}));
   command->add_flag("--json", arguments->json, "the figures as JSON");

@@ -205,10 +205,15 @@ AnyNetwork read_network(const std::string& file) {
   AnyNetwork network{file, nullptr, nullptr};
   try {
     network.wheels = std::make_shared<const nn::FluxNetwork>(nn::FluxNetwork::read(file));
-  } catch (const InputError&) {
-    network.tracks = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(file));
+    return network;
+  } catch (const InputError&) {  // then it may be the other kind
   }
-  return network;
+  try {
+    network.tracks = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(file));
+    return network;
+  } catch (const InputError&) {
+    throw InputError(file + ": is neither a network of `train` (wheels) nor one of `train-tracks`");
+  }
 }
 
 /// A ground that goes its own way along a drive.

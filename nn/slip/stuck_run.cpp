@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 #include <thread>
 
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/simulation.h"
+#include "host_sim/experiment/world_setup.h"
 #include "host_sim/world/world.h"
 
 namespace screed::nn {
@@ -132,13 +134,22 @@ FreeResult alarms_of(const SlipRun& run) {
 std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads) {
   std::vector<SlipRun> runs(scenarios.size());
   std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
   const auto work = [&] {
-    for (std::size_t i = next++; i < scenarios.size(); i = next++) runs[i] = drive(scenarios[i]);
+    try {
+      for (std::size_t i = next++; i < scenarios.size(); i = next++) runs[i] = drive(scenarios[i]);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      failure = std::current_exception();
+      next = scenarios.size();
+    }
   };
-  std::vector<std::thread> others;
+  std::vector<std::jthread> others;
   for (unsigned i = 1; i < threads; ++i) others.emplace_back(work);
   work();
-  for (std::thread& thread : others) thread.join();
+  others.clear();  // joins
+  if (failure) std::rethrow_exception(failure);
   return runs;
 }
 

@@ -38,7 +38,6 @@ void choose_ground(Draw& draw, Experiment& e, std::string& ground) {
   if (ground == "rigid") return;
   e.map.model = "scm";
   e.soil.preset = ground;
-  e.soil.follow_slopes = true;
   e.soil.cell_m = 0.02;
   e.soil.slip_sinkage = draw.between(0.0, 0.4);
   e.soil.drag_depth_m = draw.between(0.0, 0.003);

@@ -173,15 +173,6 @@ ImuErrors imu_errors(const Experiment& experiment) {
 
 }  // namespace
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
-}
-
 SessionRollouts roll_out(const std::filesystem::path& session_folder,
                          const std::vector<StandIn>& stand_ins, const RolloutOptions& options) {
   const Recording recording(session_folder);

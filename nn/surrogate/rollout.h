@@ -62,7 +62,4 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
 /// does.
 Rollout apart(const std::filesystem::path& session_folder, const std::filesystem::path& other);
 
-/// The value below which that share of the values lies, by linear interpolation; NaN without any.
-double quantile(std::vector<double> values, double share);
-
 }  // namespace screed::nn
