@@ -1,4 +1,4 @@
-// `screed nn`: preprocess, train, eval, export, show, check.
+// `screed nn`: preprocess, train, quantise, eval, export, show, check.
 #include "tools/nn_command.h"
 
 #include <algorithm>
@@ -148,6 +148,34 @@ int run_train(const NnArguments& arguments) {
   return 0;
 }
 
+// ---- quantise
+
+/// What a training makes of its networks in floating point, from those that a model carries.
+int run_quantise(const NnArguments& arguments) {
+  const nn::TrainingConfiguration configuration = configuration_of(arguments);
+  nn::Model model = nn::read_model(arguments.model);
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
+  if (model.training_data != data.hash || model.name != configuration.name ||
+      model.seed != configuration.seed || model.networks.size() != configuration.networks.size()) {
+    throw InputError(
+        arguments.model + ": is of " + model.name + ", seed " + std::to_string(model.seed) +
+        ", training data " + model.training_data +
+        "; allowed is the model of this configuration and these sessions: " + configuration.name +
+        ", " + std::to_string(configuration.seed) + ", " + data.hash);
+  }
+  std::vector<nn::TrainedNetwork> networks;
+  for (nn::ModelNetwork& network : model.networks) {
+    if (network.trained.empty()) {
+      throw InputError(arguments.model + ": has no network in floating point");
+    }
+    networks.push_back({std::move(network.trained), 0, {}});
+  }
+  const fs::path file = arguments.out.empty() ? fs::path(arguments.model) : fs::path(arguments.out);
+  nn::write_model(file, nn::make_model(configuration, data, networks));
+  std::printf("%zu networks in integers, in %s\n", networks.size(), file.c_str());
+  return 0;
+}
+
 // ---- eval
 
 int run_eval(const NnArguments& arguments) {
@@ -293,6 +321,13 @@ void register_nn_command(CLI::App& root, std::function<int()>& action) {
   train->add_option("--seed", arguments->seed, "seed, whatever the configuration says");
   train->add_flag("--resume", arguments->resume, "go on from the checkpoints in the folder");
   json(train);
+
+  CLI::App* quantise =
+      add("quantise", "The integers of a trained model anew, from what it was trained on",
+          run_quantise);
+  model(quantise);
+  configuration(quantise);
+  quantise->add_option("--out", arguments->out, "the file to write (default: the model)");
 
   CLI::App* eval = add("eval", "The thesis' tables 6.1 to 6.3, and charts", run_eval);
   model(eval);

@@ -122,15 +122,15 @@ void print_table(const std::vector<nn::SessionRollouts>& all,
   }
 }
 
-/// How far the integers lead from the numbers they were made from: distance of the robots at the
-/// end of every rollout's way, in per cent of it.
-void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t integers,
-                      std::size_t floats, const std::string& name) {
+/// How far one stand-in leads from another: distance of the robots at the end of every rollout's
+/// way, in per cent of it.
+void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t one,
+                      std::size_t other, const std::string& what) {
   std::vector<double> apart;
   for (const nn::SessionRollouts& session : all) {
     for (std::size_t i = 0; i < session.real.size(); ++i) {
-      const auto& a = session.by_stand_in[integers][i].path;
-      const auto& b = session.by_stand_in[floats][i].path;
+      const auto& a = session.by_stand_in[one][i].path;
+      const auto& b = session.by_stand_in[other][i].path;
       double way = 0.0;
       for (std::size_t k = 1; k < a.size(); ++k) {
         way += std::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
@@ -139,8 +139,17 @@ void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t i
                       std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) / way);
     }
   }
-  std::printf("  %s, integers from floating point: median %.4f %%, p90 %.4f %% of the way\n",
-              name.c_str(), quantile(apart, 0.5), quantile(apart, 0.9));
+  std::printf("  %s: median %.4f %%, p90 %.4f %% of the way\n", what.c_str(), quantile(apart, 0.5),
+              quantile(apart, 0.9));
+}
+
+/// The model in floating point with one part in 10^9 on its outputs. How far that leads tells which
+/// differences are the loop's own (firmware, counts of sensors), whatever the arithmetic.
+nn::Model nudged(nn::Model model) {
+  for (nn::ModelNetwork& network : model.networks) {
+    for (double& bias : network.trained.back().bias) bias += 1e-9;
+  }
+  return model;
 }
 
 void draw(const fs::path& folder, const nn::SessionRollouts& session,
@@ -191,17 +200,22 @@ int run_rollout(const RolloutArguments& arguments) {
                 kinematics.speed_share, kinematics.tread_m);
     stand_ins.push_back({"constant slip", [=] { return nn::Surrogate(kinematics, geometry, 1); }});
   }
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;  // integers, floats
+  std::vector<std::size_t> floats;
   std::vector<std::string> models = arguments.models;
   if (models.empty()) models.push_back(nn::default_model_file().string());
   for (const std::string& file : models) {
     const auto model = std::make_shared<const nn::Model>(nn::read_model(file));
     stand_ins.push_back({model->name, [=] { return nn::Surrogate(*model, geometry, 1); }});
     if (model->networks.front().trained.empty()) continue;
-    pairs.emplace_back(stand_ins.size() - 1, stand_ins.size());
-    stand_ins.push_back(
-        {model->name + ", floating",
-         [=] { return nn::Surrogate(*model, geometry, 1, nn::Surrogate::Arithmetic::kFloat); }});
+    floats.push_back(stand_ins.size());
+    for (const auto& [name, floating] :
+         {std::pair{model->name + ", floating", model},
+          {model->name + ", 1e-9 off", std::make_shared<const nn::Model>(nudged(*model))}}) {
+      stand_ins.push_back({name, [=, which = floating] {
+                             return nn::Surrogate(*which, geometry, 1,
+                                                  nn::Surrogate::Arithmetic::kFloat);
+                           }});
+    }
   }
   std::vector<nn::SessionRollouts> all;
   for (const std::string& folder : arguments.sessions) {
@@ -214,8 +228,10 @@ int run_rollout(const RolloutArguments& arguments) {
     for (const bool straight : {true, false}) print_table(all, stand_ins, straight);
   }
   std::printf("\n");
-  for (const auto& [integers, floats] : pairs) {
-    print_divergence(all, integers, floats, stand_ins[integers].name);
+  for (const std::size_t floating : floats) {
+    print_divergence(all, floating - 1, floating,
+                     stand_ins[floating - 1].name + ", integers from floating point");
+    print_divergence(all, floating + 1, floating, stand_ins[floating + 1].name);
   }
   if (!arguments.out.empty()) {
     fs::create_directories(arguments.out);

@@ -70,6 +70,12 @@ constexpr Feature kFeatures[] = {
      [](const FrameWindow& w) { return std::sin(w.now().roll) * mean_wheel(w.now()); }},
     {"pivot", "rad/s", "slope along the heading times the wheels' difference", 1,
      [](const FrameWindow& w) { return std::sin(w.now().pitch) * wheel_difference(w.now()); }},
+    {"tilt", "1", "sine of the slope, whatever its direction", 1,
+     [](const FrameWindow& w) {
+       return std::hypot(std::sin(w.now().pitch), std::sin(w.now().roll));
+     }},
+    {"bank", "1", "amount of the sine of the roll", 1,
+     [](const FrameWindow& w) { return std::abs(std::sin(w.now().roll)); }},
     // What a gyro says; a world without one yet does not know them.
     {"yaw_rate", "rad/s", "amount, about the chassis' upward axis", 1,
      [](const FrameWindow& w) { return std::abs(w.now().rate_z); }},
@@ -79,6 +85,10 @@ constexpr Feature kFeatures[] = {
      [](const FrameWindow& w) { return std::abs(w.now().rate_x); }},
     {"arc", "rad2/s2", "speed times yaw_rate", 1,
      [](const FrameWindow& w) { return std::abs(mean_wheel(w.now()) * w.now().rate_z); }},
+    {"whirl", "rad2/s2", "square of yaw_rate", 1,
+     [](const FrameWindow& w) { return w.now().rate_z * w.now().rate_z; }},
+    {"banked_turn", "rad/s", "bank times yaw_rate", 1,
+     [](const FrameWindow& w) { return std::abs(std::sin(w.now().roll) * w.now().rate_z); }},
 };
 
 }  // namespace

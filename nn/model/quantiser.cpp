@@ -1,5 +1,7 @@
 #include "nn/model/quantiser.h"
 
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -62,6 +64,89 @@ IntegerLayer finest(const FloatLayer& layer, std::size_t number) {
   throw InputError(name + ": weights are too large for 16 bits at any scale");
 }
 
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// What pulls a fitted weight back to the trained one, as a share of the inputs' mean square:
+/// inputs that nearly always move together must not bring about weights that are far off for
+/// others.
+constexpr double kPull = 1e-4;
+
+/// The node's weights on steps of `step` and its bias, for the least mean square of (weights inputs
+/// + bias - wanted) share over the columns of `inputs`, the last row of which is 1. One weight
+/// after the other is rounded, and those that are still free make up for it.
+Vector fitted_node(const Matrix& inputs, const Vector& wanted, const Vector& share,
+                   const Vector& trained, double step) {
+  const Eigen::Index count = trained.size() - 1;
+  const Matrix felt = inputs * share.asDiagonal();
+  Matrix squares = felt * felt.transpose() / static_cast<double>(inputs.cols());
+  const Vector missing = share.cwiseProduct(wanted - inputs.transpose() * trained);
+  const Vector slope = felt * missing / static_cast<double>(inputs.cols());
+  const double pull = kPull * (squares.trace() / static_cast<double>(count + 1)) + 1e-12;
+  squares.diagonal().array() += pull;
+  squares(count, count) -= pull * (1.0 - 1e-6);  // a bias is free
+  Vector node = trained + squares.partialPivLu().solve(slope);
+  const double most = step * std::numeric_limits<std::int16_t>::max();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double rounded = std::clamp(step * std::nearbyint(node(i) / step), -most, most);
+    const double off = rounded - node(i);
+    node(i) = rounded;
+    const Eigen::Index free = count - i;
+    node.tail(free) -= squares.bottomRightCorner(free, free)
+                           .partialPivLu()
+                           .solve(Vector(squares.col(i).tail(free))) *
+                       off;
+  }
+  return node;
+}
+
+/// A layer whose inputs are `seen` in integers and whose sums should be those of `wanted`, both a
+/// column a row of the data.
+IntegerLayer fitted(const FloatLayer& layer, const IntegerLayer& plain, const Matrix& seen,
+                    const Matrix& wanted) {
+  Matrix inputs(seen.rows() + 1, seen.cols());
+  inputs << seen, Matrix::Ones(1, seen.cols());
+  const double step =
+      std::ldexp(1.0 / (layer.linear ? kLinearGain : 1.0), plain.gain_shift - kWeightOfOne);
+  FloatLayer result = layer;
+  for (std::size_t node = 0; node < layer.outputs; ++node) {
+    Vector trained(inputs.rows());
+    for (std::size_t i = 0; i < layer.inputs; ++i) {
+      trained(static_cast<Eigen::Index>(i)) = layer.weights[node * layer.inputs + i];
+    }
+    trained(inputs.rows() - 1) = layer.bias[node];
+    const Vector sums = wanted.row(static_cast<Eigen::Index>(node)).transpose();
+    // What a change of the sum is to the result.
+    const Vector share =
+        layer.linear ? Vector::Ones(sums.size()) : Vector(1.0 - sums.array().tanh().square());
+    const Vector found = fitted_node(inputs, sums, share, trained, step);
+    for (std::size_t i = 0; i < layer.inputs; ++i) {
+      result.weights[node * layer.inputs + i] = found(static_cast<Eigen::Index>(i));
+    }
+    result.bias[node] = found(inputs.rows() - 1);
+  }
+  // Weights that came out greater may not fit the scale.
+  return scaled(result, plain.gain_shift).value_or(plain);
+}
+
+/// What a layer makes of activations, as values.
+Matrix outputs_of(const IntegerLayer& layer, const Matrix& seen) {
+  const IntegerNetwork network({layer});
+  Matrix result(static_cast<Eigen::Index>(network.outputs()), seen.cols());
+  std::vector<std::int16_t> in(network.inputs());
+  std::vector<std::int16_t> out(network.outputs());
+  for (Eigen::Index column = 0; column < seen.cols(); ++column) {
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      in[i] = to_activation(seen(static_cast<Eigen::Index>(i), column));
+    }
+    network.run(in, out);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      result(static_cast<Eigen::Index>(i), column) = to_value(out[i]);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<double> run(const std::vector<FloatLayer>& network, std::vector<double> values) {
@@ -85,6 +170,31 @@ IntegerNetwork quantise(const std::vector<FloatLayer>& network) {
   std::vector<IntegerLayer> layers;
   layers.reserve(network.size());
   for (const FloatLayer& layer : network) layers.push_back(finest(layer, layers.size() + 1));
+  return IntegerNetwork(std::move(layers));
+}
+
+IntegerNetwork quantise(const std::vector<FloatLayer>& network, std::span<const double> rows) {
+  IntegerNetwork plain = quantise(network);
+  const auto inputs = static_cast<Eigen::Index>(plain.inputs());
+  const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / inputs;
+  if (count == 0) return plain;
+  // The same rows as floating point sees them, and as integers do.
+  Matrix values = Eigen::Map<const Matrix>(rows.data(), inputs, count).cwiseMin(1.0).cwiseMax(-1.0);
+  Matrix seen = values.unaryExpr([](double value) { return to_value(to_activation(value)); });
+  std::vector<IntegerLayer> layers;
+  layers.reserve(network.size());
+  for (const FloatLayer& layer : network) {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::Map<const RowMajor> weights(layer.weights.data(),
+                                             static_cast<Eigen::Index>(layer.outputs),
+                                             static_cast<Eigen::Index>(layer.inputs));
+    Matrix sums = weights * values;
+    sums.colwise() +=
+        Eigen::Map<const Vector>(layer.bias.data(), static_cast<Eigen::Index>(layer.outputs));
+    layers.push_back(fitted(layer, plain.layers()[layers.size()], seen, sums));
+    seen = outputs_of(layers.back(), seen);
+    values = layer.linear ? Matrix(sums.cwiseMin(1.0).cwiseMax(-1.0)) : Matrix(sums.array().tanh());
+  }
   return IntegerNetwork(std::move(layers));
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "nn/model/integer_network.h"
@@ -26,6 +27,12 @@ std::vector<double> run(const std::vector<FloatLayer>& network, std::vector<doub
 /// Throws InputError, which names the layer, when dimensions do not fit together, a number is not
 /// finite, or weights are too large for any scale (the weights of a node may add up to 65,000).
 IntegerNetwork quantise(const std::vector<FloatLayer>& network);
+
+/// The same at the same scales, with the integers chosen so that the network comes closest to the
+/// one in floating point on inputs such as it will see: `rows` of normalised values, as many as the
+/// network has inputs, one row after the other. Layer by layer, each makes up for what the ones
+/// before it and the rounding of its own weights have left, by least squares. No rows: as above.
+IntegerNetwork quantise(const std::vector<FloatLayer>& network, std::span<const double> rows);
 
 /// The activation that stands for a value, -1 to 1: floor(2^15 value), limited to int16_t.
 std::int16_t to_activation(double value);

@@ -19,6 +19,13 @@ constexpr double kFloorBias = 65536.0;  // makes what is rounded towards zero po
   throw InputError("model '" + model.name + "': " + what);
 }
 
+/// A way has no sign; the tracks have (thesis 6.1). Tracks that turn against each other leave it to
+/// the last digit of their speeds: it goes from one to the other steadily.
+double direction(double left_m_per_s, double right_m_per_s) {
+  constexpr double kSure_m_per_s = 0.02;
+  return std::clamp(0.5 * (left_m_per_s + right_m_per_s) / kSure_m_per_s, -1.0, 1.0);
+}
+
 std::string known_inputs() {
   std::string names;
   for (const SignalInfo& info : signals()) {
@@ -202,8 +209,7 @@ void Surrogate::take(const Channel& channel, const std::int16_t* activations) {
     double value = middle + step * activations[i];
     if (baseline != nullptr)
       value = std::clamp(value + baseline[i], channel.lowest, channel.highest);
-    // A way has no sign; the tracks have (thesis 6.1).
-    if (way && left[i] + right[i] < 0.0) value = -value;
+    if (way) value *= direction(left[i], right[i]);
     values[i] = value;
   }
 }
@@ -261,7 +267,7 @@ void Surrogate::foretell_in_float(const Network& network) {
         value = std::clamp(value + signals_[*channel.baseline * robots_ + i], channel.lowest,
                            channel.highest);
       }
-      if (way && row(Signal::kTrackLeft)[i] + row(Signal::kTrackRight)[i] < 0.0) value = -value;
+      if (way) value *= direction(row(Signal::kTrackLeft)[i], row(Signal::kTrackRight)[i]);
       motion_.at(way ? 0 : channel.row)[i] = value;
     }
   }

@@ -88,7 +88,14 @@ PreparedData prepare(const TrainingConfiguration& configuration, const fs::path&
     data.training.push_back(read_features(find_session(sessions, name), features));
     data.training_frames += data.training.back().rows();
   }
+  data.running = data.training;
   data.preprocessing.learn(data.training);
+  const bool rounds = std::find(configuration.run_time.begin(), configuration.run_time.end(),
+                                "quantise") != configuration.run_time.end();
+  for (FeatureTable& table : data.running) {
+    data.preprocessing.apply(
+        table, rounds ? Preprocessing::Extent::kAll : Preprocessing::Extent::kNotRounded);
+  }
   for (const TestSession& test : configuration.test) {
     add_tests(test, features, data.preprocessing, sessions, data.tests);
   }

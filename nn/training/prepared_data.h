@@ -22,6 +22,9 @@ struct TestTable {
 struct PreparedData {
   Preprocessing preprocessing{{}};
   std::vector<FeatureTable> training;
+  /// The training sessions as a running world shows them to the network: not rounded, where
+  /// rounding is no stage of run time. Integers are chosen for these.
+  std::vector<FeatureTable> running;
   std::vector<TestTable> tests;     ///< the first: the first test session as trained
   std::size_t training_frames = 0;  ///< before outliers went
   std::string hash;                 ///< over the training examples

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kCheckpoints = 50;
 constexpr std::size_t kGoldenVectors = 8;
+constexpr std::size_t kRowsToQuantise = 20'000;
 
 double loss_of(const std::vector<FloatLayer>& layers, const Examples& examples) {
   const std::vector<double> wanted(examples.out.begin(), examples.out.end());
@@ -33,6 +34,20 @@ std::string identity(const TrainingConfiguration& configuration, const PreparedD
   hash.add(data.hash);
   hash.add(network.name());
   return hash.hex();
+}
+
+/// Some of what the network will see, evenly spread over the training sessions.
+std::vector<double> rows_seen(const PreparedData& data, const std::vector<std::string>& inputs) {
+  std::vector<const FeatureTable*> tables;
+  for (const FeatureTable& table : data.running) tables.push_back(&table);
+  const Examples all = examples_of(tables, inputs, {});
+  const std::size_t stride = 1 + all.rows() / kRowsToQuantise;
+  std::vector<double> rows;
+  for (std::size_t row = 0; row < all.rows(); row += stride) {
+    const auto first = all.in.begin() + static_cast<std::ptrdiff_t>(row * all.inputs);
+    rows.insert(rows.end(), first, first + static_cast<std::ptrdiff_t>(all.inputs));
+  }
+  return rows;
 }
 
 /// The course of one network.
@@ -181,7 +196,7 @@ Model make_model(const TrainingConfiguration& configuration, const PreparedData&
       const FeatureScale& scale = data.preprocessing.scale_of(learned);
       return ModelChannel{feature, scale.middle, scale.half_range, ""};
     };
-    const IntegerNetwork integers = quantise(networks[i].layers);
+    const IntegerNetwork integers = quantise(networks[i].layers, rows_seen(data, network.inputs));
     ModelNetwork result{{}, {}, integers, networks[i].layers, {}};
     for (const std::string& input : network.inputs) result.inputs.push_back(channel(input, input));
     const std::vector<std::string> learned = learned_outputs(network);

@@ -99,6 +99,27 @@ TEST_F(NnProgram, TheSameTrainingGivesTheSameBytesEvenInTwoParts) {
   expect_refused(run(train + "b --resume --seed 2"), 2, {"checkpoint.json", "another training"});
 }
 
+TEST_F(NnProgram, QuantisesATrainedModelAnewToTheSameBytes) {
+  ASSERT_EQ(run("nn train small.json --sessions s --no-pictures --out m").exit_code, 0);
+  const Result result = run("nn quantise m/model.json small.json --sessions s --out again.json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read(root_ / "again.json"), read(root_ / "m/model.json"));
+
+  // By what a running world does to the inputs, as the configuration says it now.
+  write("rounds.json", replaced(configuration(), "[\"mean\"]", "[\"mean\", \"quantise\"]"));
+  ASSERT_EQ(
+      run("nn quantise m/model.json rounds.json --sessions s --out rounds_model.json").exit_code,
+      0);
+  const nn::Model model = nn::read_model(root_ / "rounds_model.json");
+  EXPECT_TRUE(model.stages[3].run_time);
+  EXPECT_NE(model.networks[0].network.layers()[0].bias,
+            nn::read_model(root_ / "m/model.json").networks[0].network.layers()[0].bias);
+
+  write("wrong.json", replaced(configuration(), "\"drive\"", "\"other\""));
+  expect_refused(run("nn quantise m/model.json wrong.json --sessions s --out x.json"), 2,
+                 {"m/model.json: is of small", "allowed is the model of this configuration"});
+}
+
 TEST_F(NnProgram, RefusesWhatIsWrongInOneLine) {
   const auto refused = [&](const std::string& what, const std::string& by,
                            const std::vector<std::string>& parts) {

@@ -1,6 +1,7 @@
 // Networks in integers: quantiser, arithmetic, and the batched engine against it bit for bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -91,6 +92,84 @@ TEST(Network, QuantisationErrorStaysSmall) {
   const std::vector<std::size_t> deep = {4, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7, 1};
   EXPECT_LE(worst_error(random_network(random, deep, 0.7), random, 20000), 3e-3);
   EXPECT_LE(worst_error(random_network(random, {6, 16, 2}, 1.5, true), random, 20000), 2e-3);
+}
+
+/// Rows of four inputs that move together in part, as those of a robot do.
+std::vector<double> rows_of_inputs(WorldRandom& random, int count) {
+  std::vector<double> rows;
+  for (int n = 0; n < count; ++n) {
+    const double a = random.uniform(-0.7, 0.7);
+    const double b = random.uniform(-0.3, 0.3);
+    for (const double value : {a + b, a - b, random.uniform(-0.4, 0.4), 0.2 + 0.5 * a}) {
+      rows.push_back(value);
+    }
+  }
+  return rows;
+}
+
+struct Off {
+  double mean = 0.0;
+  double square = 0.0;
+};
+
+Off off(const IntegerNetwork& network, const std::vector<FloatLayer>& layers,
+        const std::vector<double>& rows) {
+  Off result;
+  const double count = static_cast<double>(rows.size()) / 4.0;
+  for (std::size_t row = 0; row < rows.size(); row += 4) {
+    const std::vector<double> values(rows.begin() + static_cast<std::ptrdiff_t>(row),
+                                     rows.begin() + static_cast<std::ptrdiff_t>(row + 4));
+    std::vector<std::int16_t> in(values.size());
+    std::transform(values.begin(), values.end(), in.begin(), to_activation);
+    std::vector<std::int16_t> out(1);
+    network.run(in, out);
+    const double error = to_value(out[0]) - run(layers, values)[0];
+    result.mean += error / count;
+    result.square += error * error / count;
+  }
+  return result;
+}
+
+TEST(Network, IntegersFittedToTheirInputsComeCloser) {
+  WorldRandom random(4, "network");
+  const std::vector<double> rows = rows_of_inputs(random, 3000);
+  const std::vector<double> others = rows_of_inputs(random, 3000);
+  Off plain;
+  Off fitted;
+  for (int n = 0; n < 6; ++n) {
+    // Great weights make a coarse scale: there the rounding of weights is most of the error.
+    const std::vector<FloatLayer> layers =
+        random_network(random, {4, 7, 7, 7, 7, 1}, n % 2 == 0 ? 0.9 : 3.0);
+    const IntegerNetwork network = quantise(layers, rows);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      EXPECT_EQ(network.layers()[i].gain_shift, quantise(layers).layers()[i].gain_shift);
+      EXPECT_LE(network.layers()[i].greatest_sum(), std::numeric_limits<std::int32_t>::max());
+    }
+    const Off before = off(quantise(layers), layers, others);
+    const Off after = off(network, layers, others);
+    plain.mean += std::abs(before.mean);
+    plain.square += before.square;
+    fitted.mean += std::abs(after.mean);
+    fitted.square += after.square;
+  }
+  EXPECT_LT(fitted.mean, 0.3 * plain.mean);
+  EXPECT_LT(fitted.square, 0.5 * plain.square);
+}
+
+TEST(Network, FittedToInputsThatNeverChangeIsStillTheNetwork) {
+  WorldRandom random(5, "network");
+  const std::vector<FloatLayer> layers = random_network(random, {4, 7, 7, 1}, 0.7);
+  std::vector<double> rows;
+  for (int n = 0; n < 50; ++n) rows.insert(rows.end(), {0.5, 0.5, -0.25, 1.5});
+  const Off everywhere = off(quantise(layers, rows), layers, rows_of_inputs(random, 1000));
+  EXPECT_LT(everywhere.square, 1e-7);
+  // No rows: the same integers as without.
+  const IntegerNetwork plain = quantise(layers);
+  const IntegerNetwork same = quantise(layers, std::vector<double>{});
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    EXPECT_EQ(same.layers()[i].weights, plain.layers()[i].weights);
+    EXPECT_EQ(same.layers()[i].bias, plain.layers()[i].bias);
+  }
 }
 
 TEST(Network, TheQuantiserProvesThatNoSumOverflows) {

@@ -131,6 +131,25 @@ TEST(Surrogate, GivesAWayWithoutSignThatOfTheTracks) {
   EXPECT_NEAR(robot.motion(0).forward_m, 0.0025, 1e-6);
 }
 
+TEST(Surrogate, ASignOfTracksThatTurnAgainstEachOtherIsNoJump) {
+  const Model model =
+      linear_model({channel("v_left", 10.0)}, {channel("v", 0.01), channel("delta_theta", 0.01)},
+                   {0.0, 0.0}, {0.25, 0.0});
+  const HeightField ground = HeightField::flat(4.0, 0.1);
+  for (const Surrogate::Arithmetic arithmetic :
+       {Surrogate::Arithmetic::kInteger, Surrogate::Arithmetic::kFloat}) {
+    Surrogate robot(model, SupportGeometry{}, 1, arithmetic);
+    const auto way = [&](double left, double right) {
+      robot.step(ground, {&left, 1}, {&right, 1});
+      return robot.motion(0).forward_m;
+    };
+    EXPECT_NEAR(way(-0.1, 0.1 + 1e-9), way(-0.1, 0.1 - 1e-9), 1e-9);
+    EXPECT_NEAR(way(-0.1, 0.12), 0.5 * 0.0025, 1e-6);
+    EXPECT_NEAR(way(0.1, -0.12), -0.5 * 0.0025, 1e-6);
+    EXPECT_NEAR(way(-0.1, 0.15), 0.0025, 1e-6);
+  }
+}
+
 TEST(Surrogate, DoesNotRunAwayWhenTheNetworkGoesOnAdding) {
   const Model model =
       linear_model({channel("forward@1", 0.005)},
