@@ -5,7 +5,7 @@
 #
 # Sessions that are there already are not recorded again. Needs from the top Makefile: SCREED, OUT, STEP.
 
-MODELS ?= v1 v2 v2_tuned v2_products v2_gyro
+MODELS ?= v1 v2 v2_tuned v2_products v2_forward v2_gyro
 SURROGATE_SESSIONS ?= $(sort $(wildcard host_sim/data/experiments/sessions/v1_*.ini host_sim/data/experiments/sessions/v2_*.ini))
 
 .PHONY: surrogate run-surrogate
