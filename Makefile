@@ -84,8 +84,8 @@ LIBRARY := $(B)/libscreed.a
 help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
-	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (half an hour)"
-	@echo "make terrain-tracks  train what tracks do to the ground of the surrogate world, on V3's sessions (half an hour)"
+	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (an hour; FRAMES=800 ARGS='--steps 20': short)"
+	@echo "make terrain-tracks  train what tracks do to the ground of the surrogate world, on V3's sessions (half an hour; FRAMES, ARGS)"
 	@echo "make surrogate  train, evaluate and export the networks of the thesis  (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
 	@echo "make test-can  telemetry with candump, slcand, python-can and a real CAN kernel (in QEMU)"
@@ -232,24 +232,32 @@ run-sim: $(SCREED)
 run-sessions: $(SCREED)
 	@$(SCREED) record $(SESSIONS) --out $(OUT)/sessions $(ARGS)
 
-.PHONY: surrogate-v3 run-surrogate-v3
-V3_SESSIONS := host_sim/data/experiments/sessions/v3
+# V3's sessions, its training and its rollouts, and the training of what tracks do to the ground. Sessions that are there already are
+# not recorded again. Short runs of everything:
+#
+#   make surrogate-v3 FRAMES=800 ARGS='--steps 20'
+#   make terrain-tracks FRAMES=800 ARGS='--generations 1 --seconds 2'
+.PHONY: surrogate-v3 run-surrogate-v3 run-v3-sessions
+V3_SESSIONS := $(sort $(wildcard host_sim/data/experiments/sessions/v3/*.ini))
+V3_OUT := $(OUT)/sessions/v3$(if $(FRAMES),-$(FRAMES))
+run-v3-sessions: $(SCREED)
+	@set -e ; for file in $(V3_SESSIONS) ; do session=$(V3_OUT)/$$(basename $$file .ini)-0001 ; \
+	  test -e $$session/session.h5 || $(SCREED) record $$file --out $$session $(if $(FRAMES),--frames $(FRAMES)) ; done
 surrogate-v3: deps
 	$(STEP) run-surrogate-v3
-run-surrogate-v3: $(SCREED)
-	@$(SCREED) record $(V3_SESSIONS)/*.ini --out $(OUT)/sessions/v3
-	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(OUT)/sessions/v3 --out $(OUT)/v3.json
-	@$(SCREED) nn rollout $(OUT)/sessions/v3/e_*-0001 --model $(OUT)/v3.json --fit $(OUT)/sessions/v3/t_viper-0001 \
-	   --fit $(OUT)/sessions/v3/t_dry_sand-0001 --fit $(OUT)/sessions/v3/t_clay-0001 --starts 60 --out $(OUT)/rollouts
+run-surrogate-v3: run-v3-sessions
+	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(V3_OUT) --out $(OUT)/v3.json $(ARGS)
+	@$(SCREED) nn rollout $(V3_OUT)/e_*-0001 --model $(OUT)/v3.json --fit $(V3_OUT)/t_viper-0001 \
+	   --fit $(V3_OUT)/t_dry_sand-0001 --fit $(V3_OUT)/t_clay-0001 --out $(OUT)/rollouts
 
 .PHONY: terrain-tracks run-terrain-tracks
 terrain-tracks: deps
 	$(STEP) run-terrain-tracks
-run-terrain-tracks: $(SCREED)
-	@ls $(OUT)/sessions/v3/*/session.h5 > /dev/null 2>&1 || $(SCREED) record $(V3_SESSIONS)/*.ini --out $(OUT)/sessions/v3
-	@$(SCREED) terrain-net train-tracks $(OUT)/sessions/v3/t_*-0001 --out $(OUT)/terrain_tracks.json \
-	   $(patsubst %,--test %,$(wildcard $(OUT)/sessions/v3/e_*-0001)) $(ARGS)
-	@$(SCREED) terrain-net compare $(OUT)/terrain_tracks.json $(OUT)/sessions/v3/e_*-0001 --from 10 --pictures $(OUT)/terrain
+run-terrain-tracks: run-v3-sessions
+	@$(SCREED) terrain-net train-tracks $(V3_OUT)/t_*-0001 --out $(OUT)/terrain_tracks.json $(ARGS) \
+	   --test $(V3_OUT)/e_ding_2011_b-0001 --test $(V3_OUT)/e_lete_sand_b-0001
+	@$(SCREED) terrain-net compare $(OUT)/terrain_tracks.json $(V3_OUT)/e_ding_2011_b-0001 $(V3_OUT)/e_lete_sand_b-0001 \
+	   --from $(if $(FRAMES),2,10) --pictures $(OUT)/terrain
 
 install:
 	$(STEP) BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed BOARDS_DIR=$(PREFIX)/share/screed/boards MODELS_DIR=$(PREFIX)/share/screed/models FIRMWARE_DIR=$(PREFIX)/share/screed/firmware run-install

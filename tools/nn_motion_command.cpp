@@ -12,6 +12,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/quantile.h"
+#include "host_sim/core/random.h"
 #include "host_sim/picture/line_chart.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
@@ -76,8 +77,9 @@ struct RolloutArguments {
   std::vector<std::string> sessions;
   std::vector<std::string> models;
   std::vector<std::string> fit;
-  std::size_t starts = 20;
+  std::size_t starts = 0;
   std::string drive = "firmware";
+  bool ruts = false;
   std::string out;
 };
 
@@ -119,6 +121,58 @@ void print_table(const std::vector<nn::SessionRollouts>& all,
                   quantile(column.heading, 0.5));
     }
     std::printf("\n");
+  }
+}
+
+/// Of resampled sessions, all rollouts of a session together: what other sessions of this kind
+/// would have shown. Values by session; quantiles 2.5 % and 97.5 % of a quantile.
+std::array<double, 2> range_of(const std::vector<std::vector<double>>& by_session, double share) {
+  constexpr int kResamples = 2000;
+  WorldRandom random(1, "resampled sessions");
+  std::vector<double> found;
+  for (int i = 0; i < kResamples; ++i) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < by_session.size(); ++k) {
+      const auto which =
+          static_cast<std::size_t>(random.uniform() * static_cast<double>(by_session.size()));
+      values.insert(values.end(), by_session[which].begin(), by_session[which].end());
+    }
+    found.push_back(quantile(values, share));
+  }
+  return {quantile(found, 0.025), quantile(found, 0.975)};
+}
+
+/// After the last of the ways, with 95 % ranges, and how the robots wagged.
+void print_ranges(const std::vector<nn::SessionRollouts>& all,
+                  const std::vector<nn::StandIn>& stand_ins, bool straight) {
+  const std::size_t way = nn::kRolloutWays_m.size() - 1;
+  std::printf("  %-24s | after %.0f m, 95 %% ranges over sessions | rate of turn, s.d. (physics)\n",
+              straight ? "straight ways" : "ways with turns", nn::kRolloutWays_m.at(way));
+  for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+    std::vector<std::vector<double>> by_session;
+    std::vector<double> values;
+    std::vector<double> wags;
+    std::vector<double> real;
+    for (const nn::SessionRollouts& session : all) {
+      const Column column = column_of({session}, i, way, straight);
+      if (!column.place.empty()) by_session.push_back(column.place);
+      values.insert(values.end(), column.place.begin(), column.place.end());
+      for (const nn::Rollout& rollout : session.by_stand_in[i]) {
+        const nn::RolloutCheck& check = rollout.checks.at(way);
+        if (!check.reached || check.straight != straight) continue;
+        wags.push_back(kDegrees * rollout.wags_rad_per_s);
+        real.push_back(kDegrees * rollout.real_wags_rad_per_s);
+      }
+    }
+    if (values.empty()) continue;
+    const std::array<double, 2> middle = range_of(by_session, 0.5);
+    const std::array<double, 2> high = range_of(by_session, 0.9);
+    std::printf(
+        "  %-24s | n %zu of %zu, median %.2f%% (%.2f to %.2f), p90 %.2f%% (%.2f to %.2f) | "
+        "%.1f\u00b0/s (%.1f\u00b0/s)\n",
+        stand_ins[i].name.c_str(), values.size(), by_session.size(), quantile(values, 0.5),
+        middle[0], middle[1], quantile(values, 0.9), high[0], high[1], quantile(wags, 0.5),
+        quantile(real, 0.5));
   }
 }
 
@@ -186,6 +240,10 @@ int run_rollout(const RolloutArguments& arguments) {
   options.starts = arguments.starts;
   options.drive =
       arguments.drive == "tracks" ? nn::RolloutDrive::kTracks : nn::RolloutDrive::kFirmware;
+  if (arguments.ruts) {
+    options.bearing = std::make_shared<const nn::BearingNetwork>(
+        nn::BearingNetwork::read(nn::default_bearing_file()));
+  }
   const nn::SupportGeometry geometry;
   std::vector<nn::StandIn> stand_ins = {
       {"no slip", [=] { return nn::Surrogate(nn::SkidKinematics{}, geometry, 1); }}};
@@ -222,10 +280,12 @@ int run_rollout(const RolloutArguments& arguments) {
     all.push_back(nn::roll_out(folder, stand_ins, options));
     std::printf("\n%s, %s drive\n", all.back().source.c_str(), arguments.drive.c_str());
     for (const bool straight : {true, false}) print_table({all.back()}, stand_ins, straight);
+    std::fflush(stdout);
   }
   if (all.size() > 1) {
     std::printf("\nall sessions\n");
     for (const bool straight : {true, false}) print_table(all, stand_ins, straight);
+    for (const bool straight : {true, false}) print_ranges(all, stand_ins, straight);
   }
   std::printf("\n");
   for (const std::size_t floating : floats) {
@@ -286,9 +346,12 @@ void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
                               "model files; by default the one of screed sim --hal surrogate");
   rollout_command->add_option("--fit", rollout->fit,
                               "run folders that the constant slip is fitted to");
-  rollout_command->add_option("--starts", rollout->starts, "rollouts a session")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+  rollout_command->add_option("--starts", rollout->starts,
+                              "rollouts a session, spread evenly over it; by default each begins "
+                              "where the one before ended");
+  rollout_command->add_flag("--ruts", rollout->ruts,
+                            "the ground gives way below the stand-ins' tracks, as in screed sim "
+                            "--hal surrogate; else it stays as it was at the start");
   rollout_command
       ->add_option("--drive", rollout->drive,
                    "firmware: it drives and feels the network's motion; tracks: they turn as "

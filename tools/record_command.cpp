@@ -64,7 +64,7 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
       arguments.runs, overrides, options,
       [&](const Experiment& experiment, const SimulationSummary& summary) {
         summaries.push_back(summary);
-        const uint32_t wanted = experiment.experiment.frames.value();
+        const uint64_t wanted = frames_to_drive(experiment);
         if (summary.training_frames < wanted) {
           short_of_frames = true;
           std::cerr << "note: " << experiment.experiment.name << ": " << summary.training_frames

@@ -101,6 +101,7 @@ struct Experiment {
     double duration_s = 60.0;
     /// In place of duration, control ticks; the n of algorithm random, for which it is always set.
     std::optional<uint32_t> frames;
+    std::optional<double> stop_after_s;  ///< of algorithm random's drive
     uint64_t seed = 1;
     double flatness_deg = 5.0;  ///< epsilon of the thesis' flatness, as a slope
     std::optional<double> lay_on_side_at_s;

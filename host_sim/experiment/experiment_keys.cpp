@@ -309,6 +309,10 @@ std::vector<ExperimentKey> make_keys() {
          return std::to_string(*e.experiment.frames);
        }});
   keys.push_back(
+      real_key("experiment", "stop_after", "s", 0.01, 1e4,
+               "algorithm random: the run ends when the drive has lasted so long, whatever its n",
+               [](Experiment& e) -> std::optional<double>& { return e.experiment.stop_after_s; }));
+  keys.push_back(
       {"experiment", "seed", "", "an integer 0..18446744073709551615",
        "of every random generator of the world",
        [](Experiment& e, const std::string& text) { return parse_number(text, e.experiment.seed); },

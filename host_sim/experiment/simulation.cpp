@@ -119,9 +119,7 @@ class Recorder {
         shadow_(board_constants_of(options.board), experiment.parameters,
                 credentials_of(experiment)),
         writer_(writer),
-        training_frames_(experiment.experiment.algorithm == "random"
-                             ? uint64_t{experiment.experiment.frames.value()}
-                             : 0),
+        training_frames_(frames_to_drive(experiment)),
         duration_s_(experiment.experiment.duration_s),
         flatness_deg_(experiment.experiment.flatness_deg),
         flatness_(flatness(plant.terrain(), flatness_deg_)),
@@ -388,6 +386,14 @@ nlohmann::ordered_json terrain_json(const TerrainStatistics& statistics, double 
 }
 
 }  // namespace
+
+uint64_t frames_to_drive(const Experiment& experiment) {
+  if (experiment.experiment.algorithm != "random") return 0;
+  const uint64_t all = experiment.experiment.frames.value();
+  if (!experiment.experiment.stop_after_s.has_value()) return all;
+  const auto some = std::llround(*experiment.experiment.stop_after_s * kTickRate_hz);
+  return std::min(all, static_cast<uint64_t>(some));
+}
 
 const char* state_name(RobotState state) {
   const auto index = static_cast<size_t>(state);

@@ -88,6 +88,9 @@ struct SimulationSummary {
   double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
 };
 
+/// Frames of Algorithm 5 that a whole run of it drives; 0 under another algorithm.
+uint64_t frames_to_drive(const Experiment& experiment);
+
 /// Throws InputError when the experiment cannot be run, as run_simulation would.
 void check_simulation(const Experiment& experiment, const SimulationOptions& options);
 

@@ -12,24 +12,37 @@
 #include "host_sim/experiment/board_table.h"
 #include "host_sim/experiment/experiment.h"
 #include "host_sim/experiment/simulation.h"
+#include "host_sim/session/height_export.h"
 #include "host_sim/session/session_reader.h"
 #include "host_sim/vehicle/urdf_importer.h"
+#include "nn/terrain/pressed_drive.h"
 
 namespace screed::nn {
 namespace {
 
 constexpr std::size_t kPathFrames = 10;
 constexpr double kMeanVoltage = 7.5;  // from energy to charge
+constexpr double kFrame_s = 0.01;
 
-HeightField field_of(const HeightMap& map) {
-  HeightField field(static_cast<int>(map.geometry.nx), static_cast<int>(map.geometry.ny),
-                    map.geometry.spacing_m, map.geometry.wrap);
-  std::size_t node = 0;
-  for (int iy = 0; iy < field.ny(); ++iy) {
-    for (int ix = 0; ix < field.nx(); ++ix) field.set_node(ix, iy, map.heights[node++]);
+/// Standard deviation, value by value.
+class Spread {
+ public:
+  void add(double value) {
+    count_ += 1.0;
+    sum_ += value;
+    squares_ += value * value;
   }
-  return field;
-}
+  double deviation() const {
+    if (count_ == 0.0) return 0.0;
+    const double mean = sum_ / count_;
+    return std::sqrt(std::max(0.0, squares_ / count_ - mean * mean));
+  }
+
+ private:
+  double count_ = 0.0;
+  double sum_ = 0.0;
+  double squares_ = 0.0;
+};
 
 /// A session as a rollout needs it, all rows at once.
 struct Recording {
@@ -75,6 +88,14 @@ struct Recording {
     }
   }
 
+  /// Behind the row at which a rollout from `row` on has made all ways; not more frames than that.
+  std::uint64_t end_of_rollout(std::uint64_t row, std::uint64_t most_frames) const {
+    const std::uint64_t last = std::min<std::uint64_t>(frames.size(), row + 1 + most_frames);
+    std::uint64_t end = row + 1;
+    while (end < last && ways[end - 1] - ways[row] < kRolloutWays_m.back()) ++end;
+    return end;
+  }
+
   DrivingState state(std::uint64_t row, double counts_per_turn) const {
     const Frame& frame = frames[row];
     DrivingState state;
@@ -96,13 +117,17 @@ struct Recording {
 /// Follows the recorded path and notes errors on the way.
 class Checker {
  public:
-  Checker(const Recording& recording, std::uint64_t start) : recording_(recording) {
+  Checker(const Recording& recording, std::uint64_t start)
+      : recording_(recording), heading_rad_(recording.poses[start].heading_rad) {
     rollout_.start = start;
   }
   /// The stand-in's pose at a row. False: all ways are made.
   bool note(std::uint64_t row, const PlanarPose& pose) {
     if ((row - rollout_.start) % kPathFrames == 0) rollout_.path.push_back(pose);
     if (recording_.frames[row].angular != 0.0) straight_ = false;
+    wags_.add((pose.heading_rad - heading_rad_) / kFrame_s);
+    real_wags_.add(recording_.motions[row].turn_rad / kFrame_s);
+    heading_rad_ = pose.heading_rad;
     const double way = recording_.ways[row] - recording_.ways[rollout_.start];
     while (next_ < kRolloutWays_m.size() && way >= kRolloutWays_m.at(next_)) {
       const PlanarPose& real = recording_.poses[row];
@@ -114,11 +139,18 @@ class Checker {
     }
     return next_ < kRolloutWays_m.size();
   }
-  Rollout take() { return std::move(rollout_); }
+  Rollout take() {
+    rollout_.wags_rad_per_s = wags_.deviation();
+    rollout_.real_wags_rad_per_s = real_wags_.deviation();
+    return std::move(rollout_);
+  }
 
  private:
   const Recording& recording_;
   Rollout rollout_;
+  double heading_rad_;
+  Spread wags_;
+  Spread real_wags_;
   std::size_t next_ = 0;
   bool straight_ = true;
 };
@@ -192,25 +224,39 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
   ImuModel imu(recording.experiment.experiment.seed, imu_errors(recording.experiment));
   ImuTruth at_rest{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),
                    0.0};
+  std::optional<DriveStrides> strides;
+  std::optional<PressedDrive> pressed;
+  if (options.bearing != nullptr) {
+    if (options.drive == RolloutDrive::kTracks) {
+      throw InputError("rollouts: ground gives way where the firmware drives alone");
+    }
+    pressed.emplace(strides.emplace(session_folder));
+  }
   const std::uint64_t rows = recording.frames.size();
   const std::uint64_t begin = recording.first + 2;
+  std::uint64_t next = begin;
   std::size_t started = 0;
-  for (std::uint64_t row = 0; row < rows && started < options.starts; ++row) {
+  for (std::uint64_t row = 0; row < rows; ++row) {
     firmware.tick(recording.samples[row], output);
     SensorSample unused{};
     imu.measure(at_rest, unused);  // so that its generators stand where they stood
-    if (row < begin + (rows - begin) * started / options.starts) continue;
+    if (row < next) continue;
     ++started;
+    const std::uint64_t end = recording.end_of_rollout(row, options.most_frames);
+    next = options.starts == 0 ? std::max(end - 1, row + 1)
+                               : begin + (rows - begin) * started / options.starts;
     // A start from which not even the first way is made tells nothing.
-    const std::uint64_t end = std::min(rows, row + 1 + options.most_frames);
     if (recording.ways[end - 1] - recording.ways[row] < kRolloutWays_m[0]) continue;
     const HeightField ground = field_of(recording.session.heights_after(row + 1));
+    std::optional<HeightField> sunk;
+    if (pressed.has_value()) sunk = pressed->after(strides->ended_before(row + 1)).sunk();
     for (std::size_t i = 0; i < stand_ins.size(); ++i) {
       if (options.drive == RolloutDrive::kTracks) {
         result.by_stand_in[i].push_back(
             by_tracks(recording, row, end, ground, stand_ins[i].robot()));
       } else {
         SurrogatePlant plant(ground, model, plant_options, stand_ins[i].robot());
+        if (sunk.has_value()) plant.let_give_way(options.bearing, &*sunk);
         result.by_stand_in[i].push_back(
             by_firmware(recording, row, end, plant, firmware, output, imu, counts_per_turn));
       }

@@ -39,6 +39,9 @@ struct Rollout {
   std::uint64_t start = 0;  ///< row of the session
   std::array<RolloutCheck, kRolloutWays_m.size()> checks;
   std::vector<PlanarPose> path;  ///< ten a second, places as travelled
+  /// Standard deviations of the rate of turn until the last of the ways, or the end.
+  double wags_rad_per_s = 0.0;
+  double real_wags_rad_per_s = 0.0;
 };
 
 struct SessionRollouts {
@@ -49,11 +52,17 @@ struct SessionRollouts {
 
 struct RolloutOptions {
   RolloutDrive drive = RolloutDrive::kFirmware;
-  std::size_t starts = 20;            ///< spread evenly over what Algorithm 5 drove
+  /// Spread evenly over what Algorithm 5 drove. 0: each begins where the one before has made the
+  /// last of the ways, so that no frame is driven twice.
+  std::size_t starts = 0;
   std::uint64_t most_frames = 12000;  ///< of a rollout
+  /// The ground gives way below the tracks, by this network; null: it stays as it was at the start.
+  /// Of RolloutDrive::kFirmware alone.
+  std::shared_ptr<const BearingNetwork> bearing;
 };
 
-/// Throws InputError for a session that cannot be followed (nn/surrogate/motion_series.h).
+/// Throws InputError for a session that cannot be followed (nn/surrogate/motion_series.h), and when
+/// ground is to give way below tracks that nobody drives.
 SessionRollouts roll_out(const std::filesystem::path& session_folder,
                          const std::vector<StandIn>& stand_ins, const RolloutOptions& options);
 

@@ -50,6 +50,10 @@ class DriveStrides {
   explicit DriveStrides(const std::filesystem::path& run);
 
   std::size_t size() const { return strides_.size(); }
+  /// Whole strides that have ended before a row of the session.
+  std::size_t ended_before(std::uint64_t row) const {
+    return row < first_frame_ ? 0 : static_cast<std::size_t>((row - first_frame_) / kStrideFrames);
+  }
   const Stride& operator[](std::size_t i) const { return strides_[i]; }
   const std::array<WheelPlace, 4>& wheels() const { return wheels_; }
   const Assembly& robot() const { return robot_; }

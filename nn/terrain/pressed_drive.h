@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "nn/terrain/drive_strides.h"
 #include "nn/terrain/track_ground.h"
 
 namespace screed::nn {

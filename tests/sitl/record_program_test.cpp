@@ -45,6 +45,12 @@ class RecordProgram : public Program {
   }
 };
 
+TEST_F(RecordProgram, ADriveMayEndBeforeItsBlocksDo) {
+  const Result recorded = run("record soft.ini --set experiment.stop_after=0.3 --out run --json");
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_EQ(Json::parse(recorded.out)["training_frames"], 30);
+}
+
 TEST_F(RecordProgram, ASessionIsRecordedShownAndExported) {
   const Result recorded = run("record soft.ini --out run --json");
   ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
