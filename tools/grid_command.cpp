@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
@@ -233,8 +233,8 @@ void print_run(const GridRun& run, bool json) {
 /// Points of the progress curve, ever farther apart.
 class CurveFile {
  public:
-  explicit CurveFile(const std::string& path) : path_(path), file_(path) {
-    file_ << "cycle,units,distance,progress\n";
+  explicit CurveFile(const std::string& path) : file_(path) {
+    file_.write("cycle,units,distance,progress\n");
   }
   void add(const GridRun& run, bool last) {
     if (!last && run.cycles() < next_) return;
@@ -243,17 +243,13 @@ class CurveFile {
     std::snprintf(line, sizeof line, "%llu,%llu,%.1f,%.6f\n",
                   static_cast<unsigned long long>(now.cycle),
                   static_cast<unsigned long long>(now.units), now.distance, now.progress);
-    file_ << line;
+    file_.write(line);
     next_ = std::max(now.cycle + 1, now.cycle + now.cycle / 50);
   }
-  void finish() {
-    file_.close();
-    if (!file_.good()) throw RunError(path_ + ": cannot be written");
-  }
+  void finish() { file_.commit(); }
 
  private:
-  std::string path_;
-  std::ofstream file_;
+  AtomicFile file_;
   uint64_t next_ = 0;
 };
 

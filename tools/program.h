@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
 #include <iostream>
 
@@ -20,6 +21,7 @@ int run_program(CLI::App& app, int argc, char** argv, Body body) {
     std::cerr << app.get_name() << ": " << what << "\n";
     return code;
   };
+  std::signal(SIGXFSZ, SIG_IGN);  // past a limit of file sizes a write fails, as on a full disk
   try {
     app.parse(argc, argv);
     return body();

@@ -21,33 +21,46 @@ namespace fs = std::filesystem;
 }  // namespace
 
 // The process number keeps two programs that write the same file apart.
-AtomicFile::AtomicFile(const fs::path& path)
+PartialFile::PartialFile(const fs::path& path)
     : path_(path), partial_(path.string() + "." + std::to_string(getpid()) + ".partial") {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     cannot_write(path, "is not a regular file");
   }
-  file_ = std::fopen(partial_.c_str(), "wb");
-  if (file_ == nullptr) cannot_write(path, std::strerror(errno));
 }
 
-AtomicFile::~AtomicFile() {
-  if (file_ != nullptr) static_cast<void>(std::fclose(file_));
+PartialFile::~PartialFile() {
   if (committed_) return;
   std::error_code ignored;
   fs::remove(partial_, ignored);
 }
 
+void PartialFile::commit() {
+  std::error_code error;
+  fs::rename(partial_, path_, error);
+  if (error) cannot_write(path_, error.message());
+  committed_ = true;
+}
+
+AtomicFile::AtomicFile(const fs::path& path)
+    : place_(path), file_(std::fopen(place_.partial().c_str(), "wb")) {
+  if (file_ == nullptr) cannot_write(path, std::strerror(errno));
+}
+
+AtomicFile::~AtomicFile() {
+  if (file_ != nullptr) static_cast<void>(std::fclose(file_));
+}
+
 void AtomicFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) {
-    cannot_write(path_, std::strerror(errno));
+    cannot_write(place_.path(), std::strerror(errno));
   }
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
-    cannot_write(path_, std::strerror(errno));
+    cannot_write(place_.path(), std::strerror(errno));
   }
 }
 
@@ -56,12 +69,9 @@ void AtomicFile::commit() {
   const int closed = std::fclose(file_);  // also flushes: a full disk may show only here
   const int reason = errno;
   file_ = nullptr;
-  if (closed != 0) cannot_write(path_, std::strerror(reason));
-  if (refused) cannot_write(path_, "the disk did not take all of it");
-  std::error_code error;
-  fs::rename(partial_, path_, error);
-  if (error) cannot_write(path_, error.message());
-  committed_ = true;
+  if (closed != 0) cannot_write(place_.path(), std::strerror(reason));
+  if (refused) cannot_write(place_.path(), "the disk did not take all of it");
+  place_.commit();
 }
 
 void write_file(const fs::path& path, std::string_view text) {

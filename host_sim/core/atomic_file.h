@@ -10,6 +10,27 @@
 
 namespace screed {
 
+/// The place of a file that is being made, for libraries that open files by their names: they write
+/// to partial(), and commit() gives it the name `path`. What is not committed is removed at the end
+/// of the object; whoever writes to it has closed it by then. Throws RunError, one line with the
+/// path and the reason.
+class PartialFile {
+ public:
+  explicit PartialFile(const std::filesystem::path& path);
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+  ~PartialFile();
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& partial() const { return partial_; }
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path partial_;
+  bool committed_ = false;
+};
+
 /// A file of that name stays as it was until commit(), and for ever without it. Every function
 /// throws RunError, one line with the path and the reason, when the file cannot be written: folder
 /// missing, disk full, `path` is no regular file.
@@ -31,10 +52,8 @@ class AtomicFile {
   void commit();
 
  private:
-  std::filesystem::path path_;
-  std::filesystem::path partial_;
+  PartialFile place_;
   std::FILE* file_ = nullptr;
-  bool committed_ = false;
 };
 
 /// A whole file at once.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/session/hdf5_handle.h"
 
@@ -88,8 +89,9 @@ std::vector<T> read_table(hid_t file, const char* name, hid_t type, hsize_t (&si
 }  // namespace
 
 struct GridRecorder::File {
-  std::filesystem::path path;
-  std::filesystem::path partial;
+  explicit File(const std::filesystem::path& path) : place(path) {}
+
+  PartialFile place;  ///< the first: removed when the library has closed it
   h5::Handle file;
   h5::Handle places_table;
   h5::Handle operations_table;
@@ -98,7 +100,6 @@ struct GridRecorder::File {
   hsize_t operation_rows = 0;
   std::vector<uint32_t> places;
   std::vector<uint8_t> operations;
-  bool finished = false;
 
   /// Errors of the library as one line with the file's name.
   template <class Work>
@@ -106,16 +107,16 @@ struct GridRecorder::File {
     try {
       work();
     } catch (const h5::Hdf5Failure& failure) {
-      throw RunError(path.string() + ": " + failure.what());
+      throw RunError(place.path().string() + ": " + failure.what());
     }
   }
 
   void add_places(const GridRun& run) {
     const auto columns = static_cast<uint32_t>(run.world().width());
     for (size_t i = 0; i < agents; ++i) {
-      const GridPlace place = run.swarm().view(i).place;
-      places.push_back(static_cast<uint32_t>(run.world().y(place)) * columns +
-                       static_cast<uint32_t>(run.world().x(place)));
+      const GridPlace at = run.swarm().view(i).place;
+      places.push_back(static_cast<uint32_t>(run.world().y(at)) * columns +
+                       static_cast<uint32_t>(run.world().x(at)));
     }
   }
 
@@ -127,18 +128,17 @@ struct GridRecorder::File {
 
 GridRecorder::GridRecorder(const std::filesystem::path& path, const GridRun& run,
                            const std::string& program_version)
-    : file_(std::make_unique<File>()) {
+    : file_(std::make_unique<File>(path)) {
   File& f = *file_;
-  f.path = path;
-  f.partial = path.string() + ".partial";
   f.agents = run.swarm().size();
   if (std::filesystem::exists(path)) {
     throw InputError(path.string() + ": exists already; name another file to record to");
   }
   h5::quiet();
   f.guarded([&] {
-    f.file = h5::Handle(H5Fcreate(f.partial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                        H5Fclose, "cannot create the file");
+    f.file =
+        h5::Handle(H5Fcreate(f.place.partial().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Fclose, "cannot create the file");
     const hid_t id = f.file.get();
     h5::write_attribute(id, "format", std::string(kFormat));
     h5::write_attribute(id, "format_version", kFormatVersion);
@@ -153,14 +153,7 @@ GridRecorder::GridRecorder(const std::filesystem::path& path, const GridRun& run
   f.add_places(run);
 }
 
-GridRecorder::~GridRecorder() {
-  if (file_->finished || !file_->file.is_open()) return;
-  file_->places_table.reset();
-  file_->operations_table.reset();
-  file_->file.reset();
-  std::error_code ignored;
-  std::filesystem::remove(file_->partial, ignored);
-}
+GridRecorder::~GridRecorder() = default;
 
 void GridRecorder::add_cycle(const GridRun& run) {
   File& f = *file_;
@@ -182,10 +175,7 @@ void GridRecorder::finish(const GridRun& run) {
     f.operations_table.close("cannot save");
     f.file.close("cannot save");
   });
-  std::error_code error;
-  std::filesystem::rename(f.partial, f.path, error);
-  if (error) throw RunError(f.path.string() + ": " + error.message());
-  f.finished = true;
+  f.place.commit();
 }
 
 GridReplay::GridReplay(const std::filesystem::path& path) : path_(path) {

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <thread>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
 
@@ -116,7 +117,7 @@ class ResultsFile {
   }
 
   void append(const Task& task, const GridResult& result) {
-    write_all(descriptor_, line_of(points_, task, result));
+    write_all(line_of(points_, task, result));
   }
 
   /// Rewrites the file in order; complete or not at all.
@@ -127,18 +128,7 @@ class ResultsFile {
         if (results[point][run]) text += line_of(points_, {point, run}, *results[point][run]);
       }
     }
-    const std::filesystem::path fresh = path_.string() + ".new";
-    const int descriptor = open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor < 0) fail("cannot be rewritten");
-    try {
-      write_all(descriptor, text);
-    } catch (...) {
-      close(descriptor);
-      unlink(fresh.c_str());
-      throw;
-    }
-    if (close(descriptor) != 0) fail("cannot be rewritten");
-    std::filesystem::rename(fresh, path_);
+    write_file(path_, text);
   }
 
  private:
@@ -151,10 +141,10 @@ class ResultsFile {
   void restart() const {
     if (ftruncate(descriptor_, 0) != 0) fail("cannot be cut");
     seek_end();
-    write_all(descriptor_, head_);
+    write_all(head_);
   }
-  void write_all(int descriptor, const std::string& text) const {
-    const ssize_t written = write(descriptor, text.data(), text.size());
+  void write_all(const std::string& text) const {
+    const ssize_t written = write(descriptor_, text.data(), text.size());
     if (written < 0 || static_cast<size_t>(written) != text.size()) fail("cannot be written");
   }
 

@@ -5,8 +5,10 @@
 #include <librsvg/rsvg.h>
 
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
@@ -23,6 +25,11 @@ struct Release {
   if (error != nullptr) what += std::string(": ") + error->message;
   g_clear_error(&error);
   throw RunError(what);
+}
+
+cairo_status_t put(void* stream, const unsigned char* bytes, unsigned int size) {
+  const bool taken = std::fwrite(bytes, 1, size, static_cast<std::FILE*>(stream)) == size;
+  return taken ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
 }  // namespace
@@ -46,10 +53,13 @@ void write_svg_as_png(const std::filesystem::path& path, const std::string& svg,
   if (rsvg_handle_render_document(picture.get(), cairo.get(), &all, &error) == 0) {
     fail(path, error);
   }
-  const cairo_status_t status = cairo_surface_write_to_png(surface.get(), path.c_str());
+  AtomicFile file(path);
+  const cairo_status_t status =
+      cairo_surface_write_to_png_stream(surface.get(), put, file.stream());
   if (status != CAIRO_STATUS_SUCCESS) {
     throw RunError(path.string() + ": cannot be written: " + cairo_status_to_string(status));
   }
+  file.commit();
 }
 
 }  // namespace screed

@@ -2,7 +2,6 @@
 #include "host_sim/telemetry/csv_tables.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 
 #include "host_sim/core/errors.h"
@@ -46,10 +45,6 @@ char* put_text(char* at, const char* text) {
   return at;
 }
 
-[[noreturn]] void fail(const std::string& path) {
-  throw RunError(path + ": cannot be written: " + std::strerror(errno));
-}
-
 }  // namespace
 
 CsvTables::CsvTables(const std::filesystem::path& folder, bool numbers)
@@ -61,8 +56,7 @@ CsvTables::CsvTables(const std::filesystem::path& folder, bool numbers)
 
 void CsvTables::open(Table& table, const MessageInfo& message) const {
   table.path = (folder_ / (std::string(message.title) + ".csv")).string();
-  table.file.reset(std::fopen(table.path.c_str(), "wb"));
-  if (table.file == nullptr) fail(table.path);
+  table.file = std::make_unique<AtomicFile>(table.path);
   table.buffer.resize(kBufferBytes);
   std::string header = "time [s],robot";
   table.longest_row = 2 * kLongestNumber;
@@ -83,9 +77,7 @@ void CsvTables::open(Table& table, const MessageInfo& message) const {
 }
 
 void CsvTables::flush(Table& table) {
-  if (std::fwrite(table.buffer.data(), 1, table.used, table.file.get()) != table.used) {
-    fail(table.path);
-  }
+  table.file->write(std::string_view(table.buffer.data(), table.used));
   table.used = 0;
 }
 
@@ -115,8 +107,10 @@ std::vector<std::string> CsvTables::finish() {
   for (Table& table : tables_) {
     if (table.file == nullptr) continue;
     flush(table);
-    if (std::fclose(table.file.release()) != 0) fail(table.path);
     names.push_back(table.path);
+  }
+  for (const Table& table : tables_) {
+    if (table.file != nullptr) table.file->commit();
   }
   return names;
 }

@@ -7,12 +7,12 @@
 // names, flags as 0 and 1.
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/telemetry/log_decoder.h"
 
 namespace screed {
@@ -26,16 +26,13 @@ class CsvTables {
   /// Throws RunError when a file cannot be written.
   void add(const DecodedFrame& frame);
 
-  /// Writes what is left; RunError as above. Returns the names of the files, in the order of the
-  /// schema.
+  /// Writes what is left and gives the tables their names, which they do not have before; RunError
+  /// as above. Returns the names of the files, in the order of the schema.
   std::vector<std::string> finish();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   struct Table {
-    std::unique_ptr<std::FILE, Closer> file;
+    std::unique_ptr<AtomicFile> file;
     std::string path;
     std::vector<char> buffer;
     size_t used = 0;

@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -102,9 +101,7 @@ std::string json_of(const DecodedFrame& frame) {
 
 }  // namespace
 
-McapFile::McapFile(const std::string& path)
-    : path_(path), file_(std::fopen(path.c_str(), "wb")), has_schema_(messages().size(), false) {
-  if (file_ == nullptr) throw RunError(path + ": cannot be written: " + std::strerror(errno));
+McapFile::McapFile(const std::string& path) : file_(path), has_schema_(messages().size(), false) {
   std::string header;
   put_text(header, "");  // no profile
   put_text(header, "screed");
@@ -112,9 +109,7 @@ McapFile::McapFile(const std::string& path)
 }
 
 void McapFile::write(const std::string& bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) {
-    throw RunError(path_ + ": cannot be written: " + std::strerror(errno));
-  }
+  file_.write(bytes);
   place_ += bytes.size();
 }
 
@@ -283,9 +278,7 @@ void McapFile::finish() {
   put(footer, summary_offsets);
   put(footer, uint32_t{0});  // no checksum of the summary
   write(record(kFooter, footer) + std::string(kMagic, sizeof kMagic));
-  if (std::fclose(file_.release()) != 0) {
-    throw RunError(path_ + ": cannot be written: " + std::strerror(errno));
-  }
+  file_.commit();
 }
 
 }  // namespace screed

@@ -5,12 +5,11 @@
 // messages and statistics are indexed, so that readers can seek.
 #pragma once
 
-#include <cstdio>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/telemetry/log_decoder.h"
 
 namespace screed {
@@ -22,13 +21,10 @@ class McapFile {
 
   void add(const DecodedFrame& frame);
 
-  /// Index and end of the file; nothing may be added afterwards.
+  /// Index and end of the file, which has its name from then on; nothing may be added afterwards.
   void finish();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   struct Channel {
     uint16_t id = 0;
     const MessageInfo* message = nullptr;
@@ -52,8 +48,7 @@ class McapFile {
   [[nodiscard]] std::string schema_record(uint16_t id, const MessageInfo& message) const;
   [[nodiscard]] std::string channel_record(const Channel& channel) const;
 
-  std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  AtomicFile file_;
   uint64_t place_ = 0;  ///< bytes written
   std::map<uint16_t, Channel> channels_;
   std::vector<bool> has_schema_;  ///< by the message's place in the schema

@@ -94,5 +94,13 @@ TEST_F(Program, GridReplaysNoHalfARecording) {
   expect_refused(run("grid --replay half.h5 --headless"), 2, {"half.h5"});
 }
 
+TEST_F(Program, GridLeavesNothingOnAFullDisk) {
+  for (const std::string what : {"--record run.h5", "--curve curve.csv"}) {
+    const Result result = run(small("--quiet " + what), "ulimit -f 0;");
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_TRUE(std::filesystem::is_empty(root_)) << what;
+  }
+}
+
 }  // namespace
 }  // namespace screed::testing

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "tests/file_size_limit.h"
 #include "tests/temp_folder.h"
 
 namespace screed {
@@ -215,26 +216,6 @@ TEST_F(GreyImageTest, SaysWhatCannotBeWritten) {
   expect_unwritable(pipe);
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
-
-/// Files cannot grow past `bytes` while it lives: what a full disk looks like to a program.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limited{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limited);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
 
 TEST_F(GreyImageTest, KeepsTheOldFileWhenTheDiskIsFull) {
   const fs::path path = folder_ / "picture.png";

@@ -3,11 +3,11 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/telemetry/candump_log.h"
 #include "tools/telemetry_lab/corruption.h"
@@ -28,13 +28,12 @@ uint64_t number(const std::string& text) {
 }
 
 void write_log(uint64_t count, const std::string& path) {
-  std::ofstream out(path, std::ios::binary);
+  AtomicFile out(path);
   RandomFrames frames(1);
   for (uint64_t i = 0; i < count; ++i) {
-    out << candump_line(1700000000000000U + i * 8500, "can0", frames.next());
+    out.write(candump_line(1700000000000000U + i * 8500, "can0", frames.next()));
   }
-  out.close();
-  if (!out) throw RunError(path + ": cannot be written");
+  out.commit();
 }
 
 int damage(uint64_t lines) {

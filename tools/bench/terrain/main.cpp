@@ -7,11 +7,12 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/picture/line_chart.h"
 #include "tools/bench/terrain/terrain_bench.h"
@@ -92,7 +93,7 @@ void print_row(const Row& row) {
 }
 
 void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) {
-  std::ofstream file(path);
+  std::ostringstream file;
   file << "terrain,bed_m,threads,elements,frames,wall_ms,processor_ms,memory_mb\n";
   for (const Row& row : rows) {
     const Measurement& m = row.measured;
@@ -100,8 +101,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) 
          << m.elements << ',' << m.frames << ',' << m.wall_ms << ',' << m.processor_ms << ','
          << m.memory_mb << '\n';
   }
-  file.close();
-  if (!file) throw RunError(path.string() + ": cannot be written");
+  write_file(path, file.str());
 }
 
 /// One group of bars a bed, one bar a terrain and number of threads. Nothing when no row passes.

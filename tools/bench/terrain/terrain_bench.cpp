@@ -10,8 +10,10 @@
 #include <future>
 #include <memory>
 #include <numbers>
+#include <sstream>
 
 #include "firmware/robot/robot.h"
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/board_table.h"
 #include "host_sim/experiment/experiment.h"
@@ -110,13 +112,12 @@ std::filesystem::path write_bed(const std::filesystem::path& folder) {
   if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
   write_hill(folder / "hill.png");
   std::filesystem::path bed = folder / "bed.ini";
-  std::ofstream file(bed);
-  file << "; The bed of `make bench-terrain`: one hill, and the robot going round on it.\n"
+  std::ostringstream text;
+  text << "; The bed of `make bench-terrain`: one hill, and the robot going round on it.\n"
        << "[map]\nfilename = hill.png\nscale = " << number(kRelief_m)
        << "\n[experiment]\nname = bench_terrain\nalgorithm = drive\nduration = 3600\n"
        << "[drive]\nspeed = 0.1\nyaw_rate = 20\n";
-  file.close();
-  if (!file) throw RunError(bed.string() + ": cannot be written");
+  write_file(bed, text.str());
   return bed;
 }
 
