@@ -17,6 +17,7 @@
 #include "host_sim/vehicle/chain_track.h"
 #include "host_sim/vehicle/drive_shaft.h"
 #include "host_sim/vehicle/gear_motor.h"
+#include "host_sim/vehicle/hull.h"
 #include "host_sim/vehicle/ode_world.h"
 #include "host_sim/vehicle/running_gear.h"
 #include "host_sim/vehicle/vehicle_state.h"
@@ -83,14 +84,8 @@ class Vehicle : public VehicleState {
  private:
   struct Carrier {  // one ODE body
     dBodyID body;
-    Eigen::Isometry3d rest;               // its centre of mass in the frame of Body, joints at zero
-    double radius;                        // of a sphere round it, for the broad phase
-    std::vector<Eigen::Vector3d> points;  // of its hull, from the centre of mass
-    std::vector<Eigen::Vector3d> bristles;
-    ContactLaw law;
-    std::vector<Footprint> boxes;              // of the hull, on soil
-    std::vector<Eigen::Isometry3d> box_poses;  // in the frame of the centre of mass
-    std::vector<ContactMemory> box_memories;
+    Eigen::Isometry3d rest;  // its centre of mass in the frame of Body, joints at zero
+    Hull hull;
     BodyMemory soil_memory;
     double mass;
     Eigen::Matrix3d inverse_inertia;  // in its own axes
@@ -121,11 +116,6 @@ class Vehicle : public VehicleState {
                     const VehicleOptions& options);
   void add_hinges(const Assembly& assembly);
   void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
-  static void hull_contact(Carrier& carrier, const HeightField& ground, const CarrierMotion& motion,
-                           double dt, Wrench& wrench);
-  static void hull_contact(Carrier& carrier, ParticleBed& particles, const CarrierMotion& motion,
-                           double dt, Wrench& wrench);
-  void hull_footprints(Carrier& carrier, const SoilBed& soil, const CarrierMotion& motion);
   template <class Ground>
   void ground_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
                       Wrench& wrench);
