@@ -113,24 +113,24 @@ class Calibration {
 
   void draw(TextCanvas& page) const {
     page.text(0, 0, "screed calibrate   " + link_->name() + " " + link_->status().text,
-              TextStyle::kTitle);
-    page.text(0, 2, collector_.advice(), TextStyle::kGood);
+              CellStyle::kTitle);
+    page.text(0, 2, collector_.advice(), CellStyle::kGood);
     const std::optional<Position> held = collector_.position();
     int y = 4;
     for (size_t i = 0; i < kPositions; ++i, ++y) {
       const auto position = static_cast<Position>(i);
       const bool done = collector_.position_done(position);
-      page.text(2, y, done ? "[x]" : "[ ]", done ? TextStyle::kGood : TextStyle::kNormal);
+      page.text(2, y, done ? "[x]" : "[ ]", done ? CellStyle::kGood : CellStyle::kNormal);
       const int x = page.text(6, y, position_name(position));
       if (held == position)
-        page.text(x + 2, y, collector_.at_rest() ? "<- still" : "<- moving", TextStyle::kWarning);
+        page.text(x + 2, y, collector_.at_rest() ? "<- still" : "<- moving", CellStyle::kWarning);
     }
     char text[96];
     std::snprintf(text, sizeof text, "magnetometer: %zu samples, %.0f %% of all directions",
                   collector_.mag_samples().size(), collector_.mag_coverage() * 100.0);
     page.text(2, ++y, text);
     draw_field(page, y + 1);
-    page.text(0, page.height() - 1, "q give up", TextStyle::kDim);
+    page.text(0, page.height() - 1, "q give up", CellStyle::kDim);
   }
 
   /// Length of the field as read: a straight line once it is calibrated.

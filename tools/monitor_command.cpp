@@ -134,7 +134,7 @@ class Monitor {
       session_.pump(kPump);
       if (link_->status().text != link_text) {
         link_text = link_->status().text;
-        note(link_->status().up ? TextStyle::kGood : TextStyle::kAlarm, "link: " + link_text);
+        note(link_->status().up ? CellStyle::kGood : CellStyle::kAlarm, "link: " + link_text);
       }
       follow_command();
       while (const std::optional<int> key = screen.key()) quit = quit || !press(*key);
@@ -144,7 +144,7 @@ class Monitor {
     }
   }
 
-  void note(TextStyle style, const std::string& words) {
+  void note(CellStyle style, const std::string& words) {
     const auto robot = fleet_.robots().find(robot_);
     if (robot != fleet_.robots().end()) robot->second.note(wall_clock_us(), style, words);
   }
@@ -154,8 +154,8 @@ class Monitor {
     if (!commanded_ || session_.waiting()) return;
     commanded_ = false;
     const std::optional<CommandAnswer> answer = session_.take_answer();
-    if (!answer.has_value()) note(TextStyle::kAlarm, "no answer to the command");
-    if (answer.has_value() && !answer->done()) note(TextStyle::kWarning, answer->words());
+    if (!answer.has_value()) note(CellStyle::kAlarm, "no answer to the command");
+    if (answer.has_value() && !answer->done()) note(CellStyle::kWarning, answer->words());
   }
 
   void command(CommandOp op) {
@@ -185,7 +185,7 @@ class Monitor {
         break;
       case ' ':
         session_.emergency_stop();
-        note(TextStyle::kAlarm, "emergency stop sent");
+        note(CellStyle::kAlarm, "emergency stop sent");
         break;
       case '+':
         window_s_ = std::max(window_s_ / 2.0, 7.5);

@@ -14,16 +14,16 @@ namespace {
 constexpr short kBackground = -1;
 
 /// Colour pairs are numbered as the styles.
-attr_t attribute(TextStyle style) {
+attr_t attribute(CellStyle style) {
   const auto pair = static_cast<attr_t>(COLOR_PAIR(static_cast<int>(style)));
   switch (style) {
-    case TextStyle::kNormal:
+    case CellStyle::kNormal:
       return A_NORMAL;
-    case TextStyle::kDim:
+    case CellStyle::kDim:
       return A_DIM;
-    case TextStyle::kTitle:
+    case CellStyle::kTitle:
       return A_BOLD;
-    case TextStyle::kAlarm:
+    case CellStyle::kAlarm:
       return pair | A_BOLD;
     default:
       return pair;
@@ -40,10 +40,10 @@ TerminalScreen::TerminalScreen() {
     throw InputError("no terminal to draw on (TERM); use --plain");
   start_color();
   use_default_colors();
-  init_pair(static_cast<short>(TextStyle::kGood), COLOR_GREEN, kBackground);
-  init_pair(static_cast<short>(TextStyle::kWarning), COLOR_YELLOW, kBackground);
-  init_pair(static_cast<short>(TextStyle::kAlarm), COLOR_RED, kBackground);
-  init_pair(static_cast<short>(TextStyle::kCurve), COLOR_CYAN, kBackground);
+  init_pair(static_cast<short>(CellStyle::kGood), COLOR_GREEN, kBackground);
+  init_pair(static_cast<short>(CellStyle::kWarning), COLOR_YELLOW, kBackground);
+  init_pair(static_cast<short>(CellStyle::kAlarm), COLOR_RED, kBackground);
+  init_pair(static_cast<short>(CellStyle::kCurve), COLOR_CYAN, kBackground);
   cbreak();
   noecho();
   curs_set(0);

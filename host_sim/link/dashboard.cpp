@@ -33,10 +33,10 @@ std::string unit_of(std::string_view path) {
   return signal.unit[0] == '\0' ? "" : std::string(" ") + signal.unit;
 }
 
-TextStyle style_of_state(const std::string& state) {
-  if (state == "running") return TextStyle::kGood;
-  if (state == "fault") return TextStyle::kAlarm;
-  return TextStyle::kWarning;
+CellStyle style_of_state(const std::string& state) {
+  if (state == "running") return CellStyle::kGood;
+  if (state == "fault") return CellStyle::kAlarm;
+  return CellStyle::kWarning;
 }
 
 /// A box of values that is filled line by line.
@@ -46,8 +46,8 @@ class Panel {
       : page_(page), x_(x + 2), y_(y + 1) {
     page_.box(x, y, kColumn, height, title);
   }
-  void line(std::string_view label, std::string_view value, TextStyle style = TextStyle::kNormal) {
-    page_.text(x_, y_, label, TextStyle::kDim);
+  void line(std::string_view label, std::string_view value, CellStyle style = CellStyle::kNormal) {
+    page_.text(x_, y_, label, CellStyle::kDim);
     page_.text(x_ + kLabel, y_, value, style);
     ++y_;
   }
@@ -59,7 +59,7 @@ class Panel {
            double warn) {
     const double value = robot.value(path).value_or(0.0);
     page_.centred_bar(x_ + kLabel + 13, y_, 13, value / full,
-                      std::abs(value) >= warn ? TextStyle::kWarning : TextStyle::kGood);
+                      std::abs(value) >= warn ? CellStyle::kWarning : CellStyle::kGood);
     signal(label, robot, path);
   }
 
@@ -70,11 +70,11 @@ class Panel {
 };
 
 void draw_head(TextCanvas& page, const DashboardInput& input, const RobotView* robot) {
-  int x = page.text(0, 0, "screed monitor  ", TextStyle::kTitle);
+  int x = page.text(0, 0, "screed monitor  ", CellStyle::kTitle);
   x = page.text(x, 0, input.link_name + " ");
-  x = page.text(x, 0, input.link.text, input.link.up ? TextStyle::kGood : TextStyle::kAlarm);
+  x = page.text(x, 0, input.link.text, input.link.up ? CellStyle::kGood : CellStyle::kAlarm);
   if (robot == nullptr) {
-    page.text(x, 0, "   no robot heard yet", TextStyle::kWarning);
+    page.text(x, 0, "   no robot heard yet", CellStyle::kWarning);
     return;
   }
   x = page.text(x, 0, "   " + input.robot.text() + " ");
@@ -83,11 +83,11 @@ void draw_head(TextCanvas& page, const DashboardInput& input, const RobotView* r
   x = page.text(x, 0, state, style_of_state(state));
   if (stale) {
     const double age_s = static_cast<double>(input.now_us - robot->last_us()) * 1e-6;
-    x = page.text(x, 0, "  SILENT for " + number("%.1f s", age_s), TextStyle::kAlarm);
+    x = page.text(x, 0, "  SILENT for " + number("%.1f s", age_s), CellStyle::kAlarm);
   }
   if (input.fleet->robots().size() > 1) {
     page.text(x, 0, "   (" + std::to_string(input.fleet->robots().size()) + " robots, Tab)",
-              TextStyle::kDim);
+              CellStyle::kDim);
   }
 }
 
@@ -140,9 +140,9 @@ void draw_values(TextCanvas& page, const DashboardInput& input, const RobotView&
                  robot.text("leveling.state") + (stuck   ? ", STUCK"
                                                  : slips ? ", tracks slip"
                                                          : ""),
-                 stuck   ? TextStyle::kAlarm
-                 : slips ? TextStyle::kWarning
-                         : TextStyle::kTitle);
+                 stuck   ? CellStyle::kAlarm
+                 : slips ? CellStyle::kWarning
+                         : CellStyle::kTitle);
   algorithm.line("speed, turn", robot.text("leveling.speed") + " mm/s, " +
                                     robot.text("leveling.turn_rate") + " deg/s");
   algorithm.line("peaks", robot.text("leveling.peaks"));
@@ -155,7 +155,7 @@ void draw_values(TextCanvas& page, const DashboardInput& input, const RobotView&
   link.line("up",
             std::string(alive ? "alive" : "the robot hears nobody") +
                 (up.has_value() && alive ? number(", hears %.0f %%", *up) : ""),
-            alive ? TextStyle::kGood : TextStyle::kWarning);
+            alive ? CellStyle::kGood : CellStyle::kWarning);
   link.line("refused", refused_text(input));
   const std::optional<int> rssi_dbm = robot.rssi_dbm();
   link.line("strength", rssi_dbm.has_value() ? std::to_string(*rssi_dbm) + " dBm" : "-");
@@ -165,12 +165,12 @@ void draw_values(TextCanvas& page, const DashboardInput& input, const RobotView&
   if (words.empty()) faults.line("none", "");
   for (size_t i = 0; i < words.size() && i < kHeight - 2; ++i) {
     const bool more = i == kHeight - 3 && words.size() > i + 1;
-    faults.line("", "", TextStyle::kAlarm);
+    faults.line("", "", CellStyle::kAlarm);
     const int x = (place - 1) % columns * kColumn + 2;
     const int y = kTop + (place - 1) / columns * kHeight + 1 + static_cast<int>(i);
     const std::string line = more ? "and " + std::to_string(words.size() - i) + " more" : words[i];
     page.text(x, y, from_utf8(line).size() > kColumn - 4 ? line.substr(0, kColumn - 5) + "…" : line,
-              TextStyle::kAlarm);
+              CellStyle::kAlarm);
   }
 }
 
@@ -193,12 +193,12 @@ int draw_curve(TextCanvas& page, int y, const DashboardInput& input, const Robot
   }
   page.box(0, y, page.width(), kCurveHeight + 2,
            path + unit_of(path) + ", " + number("%.0f s", input.window_s));
-  page.text(2, y + 1, number("%.5g", high), TextStyle::kDim);
-  page.text(2, y + kCurveHeight, number("%.5g", low), TextStyle::kDim);
+  page.text(2, y + 1, number("%.5g", high), CellStyle::kDim);
+  page.text(2, y + kCurveHeight, number("%.5g", low), CellStyle::kDim);
   page.curve(kAxis, y + 1, page.width() - kAxis - 2, kCurveHeight, points,
              {-input.window_s, 0.0, low, high});
   if (!points.empty())
-    page.text(page.width() - 14, y, number(" %.5g ", points.back().y), TextStyle::kTitle);
+    page.text(page.width() - 14, y, number(" %.5g ", points.back().y), CellStyle::kTitle);
   return y + kCurveHeight + 2;
 }
 
@@ -208,7 +208,7 @@ void draw_dashboard(TextCanvas& page, const DashboardInput& input) {
   const auto found = input.fleet->robots().find(input.robot);
   const RobotView* const robot = found == input.fleet->robots().end() ? nullptr : &found->second;
   draw_head(page, input, robot);
-  page.text(0, page.height() - 1, input.footer, TextStyle::kDim);
+  page.text(0, page.height() - 1, input.footer, CellStyle::kDim);
   if (robot == nullptr) return;
   draw_values(page, input, *robot);
 
@@ -220,7 +220,7 @@ void draw_dashboard(TextCanvas& page, const DashboardInput& input) {
   }
   for (const RobotView::Happening& happening : robot->happenings()) {
     if (y >= page.height() - 1) break;
-    const int x = page.text(0, y, clock_text(happening.time_us) + "  ", TextStyle::kDim);
+    const int x = page.text(0, y, clock_text(happening.time_us) + "  ", CellStyle::kDim);
     page.text(x, y++, happening.words, happening.style);
   }
 }

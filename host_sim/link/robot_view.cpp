@@ -72,7 +72,7 @@ void RobotView::take(const LinkFrame& frame, const MessageInfo& message) {
     samples.pop_back();
 }
 
-void RobotView::note(uint64_t time_us, TextStyle style, std::string words) {
+void RobotView::note(uint64_t time_us, CellStyle style, std::string words) {
   happenings_.push_front({time_us, style, std::move(words)});
   if (happenings_.size() > kMostHappenings) happenings_.pop_back();
 }
@@ -84,31 +84,31 @@ void RobotView::look_for_changes(const MessageInfo& message, const Sample* befor
     const SignalInfo& state = *message.signal("state");
     const int64_t state_now = state.raw(data);
     if (before == nullptr || state.raw(before->data.data()) != state_now)
-      note(now.time_us, TextStyle::kTitle, "state: " + spoken(state.text(state_now)));
+      note(now.time_us, CellStyle::kTitle, "state: " + spoken(state.text(state_now)));
     for (const SignalInfo& flag : message.signals) {
       if (flag.flags[0] == '\0') continue;
       const bool is = flag.raw(data) != 0;
       const bool was = before != nullptr && flag.raw(before->data.data()) != 0;
-      if (is && !was) note(now.time_us, TextStyle::kAlarm, "fault: " + fault_words(flag));
-      if (!is && was) note(now.time_us, TextStyle::kGood, "fault gone: " + spoken(flag.name));
+      if (is && !was) note(now.time_us, CellStyle::kAlarm, "fault: " + fault_words(flag));
+      if (!is && was) note(now.time_us, CellStyle::kGood, "fault gone: " + spoken(flag.name));
     }
     const SignalInfo* const epoch = message.signal("boot_epoch");
     if (before != nullptr && epoch != nullptr &&
         epoch->raw(before->data.data()) != epoch->raw(data))
-      note(now.time_us, TextStyle::kWarning,
+      note(now.time_us, CellStyle::kWarning,
            "the robot restarted, start " + epoch->text(epoch->raw(data)));
   } else if (message.id == find_message("COMMAND_ACK")->id) {
     const SignalInfo& result = *message.signal("result");
     const SignalInfo& op = *message.signal("op");
     const bool done = result.raw(data) == 0;
-    note(now.time_us, done ? TextStyle::kGood : TextStyle::kWarning,
+    note(now.time_us, done ? CellStyle::kGood : CellStyle::kWarning,
          spoken(op.text(op.raw(data))) + ": " + spoken(result.text(result.raw(data))));
   } else if (message.id == find_message("EVENT")->id) {
     const SignalInfo& code = *message.signal("code");
     // A change of state is told by the heartbeat, in full.
     if (code.raw(data) == static_cast<int64_t>(message::EventCode::kState)) return;
     const SignalInfo& argument = *message.signal("argument");
-    note(now.time_us, TextStyle::kNormal,
+    note(now.time_us, CellStyle::kNormal,
          "event: " + spoken(code.text(code.raw(data))) + ", " + argument.text(argument.raw(data)));
   }
 }

@@ -33,7 +33,7 @@ class RobotView {
 
   struct Happening {
     uint64_t time_us;
-    TextStyle style;
+    CellStyle style;
     std::string words;
   };
 
@@ -41,7 +41,7 @@ class RobotView {
   void take(const LinkFrame& frame, const MessageInfo& message);
 
   /// Notes something in the list of what happened.
-  void note(uint64_t time_us, TextStyle style, std::string words);
+  void note(uint64_t time_us, CellStyle style, std::string words);
 
   /// Newest first; empty when the message never came.
   const std::deque<Sample>& history(const MessageInfo& message) const;

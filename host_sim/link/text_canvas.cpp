@@ -52,40 +52,40 @@ TextCanvas::TextCanvas(int width, int height)
       height_(std::max(height, 1)),
       cells_(static_cast<size_t>(width_) * static_cast<size_t>(height_)) {}
 
-void TextCanvas::put(int x, int y, char32_t character, TextStyle style) {
+void TextCanvas::put(int x, int y, char32_t character, CellStyle style) {
   if (x < 0 || x >= width_ || y < 0 || y >= height_) return;
   cells_[index(x, y)] = {character, style};
 }
 
-int TextCanvas::text(int x, int y, std::string_view words, TextStyle style) {
+int TextCanvas::text(int x, int y, std::string_view words, CellStyle style) {
   for (const char32_t character : from_utf8(words)) put(x++, y, character, style);
   return x;
 }
 
 void TextCanvas::box(int x, int y, int width, int height, std::string_view title) {
   for (int i = 1; i < width - 1; ++i) {
-    put(x + i, y, U'─', TextStyle::kDim);
-    put(x + i, y + height - 1, U'─', TextStyle::kDim);
+    put(x + i, y, U'─', CellStyle::kDim);
+    put(x + i, y + height - 1, U'─', CellStyle::kDim);
   }
   for (int i = 1; i < height - 1; ++i) {
-    put(x, y + i, U'│', TextStyle::kDim);
-    put(x + width - 1, y + i, U'│', TextStyle::kDim);
+    put(x, y + i, U'│', CellStyle::kDim);
+    put(x + width - 1, y + i, U'│', CellStyle::kDim);
   }
-  put(x, y, U'┌', TextStyle::kDim);
-  put(x + width - 1, y, U'┐', TextStyle::kDim);
-  put(x, y + height - 1, U'└', TextStyle::kDim);
-  put(x + width - 1, y + height - 1, U'┘', TextStyle::kDim);
-  text(x + 2, y, " " + std::string(title) + " ", TextStyle::kTitle);
+  put(x, y, U'┌', CellStyle::kDim);
+  put(x + width - 1, y, U'┐', CellStyle::kDim);
+  put(x, y + height - 1, U'└', CellStyle::kDim);
+  put(x + width - 1, y + height - 1, U'┘', CellStyle::kDim);
+  text(x + 2, y, " " + std::string(title) + " ", CellStyle::kTitle);
 }
 
-void TextCanvas::centred_bar(int x, int y, int width, double value, TextStyle style) {
+void TextCanvas::centred_bar(int x, int y, int width, double value, CellStyle style) {
   const int middle = width / 2;
-  for (int i = 0; i < width; ++i) put(x + i, y, U'·', TextStyle::kDim);
+  for (int i = 0; i < width; ++i) put(x + i, y, U'·', CellStyle::kDim);
   const int reach = static_cast<int>(std::lround(std::clamp(value, -1.0, 1.0) * middle));
   for (int i = std::min(reach, 0); i <= std::max(reach, 0); ++i) {
     if (i != 0) put(x + middle + i, y, U'█', style);
   }
-  put(x + middle, y, U'│', TextStyle::kNormal);
+  put(x + middle, y, U'│', CellStyle::kNormal);
 }
 
 void TextCanvas::curve(int x, int y, int width, int height, std::span<const CurvePoint> points,
@@ -130,7 +130,7 @@ void TextCanvas::curve(int x, int y, int width, int height, std::span<const Curv
     for (int column = 0; column < width; ++column) {
       const uint8_t set =
           bits[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)];
-      if (set != 0) put(x + column, y + row, kBraille + set, TextStyle::kCurve);
+      if (set != 0) put(x + column, y + row, kBraille + set, CellStyle::kCurve);
     }
   }
 }

@@ -10,11 +10,11 @@
 
 namespace screed {
 
-enum class TextStyle : unsigned char { kNormal, kDim, kTitle, kGood, kWarning, kAlarm, kCurve };
+enum class CellStyle : unsigned char { kNormal, kDim, kTitle, kGood, kWarning, kAlarm, kCurve };
 
 struct TextCell {
   char32_t character = U' ';
-  TextStyle style = TextStyle::kNormal;
+  CellStyle style = CellStyle::kNormal;
 };
 
 struct CurvePoint {
@@ -38,11 +38,11 @@ class TextCanvas {
   const TextCell& at(int x, int y) const { return cells_[index(x, y)]; }
 
   /// Writes UTF-8; what lies outside of the page is cut. Returns the column behind the text.
-  int text(int x, int y, std::string_view words, TextStyle style = TextStyle::kNormal);
+  int text(int x, int y, std::string_view words, CellStyle style = CellStyle::kNormal);
   /// A frame round width x height cells, its title in the upper edge.
   void box(int x, int y, int width, int height, std::string_view title);
   /// A bar from the middle of `width` cells towards value, -1..1 (beyond: full).
-  void centred_bar(int x, int y, int width, double value, TextStyle style);
+  void centred_bar(int x, int y, int width, double value, CellStyle style);
   /// A curve in width x height cells, 2 x 4 dots each; neighbouring points are joined. A point
   /// outside of the range lies on its edge; a NaN is a gap.
   void curve(int x, int y, int width, int height, std::span<const CurvePoint> points,
@@ -55,7 +55,7 @@ class TextCanvas {
   size_t index(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
   }
-  void put(int x, int y, char32_t character, TextStyle style);
+  void put(int x, int y, char32_t character, CellStyle style);
 
   int width_;
   int height_;

@@ -36,9 +36,9 @@ TEST(TextCanvas, WhatIsNoUtf8IsAQuestionMark) {
 
 TEST(TextCanvas, ABarGrowsFromItsMiddle) {
   TextCanvas page(9, 3);
-  page.centred_bar(0, 0, 9, 0.5, TextStyle::kGood);
-  page.centred_bar(0, 1, 9, -7.0, TextStyle::kGood);
-  page.centred_bar(0, 2, 9, 0.0, TextStyle::kGood);
+  page.centred_bar(0, 0, 9, 0.5, CellStyle::kGood);
+  page.centred_bar(0, 1, 9, -7.0, CellStyle::kGood);
+  page.centred_bar(0, 2, 9, 0.0, CellStyle::kGood);
   EXPECT_EQ(page.str(), "····│██··\n████│····\n····│····\n");
 }
 
