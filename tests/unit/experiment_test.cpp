@@ -10,31 +10,23 @@
 #include <fstream>
 #include <set>
 #include <sstream>
-#include <system_error>
 
 #include "firmware/robot/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/experiment/simulation.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
 
 class ExperimentFile : public testing::Test {
  protected:
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove(path(), ignored);
-  }
-  static std::filesystem::path path() {
-    return testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() +
-           ".ini";
-  }
-  static Experiment read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  std::filesystem::path path() const { return folder_.path() / "test.ini"; }
+  Experiment read(const std::string& text, const std::vector<std::string>& overrides = {}) {
     std::ofstream(path(), std::ios::binary) << text;
     return read_experiment(path(), overrides);
   }
-  static std::string complaint(const std::string& text,
-                               const std::vector<std::string>& overrides = {}) {
+  std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
     try {
       read(text, overrides);
     } catch (const InputError& error) {
@@ -49,6 +41,9 @@ class ExperimentFile : public testing::Test {
   static bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   }
+
+ private:
+  const TempFolder folder_;
 };
 
 /// A row of experiment_key_table().

@@ -145,12 +145,8 @@ TEST(ProbabilisticAgent, PicksUpAboveAndDepositsBelowTheMean) {
   EXPECT_FALSE(agent.carries());
 }
 
-TEST(ProbabilisticAgent, ActsWithItsProbabilities) {
-  ProbabilisticParameters parameters = kAlgorithm1;
-  parameters.pick_up = static_cast<Probability>(0.2 * 65536);
-  parameters.deposit = static_cast<Probability>(0.7 * 65536);
-  ProbabilisticAgent agent(parameters, 1, 1);
-  teach(agent, 6);
+/// How often an agent acts, of many chances: to pick up at height 9, to deposit at height 3.
+std::array<double, 2> shares_of_chances(ProbabilisticAgent& agent) {
   std::array<int, 2> chances{};
   std::array<int, 2> done{};
   for (int i = 0; i < 100'000; ++i) {
@@ -159,8 +155,18 @@ TEST(ProbabilisticAgent, ActsWithItsProbabilities) {
     ++chances[carried ? 1 : 0];
     if (agent.tick({height, false}).operation != GridOperation::kNone) ++done[carried ? 1 : 0];
   }
-  EXPECT_NEAR(static_cast<double>(done[0]) / chances[0], 0.2, 0.01);
-  EXPECT_NEAR(static_cast<double>(done[1]) / chances[1], 0.7, 0.015);
+  return {static_cast<double>(done[0]) / chances[0], static_cast<double>(done[1]) / chances[1]};
+}
+
+TEST(ProbabilisticAgent, ActsWithItsProbabilities) {
+  ProbabilisticParameters parameters = kAlgorithm1;
+  parameters.pick_up = static_cast<Probability>(0.2 * 65536);
+  parameters.deposit = static_cast<Probability>(0.7 * 65536);
+  ProbabilisticAgent agent(parameters, 1, 1);
+  teach(agent, 6);
+  const std::array<double, 2> acts = shares_of_chances(agent);
+  EXPECT_NEAR(acts[0], 0.2, 0.01);
+  EXPECT_NEAR(acts[1], 0.7, 0.015);
 }
 
 TEST(ProbabilisticAgent, ThresholdsReplaceTheConstants) {
@@ -168,16 +174,9 @@ TEST(ProbabilisticAgent, ThresholdsReplaceTheConstants) {
   parameters.threshold_q8 = 6 * 256;
   ProbabilisticAgent agent(parameters, 1, 1);
   teach(agent, 6);
-  std::array<int, 2> chances{};
-  std::array<int, 2> done{};
-  for (int i = 0; i < 100'000; ++i) {
-    const bool carried = agent.carries();
-    const uint16_t height = carried ? 3 : 9;
-    ++chances[carried ? 1 : 0];
-    if (agent.tick({height, false}).operation != GridOperation::kNone) ++done[carried ? 1 : 0];
-  }
-  EXPECT_NEAR(static_cast<double>(done[0]) / chances[0], 0.36, 0.01);    // (9 / 15)^2
-  EXPECT_NEAR(static_cast<double>(done[1]) / chances[1], 0.444, 0.012);  // (6 / 9)^2
+  const std::array<double, 2> acts = shares_of_chances(agent);
+  EXPECT_NEAR(acts[0], 0.36, 0.01);    // (9 / 15)^2
+  EXPECT_NEAR(acts[1], 0.444, 0.012);  // (6 / 9)^2
 }
 
 TEST(ProbabilisticAgent, WalksAsAlgorithm2) {

@@ -5,29 +5,22 @@
 
 #include <filesystem>
 #include <fstream>
-#include <system_error>
 
 #include "host_sim/core/errors.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
 
 class IniFile : public testing::Test {
  protected:
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove(path(), ignored);
-  }
-  static std::filesystem::path path() {
-    return testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() +
-           ".ini";
-  }
-  static std::vector<IniEntry> read(const std::string& text) {
+  std::filesystem::path path() const { return folder_.path() / "test.ini"; }
+  std::vector<IniEntry> read(const std::string& text) {
     std::ofstream(path(), std::ios::binary) << text;
     return read_ini_file(path());
   }
   /// The message without the path, "" when nothing is wrong.
-  static std::string complaint(const std::string& text) {
+  std::string complaint(const std::string& text) {
     try {
       read(text);
     } catch (const InputError& error) {
@@ -38,6 +31,9 @@ class IniFile : public testing::Test {
     }
     return "";
   }
+
+ private:
+  const TempFolder folder_;
 };
 
 void expect_entry(const IniEntry& entry, const std::string& section, const std::string& key,
