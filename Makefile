@@ -201,15 +201,15 @@ $(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
 	@$(CXX) @$(B)/host.flags $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
 # tiny-dnn for the files that know it.
 TINY_DNN_FILES := $(shell grep -l '"nn/training/tiny_dnn.h"' nn/training/*.cpp tools/bench/*.cpp)
-$(TINY_DNN_FILES:%.cpp=$(B)/%.o) $(TINY_DNN_FILES:%.cpp=$(B)/%.tidy): EXTRA_FLAGS = -idirafter $(B)/tiny_dnn
-$(TINY_DNN_FILES:%.cpp=$(B)/%.o) $(TINY_DNN_FILES:%.cpp=$(B)/%.tidy): | $(B)/tiny_dnn/third_party/stb
+$(TINY_DNN_FILES:%.cpp=$(B)/%.o): EXTRA_FLAGS = -idirafter $(B)/tiny_dnn
+$(TINY_DNN_FILES:%.cpp=$(B)/%.o): | $(B)/tiny_dnn/third_party/stb
 # librsvg's flags for the one file that knows it.
 RSVG_FLAGS = $(shell pkg-config --cflags librsvg-2.0 | sed 's/-I/-idirafter /g')
-$(B)/host_sim/picture/svg_png.o $(B)/host_sim/picture/svg_png.tidy: EXTRA_FLAGS = $(RSVG_FLAGS)
+$(B)/host_sim/picture/svg_png.o: EXTRA_FLAGS = $(RSVG_FLAGS)
 
 # SDL's, likewise.
 SDL_FLAGS = $(shell pkg-config --cflags sdl2 | sed 's/-I/-idirafter /g')
-$(B)/tools/viewer/window.o $(B)/tools/viewer/window.tidy: EXTRA_FLAGS = $(SDL_FLAGS)
+$(B)/tools/viewer/window.o: EXTRA_FLAGS = $(SDL_FLAGS)
 
 $(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
 	@rm -f $@
@@ -319,20 +319,19 @@ run-soil-same-bits: $(SCREED)
 
 # ---- lint --------------------------------------------------------------------------------------------------------------------
 
+# Sources whose object, flags or checks changed since they were last found clean, as many at a time as go together.
 .PHONY: run-lint check-format
-run-lint: check-format check-telemetry-page $(patsubst %.cpp,$(B)/%.tidy,$(TIDY_SOURCES))
+run-lint: check-format check-telemetry-page $(call objects,$(TIDY_SOURCES)) $(B)/lint.flags
+	@tools/lint/run.sh $(B) $(TIDY_SOURCES)
 	@echo "lint: $(words $(TIDY_SOURCES)) sources clean"
 check-format:
 	@clang-format --dry-run -Werror $(CPP_FILES)
+$(B)/lint.flags: $(B)/host.flags | $(B)/tiny_dnn/third_party/stb
+	@echo "$$(cat $<) -idirafter $(B)/tiny_dnn $(RSVG_FLAGS) $(SDL_FLAGS)" > $@
 
-# A stamp a source, renewed when the source or a header of it changed: the object is, too, then (its .d file says which
-# headers those are), so the stamp asks for the object.
-$(B)/%.tidy: %.cpp $(B)/%.o $(B)/host.flags $(B)/firmware.flags .clang-tidy | $(GENERATED)
-	@mkdir -p $(@D)
-	@echo "  TIDY $<"
-	@clang-tidy --quiet $< -- $$(cat $(if $(filter firmware/% nn/infer/%,$<),$(B)/firmware.flags,$(B)/host.flags)) $(EXTRA_FLAGS) 2>&1 \
-	  | { grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$$' || true; }
-	@touch $@
+# One of them.
+$(B)/%.tidy: %.cpp $(B)/%.o $(B)/firmware.flags $(B)/lint.flags .clang-tidy
+	@tools/lint/run.sh $(B) $<
 
 ALL_OBJECTS := $(call objects,$(LIBRARY_SOURCES) $(STACK_LIBRARY_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES) tools/telemetry_lab/main.cpp tools/main.cpp tools/avr_stack/main.cpp $(UNIT_SOURCES) \
                  $(SITL_SOURCES) $(BENCH_SOURCES) $(TERRAIN_BENCH_SOURCES))
