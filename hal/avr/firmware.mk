@@ -33,12 +33,12 @@ FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
 FIRMWARE_SOURCES := $(sort $(wildcard firmware/*.cpp firmware/*/*.cpp nn/infer/*.cpp hal/avr/*.cpp))
 FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
-# No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax and -mstrict-X make the code smaller.
+# No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
 SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter no-ipa-cp no-ipa-sra
 AVR_FLAGS := -std=c++14 -Os -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
-  -mrelax -mstrict-X $(SMALLER:%=-f%)
+  -mrelax -mstrict-X -mcall-prologues $(SMALLER:%=-f%)
 # make firmware STANDALONE=yes: the default of the parameter `standalone` is 1.
 ifeq ($(STANDALONE),yes)
 AVR_FLAGS += -DSCREED_STANDALONE=1

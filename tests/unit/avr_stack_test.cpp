@@ -154,6 +154,44 @@ TEST(AvrStack, UnderstandsSmallFrames) {
   EXPECT_EQ(image.report().main.bytes, 3U + 63U);
 }
 
+/// f as gcc writes it with -mcall-prologues: it pushes r28 and r29 and makes a frame of 0x12c bytes
+/// in a helper, and drops both in another. `way_back`: low byte of the word address after the
+/// prologue.
+Image shared_prologue(const char* way_back) {
+  Image image = program();
+  image.call(0xc).two("rjmp", ".-2").two("nop");
+  image.symbol("f").two("ldi", "r26, 0x2C").two("ldi", "r27, 0x01");
+  image.two("ldi", way_back).two("ldi", "r31, 0x00").four("jmp", "0x26");
+  image.call(0x54).two("ldi", "r30, 0x02");
+  image.two("subi", "r28, 0xD4").two("sbci", "r29, 0xFE").four("jmp", "0x3e");
+  image.symbol("saves").two("push", "r28").two("push", "r29");
+  image.two("in", "r28, 0x3d").two("in", "r29, 0x3e").two("sub", "r28, r26").two("sbc", "r29, r27");
+  image.two("in", "r0, 0x3f").two("cli").two("out", "0x3e, r29").two("out", "0x3f, r0");
+  image.two("out", "0x3d, r28").two("ijmp");
+  image.symbol("restores").two("ldd", "r26, Y+2").two("ldd", "r27, Y+1");
+  image.two("add", "r28, r30").two("adc", "r29, r1");
+  image.two("in", "r0, 0x3f").two("cli").two("out", "0x3e, r29").two("out", "0x3f, r0");
+  image.two("out", "0x3d, r28").two("movw", "r28, r26").two("ret");
+  image.symbol("g").push(1).pop(1).two("ret");
+  return image;
+}
+
+TEST(AvrStack, UnderstandsSharedPrologues) {
+  EXPECT_EQ(shared_prologue("r30, 0x0C").report().main.bytes, 2U + 2U + 300U + 2U + 1U);
+}
+
+TEST(AvrStack, SharedProloguesNeedAKnownWayBack) {
+  EXPECT_EQ(shared_prologue("r29, 0x0C").refusal(),
+            "no stack bound: indirect call or jump at 0x3c in saves, part of f (ijmp)");
+}
+
+TEST(AvrStack, ACallForgetsTheWayBack) {
+  Image image = program();
+  image.two("ldi", "r30, 0x02").two("ldi", "r31, 0x00").call(0xe).two("ijmp");
+  image.symbol("f").two("ret");
+  EXPECT_EQ(image.refusal(), "no stack bound: indirect call or jump at 0xc in main (ijmp)");
+}
+
 TEST(AvrStack, StartUpCodeBeginsWithAnEmptyStack) {
   Image image = program();
   image.two("ldi", "r28, 0xFF").two("ldi", "r29, 0x0A").two("out", "0x3e, r29");

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::string_view kLow = "r28";
 constexpr std::string_view kHigh = "r29";
-// Always zero between the instructions of gcc (avr-gcc ABI).
-constexpr std::string_view kZero = "r1";
 
 /// Instructions whose first operand is only read.
 constexpr std::array<std::string_view, 14> kReaders = {"cp",   "cpc",   "cpi",  "cpse", "tst",
@@ -48,11 +46,16 @@ void FramePointer::set(Kind kind, std::int32_t value, std::int32_t low) {
   low_ = low;
 }
 
-void FramePointer::step(const Instruction& instruction, std::int32_t height) {
+void FramePointer::step(const Instruction& instruction, std::int32_t height,
+                        const ConstantRegisters& constants) {
   if (!writes_y(instruction)) return;
   const std::string& what = instruction.mnemonic;
   const bool low = instruction.operands.front() == kLow;
   const std::int32_t operand = number(instruction);
+  const auto second =
+      instruction.operands.size() < 2 ? std::nullopt : constants.value_of(instruction.operands[1]);
+  const bool known = second.has_value();
+  const std::int32_t constant = second.value_or(0);
 
   if (what == "in" && low && operand == 0x3d) {
     set(Kind::kLowRead, height);
@@ -67,9 +70,14 @@ void FramePointer::step(const Instruction& instruction, std::int32_t height) {
     set(Kind::kLowSubtracted, value_, operand);
   } else if (what == "sbci" && !low && kind_ == Kind::kLowSubtracted) {
     set(Kind::kStack, wrap16(value_ + low_ + operand * 256));
-  } else if (what == "sbc" && !low && kind_ == Kind::kLowSubtracted &&
-             instruction.operands[1] == kZero) {
-    set(Kind::kStack, wrap16(value_ + low_));
+  } else if (what == "sub" && low && kind_ == Kind::kStack && known) {
+    set(Kind::kLowSubtracted, value_, constant);
+  } else if (what == "sbc" && !low && kind_ == Kind::kLowSubtracted && known) {
+    set(Kind::kStack, wrap16(value_ + low_ + constant * 256));
+  } else if (what == "add" && low && kind_ == Kind::kStack && known) {
+    set(Kind::kLowAdded, value_, constant);
+  } else if (what == "adc" && !low && kind_ == Kind::kLowAdded && known) {
+    set(Kind::kStack, wrap16(value_ - low_ - constant * 256));
   } else if (what == "ldi" && low) {
     set(Kind::kLowConstant);
   } else if (what == "ldi" && !low && kind_ == Kind::kLowConstant) {

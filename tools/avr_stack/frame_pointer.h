@@ -5,14 +5,17 @@
 #include <cstdint>
 #include <optional>
 
+#include "tools/avr_stack/constant_registers.h"
 #include "tools/avr_stack/disassembly.h"
 
 namespace screed::avr_stack {
 
 class FramePointer {
  public:
-  /// Follows one instruction that is executed at a stack height (bytes pushed since the entry).
-  void step(const Instruction& instruction, std::int32_t height);
+  /// Follows one instruction that is executed at a stack height (bytes pushed since the entry),
+  /// with these constants in X and Z.
+  void step(const Instruction& instruction, std::int32_t height,
+            const ConstantRegisters& constants);
 
   /// The stack height that writing Y to the stack pointer would give; nothing when Y is unknown.
   /// A constant, as the start-up code writes it, is an empty stack: height 0.
@@ -29,6 +32,7 @@ class FramePointer {
     kLowRead,        ///< r28 = low byte of the stack pointer at height value_
     kStack,          ///< Y = the stack pointer at height value_
     kLowSubtracted,  ///< as kStack, with low_ taken off r28 and the borrow pending
+    kLowAdded,       ///< as kStack, with low_ added to r28 and the carry pending
     kLowConstant,    ///< r28 = a constant
     kConstant,       ///< Y = a constant
   };

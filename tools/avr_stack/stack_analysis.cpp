@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "host_sim/core/errors.h"
+#include "tools/avr_stack/constant_registers.h"
 #include "tools/avr_stack/frame_pointer.h"
 
 namespace screed::avr_stack {
@@ -37,6 +38,8 @@ bool writes_stack_pointer(const Instruction& instruction) {
 struct State {
   std::int32_t height = 0;
   FramePointer y;
+  ConstantRegisters constants;
+  bool operator==(const State&) const = default;
 };
 
 /// The deepest point that a function reaches, its callees included.
@@ -57,7 +60,7 @@ class Analysis {
  private:
   const Depth& depth_of(std::uint32_t entry);
   Depth walk(std::uint32_t entry);
-  std::vector<std::uint32_t> successors(const Instruction& instruction) const;
+  std::vector<std::uint32_t> successors(const Instruction& instruction, const State& state) const;
   /// What a call instruction calls; nothing when it is no call.
   std::vector<std::uint32_t> callees(const Instruction& instruction) const;
   std::vector<std::uint32_t> indirect_targets(const Instruction& instruction) const;
@@ -82,8 +85,11 @@ void Analysis::refuse(const Instruction& instruction, const std::string& why) co
   for (std::size_t i = 0; i < instruction.operands.size(); ++i) {
     text += (i == 0 ? " " : ", ") + instruction.operands[i];
   }
-  throw RunError("no stack bound: " + why + " at " + place + " in " +
-                 program_.name_of(instruction.address) + " (" + text + ")");
+  std::string where = program_.name_of(instruction.address);
+  const bool known = !active_.empty() && active_.back() != kReset;
+  const std::string entry = known ? program_.name_of(active_.back()) : where;
+  if (entry != where) where += ", part of " + entry;
+  throw RunError("no stack bound: " + why + " at " + place + " in " + where + " (" + text + ")");
 }
 
 const Instruction& Analysis::instruction_at(std::uint32_t address) const {
@@ -95,10 +101,14 @@ const Instruction& Analysis::instruction_at(std::uint32_t address) const {
   return *found;
 }
 
-std::vector<std::uint32_t> Analysis::successors(const Instruction& instruction) const {
+std::vector<std::uint32_t> Analysis::successors(const Instruction& instruction,
+                                                const State& state) const {
   const std::string_view what = instruction.mnemonic;
   if (is_any(what, {"ret", "reti"})) return {};
-  if (is_any(what, {"ijmp", "eijmp"})) return indirect_targets(instruction);
+  if (is_any(what, {"ijmp", "eijmp"})) {
+    const auto known = state.constants.jump_target();
+    return known ? std::vector{*known} : indirect_targets(instruction);
+  }
   if (is_any(what, {"jmp", "rjmp"})) {
     if (!instruction.target) refuse(instruction, "jump to an unknown place");
     if (*instruction.target == kReset) return {};  // starts again with an empty stack
@@ -158,7 +168,8 @@ void Analysis::step(const Instruction& instruction, State& state) const {
   } else if (is_any(what, {"ret", "reti"}) && state.height != 0) {
     refuse(instruction, "return with " + std::to_string(state.height) + " bytes on the stack");
   }
-  state.y.step(instruction, state.height);
+  state.y.step(instruction, state.height, state.constants);
+  state.constants.step(instruction);
 }
 
 Depth Analysis::walk(std::uint32_t entry) {
@@ -189,7 +200,7 @@ Depth Analysis::walk(std::uint32_t entry) {
     if (state.height > deepest.bytes) {
       deepest = {state.height, state.height, std::nullopt, instruction.address};
     }
-    for (const std::uint32_t next : successors(instruction)) {
+    for (const std::uint32_t next : successors(instruction, state)) {
       const auto [known, is_new] = before.emplace(next, state);
       if (is_new) {
         open.push_back(next);
@@ -198,9 +209,10 @@ Depth Analysis::walk(std::uint32_t entry) {
       if (known->second.height != state.height) {
         refuse(instruction_at(next), "stack height differs between two paths");
       }
-      const FramePointer both = FramePointer::meet(known->second.y, state.y);
-      if (!(both == known->second.y)) {
-        known->second.y = both;
+      const State both = {state.height, FramePointer::meet(known->second.y, state.y),
+                          ConstantRegisters::meet(known->second.constants, state.constants)};
+      if (!(both == known->second)) {
+        known->second = both;
         open.push_back(next);
       }
     }

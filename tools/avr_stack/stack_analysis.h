@@ -3,10 +3,11 @@
 // The program is walked from the reset vector and from every interrupt vector along all paths, with
 // the height of the stack carried along: push and pop, calls (2 bytes of return address on devices
 // with up to 128 kB of flash), and frames that are made by writing the stack pointer from Y. Tail
-// jumps and falling into the next function are plain paths. What cannot be bounded is refused with
-// RunError and the place: recursion, indirect calls and jumps that are not listed, a height that
-// differs between two paths to one instruction, a stack pointer from an unknown value, `sei` in an
-// interrupt.
+// jumps and falling into the next function are plain paths, and so are the prologues and epilogues
+// that functions share (-mcall-prologues), whose frame and way back are constants in X and Z. What
+// cannot be bounded is refused with RunError and the place: recursion, indirect calls and jumps
+// that are not listed, a height that differs between two paths to one instruction, a stack pointer
+// from an unknown value, `sei` in an interrupt.
 #pragma once
 
 #include <cstdint>
