@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/quantile.h"
 #include "nn/slip/slip_training.h"
 #include "nn/slip/stuck_run.h"
@@ -26,8 +27,8 @@ struct StuckArguments {
   double free_s = 120.0;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   std::string train;
-  std::size_t epochs = 60;
-  std::size_t hidden = 8;
+  std::size_t epochs = nn::SlipTrainingOptions{}.epochs;
+  std::size_t hidden = nn::SlipTrainingOptions{}.hidden;
   std::string experiment;
   bool json = false;
 };
@@ -158,6 +159,10 @@ int run_stuck(const StuckArguments& arguments) {
     std::cout << scenario.experiment.text();
     return 0;
   }
+  // That it cannot be written is told before the drives, not after.
+  if (!arguments.train.empty()) {
+    const AtomicFile place(arguments.train);
+  }
   const std::vector<nn::SlipRun> trapped =
       nn::drive_all(scenarios(arguments, true), arguments.threads);
   const std::vector<nn::SlipRun> free =
@@ -169,7 +174,7 @@ int run_stuck(const StuckArguments& arguments) {
     options.epochs = arguments.epochs;
     options.hidden = arguments.hidden;
     options.progress = [](std::size_t epoch, double error) {
-      if (epoch % 10 == 0) std::fprintf(stderr, "epoch %zu: error %.4f\n", epoch, error);
+      std::fprintf(stderr, "epoch %zu: cross entropy %.4f\n", epoch, error);
     };
     nn::write_model(arguments.train, nn::train_slip(all, options));
     std::printf("model in %s\n", arguments.train.c_str());

@@ -97,7 +97,6 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
   pitch_ = angles.pitch;
   heading_ = angles.heading;
   sin_pitch_q14_ = angles.sin_pitch_q14;
-  accel_x_ = imu.accel[0];
   view_.roll_cdeg = centidegrees_from_angle(angles.roll);
   view_.pitch_cdeg = centidegrees_from_angle(pitch_);
   view_.heading_cdeg = static_cast<uint16_t>(
@@ -296,9 +295,9 @@ void Robot::choose_motion() {
   view_.motion = leveling_.tick(input, drive_command_);
 }
 
-void Robot::watch_slip() {
-  slip_watch_.tick(drive_.left(), drive_.right(), accel_x_, sin_pitch_q14_, attitude_.yaw_rate(),
-                   telemetry_.packet_due());
+void Robot::watch_slip(const SensorSample& sample) {
+  slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel, sin_pitch_q14_,
+                   attitude_.yaw_rate(), telemetry_.packet_due());
   view_.slip = slip_watch_.slips() ? 1 : 0;
   view_.stuck = slip_watch_.stuck() ? 1 : 0;
 }
@@ -358,7 +357,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
     view_.duty_left = 0;
     view_.duty_right = 0;
   }
-  watch_slip();
+  watch_slip(sample);
   report(sample, output);
 }
 

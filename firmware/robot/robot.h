@@ -30,7 +30,6 @@ struct RobotMemory {
   Angle heading_;
   Angle pitch_;
   int16_t sin_pitch_q14_;
-  int16_t accel_x_;
   MotionCommand drive_command_;  ///< last CommandOp::kDrive
   uint16_t last_left_;
   uint16_t last_right_;
@@ -88,7 +87,7 @@ class Robot : private RobotMemory {
   void event(message::EventCode code, int32_t argument);
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void choose_motion();
-  void watch_slip();
+  void watch_slip(const SensorSample& sample);
   void report(const SensorSample& sample, RobotOutput& output);
 
   BoardConstants board_;

@@ -2,6 +2,7 @@
 #include "nn/slip/slip_training.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host_sim/core/content_hash.h"
@@ -11,71 +12,116 @@
 namespace screed::nn {
 namespace {
 
-// Two: shares of up to 2 as Q14. The other ranges are those of slip_watch.h.
+// Ranges are those of slip_watch.h; a share of 2 is Q14.
 struct Channel {
   const char* name;
   double half_range;
 };
-constexpr Channel kInputs[] = {{"inertial_slip", 2.0},    {"turn", 2.0},
-                               {"track_difference", 2.0}, {"faster_track", 0.4096},
-                               {"sin_pitch", 2.0},        {"effort", 512.0}};
+constexpr Channel kInputs[] = {
+    {"inertial_slip_3s", 2.0}, {"inertial_slip_10s", 2.0},    {"turn", 2.0},
+    {"track_difference", 2.0}, {"faster_track", 6.5536},      {"sin_pitch", 2.0},
+    {"effort", 2048.0},        {"shaking_pitch_rate", 256.0}, {"shaking_ahead", 256.0},
+    {"shaking_up", 256.0},     {"pitch_rate", 512.0}};
 static_assert(std::size(kInputs) == kSlipInputs);
-constexpr Channel kOutput = {"speed_share", 2.0};
+// Of the log of the odds that the robot hardly moves: certain enough at either end.
+constexpr Channel kOutput = {"held", 2.0};
 
-constexpr std::size_t kEvery = 3;   // ticks: neighbours say much the same
-constexpr std::size_t kWeight = 4;  // of a tick at which the robot hardly moves
-constexpr double kHardly = 0.3;     // share of motion
-constexpr double kSmoothing = 1.0 / 16.0;
+constexpr std::size_t kEvery = 4;    // ticks: neighbours say much the same
+constexpr std::size_t kAround = 15;  // ticks before and after, over which motion is taken
+constexpr double kHardly = 0.3;      // share of motion below which it hardly moves
+constexpr double kUnclearFrom = 0.25;
+constexpr double kUnclearTo = 0.4;  // what lies between is not learned
 constexpr std::size_t kGoldenVectors = 8;
 
 Examples examples_of(const std::vector<SlipRun>& runs) {
   Examples examples{kSlipInputs, 1, {}, {}};
   for (const SlipRun& run : runs) {
-    double speed = 0.0;
-    double turn = 0.0;
-    for (std::size_t i = 0; i < run.ticks.size(); ++i) {
+    for (std::size_t i = kAround; i + kAround < run.ticks.size(); i += kEvery) {
       const SlipTick& tick = run.ticks[i];
-      speed += (static_cast<double>(tick.speed) - speed) * kSmoothing;
-      turn += (static_cast<double>(tick.turn) - turn) * kSmoothing;
-      if (!tick.running || !tick.looked || i % kEvery != 0) continue;
-      const double faster = std::max(0.03, static_cast<double>(tick.faster));
-      const double share = std::clamp((tick.backwards ? -speed : speed) / faster, -0.2, 1.2);
-      const double motion = std::abs(share) + std::abs(turn) / faster;
-      for (std::size_t copy = 0; copy < (motion < kHardly ? kWeight : 1); ++copy) {
-        for (const std::int16_t input : tick.inputs) {
-          examples.in.push_back(static_cast<float>(to_value(input)));
-        }
-        examples.out.push_back(static_cast<float>(share / kOutput.half_range));
+      if (!tick.running || !tick.looked) continue;
+      const double motion = share_between(run, i - kAround, i + kAround);
+      if (motion >= kUnclearFrom && motion <= kUnclearTo) continue;
+      for (const std::int16_t input : tick.inputs) {
+        examples.in.push_back(static_cast<float>(to_value(input)));
       }
+      examples.out.push_back(motion < kHardly ? 1.0F : 0.0F);
     }
   }
   return examples;
 }
 
-double error_of(NetworkTrainer& trainer, const Examples& examples) {
-  const std::vector<float> outputs = trainer.outputs(examples);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const double difference =
-        static_cast<double>(outputs[i]) - static_cast<double>(examples.out[i]);
-    sum += difference * difference;
+/// Means and deviations of the inputs: learned on inputs of mean 0 and deviation 1, then folded
+/// into the first layer.
+struct Spread {
+  std::array<double, kSlipInputs> mean{};
+  std::array<double, kSlipInputs> deviation{};
+};
+
+Spread spread_of(const Examples& examples) {
+  Spread spread;
+  const auto rows = static_cast<double>(examples.rows());
+  for (std::size_t i = 0; i < kSlipInputs; ++i) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t at = i; at < examples.in.size(); at += kSlipInputs) {
+      const auto value = static_cast<double>(examples.in[at]);
+      sum += value;
+      squares += value * value;
+    }
+    spread.mean[i] = sum / rows;
+    spread.deviation[i] =
+        std::sqrt(std::max(squares / rows - spread.mean[i] * spread.mean[i], 1e-12));
   }
-  return std::sqrt(sum / static_cast<double>(outputs.size())) * kOutput.half_range;
+  return spread;
+}
+
+Examples standardised(Examples examples, const Spread& spread) {
+  for (std::size_t at = 0; at < examples.in.size(); ++at) {
+    const std::size_t i = at % kSlipInputs;
+    examples.in[at] = static_cast<float>((static_cast<double>(examples.in[at]) - spread.mean[i]) /
+                                         spread.deviation[i]);
+  }
+  return examples;
+}
+
+void fold(const Spread& spread, FloatLayer& first) {
+  for (std::size_t node = 0; node < first.outputs; ++node) {
+    for (std::size_t i = 0; i < kSlipInputs; ++i) {
+      double& weight = first.weights[node * kSlipInputs + i];
+      weight /= spread.deviation[i];
+      first.bias[node] -= weight * spread.mean[i];
+    }
+  }
+}
+
+/// Mean cross entropy.
+double error_of(NetworkTrainer& trainer, const Examples& examples) {
+  const std::vector<float> logits = trainer.outputs(examples);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < logits.size(); ++i) {
+    const auto logit = static_cast<double>(logits[i]);
+    sum += std::log1p(std::exp(-std::abs(logit))) + std::max(logit, 0.0) -
+           static_cast<double>(examples.out[i]) * logit;
+  }
+  return sum / static_cast<double>(logits.size());
 }
 
 }  // namespace
 
 Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& options) {
-  const Examples examples = examples_of(runs);
-  if (examples.rows() < 1000) throw RunError("slip: fewer than 1000 ticks to learn from");
+  const Examples raw = examples_of(runs);
+  if (raw.rows() < 1000) throw RunError("slip: fewer than 1000 ticks to learn from");
+  const Spread spread = spread_of(raw);
+  const Examples examples = standardised(raw, spread);
   NetworkConfiguration network;
   for (const Channel& input : kInputs) network.inputs.emplace_back(input.name);
   network.outputs = {kOutput.name};
   network.hidden = {options.hidden};
   network.limited = true;
   network.linear_output = true;
+  network.loss = Loss::kLogistic;
   network.optimiser = OptimiserKind::kAdam;
-  network.learning_rate = 0.004;
+  network.learning_rate = 0.01;
   network.final_rate = 0.02;
   network.batch = 256;
   network.epochs = options.epochs;
@@ -86,14 +132,17 @@ Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& op
   }
 
   ContentHash hash;
-  for (const float value : examples.in) hash.add(static_cast<double>(value));
-  for (const float value : examples.out) hash.add(static_cast<double>(value));
+  for (const float value : raw.in) hash.add(static_cast<double>(value));
+  for (const float value : raw.out) hash.add(static_cast<double>(value));
   Model model;
   model.name = "slip";
-  model.description = "what the chassis makes of the tracks' speed, for the robot's slip watch";
+  model.description = "whether the robot hardly moves while its tracks turn, for its slip watch";
   model.seed = options.seed;
   model.training_data = hash.hex();
   std::vector<FloatLayer> layers = trainer.folded();
+  fold(spread, layers.front());
+  for (double& weight : layers.back().weights) weight /= kOutput.half_range;
+  for (double& bias : layers.back().bias) bias /= kOutput.half_range;
   ModelNetwork result{{}, {}, quantise(layers), std::move(layers), {}};
   for (const Channel& input : kInputs) {
     result.inputs.push_back({input.name, 0.0, input.half_range, ""});

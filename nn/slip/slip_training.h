@@ -13,13 +13,14 @@ namespace screed::nn {
 
 struct SlipTrainingOptions {
   std::uint64_t seed = 1;
-  std::size_t hidden = 8;
-  std::size_t epochs = 60;
+  std::size_t hidden = 10;
+  std::size_t epochs = 12;
   std::function<void(std::size_t epoch, double error)> progress;  ///< may be empty
 };
 
-/// The model "slip": output speed_share, the chassis' speed as a share of the faster track's, from
-/// the watch's inputs as they are on the robot. Ticks at which the robot hardly moves count more.
+/// The model "slip": output held, half the log of the odds that the chassis makes less than three
+/// tenths of the tracks' way (over 0.3 s around that moment), from the watch's inputs as they are
+/// on the robot.
 Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& options);
 
 }  // namespace screed::nn

@@ -17,8 +17,6 @@ namespace screed::nn {
 namespace {
 
 constexpr std::size_t kSecond = kTickRate_hz;
-constexpr std::size_t kAfterwards = 2 * kSecond;  ///< driven on after it was dug in
-constexpr std::size_t kLookTicks = 25;
 constexpr double kSmoothing = 1.0 / 8.0;
 constexpr float kLeastSpeed = 0.03F;  ///< of tracks that count as driven, m/s
 constexpr double kHalfTread_m = 0.0975;
@@ -46,19 +44,6 @@ SlipTick tick_of(const World& world, const Robot& robot) {
   return tick;
 }
 
-/// Share of the faster track's way that the chassis made between two ticks.
-double share_between(const SlipRun& run, std::size_t begin, std::size_t end) {
-  double way = 0.0;
-  double turn = 0.0;
-  double of_track = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    way += static_cast<double>(run.ticks[i].speed);
-    turn += static_cast<double>(run.ticks[i].turn);
-    of_track += static_cast<double>(run.ticks[i].faster);
-  }
-  return of_track <= 0.0 ? 1.0 : (std::abs(way) + std::abs(turn)) / of_track;
-}
-
 }  // namespace
 
 SlipRun drive(const StuckScenario& scenario) {
@@ -77,16 +62,23 @@ SlipRun drive(const StuckScenario& scenario) {
       run.ticks.push_back(tick_of(*world, robot));
       world->apply(output);
       if (robot.supervisor().faults() != 0) break;
-      // What comes later is asked by nobody.
-      if (scenario.trapped && i % kLookTicks == 0) {
-        const auto begin = dug_in_at(run);
-        if (begin && i >= *begin + kAfterwards) break;
-      }
     }
   } catch (const RunError& error) {
     run.failure = error.what();
   }
   return run;
+}
+
+double share_between(const SlipRun& run, std::size_t begin, std::size_t end) {
+  double way = 0.0;
+  double turn = 0.0;
+  double of_track = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    way += static_cast<double>(run.ticks[i].speed);
+    turn += static_cast<double>(run.ticks[i].turn);
+    of_track += static_cast<double>(run.ticks[i].faster);
+  }
+  return of_track <= 0.0 ? 1.0 : (std::abs(way) + std::abs(turn)) / of_track;
 }
 
 std::optional<std::size_t> dug_in_at(const SlipRun& run) {
@@ -121,8 +113,7 @@ FreeResult alarms_of(const SlipRun& run) {
     if (run.ticks[i].looked && run.ticks[i].running) result.driven_s += 1.0 / kTickRate_hz;
     if (i == 0 || !run.ticks[i].stuck || run.ticks[i - 1].stuck) continue;
     const std::size_t begin = i > kSecond / 2 ? i - kSecond / 2 : 0;
-    const std::size_t end = std::min(i + kSecond / 2, run.ticks.size());
-    if (share_between(run, begin, end) > kFreeShare) {
+    if (share_between(run, begin, i + 1) > kFreeShare) {
       ++result.false_alarms;
     } else {
       ++result.other_alarms;

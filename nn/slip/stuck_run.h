@@ -37,8 +37,12 @@ SlipRun drive(const StuckScenario& scenario);
 /// Dug in: over the next second the chassis makes less than this of the way that the faster track
 /// makes, and it has begun: at this moment it moves so as well.
 inline constexpr double kDugInShare = 0.2;
-/// An alarm is false when the chassis made more than this within half a second of it.
+/// An alarm is false when the chassis made more than this in the half second up to it.
 inline constexpr double kFreeShare = 0.4;
+
+/// Share of the faster track's way that the chassis made from tick `begin` to before `end`; 1 when
+/// the tracks stood.
+double share_between(const SlipRun& run, std::size_t begin, std::size_t end);
 
 /// The first tick at which the robot is dug in.
 std::optional<std::size_t> dug_in_at(const SlipRun& run);

@@ -24,6 +24,11 @@ enum class BatchNormalisation : std::uint8_t {
 
 enum class OptimiserKind : std::uint8_t { kIrprop, kSgd, kAdam };
 
+enum class Loss : std::uint8_t {
+  kMeanSquare,
+  kLogistic,  ///< outputs are logits (log of the odds), wanted outputs 0 or 1: cross entropy
+};
+
 struct NetworkConfiguration {
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
@@ -37,6 +42,7 @@ struct NetworkConfiguration {
   Initialisation initialisation = Initialisation::kNormalised;
   double initial_range = 0.05;
   BatchNormalisation batch_normalisation = BatchNormalisation::kNone;
+  Loss loss = Loss::kMeanSquare;
   OptimiserKind optimiser = OptimiserKind::kAdam;
   double learning_rate = 0.001;  ///< not used by iRPROP-
   double final_rate = 1.0;  ///< share of the learning rate in the last epoch; geometric between

@@ -37,6 +37,25 @@ class CutAtOne : public tiny_dnn::activation::function {
 };
 using Limited = tiny_dnn::linear_layer<CutAtOne>;
 
+/// Cross entropy of logits: log(1 + exp(y)) - t y, whose slope is the logistic function less t.
+class LogisticLoss {
+ public:
+  static float f(const vec_t& y, const vec_t& t) {
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      sum += std::max(y[i], 0.0F) + std::log1p(std::exp(-std::abs(y[i]))) - t[i] * y[i];
+    }
+    return sum / static_cast<float>(y.size());
+  }
+  static vec_t df(const vec_t& y, const vec_t& t) {
+    vec_t slope(y.size());
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      slope[i] = (1.0F / (1.0F + std::exp(-y[i])) - t[i]) / static_cast<float>(y.size());
+    }
+    return slope;
+  }
+};
+
 constexpr float kVarianceFloor = 1e-5F;
 constexpr float kRunningShare = 0.99F;
 constexpr std::size_t kChunkBatches = 64;  ///< that are copied for tiny-dnn at a time
@@ -338,7 +357,11 @@ class NetworkTrainer::Impl {
       in.push_back(row_of(examples.in, examples.inputs, row));
       out.push_back(row_of(examples.out, examples.outputs, row));
     }
-    net_.fit<tiny_dnn::mse>(optimiser_, in, out, batch, 1);
+    if (configuration_.loss == Loss::kLogistic) {
+      net_.fit<LogisticLoss>(optimiser_, in, out, batch, 1);
+    } else {
+      net_.fit<tiny_dnn::mse>(optimiser_, in, out, batch, 1);
+    }
   }
 
   FloatLayer folded(const Stage& stage) const {

@@ -46,7 +46,7 @@ class NetworkTrainer {
   std::vector<FloatLayer> folded() const;
   /// tiny-dnn's own outputs for the examples, as it stands when not learning.
   std::vector<float> outputs(const Examples& examples);
-  /// Gradient of the mean squared error over the examples as one batch, an array a parameter array
+  /// Gradient of the mean loss over the examples as one batch, an array a parameter array
   /// in the order of state(); nothing is changed. For tests.
   std::vector<std::vector<float>> gradient(const Examples& examples);
 

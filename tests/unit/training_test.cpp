@@ -207,6 +207,36 @@ TEST(Trainer, GradientsThroughBatchNormalisationWithScale) {
   }
 }
 
+TEST(Trainer, LogisticGradientIsTheSlopeOfTheCrossEntropy) {
+  NetworkConfiguration network = small_network(BatchNormalisation::kNone, true);
+  network.loss = Loss::kLogistic;
+  Examples examples = random_examples(30);
+  for (float& wanted : examples.out) wanted = wanted > -0.1F ? 1.0F : 0.0F;
+  NetworkTrainer trainer(network, 5);
+  const std::vector<std::vector<float>> gradient = trainer.gradient(examples);
+  const TrainerState state = trainer.state();
+  const auto entropy = [&](std::size_t array, std::size_t i, float change) {
+    TrainerState changed = state;
+    changed.parameters[array][i] += change;
+    trainer.restore(changed);
+    const std::vector<float> logits = trainer.outputs(examples);
+    double sum = 0.0;
+    for (std::size_t row = 0; row < logits.size(); ++row) {
+      const double chance = 1.0 / (1.0 + std::exp(-static_cast<double>(logits[row])));
+      sum -= std::log(examples.out[row] > 0.5F ? chance : 1.0 - chance);
+    }
+    return sum / static_cast<double>(logits.size());
+  };
+  ASSERT_EQ(gradient.size(), state.parameters.size());
+  for (std::size_t array = 0; array < gradient.size(); ++array) {
+    for (std::size_t i = 0; i < gradient[array].size(); ++i) {
+      const double slope = (entropy(array, i, 1e-3F) - entropy(array, i, -1e-3F)) / 2e-3;
+      EXPECT_NEAR(static_cast<double>(gradient[array][i]), slope, 1e-4 + 0.005 * std::abs(slope))
+          << array << " " << i;
+    }
+  }
+}
+
 TEST(Trainer, FoldedLayersGiveWhatTinyDnnGives) {
   for (const BatchNormalisation norm :
        {BatchNormalisation::kNone, BatchNormalisation::kPlain, BatchNormalisation::kScaled}) {
