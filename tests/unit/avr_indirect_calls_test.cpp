@@ -98,8 +98,9 @@ TEST(IndirectCalls, AnIndirectJumpGoesOnAtItsTargets) {
   std::string image = kImage;
   image.replace(image.find("icall"), 5, "ijmp");
   // The targets return with the two bytes of f still on the stack.
-  EXPECT_EQ(refusal("f() -> g(int)", image),
-            "no stack bound: return with 2 bytes on the stack at 0x2a in g(int), part of f() (ret)");
+  EXPECT_EQ(
+      refusal("f() -> g(int)", image),
+      "no stack bound: return with 2 bytes on the stack at 0x2a in g(int), part of f() (ret)");
   for (const char* push : {"push	r28", "push	r29"}) {
     image.replace(image.find(push), 8, "nop     ");
   }
