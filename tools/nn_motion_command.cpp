@@ -116,6 +116,10 @@ void print_table(const std::vector<nn::SessionRollouts>& all,
     std::printf("  %-24s", stand_ins[i].name.c_str());
     for (std::size_t way = 0; way < nn::kRolloutWays_m.size(); ++way) {
       const Column column = column_of(all, i, way, straight);
+      if (column.place.empty()) {
+        std::printf(" | %4d %7s %7s %7s", 0, "-", "-", "-");
+        continue;
+      }
       std::printf(" | %4zu %6.2f%% %6.2f%% %6.1f\u00b0", column.place.size(),
                   quantile(column.place, 0.5), quantile(column.place, 0.9),
                   quantile(column.heading, 0.5));
