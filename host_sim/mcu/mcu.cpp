@@ -136,7 +136,9 @@ struct Mcu::Hooks {
     for (const auto& callback : it.reset_to_) callback();
   }
 
-  static avr_cycle_count_t end(avr_t*, avr_cycle_count_t, void*) { return 0; }
+  // Again and again until it is cancelled: where the program falls asleep in this very cycle, simavr
+  // sleeps on to the next timer.
+  static avr_cycle_count_t end(avr_t* avr, avr_cycle_count_t, void*) { return avr->cycle + 1; }
 
   static avr_cycle_count_t feed(avr_t*, avr_cycle_count_t when, void* self) {
     Mcu& it = of(self);
@@ -283,7 +285,7 @@ bool Mcu::run_to(std::uint64_t cycle) {
     avr_cycle_timer_register(avr_, cycle - avr_->cycle, &Hooks::end, this);
   }
   while (avr_->cycle < cycle && !broken_off_ && alive()) avr_run(avr_);
-  if (avr_->cycle < cycle) avr_cycle_timer_cancel(avr_, &Hooks::end, this);
+  avr_cycle_timer_cancel(avr_, &Hooks::end, this);
   return !broken_off_;
 }
 
