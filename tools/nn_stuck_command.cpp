@@ -66,6 +66,7 @@ void count(Share& share, bool detected) {
 void add(nn::FreeResult& sum, const nn::FreeResult& result) {
   sum.driven_s += result.driven_s;
   sum.false_alarms += result.false_alarms;
+  sum.came_free_alarms += result.came_free_alarms;
   sum.other_alarms += result.other_alarms;
 }
 
@@ -117,6 +118,7 @@ void print(const StuckArguments& arguments, const Figures& figures) {
   std::printf("  driven                  %.2f h\n", figures.free.driven_s / 3600.0);
   std::printf("  false alarms            %d, %.2f an hour (must be 1)\n", figures.free.false_alarms,
               an_hour(figures.free));
+  std::printf("  alarms as it came free  %d\n", figures.free.came_free_alarms);
   std::printf("  alarms while it hardly moved  %d\n", figures.free.other_alarms);
   std::printf("%-12s %14s %22s\n", "ground", "detected", "false alarms");
   for (const auto& [ground, result] : figures.free_by_ground) {
@@ -145,6 +147,7 @@ void print_json(const StuckArguments& arguments, const Figures& figures) {
       {"driven_h", figures.free.driven_s / 3600.0},
       {"false_alarms", figures.free.false_alarms},
       {"false_alarms_per_hour", an_hour(figures.free)},
+      {"alarms_as_it_came_free", figures.free.came_free_alarms},
       {"alarms_while_hardly_moving", figures.free.other_alarms},
       {"missed_seeds", figures.missed},
   };

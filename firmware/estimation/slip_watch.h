@@ -4,7 +4,7 @@
 // robot hardly moves. It sees how far the belts' speed has come away from what the accelerometer
 // felt since the tracks stood (over 2.6 and 10 s, since more would be drift), the turn that the
 // gyro measures and the difference of the tracks that ought to make one, the belts' speed, the
-// slope, what the motors need beyond idling (a robot that hangs needs nothing), how much the
+// slope, what the motors need beyond idling (a robot that hangs needs little), how much the
 // chassis shakes (one that stands does not) and how it pitches (one that digs itself in does so
 // slowly). A mean of its answers over a third of a second makes the flags. docs/networks.md has
 // figures, `screed nn stuck` measures them.

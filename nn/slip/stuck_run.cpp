@@ -113,8 +113,11 @@ FreeResult alarms_of(const SlipRun& run) {
     if (run.ticks[i].looked && run.ticks[i].running) result.driven_s += 1.0 / kTickRate_hz;
     if (i == 0 || !run.ticks[i].stuck || run.ticks[i - 1].stuck) continue;
     const std::size_t begin = i > kSecond / 2 ? i - kSecond / 2 : 0;
+    const std::size_t end = std::min(i + kSecond / 2, run.ticks.size());
     if (share_between(run, begin, i + 1) > kFreeShare) {
       ++result.false_alarms;
+    } else if (share_between(run, begin, end) > kFreeShare) {
+      ++result.came_free_alarms;
     } else {
       ++result.other_alarms;
     }

@@ -37,7 +37,8 @@ SlipRun drive(const StuckScenario& scenario);
 /// Dug in: over the next second the chassis makes less than this of the way that the faster track
 /// makes, and it has begun: at this moment it moves so as well.
 inline constexpr double kDugInShare = 0.2;
-/// An alarm is false when the chassis made more than this in the half second up to it.
+/// An alarm is false when the chassis made more than this in the half second up to it: that it
+/// would come free in the next moment cannot be known.
 inline constexpr double kFreeShare = 0.4;
 
 /// Share of the faster track's way that the chassis made from tick `begin` to before `end`; 1 when
@@ -54,9 +55,10 @@ struct DugInResult {
 DugInResult detection_of(const SlipRun& run, std::size_t dug_in);
 
 struct FreeResult {
-  double driven_s = 0.0;  ///< with tracks fast enough to look at
-  int false_alarms = 0;   ///< that began while the robot moved
-  int other_alarms = 0;   ///< that began while it hardly did: slip, or dug in without a trap
+  double driven_s = 0.0;     ///< with tracks fast enough to look at
+  int false_alarms = 0;      ///< that began after the robot had moved
+  int came_free_alarms = 0;  ///< not those, but with the half second after it it had: it came free
+  int other_alarms = 0;      ///< that began while it hardly moved: slip, or dug in without a trap
 };
 FreeResult alarms_of(const SlipRun& run);
 
