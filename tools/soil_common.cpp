@@ -123,6 +123,8 @@ void add_soil_options(CLI::App& command, SoilArguments& common) {
   parameter("--shear-modulus", &SoilParameters::shear_modulus_m, "K of Janosi and Hanamoto, m");
   parameter("--elastic", &SoilParameters::elastic_pa_per_m, "E of unloading, Pa/m");
   parameter("--damping", &SoilParameters::damping_pa_s_per_m, "R, Pa s/m");
+  parameter("--shear-damping", &SoilParameters::shear_damping_s,
+            "damping of small shear, over its stiffness, s");
   parameter("--repose", &SoilParameters::repose_deg, "angle of repose, degrees");
   parameter("--compaction", &SoilParameters::compaction, "share of the sunk volume, 0..1");
   parameter("--drag-depth", &SoilParameters::drag_depth_m,
@@ -151,6 +153,7 @@ nlohmann::json soil_json(const SoilArguments& common) {
           {"shear_modulus_m", s.shear_modulus_m},
           {"elastic_pa_per_m", s.elastic_pa_per_m},
           {"damping_pa_s_per_m", s.damping_pa_s_per_m},
+          {"shear_damping_s", s.shear_damping_s},
           {"repose_deg", s.repose_deg},
           {"compaction", s.compaction},
           {"drag_depth_m", s.drag_depth_m},

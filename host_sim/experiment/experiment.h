@@ -89,6 +89,7 @@ struct Experiment {
     std::optional<double> shear_modulus_m;
     std::optional<double> elastic_pa_per_m;
     std::optional<double> damping_pa_s_per_m;
+    std::optional<double> shear_damping_s;
     std::optional<double> repose_deg;
     std::optional<double> compaction;
     std::optional<double> drag_depth_m;

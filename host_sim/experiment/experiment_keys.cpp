@@ -269,6 +269,9 @@ std::vector<ExperimentKey> make_keys() {
                           [](Experiment& e) -> Optional& { return e.soil.elastic_pa_per_m; }));
   keys.push_back(real_key("soil", "R", "Pa s/m", 0, 1e9, "damping of sinking",
                           [](Experiment& e) -> Optional& { return e.soil.damping_pa_s_per_m; }));
+  keys.push_back(real_key("soil", "shear_damping", "s", 0, 0.1,
+                          "damping of small shear, over its stiffness; 0.002 by default",
+                          [](Experiment& e) -> Optional& { return e.soil.shear_damping_s; }));
   keys.push_back(real_key("soil", "repose", "deg", 1, 60, "angle of repose",
                           [](Experiment& e) -> Optional& { return e.soil.repose_deg; }));
   keys.push_back(real_key("soil", "compaction", "", 0, 1,

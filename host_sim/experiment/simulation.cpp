@@ -99,6 +99,7 @@ std::vector<SoilAttribute> attributes_of(const SoilParameters& soil) {
           {"K", "m", soil.shear_modulus_m},
           {"E", "Pa/m", soil.elastic_pa_per_m},
           {"R", "Pa s/m", soil.damping_pa_s_per_m},
+          {"shear_damping", "s", soil.shear_damping_s},
           {"repose", "deg", soil.repose_deg},
           {"compaction", "", soil.compaction},
           {"drag_depth", "m", soil.drag_depth_m},

@@ -146,6 +146,7 @@ SoilParameters make_soil(const Experiment& experiment) {
   take(keys.shear_modulus_m, soil.shear_modulus_m);
   take(keys.elastic_pa_per_m, soil.elastic_pa_per_m);
   take(keys.damping_pa_s_per_m, soil.damping_pa_s_per_m);
+  take(keys.shear_damping_s, soil.shear_damping_s);
   take(keys.repose_deg, soil.repose_deg);
   take(keys.compaction, soil.compaction);
   take(keys.drag_depth_m, soil.drag_depth_m);

@@ -91,11 +91,11 @@ class SoilBed {
     double elastic;  // E, Pa/m
     const PowerTable* table;
   };
-  /// What a node remembers of the last contact. Displacements are means over the touching part.
+  /// What a node remembers of the last contact. Shear is the mean over the touching part.
   struct Trace {
     uint32_t step = 0;     // of that contact
     float share = 0.0F;    // of the cell that touched
-    float along = 0.0F;    // shear displacement along the belt, m
+    float along = 0.0F;    // mobilised share of the shear strength along the belt, -1..1
     float across = 0.0F;   // and across it
     float covered = 0.0F;  // share of the cell below the body
     float old = 0.0F;      // plastic sinkage of that part before the contact, m
@@ -136,7 +136,7 @@ class SoilBed {
   struct Digging {
     Digging(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
         : forward(along), side(across) {}
-    void add(const Cell& cell, double slide_along, double slide_across, double mobilised);
+    void add(const Cell& cell, double sliding, double mobilised);
     Eigen::Vector3d forward;  // level, unit length
     Eigen::Vector3d side;
     double share = 0.0;

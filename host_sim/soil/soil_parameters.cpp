@@ -29,7 +29,7 @@ SoilParameters gravel() {
   SoilParameters s = soil("gravel", 867e3, 0.0, 0.9, 0.0, 25.0, 0.0023, 2e6);
   s.repose_deg = 34.4;
   s.compaction = 0.45;
-  s.drag_depth_m = 0.0026;
+  s.drag_depth_m = 0.0029;
   return s;
 }
 
@@ -77,6 +77,7 @@ void check_soil(const SoilParameters& s) {
   require("K", s.shear_modulus_m, 1e-5, 1.0);
   require("E", s.elastic_pa_per_m, 1e4, 1e12);
   require("R", s.damping_pa_s_per_m, 0.0, 1e9);
+  require("shear_damping", s.shear_damping_s, 0.0, 0.1);
   require("repose", s.repose_deg, 1.0, 60.0);
   require("compaction", s.compaction, 0.0, 1.0);
   require("drag_depth", s.drag_depth_m, 0.0, 1.0);

@@ -8,9 +8,10 @@
 namespace screed {
 
 /// Bekker pressure-sinkage p = (k_c / b + k_phi) z^n with elastic unloading, Janosi-Hanamoto shear
-/// tau = (c + p tan phi) (1 - exp(-j / K)).
+/// tau = (c + p tan phi) (1 - exp(-j / K)), which on the way back does not come back: in its rate
+/// form d tau = ((c + p tan phi) dj - tau |dj|) / K, in two directions.
 /// Sources: M. G. Bekker, Introduction to Terrain-Vehicle Systems, 1969; Z. Janosi, B. Hanamoto,
-/// 1961; J. Y. Wong, Theory of Ground Vehicles, ch. 2.
+/// 1961; P. R. Dahl, A solid friction model, 1968; J. Y. Wong, Theory of Ground Vehicles, ch. 2.
 struct SoilParameters {
   std::string name = "custom";
   double k_phi = 2e6;               ///< N/m^(n+2), > 0 unless k_c is
@@ -21,6 +22,7 @@ struct SoilParameters {
   double shear_modulus_m = 0.01;    ///< K, > 0
   double elastic_pa_per_m = 2e8;    ///< E, of unloading and reloading, > 0
   double damping_pa_s_per_m = 0.0;  ///< R, on the speed of sinking, >= 0
+  double shear_damping_s = 0.002;   ///< of small shear, 0..0.1: stiffness times this is its damping
   double repose_deg = 30.0;         ///< angle of repose of loose material, 1..60
   double compaction =
       0.0;  ///< share of the sunk and dug volume that is compacted, 0..1; the rest moves aside

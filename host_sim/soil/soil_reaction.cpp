@@ -11,10 +11,14 @@ namespace {
 // Below this speed a body does not roll into new soil, m/s.
 constexpr double kRolling = 1e-3;
 
+/// 1 - exp(-x): x is mostly small, and there Pade's fraction of second order is within 2e-8.
+double fading(double x) {
+  return std::abs(x) < 0.1 ? 12.0 * x / (12.0 + x * (6.0 + x)) : 1.0 - std::exp(-x);
+}
+
 }  // namespace
 
-void SoilBed::Digging::add(const Cell& cell, double slide_along, double slide_across,
-                           double mobilised) {
+void SoilBed::Digging::add(const Cell& cell, double sliding, double mobilised) {
   const double along = cell.arm.dot(forward);
   const double across = cell.arm.dot(side);
   share += cell.share;
@@ -22,7 +26,7 @@ void SoilBed::Digging::add(const Cell& cell, double slide_along, double slide_ac
   first_across += cell.share * across;
   second_along += cell.share * along * along;
   second_across += cell.share * across * across;
-  swept += cell.share * mobilised * std::hypot(slide_along, slide_across);
+  swept += cell.share * mobilised * sliding;
 }
 
 // A layer of the soil goes along with a slipping surface: slip times depth times the footprint's
@@ -120,41 +124,50 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     const Eigen::Vector3d lengthwise = radial ? along : level_way;
     const Eigen::Vector3d sideways = radial ? normal.cross(along) / steep : level_side;
 
-    // Shear displacement: the mean over the touching part of the cell. What has just come into
-    // touch starts at zero.
+    // Mobilised shear: the mean over the touching part of the cell. What has just come into touch
+    // starts at zero.
+    const double sliding = std::sqrt(slide_along * slide_along + slide_across * slide_across);
+    const double per_sliding = sliding > 0.0 ? 1.0 / sliding : 0.0;
+    const double to_along = slide_along * per_sliding;
+    const double to_across = slide_across * per_sliding;
     const double kept = std::min(static_cast<double>(trace.share), cell.share) / cell.share;
-    const double grown = dt * 0.5 * (1.0 + kept);
-    const double mean_along = static_cast<double>(trace.along) * kept + slide_along * grown;
-    const double mean_across = static_cast<double>(trace.across) * kept + slide_across * grown;
+    const double fades = fading(sliding * dt * per_shear_modulus);
+    const double stays = kept * (1.0 - fades);
+    const double comes = 0.5 * (1.0 + kept) * fades;
+    const double mean_along = static_cast<double>(trace.along) * stays + to_along * comes;
+    const double mean_across = static_cast<double>(trace.across) * stays + to_across * comes;
     trace.step = step_;
     trace.share = static_cast<float>(cell.share);
     trace.along = static_cast<float>(mean_along);
     trace.across = static_cast<float>(mean_across);
 
     // Where the pressure is higher the soil has sheared for longer, by the way between the two
-    // means of place.
-    const double lag = -cell.lead * per_speed;
-    const double j_along = mean_along + slide_along * lag;
-    const double j_across = mean_across + slide_across * lag;
-    const double length = std::sqrt(j_along * j_along + j_across * j_across);
+    // means of place. That stress answers to a shear that is further on is its damping.
+    const double ahead = soil_.shear_damping_s - cell.lead * per_speed;
+    const double further = fading(sliding * ahead * per_shear_modulus);
+    double m_along = mean_along + (to_along - mean_along) * further;
+    double m_across = mean_across + (to_across - mean_across) * further;
+    const double squared = m_along * m_along + m_across * m_across;
+    if (squared > 1.0) {
+      const double most = 1.0 / std::sqrt(squared);
+      m_along *= most;
+      m_across *= most;
+    }
     const double load = damped * cell_area_;
     Eigen::Vector3d force(0.0, 0.0, load);
     if (radial) force << load * cell.slope_x, load * cell.slope_y, load;
     Eigen::Vector3d torque = load * cell.moment;
     reaction.normal_load += load;
-    if (length > 0.0) {
-      const double strength = soil_.cohesion_pa * cell.share + damped * tan_friction_;
-      const double mobilised = 1.0 - std::exp(-length * per_shear_modulus);
-      const Eigen::Vector3d traction =
-          (-strength * mobilised * cell_area_ * (radial ? steep : 1.0) / length) *
-          (j_along * lengthwise + j_across * sideways);
-      force += traction;
-      torque += cell.arm.cross(traction);
-      reaction.along_surface -= traction.dot(along);
-      if (soil_.drag_depth_m > 0.0) {
-        digging.add(cell, slide_along, slide_across, mobilised);
-        flow_.shear(cell.node, cell.share * mobilised * std::hypot(slide_along, slide_across));
-      }
+    const double strength = soil_.cohesion_pa * cell.share + damped * tan_friction_;
+    const Eigen::Vector3d traction = (-strength * cell_area_ * (radial ? steep : 1.0)) *
+                                     (m_along * lengthwise + m_across * sideways);
+    force += traction;
+    torque += cell.arm.cross(traction);
+    reaction.along_surface -= traction.dot(along);
+    if (soil_.drag_depth_m > 0.0) {
+      const double mobilised = std::sqrt(std::min(squared, 1.0));
+      digging.add(cell, sliding, mobilised);
+      flow_.shear(cell.node, cell.share * mobilised * sliding);
     }
     reaction.force += force;
     reaction.torque += torque;

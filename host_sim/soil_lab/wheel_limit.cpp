@@ -47,22 +47,24 @@ class Contact {
     reaction.rut_m = sinkage - deepest / soil_.elastic_pa_per_m;
     const double slice = (front + rear) / kSlices;
     double vertical = 0.0;
-    double shear = 0.0;  // displacement of the rim against the soil below it, m
+    double mobilised = 0.0;  // of the shear strength, with the direction of shear
     for (int i = 0; i < kSlices; ++i) {
       const double theta = front - (i + 0.5) * slice;
       const double sin = std::sin(theta);
       const double cos = std::cos(theta);
       const double dx = r * cos * slice;  // the hub's way while the soil passes this slice
       const double rate = radial_ ? rim_over_hub_ - cos : rim_over_hub_ * cos - 1.0;
-      const double here = shear + 0.5 * rate * dx;
-      shear += rate * dx;
+      const double way = rate * dx;  // of the rim against the soil below it
+      const double direction = way < 0.0 ? -1.0 : 1.0;
+      const double half = std::exp(-0.5 * std::abs(way) / soil_.shear_modulus_m);
+      const double here = direction + (mobilised - direction) * half;
+      mobilised = direction + (here - direction) * half;
       const double depth = sinkage - r * (1.0 - cos);
       const double pressure =
           theta > 0.0 ? going_down(bekker, depth)
                       : std::max(0.0, deepest - soil_.elastic_pa_per_m * (sinkage - depth));
       const double strength = soil_.cohesion_pa + pressure * tan_friction_;
-      const double tau =
-          std::copysign(strength * -std::expm1(-std::abs(here) / soil_.shear_modulus_m), here);
+      const double tau = strength * here;
       const double area = wheel_.width_m * dx;  // horizontal; the rim's own is area / cos
       if (radial_) {
         vertical += area * (pressure + tau * sin / cos);
