@@ -8,6 +8,11 @@ namespace {
 
 // The correction may at most add 90 degrees/s: beyond that the robot is stuck, not slipping.
 constexpr int32_t kYawCorrectionLimit = 16384;
+// Of the yaw rate's error, 2^4 ticks: 1 Hz. Tracks on soft ground swing in yaw at 2 to 6 Hz with
+// little damping; what the loop would answer there must not reach them.
+constexpr uint8_t kYawLag = 4;
+// Twice that and half a step still fit 16 bits; 88 degrees/s.
+constexpr int32_t kYawErrorLimit = 16000;
 
 int16_t approach(int16_t value, int16_t target, int16_t step) {
   return static_cast<int16_t>(
@@ -29,15 +34,24 @@ DriveControl::DriveControl(const BoardConstants& board, const Parameters& parame
 
 void DriveControl::idle(const DriveMeasurement& measured) {
   targets_ = {0, 0};
-  yaw_integral_q8_ = 0;
-  limited_ = false;
+  forget_yaw();
   left_.release(measured.counts_left);
   right_.release(measured.counts_right);
 }
 
+void DriveControl::forget_yaw() {
+  yaw_error_ = 0;
+  yaw_integral_q8_ = 0;
+  limited_ = false;
+}
+
 int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
-  const int32_t error =
-      clamp_i32(static_cast<int32_t>(command.yaw_rate) - measured_rate, -32767, 32767);
+  const auto seen = static_cast<int16_t>(clamp_i32(
+      static_cast<int32_t>(command.yaw_rate) - measured_rate, -kYawErrorLimit, kYawErrorLimit));
+  yaw_error_ = static_cast<int16_t>(
+      yaw_error_ +
+      asr_i16(static_cast<int16_t>(seen - yaw_error_ + (1 << (kYawLag - 1))), kYawLag));
+  const int16_t error = yaw_error_;
   // While the tracks cannot make the command the integral only moves back towards zero; were it
   // held, what a spin left in it would turn a robot for ever that is told to drive straight on at
   // nearly full speed.
@@ -45,20 +59,18 @@ int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t m
   if (!limited_ || unwinds) {
     // ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096, shifted in two parts
     // to fit 32 bits.
-    const int32_t step = asr(asr(static_cast<int32_t>(yaw_ki_) * error, 4) * 41, 8);
+    const int32_t step = asr(asr(mul_i16(yaw_ki_, error), 4) * 41, 8);
     yaw_integral_q8_ =
         clamp_i32(yaw_integral_q8_ + step, -kYawCorrectionLimit * 256, kYawCorrectionLimit * 256);
   }
-  const int32_t correction =
-      asr(static_cast<int32_t>(yaw_kp_) * error, 8) + asr(yaw_integral_q8_, 8);
+  const int32_t correction = asr(mul_i16(yaw_kp_, error), 8) + asr(yaw_integral_q8_, 8);
   return command.yaw_rate + clamp_i32(correction, -kYawCorrectionLimit, kYawCorrectionLimit);
 }
 
 DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurement& measured) {
   TrackSpeeds wanted = {0, 0};
   if (command.speed_mm_per_s == 0 && command.yaw_rate == 0) {
-    yaw_integral_q8_ = 0;
-    limited_ = false;
+    forget_yaw();
   } else {
     wanted =
         kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),

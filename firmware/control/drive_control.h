@@ -48,6 +48,7 @@ class DriveControl {
   const TrackMotion& right() const { return right_.motion(); }
 
  private:
+  void forget_yaw();
   int32_t corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate);
 
   SkidSteer kinematics_;
@@ -57,6 +58,7 @@ class DriveControl {
   int32_t yaw_integral_q8_ = 0;  ///< angle units/s
   int16_t full_speed_mm_per_s_;
   int16_t step_mm_per_s_;  ///< greatest change of a target in one tick
+  int16_t yaw_error_ = 0;  ///< with a lag, angle units/s
   int16_t yaw_kp_;
   int16_t yaw_ki_;
   bool limited_ = false;  ///< the tracks could not make the last command

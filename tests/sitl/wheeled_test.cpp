@@ -136,7 +136,7 @@ TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
     double least_way_m;  // of the 0.8 m that the wheels roll
   };
   for (const Expected& expected :
-       {Expected{"lete_sand", 0.6}, Expected{"viper", 0.4}, Expected{"dry_sand", 0.25}}) {
+       {Expected{"lete_sand", 0.6}, Expected{"viper", 0.4}, Expected{"dry_sand", 0.2}}) {
     SCOPED_TRACE(expected.soil);
     WorldOptions options = wheels(0.1, 0.0);
     options.soil = soil_preset(expected.soil);
