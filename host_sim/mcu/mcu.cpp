@@ -136,8 +136,8 @@ struct Mcu::Hooks {
     for (const auto& callback : it.reset_to_) callback();
   }
 
-  // Again and again until it is cancelled: where the program falls asleep in this very cycle, simavr
-  // sleeps on to the next timer.
+  // Again and again until it is cancelled: where the program falls asleep in this very cycle,
+  // simavr sleeps on to the next timer.
   static avr_cycle_count_t end(avr_t* avr, avr_cycle_count_t, void*) { return avr->cycle + 1; }
 
   static avr_cycle_count_t feed(avr_t*, avr_cycle_count_t when, void* self) {
