@@ -77,8 +77,8 @@ TEST(SoilDriving, ToleratesTwiceTheYawGain) {
   }
 }
 
-// Put down level on a slope it drops onto its tracks and swings. That dies away; until then the firmware cannot learn the
-// gyro's bias.
+// Put down level on a slope it drops onto its tracks and swings. That dies away; until then the
+// firmware cannot learn the gyro's bias.
 TEST(SoilDriving, ComesToRest) {
   for (const char* soil : {"viper", "lete_sand", "clay"}) {
     WorldOptions options;
