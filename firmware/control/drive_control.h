@@ -3,7 +3,8 @@
 // A skid-steered track must slip to turn, by an amount the ground decides. So the turn rate is
 // closed over the gyro: a PI controller behind a low pass of 1 Hz adds to the commanded rate what
 // slip takes away, before the kinematics split it over the tracks. Its proportional part is 0 by
-// default: the integral, which is the heading lost, is enough, and soft ground swings with the rest.
+// default: the integral, which is the heading lost, is enough, and soft ground swings with the
+// rest.
 #pragma once
 
 #include <stddef.h>
