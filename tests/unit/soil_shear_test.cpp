@@ -129,5 +129,28 @@ TEST(SoilShearTest, SmallShearIsDamped) {
   EXPECT_LE(box.shear({20.0 * k, 0.0}, 0.1).x(), 1.0 + 1e-9);
 }
 
+// A wheel that spins and hardly moves: between the two means of place in a cell lies a way that
+// takes it seconds, many times K of slip.
+TEST(SoilShearTest, AWheelThatSpinsOnTheSpotFeelsNoMoreThanTheStrength) {
+  SoilParameters soil = soil_preset("lete_sand");
+  soil.shear_modulus_m = 0.002;
+  SoilBed bed(HeightField(61, 61, 0.005, false), soil);
+  Footprint wheel = Footprint::wheel(0.03, 0.025);
+  ContactMemory memory;
+  FootprintMotion motion;
+  motion.mass_kg = std::numeric_limits<double>::infinity();
+  motion.velocity.x() = 0.00105;
+  motion.surface_speed = 3.0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 2000; ++i) {
+    pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.03 - 0.003;
+    wheel.set_pose(pose);
+    const SoilReaction reaction = bed.press(wheel, motion, kStep_s, memory);
+    bed.end_step();
+    ASSERT_TRUE(reaction.force.allFinite() && reaction.torque.allFinite()) << "step " << i;
+    ASSERT_LT(reaction.force.head<2>().norm(), 2.0 * reaction.normal_load + 10.0) << "step " << i;
+  }
+}
+
 }  // namespace
 }  // namespace screed
