@@ -22,7 +22,7 @@ const std::string kRow = "0,0,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n";
 
 /// The file of the running test; gone after it.
 std::string own_file() {
-  return testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() +
+  return ::testing::TempDir() + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
          ".csv";
 }
 
@@ -31,7 +31,7 @@ std::string write(const std::string& text) {
   return own_file();
 }
 
-class AttitudeCommand : public testing::Test {
+class AttitudeCommand : public ::testing::Test {
  protected:
   void TearDown() override {
     std::error_code ignored;
@@ -105,9 +105,9 @@ TEST_F(AttitudeCommand, CallbackSetsTheAction) {
   register_attitude_command(root, action);
   root.parse("attitude --json " + kExcerpt);
   ASSERT_TRUE(action);
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   EXPECT_EQ(action(), 0);
-  EXPECT_TRUE(nlohmann::json::accept(testing::internal::GetCapturedStdout()));
+  EXPECT_TRUE(nlohmann::json::accept(::testing::internal::GetCapturedStdout()));
 
   CLI::App without_files;
   register_attitude_command(without_files, action);

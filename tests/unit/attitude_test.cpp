@@ -172,7 +172,7 @@ struct Turn {
   int counts;  // gyroscope, whole counts, so that the readings are exact
 };
 
-class ConstantTurn : public testing::TestWithParam<Turn> {};
+class ConstantTurn : public ::testing::TestWithParam<Turn> {};
 
 TEST_P(ConstantTurn, FollowsTheClosedForm) {
   const Vec axis = GetParam().axis;
@@ -190,11 +190,11 @@ TEST_P(ConstantTurn, FollowsTheClosedForm) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAxes, ConstantTurn,
-                         testing::Values(Turn{{1, 0, 0}, 100}, Turn{{1, 0, 0}, -5000},
-                                         Turn{{1, 0, 0}, 14285}, Turn{{0, 1, 0}, 100},
-                                         Turn{{0, 1, 0}, 5000}, Turn{{0, 1, 0}, -14285},
-                                         Turn{{0, 0, 1}, 3}, Turn{{0, 0, 1}, -100},
-                                         Turn{{0, 0, 1}, 5000}, Turn{{0, 0, 1}, -14285}));
+                         ::testing::Values(Turn{{1, 0, 0}, 100}, Turn{{1, 0, 0}, -5000},
+                                           Turn{{1, 0, 0}, 14285}, Turn{{0, 1, 0}, 100},
+                                           Turn{{0, 1, 0}, 5000}, Turn{{0, 1, 0}, -14285},
+                                           Turn{{0, 0, 1}, 3}, Turn{{0, 0, 1}, -100},
+                                           Turn{{0, 0, 1}, 5000}, Turn{{0, 0, 1}, -14285}));
 
 TEST(Attitude, FullScaleTurnStaysWithinTheSeries) {
   AttitudeEstimator estimator;

@@ -73,7 +73,7 @@ TEST(CandumpLog, TellsFramesOthersAndTheUnreadable) {
   }
 }
 
-class CandumpReading : public testing::Test {
+class CandumpReading : public ::testing::Test {
  protected:
   /// Frames and unreadable lines of a file of this content.
   struct Content {

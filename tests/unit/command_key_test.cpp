@@ -13,12 +13,12 @@
 namespace screed {
 namespace {
 
-class KeyFile : public testing::Test {
+class KeyFile : public ::testing::Test {
  public:
   KeyFile() {
-    folder_ = std::filesystem::path(testing::TempDir()) /
+    folder_ = std::filesystem::path(::testing::TempDir()) /
               (std::string("screed_key_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

@@ -39,7 +39,7 @@ std::string attitude_line(double time_s, int16_t pitch, uint8_t counter, uint8_t
                       protected_frame(message::Attitude{-5, pitch, 35999}, counter, node));
 }
 
-class Decode : public testing::Test {
+class Decode : public ::testing::Test {
  protected:
   std::string log(const std::string& text) {
     std::string path = (scratch_.path() / "radio.log").string();

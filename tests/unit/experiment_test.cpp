@@ -19,7 +19,7 @@
 namespace screed {
 namespace {
 
-class ExperimentFile : public testing::Test {
+class ExperimentFile : public ::testing::Test {
  protected:
   std::filesystem::path path() const { return folder_.path() / "test.ini"; }
   Experiment read(const std::string& text, const std::vector<std::string>& overrides = {}) {

@@ -30,7 +30,7 @@ const std::vector<uint16_t> kGrey8 = {0, 1, 2, 3, 64, 128, 192, 254, 255, 10, 20
 const std::vector<uint16_t> kGrey16 = {0,     1,     255,   256,  4660,  32768,
                                        43981, 65534, 65535, 1000, 20000, 30000};
 
-class GreyImageTest : public testing::Test {
+class GreyImageTest : public ::testing::Test {
  protected:
   fs::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;

@@ -12,7 +12,7 @@
 namespace screed {
 namespace {
 
-class IniFile : public testing::Test {
+class IniFile : public ::testing::Test {
  protected:
   std::filesystem::path path() const { return folder_.path() / "test.ini"; }
   std::vector<IniEntry> read(const std::string& text) {
@@ -135,7 +135,7 @@ TEST_F(IniFile, OfTwoComplaintsTheFirstIsTold) {
 
 TEST_F(IniFile, MissingFilesAndFolders) {
   EXPECT_THROW(read_ini_file("/nowhere/at/all.ini"), InputError);
-  EXPECT_THROW(read_ini_file(testing::TempDir()), InputError);
+  EXPECT_THROW(read_ini_file(::testing::TempDir()), InputError);
 }
 
 TEST_F(IniFile, BinaryContentEndsWithOneLine) {

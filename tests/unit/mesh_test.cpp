@@ -35,7 +35,7 @@ std::string error_of(const std::filesystem::path& file) {
   return "no error";
 }
 
-class UnitCube : public testing::TestWithParam<const char*> {};
+class UnitCube : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(UnitCube, HasEightVerticesTwelveTrianglesAndItsVolume) {
   const TriangleMesh mesh = load_mesh(kData / GetParam(), Eigen::Vector3d::Ones());
@@ -53,7 +53,8 @@ TEST_P(UnitCube, IsScaledAxisByAxis) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, UnitCube,
-                         testing::Values("unit_cube.obj", "unit_cube.stl", "unit_cube_binary.stl"));
+                         ::testing::Values("unit_cube.obj", "unit_cube.stl",
+                                           "unit_cube_binary.stl"));
 
 TEST(Mesh, MissingFileIsNamed) {
   EXPECT_EQ(error_of("tests/data/urdf/gone.stl"),

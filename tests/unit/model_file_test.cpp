@@ -53,7 +53,7 @@ std::string refusal(const std::string& what, const std::string& by) {
 TEST(ModelFile, WhatIsWrittenIsRead) {
   const Model model = small_model();
   const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / "screed_model_file_test.json";
+      std::filesystem::path(::testing::TempDir()) / "screed_model_file_test.json";
   write_model(file, model);
   const Model again = read_model(file);
   std::filesystem::remove(file);

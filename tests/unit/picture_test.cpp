@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class PictureTest : public testing::Test {
+class PictureTest : public ::testing::Test {
  protected:
   TempFolder temporary_;
   fs::path folder_ = temporary_.path();

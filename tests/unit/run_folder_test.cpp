@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RunFolderTest : public testing::Test {
+class RunFolderTest : public ::testing::Test {
  protected:
   TempFolder folder_;
   fs::path base_ = folder_.path();

@@ -27,14 +27,14 @@ TEST_F(SessionTest, FilesThatAreNoSessionAreRefused) {
 TEST_F(SessionTest, ATruncatedFileIsRefused) {
   write_run(file_, random_run(1200));
   const std::string whole = read_text(file_);
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   for (std::size_t size = whole.size() - 1; size > 2000; size -= size / 9) {
     write_text(file_, whole.substr(0, size));
     expect_refused("truncated");
   }
   write_text(file_, whole.substr(0, 4));
   expect_refused("not an HDF5 file");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // the library has no say
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");  // the library has no say
 }
 
 TEST_F(SessionTest, DamagedRowsAreReported) {

@@ -163,7 +163,7 @@ inline bool succeeds_in_child(const std::function<std::string()>& action) {
   return true;
 }
 
-class SessionTest : public testing::Test {
+class SessionTest : public ::testing::Test {
  protected:
   void expect_refused(const std::string& part) const {
     expect_line(message_of<InputError>([&] { const SessionReader reader(file_); }), file_, part);

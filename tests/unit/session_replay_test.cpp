@@ -106,15 +106,15 @@ CommandResult replay_command(const std::vector<std::string>& arguments) {
   reversed.emplace_back("replay");
   app.parse(reversed);
   CommandResult result;
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
   try {
     result.status = action();
   } catch (const InputError&) {
     result.status = 2;
   }
-  result.out = testing::internal::GetCapturedStdout();
-  result.err = testing::internal::GetCapturedStderr();
+  result.out = ::testing::internal::GetCapturedStdout();
+  result.err = ::testing::internal::GetCapturedStderr();
   return result;
 }
 

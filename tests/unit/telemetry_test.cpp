@@ -18,7 +18,7 @@ struct Downlink {
   int most_in_a_tick = 0;
 };
 
-class TelemetryTest : public testing::Test {
+class TelemetryTest : public ::testing::Test {
  protected:
   TelemetryTest() { view_.sample = &sample_; }
 

@@ -21,7 +21,7 @@ void PrintTo(const Wrong& wrong, std::ostream* stream) {
   *stream << wrong.name;
 }
 
-class WrongUrdf : public testing::TestWithParam<Wrong> {};
+class WrongUrdf : public ::testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongUrdf, IsRefusedInOneLine) {
   const std::string error = error_of(small_with(GetParam().from, GetParam().to));
@@ -42,7 +42,7 @@ const std::string kNoBody =
 // ---- structure ---------------------------------------------------------------------------
 INSTANTIATE_TEST_SUITE_P(
     Structure, WrongUrdf,
-    testing::Values(
+    ::testing::Values(
         Wrong{"TwoBodies", kBase, "<link name=\"Body\"/>",
               ":10: link 'Body' is there twice, first on line 4; names are unique"},
         Wrong{"TwoJointsOfOneName", "<joint name=\"fr_Wheel_joint\"",
@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
 // ---- values ------------------------------------------------------------------------------
 INSTANTIATE_TEST_SUITE_P(
     Values, WrongUrdf,
-    testing::Values(
+    ::testing::Values(
         Wrong{"Sphere", kBoxSize, "<sphere radius=\"1\"/>",
               ":14: link 'Body': geometry <sphere> is not supported; allowed: box, cylinder, mesh"},
         Wrong{

@@ -219,14 +219,14 @@ TEST(Urdf, LocaleDoesNotMatter) {
 }
 
 TEST(Urdf, NothingIsPrinted) {
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
   import_urdf(kSmall);
   error_of_file("tests/data/urdf/figure_5_4.urdf");
   error_of(small_with("<robot name=\"small\">", "<robot name=\"small\" version=\"7.3\">"));
   error_of(small_with("name=\"small\"", ""));
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(Urdf, ExtensionsOfOtherToolsAndColoursAreIgnored) {
