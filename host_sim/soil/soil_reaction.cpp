@@ -152,9 +152,9 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     double m_across = mean_across + (to_across - mean_across) * further;
     const double squared = m_along * m_along + m_across * m_across;
     if (squared > 1.0) {
-      const double most = 1.0 / std::sqrt(squared);
-      m_along *= most;
-      m_across *= most;
+      const double to_strength = 1.0 / std::sqrt(squared);
+      m_along *= to_strength;
+      m_across *= to_strength;
     }
     const double load = damped * cell_area_;
     Eigen::Vector3d force(0.0, 0.0, load);

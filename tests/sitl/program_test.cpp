@@ -52,6 +52,25 @@ TEST_F(Program, AModelOfOnesOwnDrives) {
   EXPECT_EQ(run("sim e.ini --quiet").exit_code, 0);
 }
 
+TEST_F(Program, DocsHaveTheKeysAsTheyAre) {
+  const Result keys = run("sim --keys");
+  ASSERT_EQ(keys.exit_code, 0) << keys.err;
+  const std::string page = read("docs/experiments.md");
+  std::size_t rows = 0;
+  std::string block;
+  for (std::size_t i = 0; i < keys.out.size();) {
+    const std::size_t end = keys.out.find('\n', i) + 1;
+    const std::string line = keys.out.substr(i, end - i);
+    i = end;
+    if (line[0] != '|') continue;
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+    block += line;
+    ++rows;
+  }
+  EXPECT_GT(rows, 100U);
+  EXPECT_NE(page.find(block), std::string::npos) << "rows in another order";
+}
+
 TEST_F(Program, ShowsATable) {
   write("e.ini", kShort);
   const Result sim = run("sim e.ini");

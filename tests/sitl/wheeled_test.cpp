@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/soil_lab/wheel_limit.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {
@@ -129,32 +130,47 @@ TEST(WheeledRover, StandsStill) {
   EXPECT_LT(plant.vehicle().chassis().velocity.norm(), 1e-6);
 }
 
-// On firm sand the wheels slip a little, on loose sand a lot: they sink in by some millimetres.
+/// Slip at which four wheels on untouched and rutted soil pull as much as they are held back: two
+/// go ahead, two follow in their ruts, all bear a quarter.
+double own_slip(const SoilParameters& soil) {
+  double low = -0.2;
+  double high = 0.95;
+  for (int i = 0; i < 40; ++i) {
+    RollingWheel wheel;
+    wheel.width_m = 0.03;
+    wheel.load_n = 0.25 * 1.2 * 9.81;
+    wheel.slip = 0.5 * (low + high);
+    const WheelReaction ahead = wheel_limit(wheel, soil, NormalStress::kRadial);
+    wheel.rut_m = ahead.rut_m;
+    const WheelReaction behind = wheel_limit(wheel, soil, NormalStress::kRadial);
+    (ahead.drawbar_pull_n + behind.drawbar_pull_n < 0.0 ? low : high) = wheel.slip;
+  }
+  return 0.5 * (low + high);
+}
+
+// On firm sand the wheels slip a little, on loose sand a lot: they sink in by some millimetres, and
+// the robot drives as fast as the limit of an infinitely fine grid says. First it has to come out
+// of the dents in which it stood; when it does is chance.
 TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
-  struct Expected {
-    const char* soil;
-    double least_way_m;  // of the 0.8 m that the wheels roll
-  };
-  for (const Expected& expected :
-       {Expected{"lete_sand", 0.6}, Expected{"viper", 0.4}, Expected{"dry_sand", 0.2}}) {
-    SCOPED_TRACE(expected.soil);
+  for (const char* soil : {"lete_sand", "viper", "dry_sand"}) {
+    SCOPED_TRACE(soil);
     WorldOptions options = wheels(0.1, 0.0);
-    options.soil = soil_preset(expected.soil);
+    options.soil = soil_preset(soil);
     options.start.x_m = -0.7;
     TestDrive drive(HeightField::flat(2.0, 0.005), options);
     ASSERT_TRUE(drive.start());
-    const Eigen::Vector3d begin = drive.position();
+    Eigen::Vector3d begin = drive.position();
     double steepest = 0.0;
     double fastest = 0.0;  // up or down
-    for (int i = 0; i < 8 * kTickRate_hz; ++i) {
+    for (int i = 0; i < 13 * kTickRate_hz; ++i) {
+      if (i == 5 * kTickRate_hz) begin = drive.position();
       drive.tick();
       steepest =
           std::max({steepest, std::abs(drive.attitude().pitch), std::abs(drive.attitude().roll)});
       fastest = std::max(fastest, std::abs(drive.world.vehicle().chassis().velocity.z()));
     }
     const double way = (drive.position() - begin).norm();
-    EXPECT_GT(way, expected.least_way_m);
-    EXPECT_LT(way, 0.8 * 1.05);
+    EXPECT_NEAR(way / (0.8 * (1.0 - own_slip(*options.soil))), 1.0, 0.05);
     EXPECT_LT(steepest, 5.0 * kDeg);
     EXPECT_LT(fastest, 0.05);
     EXPECT_EQ(drive.world.plant().soil()->balance().error(), 0);

@@ -1,8 +1,6 @@
 // What is written for good is there whole or not at all: on a disk that gets full on the way, every
 // writer says so in one line and leaves the folder as it was.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <functional>
@@ -20,6 +18,7 @@
 #include "host_sim/telemetry/csv_tables.h"
 #include "host_sim/telemetry/log_decoder.h"
 #include "host_sim/telemetry/mcap_file.h"
+#include "tests/child_process.h"
 #include "tests/file_size_limit.h"
 #include "tests/temp_folder.h"
 
@@ -89,8 +88,7 @@ TEST_F(HalfWritten, PartialFileKeepsWhatStoodThere) {
 // In a child: HDF5 keeps what it holds of a file that it could not write, and a program under the
 // sanitizers would be told of a leak.
 TEST_F(HalfWritten, GridRecording) {
-  const pid_t child = fork();
-  if (child == 0) {
+  EXPECT_TRUE(succeeds_in_child([&]() -> std::string {
     GridRun run((GridConfig()));
     // Full at the start, in the middle of a run, and at its end.
     for (const rlim_t bytes : {0U, 3000U, 20000U}) {
@@ -103,11 +101,8 @@ TEST_F(HalfWritten, GridRecording) {
         recorder.finish(run);
       });
     }
-    _exit(HasFailure() ? 1 : 0);
-  }
-  int status = -1;
-  EXPECT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+    return HasFailure() ? "see above" : "";
+  }));
 }
 
 TEST_F(HalfWritten, GridRecordingWhoseNameIsTakenMeanwhile) {

@@ -2,7 +2,6 @@
 #include "host_sim/session/run_folder.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -10,6 +9,7 @@
 #include <functional>
 
 #include "host_sim/core/errors.h"
+#include "tests/child_process.h"
 #include "tests/temp_folder.h"
 
 namespace screed {
@@ -186,20 +186,15 @@ TEST_F(RunFolderTest, ACompleteRunIsKeptWhenItsNameWasTakenMeanwhile) {
 TEST_F(RunFolderTest, AnUnwritableParentIsARunError) {
   fs::permissions(base_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
                              fs::perms::others_exec);
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
+  EXPECT_TRUE(succeeds_in_child([&]() -> std::string {
     constexpr uid_t kNobody = 65534;
-    if (geteuid() == 0 && seteuid(kNobody) != 0) _exit(2);
+    if (geteuid() == 0 && seteuid(kNobody) != 0) return "cannot become nobody";
     const std::string message = message_of<RunError>([&] { RunFolder::at(base_ / "run"); });
     const bool named = message.find((base_ / "run").string()) != std::string::npos;
-    _exit(named && message.find("Permission denied") != std::string::npos ? 0 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
+    if (!named || message.find("Permission denied") == std::string::npos) return "said: " + message;
+    return "";
+  }));
   fs::permissions(base_, fs::perms::owner_all);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace

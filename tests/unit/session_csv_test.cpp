@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "host_sim/session/csv_export.h"
+#include "tests/child_process.h"
 #include "tests/unit/session_fixture.h"
 
 namespace screed {

@@ -2,9 +2,11 @@
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 
+#include "tests/child_process.h"
 #include "tests/unit/session_fixture.h"
 
 namespace screed {
