@@ -42,7 +42,6 @@ void DriveControl::idle(const DriveMeasurement& measured) {
 void DriveControl::forget_yaw() {
   yaw_error_ = 0;
   yaw_integral_q8_ = 0;
-  limited_ = false;
 }
 
 int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
@@ -52,17 +51,13 @@ int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t m
       yaw_error_ +
       asr_i16(static_cast<int16_t>(seen - yaw_error_ + (1 << (kYawLag - 1))), kYawLag));
   const int16_t error = yaw_error_;
-  // While the tracks cannot make the command the integral only moves back towards zero; were it
-  // held, what a spin left in it would turn a robot for ever that is told to drive straight on at
-  // nearly full speed.
-  const bool unwinds = (error < 0 && yaw_integral_q8_ > 0) || (error > 0 && yaw_integral_q8_ < 0);
-  if (!limited_ || unwinds) {
-    // ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096, shifted in two parts
-    // to fit 32 bits.
-    const int32_t step = asr(asr(mul_i16(yaw_ki_, error), 4) * 41, 8);
-    yaw_integral_q8_ =
-        clamp_i32(yaw_integral_q8_ + step, -kYawCorrectionLimit * 256, kYawCorrectionLimit * 256);
-  }
+  // The integral is the heading lost, so it is not held while the tracks are at their limits: what
+  // they owe they make up for once they can, as far as kYawCorrectionLimit lets it grow (30 degrees
+  // with the default gain). ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096,
+  // shifted in two parts to fit 32 bits.
+  const int32_t step = asr(asr(mul_i16(yaw_ki_, error), 4) * 41, 8);
+  yaw_integral_q8_ =
+      clamp_i32(yaw_integral_q8_ + step, -kYawCorrectionLimit * 256, kYawCorrectionLimit * 256);
   const int32_t correction = asr(mul_i16(yaw_kp_, error), 8) + asr(yaw_integral_q8_, 8);
   return command.yaw_rate + clamp_i32(correction, -kYawCorrectionLimit, kYawCorrectionLimit);
 }
@@ -74,7 +69,7 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
   } else {
     wanted =
         kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
-                           full_speed_mm_per_s_, &limited_);
+                           full_speed_mm_per_s_);
   }
   targets_.left = approach(targets_.left, wanted.left, step_mm_per_s_);
   targets_.right = approach(targets_.right, wanted.right, step_mm_per_s_);

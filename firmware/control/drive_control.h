@@ -2,9 +2,9 @@
 //
 // A skid-steered track must slip to turn, by an amount the ground decides. So the turn rate is
 // closed over the gyro: a PI controller behind a low pass of 1 Hz adds to the commanded rate what
-// slip takes away, before the kinematics split it over the tracks. Its proportional part is 0 by
-// default: the integral, which is the heading lost, is enough, and soft ground swings with the
-// rest.
+// slip takes away, before the kinematics split it over the tracks. Its integral is the heading lost
+// since the robot last stood, so a robot told to drive straight on comes back to its heading. Its
+// proportional part is 0 by default: soft ground swings with it.
 #pragma once
 
 #include <stddef.h>
@@ -63,7 +63,6 @@ class DriveControl {
   int16_t yaw_error_ = 0;  ///< with a lag, angle units/s
   int16_t yaw_kp_;
   int16_t yaw_ki_;
-  bool limited_ = false;  ///< the tracks could not make the last command
 };
 
 }  // namespace screed

@@ -3,15 +3,14 @@
 
 namespace screed {
 
-TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t limit_mm_per_s,
-                              bool* limited) const {
+TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate,
+                              int16_t limit_mm_per_s) const {
   const int32_t limit = limit_mm_per_s;
   const int32_t rate = clamp_i32(yaw_rate, -INT16_MAX, INT16_MAX);
-  const int32_t wanted = asr_round(rate * static_cast<int32_t>(half_arc_q22_), 22);
-  const int32_t turn = clamp_i32(wanted, -limit, limit);
+  const int32_t turn =
+      clamp_i32(asr_round(rate * static_cast<int32_t>(half_arc_q22_), 22), -limit, limit);
   const int32_t room = limit - (turn < 0 ? -turn : turn);
   const int32_t speed = clamp_i32(speed_mm_per_s, -room, room);
-  if (limited != nullptr) *limited = turn != wanted || speed != speed_mm_per_s;
   return {static_cast<int16_t>(speed - turn), static_cast<int16_t>(speed + turn)};
 }
 

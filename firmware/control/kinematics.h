@@ -28,10 +28,8 @@ class SkidSteer {
 
   /// Thesis 5.1.2 without the division by the wheel radius: left = l - B w / 2, right = l + B w
   /// / 2. When a track would pass `limit_mm_per_s`, the forward speed gives way first, so that the
-  /// turn stays as commanded whenever it can be made at all; `limited` (when not null) tells
-  /// whether anything gave way.
-  TrackSpeeds tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t limit_mm_per_s,
-                     bool* limited = nullptr) const;
+  /// turn stays as commanded whenever it can be made at all.
+  TrackSpeeds tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t limit_mm_per_s) const;
 
   /// The turn rate that a difference of track speeds makes without slip, angle units/s.
   int32_t yaw_rate(const TrackSpeeds& tracks) const;

@@ -10,9 +10,8 @@ namespace {
 
 // Below this speed a body does not roll into new soil, m/s.
 constexpr double kRolling = 1e-3;
-// What shear was is looked for no further back than this, in K: beyond it nothing but its direction
-// is left, and exp() would leave what numbers hold.
-constexpr double kFurthestBack = -300.0;
+// Of strength: what is mobilised more than all but this has no beginning to be looked for.
+constexpr double kHardlyLess = 1e-9;
 
 /// 1 - exp(-x): x is mostly small, and there Pade's fraction of second order is within 2e-8.
 double fading(double x) {
@@ -147,7 +146,10 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     // Where the pressure is higher the soil has sheared for longer, by the way between the two
     // means of place. That stress answers to a shear that is further on is its damping.
     const double ahead = soil_.shear_damping_s - cell.lead * per_speed;
-    const double further = fading(std::max(sliding * ahead * per_shear_modulus, kFurthestBack));
+    // Nowhere does that lie before shear along this way began.
+    const double begun = std::max(0.0, mean_along * to_along + mean_across * to_across);
+    const double further = std::max(fading(sliding * ahead * per_shear_modulus),
+                                    -begun / std::max(1.0 - begun, kHardlyLess));
     double m_along = mean_along + (to_along - mean_along) * further;
     double m_across = mean_across + (to_across - mean_across) * further;
     const double squared = m_along * m_along + m_across * m_across;

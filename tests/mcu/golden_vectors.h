@@ -216,12 +216,9 @@ void golden_kinematics(Link& link) {
   for (uint16_t i = 0; i < 500; ++i) {
     const int32_t rate = i < kExtremeCount ? extreme(static_cast<uint8_t>(i)) : numbers.wide();
     const int16_t speed = i % 8U == 0 ? static_cast<int16_t>(INT16_MIN) : numbers.narrow();
-    bool limited = false;
-    const TrackSpeeds tracks =
-        (i % 2U == 0 ? kinematics : widest).tracks(speed, rate, 250, &limited);
+    const TrackSpeeds tracks = (i % 2U == 0 ? kinematics : widest).tracks(speed, rate, 250);
     put_word(link, static_cast<uint16_t>(tracks.left));
     put_word(link, static_cast<uint16_t>(tracks.right));
-    link.put(limited ? 1 : 0);
     put_signed(link, kinematics.yaw_rate({speed, static_cast<int16_t>(rate)}));
   }
 }

@@ -37,7 +37,7 @@ class SkidRobot {
   /// Angle units/s.
   double yaw_rate() const {
     const double omega = (right_.speed_mm_per_s - left_.speed_mm_per_s) / kBoard.tread_mm;
-    return grip_ * omega * 65536.0 / (2.0 * std::numbers::pi);
+    return grip_ * omega * 65536.0 / (2.0 * std::numbers::pi) + disturbance_;
   }
   double speed() const { return (left_.speed_mm_per_s + right_.speed_mm_per_s) / 2.0; }
   double mean_yaw_rate(const MotionCommand& command, int ticks) {
@@ -50,9 +50,12 @@ class SkidRobot {
   }
   DriveControl& control() { return control_; }
   void set_grip(double grip) { grip_ = grip; }
+  /// What the ground turns it by, angle units/s.
+  void set_disturbance(double rate) { disturbance_ = rate; }
 
  private:
   double grip_;
+  double disturbance_ = 0.0;
   DriveControl control_;
   SimulatedTrack left_;
   SimulatedTrack right_;
@@ -71,6 +74,31 @@ TEST(DriveControl, TurnsAsCommandedThoughTheTracksSlip) {
           << grip << " " << degrees_per_s;
       EXPECT_NEAR(robot.speed(), 80.0, 8.0);
     }
+  }
+}
+
+// At full speed a track comes to its limit: then the speed gives way and the heading is kept. What
+// turned the robot while it had no room is turned back.
+TEST(DriveControl, KeepsItsHeadingAtFullSpeed) {
+  for (const int16_t degrees_per_s : std::initializer_list<int16_t>{0, 20, -45}) {
+    SkidRobot robot(0.6);
+    const MotionCommand command = {static_cast<int16_t>(kBoard.full_speed_mm_per_s),
+                                   yaw_rate_from_degrees(degrees_per_s)};
+    robot.run(command, 200);
+    double lost = 0.0;  // degrees
+    const auto drive = [&](int ticks, double disturbance_degrees_per_s) {
+      robot.set_disturbance(disturbance_degrees_per_s * 65536.0 / 360.0);
+      for (int i = 0; i < ticks; ++i) {
+        robot.tick(command);
+        lost += (command.yaw_rate - robot.yaw_rate()) * 360.0 / 65536.0 / kTickRate_hz;
+      }
+    };
+    for (int i = 0; i < 10; ++i) {
+      drive(100, 25.0);
+      drive(300, 0.0);
+    }
+    EXPECT_NEAR(lost, 0.0, 3.0) << degrees_per_s;
+    EXPECT_GT(robot.speed(), 30.0) << degrees_per_s;
   }
 }
 

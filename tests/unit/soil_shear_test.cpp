@@ -152,5 +152,32 @@ TEST(SoilShearTest, AWheelThatSpinsOnTheSpotFeelsNoMoreThanTheStrength) {
   }
 }
 
+// Where the pressure in a cell lies ahead of the middle of what it touches, the soil has sheared
+// for less long there. It cannot have sheared the other way: a wheel that slips is not drawn back.
+TEST(SoilShearTest, AWheelThatSlipsIsDrawnForwardFromTheFirstStepOn) {
+  SoilParameters soil = soil_preset("viper");
+  for (const double shear_modulus_m : {0.002, 0.02}) {
+    for (const double slip_speed : {0.01, 0.1, 1.0}) {
+      soil.shear_modulus_m = shear_modulus_m;
+      SoilBed bed(HeightField(61, 61, 0.005, false), soil, SoilOptions{NormalStress::kVertical});
+      Footprint wheel = Footprint::wheel(0.03, 0.025);
+      ContactMemory memory;
+      FootprintMotion motion;
+      motion.mass_kg = std::numeric_limits<double>::infinity();
+      motion.velocity.x() = 0.002;
+      motion.surface_speed = motion.velocity.x() + slip_speed;
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      for (int i = 0; i < 2000; ++i) {
+        pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.03 - 0.003;
+        wheel.set_pose(pose);
+        const SoilReaction reaction = bed.press(wheel, motion, kStep_s, memory);
+        bed.end_step();
+        ASSERT_GE(reaction.force.x(), 0.0)
+            << shear_modulus_m << " " << slip_speed << ", step " << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace screed
