@@ -55,7 +55,7 @@ struct RolloutOptions {
   /// Spread evenly over what Algorithm 5 drove. 0: each begins where the one before has made the
   /// last of the ways, so that no frame is driven twice.
   std::size_t starts = 0;
-  std::uint64_t most_frames = 12000;  ///< of a rollout
+  std::uint64_t most_frames = 40000;  ///< of a rollout: 400 s, more than 10 m take
   /// The ground gives way below the tracks, by this network; null: it stays as it was at the start.
   /// Of RolloutDrive::kFirmware alone.
   std::shared_ptr<const BearingNetwork> bearing;

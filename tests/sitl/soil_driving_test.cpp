@@ -1,5 +1,5 @@
 // Closed loop on soil: the tracks' springy hold on the ground must not swing with the firmware's
-// loops, and a robot that stands must come to rest.
+// loops, a robot keeps its heading, and one that stands must come to rest.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,6 +74,28 @@ TEST(SoilDriving, ToleratesTwiceTheYawGain) {
   parameters.yaw_ki = static_cast<int16_t>(2 * parameters.yaw_ki);
   for (const char* soil : {"viper", "lete_sand", "ding_2011"}) {
     EXPECT_LT(straight_on(soil_preset(soil), 0.15, parameters).swing_deg_per_s, 1.5) << soil;
+  }
+}
+
+// Along a slope at full speed the tracks have no room left for a turn: the speed gives way, and
+// what the slope turned the robot by is turned back.
+TEST(SoilDriving, KeepsItsHeadingAtFullSpeed) {
+  for (const char* soil : {"viper", "dry_sand", "clay"}) {
+    for (const double speed : {0.25, -0.25}) {
+      WorldOptions options = drive_options(speed, 0.0);
+      options.soil = soil_preset(soil);
+      options.start.y_m = speed > 0.0 ? -2.0 : 2.0;
+      options.start.attitude.heading = 90.0 * kDeg;
+      TestDrive drive(HeightField::ramp(6.0, 0.01, 5.0), options);
+      ASSERT_TRUE(drive.start());
+      const double start = drive.attitude().heading;
+      for (int second = 1; second <= 15; ++second) {
+        drive.run(1.0);
+        const double turned =
+            std::remainder(drive.attitude().heading - start, 2.0 * std::numbers::pi);
+        EXPECT_LT(std::abs(turned) / kDeg, 1.0) << soil << " " << speed << ", " << second << " s";
+      }
+    }
   }
 }
 
