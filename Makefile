@@ -84,7 +84,7 @@ LIBRARY := $(B)/libscreed.a
 help:
 	@echo "make sim       drive the robot over a real terrain   (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')"
 	@echo "make sessions  record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')"
-	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (an hour; FRAMES=800 ARGS='--steps 20': short)"
+	@echo "make surrogate-v3  record V3's sessions, train it, drive it beside the physics (two hours; FRAMES=800 ARGS='--steps 20': short)"
 	@echo "make terrain-tracks  train what tracks do to the ground of the surrogate world, on V3's sessions (half an hour; FRAMES, ARGS)"
 	@echo "make surrogate  train, evaluate and export the networks of the thesis  (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')"
 	@echo "make test      build and run every test               (BUILD=asan: under the sanitizers)"
