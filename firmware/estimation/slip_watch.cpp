@@ -8,7 +8,7 @@ namespace {
 
 // Means of the network's answer, of 65535: from where on it slips, is stuck, is no longer stuck.
 constexpr uint16_t kSlipEvidence = 22938;
-constexpr uint16_t kStuckEvidence = 42598;
+constexpr uint16_t kStuckEvidence = 47841;
 constexpr uint16_t kFreeEvidence = 9830;
 constexpr int16_t kStanding_dmm_per_s = 100;
 constexpr int16_t kMostShake = 250;  // counts; 64 * 4 of it fit 16 bits

@@ -13,7 +13,7 @@ namespace screed::nn {
 
 struct SlipTrainingOptions {
   std::uint64_t seed = 1;
-  std::size_t hidden = 10;
+  std::size_t hidden = 16;
   std::size_t epochs = 12;
   std::function<void(std::size_t epoch, double error)> progress;  ///< may be empty
 };
