@@ -190,7 +190,7 @@ TEST(ScreedImage, DrivesAndStopsWithTheLink) {
   // The image's own measure of its load, in percent: from the tick to the end of its computation.
   const double busy = 100.0 * static_cast<double>(bench.mcu.busiest_tick_cycles()) / kTickCycles;
   EXPECT_LE(bench.last_frame(kIdPower).data[4], busy);
-  EXPECT_GE(bench.last_frame(kIdPower).data[4], busy / 2);
+  EXPECT_GT(bench.last_frame(kIdPower).data[4] + 1, busy / 2);  // whole per cents, rounded down
   expect_healthy(bench);
   bench.ground_station = false;
   bench.run_ms(2000);
