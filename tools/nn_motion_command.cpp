@@ -197,6 +197,10 @@ void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t o
                       std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) / way);
     }
   }
+  if (apart.empty()) {
+    std::printf("  %s: no way was made\n", what.c_str());
+    return;
+  }
   std::printf("  %s: median %.4f %%, p90 %.4f %% of the way\n", what.c_str(), quantile(apart, 0.5),
               quantile(apart, 0.9));
 }
