@@ -9,9 +9,9 @@
 
 namespace screed {
 
-struct BoardConstants;  // firmware/robot/board_constants.h
+struct BoardConstants;  // firmware/parameters/board_constants.h
 struct Credentials;     // firmware/security/credentials.h
-struct Parameters;      // firmware/robot/parameters.h
+struct Parameters;      // firmware/parameters/parameters.h
 
 namespace hal {
 

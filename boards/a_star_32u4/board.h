@@ -2,7 +2,7 @@
 // from others.
 #pragma once
 
-#include "firmware/robot/board_constants.h"
+#include "firmware/parameters/board_constants.h"
 
 namespace screed {
 

@@ -3,7 +3,7 @@
 // carries other sensor chips.
 #pragma once
 
-#include "firmware/robot/board_constants.h"
+#include "firmware/parameters/board_constants.h"
 
 namespace screed {
 

@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 #include "firmware/estimation/slip_watch.h"
-#include "firmware/robot/board_constants.h"
-#include "firmware/robot/parameters.h"
+#include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/parameters.h"
 
 namespace screed {
 

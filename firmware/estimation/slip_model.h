@@ -4,7 +4,7 @@
 
 // clang-format off
 #include "nn/infer/dense.h"
-#include "nn/infer/program_memory.h"
+#include "hal/program_memory.h"
 
 namespace screed {
 namespace nn {

@@ -13,7 +13,7 @@
 #include "firmware/leveling/random_walk.h"
 #include "firmware/leveling/site_fence.h"
 #include "firmware/leveling/training_drive.h"
-#include "firmware/robot/parameters.h"
+#include "firmware/parameters/parameters.h"
 
 namespace screed {
 

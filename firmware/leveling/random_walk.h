@@ -8,7 +8,7 @@
 
 #include "firmware/control/kinematics.h"
 #include "firmware/math/random.h"
-#include "firmware/robot/parameters.h"
+#include "firmware/parameters/parameters.h"
 
 namespace screed {
 

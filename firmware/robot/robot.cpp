@@ -6,8 +6,8 @@
 
 #include "firmware/math/crc16.h"
 #include "firmware/math/units.h"
-#include "firmware/robot/parameter_store.h"
-#include "firmware/telemetry/e2e.h"
+#include "firmware/parameters/parameter_store.h"
+#include "firmware/protocol/e2e.h"
 
 namespace screed {
 namespace {

@@ -10,11 +10,11 @@
 #include "firmware/estimation/odometry.h"
 #include "firmware/estimation/slip_watch.h"
 #include "firmware/leveling/leveling.h"
-#include "firmware/robot/board_constants.h"
-#include "firmware/robot/parameters.h"
+#include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/robot/supervisor.h"
+#include "firmware/robot/telemetry.h"
 #include "firmware/security/command_gate.h"
-#include "firmware/telemetry/telemetry.h"
 #include "hal/sample.h"
 
 namespace screed {

@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 #include "firmware/math/fixed.h"
-#include "firmware/robot/parameters.h"
-#include "firmware/telemetry/messages.h"
+#include "firmware/parameters/parameters.h"
+#include "firmware/protocol/messages.h"
 #include "hal/sample.h"
 
 namespace screed {

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "firmware/telemetry/messages.h"
+#include "firmware/protocol/messages.h"
 
 namespace screed {
 

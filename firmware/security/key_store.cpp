@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "firmware/math/crc16.h"
-#include "firmware/telemetry/bytes.h"
+#include "firmware/protocol/bytes.h"
 
 namespace screed {
 namespace {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "firmware/math/fixed.h"
-#include "nn/infer/program_memory.h"
+#include "hal/program_memory.h"
 
 namespace screed {
 namespace {

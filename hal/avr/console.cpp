@@ -9,8 +9,8 @@
 //   kKEYID     stores a key: 32 hexadecimal digits, 2 of the robot's id; it holds from the next
 //              start on, and is never shown
 //
-// Numbers are those of the table in firmware/robot/parameters.h, from 0. Anything else is answered
-// with "?".
+// Numbers are those of the table in firmware/parameters/parameters.h, from 0. Anything else is
+// answered with "?".
 #include "hal/avr/console.h"
 
 #include <avr/io.h>
@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "build_info.h"
-#include "firmware/telemetry/slcan.h"
+#include "firmware/protocol/slcan.h"
 #include "hal/avr/buttons.h"
 #include "hal/avr/credential_eeprom.h"
 #include "hal/avr/motors.h"

@@ -1,15 +1,9 @@
 # The image for the robot's microcontroller, and its budget. Included by the top Makefile.
 #
-#   make firmware [BOARD=...]   builds build/firmware/<board>/screed.elf and .hex, prints the budget
-#   make size [BOARD=...]       prints the budget again, and the cycles of the longest tick
+#   build/firmware/<board>/screed.elf and .hex, and their budget of flash, RAM, stack and cycles
 #
-# Needs from there: B and BUILD_ROOT (folders), $(B)/avr_stack (tools/avr_stack), FORCE, VERSION. A board is a folder
-# boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
+# Needs options.mk and host.mk. A board is a folder boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
 
-BOARD ?= a_star_32u4
-ifeq ($(wildcard boards/$(BOARD)/board.mk),)
-$(error BOARD=$(BOARD): no folder boards/$(BOARD) with a board.mk; there are: $(patsubst boards/%/board.mk,%,$(wildcard boards/*/board.mk)))
-endif
 include boards/$(BOARD)/board.mk
 
 AVR_CC ?= avr-gcc
@@ -30,7 +24,7 @@ TICK_BUDGET_CYCLES := 80000
 
 FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
-FIRMWARE_SOURCES := $(sort $(wildcard firmware/*.cpp firmware/*/*.cpp nn/infer/*.cpp hal/avr/*.cpp))
+FIRMWARE_SOURCES := $(call sources,firmware nn/infer hal/avr)
 FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
@@ -58,15 +52,15 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_VID=$(BOARD_USB_VID) -DUSB_PID=$(BOARD_USB_PID) -DUSB_MANUFACTURER='"$(BOARD_USB_MANUFACTURER)"' \
   -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
 
-.PHONY: firmware-image firmware-size
-firmware-image: $(FIRMWARE_BUILD)/screed.hex firmware-size
+.PHONY: firmware size firmware-budget
+firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget  ## build the image for the robot (BOARD=a_star_32u4)
 
 # What the analysis cannot see: targets of indirect calls. Its "never" lines hold as long as the core's serial line is the
 # only object with virtual functions.
 INDIRECT_CALLS := hal/avr/indirect_calls.txt
 ALLOWED_VTABLES := Serial_
 
-firmware-size: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
+firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
 	@echo "$(FIRMWARE_ELF)"
 	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | grep -vxF '$(ALLOWED_VTABLES)' || true) ; \
 	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which $(INDIRECT_CALLS) does not know" >&2 ; exit 1 ; }
@@ -75,11 +69,17 @@ firmware-size: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/a
 	  --ram-spare $(RAM_SPARE) --free-word $(BOOT_KEY_ADDRESS)
 
 # Longest tick and interrupts, measured in the simulator while the robot drives.
-.PHONY: firmware-cycles
-firmware-cycles: $(FIRMWARE_ELF) $(B)/avr_cycles
+size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash, RAM, stack and longest tick of that image against the budget
 	@$(B)/avr_cycles $(FIRMWARE_ELF) boards/$(BOARD)/wiring.ini --budget $(TICK_BUDGET_CYCLES)
-$(B)/avr_cycles: $(B)/tools/avr_cycles/main.o $(LIBRARY) $(B)/link.flags
-	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags -o $@
+$(B)/avr_cycles: $(B)/tools/avr/cycles/main.o $(LIBRARY) $(B)/link.flags
+	$(call link)
+
+STACK_SOURCES := $(filter-out tools/avr/stack/main.cpp,$(call sources,tools/avr/stack))
+$(B)/libavr_stack.a: $(call objects,$(STACK_SOURCES))
+	@rm -f $@
+	@ar rcs $@ $^
+$(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_stack.a $(LIBRARY) $(B)/link.flags
+	$(call link)
 
 # Changes only when compiler or flags do, and then everything is built anew.
 define AVR_FLAGS_TEXT
@@ -120,10 +120,7 @@ $(FIRMWARE_BUILD)/%.size: $(FIRMWARE_BUILD)/%.elf
 	@$(AVR_SIZE) -A $< > $@
 
 # The tests run the images of all boards.
-BOARDS := $(patsubst boards/%/board.mk,%,$(wildcard boards/*/board.mk))
 OTHER_IMAGES := $(patsubst %,$(BUILD_ROOT)/firmware/%/screed.elf,$(filter-out $(BOARD),$(BOARDS)))
 TEST_IMAGES += $(OTHER_IMAGES)
 $(OTHER_IMAGES): $(BUILD_ROOT)/firmware/%/screed.elf: FORCE
-	+@$(MAKE) --no-print-directory DEPS=no BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) BOARD=$* $@
-
--include $(FIRMWARE_OBJECTS:.o=.d)
+	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) BOARD=$* $@

@@ -5,7 +5,7 @@
 #include <avr/io.h>
 
 #include "board.h"
-#include "firmware/robot/parameters.h"
+#include "firmware/parameters/parameters.h"
 #include "hal/avr/battery.h"
 #include "hal/avr/buttons.h"
 #include "hal/avr/console.h"

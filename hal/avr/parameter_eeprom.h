@@ -1,7 +1,7 @@
-// The parameters in the MCU's EEPROM, in the format of firmware/robot/parameter_store.h.
+// The parameters in the MCU's EEPROM, in the format of firmware/parameters/parameter_store.h.
 #pragma once
 
-#include "firmware/robot/parameter_store.h"
+#include "firmware/parameters/parameter_store.h"
 
 namespace screed {
 namespace avr {

@@ -1,7 +1,7 @@
 // The stack, watched while the program runs: RAM between variables and stack is painted at start,
 // and the lowest painted bytes must stay.
 //
-// The build proves that the stack keeps its distance (tools/avr_stack); this is the second witness.
+// The build proves that the stack keeps its distance (tools/avr/stack); this is the second witness.
 #pragma once
 
 #include <stdint.h>

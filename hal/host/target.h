@@ -5,8 +5,8 @@
 // image under an MCU simulator. Virtual functions are fine here: the host has the memory for them.
 #pragma once
 
-#include "firmware/robot/board_constants.h"
-#include "firmware/robot/parameters.h"
+#include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/parameters.h"
 #include "firmware/security/credentials.h"
 #include "hal/sample.h"
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/leveling/grid/foraging_agent.h"
-#include "firmware/leveling/grid/memetic_agent.h"
-#include "firmware/leveling/grid/probabilistic_agent.h"
+#include "host_sim/grid/agents/foraging_agent.h"
+#include "host_sim/grid/agents/memetic_agent.h"
+#include "host_sim/grid/agents/probabilistic_agent.h"
 #include "host_sim/grid/grid_terrain.h"
 #include "host_sim/grid/grid_world.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/picture/color_map.h"
-#include "host_sim/scene/pov_text.h"
-#include "host_sim/scene/povray.h"
+#include "host_sim/render/picture/color_map.h"
+#include "host_sim/render/scene/pov_text.h"
+#include "host_sim/render/scene/povray.h"
 
 namespace screed {
 namespace {

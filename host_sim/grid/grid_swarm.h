@@ -1,5 +1,5 @@
 // The agents of one run in their world. Carries out what the agents answer, and books what they
-// did; the agents themselves are in firmware/leveling/grid.
+// did; the agents themselves are in host_sim/grid/agents.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/leveling/grid/grid_types.h"
 #include "host_sim/core/random.h"
+#include "host_sim/grid/agents/grid_types.h"
 #include "host_sim/grid/grid_config.h"
 #include "host_sim/grid/grid_world.h"
 

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <string>
 
-#include "firmware/leveling/grid/grid_types.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/terrain/grey_image.h"
+#include "host_sim/grid/agents/grid_types.h"
+#include "host_sim/physics/terrain/grey_image.h"
 
 namespace screed {
 namespace {

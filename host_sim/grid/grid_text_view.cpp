@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "host_sim/picture/color_map.h"
+#include "host_sim/render/picture/color_map.h"
 
 namespace screed {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/leveling/grid/grid_types.h"
+#include "host_sim/grid/agents/grid_types.h"
 #include "host_sim/grid/grid_terrain.h"
 
 namespace screed {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/session/csv_export.h"
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/session/csv_export.h"
+#include "host_sim/run/session/session_reader.h"
 #include "nn/data/features.h"
 
 namespace screed::nn {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host_sim/session/frame.h"
+#include "host_sim/run/session/frame.h"
 
 namespace screed::nn {
 

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "nn/infer/program_memory.h"
+#include "hal/program_memory.h"
 
 namespace screed {
 namespace nn {

@@ -99,7 +99,7 @@ std::string model_header(const Model& model) {
                      "\n// Written by `screed nn export`; training data " + model.training_data +
                      ", seed " + std::to_string(model.seed) +
                      ".\n#pragma once\n\n// clang-format off\n#include \"nn/infer/dense.h\"\n"
-                     "#include \"nn/infer/program_memory.h\"\n\n"
+                     "#include \"hal/program_memory.h\"\n\n"
                      "namespace screed {\nnamespace nn {\nnamespace model_" +
                      identifier(model.name) + " {\n\n";
   for (const ModelNetwork& network : model.networks) put_network(text, network);

@@ -10,8 +10,8 @@
 
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/world_setup.h"
-#include "host_sim/world/world.h"
+#include "host_sim/run/world/world.h"
+#include "host_sim/run/world/world_setup.h"
 
 namespace screed::nn {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host_sim/experiment/experiment.h"
+#include "host_sim/run/experiment/experiment.h"
 
 namespace screed::nn {
 

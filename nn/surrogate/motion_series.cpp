@@ -5,9 +5,9 @@
 
 #include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/experiment/simulation.h"
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed::nn {
 namespace {

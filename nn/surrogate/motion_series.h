@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/soil/soil_parameters.h"
+#include "host_sim/physics/soil/soil_parameters.h"
 #include "nn/surrogate/surrogate.h"
 
 namespace screed::nn {

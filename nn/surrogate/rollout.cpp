@@ -9,12 +9,12 @@
 #include "firmware/leveling/leveling.h"
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/board_table.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/experiment/simulation.h"
-#include "host_sim/session/height_export.h"
-#include "host_sim/session/session_reader.h"
-#include "host_sim/vehicle/urdf_importer.h"
+#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/simulation/simulation.h"
 #include "nn/terrain/pressed_drive.h"
 
 namespace screed::nn {

@@ -15,11 +15,11 @@
 #include <span>
 #include <vector>
 
-#include "host_sim/terrain/height_field.h"
+#include "host_sim/physics/terrain/height_field.h"
 #include "nn/batch/batch_network.h"
+#include "nn/data/signals.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/input_stages.h"
-#include "nn/surrogate/signals.h"
 #include "nn/surrogate/support.h"
 
 namespace screed::nn {

@@ -6,8 +6,8 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/vehicle/ode_world.h"
-#include "host_sim/vehicle/vehicle.h"
+#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/physics/vehicle/vehicle.h"
 
 namespace screed::nn {
 namespace {

@@ -11,10 +11,10 @@
 #include <memory>
 #include <optional>
 
-#include "host_sim/vehicle/assembly.h"
-#include "host_sim/vehicle/drive_shaft.h"
-#include "host_sim/world/plant.h"
-#include "host_sim/world/surroundings.h"
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/vehicle/drive_shaft.h"
+#include "host_sim/physics/world/plant.h"
+#include "host_sim/physics/world/surroundings.h"
 #include "nn/surrogate/surrogate.h"
 #include "nn/terrain/track_ground.h"
 

@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/experiment/run_setup.h"
-#include "host_sim/experiment/simulation.h"
-#include "host_sim/session/height_export.h"
-#include "host_sim/session/run_folder.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/run_folder.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed::nn {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/session/session_reader.h"
-#include "host_sim/soil/soil_parameters.h"
-#include "host_sim/terrain/height_field.h"
-#include "host_sim/vehicle/assembly.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/run/session/session_reader.h"
 
 namespace screed::nn {
 

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "host_sim/terrain/height_field.h"
+#include "host_sim/physics/terrain/height_field.h"
 #include "nn/terrain/drive_strides.h"
 
 namespace screed::nn {

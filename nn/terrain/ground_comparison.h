@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "host_sim/terrain/height_field.h"
+#include "host_sim/physics/terrain/height_field.h"
 #include "nn/terrain/drive_strides.h"
 
 namespace screed::nn {

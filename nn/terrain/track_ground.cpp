@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "host_sim/core/errors.h"
-#include "nn/surrogate/signals.h"
+#include "nn/data/signals.h"
 
 namespace screed::nn {
 namespace {
@@ -197,7 +197,7 @@ void TrackGround::recall(Cell& cell) const {
 }
 
 /// What the tracks passed before, each along its own way: where a track has risen over it since,
-/// as FootprintWay has it (host_sim/soil/footprint.h), in the last steps' stance.
+/// as FootprintWay has it (host_sim/physics/soil/footprint.h), in the last steps' stance.
 void TrackGround::go_on(const Stride& stride) {
   const double length = tracks_.half_length_m + tracks_.radius_m;
   for (const std::size_t side : {0U, 1U}) {

@@ -3,9 +3,9 @@
 //
 // The robot stands where Bekker's pressures below its tracks bear its weight; cells below them are
 // pressed as deep as the tracks reach. What leaves them is set down beside and ahead, and slides,
-// in whole units as in physics (host_sim/soil/material_flow.h): the volume stays the same to the
-// last bit, whatever a network says. Driven soil does not bear as Bekker's plates do; in which way,
-// a network is asked (bearing_network.h).
+// in whole units as in physics (host_sim/physics/soil/material_flow.h): the volume stays the same
+// to the last bit, whatever a network says. Driven soil does not bear as Bekker's plates do; in
+// which way, a network is asked (bearing_network.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@
 #include <optional>
 #include <vector>
 
-#include "host_sim/soil/material_flow.h"
-#include "host_sim/soil/power_table.h"
-#include "host_sim/soil/soil_parameters.h"
-#include "host_sim/terrain/height_field.h"
-#include "host_sim/vehicle/assembly.h"
+#include "host_sim/physics/soil/material_flow.h"
+#include "host_sim/physics/soil/power_table.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/assembly.h"
 #include "nn/terrain/bearing_network.h"
 #include "nn/terrain/drive_strides.h"
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "host_sim/core/atomic_file.h"
-#include "host_sim/picture/line_chart.h"
-#include "host_sim/picture/svg_png.h"
+#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/render/picture/svg_png.h"
 #include "nn/training/predict.h"
 
 namespace screed::nn {

@@ -1,17 +1,15 @@
-# `make surrogate`: the thesis' training sessions, networks V1 and V2 trained on them, evaluated, quantised, exported. Results in out/.
+# Recording of training data, and training on it. `make surrogate`: the thesis' training sessions, networks V1 and V2 trained on them, evaluated, quantised, exported. Results in out/.
 #
 #   make surrogate FRAMES=4000 ARGS='--epochs 2'    a short run of everything
 #   make surrogate MODELS=v1                        one of nn/configurations
 #
-# Sessions that are there already are not recorded again. Needs from the top Makefile: SCREED, OUT, STEP.
+# Sessions that are there already are not recorded again. Needs host.mk.
 
 MODELS ?= v1 v2 v2_tuned v2_products v2_forward v2_gyro
 SURROGATE_SESSIONS ?= $(sort $(wildcard host_sim/data/experiments/sessions/v1_*.ini host_sim/data/experiments/sessions/v2_*.ini))
 
-.PHONY: surrogate run-surrogate
-surrogate: deps
-	$(STEP) run-surrogate
-run-surrogate: $(SCREED)
+.PHONY: surrogate
+surrogate: $(SCREED)  ## train, evaluate and export the networks of the thesis (MODELS='v1 v2' FRAMES=4000 ARGS='--epochs 2')
 	@set -e ; for file in $(SURROGATE_SESSIONS) ; do session=$(OUT)/sessions/$$(basename $$file .ini) ; \
 	  ls $$session/session.h5 $$session-[0-9]*/session.h5 > /dev/null 2>&1 || \
 	    $(SCREED) record $$file --out $$session $(if $(FRAMES),--frames $(FRAMES)) ; done
@@ -22,3 +20,28 @@ run-surrogate: $(SCREED)
 	    --out $(OUT)/nn/$$model/charts > $(OUT)/nn/$$model/evaluation.txt ; \
 	  $(SCREED) nn check $(OUT)/nn/$$model/model.json --vectors 100000 ; \
 	  $(SCREED) nn export $(OUT)/nn/$$model/model.json --header $(OUT)/nn/$$model/model.h ; done
+
+# ---- the thesis' sessions alone ------------------------------------------------------------------------------------------------
+
+SESSIONS ?= $(wildcard host_sim/data/experiments/sessions/*.ini)
+.PHONY: sessions
+sessions: $(SCREED)  ## record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')
+	@$(SCREED) record $(SESSIONS) --out $(OUT)/sessions $(ARGS)
+
+# ---- V3, and what tracks do to the ground --------------------------------------------------------------------------------------
+
+V3_SESSIONS := $(sort $(wildcard host_sim/data/experiments/sessions/v3/*.ini))
+V3_OUT := $(OUT)/sessions/v3$(if $(FRAMES),-$(FRAMES))
+.PHONY: v3-sessions surrogate-v3 terrain-tracks
+v3-sessions: $(SCREED)
+	@set -e ; for file in $(V3_SESSIONS) ; do session=$(V3_OUT)/$$(basename $$file .ini)-0001 ; \
+	  test -e $$session/session.h5 || $(SCREED) record $$file --out $$session $(if $(FRAMES),--frames $(FRAMES)) ; done
+surrogate-v3: v3-sessions  ## record V3's sessions, train it, drive it beside the physics (two hours; short: FRAMES=800 ARGS='--steps 20')
+	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(V3_OUT) --out $(OUT)/v3.json $(ARGS)
+	@$(SCREED) nn rollout $(V3_OUT)/e_*-0001 --model $(OUT)/v3.json --fit $(V3_OUT)/t_viper-0001 \
+	   --fit $(V3_OUT)/t_dry_sand-0001 --fit $(V3_OUT)/t_clay-0001 --out $(OUT)/rollouts
+terrain-tracks: v3-sessions  ## train what tracks do to the ground of the surrogate world (short: FRAMES=800 ARGS='--generations 1 --seconds 2')
+	@$(SCREED) terrain-net train-tracks $(V3_OUT)/t_*-0001 --out $(OUT)/terrain_tracks.json $(ARGS) \
+	   --test $(V3_OUT)/e_ding_2011_b-0001 --test $(V3_OUT)/e_lete_sand_b-0001
+	@$(SCREED) terrain-net compare $(OUT)/terrain_tracks.json $(V3_OUT)/e_ding_2011_b-0001 $(V3_OUT)/e_lete_sand_b-0001 \
+	   --from $(if $(FRAMES),2,10) --pictures $(OUT)/terrain

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "host_sim/telemetry/schema.h"
+#include "host_sim/ground_station/telemetry/schema.h"
 #include "tests/fuzz/require.h"
 
 namespace {

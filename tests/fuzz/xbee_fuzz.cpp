@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host_sim/link/xbee_api.h"
+#include "host_sim/ground_station/link/xbee_api.h"
 #include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "host_sim/mcu/board.h"
+#include "host_sim/devices/mcu/board.h"
 #include "tests/mcu/ground_lines.h"
 #include "tests/mcu/images.h"
 #include "tests/mcu/usb_host.h"

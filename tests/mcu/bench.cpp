@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "tests/mcu/images.h"
-#include "tools/avr_stack/image_size.h"
-#include "tools/avr_stack/stack_analysis.h"
+#include "tools/avr/stack/image_size.h"
+#include "tools/avr/stack/stack_analysis.h"
 
 namespace screed::mcu {
 unsigned computed_stack() {

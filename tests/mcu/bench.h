@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hal/sample.h"
-#include "host_sim/mcu/board.h"
+#include "host_sim/devices/mcu/board.h"
 #include "tests/mcu/ground_lines.h"
 
 namespace screed::mcu {

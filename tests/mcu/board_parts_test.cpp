@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <sstream>
 
-#include "firmware/robot/parameter_store.h"
-#include "firmware/robot/parameter_table.h"
+#include "firmware/parameters/parameter_store.h"
+#include "firmware/parameters/parameter_table.h"
 #include "firmware/robot/supervisor.h"
 #include "hal/avr/reset_cause.h"
-#include "host_sim/mcu/board.h"
+#include "host_sim/devices/mcu/board.h"
 #include "tests/mcu/ground_lines.h"
 #include "tests/mcu/images.h"
 #include "tests/mcu/usb_host.h"

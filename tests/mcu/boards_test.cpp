@@ -2,8 +2,8 @@
 // in the right direction.
 #include <gtest/gtest.h>
 
-#include "firmware/robot/parameter_store.h"
-#include "host_sim/mcu/board.h"
+#include "firmware/parameters/parameter_store.h"
+#include "host_sim/devices/mcu/board.h"
 #include "tests/mcu/ground_lines.h"
 #include "tests/mcu/images_of_boards.h"
 

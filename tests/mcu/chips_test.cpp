@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/mcu/imu_chips.h"
-#include "host_sim/mcu/wiring.h"
+#include "host_sim/devices/mcu/imu_chips.h"
+#include "host_sim/devices/mcu/wiring.h"
 #include "tests/mcu/images.h"
 
 namespace screed::mcu {

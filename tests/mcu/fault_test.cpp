@@ -2,8 +2,8 @@
 // time, the tick keeps its deadline, and the ground station is told the cause.
 #include <gtest/gtest.h>
 
+#include "firmware/protocol/messages.h"
 #include "firmware/robot/supervisor.h"
-#include "firmware/telemetry/messages.h"
 #include "tests/mcu/image_drive.h"
 
 namespace screed::mcu {

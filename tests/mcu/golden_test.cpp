@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "host_sim/mcu/mcu.h"
+#include "host_sim/devices/mcu/mcu.h"
 #include "tests/mcu/golden_vectors.h"
 #include "tests/mcu/images.h"
 

@@ -17,9 +17,9 @@
 #include "firmware/math/sqrt.h"
 #include "firmware/math/trig.h"
 #include "firmware/math/units.h"
-#include "firmware/telemetry/e2e.h"
-#include "firmware/telemetry/messages.h"
-#include "firmware/telemetry/slcan.h"
+#include "firmware/protocol/e2e.h"
+#include "firmware/protocol/messages.h"
+#include "firmware/protocol/slcan.h"
 #include "tests/mcu/sample_wire.h"
 
 namespace screed {

@@ -2,7 +2,7 @@
 #include "tests/mcu/ground_lines.h"
 
 #include "firmware/math/crc16.h"
-#include "firmware/telemetry/e2e.h"
+#include "firmware/protocol/e2e.h"
 
 namespace screed::mcu {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "firmware/telemetry/messages.h"
-#include "host_sim/radio/command_signer.h"
+#include "firmware/protocol/messages.h"
+#include "host_sim/ground_station/station/command_signer.h"
 
 namespace screed::mcu {
 

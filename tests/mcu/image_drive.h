@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "firmware/leveling/leveling.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/mcu/mcu_world.h"
-#include "host_sim/vehicle/urdf_importer.h"
+#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/world/mcu_world.h"
 #include "tests/mcu/images.h"
 
 namespace screed::mcu {

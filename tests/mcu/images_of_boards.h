@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host_sim/mcu/wiring.h"
+#include "host_sim/devices/mcu/wiring.h"
 #include "paths.h"
 #include "tests/mcu/images.h"
 

@@ -1,7 +1,7 @@
-# Tests of the images for the microcontroller in the simulator simavr. Included by the top Makefile after hal/avr/firmware.mk.
+# Tests of the images for the microcontroller in the simulator simavr. Included by tests/tests.mk.
 #
 # $(B)/tests/mcu_tests runs screed.elf, the image that is flashed, and the images of tests/mcu/images.
-# Needs from the top Makefile: B, LIBRARY, host.flags, link.flags, libavr_stack.a, objects, TEST_PACKAGES, TESTS.
+# Needs host.mk and hal/avr/firmware.mk; adds to TESTS and TEST_IMAGES.
 
 MCU_TESTS := $(B)/tests/mcu_tests
 MCU_TEST_OBJECTS := $(call objects,$(wildcard tests/mcu/*.cpp))
@@ -24,8 +24,7 @@ $(FIRMWARE_BUILD)/tests/mcu/images/model.o: $(FIRMWARE_BUILD)/generated/models/v
 
 $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
-	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"' -DSCREED_INDIRECT_CALLS='\"$(abspath $(INDIRECT_CALLS))\"'" > $@.new
-	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"' -DSCREED_INDIRECT_CALLS='\"$(abspath $(INDIRECT_CALLS))\"'" | $(WRITE_CHANGED)
 
 $(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
 	@mkdir -p $(@D)
@@ -33,7 +32,4 @@ $(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/te
 	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags -MMD -MP -c $< -o $@
 
 $(MCU_TESTS): $(MCU_TEST_OBJECTS) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
-	@echo "  LINK $@"
-	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) -o $@
-
--include $(MCU_TEST_OBJECTS:.o=.d) $(MCU_IMAGES:$(FIRMWARE_BUILD)/%.elf=$(FIRMWARE_BUILD)/tests/mcu/images/%.d)
+	$(call link,$(TEST_LIBRARIES))

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "host_sim/mcu/mcu.h"
+#include "host_sim/devices/mcu/mcu.h"
 #include "tests/mcu/images.h"
 #include "tests/mcu/network_parameters.h"
 #include "tests/mcu/network_vectors.h"

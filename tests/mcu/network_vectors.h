@@ -5,8 +5,8 @@
 
 #include <stdint.h>
 
+#include "hal/program_memory.h"
 #include "nn/infer/dense.h"
-#include "nn/infer/program_memory.h"
 
 namespace screed {
 

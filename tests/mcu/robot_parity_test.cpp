@@ -8,7 +8,7 @@
 
 #include "board.h"
 #include "firmware/robot/robot.h"
-#include "host_sim/mcu/mcu.h"
+#include "host_sim/devices/mcu/mcu.h"
 #include "tests/mcu/golden_vectors.h"
 #include "tests/mcu/images.h"
 #include "tests/mcu/mission.h"

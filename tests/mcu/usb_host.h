@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/mcu/mcu.h"
+#include "host_sim/devices/mcu/mcu.h"
 
 namespace screed::mcu {
 

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "firmware/telemetry/e2e.h"
+#include "firmware/protocol/e2e.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

@@ -1,7 +1,7 @@
 // `screed nn` as a user meets it: sessions in, a model and a header out.
 #include <nlohmann/json.hpp>
 
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/session/session_reader.h"
 #include "nn/model/model_file.h"
 #include "tests/sitl/program.h"
 

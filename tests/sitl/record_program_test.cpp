@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/session/session_reader.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "host_sim/terrain/grey_image.h"
+#include "host_sim/physics/terrain/grey_image.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {

@@ -1,5 +1,5 @@
 // A whole run with its folder: reproducible, replayable, stoppable.
-#include "host_sim/experiment/simulation.h"
+#include "host_sim/run/simulation/simulation.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/session/replay.h"
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/session/replay.h"
+#include "host_sim/run/session/session_reader.h"
 #include "paths.h"
 #include "tests/sitl/test_drive.h"
 #include "tests/temp_folder.h"

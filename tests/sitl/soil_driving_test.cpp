@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/soil/soil_bed.h"
+#include "host_sim/physics/soil/soil_bed.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/session/session_reader.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
 #include "tests/sitl/program.h"

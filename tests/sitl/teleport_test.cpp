@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "host_sim/experiment/frame_recorder.h"
-#include "host_sim/soil/soil_parameters.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/run/simulation/frame_recorder.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

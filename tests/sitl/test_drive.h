@@ -9,9 +9,9 @@
 
 #include "boards/a_star_32u4/board.h"
 #include "firmware/robot/robot.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/vehicle/urdf_importer.h"
-#include "host_sim/world/world.h"
+#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/world/world.h"
 
 namespace screed::testing {
 

@@ -2,7 +2,7 @@
 // opened on SDL's dummy screen, one on a real X server.
 #include <string>
 
-#include "host_sim/session/session_reader.h"
+#include "host_sim/run/session/session_reader.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {

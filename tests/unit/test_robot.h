@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "boards/a_star_32u4/board.h"
+#include "firmware/protocol/e2e.h"
 #include "firmware/robot/robot.h"
-#include "firmware/telemetry/e2e.h"
-#include "host_sim/radio/command_signer.h"
-#include "tests/unit/simulated_track.h"
+#include "host_sim/ground_station/station/command_signer.h"
+#include "tests/unit/firmware/control/simulated_track.h"
 
 namespace screed {
 

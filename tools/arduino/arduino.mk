@@ -6,13 +6,11 @@
 
 ARDUINO_ZIP := $(BUILD_ROOT)/arduino/Screed-$(VERSION).zip
 ARDUINO_TEST_ELF := $(BUILD_ROOT)/arduino/example.elf
-ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE hal/hal.h hal/sample.h $(wildcard firmware/*.* firmware/*/*.* nn/infer/*.* hal/avr/*.* boards/*/*.h) \
+ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE $(shell find firmware nn/infer hal boards -name '*.cpp' -o -name '*.h') \
   $(GENERATED_FOLDER)/schema/messages.h
 
-.PHONY: arduino arduino-library
-arduino: deps
-	$(STEP) arduino-library
-arduino-library: $(ARDUINO_ZIP)
+.PHONY: arduino
+arduino: $(ARDUINO_ZIP)  ## the firmware as a library for the Arduino IDE (BOARD=a_star_32u4)
 	@echo "$(ARDUINO_ZIP)"
 
 $(ARDUINO_ZIP): $(ARDUINO_PACKED)

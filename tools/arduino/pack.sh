@@ -22,9 +22,9 @@ while [[ $number != *.*.* ]]; do number=$number.0; done
 
 mkdir -p "$src"
 # Sources of the firmware and what they include, and nothing of tests or hosts.
-find firmware nn/infer hal/avr boards \( -name '*.h' -o -name '*.cpp' \) -not -path 'firmware/leveling/grid/*' -print0 | LC_ALL=C sort -z \
+find firmware nn/infer hal/avr boards \( -name '*.h' -o -name '*.cpp' \) -print0 | LC_ALL=C sort -z \
   | xargs -0 cp --parents -t "$src"
-cp --parents hal/hal.h hal/sample.h "$src"
+cp --parents hal/*.h "$src"
 rm "$src/hal/avr/main.cpp"  # the sketch takes its place
 # The IDE has flags of its own, and 28,672 bytes as well: what makes the image smaller stands in the sources.
 pragma=$(printf ', "%s"' ${SMALLER:-})

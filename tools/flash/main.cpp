@@ -12,7 +12,7 @@
 #include "tools/flash/clock.h"
 #include "tools/flash/fuses.h"
 #include "tools/flash/usb_serial.h"
-#include "tools/program.h"
+#include "tools/screed/cli/program.h"
 
 namespace {
 

@@ -47,7 +47,7 @@ std::string signal_row(const Message& message, const Signal& signal) {
 
 std::string host_tables(const Database& database) {
   std::string text = "// " + made_from(database) +
-                     "\n#pragma once\n\n#include \"host_sim/telemetry/schema.h\"\n\n"
+                     "\n#pragma once\n\n#include \"host_sim/ground_station/telemetry/schema.h\"\n\n"
                      "namespace screed::schema_tables {\n\n";
   for (const Message& message : database.messages) {
     for (const Signal& signal : message.signals) {

@@ -1,4 +1,4 @@
-// The messages as tables for the host (host_sim/telemetry/schema.h).
+// The messages as tables for the host (host_sim/ground_station/telemetry/schema.h).
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@ std::string type_of(const Field& field) {
   return field.is_signed ? type.substr(1) : type;
 }
 
-/// Whole bytes in one of the sizes that firmware/telemetry/bytes.h reads and writes.
+/// Whole bytes in one of the sizes that firmware/protocol/bytes.h reads and writes.
 bool in_whole_bytes(const Field& field) {
   return field.start % 8 == 0 && (field.length == 16 || field.length == 32);
 }
@@ -180,7 +180,7 @@ std::string message_code(const Database& database) {
       "// pack() fills kSize bytes. Of a protected message it leaves byte 0, the CRC, alone and\n"
       "// writes 0 into the counter: e2e_protect() fills both. Fields are raw; their comments say\n"
       "// what one step is.\n"
-      "#pragma once\n\n#include <stdint.h>\n\n#include \"firmware/telemetry/bytes.h\"\n\n"
+      "#pragma once\n\n#include <stdint.h>\n\n#include \"firmware/protocol/bytes.h\"\n\n"
       "namespace screed {\n\nenum MessageId : uint16_t {\n";
   for (const Message& message : database.messages) {
     text += "  kId" + pascal_case(message.name) + " = " + id_text(message.id) + ",\n";

@@ -1,15 +1,15 @@
 # The schema of the radio's messages and what is made of it. Included by the top Makefile, before the first use of what it makes.
 #
-#   firmware/telemetry/screed.dbc -> build/generated/schema/messages.h   pack and unpack, for the microcontroller and the host
+#   firmware/protocol/screed.dbc -> build/generated/schema/messages.h   pack and unpack, for the microcontroller and the host
 #                                    build/generated/schema/tables.h     names, units, scales, for the host
 #                                    build/generated/wireshark           a profile for Wireshark and tshark
 #
-# Needs from there: BUILD_ROOT, WARNINGS.
+# Needs options.mk, and WARNINGS of host.mk when its rules run.
 
-SCHEMA := firmware/telemetry/screed.dbc
+SCHEMA := firmware/protocol/screed.dbc
 GENERATED_FOLDER := $(BUILD_ROOT)/generated
 SCHEMA_COMPILER := $(BUILD_ROOT)/schema/schema_compiler
-SCHEMA_SOURCES := $(wildcard tools/schema/*.cpp)
+SCHEMA_SOURCES := $(call sources,tools/schema)
 SCHEMA_OBJECTS := $(SCHEMA_SOURCES:%.cpp=$(BUILD_ROOT)/schema/%.o)
 SCHEMA_HEADERS := $(GENERATED_FOLDER)/schema/messages.h $(GENERATED_FOLDER)/schema/tables.h
 
@@ -32,9 +32,7 @@ $(SCHEMA_HEADERS): $(GENERATED_FOLDER)/schema.stamp ;
 # The tables in the page for people.
 TELEMETRY_PAGE := docs/telemetry.md
 .PHONY: telemetry-page check-telemetry-page
-telemetry-page: $(SCHEMA_COMPILER)
+telemetry-page: $(SCHEMA_COMPILER)  ## the tables of docs/telemetry.md anew from the DBC
 	@$(SCHEMA_COMPILER) $(SCHEMA) --document $(TELEMETRY_PAGE)
 check-telemetry-page: $(SCHEMA_COMPILER)
 	@$(SCHEMA_COMPILER) $(SCHEMA) --check-document $(TELEMETRY_PAGE)
-
--include $(SCHEMA_OBJECTS:.o=.d)

@@ -14,9 +14,9 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/picture/line_chart.h"
+#include "host_sim/render/picture/line_chart.h"
 #include "tools/bench/terrain/terrain_bench.h"
-#include "tools/program.h"
+#include "tools/screed/cli/program.h"
 
 namespace {
 

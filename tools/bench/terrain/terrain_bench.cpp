@@ -15,10 +15,10 @@
 #include "firmware/robot/robot.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/experiment/board_table.h"
-#include "host_sim/experiment/experiment.h"
-#include "host_sim/experiment/simulation.h"
-#include "host_sim/terrain/grey_image.h"
+#include "host_sim/physics/terrain/grey_image.h"
+#include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/simulation.h"
 
 namespace screed::terrain_bench {
 namespace {

@@ -1,0 +1,33 @@
+// AUTOSAR E2E Profile 2.
+#include "firmware/protocol/e2e.h"
+
+namespace screed {
+
+uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size) {
+  for (uint8_t i = 0; i < size; ++i) {
+    crc = static_cast<uint8_t>(crc ^ data[i]);
+    for (uint8_t bit = 0; bit < 8; ++bit) {
+      const bool carry = (crc & 0x80U) != 0;
+      crc = static_cast<uint8_t>(crc << 1);
+      if (carry) crc = static_cast<uint8_t>(crc ^ 0x2FU);
+    }
+  }
+  return crc;
+}
+
+uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size) {
+  const uint8_t over_data = crc8_h2f(0xFF, data + 1, static_cast<uint8_t>(size - 1));
+  return static_cast<uint8_t>(crc8_h2f(over_data, &data_id, 1) ^ 0xFFU);
+}
+
+void e2e_protect(uint16_t can_id, uint8_t counter, uint8_t* data, uint8_t size) {
+  data[1] = static_cast<uint8_t>((data[1] & 0xF0U) | (counter & 0x0FU));
+  data[0] = e2e_crc(e2e_data_id(can_id), data, size);
+}
+
+bool e2e_check(uint16_t can_id, const uint8_t* data, uint8_t size) {
+  if (size < 3 || size > 8) return false;
+  return data[0] == e2e_crc(e2e_data_id(can_id), data, size);
+}
+
+}  // namespace screed

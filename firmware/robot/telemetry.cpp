@@ -1,0 +1,205 @@
+// The downlink scheduler and the contents of its frames.
+#include "firmware/robot/telemetry.h"
+
+#include "firmware/math/units.h"
+#include "firmware/protocol/e2e.h"
+
+namespace screed {
+namespace {
+
+struct Schedule {
+  uint16_t id;
+  uint8_t period;  ///< ticks; 100 / period messages a second
+  uint8_t first;   ///< tick of the first one: spreads the load
+};
+
+// In order of importance; 119 lines a second of 200 possible, 2566 of the 2850 bytes of the budget.
+constexpr Schedule kSchedule[kTelemetryMessages] = {
+    {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2},  {kIdMotors, 5, 3},
+    {kIdLeveling, 10, 4},  {kIdOdometry, 10, 6}, {kIdAccelRaw, 10, 8}, {kIdGyroRaw, 10, 9},
+    {kIdPower, 50, 14},    {kIdMagRaw, 50, 24},  {kIdBaro, 100, 34},   {kIdHealth, 50, 44},
+    {kIdLink, 100, 54},    {kIdTime, 100, 64},
+};
+
+// Credit is saved for the four lines that may come together, and no more.
+constexpr uint8_t kMostCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
+
+/// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.
+int16_t centidegrees_per_s(YawRate rate) {
+  return centidegrees_from_angle(rate);
+}
+
+// Fills size and data; the protection is written afterwards.
+template <typename Message>
+void set(CanFrame& frame, const Message& message) {
+  frame.size = Message::kSize;
+  message.pack(frame.data);
+}
+
+// Six messages are three numbers of 16 bits each: their code is in the image once.
+SCREED_OUT_OF_LINE void set_words(CanFrame& frame, int16_t first, int16_t second, int16_t third) {
+  set(frame, message::AccelRaw{first, second, third});
+}
+
+void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
+  set_words(frame, vector[0], vector[1], vector[2]);
+}
+
+}  // namespace
+
+SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
+  const SensorSample& sample = *view.sample;
+  switch (frame.id) {
+    case kIdHeartbeat: {
+      message::Heartbeat it{};
+      it.state = static_cast<uint8_t>(view.state);
+      it.faults = view.faults;
+      it.link_alive = view.link_alive ? 1 : 0;
+      it.boot_epoch = view.boot_epoch;
+      it.freshness = view.freshness;
+      set(frame, it);
+      break;
+    }
+    case kIdAttitude:
+      set_words(frame, view.roll_cdeg, view.pitch_cdeg, static_cast<int16_t>(view.heading_cdeg));
+      break;
+    case kIdLeveling: {
+      message::Leveling it{};
+      it.state = static_cast<uint8_t>(view.leveling_state);
+      it.algorithm = static_cast<uint8_t>(view.algorithm);
+      it.peaks = static_cast<uint8_t>(view.peaks & 0xFFU);
+      it.speed = view.motion.speed_mm_per_s;
+      it.turn_rate = centidegrees_per_s(view.motion.yaw_rate);
+      set(frame, it);
+      break;
+    }
+    case kIdEncoders:
+      set_words(frame, static_cast<int16_t>(sample.encoder_left),
+                static_cast<int16_t>(sample.encoder_right),
+                static_cast<int16_t>(kTickPeriod_us / 4));
+      break;
+    case kIdMotors:
+      set(frame, message::Motors{view.slip, view.stuck, view.duty_left, view.duty_right,
+                                 sample.encoder_errors});
+      break;
+    case kIdOdometry:
+      set_words(frame, saturate_i16(view.x_mm), saturate_i16(view.y_mm),
+                static_cast<int16_t>(view.heading_cdeg));
+      break;
+    case kIdAccelRaw:
+      set_vector(frame, sample.accel);
+      break;
+    case kIdGyroRaw:
+      set_vector(frame, sample.gyro);
+      break;
+    case kIdMagRaw:
+      set_vector(frame, sample.mag);
+      break;
+    case kIdPower: {
+      const uint16_t load = static_cast<uint16_t>(sample.last_tick_us / (kTickPeriod_us / 100U));
+      set(frame, message::Power{view.battery_mv, static_cast<uint8_t>(load > 255 ? 255 : load)});
+      break;
+    }
+    case kIdHealth: {
+      message::Health it{};
+      it.reset_cause = sample.reset_cause;
+      it.chips_failing = sample.chips_failing;
+      it.i2c_errors = sample.bus_errors;
+      it.uart_errors = sample.radio_errors;
+      it.longest_tick = longest_tick_us_;
+      longest_tick_us_ = 0;
+      set(frame, it);
+      break;
+    }
+    case kIdLink: {
+      message::Link it{};
+      it.frames_received = view.frames_received;
+      it.lines_rejected = view.rejected_lines;
+      it.frames_rejected = view.rejected_frames;
+      it.commands_rejected = view.rejected_commands;
+      // Five a second.
+      const uint8_t heard = static_cast<uint8_t>(view.ground_heartbeats - heartbeats_before_);
+      it.quality = heard < 5 ? static_cast<uint8_t>(20U * heard) : static_cast<uint8_t>(100);
+      heartbeats_before_ = view.ground_heartbeats;
+      set(frame, it);
+      break;
+    }
+    case kIdTime:
+      set(frame, message::Time{quotient_u32(sample.time_us, 1000), view.ground_time_ms});
+      break;
+    case kIdBaro:
+    default: {
+      const uint16_t from_zero =
+          quotient_u16(static_cast<uint32_t>(abs_u16(sample.temperature)) * 5U, 24);
+      message::Baro it{};
+      // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
+      it.pressure = (static_cast<uint32_t>(sample.pressure) * 25U) >> 6;
+      // 42.5 degC + raw/480, in 0.01 degC
+      it.temperature =
+          static_cast<int16_t>(sample.temperature < 0 ? 4250 - from_zero : 4250 + from_zero);
+      set(frame, it);
+      break;
+    }
+  }
+}
+
+void Telemetry::queue(const CanFrame& frame) {
+  if (queued_ == kQueue) return;
+  queue_[queued_] = frame;
+  ++queued_;
+}
+
+void Telemetry::emit(CanFrame& frame, uint8_t message, RobotOutput& output) {
+  e2e_protect(frame.id, counter_[message], frame.data, frame.size);
+  counter_[message] = static_cast<uint8_t>((counter_[message] + 1) & 0x0F);
+  const uint8_t length = slcan_encode(frame, output.radio_out + output.radio_out_count);
+  output.radio_out_count = static_cast<uint8_t>(output.radio_out_count + length);
+  credit_ = static_cast<uint8_t>(credit_ - length);
+}
+
+bool Telemetry::room(const RobotOutput& output) const {
+  return credit_ >= kSlcanLineMax && output.radio_out_count + kSlcanLineMax <= kRadioOutCapacity;
+}
+
+void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
+  output.radio_out_count = 0;
+  if (!started_) {
+    for (uint8_t i = 0; i < kTelemetryMessages; ++i) countdown_[i] = kSchedule[i].first;
+    started_ = true;
+  }
+  if (view.sample->last_tick_us > longest_tick_us_) longest_tick_us_ = view.sample->last_tick_us;
+
+  const bool packet = next_packet_ == 0;
+  next_packet_ = packet ? kPacketTicks - 1 : static_cast<uint8_t>(next_packet_ - 1);
+  if (packet) {
+    const uint8_t credit = static_cast<uint8_t>(credit_ + kPacketBudget);
+    credit_ = credit < kMostCredit ? credit : kMostCredit;
+    uint8_t sent = 0;
+    for (; sent < queued_ && room(output); ++sent) {
+      const uint16_t id = queue_[sent].id;
+      const uint8_t place = id == kIdCommandAck ? 0 : id == kIdParamValue ? 1 : 2;
+      emit(queue_[sent], static_cast<uint8_t>(kTelemetryMessages + place), output);
+    }
+    queued_ = static_cast<uint8_t>(queued_ - sent);
+    for (uint8_t i = 0; i < queued_; ++i) queue_[i] = queue_[i + sent];
+  }
+
+  uint16_t bit = 1;
+  for (uint8_t i = 0; i < kTelemetryMessages; ++i, bit = static_cast<uint16_t>(bit << 1)) {
+    // The countdown goes on while a line waits, so that a delay moves one line and not its
+    // schedule.
+    if (countdown_[i] == 0) {
+      due_ = static_cast<uint16_t>(due_ | bit);
+      countdown_[i] = kSchedule[i].period;
+    }
+    --countdown_[i];
+    if (!packet || (due_ & bit) == 0 || !room(output)) continue;
+    CanFrame frame{};
+    frame.id = kSchedule[i].id;
+    fill(frame, view);
+    emit(frame, i, output);
+    due_ = static_cast<uint16_t>(due_ & ~bit);
+  }
+}
+
+}  // namespace screed

@@ -1,0 +1,93 @@
+// The downlink: which frame is due when, and its bytes.
+//
+// The radio module sends what it was given when the line falls silent, at most 100 bytes at once,
+// and what is lost is lost as a whole. So lines are handed over in packets of whole lines, at most
+// four (88 bytes), every second tick: they take 15.3 of 20 ms. What happened once goes first, then
+// what is due by its rate, in order of importance, as far as the byte budget goes: half of what the
+// line carries.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/leveling/leveling.h"
+#include "firmware/protocol/messages.h"
+#include "firmware/robot/supervisor.h"
+#include "hal/sample.h"
+
+namespace screed {
+
+/// Everything the downlink may say, gathered by the robot each tick.
+struct TelemetryView {
+  const SensorSample* sample;
+  int16_t roll_cdeg;
+  int16_t pitch_cdeg;
+  uint16_t heading_cdeg;  ///< 0..35999
+  int32_t x_mm;
+  int32_t y_mm;
+  int16_t duty_left;
+  int16_t duty_right;
+  uint8_t slip;   ///< 1: the tracks move much more than the robot
+  uint8_t stuck;  ///< 1: and have done so for long
+  MotionCommand motion;
+  RobotState state;
+  uint16_t faults;
+  bool link_alive;
+  uint8_t ground_heartbeats;  ///< valid ones since start, wraps
+  uint16_t ground_time_ms;    ///< lower 16 bits of the last one's time
+  uint16_t boot_epoch;
+  uint16_t freshness;        ///< counter of the last command that was accepted
+  uint16_t frames_received;  ///< of the uplink, accepted
+  uint8_t rejected_lines;
+  uint8_t rejected_frames;
+  uint8_t rejected_commands;
+  LevelingAlgorithm algorithm;
+  LevelingState leveling_state;
+  uint16_t peaks;
+  uint16_t battery_mv;
+};
+
+constexpr uint8_t kTelemetryMessages = 14;  ///< sent by their rate
+constexpr uint8_t kUrgentMessages = 3;      ///< sent when there is something to say
+
+/// What the downlink remembers, zero at the start: zeroed at once, which takes less flash.
+struct TelemetryMemory {
+  static constexpr uint8_t kQueue = 4;
+
+  CanFrame queue_[kQueue];
+  uint8_t queued_;
+  uint8_t next_packet_;  ///< ticks
+  uint8_t credit_;       ///< bytes
+  uint16_t due_;         ///< a bit a message: it waits for room
+  uint8_t countdown_[kTelemetryMessages];
+  uint8_t counter_[kTelemetryMessages + kUrgentMessages];
+  bool started_;
+  uint8_t heartbeats_before_;  ///< TelemetryView::ground_heartbeats at the last LINK
+  uint16_t longest_tick_us_;   ///< since the last HEALTH
+};
+
+class Telemetry : private TelemetryMemory {
+ public:
+  Telemetry() : TelemetryMemory() {}
+
+  static constexpr uint8_t kPacketTicks = 2;
+  /// Half of 57,600 baud for the time of a packet.
+  static constexpr uint8_t kPacketBudget = 57;
+
+  /// Queues a frame (COMMAND_ACK, PARAM_VALUE or EVENT) to go before all others, its protection
+  /// still missing. Dropped when four are waiting.
+  void queue(const CanFrame& frame);
+
+  /// tick() will hand over a packet: there is more to compute than in other ticks.
+  bool packet_due() const { return next_packet_ == 0; }
+
+  /// One tick: writes the lines of a packet into output.radio_out, when it is time for one, whole
+  /// lines only. What does not fit waits for the next one.
+  void tick(const TelemetryView& view, RobotOutput& output);
+
+ private:
+  void emit(CanFrame& frame, uint8_t message, RobotOutput& output);
+  bool room(const RobotOutput& output) const;
+  void fill(CanFrame& frame, const TelemetryView& view);
+};
+
+}  // namespace screed

@@ -1,0 +1,188 @@
+// A ground station's side of a link.
+#include "host_sim/ground_station/link/command_session.h"
+
+#include <utility>
+
+#include "firmware/math/crc16.h"
+#include "firmware/protocol/e2e.h"
+#include "firmware/security/command_mac.h"
+#include "host_sim/ground_station/telemetry/schema.h"
+
+namespace screed {
+namespace {
+
+using Result = message::CommandAckResult;
+
+constexpr std::chrono::milliseconds kPump{20};
+/// The robot stores a parameter for 1.5 s and takes no other meanwhile.
+constexpr int kMostBusyAnswers = 12;
+constexpr int kMostStagings = 3;
+
+uint64_t steady_us() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+}
+
+std::string names_of_faults(uint16_t bits) {
+  std::string names;
+  const MessageInfo& heartbeat = *find_message("HEARTBEAT");
+  unsigned bit = 0;
+  for (const SignalInfo& signal : heartbeat.signals) {
+    if (signal.flags[0] == '\0') continue;
+    if ((bits >> bit & 1U) != 0) names += (names.empty() ? "" : ", ") + std::string(signal.name);
+    ++bit;
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string CommandAnswer::words() const {
+  struct Words {
+    Result result;
+    const char* text;
+  };
+  constexpr Words kWords[] = {
+      {Result::kWrongState, "not possible in the robot's present state"},
+      {Result::kFaultPresent, "a fault is present"},
+      {Result::kNotReady, "the attitude estimator has not settled yet"},
+      {Result::kNoLink, "the robot hears no ground station (screed monitor, or --hold)"},
+      {Result::kNoKey, "the robot has no command key; one is set over USB"},
+      {Result::kBadMac, "signed with another key than the robot's (--key)"},
+      {Result::kLockedOut, "too many wrong signatures; locked"},
+      {Result::kUsedUp, "the robot has taken all commands of this start; restart it"},
+      {Result::kBadArgument, "no such parameter, or the value is not allowed"},
+      {Result::kBusy, "the robot is still storing the last parameter"},
+  };
+  if (done()) return "done";
+  for (const Words& known : kWords) {
+    if (static_cast<uint8_t>(known.result) != result) continue;
+    std::string text = "refused: " + std::string(known.text);
+    if (known.result == Result::kFaultPresent) text += " (" + names_of_faults(detail) + ")";
+    if (known.result == Result::kLockedOut)
+      text += " for " + std::to_string(detail / 100 + 1) + " s";
+    return text;
+  }
+  return "refused: reason " + std::to_string(result);
+}
+
+CommandSession::CommandSession(Link& link, SessionOptions options)
+    : link_(link), options_(std::move(options)), signer_(options_.key) {
+  if (!options_.clock) options_.clock = steady_us;
+}
+
+void CommandSession::send_protected(CanFrame frame, uint8_t& counter) {
+  e2e_protect(frame.id, counter, frame.data, frame.size);
+  counter = static_cast<uint8_t>((counter + 1) & 0x0F);
+  link_.send(frame);
+}
+
+void CommandSession::pump(std::chrono::milliseconds wait) {
+  frames_.clear();
+  link_.receive(wait, frames_);
+  for (const LinkFrame& frame : frames_) {
+    if (check_frame(frame.frame) == FrameFault::kNone) hear(frame.frame);
+    if (options_.on_frame) options_.on_frame(frame);
+  }
+  const uint64_t now_us = options_.clock();
+  if (options_.heartbeats && now_us >= heartbeat_due_us_) {
+    const message::GroundHeartbeat heartbeat = {static_cast<uint32_t>(now_us / 1000U)};
+    send_protected(frame_of(heartbeat), heartbeat_counter_);
+    heartbeat_due_us_ = now_us + kHeartbeat_us;
+  }
+  if (waiting_ && now_us >= repeat_due_us_) {
+    repeat_due_us_ = now_us + kRepeat_us;
+    if (attempts_++ == kMostAttempts) {
+      waiting_ = false;
+    } else if (signer_.ready()) {
+      send_command();
+    }
+  }
+}
+
+void CommandSession::start(CommandOp op, uint32_t argument) {
+  op_ = op;
+  argument_ = argument;
+  command_.reset();
+  staged_.reset();
+  answer_.reset();
+  waiting_ = true;
+  attempts_ = 0;
+  repeat_due_us_ = 0;
+}
+
+void CommandSession::send_command() {
+  if (!command_.has_value()) command_ = signer_.sign(op_, argument_);
+  if (staged_.has_value()) send_protected(*staged_, stage_counter_);
+  link_.send(*command_);
+}
+
+void CommandSession::hear(const CanFrame& frame) {
+  signer_.hear(frame);
+  if (frame.id == kIdParamValue) {
+    const auto value = message::ParamValue::unpack(frame.data);
+    parameters_[value.index] = value.value;
+  }
+  if (frame.id != kIdCommandAck || !waiting_ || !command_.has_value()) return;
+  const auto ack = message::CommandAck::unpack(frame.data);
+  if (ack.op != command_->data[0] || ack.freshness != command_->data[kCommandFreshnessAt]) return;
+  answer_ = {ack.op, ack.result, ack.detail};
+  waiting_ = false;
+}
+
+std::optional<CommandAnswer> CommandSession::take_answer() {
+  return std::exchange(answer_, std::nullopt);
+}
+
+std::optional<CommandAnswer> CommandSession::run(CommandOp op, uint32_t argument) {
+  start(op, argument);
+  while (waiting_) pump(kPump);
+  return take_answer();
+}
+
+std::optional<int32_t> CommandSession::read_parameter(uint16_t index,
+                                                      std::optional<CommandAnswer>& answer) {
+  parameters_.erase(index);
+  answer = run(CommandOp::kParameterRead, index);
+  // The value is a frame of its own, which may come after the answer, or be lost.
+  for (int again = 0; answer.has_value() && answer->done() && again < kMostStagings; ++again) {
+    const uint64_t end_us = options_.clock() + kRepeat_us;
+    while (!parameters_.contains(index) && options_.clock() < end_us) pump(kPump);
+    if (parameters_.contains(index)) return parameters_.at(index);
+    answer = run(CommandOp::kParameterRead, index);
+  }
+  return std::nullopt;
+}
+
+void CommandSession::start_write(uint16_t index, int32_t value) {
+  const CanFrame staged = frame_of(message::ParamStage{index, value});
+  constexpr uint8_t kSignedSize = 4;  // index and lower half of the value
+  const uint16_t crc = crc16_ccitt(staged.data + kE2eHeaderSize, kSignedSize);
+  start(CommandOp::kParameterCommit,
+        static_cast<uint32_t>(index & 0xFFU) | static_cast<uint32_t>(crc) << 8U);
+  staged_ = staged;
+}
+
+std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int32_t value) {
+  std::optional<CommandAnswer> answer;
+  int stagings = 0;
+  for (int attempt = 0; attempt < kMostBusyAnswers; ++attempt) {
+    start_write(index, value);
+    while (waiting_) pump(kPump);
+    answer = take_answer();
+    if (!answer.has_value() || answer->done()) break;
+    const auto result = static_cast<Result>(answer->result);
+    // Staging that was lost looks like a wrong argument.
+    if (result == Result::kBadArgument && ++stagings < kMostStagings) continue;
+    if (result != Result::kBusy) break;
+    const uint64_t end_us = options_.clock() + kRepeat_us;
+    while (options_.clock() < end_us) pump(kPump);
+  }
+  return answer;
+}
+
+void CommandSession::emergency_stop() {
+  for (int i = 0; i < 3; ++i) send_protected(frame_of(message::EmergencyStop{0}), stop_counter_);
+}
+
+}  // namespace screed

@@ -1,0 +1,103 @@
+// A ground station's side of a link: heartbeats, signed commands repeated until they are answered,
+// parameters. Knows the link and the schema; is given a clock, so that tests bring their own.
+//
+// Everything happens in pump(): what arrives is taken, what is due is sent. Nothing else waits.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/station/command_signer.h"
+
+namespace screed {
+
+struct CommandAnswer {
+  uint8_t op = 0;
+  uint8_t result = 0;  ///< 0: done
+  uint16_t detail = 0;
+
+  bool done() const { return result == 0; }
+  /// "done", "refused: a fault is present (tilt, imu silent)".
+  std::string words() const;
+};
+
+struct SessionOptions {
+  CommandKey key = test_key();
+  /// This is the ground station: its heartbeats keep the robot going, their end stops it.
+  bool heartbeats = true;
+  /// Told of every frame that arrives.
+  std::function<void(const LinkFrame&)> on_frame;
+  /// Microseconds, rising.
+  std::function<uint64_t()> clock;
+};
+
+class CommandSession {
+ public:
+  /// Robots take a ground station for lost after 0.5 s.
+  static constexpr uint64_t kHeartbeat_us = 200'000;
+  /// Commands go at most four times a second.
+  static constexpr uint64_t kRepeat_us = 300'000;
+  static constexpr int kMostAttempts = 8;
+
+  /// The link must outlive this.
+  CommandSession(Link& link, SessionOptions options);
+
+  /// Takes what arrives, at most `wait` long, and sends what is due.
+  void pump(std::chrono::milliseconds wait);
+
+  /// A heartbeat was heard: commands can be signed.
+  bool ready() const { return signer_.ready(); }
+
+  /// Signs and sends a command; one that is still waiting is given up. Before ready() the command
+  /// waits for a heartbeat; it is given up as one that is not answered.
+  void start(CommandOp op, uint32_t argument = 0);
+  /// Likewise: stages the value of a parameter and commits it.
+  void start_write(uint16_t index, int32_t value);
+  /// A command is on its way.
+  bool waiting() const { return waiting_; }
+  /// The answer to the command started last, once; nothing while waiting, or when none came.
+  std::optional<CommandAnswer> take_answer();
+
+  // These pump until there is an answer, or nothing for as long as a command is repeated.
+
+  std::optional<CommandAnswer> run(CommandOp op, uint32_t argument = 0);
+  /// The value as the robot has it. `answer` says what came of it.
+  std::optional<int32_t> read_parameter(uint16_t index, std::optional<CommandAnswer>& answer);
+  /// Stages the value and commits it: it is in force and stored when the answer is "done".
+  std::optional<CommandAnswer> write_parameter(uint16_t index, int32_t value);
+
+  /// Sends EMERGENCY_STOP three times: it needs no key and has no answer of its own.
+  void emergency_stop();
+
+ private:
+  void send_protected(CanFrame frame, uint8_t& counter);
+  void send_command();
+  void hear(const CanFrame& frame);
+
+  Link& link_;
+  SessionOptions options_;
+  CommandSigner signer_;
+  std::vector<LinkFrame> frames_;
+  uint64_t heartbeat_due_us_ = 0;
+  uint8_t heartbeat_counter_ = 0;
+  uint8_t stop_counter_ = 0;
+  uint8_t stage_counter_ = 0;
+
+  bool waiting_ = false;
+  CommandOp op_{};
+  uint32_t argument_ = 0;
+  std::optional<CanFrame> command_;  ///< as signed; nothing before the first heartbeat
+  std::optional<CanFrame> staged_;   ///< goes before each repetition of the command
+  int attempts_ = 0;
+  uint64_t repeat_due_us_ = 0;
+  std::optional<CommandAnswer> answer_;
+  std::map<uint16_t, int32_t> parameters_;  ///< as last told by the robot
+};
+
+}  // namespace screed

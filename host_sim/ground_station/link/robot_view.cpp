@@ -1,0 +1,218 @@
+// What a robot has said so far.
+#include "host_sim/ground_station/link/robot_view.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "firmware/protocol/messages.h"
+
+namespace screed {
+namespace {
+
+constexpr size_t kMostHappenings = 100;
+/// Robots of one link; beyond it addresses are noise.
+constexpr size_t kMostRobots = 64;
+constexpr int kCounterModulus = 16;
+
+std::array<uint8_t, 8> data_of(const CanFrame& frame) {
+  std::array<uint8_t, 8> data{};
+  std::copy_n(frame.data, std::min<size_t>(frame.size, data.size()), data.begin());
+  return data;
+}
+
+const SignalInfo* with_role(const MessageInfo& message, SignalRole role) {
+  const auto signal = std::find_if(message.signals.begin(), message.signals.end(),
+                                   [role](const SignalInfo& s) { return s.role == role; });
+  return signal == message.signals.end() ? nullptr : &*signal;
+}
+
+std::string fault_words(const SignalInfo& flag) {
+  const std::string name = spoken(flag.name);
+  return flag.comment[0] == '\0' ? name : name + ": " + flag.comment;
+}
+
+}  // namespace
+
+std::string spoken(std::string_view name) {
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string RobotKey::text() const {
+  std::string words = "robot " + std::to_string(node);
+  if (address == 0) return words;
+  char hex[24];
+  std::snprintf(hex, sizeof hex, address <= 0xFFFF ? " at %04llX" : " at %016llX",
+                static_cast<unsigned long long>(address));
+  return words + hex;
+}
+
+void RobotView::take(const LinkFrame& frame, const MessageInfo& message) {
+  if (frames_ == 0) first_us_ = frame.time_us;
+  ++frames_;
+  last_us_ = std::max(last_us_, frame.time_us);
+  if (frame.source.has_value() && frame.source->rssi_dbm.has_value())
+    rssi_dbm_ = frame.source->rssi_dbm;
+
+  std::deque<Sample>& samples = samples_[message.id];
+  Sample sample{frame.time_us, data_of(frame.frame), 0};
+  const Sample* const before = samples.empty() ? nullptr : &samples.front();
+  const SignalInfo* const counter = with_role(message, SignalRole::kCounter);
+  if (before != nullptr && counter != nullptr) {
+    const auto step = counter->raw(sample.data.data()) - counter->raw(before->data.data());
+    // The same number again is a robot that restarted, or a doubled frame: no loss.
+    if (step != 0)
+      sample.missed = static_cast<uint8_t>((step - 1 + kCounterModulus) % kCounterModulus);
+  }
+  lost_ += sample.missed;
+  look_for_changes(message, before, sample);
+  samples.push_front(sample);
+  while (samples.size() > 1 && samples.front().time_us > samples.back().time_us + kHistory_us)
+    samples.pop_back();
+}
+
+void RobotView::note(uint64_t time_us, CellStyle style, std::string words) {
+  happenings_.push_front({time_us, style, std::move(words)});
+  if (happenings_.size() > kMostHappenings) happenings_.pop_back();
+}
+
+void RobotView::look_for_changes(const MessageInfo& message, const Sample* before,
+                                 const Sample& now) {
+  const uint8_t* const data = now.data.data();
+  if (message.id == find_message("HEARTBEAT")->id) {
+    const SignalInfo& state = *message.signal("state");
+    const int64_t state_now = state.raw(data);
+    if (before == nullptr || state.raw(before->data.data()) != state_now)
+      note(now.time_us, CellStyle::kTitle, "state: " + spoken(state.text(state_now)));
+    for (const SignalInfo& flag : message.signals) {
+      if (flag.flags[0] == '\0') continue;
+      const bool is = flag.raw(data) != 0;
+      const bool was = before != nullptr && flag.raw(before->data.data()) != 0;
+      if (is && !was) note(now.time_us, CellStyle::kAlarm, "fault: " + fault_words(flag));
+      if (!is && was) note(now.time_us, CellStyle::kGood, "fault gone: " + spoken(flag.name));
+    }
+    const SignalInfo* const epoch = message.signal("boot_epoch");
+    if (before != nullptr && epoch != nullptr &&
+        epoch->raw(before->data.data()) != epoch->raw(data))
+      note(now.time_us, CellStyle::kWarning,
+           "the robot restarted, start " + epoch->text(epoch->raw(data)));
+  } else if (message.id == find_message("COMMAND_ACK")->id) {
+    const SignalInfo& result = *message.signal("result");
+    const SignalInfo& op = *message.signal("op");
+    const bool done = result.raw(data) == 0;
+    note(now.time_us, done ? CellStyle::kGood : CellStyle::kWarning,
+         spoken(op.text(op.raw(data))) + ": " + spoken(result.text(result.raw(data))));
+  } else if (message.id == find_message("EVENT")->id) {
+    const SignalInfo& code = *message.signal("code");
+    // A change of state is told by the heartbeat, in full.
+    if (code.raw(data) == static_cast<int64_t>(message::EventCode::kState)) return;
+    const SignalInfo& argument = *message.signal("argument");
+    note(now.time_us, CellStyle::kNormal,
+         "event: " + spoken(code.text(code.raw(data))) + ", " + argument.text(argument.raw(data)));
+  }
+}
+
+const std::deque<RobotView::Sample>& RobotView::history(const MessageInfo& message) const {
+  static const std::deque<Sample> kNone;
+  const auto samples = samples_.find(message.id);
+  return samples == samples_.end() ? kNone : samples->second;
+}
+
+std::optional<int64_t> RobotView::raw(std::string_view path) const {
+  const SignalPlace place = find_signal(path);
+  const std::deque<Sample>& samples = history(*place.message);
+  if (samples.empty()) return std::nullopt;
+  return place.signal->raw(samples.front().data.data());
+}
+
+std::optional<double> RobotView::value(std::string_view path) const {
+  const std::optional<int64_t> bits = raw(path);
+  if (!bits.has_value()) return std::nullopt;
+  return find_signal(path).signal->value(*bits);
+}
+
+std::string RobotView::text(std::string_view path) const {
+  const std::optional<int64_t> bits = raw(path);
+  return bits.has_value() ? spoken(find_signal(path).signal->text(*bits)) : "-";
+}
+
+std::vector<CurvePoint> RobotView::curve(const SignalPlace& place, uint64_t now_us,
+                                         double window_s) const {
+  std::vector<CurvePoint> points;
+  for (const Sample& sample : history(*place.message)) {
+    const double age_s = (static_cast<double>(now_us) - static_cast<double>(sample.time_us)) * 1e-6;
+    if (age_s > window_s) break;
+    points.push_back({-age_s, place.signal->value(place.signal->raw(sample.data.data()))});
+  }
+  std::reverse(points.begin(), points.end());
+  return points;
+}
+
+std::vector<std::string> RobotView::faults() const {
+  std::vector<std::string> words;
+  const MessageInfo& heartbeat = *find_message("HEARTBEAT");
+  const std::deque<Sample>& samples = history(heartbeat);
+  if (samples.empty()) return words;
+  for (const SignalInfo& flag : heartbeat.signals) {
+    if (flag.flags[0] != '\0' && flag.raw(samples.front().data.data()) != 0)
+      words.push_back(fault_words(flag));
+  }
+  return words;
+}
+
+double RobotView::rate_hz(const MessageInfo& message, uint64_t now_us) const {
+  const std::deque<Sample>& samples = history(message);
+  const uint64_t begin_us = now_us > kWindow_us ? now_us - kWindow_us : 0;
+  const auto recent = std::find_if(samples.begin(), samples.end(),
+                                   [&](const Sample& s) { return s.time_us < begin_us; });
+  // Of a robot that was heard for a shorter time, over that time.
+  const uint64_t heard_us =
+      std::clamp<uint64_t>(now_us - std::min(first_us_, now_us), 1'000'000U, kWindow_us);
+  return static_cast<double>(recent - samples.begin()) * 1e6 / static_cast<double>(heard_us);
+}
+
+double RobotView::frames_per_s(uint64_t now_us) const {
+  double sum = 0.0;
+  for (const MessageInfo& message : messages()) sum += rate_hz(message, now_us);
+  return sum;
+}
+
+std::optional<double> RobotView::loss_percent(uint64_t now_us) const {
+  uint64_t got = 0;
+  uint64_t missed = 0;
+  for (const auto& [id, samples] : samples_) {
+    for (const Sample& sample : samples) {
+      if (sample.time_us + kWindow_us < now_us) break;
+      ++got;
+      missed += sample.missed;
+    }
+  }
+  if (got == 0) return std::nullopt;
+  return 100.0 * static_cast<double>(missed) / static_cast<double>(got + missed);
+}
+
+RobotView* FleetView::take(const LinkFrame& frame) {
+  switch (check_frame(frame.frame)) {
+    case FrameFault::kNone:
+      break;
+    case FrameFault::kUnknownId:
+      ++unknown_;
+      return nullptr;
+    default:
+      ++damaged_;
+      return nullptr;
+  }
+  const MessageInfo& message = *find_message(frame.frame.id);
+  if (message.uplink) {
+    ++uplink_;
+    return nullptr;
+  }
+  const RobotKey key{frame.source.has_value() ? frame.source->address : 0, node_of(frame.frame.id)};
+  if (robots_.size() >= kMostRobots && !robots_.contains(key)) return nullptr;
+  RobotView& robot = robots_[key];
+  robot.take(frame, message);
+  return &robot;
+}
+
+}  // namespace screed

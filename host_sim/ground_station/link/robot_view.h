@@ -1,0 +1,118 @@
+// What a robot has said so far, ready to be shown: newest values, a history for curves, rates and
+// losses, and what has happened in words. Knows the schema, not the link and not the screen.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/link/text_canvas.h"
+#include "host_sim/ground_station/telemetry/schema.h"
+
+namespace screed {
+
+class RobotView {
+ public:
+  /// How far back curves reach.
+  static constexpr uint64_t kHistory_us = 120'000'000;
+  /// Over how long rates and losses are taken.
+  static constexpr uint64_t kWindow_us = 5'000'000;
+
+  struct Sample {
+    uint64_t time_us;
+    std::array<uint8_t, 8> data;
+    uint8_t missed;  ///< frames that were lost before this one, by the alive counter
+  };
+
+  struct Happening {
+    uint64_t time_us;
+    CellStyle style;
+    std::string words;
+  };
+
+  /// Takes a downlink frame that check_frame() found right. Times rise.
+  void take(const LinkFrame& frame, const MessageInfo& message);
+
+  /// Notes something in the list of what happened.
+  void note(uint64_t time_us, CellStyle style, std::string words);
+
+  /// Newest first; empty when the message never came.
+  const std::deque<Sample>& history(const MessageInfo& message) const;
+
+  /// By "message.signal". Nothing before the message came; text() is then "-".
+  std::optional<double> value(std::string_view path) const;
+  std::optional<int64_t> raw(std::string_view path) const;
+  std::string text(std::string_view path) const;
+
+  /// Oldest first, x in seconds before now (negative), those of the last `window_s`.
+  std::vector<CurvePoint> curve(const SignalPlace& place, uint64_t now_us, double window_s) const;
+
+  /// The faults of the heartbeat in words, "high duty, no motion" behind their names.
+  std::vector<std::string> faults() const;
+
+  double rate_hz(const MessageInfo& message, uint64_t now_us) const;
+  double frames_per_s(uint64_t now_us) const;
+  /// Share of frames that were sent and did not arrive, in percent; nothing without frames.
+  std::optional<double> loss_percent(uint64_t now_us) const;
+
+  uint64_t frames() const { return frames_; }
+  uint64_t lost() const { return lost_; }
+  uint64_t first_us() const { return first_us_; }
+  uint64_t last_us() const { return last_us_; }
+  std::optional<int> rssi_dbm() const { return rssi_dbm_; }
+  const std::deque<Happening>& happenings() const { return happenings_; }  ///< newest first
+
+ private:
+  void look_for_changes(const MessageInfo& message, const Sample* before, const Sample& now);
+
+  std::map<uint16_t, std::deque<Sample>> samples_;
+  std::deque<Happening> happenings_;
+  uint64_t frames_ = 0;
+  uint64_t lost_ = 0;
+  uint64_t first_us_ = 0;
+  uint64_t last_us_ = 0;
+  std::optional<int> rssi_dbm_;
+};
+
+/// Which robot: the address of its module (0: not known), and its node.
+struct RobotKey {
+  uint64_t address = 0;
+  uint8_t node = 1;
+  // clang-tidy 14 takes the comparison with 0 inside for a null pointer.
+  auto operator<=>(const RobotKey&) const = default;  // NOLINT(modernize-use-nullptr)
+  std::string text() const;                           ///< "robot 1", "robot 1 at 0013A20040522BAA"
+};
+
+/// All robots heard on a link.
+class FleetView {
+ public:
+  /// Sorts a frame to its robot; a frame that is damaged or unknown is counted. Returns the robot
+  /// it belongs to, or null: damaged, or of the ground.
+  RobotView* take(const LinkFrame& frame);
+
+  const std::map<RobotKey, RobotView>& robots() const { return robots_; }
+  std::map<RobotKey, RobotView>& robots() { return robots_; }
+  /// Frames that the schema's check refused.
+  uint64_t damaged() const { return damaged_; }
+  uint64_t unknown() const { return unknown_; }
+  /// Frames of ground stations, as others on the bus see them.
+  uint64_t uplink() const { return uplink_; }
+
+ private:
+  std::map<RobotKey, RobotView> robots_;
+  uint64_t damaged_ = 0;
+  uint64_t unknown_ = 0;
+  uint64_t uplink_ = 0;
+};
+
+/// "stall_left" as people write it: "stall left".
+std::string spoken(std::string_view name);
+
+}  // namespace screed

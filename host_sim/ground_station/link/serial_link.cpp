@@ -1,0 +1,208 @@
+// A radio module on a serial port.
+#include "host_sim/ground_station/link/serial_link.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <thread>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kLookAgain{500};
+
+speed_t speed_of(int baud) {
+  switch (baud) {
+    case 9600:
+      return B9600;
+    case 19200:
+      return B19200;
+    case 38400:
+      return B38400;
+    case 57600:
+      return B57600;
+    case 115200:
+      return B115200;
+    case 230400:
+      return B230400;
+    default:
+      throw InputError("baud rate " + std::to_string(baud) +
+                       ": expected 9600, 19200, 38400, 57600, 115200 or 230400");
+  }
+}
+
+/// Raw bytes, 8N1, no flow control. The last character read may end a wait.
+bool set_up(int port, speed_t speed) {
+  termios settings{};
+  if (tcgetattr(port, &settings) != 0) return false;
+  cfmakeraw(&settings);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS | HUPCL);
+  settings.c_cc[VMIN] = 0;
+  settings.c_cc[VTIME] = 0;
+  cfsetspeed(&settings, speed);
+  return tcsetattr(port, TCSANOW, &settings) == 0;
+}
+
+std::optional<fs::path> lasting_name_of(const fs::path& device, const fs::path& by_id) {
+  std::error_code error;
+  const fs::path target = fs::canonical(device, error);
+  if (error) return std::nullopt;
+  for (const auto& entry : fs::directory_iterator(by_id, error)) {
+    std::error_code broken;
+    if (fs::canonical(entry.path(), broken) == target && !broken) return entry.path();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+SerialLink::SerialLink(const fs::path& device, const SerialOptions& options)
+    : options_(options), name_(device.string()) {
+  speed_of(options.baud);
+  if (options.api.has_value()) api_.emplace(*options.api);
+  open_port(device);
+}
+
+void SerialLink::open_port(const fs::path& device) {
+  const std::string text = device.string();
+  FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!port.is_open()) {
+    const int reason = errno;
+    if (reason == ENOENT) throw InputError(text + ": no such port");
+    if (reason == EACCES || reason == EPERM) {
+      throw RunError(text + ": no right to open it: join the group dialout (docs/link.md)");
+    }
+    if (reason == EBUSY) throw RunError(text + ": another program holds it");
+    throw RunError(text + ": cannot be opened: " + std::strerror(reason));
+  }
+  if (isatty(port.get()) == 0) throw InputError(text + ": not a serial port");
+  if (flock(port.get(), LOCK_EX | LOCK_NB) != 0)
+    throw RunError(text + ": another program holds it");
+  ioctl(port.get(), TIOCEXCL);
+  if (!set_up(port.get(), speed_of(options_.baud)))
+    throw RunError(text + ": cannot be set up: " + std::strerror(errno));
+  tcflush(port.get(), TCIFLUSH);
+  port_ = std::move(port);
+  lasting_name_ = lasting_name_of(device, options_.by_id);
+  status_.up = true;
+  status_.text = "up";
+}
+
+void SerialLink::lost(const char* why) {
+  port_.reset();
+  parsers_.clear();
+  if (options_.api.has_value()) api_.emplace(*options_.api);
+  status_.up = false;
+  status_.text = why;
+  ++status_.interruptions;
+  looked_at_ = std::chrono::steady_clock::now();
+}
+
+void SerialLink::look_for_port() {
+  looked_at_ = std::chrono::steady_clock::now();
+  const std::optional<fs::path> lasting = lasting_name_;
+  for (const fs::path& device : {lasting.value_or(name_), fs::path(name_)}) {
+    try {
+      open_port(device);
+      return;
+    } catch (const std::runtime_error& error) {
+      status_.text = std::string("waiting for it to come back (") + error.what() + ")";
+    }
+  }
+}
+
+void SerialLink::receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) {
+  if (!port_.is_open()) {
+    if (std::chrono::steady_clock::now() - looked_at_ >= kLookAgain) look_for_port();
+    if (!port_.is_open()) {
+      std::this_thread::sleep_for(std::min(wait, kLookAgain));
+      return;
+    }
+  }
+  const Readiness ready = wait_readable(port_.get(), wait);
+  if (ready == Readiness::kBroken) return lost("gone; waiting for it to come back");
+  if (ready == Readiness::kNothing) return;
+  std::array<uint8_t, 4096> bytes;
+  const ssize_t count = read(port_.get(), bytes.data(), bytes.size());
+  if (count > 0) {
+    take(std::span(bytes).first(static_cast<size_t>(count)), frames);
+  } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
+    lost("gone; waiting for it to come back");
+  }
+}
+
+void SerialLink::take(std::span<const uint8_t> bytes, std::vector<LinkFrame>& frames) {
+  const uint64_t now_us = wall_clock_us();
+  if (!api_.has_value()) return take_lines(bytes, now_us, std::nullopt, frames);
+  std::vector<XbeeFrame> packets;
+  const uint64_t refused = api_->refused();
+  for (const uint8_t byte : bytes) api_->feed(byte, packets);
+  status_.refused += api_->refused() - refused;
+  for (const XbeeFrame& packet : packets) take(packet, now_us, frames);
+}
+
+void SerialLink::take(const XbeeFrame& frame, uint64_t now_us, std::vector<LinkFrame>& frames) {
+  if (const auto packet = received_packet(frame)) {
+    heard_type_ = frame.type;
+    if (packet->source.rssi_dbm.has_value()) status_.rssi_dbm = packet->source.rssi_dbm;
+    take_lines(packet->data, now_us, packet->source, frames);
+  } else if (const auto rssi_dbm = answered_rssi_dbm(frame)) {
+    status_.rssi_dbm = rssi_dbm;
+  } else if (delivered(frame) == false) {
+    ++status_.errors;
+  }
+}
+
+void SerialLink::take_lines(std::span<const uint8_t> bytes, uint64_t now_us,
+                            const std::optional<RadioSource>& source,
+                            std::vector<LinkFrame>& frames) {
+  SlcanParser& parser = parsers_[source.has_value() ? source->address : 0];
+  CanFrame frame{};
+  for (const uint8_t byte : bytes) {
+    const uint8_t before = parser.rejected();
+    if (parser.feed(byte, frame)) {
+      frames.push_back({now_us, frame, source});
+      ++status_.received;
+    }
+    status_.refused += static_cast<uint8_t>(parser.rejected() - before);
+  }
+}
+
+bool SerialLink::send(const CanFrame& frame) {
+  uint8_t line[kSlcanLineMax];
+  const std::span<const uint8_t> text(line, slcan_encode(frame, line));
+  std::vector<uint8_t> bytes(text.begin(), text.end());
+  if (options_.api.has_value())
+    bytes = encode_xbee(broadcast_request(text, heard_type_), *options_.api);
+  // A line is taken whole or not at all: part of one would spoil the next.
+  size_t done = 0;
+  for (int attempt = 0; port_.is_open() && done < bytes.size() && attempt < 50; ++attempt) {
+    const ssize_t count = write(port_.get(), bytes.data() + done, bytes.size() - done);
+    if (count > 0) {
+      done += static_cast<size_t>(count);
+    } else if (errno == EAGAIN || errno == EINTR) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } else {
+      lost("gone; waiting for it to come back");
+    }
+  }
+  if (done == bytes.size()) {
+    ++status_.sent;
+    return true;
+  }
+  ++status_.not_sent;
+  return false;
+}
+
+}  // namespace screed

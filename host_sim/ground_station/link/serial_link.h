@@ -1,0 +1,59 @@
+// A radio module on a serial port: SLCAN lines, as they are or in packets of the XBee's API mode.
+// Also for the pseudo terminal of a simulation, which looks the same.
+//
+// A port that vanishes (the USB stick is pulled) is looked for twice a second and taken again,
+// under the name it was opened with or, when it has come back as another tty, under the name that
+// stays with the stick (/dev/serial/by-id).
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "host_sim/ground_station/link/file_descriptor.h"
+#include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/link/xbee_api.h"
+
+namespace screed {
+
+struct SerialOptions {
+  int baud = 57600;  ///< one the system has a name for: 9600 .. 230400
+  std::optional<XbeeApiMode> api;
+  /// Where udev names devices by what they are.
+  std::filesystem::path by_id = "/dev/serial/by-id";
+};
+
+class SerialLink : public Link {
+ public:
+  /// Opens the port. Throws InputError when there is none of this name or it is no terminal, or the
+  /// baud rate is unknown; RunError when it may not be opened or another program holds it.
+  SerialLink(const std::filesystem::path& device, const SerialOptions& options);
+
+  void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override;
+  bool send(const CanFrame& frame) override;
+  const LinkStatus& status() const override { return status_; }
+  const std::string& name() const override { return name_; }
+
+ private:
+  void open_port(const std::filesystem::path& device);
+  void lost(const char* why);
+  void look_for_port();
+  void take(std::span<const uint8_t> bytes, std::vector<LinkFrame>& frames);
+  void take(const XbeeFrame& frame, uint64_t now_us, std::vector<LinkFrame>& frames);
+  void take_lines(std::span<const uint8_t> bytes, uint64_t now_us,
+                  const std::optional<RadioSource>& source, std::vector<LinkFrame>& frames);
+
+  SerialOptions options_;
+  std::string name_;
+  std::optional<std::filesystem::path> lasting_name_;
+  FileDescriptor port_;
+  LinkStatus status_;
+  std::chrono::steady_clock::time_point looked_at_;
+  std::optional<XbeeApiParser> api_;
+  XbeeFrameType heard_type_ = XbeeFrameType::kReceive;
+  /// Lines of several robots are told apart by their modules' addresses; 0 without API mode.
+  std::map<uint64_t, SlcanParser> parsers_;
+};
+
+}  // namespace screed

@@ -1,0 +1,83 @@
+// The ground station of a simulated run.
+#include "host_sim/ground_station/station/ground_station.h"
+
+#include <cmath>
+
+#include "firmware/protocol/e2e.h"
+#include "hal/sample.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
+
+namespace screed {
+namespace {
+
+constexpr uint64_t kHeartbeatTicks = kTickRate_hz / 5;
+constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
+
+}  // namespace
+
+void GroundStation::receive(uint64_t now_us, std::span<const uint8_t> bytes) {
+  CanFrame frame{};
+  for (const uint8_t byte : bytes) {
+    if (parser_.feed(byte, frame)) take(now_us, frame);
+  }
+}
+
+void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
+  if (!e2e_check(frame.id, frame.data, frame.size)) {
+    ++rejected_;
+    return;
+  }
+  ++frames_;
+  if (frame.id == kIdHeartbeat && frame.size == message::Heartbeat::kSize) {
+    const message::Heartbeat heartbeat = message::Heartbeat::unpack(frame.data);
+    report_.heard = true;
+    report_.state = static_cast<RobotState>(heartbeat.state);
+    report_.faults = heartbeat.faults;
+    if (report_.state == RobotState::kRunning) started_ = true;
+  }
+  if (frame.id == kIdCommandAck && frame.size == message::CommandAck::kSize) {
+    report_.answer = message::CommandAck::unpack(frame.data);
+  }
+  signer_.hear(frame);
+  if (log_ == nullptr) return;
+  *log_ << candump_line(now_us, "screed0", frame);
+}
+
+void GroundStation::add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines) {
+  e2e_protect(frame.id, counter, frame.data, frame.size);
+  counter = static_cast<uint8_t>((counter + 1) & 0x0F);
+  add_line(frame, lines);
+}
+
+void GroundStation::add_line(const CanFrame& frame, std::vector<uint8_t>& lines) {
+  uint8_t line[kSlcanLineMax];
+  const uint8_t length = slcan_encode(frame, line);
+  lines.insert(lines.end(), line, line + length);
+}
+
+std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
+  std::vector<uint8_t> lines;
+  if (ticks_ % kHeartbeatTicks == 0) {
+    add_frame(frame_of(message::GroundHeartbeat{static_cast<uint32_t>(now_us / 1000U)}),
+              heartbeat_counter_, lines);
+  }
+  // Commands between heartbeats, so that no packet holds both.
+  if (ticks_ % kCommandTicks == kCommandTicks / 2 && report_.heard) {
+    if (report_.state == RobotState::kDisarmed && arm_ && !started_) {
+      add_line(signer_.sign(CommandOp::kArm), lines);
+    }
+    if (report_.state == RobotState::kArmed && arm_) {
+      add_line(signer_.sign(CommandOp::kRun), lines);
+    }
+    if (report_.state == RobotState::kRunning && drive_.has_value()) {
+      const DriveArgument argument = {
+          static_cast<int16_t>(std::lround(drive_->speed_m_per_s * 1000.0)),
+          static_cast<int16_t>(std::lround(drive_->yaw_rate_deg_per_s * 10.0))};
+      add_line(signer_.sign(CommandOp::kDrive, argument), lines);
+    }
+  }
+  ++ticks_;
+  return lines;
+}
+
+}  // namespace screed

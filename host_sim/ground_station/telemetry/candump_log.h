@@ -1,0 +1,71 @@
+// CAN frames as the text that `candump -L` writes and canplayer, Wireshark, SavvyCAN and python-can
+// read:
+//
+//   (1436509052.249713) can0 210#2A366C2BBA000102
+//
+// Knows lines and frames, not what they mean. Source: can-utils, candump.c and lib.c.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/protocol/slcan.h"
+
+namespace screed {
+
+struct LoggedFrame {
+  uint64_t time_us = 0;  ///< since 1970, or since the start of a simulation
+  CanFrame frame{};
+};
+
+/// The line of a frame, its end included. interface: a name without spaces.
+std::string candump_line(uint64_t time_us, std::string_view interface, const CanFrame& frame);
+
+enum class LineKind : uint8_t {
+  kFrame,       ///< a classic data frame with an 11-bit id
+  kOtherFrame,  ///< remote, error, FD, or 29-bit id: well formed, and not ours
+  kUnreadable,  ///< not a line of such a log
+};
+
+/// Reads one line, without its end. `frame` is written when it is one.
+LineKind parse_candump_line(std::string_view line, LoggedFrame& frame);
+
+/// Reads a log of any size and content, line by line.
+class CandumpReader {
+ public:
+  static constexpr size_t kBufferBytes = 1U << 20U;
+
+  /// "-" reads standard input. Throws InputError when the file cannot be opened.
+  explicit CandumpReader(const std::string& path);
+  /// Reads an open file, which it closes. path: what messages call it. buffer_bytes: a longer line
+  /// is unreadable.
+  CandumpReader(std::string path, std::FILE* file, size_t buffer_bytes = kBufferBytes);
+
+  /// The next line that is not empty; false at the end. Throws InputError when reading fails.
+  bool next(LineKind& kind, LoggedFrame& frame);
+
+  /// Number of the line that next() read, from 1.
+  [[nodiscard]] uint64_t line_number() const { return line_number_; }
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const;
+  };
+  bool fill();
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  std::vector<char> buffer_;
+  size_t begin_ = 0;       ///< of the bytes that wait in the buffer
+  size_t end_ = 0;         ///< behind them
+  size_t searched_ = 0;    ///< no end of line stands before this place
+  bool too_long_ = false;  ///< the line under way did not fit into the buffer
+  uint64_t line_number_ = 0;
+};
+
+}  // namespace screed

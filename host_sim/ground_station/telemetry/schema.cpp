@@ -1,0 +1,133 @@
+// Lookup in the schema's tables.
+#include "host_sim/ground_station/telemetry/schema.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "firmware/protocol/e2e.h"
+#include "host_sim/core/errors.h"
+#include "schema/tables.h"
+
+namespace screed {
+namespace {
+
+using namespace schema_tables;  // NOLINT(google-build-using-namespace): made for this file alone
+
+/// The message of every id, as its place in the table plus 1.
+constexpr std::array<uint8_t, 2048> kById = [] {
+  static_assert(std::size(kMessages) < 255);
+  std::array<uint8_t, 2048> table{};
+  for (size_t i = 0; i < std::size(kMessages); ++i) {
+    const uint16_t id = kMessages[i].id;
+    table[id] = static_cast<uint8_t>(i + 1);
+    for (unsigned node = 1; node < 16 && node_of(id) != 0; ++node) {
+      table[id_of_node(id, static_cast<uint8_t>(node))] = static_cast<uint8_t>(i + 1);
+    }
+  }
+  return table;
+}();
+
+std::string list_of(std::span<const char* const> names) {
+  std::string text;
+  for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+}  // namespace
+
+int64_t SignalInfo::raw(uint64_t bits) const {
+  const uint64_t field = (bits >> start) & ((uint64_t{1} << length) - 1);
+  if (!is_signed) return static_cast<int64_t>(field);
+  const uint64_t sign = uint64_t{1} << (length - 1);
+  return static_cast<int64_t>(field ^ sign) - static_cast<int64_t>(sign);
+}
+
+int64_t SignalInfo::raw(const uint8_t* data) const {
+  uint64_t bits = 0;
+  for (unsigned i = 0; i < 8; ++i) bits |= static_cast<uint64_t>(data[i]) << (8 * i);
+  return raw(bits);
+}
+
+double SignalInfo::value(int64_t raw) const {
+  constexpr double kPowers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+  return static_cast<double>(raw * scale + offset) / kPowers[decimals];
+}
+
+const char* SignalInfo::value_name(int64_t raw) const {
+  for (const ValueInfo& it : values) {
+    if (it.value == raw) return it.name;
+  }
+  return nullptr;
+}
+
+std::string SignalInfo::text(int64_t raw) const {
+  const char* const named = value_name(raw);
+  if (named != nullptr) return named;
+  const int64_t number = raw * scale + offset;
+  std::string digits = std::to_string(std::abs(number));
+  if (digits.size() <= decimals) digits.insert(0, decimals + 1U - digits.size(), '0');
+  if (decimals > 0) digits.insert(digits.size() - decimals, ".");
+  return (number < 0 ? "-" : "") + digits;
+}
+
+const SignalInfo* MessageInfo::signal(std::string_view wanted) const {
+  for (const SignalInfo& it : signals) {
+    if (it.name == wanted) return &it;
+  }
+  return nullptr;
+}
+
+std::span<const MessageInfo> messages() {
+  return kMessages;
+}
+
+const MessageInfo* find_message(uint16_t id) {
+  if (id >= kById.size() || kById[id] == 0) return nullptr;
+  return &kMessages[kById[id] - 1U];
+}
+
+const MessageInfo* find_message(std::string_view name) {
+  for (const MessageInfo& it : kMessages) {
+    if (it.name == name || it.title == name) return &it;
+  }
+  return nullptr;
+}
+
+SignalPlace find_signal(std::string_view path) {
+  const size_t point = path.find('.');
+  const MessageInfo* const message = find_message(path.substr(0, point));
+  if (message == nullptr) {
+    std::vector<const char*> names;
+    for (const MessageInfo& it : kMessages) names.push_back(it.title);
+    throw InputError(std::string(path) + ": no message of this name; there are " + list_of(names));
+  }
+  const SignalInfo* const signal =
+      point == std::string_view::npos ? nullptr : message->signal(path.substr(point + 1));
+  if (signal == nullptr) {
+    std::vector<const char*> names;
+    for (const SignalInfo& it : message->signals) names.push_back(it.name);
+    throw InputError(std::string(path) + ": no signal of this name; " + message->title + " has " +
+                     list_of(names));
+  }
+  return {message, signal};
+}
+
+FrameFault check_frame(const CanFrame& frame) {
+  const MessageInfo* const message = find_message(frame.id);
+  if (message == nullptr) return FrameFault::kUnknownId;
+  if (frame.size != message->size) return FrameFault::kWrongSize;
+  if (message->protected_by_crc && !e2e_check(frame.id, frame.data, frame.size)) {
+    return FrameFault::kWrongCrc;
+  }
+  return FrameFault::kNone;
+}
+
+FrameFault check_received(const CanFrame& frame, bool uplink) {
+  const MessageInfo* const message = find_message(frame.id);
+  if (message != nullptr && message->uplink != uplink) return FrameFault::kWrongWay;
+  return check_frame(frame);
+}
+
+}  // namespace screed

@@ -1,0 +1,316 @@
+// Lower surfaces in closed form.
+#include "host_sim/physics/soil/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host_sim/physics/soil/pair.h"
+
+namespace screed {
+namespace {
+
+/// Share of a square of side `edge` on the inner side of an edge whose distance from its centre is
+/// `inside` (negative: outside).
+double edge_share(double inside, double edge) {
+  return std::clamp(0.5 + inside / edge, 0.0, 1.0);
+}
+
+// Below this slope against the vertical a side of a box is a silhouette, not a surface that soil
+// touches.
+constexpr double kSteep = 0.05;
+
+}  // namespace
+
+Footprint Footprint::track(double half_length, double radius, double width) {
+  return {Kind::kTrack, Eigen::Vector3d(half_length, 0.5 * width, 0.0), radius};
+}
+
+Footprint Footprint::box(const Eigen::Vector3d& size) {
+  return {Kind::kBox, 0.5 * size, 0.0};
+}
+
+Footprint Footprint::disc(double radius, double thickness) {
+  return {Kind::kDisc, Eigen::Vector3d(radius, radius, 0.5 * thickness), radius};
+}
+
+void Footprint::set_pose(const Eigen::Isometry3d& pose) {
+  pose_ = pose;
+  to_local_ = pose.linear().transpose();
+  up_ = to_local_.col(2);
+  square_ = up_.x() * up_.x() + up_.z() * up_.z();
+  root_ = std::sqrt(square_);
+}
+
+Eigen::Vector3d Footprint::world_reach() const {
+  const Eigen::Vector3d half =
+      kind_ == Kind::kTrack ? Eigen::Vector3d(half_.x() + radius_, half_.y(), radius_) : half_;
+  return pose_.linear().cwiseAbs() * half;
+}
+
+Eigen::Vector2d Footprint::reach() const {
+  return world_reach().head<2>();
+}
+
+// Of a track's points in its x-z plane only those near the lowest one are as low as `level`: within
+// a segment of the circle round each axle.
+Eigen::Vector2d Footprint::reach_below(double level) const {
+  if (kind_ != Kind::kTrack || square_ < 1e-6) return world_reach().head<2>();
+  const double tilt = half_.y() * std::abs(up_.y());
+  const double deep =
+      (pose_.translation().z() - half_.x() * std::abs(up_.x()) - tilt - level) / root_;
+  if (deep >= radius_) return {-1.0, -1.0};
+  const double half_chord =
+      std::sqrt(radius_ * radius_ - std::max(0.0, deep) * std::max(0.0, deep));
+  const Eigen::Matrix3d& axes = pose_.linear();
+  const Eigen::Vector2d forward = axes.col(0).head<2>().cwiseAbs();
+  const Eigen::Vector2d axle = axes.col(1).head<2>().cwiseAbs();
+  const Eigen::Vector2d level_way =
+      ((up_.z() * axes.col(0) - up_.x() * axes.col(2)) / root_).head<2>().cwiseAbs();
+  return half_.x() * forward + half_chord * level_way +
+         (half_.y() + radius_ * std::abs(up_.y()) / root_) * axle;
+}
+
+double Footprint::reach_down() const {
+  return world_reach().z();
+}
+
+double Footprint::radius_from_above() const {
+  const Eigen::Vector3d reach = world_reach();
+  return std::hypot(reach.x(), reach.y());
+}
+
+double Footprint::narrow() const {
+  switch (kind_) {
+    case Kind::kTrack:
+      return std::min(2.0 * half_.y(), 2.0 * (half_.x() + radius_));
+    case Kind::kBox:
+      return 2.0 * std::min(half_.x(), half_.y());
+    case Kind::kDisc:
+      break;
+  }
+  return radius_;
+}
+
+double Footprint::lowest_at_rim(double edge) const {
+  if (has_corners()) return pose_.translation().z() - reach_down();
+  const double beyond = 1.5 * edge;
+  const double below = std::sqrt(beyond * std::max(0.0, 2.0 * radius_ - beyond));
+  return pose_.translation().z() - half_.x() * std::abs(up_.x()) - half_.y() * std::abs(up_.y()) -
+         (beyond < radius_ ? below : radius_) - std::abs(up_.x()) * radius_;
+}
+
+void FootprintPlaces::clear(size_t room) {
+  count = 0;
+  room += room % 2;  // whole pairs
+  if (x.size() >= room) return;
+  for (std::vector<double>* array :
+       {&x, &y, &share, &height, &slope_x, &slope_y, &flat_within, &passed}) {
+    array->resize(room);
+  }
+}
+
+void Footprint::surface(double edge, const FootprintWay& came, FootprintPlaces& places) const {
+  surface(edge, &came, places);
+}
+
+void Footprint::surface(double edge, FootprintPlaces& places) const {
+  surface(edge, nullptr, places);
+}
+
+void Footprint::surface(double edge, const FootprintWay* came, FootprintPlaces& places) const {
+  if (places.count % 2 != 0) {  // whole pairs
+    places.x[places.count] = places.x[places.count - 1];
+    places.y[places.count] = places.y[places.count - 1];
+  }
+  switch (kind_) {
+    case Kind::kTrack:
+      if (half_.x() > 0.0) {
+        track_surface<true>(edge, came, places);
+      } else {
+        track_surface<false>(edge, came, places);
+      }
+      return;
+    case Kind::kBox:
+      box_surface(edge, places);
+      return;
+    case Kind::kDisc:
+      break;
+  }
+  disc_surface(edge, places);
+}
+
+// Two places at a time, without branches.
+template <bool kBelt>
+void Footprint::track_surface(double edge, const FootprintWay* came,
+                              FootprintPlaces& places) const {
+  if (square_ < 1e-6) {  // lying on its side: the caller uses a box
+    std::fill(places.share.begin(), places.share.end(), 0.0);
+    return;
+  }
+  const Pair zero = both(0.0);
+  const Eigen::Matrix3d& axes = pose_.linear();
+  const Pair cx = both(pose_.translation().x());
+  const Pair cy = both(pose_.translation().y());
+  const Pair cz = both(pose_.translation().z());
+  // The vertical line's point at the height of the body's centre, in local axes; moving up along
+  // the line adds `up`.
+  const Pair xx = both(to_local_(0, 0));
+  const Pair xy = both(to_local_(0, 1));
+  const Pair yx = both(to_local_(1, 0));
+  const Pair yy = both(to_local_(1, 1));
+  const Pair zx = both(to_local_(2, 0));
+  const Pair zy = both(to_local_(2, 1));
+  const Pair ux = both(up_.x());
+  const Pair uy = both(up_.y());
+  const Pair uz = both(up_.z());
+  const Pair square = both(square_);
+  const Pair per_square = both(1.0 / square_);
+  const Pair radius_square = both(radius_ * radius_);
+  const Pair half = both(half_.x());
+  const Pair width = both(half_.y());
+  const Pair per_edge = both(1.0 / edge);
+  // Bottom run (top run when upside down): local z = -+ radius between the axles. None when the
+  // belt stands on end.
+  const bool has_run = kBelt && std::abs(up_.z()) > 1e-9;
+  const Pair per_uz = both(has_run ? 1.0 / up_.z() : 0.0);
+  const double side = up_.z() > 0.0 ? -1.0 : 1.0;
+  const Pair run_z = both(side * radius_);
+  // On its way each wheel swept down to a plane along the way that touches it from below, and has
+  // passed where the touching point is ahead, in the sense in which the body came. In local axes
+  // the plane is z = rise * x - deep.
+  const FootprintWay way = came != nullptr ? *came : FootprintWay{};
+  const Pair sense = both(way.along_m > 0.0 ? 1.0 : -1.0);
+  const Pair rise = both(way.rise);
+  const double slant = std::sqrt(1.0 + way.rise * way.rise);
+  const double climb = up_.z() - way.rise * up_.x();  // of a vertical line against that plane
+  const bool across_way = std::abs(climb) > kSteep;
+  const Pair reach = both(across_way ? std::abs(way.along_m) : -1.0);
+  const Pair per_climb = both(across_way ? 1.0 / climb : 0.0);
+  Pair deep[2];
+  Pair touch[2];
+  for (const int wheel : {0, 1}) {
+    const double axle = wheel == 0 ? -half_.x() : half_.x();
+    deep[wheel] = both(way.rise * axle - side * radius_ * slant);
+    touch[wheel] = both(axle - side * radius_ * way.rise / slant);
+  }
+  // Normals over their vertical part, of local (nx, 0, nz): nx and nz times these, world x, y, z.
+  const Pair x0 = both(axes(0, 0));
+  const Pair y0 = both(axes(1, 0));
+  const Pair z0 = both(axes(2, 0));
+  const Pair x2 = both(axes(0, 2));
+  const Pair y2 = both(axes(1, 2));
+  const Pair z2 = both(axes(2, 2));
+  const Pair steepest = both(1e-3 * radius_);
+
+  for (size_t i = 0; i < places.count; i += 2) {
+    const Pair dx = load(&places.x[i]) - cx;
+    const Pair dy = load(&places.y[i]) - cy;
+    const Pair lx = dx * xx + dy * xy;
+    const Pair ly = dx * yx + dy * yy;
+    const Pair lz = dx * zx + dy * zy;
+    Pair run_t = zero;
+    Pair flat = both(-1.0);
+    Pair hub = zero;
+    if constexpr (kBelt) {
+      run_t = (run_z - lz) * per_uz;
+      const Pair beyond = has_run ? lx + run_t * ux : -ux;
+      if (has_run) flat = half - magnitude(beyond);
+      // The wheel on the side where the line passes beyond the run.
+      hub = beyond >= zero ? half : -half;
+    }
+    const Pair px = lx - hub;
+    const Pair along = px * ux + lz * uz;
+    const Pair rest = along * along + square * (radius_square - px * px - lz * lz);
+    const Pair wheel_t = (-along - square_root(greater(rest, zero))) * per_square;
+    // Times the radius, into the body.
+    Pair nx = -(px + wheel_t * ux);
+    Pair nz = -(lz + wheel_t * uz);
+    Pair t = wheel_t;
+    auto hit = rest > zero;
+    if constexpr (kBelt) {
+      const auto on_run = flat >= zero;
+      t = on_run ? run_t : wheel_t;
+      nx = on_run ? zero : nx;
+      nz = on_run ? -run_z : nz;
+      hit = hit | on_run;
+    }
+    const Pair wz = nx * z0 + nz * z2;
+    hit = hit & (wz > steepest);
+    const Pair per_wz = both(1.0) / greater(wz, steepest);
+    const Pair across = ly + t * uy;
+    const Pair share = both(0.5) + (width - magnitude(across)) * per_edge;
+    store(hit ? smaller(greater(share, zero), both(1.0)) : zero, &places.share[i]);
+    const Pair height = cz + t;
+    store(height, &places.height[i]);
+    store((nx * x0 + nz * x2) * per_wz, &places.slope_x[i]);
+    store((nx * y0 + nz * y2) * per_wz, &places.slope_y[i]);
+    store(flat, &places.flat_within[i]);
+    if (came == nullptr) continue;
+    const Pair here = lx + t * ux;
+    Pair low = height;
+    for (const int wheel : {0, 1}) {
+      if (!kBelt && wheel == 1) break;
+      const auto ahead = sense * (touch[wheel] - here) > zero;
+      low = smaller(low, ahead ? cz + (rise * lx - deep[wheel] - lz) * per_climb : height);
+    }
+    store(magnitude(lx) <= reach ? low : height, &places.passed[i]);
+  }
+}
+
+void Footprint::box_surface(double edge, FootprintPlaces& places) const {
+  for (size_t i = 0; i < places.count; ++i) {
+    const double dx = places.x[i] - pose_.translation().x();
+    const double dy = places.y[i] - pose_.translation().y();
+    const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);
+    places.share[i] = 0.0;
+    places.flat_within[i] = 0.0;
+    double enter = -std::numeric_limits<double>::infinity();
+    double leave = std::numeric_limits<double>::infinity();
+    int face = 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(up_[axis]) < kSteep) continue;
+      const double low = (-half_[axis] - local[axis]) / up_[axis];
+      const double high = (half_[axis] - local[axis]) / up_[axis];
+      if (std::min(low, high) > enter) {
+        enter = std::min(low, high);
+        face = axis;
+      }
+      leave = std::min(leave, std::max(low, high));
+    }
+    if (enter >= leave) continue;
+    double share = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(up_[axis]) >= kSteep) continue;
+      share *= edge_share(half_[axis] - std::abs(local[axis] + enter * up_[axis]), edge);
+    }
+    const Eigen::Vector3d normal = (up_[face] > 0.0 ? 1.0 : -1.0) * to_local_.row(face).transpose();
+    places.share[i] = share;
+    places.height[i] = places.passed[i] = pose_.translation().z() + enter;
+    places.slope_x[i] = normal.x() / normal.z();
+    places.slope_y[i] = normal.y() / normal.z();
+  }
+}
+
+void Footprint::disc_surface(double edge, FootprintPlaces& places) const {
+  if (std::abs(up_.z()) < 0.5) {
+    std::fill(places.share.begin(), places.share.end(), 0.0);
+    return;
+  }
+  const double side = up_.z() > 0.0 ? -1.0 : 1.0;
+  const Eigen::Vector3d normal = -side * to_local_.row(2).transpose();
+  for (size_t i = 0; i < places.count; ++i) {
+    const double dx = places.x[i] - pose_.translation().x();
+    const double dy = places.y[i] - pose_.translation().y();
+    const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);
+    const double t = (side * half_.z() - local.z()) / up_.z();
+    const double distance = std::hypot(local.x() + t * up_.x(), local.y() + t * up_.y());
+    places.share[i] = edge_share(radius_ - distance, edge);
+    places.height[i] = places.passed[i] = pose_.translation().z() + t;
+    places.slope_x[i] = normal.x() / normal.z();
+    places.slope_y[i] = normal.y() / normal.z();
+    places.flat_within[i] = radius_ - distance;
+  }
+}
+
+}  // namespace screed

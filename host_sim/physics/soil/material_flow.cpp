@@ -1,0 +1,231 @@
+// Material in whole units.
+#include "host_sim/physics/soil/material_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace screed {
+namespace {
+
+struct Step {
+  int dx;
+  int dy;
+};
+constexpr int kThrows = 48;                 // places tried for what a footprint dug in one step
+constexpr double kStanding_m_per_s = 1e-3;  // below it a body goes nowhere
+constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
+                                 {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+
+}  // namespace
+
+MaterialFlow::MaterialFlow(HeightField surface, double repose_deg) : surface_(std::move(surface)) {
+  const double slope =
+      std::tan(repose_deg * std::numbers::pi / 180.0) * surface_.spacing_m() / kHeightUnit_m;
+  limit_straight_ = static_cast<Height>(std::floor(slope));
+  limit_diagonal_ = static_cast<Height>(std::floor(slope * std::numbers::sqrt2));
+  const size_t count = static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny());
+  reference_.resize(count);
+  for (size_t node = 0; node < count; ++node) reference_[node] = height(node);
+  covered_.assign(count, 0);
+  in_ring_.assign(count, 0);
+  awake_.assign(count, 0);
+  queue_.resize(count);
+}
+
+void MaterialFlow::wake_all() {
+  for (size_t node = 0; node < nodes(); ++node) wake(node);
+}
+
+void MaterialFlow::change(size_t node, Height units) {
+  set_height(node, height(node) + units);
+  reference_[node] += units;
+  wake(node);
+}
+
+size_t MaterialFlow::begin_footprint(double way_x, double way_y) {
+  const double length = std::hypot(way_x, way_y);
+  const double scale = length > kStanding_m_per_s ? 1.0 / length : 0.0;
+  footprints_.push_back({covered_list_.size(), way_x * scale, way_y * scale, 0});
+  return footprints_.size() - 1;
+}
+
+void MaterialFlow::compact(int64_t units) {
+  in_hand_ -= units;
+  const int64_t old = std::min(units, left_over_);
+  left_over_ -= old;
+  units -= old;
+  for (Pressing& footprint : footprints_) {
+    const int64_t here = std::min(units, footprint.units);
+    footprint.units -= here;
+    units -= here;
+  }
+}
+
+void MaterialFlow::move(size_t from, size_t to, Height units) {
+  change(from, -units);
+  change(to, units);
+}
+
+int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacted) {
+  double all = 0.0;
+  for (const Sheared& here : sheared_) all += here.weight;
+  if (!(all > 0.0) || units <= 0) {
+    sheared_.clear();
+    return 0;
+  }
+  const double per_weight = static_cast<double>(units) / all;
+  double passed = 0.0;
+  int64_t taken = 0;
+  for (size_t i = 0; i < sheared_.size(); ++i) {
+    passed += sheared_[i].weight;
+    const bool last = i + 1 == sheared_.size();
+    const int64_t until = last ? units : std::min(units, static_cast<int64_t>(passed * per_weight));
+    if (until > taken) change(sheared_[i].node, -static_cast<Height>(until - taken));
+    taken = until;
+  }
+  sheared_.clear();
+  in_hand_ += units - compacted;
+  dug_.push_back({patch, units - compacted});
+  return compacted;
+}
+
+void MaterialFlow::set_down() {
+  for (const Dug& dug : dug_) left_over_ += dug.units - spread_dug(dug);
+  dug_.clear();
+  for (size_t i = 0; i < footprints_.size(); ++i) {
+    Pressing& footprint = footprints_[i];
+    footprint.units += left_over_;
+    left_over_ = 0;
+    if (footprint.units == 0) continue;
+    const size_t end = i + 1 < footprints_.size() ? footprints_[i + 1].begin : covered_list_.size();
+    left_over_ = footprint.units - spread(footprint, end);
+    footprint.units = 0;
+  }
+}
+
+/// On some places around the footprint, other ones each time, so that in a few steps all have got
+/// the same: a low-discrepancy sequence over the rectangle and its band. Returns the units set
+/// down: all or none.
+int64_t MaterialFlow::spread_dug(const Dug& dug) {
+  // Of the plastic number: the two-dimensional golden ratio.
+  constexpr uint32_t kAlong = 3242174889U;
+  constexpr uint32_t kAcross = 2447445414U;
+  constexpr double kPerTurn = 1.0 / 4294967296.0;
+  const DugPatch& patch = dug.patch;
+  const double length = patch.half_length + patch.band;
+  const double width = patch.half_width + patch.band;
+  const double per_spacing = 1.0 / surface_.spacing_m();
+  heap_.clear();
+  for (int i = 0; i < kThrows; ++i) {
+    ++throws_;
+    const double along = length * (2.0 * (throws_ * kAlong) * kPerTurn - 1.0);
+    const double across = width * (2.0 * (throws_ * kAcross) * kPerTurn - 1.0);
+    if (std::abs(along) < patch.half_length && std::abs(across) < patch.half_width) continue;
+    const double x = patch.centre.x() + along * patch.forward.x() - across * patch.forward.y();
+    const double y = patch.centre.y() + along * patch.forward.y() + across * patch.forward.x();
+    const int64_t node =
+        node_at(static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
+                static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5)));
+    if (node < 0 || covered_[static_cast<size_t>(node)] != 0) continue;
+    heap_.push_back(static_cast<size_t>(node));
+  }
+  if (heap_.empty()) return 0;
+  const auto places = static_cast<int64_t>(heap_.size());
+  for (int64_t i = 0; i < places; ++i) {
+    const int64_t units = dug.units * (i + 1) / places - dug.units * i / places;
+    if (units != 0) change(heap_[static_cast<size_t>(i)], static_cast<Height>(units));
+  }
+  in_hand_ -= dug.units;
+  return dug.units;
+}
+
+/// Returns the units set down: all or none.
+int64_t MaterialFlow::spread(const Pressing& footprint, size_t end) {
+  ring_.clear();
+  const auto ahead = [&](const Place& place) {
+    return place.ix * footprint.way_x + place.iy * footprint.way_y;
+  };
+  double rear = std::numeric_limits<double>::infinity();
+  for (size_t i = footprint.begin; i < end; ++i) {
+    const Place& here = covered_list_[i];
+    rear = std::min(rear, ahead(here));
+    for (const Step& step : kNeighbours) {
+      Place place{0, here.ix + step.dx, here.iy + step.dy};
+      const int64_t node = node_at(place.ix, place.iy);
+      if (node < 0) continue;
+      place.node = static_cast<size_t>(node);
+      if (covered_[place.node] != 0 || in_ring_[place.node] != 0) continue;
+      in_ring_[place.node] = 1;
+      ring_.push_back(place);
+    }
+  }
+  for (const Place& place : ring_) in_ring_[place.node] = 0;
+  if (ring_.empty()) return 0;
+  // Behind the footprint lies its rut.
+  constexpr double kRounding = 1e-6;
+  const auto behind = [&](const Place& place) { return ahead(place) < rear - kRounding; };
+  const auto open = static_cast<size_t>(
+      std::count_if(ring_.begin(), ring_.end(), [&](const Place& p) { return !behind(p); }));
+  if (open > 0 && open < ring_.size()) {
+    ring_.erase(std::remove_if(ring_.begin(), ring_.end(), behind), ring_.end());
+  }
+  const auto places = static_cast<int64_t>(ring_.size());
+  const int64_t each = footprint.units / places;
+  const int64_t rest = footprint.units % places;
+  // What does not divide goes to a few places, each step to others.
+  const auto first = static_cast<int64_t>(turn_ % ring_.size());
+  turn_ += static_cast<uint64_t>(rest);
+  for (int64_t i = 0; i < places; ++i) {
+    const int64_t after = i >= first ? i - first : i - first + places;
+    const int64_t units = each + (after < rest ? 1 : 0);
+    if (units != 0) change(ring_[static_cast<size_t>(i)].node, static_cast<Height>(units));
+  }
+  in_hand_ -= footprint.units;
+  return footprint.units;
+}
+
+int64_t MaterialFlow::slide(int64_t most) {
+  int64_t moves = 0;
+  while (queue_size_ > 0 && moves < most) {
+    const size_t node = queue_[queue_begin_];
+    queue_begin_ = queue_begin_ + 1 == queue_.size() ? 0 : queue_begin_ + 1;
+    --queue_size_;
+    awake_[node] = 0;
+    if (covered_[node] != 0) continue;
+    const int x = column(node);
+    const int y = row(node);
+    for (int k = 0; k < 8; ++k) {
+      const int64_t beside = node_at(x + kNeighbours[k].dx, y + kNeighbours[k].dy);
+      if (beside < 0 || covered_[static_cast<size_t>(beside)] != 0) continue;
+      const auto other = static_cast<size_t>(beside);
+      const Height limit = k < 4 ? limit_straight_ : limit_diagonal_;
+      const Height difference = height(node) - height(other);
+      const Height excess = (difference < 0 ? -difference : difference) - limit;
+      if (excess <= 1) continue;
+      const Height units = excess / 2;
+      if (difference > 0) {
+        move(node, other, units);
+      } else {
+        move(other, node, units);
+      }
+      ++moves;
+    }
+  }
+  return moves;
+}
+
+void MaterialFlow::uncover() {
+  // What a body stood on may slide now.
+  for (const Place& place : covered_list_) {
+    covered_[place.node] = 0;
+    wake(place.node);
+  }
+  covered_list_.clear();
+  // What could not be set down waits.
+  for (const Pressing& footprint : footprints_) left_over_ += footprint.units;
+  footprints_.clear();
+}
+
+}  // namespace screed

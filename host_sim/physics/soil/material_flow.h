@@ -1,0 +1,164 @@
+// Moves material over the grid in whole units, always as much up as down: sets sunk soil down,
+// drags it, lets slopes slide.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+/// The rectangle that a footprint touches, seen from above.
+struct DugPatch {
+  Eigen::Vector2d centre;
+  Eigen::Vector2d forward;  ///< unit length
+  double half_length;       ///< m
+  double half_width;        ///< m
+  double band;              ///< what is dug is set down as far as this around it, m
+};
+
+class MaterialFlow {
+ public:
+  MaterialFlow(HeightField surface, double repose_deg);
+
+  const HeightField& surface() const { return surface_; }
+  size_t nodes() const { return reference_.size(); }
+  size_t index(int ix, int iy) const {
+    return static_cast<size_t>(iy) * static_cast<size_t>(surface_.nx()) + static_cast<size_t>(ix);
+  }
+  /// The node at (ix, iy) with the field's wrap-around, or nothing (-1) outside a field without it.
+  int64_t node_at(int ix, int iy) const {
+    return on_field(ix, iy) || surface_.wrap() ? static_cast<int64_t>(node_on(ix, iy)) : -1;
+  }
+  /// The same of a place on the field or of a field with wrap-around: not checked.
+  size_t node_on(int ix, int iy) const {
+    if (on_field(ix, iy)) return index(ix, iy);
+    const int nx = surface_.nx();
+    const int ny = surface_.ny();
+    return index(((ix % nx) + nx) % nx, ((iy % ny) + ny) % ny);
+  }
+
+  Height height(size_t node) const { return surface_.node(node); }
+  /// Level from which sinkage counts.
+  Height reference(size_t node) const { return reference_[node]; }
+
+  /// A body's footprint that moves in the direction (x, y), any length, in the current step; what
+  /// follows until the next one is its. Returns its number.
+  size_t begin_footprint(double way_x, double way_y);
+  /// It stands on this node: nothing slides onto or off it. `ix` and `iy` without wrap-around.
+  void cover(size_t node, int ix, int iy) {
+    if (covered_[node] != 0) return;
+    covered_[node] = 1;
+    covered_list_.push_back({node, ix, iy});
+  }
+  /// Pushes a node's surface down by `units`: they are in hand until set down. The reference stays:
+  /// it is sinkage. `ix` and `iy` without wrap-around.
+  void sink(size_t node, int ix, int iy, Height units) {
+    const Height lower = height(node) - units;
+    if (on_field(ix, iy)) {  // quicker than telling column and row by division
+      surface_.set_node(ix, iy, lower);
+    } else {
+      set_height(node, lower);
+    }
+    in_hand_ += units;
+    wake(node);
+  }
+  /// Tells how much a footprint has sunk in this step.
+  void push(size_t footprint, int64_t units) { footprints_[footprint].units += units; }
+  int64_t in_hand() const { return in_hand_; }
+  /// Takes `units` of sunk material out of hand, at most all: it stays where it is, denser.
+  void compact(int64_t units);
+  /// Sets what is in hand down, in equal parts, on the free neighbours of each footprint's nodes,
+  /// those behind it left out: there lies the rut. Keeps it in hand when there are none.
+  void set_down();
+
+  /// The current footprint slips over the soil of this node, that much in comparison with others.
+  void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
+  /// Takes `units` from below the current footprint, from where it slips most the most; the
+  /// reference goes down with the surface. So many of them are `compacted` and gone, the others in
+  /// hand until they are set down around it. Returns the units that are gone: 0 when it slips
+  /// nowhere, and then none were taken.
+  int64_t dig(const DugPatch& patch, int64_t units, int64_t compacted);
+  /// Looks at every slope again, as on a bed that nobody has touched yet.
+  void wake_all();
+  /// Slides slopes above the angle of repose, at most `most` moves; returns the moves made.
+  int64_t slide(int64_t most);
+  /// Whether the slopes round a node are still to be looked at.
+  bool waits(size_t node) const { return awake_[node] != 0; }
+  size_t waiting() const { return queue_size_; }
+  /// Forgets which nodes are covered: the step is over.
+  void uncover();
+
+ private:
+  bool on_field(int ix, int iy) const {
+    return ix >= 0 && iy >= 0 && ix < surface_.nx() && iy < surface_.ny();
+  }
+  int column(size_t node) const {
+    return static_cast<int>(static_cast<uint32_t>(node) % static_cast<uint32_t>(surface_.nx()));
+  }
+  int row(size_t node) const {
+    return static_cast<int>(static_cast<uint32_t>(node) / static_cast<uint32_t>(surface_.nx()));
+  }
+  void set_height(size_t node, Height height) {
+    surface_.set_node(column(node), row(node), height);
+  }
+  void change(size_t node, Height units);
+  /// Moves `units` from one node to another; the reference moves with the material.
+  void move(size_t from, size_t to, Height units);
+  void wake(size_t node) {
+    if (awake_[node] != 0) return;
+    awake_[node] = 1;
+    size_t end = queue_begin_ + queue_size_;
+    if (end >= queue_.size()) end -= queue_.size();
+    queue_[end] = node;
+    ++queue_size_;
+  }
+
+  struct Place {
+    size_t node;
+    int ix;
+    int iy;
+  };
+  struct Pressing {  // a footprint in this step
+    size_t begin;    // of its nodes among covered_list_
+    double way_x;    // unit length, or 0
+    double way_y;
+    int64_t units;  // in hand
+  };
+  struct Dug {  // to be set down around it
+    DugPatch patch;
+    int64_t units;
+  };
+  int64_t spread(const Pressing& footprint, size_t end);
+  int64_t spread_dug(const Dug& dug);
+
+  HeightField surface_;
+  std::vector<Height> reference_;
+  Height limit_straight_;  // greatest stable difference between neighbours
+  Height limit_diagonal_;
+  int64_t in_hand_ = 0;
+  uint64_t turn_ = 0;  // where the remainder of a division goes first
+  std::vector<uint8_t> covered_;
+  std::vector<Place> covered_list_;
+  std::vector<Pressing> footprints_;
+  int64_t left_over_ = 0;  // in hand from earlier steps
+  struct Sheared {
+    size_t node;
+    double weight;
+  };
+  std::vector<Sheared> sheared_;  // by the current footprint
+  std::vector<Dug> dug_;
+  uint32_t throws_ = 0;  // places tried so far for what was dug
+  std::vector<size_t> heap_;
+  std::vector<Place> ring_;
+  std::vector<uint8_t> in_ring_;
+  std::vector<uint8_t> awake_;
+  std::vector<size_t> queue_;  // ring buffer of nodes whose slopes may be too steep
+  size_t queue_begin_ = 0;
+  size_t queue_size_ = 0;
+};
+
+}  // namespace screed

@@ -1,0 +1,128 @@
+// Newton's method on three unknowns.
+#include "host_sim/physics/soil/sinking.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace screed {
+namespace {
+
+constexpr double kGravity = 9.80665;  // m/s^2
+// What else pushes a body is a guess from the last step, kept sane.
+constexpr double kMostAcceleration = 500.0;         // m/s^2
+constexpr double kMostAngularAcceleration = 1.0e4;  // rad/s^2
+// Stands for a body that the soil does not tilt: its inertia, over its mass, m^2.
+constexpr double kNoTilt_m2 = 1e6;
+// Of the body's place: E times this is some hundredths of a pascal.
+constexpr double kConverged_m = 1e-10;
+constexpr double kTiltArm_m = 0.1;  // at which a tilt is felt
+constexpr int kMostTurns = 60;
+
+/// Sum of forces and their slope.
+struct Support {
+  Eigen::Vector3d force;
+  Eigen::Matrix3d stiffness;
+};
+
+Support support(const std::vector<SoilSpring>& springs, const Eigen::Vector3d& q) {
+  double f = 0.0;
+  double fx = 0.0;
+  double fy = 0.0;
+  double k = 0.0;
+  double kx = 0.0;
+  double ky = 0.0;
+  double kxx = 0.0;
+  double kxy = 0.0;
+  double kyy = 0.0;
+  for (const SoilSpring& spring : springs) {
+    // (omega x r)_z = omega_x r_y - omega_y r_x
+    const double down = -(q.x() + q.y() * spring.y - q.z() * spring.x);
+    const double elastic = spring.elastic + spring.elastic_slope * down;
+    const double virgin = spring.virgin + spring.virgin_slope * down;
+    const bool first = elastic < virgin;
+    const double lower = first ? elastic : virgin;
+    const double force = lower > 0.0 ? lower : 0.0;
+    const double steep = first ? spring.elastic_slope : spring.virgin_slope;
+    const double slope = lower > 0.0 ? steep : 0.0;
+    f += force;
+    fx += force * spring.x;
+    fy += force * spring.y;
+    k += slope;
+    kx += slope * spring.x;
+    ky += slope * spring.y;
+    kxx += slope * spring.x * spring.x;
+    kxy += slope * spring.x * spring.y;
+    kyy += slope * spring.y * spring.y;
+  }
+  Support sum;
+  sum.force << f, fy, -fx;
+  sum.stiffness << k, ky, -kx, ky, kyy, -kxy, -kx, -kxy, kxx;
+  return sum;
+}
+
+}  // namespace
+
+void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
+                   BodyMemory& memory) {
+  if (!std::isfinite(body.mass_kg)) return;
+  const bool tilts = !body.inverse_inertia.isZero(0.0);
+  Eigen::Matrix3d mobility = Eigen::Matrix3d::Zero();  // acceleration by force
+  mobility(0, 0) = 1.0 / body.mass_kg;
+  mobility.bottomRightCorner<2, 2>() =
+      tilts ? Eigen::Matrix2d(body.inverse_inertia.topLeftCorner<2, 2>())
+            : Eigen::Matrix2d(Eigen::Matrix2d::Identity() / (body.mass_kg * kNoTilt_m2));
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  inertia(0, 0) = body.mass_kg;
+  inertia.bottomRightCorner<2, 2>() = mobility.bottomRightCorner<2, 2>().inverse();
+  inertia /= dt * dt;
+
+  const Eigen::Vector3d rate(body.velocity.z(), tilts ? body.omega.x() : 0.0,
+                             tilts ? body.omega.y() : 0.0);
+  Eigen::Vector3d external(-kGravity, 0.0, 0.0);
+  if (memory.touching) external = (rate - memory.rate) / dt - memory.push;
+  external.x() = std::clamp(external.x(), -kMostAcceleration, kMostAcceleration);
+  for (const int i : {1, 2}) {
+    external[i] = std::clamp(external[i], -kMostAngularAcceleration, kMostAngularAcceleration);
+  }
+  const Eigen::Vector3d free = rate * dt + external * (dt * dt);
+
+  Eigen::Vector3d q = Eigen::Vector3d::Zero();
+  Support at = support(springs, q);
+  Eigen::Vector3d gradient = inertia * (q - free) - at.force;
+  for (int turn = 0; turn < kMostTurns;) {
+    const Eigen::Matrix3d hessian = inertia + at.stiffness;
+    const Eigen::Vector3d way = -hessian.llt().solve(gradient);
+    const double begin = gradient.dot(way);
+    if (!(begin < 0.0)) break;
+    // Along the way the energy's slope rises; a full step that overshoots is taken back to near its
+    // lowest place.
+    double step = 1.0;
+    Eigen::Vector3d next;
+    for (;;) {
+      ++turn;
+      next = q + step * way;
+      at = support(springs, next);
+      gradient = inertia * (next - free) - at.force;
+      const double slope = gradient.dot(way);
+      if (slope <= -0.3 * begin || turn >= kMostTurns) break;
+      step *= std::clamp(begin / (begin - slope), 0.1, 0.9);  // secant
+    }
+    const Eigen::Vector3d moved = next - q;
+    q = next;
+    // The rest of the way is at most what the inertia alone would leave.
+    const double way_left = std::abs(gradient.x()) / inertia(0, 0) +
+                            kTiltArm_m * (std::abs(gradient.y()) / inertia(1, 1) +
+                                          std::abs(gradient.z()) / inertia(2, 2));
+    const double moved_by =
+        std::abs(moved.x()) + kTiltArm_m * (std::abs(moved.y()) + std::abs(moved.z()));
+    if (std::min(way_left, moved_by) < kConverged_m) break;
+  }
+  for (SoilSpring& spring : springs) {
+    spring.sinking = -(q.x() + q.y() * spring.y - q.z() * spring.x);
+  }
+  memory.touching = true;
+  memory.rate = rate;
+  memory.push = mobility * at.force;
+}
+
+}  // namespace screed

@@ -1,0 +1,33 @@
+// How far a rigid body sinks and tilts in one step, together with the soil's springs below it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "host_sim/physics/soil/soil_contact.h"
+
+namespace screed {
+
+/// The force of one cell over the body's way down there: max(0, min(elastic, virgin)), each a
+/// straight line.
+struct SoilSpring {
+  double elastic;        ///< N, now
+  double elastic_slope;  ///< N/m
+  double virgin;
+  double virgin_slope;
+  double x;  ///< place from the body's centre of mass, m
+  double y;
+  double sinking = 0.0;  ///< the answer: the body's way down at this cell in this step, m
+};
+
+/// End-of-step implicit: the body moves by q (up, roll, pitch) so that M (q - q_free) / dt^2 is the
+/// springs' force after q. q_free is where it would go without soil: its speed, and what else
+/// pushes it as the last step showed it. The energy is convex, so Newton's method with a line
+/// search finds it. Without it unloading, some hundred times stiffer than loading, would chatter or
+/// would have to be softened; footprint by footprint, a robot's other wheels would be felt one step
+/// late. Fills in each spring's `sinking`; leaves 0 where the motion is imposed. Remembers for the
+/// next step.
+void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
+                   BodyMemory& memory);
+
+}  // namespace screed

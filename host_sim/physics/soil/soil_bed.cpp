@@ -1,0 +1,151 @@
+// Deformable soil on a grid: a step of it. soil_cells.cpp has what lies under a footprint,
+// soil_reaction.cpp what gives way there.
+#include "host_sim/physics/soil/soil_bed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace screed {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+// Elastic stiffness of a long footprint that does not tilt by itself, times its area, at most,
+// times dt^2 / mass: an explicit spring is stable up to 4.
+constexpr double kStableStiffness = 0.3;
+// Moves of sliding material in one step: what is left over goes on in the next.
+constexpr int64_t kSlidesPerStep = 400;
+// Greatest rise of a way over itself: what drops has not driven there.
+constexpr double kSteepestWay = 1.0;
+constexpr double kUpright = 1e-3;  // the vertical part of a body's own vertical that counts
+
+/// A footprint goes on by this way, world frame, m. Its rise is a mean over its own length, the
+/// more recent way counting more, or that of a level way.
+void go_on(const Footprint& footprint, const Eigen::Vector3d& way, bool follow_slopes,
+           FootprintWay& came) {
+  const Eigen::Matrix3d& axes = footprint.pose().linear();
+  const double along = way.dot(axes.col(0));
+  if (along * came.along_m < 0.0) came = {};
+  came.along_m += along;
+  if (!follow_slopes) {
+    came.rise = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
+    return;
+  }
+  const double length = footprint.half().x() + footprint.radius();
+  const double share = std::abs(along) / length;
+  const double most = kSteepestWay * std::abs(along);
+  const double up = std::clamp(way.dot(axes.col(2)), -most, most) / length;
+  came.rise = share < 1.0 ? came.rise + (along < 0.0 ? -up : up) - share * came.rise : 0.0;
+}
+
+}  // namespace
+
+SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options)
+    : soil_(soil),
+      options_(options),
+      flow_(std::move(surface), soil.repose_deg),
+      tan_friction_(std::tan(soil.friction_deg * kDegree)) {
+  check_soil(soil);
+  const double spacing = flow_.surface().spacing_m();
+  cell_area_ = spacing * spacing;
+  // Even, so that one place in each row and column can be spread evenly.
+  samples_ =
+      2 * std::max(1, static_cast<int>(std::ceil(0.5 * spacing / options.sample_spacing_m - 1e-9)));
+  for (int j = 0; j < samples_; ++j) {
+    const double edge = spacing / samples_;
+    const double first = 0.5 * (edge - spacing);
+    rook_x_.push_back(first + (2 * j + 1) % (samples_ + 1) * edge);
+    rook_y_.push_back(first + j * edge);
+  }
+  volume_before_ = flow_.surface().height_sum();
+  traces_.resize(flow_.nodes());
+  const auto more = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
+  for (int i = 0; i <= more; ++i) tables_.emplace_back(soil.exponent + i * kExponentStep);
+}
+
+VolumeBalance SoilBed::balance() const {
+  return {volume_before_, flow_.surface().height_sum(), compacted_, flow_.in_hand()};
+}
+
+SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
+                            ContactMemory& memory) {
+  PressingBody body;
+  body.mass_kg = motion.mass_kg;
+  body.centre = footprint.pose().translation();
+  body.velocity = motion.velocity;
+  body.omega = motion.omega;
+  SoilContact contact{&footprint, &memory, motion.surface_speed, motion.slip};
+  press(body, {&contact, 1}, dt, memory.alone);
+  return contact.reaction;
+}
+
+void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, double dt,
+                    BodyMemory& memory) {
+  cell_count_ = 0;
+  ranges_.clear();
+  springs_.clear();
+  const bool imposed = !std::isfinite(body.mass_kg);
+  const bool tilts = !body.inverse_inertia.isZero(0.0);
+  for (SoilContact& contact : contacts) {
+    const Footprint& footprint = *contact.footprint;
+    ContactMemory& kept = *contact.memory;
+    const Eigen::Vector3d arm = footprint.pose().translation() - body.centre;
+    const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
+    go_on(footprint, velocity * dt, options_.follow_slopes, kept.came);
+    double elastic = soil_.elastic_pa_per_m;
+    if (footprint.extended() && !tilts && !imposed) {
+      // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step bears.
+      const double area = std::max(kept.patch_area_m2, cell_area_);
+      elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
+    }
+    ranges_.push_back(find_cells(contact, elastic));
+    const Range& range = ranges_.back();
+    if (range.begin == range.end) {
+      kept = {};
+      continue;
+    }
+    measure_patch(footprint, range.begin, kept);
+    ranges_.back().footprint = flow_.begin_footprint(velocity.x(), velocity.y());
+    for (size_t i = range.begin; i < range.end; ++i) {
+      const Cell& cell = cells_[i];
+      flow_.cover(cell.node, cell.ix, cell.iy);
+      springs_.push_back({cell_area_ * (cell.pressure + elastic * (cell.pressed - cell.sunk)),
+                          cell_area_ * elastic * cell.share, cell_area_ * cell.pressure,
+                          cell_area_ * cell.rate, cell.arm.x() + arm.x(), cell.arm.y() + arm.y()});
+    }
+  }
+  if (springs_.empty()) {
+    memory = {};
+    return;
+  }
+  solve_sinking(body, dt, springs_, memory);
+  for (size_t i = 0; i < contacts.size(); ++i) react(ranges_[i], body, contacts[i], dt);
+}
+
+void SoilBed::end_step() {
+  const int64_t sunk = flow_.in_hand();
+  if (!options_.bulldozing) {
+    compacted_ += sunk;
+    flow_.compact(sunk);
+  } else {
+    if (soil_.compaction > 0.0 && sunk > 0) {
+      compaction_rest_ += soil_.compaction * static_cast<double>(sunk);
+      const auto units = std::min(sunk, static_cast<int64_t>(compaction_rest_));
+      compaction_rest_ -= static_cast<double>(units);
+      compacted_ += units;
+      flow_.compact(units);
+    }
+    flow_.set_down();
+  }
+  if (options_.avalanches) flow_.slide(kSlidesPerStep);
+  slopes_left_ = options_.avalanches ? flow_.waiting() : 0;
+  flow_.uncover();
+  ++step_;
+}
+
+int64_t SoilBed::settle(int64_t most) {
+  flow_.wake_all();
+  return flow_.slide(most);
+}
+
+}  // namespace screed

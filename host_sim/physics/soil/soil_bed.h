@@ -1,0 +1,193 @@
+// Deformable soil on a grid of integer heights (soil contact model, SCM): bodies sink in, shear,
+// push material aside.
+//
+// Each node keeps two integers: `height`, the surface as it lies there unloaded, and `reference`,
+// the level from which Bekker's sinkage counts; their difference is the plastic sinkage. Material
+// that moves changes both, in pairwise opposite amounts, so that the volume is exact; material that
+// is compacted is booked. A node stands for a cell: its pressure is the mean over the cell, of
+// Bekker's law at a lattice of places below the body (footprint.h), so a body may cover a cell in
+// part and the result does not depend on where the grid lies. Places that the lowest point of a
+// rolling wheel has passed are known to be unloading, from the geometry alone, which spares a
+// memory finer than the grid.
+//
+// Forces of a footprint are summed in a fixed order: the same bits on every compiler and any number
+// of worlds side by side.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host_sim/physics/soil/material_flow.h"
+#include "host_sim/physics/soil/power_table.h"
+#include "host_sim/physics/soil/sinking.h"
+#include "host_sim/physics/soil/soil_contact.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+/// How normal stress acts on a body.
+enum class NormalStress {
+  kRadial,    ///< along the body's surface normal: what is measured on wheels; the default
+  kVertical,  ///< straight up, as Project Chrono's SCM; for comparisons
+};
+
+struct SoilOptions {
+  NormalStress normal_stress = NormalStress::kRadial;
+  bool bulldozing = true;  ///< sunk and dragged material moves; false: it is compacted where it was
+  bool avalanches = true;  ///< slopes above the angle of repose slide
+  /// Where a body passed, it is taken to have come along its way, uphill or downhill. false: level,
+  /// as if it had come at its present height, by which long belts sink too deep downhill (the
+  /// simpler model, for comparisons).
+  bool follow_slopes = true;
+  double sample_spacing_m = 0.00125;  ///< of the places inside a cell, at most
+};
+
+/// Volumes in units of height times cells. Always: heights_now = heights_before - compacted -
+/// in_hand.
+struct VolumeBalance {
+  int64_t before = 0;
+  int64_t now = 0;
+  int64_t compacted = 0;
+  int64_t in_hand = 0;  ///< sunk in the last steps and not yet set down
+  int64_t error() const { return before - compacted - in_hand - now; }
+};
+
+class SoilBed {
+ public:
+  SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options = {});
+
+  /// A body in this step, with all its footprints: how it sinks and tilts on them is solved
+  /// together. Every body of a step before end_step().
+  void press(const PressingBody& body, std::span<SoilContact> contacts, double dt,
+             BodyMemory& memory);
+  /// A footprint by itself: it sinks and does not tilt.
+  SoilReaction press(const Footprint& footprint, const FootprintMotion& motion, double dt,
+                     ContactMemory& memory);
+  /// Ends a step: what was sunk is set down beside the footprints, slopes slide.
+  void end_step();
+  /// Lets slopes slide until none is too steep, or `most` moves were made; returns the moves.
+  int64_t settle(int64_t most = INT64_MAX);
+
+  const HeightField& surface() const { return flow_.surface(); }
+  /// Whether the slopes round a node are still to be looked at: a body stood on it in the last step
+  /// and held it, or more slid than a step has time for; then slopes_left() was not 0.
+  bool slope_waits(int ix, int iy) const { return flow_.waits(flow_.index(ix, iy)); }
+  /// Nodes that the last step had no time for.
+  size_t slopes_left() const { return slopes_left_; }
+  const SoilParameters& soil() const { return soil_; }
+  VolumeBalance balance() const;
+
+ private:
+  enum class Lattice : uint8_t {  // the places of a cell where the body's surface is looked at
+    kMiddle,                      // one: below a plane
+    kRook,  // one in each row and column: sees what varies along or across as finely as all
+    kFull,  // all: at the rim of a body with corners
+  };
+  struct Law {       // of the soil under one footprint in one step
+    double bekker;   // k_c / b + k_phi
+    double elastic;  // E, Pa/m
+    const PowerTable* table;
+  };
+  /// What a node remembers of the last contact. Shear is the mean over the touching part.
+  struct Trace {
+    uint32_t step = 0;     // of that contact
+    float share = 0.0F;    // of the cell that touched
+    float along = 0.0F;    // mobilised share of the shear strength along the belt, -1..1
+    float across = 0.0F;   // and across it
+    float covered = 0.0F;  // share of the cell below the body
+    float old = 0.0F;      // plastic sinkage of that part before the contact, m
+    float beside = 0.0F;   // plastic sinkage of the rest, times its share, m
+  };
+  struct Candidate {
+    size_t node;
+    int ix;
+    int iy;
+    Lattice lattice;
+  };
+  struct Cell {  // one cell under a footprint, sampled
+    size_t node;
+    int ix;
+    int iy;
+    double share;     // of the cell that bears
+    double pressed;   // plastic sinkage that virgin soil would have by this contact, m
+    double pressure;  // mean pressure of virgin soil, Pa
+    double rate;      // of that pressure with further sinking, Pa/m
+    double slope_x;   // horizontal force of the normal stress, over its vertical force
+    double slope_y;
+    double tilt_x;  // the same of the surface alone, mean over the touching part
+    double tilt_y;
+    Eigen::Vector3d moment;  // of mean pressure, about the footprint's centre
+    Eigen::Vector3d arm;     // mean place of the pressure, from the footprint's centre
+    double lead;  // mean place of the pressure ahead of the mean place of the touching part, along
+                  // local x, m
+    double sunk;  // plastic sinkage, m
+  };
+  struct Range {  // of one footprint among cells_
+    size_t begin;
+    size_t end;
+    Law law;
+    size_t footprint;  // as flow_ numbers them
+  };
+
+  /// How a footprint slips over what it touches: sums over its cells, each times its share.
+  struct Digging {
+    Digging(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
+        : forward(along), side(across) {}
+    void add(const Cell& cell, double sliding, double mobilised);
+    Eigen::Vector3d forward;  // level, unit length
+    Eigen::Vector3d side;
+    double share = 0.0;
+    double first_along = 0.0;  // of the cells' places
+    double first_across = 0.0;
+    double second_along = 0.0;
+    double second_across = 0.0;
+    double swept = 0.0;  // of their mobilised slip
+  };
+
+  Range find_cells(const SoilContact& contact, double elastic);
+  void find_candidates(const Footprint& footprint, double rise);
+  void add_places(const Candidate& candidate);
+  bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
+              Cell& cell);
+  template <size_t places>
+  bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, size_t number,
+              const Law& law, Cell& cell);
+  void remember_cover(Trace& trace, double covered, double sunk) const;
+  void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
+  void react(const Range& range, const PressingBody& body, SoilContact& contact, double dt);
+  void dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt);
+  size_t places_of(Lattice lattice) const;
+  bool fresh(const Trace& trace) const { return trace.step == 0 || trace.step + 1 < step_; }
+
+  SoilParameters soil_;
+  SoilOptions options_;
+  MaterialFlow flow_;
+  /// Of Bekker's exponent, finer than anybody knows it.
+  static constexpr double kExponentStep = 0.005;
+  std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
+  double tan_friction_;
+  double cell_area_;
+  int samples_;                 // along one side of a cell
+  std::vector<double> rook_x_;  // places in a cell, one in each row and column, from its middle, m
+  std::vector<double> rook_y_;
+  int64_t volume_before_;
+  int64_t compacted_ = 0;
+  double compaction_rest_ = 0.0;
+  double dig_rest_ = 0.0;
+  size_t slopes_left_ = 0;
+  uint32_t step_ = 1;
+  std::vector<Trace> traces_;
+
+  // Of the body being pressed; kept for their room.
+  FootprintPlaces places_;
+  std::vector<Candidate> candidates_;
+  std::vector<Cell> cells_;  // the first cell_count_ of them
+  size_t cell_count_ = 0;
+  std::vector<SoilSpring> springs_;
+  std::vector<Range> ranges_;
+};
+
+}  // namespace screed

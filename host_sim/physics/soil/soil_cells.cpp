@@ -1,0 +1,324 @@
+// The cells of a soil bed under a footprint: which they are, and what Bekker's law gives as a mean
+// over places inside each.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host_sim/physics/soil/pair.h"
+#include "host_sim/physics/soil/soil_bed.h"
+
+namespace screed {
+namespace {
+
+// How much deeper a body may go in one step than in the last, for the bound on what unloaded soil
+// rises, m.
+constexpr double kStepSinkage_m = 0.001;
+
+}  // namespace
+
+/// The cells that a footprint touches, sampled.
+SoilBed::Range SoilBed::find_cells(const SoilContact& contact, double elastic) {
+  const Footprint& footprint = *contact.footprint;
+  const ContactMemory& memory = *contact.memory;
+  const double spacing = flow_.surface().spacing_m();
+  // Slip-sinkage raises the exponent with the slip of the moment.
+  const double more = std::clamp(contact.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
+  const PowerTable& table = tables_[static_cast<size_t>(std::lround(more))];
+  // The patch of the last step decides this step's b; at the first touch the body itself does.
+  const double b = memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, 1e-3) : footprint.narrow();
+  const Law law{soil_.k_phi + soil_.k_c / b, elastic, &table};
+
+  // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
+  // there is no contact.
+  const double rise = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
+  find_candidates(footprint, rise);
+  size_t needed = 0;
+  for (const Candidate& candidate : candidates_) needed += places_of(candidate.lattice);
+  places_.clear(needed);
+  for (const Candidate& candidate : candidates_) add_places(candidate);
+  FootprintWay came = memory.came;
+  if (came.along_m != 0.0) came.along_m += std::copysign(spacing, came.along_m);
+  footprint.surface(spacing / samples_, came, places_);
+  Range range{cell_count_, cell_count_, law, 0};
+  if (cells_.size() < cell_count_ + candidates_.size()) {
+    cells_.resize(cell_count_ + candidates_.size());
+  }
+  size_t first = 0;
+  for (const Candidate& candidate : candidates_) {
+    if (sample(footprint, candidate, first, law, cells_[cell_count_])) ++cell_count_;
+    first += places_of(candidate.lattice);
+  }
+  range.end = cell_count_;
+  return range;
+}
+
+/// The cells that a footprint may touch.
+void SoilBed::find_candidates(const Footprint& footprint, double rise) {
+  const HeightField& field = flow_.surface();
+  const double spacing = field.spacing_m();
+  const Eigen::Vector3d centre = footprint.pose().translation();
+  // The bound by tiles of the field covers this circle.
+  const double radius = footprint.radius_from_above();
+  const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rise;
+  candidates_.clear();
+  const Eigen::Vector2d reach = footprint.reach_below(highest);
+  if (reach.x() < 0.0) return;
+  const auto cell_of = [&](double coordinate, double begin) {
+    return static_cast<int>(std::floor((coordinate - begin) / spacing + 0.5));
+  };
+  int ix0 = cell_of(centre.x() - reach.x(), field.x_min());
+  int ix1 = cell_of(centre.x() + reach.x(), field.x_min());
+  int iy0 = cell_of(centre.y() - reach.y(), field.y_min());
+  int iy1 = cell_of(centre.y() + reach.y(), field.y_min());
+  if (!field.wrap()) {
+    ix0 = std::max(ix0, 0);
+    iy0 = std::max(iy0, 0);
+    ix1 = std::min(ix1, field.nx() - 1);
+    iy1 = std::min(iy1, field.ny() - 1);
+  }
+  if (ix1 < ix0 || iy1 < iy0) return;
+  places_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
+  for (int iy = iy0; iy <= iy1; ++iy) {
+    for (int ix = ix0; ix <= ix1; ++ix) places_.add(field.node_x(ix), field.node_y(iy));
+  }
+  // A cell turned against the body reaches further across it.
+  const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.across(spacing);
+  footprint.surface(edge, places_);
+  const double rim = footprint.lowest_at_rim(spacing);
+  size_t i = 0;
+  for (int iy = iy0; iy <= iy1; ++iy) {
+    for (int ix = ix0; ix <= ix1; ++ix, ++i) {
+      const size_t node = flow_.node_on(ix, iy);
+      const double ground = flow_.height(node) * kHeightUnit_m + rise;
+      Lattice lattice = Lattice::kRook;
+      if (places_.share[i] > 0.0) {
+        // The lower surface of a convex body is a convex function: it lies above its tangent plane
+        // at the middle of the cell.
+        const double fall =
+            (std::abs(places_.slope_x[i]) + std::abs(places_.slope_y[i])) * 0.5 * spacing;
+        if (places_.height[i] - fall > ground) continue;
+        if (places_.share[i] < 1.0) {
+          lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kRook;
+        } else if (places_.flat_within[i] > 0.75 * spacing) {
+          lattice = Lattice::kMiddle;
+        }
+      } else if (rim > ground) {
+        continue;
+      }
+      candidates_.push_back({node, ix, iy, lattice});
+    }
+  }
+}
+
+size_t SoilBed::places_of(Lattice lattice) const {
+  const auto samples = static_cast<size_t>(samples_);
+  if (lattice == Lattice::kMiddle) return 2;  // the same place twice: they are taken in pairs
+  return lattice == Lattice::kRook ? samples : samples * samples;
+}
+
+void SoilBed::add_places(const Candidate& candidate) {
+  const HeightField& field = flow_.surface();
+  const double x = field.node_x(candidate.ix);
+  const double y = field.node_y(candidate.iy);
+  if (candidate.lattice == Lattice::kMiddle) {
+    places_.add(x, y);
+    places_.add(x, y);
+    return;
+  }
+  if (candidate.lattice == Lattice::kFull) {
+    for (const double dy : rook_y_) {
+      for (const double dx : rook_y_) places_.add(x + dx, y + dy);
+    }
+    return;
+  }
+  const bool mirror = ((candidate.ix + candidate.iy) & 1) != 0;  // every other cell mirrors them
+  const double sense = mirror ? -1.0 : 1.0;
+  for (size_t i = 0; i < rook_x_.size(); ++i) places_.add(x + sense * rook_x_[i], y + rook_y_[i]);
+}
+
+/// Where the body covers less or more of a cell than a step ago, the plastic sinkage of what it
+/// covers and of the rest is told anew; their sum stays.
+void SoilBed::remember_cover(Trace& trace, double covered, double sunk) const {
+  double before = static_cast<double>(trace.covered);
+  double beside = static_cast<double>(trace.beside);
+  double old = static_cast<double>(trace.old);
+  if (fresh(trace)) {
+    // What was pressed in an earlier contact lies below this body, as far as it covers it.
+    old = sunk / std::max({covered, before, 1e-3});
+    beside = sunk - covered * old;
+    trace.share = trace.along = trace.across = 0.0F;
+  } else if (covered < before) {
+    beside = sunk - covered * (sunk - beside) / before;
+  } else if (covered > before) {
+    const double rest = before < 1.0 ? beside / (1.0 - before) : 0.0;
+    old = (before * old + (covered - before) * rest) / covered;
+    beside -= (covered - before) * rest;
+  }
+  trace.covered = static_cast<float>(covered);
+  trace.beside = static_cast<float>(beside);
+  trace.old = static_cast<float>(old);
+}
+
+/// Means over a cell of what Bekker's law gives at a lattice of places in it, as if nothing but
+/// earlier contacts had touched it.
+bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
+                     const Law& law, Cell& cell) {
+  // A single pair, as on fine grids, needs no loop.
+  const size_t count = places_of(candidate.lattice);
+  return count == 2 ? sample<2>(footprint, candidate, first, count, law, cell)
+                    : sample<0>(footprint, candidate, first, count, law, cell);
+}
+
+/// `places`: known to the compiler, or 0.
+template <size_t places>
+bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
+                     size_t number, const Law& law, Cell& cell) {
+  const size_t count = places != 0 ? places : number;
+  const double mean = 1.0 / static_cast<double>(count);
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  const double forward_x = footprint.pose().linear()(0, 0);
+  const double forward_y = footprint.pose().linear()(1, 0);
+  const double reference = flow_.reference(candidate.node) * kHeightUnit_m;
+  cell.sunk = reference - flow_.height(candidate.node) * kHeightUnit_m;
+  double covered = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (size_t i = first; i < first + count; ++i) {
+    covered += places_.share[i];
+    if (places_.share[i] > 0.0) lowest = std::min(lowest, places_.passed[i]);
+  }
+  if (lowest >= reference) return false;
+  Trace& trace = traces_[candidate.node];
+  remember_cover(trace, covered * mean, cell.sunk);
+  const double old = static_cast<double>(trace.old);
+  const double elastic = law.elastic;
+  const double compliance = 1.0 / elastic;
+  const double exponent = law.table->exponent();
+
+  const Pair zero = both(0.0);
+  const Pair level = both(reference);
+  const Pair bekker = both(law.bekker);
+  const Pair stiffness = both(elastic);
+  const Pair before = both(old);
+  const Pair cx = both(centre.x());
+  const Pair cy = both(centre.y());
+  const Pair cz = both(centre.z());
+  Pair shares = zero;
+  Pair depths = zero;
+  Pair pressures = zero;
+  Pair rates = zero;
+  Pair x_shares = zero;
+  Pair y_shares = zero;
+  Pair tilts_x = zero;
+  Pair tilts_y = zero;
+  Pair lifts_x = zero;
+  Pair lifts_y = zero;
+  Pair arms_x = zero;
+  Pair arms_y = zero;
+  Pair arms_z = zero;
+  Pair z_lifts_x = zero;
+  Pair z_lifts_y = zero;
+  Pair twists = zero;
+  for (size_t i = first; i < first + count; i += 2) {
+    const Pair part = load(&places_.share[i]);
+    const auto over = part > zero;
+    const Pair height = load(&places_.height[i]);
+    // Deepest so far: where the surface rises again, what has passed before.
+    const Pair passed = load(&places_.passed[i]);
+    const Pair deepest = over ? greater(zero, level - passed) : zero;
+    // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
+    const Pair virgin = bekker * Pair{law.table->power(deepest[0]), law.table->power(deepest[1])};
+    const Pair stiff = stiffness * (deepest - before);
+    const auto yields = virgin < stiff;
+    const Pair loaded = greater(zero, yields ? virgin : stiff);
+    depths += part * greater(before, deepest - loaded * both(compliance));
+    const Pair now = loaded - stiffness * (height - passed);
+    const Pair bears = over & (now > zero) ? part : zero;
+    const Pair weight = bears > zero ? part * now : zero;
+    const Pair x = load(&places_.x[i]) - cx;
+    const Pair y = load(&places_.y[i]) - cy;
+    const Pair z = height - cz;
+    const Pair slope_x = bears > zero ? load(&places_.slope_x[i]) : zero;
+    const Pair slope_y = bears > zero ? load(&places_.slope_y[i]) : zero;
+    const Pair wx = weight * slope_x;
+    const Pair wy = weight * slope_y;
+    const Pair arm_z = bears > zero ? z : zero;
+    shares += bears;
+    pressures += weight;
+    rates += bears * (yields ? both(exponent) * virgin / greater(deepest, both(1e-9)) : stiffness);
+    x_shares += bears * x;
+    y_shares += bears * y;
+    tilts_x += bears * slope_x;
+    tilts_y += bears * slope_y;
+    lifts_x += wx;
+    lifts_y += wy;
+    arms_x += weight * x;
+    arms_y += weight * y;
+    arms_z += weight * arm_z;
+    z_lifts_x += arm_z * wx;
+    z_lifts_y += arm_z * wy;
+    twists += x * wy - y * wx;
+  }
+  const double share = sum(shares);
+  const double pressure = sum(pressures);
+  if (pressure <= 0.0) return false;
+  const double per_pressure = 1.0 / pressure;
+  cell.node = candidate.node;
+  cell.ix = candidate.ix;
+  cell.iy = candidate.iy;
+  cell.share = share * mean;
+  cell.pressed = sum(depths) * mean + static_cast<double>(trace.beside);
+  cell.pressure = pressure * mean;
+  cell.rate = sum(rates) * mean;
+  cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;
+  cell.lead = cell.arm.x() * forward_x + cell.arm.y() * forward_y -
+              (sum(x_shares) * forward_x + sum(y_shares) * forward_y) / share;
+  // Vertical stress has no horizontal part; it shears in the horizontal all the same.
+  const bool radial = options_.normal_stress == NormalStress::kRadial;
+  cell.tilt_x = sum(tilts_x) / share;
+  cell.tilt_y = sum(tilts_y) / share;
+  cell.slope_x = sum(lifts_x) * per_pressure;
+  cell.slope_y = sum(lifts_y) * per_pressure;
+  cell.moment << cell.arm.y(), -cell.arm.x(), 0.0;
+  if (radial) {
+    cell.moment += per_pressure * Eigen::Vector3d(-sum(z_lifts_y), sum(z_lifts_x), sum(twists));
+  }
+  return true;
+}
+
+// Second moments of the touched area: a rectangle of sides a and b has variances a^2/12 and b^2/12,
+// a disc r^2/4.
+void SoilBed::measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const {
+  const double edge = flow_.surface().spacing_m();
+  double area = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  double own = 0.0;
+  for (size_t i = begin; i < cell_count_; ++i) {
+    const Cell& cell = cells_[i];
+    const double cx = cell.arm.x();
+    const double cy = cell.arm.y();
+    area += cell.share;
+    x += cell.share * cx;
+    y += cell.share * cy;
+    xx += cell.share * cx * cx;
+    xy += cell.share * cx * cy;
+    yy += cell.share * cy * cy;
+    own += cell.share * cell.share;
+  }
+  memory.patch_area_m2 = area * cell_area_;
+  // A cell spreads its share over itself.
+  own *= edge * edge / 12.0;
+  const double vxx = (xx + own - x * x / area) / area;
+  const double vyy = (yy + own - y * y / area) / area;
+  const double vxy = (xy - x * y / area) / area;
+  const double half_trace = 0.5 * (vxx + vyy);
+  const double smaller =
+      half_trace - std::sqrt(std::max(0.0, 0.25 * (vxx - vyy) * (vxx - vyy) + vxy * vxy));
+  const double narrow = std::sqrt(std::max(0.0, smaller));
+  memory.patch_b_m = footprint.round() ? 2.0 * narrow : std::sqrt(12.0) * narrow;
+}
+
+}  // namespace screed

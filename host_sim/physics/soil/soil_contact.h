@@ -1,0 +1,71 @@
+// What a body that presses on soil tells it, what it is told, and what is remembered in between.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "host_sim/physics/soil/footprint.h"
+
+namespace screed {
+
+/// Motion of the pressing surface: that of the body plus the speed of its belt or rim.
+struct FootprintMotion {
+  Eigen::Vector3d velocity =
+      Eigen::Vector3d::Zero();                      ///< of the footprint's centre, world frame, m/s
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< of the body without the wheel's spin, rad/s
+  double surface_speed =
+      0.0;  ///< of the belt over its wheels, forward drive positive: below it goes backward, m/s
+  double slip = 0.0;      ///< for slip-sinkage, 0..1
+  double friction = 0.8;  ///< Coulomb's, against particles; soil has its own
+  double mass_kg =
+      1.0;  ///< that the footprint carries; infinite: the motion is imposed, whatever the force
+};
+
+/// Force and torque on the footprint, world frame, torque about its centre; what drives it; what it
+/// rests on.
+struct SoilReaction {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  double along_surface = 0.0;  ///< force of the ground along the belt's direction of motion, N
+  double normal_load = 0.0;    ///< vertical part of the normal forces, N
+  double sinkage = 0.0;        ///< greatest depth below the reference level, m
+  double area = 0.0;           ///< touched, projected to the horizontal, m^2
+};
+
+/// What a body remembers from step to step. Three components: up, roll about the world's x, pitch
+/// about its y.
+struct BodyMemory {
+  bool touching = false;
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< m/s, rad/s
+  Eigen::Vector3d push =
+      Eigen::Vector3d::Zero();  ///< that the soil's pressure gave, m/s^2, rad/s^2
+};
+
+/// What a footprint remembers from step to step.
+struct ContactMemory {
+  double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
+  double patch_area_m2 = 0.0;
+  double sinkage = 0.0;  ///< greatest depth in the last step, m
+  FootprintWay came;     ///< since touching or turning back; its rise is that of late
+  BodyMemory alone;      ///< of a footprint that is pressed by itself
+};
+
+/// A rigid body that stands on soil with one footprint or several, in one step.
+struct PressingBody {
+  double mass_kg = 1.0;  ///< infinite: the motion is imposed
+  Eigen::Matrix3d inverse_inertia =
+      Eigen::Matrix3d::Zero();  ///< about `centre`, world axes; zero: the soil does not tilt it
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();    ///< of mass, world frame, m
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of it, m/s
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();     ///< rad/s
+};
+
+/// One footprint of such a body; the reaction is the answer.
+struct SoilContact {
+  const Footprint* footprint = nullptr;
+  ContactMemory* memory = nullptr;
+  double surface_speed = 0.0;  ///< as in FootprintMotion
+  double slip = 0.0;
+  SoilReaction reaction = {};
+};
+
+}  // namespace screed

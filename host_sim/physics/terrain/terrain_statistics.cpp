@@ -1,0 +1,102 @@
+// One pass over nodes, one over cells, always in the same order.
+#include "host_sim/physics/terrain/terrain_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+
+double slope_deg(double gradient) {
+  return std::atan(gradient) * kDegreesPerRadian;
+}
+
+/// |grad f| at the centre of every cell, row by row.
+std::vector<double> centre_gradients(const HeightField& field) {
+  std::vector<double> gradients;
+  gradients.reserve(static_cast<size_t>(field.cells_x()) * static_cast<size_t>(field.cells_y()));
+  const double scale = kHeightUnit_m / field.spacing_m();
+  for (int iy = 0; iy < field.cells_y(); ++iy) {
+    for (int ix = 0; ix < field.cells_x(); ++ix) {
+      const CellHeights c = field.cell(ix, iy);
+      const double diagonal = static_cast<double>(c.north_east) - c.south_west;
+      const double other = static_cast<double>(c.north_west) - c.south_east;
+      const double along_x = 0.5 * (diagonal - other);
+      const double along_y = 0.5 * (diagonal + other);
+      gradients.push_back(std::sqrt(along_x * along_x + along_y * along_y) * scale);
+    }
+  }
+  return gradients;
+}
+
+void add_heights(const HeightField& field, TerrainStatistics& statistics) {
+  const double count = static_cast<double>(field.nx()) * field.ny();
+  const double mean = static_cast<double>(field.height_sum()) / count;
+  Height lowest = field.node(0, 0);
+  Height highest = lowest;
+  double squares = 0.0;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) {
+      const Height height = field.node(ix, iy);
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+      squares += (height - mean) * (height - mean);
+    }
+  }
+  statistics.lowest_m = lowest * kHeightUnit_m;
+  statistics.highest_m = highest * kHeightUnit_m;
+  statistics.mean_height_m = mean * kHeightUnit_m;
+  statistics.height_deviation_m = std::sqrt(squares / count) * kHeightUnit_m;
+}
+
+void add_slopes(const HeightField& field, TerrainStatistics& statistics) {
+  std::vector<double> slopes = centre_gradients(field);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (double& slope : slopes) {
+    slope = slope_deg(slope);
+    sum += slope;
+    squares += slope * slope;
+  }
+  const auto count = static_cast<double>(slopes.size());
+  statistics.mean_slope_deg = sum / count;
+  statistics.rms_slope_deg = std::sqrt(squares / count);
+  // Nearest rank, ceil(0.95 count), in integers.
+  const size_t rank = (slopes.size() * 95 + 99) / 100;
+  const auto p95 = slopes.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+  std::nth_element(slopes.begin(), p95, slopes.end());
+  statistics.p95_slope_deg = *p95;
+  statistics.max_slope_deg = *std::max_element(p95, slopes.end());
+  statistics.steepest_slope_deg = slope_deg(field.steepest_gradient());
+}
+
+}  // namespace
+
+TerrainStatistics terrain_statistics(const HeightField& field) {
+  TerrainStatistics statistics{};
+  add_heights(field, statistics);
+  add_slopes(field, statistics);
+  return statistics;
+}
+
+double flatness(const HeightField& field, double epsilon_deg) {
+  if (!(epsilon_deg >= 0.0 && epsilon_deg <= 89.0)) {
+    std::ostringstream message;
+    message << "flatness: epsilon_deg = " << epsilon_deg << "; allowed: 0 to 89";
+    throw InputError(message.str());
+  }
+  const double epsilon = std::tan(epsilon_deg / kDegreesPerRadian);
+  const std::vector<double> gradients = centre_gradients(field);
+  const auto level = std::count_if(gradients.begin(), gradients.end(),
+                                   [epsilon](double gradient) { return gradient <= epsilon; });
+  return static_cast<double>(level) / static_cast<double>(gradients.size());
+}
+
+}  // namespace screed

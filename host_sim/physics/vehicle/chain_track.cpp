@@ -1,0 +1,472 @@
+// A track of links: forces between pins, wheels and ground, and one implicit step of all of them.
+#include "host_sim/physics/vehicle/chain_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/vehicle/ode_world.h"
+
+namespace screed {
+namespace {
+
+constexpr double kPitch_m = 0.010;  // of the links, about
+constexpr int kRows = 2;            // of contact points: the outer and the inner edge of the shoes
+constexpr double kSinkIn_m = 0.0004;
+constexpr double kCarryingPins = 6;  // on level ground: three under each wheel
+constexpr double kDampingRatio = 0.7;
+constexpr double kUpperSide = 0.2;  // these three as in running_gear.cpp
+constexpr double kSlipSpeed = 1e-3;
+constexpr double kOnItsSide = 0.8;
+
+// Between pin and wheel. The teeth are as soft as the light rear wheel bears, whose own motion is a
+// step behind the pins'.
+constexpr double kWheelStiffness = 8e3;  // N/m
+constexpr double kWheelDamping = 2.0;    // N s/m
+constexpr double kToothStiffness = 4e3;
+constexpr double kToothDamping = 1.0;
+constexpr double kToothHeight_m = 0.002;
+
+// Of the shoes, inwards from the pins: what particles meet.
+constexpr double kShoeThickness_m = 0.008;
+// That push on one link at a time, about: particles are larger than links.
+constexpr double kSpheresOnALink = 2.0;
+
+}  // namespace
+
+ChainTrack::ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& options,
+                       double friction, const GearLoad& load)
+    : geometry_(geometry),
+      centre_(0.5 * (geometry.front + geometry.rear)),
+      half_length_(0.5 * (geometry.front - geometry.rear).norm()),
+      solver_(0),
+      footprint_(Footprint::track(half_length_, geometry.radius, geometry.width)),
+      side_footprint_(Footprint::box(
+          {2.0 * (half_length_ + geometry.radius), geometry.width, 2.0 * geometry.radius})) {
+  const double radius = geometry.radius;
+  const double loop = 4.0 * half_length_ + 2.0 * std::numbers::pi * radius;
+  const int links =
+      options.links > 0 ? options.links : static_cast<int>(std::lround(loop / kPitch_m));
+  // Fewer do not wrap round a wheel.
+  const int fewest = static_cast<int>(std::ceil(loop / radius));
+  if (half_length_ <= 0.0 || links < fewest) {
+    throw InputError("robot model: a chain of " + std::to_string(links) +
+                     " links does not go round its wheels; at least " + std::to_string(fewest));
+  }
+  const Eigen::Vector3d forward = (geometry.front - geometry.rear).normalized();
+  axes_ << forward, Eigen::Vector3d::UnitY(), forward.cross(Eigen::Vector3d::UnitY());
+
+  // Over the upper run to the front, down round the front wheel, back below, up round the rear one.
+  const auto on_loop = [&](double way, double r) -> Vector2 {
+    if (way < 2.0 * half_length_) return {way - half_length_, r};
+    way -= 2.0 * half_length_;
+    const double half_turn = std::numbers::pi * radius;
+    if (way < half_turn) {
+      return {half_length_ + r * std::sin(way / radius), r * std::cos(way / radius)};
+    }
+    way -= half_turn;
+    if (way < 2.0 * half_length_) return {half_length_ - way, -r};
+    way -= 2.0 * half_length_;
+    return {-half_length_ - r * std::sin(way / radius), -r * std::cos(way / radius)};
+  };
+  // The middles of the links lie on the wheels, pressed on by the tension.
+  const double pitch = loop / links;
+  const double pressed = options.tension_n * pitch / radius / kWheelStiffness;
+  const double pins_at = (radius - pressed) / std::cos(0.5 * pitch / radius);
+  double length = 0.0;
+  for (int i = 0; i < links; ++i) {
+    rest_.push_back(on_loop(i * pitch, pins_at));
+    if (i > 0) length += (rest_.back() - rest_[rest_.size() - 2]).norm();
+  }
+  length += (rest_.front() - rest_.back()).norm();
+  link_length_ = length / links / (1.0 + options.tension_n / options.stiffness_n);
+  stiffness_ = options.stiffness_n / link_length_;
+  pin_mass_ = options.mass_kg / links;
+
+  const double carrying = kRows * kCarryingPins;
+  law_.friction = friction;
+  law_.stiffness = load.weight_n / (kSinkIn_m * carrying);
+  // All shoes of the lower run damp, however little they carry.
+  const double touching = kRows * (2.0 * half_length_ / pitch);
+  law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * load.mass_kg / touching) *
+                 std::sqrt(carrying / touching);
+
+  shoes_.assign(rest_.size(), Footprint::box({link_length_, geometry.width, kShoeThickness_m}));
+  solver_ = ChainSolver(rest_.size());
+  touches_.reserve(kRows * rest_.size());
+  bites_.reserve(2 * rest_.size());
+  ground_force_.resize(rest_.size());
+  reset();
+}
+
+void ChainTrack::reset() {
+  place_ = rest_;
+  velocity_.assign(pins(), Eigen::Vector3d::Zero());
+  bristles_.assign(kRows * pins(), Eigen::Vector3d::Zero());
+  teeth_.assign(pins(), {0.0, 0.0});
+  engaged_.assign(pins(), {0, 0});
+  memory_ = {};
+  at_rest_ = true;
+}
+
+std::vector<Eigen::Vector3d> ChainTrack::points() const {
+  std::vector<Eigen::Vector3d> corners;
+  for (const Vector2& pin : rest_) {
+    for (const double side : {0.5, -0.5}) {
+      corners.emplace_back(centre_ + on_axes(pin) + side * geometry_.width * axes_.col(1));
+    }
+  }
+  return corners;
+}
+
+double ChainTrack::length_m() const {
+  double length = 0.0;
+  for (size_t i = 0; i < pins(); ++i) length += (place_[after(i)] - place_[i]).norm();
+  return length;
+}
+
+double ChainTrack::farthest_from_loop_m() const {
+  double farthest = 0.0;
+  for (const Vector2& pin : place_) {
+    const double beyond = std::abs(pin.x()) - half_length_;
+    const double from_line = beyond > 0.0 ? std::hypot(beyond, pin.y()) : std::abs(pin.y());
+    farthest = std::max(farthest, std::abs(from_line - geometry_.radius));
+  }
+  return farthest;
+}
+
+double ChainTrack::kinetic_energy_j(const CarrierMotion& carrier) const {
+  double energy = 0.0;
+  for (size_t i = 0; i < pins(); ++i) {
+    const Eigen::Vector3d arm = carrier.rotation * pin(i);
+    energy += 0.5 * pin_mass_ *
+              (velocity_[i] - carrier.velocity - carrier.omega.cross(arm)).squaredNorm();
+  }
+  return energy;
+}
+
+ChainTrack::Frame ChainTrack::frame_of(const CarrierMotion& carrier) const {
+  return {carrier.rotation * axes_, carrier.origin + carrier.rotation * centre_, carrier};
+}
+
+ChainTrack::Frame ChainTrack::move_pins(const CarrierMotion& carrier, double dt) {
+  Frame frame = frame_of(carrier);
+  for (size_t i = 0; i < pins(); ++i) {
+    const Eigen::Vector3d carried = frame.carrier_velocity(frame.place(place_[i]));
+    if (at_rest_) {
+      velocity_[i] = carried;
+    } else {
+      place_[i] += dt * frame.in_plane(velocity_[i] - carried);
+    }
+  }
+  at_rest_ = false;
+  return frame;
+}
+
+// `force` is the one that would act if the pin kept its velocity; it falls by gain times the
+// velocity's change.
+void ChainTrack::add_force(size_t pin, const Vector2& force, const Matrix2& gain, double dt) {
+  solver_.right[pin] += dt * force;
+  solver_.diagonal[pin] += dt * gain;
+}
+
+void ChainTrack::add_links(const Frame& frame, double dt) {
+  for (size_t i = 0; i < pins(); ++i) {
+    const size_t j = after(i);
+    const Vector2 run = place_[j] - place_[i];
+    const double length = run.norm();
+    const Vector2 along = run / length;
+    const Matrix2 lengthwise = along * along.transpose();
+    const Vector2 change = dt * frame.in_plane(velocity_[j] - velocity_[i]);
+    const double tension = stiffness_ * (length + along.dot(change) - link_length_);
+    const Matrix2 swing = std::max(tension, 0.0) / length * (Matrix2::Identity() - lengthwise);
+    const Vector2 pull = tension * along + swing * change;
+    const Matrix2 gain = dt * (stiffness_ * lengthwise + swing);
+    add_force(i, pull, gain, dt);
+    add_force(j, -pull, gain, dt);
+    solver_.next[i] = -dt * gain;
+  }
+}
+
+// A wheel touches a link where the link comes closest to its axle: it rolls on links that lie flat,
+// as on a rail, and does not bump from pin to pin.
+void ChainTrack::add_wheels(const Frame& frame, const WheelRates& rates, double dt) {
+  bites_.clear();
+  const double radius = geometry_.radius;
+  for (size_t i = 0; i < pins(); ++i) {
+    const size_t j = after(i);
+    const Vector2 run = place_[j] - place_[i];
+    for (const size_t wheel : {0U, 1U}) {
+      const Vector2 axle(wheel == 0 ? half_length_ : -half_length_, 0.0);
+      const double share = std::clamp((axle - place_[i]).dot(run) / run.squaredNorm(), 0.0, 1.0);
+      const Vector2 place = place_[i] + share * run;
+      const Vector2 arm = place - axle;
+      const double distance = arm.norm();
+      if (distance > radius + kToothHeight_m) {
+        engaged_[i][wheel] = 0;
+        continue;
+      }
+      if (engaged_[i][wheel] == 0) {
+        if (distance > radius) continue;
+        engaged_[i][wheel] = 1;
+        teeth_[i][wheel] = 0.0;
+      }
+      Bite bite{i, wheel, share, arm / distance, Vector2::Zero(), Matrix2::Zero()};
+      const Vector2& out = bite.out;
+      const Vector2 along(out.y(), -out.x());
+      const Vector2 relative = frame.in_plane((1.0 - share) * velocity_[i] + share * velocity_[j] -
+                                              frame.carrier_velocity(frame.place(place)));
+      const double outwards = relative.dot(out);
+      const double push =
+          kWheelStiffness * (radius - distance - dt * outwards) - kWheelDamping * outwards;
+      if (distance < radius && push > 0.0) {
+        bite.force += push * out;
+        bite.gain += (kWheelDamping + dt * kWheelStiffness) * out * out.transpose();
+      }
+      const double slide = relative.dot(along) - rates[wheel] * radius;
+      teeth_[i][wheel] += dt * slide;  // the change of velocity follows in finish()
+      bite.force -= (kToothStiffness * teeth_[i][wheel] + kToothDamping * slide) * along;
+      bite.gain += (kToothDamping + dt * kToothStiffness) * along * along.transpose();
+      add_force(i, (1.0 - share) * bite.force, (1.0 - share) * (1.0 - share) * bite.gain, dt);
+      add_force(j, share * bite.force, share * share * bite.gain, dt);
+      solver_.next[i] += dt * share * (1.0 - share) * bite.gain;
+      bites_.push_back(bite);
+    }
+  }
+}
+
+void ChainTrack::touch_ground(const HeightField& ground, const Frame& frame, double dt) {
+  GroundTouch touch;
+  for (size_t i = 0; i < pins(); ++i) {
+    const Vector2 chord = place_[after(i)] - place_[before(i)];
+    const Vector2 out = Vector2(-chord.y(), chord.x()).normalized();
+    const bool above = out.x() * frame.axes(2, 0) + out.y() * frame.axes(2, 2) > kUpperSide;
+    const Eigen::Vector3d pin = frame.place(place_[i]);
+    // Sideways the pin moves as the body does now.
+    const Eigen::Vector3d axle = frame.axes.col(1);
+    const Eigen::Vector3d moving =
+        velocity_[i] + axle.dot(frame.carrier_velocity(pin) - velocity_[i]) * axle;
+    for (int row = 0; row < kRows; ++row) {
+      Eigen::Vector3d& bristle = bristles_[kRows * i + static_cast<size_t>(row)];
+      const Eigen::Vector3d edge = (row == 0 ? 0.5 : -0.5) * geometry_.width * axle;
+      if (above || !touches(ground, pin + edge, touch)) {
+        bristle.setZero();
+        continue;
+      }
+      const Eigen::Vector3d velocity = moving + frame.carrier.omega.cross(edge);
+      const double normal_speed = velocity.dot(touch.normal);
+      const double gain = law_.damping + dt * law_.stiffness;
+      const double normal_force = law_.stiffness * touch.depth - gain * normal_speed;
+      if (normal_force <= 0.0) {
+        bristle.setZero();
+        continue;
+      }
+      const Eigen::Vector3d sliding = velocity - normal_speed * touch.normal;
+      bristle -= bristle.dot(touch.normal) * touch.normal;
+      Eigen::Vector3d tangential = -law_.stiffness * bristle - gain * sliding;
+      const double limit = law_.friction * normal_force;
+      const double size = tangential.norm();
+      const double grip = size > limit ? limit / size : 1.0;
+      tangential *= grip;
+      bristle += dt * sliding;
+      const Eigen::Vector3d force = normal_force * touch.normal + tangential;
+      touches_.push_back({i, row, touch.normal, force, gain, grip});
+      const Vector2 normal = frame.in_plane(touch.normal);
+      add_force(i, frame.in_plane(force),
+                gain * (grip * Matrix2::Identity() + (1.0 - grip) * normal * normal.transpose()),
+                dt);
+    }
+  }
+}
+
+void ChainTrack::begin(const Frame& frame, double dt) {
+  const Vector2 weight = -pin_mass_ * kGravity_m_per_s2 * frame.in_plane(Eigen::Vector3d::UnitZ());
+  for (size_t i = 0; i < pins(); ++i) {
+    solver_.diagonal[i] = pin_mass_ * Matrix2::Identity();
+    solver_.right[i] = dt * weight;
+    ground_force_[i].setZero();
+  }
+  touches_.clear();
+  normal_load_ = 0.0;
+}
+
+std::array<double, 2> ChainTrack::finish(const Frame& frame, double dt, Wrench& wrench) {
+  const std::vector<Vector2>& change = solver_.solve();
+  const Eigen::Vector3d axle = frame.axes.col(1);
+  const Eigen::Vector3d& origin = frame.carrier.origin;
+
+  for (Touch& touch : touches_) {
+    const Eigen::Vector3d more = frame.from_plane(change[touch.pin]);
+    const Eigen::Vector3d along_normal = more.dot(touch.normal) * touch.normal;
+    const Eigen::Vector3d along_ground = more - along_normal;
+    const Eigen::Vector3d force =
+        touch.force - touch.gain * (along_normal + touch.grip * along_ground);
+    Eigen::Vector3d& bristle = bristles_[kRows * touch.pin + static_cast<size_t>(touch.row)];
+    bristle += dt * along_ground;
+    const double longest = law_.friction * std::max(0.0, force.dot(touch.normal)) / law_.stiffness;
+    const double length = bristle.norm();
+    if (length > longest) bristle *= longest / length;
+    ground_force_[touch.pin] += force;
+    const Eigen::Vector3d edge = (touch.row == 0 ? 0.5 : -0.5) * geometry_.width * axle;
+    wrench.torque += edge.cross(force);
+    normal_load_ += force.z();
+  }
+
+  std::array<double, 2> torque = {0.0, 0.0};
+  for (const Bite& bite : bites_) {
+    const size_t next = after(bite.link);
+    const Vector2 faster = (1.0 - bite.share) * change[bite.link] + bite.share * change[next];
+    const Vector2 force = bite.force - bite.gain * faster;
+    const Vector2 along(bite.out.y(), -bite.out.x());
+    teeth_[bite.link][bite.wheel] += dt * faster.dot(along);
+    torque[bite.wheel] -= force.dot(along) * geometry_.radius;
+    const Vector2 place = (1.0 - bite.share) * place_[bite.link] + bite.share * place_[next];
+    wrench.add(-frame.from_plane(force), frame.place(place) - origin);
+  }
+
+  // The guides make the pins follow the body sideways.
+  for (size_t i = 0; i < pins(); ++i) {
+    const Eigen::Vector3d place = frame.place(place_[i]);
+    const double sideways = axle.dot(frame.carrier_velocity(place) - velocity_[i]);
+    const double guide =
+        pin_mass_ * (sideways / dt + kGravity_m_per_s2 * axle.z()) - axle.dot(ground_force_[i]);
+    wrench.add(-guide * axle, place - origin);
+    velocity_[i] += frame.from_plane(change[i]) + sideways * axle;
+  }
+  return torque;
+}
+
+double ChainTrack::surface_speed(const Frame& frame) const {
+  double speed = 0.0;
+  for (size_t i = 0; i < pins(); ++i) {
+    const Vector2 ahead = (place_[after(i)] - place_[before(i)]).normalized();
+    speed +=
+        ahead.dot(frame.in_plane(velocity_[i] - frame.carrier_velocity(frame.place(place_[i]))));
+  }
+  return speed / static_cast<double>(pins());
+}
+
+SoilContact ChainTrack::soil_contact(const CarrierMotion& carrier) {
+  const Frame frame = frame_of(carrier);
+  const bool on_its_side = std::abs(frame.axes(2, 1)) > kOnItsSide;
+  Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = frame.axes;
+  pose.translation() = frame.centre;
+  footprint.set_pose(pose);
+  SoilContact contact;
+  contact.footprint = &footprint;
+  contact.memory = &memory_;
+  if (on_its_side || at_rest_) return contact;
+  contact.surface_speed = surface_speed(frame);
+  const double over_ground = frame.carrier_velocity(frame.centre).dot(frame.axes.col(0));
+  const double faster = std::max(std::abs(over_ground), std::abs(contact.surface_speed));
+  if (faster > kSlipSpeed) {
+    contact.slip = std::min(1.0, std::abs(contact.surface_speed - over_ground) / faster);
+  }
+  return contact;
+}
+
+// What drives along the band goes into the pins of the lower run; the rest goes straight into the
+// body, through wheels and guides that are stiff beside soil. The body has got all of it already.
+void ChainTrack::pull_on_lower_run(const SoilReaction& soil, const Frame& frame, double dt,
+                                   Wrench& wrench) {
+  normal_load_ = soil.normal_load;
+  sinkage_ = soil.sinkage;
+  if (std::abs(frame.axes(2, 1)) > kOnItsSide) return;
+  const double below = frame.axes(2, 2) < 0.0 ? 1.0 : -1.0;
+  const auto in_lower_run = [&](const Vector2& pin) {
+    return pin.y() * below > 0.0 && std::abs(pin.x()) <= half_length_;
+  };
+  const auto lower = std::count_if(place_.begin(), place_.end(), in_lower_run);
+  const Vector2 each(soil.force.dot(frame.axes.col(0)) / static_cast<double>(lower), 0.0);
+  for (size_t i = 0; i < pins(); ++i) {
+    if (!in_lower_run(place_[i])) continue;
+    solver_.right[i] += dt * each;
+    wrench.add(-frame.from_plane(each), frame.place(place_[i]) - frame.carrier.origin);
+  }
+}
+
+// Every link is a box to the particles. They push on it with stiff springs of their own: the pins
+// take them as if the springs were implicit, which only a change of their velocity feels.
+void ChainTrack::press_particles(ParticleBed& particles, const Frame& frame, double dt,
+                                 Wrench& wrench) {
+  const ParticleMaterial& material = particles.options().material;
+  const double gain =
+      kSpheresOnALink *
+      (2.0 * material.damping_ratio * std::sqrt(material.stiffness_n_per_m() * material.mass_kg()) +
+       dt * material.stiffness_n_per_m());
+  const Eigen::Vector3d axle = frame.axes.col(1);
+  for (size_t i = 0; i < pins(); ++i) {
+    const size_t j = after(i);
+    const Vector2 run = place_[j] - place_[i];
+    const double length = run.norm();
+    const Vector2 along = run / length;
+    const Vector2 out(-along.y(), along.x());
+    const Vector2 inwards = -0.5 * kShoeThickness_m * out;
+
+    Eigen::Isometry3d pose;
+    pose.linear() << frame.from_plane(along), axle, frame.from_plane(out);
+    pose.translation() = frame.place(place_[i] + 0.5 * run + inwards);
+    FootprintMotion motion;
+    motion.friction = law_.friction;
+    const Eigen::Vector3d& carried = frame.carrier.omega;
+    const double turning = -out.dot(frame.in_plane(velocity_[j] - velocity_[i])) / length;
+    motion.omega = carried + (turning - axle.dot(carried)) * axle;
+    const Eigen::Vector3d pins_velocity = 0.5 * (velocity_[i] + velocity_[j]);
+    motion.velocity =
+        pins_velocity + axle.dot(frame.carrier_velocity(pose.translation()) - pins_velocity) * axle;
+    motion.velocity += (turning * axle).cross(frame.from_plane(inwards));
+    shoes_[i].set_pose(pose);
+    const SoilReaction reaction = particles.press(shoes_[i], motion, dt);
+    if (reaction.force.isZero(0.0)) continue;
+
+    const Vector2 force = frame.in_plane(reaction.force);
+    const double about_axle = axle.dot(reaction.torque);
+    // About the left axis a force at (x, z) has the moment z Fx - x Fz.
+    const double moment = about_axle + inwards.y() * force.x() - inwards.x() * force.y();
+    const Vector2 couple = -moment / length * out;
+    const Matrix2 each = 0.5 * gain * Matrix2::Identity();
+    add_force(i, 0.5 * force - couple, each, dt);
+    add_force(j, 0.5 * force + couple, each, dt);
+    ground_force_[i] += 0.5 * reaction.force;
+    ground_force_[j] += 0.5 * reaction.force;
+    wrench.torque += reaction.torque - about_axle * axle;
+    normal_load_ += reaction.normal_load;
+  }
+}
+
+template <class Loading>
+std::array<double, 2> ChainTrack::step_under(const CarrierMotion& carrier, const WheelRates& rates,
+                                             double dt, Wrench& wrench, Loading loading) {
+  const Frame frame = move_pins(carrier, dt);
+  begin(frame, dt);
+  add_links(frame, dt);
+  add_wheels(frame, rates, dt);
+  loading(frame);
+  return finish(frame, dt, wrench);
+}
+
+std::array<double, 2> ChainTrack::step(const HeightField& ground, const CarrierMotion& carrier,
+                                       const WheelRates& rates, double dt, Wrench& wrench) {
+  return step_under(carrier, rates, dt, wrench,
+                    [&](const Frame& frame) { touch_ground(ground, frame, dt); });
+}
+
+std::array<double, 2> ChainTrack::step(const SoilReaction& soil, const CarrierMotion& carrier,
+                                       const WheelRates& rates, double dt, Wrench& wrench) {
+  return step_under(carrier, rates, dt, wrench,
+                    [&](const Frame& frame) { pull_on_lower_run(soil, frame, dt, wrench); });
+}
+
+std::array<double, 2> ChainTrack::step(ParticleBed& particles, const CarrierMotion& carrier,
+                                       const WheelRates& rates, double dt, Wrench& wrench) {
+  return step_under(carrier, rates, dt, wrench, [&](const Frame& frame) {
+    touch_ground(particles.floor(), frame, dt);
+    press_particles(particles, frame, dt, wrench);
+  });
+}
+
+}  // namespace screed

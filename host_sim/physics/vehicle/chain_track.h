@@ -1,0 +1,171 @@
+// A track of links round the two wheels of a side: pins, links between them, shoes on the links.
+//
+// Every pin is a point mass with two degrees of freedom in the plane of its wheels (the guides on
+// the wheels hold it there: what pushes it sideways pushes the carrying body). Links are stiff
+// springs from pin to pin. Wheels bear the pins radially and hold them by their teeth; the ground
+// presses on the shoes. One linearly implicit step of the whole chain costs one elimination
+// (chain_solver.h), so neither the lightness of the pins (some 1:1000 against the robot) nor the
+// stiffness of links, teeth and soil limits the step. Forces on the carrying body, and torques on
+// the wheels' shafts, are what the pins felt.
+//
+// Method: Baraff and Witkin, Large steps in cloth simulation, SIGGRAPH 1998, in one dimension.
+// docs/robot-model.md says what else was tried.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "host_sim/physics/particles/particle_bed.h"
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/chain_solver.h"
+#include "host_sim/physics/vehicle/ground_contact.h"
+#include "host_sim/physics/vehicle/running_gear.h"
+
+namespace screed {
+
+struct ChainOptions {
+  int links = 0;             ///< of each side; 0: as many as make links of about 10 mm
+  double tension_n = 10.0;   ///< of the chain at rest on its wheels
+  double mass_kg = 0.06;     ///< of one side, taken from the mass of its wheels
+  double stiffness_n = 1e4;  ///< tension that would stretch it to twice its length
+};
+
+class ChainTrack {
+ public:
+  /// Speeds of the wheels against the carrying body, rad/s, driving forward positive: front, rear.
+  using WheelRates = std::array<double, 2>;
+
+  /// Throws InputError when the options give no chain.
+  ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& options, double friction,
+             const GearLoad& load);
+
+  /// One step on rigid ground: moves the pins with the velocities of the last step, then finds the
+  /// new ones. Adds what the chain does to the carrying body to `wrench`; returns the torques on
+  /// front and rear wheel, N m, driving forward positive.
+  std::array<double, 2> step(const HeightField& ground, const CarrierMotion& carrier,
+                             const WheelRates& rates, double dt, Wrench& wrench);
+  /// On soil that gives way: the shoes as one band round the wheels (in a grid of some millimetres
+  /// a shoe is hardly wider than a cell), a footprint of the carrier; valid until the next call.
+  SoilContact soil_contact(const CarrierMotion& carrier);
+  /// The same step after the soil has answered; the carrying body has got the answer already.
+  std::array<double, 2> step(const SoilReaction& soil, const CarrierMotion& carrier,
+                             const WheelRates& rates, double dt, Wrench& wrench);
+  /// The same on particles, and on the floor where there are none.
+  std::array<double, 2> step(ParticleBed& particles, const CarrierMotion& carrier,
+                             const WheelRates& rates, double dt, Wrench& wrench);
+
+  /// Lays the chain round its wheels as at the start, at rest with the body.
+  void reset();
+
+  double radius_m() const { return geometry_.radius; }
+  const Eigen::Vector3d& centre() const { return centre_; }
+  double normal_load_n() const { return normal_load_; }
+  /// Greatest depth below the undisturbed soil, 0 on other ground.
+  double sinkage_m() const { return sinkage_; }
+  /// Corners of the shoes at rest, in the frame of the carrier's centre of mass.
+  std::vector<Eigen::Vector3d> points() const;
+
+  size_t pins() const { return place_.size(); }
+  /// Of a pin, in the frame of the carrier's centre of mass.
+  Eigen::Vector3d pin(size_t i) const { return on_axes(place_[i]) + centre_; }
+  double length_m() const;
+  double unloaded_length_m() const { return link_length_ * static_cast<double>(pins()); }
+  /// How far the pin that is farthest from the ideal loop round the wheels stands from it, m.
+  double farthest_from_loop_m() const;
+  /// Motion of the pins beside that of the carrying body, J.
+  double kinetic_energy_j(const CarrierMotion& carrier) const;
+
+ private:
+  using Vector2 = Eigen::Vector2d;  // along and up, in the plane of the wheels
+  using Matrix2 = Eigen::Matrix2d;
+
+  struct Frame {           // of this step, world
+    Eigen::Matrix3d axes;  // forward, left, up of the plane
+    Eigen::Vector3d centre;
+    const CarrierMotion& carrier;
+
+    Vector2 in_plane(const Eigen::Vector3d& v) const {
+      return {axes.col(0).dot(v), axes.col(2).dot(v)};
+    }
+    Eigen::Vector3d from_plane(const Vector2& v) const {
+      return v.x() * axes.col(0) + v.y() * axes.col(2);
+    }
+    Eigen::Vector3d place(const Vector2& p) const { return centre + from_plane(p); }
+    Eigen::Vector3d carrier_velocity(const Eigen::Vector3d& place) const {
+      return carrier.velocity + carrier.omega.cross(place - carrier.origin);
+    }
+  };
+  struct Touch {  // one corner of a shoe in the ground
+    size_t pin;
+    int row;
+    Eigen::Vector3d normal;
+    Eigen::Vector3d force;  // as if the pin kept its velocity
+    double gain;            // N s/m, of the velocity's change
+    double grip;            // share of the gain along the ground
+  };
+  struct Bite {   // a link on a wheel
+    size_t link;  // from pin `link` to the next one
+    size_t wheel;
+    double share;  // of the way along the link
+    Vector2 out;
+    Vector2 force;
+    Matrix2 gain;
+  };
+
+  Eigen::Vector3d on_axes(const Vector2& p) const {
+    return p.x() * axes_.col(0) + p.y() * axes_.col(2);
+  }
+  size_t after(size_t i) const { return i + 1 == place_.size() ? 0 : i + 1; }
+  size_t before(size_t i) const { return i == 0 ? place_.size() - 1 : i - 1; }
+
+  Frame frame_of(const CarrierMotion& carrier) const;
+  Frame move_pins(const CarrierMotion& carrier, double dt);
+  void begin(const Frame& frame, double dt);
+  void add_links(const Frame& frame, double dt);
+  void add_wheels(const Frame& frame, const WheelRates& rates, double dt);
+  void touch_ground(const HeightField& ground, const Frame& frame, double dt);
+  double surface_speed(const Frame& frame) const;
+  void pull_on_lower_run(const SoilReaction& soil, const Frame& frame, double dt, Wrench& wrench);
+  void press_particles(ParticleBed& particles, const Frame& frame, double dt, Wrench& wrench);
+  template <class Loading>
+  std::array<double, 2> step_under(const CarrierMotion& carrier, const WheelRates& rates, double dt,
+                                   Wrench& wrench, Loading loading);
+  void add_force(size_t pin, const Vector2& force, const Matrix2& gain, double dt);
+  std::array<double, 2> finish(const Frame& frame, double dt, Wrench& wrench);
+
+  RunningGearGeometry geometry_;
+  Eigen::Vector3d centre_;
+  Eigen::Matrix3d axes_;  // forward, left, up of the plane, in the carrier's frame
+  double half_length_;    // of the run between the axles
+  double link_length_;    // unloaded
+  double pin_mass_;
+  double stiffness_;  // of one link, N/m
+  ContactLaw law_;
+
+  // A pin's neighbour of higher index is the one ahead of it when driving forward, on the upper
+  // run.
+  std::vector<Vector2> rest_;                 // where the pins are laid at the start
+  std::vector<Vector2> place_;                // from centre_, in the plane
+  std::vector<Eigen::Vector3d> velocity_;     // world
+  std::vector<Eigen::Vector3d> bristles_;     // world, two rows
+  std::vector<std::array<double, 2>> teeth_;  // how far the teeth of each wheel are bent, m
+  std::vector<std::array<uint8_t, 2>> engaged_;
+  bool at_rest_ = true;  // just laid: takes over the body's velocity
+
+  ChainSolver solver_;
+  std::vector<Touch> touches_;
+  std::vector<Bite> bites_;
+  std::vector<Eigen::Vector3d> ground_force_;  // on each pin, for the guides
+  double normal_load_ = 0.0;
+  double sinkage_ = 0.0;
+
+  Footprint footprint_;
+  Footprint side_footprint_;
+  std::vector<Footprint> shoes_;  // of each link
+  ContactMemory memory_;
+};
+
+}  // namespace screed

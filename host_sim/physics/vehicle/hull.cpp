@@ -1,0 +1,164 @@
+// Points and boxes on the ground.
+#include "host_sim/physics/vehicle/hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <variant>
+
+#include "host_sim/physics/vehicle/ode_world.h"
+
+namespace screed {
+namespace {
+
+constexpr double kHullSpacing_m = 0.04;  // of contact points on boxes
+constexpr double kHullSinkIn_m = 0.001;  // when four points carry the whole robot
+
+// Points on the surface of a shape, dense enough that the ground cannot pass between them
+// unnoticed.
+void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose,
+                     std::vector<Eigen::Vector3d>& points) {
+  const Eigen::Isometry3d at = pose * shape.pose;
+  if (const auto* box = std::get_if<Box>(&shape.geometry)) {
+    Eigen::Vector3i count;
+    for (int axis = 0; axis < 3; ++axis) {
+      count[axis] = std::max(1, static_cast<int>(std::ceil(box->size[axis] / kHullSpacing_m)));
+    }
+    for (int i = 0; i <= count.x(); ++i) {
+      for (int j = 0; j <= count.y(); ++j) {
+        for (int k = 0; k <= count.z(); ++k) {
+          const bool surface =
+              i == 0 || j == 0 || k == 0 || i == count.x() || j == count.y() || k == count.z();
+          if (!surface) continue;
+          const Eigen::Vector3d share(static_cast<double>(i) / count.x() - 0.5,
+                                      static_cast<double>(j) / count.y() - 0.5,
+                                      static_cast<double>(k) / count.z() - 0.5);
+          points.emplace_back(at * share.cwiseProduct(box->size));
+        }
+      }
+    }
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+    constexpr int kAround = 12;
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kAround;
+      for (const double end : {-0.5, 0.5}) {
+        points.emplace_back(at * Eigen::Vector3d(cylinder->radius * std::cos(angle),
+                                                 cylinder->radius * std::sin(angle),
+                                                 end * cylinder->length));
+      }
+    }
+  } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+    for (const Eigen::Vector3d& vertex : mesh->vertices) points.emplace_back(at * vertex);
+  }
+}
+
+struct HullBox {
+  Eigen::Isometry3d pose;
+  Eigen::Vector3d size;
+};
+
+// The box that stands for a shape on soil: itself, or the box round a cylinder or a mesh.
+std::optional<HullBox> box_of(const Shape& shape, const Eigen::Isometry3d& pose) {
+  Eigen::Isometry3d at = pose * shape.pose;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  if (const auto* box = std::get_if<Box>(&shape.geometry)) {
+    size = box->size;
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+    size = {2.0 * cylinder->radius, 2.0 * cylinder->radius, cylinder->length};
+  } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+    Eigen::AlignedBox3d bounds;
+    for (const Eigen::Vector3d& vertex : mesh->vertices) bounds.extend(vertex);
+    if (bounds.isEmpty()) return std::nullopt;
+    size = bounds.sizes();
+    at = at * Eigen::Translation3d(bounds.center());
+  }
+  return HullBox{at, size};
+}
+
+}  // namespace
+
+void Hull::add(const Shape& shape, const Eigen::Isometry3d& pose) {
+  add_hull_points(shape, pose, points_);
+  const std::optional<HullBox> box = box_of(shape, pose);
+  if (!box) return;
+  boxes_.push_back(Footprint::box(box->size));
+  box_poses_.push_back(box->pose);
+  reach_ = std::max(reach_, box->pose.translation().norm() + 0.5 * box->size.norm());
+}
+
+void Hull::close(double friction, double robot_kg) {
+  law_.friction = friction;
+  law_.stiffness = robot_kg * kGravity_m_per_s2 / (4.0 * kHullSinkIn_m);
+  law_.damping = std::sqrt(law_.stiffness * robot_kg / 4.0);
+  for (const Eigen::Vector3d& point : points_) reach_ = std::max(reach_, point.norm());
+  let_go();
+}
+
+void Hull::let_go() {
+  bristles_.assign(points_.size(), Eigen::Vector3d::Zero());
+  box_memories_.assign(boxes_.size(), ContactMemory{});
+}
+
+void Hull::contact(const HeightField& ground, const CarrierMotion& motion, double dt,
+                   Wrench& wrench) {
+  const double ceiling =
+      ground.max_height_within(motion.origin.x(), motion.origin.y(), reach_) - motion.origin.z();
+  const Eigen::RowVector3d upwards = motion.rotation.row(2);
+  GroundTouch touch;
+  for (size_t i = 0; i < points_.size(); ++i) {
+    if (upwards.dot(points_[i]) > ceiling) {
+      bristles_[i].setZero();
+      continue;
+    }
+    const Eigen::Vector3d arm = motion.rotation * points_[i];
+    if (!touches(ground, motion.origin + arm, touch)) {
+      bristles_[i].setZero();
+      continue;
+    }
+    const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
+    wrench.add(contact_force(law_, touch, velocity, velocity, dt, bristles_[i]), arm);
+  }
+}
+
+void Hull::contact(ParticleBed& particles, const CarrierMotion& motion, double dt, Wrench& wrench) {
+  contact(particles.floor(), motion, dt, wrench);
+  for (size_t i = 0; i < boxes_.size(); ++i) {
+    Eigen::Isometry3d pose = box_poses_[i];
+    const Eigen::Vector3d arm = motion.rotation * pose.translation();
+    pose.linear() = motion.rotation * pose.linear();
+    pose.translation() = motion.origin + arm;
+    Footprint& box = boxes_[i];
+    box.set_pose(pose);
+    FootprintMotion moving;
+    moving.velocity = motion.velocity + motion.omega.cross(arm);
+    moving.omega = motion.omega;
+    moving.friction = law_.friction;
+    const SoilReaction reaction = particles.press(box, moving, dt);
+    wrench.add(reaction.force, arm);
+    wrench.torque += reaction.torque;
+  }
+}
+
+void Hull::add_soil_contacts(const SoilBed& soil, const CarrierMotion& motion,
+                             std::vector<SoilContact>& contacts) {
+  const double ceiling =
+      soil.surface().max_height_within(motion.origin.x(), motion.origin.y(), reach_);
+  for (size_t i = 0; i < boxes_.size(); ++i) {
+    Eigen::Isometry3d pose = box_poses_[i];
+    pose.translation() = motion.origin + motion.rotation * pose.translation();
+    pose.linear() = motion.rotation * pose.linear();
+    Footprint& box = boxes_[i];
+    box.set_pose(pose);
+    if (pose.translation().z() - box.reach_down() > ceiling) {
+      box_memories_[i] = {};
+      continue;
+    }
+    SoilContact contact;
+    contact.footprint = &box;
+    contact.memory = &box_memories_[i];
+    contacts.push_back(contact);
+  }
+}
+
+}  // namespace screed

@@ -1,0 +1,37 @@
+// Ownership of an ODE world.
+#include "host_sim/physics/vehicle/ode_world.h"
+
+#include <mutex>
+
+namespace screed {
+namespace {
+
+// ODE is initialised once a process and never closed: worlds of several threads come and go.
+void initialise_ode() {
+  static std::once_flag once;
+  std::call_once(once, [] { dInitODE2(0); });
+  dAllocateODEDataForThread(dAllocateMaskAll);
+}
+
+dWorldID create_world() {
+  initialise_ode();
+  return dWorldCreate();
+}
+
+}  // namespace
+
+// Without an implementation of its own a world steps on one that all worlds share: two that step at
+// the same time then end the program.
+OdeWorld::OdeWorld()
+    : world_(create_world()), threading_(dThreadingAllocateSelfThreadedImplementation()) {
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_),
+                                       threading_);
+  dWorldSetGravity(world_, 0.0, 0.0, -kGravity_m_per_s2);
+}
+
+OdeWorld::~OdeWorld() {
+  dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
+}
+
+}  // namespace screed

@@ -1,0 +1,123 @@
+// The surface of one unit of running gear: a belt around two wheels, or a single wheel.
+//
+// A unit is a closed contour in a plane of the chassis, covered with contact points, whose surface
+// moves along it at one speed, which the shaft gives (drive_shaft.h): a belt does not slip on its
+// wheels.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "host_sim/physics/particles/particle_bed.h"
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/ground_contact.h"
+
+namespace screed {
+
+/// Motion of the carrying body at this step, world frame.
+struct CarrierMotion {
+  Eigen::Vector3d origin;    ///< centre of mass
+  Eigen::Matrix3d rotation;  ///< body to world
+  Eigen::Vector3d velocity;  ///< of the centre of mass
+  Eigen::Vector3d omega;
+};
+
+/// Sum of forces on the carrying body, about its centre of mass, world frame.
+struct Wrench {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+
+  void add(const Eigen::Vector3d& f, const Eigen::Vector3d& arm) {
+    force += f;
+    torque += arm.cross(f);
+  }
+};
+
+struct RunningGearGeometry {
+  Eigen::Vector3d
+      front;  ///< centre of the front wheel, in the frame of the carrier's centre of mass
+  Eigen::Vector3d rear;  ///< of the rear wheel; equal to `front` for a single wheel
+  double radius = 0.03;  ///< m, belt included
+  double width = 0.03;   ///< m
+};
+
+/// What a unit carries.
+struct GearLoad {
+  double weight_n = 1.0;  ///< on level ground; sets the stiffness, so that it sinks in 0.4 mm
+  double mass_kg = 0.1;   ///< share of the robot's mass, for the damping
+};
+
+class RunningGear {
+ public:
+  RunningGear(const RunningGearGeometry& geometry, double friction, const GearLoad& load);
+
+  /// Contact forces of this step, added to `wrench`, while the surface moves at `speed` over the
+  /// wheels (m/s, driving forward positive). Returns the ground's force along the surface's motion,
+  /// N.
+  double contact(const HeightField& ground, const CarrierMotion& carrier, double speed, double dt,
+                 Wrench& wrench);
+
+  /// On soil that gives way: the unit's lower surface as a footprint of the carrier; valid until
+  /// the next call.
+  SoilContact soil_contact(const CarrierMotion& carrier, double speed);
+  /// Remembers the soil's answer to it.
+  void answered(const SoilReaction& reaction) {
+    normal_load_ = reaction.normal_load;
+    sinkage_ = reaction.sinkage;
+  }
+
+  /// The same on particles, and on the floor where there are none.
+  double contact(ParticleBed& particles, const CarrierMotion& carrier, double speed, double dt,
+                 Wrench& wrench);
+
+  /// Lets go of the ground.
+  void let_go();
+
+  double radius_m() const { return geometry_.radius; }
+  double normal_load_n() const { return normal_load_; }
+  /// Greatest depth below the undisturbed soil, 0 on rigid ground.
+  double sinkage_m() const { return sinkage_; }
+  const Eigen::Vector3d& centre() const { return centre_; }
+  /// The contour's points in the frame of the carrier's centre of mass.
+  const std::vector<Eigen::Vector3d>& points() const { return points_; }
+
+ private:
+  struct Pressing {  // the unit's solid as it moves in this step
+    Eigen::Isometry3d pose;
+    FootprintMotion motion;
+    Eigen::Vector3d arm;  // of its centre, from the carrier's centre of mass, world frame
+  };
+
+  Pressing pressing(const CarrierMotion& carrier, double speed) const;
+  void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
+                 const Eigen::Vector3d& along);
+  void carry_bristles(double speed, double dt);
+  void let_go(size_t point);
+
+  RunningGearGeometry geometry_;
+  GearLoad load_;
+  ContactLaw law_;
+  double spacing_;  ///< between neighbours along the contour, m
+  int rows_ = 2;    ///< contours side by side, at both edges of the belt
+  Eigen::Vector3d centre_;
+
+  // Point i of row r stands at index r * (count / rows) + i, in the order in which the material
+  // passes when driving forward.
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<Eigen::Vector3d> outwards_;  ///< normal of the contour, unit length
+  std::vector<Eigen::Vector3d> along_;     ///< direction of the material, unit length
+  std::vector<Eigen::Vector3d> bristles_;  ///< world frame, m
+  std::vector<Eigen::Vector3d> carried_;   ///< bristles before carry_bristles
+  std::vector<uint8_t> bent_;              ///< whether a bristle may differ from zero
+
+  Footprint footprint_;       ///< of the contour on soil, upright
+  Footprint side_footprint_;  ///< of a unit that lies on its side
+  Eigen::Matrix3d axes_;      ///< forward, left, up of the contour in the carrier's frame
+  ContactMemory memory_;
+  double normal_load_ = 0.0;
+  double sinkage_ = 0.0;
+};
+
+}  // namespace screed

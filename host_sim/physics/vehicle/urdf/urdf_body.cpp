@@ -1,0 +1,93 @@
+// Shapes, mass and inertia of a link.
+#include "host_sim/physics/vehicle/urdf/urdf_body.h"
+
+#include <Eigen/Eigenvalues>
+#include <string>
+#include <string_view>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/vehicle/urdf/mesh_loader.h"
+
+namespace screed::urdf_parts {
+namespace {
+
+// A thin plate has I1 + I2 = I3 but for the last digits.
+constexpr double kRelativeInertiaTolerance = 1e-6;
+
+// "package://robot/meshes/a.obj" means meshes/a.obj beside the URDF file, like a plain
+// "meshes/a.obj".
+std::filesystem::path mesh_path(const std::filesystem::path& urdf_file, std::string name) {
+  constexpr std::string_view kPackage = "package://";
+  if (name.starts_with(kPackage)) {
+    const std::size_t slash = name.find('/', kPackage.size());
+    name.erase(0, slash == std::string::npos ? kPackage.size() : slash + 1);
+  }
+  return urdf_file.parent_path() / name;
+}
+
+Shape to_shape(const urdf::Pose& origin, const urdf::Geometry& geometry,
+               const std::filesystem::path& urdf_file, const LinkElement& link,
+               const Complaint& complain) {
+  Shape shape;
+  shape.pose = to_eigen(origin);
+  if (geometry.type == urdf::Geometry::BOX) {
+    shape.geometry = Box{to_eigen(dynamic_cast<const urdf::Box&>(geometry).dim)};
+  } else if (geometry.type == urdf::Geometry::CYLINDER) {
+    const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(geometry);
+    shape.geometry = Cylinder{cylinder.radius, cylinder.length};
+  } else {
+    const auto& mesh = dynamic_cast<const urdf::Mesh&>(geometry);
+    try {
+      shape.geometry = load_mesh(mesh_path(urdf_file, mesh.filename), to_eigen(mesh.scale));
+    } catch (const InputError& error) {
+      complain.at_element(*link.xml, error.what());
+    }
+  }
+  return shape;
+}
+
+Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
+                   const Complaint& complain) {
+  Inertia inertia;
+  inertia.mass = inertial.mass;
+  inertia.pose = to_eigen(inertial.origin);
+  inertia.tensor << inertial.ixx, inertial.ixy, inertial.ixz,  //
+      inertial.ixy, inertial.iyy, inertial.iyz,                //
+      inertial.ixz, inertial.iyz, inertial.izz;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia.tensor,
+                                                              Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d& moments = solver.eigenvalues();  // ascending
+  const TiXmlElement& element =
+      *link.xml->FirstChildElement("inertial")->FirstChildElement("inertia");
+  const std::string values = "principal moments " + to_text(moments[0]) + ", " +
+                             to_text(moments[1]) + ", " + to_text(moments[2]) + " kg m^2";
+  if (!(moments[0] > 0.0)) {
+    complain.at_element(element, "<inertia> is not positive definite (" + values + ")");
+  }
+  if (moments[2] > (moments[0] + moments[1]) * (1.0 + kRelativeInertiaTolerance)) {
+    complain.at_element(
+        element,
+        "<inertia> breaks the triangle inequality, the greatest moment exceeds the sum "
+        "of the others (" +
+            values + ")");
+  }
+  return inertia;
+}
+
+}  // namespace
+
+AssemblyBody to_body(const LinkElement& element, const urdf::Link& link,
+                     const std::filesystem::path& urdf_file, const Complaint& complain) {
+  AssemblyBody body;
+  body.name = element.name;
+  if (link.inertial) body.inertia = to_inertia(*link.inertial, element, complain);
+  for (const urdf::CollisionSharedPtr& item : link.collision_array) {
+    body.collision.push_back(to_shape(item->origin, *item->geometry, urdf_file, element, complain));
+  }
+  for (const urdf::VisualSharedPtr& item : link.visual_array) {
+    body.visual.push_back(to_shape(item->origin, *item->geometry, urdf_file, element, complain));
+  }
+  return body;
+}
+
+}  // namespace screed::urdf_parts

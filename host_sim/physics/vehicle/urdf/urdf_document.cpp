@@ -1,0 +1,342 @@
+// Reading a URDF file's XML and checking what urdfdom does not.
+#include "host_sim/physics/vehicle/urdf/urdf_document.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "host_sim/core/errors.h"
+
+namespace screed::urdf_parts {
+namespace {
+
+constexpr std::array<const char*, 5> kRequiredLinks = {"Body", "fl_Wheel", "fr_Wheel", "bl_Wheel",
+                                                       "br_Wheel"};
+
+// TinyXML recurses; URDF itself nests six deep.
+constexpr int kDeepestNesting = 100;
+
+// Names and values of a file end up in messages, whatever they contain.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  return text;
+}
+
+// "link 'fl_Wheel': " for anything inside it.
+std::string owner(const TiXmlElement& element) {
+  const TiXmlNode* node = &element;
+  while (node != nullptr && node->ValueStr() != "link" && node->ValueStr() != "joint") {
+    node = node->Parent();
+  }
+  if (node == nullptr) return "";
+  return node->ValueStr() + " " + in_quotes(attribute(*node->ToElement(), "name")) + ": ";
+}
+
+}  // namespace
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::general, 6);
+  return {buffer.data(), end.ptr};
+}
+
+std::string in_quotes(std::string_view text) {
+  return "'" + std::string(text) + "'";
+}
+
+std::string attribute(const TiXmlElement& element, const char* name) {
+  const char* value = element.Attribute(name);
+  return value == nullptr ? std::string() : std::string(value);
+}
+
+void Complaint::about_file(const std::string& what) const {
+  throw InputError(one_line(file_.string() + ": " + what));
+}
+
+void Complaint::at_row(int row, const std::string& what) const {
+  const std::string line = row > 0 ? ":" + std::to_string(row) : "";  // 0: TinyXML knows none
+  throw InputError(one_line(file_.string() + line + ": " + what));
+}
+
+void Complaint::at_element(const TiXmlElement& element, const std::string& what) const {
+  at_row(element.Row(), owner(element) + what);
+}
+
+namespace {
+
+// Greatest number of elements open at once. Counts tags inside comments too: the limit leaves room
+// for those.
+int nesting_depth(std::string_view xml) {
+  int depth = 0;
+  int deepest = 0;
+  for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
+    const std::string_view pair = xml.substr(i, 2);
+    if (pair == "</" || pair == "/>") {
+      --depth;
+    } else if (pair[0] == '<' && pair != "<!" && pair != "<?") {
+      deepest = std::max(deepest, ++depth);
+    }
+  }
+  return deepest;
+}
+
+// Plain decimal numbers only, whatever the locale: "nan" and "inf" are no numbers here.
+std::optional<double> parse_number(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+}  // namespace
+
+void parse_xml(const std::filesystem::path& file, const Complaint& complain, TiXmlDocument& xml) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    complain.about_file("no such file, or not a file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) complain.about_file("cannot be read");
+  if (text.find('\0') != std::string::npos) complain.about_file("is not an XML text file");
+  if (nesting_depth(text) > kDeepestNesting) {
+    complain.about_file("elements are nested more than " + std::to_string(kDeepestNesting) +
+                        " deep");
+  }
+  xml.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
+  if (xml.Error()) {
+    complain.at_row(xml.ErrorRow(), std::string("malformed XML: ") + xml.ErrorDesc());
+  }
+  const TiXmlElement* root = xml.RootElement();
+  if (root == nullptr || root->ValueStr() != "robot") {
+    complain.about_file("not a URDF file: the outermost element must be <robot>");
+  }
+  if (root->NextSiblingElement() != nullptr) {
+    complain.at_row(root->NextSiblingElement()->Row(), "nothing may follow </robot>");
+  }
+}
+
+// Numbers separated by spaces; empty when one of them is no number.
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> values;
+  while (true) {
+    const std::size_t start = text.find_first_not_of(' ');
+    if (start == std::string_view::npos) return values;
+    text.remove_prefix(start);
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::optional<double> value = parse_number(text.substr(0, end));
+    if (!value) return {};
+    values.push_back(*value);
+    text.remove_prefix(end);
+  }
+}
+
+namespace {
+
+enum class Sign { Any, Positive, NotNegative };
+
+struct NumberRule {
+  const char* element;
+  const char* name;
+  std::size_t count;
+  Sign sign;
+  bool required;
+};
+
+// Every number Screed or urdfdom reads from a link or a joint.
+constexpr NumberRule kNumberRules[] = {
+    {"origin", "xyz", 3, Sign::Any, false},
+    {"origin", "rpy", 3, Sign::Any, false},
+    {"axis", "xyz", 3, Sign::Any, true},
+    {"box", "size", 3, Sign::Positive, true},
+    {"cylinder", "radius", 1, Sign::Positive, true},
+    {"cylinder", "length", 1, Sign::Positive, true},
+    {"mesh", "scale", 3, Sign::Positive, false},
+    {"mass", "value", 1, Sign::Positive, true},
+    {"inertia", "ixx", 1, Sign::Any, true},
+    {"inertia", "ixy", 1, Sign::Any, true},
+    {"inertia", "ixz", 1, Sign::Any, true},
+    {"inertia", "iyy", 1, Sign::Any, true},
+    {"inertia", "iyz", 1, Sign::Any, true},
+    {"inertia", "izz", 1, Sign::Any, true},
+    {"limit", "lower", 1, Sign::Any, false},
+    {"limit", "upper", 1, Sign::Any, false},
+    {"limit", "effort", 1, Sign::NotNegative, true},
+    {"limit", "velocity", 1, Sign::NotNegative, true},
+    {"dynamics", "damping", 1, Sign::NotNegative, false},
+    {"dynamics", "friction", 1, Sign::NotNegative, false},
+};
+
+void check_number(const TiXmlElement& element, const NumberRule& rule, const Complaint& complain) {
+  const std::string tag = "<" + element.ValueStr() + "> ";
+  if (element.Attribute(rule.name) == nullptr) {
+    if (rule.required) complain.at_element(element, tag + "needs " + in_quotes(rule.name));
+    return;
+  }
+  const std::string text = attribute(element, rule.name);
+  const std::vector<double> values = parse_numbers(text);
+  // urdfdom reads no single number with a space around it.
+  bool good =
+      values.size() == rule.count && (rule.count > 1 || text.find(' ') == std::string::npos);
+  for (const double value : values) {
+    good = good && (rule.sign != Sign::Positive || value > 0.0) &&
+           (rule.sign != Sign::NotNegative || value >= 0.0);
+  }
+  if (good) return;
+  const std::string kind = rule.sign == Sign::Positive      ? "positive finite"
+                           : rule.sign == Sign::NotNegative ? "finite, not negative"
+                                                            : "finite";
+  complain.at_element(element, tag + in_quotes(rule.name) + " is '" + text +
+                                   "'; allowed: " + (rule.count == 1 ? "one " : "three ") + kind +
+                                   " number" + (rule.count == 1 ? "" : "s separated by spaces"));
+}
+
+void check_shape(const TiXmlElement& element, const Complaint& complain) {
+  const TiXmlElement* geometry = element.FirstChildElement("geometry");
+  const TiXmlElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+  if (shape == nullptr) {
+    complain.at_element(
+        element, "<" + element.ValueStr() + "> needs a <geometry> with a box, cylinder or mesh");
+  }
+  const std::string& kind = shape->ValueStr();
+  if (kind != "box" && kind != "cylinder" && kind != "mesh") {
+    complain.at_element(*shape,
+                        "geometry <" + kind + "> is not supported; allowed: box, cylinder, mesh");
+  }
+  if (kind == "mesh" && attribute(*shape, "filename").empty()) {
+    complain.at_element(*shape, "<mesh> needs 'filename'");
+  }
+}
+
+}  // namespace
+
+// Everything below a link or a joint.
+void check_values(const TiXmlElement& parent, const Complaint& complain) {
+  for (const TiXmlElement* element = parent.FirstChildElement(); element != nullptr;
+       element = element->NextSiblingElement()) {
+    const std::string& tag = element->ValueStr();
+    if (tag == "visual" || tag == "collision") check_shape(*element, complain);
+    for (const char* part : {"mass", "inertia"}) {
+      if (tag == "inertial" && element->FirstChildElement(part) == nullptr) {
+        complain.at_element(*element, "<inertial> needs <" + std::string(part) + ">");
+      }
+    }
+    for (const NumberRule& rule : kNumberRules) {
+      if (tag == rule.element) check_number(*element, rule, complain);
+    }
+    check_values(*element, complain);
+  }
+}
+
+namespace {
+
+template <typename Item>
+void read_items(const TiXmlElement& robot, const char* tag, const Complaint& complain,
+                std::vector<Item>& items) {
+  for (const TiXmlElement* element = robot.FirstChildElement(tag); element != nullptr;
+       element = element->NextSiblingElement(tag)) {
+    const std::string name = attribute(*element, "name");
+    if (name.empty()) complain.at_row(element->Row(), "<" + std::string(tag) + "> needs a 'name'");
+    if (const int first = index_of(items, name); first >= 0) {
+      complain.at_row(element->Row(),
+                      std::string(tag) + " " + in_quotes(name) + " is there twice, first on line " +
+                          std::to_string(items[at(first)].xml->Row()) + "; names are unique");
+    }
+    Item item;
+    item.name = name;
+    item.xml = element;
+    items.push_back(item);
+  }
+}
+
+int linked_body(const JointElement& joint, const char* role, const std::vector<LinkElement>& links,
+                const Complaint& complain) {
+  const TiXmlElement* element = joint.xml->FirstChildElement(role);
+  const std::string name = element == nullptr ? std::string() : attribute(*element, "link");
+  if (name.empty()) {
+    complain.at_element(*joint.xml, "needs <" + std::string(role) + " link=\"...\"/>");
+  }
+  const int link = index_of(links, name);
+  if (link < 0) {
+    complain.at_element(*joint.xml,
+                        std::string(role) + " link " + in_quotes(name) + " does not exist");
+  }
+  return link;
+}
+
+int parent_link(const Outline& outline, int link) {
+  const int joint = outline.links[at(link)].parent_joint;
+  return joint < 0 ? -1 : outline.joints[at(joint)].parent;
+}
+
+}  // namespace
+
+Outline read_outline(const TiXmlElement& robot, const Complaint& complain) {
+  Outline outline;
+  read_items(robot, "link", complain, outline.links);
+  read_items(robot, "joint", complain, outline.joints);
+
+  for (const char* name : kRequiredLinks) {
+    if (index_of(outline.links, name) >= 0) continue;
+    std::string all;
+    for (const char* required : kRequiredLinks) {
+      all += (all.empty() ? "" : ", ") + std::string(required);
+    }
+    complain.about_file("there is no link named " + in_quotes(name) +
+                        "; a robot needs exactly one link each named " + all);
+  }
+  for (std::size_t j = 0; j < outline.joints.size(); ++j) {
+    JointElement& joint = outline.joints[j];
+    joint.type = attribute(*joint.xml, "type");
+    if (joint.type != "fixed" && joint.type != "revolute" && joint.type != "continuous") {
+      complain.at_element(*joint.xml,
+                          "type " + in_quotes(joint.type) +
+                              " is not supported; allowed: fixed, revolute, continuous");
+    }
+    if (joint.xml->FirstChildElement("mimic") != nullptr) {
+      complain.at_element(*joint.xml, "<mimic> is not supported");
+    }
+    joint.parent = linked_body(joint, "parent", outline.links, complain);
+    joint.child = linked_body(joint, "child", outline.links, complain);
+    LinkElement& child = outline.links[at(joint.child)];
+    if (child.parent_joint >= 0) {
+      complain.at_element(*joint.xml, "link " + in_quotes(child.name) + " has two parents, joint " +
+                                          in_quotes(outline.joints[at(child.parent_joint)].name) +
+                                          " and this one; a robot is a tree");
+    }
+    child.parent_joint = static_cast<int>(j);
+  }
+  return outline;
+}
+
+// Every link has at most one parent by now: it is a tree when nobody is its own ancestor and only
+// one has no parent.
+void check_tree(const Outline& outline, const Complaint& complain) {
+  const LinkElement* root = nullptr;
+  for (std::size_t i = 0; i < outline.links.size(); ++i) {
+    const LinkElement& link = outline.links[i];
+    const int self = static_cast<int>(i);
+    int ancestor = parent_link(outline, self);
+    for (std::size_t step = 0; step < outline.links.size() && ancestor >= 0; ++step) {
+      if (ancestor == self) {
+        complain.at_element(*link.xml, "its joints form a cycle; a robot is a tree");
+      }
+      ancestor = parent_link(outline, ancestor);
+    }
+    if (link.parent_joint >= 0) continue;
+    if (root != nullptr) {
+      complain.at_element(*link.xml, "neither this link nor link " + in_quotes(root->name) +
+                                         " is the child of a joint; a robot is one tree");
+    }
+    root = &link;
+  }
+}
+
+}  // namespace screed::urdf_parts

@@ -1,0 +1,146 @@
+// A skid-steered robot in the world: rigid bodies integrated by ODE, running gear and chassis in
+// contact with the ground.
+//
+// Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
+// them and turn on shafts (drive_shaft.h) under their running gear (running_gear.h). Other revolute
+// joints are ODE hinges. All ground forces are our own (ground_contact.h).
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/vehicle/chain_track.h"
+#include "host_sim/physics/vehicle/drive_shaft.h"
+#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/hull.h"
+#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/physics/vehicle/running_gear.h"
+#include "host_sim/physics/vehicle/vehicle_state.h"
+
+namespace screed {
+
+enum class TrackModel {
+  kBelt,   ///< a contour of fixed shape whose surface moves (running_gear.h)
+  kChain,  ///< links round the wheels (chain_track.h)
+};
+
+struct VehicleOptions {
+  /// A track round the wheels of each side. false: the wheels alone, all four driven; a wheel
+  /// without a motor of its own is geared to the other one of its side.
+  bool tracks = true;
+  TrackModel track_model = TrackModel::kBelt;
+  ChainOptions chain;
+  double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
+  double chassis_friction = 0.4;
+  GearMotor motor;
+};
+
+class Vehicle : public VehicleState {
+ public:
+  /// Throws InputError when the model cannot be driven: no motor wheel on a side, motor joints on
+  /// other bodies, a wheel without a cylinder to roll on.
+  Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options);
+
+  /// Puts the robot somewhere, at rest. Passive joints go back to zero.
+  void place(const Eigen::Isometry3d& pose);
+  /// Moves the whole robot sideways as it is: motion, joints and grip stay.
+  void shift(double dx_m, double dy_m);
+  /// Height of Body's origin at which the lowest contact point just touches the ground, for this
+  /// attitude at (x, y).
+  double resting_height(const HeightField& ground, double x, double y,
+                        const Eigen::Matrix3d& rotation) const;
+
+  /// Adds the forces of this step to the bodies and advances the motors; the world steps
+  /// afterwards.
+  void apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
+                    double dt);
+
+  /// The same on soil that gives way; its end_step() is the caller's.
+  void apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt);
+
+  /// The same on particles; their step() is the caller's.
+  void apply_forces(ParticleBed& particles, const std::array<double, 2>& motor_voltage, double dt);
+
+  ChassisState chassis() const override;
+  double mass_kg() const { return mass_; }
+
+  double track_speed_m_per_s(Side side) const override;
+  double shaft_angle_rad(Side side) const override;
+  double current_a(Side side) const override;
+  double wheel_radius_m(Side side) const override;
+  /// The side's links; null without tracks, or with a belt.
+  const ChainTrack* chain(Side side) const;
+  double load_n(Side side) const override;
+  double sinkage_m(Side side) const override;
+  /// Distance between the centre lines of left and right running gear.
+  double tread_m() const { return tread_; }
+  double ground_speed_m_per_s(Side side) const override;
+
+ private:
+  struct Carrier {  // one ODE body
+    dBodyID body;
+    Eigen::Isometry3d rest;  // its centre of mass in the frame of Body, joints at zero
+    Hull hull;
+    BodyMemory soil_memory;
+    double mass;
+    Eigen::Matrix3d inverse_inertia;  // in its own axes
+  };
+  struct Shaft {
+    Side side;
+    DriveShaft shaft;
+    double torque = 0.0;  // of the ground in this step, N m
+  };
+  struct Unit {
+    size_t carrier;
+    size_t shaft;
+    RunningGear gear;
+  };
+  struct Chain {
+    size_t carrier;
+    std::array<size_t, 2> shafts;  // of front and rear wheel
+    ChainTrack track;
+  };
+  struct SideGear {  // where a side's motion is measured
+    size_t carrier;
+    size_t shaft;            // with the encoder
+    Eigen::Vector3d centre;  // from the carrier's centre of mass
+    double radius;
+  };
+
+  void add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
+                    const VehicleOptions& options);
+  void add_hinges(const Assembly& assembly);
+  void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
+  template <class Ground>
+  void ground_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
+                      Wrench& wrench);
+  void ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
+                      Wrench& wrench);
+  /// The chains of a carrier; `step` takes a Chain and returns the torques on its wheels.
+  template <class Step>
+  void step_chains(size_t carrier, Step step);
+  ChainTrack::WheelRates wheel_rates(const Chain& chain) const;
+  template <class Ground>
+  void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
+  const SideGear& of(Side side) const { return sides_[static_cast<size_t>(side)]; }
+  const DriveShaft& shaft_of(Side side) const { return shafts_[of(side).shaft].shaft; }
+
+  OdeWorld& world_;
+  std::vector<Carrier> carriers_;
+  std::vector<size_t> carrier_of_body_;  // of each body of the assembly
+  std::vector<Shaft> shafts_;
+  std::vector<Unit> units_;
+  std::vector<Chain> chains_;               // none, or one a side: left, right
+  std::vector<SoilContact> soil_contacts_;  // of one carrier in one step; kept for its room
+  size_t chassis_carrier_ = 0;
+  std::array<SideGear, 2> sides_{};
+  double mass_ = 0.0;
+  double tread_ = 0.0;
+};
+
+}  // namespace screed

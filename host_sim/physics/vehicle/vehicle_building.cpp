@@ -1,0 +1,235 @@
+// How an assembly becomes a vehicle: which bodies are one, what carries the wheels, which shafts
+// turn them.
+#include <limits>
+#include <string>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/vehicle/vehicle.h"
+
+namespace screed {
+namespace {
+
+const char* const kWheels[2][2] = {{"fl_Wheel", "bl_Wheel"}, {"fr_Wheel", "br_Wheel"}};
+
+bool is_wheel_name(const std::string& name) {
+  for (const auto& side : kWheels) {
+    for (const char* wheel : side) {
+      if (name == wheel) return true;
+    }
+  }
+  return false;
+}
+
+// The cylinder a wheel rolls on: its radius and length.
+const Cylinder& wheel_cylinder(const AssemblyBody& wheel) {
+  for (const Shape& shape : wheel.collision) {
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) return *cylinder;
+  }
+  throw InputError("robot model: wheel '" + wheel.name + "' has no collision cylinder to roll on");
+}
+
+const AssemblyJoint* joint_to(const Assembly& assembly, int child) {
+  for (const AssemblyJoint& joint : assembly.joints) {
+    if (joint.child == child) return &joint;
+  }
+  return nullptr;
+}
+
+// The wheels carry the mass of the tracks in the model: a chain has its own.
+Assembly without_chains(Assembly assembly, double chain_kg) {
+  for (const auto& side : kWheels) {
+    for (const char* wheel : side) {
+      Inertia& inertia = assembly.bodies[static_cast<size_t>(assembly.body_index(wheel))].inertia;
+      const double left = inertia.mass - 0.5 * chain_kg;
+      if (left <= 0.0) {
+        throw InputError(std::string("robot model: a chain of ") + std::to_string(chain_kg) +
+                         " kg is heavier than its two wheels; '" + wheel + "' has " +
+                         std::to_string(inertia.mass) + " kg");
+      }
+      inertia.tensor *= left / inertia.mass;
+      inertia.mass = left;
+    }
+  }
+  return assembly;
+}
+
+}  // namespace
+
+Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options)
+    : world_(world) {
+  std::vector<bool> is_wheel(assembly.bodies.size());
+  for (size_t i = 0; i < assembly.bodies.size(); ++i)
+    is_wheel[i] = is_wheel_name(assembly.bodies[i].name);
+  for (const AssemblyJoint& joint : assembly.joints) {
+    if (joint.kind == AssemblyJoint::Kind::Motor && !is_wheel[static_cast<size_t>(joint.child)]) {
+      throw InputError("robot model: motor joint '" + joint.name + "' drives '" +
+                       assembly.bodies[static_cast<size_t>(joint.child)].name +
+                       "'; only fl_Wheel, fr_Wheel, bl_Wheel and br_Wheel can be driven");
+    }
+  }
+  if (options.tracks && options.track_model == TrackModel::kChain) {
+    const Assembly without = without_chains(assembly, options.chain.mass_kg);
+    mass_ = 2.0 * options.chain.mass_kg;
+    add_carriers(without, is_wheel, options);
+    add_hinges(without);
+    add_running_gear(without, options);
+    return;
+  }
+  add_carriers(assembly, is_wheel, options);
+  add_hinges(assembly);
+  add_running_gear(assembly, options);
+}
+
+void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
+                           const VehicleOptions& options) {
+  constexpr size_t kNone = std::numeric_limits<size_t>::max();
+  carrier_of_body_.assign(assembly.bodies.size(), kNone);
+  std::vector<std::vector<int>> groups;
+  // Parents come before their children's groups are closed: fixed joints first, then wheels join
+  // whoever carries them.
+  for (size_t i = 0; i < assembly.bodies.size(); ++i) {
+    if (carrier_of_body_[i] != kNone || is_wheel[i]) continue;
+    groups.push_back(rigid_group(assembly, static_cast<int>(i)));
+    for (const int member : groups.back())
+      carrier_of_body_[static_cast<size_t>(member)] = groups.size() - 1;
+  }
+  for (size_t i = 0; i < assembly.bodies.size(); ++i) {
+    if (carrier_of_body_[i] != kNone) continue;
+    const AssemblyJoint* joint = joint_to(assembly, static_cast<int>(i));
+    if (joint == nullptr || is_wheel[static_cast<size_t>(joint->parent)]) {
+      throw InputError("robot model: wheel '" + assembly.bodies[i].name +
+                       "' has no body that carries it");
+    }
+    const size_t carrier = carrier_of_body_[static_cast<size_t>(joint->parent)];
+    carrier_of_body_[i] = carrier;
+    groups[carrier].push_back(static_cast<int>(i));
+  }
+
+  for (const std::vector<int>& group : groups) mass_ += composed_inertia(assembly, group).mass;
+  for (const std::vector<int>& group : groups) {
+    const Inertia inertia = composed_inertia(assembly, group);
+    if (inertia.mass <= 0.0) {
+      throw InputError("robot model: body '" +
+                       assembly.bodies[static_cast<size_t>(group.front())].name + "' has no mass");
+    }
+    Carrier carrier{};
+    carrier.rest = Eigen::Isometry3d::Identity();
+    carrier.rest.translation() = inertia.pose.translation();
+    const Eigen::Matrix3d axes = inertia.pose.linear();
+    const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
+    carrier.body = dBodyCreate(world_.id());
+    dMass mass;
+    dMassSetParameters(&mass, inertia.mass, 0, 0, 0, tensor(0, 0), tensor(1, 1), tensor(2, 2),
+                       tensor(0, 1), tensor(0, 2), tensor(1, 2));
+    dBodySetMass(carrier.body, &mass);
+    for (const int member : group) {
+      const AssemblyBody& body = assembly.bodies[static_cast<size_t>(member)];
+      if (is_wheel[static_cast<size_t>(member)]) continue;
+      for (const Shape& shape : body.collision) {
+        const Eigen::Isometry3d at = carrier.rest.inverse() * body.pose;
+        carrier.hull.add(shape, at);
+      }
+    }
+    carrier.hull.close(options.chassis_friction, mass_);
+    carrier.mass = inertia.mass;
+    carrier.inverse_inertia = tensor.inverse();
+    carriers_.push_back(std::move(carrier));
+  }
+  chassis_carrier_ = carrier_of_body_[static_cast<size_t>(assembly.body_index("Body"))];
+  place(Eigen::Isometry3d::Identity());
+}
+
+void Vehicle::add_hinges(const Assembly& assembly) {
+  for (const AssemblyJoint& joint : assembly.joints) {
+    const size_t parent = carrier_of_body_[static_cast<size_t>(joint.parent)];
+    const size_t child = carrier_of_body_[static_cast<size_t>(joint.child)];
+    if (parent == child) continue;  // fixed, or a wheel
+    dJointID hinge = dJointCreateHinge(world_.id(), nullptr);
+    dJointAttach(hinge, carriers_[child].body, carriers_[parent].body);
+    const Eigen::Vector3d anchor = joint.pose.translation();
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, joint.axis.x(), joint.axis.y(), joint.axis.z());
+    if (joint.limited) {
+      dJointSetHingeParam(hinge, dParamLoStop, joint.lower_rad);
+      dJointSetHingeParam(hinge, dParamHiStop, joint.upper_rad);
+    }
+  }
+}
+
+void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& options) {
+  struct Wheel {
+    size_t carrier;
+    Eigen::Vector3d centre;  // from the carrier's centre of mass
+    Cylinder cylinder;
+    double spin_inertia;
+    bool driven;
+  };
+  const auto wheel_named = [&](const char* name) {
+    const int index = assembly.body_index(name);
+    const AssemblyBody& body = assembly.bodies[static_cast<size_t>(index)];
+    const AssemblyJoint* joint = joint_to(assembly, index);
+    const size_t carrier = carrier_of_body_[static_cast<size_t>(index)];
+    const Eigen::Vector3d centre = carriers_[carrier].rest.inverse() * body.pose.translation();
+    const Eigen::Matrix3d axes = body.pose.linear() * body.inertia.pose.linear();
+    const double spin =
+        joint->axis.dot(axes * body.inertia.tensor * axes.transpose() * joint->axis);
+    return Wheel{carrier, centre, wheel_cylinder(body), spin,
+                 joint->kind == AssemblyJoint::Kind::Motor};
+  };
+
+  double side_y[2] = {0.0, 0.0};
+  const double units = options.tracks ? 2.0 : 4.0;
+  const GearLoad load{mass_ * kGravity_m_per_s2 / units, mass_ / units};
+  for (const Side side : {kLeft, kRight}) {
+    const Wheel front = wheel_named(kWheels[side][0]);
+    const Wheel rear = wheel_named(kWheels[side][1]);
+    side_y[side] = (carriers_[front.carrier].rest * front.centre).y();
+    const int motors = (front.driven ? 1 : 0) + (rear.driven ? 1 : 0);
+    if (motors == 0) {
+      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] +
+                       "' or '" + kWheels[side][1] +
+                       "'; a revolute joint with <limit velocity=\"1.0\"> is one");
+    }
+    const auto add_shaft = [&](int of_it, double spin_inertia) {
+      shafts_.push_back({side, DriveShaft(options.motor, of_it, spin_inertia)});
+      return shafts_.size() - 1;
+    };
+    const auto add_unit = [&](const Wheel& a, const Wheel& b, size_t shaft) {
+      const RunningGearGeometry geometry{a.centre, b.centre, a.cylinder.radius, a.cylinder.length};
+      units_.push_back({a.carrier, shaft, RunningGear(geometry, options.track_friction, load)});
+    };
+    // The encoder is on the first motor's shaft, front before rear.
+    const Wheel& motored = front.driven ? front : rear;
+    sides_[static_cast<size_t>(side)] = {motored.carrier, shafts_.size(), motored.centre,
+                                         motored.cylinder.radius};
+    if (options.tracks && front.carrier != rear.carrier) {
+      throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] + "' and '" +
+                       kWheels[side][1] +
+                       "' on the same rigid body; with joints between them set tracks = false");
+    }
+    if (options.tracks)
+      sides_[static_cast<size_t>(side)].centre = 0.5 * (front.centre + rear.centre);
+    if (options.tracks && options.track_model == TrackModel::kChain) {
+      const size_t of_front = add_shaft(front.driven ? 1 : 0, front.spin_inertia);
+      const size_t of_rear = add_shaft(rear.driven ? 1 : 0, rear.spin_inertia);
+      if (!front.driven) sides_[static_cast<size_t>(side)].shaft = of_rear;
+      const RunningGearGeometry geometry{front.centre, rear.centre, front.cylinder.radius,
+                                         front.cylinder.length};
+      chains_.push_back({front.carrier,
+                         {of_front, of_rear},
+                         ChainTrack(geometry, options.chain, options.track_friction, load)});
+    } else if (options.tracks) {
+      add_unit(front, rear, add_shaft(motors, front.spin_inertia + rear.spin_inertia));
+    } else if (motors == 2) {
+      add_unit(front, front, add_shaft(1, front.spin_inertia));
+      add_unit(rear, rear, add_shaft(1, rear.spin_inertia));
+    } else {
+      const size_t both = add_shaft(motors, front.spin_inertia + rear.spin_inertia);
+      add_unit(front, front, both);
+      add_unit(rear, rear, both);
+    }
+  }
+  tread_ = side_y[kLeft] - side_y[kRight];
+}
+
+}  // namespace screed

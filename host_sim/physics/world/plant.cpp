@@ -1,0 +1,205 @@
+// Terrain, bodies, motors and battery.
+#include "host_sim/physics/world/plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "hal/sample.h"
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+constexpr double kTick_s = 1.0 / kTickRate_hz;
+// The motion of chassis and wheels enters a chain a step late (chain_track.h).
+constexpr double kLongestChainStep_s = 0.001;
+
+int steps_in_tick(double physics_step_s) {
+  const double steps = kTick_s / physics_step_s;
+  const double whole = std::round(steps);
+  if (!(whole >= 1.0) || std::abs(steps - whole) > 1e-6) {
+    throw InputError("[physics] step = " + std::to_string(physics_step_s) +
+                     " s; it must divide the control tick of 0.01 s into whole steps");
+  }
+  return static_cast<int>(whole);
+}
+
+Eigen::Vector3d imu_position(const Assembly& model) {
+  const int imu = model.body_index("Imu");
+  return imu < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                 : Eigen::Vector3d(model.bodies[static_cast<size_t>(imu)].pose.translation());
+}
+
+}  // namespace
+
+Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& options)
+    : step_s_(options.physics_step_s),
+      steps_per_tick_(steps_in_tick(options.physics_step_s)),
+      rigid_(std::move(terrain)),
+      vehicle_(ode_, model, options.vehicle),
+      battery_(options.battery),
+      imu_position_(imu_position(model)),
+      moments_(static_cast<size_t>(steps_per_tick_) + 1) {
+  if (vehicle_.chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
+    throw InputError("[physics] step = " + std::to_string(step_s_) +
+                     " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
+  }
+  if (options.soil.has_value()) soil_.emplace(rigid_, *options.soil, options.soil_options);
+  if (options.particles.has_value()) {
+    particles_.emplace(rigid_, *options.particles);
+    particle_steps_ = static_cast<int>(std::ceil(step_s_ / particles_->longest_step_s()));
+  }
+  const StartPose& start = options.start;
+  const Eigen::Matrix3d rotation = rotation_from(start.attitude);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation;
+  const double resting = vehicle_.resting_height(Plant::terrain(), start.x_m, start.y_m, rotation);
+  pose.translation() << start.x_m, start.y_m, start.z_m.value_or(resting);
+  if (start.z_m.has_value() && *start.z_m < resting - 0.01) {
+    throw InputError("[vehicle] z = " + std::to_string(*start.z_m) +
+                     " m puts the robot into the ground; at this place it must be " +
+                     std::to_string(resting) + " or more (leave z out to set the robot down)");
+  }
+  vehicle_.place(pose);
+  wrap_around();
+  beds_passed_ = {0, 0};
+  if (!start.z_m.has_value()) settle();
+}
+
+const HeightField& Plant::terrain() const {
+  if (particles_) return particles_->surface();
+  return soil_ ? soil_->surface() : rigid_;
+}
+
+void Plant::settle() {
+  constexpr double kSettle_s = 1.5;
+  const auto steps = static_cast<int>(std::lround(kSettle_s / step_s_));
+  for (int i = 0; i < steps; ++i) {
+    step_bodies({0.0, 0.0});
+  }
+  forget_motion(imu_velocity(vehicle_.chassis()));
+}
+
+void Plant::step_bodies(const std::array<double, 2>& motor_voltage) {
+  if (soil_) {
+    vehicle_.apply_forces(*soil_, motor_voltage, step_s_);
+    soil_->end_step();
+  } else if (particles_) {
+    // Light spheres on stiff contacts need shorter steps than the robot.
+    const double dt = step_s_ / particle_steps_;
+    for (int i = 0; i < particle_steps_; ++i) {
+      vehicle_.apply_forces(*particles_, motor_voltage, dt);
+      particles_->step(dt);
+      ode_.step(dt);
+    }
+    return;
+  } else {
+    vehicle_.apply_forces(rigid_, motor_voltage, step_s_);
+  }
+  ode_.step(step_s_);
+  wrap_around();
+}
+
+void Plant::wrap_around() {
+  if (!rigid_.wrap()) return;
+  const Eigen::Vector3d at = vehicle_.chassis().pose.translation();
+  const auto beds_off = [](double coordinate, double size) {
+    // Half open, so that a robot on the very edge stays where it is put.
+    return coordinate >= -0.5 * size && coordinate < 0.5 * size
+               ? 0.0
+               : std::floor(coordinate / size + 0.5);
+  };
+  const std::array<double, 2> size = bed_size();
+  const double east = beds_off(at.x(), size[0]);
+  const double north = beds_off(at.y(), size[1]);
+  if (east == 0.0 && north == 0.0) return;
+  // A place that is no number stays: motion() says that the physics diverged.
+  if (!std::isfinite(east) || !std::isfinite(north)) return;
+  vehicle_.shift(-east * size[0], -north * size[1]);
+  beds_passed_[0] += static_cast<int64_t>(east);
+  beds_passed_[1] += static_cast<int64_t>(north);
+}
+
+std::array<double, 2> Plant::bed_size() const {
+  if (particles_) return {particles_->extent().width_m, particles_->extent().depth_m};
+  return {rigid_.x_max() - rigid_.x_min(), rigid_.y_max() - rigid_.y_min()};
+}
+
+Eigen::Vector3d Plant::place_travelled() const {
+  const std::array<double, 2> size = bed_size();
+  return vehicle_.chassis().pose.translation() +
+         Eigen::Vector3d(static_cast<double>(beds_passed_[0]) * size[0],
+                         static_cast<double>(beds_passed_[1]) * size[1], 0.0);
+}
+
+Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {
+  const Eigen::Matrix3d& rotation = chassis.pose.linear();
+  return chassis.velocity + rotation * chassis.omega_body.cross(imu_position_);
+}
+
+void Plant::forget_motion(const Eigen::Vector3d& velocity) {
+  std::fill(moments_.begin(), moments_.end(), Moment{velocity, Eigen::Vector3d::Zero()});
+}
+
+void Plant::step(const std::array<double, 2>& share) {
+  std::array<double, 2> voltage{};
+  double current = 0.0;
+  for (const Side side : {kLeft, kRight}) {
+    const double of_side = share[static_cast<size_t>(side)];
+    voltage[static_cast<size_t>(side)] = of_side * battery_.terminal_v;
+    // The driver's off phase brakes: current then circulates in the motor, and never flows back
+    // into the battery.
+    current += std::max(0.0, of_side * vehicle_.current_a(side));
+  }
+  step_bodies(voltage);
+  battery_.step(current, step_s_);
+  ++steps_;
+  newest_ = (newest_ + 1) % moments_.size();
+  const ChassisState chassis = vehicle_.chassis();
+  moments_[newest_] = {imu_velocity(chassis), chassis.omega_body};
+}
+
+double Plant::time_s() const {
+  return static_cast<double>(steps_) / (static_cast<double>(steps_per_tick_) * kTickRate_hz);
+}
+
+ImuTruth Plant::motion() const {
+  const ChassisState chassis = vehicle_.chassis();
+  const Moment& now = moments_[newest_];
+  const Eigen::Matrix3d rotation = chassis.pose.linear();
+  if (!now.velocity.allFinite() || !chassis.pose.translation().allFinite() ||
+      now.velocity.norm() > 1000.0) {
+    throw RunError("the physics diverged at " + std::to_string(time_s()) +
+                   " s; a smaller [physics] step may help");
+  }
+  const size_t oldest = (newest_ + 1) % moments_.size();
+  Eigen::Vector3d rate_sum = Eigen::Vector3d::Zero();
+  for (size_t i = 1; i < moments_.size(); ++i) {
+    rate_sum += moments_[(oldest + i) % moments_.size()].rate_body;
+  }
+  ImuTruth truth;
+  truth.mean_rate_rad_per_s = rate_sum / steps_per_tick_;
+  truth.mean_specific_force =
+      rotation.transpose() * ((now.velocity - moments_[oldest].velocity) / kTick_s +
+                              kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
+  truth.body_to_world = rotation;
+  truth.altitude_m = chassis.pose.translation().z();
+  return truth;
+}
+
+void Plant::lay_on_side() {
+  Eigen::Isometry3d pose = vehicle_.chassis().pose;
+  Attitude attitude = attitude_of(pose.linear());
+  attitude.roll = -std::numbers::pi / 2.0;
+  attitude.pitch = 0.0;
+  pose.linear() = rotation_from(attitude);
+  pose.translation().z() = vehicle_.resting_height(Plant::terrain(), pose.translation().x(),
+                                                   pose.translation().y(), pose.linear());
+  vehicle_.place(pose);
+  // A hand, not an impact: the accelerometer sees the new attitude, no jerk.
+  forget_motion(Eigen::Vector3d::Zero());
+}
+
+}  // namespace screed

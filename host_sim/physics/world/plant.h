@@ -1,0 +1,99 @@
+// What the robot is driven in, as physics: terrain, bodies, motors and battery, advanced a physics
+// step at a time. Knows no clock but its own steps, no sensor counts and no firmware.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "host_sim/devices/sensors/imu_model.h"
+#include "host_sim/physics/particles/particle_bed.h"
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/physics/vehicle/vehicle.h"
+#include "host_sim/physics/world/surroundings.h"
+
+namespace screed {
+
+struct StartPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  std::optional<double>
+      z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
+  Attitude attitude = {0.0, 0.0, 0.0};
+};
+
+struct PlantOptions {
+  double physics_step_s = 0.001;  ///< divides the control tick of 10 ms
+  StartPose start;
+  VehicleOptions vehicle;
+  Battery battery;
+  std::optional<SoilParameters> soil;  ///< ground that gives way; without it the ground is rigid
+  SoilOptions soil_options;
+  std::optional<ParticleOptions> particles;  ///< ground of spheres, as high as the terrain
+};
+
+class Plant : public Surroundings {
+ public:
+  /// Throws InputError when the options do not fit together.
+  Plant(HeightField terrain, const Assembly& model, const PlantOptions& options);
+
+  void step(const std::array<double, 2>& share) override;
+  ImuTruth motion() const override;
+  void lay_on_side() override;
+
+  int steps_per_tick() const override { return steps_per_tick_; }
+  double step_s() const { return step_s_; }
+  uint64_t steps() const override { return steps_; }
+  double time_s() const override;
+  const HeightField& terrain() const override;
+  const SoilBed* soil() const override { return soil_ ? &*soil_ : nullptr; }
+  const ParticleBed* particles() const override { return particles_ ? &*particles_ : nullptr; }
+  bool ground_is_loose() const override { return soil_.has_value() || particles_.has_value(); }
+  const Vehicle& vehicle() const override { return vehicle_; }
+  const std::array<int64_t, 2>& beds_passed() const override { return beds_passed_; }
+  Eigen::Vector3d place_travelled() const override;
+  const Battery& battery() const override { return battery_; }
+
+ private:
+  struct Moment {
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of the IMU, world frame, m/s
+    Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< rad/s
+  };
+
+  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
+  /// when it was switched on.
+  void settle();
+  /// Of the bed, east and north, m: what it repeats after when it does.
+  std::array<double, 2> bed_size() const;
+  /// Teleports the robot when it has left the bed.
+  void wrap_around();
+  /// Forces, integration and soil of one physics step.
+  void step_bodies(const std::array<double, 2>& motor_voltage);
+  Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
+  /// The history says: the IMU has been moving at this velocity all the time.
+  void forget_motion(const Eigen::Vector3d& velocity);
+
+  double step_s_;
+  int steps_per_tick_;
+  HeightField rigid_;
+  std::optional<SoilBed> soil_;
+  std::optional<ParticleBed> particles_;
+  int particle_steps_ = 1;  // in one physics step
+  OdeWorld ode_;
+  Vehicle vehicle_;
+  Battery battery_;
+  Eigen::Vector3d imu_position_;  ///< in the frame of Body
+  uint64_t steps_ = 0;
+  std::array<int64_t, 2> beds_passed_ = {0, 0};
+  /// The last tick's moments and the one before; the newest stands at newest_.
+  std::vector<Moment> moments_;
+  size_t newest_ = 0;
+};
+
+}  // namespace screed

@@ -1,0 +1,152 @@
+#include "host_sim/render/picture/path_overlay.h"
+
+#include <array>
+#include <cmath>
+
+namespace screed {
+namespace {
+
+constexpr Color kCasing{1.0, 1.0, 1.0, 0.92};
+constexpr Color kInk{0.13, 0.15, 0.17};
+constexpr double kPathWidth_px = 4.0;
+constexpr double kCasingWidth_px = 7.5;
+constexpr double kMarkerRadius_px = 8.0;
+constexpr double kLegendRow_px = 27.0;
+
+/// Path points first..last (inclusive) in one unbroken piece.
+struct Piece {
+  size_t first;
+  size_t last;
+};
+
+bool jumps(const PathPoint& from, const PathPoint& to, const PixelBox& map, double scale) {
+  return std::abs(to.x_m - from.x_m) * scale > 0.5 * map.width ||
+         std::abs(to.y_m - from.y_m) * scale > 0.5 * map.height;
+}
+
+/// Splits where `splits(from, to)`; neighbours share their point unless they are apart.
+template <typename Splits>
+std::vector<Piece> pieces_of(const std::vector<PathPoint>& path, Piece whole, bool share,
+                             const Splits& splits) {
+  std::vector<Piece> pieces;
+  size_t first = whole.first;
+  for (size_t i = whole.first; i < whole.last; ++i) {
+    if (!splits(path[i], path[i + 1])) continue;
+    pieces.push_back({first, share ? i + 1 : i});
+    first = i + 1;
+  }
+  pieces.push_back({first, whole.last});
+  return pieces;
+}
+
+std::vector<Pixel> pixels_of(const MapFrame& frame, const std::vector<PathPoint>& path,
+                             Piece piece) {
+  std::vector<Pixel> pixels;
+  for (size_t i = piece.first; i <= piece.last; ++i) {
+    pixels.push_back(frame.to_pixel(path[i].x_m, path[i].y_m));
+  }
+  return pixels;
+}
+
+void draw_start(Canvas& canvas, Pixel at) {
+  canvas.circle(at, kMarkerRadius_px + 2.0, kInk);
+  canvas.circle(at, kMarkerRadius_px, {1.0, 1.0, 1.0});
+}
+
+void draw_end(Canvas& canvas, Pixel at) {
+  const auto square = [at](double half) {
+    return PixelBox{at.x - half, at.y - half, 2.0 * half, 2.0 * half};
+  };
+  canvas.rectangle(square(kMarkerRadius_px + 0.5), {1.0, 1.0, 1.0});
+  canvas.rectangle(square(kMarkerRadius_px - 1.5), kInk);
+}
+
+void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, const PictureOptions& options) {
+  const std::vector<PathPoint>& path = options.path;
+  const auto apart = [&](const PathPoint& from, const PathPoint& to) {
+    return wrap && jumps(from, to, frame.map(), frame.pixels_per_metre());
+  };
+  const auto differ = [](const PathPoint& from, const PathPoint& to) {
+    return from.state != to.state;
+  };
+  const std::vector<Piece> pieces = pieces_of(path, {0, path.size() - 1}, false, apart);
+  // The light casing lies under all of the path, so that crossings stay clear.
+  for (const Piece& piece : pieces) {
+    canvas.line(pixels_of(frame, path, piece), kCasingWidth_px, kCasing);
+  }
+  for (const Piece& piece : pieces) {
+    for (const Piece& run : pieces_of(path, piece, true, differ)) {
+      canvas.line(pixels_of(frame, path, run), kPathWidth_px,
+                  category_color(path[run.first].state));
+    }
+  }
+}
+
+void draw_robot(Canvas& canvas, const MapFrame& frame, const RobotOutline& robot) {
+  const double cosine = std::cos(robot.heading_rad);
+  const double sine = std::sin(robot.heading_rad);
+  // Robot frame, x forward and y left, as parts of half length and half width.
+  const auto corner = [&](double forward, double left) {
+    const double x = forward * 0.5 * robot.length_m;
+    const double y = left * 0.5 * robot.width_m;
+    return frame.to_pixel(robot.x_m + cosine * x - sine * y, robot.y_m + sine * x + cosine * y);
+  };
+  const auto box = [&](double back, double front, double right, double left) {
+    return std::array<Pixel, 4>{
+        {corner(back, right), corner(front, right), corner(front, left), corner(back, left)}};
+  };
+  canvas.polygon_outline(box(-1.0, 1.0, -1.0, 1.0), 5.0, kCasing);
+  canvas.polygon(box(-0.88, 0.88, -0.62, 0.62), {0.95, 0.96, 0.97});
+  canvas.polygon_outline(box(-0.88, 0.88, -0.62, 0.62), 1.5, kInk);
+  canvas.polygon(box(-1.0, 1.0, -1.0, -0.58), kInk);
+  canvas.polygon(box(-1.0, 1.0, 0.58, 1.0), kInk);
+  const std::array<Pixel, 4> arrow = {
+      {corner(0.66, 0.0), corner(-0.52, 0.46), corner(-0.26, 0.0), corner(-0.52, -0.46)}};
+  canvas.polygon(arrow, category_color(0));
+}
+
+}  // namespace
+
+void draw_path_overlay(Canvas& canvas, const MapFrame& frame, bool wrap,
+                       const PictureOptions& options) {
+  canvas.clip(frame.map());
+  if (!options.path.empty()) {
+    draw_path(canvas, frame, wrap, options);
+    const PathPoint& start = options.path.front();
+    const PathPoint& end = options.path.back();
+    draw_start(canvas, frame.to_pixel(start.x_m, start.y_m));
+    if (!options.robot) draw_end(canvas, frame.to_pixel(end.x_m, end.y_m));
+  }
+  if (options.robot) draw_robot(canvas, frame, *options.robot);
+  canvas.unclip();
+}
+
+double legend_height_px(const PictureOptions& options) {
+  if (options.path.empty()) return 0.0;
+  const size_t markers = options.robot ? 1 : 2;
+  return kLegendRow_px * static_cast<double>(1 + options.state_names.size() + markers);
+}
+
+void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& options) {
+  if (options.path.empty()) return;
+  constexpr double kSample_px = 28.0;
+  Pixel row = frame.legend();
+  const auto name = [&](const std::string& text) {
+    canvas.text({row.x + kSample_px + 12.0, row.y + 5.0}, text, {.color = kInk});
+    row.y += kLegendRow_px;
+  };
+  canvas.text(row, "Driven path", {.color = kInk, .bold = true});
+  row.y += kLegendRow_px;
+  for (size_t state = 0; state < options.state_names.size(); ++state) {
+    canvas.line(std::array<Pixel, 2>{{{row.x + 2.0, row.y}, {row.x + kSample_px - 2.0, row.y}}},
+                kPathWidth_px, category_color(state));
+    name(options.state_names[state]);
+  }
+  draw_start(canvas, {row.x + 0.5 * kSample_px, row.y});
+  name("start");
+  if (options.robot) return;
+  draw_end(canvas, {row.x + 0.5 * kSample_px, row.y});
+  name("end");
+}
+
+}  // namespace screed

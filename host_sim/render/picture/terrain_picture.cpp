@@ -1,0 +1,218 @@
+#include "host_sim/render/picture/terrain_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
+#include "host_sim/render/picture/canvas.h"
+#include "host_sim/render/picture/map_frame.h"
+#include "host_sim/render/picture/path_overlay.h"
+#include "host_sim/render/picture/relief.h"
+
+namespace screed {
+namespace {
+
+constexpr Color kPaper{1.0, 1.0, 1.0};
+constexpr double kMillimetres = 1000.0;
+
+void require_side(const char* name, int value, int lowest) {
+  constexpr int kHighest = 8000;
+  if (value >= lowest && value <= kHighest) return;
+  throw InputError(std::string("picture: ") + name + " = " + std::to_string(value) +
+                   "; allowed: " + std::to_string(lowest) + " to " + std::to_string(kHighest));
+}
+
+void require_finite(const char* what, std::initializer_list<double> values) {
+  for (const double value : values) {
+    if (std::isfinite(value)) continue;
+    throw InputError(std::string("picture: a ") + what +
+                     " holds what is no number; allowed: finite metres and radians");
+  }
+}
+
+void check(const PictureOptions& options) {
+  require_side("width_px", options.width_px, 800);
+  require_side("height_px", options.height_px, 700);
+  if (options.state_names.size() > kCategoryColors) {
+    throw InputError("picture: " + std::to_string(options.state_names.size()) +
+                     " state names; allowed: at most " + std::to_string(kCategoryColors));
+  }
+  for (const PathPoint& point : options.path) {
+    if (point.state >= options.state_names.size()) {
+      throw InputError("picture: path state " + std::to_string(point.state) + " has no name; " +
+                       std::to_string(options.state_names.size()) + " states are named");
+    }
+    require_finite("path point", {point.x_m, point.y_m});
+  }
+  if (options.robot) {
+    const RobotOutline& robot = *options.robot;
+    require_finite("robot outline",
+                   {robot.x_m, robot.y_m, robot.heading_rad, robot.length_m, robot.width_m});
+  }
+}
+
+/// Central difference over two cells: smooth where the bilinear gradient jumps from cell to cell.
+Relief smooth_gradient(const HeightField& field, double x, double y) {
+  const double reach = field.spacing_m();
+  const auto low = [&](double at, double edge) {
+    return field.wrap() ? at - reach : std::max(at - reach, edge);
+  };
+  const auto high = [&](double at, double edge) {
+    return field.wrap() ? at + reach : std::min(at + reach, edge);
+  };
+  const double west = low(x, field.x_min());
+  const double east = high(x, field.x_max());
+  const double south = low(y, field.y_min());
+  const double north = high(y, field.y_max());
+  return {(field.at(east, y).height - field.at(west, y).height) / (east - west),
+          (field.at(x, north).height - field.at(x, south).height) / (north - south)};
+}
+
+Color shaded(Color color, double brightness, double strength) {
+  const double factor = 1.0 + strength * (brightness - 1.0);
+  return {color.red * factor, color.green * factor, color.blue * factor};
+}
+
+/// How much of a pixel a contour line covers, 0..1, for lines at multiples of `interval`.
+double contour_cover(double height, const Relief& slope, double interval, double metres_per_pixel) {
+  constexpr double kHalfWidth_px = 0.5;
+  const double rise_per_pixel = std::hypot(slope.x, slope.y) * metres_per_pixel;
+  if (rise_per_pixel < 1e-4 * interval) return 0.0;  // level ground is no line
+  const double distance_px =
+      std::abs(height - std::round(height / interval) * interval) / rise_per_pixel;
+  return std::clamp(kHalfWidth_px + 0.5 - distance_px, 0.0, 1.0);
+}
+
+/// Calls color(x, y) for the middle of every pixel of the map and paints it.
+template <typename ColorAt>
+void paint_map(Canvas& canvas, const MapFrame& frame, const ColorAt& color) {
+  const PixelBox& map = frame.map();
+  const int left = static_cast<int>(map.left);
+  const int top = static_cast<int>(map.top);
+  std::vector<Color> colors(static_cast<size_t>(map.width));
+  for (int row = top; row < top + static_cast<int>(map.height); ++row) {
+    const double y = frame.y_at(row + 0.5);
+    double pixel_x = left + 0.5;
+    for (Color& target : colors) {
+      target = color(frame.x_at(pixel_x), y);
+      pixel_x += 1.0;
+    }
+    canvas.set_row(left, row, colors);
+  }
+}
+
+std::string millimetres(double metres) {
+  return number_text(metres * kMillimetres, 0);
+}
+
+std::string figures(const HeightField& field) {
+  const TerrainStatistics s = terrain_statistics(field);
+  return number_text(field.x_max() - field.x_min(), 2) + " \u00d7 " +
+         number_text(field.y_max() - field.y_min(), 2) + " m,  relief " +
+         millimetres(s.highest_m - s.lowest_m) + " mm,  slope: mean " +
+         number_text(s.mean_slope_deg, 1) + "\u00b0, 95 % below " +
+         number_text(s.p95_slope_deg, 1) + "\u00b0, steepest " +
+         number_text(s.steepest_slope_deg, 1) + "\u00b0";
+}
+
+/// Cut and fill in litres; every node stands for one cell.
+std::string moved(const HeightField& before, const HeightField& after) {
+  int64_t cut = 0;
+  int64_t fill = 0;
+  for (int iy = 0; iy < before.ny(); ++iy) {
+    for (int ix = 0; ix < before.nx(); ++ix) {
+      const int64_t change = int64_t{after.node(ix, iy)} - before.node(ix, iy);
+      (change < 0 ? cut : fill) += std::abs(change);
+    }
+  }
+  constexpr double kLitresPerCubicMetre = 1000.0;
+  const double litres_per_unit =
+      kHeightUnit_m * before.spacing_m() * before.spacing_m() * kLitresPerCubicMetre;
+  return "cut " + number_text(static_cast<double>(cut) * litres_per_unit, 2) + " L,  fill " +
+         number_text(static_cast<double>(fill) * litres_per_unit, 2) + " L,  net " +
+         number_text(static_cast<double>(fill - cut) * litres_per_unit, 2) + " L";
+}
+
+Ground ground_of(const HeightField& field) {
+  return {field.x_min(), field.x_max(), field.y_min(), field.y_max()};
+}
+
+void finish(Canvas& canvas, MapFrame& frame, const ColorScale& scale, bool wrap,
+            const std::string& subtitle, const PictureOptions& options) {
+  draw_path_overlay(canvas, frame, wrap, options);
+  frame.draw_title(options.title, options.subtitle.empty() ? subtitle : options.subtitle);
+  frame.draw_axes();
+  frame.draw_color_bar(scale);
+  frame.draw_scale_bar();
+  draw_legend(canvas, frame, options);
+}
+
+}  // namespace
+
+void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
+                              const PictureOptions& options) {
+  check(options);
+  Canvas canvas(options.width_px, options.height_px, kPaper);
+  MapFrame frame(canvas, ground_of(field), legend_height_px(options));
+
+  const TerrainStatistics statistics = terrain_statistics(field);
+  constexpr double kLeastRange_m = 0.001;  // level ground still gets a colour bar
+  const double low = statistics.lowest_m;
+  const double high = std::max(statistics.highest_m, low + kLeastRange_m);
+  const auto color = [low, high](double height) {
+    return height_color((height - low) / (high - low));
+  };
+  const double interval = round_ticks(low, high, 14).step;
+  const double metres_per_pixel = 1.0 / frame.pixels_per_metre();
+
+  paint_map(canvas, frame, [&](double x, double y) {
+    constexpr double kExaggeration = 1.6;
+    constexpr double kShadeStrength = 0.75;
+    constexpr double kContourStrength = 0.22;
+    const double height = field.at(x, y).height;
+    const Relief slope = smooth_gradient(field, x, y);
+    const double ink = kContourStrength * contour_cover(height, slope, interval, metres_per_pixel);
+    return shaded(color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
+  });
+  const ColorScale scale{low * kMillimetres, high * kMillimetres, "height (mm)",
+                         [&](double mm) { return color(mm / kMillimetres); }};
+  finish(canvas, frame, scale, field.wrap(), figures(field), options);
+  canvas.write_png(path);
+}
+
+void write_difference_picture(const std::filesystem::path& path, const HeightField& before,
+                              const HeightField& after, const PictureOptions& options) {
+  check(options);
+  if (before.nx() != after.nx() || before.ny() != after.ny() ||
+      before.spacing_m() != after.spacing_m() || before.wrap() != after.wrap()) {
+    throw InputError("difference picture: the terrains before and after differ in their grid");
+  }
+  Canvas canvas(options.width_px, options.height_px, kPaper);
+  MapFrame frame(canvas, ground_of(after), legend_height_px(options));
+
+  double largest = 0.0005;  // metres: no change still gets a colour bar
+  for (int iy = 0; iy < after.ny(); ++iy) {
+    for (int ix = 0; ix < after.nx(); ++ix) {
+      const double change = static_cast<double>(after.node(ix, iy)) - before.node(ix, iy);
+      largest = std::max(largest, std::abs(change) * kHeightUnit_m);
+    }
+  }
+  const double step = round_ticks(0.0, largest, 5).step;
+  largest = std::ceil(largest / step) * step;  // the colour bar ends on a round number
+
+  paint_map(canvas, frame, [&](double x, double y) {
+    constexpr double kExaggeration = 1.2;
+    constexpr double kShadeStrength = 0.3;
+    const double change = after.at(x, y).height - before.at(x, y).height;
+    return shaded(difference_color(change / largest),
+                  light(smooth_gradient(after, x, y), kExaggeration), kShadeStrength);
+  });
+  const ColorScale scale{-largest * kMillimetres, largest * kMillimetres, "change of height (mm)",
+                         [&](double mm) { return difference_color(mm / kMillimetres / largest); }};
+  finish(canvas, frame, scale, after.wrap(), moved(before, after), options);
+  canvas.write_png(path);
+}
+
+}  // namespace screed

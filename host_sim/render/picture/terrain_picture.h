@@ -1,0 +1,52 @@
+// Pictures of height fields: a shaded height map with a driven path, and what changed between two.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+/// One place of a driven path; `state` indexes PictureOptions::state_names and colours the path
+/// from here to the next place.
+struct PathPoint {
+  double x_m;
+  double y_m;
+  size_t state;
+};
+
+/// The robot from above: centre, heading counter-clockwise from east, footprint.
+struct RobotOutline {
+  double x_m;
+  double y_m;
+  double heading_rad;
+  double length_m = 0.245;
+  double width_m = 0.225;
+};
+
+struct PictureOptions {
+  int width_px = 1200;   ///< 800..8000
+  int height_px = 1000;  ///< 700..8000
+  std::string title;
+  std::string subtitle;  ///< empty: a line of figures about the terrain
+  std::vector<PathPoint> path;
+  std::vector<std::string> state_names;  ///< the legend; at most kCategoryColors
+  std::optional<RobotOutline> robot;
+};
+
+/// Draws heights in colour under light from the north-west, contour lines, axes in metres, a colour
+/// bar in mm, and path, robot and legend where given. On wrapped terrain a path may jump by a bed.
+/// Throws InputError for options out of range (a path's state without a name, a place that is no
+/// number), RunError when the file cannot be written. Same input, same bytes.
+void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
+                              const PictureOptions& options);
+
+/// Draws after - before in diverging colours around 0, with the relief of `after` as a faint shade.
+/// Both fields must have the same grid, else InputError. Otherwise as above.
+void write_difference_picture(const std::filesystem::path& path, const HeightField& before,
+                              const HeightField& after, const PictureOptions& options);
+
+}  // namespace screed

@@ -1,0 +1,107 @@
+// Camera and light.
+#include "host_sim/render/scene/scene_camera.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/render/scene/pov_text.h"
+
+namespace screed {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+struct NamedPlace {
+  const char* name;
+  CameraPlace place;
+};
+constexpr NamedPlace kPlaces[] = {
+    {"front", {38.0, 24.0, 0.72, false}}, {"back", {148.0, 30.0, 0.85, false}},
+    {"side", {-90.0, 16.0, 0.70, false}}, {"above", {180.0, 80.0, 1.20, false}},
+    {"bed", {-60.0, 38.0, 0.0, true}},
+};
+
+/// From the target to the camera, unit length.
+Eigen::Vector3d direction(double azimuth_rad, double elevation_rad) {
+  return {std::cos(elevation_rad) * std::cos(azimuth_rad),
+          std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
+}
+
+bool is_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+              const std::function<double(double, double)>& ground_m) {
+  constexpr double kStep_m = 0.01;
+  constexpr double kClearance_m = 0.02;
+  const Eigen::Vector3d way = to - from;
+  const int steps = static_cast<int>(way.norm() / kStep_m);
+  for (int i = 5; i <= steps; ++i) {  // the first 5 cm belong to what is looked at
+    const Eigen::Vector3d at = from + way * (static_cast<double>(i) / steps);
+    if (at.z() < ground_m(at.x(), at.y()) + kClearance_m) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+CameraPlace camera_place(const std::string& text) {
+  std::string names;
+  for (const NamedPlace& named : kPlaces) {
+    if (text == named.name) return named.place;
+    names += std::string(named.name) + ", ";
+  }
+  CameraPlace place;
+  int end = 0;
+  const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &place.azimuth_deg,
+                               &place.elevation_deg, &place.distance_m, &end);
+  const bool ok = read == 3 && static_cast<size_t>(end) == text.size() &&
+                  std::abs(place.azimuth_deg) <= 360.0 && place.elevation_deg >= 0.0 &&
+                  place.elevation_deg <= 89.0 && place.distance_m >= 0.2 &&
+                  place.distance_m <= 100.0;
+  if (!ok) {
+    throw InputError("camera = " + text + "; allowed is " + names +
+                     "or AZIMUTH,ELEVATION,DISTANCE: degrees -360..360 from the robot's nose, "
+                     "0..89 over the horizon, 0.2..100 m");
+  }
+  return place;
+}
+
+SceneCamera camera_at(const CameraPlace& place, const Eigen::Vector3d& target, double heading_rad,
+                      const std::function<double(double, double)>& ground_m) {
+  constexpr double kHighest_deg = 88.0;
+  constexpr double kStep_deg = 2.0;
+  const double azimuth = place.azimuth_deg * kRadPerDeg + heading_rad;
+  for (double elevation = place.elevation_deg;; elevation += kStep_deg) {
+    const Eigen::Vector3d location =
+        target + place.distance_m * direction(azimuth, elevation * kRadPerDeg);
+    if (elevation >= kHighest_deg || place.whole_bed || is_clear(target, location, ground_m)) {
+      return {location, target};
+    }
+  }
+}
+
+std::string camera_text(const SceneCamera& camera, double field_of_view_deg) {
+  constexpr double kSunDistance_m = 100.0;
+  constexpr double kSunElevation = 27.0 * kRadPerDeg;
+  const Eigen::Vector3d back = camera.location - camera.target;
+  const double azimuth = std::atan2(back.y(), back.x());
+  // Clockwise from behind the viewer is to the left of who looks at the target.
+  const Eigen::Vector3d sun =
+      kSunDistance_m * direction(azimuth - 75.0 * kRadPerDeg, kSunElevation);
+  const Eigen::Vector3d fill =
+      kSunDistance_m * direction(azimuth + 50.0 * kRadPerDeg, 50.0 * kRadPerDeg);
+  std::string text =
+      "camera {\n  location " + pov_vector(camera.location) +
+      pov_line("\n  sky z up z right -x*image_width/image_height angle %.1f\n", field_of_view_deg) +
+      "  look_at " + pov_vector(camera.target) + "\n}\n";
+  text += "light_source { " + pov_vector(camera.target + sun) +
+          " rgb <2.05,1.90,1.66> area_light <6,0,0>, <0,6,0>, 5, 5 adaptive 1 circular "
+          "orient }\n";
+  text +=
+      "light_source { " + pov_vector(camera.target + fill) + " rgb <0.30,0.36,0.46> shadowless }\n";
+  text +=
+      "sky_sphere { pigment { gradient z color_map { [0.0 srgb <0.93,0.94,0.95>] [0.35 srgb "
+      "<0.70,0.79,0.90>] [1.0 srgb <0.36,0.53,0.78>] } } }\n";
+  return text;
+}
+
+}  // namespace screed

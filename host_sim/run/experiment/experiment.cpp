@@ -1,0 +1,250 @@
+// Experiment files: read by the table of keys, and what no single key can tell.
+#include "host_sim/run/experiment/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "hal/sample.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/core/ini_file.h"
+#include "host_sim/run/experiment/experiment_keys.h"
+#include "paths.h"
+
+namespace screed {
+namespace {
+
+/// Keys of a kind of ground that the experiment does not have.
+bool decides_nothing(const ExperimentKey& key, const std::string& model, bool of_particles) {
+  if (key.section == "soil") return model != "scm";
+  return !of_particles &&
+         (key.section == "particles" || key.section == "raygrid" || key.name == "particle_radius");
+}
+
+std::string full_name(const std::string& section, const std::string& key) {
+  return section.empty() ? key : "[" + section + "] " + key;
+}
+
+/// The known names most like what was written, to say what is allowed.
+std::string known_names(const std::string& section) {
+  std::string names;
+  for (const ExperimentKey& key : experiment_keys()) {
+    if (key.section == section) names += (names.empty() ? "" : ", ") + key.name;
+  }
+  return names;
+}
+
+std::string known_sections() {
+  std::string names;
+  std::string last;
+  for (const ExperimentKey& key : experiment_keys()) {
+    if (key.section != last && !key.section.empty())
+      names += (names.empty() ? "[" : ", [") + key.section + "]";
+    last = key.section;
+  }
+  return names;
+}
+
+void apply(Experiment& experiment, const IniEntry& entry, const std::string& source) {
+  const std::string where = entry.line > 0 ? source + ":" + std::to_string(entry.line) : "--set";
+  const auto key = std::find_if(experiment_keys().begin(), experiment_keys().end(),
+                                [&](const ExperimentKey& known) {
+                                  return known.section == entry.section && known.name == entry.key;
+                                });
+  if (key == experiment_keys().end()) {
+    const std::string names = known_names(entry.section);
+    if (names.empty()) {
+      throw InputError(where + ": unknown section [" + entry.section + "]; known are " +
+                       known_sections());
+    }
+    throw InputError(
+        where + ": unknown key '" + entry.key + "'" +
+        (entry.section.empty() ? " before the first section" : " in [" + entry.section + "]") +
+        "; known are " + names);
+  }
+  if (!key->set(experiment, entry.value)) {
+    throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value +
+                     "' is not allowed; expected " + key->allowed +
+                     (key->unit.empty() ? "" : " (" + key->unit + ")"));
+  }
+}
+
+/// Whether a file is one of the thesis' simulator: it says so, or it has the key that only those
+/// files have. Leaves a note.
+bool is_sandbox(const std::vector<IniEntry>& entries, const std::string& source,
+                Experiment& experiment) {
+  const auto find = [&](const char* key) {
+    return std::find_if(entries.begin(), entries.end(), [&](const IniEntry& entry) {
+      return entry.section.empty() && entry.key == key;
+    });
+  };
+  const auto units = find(kUnitsKey);
+  const auto chrono = find(kSandboxKey);
+  if (chrono == entries.end()) return units != entries.end() && units->value == "sandbox";
+  const std::string where = source + ":" + std::to_string(chrono->line) + ": ";
+  if (units != entries.end()) {
+    experiment.notes.push_back(where + kSandboxKey + " is not used");
+    return units->value == "sandbox";
+  }
+  experiment.notes.push_back(where + kSandboxKey +
+                             " is not used; with it the file counts as one of Sandbox: lengths in "
+                             "units of 1/12 m, y upwards ('units = si' says otherwise)");
+  return true;
+}
+
+/// An entry of a Sandbox file (thesis Figure 5.3) as one of ours: lengths from its unit of 1/12 m,
+/// axes from x east, y up, z south. What is no number stays for the ordinary check.
+IniEntry from_sandbox(IniEntry entry) {
+  constexpr double kUnit_m = 1.0 / kSandboxUnitsPerMetre;
+  struct Length {
+    const char* section;
+    const char* key;
+    const char* ours;
+    double factor;
+  };
+  static constexpr Length kLengths[] = {
+      {"vehicle", "x", "x", kUnit_m},
+      {"vehicle", "y", "z", kUnit_m},
+      {"vehicle", "z", "y", -kUnit_m},
+      {"map", "scale", "scale", kUnit_m},
+      {"map", "size", "size", kUnit_m},
+      {"map", "smoothing", "smoothing", kUnit_m},
+      {"map", "particle_radius", "particle_radius", kUnit_m},
+      {"raygrid", "resolution", "resolution", 1.0 / kUnit_m},
+  };
+  if (entry.section == "map" && entry.key == "model" && entry.value == "particle")
+    entry.value = "particles";
+  for (const Length& length : kLengths) {
+    double value = 0.0;
+    if (entry.section != length.section || entry.key != length.key) continue;
+    entry.key = length.ours;
+    if (parse_number(entry.value, value)) entry.value = shortest(value * length.factor);
+    break;
+  }
+  return entry;
+}
+
+/// The n of Algorithm 5, from frames or from the duration.
+void set_training_length(Experiment& experiment, const std::string& source) {
+  auto& frames = experiment.experiment.frames;
+  if (!frames.has_value()) {
+    const double wanted = std::floor(experiment.experiment.duration_s * kTickRate_hz / 8.0) * 8.0;
+    if (wanted < 8.0 || wanted > kMostFrames) {
+      throw InputError(source +
+                       ": [experiment] duration = " + shortest(experiment.experiment.duration_s) +
+                       " s: algorithm random needs 0.08 s to " +
+                       shortest(kMostFrames / double{kTickRate_hz}) + " s");
+    }
+    frames = static_cast<uint32_t>(wanted);
+  }
+  experiment.parameters.training_block = static_cast<int16_t>(*frames / 8);
+}
+
+/// What no single key can tell.
+void check(const Experiment& experiment, const std::string& source) {
+  const Parameters& p = experiment.parameters;
+  if (p.walk_speed_min > p.walk_speed_max) {
+    throw InputError(source +
+                     ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min) +
+                     " is above walk_speed_max = " + std::to_string(p.walk_speed_max));
+  }
+  if (p.walk_leg_min > p.walk_leg_max) {
+    throw InputError(source + ": [parameters] walk_leg_min = " + std::to_string(p.walk_leg_min) +
+                     " is above walk_leg_max = " + std::to_string(p.walk_leg_max));
+  }
+  if (!experiment.map.filename.empty() && experiment.map.ramp_deg != 0.0) {
+    throw InputError(source + ": [map] has both filename and ramp; a ramp needs no image");
+  }
+}
+
+}  // namespace
+
+CommandKey ground_key_of(const Experiment& experiment) {
+  const std::string& key = experiment.radio.key;
+  return key.empty() || key == kNoKey ? test_key() : parse_key(key, "[radio] key");
+}
+
+Credentials credentials_of(const Experiment& experiment) {
+  Credentials credentials = credentials_of(ground_key_of(experiment), experiment.radio.boot_epoch);
+  credentials.key_set = experiment.radio.key != kNoKey;
+  return credentials;
+}
+
+std::string Experiment::text() const {
+  std::string text;
+  std::string section;
+  for (const ExperimentKey& key : experiment_keys()) {
+    const std::optional<std::string> value = key.get(*this);
+    if (!value.has_value()) continue;
+    if (decides_nothing(key, map.model, map.of_particles())) continue;
+    if (key.section != section) text += "\n[" + key.section + "]\n";
+    section = key.section;
+    text += key.name + " = " + *value + "\n";
+  }
+  return text;
+}
+
+Experiment read_experiment(const std::filesystem::path& path,
+                           const std::vector<std::string>& overrides) {
+  Experiment experiment;
+  experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
+  const std::string source = path.string();
+  const std::vector<IniEntry> entries = read_ini_file(path);
+  const bool sandbox = is_sandbox(entries, source, experiment);
+  // Its terrains have no edges: who leaves on one side comes back on the other (thesis 5.1.4).
+  experiment.map.wrap = sandbox;
+  if (sandbox) experiment.particles.depth_m = 0.0;
+  for (const IniEntry& entry : entries)
+    apply(experiment, sandbox ? from_sandbox(entry) : entry, source);
+  // A pixel's width is a length; of particles the key is a share.
+  if (sandbox && experiment.map.xy_scale.has_value() && !experiment.map.of_particles())
+    *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
+  for (const std::string& text : overrides) apply(experiment, parse_override(text), source);
+  experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
+  if (experiment.experiment.algorithm == "random") set_training_length(experiment, source);
+  if (experiment.experiment.frames.has_value())
+    experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};
+  check(experiment, source);
+  return experiment;
+}
+
+std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
+                                     const char* key) {
+  const std::filesystem::path file(name);
+  std::vector<std::filesystem::path> places;
+  if (file.is_absolute()) {
+    places = {file};
+  } else {
+    places = {experiment.folder / file, std::filesystem::path(kDataFolder) / "terrain" / file};
+  }
+  std::string looked;
+  for (const std::filesystem::path& place : places) {
+    std::error_code error;
+    if (std::filesystem::exists(place, error)) return place;
+    looked += (looked.empty() ? "" : ", ") + place.lexically_normal().string();
+  }
+  throw InputError(std::string(key) + " = '" + name + "': no such file; looked for " + looked);
+}
+
+std::filesystem::path find_model_file(const Experiment& experiment, const std::string& board) {
+  if (experiment.vehicle.model == "board") return board_model(board);
+  // Figure 5.3 calls the chassis Dagu5.
+  if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
+    return std::filesystem::path(kBoardsFolder) / "a_star_32u4" / "rover5.urdf";
+  }
+  return find_data_file(experiment, experiment.vehicle.model, "[vehicle] model");
+}
+
+std::string experiment_key_table() {
+  const Experiment defaults;
+  std::string text;
+  for (const ExperimentKey& key : experiment_keys()) {
+    const std::optional<std::string> value = key.get(defaults);
+    text += "| " + (key.section.empty() ? "" : "[" + key.section + "] ") + key.name + " | " +
+            key.unit + " | " + value.value_or("") + " | " + key.allowed + " | " + key.meaning +
+            " |\n";
+  }
+  return text;
+}
+
+}  // namespace screed

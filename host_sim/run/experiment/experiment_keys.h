@@ -1,0 +1,49 @@
+// The keys of experiment files: one table for reading, writing back and the documentation. A new
+// key is a line in experiment_keys.cpp and a field in experiment.h.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "host_sim/run/experiment/experiment.h"
+
+namespace screed {
+
+inline constexpr const char* kNoKey = "none";  ///< [radio] key of a robot without one
+inline constexpr const char* kUnitsKey = "units";
+inline constexpr const char* kSandboxKey = "chrono_data_path";
+inline constexpr double kSandboxUnitsPerMetre = 12.0;
+inline constexpr uint32_t kMostFrames = 8U * INT16_MAX;  // eight blocks of a parameter's range
+
+/// One key of an experiment file: how its value is read, written back and described.
+struct ExperimentKey {
+  std::string section;
+  std::string name;
+  std::string unit;
+  std::string allowed;  ///< for people
+  std::string meaning;
+  /// Returns false when the value is not allowed.
+  std::function<bool(Experiment&, const std::string&)> set;
+  /// The value in force; nothing when an optional key is not set.
+  std::function<std::optional<std::string>(const Experiment&)> get;
+};
+
+/// By section, in the order in which they are written.
+const std::vector<ExperimentKey>& experiment_keys();
+
+/// The shortest text that reads back as this number.
+std::string shortest(double value);
+/// Whether all of the text is a number.
+template <class Number>
+bool parse_number(const std::string& text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  return result.ec == std::errc() && result.ptr == end && !text.empty();
+}
+
+}  // namespace screed

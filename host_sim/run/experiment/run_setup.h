@@ -1,0 +1,30 @@
+// What is shown of a recorded run beside its numbers: robot, ground, algorithm, out of the
+// experiment that was in force. Reads sessions of older programs too.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/session/session_info.h"
+
+namespace screed {
+
+struct RunSetup {
+  /// Only the vehicle's keys that find and shape the model, the algorithm, what is flat, and the
+  /// folder.
+  Experiment experiment;
+  std::string ground = "rigid";  ///< [map] model
+  std::string soil;              ///< [soil] preset
+};
+
+/// `folder`: where the run lies; files of its own are looked for there first.
+RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder);
+
+/// The run's robot, or the one of the file. Throws InputError.
+Assembly robot_model(const RunSetup& setup, const std::string& board,
+                     const std::optional<std::filesystem::path>& file = std::nullopt);
+
+}  // namespace screed

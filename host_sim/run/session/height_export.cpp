@@ -1,0 +1,129 @@
+// Image series of recorded heights.
+#include "host_sim/run/session/height_export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host_sim/core/atomic_file.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/grey_image.h"
+#include "host_sim/render/picture/terrain_picture.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kWhite = 65535.0;
+
+fs::path numbered(const fs::path& folder, const char* name, std::uint64_t frame) {
+  char number[32];
+  std::snprintf(number, sizeof number, "_%06llu.png", static_cast<unsigned long long>(frame));
+  return folder / (name + std::string(number));
+}
+
+void check(const SessionReader& session, const FrameRange& range, std::uint64_t every) {
+  if (!session.has_heights()) {
+    throw InputError("the session has no recorded heights; screed record keeps them");
+  }
+  if (range.count == 0 || every == 0) throw InputError("no frame to export");
+}
+
+/// Calls action(frame, map after it) for the chosen frames.
+template <class Action>
+void for_each_frame(const SessionReader& session, const FrameRange& range, std::uint64_t every,
+                    Action&& action) {
+  for (std::uint64_t i = 0; i < range.count; i += every) {
+    action(range.first + i, session.heights_after(range.first + i + 1));
+  }
+}
+
+}  // namespace
+
+HeightField field_of(const HeightMap& map) {
+  const HeightMapGeometry& g = map.geometry;
+  if (g.unit_m != kHeightUnit_m) {
+    throw InputError("the session's heights are in units of " + std::to_string(g.unit_m) +
+                     " m; this program knows " + std::to_string(kHeightUnit_m));
+  }
+  const int nx = static_cast<int>(g.nx);
+  HeightField field(nx, static_cast<int>(g.ny), g.spacing_m, g.wrap);
+  for (std::size_t i = 0; i < map.heights.size(); ++i) {
+    const int at = static_cast<int>(i);
+    field.set_node(at % nx, at / nx, map.heights[i]);
+  }
+  return field;
+}
+
+HeightExport export_heights_png(const SessionReader& session, const FrameRange& range,
+                                std::uint64_t every, const fs::path& folder) {
+  check(session, range, every);
+  const HeightExtremes extremes = session.height_extremes();
+  const HeightMapGeometry geometry = session.heights_after(0).geometry;
+  const double black = extremes.lowest;
+  // A level bed is black throughout, of a scale that is no division by zero.
+  const double span = std::max(1.0, static_cast<double>(extremes.highest) - black);
+
+  HeightExport done;
+  done.scale = {black * geometry.unit_m, (black + span) * geometry.unit_m};
+  nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+  std::vector<std::uint16_t> samples(std::size_t{geometry.nx} * geometry.ny);
+  for_each_frame(session, range, every, [&](std::uint64_t frame, const HeightMap& map) {
+    for (std::size_t row = 0; row < geometry.ny; ++row) {
+      const std::int32_t* heights = &map.heights[(geometry.ny - 1 - row) * geometry.nx];
+      for (std::size_t x = 0; x < geometry.nx; ++x) {
+        samples[row * geometry.nx + x] =
+            static_cast<std::uint16_t>(std::floor((heights[x] - black) / span * kWhite + 0.5));
+      }
+    }
+    done.files.push_back(numbered(folder, "height", frame));
+    write_grey16_png(done.files.back(), static_cast<int>(geometry.nx),
+                     static_cast<int>(geometry.ny), samples);
+    frames.push_back({{"frame", frame}, {"file", done.files.back().filename().string()}});
+  });
+
+  const nlohmann::ordered_json json = {
+      {"meaning", "height in m = black_m + sample * (white_m - black_m) / 65535"},
+      {"black_m", done.scale.black_m},
+      {"white_m", done.scale.white_m},
+      {"m_per_sample_step", span * geometry.unit_m / kWhite},
+      {"m_per_pixel", geometry.spacing_m},
+      {"west_m", geometry.origin_x_m},
+      {"south_m", geometry.origin_y_m},
+      {"top_row", "north"},
+      {"wrap", geometry.wrap},
+      {"frames", frames}};
+  write_file(folder / "scale.json", json.dump(1) + "\n");
+  return done;
+}
+
+std::vector<fs::path> export_pictures(const SessionReader& session, const FrameRange& range,
+                                      std::uint64_t every, const fs::path& folder) {
+  check(session, range, every);
+  constexpr std::uint64_t kPathFrames = 10;
+  std::vector<fs::path> files;
+  PictureOptions options;
+  options.state_names = {"driven"};
+  std::uint64_t next = range.first;
+  std::vector<Frame> frames;
+  for_each_frame(session, range, every, [&](std::uint64_t frame, const HeightMap& map) {
+    frames.resize(frame + 1 - next);
+    session.read(next, std::span(frames));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if ((next + i - range.first) % kPathFrames == 0)
+        options.path.push_back({frames[i].x, frames[i].y, 0});
+    }
+    const Frame& now = frames.back();
+    next = frame + 1;
+    options.robot = RobotOutline{now.x, now.y, now.yaw};
+    options.title = session.info().experiment_name + ": frame " + std::to_string(frame);
+    files.push_back(numbered(folder, "picture", frame));
+    write_height_map_picture(files.back(), field_of(map), options);
+  });
+  return files;
+}
+
+}  // namespace screed

@@ -1,0 +1,163 @@
+// Creating, committing and giving up the folder of a run.
+#include "host_sim/run/session/run_folder.h"
+
+#include <system_error>
+#include <utility>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path partial_of(fs::path path) {
+  return path += ".partial";
+}
+
+bool is_taken(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(path, error));
+}
+
+[[noreturn]] void cannot_create(const fs::path& path, const std::error_code& error) {
+  const std::string text = path.string() + ": cannot create the folder: " + error.message();
+  const bool name_is_wrong = error == std::errc::not_a_directory ||
+                             error == std::errc::filename_too_long ||
+                             error == std::errc::invalid_argument;
+  if (name_is_wrong) throw InputError(text);
+  throw RunError(text);
+}
+
+}  // namespace
+
+fs::path session_file(const fs::path& run) {
+  std::error_code error;
+  return fs::is_directory(run, error) ? run / "session.h5" : run;
+}
+
+RunFolder::RunFolder(RunFolder&& other) noexcept
+    : final_(std::move(other.final_)),
+      partial_(std::move(other.partial_)),
+      leftovers_(std::move(other.leftovers_)),
+      created_parents_(std::move(other.created_parents_)),
+      owns_partial_(std::exchange(other.owns_partial_, false)) {
+  other.created_parents_.clear();
+}
+
+RunFolder::~RunFolder() {
+  std::error_code ignored;
+  if (owns_partial_) fs::remove_all(partial_, ignored);
+  // Not recursive: a parent that is in use by now stays.
+  for (auto parent = created_parents_.rbegin(); parent != created_parents_.rend(); ++parent) {
+    fs::remove(*parent, ignored);
+  }
+}
+
+void RunFolder::create_parents() {
+  std::vector<fs::path> missing;
+  fs::path parent = final_.parent_path();
+  while (!parent.empty() && !is_taken(parent)) {
+    missing.push_back(parent);
+    parent = parent.parent_path();
+  }
+  std::error_code error;
+  if (!parent.empty() && !fs::is_directory(parent, error)) {
+    throw InputError(final_.string() + ": cannot create the folder: " + parent.string() +
+                     " is not a folder");
+  }
+  for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
+    if (fs::create_directory(*path, error)) {
+      created_parents_.push_back(*path);
+    } else if (error) {
+      cannot_create(*path, error);
+    }
+  }
+}
+
+bool RunFolder::create_partial() {
+  std::error_code error;
+  owns_partial_ = fs::create_directory(partial_, error);
+  if (error && error != std::errc::file_exists) cannot_create(partial_, error);
+  return owns_partial_;
+}
+
+RunFolder RunFolder::at(const fs::path& out) {
+  if (out.empty()) throw InputError("the name of the output folder is empty");
+  RunFolder folder;
+  std::error_code error;
+  // Through symbolic links and "..", so that the sibling `.partial` is on the same disk and in the
+  // right place.
+  folder.final_ = fs::weakly_canonical(out, error);
+  if (error) cannot_create(out, error);
+  if (!folder.final_.has_filename()) folder.final_ = folder.final_.parent_path();
+  if (!folder.final_.has_filename()) {
+    throw InputError(out.string() + ": is not the name of a new folder");
+  }
+  // Keep what the user typed where it means the same: messages then name what was asked for.
+  if (const fs::path typed = out.has_filename() ? out : out.parent_path();
+      typed.filename() == folder.final_.filename() && !fs::is_symlink(typed, error)) {
+    folder.final_ = typed;
+  }
+  folder.partial_ = partial_of(folder.final_);
+
+  if (is_taken(folder.final_)) {
+    if (!fs::is_directory(folder.final_, error)) {
+      throw InputError(folder.final_.string() +
+                       ": exists and is not a folder; name a new or an empty folder");
+    }
+    if (!fs::is_empty(folder.final_, error) && !error) {
+      throw InputError(folder.final_.string() +
+                       ": the folder is not empty; name a new or an empty one");
+    }
+    if (error) cannot_create(folder.final_, error);
+  }
+  folder.create_parents();
+  if (!folder.create_partial()) {
+    throw InputError(folder.partial_.string() +
+                     ": left over from an unfinished run (interrupted, or still running); "
+                     "remove it or name another folder");
+  }
+  return folder;
+}
+
+RunFolder RunFolder::numbered(const fs::path& root, const std::string& experiment) {
+  if (experiment.empty() || experiment == "." || experiment == ".." ||
+      experiment.find('/') != std::string::npos || experiment.find('\0') != std::string::npos) {
+    throw InputError("experiment name '" + experiment + "' cannot name an output folder");
+  }
+  RunFolder folder;
+  for (unsigned number = 1;; ++number) {
+    std::string digits = std::to_string(number);
+    if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
+    folder.final_ = root / experiment;
+    folder.final_ += '-' + digits;
+    folder.partial_ = partial_of(folder.final_);
+    if (is_taken(folder.partial_)) {
+      folder.leftovers_.push_back(folder.partial_);
+      continue;
+    }
+    if (is_taken(folder.final_)) continue;
+    folder.create_parents();
+    if (!folder.create_partial()) continue;
+    // Another program may have completed the run of this number between the two questions.
+    if (!is_taken(folder.final_)) return folder;
+    std::error_code ignored;
+    fs::remove(folder.partial_, ignored);
+    folder.owns_partial_ = false;
+  }
+}
+
+void RunFolder::commit() {
+  // Whatever happens now, the run is complete and worth keeping.
+  owns_partial_ = false;
+  created_parents_.clear();
+  std::error_code error;
+  fs::rename(partial_, final_, error);
+  if (error) {
+    throw RunError(final_.string() + ": cannot name the run: " + error.message() +
+                   "; it is kept as " + partial_.string());
+  }
+}
+
+}  // namespace screed

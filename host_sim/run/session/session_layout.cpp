@@ -1,0 +1,95 @@
+// HDF5 types made from the column lists.
+#include "host_sim/run/session/session_layout.h"
+
+#include "host_sim/core/content_hash.h"
+
+namespace screed::layout {
+namespace {
+
+constexpr unsigned kDeflateLevel =
+    1;  // higher levels cost ticks and save a few percent (docs/sessions.md)
+
+}  // namespace
+
+hid_t element_type(ColumnType type) {
+  switch (type) {
+    case ColumnType::kUint8:
+      return H5T_STD_U8LE;
+    case ColumnType::kInt16:
+      return H5T_STD_I16LE;
+    case ColumnType::kUint16:
+      return H5T_STD_U16LE;
+    case ColumnType::kInt32:
+      return H5T_STD_I32LE;
+    case ColumnType::kUint32:
+      return H5T_STD_U32LE;
+    case ColumnType::kDouble:
+      return H5T_IEEE_F64LE;
+  }
+  return -1;
+}
+
+h5::Handle row_type(std::span<const Column> columns) {
+  h5::Handle row(H5Tcreate(H5T_COMPOUND, row_bytes(columns)), H5Tclose, "cannot create a row type");
+  for (const Column& column : columns) {
+    const hid_t element = element_type(column.type);
+    if (column.array) {
+      const hsize_t count = column.count;
+      const h5::Handle array(H5Tarray_create2(element, 1, &count), H5Tclose, column.name);
+      h5::check(H5Tinsert(row.get(), column.name, column.offset, array.get()), column.name);
+    } else {
+      h5::check(H5Tinsert(row.get(), column.name, column.offset, element), column.name);
+    }
+  }
+  return row;
+}
+
+h5::Handle compressed(std::span<const hsize_t> chunk) {
+  h5::Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "cannot create a table");
+  h5::check(H5Pset_chunk(options.get(), static_cast<int>(chunk.size()), chunk.data()),
+            "cannot set chunks");
+  h5::check(H5Pset_shuffle(options.get()), "cannot set the shuffle filter");
+  h5::check(H5Pset_deflate(options.get(), kDeflateLevel), "cannot set the deflate filter");
+  h5::check(H5Pset_obj_track_times(options.get(), false), "cannot switch off time stamps");
+  return options;
+}
+
+h5::Handle create_group(hid_t file, const char* name) {
+  const h5::Handle options(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, name);
+  h5::check(H5Pset_obj_track_times(options.get(), false), name);
+  return {H5Gcreate2(file, name, H5P_DEFAULT, options.get(), H5P_DEFAULT), H5Gclose, name};
+}
+
+void write_geometry(hid_t dataset, const HeightMapGeometry& geometry) {
+  h5::write_attribute(dataset, "unit_m", geometry.unit_m);
+  h5::write_attribute(dataset, "spacing_m", geometry.spacing_m);
+  h5::write_attribute(dataset, "origin_x_m", geometry.origin_x_m);
+  h5::write_attribute(dataset, "origin_y_m", geometry.origin_y_m);
+  h5::write_attribute(dataset, "wrap", std::uint64_t{geometry.wrap ? 1U : 0U});
+}
+
+HeightMapGeometry read_geometry(hid_t dataset, hsize_t nx, hsize_t ny) {
+  constexpr hsize_t kMost = 1U << 16;  // 16 GB of heights: a file that says more is damaged
+  if (nx == 0 || ny == 0 || nx > kMost || ny > kMost)
+    throw h5::Hdf5Failure("a height map of impossible size");
+  return {static_cast<std::uint32_t>(nx),         static_cast<std::uint32_t>(ny),
+          h5::read_double(dataset, "unit_m"),     h5::read_double(dataset, "spacing_m"),
+          h5::read_double(dataset, "origin_x_m"), h5::read_double(dataset, "origin_y_m"),
+          h5::read_uint64(dataset, "wrap") != 0};
+}
+
+std::string map_hash(const HeightMapView& map) {
+  const HeightMapGeometry& g = map.geometry;
+  ContentHash hash;
+  hash.add(g.nx);
+  hash.add(g.ny);
+  hash.add(g.unit_m);
+  hash.add(g.spacing_m);
+  hash.add(g.origin_x_m);
+  hash.add(g.origin_y_m);
+  hash.add(g.wrap);
+  for (const std::int32_t height : map.heights) hash.add(height);
+  return hash.hex();
+}
+
+}  // namespace screed::layout

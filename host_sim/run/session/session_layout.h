@@ -1,0 +1,92 @@
+// The names and types inside a session file, for the writer and the reader. docs/sessions.md
+// describes them for users.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "firmware/parameters/board_constants.h"
+#include "host_sim/run/session/hdf5_handle.h"
+#include "host_sim/run/session/record.h"
+#include "host_sim/run/session/session_info.h"
+
+namespace screed::layout {
+
+inline constexpr char kFormat[] = "screed-session";
+/// Raised when a reader of the version before would misunderstand the file; new columns and
+/// attributes do not count.
+inline constexpr std::uint64_t kFormatVersion = 1;
+
+inline constexpr char kFormatAttribute[] = "format";
+inline constexpr char kVersionAttribute[] = "format_version";
+inline constexpr char kProgramAttribute[] = "program_version";
+inline constexpr char kExperimentNameAttribute[] = "experiment_name";
+inline constexpr char kExperimentTextAttribute[] = "experiment_text";
+inline constexpr char kSeedAttribute[] = "seed";
+inline constexpr char kTickRateAttribute[] = "tick_rate_hz";
+inline constexpr char kBoardNameAttribute[] = "board_name";
+inline constexpr char kFramesAttribute[] = "frames";
+/// Written last: a file without it is that of a run that did not end.
+inline constexpr char kHashAttribute[] = "content_hash";
+
+inline constexpr char kParametersGroup[] = "parameters";
+inline constexpr char kBoardGroup[] = "board";
+inline constexpr char kCredentialsGroup[] = "credentials";
+inline constexpr char kKeyAttribute[] = "key";  ///< hexadecimal digits and robot id
+inline constexpr char kKeySetAttribute[] = "key_set";
+inline constexpr char kBootEpochAttribute[] = "boot_epoch";
+inline constexpr char kTerrainGroup[] = "terrain";
+inline constexpr char kTerrainBefore[] = "before";
+inline constexpr char kTerrainAfter[] = "after";
+inline constexpr char kHeightsGroup[] = "heights";
+inline constexpr char kHeightKeys[] = "key_frames";
+inline constexpr char kHeightKeyTicks[] = "key_frame_ticks";
+inline constexpr char kHeightNodes[] = "change_nodes";
+inline constexpr char kHeightChanges[] = "changes";
+inline constexpr char kHeightEnds[] = "change_ends";
+inline constexpr char kSoilGroup[] = "soil";
+
+struct TableLayout {
+  const char* dataset;
+  std::span<const Column> columns;
+};
+inline constexpr TableLayout kFramesTable{"frames", kFrameColumns};
+inline constexpr TableLayout kSamplesTable{"samples", kSampleColumns};
+inline constexpr TableLayout kOutputsTable{"outputs", kOutputColumns};
+
+struct BoardField {
+  const char* name;
+  const char* unit;
+  std::uint16_t BoardConstants::*field;
+};
+inline constexpr BoardField kBoardFields[] = {
+    {"count_um_q4", "1/16 um", &BoardConstants::count_um_q4},
+    {"battery_uv_per_lsb", "uV", &BoardConstants::battery_uv_per_lsb},
+    {"tread_mm", "mm", &BoardConstants::tread_mm},
+    {"motor_nominal_mv", "mV", &BoardConstants::motor_nominal_mv},
+    {"full_speed_mm_per_s", "mm/s", &BoardConstants::full_speed_mm_per_s},
+};
+static_assert(sizeof(BoardConstants) == std::size(kBoardFields) * sizeof(std::uint16_t),
+              "a board constant is missing from the list");
+
+/// The HDF5 type of one column, without the array around it.
+hid_t element_type(ColumnType type);
+
+/// The compound type of a row as record.h packs it: the same in the file and in memory, so nothing
+/// is converted.
+h5::Handle row_type(std::span<const Column> columns);
+
+/// Creation options: chunked, shuffled, deflated, and without time stamps, so that equal runs give
+/// equal files.
+h5::Handle compressed(std::span<const hsize_t> chunk);
+/// Without time stamps.
+h5::Handle create_group(hid_t file, const char* name);
+
+/// How a map lies in the world, as attributes of its dataset.
+void write_geometry(hid_t dataset, const HeightMapGeometry& geometry);
+/// The same from a file. Throws h5::Hdf5Failure for a size that no bed has.
+HeightMapGeometry read_geometry(hid_t dataset, hsize_t nx, hsize_t ny);
+/// A hash over a map and how it lies.
+std::string map_hash(const HeightMapView& map);
+
+}  // namespace screed::layout

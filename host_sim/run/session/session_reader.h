@@ -1,0 +1,69 @@
+// Reads session files, those of older program versions included (docs/sessions.md describes the
+// file).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/sample.h"
+#include "host_sim/run/session/frame.h"
+#include "host_sim/run/session/session_info.h"
+
+namespace screed {
+
+class SessionReader {
+ public:
+  /// Opens and checks the file. Throws InputError, naming the file, when it does not exist, is
+  /// truncated, is no session, was written in a newer format, or lacks what a session must have.
+  explicit SessionReader(const std::filesystem::path& file);
+  SessionReader(SessionReader&&) noexcept;
+  SessionReader& operator=(SessionReader&&) noexcept;
+  ~SessionReader();
+
+  const SessionInfo& info() const;
+  std::uint64_t frames() const;
+  /// False for the file of a run that was killed: it holds the blocks written until then and no
+  /// content hash.
+  bool complete() const;
+  /// As recorded; empty when the session is not complete.
+  const std::string& content_hash() const;
+  /// Frame columns that this program knows and the file has not: they read as NaN, or 0 for
+  /// integers.
+  const std::vector<std::string>& missing_columns() const;
+  /// Parameters that the file does not have: info() holds their defaults.
+  const std::vector<std::string>& missing_parameters() const;
+
+  /// Fill the span with rows first, first + 1, ... Throw std::out_of_range behind the last row,
+  /// InputError when the file is damaged. Blocks of some hundred rows are fastest.
+  void read(std::uint64_t first, std::span<Frame> rows) const;
+  void read(std::uint64_t first, std::span<SensorSample> rows) const;
+  void read(std::uint64_t first, std::span<RobotOutput> rows) const;
+
+  std::optional<HeightMap> terrain_before() const;
+  std::optional<HeightMap> terrain_after() const;
+
+  /// Whether the height map was recorded tick by tick. The rest of this block may only be called
+  /// when it was.
+  bool has_heights() const;
+  /// The map after so many ticks, 0..frames(); valid until the next call. Going forward is cheap.
+  const HeightMap& heights_after(std::uint64_t ticks) const;
+  /// The lowest and highest height of any tick; looks through the whole series.
+  HeightExtremes height_extremes() const;
+  /// Number of single changes in the series.
+  std::uint64_t height_changes() const;
+
+  /// The hash over what the file holds now: equal to content_hash() unless the file was edited or
+  /// columns are missing.
+  std::string compute_content_hash() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace screed

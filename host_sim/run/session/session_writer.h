@@ -1,0 +1,57 @@
+// Writes a run as one HDF5 file, block by block while it runs (docs/sessions.md describes the
+// file).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "hal/sample.h"
+#include "host_sim/run/session/frame.h"
+#include "host_sim/run/session/session_info.h"
+
+namespace screed {
+
+class SessionWriter {
+ public:
+  /// Rows held in memory; at most this many are lost when the program is killed.
+  static constexpr std::size_t kBlockRows = 1024;
+
+  /// Creates the file. Throws RunError when it exists already or cannot be written, InputError for
+  /// a text with a NUL byte.
+  SessionWriter(const std::filesystem::path& file, const SessionInfo& info);
+  SessionWriter(SessionWriter&&) noexcept;
+  SessionWriter& operator=(SessionWriter&&) noexcept;
+  /// Without finish() the file stays as that of an unfinished run, up to the last whole block.
+  ~SessionWriter();
+
+  /// Begins to record the height map, with the map before the first tick. Before append(), once.
+  void record_heights(const HeightMapView& map);
+
+  /// Records one tick, and what it did to the recorded heights, each at most once. Throws RunError
+  /// when a block cannot be written (disk full).
+  void append(const Frame& frame, const SensorSample& sample, const RobotOutput& output,
+              std::span<const HeightChange> changes = {});
+
+  /// What the ground is made of: at most once. Not part of the content hash, which has the
+  /// experiment's text.
+  void write_soil(std::span<const SoilAttribute> soil);
+
+  /// The terrain as the run found it and left it: each at most once, at any time before finish().
+  void write_terrain_before(const HeightMapView& map);
+  void write_terrain_after(const HeightMapView& map);
+
+  /// Writes what is left and closes the file. Returns the content hash. Nothing may be called
+  /// afterwards.
+  std::string finish();
+
+  std::uint64_t frames() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace screed

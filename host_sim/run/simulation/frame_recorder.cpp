@@ -1,0 +1,92 @@
+// One frame of a session.
+#include "host_sim/run/simulation/frame_recorder.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace screed {
+namespace {
+
+constexpr double kRadPerAngle = std::numbers::pi / 32768.0;
+
+double wrap_rad(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
+
+/// Slip of a driven surface over the ground: 1 spinning in place, 0 rolling, -1 locked and dragged.
+double slip(double surface, double ground) {
+  const double most = std::max(std::abs(surface), std::abs(ground));
+  constexpr double kStanding = 1e-3;  // below a mm/s slip means nothing
+  return most < kStanding
+             ? 0.0
+             : std::clamp((surface - ground) / std::copysign(most, surface), -1.0, 1.0);
+}
+
+}  // namespace
+
+Frame FrameRecorder::record(const Surroundings& plant, const Robot& robot) {
+  const VehicleState& vehicle = plant.vehicle();
+  const ChassisState chassis = vehicle.chassis();
+  const Eigen::Matrix3d& rotation = chassis.pose.linear();
+  const Eigen::Vector3d position = chassis.pose.translation();
+  const Attitude attitude = attitude_of(rotation);
+  const Eigen::Vector3d velocity = rotation.transpose() * chassis.velocity;
+
+  Frame frame;
+  frame.time = plant.time_s();
+  frame.x = position.x();
+  frame.y = position.y();
+  frame.z = position.z();
+  // As travelled: a teleport is no motion.
+  const Eigen::Vector3d travelled = plant.place_travelled();
+  if (!first_) {
+    frame.delta_x = travelled.x() - last_travelled_.x();
+    frame.delta_y = travelled.y() - last_travelled_.y();
+    frame.delta_theta = wrap_rad(attitude.heading - last_heading_);
+    distance_m_ += (travelled - last_travelled_).norm();
+  }
+  if (!plant.terrain().inside(position.x(), position.y())) outside_s_ += 1.0 / kTickRate_hz;
+  first_ = false;
+  last_travelled_ = travelled;
+  last_heading_ = attitude.heading;
+
+  const TrackSpeeds& targets = robot.drive().targets();
+  frame.v_left = targets.left * 1e-3 / vehicle.wheel_radius_m(kLeft);
+  frame.v_right = targets.right * 1e-3 / vehicle.wheel_radius_m(kRight);
+  frame.pitch = attitude.pitch;
+  frame.roll = attitude.roll;
+  frame.yaw = attitude.heading;
+  frame.linear = robot.motion().speed_mm_per_s * 1e-3;
+  frame.angular = robot.motion().yaw_rate * kRadPerAngle;
+  frame.velocity_x = velocity.x();
+  frame.velocity_y = velocity.y();
+  frame.velocity_z = velocity.z();
+  frame.rate_x = chassis.omega_body.x();
+  frame.rate_y = chassis.omega_body.y();
+  frame.rate_z = chassis.omega_body.z();
+  frame.track_left = vehicle.track_speed_m_per_s(kLeft);
+  frame.track_right = vehicle.track_speed_m_per_s(kRight);
+  frame.slip_left = slip(frame.track_left, vehicle.ground_speed_m_per_s(kLeft));
+  frame.slip_right = slip(frame.track_right, vehicle.ground_speed_m_per_s(kRight));
+  frame.sinkage_left = vehicle.sinkage_m(kLeft);
+  frame.sinkage_right = vehicle.sinkage_m(kRight);
+  frame.load_left = vehicle.load_n(kLeft);
+  frame.load_right = vehicle.load_n(kRight);
+  frame.current_left = vehicle.current_a(kLeft);
+  frame.current_right = vehicle.current_a(kRight);
+  frame.battery = plant.battery().terminal_v;
+  frame.energy = plant.battery().energy_j;
+  frame.est_pitch = robot.attitude().pitch() * kRadPerAngle;
+  frame.est_roll = robot.attitude().roll() * kRadPerAngle;
+  frame.est_heading = robot.attitude().heading() * kRadPerAngle;
+  frame.odometry_x = robot.odometry().x_mm() * 1e-3;
+  frame.odometry_y = robot.odometry().y_mm() * 1e-3;
+  frame.state = static_cast<int32_t>(robot.supervisor().state());
+  frame.leveling_state = static_cast<int32_t>(robot.leveling().state());
+  frame.faults = robot.supervisor().faults();
+  frame.beds_x = static_cast<int32_t>(plant.beds_passed()[0]);
+  frame.beds_y = static_cast<int32_t>(plant.beds_passed()[1]);
+  return frame;
+}
+
+}  // namespace screed

@@ -1,0 +1,27 @@
+// Makes one frame of a session from the world's truth and from what the robot thinks.
+#pragma once
+
+#include "firmware/robot/robot.h"
+#include "host_sim/physics/world/surroundings.h"
+#include "host_sim/run/session/frame.h"
+
+namespace screed {
+
+class FrameRecorder {
+ public:
+  /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
+  Frame record(const Surroundings& plant, const Robot& robot);
+
+  /// Length of the chassis' path so far, m, and the time it was not on the bed, s.
+  double distance_m() const { return distance_m_; }
+  double outside_s() const { return outside_s_; }
+
+ private:
+  bool first_ = true;
+  Eigen::Vector3d last_travelled_ = Eigen::Vector3d::Zero();
+  double last_heading_ = 0.0;
+  double distance_m_ = 0.0;
+  double outside_s_ = 0.0;
+};
+
+}  // namespace screed

@@ -1,0 +1,248 @@
+// One board in one world.
+#include "host_sim/run/world/mcu_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <numbers>
+
+#include "firmware/parameters/parameter_store.h"
+#include "host_sim/core/errors.h"
+#include "paths.h"
+
+namespace screed::mcu {
+namespace {
+
+// No healthy program is silent for so long, not even through a reset by the watchdog.
+constexpr std::uint64_t kPatience_us = 2'000'000;
+
+Wiring wiring_of(const std::string& board) {
+  const std::filesystem::path folder = std::filesystem::path(kBoardsFolder) / board;
+  std::error_code error;
+  if (board.empty() || !std::filesystem::is_directory(folder, error)) {
+    throw InputError("board '" + board + "': no folder " + folder.string());
+  }
+  return read_wiring(folder / "wiring.ini");
+}
+
+}  // namespace
+
+McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulationOptions& options,
+                   std::ostream* telemetry_log)
+    : options_(options),
+      plant_(std::move(terrain), model, options.world),
+      imu_(options.world.seed, options.world.imu),
+      uplink_(options.world.seed, "uplink", options.world.radio),
+      downlink_(options.world.seed, "downlink", options.world.radio),
+      ground_(options.world.ground_station_arms, options.world.drive, telemetry_log,
+              options.world.ground_key),
+      ground_end_(options.world.ground_port),
+      station_m_(plant_.vehicle().chassis().pose.translation()),
+      board_(options.elf, wiring_of(options.board)),
+      chip_clock_(options.world.seed, "chip clocks"),
+      noise_(options.world.seed, "flood") {
+  ParameterCopy copy{};
+  encode_parameters(options.parameters, 1, copy);
+  for (std::uint8_t i = 0; i < kParameterCopies; ++i) {
+    board_.mcu.write_eeprom(kParameterCopyAt(i), copy.bytes);
+  }
+  board_.mcu.write_eeprom(kCredentialRecordAt, credential_record(options.credentials).bytes);
+  for (const Side side : {kLeft, kRight}) {
+    position_.at(side) = encoder_position(side);
+    board_.set_encoder(side, static_cast<std::int64_t>(std::floor(position_.at(side))));
+  }
+  board_.set_battery_v(plant_.battery().terminal_v);
+  board_.mcu.on_sent([this](std::uint8_t byte) { downlink_.send(now_us(), {&byte, 1}); });
+}
+
+std::uint64_t McuWorld::us_at(std::uint64_t steps) const {
+  return steps * kTickPeriod_us / static_cast<std::uint64_t>(plant_.steps_per_tick());
+}
+
+std::uint64_t McuWorld::now_us() const {
+  return board_.mcu.cycle() / kCyclesPerUs;
+}
+
+double McuWorld::encoder_position(Side side) const {
+  return plant_.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi) *
+         options_.world.encoder_counts_per_turn;
+}
+
+void McuWorld::begin_tick() {
+  ++ticks_;
+  const std::optional<double>& lay = options_.world.lay_on_side_at_s;
+  if (lay.has_value() && ticks_ == static_cast<std::uint64_t>(std::llround(*lay * kTickRate_hz))) {
+    plant_.lay_on_side();
+  }
+  const std::uint64_t at_us = us_at(plant_.steps());
+  const Eigen::Vector3d way = plant_.vehicle().chassis().pose.translation() - station_m_;
+  uplink_.set_distance(way.norm());
+  downlink_.set_distance(way.norm());
+  ground_end_.tick(at_us, ground_, uplink_, downlink_);
+}
+
+void McuWorld::begin_step() {
+  if (plant_.steps() % static_cast<std::uint64_t>(plant_.steps_per_tick()) == 0) begin_tick();
+  const std::uint64_t begin_us = us_at(plant_.steps());
+  plant_.step({board_.motor_share(kLeft), board_.motor_share(kRight)});
+  const std::uint64_t end_us = us_at(plant_.steps());
+  step_begin_ = begin_us * kCyclesPerUs;
+  step_end_ = end_us * kCyclesPerUs;
+  motion_.reset();
+  board_.set_battery_v(plant_.battery().terminal_v);
+
+  events_.clear();
+  next_event_ = 0;
+  add_edges(kLeft);
+  add_edges(kRight);
+  const auto begin = static_cast<double>(begin_us);
+  const auto end = static_cast<double>(end_us);
+  add_measurements(What::kAccel, samplers_[0], board_.accel_mag.accel_rate_hz(), begin, end);
+  add_measurements(What::kMag, samplers_[1], board_.accel_mag.mag_rate_hz(), begin, end);
+  add_measurements(What::kGyro, samplers_[2], board_.gyro.rate_hz(), begin, end);
+  if (board_.baro.has_value()) {
+    add_measurements(What::kBaro, samplers_[3], board_.baro->rate_hz(), begin, end);
+  }
+  add_radio(begin_us, end_us);
+  std::stable_sort(events_.begin(), events_.end(),
+                   [](const Event& a, const Event& b) { return a.cycle < b.cycle; });
+}
+
+/// Edges stand where the shaft, turning evenly within the step, passes a whole count.
+void McuWorld::add_edges(Side side) {
+  const double from = position_.at(side);
+  const double to = encoder_position(side);
+  position_.at(side) = to;
+  const auto first = static_cast<std::int64_t>(std::floor(from));
+  const auto last = static_cast<std::int64_t>(std::floor(to));
+  const auto length = static_cast<double>(step_end_ - step_begin_);
+  const bool forward = last > first;
+  for (std::int64_t count = first; count != last;) {
+    const auto boundary = static_cast<double>(forward ? count + 1 : count);
+    count += forward ? 1 : -1;
+    const double share = (boundary - from) / (to - from);
+    std::uint64_t cycle = step_begin_ + static_cast<std::uint64_t>(share * length);
+    // Forward and back over the same edge take some time.
+    cycle = std::max(cycle, last_edge_.at(side) + kCyclesPerUs);
+    last_edge_.at(side) = cycle;
+    events_.push_back({cycle, What::kEdge, side, count});
+  }
+}
+
+void McuWorld::add_measurements(What what, Sampler& sampler, double rate_hz, double begin_us,
+                                double end_us) {
+  if (rate_hz <= 0.0) {
+    sampler.rate_hz = 0.0;
+    return;
+  }
+  const double period_us = 1e6 / rate_hz;
+  if (rate_hz != sampler.rate_hz) {
+    sampler.rate_hz = rate_hz;
+    sampler.next_us = begin_us + chip_clock_.uniform() * period_us;
+  }
+  for (; sampler.next_us < end_us; sampler.next_us += period_us) {
+    const auto cycle = static_cast<std::uint64_t>(std::max(begin_us, sampler.next_us) *
+                                                  static_cast<double>(kCyclesPerUs));
+    events_.push_back({cycle, what, kLeft, 0});
+  }
+}
+
+void McuWorld::add_radio(std::uint64_t begin_us, std::uint64_t end_us) {
+  if (flood) {
+    const double character_us =
+        static_cast<double>(board_.mcu.cycles_per_character()) / static_cast<double>(kCyclesPerUs);
+    flood_us_ = std::max(flood_us_, static_cast<double>(begin_us));
+    for (; flood_us_ < static_cast<double>(end_us); flood_us_ += character_us) {
+      events_.push_back({static_cast<std::uint64_t>(flood_us_ * static_cast<double>(kCyclesPerUs)),
+                         What::kRadioByte, kLeft, noise_.next() & 0xFFU});
+    }
+  }
+  while (const std::optional<RadioLink::Byte> byte = uplink_.receive_byte(end_us - 1)) {
+    if (flood) continue;  // two senders at once: nothing gets through
+    const std::uint64_t at_us = std::max(byte->arrives_us, begin_us);
+    events_.push_back({at_us * kCyclesPerUs, What::kRadioByte, kLeft, byte->value});
+  }
+}
+
+void McuWorld::happen(const Event& event) {
+  if (event.what == What::kEdge) {
+    board_.set_encoder(event.side, event.value);
+    return;
+  }
+  if (event.what == What::kRadioByte) {
+    board_.mcu.receive_byte(static_cast<std::uint8_t>(event.value));
+    return;
+  }
+  if (!motion_.has_value()) motion_ = plant_.motion();
+  switch (event.what) {
+    case What::kAccel:
+      board_.feel_accel(imu_.accel_mg(*motion_));
+      break;
+    case What::kMag:
+      board_.feel_mag(imu_.mag_mgauss(*motion_));
+      break;
+    case What::kGyro:
+      board_.feel_rate(imu_.gyro_dps(*motion_));
+      break;
+    default:
+      board_.baro->measure(imu_.pressure_hpa(*motion_), ImuModel::kTemperature_degc);
+      break;
+  }
+}
+
+void McuWorld::run_to(Board::Mark mark) {
+  const std::uint64_t limit_us = now_us() + kPatience_us;
+  for (;;) {
+    const bool waiting = next_event_ < events_.size();
+    const std::uint64_t target = waiting ? events_[next_event_].cycle : step_end_;
+    const bool arrived = board_.mcu.run_to(target);
+    board_.check();
+    if (!arrived) {
+      const Board::Mark shown = board_.take_mark();
+      if (shown == Board::Mark::kStart &&
+          std::memcmp(&board_.parameters(), &options_.parameters, sizeof(Parameters)) != 0) {
+        throw RunError(options_.elf +
+                       ": the image does not take the experiment's parameters; it was built for "
+                       "another parameter table (run make firmware)");
+      }
+      if (shown == mark) return;
+      continue;
+    }
+    if (waiting) {
+      happen(events_[next_event_++]);
+      continue;
+    }
+    if (now_us() > limit_us) {
+      throw RunError("the image has made no control tick for 2 s, at " +
+                     std::to_string(plant_.time_s()) + " s");
+    }
+    begin_step();
+  }
+}
+
+const SensorSample& McuWorld::run_to_sample() {
+  run_to(Board::Mark::kSample);
+  return board_.sample();
+}
+
+const RobotOutput& McuWorld::run_to_output() {
+  run_to(Board::Mark::kOutput);
+  return board_.output();
+}
+
+}  // namespace screed::mcu
+
+namespace screed {
+
+std::unique_ptr<CoSimulation> make_co_simulation(HeightField terrain, const Assembly& model,
+                                                 const CoSimulationOptions& options,
+                                                 std::ostream* telemetry_log) {
+  std::error_code error;
+  if (!std::filesystem::exists(options.elf, error)) {
+    throw InputError(options.elf + ": no such image; run make firmware BOARD=" + options.board);
+  }
+  return std::make_unique<mcu::McuWorld>(std::move(terrain), model, options, telemetry_log);
+}
+
+}  // namespace screed

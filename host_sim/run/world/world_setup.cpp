@@ -1,0 +1,198 @@
+// Ground, robot and options out of an experiment's keys.
+#include "host_sim/run/world/world_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/physics/terrain/grey_image.h"
+#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/trap.h"
+
+namespace screed {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr int kLevelBedNodes = 65;  // a side, of a bed of particles without an image
+
+/// The same surface on another grid. With wrap-around the cells still divide the bed.
+HeightField resampled(const HeightField& field, double cell_m) {
+  const double width = field.x_max() - field.x_min();
+  const double depth = field.y_max() - field.y_min();
+  const int extra = field.wrap() ? 0 : 1;
+  const int nx = static_cast<int>(std::lround(width / cell_m)) + extra;
+  const int ny = static_cast<int>(std::lround(depth / cell_m)) + extra;
+  return HeightField::from_function(nx, ny, width / (nx - extra), field.wrap(),
+                                    [&](double x, double y) { return field.at(x, y).height; });
+}
+
+void raise(HeightField& field, double by_m) {
+  const auto units = static_cast<Height>(std::lround(by_m / kHeightUnit_m));
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) field.set_node(ix, iy, field.node(ix, iy) + units);
+  }
+}
+
+/// Length of the longer side, of so many pixels: given as such or by a pixel's width; of particles
+/// by the stacks a pixel (thesis 5.1.3 and Table 5.2: as many particles side by side).
+double size_of_bed(const Experiment& experiment, int pixels) {
+  const auto& map = experiment.map;
+  if (!map.xy_scale.has_value()) return map.size_m;
+  if (map.of_particles()) return pixels * *map.xy_scale * 2.0 * map.particle_radius_m;
+  return (map.wrap ? pixels : pixels - 1) * *map.xy_scale;
+}
+
+HeightField untrapped_terrain(const Experiment& experiment) {
+  const auto& map = experiment.map;
+  const bool soft = map.model == "scm";
+  if (map.filename.empty() && map.of_particles()) {
+    const double rise = std::tan(map.ramp_deg * kRadPerDeg);
+    const int nodes = kLevelBedNodes;
+    return HeightField::from_function(nodes, nodes, map.size_m / (nodes - (map.wrap ? 0 : 1)),
+                                      map.wrap, [&](double x, double /*y*/) {
+                                        return std::max(0.0,
+                                                        experiment.particles.depth_m + x * rise);
+                                      });
+  }
+  if (map.filename.empty()) {
+    const double spacing = soft ? experiment.soil.cell_m : map.size_m / 64.0;
+    return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing)
+                               : HeightField::ramp(map.size_m, spacing, map.ramp_deg);
+  }
+  const GreyImage image =
+      read_grey_image(find_data_file(experiment, map.filename, "[map] filename"));
+  HeightFieldOptions options;
+  options.size_m = size_of_bed(experiment, std::max(image.width, image.height));
+  options.scale_m = map.scale_m;
+  options.smoothing_m = map.smoothing_m;
+  options.max_slope_deg = map.max_slope_deg;
+  options.wrap = map.wrap;
+  HeightField field = HeightField::from_image(image, options);
+  if (map.of_particles()) raise(field, experiment.particles.depth_m);
+  return soft ? resampled(field, experiment.soil.cell_m) : field;
+}
+
+WorldOptions world_options(const Experiment& experiment, const std::string& board,
+                           GroundPort* ground_port) {
+  WorldOptions options;
+  const BoardMotor motor = board_motor(board);
+  options.vehicle.motor = motor.motor;
+  options.encoder_counts_per_turn = motor.counts_per_turn;
+  options.ground_port = ground_port;
+  options.seed = experiment.experiment.seed;
+  options.physics_step_s = experiment.physics.step_s;
+  options.start.x_m = experiment.vehicle.x_m;
+  options.start.y_m = experiment.vehicle.y_m;
+  options.start.z_m = experiment.vehicle.z_m;
+  options.start.attitude = {experiment.vehicle.roll_deg * kRadPerDeg,
+                            experiment.vehicle.pitch_deg * kRadPerDeg,
+                            experiment.vehicle.heading_deg * kRadPerDeg};
+  options.vehicle.tracks = experiment.vehicle.tracks;
+  options.vehicle.track_model =
+      experiment.vehicle.track_model == "chain" ? TrackModel::kChain : TrackModel::kBelt;
+  options.vehicle.chain.links = experiment.vehicle.track_links;
+  options.vehicle.chain.tension_n = experiment.vehicle.track_tension_n;
+  options.vehicle.track_friction = experiment.vehicle.track_friction;
+  options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
+  if (!experiment.sensors.calibrated) options.imu = ImuErrors::uncalibrated();
+  if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
+  options.handled = experiment.sensors.handled;
+  options.radio.delay_s = experiment.radio.delay_s;
+  options.radio.loss = experiment.radio.loss;
+  options.radio.bit_errors = experiment.radio.bit_errors;
+  options.radio.duplication = experiment.radio.duplication;
+  options.radio.range_m = experiment.radio.range_m;
+  options.radio.bytes_per_s = experiment.radio.baud / 10.0;
+  options.radio.pause_characters = experiment.radio.packet_pause;
+  options.ground_key = ground_key_of(experiment);
+  options.ground_station_arms = experiment.radio.ground_station;
+  if (experiment.experiment.algorithm == "drive") {
+    options.drive = DriveOrder{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
+  }
+  options.lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
+  if (experiment.map.model == "scm") {
+    options.soil = make_soil(experiment);
+    options.soil_options.bulldozing = experiment.soil.bulldozing;
+    options.soil_options.avalanches = experiment.soil.avalanches;
+    options.soil_options.follow_slopes = experiment.soil.follow_slopes;
+  }
+  if (experiment.map.of_particles()) {
+    ParticleOptions particles;
+    particles.material.radius_m = experiment.map.particle_radius_m;
+    particles.material.density_kg_per_m3 = experiment.particles.density_kg_per_m3;
+    particles.material.friction = experiment.particles.friction;
+    particles.material.rolling = experiment.particles.rolling;
+    particles.ray_spacing_m = 1.0 / experiment.raygrid.resolution_per_m;
+    particles.seed = experiment.experiment.seed;
+    particles.fixed = experiment.map.model == "static_particles";
+    options.particles = particles;
+  }
+  return options;
+}
+
+}  // namespace
+
+SoilParameters make_soil(const Experiment& experiment) {
+  const auto& keys = experiment.soil;
+  SoilParameters soil = soil_preset(keys.preset);
+  const auto take = [](const std::optional<double>& value, double& parameter) {
+    if (value.has_value()) parameter = *value;
+  };
+  take(keys.k_phi, soil.k_phi);
+  take(keys.k_c, soil.k_c);
+  take(keys.exponent, soil.exponent);
+  take(keys.cohesion_pa, soil.cohesion_pa);
+  take(keys.friction_deg, soil.friction_deg);
+  take(keys.shear_modulus_m, soil.shear_modulus_m);
+  take(keys.elastic_pa_per_m, soil.elastic_pa_per_m);
+  take(keys.damping_pa_s_per_m, soil.damping_pa_s_per_m);
+  take(keys.shear_damping_s, soil.shear_damping_s);
+  take(keys.repose_deg, soil.repose_deg);
+  take(keys.compaction, soil.compaction);
+  take(keys.drag_depth_m, soil.drag_depth_m);
+  take(keys.slip_sinkage, soil.slip_sinkage);
+  check_soil(soil);
+  return soil;
+}
+
+HeightField make_terrain(const Experiment& experiment) {
+  HeightField field = untrapped_terrain(experiment);
+  set_trap(experiment, field);
+  return field;
+}
+
+Assembly make_robot_model(const Experiment& experiment, const std::string& board) {
+  UrdfOptions urdf;
+  if (experiment.vehicle.leg_angle_deg.has_value())
+    urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
+  return import_urdf(find_model_file(experiment, board), urdf);
+}
+
+std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
+                                  const std::string& board, GroundPort* ground_port,
+                                  const SurroundingsFactory& surroundings) {
+  const WorldOptions options = world_options(experiment, board, ground_port);
+  if (surroundings) {
+    return std::make_unique<World>(
+        surroundings(make_terrain(experiment), make_robot_model(experiment, board), options),
+        board_constants_of(board), options, telemetry_log);
+  }
+  return std::make_unique<World>(make_terrain(experiment), make_robot_model(experiment, board),
+                                 board_constants_of(board), options, telemetry_log);
+}
+
+std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
+                                                 std::ostream* telemetry_log,
+                                                 const std::string& board, const std::string& image,
+                                                 GroundPort* ground_port) {
+  CoSimulationOptions options;
+  options.elf = image;
+  options.board = board;
+  options.parameters = experiment.parameters;
+  options.credentials = credentials_of(experiment);
+  options.world = world_options(experiment, board, ground_port);
+  return make_co_simulation(make_terrain(experiment), make_robot_model(experiment, board), options,
+                            telemetry_log);
+}
+
+}  // namespace screed

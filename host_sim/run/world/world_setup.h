@@ -1,0 +1,41 @@
+// What an experiment drives in: its soil, terrain and robot, and the world made of them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/world/co_simulation.h"
+#include "host_sim/run/world/world.h"
+
+namespace screed {
+
+/// Makes what a robot is driven in from the ground, the robot and the options of an experiment.
+/// Throws InputError when they do not suit.
+using SurroundingsFactory = std::function<std::unique_ptr<Surroundings>(
+    HeightField terrain, const Assembly& model, const PlantOptions& options)>;
+
+/// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
+SoilParameters make_soil(const Experiment& experiment);
+/// The terrain an experiment asks for.
+HeightField make_terrain(const Experiment& experiment);
+/// The robot of an experiment, on a board of boards/. Throws InputError.
+Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard);
+/// A world as the experiment describes it, for a board of boards/. telemetry_log may be null.
+std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
+                                  const std::string& board = kDefaultBoard,
+                                  GroundPort* ground_port = nullptr,
+                                  const SurroundingsFactory& surroundings = {});
+/// The same world with the image running in it (co_simulation.h).
+std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
+                                                 std::ostream* telemetry_log,
+                                                 const std::string& board, const std::string& image,
+                                                 GroundPort* ground_port = nullptr);
+
+}  // namespace screed

@@ -1,0 +1,287 @@
+// The digging robot.
+#include "host_sim/soil_validation/dig_test.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/soil_validation/check_range.h"
+
+namespace screed {
+namespace {
+
+// About the Rover: 1.2 kg on two belts.
+constexpr double kMass_kg = 1.2;
+constexpr double kHalfBelt_m = 0.055;
+constexpr double kWheelRadius_m = 0.03;
+constexpr double kBeltWidth_m = 0.04;
+constexpr double kTread_m = 0.18;
+constexpr double kBodyAboveAxles_m = 0.01;
+const Eigen::Vector3d kBody_m(0.20, 0.14, 0.06);
+
+constexpr double kSettle_s = 0.5;
+constexpr double kSlip = 0.6;
+constexpr double kWinch_s = 0.05;  // in which the winch makes good an error of speed
+// The mound: a cone's flank at 20 degrees, cut off at this height.
+constexpr double kMound_m = 0.08;
+constexpr double kMoundSlope_rad = 20.0 * std::numbers::pi / 180.0;
+constexpr double kAverage_m = 0.025;
+
+double start_x(const DigTest& test) {
+  return test.manoeuvre == Manoeuvre::kSpin ? 0.0 : -0.5 * test.size_m + 0.17;
+}
+
+HeightField ground_before(const DigTest& test, double floor_m) {
+  const int nodes = static_cast<int>(std::lround(test.size_m / test.cell_m)) + 1;
+  const bool mound = test.manoeuvre == Manoeuvre::kCharge;
+  return HeightField::from_function(nodes, nodes, test.cell_m, false, [&](double x, double y) {
+    if (!mound) return floor_m;
+    const double flank = kMound_m / std::tan(kMoundSlope_rad);
+    const double out = std::max(0.0, std::hypot(x - 0.12, y) - 0.06);
+    return floor_m + kMound_m * std::max(0.0, 1.0 - out / flank);
+  });
+}
+
+void check(const DigTest& test) {
+  check_range("dig", "cell", test.cell_m, 0.001, 0.02);
+  check_range("dig", "step", test.step_s, 1e-5, 0.01);
+  check_range("dig", "depth", test.depth_m, 0.02, 1.0);
+  check_range("dig", "size", test.size_m, 0.5, 5.0);
+  check_range("dig", "speed", test.track_m_per_s, 0.01, 1.0);
+  check_range("dig", "duration", test.duration_s, 0.1, 600.0);
+  check_range("dig", "beds", test.beds, 1, 64);
+}
+
+/// Presses the belts into the ground in one step: fills in the reactions.
+using Press = std::function<void(const PressingBody&, std::array<SoilContact, 2>&, double dt)>;
+
+class DiggingRobot {
+ public:
+  DiggingRobot(double x, double ground_m) : body_(dBodyCreate(world_.id())) {
+    dMass mass;
+    dMassSetBoxTotal(&mass, kMass_kg, kBody_m.x(), kBody_m.y(), kBody_m.z());
+    dBodySetMass(body_, &mass);
+    inverse_inertia_ = rotation_to_eigen(mass.I).inverse();
+    dBodySetPosition(body_, x, 0.0, ground_m + kWheelRadius_m + kBodyAboveAxles_m);
+  }
+
+  void step(const Press& press, const std::array<double, 2>& belts, double hold_m_per_s,
+            double dt) {
+    PressingBody body;
+    const Eigen::Matrix3d axes = rotation();
+    body.mass_kg = kMass_kg;
+    body.inverse_inertia = axes * inverse_inertia_ * axes.transpose();
+    body.centre = position();
+    body.velocity = to_eigen(dBodyGetLinearVel(body_));
+    body.omega = to_eigen(dBodyGetAngularVel(body_));
+    std::array<SoilContact, 2> contacts;
+    for (size_t i = 0; i < 2; ++i) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.linear() = axes;
+      const double side = i == 0 ? 0.5 : -0.5;
+      pose.translation() =
+          body.centre + axes * Eigen::Vector3d(0.0, side * kTread_m, -kBodyAboveAxles_m);
+      belts_[i].set_pose(pose);
+      contacts[i].footprint = &belts_[i];
+      contacts[i].memory = &memories_[i];
+      contacts[i].surface_speed = belts[i];
+      contacts[i].slip = hold_m_per_s > 0.0 ? kSlip : 0.0;
+    }
+    press(body, contacts, dt);
+    for (const SoilContact& contact : contacts) {
+      const Eigen::Vector3d& force = contact.reaction.force;
+      const Eigen::Vector3d arm = contact.footprint->pose().translation() - body.centre;
+      const Eigen::Vector3d torque = arm.cross(force) + contact.reaction.torque;
+      dBodyAddForce(body_, force.x(), force.y(), force.z());
+      dBodyAddTorque(body_, torque.x(), torque.y(), torque.z());
+    }
+    if (hold_m_per_s > 0.0) {
+      // A winch at the middle of the body that holds this speed, whatever it takes, and keeps the
+      // body on its line.
+      const double gain = 0.1 * kMass_kg / dt;
+      const double faster = body.velocity.x() - hold_m_per_s;
+      winch_n_ += gain * faster * dt / kWinch_s;
+      const Eigen::Vector3d pull(-gain * faster - winch_n_, -gain * body.velocity.y(), 0.0);
+      dBodyAddForce(body_, pull.x(), pull.y(), 0.0);
+      held_ -= pull.x() * dt;
+      dBodyAddTorque(body_, 0.0, 0.0, -0.1 / dt * body.omega.z() / body.inverse_inertia(2, 2));
+    }
+    world_.step(dt);
+    turned_ += body.omega.z() * dt;
+  }
+
+  Eigen::Vector3d position() const { return to_eigen(dBodyGetPosition(body_)); }
+  Eigen::Matrix3d rotation() const { return rotation_to_eigen(dBodyGetRotation(body_)); }
+  double turned_rad() const { return turned_; }
+  double held_ns() const { return held_; }  ///< the winch's force over time
+  BodyMemory& memory() { return memory_; }
+
+ private:
+  OdeWorld world_;
+  dBodyID body_;
+  Eigen::Matrix3d inverse_inertia_;
+  BodyMemory memory_;
+  std::array<Footprint, 2> belts_{Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m),
+                                  Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m)};
+  std::array<ContactMemory, 2> memories_;
+  double turned_ = 0.0;
+  double winch_n_ = 0.0;
+  double held_ = 0.0;
+};
+
+/// Means over squares, on the same nodes.
+HeightField averaged(const HeightField& field) {
+  const int half = static_cast<int>(std::lround(0.5 * kAverage_m / field.spacing_m()));
+  HeightField means = field;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) {
+      int64_t sum = 0;
+      int64_t count = 0;
+      for (int y = std::max(0, iy - half); y <= std::min(field.ny() - 1, iy + half); ++y) {
+        for (int x = std::max(0, ix - half); x <= std::min(field.nx() - 1, ix + half); ++x) {
+          sum += field.node(x, y);
+          ++count;
+        }
+      }
+      means.set_node(ix, iy, static_cast<Height>(sum / count));
+    }
+  }
+  means.refresh_bounds();
+  return means;
+}
+
+void measure(DigResult& result) {
+  const HeightField& field = result.before;
+  const double area = field.spacing_m() * field.spacing_m();
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) {
+      const double rise =
+          (static_cast<double>(result.after.node(ix, iy)) - field.node(ix, iy)) * kHeightUnit_m;
+      const double dx = field.node_x(ix) - result.end_x_m;
+      const double away = std::hypot(dx, field.node_y(iy) - result.end_y_m);
+      result.highest_m = std::max(result.highest_m, rise);
+      result.deepest_m = std::max(result.deepest_m, -rise);
+      const double volume = std::abs(rise) * area;
+      (rise > 0.0 ? result.raised_m3 : result.sunk_m3) += volume;
+      (rise > 0.0 ? result.raised_radius_m : result.sunk_radius_m) += volume * away;
+      if (rise > 0.0 && dx < 0.0) result.behind_share += volume;
+    }
+  }
+  if (result.raised_m3 > 0.0) {
+    result.raised_radius_m /= result.raised_m3;
+    result.behind_share /= result.raised_m3;
+  }
+  if (result.sunk_m3 > 0.0) result.sunk_radius_m /= result.sunk_m3;
+}
+
+/// Drives the manoeuvre; `ground` is asked for before and after the drive, the robot standing on
+/// it.
+DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press& press,
+                const std::function<HeightField()>& ground) {
+  DigResult result{averaged(ground()), HeightField::flat(1.0, 0.1)};
+  const auto settling = static_cast<int>(std::lround(kSettle_s / dt));
+  for (int i = 0; i < settling; ++i) robot.step(press, {0.0, 0.0}, 0.0, dt);
+  const Eigen::Vector3d start = robot.position();
+  const double v = test.track_m_per_s;
+  const bool spin = test.manoeuvre == Manoeuvre::kSpin;
+  const double hold = test.manoeuvre == Manoeuvre::kSlip ? (1.0 - kSlip) * v : 0.0;
+  const std::array<double, 2> belts = {spin ? -v : v, v};
+  const double edge = 0.5 * test.size_m - 0.17;
+  const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
+  for (int64_t i = 0; i < steps; ++i) {
+    robot.step(press, belts, hold, dt);
+    result.time_s += dt;
+    const Eigen::Vector3d place = robot.position();
+    result.pitch_rad =
+        std::max(result.pitch_rad, std::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
+    if (std::max(std::abs(place.x()), std::abs(place.y())) > edge + 0.01) break;
+  }
+  result.after = averaged(ground());
+  const Eigen::Vector3d end = robot.position();
+  result.end_x_m = end.x();
+  result.end_y_m = end.y();
+  result.way_m = (end - start).head<2>().norm();
+  result.pull_n = robot.held_ns() / result.time_s;
+  result.turned_rad = robot.turned_rad();
+  result.lower_by_m = start.z() - end.z();
+  return result;
+}
+
+}  // namespace
+
+DigResult dig_soil(const DigTest& test) {
+  check(test);
+  SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
+  bed.settle();
+  DiggingRobot robot(start_x(test), 0.0);
+  const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
+                          double dt) {
+    bed.press(body, contacts, dt, robot.memory());
+    bed.end_step();
+  };
+  DigResult result = drive(test, robot, test.step_s, press, [&] { return bed.surface(); });
+  measure(result);
+  return result;
+}
+
+namespace {
+
+DigResult dig_one_bed(const DigTest& test, uint64_t seed) {
+  ParticleOptions options;
+  options.material = test.particle;
+  options.ray_spacing_m = test.cell_m;
+  options.seed = seed;
+  ParticleBed bed(ground_before(test, test.depth_m), options);
+  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
+  const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
+                          double dt) {
+    for (SoilContact& contact : contacts) {
+      FootprintMotion motion;
+      const Eigen::Vector3d arm = contact.footprint->pose().translation() - body.centre;
+      motion.velocity = body.velocity + body.omega.cross(arm);
+      motion.omega = body.omega;
+      motion.surface_speed = contact.surface_speed;
+      contact.reaction = bed.press(*contact.footprint, motion, dt);
+    }
+    bed.step(dt);
+  };
+  return drive(test, robot, bed.longest_step_s(), press, [&] { return bed.surface(); });
+}
+
+constexpr double DigResult::*kMeans[] = {
+    &DigResult::end_x_m, &DigResult::end_y_m,    &DigResult::time_s,     &DigResult::pull_n,
+    &DigResult::way_m,   &DigResult::turned_rad, &DigResult::lower_by_m, &DigResult::pitch_rad};
+
+template <typename Change>
+void change_nodes(HeightField& field, const Change& change) {
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) field.set_node(ix, iy, change(ix, iy));
+  }
+}
+
+}  // namespace
+
+DigResult dig_particles(const DigTest& test) {
+  check(test);
+  DigResult mean = dig_one_bed(test, test.seed);
+  for (int i = 1; i < test.beds; ++i) {
+    const DigResult one = dig_one_bed(test, test.seed + static_cast<uint64_t>(i));
+    for (double DigResult::*figure : kMeans) mean.*figure += one.*figure;
+    for (HeightField DigResult::*map : {&DigResult::before, &DigResult::after}) {
+      change_nodes(mean.*map, [&](int x, int y) {
+        return static_cast<Height>((mean.*map).node(x, y) + (one.*map).node(x, y));
+      });
+    }
+  }
+  for (double DigResult::*figure : kMeans) mean.*figure /= test.beds;
+  for (HeightField DigResult::*map : {&DigResult::before, &DigResult::after}) {
+    change_nodes(mean.*map, [&](int x, int y) { return (mean.*map).node(x, y) / test.beds; });
+    (mean.*map).refresh_bounds();
+  }
+  measure(mean);
+  return mean;
+}
+
+}  // namespace screed

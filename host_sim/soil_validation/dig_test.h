@@ -1,0 +1,63 @@
+// A tracked robot that digs: on deformable soil or on particles, by the same motions, measured the
+// same way. Says how much material it moved, how deep its hole is and where the material went.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "host_sim/physics/particles/particle_bed.h"
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+enum class Manoeuvre {
+  kSpin,    ///< 10 s on the spot, the tracks against each other
+  kCharge,  ///< against a mound whose flanks rise at 20 degrees
+  kSlip,    ///< straight ahead while something holds it back to 60 % slip
+};
+
+struct DigTest {
+  Manoeuvre manoeuvre = Manoeuvre::kSpin;
+  SoilParameters soil;  ///< of deformable ground
+  SoilOptions options;
+  double cell_m = 0.005;       ///< of its grid, and of the rays over particles
+  double step_s = 1e-3;        ///< of deformable ground; particles have their own
+  ParticleMaterial particle;   ///< of ground of particles
+  double depth_m = 0.10;       ///< of the bed of particles, 0.02..1
+  double size_m = 0.9;         ///< of the bed's side, 0.5..5
+  double track_m_per_s = 0.2;  ///< belt speed over the wheels, 0.01..1
+  double duration_s = 10.0;    ///< 0.1..600; slip: as far as the bed goes, at most
+  uint64_t seed = 1;           ///< of the particles' layout
+  int beds = 16;               ///< of particles, laid with this seed and the next ones; 1..64
+};
+
+/// Of the height maps before the robot was put down and after its drive, both averaged over
+/// squares of 25 mm, of particles also over the beds: otherwise single particles that have rolled
+/// over count for more than all that was dug. The robot starts at the origin (spin), or west of it,
+/// heading east.
+struct DigResult {
+  HeightField before;
+  HeightField after;
+  double raised_m3 = 0.0;        ///< volume above the ground of before
+  double sunk_m3 = 0.0;          ///< and below it
+  double deepest_m = 0.0;        ///< of the hole or rut
+  double highest_m = 0.0;        ///< of what was thrown up
+  double sunk_radius_m = 0.0;    ///< mean distance of the sunk volume from there
+  double raised_radius_m = 0.0;  ///< and of the raised
+  double behind_share = 0.0;     ///< of the raised volume, west of there
+  double end_x_m = 0.0;          ///< where the robot ended
+  double end_y_m = 0.0;
+  double time_s = 0.0;      ///< that the drive took
+  double pull_n = 0.0;      ///< slip: what held it back, mean
+  double way_m = 0.0;       ///< of the body from start to end, straight
+  double turned_rad = 0.0;  ///< about the vertical, all turns counted
+  double lower_by_m = 0.0;  ///< the body at the end against the start
+  double pitch_rad = 0.0;   ///< greatest nose-up pitch
+};
+
+/// Throws InputError for figures out of range.
+DigResult dig_soil(const DigTest& test);
+DigResult dig_particles(const DigTest& test);
+
+}  // namespace screed

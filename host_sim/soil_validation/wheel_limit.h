@@ -1,0 +1,35 @@
+// What a rigid wheel on soil does when the grid is infinitely fine and the step infinitely short:
+// the equations of the contact, integrated along it. Knows no grid; docs/soil.md states the
+// equations.
+#pragma once
+
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+
+namespace screed {
+
+/// A driven wheel at a given load and slip, rolling steadily over level soil, or along a rut that
+/// an earlier pass has left in it.
+struct RollingWheel {
+  double radius_m = 0.03;
+  double width_m = 0.025;
+  double load_n = 3.0;
+  double slip = 0.2;   ///< 1 - v / (omega r), -1..0.99; below 0: braked
+  double rut_m = 0.0;  ///< depth of that rut (the plastic sinkage), 0..radius; 0: untouched soil
+};
+
+struct WheelReaction {
+  double sinkage_m = 0.0;        ///< of the wheel's lowest point below the untouched level
+  double drawbar_pull_n = 0.0;   ///< horizontal force of the soil, forward
+  double torque_nm = 0.0;        ///< that the axle needs
+  double contact_front_m = 0.0;  ///< where contact begins ahead of the axle, ...
+  double contact_rear_m = 0.0;   ///< ... and ends behind it
+  double rut_m = 0.0;            ///< depth of the rut it leaves
+};
+
+/// Throws InputError when the load is more than soil can bear at the wheel's full depth (the
+/// radius), or a figure is out of range.
+WheelReaction wheel_limit(const RollingWheel& wheel, const SoilParameters& soil,
+                          NormalStress normal_stress);
+
+}  // namespace screed

@@ -1,0 +1,218 @@
+// The single-wheel testbed.
+#include "host_sim/soil_validation/wheel_testbed.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/soil_validation/check_range.h"
+
+namespace screed {
+namespace {
+
+constexpr double kMargin_m = 0.03;  // of soil on each side of the track, and beyond its ends
+
+void check(const WheelTest& test) {
+  check_range("wheel", "mass", test.mass_kg, 1e-4, 1e4);
+  check_range("wheel", "speed", test.speed_m_per_s, 1e-4, 10.0);
+  check_range("wheel", "step", test.step_s, 1e-5, 0.02);
+  check_range("wheel", "duration", test.duration_s, 0.1, 3600.0);
+  check_range("wheel", "cell", test.cell_m, 0.0005, 0.1);
+  check_range("wheel", "passes", test.passes, 1, 100);
+  check_range("wheel", "radius", test.wheel.radius_m, 1e-3, 10.0);
+  check_range("wheel", "width", test.wheel.width_m, 1e-3, 10.0);
+  check_range("wheel", "load", test.wheel.load_n, 1e-3, 1e6);
+  check_range("wheel", "slip", test.wheel.slip, -1.0, 0.99);
+}
+
+/// A bed along the track; square to the grid's axes, whatever the track's yaw.
+HeightField bed_under(const WheelTest& test) {
+  const double length =
+      test.speed_m_per_s * test.duration_s + 2.0 * (test.wheel.radius_m + kMargin_m);
+  const double width = test.wheel.width_m + 2.0 * (kMargin_m + std::abs(test.offset_m));
+  const double cos = std::abs(std::cos(test.yaw_rad));
+  const double sin = std::abs(std::sin(test.yaw_rad));
+  const auto nodes = [&](double extent) {
+    return 2 * static_cast<int>(std::ceil(0.5 * extent / test.cell_m)) + 3;
+  };
+  return {nodes(length * cos + width * sin), nodes(length * sin + width * cos), test.cell_m, false};
+}
+
+class Testbed {
+ public:
+  explicit Testbed(const WheelTest& test)
+      : test_(test),
+        bed_(bed_under(test), test.soil, test.options),
+        wheel_(Footprint::wheel(test.wheel.radius_m, test.wheel.width_m)) {
+    axes_ = Eigen::AngleAxisd(test.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  }
+
+  WheelPass pass() {
+    const double radius = test_.wheel.radius_m;
+    const auto steps = static_cast<int>(std::lround(test_.duration_s / test_.step_s));
+    const double begin = -0.5 * test_.speed_m_per_s * test_.duration_s;
+    ContactMemory memory;
+    FootprintMotion motion;
+    motion.mass_kg = test_.mass_kg;
+    motion.slip = std::max(0.0, test_.wheel.slip);
+    motion.surface_speed = test_.speed_m_per_s / (1.0 - test_.wheel.slip);
+    double height =
+        bed_.surface().at(begin * axes_(0, 0), begin * axes_(1, 0)).height + radius + 1e-4;
+    double rising = 0.0;
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
+    WheelPass sum;
+    int counted = 0;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = axes_;
+    for (int i = 0; i < steps; ++i) {
+      const double along = begin + test_.speed_m_per_s * i * test_.step_s;
+      pose.translation() = axes_ * Eigen::Vector3d(along, test_.offset_m, height);
+      wheel_.set_pose(pose);
+      motion.velocity = axes_ * Eigen::Vector3d(test_.speed_m_per_s, 0.0, rising);
+      const SoilReaction reaction = bed_.press(wheel_, motion, test_.step_s, memory);
+      bed_.end_step();
+      const Eigen::Vector3d force = axes_.transpose() * reaction.force;
+      const double sinkage = radius - height;
+      rising += test_.step_s * (force.z() - test_.wheel.load_n) / test_.mass_kg;
+      height += test_.step_s * rising;
+      if (2 * i < steps) continue;
+      ++counted;
+      sum.sinkage_m += sinkage;
+      sum.drawbar_pull_n += force.x();
+      sum.side_force_n += force.y();
+      sum.load_n += force.z();
+      sum.torque_nm -= (axes_.transpose() * reaction.torque).y();
+      lowest = std::min(lowest, sinkage);
+      highest = std::max(highest, sinkage);
+    }
+    for (double* mean :
+         {&sum.sinkage_m, &sum.drawbar_pull_n, &sum.side_force_n, &sum.load_n, &sum.torque_nm}) {
+      *mean /= counted;
+    }
+    sum.ripple_m = highest - lowest;
+    sum.rut_m = rut(0.0, -begin - 2.0 * radius);
+    return sum;
+  }
+
+  const SoilBed& bed() const { return bed_; }
+
+ private:
+  /// Mean depth along the middle of the track.
+  double rut(double from, double to) const {
+    constexpr int kPlaces = 200;
+    double sum = 0.0;
+    for (int i = 0; i < kPlaces; ++i) {
+      const double along = from + (to - from) * (i + 0.5) / kPlaces;
+      const Eigen::Vector3d place = axes_ * Eigen::Vector3d(along, test_.offset_m, 0.0);
+      sum -= bed_.surface().at(place.x(), place.y()).height;
+    }
+    return sum / kPlaces;
+  }
+
+  WheelTest test_;
+  SoilBed bed_;
+  Footprint wheel_;
+  Eigen::Matrix3d axes_;
+};
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields;
+  std::string field;
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.push_back(field);
+      field.clear();
+    } else if (c != '\r') {
+      field += c;
+    }
+  }
+  fields.push_back(field);
+  return fields;
+}
+
+}  // namespace
+
+WheelTestResult run_wheel(const WheelTest& test) {
+  check(test);
+  Testbed testbed(test);
+  std::vector<WheelPass> passes;
+  passes.reserve(static_cast<size_t>(test.passes));
+  for (int i = 0; i < test.passes; ++i) passes.push_back(testbed.pass());
+  return {passes, testbed.bed().balance(), testbed.bed().surface()};
+}
+
+std::vector<MeasuredWheel> read_measured_wheels(const std::string& file,
+                                                const std::string& prefix) {
+  std::ifstream in(file);
+  if (!in) throw InputError(file + ": cannot be read");
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> names = split(line);
+  std::vector<MeasuredWheel> rows;
+  for (int number = 2; std::getline(in, line); ++number) {
+    const std::vector<std::string> fields = split(line);
+    const auto fail = [&](const std::string& what) {
+      std::string message = file;
+      message.append(":").append(std::to_string(number)).append(": ").append(what);
+      throw InputError(message);
+    };
+    const auto text = [&](const char* name) -> const std::string& {
+      const auto at =
+          static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+      if (at >= names.size() || at >= fields.size()) {
+        fail(std::string("column ") + name + " is missing");
+      }
+      return fields[at];
+    };
+    const auto value = [&](const char* name) {
+      const std::string& field = text(name);
+      double result = 0.0;
+      const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), result);
+      if (error != std::errc() || end != field.data() + field.size()) {
+        std::string what = name;
+        what.append(" is '").append(field).append("', a number is needed");
+        fail(what);
+      }
+      return result;
+    };
+    if (!text("case_id").starts_with(prefix)) continue;
+    rows.push_back(
+        {text("case_id"),
+         {value("wheel_radius_m"), value("wheel_width_m"), value("vertical_load_n"), value("slip")},
+         value("meas_drawbar_pull_n"),
+         value("meas_sinkage_m"),
+         value("meas_torque_nm")});
+  }
+  if (rows.empty()) throw InputError(file + ": no case_id begins with '" + prefix + "'");
+  return rows;
+}
+
+double fit_slip_sinkage(const std::vector<MeasuredWheel>& measured, const SoilParameters& soil,
+                        NormalStress normal_stress, double low, double high) {
+  const auto worst = [&](double parameter) {
+    SoilParameters tried = soil;
+    tried.slip_sinkage = parameter;
+    double error = 0.0;
+    for (const MeasuredWheel& row : measured) {
+      if (row.wheel.slip < low || row.wheel.slip > high) continue;
+      const double sinkage = wheel_limit(row.wheel, tried, normal_stress).sinkage_m;
+      error = std::max(error, std::abs(sinkage / row.sinkage_m - 1.0));
+    }
+    return error;
+  };
+  double best = 0.0;
+  for (int i = 1; i <= 100; ++i) {
+    const double parameter = 0.01 * i;
+    if (worst(parameter) < worst(best)) best = parameter;
+  }
+  return best;
+}
+
+}  // namespace screed

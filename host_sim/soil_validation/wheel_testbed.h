@@ -1,0 +1,66 @@
+// A single driven wheel whose travel and spin are imposed and that is free up and down, as in a
+// single-wheel testbed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/soil_validation/wheel_limit.h"
+
+namespace screed {
+
+struct WheelTest {
+  RollingWheel wheel;
+  SoilParameters soil;
+  SoilOptions options{.bulldozing = false, .avalanches = false};
+  double mass_kg = 0.05;        ///< that moves up and down; the load is a force besides, 1e-4..1e4
+  double speed_m_per_s = 0.05;  ///< of travel, 1e-4..10
+  double step_s = 1e-3;         ///< 1e-5..0.02
+  double duration_s = 6.0;      ///< of one pass; means are over its second half
+  double cell_m = 0.005;        ///< 0.0005..0.1
+  double offset_m = 0.0007;     ///< of the wheel's track across the grid
+  double yaw_rad = 0.0;         ///< of the track against the grid's x axis
+  int passes = 1;               ///< over the same track in the same direction, 1..100
+};
+
+/// Means over the second half of a pass.
+struct WheelPass {
+  double sinkage_m = 0.0;  ///< of the wheel's lowest point below the untouched level
+  double drawbar_pull_n = 0.0;
+  double side_force_n = 0.0;
+  double torque_nm = 0.0;
+  double load_n = 0.0;    ///< that the soil bears
+  double ripple_m = 0.0;  ///< highest minus lowest sinkage
+  double rut_m = 0.0;     ///< depth of the rut behind the wheel after the pass, along its middle
+};
+
+struct WheelTestResult {
+  std::vector<WheelPass> passes;
+  VolumeBalance balance;
+  HeightField surface;  ///< afterwards
+};
+
+/// Throws InputError for figures out of range.
+WheelTestResult run_wheel(const WheelTest& test);
+
+/// A row of a table of measurements on a real wheel.
+struct MeasuredWheel {
+  std::string name;
+  RollingWheel wheel;
+  double drawbar_pull_n;
+  double sinkage_m;
+  double torque_nm;
+};
+
+/// Rows whose case_id begins with `prefix`. Throws InputError with file and line when the file
+/// cannot be read, a column is missing or a number is none, and when no row is left.
+std::vector<MeasuredWheel> read_measured_wheels(const std::string& file, const std::string& prefix);
+
+/// The slip_sinkage parameter with which the limit's sinkage fits the rows with slip in
+/// [low, high] best: least greatest relative error. All else stays.
+double fit_slip_sinkage(const std::vector<MeasuredWheel>& measured, const SoilParameters& soil,
+                        NormalStress normal_stress, double low, double high);
+
+}  // namespace screed

@@ -1,0 +1,29 @@
+# Unit tests, software-in-the-loop tests, tests of the microcontroller's images. Included by the top Makefile after the parts whose
+# tests it runs; parts with tests of their own (tools/flash) add to TESTS and TEST_IMAGES.
+#
+# tests/unit mirrors the folders of the sources.
+
+UNIT_SOURCES := $(call sources,tests/unit)
+SITL_SOURCES := $(call sources,tests/sitl)
+SCHEMA_LIBRARY_SOURCES := $(filter-out tools/schema/main.cpp,$(call sources,tools/schema))
+LAB_LIBRARY_SOURCES := $(filter-out tools/bench/telemetry/main.cpp,$(call sources,tools/bench/telemetry))
+TESTS := $(B)/tests/unit_tests $(B)/tests/sitl_tests
+ifeq ($(MCU),yes)
+include tests/mcu/mcu_tests.mk
+endif
+
+TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
+$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
+	$(call link,$(TEST_LIBRARIES))
+$(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flags
+	$(call link,$(TEST_LIBRARIES))
+
+# Every host source that is compiled with the host's flags or the firmware's: what lint and clangd look at.
+ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/flash tests/unit tests/sitl tests/flash)
+
+# Expanded twice: later parts add their tests.
+.SECONDEXPANSION:
+.PHONY: test
+test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)  ## build and run every test (BUILD=asan: under the sanitizers)
+	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(TESTS)
+

@@ -1,0 +1,358 @@
+// Commands through the whole core: who may, when, and what the robot answers.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+
+#include "firmware/math/crc16.h"
+#include "firmware/parameters/parameter_store.h"
+#include "tests/unit/test_robot.h"
+
+namespace screed {
+namespace {
+
+constexpr uint8_t kTiltLimit = offsetof(Parameters, tilt_limit) / sizeof(int16_t);
+constexpr uint8_t kSpeedKp = offsetof(Parameters, speed_kp) / sizeof(int16_t);
+constexpr uint8_t kAlgorithm = offsetof(Parameters, algorithm) / sizeof(int16_t);
+
+/// A robot that waits to be armed.
+TestRobot ready_robot(const Parameters& parameters = {}) {
+  TestRobot robot(parameters);
+  robot.run(600);
+  return robot;
+}
+
+/// The result of a command, by the answer it gets.
+RequestResult result_of(TestRobot& robot, const CanFrame& command) {
+  robot.send(command);
+  const auto answer = robot.answer();
+  EXPECT_TRUE(answer.has_value());
+  if (!answer.has_value()) return RequestResult::kDone;
+  EXPECT_EQ(answer->op, command.data[0]);
+  EXPECT_EQ(answer->freshness, command.data[kCommandFreshnessAt]);
+  return static_cast<RequestResult>(answer->result);
+}
+RequestResult result_of(TestRobot& robot, CommandOp op) {
+  return result_of(robot, robot.command(op));
+}
+
+TEST(Command, ArmRunStopDisarm) {
+  TestRobot robot = ready_robot();
+  EXPECT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kWrongState);
+  EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  EXPECT_EQ(robot.state(), RobotState::kArmed);
+  EXPECT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
+  EXPECT_EQ(robot.state(), RobotState::kRunning);
+  EXPECT_EQ(result_of(robot, CommandOp::kStop), RequestResult::kDone);
+  EXPECT_EQ(result_of(robot, CommandOp::kDisarm), RequestResult::kDone);
+  EXPECT_EQ(robot.state(), RobotState::kDisarmed);
+  EXPECT_EQ(result_of(robot, static_cast<CommandOp>(99)), RequestResult::kBadArgument);
+}
+
+TEST(Command, WithoutTheKeyNothingMovesAndTheReasonIsSaid) {
+  TestRobot robot = ready_robot();
+  CommandKey other = test_key();
+  other.bytes[3] ^= 1U;
+  robot.signer = CommandSigner(other);
+  message::Heartbeat heartbeat{};
+  heartbeat.boot_epoch = kFirstBootEpoch;
+  robot.signer.hear(frame_of(heartbeat));
+  for (const CommandOp op : {CommandOp::kArm, CommandOp::kRun, CommandOp::kParameterRead}) {
+    EXPECT_EQ(result_of(robot, op), RequestResult::kBadMac);
+  }
+  EXPECT_EQ(robot.state(), RobotState::kDisarmed);
+
+  TestRobot keyless;
+  Credentials none{};
+  keyless.robot = Robot(kBoard, Parameters{}, none);
+  keyless.run(600);
+  EXPECT_EQ(result_of(keyless, CommandOp::kArm), RequestResult::kNoKey);
+  EXPECT_EQ(keyless.state(), RobotState::kDisarmed);
+  keyless.send(keyless.emergency_stop());
+  keyless.tick();
+  EXPECT_EQ(keyless.state(), RobotState::kFault) << "the emergency stop needs no key";
+}
+
+TEST(Command, OfAnEarlierStartIsRefusedFault10) {
+  TestRobot robot = ready_robot();
+  const CanFrame arm = robot.command(CommandOp::kArm);
+  EXPECT_EQ(result_of(robot, arm), RequestResult::kDone);
+  TestRobot again = ready_robot();
+  again.robot = Robot(kBoard, Parameters{}, credentials_of(test_key(), kFirstBootEpoch + 1));
+  again.run(600);
+  EXPECT_EQ(result_of(again, arm), RequestResult::kBadMac);
+  EXPECT_EQ(again.state(), RobotState::kDisarmed);
+}
+
+TEST(Command, OfAnotherRobotIsRefusedFault11) {
+  CommandKey key = test_key();
+  key.robot_id = 2;
+  TestRobot robot = ready_robot();
+  robot.signer = CommandSigner(key);
+  message::Heartbeat heartbeat{};
+  heartbeat.boot_epoch = kFirstBootEpoch;
+  robot.signer.hear(frame_of(heartbeat));
+  EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kBadMac);
+  CanFrame elsewhere = ready_robot().command(CommandOp::kArm);
+  elsewhere.id = 0x120;  // node 2
+  robot.send(elsewhere);
+  EXPECT_FALSE(robot.answer().has_value());
+}
+
+TEST(Command, AFloodOfWrongMacsLocksOutAndTheEmergencyStopStillWorksFault9) {
+  TestRobot robot = ready_robot();
+  robot.send(robot.command(CommandOp::kArm));
+  robot.run(4);
+  robot.send(robot.command(CommandOp::kRun));
+  robot.run(4);
+  ASSERT_EQ(robot.state(), RobotState::kRunning);
+  const CanFrame good = robot.command(CommandOp::kStop);
+  CanFrame wrong = good;
+  for (int tick = 0; tick < 3000; ++tick) {
+    wrong.data[7] = static_cast<uint8_t>(tick);
+    if (wrong.data[7] != good.data[7]) robot.send(wrong);
+    robot.tick();
+  }
+  EXPECT_LE(robot.robot.gate().refused(), 2 * CommandGate::kMostBadMacs);
+  EXPECT_EQ(robot.state(), RobotState::kRunning) << "the ground heartbeat was not harmed";
+  robot.queue.clear();
+  robot.run(2);
+  EXPECT_EQ(result_of(robot, CommandOp::kStop), RequestResult::kLockedOut);
+  robot.send(robot.emergency_stop());
+  robot.tick();
+  EXPECT_EQ(robot.state(), RobotState::kFault);
+  robot.run(CommandGate::kLockedTicks);
+  EXPECT_EQ(result_of(robot, CommandOp::kClear), RequestResult::kDone);
+}
+
+TEST(Command, ArmingWithoutALiveLinkIsRefused) {
+  TestRobot robot;
+  robot.heartbeats = false;
+  robot.run(600);
+  EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kNoLink);
+  EXPECT_EQ(robot.state(), RobotState::kDisarmed);
+  robot.heartbeats = true;
+  robot.run(40);
+  EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+}
+
+TEST(Command, ALostLinkStopsThenDisarmsAndOnlyAFreshCommandArmsAgain) {
+  TestRobot robot = ready_robot();
+  const CanFrame arm = robot.command(CommandOp::kArm);
+  const CanFrame run = robot.command(CommandOp::kRun);
+  ASSERT_EQ(result_of(robot, arm), RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, run), RequestResult::kDone);
+  while (robot.ticks % 20 != 1) robot.tick();
+  robot.heartbeats = false;
+  robot.run(60);
+  EXPECT_EQ(robot.state(), RobotState::kStopped);
+  EXPECT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kNoLink);
+  robot.run(100);
+  EXPECT_EQ(robot.state(), RobotState::kDisarmed);
+  robot.heartbeats = true;
+  robot.run(100);
+  for (const CanFrame& old : {arm, run}) {
+    robot.send(old);
+    robot.run(10);
+    EXPECT_EQ(robot.state(), RobotState::kDisarmed) << "a recorded command";
+  }
+  EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+}
+
+TEST(Command, DriveIsForTheAlgorithmDriveWhileItRuns) {
+  TestRobot walking = ready_robot();
+  ASSERT_EQ(result_of(walking, CommandOp::kArm), RequestResult::kDone);
+  ASSERT_EQ(result_of(walking, CommandOp::kRun), RequestResult::kDone);
+  EXPECT_EQ(result_of(walking, walking.command(CommandOp::kDrive, {100, 0})),
+            RequestResult::kWrongState);
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  TestRobot driven = ready_robot(parameters);
+  EXPECT_EQ(result_of(driven, driven.command(CommandOp::kDrive, {100, 0})),
+            RequestResult::kWrongState);
+}
+
+// ---- parameters
+
+CanFrame stage(uint16_t index, int32_t value) {
+  uint8_t counter = 3;
+  return TestRobot::protect(frame_of(message::ParamStage{index, value}), counter);
+}
+
+/// The argument that commits what stage() staged.
+uint32_t commitment(uint8_t index, int32_t value) {
+  uint8_t bytes[4];
+  put_u16(bytes, index);
+  put_u16(bytes + 2, static_cast<uint16_t>(value));
+  return index | static_cast<uint32_t>(crc16_ccitt(bytes, sizeof bytes)) << 8;
+}
+
+RequestResult commit(TestRobot& robot, uint8_t index, int32_t value) {
+  robot.send(stage(index, value));
+  return result_of(robot, robot.signer.sign(CommandOp::kParameterCommit, commitment(index, value)));
+}
+
+std::optional<message::ParamValue> read(TestRobot& robot, uint8_t index) {
+  robot.send(robot.signer.sign(CommandOp::kParameterRead, index));
+  std::optional<message::ParamValue> value;
+  for (int i = 0; i < 10; ++i) {
+    robot.tick();
+    SlcanParser parser;
+    CanFrame frame{};
+    for (uint8_t at = 0; at < robot.output.radio_out_count; ++at) {
+      if (parser.feed(robot.output.radio_out[at], frame) && frame.id == kIdParamValue) {
+        value = message::ParamValue::unpack(frame.data);
+      }
+    }
+  }
+  return value;
+}
+
+TEST(RadioParameters, AreReadByIndex) {
+  Parameters parameters;
+  parameters.climb_threshold = 777;
+  TestRobot robot = ready_robot(parameters);
+  for (uint8_t index = 0; index < kParameterCount; ++index) {
+    const auto value = read(robot, index);
+    ASSERT_TRUE(value.has_value()) << static_cast<int>(index);
+    EXPECT_EQ(value->index, index);
+    int16_t expected = 0;
+    std::memcpy(&expected, reinterpret_cast<const uint8_t*>(&parameters) + 2 * index, 2);
+    EXPECT_EQ(value->value, expected);
+  }
+  EXPECT_FALSE(read(robot, kParameterCount).has_value());
+  robot.send(robot.signer.sign(CommandOp::kParameterRead, kParameterCount));
+  const auto answer = robot.answer();
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->result, static_cast<uint8_t>(RequestResult::kBadArgument));
+  EXPECT_EQ(answer->detail, kParameterCount) << "says how many there are";
+}
+
+TEST(RadioParameters, ACommittedOneHoldsAtOnceAndIsStoredOnce) {
+  TestRobot robot = ready_robot();
+  robot.send(stage(kAlgorithm, static_cast<int>(LevelingAlgorithm::kDrive)));
+  robot.send(
+      robot.signer.sign(CommandOp::kParameterCommit,
+                        commitment(kAlgorithm, static_cast<int>(LevelingAlgorithm::kDrive))));
+  int stored = 0;
+  for (int i = 0; i < 20; ++i) {
+    robot.tick();
+    if (robot.output.store_parameter == 0) continue;
+    ++stored;
+    EXPECT_EQ(robot.output.store_parameter, kAlgorithm + 1);
+    EXPECT_EQ(robot.output.store_value, static_cast<int>(LevelingAlgorithm::kDrive));
+  }
+  EXPECT_EQ(stored, 1);
+  EXPECT_EQ(robot.robot.parameters().algorithm, static_cast<int>(LevelingAlgorithm::kDrive));
+  EXPECT_EQ(robot.robot.leveling().algorithm(), LevelingAlgorithm::kDrive);
+}
+
+TEST(RadioParameters, AStricterTiltLimitIsHeededAtOnce) {
+  TestRobot robot = ready_robot();
+  EXPECT_EQ(commit(robot, kTiltLimit, 1000), RequestResult::kDone);
+  robot.sample.accel[0] = 1400;  // 20 degrees nose up
+  robot.sample.accel[2] = 3850;
+  robot.run(100);
+  EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kFaultPresent);
+}
+
+TEST(RadioParameters, WhatIsNotStagedOrOutOfRangeIsRefused) {
+  TestRobot robot = ready_robot();
+  // Nothing staged; another value; another index; more than 16 bits; out of range; no such index.
+  EXPECT_EQ(
+      result_of(robot, robot.signer.sign(CommandOp::kParameterCommit, commitment(kSpeedKp, 30))),
+      RequestResult::kBadArgument);
+  robot.send(stage(kSpeedKp, 31));
+  EXPECT_EQ(
+      result_of(robot, robot.signer.sign(CommandOp::kParameterCommit, commitment(kSpeedKp, 30))),
+      RequestResult::kBadArgument);
+  robot.send(stage(kTiltLimit, 30));
+  EXPECT_EQ(
+      result_of(robot, robot.signer.sign(CommandOp::kParameterCommit, commitment(kSpeedKp, 30))),
+      RequestResult::kBadArgument);
+  EXPECT_EQ(commit(robot, kSpeedKp, 65536 + 30), RequestResult::kBadArgument);
+  EXPECT_EQ(commit(robot, kSpeedKp, 321), RequestResult::kBadArgument);
+  EXPECT_EQ(commit(robot, kParameterCount, 1), RequestResult::kBadArgument);
+  EXPECT_EQ(robot.robot.parameters().speed_kp, Parameters{}.speed_kp);
+  EXPECT_EQ(commit(robot, kSpeedKp, 30), RequestResult::kDone);
+  EXPECT_EQ(robot.robot.parameters().speed_kp, 30);
+}
+
+TEST(RadioParameters, OnlyOfADisarmedRobotAndOneAtATime) {
+  TestRobot robot = ready_robot();
+  EXPECT_EQ(commit(robot, kSpeedKp, 30), RequestResult::kDone);
+  EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kBusy);
+  robot.run(150);
+  EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kDone);
+  robot.run(150);
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  EXPECT_EQ(commit(robot, kSpeedKp, 32), RequestResult::kWrongState);
+  EXPECT_EQ(robot.robot.parameters().speed_kp, 31);
+}
+
+TEST(RadioParameters, NoOtherStagedValueFitsACommit) {
+  // What is staged is not signed: the CRC16 in the signed command must leave one value of 16 bits.
+  const uint32_t good = commitment(kSpeedKp, 30);
+  for (int value = INT16_MIN; value <= INT16_MAX; ++value) {
+    ASSERT_EQ(commitment(kSpeedKp, value) == good, value == 30) << value;
+  }
+}
+
+// ---- odometry and fence
+
+TEST(Run, BeginsAtItsOwnOrigin) {
+  TestRobot robot = ready_robot();
+  // Carried over the floor, tracks turning, before it is armed.
+  for (int i = 0; i < 300; ++i) {
+    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
+    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 5);
+    robot.tick();
+  }
+  EXPECT_GT(std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm()), 500);
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  robot.send(robot.command(CommandOp::kRun));
+  while (robot.state() != RobotState::kRunning) robot.tick();
+  EXPECT_LE(std::abs(robot.robot.odometry().x_mm()), 1);
+  EXPECT_LE(std::abs(robot.robot.odometry().y_mm()), 1);
+}
+
+TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  TestRobot robot(parameters);
+  robot.start();
+  robot.send(robot.command(CommandOp::kDrive, {200, 0}));
+  robot.run(300);
+  const auto way = [&robot] {
+    return std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm());
+  };
+  ASSERT_GT(way(), 300);
+  ASSERT_EQ(result_of(robot, CommandOp::kStop), RequestResult::kDone);
+  robot.run(50);
+  ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
+  EXPECT_GT(way(), 300) << "the same run";
+  ASSERT_EQ(result_of(robot, CommandOp::kDisarm), RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
+  EXPECT_LE(way(), 2) << "a new one";
+}
+
+TEST(Run, TheFenceLiesRoundThePlaceWhereItBegan) {
+  Parameters parameters;
+  parameters.site_radius = 1000;
+  TestRobot robot = ready_robot(parameters);
+  for (int i = 0; i < 1000; ++i) {  // 2.8 m away from where it was switched on
+    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
+    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 5);
+    robot.tick();
+  }
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
+  robot.run(50);
+  EXPECT_NE(robot.robot.leveling().state(), LevelingState::kReturn);
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,301 @@
+// The downlink: its rates, its load, and what its frames say, read back by id.
+#include "firmware/robot/telemetry.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "firmware/protocol/e2e.h"
+
+namespace screed {
+namespace {
+
+struct Downlink {
+  std::map<uint16_t, std::vector<CanFrame>> frames;
+  int bytes = 0;
+  int most_in_a_tick = 0;
+};
+
+class TelemetryTest : public ::testing::Test {
+ protected:
+  TelemetryTest() { view_.sample = &sample_; }
+
+  /// Runs ticks, with an acknowledgement to send every so many of them (0: never).
+  Downlink run(int ticks, int ack_period = 0) {
+    Downlink downlink;
+    SlcanParser parser;
+    for (int tick = 0; tick < ticks; ++tick) {
+      if (ack_period != 0 && tick % ack_period == 0) acknowledge(RequestResult::kNotReady);
+      RobotOutput output{};
+      telemetry_.tick(view_, output);
+      EXPECT_LE(output.radio_out_count, kRadioOutCapacity);
+      if (output.radio_out_count > 0) {
+        EXPECT_EQ(output.radio_out[output.radio_out_count - 1], '\r')
+            << "not whole lines in tick " << tick;
+      }
+      downlink.bytes += output.radio_out_count;
+      downlink.most_in_a_tick = std::max<int>(downlink.most_in_a_tick, output.radio_out_count);
+      CanFrame frame{};
+      for (uint8_t i = 0; i < output.radio_out_count; ++i) {
+        if (!parser.feed(output.radio_out[i], frame)) continue;
+        EXPECT_TRUE(e2e_check(frame.id, frame.data, frame.size));
+        downlink.frames[frame.id].push_back(frame);
+      }
+    }
+    EXPECT_EQ(parser.rejected(), 0);
+    return downlink;
+  }
+  void acknowledge(RequestResult result) {
+    telemetry_.queue(frame_of(message::CommandAck{static_cast<uint8_t>(CommandOp::kArm), 7,
+                                                  static_cast<uint8_t>(result), 0x1234}));
+  }
+  /// The payload of the first frame of an id.
+  const uint8_t* payload(uint16_t id) {
+    downlink_ = run(100);
+    EXPECT_EQ(downlink_.frames.count(id), 1U);
+    return downlink_.frames[id].front().data + kE2eHeaderSize;
+  }
+  uint8_t header_bits(uint16_t id) {
+    downlink_ = run(100);
+    return static_cast<uint8_t>(downlink_.frames[id].front().data[1] >> 4);
+  }
+
+  SensorSample sample_{};
+  TelemetryView view_{};
+  Telemetry telemetry_;
+  Downlink downlink_;
+};
+
+// Messages a second as the protocol wants them.
+const std::map<uint16_t, size_t> kRates = {
+    {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10},
+    {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},  {kIdMagRaw, 2},  {kIdPower, 2},
+    {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},      {kIdTime, 1},
+};
+
+TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
+  run(1);
+  const Downlink downlink = run(1000);
+  EXPECT_EQ(downlink.frames.size(), kRates.size());
+  for (const auto& [id, rate] : kRates)
+    EXPECT_EQ(downlink.frames.at(id).size(), rate * 10) << std::hex << id;
+  EXPECT_LE(downlink.bytes, 5760 * 10 / 2);
+}
+
+TEST_F(TelemetryTest, AnswersDelayButDoNotDisplace) {
+  run(3);
+  const Downlink downlink = run(10000, 10);
+  for (const auto& [id, rate] : kRates) {
+    const size_t sent = downlink.frames.at(id).size();
+    EXPECT_GE(sent, rate * 100 - 1) << std::hex << id;
+    EXPECT_LE(sent, rate * 100 + 1) << std::hex << id;
+  }
+  EXPECT_EQ(downlink.frames.at(kIdCommandAck).size(), 1000U);
+  EXPECT_LE(downlink.bytes, 5760 * 100 / 2);
+}
+
+TEST_F(TelemetryTest, MoreThanTheBudgetIsNeverSentAndTheImportantComesFirst) {
+  const Downlink downlink = run(10000, 1);
+  EXPECT_LE(downlink.bytes, 5760 * 100 / 2 + 100);
+  EXPECT_EQ(downlink.frames.at(kIdHeartbeat).size(), 500U);
+  EXPECT_GE(downlink.frames.at(kIdCommandAck).size(), 5000U);
+}
+
+TEST_F(TelemetryTest, PacketsAreWholeLinesAtMostFourAndThenTheLineIsIdle) {
+  int since = 100;
+  int most = 0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    if (tick % 5 == 0) acknowledge(RequestResult::kDone);
+    const bool due = telemetry_.packet_due();
+    RobotOutput output{};
+    telemetry_.tick(view_, output);
+    const auto lines =
+        std::count(output.radio_out, output.radio_out + output.radio_out_count, '\r');
+    EXPECT_LE(lines, 4);
+    most = std::max(most, static_cast<int>(lines));
+    // 88 characters take 15.3 ms.
+    EXPECT_TRUE(output.radio_out_count == 0 || since >= 2) << tick;
+    EXPECT_TRUE(output.radio_out_count == 0 || due) << tick;
+    since = output.radio_out_count == 0 ? since + 1 : 1;
+  }
+  EXPECT_EQ(most, 4);
+}
+
+TEST_F(TelemetryTest, CountersRiseByOne) {
+  const Downlink downlink = run(1000, 50);
+  for (const auto& [id, frames] : downlink.frames) {
+    for (size_t i = 1; i < frames.size(); ++i) {
+      ASSERT_EQ(frames[i].data[1] & 0x0F, (frames[i - 1].data[1] + 1) & 0x0F) << std::hex << id;
+    }
+  }
+}
+
+TEST_F(TelemetryTest, AnAcknowledgementIsSentOnceInTheNextTick) {
+  acknowledge(RequestResult::kFaultPresent);
+  const Downlink first = run(1);
+  ASSERT_EQ(first.frames.count(kIdCommandAck), 1U);
+  const CanFrame& frame = first.frames.at(kIdCommandAck).front();
+  EXPECT_EQ(frame.size, message::CommandAck::kSize);
+  const auto ack = message::CommandAck::unpack(frame.data);
+  EXPECT_EQ(ack.op, static_cast<uint8_t>(message::CommandAckOp::kArm));
+  EXPECT_EQ(ack.freshness, 7);
+  EXPECT_EQ(ack.result, static_cast<uint8_t>(message::CommandAckResult::kFaultPresent));
+  EXPECT_EQ(ack.detail, 0x1234);
+  EXPECT_EQ(run(100).frames.count(kIdCommandAck), 0U);
+}
+
+TEST_F(TelemetryTest, Heartbeat) {
+  view_.state = RobotState::kStopped;
+  view_.faults = 0x1234;
+  view_.link_alive = true;
+  view_.boot_epoch = 0x5678;
+  view_.freshness = 0x9ABC;
+  downlink_ = run(100);
+  auto heartbeat = message::Heartbeat::unpack(downlink_.frames[kIdHeartbeat].front().data);
+  EXPECT_EQ(heartbeat.state, 3);
+  EXPECT_EQ(heartbeat.faults, 0x1234);
+  EXPECT_EQ(heartbeat.link_alive, 1);
+  EXPECT_EQ(heartbeat.boot_epoch, 0x5678);
+  EXPECT_EQ(heartbeat.freshness, 0x9ABC);
+  view_.link_alive = false;
+  downlink_ = run(100);
+  heartbeat = message::Heartbeat::unpack(downlink_.frames[kIdHeartbeat].front().data);
+  EXPECT_EQ(heartbeat.link_alive, 0);
+  EXPECT_EQ(heartbeat.state, 3);
+}
+
+TEST_F(TelemetryTest, LinkAndTime) {
+  view_.frames_received = 1000;
+  view_.rejected_lines = 200;
+  view_.rejected_frames = 201;
+  view_.rejected_commands = 202;
+  view_.ground_time_ms = 4321;
+  for (const int heard : {5, 3, 0, 9}) {  // heartbeats since the last message
+    view_.ground_heartbeats = static_cast<uint8_t>(view_.ground_heartbeats + heard);
+    downlink_ = run(100);
+    const auto link = message::Link::unpack(downlink_.frames[kIdLink].front().data);
+    EXPECT_EQ(link.quality, std::min(100, 20 * heard));
+    EXPECT_EQ(link.frames_received, 1000);
+    EXPECT_EQ(link.lines_rejected, 200);
+    EXPECT_EQ(link.frames_rejected, 201);
+    EXPECT_EQ(link.commands_rejected, 202);
+  }
+  sample_.time_us = 4000000123U;
+  downlink_ = run(100);
+  const auto time = message::Time::unpack(downlink_.frames[kIdTime].front().data);
+  EXPECT_EQ(time.time, 4000000U);
+  EXPECT_EQ(time.echo, 4321);
+}
+
+TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
+  run(100);
+  sample_.last_tick_us = 5000;
+  run(1);
+  sample_.last_tick_us = 100;
+  const Downlink downlink = run(199);
+  const std::vector<CanFrame>& frames = downlink.frames.at(kIdHealth);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_EQ(message::Health::unpack(frames[0].data).longest_tick, 5000);
+  EXPECT_EQ(message::Health::unpack(frames[1].data).longest_tick, 100);
+}
+
+TEST_F(TelemetryTest, AttitudeAndOdometry) {
+  view_.roll_cdeg = -18000;
+  view_.pitch_cdeg = 1234;
+  view_.heading_cdeg = 35999;
+  view_.x_mm = -40000;
+  view_.y_mm = 32767;
+  const uint8_t* at = payload(kIdAttitude);
+  EXPECT_EQ(get_s16(at), -18000);
+  EXPECT_EQ(get_s16(at + 2), 1234);
+  EXPECT_EQ(get_u16(at + 4), 35999);
+  at = payload(kIdOdometry);
+  EXPECT_EQ(get_s16(at), -32768);  // stops at its range
+  EXPECT_EQ(get_s16(at + 2), 32767);
+  EXPECT_EQ(get_u16(at + 4), 35999);
+}
+
+TEST_F(TelemetryTest, Leveling) {
+  view_.algorithm = LevelingAlgorithm::kSpinOnPeak;
+  view_.leveling_state = LevelingState::kSpin;
+  view_.peaks = 258;
+  view_.motion = {-123, 16384};  // 90 degrees/s
+  const uint8_t* at = payload(kIdLeveling);
+  EXPECT_EQ(at[0], 2);
+  EXPECT_EQ(at[1], 2);  // the lower byte of 258
+  EXPECT_EQ(get_s16(at + 2), -123);
+  EXPECT_EQ(get_s16(at + 4), 9000);
+  EXPECT_EQ(header_bits(kIdLeveling), 3);
+}
+
+TEST_F(TelemetryTest, EncodersAndMotors) {
+  sample_.encoder_left = 65535;
+  sample_.encoder_right = 1;
+  sample_.encoder_errors = 77;
+  view_.duty_left = -400;
+  view_.duty_right = 400;
+  const uint8_t* at = payload(kIdEncoders);
+  EXPECT_EQ(get_u16(at), 65535);
+  EXPECT_EQ(get_u16(at + 2), 1);
+  EXPECT_EQ(get_u16(at + 4) * 4, 10000);
+  at = payload(kIdMotors);
+  EXPECT_EQ(get_s16(at), -400);
+  EXPECT_EQ(get_s16(at + 2), 400);
+  EXPECT_EQ(at[4], 77);
+  EXPECT_EQ(header_bits(kIdMotors), 0);
+}
+
+TEST_F(TelemetryTest, SlipAndStuckTravelWithTheMotors) {
+  view_.slip = 1;
+  EXPECT_EQ(header_bits(kIdMotors), 1);
+  view_.stuck = 1;
+  EXPECT_EQ(header_bits(kIdMotors), 3);
+}
+
+TEST_F(TelemetryTest, RawVectors) {
+  for (int16_t i = 0; i < 3; ++i) {
+    sample_.accel[i] = static_cast<int16_t>(-4098 + i);
+    sample_.gyro[i] = static_cast<int16_t>(100 + i);
+    sample_.mag[i] = static_cast<int16_t>(INT16_MIN + i);
+  }
+  const uint8_t* accel = payload(kIdAccelRaw);
+  EXPECT_EQ(get_s16(accel + 4), -4096);
+  const uint8_t* gyro = payload(kIdGyroRaw);
+  EXPECT_EQ(get_s16(gyro + 2), 101);
+  const uint8_t* mag = payload(kIdMagRaw);
+  EXPECT_EQ(get_s16(mag), INT16_MIN);
+}
+
+TEST_F(TelemetryTest, PowerAndLoad) {
+  view_.battery_mv = 7312;
+  sample_.last_tick_us = 4321;
+  const uint8_t* at = payload(kIdPower);
+  EXPECT_EQ(get_u16(at), 7312);
+  EXPECT_EQ(at[2], 43);
+  sample_.last_tick_us = UINT16_MAX;
+  EXPECT_EQ(payload(kIdPower)[2], 255);
+}
+
+TEST_F(TelemetryTest, PressureKeepsTheSensorsResolution) {
+  // 1013.25 hPa = 101325 Pa; one LSB of the sensor is 0.39 sixteenths of a Pascal.
+  sample_.pressure = static_cast<int32_t>(1013.25 * 4096);
+  sample_.temperature = -10800;  // 42.5 - 22.5 = 20 degC
+  const auto pressure_of = [](const uint8_t* at) {
+    return static_cast<int64_t>(get_u16(at)) + 65536 * static_cast<int64_t>(get_u16(at + 2));
+  };
+  const uint8_t* at = payload(kIdBaro);
+  EXPECT_EQ(pressure_of(at), 101325 * 16);
+  EXPECT_EQ(get_s16(at + 4), 2000);
+  sample_.pressure += 41;  // 0.01 hPa, the sensor's noise
+  EXPECT_EQ(pressure_of(payload(kIdBaro)), 101326 * 16);
+  sample_.pressure = 0x7FFFFF;
+  sample_.temperature = INT16_MIN;
+  EXPECT_EQ(pressure_of(payload(kIdBaro)), 0x7FFFFFLL * 25 / 64);
+  sample_.pressure = INT32_MIN;  // not a value of 24 bits: nonsense, but no overflow
+  payload(kIdBaro);
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,198 @@
+// The ground station's side of a link, against a robot's own gate behind a link that can fail.
+#include "host_sim/ground_station/link/command_session.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "firmware/math/crc16.h"
+#include "firmware/protocol/e2e.h"
+#include "firmware/security/command_gate.h"
+
+namespace screed {
+namespace {
+
+using Result = message::CommandAckResult;
+
+/// A robot and the link to it: one object, one clock.
+class FakeRobot : public Link {
+ public:
+  explicit FakeRobot(const CommandKey& key) : gate_(credentials_of(key, 5)) {}
+
+  void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override {
+    now_us += static_cast<uint64_t>(wait.count()) * 1000U;
+    gate_.tick();
+    if (!silent && now_us >= heartbeat_due_us_) {
+      heartbeat_due_us_ = now_us + 200'000;
+      message::Heartbeat heartbeat{};
+      heartbeat.boot_epoch = 5;
+      heartbeat.freshness = gate_.counter();
+      say(heartbeat);
+    }
+    for (; !out_.empty(); out_.pop_front()) frames.push_back({now_us, out_.front(), std::nullopt});
+  }
+
+  bool send(const CanFrame& frame) override {
+    sent.push_back(frame);
+    if (lose-- > 0) return true;
+    lose = 0;
+    if (frame.id == kIdParamStage && e2e_check(frame.id, frame.data, frame.size))
+      stage_ = message::ParamStage::unpack(frame.data);
+    if (frame.id != kIdCommand) return true;
+    const GateResult checked = gate_.check(frame.id, frame.data);
+    if (checked != GateResult::kRepeated) {
+      result_ = checked == GateResult::kAccepted ? obey(frame) : static_cast<Result>(checked);
+      if (checked == GateResult::kAccepted) ++done;
+    }
+    message::CommandAck ack{};
+    ack.op = frame.data[0];
+    ack.freshness = frame.data[4];
+    ack.result = static_cast<uint8_t>(result_);
+    say(ack);
+    return true;
+  }
+
+  const LinkStatus& status() const override { return status_; }
+  const std::string& name() const override { return name_; }
+
+  size_t sent_with(uint16_t id) const {
+    return static_cast<size_t>(
+        std::count_if(sent.begin(), sent.end(), [&](const CanFrame& f) { return f.id == id; }));
+  }
+
+  uint64_t now_us = 0;
+  bool silent = false;
+  int lose = 0;  ///< this many of the next frames
+  int busy = 0;  ///< this many commits are answered "busy"
+  int done = 0;
+  std::vector<CanFrame> sent;
+  int32_t parameter = 42;
+
+ private:
+  template <class Message>
+  void say(const Message& message) {
+    CanFrame frame = frame_of(message);
+    e2e_protect(frame.id, 0, frame.data, frame.size);
+    out_.push_back(frame);
+  }
+
+  Result obey(const CanFrame& frame) {
+    const auto op = static_cast<CommandOp>(frame.data[0]);
+    if (op == CommandOp::kRun) return Result::kWrongState;
+    if (op == CommandOp::kParameterRead) {
+      say(message::ParamValue{get_u16(frame.data + 1), parameter});
+    }
+    if (op == CommandOp::kParameterCommit) {
+      if (busy-- > 0) return Result::kBusy;
+      const CanFrame staged = frame_of(stage_);
+      if (stage_.index != frame.data[1] ||
+          crc16_ccitt(staged.data + 2, 4) != get_u16(frame.data + 2)) {
+        return Result::kBadArgument;
+      }
+      parameter = stage_.value;
+    }
+    return Result::kDone;
+  }
+
+  CommandGate gate_;
+  Result result_ = Result::kDone;
+  message::ParamStage stage_{0xFFFF, 0};
+  uint64_t heartbeat_due_us_ = 0;
+  std::deque<CanFrame> out_;
+  LinkStatus status_;
+  std::string name_ = "fake";
+};
+
+class CommandSessionTest : public ::testing::Test {
+ protected:
+  FakeRobot robot_{test_key()};
+  CommandSession session_{robot_, {test_key(), true, {}, [this] { return robot_.now_us; }}};
+};
+
+TEST_F(CommandSessionTest, ACommandWaitsForTheRobotsHeartbeatAndIsAnswered) {
+  session_.start(CommandOp::kArm);
+  EXPECT_TRUE(robot_.sent.empty());
+  const auto answer = session_.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(answer->words(), "done");
+  EXPECT_EQ(robot_.done, 1);
+}
+
+TEST_F(CommandSessionTest, ARefusalIsSaidInWords) {
+  const auto answer = session_.run(CommandOp::kRun);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_FALSE(answer->done());
+  EXPECT_EQ(answer->words(), "refused: not possible in the robot's present state");
+  EXPECT_EQ((CommandAnswer{1, static_cast<uint8_t>(Result::kFaultPresent), 5}.words()),
+            "refused: a fault is present (tilt, gyro_frozen)");
+}
+
+TEST_F(CommandSessionTest, HeartbeatsGoFiveTimesASecond) {
+  while (robot_.now_us < 10'000'000) session_.pump(std::chrono::milliseconds(20));
+  EXPECT_NEAR(static_cast<double>(robot_.sent_with(kIdGroundHeartbeat)), 50.0, 1.0);
+  // And their counters step, or the robot takes the sender for dead.
+  EXPECT_NE(robot_.sent[0].data[1] & 0xF, robot_.sent[1].data[1] & 0xF);
+  FakeRobot other{test_key()};
+  CommandSession listener{other, {test_key(), false, {}, [&] { return other.now_us; }}};
+  while (other.now_us < 1'000'000) listener.pump(std::chrono::milliseconds(20));
+  EXPECT_TRUE(other.sent.empty());
+}
+
+TEST_F(CommandSessionTest, ALostCommandIsRepeatedAndDoneOnce) {
+  session_.pump(std::chrono::milliseconds(20));
+  session_.pump(std::chrono::milliseconds(20));
+  robot_.lose = 3;
+  const auto answer = session_.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.done, 1);
+  EXPECT_GT(robot_.sent_with(kIdCommand), 1U);
+}
+
+TEST_F(CommandSessionTest, SilenceEndsAfterAWhile) {
+  robot_.silent = true;
+  EXPECT_FALSE(session_.run(CommandOp::kArm).has_value());
+  EXPECT_LT(robot_.now_us, 4'000'000U);
+  EXPECT_EQ(robot_.sent_with(kIdCommand), 0U);
+}
+
+TEST_F(CommandSessionTest, AnotherKeyIsRefused) {
+  CommandKey other = test_key();
+  other.bytes[0] ^= 1U;
+  CommandSession session{robot_, {other, true, {}, [this] { return robot_.now_us; }}};
+  const auto answer = session.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->words(), "refused: signed with another key than the robot's (--key)");
+  EXPECT_EQ(robot_.done, 0);
+}
+
+TEST_F(CommandSessionTest, ParametersAreReadAndWritten) {
+  std::optional<CommandAnswer> answer;
+  EXPECT_EQ(session_.read_parameter(3, answer), 42);
+  robot_.busy = 2;
+  answer = session_.write_parameter(3, -7);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.parameter, -7);
+  EXPECT_EQ(session_.read_parameter(3, answer), -7);
+}
+
+TEST_F(CommandSessionTest, AStagingThatIsLostIsSentAgain) {
+  session_.pump(std::chrono::milliseconds(20));
+  session_.pump(std::chrono::milliseconds(20));
+  robot_.lose = 1;
+  const auto answer = session_.write_parameter(3, 1000);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.parameter, 1000);
+}
+
+TEST_F(CommandSessionTest, TheEmergencyStopNeedsNoRobot) {
+  session_.emergency_stop();
+  EXPECT_EQ(robot_.sent_with(kIdEmergencyStop), 3U);
+  EXPECT_TRUE(e2e_check(kIdEmergencyStop, robot_.sent[0].data, robot_.sent[0].size));
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,183 @@
+// A shear box: a plate stands in the soil at a fixed depth while a belt moves under it, forth and
+// back, against the closed form of Janosi-Hanamoto shear and of its rate form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "host_sim/physics/soil/soil_bed.h"
+
+namespace screed {
+namespace {
+
+constexpr double kSide_m = 0.05;
+constexpr double kThickness_m = 0.02;
+constexpr double kDepth_m = 0.002;
+constexpr double kStep_s = 0.001;
+
+class ShearBox {
+ public:
+  explicit ShearBox(const SoilParameters& soil)
+      : soil_(soil),
+        bed_(HeightField(31, 31, 0.005, false), soil, SoilOptions{NormalStress::kVertical}),
+        plate_(Footprint::box({kSide_m, kSide_m, kThickness_m})) {
+    motion_.mass_kg = std::numeric_limits<double>::infinity();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation().z() = 0.5 * kThickness_m - kDepth_m;
+    plate_.set_pose(pose);
+    for (int i = 0; i < 5; ++i) shear({0.0, 0.0}, kStep_s);  // until the area's b has settled
+  }
+
+  /// Shears by `way` (along the plate and across it, m) within `seconds`; returns what of the
+  /// shear strength the soil answers with in the end, against the motion.
+  Eigen::Vector2d shear(const Eigen::Vector2d& way, double seconds) {
+    const auto steps = static_cast<int>(std::lround(seconds / kStep_s));
+    motion_.surface_speed = -way.x() / seconds;
+    motion_.velocity.y() = way.y() / seconds;
+    Eigen::Vector2d mobilised = Eigen::Vector2d::Zero();
+    for (int i = 0; i < steps; ++i) {
+      const SoilReaction reaction = bed_.press(plate_, motion_, kStep_s, memory_);
+      bed_.end_step();
+      const double strength =
+          soil_.cohesion_pa * reaction.area +
+          reaction.normal_load * std::tan(soil_.friction_deg * std::numbers::pi / 180.0);
+      mobilised = -reaction.force.head<2>() / strength;
+      work_j_ -= reaction.force.head<2>().dot(way) / steps;
+    }
+    return mobilised;
+  }
+  double work_j() const { return work_j_; }
+
+ private:
+  SoilParameters soil_;
+  SoilBed bed_;
+  Footprint plate_;
+  ContactMemory memory_;
+  FootprintMotion motion_;
+  double work_j_ = 0.0;
+};
+
+SoilParameters undamped(const char* name) {
+  SoilParameters soil = soil_preset(name);
+  soil.shear_damping_s = 0.0;
+  return soil;
+}
+
+TEST(SoilShearTest, OneWayIsJanosiAndHanamotos) {
+  for (const char* name : {"viper", "lete_sand", "dry_sand", "clay"}) {
+    const SoilParameters soil = undamped(name);
+    ShearBox box(soil);
+    double j = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      j += 0.2 * soil.shear_modulus_m;
+      const Eigen::Vector2d mobilised = box.shear({0.2 * soil.shear_modulus_m, 0.0}, 0.05);
+      EXPECT_NEAR(mobilised.x(), 1.0 - std::exp(-j / soil.shear_modulus_m), 1e-6) << name << j;
+      EXPECT_NEAR(mobilised.y(), 0.0, 1e-9);
+    }
+  }
+}
+
+// d tau = (strength dj - tau |dj|) / K has a closed solution over every way in one direction.
+TEST(SoilShearTest, WhatTurnsBackMeetsTheSoilAnew) {
+  const SoilParameters soil = undamped("viper");
+  const double k = soil.shear_modulus_m;
+  ShearBox box(soil);
+  const double forth = box.shear({k, 0.0}, 0.1).x();
+  EXPECT_NEAR(forth, 1.0 - std::exp(-1.0), 1e-6);
+  // Back where it began, the soil resists: it did not spring back.
+  const double back = box.shear({-k, 0.0}, 0.1).x();
+  EXPECT_NEAR(back, -1.0 + (1.0 + forth) * std::exp(-1.0), 1e-6);
+  EXPECT_LT(back, -0.3);
+  const double again = box.shear({k, 0.0}, 0.1).x();
+  EXPECT_NEAR(again, 1.0 + (back - 1.0) * std::exp(-1.0), 1e-6);
+}
+
+TEST(SoilShearTest, TurnsWithTheWay) {
+  const SoilParameters soil = undamped("ding_2011");
+  const double k = soil.shear_modulus_m;
+  ShearBox box(soil);
+  box.shear({2.0 * k, 0.0}, 0.1);
+  const Eigen::Vector2d aside = box.shear({0.0, 1.5 * k}, 0.1);
+  EXPECT_NEAR(aside.x(), (1.0 - std::exp(-2.0)) * std::exp(-1.5), 1e-6);
+  EXPECT_NEAR(aside.y(), 1.0 - std::exp(-1.5), 1e-6);
+}
+
+// A loop takes energy: with springs that give all back it would take none.
+TEST(SoilShearTest, ALoopTakesEnergy) {
+  const SoilParameters soil = undamped("lete_sand");
+  const double k = soil.shear_modulus_m;
+  ShearBox box(soil);
+  box.shear({k, 0.0}, 0.1);
+  box.shear({-2.0 * k, 0.0}, 0.2);
+  const double before = box.work_j();
+  box.shear({2.0 * k, 0.0}, 0.2);
+  box.shear({-2.0 * k, 0.0}, 0.2);
+  EXPECT_GT(box.work_j() - before, 0.4 * before);
+}
+
+// Small shear is damped by its stiffness times shear_damping: at a rate v the stress is that of v
+// times shear_damping further on, and no more than the strength.
+TEST(SoilShearTest, SmallShearIsDamped) {
+  SoilParameters soil = undamped("viper");
+  soil.shear_damping_s = 0.01;
+  const double k = soil.shear_modulus_m;
+  ShearBox box(soil);
+  const double rate = 0.02 * k / 0.1;
+  EXPECT_NEAR(box.shear({0.02 * k, 0.0}, 0.1).x(),
+              1.0 - std::exp(-(0.02 * k + rate * soil.shear_damping_s) / k), 1e-6);
+  EXPECT_LE(box.shear({20.0 * k, 0.0}, 0.1).x(), 1.0 + 1e-9);
+}
+
+// A wheel that spins and hardly moves: between the two means of place in a cell lies a way that
+// takes it seconds, many times K of slip.
+TEST(SoilShearTest, AWheelThatSpinsOnTheSpotFeelsNoMoreThanTheStrength) {
+  SoilParameters soil = soil_preset("lete_sand");
+  soil.shear_modulus_m = 0.002;
+  SoilBed bed(HeightField(61, 61, 0.005, false), soil);
+  Footprint wheel = Footprint::wheel(0.03, 0.025);
+  ContactMemory memory;
+  FootprintMotion motion;
+  motion.mass_kg = std::numeric_limits<double>::infinity();
+  motion.velocity.x() = 0.00105;
+  motion.surface_speed = 3.0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 2000; ++i) {
+    pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.03 - 0.003;
+    wheel.set_pose(pose);
+    const SoilReaction reaction = bed.press(wheel, motion, kStep_s, memory);
+    bed.end_step();
+    ASSERT_TRUE(reaction.force.allFinite() && reaction.torque.allFinite()) << "step " << i;
+    ASSERT_LT(reaction.force.head<2>().norm(), 2.0 * reaction.normal_load + 10.0) << "step " << i;
+  }
+}
+
+// Where the pressure in a cell lies ahead of the middle of what it touches, the soil has sheared
+// for less long there. It cannot have sheared the other way: a wheel that slips is not drawn back.
+TEST(SoilShearTest, AWheelThatSlipsIsDrawnForwardFromTheFirstStepOn) {
+  SoilParameters soil = soil_preset("viper");
+  for (const double shear_modulus_m : {0.002, 0.02}) {
+    for (const double slip_speed : {0.01, 0.1, 1.0}) {
+      soil.shear_modulus_m = shear_modulus_m;
+      SoilBed bed(HeightField(61, 61, 0.005, false), soil, SoilOptions{NormalStress::kVertical});
+      Footprint wheel = Footprint::wheel(0.03, 0.025);
+      ContactMemory memory;
+      FootprintMotion motion;
+      motion.mass_kg = std::numeric_limits<double>::infinity();
+      motion.velocity.x() = 0.002;
+      motion.surface_speed = motion.velocity.x() + slip_speed;
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      for (int i = 0; i < 2000; ++i) {
+        pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.03 - 0.003;
+        wheel.set_pose(pose);
+        const SoilReaction reaction = bed.press(wheel, motion, kStep_s, memory);
+        bed.end_step();
+        ASSERT_GE(reaction.force.x(), 0.0)
+            << shear_modulus_m << " " << slip_speed << ", step " << i;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace screed

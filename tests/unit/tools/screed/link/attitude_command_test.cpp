@@ -1,0 +1,159 @@
+// `screed attitude`: figures on a real recording, and one clear line for every wrong file.
+#include "tools/screed/link/attitude_command.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <system_error>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+const std::string kExcerpt = "tests/data/imu_broad_excerpt.csv";
+const std::string kHeader = "t_ms,gx,gy,gz,ax,ay,az,mx,my,mz,qw,qx,qy,qz,moving\n";
+const std::string kRow = "0,0,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n";
+
+/// The file of the running test; gone after it.
+std::string own_file() {
+  return ::testing::TempDir() + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+         ".csv";
+}
+
+std::string write(const std::string& text) {
+  std::ofstream(own_file()) << text;
+  return own_file();
+}
+
+class AttitudeCommand : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    std::error_code ignored;
+    std::filesystem::remove(own_file(), ignored);
+  }
+};
+
+/// The message of the InputError that this content ends in, or nothing.
+std::string error_of(const std::string& text) {
+  try {
+    score_attitude(write(text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(AttitudeCommand, RealRecordingWithinBounds) {
+  const AttitudeScore score = score_attitude(kExcerpt);
+  EXPECT_EQ(score.samples, 2771);  // rows with moving = 1 and a reference, counted with awk
+  EXPECT_LT(score.rms_inclination_deg, 0.9);
+  EXPECT_LT(score.rms_heading_deg, 1.5);
+}
+
+TEST_F(AttitudeCommand, ErrorsAreMeasuredAsDefined) {
+  // The estimate is exact (level, nose to east), so the errors are those of the reference: 3
+  // degrees of inclination about x, in the second row 5 degrees about the vertical. 1.5 and 2.5
+  // degrees are the half angles.
+  const std::string tilted = "0,0,0,0,0,0,4098,0,1000,0,0.99965732,0.02617695,0,0,1\n";
+  const std::string turned = "10,0,0,0,0,0,4098,0,1000,0,0.99904822,0,0,-0.04361939,1\n";
+  const std::string uncounted =
+      "20,0,0,0,0,0,4098,0,1000,0,0,1,0,0,0\n30,0,0,0,0,0,4098,0,1000,0,,,,,1\n";
+  const AttitudeScore score = score_attitude(write(kHeader + tilted + turned + uncounted));
+  EXPECT_EQ(score.samples, 2);
+  EXPECT_NEAR(score.rms_inclination_deg, 3.0 / std::sqrt(2.0), 0.002);
+  EXPECT_NEAR(score.rms_heading_deg, 5.0 / std::sqrt(2.0), 0.01);
+}
+
+TEST_F(AttitudeCommand, ColumnsAreFoundByName) {
+  const std::string shuffled =
+      "# a comment\n# another\nmoving,az,gx,gy,gz,ax,ay,my,mx,mz,extra,qz,qw,qx,qy\r\n"
+      "1,4098,0,0,0,0,0,1000,0,0,x,0,1,0,0\r\n";
+  EXPECT_NEAR(score_attitude(write(shuffled)).rms_inclination_deg, 0.0, 0.01);
+}
+
+TEST_F(AttitudeCommand, TableHasFilesAndMean) {
+  std::ostringstream out;
+  EXPECT_EQ(run_attitude({kExcerpt, kExcerpt}, false, out), 0);
+  const std::string table = out.str();
+  EXPECT_NE(table.find(kExcerpt), std::string::npos);
+  EXPECT_NE(table.find("\nmean"), std::string::npos);
+}
+
+TEST_F(AttitudeCommand, JsonMeanIsTheMeanOverFiles) {
+  const std::string other = write(kHeader + kRow);
+  std::ostringstream out;
+  EXPECT_EQ(run_attitude({kExcerpt, other}, true, out), 0);
+  const nlohmann::json result = nlohmann::json::parse(out.str());
+  ASSERT_EQ(result["files"].size(), 2U);
+  EXPECT_EQ(result["files"][0]["file"], kExcerpt);
+  EXPECT_EQ(result["files"][1]["samples"], 1);
+  const double mean = (result["files"][0]["rms_inclination_deg"].get<double>() +
+                       result["files"][1]["rms_inclination_deg"].get<double>()) /
+                      2;
+  EXPECT_DOUBLE_EQ(result["mean"]["rms_inclination_deg"].get<double>(), mean);
+}
+
+TEST_F(AttitudeCommand, CallbackSetsTheAction) {
+  CLI::App root;
+  std::function<int()> action;
+  register_attitude_command(root, action);
+  root.parse("attitude --json " + kExcerpt);
+  ASSERT_TRUE(action);
+  ::testing::internal::CaptureStdout();
+  EXPECT_EQ(action(), 0);
+  EXPECT_TRUE(nlohmann::json::accept(::testing::internal::GetCapturedStdout()));
+
+  CLI::App without_files;
+  register_attitude_command(without_files, action);
+  EXPECT_THROW(without_files.parse("attitude"), CLI::RequiredError);
+}
+
+TEST_F(AttitudeCommand, MissingFile) {
+  EXPECT_THROW(score_attitude("tests/data/no_such_recording.csv"), InputError);
+  EXPECT_THROW(score_attitude("tests/data"), InputError);
+}
+
+TEST_F(AttitudeCommand, WrongContentIsNamedWithItsLine) {
+  struct Case {
+    std::string text;
+    std::string line;
+    std::string what;
+  };
+  const std::string good = kHeader + kRow;
+  const Case cases[] = {
+      {"", ":0: ", "column names"},
+      {"# only a comment\n", ":1: ", "column names"},
+      {"t_ms,gx,gy\n" + kRow, ":1: ", "column gz is missing"},
+      {"gx," + kHeader + kRow, ":1: ", "column gx is there twice"},
+      {good + "10,0,0,0,0,0,4098,0,1000,0,1,0,0,0\n", ":3: ", "has 14 fields"},
+      {good + "\n", ":3: ", "has 1 fields"},
+      {good + "10,x,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is 'x'"},
+      {good + "10,,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is ''"},
+      {good + "10,1.5,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "gx is '1.5'"},
+      {good + "10,0,0,0,0,0,32768,0,1000,0,1,0,0,0,1\n", ":3: ", "az is 32768"},
+      {good + "10,0,0,0,0,-32769,0,0,1000,0,1,0,0,0,1\n", ":3: ", "ay is -32769"},
+      {good + "10,0,0,0,0,0,99999999999999999999,0,1000,0,1,0,0,0,1\n", ":3: ", "az is '9999"},
+      {good + "10,0,0,0,0,0,4098,0,1000,0,1,,0,0,1\n", ":3: ", "qx is ''"},
+      {good + "10,0,0,0,0,0,4098,0,1000,0,nan,0,0,0,1\n", ":3: ", "length"},
+      {good + "10,0,0,0,0,0,4098,0,1000,0,0.5,0,0,0,1\n", ":3: ", "length"},
+      {good + "10,0,0,0,0,0,4098,0,1000,0,1,0,0,0,2\n", ":3: ", "moving is '2'"},
+      {good + "15,0,0,0,0,0,4098,0,1000,0,1,0,0,0,1\n", ":3: ", "steps of 10"},
+      {kHeader + "0,0,0,0,0,0,4098,0,1000,0,1,0,0,0,0\n", ".csv: ", "no row counts"},
+      {kHeader + "0,0,0,0,0,0,4098,0,1000,0,,,,,1\n", ".csv: ", "no row counts"},
+  };
+  for (const Case& c : cases) {
+    const std::string message = error_of(c.text);
+    EXPECT_NE(message.find(c.line), std::string::npos) << c.text << "-> " << message;
+    EXPECT_NE(message.find(c.what), std::string::npos) << c.text << "-> " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace screed

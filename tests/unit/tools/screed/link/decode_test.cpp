@@ -1,0 +1,295 @@
+// Logs as messages, tables, MCAP and pictures.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "firmware/protocol/e2e.h"
+#include "firmware/protocol/messages.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/log_decoder.h"
+#include "tests/temp_folder.h"
+#include "tools/screed/link/decode_command.h"
+#include "tools/screed/link/plot_command.h"
+
+namespace screed {
+namespace {
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  EXPECT_TRUE(in) << path;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+template <typename Message>
+CanFrame protected_frame(const Message& message, uint8_t counter, uint8_t node = 1) {
+  CanFrame frame = frame_of(message);
+  frame.id = id_of_node(frame.id, node);
+  e2e_protect(frame.id, counter, frame.data, frame.size);
+  return frame;
+}
+
+std::string attitude_line(double time_s, int16_t pitch, uint8_t counter, uint8_t node = 1) {
+  return candump_line(static_cast<uint64_t>(std::llround(time_s * 1e6)), "can0",
+                      protected_frame(message::Attitude{-5, pitch, 35999}, counter, node));
+}
+
+class Decode : public ::testing::Test {
+ protected:
+  std::string log(const std::string& text) {
+    std::string path = (scratch_.path() / "radio.log").string();
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+  }
+  DecodeAccount account_of(const std::string& text) {
+    LogDecoder decoder(log(text));
+    DecodedFrame frame;
+    while (decoder.next(frame)) {
+    }
+    return decoder.account();
+  }
+  int csv(const std::string& text, bool numbers = false) {
+    DecodeOptions options;
+    options.log = log(text);
+    options.csv = true;
+    options.numbers = numbers;
+    out_.str("");
+    err_.str("");
+    return run_decode(options, out_, err_);
+  }
+  std::string table(const char* name) {
+    return read_file(scratch_.path() / "radio_csv" / (std::string(name) + ".csv"));
+  }
+
+  TempFolder scratch_;
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(Decode, AccountsForEveryLine) {
+  CanFrame wrong = protected_frame(message::Attitude{1, 2, 3}, 3);
+  wrong.data[4] ^= 1U;
+  CanFrame cut = protected_frame(message::Attitude{1, 2, 3}, 3);
+  cut.size = 5;
+  const DecodeAccount account = account_of(
+      attitude_line(0.1, 1, 0) + attitude_line(0.2, 2, 1) + candump_line(0, "can0", wrong) +
+      candump_line(0, "can0", cut) + candump_line(0, "can0", {0x777, 1, {1}}) +
+      "(0.000000) can0 044##1A2B\n\nnonsense\n" + attitude_line(0.3, 3, 4) +
+      attitude_line(0.3, 3, 4) + attitude_line(0.4, 4, 5, 2) + "(0000000000.4");
+  EXPECT_EQ(account.lines, 11U);
+  EXPECT_EQ(account.messages, 5U);
+  EXPECT_EQ(account.wrong_crcs, 1U);
+  EXPECT_EQ(account.wrong_sizes, 1U);
+  EXPECT_EQ(account.unknown_ids, 1U);
+  EXPECT_EQ(account.other_frames, 1U);
+  EXPECT_EQ(account.unreadable_lines, 2U);
+  EXPECT_EQ(account.first_unreadable_line, 8U);
+  EXPECT_EQ(account.missing, 2U) << "counters 2 and 3 of robot 1; robot 2 counts for itself";
+  EXPECT_EQ(account.text(),
+            "5 messages of 11 lines, 2 unreadable (the first is line 8), 1 of a wrong size, 1 with "
+            "a wrong CRC, 1 with ids of others, 1 remote, error, FD or 29-bit frames, 2 messages "
+            "missing by their counters");
+}
+
+TEST_F(Decode, CountersWrapWithoutALoss) {
+  std::string text;
+  for (int i = 0; i < 40; ++i) text += attitude_line(i, 0, static_cast<uint8_t>(i % 16));
+  EXPECT_EQ(account_of(text).missing, 0U);
+}
+
+TEST_F(Decode, TablesHaveUnitsAndExactNumbers) {
+  message::Heartbeat heartbeat{};
+  heartbeat.state = 2;
+  heartbeat.faults = 0x1001;
+  message::Baro baro = {UINT32_MAX, -1};
+  EXPECT_EQ(csv(attitude_line(12.34, 310, 0) + attitude_line(1700000000.25, -9000, 1, 3) +
+                candump_line(5, "can0", protected_frame(heartbeat, 0)) +
+                candump_line(6, "can0", protected_frame(baro, 0))),
+            0);
+  EXPECT_EQ(table("attitude"),
+            "time [s],robot,roll [deg],pitch [deg],heading [deg]\n"
+            "12.340000,1,-0.05,3.10,359.99\n"
+            "1700000000.250000,3,-0.05,-90.00,359.99\n");
+  EXPECT_EQ(table("baro"),
+            "time [s],robot,pressure [Pa],temperature [degC]\n"
+            "0.000006,1,268435455.9375,-0.01\n");
+  EXPECT_EQ(table("heartbeat").substr(0, 47), "time [s],robot,state,link_alive,tilt,imu_silent");
+  EXPECT_NE(table("heartbeat").find("\n0.000005,1,running,lost,1,0,0,0,0,0,0,0,0,0,0,0,1,0,0,0\n"),
+            std::string::npos);
+  EXPECT_EQ(err_.str(), scratch_.path().string() + "/radio.log: 4 messages of 4 lines\n");
+  EXPECT_NE(out_.str().find("attitude.csv\n"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(scratch_.path() / "radio_csv" / "power.csv"))
+      << "no table without a message";
+}
+
+TEST_F(Decode, NumbersInPlaceOfNames) {
+  message::Heartbeat heartbeat{};
+  heartbeat.state = 2;
+  csv(candump_line(5, "can0", protected_frame(heartbeat, 0)), true);
+  EXPECT_NE(table("heartbeat").find("\n0.000005,1,2,0,"), std::string::npos);
+}
+
+TEST_F(Decode, ManyRowsReachTheFileWhole) {
+  std::string text;
+  std::string wanted = "time [s],robot,roll [deg],pitch [deg],heading [deg]\n";
+  for (int i = 0; i < 10000; ++i) {
+    text += attitude_line(i, static_cast<int16_t>(i), static_cast<uint8_t>(i % 16));
+    char row[80];
+    std::snprintf(row, sizeof row, "%d.000000,1,-0.05,%d.%02d,359.99\n", i, i / 100, i % 100);
+    wanted += row;
+  }
+  EXPECT_EQ(csv(text), 0);
+  EXPECT_EQ(table("attitude"), wanted);
+}
+
+TEST_F(Decode, DamageIsSaidAndTheRestIsThere) {
+  const std::string good = attitude_line(1, 1, 0);
+  EXPECT_EQ(csv(good + std::string(5000, '\0') + "\n" + attitude_line(2, 2, 1) + "(000"), 1);
+  const std::string rows = table("attitude");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 3);
+  EXPECT_NE(err_.str().find("2 messages of 4 lines, 2 unreadable (the first is line 2)"),
+            std::string::npos)
+      << err_.str();
+  EXPECT_EQ(csv("what is this\n"), 1);
+  EXPECT_EQ(csv(""), 0);
+}
+
+TEST_F(Decode, WrongInputIsSaid) {
+  DecodeOptions options;
+  options.log = "/nowhere/radio.log";
+  options.out = scratch_.path().string();
+  EXPECT_THROW(run_decode(options, out_, err_), InputError) << "neither CSV nor MCAP";
+  options.csv = true;
+  EXPECT_THROW(run_decode(options, out_, err_), InputError);
+  options.log = log(attitude_line(1, 1, 0));
+  options.out = "/proc/nowhere";
+  EXPECT_THROW(run_decode(options, out_, err_), RunError);
+}
+
+/// Records of an MCAP file, by its specification: kind and content.
+std::vector<std::pair<int, std::string>> records_of(std::string bytes) {
+  std::vector<std::pair<int, std::string>> records;
+  while (bytes.size() > 9) {
+    uint64_t size = 0;
+    std::memcpy(&size, bytes.data() + 1, 8);
+    EXPECT_LE(size + 9, bytes.size());
+    if (size + 9 > bytes.size()) break;
+    records.emplace_back(static_cast<unsigned char>(bytes[0]), bytes.substr(9, size));
+    bytes.erase(0, 9 + size);
+  }
+  EXPECT_TRUE(bytes.empty());
+  return records;
+}
+
+template <typename Number>
+Number number_at(const std::string& bytes, size_t at) {
+  Number number{};
+  EXPECT_LE(at + sizeof number, bytes.size());
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return number;
+}
+
+TEST_F(Decode, McapHoldsTheMessagesAndItsOwnIndex) {
+  DecodeOptions options;
+  options.log =
+      log(attitude_line(1, 310, 0) + attitude_line(2, -310, 1) + attitude_line(3, 0, 0, 2));
+  options.mcap = true;
+  EXPECT_EQ(run_decode(options, out_, err_), 0);
+  const std::string bytes = read_file(scratch_.path() / "radio.mcap");
+  const std::string magic("\x89MCAP0\r\n", 8);
+  ASSERT_EQ(bytes.substr(0, 8), magic);
+  ASSERT_EQ(bytes.substr(bytes.size() - 8), magic);
+  const auto records = records_of(bytes.substr(8, bytes.size() - 16));
+  std::vector<int> kinds;
+  kinds.reserve(records.size());
+  for (const auto& [kind, content] : records) kinds.push_back(kind);
+  // Header, chunk with two indices, end of data; schema, two channels, statistics, index of the
+  // chunk; offsets of these four groups; footer.
+  EXPECT_EQ(kinds, (std::vector<int>{1, 6, 7, 7, 15, 3, 4, 4, 11, 8, 14, 14, 14, 14, 2}));
+
+  const auto inner = records_of(records[1].second.substr(40));
+  ASSERT_EQ(inner.size(), 6U);
+  EXPECT_EQ(inner[0].first, 3);
+  const std::string& schema = inner[0].second;
+  const nlohmann::json json = nlohmann::json::parse(schema.substr(schema.find('{')));
+  EXPECT_EQ(json["properties"]["pitch"]["type"], "number");
+  EXPECT_EQ(json["properties"]["pitch"]["description"], "deg; nose up is positive");
+  EXPECT_NE(inner[1].second.find("/robot1/attitude"), std::string::npos);
+  EXPECT_EQ(inner[2].second.substr(22), R"({"roll":-0.05,"pitch":3.10,"heading":359.99})");
+  EXPECT_EQ(number_at<uint64_t>(inner[3].second, 6), 2000000000U);
+  EXPECT_EQ(inner[3].second.substr(22), R"({"roll":-0.05,"pitch":-3.10,"heading":359.99})");
+
+  // Each index entry leads to its message.
+  const std::string& index = records[2].second;
+  EXPECT_EQ(number_at<uint64_t>(index, 6), 1000000000U);
+  const auto place = number_at<uint64_t>(index, 14);
+  EXPECT_EQ(records[1].second[40 + place], 5);
+  // The footer leads to the summary.
+  const auto summary = number_at<uint64_t>(records.back().second, 0);
+  EXPECT_EQ(bytes[summary], 3);
+  EXPECT_EQ(number_at<uint64_t>(records[8].second, 0), 3U) << "messages";
+}
+
+TEST_F(Decode, PlotsSignalsOfEachRobot) {
+  PlotOptions options;
+  options.log = log(attitude_line(10, 100, 0) + attitude_line(11, 200, 1) +
+                    attitude_line(11.5, 300, 0, 2) + attitude_line(12, 400, 2));
+  options.signals = {"attitude.pitch", "attitude.roll"};
+  Chart chart = plot_chart(options, err_);
+  ASSERT_EQ(chart.series.size(), 4U);
+  EXPECT_EQ(chart.y_label, "deg");
+  EXPECT_EQ(chart.series[0].label, "attitude.pitch, robot 1");
+  ASSERT_EQ(chart.series[0].points.size(), 3U);
+  EXPECT_DOUBLE_EQ(chart.series[0].points[2].x, 2.0);
+  EXPECT_DOUBLE_EQ(chart.series[0].points[2].y, 4.0);
+  options.robot = 1;
+  options.from_s = 0.5;
+  options.to_s = 1.5;
+  chart = plot_chart(options, err_);
+  ASSERT_EQ(chart.series.size(), 2U);
+  EXPECT_EQ(chart.series[0].label, "attitude.pitch");
+  EXPECT_EQ(chart.series[0].points.size(), 1U);
+  EXPECT_EQ(err_.str(), "");
+  options.signals = {"power.battery"};
+  EXPECT_THROW(plot_chart(options, err_), InputError) << "not in the log";
+}
+
+TEST_F(Decode, PlotsKeepThePeaksOfManyPoints) {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) {
+    text += attitude_line(i * 0.04, i == 12345 ? int16_t{9000} : int16_t{0},
+                          static_cast<uint8_t>(i % 16));
+  }
+  PlotOptions options;
+  options.log = log(text);
+  options.signals = {"attitude.pitch"};
+  const Chart chart = plot_chart(options, err_);
+  EXPECT_LE(chart.series[0].points.size(), 2000U);
+  double most = 0.0;
+  for (const ChartPoint& point : chart.series[0].points) most = std::max(most, point.y);
+  EXPECT_DOUBLE_EQ(most, 90.0);
+}
+
+TEST_F(Decode, PlotsBecomeSvgOrPng) {
+  PlotOptions options;
+  options.log = log(attitude_line(10, 100, 0) + attitude_line(11, 200, 1));
+  options.signals = {"attitude.pitch"};
+  options.out = (scratch_.path() / "it.svg").string();
+  EXPECT_EQ(run_plot(options, err_), 0);
+  EXPECT_EQ(read_file(options.out).substr(0, 4), "<svg");
+  options.out = (scratch_.path() / "it.png").string();
+  EXPECT_EQ(run_plot(options, err_), 0);
+  const std::string png = read_file(options.out);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(number_at<uint32_t>(png, 16), 0x80070000U) << "1920 pixels wide";
+  options.out = (scratch_.path() / "it.gif").string();
+  EXPECT_THROW(run_plot(options, err_), InputError);
+}
+
+}  // namespace
+}  // namespace screed

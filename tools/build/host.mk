@@ -1,0 +1,145 @@
+# The host program build/<BUILD>/screed: its sources, flags, generated headers and library. Included by the top Makefile.
+#
+# Needs options.mk and schema.mk. Gives LIBRARY, SCREED, LIBRARY_SOURCES, GENERATED, the rules that make objects, and $(link).
+
+DATA_DIR ?= $(CURDIR)/host_sim/data
+BOARDS_DIR ?= $(CURDIR)/boards
+MODELS_DIR ?= $(CURDIR)/nn/models
+FIRMWARE_DIR ?= $(abspath $(BUILD_ROOT))/firmware
+EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
+# MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
+MCU ?= yes
+
+# ---- sources -----------------------------------------------------------------------------------------------------------------
+
+# C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
+CORE_SOURCES := $(call sources,firmware nn/infer)
+# Files that know simavr; without it, a stand-in that says so.
+SIMAVR_SOURCES := $(call sources,host_sim/devices/mcu) host_sim/run/world/mcu_world.cpp
+WITHOUT_SIMAVR := host_sim/run/world/without_simavr.cpp
+LEFT_OUT_yes := $(WITHOUT_SIMAVR)
+LEFT_OUT_no := $(SIMAVR_SOURCES)
+ifeq ($(LEFT_OUT_$(MCU)),)
+$(error MCU=$(MCU): yes or no)
+endif
+HOST_SOURCES := $(filter-out $(CORE_SOURCES) $(LEFT_OUT_$(MCU)),$(call sources,hal/host host_sim nn))
+PROGRAM_SOURCES := $(filter-out tools/screed/main.cpp,$(call sources,tools/screed))
+LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(PROGRAM_SOURCES)
+LIBRARY := $(B)/libscreed.a
+SCREED := $(B)/screed
+
+# ---- flags, in response files: objects are rebuilt when they change, and pkg-config runs once ----------------------------------
+
+WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor \
+            -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
+# -ffp-contract=off: the same bits with and without fused multiply-add.
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I. -I$(BUILD_ROOT)/generated
+
+PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
+TEST_PACKAGES := gtest_main
+BENCH_PACKAGES := benchmark
+# Headers of these are known to single files.
+LINK_PACKAGES := zlib librsvg-2.0 sdl2
+
+# Foreign headers are system headers (no warnings); behind the compiler's own, since a package may name /usr/include.
+package_flags = pkg-config --cflags $(1) | sed 's/-I/-idirafter /g'
+# Writes standard input to the target where it differs from what is there.
+WRITE_CHANGED = cat > $@.new && { cmp -s $@.new $@ && rm $@.new || mv $@.new $@ ; }
+
+$(B)/host.flags: FORCE
+	@mkdir -p $(@D)
+	@{ echo "-std=c++20 $(COMMON_FLAGS) -I$(B)/generated" ; \
+	   $(call package_flags,$(PACKAGES) $(TEST_PACKAGES) $(BENCH_PACKAGES)) ; } | $(WRITE_CHANGED)
+$(B)/firmware.flags: FORCE
+	@mkdir -p $(@D)
+	@echo "-std=c++14 $(COMMON_FLAGS)" | $(WRITE_CHANGED)
+$(B)/link.flags: FORCE
+	@mkdir -p $(@D)
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
+	   echo "$(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
+
+# Libraries whose headers are known to single files.
+TINY_DNN_OBJECTS := $(patsubst %.cpp,$(B)/%.o,$(shell grep -rl '"nn/training/tiny_dnn.h"' --include='*.cpp' nn tools tests))
+$(TINY_DNN_OBJECTS): EXTRA_FLAGS = -idirafter $(B)/tiny_dnn
+$(TINY_DNN_OBJECTS): | $(B)/tiny_dnn/third_party/stb
+# tiny-dnn looks for stb in a folder of its own sources, which Debian's package leaves out.
+$(B)/tiny_dnn/third_party/stb:
+	@mkdir -p $(@D)
+	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
+RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
+$(B)/host_sim/render/picture/svg_png.o: EXTRA_FLAGS = $(RSVG_FLAGS)
+SDL_FLAGS = $(shell $(call package_flags,sdl2))
+$(B)/tools/screed/viewer/window.o: EXTRA_FLAGS = $(SDL_FLAGS)
+
+# ---- generated headers: what the program knows of its surroundings; only files that include them depend on them ----------------
+
+$(B)/generated/version.h: FORCE
+	@mkdir -p $(@D)
+	@echo '#define SCREED_VERSION "$(VERSION)"' | $(WRITE_CHANGED)
+$(B)/generated/paths.h: FORCE
+	@mkdir -p $(@D)
+	@{ echo '// Where the data of this build lies.' ; echo 'namespace screed {' ; \
+	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
+	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; \
+	   echo 'inline constexpr const char* kModelsFolder = "$(MODELS_DIR)";' ; \
+	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; echo '}' ; } | $(WRITE_CHANGED)
+# The constants of every board, under their folders' names.
+$(B)/generated/boards.h: FORCE
+	@mkdir -p $(@D)
+	@{ echo '// The boards of this build: for host_sim/run/experiment/board_table.cpp alone.' ; \
+	   echo '#include "firmware/parameters/board_constants.h"' ; \
+	   for board in $(BOARDS) ; do echo "#define kBoard kBoard_$$board" ; echo "#include \"boards/$$board/board.h\"" ; \
+	     echo '#undef kBoard' ; done ; \
+	   echo '#define SCREED_BOARDS(X) $(foreach board,$(BOARDS),X($(board)))' ; } | $(WRITE_CHANGED)
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(SCHEMA_HEADERS)
+
+# ---- objects, library, program -------------------------------------------------------------------------------------------------
+
+$(call objects,$(CORE_SOURCES)): $(B)/%.o: %.cpp $(B)/firmware.flags | $(SCHEMA_HEADERS)
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) @$(B)/firmware.flags -MMD -MP -c $< -o $@
+$(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	@$(CXX) @$(B)/host.flags $(EXTRA_FLAGS) -MMD -MP -c $< -o $@
+
+# A program of objects and archives, with more libraries: $(call link,LIBRARIES).
+define link
+	@echo "  LINK $@"
+	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $(1) -o $@
+endef
+
+$(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
+	@rm -f $@
+	@ar rcs $@ $(filter %.o,$^)
+$(SCREED): $(B)/tools/screed/main.o $(LIBRARY) $(B)/link.flags
+	$(call link)
+
+.PHONY: build sim install install-files
+build: $(SCREED)  ## build/<BUILD>/screed, the host program (BUILD=release|debug|asan)
+sim: $(SCREED)  ## drive the robot over a real terrain (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')
+	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
+
+# The installed program looks for its data below PREFIX, so it is a build of its own.
+install:  ## install the host program (PREFIX=/usr/local)
+	+@$(MAKE) --no-print-directory BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed \
+	  BOARDS_DIR=$(PREFIX)/share/screed/boards MODELS_DIR=$(PREFIX)/share/screed/models \
+	  FIRMWARE_DIR=$(PREFIX)/share/screed/firmware install-files
+	@for image in $(wildcard $(BUILD_ROOT)/firmware/*/screed.elf) ; do \
+	   install -v -D -m 644 $$image $(DESTDIR)$(PREFIX)/share/screed/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
+install-files: $(SCREED)
+	install -D -m 755 $(SCREED) $(DESTDIR)$(PREFIX)/bin/screed
+	mkdir -p $(DESTDIR)$(PREFIX)/share/screed
+	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(DESTDIR)$(PREFIX)/share/screed/
+
+# ---- clangd --------------------------------------------------------------------------------------------------------------------
+
+# clangd looks for it in build/ by itself.
+.PHONY: compile-commands
+compile-commands: $(BUILD_ROOT)/compile_commands.json  ## what clangd and other tools need to know of the flags
+$(BUILD_ROOT)/compile_commands.json: $(B)/host.flags $(B)/firmware.flags $(GENERATED) FORCE
+	@{ for source in $(CORE_SOURCES) ; do echo "$$source $(B)/firmware.flags" ; done ; \
+	   for source in $(filter-out $(CORE_SOURCES),$(ALL_HOST_SOURCES)) ; do echo "$$source $(B)/host.flags" ; done ; } \
+	   | awk -v folder='$(CURDIR)' -v cxx='$(CXX)' -v extra='-idirafter $(B)/tiny_dnn $(RSVG_FLAGS) $(SDL_FLAGS)' \
+	     -f tools/build/compile_commands.awk | $(WRITE_CHANGED)

@@ -1,0 +1,30 @@
+# Options of a build that every part reads, and where things lie. Included first by the top Makefile.
+
+BUILD ?= release
+BOARD ?= a_star_32u4
+ARGS ?=
+PREFIX ?= /usr/local
+
+BUILD_ROOT := build
+OUT := out
+B := $(BUILD_ROOT)/$(BUILD)
+VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+
+OPTIMISE_release := -O2 -DNDEBUG
+OPTIMISE_debug := -O0 -g
+OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+ifeq ($(OPTIMISE_$(BUILD)),)
+$(error BUILD=$(BUILD): release, debug or asan)
+endif
+
+# A board is a folder with a board.mk.
+BOARDS := $(patsubst boards/%/board.mk,%,$(sort $(wildcard boards/*/board.mk)))
+ifeq ($(filter $(BOARD),$(BOARDS)),)
+$(error BOARD=$(BOARD): no folder boards/$(BOARD) with a board.mk; there are: $(BOARDS))
+endif
+
+# Sources below folders, at any depth: $(call sources,FOLDER...).
+sources = $(shell find $(1) -name '*.cpp' | LC_ALL=C sort)
+objects = $(patsubst %.cpp,$(B)/%.o,$(1))
+
+.PHONY: FORCE

@@ -1,0 +1,25 @@
+// A terminal that shows pages and gives keys; ncurses behind it.
+#pragma once
+
+#include <optional>
+
+#include "host_sim/ground_station/link/text_canvas.h"
+
+namespace screed {
+
+class TerminalScreen {
+ public:
+  /// Takes the terminal over until destroyed. Throws InputError when there is none.
+  TerminalScreen();
+  TerminalScreen(const TerminalScreen&) = delete;
+  TerminalScreen& operator=(const TerminalScreen&) = delete;
+  ~TerminalScreen();
+
+  /// An empty page of the terminal's present size.
+  TextCanvas page() const;
+  void show(const TextCanvas& page);
+  /// The next key pressed; never waits.
+  std::optional<int> key();
+};
+
+}  // namespace screed

@@ -1,0 +1,301 @@
+// `screed attitude`: strict CSV reader, the estimator of the firmware, error measures of the BROAD
+// benchmark.
+#include "tools/screed/link/attitude_command.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+#include "firmware/estimation/attitude.h"
+#include "host_sim/core/errors.h"
+
+namespace screed {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr long kTickMs = 10;
+
+/// A rotation on the host: w, x, y, z, unit length.
+using Rotation = std::array<double, 4>;
+
+struct Row {
+  ImuSample sample;
+  std::optional<Rotation> reference;
+  bool moving;
+};
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(line.substr(0, comma));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+/// Reads one recording, line by line.
+class RecordingReader {
+ public:
+  explicit RecordingReader(const std::string& file) : file_(file), in_(file) {
+    if (!in_) throw InputError(file + ": cannot be read");
+    while (next_line() && line_.starts_with('#')) {
+    }
+    if (!in_ || line_.empty()) fail("column names are missing (gx,gy,gz,ax,ay,az,mx,my,mz,qw,...)");
+    for (const std::string_view name : split(line_)) names_.emplace_back(name);
+    for (std::size_t i = 0; i < kNames.size(); ++i) column_[i] = required_column(kNames[i]);
+    const auto time = std::find(names_.begin(), names_.end(), "t_ms");
+    if (time != names_.end()) time_column_ = static_cast<std::size_t>(time - names_.begin());
+  }
+
+  /// The next row, or nothing at the end of the file.
+  std::optional<Row> next() {
+    if (!next_line()) {
+      if (in_.bad()) fail("cannot be read");
+      return std::nullopt;
+    }
+    fields_ = split(line_);
+    if (fields_.size() != names_.size()) {
+      fail("has " + std::to_string(fields_.size()) + " fields, the line of names has " +
+           std::to_string(names_.size()));
+    }
+    check_time();
+    Row row{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      row.sample.gyro[i] = count(i);
+      row.sample.accel[i] = count(3 + i);
+      row.sample.mag[i] = count(6 + i);
+    }
+    row.sample.mag_fresh = true;
+    row.reference = reference();
+    const std::string_view moving = field(kMoving);
+    if (moving != "0" && moving != "1")
+      fail("moving is '" + std::string(moving) + "', allowed are 0 and 1");
+    row.moving = moving == "1";
+    return row;
+  }
+
+ private:
+  static constexpr std::array<std::string_view, 14> kNames = {
+      "gx", "gy", "gz", "ax", "ay", "az", "mx", "my", "mz", "qw", "qx", "qy", "qz", "moving"};
+  static constexpr std::size_t kReference = 9;
+  static constexpr std::size_t kMoving = 13;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(file_ + ":" + std::to_string(line_number_) + ": " + what);
+  }
+
+  bool next_line() {
+    if (!std::getline(in_, line_)) return false;
+    ++line_number_;
+    if (!line_.empty() && line_.back() == '\r') line_.pop_back();
+    return true;
+  }
+
+  std::size_t required_column(std::string_view name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found == names_.end()) fail("column " + std::string(name) + " is missing");
+    if (std::find(found + 1, names_.end(), name) != names_.end()) {
+      fail("column " + std::string(name) + " is there twice");
+    }
+    return static_cast<std::size_t>(found - names_.begin());
+  }
+
+  std::string_view field(std::size_t index) const { return fields_[column_[index]]; }
+
+  template <class Number>
+  Number number(std::string_view text, std::string_view name) const {
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) {
+      fail(std::string(name) + " is '" + std::string(text) + "', a number is needed");
+    }
+    return value;
+  }
+
+  std::int16_t count(std::size_t index) const {
+    const auto value = number<long>(field(index), kNames[index]);
+    if (value < INT16_MIN || value > INT16_MAX) {
+      fail(std::string(kNames[index]) + " is " + std::to_string(value) +
+           ", allowed is -32768 to 32767");
+    }
+    return static_cast<std::int16_t>(value);
+  }
+
+  std::optional<Rotation> reference() const {
+    std::size_t empty = 0;
+    for (std::size_t i = 0; i < 4; ++i) empty += field(kReference + i).empty() ? 1U : 0U;
+    if (empty == 4) return std::nullopt;
+    Rotation q{};
+    double squared = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      q[i] = number<double>(field(kReference + i), kNames[kReference + i]);
+      squared += q[i] * q[i];
+    }
+    const double length = std::sqrt(squared);
+    if (!(std::abs(length - 1.0) < 0.01)) {
+      fail("the reference qw,qx,qy,qz has length " + std::to_string(length) + ", 1 is needed");
+    }
+    for (double& component : q) component /= length;
+    return q;
+  }
+
+  void check_time() {
+    if (!time_column_) return;
+    const auto time = number<long>(fields_[*time_column_], "t_ms");
+    if (previous_time_ && time - *previous_time_ != kTickMs) {
+      fail("t_ms goes from " + std::to_string(*previous_time_) + " to " + std::to_string(time) +
+           ", the estimator needs steps of 10");
+    }
+    previous_time_ = time;
+  }
+
+  std::string file_;
+  std::ifstream in_;
+  std::string line_;
+  long line_number_ = 0;
+  std::vector<std::string> names_;
+  std::array<std::size_t, kNames.size()> column_{};
+  std::optional<std::size_t> time_column_;
+  std::optional<long> previous_time_;
+  std::vector<std::string_view> fields_;
+};
+
+Rotation rotation_of(const Quaternion& q) {
+  const Rotation r = {static_cast<double>(q.w), static_cast<double>(q.x), static_cast<double>(q.y),
+                      static_cast<double>(q.z)};
+  const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+  return {r[0] / length, r[1] / length, r[2] / length, r[3] / length};
+}
+
+struct AttitudeError {
+  double inclination_deg;
+  double heading_deg;
+};
+
+/// Splits d = estimate reference* into a turn about the vertical and the rest, as D. Laidig et al.,
+/// Data 6(7):72, 2021: inclination 2 acos sqrt(dw^2 + dz^2), heading 2 atan(dz / dw). The
+/// inclination is computed as an asin of what is left, which is the same for unit quaternions and
+/// exact for small angles.
+AttitudeError error_between(const Rotation& e, const Rotation& o) {
+  const double dw = e[0] * o[0] + e[1] * o[1] + e[2] * o[2] + e[3] * o[3];
+  const double dx = -e[0] * o[1] + e[1] * o[0] - e[2] * o[3] + e[3] * o[2];
+  const double dy = -e[0] * o[2] + e[1] * o[3] + e[2] * o[0] - e[3] * o[1];
+  const double dz = -e[0] * o[3] - e[1] * o[2] + e[2] * o[1] + e[3] * o[0];
+  return {2.0 * std::atan2(std::hypot(dx, dy), std::hypot(dw, dz)) * kDegrees,
+          std::remainder(2.0 * std::atan2(dz, dw) * kDegrees, 360.0)};
+}
+
+void print_table(const std::vector<AttitudeScore>& scores, const AttitudeScore& mean,
+                 std::ostream& out) {
+  std::size_t width = 4;
+  for (const AttitudeScore& score : scores) width = std::max(width, score.file.size());
+  const int name = static_cast<int>(width);
+  const std::ios_base::fmtflags flags = out.flags();
+  const std::streamsize precision = out.precision();
+  out << std::fixed << std::setprecision(3);
+  out << std::left << std::setw(name) << "file" << std::right
+      << "  samples  inclination  heading\n";
+  out << std::left << std::setw(name) << "" << std::right << "               RMS deg  RMS deg\n";
+  for (const AttitudeScore& score : scores) {
+    out << std::left << std::setw(name) << score.file << std::right << std::setw(9) << score.samples
+        << std::setw(13) << score.rms_inclination_deg << std::setw(9) << score.rms_heading_deg
+        << '\n';
+  }
+  out << std::left << std::setw(name) << mean.file << std::right << std::setw(9) << ""
+      << std::setw(13) << mean.rms_inclination_deg << std::setw(9) << mean.rms_heading_deg << '\n';
+  out.flags(flags);
+  out.precision(precision);
+}
+
+void print_json(const std::vector<AttitudeScore>& scores, const AttitudeScore& mean,
+                std::ostream& out) {
+  nlohmann::json files = nlohmann::json::array();
+  for (const AttitudeScore& score : scores) {
+    files.push_back({{"file", score.file},
+                     {"samples", score.samples},
+                     {"rms_inclination_deg", score.rms_inclination_deg},
+                     {"rms_heading_deg", score.rms_heading_deg}});
+  }
+  const nlohmann::json whole = {{"files", files},
+                                {"mean",
+                                 {{"rms_inclination_deg", mean.rms_inclination_deg},
+                                  {"rms_heading_deg", mean.rms_heading_deg}}}};
+  out << whole.dump(2) << '\n';
+}
+
+}  // namespace
+
+AttitudeScore score_attitude(const std::string& file) {
+  RecordingReader reader(file);
+  AttitudeEstimator estimator;
+  AttitudeScore score;
+  score.file = file;
+  double inclination = 0.0;
+  double heading = 0.0;
+  while (const std::optional<Row> row = reader.next()) {
+    estimator.update(row->sample);
+    if (!row->moving || !row->reference) continue;
+    const AttitudeError error =
+        error_between(rotation_of(estimator.orientation()), *row->reference);
+    inclination += error.inclination_deg * error.inclination_deg;
+    heading += error.heading_deg * error.heading_deg;
+    ++score.samples;
+  }
+  if (score.samples == 0) {
+    throw InputError(file +
+                     ": no row counts; at least one needs moving = 1 and a reference qw,qx,qy,qz");
+  }
+  score.rms_inclination_deg = std::sqrt(inclination / static_cast<double>(score.samples));
+  score.rms_heading_deg = std::sqrt(heading / static_cast<double>(score.samples));
+  return score;
+}
+
+int run_attitude(const std::vector<std::string>& files, bool json, std::ostream& out) {
+  std::vector<AttitudeScore> scores;
+  AttitudeScore mean;
+  mean.file = "mean";
+  for (const std::string& file : files) {
+    scores.push_back(score_attitude(file));
+    mean.rms_inclination_deg +=
+        scores.back().rms_inclination_deg / static_cast<double>(files.size());
+    mean.rms_heading_deg += scores.back().rms_heading_deg / static_cast<double>(files.size());
+  }
+  if (json) {
+    print_json(scores, mean, out);
+  } else {
+    print_table(scores, mean, out);
+  }
+  return 0;
+}
+
+void register_attitude_command(CLI::App& root, std::function<int()>& action) {
+  struct Options {
+    std::vector<std::string> files;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = root.add_subcommand(
+      "attitude",
+      "Run the attitude estimator over recordings with an optical reference and print its errors");
+  command
+      ->add_option("FILES", options->files, "recordings in CSV (the format is in docs/attitude.md)")
+      ->required();
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options, &action] {
+    action = [options] { return run_attitude(options->files, options->json, std::cout); };
+  });
+}
+
+}  // namespace screed

@@ -1,0 +1,248 @@
+// `screed calibrate`.
+#include "tools/screed/link/calibrate_command.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <iostream>
+#include <memory>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/calibration/imu_collector.h"
+#include "host_sim/ground_station/link/command_session.h"
+#include "host_sim/ground_station/link/robot_view.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/parameter_names.h"
+#include "tools/screed/cli/terminal_screen.h"
+#include "tools/screed/link/link_options.h"
+
+namespace screed {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPump{50};
+constexpr uint64_t kPatience_us = 5'000'000;
+constexpr uint64_t kPutDown_us = 180'000'000;
+constexpr double kGyro_dps = 0.070;
+constexpr double kAccel_mg = 0.244;
+constexpr double kMag_mg = 0.160;
+
+struct CalibrateArguments {
+  LinkArguments link;
+  bool plain = false;
+  bool yes = false;
+};
+
+class Calibration {
+ public:
+  explicit Calibration(const CalibrateArguments& arguments)
+      : arguments_(arguments),
+        plain_(arguments.plain || isatty(STDOUT_FILENO) == 0),
+        link_(open_link(arguments.link)),
+        session_(*link_, {command_key(arguments.link),
+                          true,
+                          [this](const LinkFrame& frame) { take(frame); },
+                          {}}) {}
+
+  int run() {
+    meet();
+    if (plain_) {
+      collect_plain();
+    } else {
+      collect_on_screen();
+    }
+    if (over()) throw RunError("calibration given up; nothing was changed");
+    const ImuCalibration calibration = collector_.fit();
+    print(calibration);
+    if (!arguments_.yes && !asked("store this in the robot? [y/n] ")) {
+      std::cout << "nothing was changed\n";
+      return 0;
+    }
+    return store(calibration);
+  }
+
+ private:
+  bool over() const { return interrupted() || given_up_; }
+
+  void take(const LinkFrame& frame) {
+    if (fleet_.take(frame) == nullptr) return;
+    collector_.take(frame.frame);
+    if (frame.frame.id != find_message("MAG_RAW")->id) return;
+    const double field = collector_.mag_samples().back().norm() * kMag_mg;
+    field_.push_back({static_cast<double>(frame.time_us) * 1e-6, field});
+    if (field_.size() > 240) field_.pop_front();
+  }
+
+  void meet() {
+    const uint64_t end_us = wall_clock_us() + kPatience_us;
+    while (!interrupted() && wall_clock_us() < end_us && !session_.ready()) session_.pump(kPump);
+    if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
+    if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
+  }
+
+  void collect_plain() {
+    std::string said;
+    double said_coverage = 0.0;
+    while (!over() && !collector_.complete()) {
+      session_.pump(kPump);
+      const std::string advice = collector_.advice();
+      const double covered = collector_.mag_coverage();
+      if (advice == said && covered < said_coverage + 0.1) continue;
+      said = advice;
+      said_coverage = covered;
+      std::cout << advice << " (directions seen: " << std::lround(covered * 100.0) << " %)"
+                << std::endl;
+    }
+  }
+
+  void collect_on_screen() {
+    TerminalScreen screen;
+    while (!over() && !collector_.complete()) {
+      session_.pump(kPump);
+      while (const std::optional<int> key = screen.key()) {
+        given_up_ = given_up_ || *key == 'q';
+      }
+      TextCanvas page = screen.page();
+      draw(page);
+      screen.show(page);
+    }
+  }
+
+  void draw(TextCanvas& page) const {
+    page.text(0, 0, "screed calibrate   " + link_->name() + " " + link_->status().text,
+              CellStyle::kTitle);
+    page.text(0, 2, collector_.advice(), CellStyle::kGood);
+    const std::optional<Position> held = collector_.position();
+    int y = 4;
+    for (size_t i = 0; i < kPositions; ++i, ++y) {
+      const auto position = static_cast<Position>(i);
+      const bool done = collector_.position_done(position);
+      page.text(2, y, done ? "[x]" : "[ ]", done ? CellStyle::kGood : CellStyle::kNormal);
+      const int x = page.text(6, y, position_name(position));
+      if (held == position)
+        page.text(x + 2, y, collector_.at_rest() ? "<- still" : "<- moving", CellStyle::kWarning);
+    }
+    char text[96];
+    std::snprintf(text, sizeof text, "magnetometer: %zu samples, %.0f %% of all directions",
+                  collector_.mag_samples().size(), collector_.mag_coverage() * 100.0);
+    page.text(2, ++y, text);
+    draw_field(page, y + 1);
+    page.text(0, page.height() - 1, "q give up", CellStyle::kDim);
+  }
+
+  /// Length of the field as read: a straight line once it is calibrated.
+  void draw_field(TextCanvas& page, int y) const {
+    constexpr int kHeight = 9;
+    page.box(0, y, page.width(), kHeight + 2,
+             "length of the magnetic field as read, mG, 0 to 1000");
+    if (field_.empty()) return;
+    const std::vector<CurvePoint> points(field_.begin(), field_.end());
+    page.curve(2, y + 1, page.width() - 4, kHeight, points,
+               {points.back().x - 60.0, points.back().x, 0.0, 1000.0});
+  }
+
+  static bool asked(const char* question) {
+    std::cout << question << std::flush;
+    std::string answer;
+    return std::getline(std::cin, answer) && !answer.empty() &&
+           (answer[0] == 'y' || answer[0] == 'Y');
+  }
+
+  static void row(const char* name, const Eigen::Vector3d& v, const char* unit) {
+    std::printf("  %-26s %9.3f %9.3f %9.3f  %s\n", name, v.x(), v.y(), v.z(), unit);
+  }
+
+  static void residual(const VectorFit& fit) {
+    std::printf(
+        "  %-26s %8.3f %% before, %.3f %% with what is stored, %.3f %% with scale as well\n",
+        "lengths differ by (RMS)", fit.residual_before * 100.0, fit.residual_offset * 100.0,
+        fit.residual_after * 100.0);
+  }
+
+  static void print(const ImuCalibration& calibration) {
+    std::printf("%-28s %9s %9s %9s\n", "", "x", "y", "z");
+    std::printf("gyro\n");
+    row("bias", calibration.gyro.bias * kGyro_dps, "deg/s");
+    std::printf("accelerometer\n");
+    row("offset", calibration.accelerometer.correction.offset * kAccel_mg, "mg");
+    row("scale", calibration.accelerometer.correction.matrix.diagonal(), "");
+    residual(calibration.accelerometer);
+    std::printf("magnetometer\n");
+    row("offset (hard iron)", calibration.magnetometer.correction.offset * kMag_mg, "mG");
+    row("scale (soft iron)", calibration.magnetometer.correction.matrix.diagonal(), "");
+    std::printf("  %-26s %9.1f mG\n", "field", calibration.magnetometer.radius * kMag_mg);
+    residual(calibration.magnetometer);
+    std::fflush(stdout);
+  }
+
+  std::string state() const {
+    return fleet_.robots().empty() ? "-" : fleet_.robots().begin()->second.text("heartbeat.state");
+  }
+
+  /// A robot takes parameters when it is disarmed; one that was turned over has a fault, which can
+  /// be cleared when it stands level again.
+  void wait_until_disarmed() {
+    const uint64_t end_us = wall_clock_us() + kPutDown_us;
+    bool said = false;
+    while (!interrupted() && wall_clock_us() < end_us) {
+      session_.pump(kPump);
+      if (state() == "disarmed") return;
+      if (state() == "fault") {
+        if (!said) std::cout << "put the robot down, level" << std::endl;
+        said = true;
+        session_.run(CommandOp::kClear);
+      } else {
+        session_.run(CommandOp::kDisarm);
+      }
+      const uint64_t pause_us = wall_clock_us() + 500'000;
+      while (wall_clock_us() < pause_us) session_.pump(kPump);
+    }
+    throw RunError("the robot is not disarmed but '" + state() + "'; nothing was changed");
+  }
+
+  int store(const ImuCalibration& calibration) {
+    for (const CalibrationParameter& parameter : calibration_parameters(calibration)) {
+      const uint16_t index = parameter_index(parameter.name);
+      parameter_value(index, std::to_string(parameter.value));
+      wait_until_disarmed();
+      const std::optional<CommandAnswer> answer = session_.write_parameter(index, parameter.value);
+      std::cout << parameter.name << " = " << parameter.value << ": "
+                << (answer.has_value() ? answer->words() : "no answer") << std::endl;
+      if (!answer.has_value() || !answer->done())
+        throw RunError("not all parameters were stored; calibrate again");
+    }
+    return 0;
+  }
+
+  const CalibrateArguments& arguments_;
+  bool plain_;
+  std::unique_ptr<Link> link_;
+  FleetView fleet_;
+  ImuCollector collector_;
+  std::deque<CurvePoint> field_;
+  bool given_up_ = false;
+  CommandSession session_;
+};
+
+}  // namespace
+
+void register_calibrate_command(CLI::App& root, std::function<int()>& action) {
+  auto arguments = std::make_shared<CalibrateArguments>();
+  CLI::App* command = root.add_subcommand(
+      "calibrate", "Calibrate a robot's IMU: hold it in six positions, turn it over, store");
+  add_link_options(*command, arguments->link);
+  add_key_option(*command, arguments->link);
+  command->add_flag("--plain", arguments->plain, "lines of text instead of a page");
+  command->add_flag("--yes", arguments->yes, "store without asking");
+  command->callback([arguments, &action] {
+    action = [arguments] {
+      catch_interrupts();
+      return Calibration(*arguments).run();
+    };
+  });
+}
+
+}  // namespace screed

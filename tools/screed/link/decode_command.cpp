@@ -1,0 +1,60 @@
+// `screed decode`.
+#include "tools/screed/link/decode_command.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/csv_tables.h"
+#include "host_sim/ground_station/telemetry/log_decoder.h"
+#include "host_sim/ground_station/telemetry/mcap_file.h"
+
+namespace screed {
+namespace {
+
+std::string beside_log(const DecodeOptions& options) {
+  if (options.log == "-") throw InputError("--out: is needed when the log is standard input");
+  std::filesystem::path path(options.log);
+  if (options.mcap) return path.replace_extension(".mcap").string();
+  return path.replace_extension().string() + "_csv";
+}
+
+}  // namespace
+
+int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& err) {
+  if (options.csv == options.mcap) throw InputError("decode: one of --csv and --mcap is needed");
+  const std::string target = options.out.empty() ? beside_log(options) : options.out;
+  LogDecoder decoder(options.log);
+  DecodedFrame frame;
+  if (options.csv) {
+    CsvTables tables(target, options.numbers);
+    while (decoder.next(frame)) tables.add(frame);
+    for (const std::string& name : tables.finish()) out << name << "\n";
+  } else {
+    McapFile file(target);
+    while (decoder.next(frame)) file.add(frame);
+    file.finish();
+    out << target << "\n";
+  }
+  err << options.log << ": " << decoder.account().text() << "\n";
+  return decoder.account().damaged() > 0 ? 1 : 0;
+}
+
+void register_decode_command(CLI::App& root, std::function<int()>& action) {
+  const auto options = std::make_shared<DecodeOptions>();
+  CLI::App* command = root.add_subcommand(
+      "decode", "Turn a log of the radio into tables or into a file for Foxglove");
+  command->add_option("LOG", options->log, "as candump -L writes it; -: standard input")
+      ->required();
+  command->add_flag("--csv", options->csv, "a folder of tables, one a message");
+  command->add_flag("--mcap", options->mcap, "an MCAP file");
+  command->add_option("--out", options->out,
+                      "where to (LOG without its ending, and _csv or .mcap)");
+  command->add_flag("--numbers", options->numbers, "CSV: named values as numbers");
+  command->callback([options, &action] {
+    action = [options] { return run_decode(*options, std::cout, std::cerr); };
+  });
+}
+
+}  // namespace screed

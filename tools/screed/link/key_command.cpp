@@ -1,0 +1,152 @@
+// Options of `screed key`, and the talk with the robot's console.
+#include "tools/screed/link/key_command.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/random.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/link/file_descriptor.h"
+
+namespace screed {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{500};
+// 27 bytes of EEPROM take 0.3 s; until then the console does not restart.
+constexpr int kRestartTries = 3;
+
+struct Arguments {
+  std::string file;
+  std::string port;
+  std::optional<int> robot_id;
+};
+
+/// The robot's console on a serial port over USB.
+class UsbConsole {
+ public:
+  explicit UsbConsole(const std::string& port)
+      : port_(open(port.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    if (port_.get() < 0) {
+      const std::string what = port + ": " + std::strerror(errno);
+      if (errno == ENOENT) throw InputError(what);
+      throw RunError(what);
+    }
+    termios settings{};
+    if (tcgetattr(port_.get(), &settings) != 0) throw InputError(port + ": is no serial port");
+    cfmakeraw(&settings);
+    cfsetspeed(&settings, B115200);
+    tcsetattr(port_.get(), TCSANOW, &settings);
+    tcflush(port_.get(), TCIOFLUSH);
+  }
+
+  std::string ask(const std::string& line) {
+    const std::string sent = line + "\n";
+    if (write(port_.get(), sent.data(), sent.size()) != static_cast<ssize_t>(sent.size()))
+      return "";
+    std::string answer;
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (answer.empty() || answer.back() != '\n') {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+          end - std::chrono::steady_clock::now());
+      pollfd waiting{port_.get(), POLLIN, 0};
+      if (left.count() <= 0 || poll(&waiting, 1, static_cast<int>(left.count())) <= 0) return "";
+      char byte = 0;
+      if (read(port_.get(), &byte, 1) != 1) return "";  // also a robot that has just restarted
+      answer += byte;
+    }
+    answer.pop_back();
+    return answer;
+  }
+
+ private:
+  FileDescriptor port_;
+};
+
+CommandKey key_in(const Arguments& arguments) {
+  const std::filesystem::path file(arguments.file);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    const CommandKey key = random_key(static_cast<uint8_t>(arguments.robot_id.value_or(1)));
+    write_key_file(file, key);
+    std::printf("%s: a new key for robot %d\n", arguments.file.c_str(), key.robot_id);
+    return key;
+  }
+  const CommandKey key = read_key_file(file);
+  if (arguments.robot_id.has_value() && *arguments.robot_id != key.robot_id) {
+    throw InputError(arguments.file + ": is the key of robot " + std::to_string(key.robot_id) +
+                     "; --robot-id says " + std::to_string(*arguments.robot_id));
+  }
+  std::printf("%s: the key of robot %d\n", arguments.file.c_str(), key.robot_id);
+  return key;
+}
+
+int run_key_command(const Arguments& arguments) {
+  const CommandKey key = key_in(arguments);
+  if (arguments.port.empty()) return 0;
+  const bool restarted = give_key(arguments.port, key);
+  std::printf(restarted
+                  ? "%s: the robot has the key and restarts\n"
+                  : "%s: the robot has the key, but cannot restart now: switch it off and on\n",
+              arguments.port.c_str());
+  return 0;
+}
+
+}  // namespace
+
+CommandKey random_key(uint8_t robot_id) {
+  CommandKey key;
+  key.robot_id = robot_id;
+  if (getrandom(key.bytes.data(), key.bytes.size(), 0) != static_cast<ssize_t>(key.bytes.size())) {
+    throw RunError("the system gives no random numbers");
+  }
+  return key;
+}
+
+bool give_key(const AskConsole& ask, const std::string& port, const CommandKey& key) {
+  ask("");  // ends what somebody has typed
+  const std::string version = ask("v");
+  if (version.rfind("screed ", 0) != 0) {
+    throw RunError(port + ": no robot's console answers here; the key was not sent");
+  }
+  char id[3];
+  std::snprintf(id, sizeof id, "%02X", static_cast<unsigned>(key.robot_id));
+  const std::string digits = key_text(key).substr(0, 2 * key.bytes.size());
+  if (ask("k" + digits + id) != "ok") {
+    throw RunError(port + ": the robot did not take the key (" + version + ")");
+  }
+  for (int i = 0; i < kRestartTries; ++i) {
+    if (ask("r") != "?") return true;
+  }
+  return false;
+}
+
+bool give_key(const std::string& port, const CommandKey& key) {
+  UsbConsole console(port);
+  return give_key([&console](const std::string& line) { return console.ask(line); }, port, key);
+}
+
+void register_key_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* command = root.add_subcommand(
+      "key", "Make the key that commands are signed with, and give it to a robot over USB");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->file, "the key; made when there is none yet, mode 0600")
+      ->required();
+  command->add_option("--port", arguments->port,
+                      "the robot's USB port, as /dev/ttyACM0; left out: the file alone is made");
+  command->add_option("--robot-id", arguments->robot_id, "of a new key; 1 by default")
+      ->check(CLI::Range(0, 255));
+  command->callback(
+      [arguments, &action] { action = [arguments] { return run_key_command(*arguments); }; });
+}
+
+}  // namespace screed

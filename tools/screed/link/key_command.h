@@ -1,0 +1,29 @@
+// `screed key`: makes the key that commands are signed with, and gives it to a robot over USB.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "host_sim/ground_station/station/command_key.h"
+
+namespace screed {
+
+void register_key_command(CLI::App& root, std::function<int()>& action);
+
+/// A key nobody else has, from the kernel's random numbers. Throws RunError.
+CommandKey random_key(uint8_t robot_id);
+
+/// Sends a line to the robot's console and returns the line it answers with; empty when it does
+/// not.
+using AskConsole = std::function<std::string(const std::string& line)>;
+
+/// Stores the key on the robot behind `ask` and restarts it. The key is sent only when a robot's
+/// console has answered before: not over a radio module by mistake. Returns false when the robot
+/// has the key but cannot restart now. Throws RunError.
+bool give_key(const AskConsole& ask, const std::string& port, const CommandKey& key);
+
+/// Opens the port and does that. Throws RunError, InputError for a port that does not exist.
+bool give_key(const std::string& port, const CommandKey& key);
+
+}  // namespace screed

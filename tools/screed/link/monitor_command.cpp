@@ -1,0 +1,270 @@
+// `screed monitor`.
+#include "tools/screed/link/monitor_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/link/command_session.h"
+#include "host_sim/ground_station/link/dashboard.h"
+#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/telemetry/candump_log.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/terminal_screen.h"
+#include "tools/screed/link/link_options.h"
+
+namespace screed {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPump{50};
+constexpr uint64_t kPlainPeriod_us = 1'000'000;
+constexpr uint64_t kPatience_us = 5'000'000;
+constexpr int kTabKey = '\t';
+
+struct MonitorArguments {
+  LinkArguments link;
+  std::optional<std::string> log;
+  std::vector<std::string> curves;
+  double duration_s = 0.0;
+  bool listen = false;
+  bool plain = false;
+  bool once = false;
+};
+
+class Monitor {
+ public:
+  explicit Monitor(const MonitorArguments& arguments)
+      : arguments_(arguments),
+        link_(open_link(arguments.link)),
+        session_(*link_, {command_key(arguments.link),
+                          !arguments.listen,
+                          [this](const LinkFrame& frame) { take(frame); },
+                          {}}),
+        curves_(arguments.curves),
+        begin_us_(wall_clock_us()) {
+    for (const std::string& path : curves_) find_signal(path);
+    if (arguments.log.has_value()) {
+      log_.open(*arguments.log, std::ios::app);
+      if (!log_) throw InputError(*arguments.log + ": cannot be written");
+    }
+  }
+
+  int run() {
+    const bool plain = arguments_.plain || arguments_.once || isatty(STDOUT_FILENO) == 0;
+    if (plain) {
+      run_plain();
+    } else {
+      run_screen();
+    }
+    log_.flush();
+    if (arguments_.log.has_value() && !log_)
+      throw RunError(*arguments_.log + ": cannot be written completely; is the disk full?");
+    return fleet_.robots().empty() ? 1 : 0;
+  }
+
+ private:
+  bool over() const {
+    if (interrupted()) return true;
+    const uint64_t passed_us = wall_clock_us() - begin_us_;
+    if (arguments_.duration_s > 0.0)
+      return static_cast<double>(passed_us) >= arguments_.duration_s * 1e6;
+    // One report: a second after the first word, but no waiting for ever.
+    return arguments_.once && (passed_us >= kPatience_us ||
+                               (heard_us_ != 0 && wall_clock_us() >= heard_us_ + kPlainPeriod_us));
+  }
+
+  void take(const LinkFrame& frame) {
+    if (log_.is_open()) log_ << candump_line(frame.time_us, interface_name(), frame.frame);
+    RobotView* const robot = fleet_.take(frame);
+    if (robot != nullptr && heard_us_ == 0) heard_us_ = wall_clock_us();
+    if (robot != nullptr && !fleet_.robots().contains(robot_))
+      robot_ = fleet_.robots().begin()->first;
+  }
+
+  /// In a log a serial port is an interface of its last name: "ttyUSB0".
+  std::string interface_name() const {
+    const std::string& name = link_->name();
+    const size_t slash = name.rfind('/');
+    return slash == std::string::npos ? name : name.substr(slash + 1);
+  }
+
+  DashboardInput input() const {
+    DashboardInput input;
+    input.now_us = wall_clock_us();
+    input.link_name = link_->name();
+    input.link = link_->status();
+    input.fleet = &fleet_;
+    input.robot = robot_;
+    input.curves = curves_;
+    input.window_s = window_s_;
+    input.footer =
+        "a arm  r run  s stop  d disarm  c clear  SPACE emergency stop   p curve  +/- time  q quit";
+    if (arguments_.log.has_value()) input.footer += "   log: " + *arguments_.log;
+    return input;
+  }
+
+  void run_plain() {
+    uint64_t due_us = begin_us_ + kPlainPeriod_us;
+    std::string link_text;  // the first one is said as well: from then on nothing is missed
+    while (!over()) {
+      session_.pump(kPump);
+      if (!arguments_.once && link_->status().text != link_text) {
+        link_text = link_->status().text;
+        std::cout << "link " << link_->name() << " is " << link_text << std::endl;
+      }
+      if (arguments_.once || wall_clock_us() < due_us) continue;
+      due_us += kPlainPeriod_us;
+      std::cout << plain_report(input()) << std::flush;
+    }
+    if (arguments_.once) std::cout << plain_report(input()) << std::flush;
+  }
+
+  void run_screen() {
+    TerminalScreen screen;
+    bool quit = false;
+    std::string link_text = link_->status().text;
+    while (!quit && !over()) {
+      session_.pump(kPump);
+      if (link_->status().text != link_text) {
+        link_text = link_->status().text;
+        note(link_->status().up ? CellStyle::kGood : CellStyle::kAlarm, "link: " + link_text);
+      }
+      follow_command();
+      while (const std::optional<int> key = screen.key()) quit = quit || !press(*key);
+      TextCanvas page = screen.page();
+      draw_dashboard(page, input());
+      screen.show(page);
+    }
+  }
+
+  void note(CellStyle style, const std::string& words) {
+    const auto robot = fleet_.robots().find(robot_);
+    if (robot != fleet_.robots().end()) robot->second.note(wall_clock_us(), style, words);
+  }
+
+  /// The robot's own answers are in its list; here is what it cannot say.
+  void follow_command() {
+    if (!commanded_ || session_.waiting()) return;
+    commanded_ = false;
+    const std::optional<CommandAnswer> answer = session_.take_answer();
+    if (!answer.has_value()) note(CellStyle::kAlarm, "no answer to the command");
+    if (answer.has_value() && !answer->done()) note(CellStyle::kWarning, answer->words());
+  }
+
+  void command(CommandOp op) {
+    session_.start(op);
+    commanded_ = true;
+  }
+
+  /// False: quit.
+  bool press(int key) {
+    switch (key) {
+      case 'q':
+        return false;
+      case 'a':
+        command(CommandOp::kArm);
+        break;
+      case 'r':
+        command(CommandOp::kRun);
+        break;
+      case 's':
+        command(CommandOp::kStop);
+        break;
+      case 'd':
+        command(CommandOp::kDisarm);
+        break;
+      case 'c':
+        command(CommandOp::kClear);
+        break;
+      case ' ':
+        session_.emergency_stop();
+        note(CellStyle::kAlarm, "emergency stop sent");
+        break;
+      case '+':
+        window_s_ = std::max(window_s_ / 2.0, 7.5);
+        break;
+      case '-':
+        window_s_ = std::min(window_s_ * 2.0, 120.0);
+        break;
+      case 'p':
+        next_curve();
+        break;
+      case kTabKey:
+        next_robot();
+        break;
+      default:
+        break;
+    }
+    return true;
+  }
+
+  /// The first curve goes through all signals.
+  void next_curve() {
+    std::vector<std::string> paths;
+    for (const MessageInfo& message : messages()) {
+      for (const SignalInfo& signal : message.signals) {
+        if (!message.uplink && signal.role == SignalRole::kData && signal.flags[0] == '\0')
+          paths.push_back(std::string(message.title) + "." + signal.name);
+      }
+    }
+    if (curves_.empty()) curves_.push_back(paths.back());
+    const auto now = std::find(paths.begin(), paths.end(), curves_.front());
+    curves_.front() = now == paths.end() || now + 1 == paths.end() ? paths.front() : *(now + 1);
+  }
+
+  void next_robot() {
+    auto next = fleet_.robots().upper_bound(robot_);
+    if (next == fleet_.robots().end()) next = fleet_.robots().begin();
+    if (next != fleet_.robots().end()) robot_ = next->first;
+  }
+
+  const MonitorArguments& arguments_;
+  std::unique_ptr<Link> link_;
+  std::ofstream log_;
+  FleetView fleet_;
+  RobotKey robot_;
+  CommandSession session_;
+  std::vector<std::string> curves_;
+  double window_s_ = 30.0;
+  uint64_t begin_us_;
+  uint64_t heard_us_ = 0;  ///< when the first robot was heard; 0: none yet
+  bool commanded_ = false;
+};
+
+}  // namespace
+
+void register_monitor_command(CLI::App& root, std::function<int()>& action) {
+  auto arguments = std::make_shared<MonitorArguments>();
+  arguments->curves = {"attitude.pitch", "leveling.speed", "gyro_raw.z"};
+  CLI::App* command = root.add_subcommand(
+      "monitor", "Show what a robot says, live; its heartbeats keep the robot going");
+  add_link_options(*command, arguments->link);
+  add_key_option(*command, arguments->link);
+  command->add_option("--log", arguments->log, "append every frame to this candump log");
+  command
+      ->add_option("--curves", arguments->curves,
+                   "signals to draw: attitude.pitch,motors.duty_left")
+      ->delimiter(',');
+  command->add_flag("--listen", arguments->listen,
+                    "send no heartbeats: another ground station is in charge");
+  command->add_flag("--plain", arguments->plain,
+                    "lines of text, a report a second; so it is anyway where there is no terminal");
+  command->add_flag("--once", arguments->once, "one report, then end");
+  command->add_option("--duration", arguments->duration_s, "end after this many seconds")
+      ->check(CLI::NonNegativeNumber);
+  command->callback([arguments, &action] {
+    action = [arguments] {
+      catch_interrupts();
+      return Monitor(*arguments).run();
+    };
+  });
+}
+
+}  // namespace screed

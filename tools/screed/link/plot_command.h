@@ -1,0 +1,37 @@
+// `screed plot LOG attitude.pitch ... --out x.svg`: signals of a log over time.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/render/picture/line_chart.h"
+
+namespace screed {
+
+struct PlotOptions {
+  std::string log;                   ///< as candump -L writes it; "-": standard input
+  std::vector<std::string> signals;  ///< "message.signal"
+  std::string out;                   ///< .svg or .png
+  std::optional<int> robot;          ///< one robot only; none: all
+  double from_s = 0.0;               ///< since the log's first message
+  std::optional<double> to_s;
+  int width_px = 960;
+  int height_px = 480;
+};
+
+/// The chart of a log; `err` is told what could not be read, if anything. Throws InputError for an
+/// unknown signal, and when there is nothing to draw.
+Chart plot_chart(const PlotOptions& options, std::ostream& err);
+
+/// Draws it; returns 0. Throws InputError as above and for another ending than .svg or .png,
+/// RunError when the file cannot be written.
+int run_plot(const PlotOptions& options, std::ostream& err);
+
+/// Adds the subcommand; its callback sets `action` to what is to be run after parsing.
+void register_plot_command(CLI::App& root, std::function<int()>& action);
+
+}  // namespace screed

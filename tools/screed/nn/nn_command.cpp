@@ -1,0 +1,353 @@
+// `screed nn`: preprocess, train, quantise, eval, export, show, check.
+#include "tools/screed/nn/nn_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host_sim/core/atomic_file.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/core/random.h"
+#include "nn/batch/batch_network.h"
+#include "nn/data/features.h"
+#include "nn/model/header_export.h"
+#include "nn/training/evaluation.h"
+#include "nn/training/training_run.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/progress_bar.h"
+#include "tools/screed/nn/nn_tables.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NnArguments {
+  std::string configuration;
+  std::string model;
+  std::string sessions = "out/sessions";
+  std::string out;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::size_t> epochs;
+  std::size_t vectors = 1'000'000;
+  bool resume = false;
+  bool json = false;
+  bool pictures = true;
+};
+
+fs::path make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+  return folder;
+}
+
+nn::TrainingConfiguration configuration_of(const NnArguments& arguments) {
+  nn::TrainingConfiguration configuration =
+      nn::read_training_configuration(arguments.configuration);
+  if (arguments.seed) configuration.seed = *arguments.seed;
+  if (arguments.epochs) {
+    if (*arguments.epochs == 0) throw InputError("--epochs 0; allowed is 1 or more");
+    for (nn::NetworkConfiguration& network : configuration.networks) {
+      network.epochs = *arguments.epochs;
+    }
+  }
+  return configuration;
+}
+
+fs::path out_folder(const NnArguments& arguments, const std::string& name) {
+  return make_folder(arguments.out.empty() ? fs::path("out") / "nn" / name
+                                           : fs::path(arguments.out));
+}
+
+// ---- preprocess
+
+void write_table(const fs::path& file, const nn::FeatureTable& table) {
+  std::string text = "frame";
+  for (const std::string& name : table.names) text += "," + name;
+  text += "\n";
+  char number[40];
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    text += std::to_string(table.frames[row]);
+    for (const std::vector<double>& column : table.columns) {
+      std::snprintf(number, sizeof number, ",%.9g", column[row]);
+      text += number;
+    }
+    text += "\n";
+  }
+  write_file(file, text);
+}
+
+int run_preprocess(const NnArguments& arguments) {
+  const nn::TrainingConfiguration configuration = configuration_of(arguments);
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
+  const fs::path folder = out_folder(arguments, configuration.name);
+  std::size_t kept = 0;
+  for (const nn::FeatureTable& table : data.training) {
+    write_table(folder / ("train_" + table.source + ".csv"), table);
+    kept += table.rows();
+  }
+  for (const nn::TestTable& test : data.tests) {
+    if (test.form == "as trained")
+      write_table(folder / ("test_" + test.label + ".csv"), test.table);
+  }
+  std::printf("%zu of %zu training frames stay\n", kept, data.training_frames);
+  std::printf("%-24s %14s %14s\n", "feature", "middle", "half range");
+  for (const nn::FeatureScale& scale : data.preprocessing.scales()) {
+    std::printf("%-24s %14.6g %14.6g\n", scale.feature.c_str(), scale.middle, scale.half_range);
+  }
+  for (const nn::Bounds& bounds : data.preprocessing.bounds()) {
+    std::printf("%-24s stays within %.6g and %.6g\n", bounds.feature.c_str(), bounds.low,
+                bounds.high);
+  }
+  std::printf("training data %s\ntables in %s\n", data.hash.c_str(), folder.c_str());
+  return 0;
+}
+
+// ---- train
+
+void write_losses(const fs::path& file, const nn::TrainedNetwork& network) {
+  std::string text = "epoch,training,test\n";
+  char line[80];
+  for (std::size_t i = 0; i < network.losses.size(); ++i) {
+    std::snprintf(line, sizeof line, "%zu,%.9g,%.9g\n", i + 1, network.losses[i].training,
+                  network.losses[i].test);
+    text += line;
+  }
+  write_file(file, text);
+}
+
+int run_train(const NnArguments& arguments) {
+  const nn::TrainingConfiguration configuration = configuration_of(arguments);
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
+  const fs::path folder = out_folder(arguments, configuration.name);
+  nn::TrainingOptions options;
+  options.checkpoints = make_folder(folder / "checkpoints");
+  options.resume = arguments.resume;
+  catch_interrupts();
+  options.stop = &interrupted();
+  ProgressBar bar(std::cerr);
+  options.progress = [&](double share, const std::string& note) { bar.show_share(share, note); };
+  const std::vector<nn::TrainedNetwork> networks = nn::train(configuration, data, options);
+  bar.finish();
+
+  const nn::Model model = nn::make_model(configuration, data, networks);
+  const fs::path file = folder / "model.json";
+  nn::write_model(file, model);
+  for (std::size_t i = 0; i < networks.size(); ++i) {
+    write_losses(folder / ("loss_" + configuration.networks[i].name() + ".csv"), networks[i]);
+  }
+  if (arguments.pictures) nn::draw_losses(configuration, networks, folder);
+  const nn::Evaluation evaluation = nn::evaluate(model, data.tests);
+  std::cout << (arguments.json ? evaluation_json(evaluation)
+                               : evaluation_text(evaluation, configuration));
+  if (!arguments.json) std::printf("\nmodel in %s\n", file.c_str());
+  return 0;
+}
+
+// ---- quantise
+
+/// What a training makes of its networks in floating point, from those that a model carries.
+int run_quantise(const NnArguments& arguments) {
+  const nn::TrainingConfiguration configuration = configuration_of(arguments);
+  nn::Model model = nn::read_model(arguments.model);
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
+  if (model.training_data != data.hash || model.name != configuration.name ||
+      model.seed != configuration.seed || model.networks.size() != configuration.networks.size()) {
+    throw InputError(
+        arguments.model + ": is of " + model.name + ", seed " + std::to_string(model.seed) +
+        ", training data " + model.training_data +
+        "; allowed is the model of this configuration and these sessions: " + configuration.name +
+        ", " + std::to_string(configuration.seed) + ", " + data.hash);
+  }
+  std::vector<nn::TrainedNetwork> networks;
+  for (nn::ModelNetwork& network : model.networks) {
+    if (network.trained.empty()) {
+      throw InputError(arguments.model + ": has no network in floating point");
+    }
+    networks.push_back({std::move(network.trained), 0, {}});
+  }
+  const fs::path file = arguments.out.empty() ? fs::path(arguments.model) : fs::path(arguments.out);
+  nn::write_model(file, nn::make_model(configuration, data, networks));
+  std::printf("%zu networks in integers, in %s\n", networks.size(), file.c_str());
+  return 0;
+}
+
+// ---- eval
+
+int run_eval(const NnArguments& arguments) {
+  const nn::TrainingConfiguration configuration = configuration_of(arguments);
+  const nn::Model model = nn::read_model(arguments.model);
+  const std::vector<nn::TestTable> tests =
+      nn::prepare_tests(configuration, model, arguments.sessions);
+  const nn::Evaluation evaluation = nn::evaluate(model, tests);
+  std::cout << (arguments.json ? evaluation_json(evaluation)
+                               : evaluation_text(evaluation, configuration));
+  if (arguments.pictures) {
+    const fs::path folder = out_folder(arguments, configuration.name);
+    const std::vector<fs::path> files = nn::draw_evaluation(model, tests, folder);
+    if (!arguments.json) std::printf("\n%zu charts in %s\n", files.size(), folder.c_str());
+  }
+  return 0;
+}
+
+// ---- export, show, check
+
+int run_export(const NnArguments& arguments) {
+  const nn::Model model = nn::read_model(arguments.model);
+  const std::string header = nn::model_header(model);
+  if (arguments.out.empty()) {
+    std::cout << header;
+  } else {
+    write_file(arguments.out, header);
+  }
+  return 0;
+}
+
+int run_show(const NnArguments& arguments) {
+  std::cout << model_description(nn::read_model(arguments.model));
+  return 0;
+}
+
+/// An activation: any, or one of the edges.
+std::int16_t random_activation(WorldRandom& random) {
+  constexpr std::int16_t kEdges[] = {INT16_MIN, INT16_MAX, 0, -1};
+  const std::uint32_t bits = random.next();
+  return bits >> 28U < 4 ? kEdges[bits >> 28U] : static_cast<std::int16_t>(bits & 0xFFFFU);
+}
+
+int run_check(const NnArguments& arguments) {
+  constexpr std::size_t kBlock = 1000;
+  const nn::Model model = nn::read_model(arguments.model);
+  WorldRandom random(arguments.seed.value_or(1), "check of vectors");
+  for (const nn::ModelNetwork& network : model.networks) {
+    const std::size_t inputs = network.network.inputs();
+    const std::size_t outputs = network.network.outputs();
+    std::vector<std::int16_t> in(inputs * kBlock);
+    std::vector<std::int16_t> out(outputs * kBlock);
+    std::vector<std::int16_t> one_in(inputs);
+    std::vector<std::int16_t> one_out(outputs);
+    std::string kernels;
+    std::vector<nn::BatchNetwork> batches;
+    for (const nn::BatchKernel kernel : nn::batch_kernels()) {
+      batches.emplace_back(network.network, kernel);
+      kernels += std::string(kernels.empty() ? "" : ", ") + nn::batch_kernel_name(kernel);
+    }
+    for (std::size_t done = 0; done < arguments.vectors; done += kBlock) {
+      for (std::int16_t& value : in) value = random_activation(random);
+      for (const nn::BatchNetwork& batch : batches) {
+        batch.run(in.data(), out.data(), kBlock, kBlock);
+        for (std::size_t row = 0; row < kBlock; ++row) {
+          for (std::size_t i = 0; i < inputs; ++i) one_in[i] = in[i * kBlock + row];
+          network.network.run(one_in, one_out);
+          for (std::size_t i = 0; i < outputs; ++i) {
+            if (one_out[i] == out[i * kBlock + row]) continue;
+            throw RunError(model.name + ": " + nn::batch_kernel_name(batch.kernel()) +
+                           " differs from a layer at a time in vector " +
+                           std::to_string(done + row));
+          }
+        }
+      }
+    }
+    std::printf("%s %s: %zu random and edge vectors, no bit differs (%s)\n", model.name.c_str(),
+                network.outputs.front().feature.c_str(), arguments.vectors, kernels.c_str());
+  }
+  return 0;
+}
+
+int run_features() {
+  std::printf("%-14s %-10s %s\n", "feature", "unit", "");
+  for (const nn::Feature& feature : nn::features()) {
+    std::printf("%-14s %-10s %s\n", feature.name, feature.unit, feature.meaning);
+  }
+  std::printf("\n%-16s %-20s %s\n", "stage", "numbers", "");
+  for (const nn::StageKind& stage : nn::stage_kinds()) {
+    std::printf("%-16s %-20s %s\n", stage.name, stage.parameters, stage.meaning);
+  }
+  return 0;
+}
+
+}  // namespace
+
+CLI::App* nn_command(CLI::App& root) {
+  const std::vector<CLI::App*> there =
+      root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
+  if (!there.empty()) return there.front();
+  CLI::App* nn = root.add_subcommand("nn", "Networks: from recorded sessions to the robot");
+  nn->require_subcommand(1);
+  return nn;
+}
+
+void register_nn_command(CLI::App& root, std::function<int()>& action) {
+  auto arguments = std::make_shared<NnArguments>();
+  CLI::App* nn = nn_command(root);
+  const auto add = [&](const char* name, const char* help, int (*run)(const NnArguments&)) {
+    CLI::App* command = nn->add_subcommand(name, help);
+    command->callback([arguments, run, &action] { action = [=] { return run(*arguments); }; });
+    return command;
+  };
+  const auto configuration = [&](CLI::App* command) {
+    command
+        ->add_option("CONFIGURATION", arguments->configuration,
+                     "what to train (nn/configurations/*.json)")
+        ->required();
+    command->add_option("--sessions", arguments->sessions, "folder of the recorded sessions")
+        ->capture_default_str();
+  };
+  const auto model = [&](CLI::App* command) {
+    command->add_option("MODEL", arguments->model, "a trained model (nn/models/*.json)")
+        ->required();
+  };
+  const auto folder = [&](CLI::App* command) {
+    command->add_option("--out", arguments->out, "folder of the results (default out/nn/NAME)");
+  };
+  const auto json = [&](CLI::App* command) {
+    command->add_flag("--json", arguments->json, "the figures as JSON");
+    command->add_flag("!--no-pictures", arguments->pictures, "draw nothing");
+  };
+
+  CLI::App* preprocess =
+      add("preprocess", "Outliers, normalisation, smoothing: sessions to tables", run_preprocess);
+  configuration(preprocess);
+  folder(preprocess);
+
+  CLI::App* train = add("train", "Train the networks of a configuration", run_train);
+  configuration(train);
+  folder(train);
+  train->add_option("--epochs", arguments->epochs, "epochs, whatever the configuration says");
+  train->add_option("--seed", arguments->seed, "seed, whatever the configuration says");
+  train->add_flag("--resume", arguments->resume, "go on from the checkpoints in the folder");
+  json(train);
+
+  CLI::App* quantise =
+      add("quantise", "The integers of a trained model anew, from what it was trained on",
+          run_quantise);
+  model(quantise);
+  configuration(quantise);
+  quantise->add_option("--out", arguments->out, "the file to write (default: the model)");
+
+  CLI::App* eval = add("eval", "The thesis' tables 6.1 to 6.3, and charts", run_eval);
+  model(eval);
+  configuration(eval);
+  folder(eval);
+  json(eval);
+
+  CLI::App* header = add("export", "A model as a C++ header for the robot", run_export);
+  model(header);
+  header->add_option("--header", arguments->out, "the file (default: standard output)");
+
+  model(add("show", "What a model is", run_show));
+
+  CLI::App* check = add("check", "Random and edge vectors, one by one against SIMD", run_check);
+  model(check);
+  check->add_option("--vectors", arguments->vectors, "how many")->capture_default_str();
+  check->add_option("--seed", arguments->seed, "of the vectors");
+
+  CLI::App* features = nn->add_subcommand("features", "Every feature and stage there is");
+  features->callback([&action] { action = [] { return run_features(); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,381 @@
+#include "tools/screed/nn/nn_motion_command.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/core/quantile.h"
+#include "host_sim/core/random.h"
+#include "host_sim/render/picture/line_chart.h"
+#include "nn/model/model_file.h"
+#include "nn/surrogate/default_model.h"
+#include "nn/surrogate/motion_configuration.h"
+#include "nn/surrogate/rollout.h"
+#include "tools/screed/nn/nn_command.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPercent = 100.0;
+constexpr double kDegrees = 57.29577951308232;
+constexpr std::size_t kProgressSteps = 250;
+
+struct MotionArguments {
+  std::string configuration;
+  std::string sessions = "out/sessions";
+  std::string out;
+  std::optional<std::uint64_t> steps;
+};
+
+void print_r2(const char* what, const std::array<double, 3>& r2) {
+  std::printf("  %-34s %10.4f %10.4f %10.4f\n", what, r2[0], r2[1], r2[2]);
+}
+
+int run_motion(const MotionArguments& arguments) {
+  nn::MotionConfiguration configuration = nn::read_motion_configuration(arguments.configuration);
+  if (arguments.steps.has_value()) configuration.training.steps = *arguments.steps;
+  const std::vector<nn::MotionSeries> train =
+      nn::read_motion_sessions(arguments.sessions, configuration.train);
+  const std::vector<nn::MotionSeries> test =
+      nn::read_motion_sessions(arguments.sessions, configuration.test);
+  std::size_t frames = 0;
+  for (const nn::MotionSeries& one : train) frames += one.frames.size();
+  std::printf("%s: %zu sessions, %zu frames\n", configuration.name.c_str(), train.size(), frames);
+
+  nn::MotionTrainer trainer(configuration.training);
+  double loss = 0.0;
+  for (std::size_t step = 1; step <= configuration.training.steps; ++step) {
+    loss += trainer.step(train) / kProgressSteps;
+    if (step % kProgressSteps == 0) {
+      std::printf("  step %6zu   mean loss %.5f\n", step, loss);
+      std::fflush(stdout);
+      loss = 0.0;
+    }
+  }
+  const nn::Model model = nn::motion_model(configuration, trainer, train);
+  nn::write_model(arguments.out, model);
+  std::printf("\n  %-34s %10s %10s %10s\n", "R2 of one frame, unsmoothed", "forward", "sideways",
+              "turn");
+  for (const nn::MotionSeries& one : test) {
+    print_r2(one.source.c_str(), nn::one_frame_r2(model, one));
+    print_r2("  as in the frame before", nn::unchanged_r2(one));
+  }
+  std::printf("\n  model         %s\n", arguments.out.c_str());
+  return 0;
+}
+
+struct RolloutArguments {
+  std::vector<std::string> sessions;
+  std::vector<std::string> models;
+  std::vector<std::string> fit;
+  std::size_t starts = 0;
+  std::string drive = "firmware";
+  bool ruts = false;
+  std::string out;
+};
+
+struct Column {
+  std::vector<double> place;
+  std::vector<double> heading;
+};
+
+/// Errors of all rollouts of a stand-in after one of the ways: of straight ways, or of others.
+Column column_of(const std::vector<nn::SessionRollouts>& all, std::size_t stand_in, std::size_t way,
+                 bool straight) {
+  Column column;
+  for (const nn::SessionRollouts& session : all) {
+    for (const nn::Rollout& rollout : session.by_stand_in[stand_in]) {
+      const nn::RolloutCheck& check = rollout.checks.at(way);
+      if (!check.reached || check.straight != straight) continue;
+      column.place.push_back(kPercent * check.place_error);
+      column.heading.push_back(kDegrees * check.heading_error_rad);
+    }
+  }
+  return column;
+}
+
+void print_table(const std::vector<nn::SessionRollouts>& all,
+                 const std::vector<nn::StandIn>& stand_ins, bool straight) {
+  std::printf("  %-24s", straight ? "straight ways" : "ways with turns");
+  for (const double way : nn::kRolloutWays_m) std::printf(" | %26.0f m", way);
+  std::printf("\n  %-24s", "");
+  for (std::size_t i = 0; i < nn::kRolloutWays_m.size(); ++i) {
+    std::printf(" | %4s %7s %7s %7s", "n", "place", "p90", "head");
+  }
+  std::printf("\n");
+  for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+    std::printf("  %-24s", stand_ins[i].name.c_str());
+    for (std::size_t way = 0; way < nn::kRolloutWays_m.size(); ++way) {
+      const Column column = column_of(all, i, way, straight);
+      if (column.place.empty()) {
+        std::printf(" | %4d %7s %7s %7s", 0, "-", "-", "-");
+        continue;
+      }
+      std::printf(" | %4zu %6.2f%% %6.2f%% %6.1f\u00b0", column.place.size(),
+                  quantile(column.place, 0.5), quantile(column.place, 0.9),
+                  quantile(column.heading, 0.5));
+    }
+    std::printf("\n");
+  }
+}
+
+/// Of resampled sessions, all rollouts of a session together: what other sessions of this kind
+/// would have shown. Values by session; quantiles 2.5 % and 97.5 % of a quantile.
+std::array<double, 2> range_of(const std::vector<std::vector<double>>& by_session, double share) {
+  constexpr int kResamples = 2000;
+  WorldRandom random(1, "resampled sessions");
+  std::vector<double> found;
+  for (int i = 0; i < kResamples; ++i) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < by_session.size(); ++k) {
+      const auto which =
+          static_cast<std::size_t>(random.uniform() * static_cast<double>(by_session.size()));
+      values.insert(values.end(), by_session[which].begin(), by_session[which].end());
+    }
+    found.push_back(quantile(values, share));
+  }
+  return {quantile(found, 0.025), quantile(found, 0.975)};
+}
+
+/// After the last of the ways, with 95 % ranges, and how the robots wagged.
+void print_ranges(const std::vector<nn::SessionRollouts>& all,
+                  const std::vector<nn::StandIn>& stand_ins, bool straight) {
+  const std::size_t way = nn::kRolloutWays_m.size() - 1;
+  std::printf("  %-24s | after %.0f m, 95 %% ranges over sessions | rate of turn, s.d. (physics)\n",
+              straight ? "straight ways" : "ways with turns", nn::kRolloutWays_m.at(way));
+  for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+    std::vector<std::vector<double>> by_session;
+    std::vector<double> values;
+    std::vector<double> wags;
+    std::vector<double> real;
+    for (const nn::SessionRollouts& session : all) {
+      const Column column = column_of({session}, i, way, straight);
+      if (!column.place.empty()) by_session.push_back(column.place);
+      values.insert(values.end(), column.place.begin(), column.place.end());
+      for (const nn::Rollout& rollout : session.by_stand_in[i]) {
+        const nn::RolloutCheck& check = rollout.checks.at(way);
+        if (!check.reached || check.straight != straight) continue;
+        wags.push_back(kDegrees * rollout.wags_rad_per_s);
+        real.push_back(kDegrees * rollout.real_wags_rad_per_s);
+      }
+    }
+    if (values.empty()) continue;
+    const std::array<double, 2> middle = range_of(by_session, 0.5);
+    const std::array<double, 2> high = range_of(by_session, 0.9);
+    std::printf(
+        "  %-24s | n %zu of %zu, median %.2f%% (%.2f to %.2f), p90 %.2f%% (%.2f to %.2f) | "
+        "%.1f\u00b0/s (%.1f\u00b0/s)\n",
+        stand_ins[i].name.c_str(), values.size(), by_session.size(), quantile(values, 0.5),
+        middle[0], middle[1], quantile(values, 0.9), high[0], high[1], quantile(wags, 0.5),
+        quantile(real, 0.5));
+  }
+}
+
+/// How far one stand-in leads from another: distance of the robots at the end of every rollout's
+/// way, in per cent of it.
+void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t one,
+                      std::size_t other, const std::string& what) {
+  std::vector<double> apart;
+  for (const nn::SessionRollouts& session : all) {
+    for (std::size_t i = 0; i < session.real.size(); ++i) {
+      const auto& a = session.by_stand_in[one][i].path;
+      const auto& b = session.by_stand_in[other][i].path;
+      double way = 0.0;
+      for (std::size_t k = 1; k < a.size(); ++k) {
+        way += std::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
+      }
+      apart.push_back(kPercent *
+                      std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) / way);
+    }
+  }
+  if (apart.empty()) {
+    std::printf("  %s: no way was made\n", what.c_str());
+    return;
+  }
+  std::printf("  %s: median %.4f %%, p90 %.4f %% of the way\n", what.c_str(), quantile(apart, 0.5),
+              quantile(apart, 0.9));
+}
+
+/// The model in floating point with one part in 10^9 on its outputs. How far that leads tells which
+/// differences are the loop's own (firmware, counts of sensors), whatever the arithmetic.
+nn::Model nudged(nn::Model model) {
+  for (nn::ModelNetwork& network : model.networks) {
+    for (double& bias : network.trained.back().bias) bias += 1e-9;
+  }
+  return model;
+}
+
+void draw(const fs::path& folder, const nn::SessionRollouts& session,
+          const std::vector<nn::StandIn>& stand_ins, const std::string& drive) {
+  constexpr std::size_t kMostPictures = 3;
+  for (std::size_t i = 0; i < std::min(kMostPictures, session.real.size()); ++i) {
+    const std::size_t which =
+        i * session.real.size() / std::min(kMostPictures, session.real.size());
+    Chart chart;
+    chart.title = session.source + ", from frame " +
+                  std::to_string(session.by_stand_in[0][which].start) + ", " + drive + " drive";
+    chart.subtitle = "paths from above: the physics, and what stands in for it";
+    chart.x_label = "east, m";
+    chart.y_label = "north, m";
+    chart.from_zero = false;
+    const auto add = [&](const std::string& label, const std::vector<nn::PlanarPose>& path) {
+      ChartSeries series{label, {}, false};
+      for (const nn::PlanarPose& pose : path) series.points.push_back({pose.x_m, pose.y_m});
+      if (!series.points.empty()) chart.series.push_back(std::move(series));
+    };
+    add("physics", session.real[which]);
+    for (std::size_t s = 0; s < stand_ins.size(); ++s) {
+      add(stand_ins[s].name, session.by_stand_in[s][which].path);
+    }
+    const fs::path file =
+        folder / (session.source + "-" + drive + "-" + std::to_string(i + 1) + ".svg");
+    write_chart(file, chart);
+    std::printf("  %s\n", file.c_str());
+  }
+}
+
+int run_rollout(const RolloutArguments& arguments) {
+  nn::RolloutOptions options;
+  options.starts = arguments.starts;
+  options.drive =
+      arguments.drive == "tracks" ? nn::RolloutDrive::kTracks : nn::RolloutDrive::kFirmware;
+  if (arguments.ruts) {
+    options.bearing = std::make_shared<const nn::BearingNetwork>(
+        nn::BearingNetwork::read(nn::default_bearing_file()));
+  }
+  const nn::SupportGeometry geometry;
+  std::vector<nn::StandIn> stand_ins = {
+      {"no slip", [=] { return nn::Surrogate(nn::SkidKinematics{}, geometry, 1); }}};
+  std::vector<nn::MotionSeries> fitted;
+  fitted.reserve(arguments.fit.size());
+  for (const std::string& folder : arguments.fit) {
+    fitted.push_back(nn::read_motion_series(folder));
+  }
+  if (!fitted.empty()) {
+    const nn::SkidKinematics kinematics = nn::fitted_kinematics(fitted);
+    std::printf("constant slip: %.3f of the tracks' speed, tread of %.3f m\n",
+                kinematics.speed_share, kinematics.tread_m);
+    stand_ins.push_back({"constant slip", [=] { return nn::Surrogate(kinematics, geometry, 1); }});
+  }
+  std::vector<std::size_t> floats;
+  std::vector<std::string> models = arguments.models;
+  if (models.empty()) models.push_back(nn::default_model_file().string());
+  for (const std::string& file : models) {
+    const auto model = std::make_shared<const nn::Model>(nn::read_model(file));
+    stand_ins.push_back({model->name, [=] { return nn::Surrogate(*model, geometry, 1); }});
+    if (model->networks.front().trained.empty()) continue;
+    floats.push_back(stand_ins.size());
+    for (const auto& [name, floating] :
+         {std::pair{model->name + ", floating", model},
+          {model->name + ", 1e-9 off", std::make_shared<const nn::Model>(nudged(*model))}}) {
+      stand_ins.push_back({name, [=, which = floating] {
+                             return nn::Surrogate(*which, geometry, 1,
+                                                  nn::Surrogate::Arithmetic::kFloat);
+                           }});
+    }
+  }
+  std::vector<nn::SessionRollouts> all;
+  for (const std::string& folder : arguments.sessions) {
+    all.push_back(nn::roll_out(folder, stand_ins, options));
+    std::printf("\n%s, %s drive\n", all.back().source.c_str(), arguments.drive.c_str());
+    for (const bool straight : {true, false}) print_table({all.back()}, stand_ins, straight);
+    std::fflush(stdout);
+  }
+  if (all.size() > 1) {
+    std::printf("\nall sessions\n");
+    for (const bool straight : {true, false}) print_table(all, stand_ins, straight);
+    for (const bool straight : {true, false}) print_ranges(all, stand_ins, straight);
+  }
+  std::printf("\n");
+  for (const std::size_t floating : floats) {
+    print_divergence(all, floating - 1, floating,
+                     stand_ins[floating - 1].name + ", integers from floating point");
+    print_divergence(all, floating + 1, floating, stand_ins[floating + 1].name);
+  }
+  if (!arguments.out.empty()) {
+    fs::create_directories(arguments.out);
+    for (const nn::SessionRollouts& session : all) {
+      draw(arguments.out, session, stand_ins, arguments.drive);
+    }
+  }
+  return 0;
+}
+
+struct ApartArguments {
+  std::vector<std::string> sessions;
+};
+
+int run_apart(const ApartArguments& arguments) {
+  if (arguments.sessions.size() % 2 != 0) {
+    throw InputError("screed nn apart: an odd number of sessions; allowed are pairs");
+  }
+  nn::SessionRollouts pairs;
+  pairs.by_stand_in.resize(1);
+  for (std::size_t i = 0; i < arguments.sessions.size(); i += 2) {
+    pairs.by_stand_in[0].push_back(nn::apart(arguments.sessions[i], arguments.sessions[i + 1]));
+  }
+  for (const bool straight : {true, false}) {
+    print_table({pairs}, {{"physics", {}}}, straight);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* nn = nn_command(root);
+
+  auto motion = std::make_shared<MotionArguments>();
+  CLI::App* motion_command =
+      nn->add_subcommand("motion", "Train a network of motion on its own predictions");
+  motion_command->add_option("CONFIGURATION", motion->configuration, "a JSON file")->required();
+  motion_command->add_option("--sessions", motion->sessions, "folder with the recorded sessions")
+      ->capture_default_str();
+  motion_command->add_option("--steps", motion->steps, "in place of the configuration's");
+  motion_command->add_option("--out", motion->out, "the model file to write")->required();
+  motion_command->callback(
+      [motion, &action] { action = [motion] { return run_motion(*motion); }; });
+
+  auto rollout = std::make_shared<RolloutArguments>();
+  CLI::App* rollout_command =
+      nn->add_subcommand("rollout", "Let networks drive beside recorded physics, and compare");
+  rollout_command->add_option("SESSION", rollout->sessions, "run folders of screed record")
+      ->required();
+  rollout_command->add_option("--model", rollout->models,
+                              "model files; by default the one of screed sim --hal surrogate");
+  rollout_command->add_option("--fit", rollout->fit,
+                              "run folders that the constant slip is fitted to");
+  rollout_command->add_option("--starts", rollout->starts,
+                              "rollouts a session, spread evenly over it; by default each begins "
+                              "where the one before ended");
+  rollout_command->add_flag("--ruts", rollout->ruts,
+                            "the ground gives way below the stand-ins' tracks, as in screed sim "
+                            "--hal surrogate; else it stays as it was at the start");
+  rollout_command
+      ->add_option("--drive", rollout->drive,
+                   "firmware: it drives and feels the network's motion; tracks: they turn as "
+                   "recorded")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"firmware", "tracks"}));
+  rollout_command->add_option("--out", rollout->out, "folder for pictures of some paths");
+  rollout_command->callback(
+      [rollout, &action] { action = [rollout] { return run_rollout(*rollout); }; });
+
+  auto apart = std::make_shared<ApartArguments>();
+  CLI::App* apart_command = nn->add_subcommand(
+      "apart", "How far pairs of recorded sessions come apart: physics beside physics");
+  apart_command->add_option("SESSION", apart->sessions, "run folders of screed record, in pairs")
+      ->required();
+  apart_command->callback([apart, &action] { action = [apart] { return run_apart(*apart); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,394 @@
+// Training and comparing networks of the terrain.
+#include "tools/screed/nn/terrain_net_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/render/picture/canvas.h"
+#include "host_sim/render/picture/map_frame.h"
+#include "nn/terrain/bearing_trainer.h"
+#include "nn/terrain/flux_network.h"
+#include "nn/terrain/flux_trainer.h"
+#include "nn/terrain/ground_comparison.h"
+#include "nn/terrain/pressed_drive.h"
+#include "nn/terrain/window_network.h"
+#include "tools/screed/viewer/camera.h"
+#include "tools/screed/viewer/ground_image.h"
+#include "tools/screed/viewer/pixel_drawing.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TrainOptions {
+  std::vector<std::string> runs;
+  std::string out = "flux.json";
+  std::size_t hidden = 32;
+  std::size_t every = 3;
+  std::size_t epochs = 10;
+  std::uint64_t seed = 1;
+};
+
+struct TrainTracksOptions {
+  std::vector<std::string> runs;
+  std::vector<std::string> test;
+  std::string out = "tracks.json";
+  std::size_t hidden = 4;
+  std::size_t segments = 4;
+  double seconds = 10.0;
+  std::size_t generations = 75;
+  std::uint64_t seed = 1;
+};
+
+struct CompareOptions {
+  std::string network;
+  std::vector<std::string> runs;
+  std::vector<std::string> window;
+  std::size_t epochs = 10;
+  double from = 0.0;
+  double seconds = 40.0;
+  std::string pictures;
+};
+
+void print_epoch(std::size_t epoch, double mse_mm2) {
+  std::cerr << "epoch " << epoch + 1 << ": " << mse_mm2 << " mm^2\n";
+}
+
+int run_train(const TrainOptions& options) {
+  nn::FluxExamples examples;
+  for (const std::string& run : options.runs) {
+    add_examples(nn::DriveStrides(run), options.every, examples);
+  }
+  nn::FluxNetwork network(options.hidden, options.seed);
+  double squares = 0.0;
+  for (const float change : examples.changes)
+    squares += static_cast<double>(change) * static_cast<double>(change);
+  constexpr double kOutput_mm = nn::FluxNetwork::kOutput_m * 1e3;
+  std::cerr << examples.rows() << " examples, " << network.weights()
+            << " weights; without a network: "
+            << squares / static_cast<double>(examples.changes.size()) * kOutput_mm * kOutput_mm
+            << " mm^2\n";
+  train(network, examples, options.epochs, options.seed, print_epoch);
+  network.write(options.out);
+  std::cout << options.out << "\n";
+  return 0;
+}
+
+using Segments = std::vector<std::vector<nn::DriveSegment>>;
+
+Segments segments_of(const std::vector<std::string>& runs, const TrainTracksOptions& options) {
+  Segments drives;
+  for (const std::string& run : runs) {
+    drives.push_back(nn::segments_of(nn::DriveStrides(run), options.segments, options.seconds));
+  }
+  return drives;
+}
+
+/// The middle one of each drive's errors: in some segments a robot rocks, and nobody can tell.
+void print_errors(const std::vector<std::string>& runs, const Segments& drives,
+                  const nn::BearingNetwork& network) {
+  const auto middle = [](const std::vector<nn::DriveSegment>& segments,
+                         const nn::BearingNetwork* by) {
+    std::vector<double> shares;
+    shares.reserve(segments.size());
+    for (const nn::DriveSegment& segment : segments) shares.push_back(error_share(segment, by));
+    std::sort(shares.begin(), shares.end());
+    return 0.5 * (shares[(shares.size() - 1) / 2] + shares[shares.size() / 2]);
+  };
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (drives[i].empty()) continue;
+    std::printf("  %-40s %8.3f %8.3f\n", fs::path(runs[i]).filename().c_str(),
+                middle(drives[i], nullptr), middle(drives[i], &network));
+  }
+}
+
+int run_train_tracks(const TrainTracksOptions& options) {
+  const Segments drives = segments_of(options.runs, options);
+  const Segments tests = segments_of(options.test, options);
+  nn::BearingNetwork network(options.hidden, options.seed);
+  std::cerr << network.weights().size() << " weights\n";
+  train(network, drives, options.generations, options.seed,
+        [](std::size_t generation, double error) {
+          std::cerr << "generation " << generation + 1 << ": " << error << "\n";
+        });
+  network.write(options.out);
+  std::printf("%s\nsquared error over that of no change at all, median of the segments\n",
+              options.out.c_str());
+  std::printf("  %-40s %8s %8s\n", "", "closed", "network");
+  print_errors(options.runs, drives, network);
+  print_errors(options.test, tests, network);
+  return 0;
+}
+
+void print_row(const std::string& who, const HeightField& before, const HeightField& real,
+               const HeightField& ground, const std::vector<nn::Stride>& way) {
+  const nn::GroundComparison c = nn::compare(before, real, ground);
+  const nn::RutCount ruts = nn::count_ruts(before, ground, way);
+  std::printf("  %-11s %12.3f %12.3f %12.1f %12.4f %14lld %8.2f\n", who.c_str(), c.error_mm,
+              c.outside_mm, c.moved_cm3, c.volume_cm3, static_cast<long long>(c.volume_units),
+              ruts.mean);
+}
+
+std::vector<HeightChange> changes_between(const HeightField& from, const HeightField& to) {
+  std::vector<HeightChange> changes;
+  const auto nodes = static_cast<std::size_t>(from.nx()) * static_cast<std::size_t>(from.ny());
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (to.node(i) != from.node(i)) {
+      changes.push_back({static_cast<uint32_t>(i), to.node(i) - from.node(i)});
+    }
+  }
+  return changes;
+}
+
+/// What was changed along the way, a panel each, all in the colours of the first.
+void draw_changes(const fs::path& file, const HeightField& before,
+                  const std::vector<std::pair<std::string, const HeightField*>>& grounds,
+                  const std::vector<nn::Stride>& way) {
+  constexpr double kRobot_m = 0.2;
+  constexpr double kWidth_px = 1000.0;
+  constexpr double kTitle_px = 30.0;
+  Ground area{1e9, -1e9, 1e9, -1e9};
+  for (const nn::Stride& stride : way) {
+    area.x_min = std::min(area.x_min, stride.x_m - kRobot_m);
+    area.x_max = std::max(area.x_max, stride.x_m + kRobot_m);
+    area.y_min = std::min(area.y_min, stride.y_m - kRobot_m);
+    area.y_max = std::max(area.y_max, stride.y_m + kRobot_m);
+  }
+  const double scale = kWidth_px / (area.x_max - area.x_min);
+  const double height = std::floor(scale * (area.y_max - area.y_min));
+  Canvas canvas(static_cast<int>(kWidth_px),
+                static_cast<int>(grounds.size()) * static_cast<int>(height + kTitle_px),
+                {1.0, 1.0, 1.0});
+  viewer::GroundImage image(before);
+  const HeightField* shown = &before;
+  double top = 0.0;
+  for (const auto& [name, ground] : grounds) {
+    image.update(*ground, changes_between(*shown, *ground));
+    shown = ground;
+    image.paint(*ground, viewer::Shading::kChange);
+    viewer::Camera camera;
+    camera.set_box({0.0, top + kTitle_px, kWidth_px, height});
+    camera.zoom(scale / camera.scale(), camera.middle());
+    camera.look_at(0.5 * (area.x_min + area.x_max), 0.5 * (area.y_min + area.y_max));
+    viewer::draw_ground({canvas.pixels(), canvas.width()}, camera, image,
+                        {before.x_min(), before.y_min(), before.spacing_m(), before.wrap()},
+                        0x00FFFFFFU);
+    canvas.release_pixels();
+    const double end_mm = image.scale(viewer::Shading::kChange).high;
+    canvas.text({8.0, top + 21.0}, name, {.size_px = 16.0, .bold = true});
+    canvas.text({kWidth_px - 8.0, top + 21.0},
+                "blue: lowered, red: raised, by up to " + number_text(end_mm, 0) + " mm;  " +
+                    number_text(area.x_max - area.x_min, 2) + " m wide",
+                {.size_px = 13.0, .align = TextAlign::kRight});
+    top += height + kTitle_px;
+  }
+  canvas.write_png(file);
+}
+
+/// One of the two that `compare` takes.
+struct AnyNetwork {
+  std::string file;
+  std::shared_ptr<const nn::FluxNetwork> wheels;
+  std::shared_ptr<const nn::BearingNetwork> tracks;
+};
+
+AnyNetwork read_network(const std::string& file) {
+  AnyNetwork network{file, nullptr, nullptr};
+  try {
+    network.wheels = std::make_shared<const nn::FluxNetwork>(nn::FluxNetwork::read(file));
+    return network;
+  } catch (const InputError&) {  // then it may be the other kind
+  }
+  try {
+    network.tracks = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(file));
+    return network;
+  } catch (const InputError&) {
+    throw InputError(file + ": is neither a network of `train` (wheels) nor one of `train-tracks`");
+  }
+}
+
+/// A ground that goes its own way along a drive.
+struct Foretold {
+  std::string name;
+  std::function<void(std::size_t stride)> step;
+  std::function<const HeightField&()> ground;
+};
+
+void compare_on(const std::string& run, const CompareOptions& options, const AnyNetwork& any,
+                const nn::WindowNetwork* window) {
+  const nn::DriveStrides drive(run);
+  if (drive.tracks() ? any.tracks == nullptr : any.wheels == nullptr) {
+    throw InputError(any.file + ": is a network of " + (drive.tracks() ? "wheels; " : "tracks; ") +
+                     run + (drive.tracks() ? " was driven on tracks" : " was driven on wheels"));
+  }
+  const auto begin =
+      std::min(drive.size(), static_cast<std::size_t>(options.from * nn::kStrideRate_hz));
+  const std::size_t end = std::min(
+      drive.size(), begin + static_cast<std::size_t>(options.seconds * nn::kStrideRate_hz));
+  const HeightField before = drive.ground_after(begin);
+  const HeightField real = drive.ground_after(end);
+
+  std::vector<Foretold> all;
+  const auto add_tracks = [&](const std::string& name, const std::shared_ptr<nn::TrackGround>& on,
+                              const std::function<void(nn::TrackGround&, std::size_t)>& step) {
+    all.push_back({name, [on, step](std::size_t i) { step(*on, i); },
+                   [on]() -> const HeightField& { return on->surface(); }});
+  };
+  if (drive.tracks()) {
+    const auto& network = any.tracks;
+    nn::PressedDrive pressed(drive);
+    const nn::TrackGround& as_it_was = pressed.after(begin);
+    const auto fresh = [&] { return std::make_shared<nn::TrackGround>(as_it_was); };
+    add_tracks("even depth", fresh(),
+               [&](nn::TrackGround& on, std::size_t i) { on.step_evenly(drive[i]); });
+    add_tracks("closed", fresh(),
+               [&](nn::TrackGround& on, std::size_t i) { on.step(drive[i], nullptr); });
+    add_tracks("network", fresh(), [&, network](nn::TrackGround& on, std::size_t i) {
+      on.step(drive[i], network.get());
+    });
+    const nn::TrackGeometry tracks = nn::track_geometry(drive.robot());
+    add_tracks("true stance", fresh(), [&, tracks](nn::TrackGround& on, std::size_t i) {
+      on.step_at(drive[i], stance_of(tracks, drive[i]));
+    });
+  } else {
+    const auto& network = any.wheels;
+    const auto ground = std::make_shared<HeightField>(before);
+    all.push_back({"fluxes",
+                   [&drive, network, ground](std::size_t i) {
+                     network->act(*ground, drive.wheels(), drive[i]);
+                   },
+                   [ground]() -> const HeightField& { return *ground; }});
+  }
+  if (window != nullptr) {
+    const auto ground = std::make_shared<HeightField>(before);
+    const auto last = std::make_shared<std::vector<float>>(nn::WindowNetwork::kCells);
+    all.push_back(
+        {"window",
+         [&drive, window, ground, last](std::size_t i) { window->act(*ground, drive[i], *last); },
+         [ground]() -> const HeightField& { return *ground; }});
+  }
+
+  std::vector<nn::Stride> way;
+  for (std::size_t i = begin; i < end; ++i) {
+    way.push_back(drive[i]);
+    for (const Foretold& one : all) one.step(i);
+  }
+  const nn::GroundComparison c = nn::compare(before, real, real);
+  std::printf("%s: %zu strides, touched %.3f m^2, changed there by %.3f mm RMS\n", run.c_str(),
+              way.size(), c.touched_m2, c.true_change_mm);
+  std::printf("  %-11s %12s %12s %12s %12s %14s %8s\n", "", "RMSE mm", "outside mm", "moved cm3",
+              "volume cm3", "volume units", "ruts");
+  print_row("recorded", before, real, real, way);
+  print_row("no change", before, real, before, way);
+  for (const Foretold& one : all) print_row(one.name, before, real, one.ground(), way);
+  if (options.pictures.empty()) return;
+  fs::create_directories(options.pictures);
+  std::vector<std::pair<std::string, const HeightField*>> grounds = {{"recorded", &real}};
+  for (const Foretold& one : all) {
+    if (one.name != "true stance") grounds.emplace_back(one.name, &one.ground());
+  }
+  draw_changes(fs::path(options.pictures) / (fs::path(run).filename().string() + ".png"), before,
+               grounds, way);
+}
+
+int run_compare(const CompareOptions& options) {
+  const AnyNetwork network = read_network(options.network);
+  std::unique_ptr<nn::WindowNetwork> window;
+  if (!options.window.empty()) {
+    std::vector<std::unique_ptr<nn::DriveStrides>> drives;
+    std::vector<const nn::DriveStrides*> pointers;
+    for (const std::string& run : options.window) {
+      drives.push_back(std::make_unique<nn::DriveStrides>(run));
+      pointers.push_back(drives.back().get());
+    }
+    constexpr std::uint64_t kSeed = 1;
+    window = std::make_unique<nn::WindowNetwork>(pointers, options.epochs, kSeed, print_epoch);
+  }
+  for (const std::string& run : options.runs) compare_on(run, options, network, window.get());
+  return 0;
+}
+
+}  // namespace
+
+void register_terrain_net_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* command = root.add_subcommand(
+      "terrain-net",
+      "Networks that foretell what wheels and tracks do to the ground (thesis 6.3.1)");
+  command->require_subcommand(1);
+
+  const auto train = std::make_shared<TrainOptions>();
+  CLI::App* train_command =
+      command->add_subcommand("train", "Teach a network of fluxes from recorded runs with wheels");
+  train_command->add_option("RUN", train->runs, "runs with recorded heights")->required();
+  train_command->add_option("--out", train->out, "the network's file")->capture_default_str();
+  train_command->add_option("--hidden", train->hidden, "nodes of the hidden layer")
+      ->check(CLI::Range(1, 512))
+      ->capture_default_str();
+  train_command->add_option("--every", train->every, "one stride of so many is an example")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  train_command->add_option("--epochs", train->epochs)->capture_default_str();
+  train_command->add_option("--seed", train->seed)->capture_default_str();
+  train_command->callback([train, &action] { action = [train] { return run_train(*train); }; });
+
+  const auto tracks = std::make_shared<TrainTracksOptions>();
+  CLI::App* tracks_command = command->add_subcommand(
+      "train-tracks", "Teach a network of what bears tracks from recorded runs on soil");
+  tracks_command->add_option("RUN", tracks->runs, "runs with recorded heights")->required();
+  tracks_command
+      ->add_option("--test", tracks->test, "a run to judge the network on; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  tracks_command->add_option("--out", tracks->out, "the network's file")->capture_default_str();
+  tracks_command->add_option("--hidden", tracks->hidden, "nodes of the hidden layer")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  tracks_command->add_option("--segments", tracks->segments, "pieces of each run")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  tracks_command->add_option("--seconds", tracks->seconds, "of each piece")
+      ->check(CLI::Range(0.5, 1000.0))
+      ->capture_default_str();
+  tracks_command->add_option("--generations", tracks->generations)->capture_default_str();
+  tracks_command->add_option("--seed", tracks->seed)->capture_default_str();
+  tracks_command->callback(
+      [tracks, &action] { action = [tracks] { return run_train_tracks(*tracks); }; });
+
+  const auto compared = std::make_shared<CompareOptions>();
+  CLI::App* compare_command = command->add_subcommand(
+      "compare", "Let networks change the ground along recorded drives, and compare it");
+  compare_command
+      ->add_option("NETWORK", compared->network,
+                   "file of train for runs with wheels, of train-tracks for runs with tracks")
+      ->required();
+  compare_command->add_option("RUN", compared->runs, "runs to compare with")->required();
+  compare_command
+      ->add_option("--window", compared->window,
+                   "train the network of the thesis on this run, and compare it as well; may be "
+                   "repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  compare_command->add_option("--epochs", compared->epochs, "of that training")
+      ->capture_default_str();
+  compare_command->add_option("--from", compared->from, "seconds of each run to leave out")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  compare_command->add_option("--seconds", compared->seconds, "of each run")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  compare_command->add_option("--pictures", compared->pictures,
+                              "folder for pictures of what was changed");
+  compare_command->callback(
+      [compared, &action] { action = [compared] { return run_compare(*compared); }; });
+}
+
+}  // namespace screed

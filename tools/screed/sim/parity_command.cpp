@@ -1,0 +1,120 @@
+// Options and results of `screed parity`.
+#include "tools/screed/sim/parity_command.h"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/simulation.h"
+#include "host_sim/run/world/parity.h"
+#include "tools/screed/cli/progress_bar.h"
+
+namespace screed {
+namespace {
+
+struct Arguments {
+  std::string file;
+  std::string board = kDefaultBoard;
+  std::optional<std::string> elf;
+  double minutes = 1.0;
+  std::vector<std::string> sets;
+  bool quiet = false;
+  bool json = false;
+};
+
+void print_json(const Arguments& arguments, const ParityResult& result, double factor) {
+  nlohmann::ordered_json json;
+  json["experiment"] = arguments.file;
+  json["board"] = arguments.board;
+  json["ticks"] = result.ticks;
+  json["driving_ticks"] = result.driving_ticks;
+  json["compared_bytes"] = result.compared_bytes;
+  json["differing_bytes"] = result.differing_bytes;
+  json["first_difference_tick"] = nullptr;
+  json["first_difference"] = nullptr;
+  if (result.first_difference_tick.has_value()) {
+    json["first_difference_tick"] = *result.first_difference_tick;
+    json["first_difference"] = result.first_difference;
+  }
+  json["simulated_s"] = result.simulated_s;
+  json["real_time_factor"] = factor;
+  // A path need not be UTF-8; JSON must.
+  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+}
+
+void print_text(const Arguments& arguments, const ParityResult& result, double factor) {
+  std::printf("%s on %s: %llu ticks (%llu driving), %llu bytes compared, %llu differ\n",
+              arguments.file.c_str(), arguments.board.c_str(),
+              static_cast<unsigned long long>(result.ticks),
+              static_cast<unsigned long long>(result.driving_ticks),
+              static_cast<unsigned long long>(result.compared_bytes),
+              static_cast<unsigned long long>(result.differing_bytes));
+  if (result.first_difference_tick.has_value()) {
+    std::printf("first difference at tick %llu: %s\n",
+                static_cast<unsigned long long>(*result.first_difference_tick),
+                result.first_difference.c_str());
+  }
+  std::printf("%.1f s simulated, real-time factor %.1f\n", result.simulated_s, factor);
+}
+
+int run_parity_command(const Arguments& arguments) {
+  const Experiment experiment = read_experiment(arguments.file, arguments.sets);
+  const BoardConstants& board = board_constants_of(arguments.board);
+  const std::unique_ptr<CoSimulation> image = make_co_simulation(
+      experiment, nullptr, arguments.board, arguments.elf.value_or(default_image(arguments.board)));
+  std::optional<ProgressBar> bar;
+  if (!arguments.quiet && !arguments.json) bar.emplace(std::cerr);
+  const double seconds = arguments.minutes * 60.0;
+  const auto begin = std::chrono::steady_clock::now();
+  const ParityResult result =
+      run_parity(*image, board, experiment.parameters, credentials_of(experiment), seconds,
+                 [&](const ParityResult& so_far) {
+                   if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
+                     bar->show(so_far.simulated_s, seconds,
+                               std::to_string(so_far.differing_bytes) + " bytes differ");
+                   }
+                   return true;
+                 });
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double factor = wall_s > 0.0 ? result.simulated_s / wall_s : 0.0;
+  if (bar.has_value()) bar->finish();
+  if (arguments.json) {
+    print_json(arguments, result, factor);
+  } else {
+    print_text(arguments, result, factor);
+  }
+  return result.differing_bytes == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void register_parity_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* command = root.add_subcommand(
+      "parity",
+      "Run the image that is flashed in a simulated world and compare every output byte with the "
+      "firmware compiled for this machine");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("FILE", arguments->file, "experiment file (INI)")->required();
+  command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
+  command->add_option("--elf", arguments->elf, "the image; by default that of make firmware");
+  command->add_option("--minutes", arguments->minutes, "simulated time; 1 by default")
+      ->check(CLI::Range(0.001, 1e5));
+  command
+      ->add_option("--set", arguments->sets, "override a key: section.key=value; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--json", arguments->json, "print the result as JSON");
+  command->callback(
+      [arguments, &action] { action = [arguments] { return run_parity_command(*arguments); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,108 @@
+// `screed record`: experiments under Algorithm 5, with the height map of every frame.
+#include "tools/screed/sim/record_command.h"
+
+#include <charconv>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "host_sim/core/errors.h"
+#include "tools/screed/cli/succession.h"
+
+namespace screed {
+namespace {
+
+struct RecordArguments {
+  SuccessionArguments runs;
+  std::optional<std::string> seed;
+  std::optional<std::string> frames;
+  bool table = false;
+};
+
+/// The seed of the world, and that of the drive: a parameter of the robot, of 15 bits.
+void add_seed(const std::string& text, std::vector<std::string>& overrides) {
+  uint64_t seed = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) {
+    throw InputError("--seed = '" + text + "' is not allowed; expected an integer 0.." +
+                     std::to_string(UINT64_MAX));
+  }
+  overrides.push_back("experiment.seed=" + text);
+  overrides.push_back("parameters.random_seed=" + std::to_string(seed % 32768U));
+}
+
+void print_session(const SimulationSummary& s) {
+  const double megabytes =
+      static_cast<double>(std::filesystem::file_size(s.folder / "session.h5")) * 1e-6;
+  std::printf("  %-26s %12llu\n", "frames of Algorithm 5",
+              static_cast<unsigned long long>(s.training_frames));
+  std::printf("  %-26s %10.1f m\n", "distance driven", s.distance_m);
+  std::printf("  %-26s %12llu\n", "changes of heights",
+              static_cast<unsigned long long>(s.height_changes));
+  std::printf("  %-26s %9.1f MB\n", "session", megabytes);
+  std::printf("  %-26s %10.1f s  (%.2f ms a frame)\n", "recorded in", s.wall_s,
+              s.time_s > 0.0 ? s.wall_s / s.time_s * 10.0 : 0.0);
+  std::printf("  %-26s %12s%s\n", "robot", s.state.c_str(),
+              s.faults != 0 ? (" (" + fault_names(s.faults) + ")").c_str() : "");
+  std::printf("  %-26s %12s\n", "run folder", s.folder.c_str());
+  std::printf("  %-26s %12s\n", "content hash", s.content_hash.c_str());
+}
+
+int run_record(const RecordArguments& arguments, const std::string& version) {
+  std::vector<std::string> overrides = {"experiment.algorithm=random"};
+  if (arguments.seed.has_value()) add_seed(*arguments.seed, overrides);
+  if (arguments.frames.has_value()) overrides.push_back("experiment.frames=" + *arguments.frames);
+
+  SimulationOptions options;
+  options.program_version = version;
+  options.heights = true;
+  options.table = arguments.table;
+  bool short_of_frames = false;
+  std::vector<SimulationSummary> summaries;
+  run_in_succession(
+      arguments.runs, overrides, options,
+      [&](const Experiment& experiment, const SimulationSummary& summary) {
+        summaries.push_back(summary);
+        const uint64_t wanted = frames_to_drive(experiment);
+        if (summary.training_frames < wanted) {
+          short_of_frames = true;
+          std::cerr << "note: " << experiment.experiment.name << ": " << summary.training_frames
+                    << " of " << wanted << " frames; the robot is " << summary.state
+                    << (summary.faults != 0 ? " (" + fault_names(summary.faults) + ")" : "")
+                    << (summary.left_bed ? ", it left the bed" : "") << "\n";
+        }
+        if (arguments.runs.json) return;
+        if (arguments.runs.quiet) {
+          std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
+        } else {
+          std::printf("\n%s, seed %llu\n", experiment.experiment.name.c_str(),
+                      static_cast<unsigned long long>(experiment.experiment.seed));
+          print_session(summary);
+        }
+      });
+  if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.files.size() > 1);
+  return short_of_frames ? 1 : 0;
+}
+
+}  // namespace
+
+void register_record_command(CLI::App& root, const std::string& version,
+                             std::function<int()>& action) {
+  auto arguments = std::make_shared<RecordArguments>();
+  CLI::App* command = root.add_subcommand(
+      "record", "Record training sessions: Algorithm 5 drives, heights are kept frame by frame");
+  add_succession_options(*command, arguments->runs);
+  command->add_option("--seed", arguments->seed,
+                      "seed of world and drive; overrides [experiment] seed and [parameters] "
+                      "random_seed");
+  command->add_option("--frames", arguments->frames,
+                      "frames that Algorithm 5 drives; overrides [experiment] frames");
+  command->add_flag("--table", arguments->table, "write frames.csv as well");
+  command->callback([arguments, version, &action] {
+    if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
+    action = [arguments, version] { return run_record(*arguments, version); };
+  });
+}
+
+}  // namespace screed

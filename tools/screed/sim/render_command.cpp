@@ -1,0 +1,84 @@
+// Options of `screed render`.
+#include "tools/screed/sim/render_command.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "host_sim/run/scene/run_scene.h"
+
+namespace screed {
+namespace {
+
+struct Options {
+  std::string run;
+  std::string camera = "front";
+  std::string out;
+  std::string model;
+  bool no_path = false;
+  RunSceneOptions scene;
+};
+
+/// In the run's own folder, under the number of the frame.
+std::filesystem::path default_picture(const Options& options) {
+  std::error_code error;
+  const std::filesystem::path run = options.run;
+  const std::filesystem::path folder =
+      std::filesystem::is_directory(run, error) ? run : run.parent_path();
+  const std::string frame =
+      options.scene.frame ? std::to_string(*options.scene.frame) : std::string("last");
+  return folder / ("frame_" + frame + ".png");
+}
+
+int run_render(Options options) {
+  options.scene.camera = camera_place(options.camera);
+  options.scene.path = !options.no_path;
+  if (!options.model.empty()) options.scene.model = options.model;
+  const std::filesystem::path picture =
+      options.out.empty() ? default_picture(options) : std::filesystem::path(options.out);
+  const RunSceneResult result = render_run(options.run, picture, options.scene);
+  if (result.ground_is_later) {
+    std::cerr << "note: the session holds no height map of frame " << result.frame
+              << "; the ground is drawn as the run left it\n";
+  }
+  if (result.rendered) {
+    std::cout << "frame " << result.frame << ": " << picture.string() << "\n";
+  } else if (options.scene.pov_only) {
+    std::cout << "frame " << result.frame << ": " << result.scene.string() << "\n";
+  } else {
+    std::cout << "frame " << result.frame << ": " << result.scene.string()
+              << " (no picture: povray is not installed)\n";
+  }
+  return 0;
+}
+
+}  // namespace
+
+void register_render_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* command = root.add_subcommand(
+      "render", "Draw one frame of a recorded run as a ray-traced picture (needs povray)");
+  const auto options = std::make_shared<Options>();
+  command->add_option("RUN", options->run, "run folder, or a session.h5")->required();
+  command->add_option("--frame", options->scene.frame,
+                      "frame to draw, from 0; negative counts from the end (default: the last)");
+  command->add_option(
+      "--out", options->out,
+      "the picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, and its "
+      "images go beside it");
+  command->add_option("--width", options->scene.width_px, "pixels")->capture_default_str();
+  command->add_option("--height", options->scene.height_px, "pixels")->capture_default_str();
+  command
+      ->add_option("--camera", options->camera,
+                   "front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the robot: "
+                   "degrees from its nose, degrees over the horizon, metres")
+      ->capture_default_str();
+  command->add_option("--model", options->model,
+                      "URDF of the robot, when the one of the experiment is elsewhere");
+  command->add_flag("--no-path", options->no_path, "do not draw the way the robot has come");
+  command->add_flag("--pov-only", options->scene.pov_only, "write the scene, do not render it");
+  command->callback([options, &action] { action = [options] { return run_render(*options); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,228 @@
+// Options and output of `screed session`.
+#include "tools/screed/sim/session_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/run/session/csv_export.h"
+#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/run_folder.h"
+#include "host_sim/run/session/session_reader.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct InfoArguments {
+  std::string run;
+  bool json = false;
+};
+
+struct ExportArguments {
+  std::string run;
+  bool csv = false;
+  bool all = false;
+  bool heights = false;
+  bool pictures = false;
+  std::optional<std::uint64_t> every;
+  std::optional<std::uint64_t> first;
+  std::optional<std::uint64_t> count;
+  std::optional<std::string> out;
+};
+
+Json describe(const fs::path& file, const SessionReader& session) {
+  const SessionInfo& info = session.info();
+  const FrameRange training = training_frames(session);
+  Json json;
+  json["file"] = file.string();
+  json["bytes"] = fs::file_size(file);
+  json["experiment"] = info.experiment_name;
+  json["program_version"] = info.program_version;
+  json["board"] = info.board_name;
+  json["seed"] = info.seed;
+  json["random_seed"] = info.parameters.random_seed;
+  json["frames"] = session.frames();
+  json["duration_s"] = static_cast<double>(session.frames()) / info.tick_rate_hz;
+  json["training_first"] = training.first;
+  json["training_frames"] = training.count;
+  json["complete"] = session.complete();
+  json["content_hash"] = session.content_hash();
+  json["missing_columns"] = session.missing_columns();
+  if (session.frames() > 0) {
+    std::vector<Frame> last(1);
+    session.read(session.frames() - 1, std::span(last));
+    json["faults"] = last[0].faults;
+  }
+  json["heights"] = nullptr;
+  if (session.has_heights()) {
+    const HeightMapGeometry g = session.heights_after(0).geometry;
+    json["heights"] = {{"nx", g.nx},
+                       {"ny", g.ny},
+                       {"spacing_m", g.spacing_m},
+                       {"wrap", g.wrap},
+                       {"changes", session.height_changes()}};
+  }
+  return json;
+}
+
+void print_info(const Json& json) {
+  const auto row = [](const char* name, const std::string& value) {
+    std::printf("%-18s %s\n", name, value.c_str());
+  };
+  const auto text = [&](const char* key) {
+    return json[key].is_string() ? json[key].get<std::string>() : json[key].dump();
+  };
+  row("file", text("file"));
+  char size[64];
+  std::snprintf(size, sizeof size, "%.1f MB", json["bytes"].get<double>() * 1e-6);
+  row("size", size);
+  row("experiment", text("experiment"));
+  row("program", text("program_version"));
+  row("board", text("board"));
+  row("seed", text("seed") + ", of the drive " + text("random_seed"));
+  row("frames", text("frames") + " (" + text("duration_s") + " s)");
+  if (json["training_frames"].get<std::uint64_t>() > 0) {
+    row("training frames", text("training_frames") + " from frame " + text("training_first"));
+  }
+  if (!json["heights"].is_null()) {
+    const Json& heights = json["heights"];
+    row("height map", heights["nx"].dump() + " x " + heights["ny"].dump() + ", " +
+                          heights["spacing_m"].dump() + " m, " + heights["changes"].dump() +
+                          " changes" + (heights["wrap"].get<bool>() ? ", wraps around" : ""));
+  } else {
+    row("height map", "not recorded frame by frame");
+  }
+  row("content hash",
+      json["complete"].get<bool>() ? text("content_hash") : "none: the run did not end");
+  for (const auto& column : json["missing_columns"])
+    row("missing column", column.get<std::string>());
+}
+
+int run_info(const InfoArguments& arguments) {
+  const fs::path file = session_file(arguments.run);
+  const SessionReader session(file);
+  const Json json = describe(file, session);
+  if (arguments.json) {
+    // A path need not be UTF-8; JSON must.
+    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  } else {
+    print_info(json);
+  }
+  return 0;
+}
+
+/// The frames the user asks for: of the training drive, or all when there was none.
+FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& session) {
+  FrameRange range = training_frames(session);
+  if (arguments.all || range.count == 0) range = {0, session.frames()};
+  const std::uint64_t end = range.first + range.count;
+  if (arguments.first.has_value()) {
+    if (*arguments.first >= session.frames()) {
+      throw InputError("--first = " + std::to_string(*arguments.first) + ": the session has " +
+                       std::to_string(session.frames()) + " frames, from 0");
+    }
+    range.first = *arguments.first;
+    range.count = end > range.first ? end - range.first : session.frames() - range.first;
+  }
+  if (arguments.count.has_value()) {
+    if (*arguments.count > session.frames() - range.first) {
+      throw InputError("--count = " + std::to_string(*arguments.count) + ": from frame " +
+                       std::to_string(range.first) + " the session has " +
+                       std::to_string(session.frames() - range.first));
+    }
+    range.count = *arguments.count;
+  }
+  if (range.count == 0) throw InputError("the session has no frame to export");
+  return range;
+}
+
+fs::path make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw RunError(folder.string() + ": cannot create the folder: " + error.message());
+  return folder;
+}
+
+int run_export(const ExportArguments& arguments) {
+  if (!arguments.csv && !arguments.heights && !arguments.pictures) {
+    throw InputError("session export: say what: --csv, --heights, --pictures or several of them");
+  }
+  const fs::path file = session_file(arguments.run);
+  const SessionReader session(file);
+  if ((arguments.heights || arguments.pictures) && !session.has_heights()) {
+    throw InputError(file.string() + ": has no recorded heights; screed record keeps them");
+  }
+  const FrameRange range = chosen_range(arguments, session);
+  const fs::path out =
+      make_folder(arguments.out.has_value() ? fs::path(*arguments.out)
+                                            : fs::absolute(file).parent_path() / "export");
+  if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
+
+  if (arguments.csv) {
+    const fs::path csv = out / (arguments.all ? "frames.csv" : "table_5_1.csv");
+    export_columns_csv(session,
+                       arguments.all ? std::span<const Column>(kFrameColumns) : table_5_1_columns(),
+                       range, csv);
+    std::printf("%s: %llu frames\n", csv.c_str(), static_cast<unsigned long long>(range.count));
+  }
+  if (arguments.heights) {
+    constexpr std::uint64_t kEverySecond = 100;
+    const HeightExport done = export_heights_png(
+        session, range, arguments.every.value_or(kEverySecond), make_folder(out / "heights"));
+    std::printf("%s: %zu height maps, black %.6f m, white %.6f m (scale.json)\n",
+                (out / "heights").c_str(), done.files.size(), done.scale.black_m,
+                done.scale.white_m);
+  }
+  if (arguments.pictures) {
+    const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
+    const auto files = export_pictures(session, range, arguments.every.value_or(tenth),
+                                       make_folder(out / "pictures"));
+    std::printf("%s: %zu pictures\n", (out / "pictures").c_str(), files.size());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void register_session_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* session = root.add_subcommand("session", "Look into a recorded run, or export it");
+  session->require_subcommand(1);
+
+  auto info = std::make_shared<InfoArguments>();
+  CLI::App* info_command = session->add_subcommand("info", "What a session holds");
+  info_command->add_option("RUN", info->run, "run folder or session file")->required();
+  info_command->add_flag("--json", info->json, "as JSON");
+  info_command->callback([info, &action] { action = [info] { return run_info(*info); }; });
+
+  auto exported = std::make_shared<ExportArguments>();
+  CLI::App* command = session->add_subcommand(
+      "export", "Write tables, height maps and pictures for other programs");
+  command->add_option("RUN", exported->run, "run folder or session file")->required();
+  command->add_flag("--csv", exported->csv, "thesis Table 5.1 as CSV, units in the header");
+  command->add_flag(
+      "--all", exported->all,
+      "all frames, and with --csv all columns; otherwise those of the training drive");
+  command->add_flag("--heights", exported->heights,
+                    "height maps as 16-bit PNGs, their scale in scale.json");
+  command->add_flag("--pictures", exported->pictures, "height maps as pictures with the path");
+  command
+      ->add_option("--every", exported->every,
+                   "frames from one image to the next; 100 for --heights, a tenth of all for "
+                   "--pictures")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--first", exported->first, "first frame, counted from 0 in the session");
+  command->add_option("--count", exported->count, "number of frames")->check(CLI::PositiveNumber);
+  command->add_option("--out", exported->out, "folder to write to; by default RUN/export");
+  command->callback([exported, &action] { action = [exported] { return run_export(*exported); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,276 @@
+// `screed sim FILE`.
+#include "tools/screed/sim/sim_command.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/link/outside_port.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/simulation.h"
+#include "nn/model/model_file.h"
+#include "nn/surrogate/default_model.h"
+#include "nn/surrogate/surrogate_plant.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/succession.h"
+#include "tools/screed/viewer/keyboard_driver.h"
+#include "tools/screed/viewer/live_viewer.h"
+#include "tools/screed/viewer/view_options.h"
+
+namespace screed {
+namespace {
+
+struct SimArguments {
+  SuccessionArguments runs;
+  std::optional<std::string> seed;
+  std::optional<std::string> duration;
+  std::string hal = "native";
+  std::optional<std::string> board;
+  std::optional<std::string> elf;
+  std::optional<std::string> model;
+  std::optional<std::string> ruts_model;
+  bool no_ruts = false;
+  std::optional<std::string> can;
+  std::optional<std::string> pty;
+  bool realtime = false;
+  bool heights = false;
+  bool view = false;
+  ViewArguments viewer;
+};
+
+/// Who looks on at a run, and may drive in it.
+struct Watching {
+  std::unique_ptr<viewer::KeyboardDriver> driver;
+  std::unique_ptr<viewer::LiveViewer> viewer;
+};
+
+void print_row(const char* name, const std::string& before, const std::string& after) {
+  std::printf("  %-26s %12s %12s\n", name, before.c_str(), after.c_str());
+}
+
+std::string format(const char* pattern, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+void print_cycles(const CycleReport& c) {
+  const auto number = [](auto value) { return std::to_string(value); };
+  const auto cycles = [](double value) {
+    return format("%.0f", value) +
+           format(" (%.1f %%)", 100.0 * value / static_cast<double>(CycleReport::kTickCycles));
+  };
+  const auto row = [](const char* name, const std::string& value) {
+    std::printf("  %-26s %20s\n", name, value.c_str());
+  };
+  std::printf("\n  microcontroller, cycles (%% of a tick)\n");
+  row("longest tick", cycles(static_cast<double>(c.longest_tick_cycles)));
+  row("mean tick", cycles(c.mean_tick_cycles));
+  row("load, all that is not slept", format("%.1f %%", c.load * 100.0));
+  row("ticks missed", number(c.missed_ticks));
+  row("encoder edges", number(c.encoder_edges));
+  row("encoder edges missed", number(c.encoder_missing));
+  row("edge to its interrupt", number(c.encoder_latency_cycles));
+  row("bytes received, lost", number(c.uart_received) + ", " + number(c.uart_overruns));
+  row("resets", number(c.resets));
+  std::printf("  %-26s %12s %12s %12s\n", "interrupt", "count", "longest", "mean");
+  for (const CycleReport::Interrupt& it : c.interrupts) {
+    std::printf("  %-26s %12llu %12llu %12.0f\n", it.name.c_str(),
+                static_cast<unsigned long long>(it.count),
+                static_cast<unsigned long long>(it.longest_cycles), it.mean_cycles);
+  }
+}
+
+void print_table(const Experiment& experiment, const SimulationSummary& s) {
+  std::printf("\n%s, %s, seed %llu%s\n", experiment.experiment.name.c_str(),
+              experiment.experiment.algorithm.c_str(),
+              static_cast<unsigned long long>(experiment.experiment.seed),
+              s.left_bed ? " (ended: the robot left the bed)"
+                         : (s.stopped_early ? " (stopped early)" : ""));
+  std::printf("  %-26s %12s\n", "simulated time", format("%.1f s", s.time_s).c_str());
+  std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
+  std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());
+  std::printf("  %-26s %12d\n", "climbs", s.peaks);
+  std::printf("  %-26s %12s\n", "robot", s.state.c_str());
+  if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
+  if (s.outside_s > 0.0)
+    std::printf("  %-26s %12s\n", "time off the bed", format("%.1f s", s.outside_s).c_str());
+  std::printf("  %-26s %12llu\n", "telemetry frames",
+              static_cast<unsigned long long>(s.telemetry_frames));
+  std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());
+  std::printf("\n");
+  print_row("terrain", "before", "after");
+  const auto degrees = [](double value) { return format("%.2f deg", value); };
+  print_row("mean slope", degrees(s.before.mean_slope_deg), degrees(s.after.mean_slope_deg));
+  print_row("RMS slope", degrees(s.before.rms_slope_deg), degrees(s.after.rms_slope_deg));
+  print_row("95 % of slopes below", degrees(s.before.p95_slope_deg),
+            degrees(s.after.p95_slope_deg));
+  print_row("steepest slope", degrees(s.before.steepest_slope_deg),
+            degrees(s.after.steepest_slope_deg));
+  print_row("height deviation", format("%.1f mm", s.before.height_deviation_m * 1e3),
+            format("%.1f mm", s.after.height_deviation_m * 1e3));
+  const std::string flat =
+      "flat (below " + format("%g", experiment.experiment.flatness_deg) + " deg)";
+  print_row(flat.c_str(), format("%.1f %%", s.flatness_before * 100.0),
+            format("%.1f %%", s.flatness_after * 100.0));
+  if (s.cycles.has_value()) print_cycles(*s.cycles);
+  std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
+              s.content_hash.c_str());
+}
+
+int run_sim(const SimArguments& arguments, const std::string& version) {
+  std::vector<std::string> overrides;
+  if (arguments.seed.has_value()) overrides.push_back("experiment.seed=" + *arguments.seed);
+  if (arguments.duration.has_value())
+    overrides.push_back("experiment.duration=" + *arguments.duration);
+
+  SimulationOptions options;
+  PortGroup ports;
+  if (arguments.can.has_value()) ports.add(std::make_unique<CanPort>(*arguments.can));
+  if (arguments.pty.has_value()) {
+    auto terminal = std::make_unique<TerminalPort>(
+        arguments.pty->empty() ? std::nullopt
+                               : std::optional<std::filesystem::path>(*arguments.pty));
+    std::cerr << "serial port " << terminal->device().string() << "\n";
+    ports.add(std::move(terminal));
+  }
+  if (!ports.empty()) options.ground_port = &ports;
+  // Other programs live by the clock.
+  options.realtime = arguments.realtime || !ports.empty();
+  options.program_version = version;
+  options.heights = arguments.heights;
+  if (arguments.board.has_value()) options.board = *arguments.board;
+  if (arguments.hal == "mcu") {
+    options.image = arguments.elf.value_or(default_image(options.board));
+  } else if (arguments.elf.has_value()) {
+    throw InputError("--elf needs --hal mcu");
+  }
+  if (arguments.hal == "surrogate") {
+    const auto model = std::make_shared<const nn::Model>(
+        nn::read_model(arguments.model.has_value() ? std::filesystem::path(*arguments.model)
+                                                   : nn::default_model_file()));
+    std::shared_ptr<const nn::BearingNetwork> bearing;
+    if (!arguments.no_ruts) {
+      bearing = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(
+          arguments.ruts_model.has_value() ? std::filesystem::path(*arguments.ruts_model)
+                                           : nn::default_bearing_file()));
+    }
+    options.surroundings = [model, bearing](HeightField terrain, const Assembly& robot,
+                                            const PlantOptions& plant) {
+      auto world = std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
+      if (bearing) world->let_give_way(bearing);
+      return world;
+    };
+  } else if (arguments.model.has_value() || arguments.ruts_model.has_value() || arguments.no_ruts) {
+    throw InputError("--model, --ruts-model and --no-ruts need --hal surrogate");
+  }
+
+  const std::optional<viewer::ViewerOptions> view =
+      viewer_options(arguments.viewer, arguments.view);
+  const bool several = arguments.runs.files.size() > 1;
+  if (several && view.has_value() && !view->window)
+    throw InputError("--screenshot and --film are for one experiment at a time");
+  Watching watching;
+  const Prepare prepare = [&](const Experiment& experiment, SimulationOptions& of_run) {
+    if (!view.has_value()) return;
+    watching.viewer.reset();
+    watching.driver = std::make_unique<viewer::KeyboardDriver>(
+        ground_key_of(experiment), algorithm_number(experiment.experiment.algorithm),
+        of_run.ground_port);
+    watching.viewer = std::make_unique<viewer::LiveViewer>(experiment, of_run.board, *view,
+                                                           *watching.driver, interrupt);
+    of_run.ground_port = watching.driver.get();
+    of_run.onlooker = watching.viewer.get();
+    // The viewer keeps the pace.
+    of_run.realtime = of_run.realtime && !view->window;
+  };
+
+  std::vector<SimulationSummary> summaries;
+  run_in_succession(
+      arguments.runs, overrides, options,
+      [&](const Experiment& experiment, const SimulationSummary& summary) {
+        summaries.push_back(summary);
+        if (arguments.runs.json) return;
+        if (!arguments.runs.quiet) {
+          print_table(experiment, summary);
+        } else {
+          std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
+        }
+      },
+      prepare);
+  if (arguments.runs.json) std::cout << json_of(summaries, several);
+  if (watching.viewer) {
+    std::cout << std::flush;
+    if (!several) watching.viewer->hold("The run has ended and is saved. Q closes the window.");
+    if (view->frames.has_value()) std::cerr << watching.viewer->times().text() << "\n";
+  }
+  return 0;
+}
+
+}  // namespace
+
+void register_sim_command(CLI::App& root, const std::string& version,
+                          std::function<int()>& action) {
+  auto arguments = std::make_shared<SimArguments>();
+  CLI::App* command =
+      root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
+  add_succession_options(*command, arguments->runs);
+  command->add_option("--seed", arguments->seed, "seed of the world; overrides [experiment] seed");
+  command->add_option("--duration", arguments->duration,
+                      "simulated seconds; overrides [experiment] duration");
+  command
+      ->add_option(
+          "--hal", arguments->hal,
+          "native: the firmware compiled for this machine; mcu: the image that is flashed, "
+          "under a cycle-accurate simulation of the microcontroller; surrogate: the native one "
+          "where "
+          "a network stands in for the physics")
+      ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
+  command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
+  command->add_option("--elf", arguments->elf,
+                      "with --hal mcu: the image; by default that of make firmware");
+  command->add_option("--model", arguments->model,
+                      "with --hal surrogate: the model file; by default the one that comes along");
+  command->add_option("--ruts-model", arguments->ruts_model,
+                      "with --hal surrogate: the network of what tracks do to the ground; by "
+                      "default the one that comes along");
+  command
+      ->add_flag("--no-ruts", arguments->no_ruts, "with --hal surrogate: the ground stays as it is")
+      ->excludes("--ruts-model");
+  command->add_option("--can", arguments->can,
+                      "publish the radio's frames on this CAN interface and take commands from it; "
+                      "implies --realtime");
+  command
+      ->add_option("--pty", arguments->pty,
+                   "offer the radio as a virtual serial port, like that of an XBee, with a "
+                   "symbolic link LINK to it; implies --realtime")
+      ->type_name("LINK")
+      ->expected(0, 1);
+  command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
+  command->add_flag("--heights", arguments->heights,
+                    "record the height map tick by tick, for `screed view` and for training");
+  command->add_flag("--view", arguments->view,
+                    "show the run in a window while it goes on; arrow keys drive (H: all keys)");
+  add_view_options(*command, arguments->viewer);
+  auto list_keys = std::make_shared<bool>(false);
+  command->add_flag("--keys", *list_keys, "list every key of an experiment file and stop");
+  command->callback([arguments, list_keys, version, &action] {
+    if (*list_keys) {
+      action = [] {
+        std::cout
+            << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
+            << experiment_key_table();
+        return 0;
+      };
+      return;
+    }
+    if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
+    action = [arguments, version] { return run_sim(*arguments, version); };
+  });
+}
+
+}  // namespace screed

@@ -1,0 +1,77 @@
+// What the subcommands of `screed soil` share: the options of soil and grid, and how results are
+// shown beside what they should be.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+
+namespace screed {
+
+inline constexpr double kMilli = 1e3;
+
+/// A number in printf's format.
+std::string text(const char* format, double value);
+
+/// One line of a result: a figure beside what it should be and what a peer's engine gives.
+struct SoilLine {
+  std::string where;  ///< "slip 0.2", "depth 5 mm"
+  std::string name;   ///< for programs, unit included
+  double value;
+  const char* format;
+  std::optional<double> limit = std::nullopt;  ///< closed form, limit or measurement
+  enum class Error { kRelative, kAbsolute, kNone } error = Error::kNone;
+  std::optional<double> peer = std::nullopt;
+};
+
+/// Options that every test has.
+struct SoilArguments {
+  std::string preset = "viper";
+  SoilParameters custom;  // values of the options that were given
+  std::vector<std::pair<CLI::Option*, double SoilParameters::*>> given;
+  std::string normal_stress = "radial";
+  bool bulldozing = false;
+  bool avalanches = false;
+  bool follow_slopes = SoilOptions{}.follow_slopes;
+  double sample_spacing_m = SoilOptions{}.sample_spacing_m;
+  double cell_m = 0.005;
+  double step_s = 1e-3;
+  std::string charts;
+  bool json = false;
+
+  /// The preset with what was given in its place. Throws InputError.
+  SoilParameters soil() const;
+  SoilOptions options() const;
+  /// The place of a chart; its folder is made.
+  std::filesystem::path chart(const char* name) const;
+  /// Whether the soil and its handling are those of the peer's figures.
+  bool as_peer() const;
+};
+
+void add_soil_options(CLI::App& command, SoilArguments& arguments);
+
+void print_table(const std::string& heading, const char* limit_name,
+                 const std::vector<SoilLine>& lines);
+nlohmann::json to_json(const std::vector<SoilLine>& lines);
+nlohmann::json soil_json(const SoilArguments& arguments);
+/// Prints table or JSON; the exit code.
+int finish(const SoilArguments& arguments, const char* test, const std::string& heading,
+           const char* limit_name, const std::vector<SoilLine>& lines);
+
+// Each adds its subcommand of `screed soil`.
+void add_soil_plate(CLI::App& soil, std::function<int()>& action);
+void add_soil_wheel(CLI::App& soil, std::function<int()>& action);
+void add_soil_robot(CLI::App& soil, std::function<int()>& action);
+void add_soil_repose(CLI::App& soil, std::function<int()>& action);
+void add_soil_dig(CLI::App& soil, std::function<int()>& action);
+void add_soil_match(CLI::App& soil, std::function<int()>& action);
+
+}  // namespace screed

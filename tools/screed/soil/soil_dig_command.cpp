@@ -1,0 +1,129 @@
+// `screed soil dig`: a tracked robot digs, on deformable soil and on particles.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/render/picture/terrain_picture.h"
+#include "host_sim/soil_validation/dig_test.h"
+#include "tools/screed/soil/soil_common.h"
+
+namespace screed {
+namespace {
+
+struct DigArguments {
+  SoilArguments common;
+  DigTest test;
+  std::string manoeuvre = "spin";
+  std::string ground = "scm";
+  double fit_cm3 = 0.0;
+};
+
+constexpr std::pair<const char*, Manoeuvre> kManoeuvres[] = {
+    {"spin", Manoeuvre::kSpin}, {"charge", Manoeuvre::kCharge}, {"slip", Manoeuvre::kSlip}};
+
+Manoeuvre manoeuvre_named(const std::string& name) {
+  for (const auto& [known, manoeuvre] : kManoeuvres) {
+    if (name == known) return manoeuvre;
+  }
+  throw InputError("dig: manoeuvre = " + name + "; allowed is spin, charge or slip");
+}
+
+/// The drag depth with which the robot raises so much, to 0.1 mm: the nearest of a row, then
+/// between its neighbours.
+double fit_drag_depth(DigTest test, double raised_m3) {
+  const auto miss = [&](double drag_depth_m) {
+    test.soil.drag_depth_m = drag_depth_m;
+    return std::abs(dig_soil(test).raised_m3 - raised_m3);
+  };
+  double best = 0.0;
+  double least = miss(best);
+  for (const double step : {0.002, 0.0005, 0.0001}) {
+    const double middle = best;
+    for (int i = -4; i <= 6; ++i) {
+      const double tried = middle + i * step;
+      if (tried < 0.0 || tried > 0.05) continue;
+      const double error = miss(tried);
+      if (error >= least) continue;
+      least = error;
+      best = tried;
+    }
+  }
+  return best;
+}
+
+int run_dig(DigArguments a) {
+  a.test.manoeuvre = manoeuvre_named(a.manoeuvre);
+  if (a.ground != "scm" && a.ground != "particles") {
+    throw InputError("dig: ground = " + a.ground + "; allowed is scm or particles");
+  }
+  a.test.soil = a.common.soil();
+  a.test.options = a.common.options();
+  a.test.cell_m = a.common.cell_m;
+  a.test.step_s = a.common.step_s;
+  std::vector<SoilLine> lines;
+  if (a.fit_cm3 > 0.0) {
+    a.test.soil.drag_depth_m = fit_drag_depth(a.test, a.fit_cm3 * 1e-6);
+    lines.push_back({"fitted", "drag_depth_mm", a.test.soil.drag_depth_m * kMilli, "%.1f"});
+  }
+  const bool particles = a.ground == "particles";
+  const DigResult result = particles ? dig_particles(a.test) : dig_soil(a.test);
+  constexpr double kDegrees = 57.29577951308232;
+  const auto add = [&](const char* name, double value, const char* format) {
+    lines.push_back({a.manoeuvre, name, value, format});
+  };
+  add("raised_cm3", result.raised_m3 * 1e6, "%.1f");
+  add("sunk_cm3", result.sunk_m3 * 1e6, "%.1f");
+  add("deepest_mm", result.deepest_m * kMilli, "%.2f");
+  add("highest_mm", result.highest_m * kMilli, "%.2f");
+  add("sunk_distance_mm", result.sunk_radius_m * kMilli, "%.1f");
+  add("raised_distance_mm", result.raised_radius_m * kMilli, "%.1f");
+  add("raised_behind_share", result.behind_share, "%.3f");
+  add("time_s", result.time_s, "%.2f");
+  if (a.test.manoeuvre == Manoeuvre::kSlip) add("pull_n", result.pull_n, "%.2f");
+  add("way_m", result.way_m, "%.4f");
+  add("turned_deg", result.turned_rad * kDegrees, "%.1f");
+  add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
+  add("pitch_deg", result.pitch_rad * kDegrees, "%.2f");
+  if (!a.common.charts.empty()) {
+    PictureOptions picture;
+    picture.width_px = 800;
+    picture.height_px = 700;
+    picture.title = a.manoeuvre + (particles ? ", particles" : ", soil");
+    const std::string file = "soil_dig_" + a.manoeuvre + "_" + a.ground + ".png";
+    write_difference_picture(a.common.chart(file.c_str()), result.before, result.after, picture);
+  }
+  return finish(a.common, "dig",
+                (particles ? text("particles of radius %g mm", a.test.particle.radius_m * kMilli)
+                           : a.test.soil.name) +
+                    text(", grid %g mm", a.common.cell_m * kMilli),
+                "must be", lines);
+}
+
+}  // namespace
+
+void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
+  const auto a = std::make_shared<DigArguments>();
+  CLI::App* command = soil.add_subcommand(
+      "dig", "A tracked robot digs: moved volume, depth, where the material went");
+  a->common.bulldozing = a->common.avalanches = true;
+  a->common.preset = "gravel";
+  add_soil_options(*command, a->common);
+  a->test.particle.radius_m = 0.0075;
+  command->add_option("--manoeuvre", a->manoeuvre, "spin, charge (a mound of 20 degrees), slip");
+  command->add_option("--ground", a->ground, "scm, particles");
+  command->add_option("--particle-radius", a->test.particle.radius_m, "m");
+  command->add_option("--particle-friction", a->test.particle.friction, "coefficient");
+  command->add_option("--depth", a->test.depth_m, "of the bed of particles, m");
+  command->add_option("--size", a->test.size_m, "of the bed's side, m");
+  command->add_option("--track-speed", a->test.track_m_per_s, "of the belts, m/s");
+  command->add_option("--duration", a->test.duration_s, "s");
+  command->add_option("--seed", a->test.seed, "of the particles' layout");
+  command->add_option("--beds", a->test.beds, "of particles, whose heights are averaged");
+  command->add_option("--fit-raised", a->fit_cm3,
+                      "fit --drag-depth so that so much is raised, cm^3; scm");
+  command->add_option("--charts", a->common.charts, "folder for a PNG of what changed");
+  command->callback([a, &action] { action = [a] { return run_dig(*a); }; });
+}
+
+}  // namespace screed

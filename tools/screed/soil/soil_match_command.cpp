@@ -1,0 +1,65 @@
+// `screed soil match`: what soil a bed of particles is like.
+#include <cmath>
+#include <memory>
+
+#include "host_sim/soil_validation/particle_plate.h"
+#include "tools/screed/soil/soil_common.h"
+
+namespace screed {
+namespace {
+
+struct MatchArguments {
+  SoilArguments common;
+  ParticlePlateTest test;
+};
+
+int run_match(const MatchArguments& a) {
+  const SoilParameters soil = a.common.soil();
+  std::vector<SoilLine> lines;
+  for (const ParticlePlatePoint& point : press_particles(a.test)) {
+    const std::string where = text("plate, %g kPa", point.pressure_pa / kMilli);
+    const double bekker = soil.k_c / std::min(a.test.length_m, a.test.width_m) + soil.k_phi;
+    const double depth = std::pow(point.pressure_pa / bekker, 1.0 / soil.exponent);
+    lines.push_back({where, "depth_mm", point.depth_m() * kMilli, "%.2f",
+                     std::max(depth, point.pressure_pa / soil.elastic_pa_per_m) * kMilli,
+                     SoilLine::Error::kRelative});
+    lines.push_back({where, "rut_mm", point.rut_m * kMilli, "%.2f",
+                     std::max(0.0, depth - point.pressure_pa / soil.elastic_pa_per_m) * kMilli,
+                     SoilLine::Error::kNone});
+    lines.push_back({where, "raised_cm3", point.raised_m3 * 1e6, "%.1f"});
+    lines.push_back({where, "stiffness_pa_per_m", point.stiffness_pa_per_m, "%.3g",
+                     soil.elastic_pa_per_m, SoilLine::Error::kNone});
+  }
+  const ParticleDrag drag = drag_over_particles(a.test);
+  constexpr double kDegrees = 57.29577951308232;
+  lines.push_back({"block", "friction_deg", std::atan(drag.friction) * kDegrees, "%.1f",
+                   soil.friction_deg, SoilLine::Error::kNone});
+  lines.push_back({"block", "shear_modulus_mm", drag.way_to_most_m * kMilli, "%.2f",
+                   soil.shear_modulus_m * kMilli, SoilLine::Error::kNone});
+  return finish(
+      a.common, "match",
+      text("particles of radius %g mm beside ", a.test.particle.radius_m * kMilli) + soil.name,
+      soil.name.c_str(), lines);
+}
+
+}  // namespace
+
+void add_soil_match(CLI::App& soil, std::function<int()>& action) {
+  const auto a = std::make_shared<MatchArguments>();
+  CLI::App* command = soil.add_subcommand(
+      "match", "What soil a bed of particles is like: a plate pressed in, a block dragged");
+  a->common.preset = "gravel";
+  add_soil_options(*command, a->common);
+  a->test.particle.radius_m = 0.0075;
+  command->add_option("--particle-radius", a->test.particle.radius_m, "m");
+  command->add_option("--particle-friction", a->test.particle.friction, "coefficient");
+  command->add_option("--depth", a->test.depth_m, "of the bed of particles, m");
+  command->add_option("--length", a->test.length_m, "of plate and block, m");
+  command->add_option("--width", a->test.width_m, "m");
+  command->add_option("--load", a->test.load_pa, "below the block, Pa");
+  command->add_option("--seed", a->test.seed, "of the particles' layout");
+  command->add_option("--beds", a->test.beds, "of particles, for means");
+  command->callback([a, &action] { action = [a] { return run_match(*a); }; });
+}
+
+}  // namespace screed

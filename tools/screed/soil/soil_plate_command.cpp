@@ -1,0 +1,155 @@
+// `screed soil plate`: pressure of a plate beside Bekker's law.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "host_sim/core/random.h"
+#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/soil_validation/check_range.h"
+#include "host_sim/soil_validation/plate_press.h"
+#include "tools/screed/soil/soil_common.h"
+
+namespace screed {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct PlateArguments {
+  SoilArguments common;
+  PlateTest test;
+  double yaw_deg = 0.0;
+  double depth_m = 0.02;
+  double lift_m = 0.0;
+  int offsets = 0;
+  uint64_t seed = 1;
+};
+
+constexpr double kPlateDepths_m[] = {0.001, 0.002, 0.005, 0.01, 0.015, 0.02};
+
+/// What Chrono's SCM with its default rays adds to Bekker's pressure, percent (docs/soil.md).
+std::optional<double> peer_pressure(const PlateArguments& a, double depth_m) {
+  const PlateTest& t = a.test;
+  if (!a.common.as_peer() || a.common.cell_m != 0.005 || t.round || t.length_m != 0.05 ||
+      t.width_m != 0.05) {
+    return std::nullopt;
+  }
+  constexpr std::pair<double, double> kExcess[] = {
+      {0.001, 373.0}, {0.005, 145.0}, {0.01, 118.0}, {0.02, 105.0}};
+  for (const auto& [depth, percent] : kExcess) {
+    if (std::abs(depth - depth_m) < 1e-9) {
+      return bekker_pressure(t, depth) * (1.0 + 0.01 * percent);
+    }
+  }
+  return std::nullopt;
+}
+
+void chart_plate(const PlateArguments& a, const std::vector<PlatePoint>& run) {
+  Chart chart;
+  chart.title = "A plate in " + a.common.soil().name + ", pressure and depth";
+  chart.x_label = "depth, mm";
+  chart.y_label = "pressure, kPa";
+  ChartSeries engine{.label = "Screed", .points = {}, .markers = false};
+  ChartSeries closed{.label = "Bekker", .points = {}, .markers = true};
+  ChartSeries peer{.label = "Chrono, default rays", .points = {}, .markers = true};
+  for (size_t i = 0; i < run.size(); i += std::max<size_t>(1, run.size() / 200)) {
+    engine.points.push_back({run[i].depth_m * kMilli, run[i].pressure_pa / kMilli});
+  }
+  for (const double depth : kPlateDepths_m) {
+    if (depth > a.depth_m + 1e-9) break;
+    closed.points.push_back({depth * kMilli, bekker_pressure(a.test, depth) / kMilli});
+    if (const auto p = peer_pressure(a, depth))
+      peer.points.push_back({depth * kMilli, *p / kMilli});
+  }
+  chart.series = {engine, closed};
+  if (!peer.points.empty()) chart.series.push_back(peer);
+  write_chart(a.common.chart("soil_plate.svg"), chart);
+}
+
+int run_plate(PlateArguments a) {
+  a.test.soil = a.common.soil();
+  a.test.options = a.common.options();
+  a.test.cell_m = a.common.cell_m;
+  a.test.step_s = a.common.step_s;
+  a.test.yaw_rad = a.yaw_deg * kDegree;
+  a.test.way_m = {a.depth_m};
+  if (a.lift_m > 0.0) a.test.way_m.push_back(a.depth_m - a.lift_m);
+  check_range("plate", "offsets", a.offsets, 0, 10000);
+  const std::vector<PlatePoint> run = press_plate(a.test);
+  std::vector<SoilLine> lines;
+  std::vector<double> depths;
+  for (const double depth : kPlateDepths_m) {
+    if (depth < a.depth_m - 1e-9) depths.push_back(depth);
+  }
+  depths.push_back(a.depth_m);
+  for (const double depth : depths) {
+    const PlatePoint& point = at_depth(run, depth);
+    lines.push_back({text("depth %g mm", point.depth_m * kMilli), "pressure_pa", point.pressure_pa,
+                     "%.1f", point.bekker_pa, SoilLine::Error::kRelative, peer_pressure(a, depth)});
+  }
+  const double b = a.test.round ? 0.5 * a.test.length_m : std::min(a.test.length_m, a.test.width_m);
+  lines.push_back({text("depth %g mm", a.depth_m * kMilli), "b_mm",
+                   at_depth(run, a.depth_m).b_m * kMilli, "%.3f", b * kMilli,
+                   SoilLine::Error::kRelative});
+  if (a.lift_m > 0.0) {
+    const PlatePoint& end = run.back();
+    const double deepest = bekker_pressure(a.test, a.depth_m);
+    lines.push_back({text("lifted %g mm", a.lift_m * kMilli), "pressure_pa", end.pressure_pa,
+                     "%.1f", std::max(0.0, deepest - a.test.soil.elastic_pa_per_m * a.lift_m),
+                     SoilLine::Error::kRelative});
+  }
+  if (a.offsets > 0) {
+    // Greatest error over places between the nodes, and over these and any yaw.
+    WorldRandom random(a.seed, "plate");
+    for (const bool turned : {false, true}) {
+      double worst = 0.0;
+      double worst_b = 0.0;
+      for (int i = 0; i < a.offsets; ++i) {
+        PlateTest test = a.test;
+        test.offset_x_m = a.common.cell_m * random.uniform();
+        test.offset_y_m = a.common.cell_m * random.uniform();
+        if (turned) test.yaw_rad = random.uniform(0.0, std::numbers::pi);
+        for (const PlatePoint& point : press_plate(test)) {
+          if (point.depth_m < 1e-3 || point.depth_m > a.depth_m) continue;
+          worst = std::max(worst, std::abs(point.pressure_pa / point.bekker_pa - 1.0));
+          worst_b = std::max(worst_b, std::abs(point.b_m / b - 1.0));
+          if (point.depth_m >= a.depth_m) break;
+        }
+      }
+      const std::string where =
+          std::to_string(a.offsets) + (turned ? " places and yaws" : " places");
+      lines.push_back({where, "worst_pressure_percent", 100.0 * worst, "%.3f"});
+      lines.push_back({where, "worst_b_percent", 100.0 * worst_b, "%.3f"});
+    }
+  }
+  if (!a.common.charts.empty()) chart_plate(a, run);
+  const std::string shape = a.test.round ? text("disc of %g mm", a.test.length_m * kMilli)
+                                         : text("plate of %g", a.test.length_m * kMilli) +
+                                               text(" x %g mm", a.test.width_m * kMilli);
+  return finish(a.common, "plate",
+                a.test.soil.name + ", " + shape + text(", grid %g mm", a.common.cell_m * kMilli),
+                "Bekker", lines);
+}
+
+}  // namespace
+
+void add_soil_plate(CLI::App& soil, std::function<int()>& action) {
+  const auto a = std::make_shared<PlateArguments>();
+  CLI::App* command = soil.add_subcommand("plate", "Press a plate in, beside Bekker's law");
+  add_soil_options(*command, a->common);
+  command->add_flag("--round", a->test.round, "a disc; --length is its diameter");
+  command->add_option("--length", a->test.length_m, "m");
+  command->add_option("--width", a->test.width_m, "m");
+  command->add_option("--depth", a->depth_m, "m");
+  command->add_option("--lift", a->lift_m, "by so much afterwards, m");
+  command->add_option("--speed", a->test.speed_m_per_s, "m/s");
+  command->add_option("--offset-x", a->test.offset_x_m, "of the plate against the grid, m");
+  command->add_option("--offset-y", a->test.offset_y_m, "m");
+  command->add_option("--yaw", a->yaw_deg, "degrees");
+  command->add_option("--offsets", a->offsets, "worst error over so many random places and yaws");
+  command->add_option("--seed", a->seed, "of these");
+  command->add_option("--charts", a->common.charts, "folder for soil_plate.svg");
+  command->callback([a, &action] { action = [a] { return run_plate(*a); }; });
+}
+
+}  // namespace screed

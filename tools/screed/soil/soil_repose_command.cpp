@@ -1,0 +1,49 @@
+// `screed soil repose`: a tower collapses to its angle of repose.
+#include <memory>
+
+#include "host_sim/soil_validation/repose_pile.h"
+#include "tools/screed/soil/soil_common.h"
+
+namespace screed {
+namespace {
+
+struct ReposeArguments {
+  SoilArguments common;
+  ReposeTest test;
+};
+
+int run_repose(ReposeArguments a) {
+  a.test.soil = a.common.soil();
+  a.test.cell_m = a.common.cell_m;
+  const ReposeResult result = collapse(a.test);
+  const double repose = a.test.soil.repose_deg;
+  return finish(a.common, "repose",
+                a.test.soil.name + text(", a tower of %g mm", a.test.height_m * kMilli) +
+                    text(", grid %g mm", a.common.cell_m * kMilli),
+                "must be",
+                {{"along the axes", "slope_deg", result.slope_axis_deg, "%.2f", repose,
+                  SoilLine::Error::kRelative},
+                 {"along diagonals", "slope_deg", result.slope_diagonal_deg, "%.2f", repose,
+                  SoilLine::Error::kRelative},
+                 {"steepest pair", "excess_units", result.excess_units, "%.3f", 1.0},
+                 {"", "volume_error", static_cast<double>(result.volume_error), "%.0f", 0.0},
+                 {"", "moves", static_cast<double>(result.moves), "%.0f"}});
+}
+
+}  // namespace
+
+void add_soil_repose(CLI::App& soil, std::function<int()>& action) {
+  const auto a = std::make_shared<ReposeArguments>();
+  CLI::App* command = soil.add_subcommand("repose", "Let a tower collapse to its angle of repose");
+  add_soil_options(*command, a->common);
+  command->add_option("--size", a->test.size_m, "of the bed's side, m");
+  command->add_option("--radius", a->test.radius_m, "of the tower, m");
+  command->add_option("--height", a->test.height_m, "of the tower, m");
+  command->add_option("--tap", a->test.tap_m, "a plate taps the tower first, m; 0: untouched");
+  command->add_option("--x", a->test.centre_x_m, "of its middle, m");
+  command->add_option("--y", a->test.centre_y_m, "m");
+  command->add_flag("--wrap", a->test.wrap, "the bed continues at its other side");
+  command->callback([a, &action] { action = [a] { return run_repose(*a); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,133 @@
+// `screed soil robot`: CPU time a step, volume balance, slopes.
+#include <cmath>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "host_sim/soil_validation/check_range.h"
+#include "host_sim/soil_validation/repose_pile.h"
+#include "host_sim/soil_validation/soil_robot.h"
+#include "tools/screed/soil/soil_common.h"
+
+namespace screed {
+namespace {
+
+struct RobotArguments {
+  SoilArguments common;
+  double size_m = 2.0;
+  bool wrap = false;
+  double duration_s = 5.0;
+  double left_m_per_s = 0.2;
+  double right_m_per_s = 0.2;
+  double relief_m = 0.0;
+  double x_m = -0.5;
+  double y_m = 0.0;
+};
+
+/// Milliseconds a step of Chrono's SCM with its default rays (docs/soil.md).
+std::optional<double> peer_step_us(const RobotArguments& a) {
+  if (!a.common.as_peer() || a.size_m != 2.0) return std::nullopt;
+  constexpr struct {
+    double cell_m;
+    double plain_us;
+    double bulldozing_us;
+  } kPeer[] = {{0.01, 93.5, 366.0}, {0.005, 237.0, 699.0}, {0.0025, 926.0, 1770.0}};
+  for (const auto& row : kPeer) {
+    if (std::abs(row.cell_m - a.common.cell_m) < 1e-9) {
+      return a.common.bulldozing ? row.bulldozing_us : row.plain_us;
+    }
+  }
+  return std::nullopt;
+}
+
+int run_robot(const RobotArguments& a) {
+  check_range("robot", "cell", a.common.cell_m, 0.0005, 0.1);
+  check_range("robot", "size", a.size_m, 0.5, 20.0);
+  check_range("robot", "duration", a.duration_s, 0.01, 1e5);
+  check_range("robot", "step", a.common.step_s, 1e-5, 0.02);
+  check_range("robot", "relief", a.relief_m, 0.0, 0.1);
+  const int nodes = static_cast<int>(std::lround(a.size_m / a.common.cell_m)) + (a.wrap ? 0 : 1);
+  const double period = nodes * a.common.cell_m;
+  const auto waves = [&](double x, double y) {
+    const double k = 2.0 * std::numbers::pi / period;
+    return 0.5 * a.relief_m * (std::sin(2.0 * k * x) * std::cos(3.0 * k * y));
+  };
+  const SoilParameters soil = a.common.soil();
+  SoilBed bed(HeightField::from_function(nodes, nodes, a.common.cell_m, a.wrap, waves), soil,
+              a.common.options());
+  SoilRobot robot(bed, {}, a.x_m, a.y_m);
+  const double dt = a.common.step_s;
+  const auto steps = static_cast<int64_t>(std::llround(a.duration_s / dt));
+  const int64_t untimed = steps / 5;
+  std::clock_t begin = std::clock();
+  const double level = robot.position().z();
+  double load = 0.0;
+  double way = 0.0;
+  for (int64_t i = 0; i < steps; ++i) {
+    if (i == untimed) begin = std::clock();
+    robot.step(a.left_m_per_s, a.right_m_per_s, dt);
+    if (i >= untimed) load += robot.load_n();
+    way += dt * robot.velocity().head<2>().norm();
+  }
+  const auto timed = static_cast<double>(steps - untimed);
+  const double us = static_cast<double>(std::clock() - begin) * 1e6 / CLOCKS_PER_SEC / timed;
+  const Eigen::Vector3d place = robot.position();
+  std::vector<SoilLine> lines = {
+      {"", "step_us", us, "%.2f", std::nullopt, SoilLine::Error::kNone, peer_step_us(a)},
+      {"", "mean_load_n", load / timed, "%.4f"},
+      {"", "lower_by_mm", (level - place.z()) * kMilli, "%.3f"},
+      {"", "way_m", way, "%.4f"},
+      {"", "away_m", std::hypot(place.x() - a.x_m, place.y() - a.y_m), "%.4f"},
+      {"", "speed_m_per_s", robot.velocity().dot(robot.rotation().col(0)), "%.4f"},
+      {"", "volume_error", static_cast<double>(bed.balance().error()), "%.0f", 0.0},
+      {"", "volume_in_hand", static_cast<double>(bed.balance().in_hand), "%.0f"},
+      {"", "compacted_cm3",
+       static_cast<double>(bed.balance().compacted) * kHeightUnit_m * a.common.cell_m *
+           a.common.cell_m * 1e6,
+       "%.3f"},
+  };
+  const std::string hash = surface_hash(bed.surface());
+  if (a.common.avalanches) {
+    bed.settle();
+    lines.push_back({"settled", "excess_units", repose_excess_units(bed.surface(), soil.repose_deg),
+                     "%.3f", 1.0});
+    lines.push_back(
+        {"settled", "volume_error", static_cast<double>(bed.balance().error()), "%.0f", 0.0});
+  }
+  if (a.common.json) {
+    const nlohmann::json out = {{"test", "robot"},
+                                {"soil", soil_json(a.common)},
+                                {"steps", steps},
+                                {"heights_hash", hash},
+                                {"results", to_json(lines)}};
+    std::cout << out.dump(2) << "\n";
+    return 0;
+  }
+  print_table(soil.name + text(", robot on a bed of %g m", a.size_m) +
+                  text(", grid %g mm", a.common.cell_m * kMilli) +
+                  text(", %g s in steps", a.duration_s) + text(" of %g ms", dt * kMilli),
+              "must be", lines);
+  std::cout << "\nheights " << hash << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void add_soil_robot(CLI::App& soil, std::function<int()>& action) {
+  const auto a = std::make_shared<RobotArguments>();
+  CLI::App* command =
+      soil.add_subcommand("robot", "Drive a four-wheeled body: CPU time a step, volume balance");
+  add_soil_options(*command, a->common);
+  command->add_option("--size", a->size_m, "of the bed's side, m");
+  command->add_flag("--wrap", a->wrap, "the bed continues at its other side");
+  command->add_option("--relief", a->relief_m, "of waves on the bed, m");
+  command->add_option("--duration", a->duration_s, "s; the first fifth is not timed");
+  command->add_option("--left", a->left_m_per_s, "rim speed of the left wheels, m/s");
+  command->add_option("--right", a->right_m_per_s, "rim speed of the right wheels, m/s");
+  command->add_option("--x", a->x_m, "start, m");
+  command->add_option("--y", a->y_m, "start, m");
+  command->callback([a, &action] { action = [a] { return run_robot(*a); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,186 @@
+// `screed soil wheel`: a wheel beside its limit and beside measurements.
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/soil_validation/wheel_testbed.h"
+#include "paths.h"
+#include "tools/screed/soil/soil_common.h"
+
+namespace screed {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct WheelArguments {
+  SoilArguments common;
+  WheelTest test;
+  double yaw_deg = 0.0;
+  std::vector<double> slips = {0.0, 0.2, 0.4};
+  std::string measured;
+  std::string cases = "ding2011_smooth";
+  bool fit = false;
+};
+
+/// Chrono's SCM (exact rays) for Ding's wheel: slip, drawbar pull N, sinkage m (docs/soil.md).
+struct PeerWheel {
+  double slip;
+  double drawbar_pull_n;
+};
+constexpr PeerWheel kPeerDing[] = {{0.1, 11.2}, {0.2, 23.9}, {0.3, 33.8}, {0.4, 41.2}, {0.6, 49.2}};
+
+void chart_wheel(const WheelArguments& a, const char* file, const std::string& title,
+                 const char* y_label, const std::vector<ChartSeries>& series) {
+  Chart chart;
+  chart.title = title;
+  chart.x_label = "slip";
+  chart.y_label = y_label;
+  chart.series = series;
+  write_chart(a.common.chart(file), chart);
+}
+
+std::string wheel_words(const WheelArguments& a) {
+  const RollingWheel& w = a.test.wheel;
+  return a.common.soil().name + text(", wheel r %g", w.radius_m * kMilli) +
+         text(" mm, width %g mm", w.width_m * kMilli) + text(", load %g N", w.load_n) +
+         text(", grid %g mm", a.common.cell_m * kMilli) +
+         text(", step %g ms", a.common.step_s * kMilli) + ", normal stress " +
+         a.common.normal_stress;
+}
+
+int run_measured(WheelArguments a) {
+  const std::vector<MeasuredWheel> rows = read_measured_wheels(a.measured, a.cases);
+  const NormalStress stress = a.test.options.normal_stress;
+  if (a.fit) a.test.soil.slip_sinkage = fit_slip_sinkage(rows, a.test.soil, stress, 0.2, 0.6);
+  std::vector<SoilLine> lines;
+  ChartSeries sinkage[3] = {{"Screed", {}, true}, {"limit", {}, false}, {"measured", {}, true}};
+  ChartSeries pull[4] = {
+      {"Screed", {}, true}, {"limit", {}, false}, {"measured", {}, true}, {"Chrono", {}, true}};
+  if (a.fit) {
+    lines.push_back({"fitted", "slip_sinkage", a.test.soil.slip_sinkage, "%.2f"});
+  }
+  for (const MeasuredWheel& row : rows) {
+    a.test.wheel = row.wheel;
+    const WheelPass pass = run_wheel(a.test).passes[0];
+    const WheelReaction limit = wheel_limit(row.wheel, a.test.soil, stress);
+    const std::string where = text("slip %g", row.wheel.slip);
+    std::optional<double> peer;
+    for (const PeerWheel& known : kPeerDing) {
+      if (a.cases == "ding2011_smooth" && std::abs(known.slip - row.wheel.slip) < 1e-9) {
+        peer = known.drawbar_pull_n;
+        pull[3].points.push_back({known.slip, *peer});
+      }
+    }
+    lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.2f", row.sinkage_m * kMilli,
+                     SoilLine::Error::kRelative, peer ? std::optional(8.65) : std::nullopt});
+    lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.1f", row.drawbar_pull_n,
+                     SoilLine::Error::kRelative, peer});
+    lines.push_back(
+        {where, "torque_nm", pass.torque_nm, "%.2f", row.torque_nm, SoilLine::Error::kRelative});
+    sinkage[0].points.push_back({row.wheel.slip, pass.sinkage_m * kMilli});
+    sinkage[1].points.push_back({row.wheel.slip, limit.sinkage_m * kMilli});
+    sinkage[2].points.push_back({row.wheel.slip, row.sinkage_m * kMilli});
+    pull[0].points.push_back({row.wheel.slip, pass.drawbar_pull_n});
+    pull[1].points.push_back({row.wheel.slip, limit.drawbar_pull_n});
+    pull[2].points.push_back({row.wheel.slip, row.drawbar_pull_n});
+  }
+  if (!a.common.charts.empty()) {
+    chart_wheel(a, "soil_measured_sinkage.svg", "Sinkage of a wheel, measured and simulated",
+                "sinkage, mm", {sinkage[0], sinkage[1], sinkage[2]});
+    std::vector<ChartSeries> pulls = {pull[0], pull[1], pull[2]};
+    if (!pull[3].points.empty()) pulls.push_back(pull[3]);
+    chart_wheel(a, "soil_measured_pull.svg", "Drawbar pull of a wheel, measured and simulated",
+                "drawbar pull, N", pulls);
+  }
+  return finish(a.common, "wheel", wheel_words(a), "measured", lines);
+}
+
+int run_wheel_command(WheelArguments a) {
+  a.test.soil = a.common.soil();
+  a.test.options = a.common.options();
+  a.test.cell_m = a.common.cell_m;
+  a.test.step_s = a.common.step_s;
+  a.test.yaw_rad = a.yaw_deg * kDegree;
+  if (!a.measured.empty()) return run_measured(a);
+  std::vector<SoilLine> lines;
+  ChartSeries sinkage[2] = {{"Screed", {}, true}, {"limit", {}, false}};
+  ChartSeries pull[2] = {{"Screed", {}, true}, {"limit", {}, false}};
+  for (const double slip : a.slips) {
+    a.test.wheel.slip = slip;
+    const WheelTestResult result = run_wheel(a.test);
+    RollingWheel rolling = a.test.wheel;
+    for (size_t i = 0; i < result.passes.size(); ++i) {
+      const WheelPass& pass = result.passes[i];
+      std::string where = text("slip %g", slip);
+      if (result.passes.size() > 1) where += ", pass " + std::to_string(i + 1);
+      const WheelReaction limit = wheel_limit(rolling, a.test.soil, a.test.options.normal_stress);
+      rolling.rut_m = limit.rut_m;
+      // The limit is that of soil that stays where it is.
+      const auto unmoved = [&](double value) {
+        return a.common.bulldozing ? std::nullopt : std::optional(value);
+      };
+      lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.4f",
+                       unmoved(limit.sinkage_m * kMilli), SoilLine::Error::kRelative});
+      lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.5f",
+                       unmoved(limit.drawbar_pull_n), SoilLine::Error::kAbsolute});
+      lines.push_back({where, "torque_nm", pass.torque_nm, "%.6f", unmoved(limit.torque_nm),
+                       SoilLine::Error::kAbsolute});
+      lines.push_back({where, "rut_mm", pass.rut_m * kMilli, "%.4f", unmoved(limit.rut_m * kMilli),
+                       SoilLine::Error::kRelative});
+      lines.push_back({where, "ripple_mm", pass.ripple_m * kMilli, "%.4f"});
+      if (i > 0) continue;
+      sinkage[0].points.push_back({slip, pass.sinkage_m * kMilli});
+      pull[0].points.push_back({slip, pass.drawbar_pull_n});
+      sinkage[1].points.push_back({slip, limit.sinkage_m * kMilli});
+      pull[1].points.push_back({slip, limit.drawbar_pull_n});
+    }
+    lines.push_back({text("slip %g", slip), "volume_error",
+                     static_cast<double>(result.balance.error()), "%.0f", 0.0});
+  }
+  if (!a.common.charts.empty()) {
+    const std::string how = a.common.soil().name + ", normal stress " + a.common.normal_stress;
+    chart_wheel(a, "soil_wheel_sinkage.svg", "Sinkage of a wheel: " + how, "sinkage, mm",
+                {sinkage[0], sinkage[1]});
+    chart_wheel(a, "soil_wheel_pull.svg", "Drawbar pull of a wheel: " + how, "drawbar pull, N",
+                {pull[0], pull[1]});
+  }
+  return finish(a.common, "wheel", wheel_words(a), "limit", lines);
+}
+
+}  // namespace
+
+void add_soil_wheel(CLI::App& soil, std::function<int()>& action) {
+  const auto a = std::make_shared<WheelArguments>();
+  CLI::App* command = soil.add_subcommand(
+      "wheel", "Roll a wheel at imposed slip, beside the limit of an infinitely fine grid");
+  add_soil_options(*command, a->common);
+  command->add_option("--slip", a->slips, "one or several, -1..0.99")->delimiter(',');
+  command->add_option("--load", a->test.wheel.load_n, "N");
+  command->add_option("--radius", a->test.wheel.radius_m, "m");
+  command->add_option("--width", a->test.wheel.width_m, "m");
+  command->add_option("--mass", a->test.mass_kg, "that moves up and down, kg");
+  command->add_option("--speed", a->test.speed_m_per_s, "m/s");
+  command->add_option("--duration", a->test.duration_s, "of a pass, s");
+  command->add_option("--offset", a->test.offset_m, "of the track against the grid, m");
+  command->add_option("--yaw", a->yaw_deg, "of the track, degrees");
+  command->add_option("--passes", a->test.passes, "over the same track");
+  CLI::Option* measured =
+      command->add_option("--measured", a->measured,
+                          "beside measurements: a CSV file, by default Ding's wheel of 2011");
+  measured->expected(0, 1)->default_str(std::string(kDataFolder) +
+                                        "/soil/single_wheel_ding2011.csv");
+  command->add_option("--case", a->cases, "rows whose case_id begins so");
+  command->add_flag("--fit", a->fit, "fit --slip-sinkage to the measured sinkage first");
+  command->add_option("--charts", a->common.charts, "folder for SVG charts");
+  command->callback([a, measured, &action] {
+    action = [a, measured] {
+      if (measured->count() > 0 && a->measured.empty()) {
+        a->measured = std::string(kDataFolder) + "/soil/single_wheel_ding2011.csv";
+      }
+      return run_wheel_command(*a);
+    };
+  });
+}
+
+}  // namespace screed

@@ -1,0 +1,555 @@
+// Options and output of `screed grid`.
+#include "tools/screed/terrain/grid_command.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "host_sim/core/atomic_file.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/grid/grid_figures.h"
+#include "host_sim/grid/grid_recording.h"
+#include "host_sim/grid/grid_run.h"
+#include "host_sim/grid/grid_scene.h"
+#include "host_sim/grid/grid_sweep.h"
+#include "host_sim/grid/grid_text_view.h"
+#include "host_sim/render/scene/povray.h"
+#include "tools/screed/cli/interrupt.h"
+
+namespace screed {
+namespace {
+
+struct GridOptions {
+  GridConfig config;
+  std::string algorithm = "probabilistic";
+  int64_t seed = 1;
+  int64_t max_cycles = 1'000'000;
+  std::string size;
+  std::optional<double> mean;
+  std::optional<double> probability;
+  std::string stop = "level";
+  std::optional<double> epsilon;
+  std::string border = "walls";
+  std::string fitness_base = "executed";
+  std::string follow_slope;
+  std::string turn_back;
+  int runs = 1;
+  int threads = 0;
+  std::string figure;
+  std::string out;
+  std::string record;
+  std::string replay;
+  std::string render;
+  int render_width = 1600;
+  std::string curve;
+  double speed = 1000.0;
+  bool headless = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// "32" or "40x30" as width and height.
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0;
+  int height = 0;
+  int end = 0;
+  const auto whole = [&] { return static_cast<size_t>(end) == text.size(); };
+  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &end) == 2 && whole()) {
+    return {width, height};
+  }
+  if (std::sscanf(text.c_str(), "%d%n", &width, &end) == 1 && whole()) return {width, width};
+  throw InputError("grid: size = " + text + "; allowed is cells a side, or WIDTHxHEIGHT");
+}
+
+template <class Value>
+Value choice(const char* name, const std::string& text,
+             std::initializer_list<std::pair<const char*, Value>> choices) {
+  std::string all;
+  for (const auto& [word, value] : choices) {
+    if (text == word) return value;
+    all += (all.empty() ? "" : ", ") + std::string(word);
+  }
+  throw InputError(std::string("grid: ") + name + " = " + text + "; allowed is " + all);
+}
+
+GridConfig config_of(const GridOptions& options) {
+  GridConfig config = options.config;
+  config.algorithm = grid_algorithm(options.algorithm);
+  if (options.seed < 0) {
+    throw InputError("grid: seed = " + std::to_string(options.seed) + "; allowed is 0 or more");
+  }
+  config.seed = static_cast<uint64_t>(options.seed);
+  if (options.max_cycles < 1) {
+    throw InputError("grid: max-cycles = " + std::to_string(options.max_cycles) +
+                     "; allowed is at least 1");
+  }
+  config.max_cycles = static_cast<uint64_t>(options.max_cycles);
+  config.stop.measure = choice<GridStop>("stop", options.stop,
+                                         {{"level", GridStop::kLevel},
+                                          {"gradient", GridStop::kGradient},
+                                          {"deviation", GridStop::kDeviation}});
+  config.stop.epsilon =
+      options.epsilon.value_or(config.stop.measure == GridStop::kDeviation  ? 0.5
+                               : config.stop.measure == GridStop::kGradient ? 1.5
+                                                                            : 1.0);
+  config.noise.border = choice<GridBorder>(
+      "border", options.border, {{"walls", GridBorder::kWalls}, {"torus", GridBorder::kTorus}});
+  config.fitness_base = choice<FitnessBase>(
+      "fitness-base", options.fitness_base,
+      {{"executed", FitnessBase::kExecuted}, {"attempted", FitnessBase::kAttempted}});
+  const auto yes_or_no = [](const char* name, const std::string& text) {
+    return choice<bool>(name, text, {{"yes", true}, {"no", false}});
+  };
+  if (!options.follow_slope.empty()) {
+    config.follows_slope = yes_or_no("follow-slope", options.follow_slope);
+  }
+  if (!options.turn_back.empty()) config.turns_back = yes_or_no("turn-back", options.turn_back);
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_size(options.size);
+    config.noise.width = config.image_width = width;
+    config.noise.height = config.image_height = height;
+    // Zero means "as the image" in the configuration only.
+    if (width == 0 || height == 0) config.image_width = config.image_height = -1;
+  }
+  if (options.mean) {
+    config.noise.mean = *options.mean;
+    config.image_mean = options.mean;
+  }
+  if (options.probability) config.p_pick_up = config.p_deposit = *options.probability;
+  return config;
+}
+
+/// Where a live view is drawn: again and again over itself.
+class LiveView {
+ public:
+  LiveView(std::string title, int lowest, int highest, double speed)
+      : cycles_a_frame_(std::max(1.0, speed / kFrames_hz)),
+        frame_time_(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+            std::chrono::duration<double>(cycles_a_frame_ / speed))) {
+    options_.title = std::move(title);
+    options_.lowest = lowest;
+    options_.highest = highest;
+    const char* colors = std::getenv("COLORTERM");
+    const std::string term = colors == nullptr ? "" : colors;
+    options_.true_color = term == "truecolor" || term == "24bit";
+    std::fputs("\033[?25l\033[?7l", stdout);  // no cursor, long lines are cut
+    next_ = std::chrono::steady_clock::now();
+  }
+  LiveView(const LiveView&) = delete;
+  LiveView& operator=(const LiveView&) = delete;
+  ~LiveView() {
+    std::fputs("\033[?25h\033[?7h", stdout);
+    std::fflush(stdout);
+  }
+
+  [[nodiscard]] uint64_t cycles_a_frame() const { return static_cast<uint64_t>(cycles_a_frame_); }
+
+  void show(const GridFrame& frame, double progress) {
+    winsize size{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
+      options_.columns = size.ws_col;
+      options_.rows = size.ws_row;
+    }
+    options_.progress = progress;
+    std::string text;
+    if (lines_ > 0) text = "\033[" + std::to_string(lines_) + "A";
+    text += text_view(frame, options_) + "\033[J";
+    lines_ = text_view_lines(frame, options_);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fflush(stdout);
+    next_ += frame_time_;
+    std::this_thread::sleep_until(next_);
+  }
+
+ private:
+  static constexpr double kFrames_hz = 20.0;
+  TextViewOptions options_;
+  double cycles_a_frame_;
+  std::chrono::steady_clock::duration frame_time_;
+  std::chrono::steady_clock::time_point next_;
+  int lines_ = 0;
+};
+
+bool is_live(const GridOptions& options) {
+  return !options.headless && !options.json && !options.quiet && isatty(STDOUT_FILENO) == 1;
+}
+
+std::string percent(double share) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
+  return text;
+}
+
+nlohmann::ordered_json json_of(const GridConfig& config) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, value] : describe(config)) json[name] = value;
+  return json;
+}
+
+void print_json(const nlohmann::ordered_json& json) {
+  // A path need not be UTF-8; JSON must.
+  std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+}
+
+void print_run(const GridRun& run, bool json) {
+  const GridResult result = run.result();
+  const GridWorld& world = run.world();
+  if (json) {
+    print_json({{"level", result.level},
+                {"cycles", result.cycles},
+                {"units", result.units},
+                {"least_units", result.least_units},
+                {"distance", result.distance()},
+                {"progress", run.progress().progress},
+                {"lowest", world.lowest()},
+                {"highest", world.highest()},
+                {"deviation", world.deviation()},
+                {"config", json_of(run.config())}});
+    return;
+  }
+  std::printf("%s, seed %llu: %s\n", name_of(run.config().algorithm),
+              static_cast<unsigned long long>(run.config().seed),
+              result.level ? "level" : "not level");
+  std::printf("  %-22s %12llu\n", "cycles", static_cast<unsigned long long>(result.cycles));
+  std::printf("  %-22s %12llu\n", "units moved", static_cast<unsigned long long>(result.units));
+  std::printf("  %-22s %12llu\n", "fewest possible",
+              static_cast<unsigned long long>(result.least_units));
+  std::printf("  %-22s %12.0f cells\n", "distance", result.distance());
+  std::printf("  %-22s %12s\n", "leveled", percent(run.progress().progress).c_str());
+  std::printf("  %-22s %9u to %u, deviation %.3f\n", "heights", world.lowest(), world.highest(),
+              world.deviation());
+}
+
+/// Points of the progress curve, ever farther apart.
+class CurveFile {
+ public:
+  explicit CurveFile(const std::string& path) : file_(path) {
+    file_.write("cycle,units,distance,progress\n");
+  }
+  void add(const GridRun& run, bool last) {
+    if (!last && run.cycles() < next_) return;
+    const GridProgress now = run.progress();
+    char line[120];
+    std::snprintf(line, sizeof line, "%llu,%llu,%.1f,%.6f\n",
+                  static_cast<unsigned long long>(now.cycle),
+                  static_cast<unsigned long long>(now.units), now.distance, now.progress);
+    file_.write(line);
+    next_ = std::max(now.cycle + 1, now.cycle + now.cycle / 50);
+  }
+  void finish() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+  uint64_t next_ = 0;
+};
+
+void render(const GridOptions& options, const std::vector<GridFrame>& frames) {
+  if (!render_scene(options.render, frames, options.render_width)) {
+    std::cerr << "note: povray is not installed; only the scene was written, beside "
+              << options.render << " (apt install povray)\n";
+  }
+}
+
+int run_one(const GridOptions& options, const std::string& version) {
+  const GridConfig config = config_of(options);
+  GridRun run(config);
+  std::vector<GridFrame> frames;
+  if (!options.render.empty()) {
+    frames.push_back(frame_of(run));
+    static_cast<void>(scene_text(frames));  // refuses before the run what it cannot draw after it
+  }
+  std::optional<GridRecorder> recorder;
+  if (!options.record.empty()) recorder.emplace(options.record, run, version);
+  std::optional<CurveFile> curve;
+  if (!options.curve.empty()) {
+    curve.emplace(options.curve);
+    curve->add(run, false);
+  }
+  {
+    std::optional<LiveView> view;
+    if (is_live(options)) {
+      view.emplace(std::string(name_of(run.config().algorithm)) + ", seed " +
+                       std::to_string(run.config().seed),
+                   run.world().lowest(), run.world().highest(), options.speed);
+      view->show(frame_of(run), run.progress().progress);
+    }
+    while (!run.finished() && !interrupted()) {
+      run.cycle();
+      if (recorder) recorder->add_cycle(run);
+      if (curve) curve->add(run, false);
+      if (view && (run.finished() || run.cycles() % view->cycles_a_frame() == 0)) {
+        view->show(frame_of(run), run.progress().progress);
+      }
+    }
+  }
+  if (recorder) recorder->finish(run);
+  if (curve) {
+    curve->add(run, true);
+    curve->finish();
+  }
+  print_run(run, options.json);
+  if (!options.render.empty()) {
+    frames.push_back(frame_of(run));
+    render(options, frames);
+  }
+  return 0;
+}
+
+int run_replay(const GridOptions& options) {
+  GridReplay replay(options.replay);
+  std::vector<GridFrame> frames = {replay.frame()};
+  if (!options.render.empty()) static_cast<void>(scene_text(frames));
+  {
+    std::optional<LiveView> view;
+    if (is_live(options)) {
+      const auto& heights = replay.frame().terrain.heights;
+      const auto [least, greatest] = std::minmax_element(heights.begin(), heights.end());
+      view.emplace(replay.value("algorithm") + ", seed " + replay.value("seed") + ", recorded",
+                   *least, *greatest, options.speed);
+    }
+    const auto show = [&] {
+      const double all = static_cast<double>(std::max<uint64_t>(1, replay.cycles()));
+      view->show(replay.frame(), static_cast<double>(replay.frame().cycle) / all);
+    };
+    if (view) show();
+    while (!replay.finished() && !interrupted()) {
+      replay.cycle();
+      if (view && (replay.finished() || replay.frame().cycle % view->cycles_a_frame() == 0)) show();
+    }
+  }
+  if (!replay.finished()) return 1;
+  const bool matches = replay.matches();
+  if (options.json) {
+    print_json({{"cycles", replay.cycles()},
+                {"units", replay.frame().units},
+                {"algorithm", replay.value("algorithm")},
+                {"seed", replay.value("seed")},
+                {"matches", matches}});
+  } else {
+    std::printf("%s, seed %s: %llu cycles, %llu units moved; the terrain at the end is %s\n",
+                replay.value("algorithm").c_str(), replay.value("seed").c_str(),
+                static_cast<unsigned long long>(replay.cycles()),
+                static_cast<unsigned long long>(replay.frame().units),
+                matches ? "the recorded one" : "NOT the recorded one");
+  }
+  if (!options.render.empty()) {
+    frames.push_back(replay.frame());
+    render(options, frames);
+  }
+  return matches ? 0 : 1;
+}
+
+SweepOptions sweep_options(const GridOptions& options) {
+  SweepOptions sweep;
+  sweep.runs = options.runs;
+  sweep.threads = options.threads;
+  sweep.stop = &interrupted();
+  if (!options.quiet && isatty(STDERR_FILENO) == 1) {
+    sweep.progress = [](size_t done, size_t all) {
+      std::fprintf(stderr, "\r%zu of %zu runs%s", done, all, done == all ? "\033[2K\r" : "");
+    };
+  }
+  return sweep;
+}
+
+void note_resumed(const SweepResult& sweep) {
+  if (sweep.resumed > 0) std::cerr << "note: " << sweep.resumed << " runs were there already\n";
+}
+
+int stopped_early(const SweepOptions& sweep) {
+  std::cerr << "\nstopped"
+            << (sweep.results.empty() ? "" : "; the same command goes on where it stopped") << "\n";
+  return 1;
+}
+
+void print_points(const std::vector<SweepPoint>& points,
+                  const std::vector<std::vector<GridResult>>& results) {
+  std::printf("%-28s %18s %18s %8s %8s %8s\n", "", "cycles", "units moved", "fewest", "x least",
+              "failed");
+  double least_cycles = cycles_of(results.front()).mean;
+  for (const auto& runs : results) least_cycles = std::min(least_cycles, cycles_of(runs).mean);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Summary cycles = cycles_of(results[i]);
+    const Summary units = units_of(results[i]);
+    double fewest = 0.0;
+    for (const GridResult& run : results[i]) {
+      fewest += static_cast<double>(run.least_units) / static_cast<double>(results[i].size());
+    }
+    std::printf("%-28s %9.0f +- %5.0f %9.0f +- %5.0f %8.0f %8.2f %4zu/%zu\n",
+                points[i].label.c_str(), cycles.mean, cycles.standard_error, units.mean,
+                units.standard_error, fewest, cycles.mean / least_cycles, failures_of(results[i]),
+                results[i].size());
+  }
+}
+
+void print_points_json(const std::vector<SweepPoint>& points,
+                       const std::vector<std::vector<GridResult>>& results) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Summary cycles = cycles_of(results[i]);
+    const Summary units = units_of(results[i]);
+    json.push_back({{"point", points[i].label},
+                    {"x", points[i].x},
+                    {"runs", results[i].size()},
+                    {"failures", failures_of(results[i])},
+                    {"cycles", cycles.mean},
+                    {"cycles_standard_error", cycles.standard_error},
+                    {"units", units.mean},
+                    {"units_standard_error", units.standard_error}});
+  }
+  print_json(json);
+}
+
+std::filesystem::path results_folder(const std::string& out) {
+  std::filesystem::path folder = out.empty() ? "out/grid" : out;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
+  return folder;
+}
+
+int run_figure(const GridOptions& options) {
+  const GridFigure figure = grid_figure(options.figure, config_of(options));
+  SweepOptions sweep_settings = sweep_options(options);
+  for (const SweepPoint& point : figure.points) check(point.config);
+  const std::filesystem::path folder = results_folder(options.out);
+  sweep_settings.results = folder / ("figure-" + figure.results_name + "_runs.csv");
+  const SweepResult sweep = run_sweep(figure.points, sweep_settings);
+  note_resumed(sweep);
+  if (!sweep.complete) return stopped_early(sweep_settings);
+  const FigureFiles files = write_figure(folder, figure, sweep.results);
+  if (options.json) {
+    print_points_json(figure.points, sweep.results);
+  } else {
+    print_points(figure.points, sweep.results);
+    std::printf("\n  runs    %s\n  table   %s\n  figure  %s\n", sweep_settings.results.c_str(),
+                files.csv.c_str(), files.svg.c_str());
+  }
+  return 0;
+}
+
+int run_many(const GridOptions& options) {
+  const GridConfig config = config_of(options);
+  const std::vector<SweepPoint> points = {{name_of(config.algorithm), 0.0, config}};
+  SweepOptions sweep_settings = sweep_options(options);
+  if (!options.out.empty()) {
+    check(config);
+    sweep_settings.results = results_folder(options.out) / "runs.csv";
+  }
+  const SweepResult sweep = run_sweep(points, sweep_settings);
+  note_resumed(sweep);
+  if (!sweep.complete) return stopped_early(sweep_settings);
+  if (options.json) {
+    print_points_json(points, sweep.results);
+  } else {
+    print_points(points, sweep.results);
+  }
+  return 0;
+}
+
+int run_command(GridOptions options, bool runs_given, const std::string& version) {
+  if (!(options.speed > 0.0)) throw InputError("grid: speed must be more than 0 cycles a second");
+  if (!options.render.empty()) check_picture_name(options.render);
+  if (options.render_width < 100 || options.render_width > 8000) {
+    throw InputError("grid: render-width = " + std::to_string(options.render_width) +
+                     "; allowed is 100 to 8000 px");
+  }
+  const bool one_run = options.figure.empty() && !runs_given;
+  if (!one_run && !(options.record + options.replay + options.render + options.curve).empty()) {
+    throw InputError("grid: --record, --replay, --render and --curve go with a single run");
+  }
+  if (!options.replay.empty() && !(options.record + options.curve).empty()) {
+    throw InputError("grid: --replay does not go with --record or --curve");
+  }
+  catch_interrupts();
+  if (!options.figure.empty()) {
+    if (!runs_given) options.runs = 30;
+    return run_figure(options);
+  }
+  if (!options.replay.empty()) return run_replay(options);
+  return runs_given ? run_many(options) : run_one(options, version);
+}
+
+}  // namespace
+
+void register_grid_command(CLI::App& root, const std::string& version,
+                           std::function<int()>& action) {
+  const auto options = std::make_shared<GridOptions>();
+  GridConfig& config = options->config;
+  CLI::App* command = root.add_subcommand(
+      "grid", "Leveling agents on a grid of stacks (thesis 4.2): one run, or thousands");
+  command->add_option("--algorithm", options->algorithm,
+                      "probabilistic, threshold, memetic-1, memetic-2, patient, forager");
+  command->add_option("--seed", options->seed, "of the first run; further runs count up");
+  command->add_option("--agents", config.agents, "how many");
+  command->add_option("--size", options->size, "cells a side, or WIDTHxHEIGHT");
+  command->add_option("--border", options->border, "walls or torus");
+  command->add_option("--terrain", config.image, "a grey image as terrain; default is noise");
+  command->add_option("--white", config.white, "units of a white pixel");
+  command->add_option("--mean", options->mean, "mean height, units; noise: 6.5");
+  command->add_option("--amplitude", config.noise.amplitude, "of the noise, units");
+  command->add_option("--lattice", config.noise.lattice, "of the noise, cells");
+  command->add_option("--stop", options->stop,
+                      "when it counts as level: level, gradient, deviation");
+  command->add_option("--epsilon", options->epsilon,
+                      "of that rule, units (level 1, gradient 1.5, deviation 0.5)");
+  command->add_option("--max-cycles", options->max_cycles, "a run longer than that has failed");
+
+  command->add_option("-p,--probability", options->probability, "of picking up and of depositing");
+  command->add_option("--p-pick-up", config.p_pick_up, "of picking up alone");
+  command->add_option("--p-deposit", config.p_deposit, "of depositing alone");
+  command->add_option("--p-sense", config.p_sense, "of sampling a height on arrival in a cell");
+  command->add_option("--p-turn", config.p_turn, "of a step in a random direction");
+  command->add_option("-k", config.k, "threshold: k of the response curves");
+  command->add_option("--memory", config.memory, "samples of the FIFO, 1 to 8");
+  command->add_option("--fitness-threshold", config.fitness_threshold,
+                      "memetic-2: chromosomes below it are replaced");
+  command->add_option("--fitness-base", options->fitness_base,
+                      "memetic: operations that count, executed or attempted");
+  command->add_option("--chromosomes", config.chromosomes, "memetic-2: an agent, 1 to 5");
+  command->add_option("--repetitions", config.repetitions, "memetic-1: of a chromosome");
+  command->add_option("--averaging", config.averaging, "patient, forager: samples of the average");
+  command->add_option("--dead-band", config.dead_band,
+                      "patient, forager: units around the average where nothing is moved");
+  command->add_option("--patience", config.patience,
+                      "patient, forager: idle cycles before the dead band shrinks; 0: never");
+  command->add_option("--hold-out", config.hold_out,
+                      "patient, forager: cycles over which the claim goes down; 0: none (0, 200)");
+  command->add_option("--follow-slope", options->follow_slope,
+                      "patient, forager: uphill empty, downhill loaded; yes or no (no, yes)");
+  command->add_option("--turn-back", options->turn_back,
+                      "patient, forager: back after an operation; yes or no (no, yes)");
+
+  CLI::Option* runs = command->add_option("--runs", options->runs,
+                                          "so many runs, on all cores; a figure: of every point");
+  command->add_option("--threads", options->threads, "0: one a core; results do not depend on it");
+  command->add_option("--figure", options->figure, "4.2, 4.3, 4.4, 4.5, better, better-units");
+  command->add_option("--out", options->out,
+                      "folder for the runs, tables and charts of --figure "
+                      "(out/grid) or --runs; goes on where it stopped");
+  command->add_option("--record", options->record, "record the run to this HDF5 file");
+  command->add_option("--replay", options->replay, "play a recording instead of a run");
+  command->add_option("--render", options->render,
+                      "ray-traced picture (PNG) of the stacks before and after");
+  command->add_option("--render-width", options->render_width, "px");
+  command->add_option("--curve", options->curve, "write the progress curve to this CSV file");
+  command->add_option("--speed", options->speed, "of the live view, cycles a second");
+  command->add_flag("--headless", options->headless, "no live view, full speed");
+  command->add_flag("--quiet", options->quiet, "no live view and no progress");
+  command->add_flag("--json", options->json, "print results as JSON");
+  command->callback([options, runs, version, &action] {
+    action = [options, runs, version] { return run_command(*options, runs->count() > 0, version); };
+  });
+}
+
+}  // namespace screed

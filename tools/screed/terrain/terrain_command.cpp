@@ -1,0 +1,56 @@
+// Options of `screed terrain`.
+#include "tools/screed/terrain/terrain_command.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/noise_terrain.h"
+
+namespace screed {
+namespace {
+
+int generate(const std::string& file, const NoiseTerrainOptions& options) {
+  const std::filesystem::path path(file);
+  const std::string kind = path.extension().string();
+  if (kind != ".png" && kind != ".bmp") {
+    throw InputError(file + ": the name must end with .png (16 bit) or .bmp (8 bit)");
+  }
+  const GreyImage image = noise_terrain(options);
+  if (kind == ".png") {
+    write_grey16_png(path, image.width, image.height, image.samples);
+  } else {
+    write_grey8_bmp(path, image.width, image.height, image.samples);
+  }
+  std::cout << file << ": " << image.width << " x " << image.height << ", tileable, seed "
+            << options.seed << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void register_terrain_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* terrain = root.add_subcommand("terrain", "Height maps");
+  terrain->require_subcommand(1);
+  CLI::App* command = terrain->add_subcommand(
+      "generate", "Make a height map of seeded noise that tiles: for [map] wrap = true");
+  auto file = std::make_shared<std::string>();
+  auto options = std::make_shared<NoiseTerrainOptions>();
+  command->add_option("FILE", *file, "a 16-bit PNG, or an 8-bit BMP")->required();
+  command->add_option("--seed", options->seed, "of the noise")->capture_default_str();
+  command->add_option("--size", options->size, "samples a side, 16..4096")->capture_default_str();
+  command->add_option("--waves", options->waves, "hills along a side, 1..64")
+      ->capture_default_str();
+  command->add_option("--octaves", options->octaves, "levels of detail, 1..10")
+      ->capture_default_str();
+  command
+      ->add_option("--persistence", options->persistence,
+                   "height of a level as a share of that before, 0..1")
+      ->capture_default_str();
+  command->callback(
+      [file, options, &action] { action = [file, options] { return generate(*file, *options); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,182 @@
+// A command session over the simulated radio, stepped by the simulation's ticks.
+#include "tools/screed/viewer/keyboard_driver.h"
+
+#include <cmath>
+#include <utility>
+
+#include "firmware/protocol/e2e.h"
+#include "firmware/protocol/messages.h"
+#include "hal/sample.h"
+#include "tools/screed/cli/parameter_names.h"
+
+namespace screed::viewer {
+namespace {
+
+constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
+constexpr uint64_t kHeardTicks = 2U * uint64_t{kTickRate_hz};  // of the robot, before it is ours
+
+uint32_t drive_argument(const DriveOrder& order) {
+  uint8_t bytes[3];
+  put_drive_argument(bytes, {static_cast<int16_t>(std::lround(order.speed_m_per_s * 1000.0)),
+                             static_cast<int16_t>(std::lround(order.yaw_rate_deg_per_s * 10.0))});
+  return bytes[0] | static_cast<uint32_t>(bytes[1]) << 8U | static_cast<uint32_t>(bytes[2]) << 16U;
+}
+
+bool same(const DriveOrder& a, const DriveOrder& b) {
+  return drive_argument(a) == drive_argument(b);
+}
+
+}  // namespace
+
+KeyboardDriver::KeyboardDriver(const CommandKey& key, int algorithm, GroundPort* beside)
+    : key_(key), first_algorithm_(algorithm), algorithm_(algorithm), beside_(beside) {}
+
+void KeyboardDriver::begin() {
+  if (session_.has_value()) return;
+  SessionOptions options;
+  options.key = key_;
+  options.clock = [this] { return ticks_ * kTickPeriod_us; };
+  options.on_frame = [this](const LinkFrame& frame) {
+    if (frame.frame.id != kIdHeartbeat || frame.frame.size != message::Heartbeat::kSize) return;
+    state_ = static_cast<RobotState>(message::Heartbeat::unpack(frame.frame.data).state);
+  };
+  session_.emplace(static_cast<Link&>(*this), std::move(options));
+}
+
+void KeyboardDriver::drive(const DriveOrder& order) {
+  begin();
+  wanted_ = kDriveAlgorithm;
+  order_ = order;
+}
+
+void KeyboardDriver::hand_back() {
+  if (!wanted_.has_value()) return;
+  wanted_ = first_algorithm_;
+  order_ = {};
+}
+
+void KeyboardDriver::clear_fault() {
+  clear_ = wanted_.has_value() && state_ == RobotState::kFault;
+}
+
+std::string KeyboardDriver::words() const {
+  if (!wanted_.has_value()) return "";
+  if (state_ == RobotState::kFault) return "fault: C clears it when its cause is gone";
+  if (!refusal_.empty()) return refusal_;
+  if (!drives()) {
+    return algorithm_ == *wanted_ && state_ == RobotState::kRunning ? "" : "handing back ...";
+  }
+  if (algorithm_ != kDriveAlgorithm || state_ != RobotState::kRunning) return "taking over ...";
+  return "the keyboard drives";
+}
+
+void KeyboardDriver::give(std::span<const uint8_t> bytes) {
+  if (beside_ != nullptr) beside_->give(bytes);
+  CanFrame frame{};
+  for (const uint8_t byte : bytes) {
+    if (!parser_.feed(byte, frame)) continue;
+    LinkFrame arrived;
+    arrived.time_us = ticks_ * kTickPeriod_us;
+    arrived.frame = frame;
+    arrived_.push_back(arrived);
+  }
+  if (!session_.has_value()) arrived_.clear();
+}
+
+std::vector<uint8_t> KeyboardDriver::take() {
+  ++ticks_;
+  std::vector<uint8_t> bytes;
+  if (beside_ != nullptr) bytes = beside_->take();
+  if (!session_.has_value()) return bytes;
+  session_->pump(std::chrono::milliseconds(0));
+  if (!session_->waiting()) {
+    if (step_ != Step::kNone) finish_command(session_->take_answer());
+    if (ticks_ >= next_command_tick_ && session_->ready()) next_command();
+  }
+  bytes.insert(bytes.end(), to_send_.begin(), to_send_.end());
+  to_send_.clear();
+  return bytes;
+}
+
+void KeyboardDriver::receive(std::chrono::milliseconds /*wait*/, std::vector<LinkFrame>& frames) {
+  frames.insert(frames.end(), arrived_.begin(), arrived_.end());
+  arrived_.clear();
+}
+
+bool KeyboardDriver::send(const CanFrame& frame) {
+  uint8_t line[kSlcanLineMax];
+  const uint8_t length = slcan_encode(frame, line);
+  to_send_.insert(to_send_.end(), line, line + length);
+  return true;
+}
+
+void KeyboardDriver::start(Step step, CommandOp op, uint32_t argument) {
+  step_ = step;
+  session_->start(op, argument);
+}
+
+void KeyboardDriver::next_command() {
+  next_command_tick_ = ticks_ + kCommandTicks;
+  if (state_ == RobotState::kFault) {
+    if (clear_) start(Step::kClear, CommandOp::kClear);
+    clear_ = false;
+    return;
+  }
+  if (algorithm_ != *wanted_) {
+    if (state_ != RobotState::kDisarmed) {
+      start(Step::kDisarm, CommandOp::kDisarm);
+    } else {
+      step_ = Step::kAlgorithm;
+      session_->start_write(parameter_index("algorithm"), *wanted_);
+    }
+    return;
+  }
+  switch (state_) {
+    case RobotState::kDisarmed:
+      start(Step::kArm, CommandOp::kArm);
+      return;
+    case RobotState::kArmed:
+    case RobotState::kStopped:
+      start(Step::kRun, CommandOp::kRun);
+      return;
+    default:
+      break;
+  }
+  if (drives() && (!order_is_sent_ || !same(order_, sent_))) {
+    sent_ = order_;
+    order_is_sent_ = true;
+    start(Step::kDrive, CommandOp::kDrive, drive_argument(order_));
+  }
+}
+
+void KeyboardDriver::finish_command(const std::optional<CommandAnswer>& answer) {
+  const Step step = std::exchange(step_, Step::kNone);
+  const bool done = answer.has_value() && answer->done();
+  refusal_ = done ? "" : (answer.has_value() ? answer->words() : "the robot does not answer");
+  if (!done) {
+    if (step == Step::kDrive) order_is_sent_ = false;
+    return;
+  }
+  // Known before the next heartbeat says so.
+  switch (step) {
+    case Step::kClear:
+    case Step::kDisarm:
+      state_ = RobotState::kDisarmed;
+      break;
+    case Step::kAlgorithm:
+      algorithm_ = *wanted_;
+      order_is_sent_ = false;
+      break;
+    case Step::kArm:
+      state_ = RobotState::kArmed;
+      break;
+    case Step::kRun:
+      state_ = RobotState::kRunning;
+      order_is_sent_ = false;
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace screed::viewer

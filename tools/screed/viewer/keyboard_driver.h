@@ -1,0 +1,80 @@
+// The user at the keyboard as the robot's ground station: takes over from the simulated one, over
+// the same radio, with the same signed commands and heartbeats as `screed monitor` sends.
+//
+// Nothing is sent before the user takes over, so that a run that is only watched is the run that
+// nobody watched. What is sent is part of the recorded samples, as from any ground station.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/robot/supervisor.h"
+#include "host_sim/ground_station/link/command_session.h"
+#include "host_sim/ground_station/link/link.h"
+#include "host_sim/ground_station/station/ground_port.h"
+#include "host_sim/ground_station/station/ground_station.h"
+
+namespace screed::viewer {
+
+class KeyboardDriver : public GroundPort, private Link {
+ public:
+  /// `algorithm`: the one in force, a LevelingAlgorithm. `beside`: another port at the same end of
+  /// the radio; may be null, must outlive this.
+  KeyboardDriver(const CommandKey& key, int algorithm, GroundPort* beside = nullptr);
+
+  /// The robot is to be stopped, set to follow the ground station, started, and to move like this.
+  void drive(const DriveOrder& order);
+  /// The algorithm drives again.
+  void hand_back();
+  /// Clears a latched fault whose cause is gone, and starts the robot again. Only after taking
+  /// over.
+  void clear_fault();
+
+  bool drives() const { return wanted_.has_value() && *wanted_ == kDriveAlgorithm; }
+  /// One line for the user; empty before the first drive().
+  std::string words() const;
+
+  void give(std::span<const uint8_t> bytes) override;
+  std::vector<uint8_t> take() override;
+
+ private:
+  static constexpr int kDriveAlgorithm = 0;
+
+  void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override;
+  bool send(const CanFrame& frame) override;
+  const LinkStatus& status() const override { return status_; }
+  const std::string& name() const override { return name_; }
+
+  void begin();
+  /// Starts the command that comes next on the way to what is wanted.
+  void next_command();
+  void finish_command(const std::optional<CommandAnswer>& answer);
+
+  enum class Step : uint8_t { kNone, kClear, kDisarm, kAlgorithm, kArm, kRun, kDrive };
+  void start(Step step, CommandOp op, uint32_t argument = 0);
+
+  CommandKey key_;
+  int first_algorithm_;
+  int algorithm_;  ///< in force
+  GroundPort* beside_;
+  std::optional<int> wanted_;  ///< algorithm; nothing before the user takes over
+  DriveOrder order_;
+  bool clear_ = false;
+  std::optional<CommandSession> session_;
+  RobotState state_ = RobotState::kDisarmed;
+  Step step_ = Step::kNone;
+  DriveOrder sent_;
+  bool order_is_sent_ = false;
+  uint64_t ticks_ = 0;
+  uint64_t next_command_tick_ = 0;
+  std::string refusal_;
+
+  SlcanParser parser_;
+  std::vector<LinkFrame> arrived_;
+  std::vector<uint8_t> to_send_;
+  LinkStatus status_;
+  std::string name_ = "keyboard";
+};
+
+}  // namespace screed::viewer

@@ -1,0 +1,154 @@
+// Keeping pace with the clock, or counting frames.
+#include "tools/screed/viewer/live_viewer.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "hal/sample.h"
+#include "host_sim/run/simulation/simulation.h"
+#include "tools/screed/cli/interrupt.h"
+
+namespace screed::viewer {
+namespace {
+
+constexpr uint64_t kTrailTicks = kTickRate_hz / 10;
+constexpr double kDriveSpeed_m_per_s = 0.18;
+constexpr double kDriveTurn_deg_per_s = 60.0;
+constexpr double kFullPaceFramesPerSecond = 20.0;  // most of the time is for the simulation
+constexpr double kMostLag_s = 0.25;                // what is lost beyond it is not made good
+constexpr int kPausedWait_ms = 15;
+
+std::chrono::steady_clock::duration seconds(double value) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(value));
+}
+
+}  // namespace
+
+std::string subtitle_of(const std::string& algorithm, const std::string& ground,
+                        const std::string& soil, uint64_t seed) {
+  std::string where = ground;
+  if (ground == "rigid") where = "rigid ground";
+  if (ground == "scm") where = "soft soil" + (soil.empty() ? "" : " (" + soil + ")");
+  if (ground == "static_particles") where = "fixed particles";
+  return algorithm + " on " + where + ", seed " + std::to_string(seed);
+}
+
+LiveViewer::LiveViewer(const Experiment& experiment, const std::string& board,
+                       const ViewerOptions& options, KeyboardDriver& driver,
+                       std::function<void()> end_run)
+    : options_(options), driver_(driver), end_run_(std::move(end_run)) {
+  setup_.title = experiment.experiment.name;
+  setup_.subtitle = subtitle_of(experiment.experiment.algorithm, experiment.map.model,
+                                experiment.soil.preset, experiment.experiment.seed);
+  setup_.duration_s = experiment.experiment.duration_s;
+  setup_.flat_deg = experiment.experiment.flatness_deg;
+  setup_.loose = experiment.map.model == "scm" || experiment.map.model == "particles";
+  setup_.soft = experiment.map.model == "scm";
+  setup_.shape = shape_of(make_robot_model(experiment, board), experiment.vehicle.tracks);
+}
+
+void LiveViewer::begin(const HeightField& ground) {
+  watch_.emplace(ground);
+  stage_.emplace(options_, setup_, ground);
+}
+
+void LiveViewer::see(const Frame& frame, const HeightField& ground) {
+  stage_->change_ground(watch_->changes(ground));
+  travel_left_m_ += frame.track_left / kTickRate_hz;
+  travel_right_m_ += frame.track_right / kTickRate_hz;
+  stage_->set_travel(travel_left_m_, travel_right_m_);
+  if (ticks_ % kTrailTicks == 0) {
+    stage_->add_trail({static_cast<float>(frame.x), static_cast<float>(frame.y),
+                       static_cast<uint8_t>(frame.leveling_state)});
+  }
+  ++ticks_;
+  time_s_ = frame.time;
+  stage_->set_frame(frame);
+  if (!options_.window) {
+    stage_->take_input(time_s_, 0);
+    steer();
+    if (stage_->film_is_due()) stage_->show();
+  } else if (options_.frames.has_value()) {
+    show_counted(time_s_);
+  } else {
+    keep_pace(time_s_);
+  }
+  stage_->save_when_due(time_s_, false);
+  if (stage_->controls().closed || stage_->all_shown()) end_run_();
+}
+
+void LiveViewer::steer() {
+  Controls& controls = stage_->controls();
+  if (controls.hand_back) driver_.hand_back();
+  if (controls.clear_fault) driver_.clear_fault();
+  controls.hand_back = false;
+  controls.clear_fault = false;
+  if (controls.drive_keys_held() || driver_.drives()) {
+    driver_.drive(
+        {controls.forward() * kDriveSpeed_m_per_s, controls.left() * kDriveTurn_deg_per_s});
+  }
+  stage_->set_driver(driver_.words());
+}
+
+void LiveViewer::show_counted(double time_s) {
+  stage_->take_input(time_s, 0);
+  steer();
+  // Nobody presses a key that would end a pause.
+  while (!stage_->all_shown() && (time_s >= next_show_s_ || stage_->controls().paused)) {
+    stage_->show();
+    next_show_s_ += stage_->controls().pace / Stage::kFramesPerSecond;
+    if (stage_->controls().pace == 0.0) break;
+  }
+}
+
+void LiveViewer::keep_pace(double time_s) {
+  Controls& controls = stage_->controls();
+  Clock::time_point now = Clock::now();
+  if (!anchor_.has_value() || controls.pace != anchor_pace_) {
+    anchor_ = now;
+    anchor_s_ = time_s;
+    anchor_pace_ = controls.pace;
+  }
+  Clock::time_point target = now;
+  if (controls.pace > 0.0) target = *anchor_ + seconds((time_s - anchor_s_) / controls.pace);
+  if (now > target + seconds(kMostLag_s)) anchor_.reset();
+  for (;;) {
+    if (now >= next_show_) {
+      stage_->take_input(time_s, 0);
+      steer();
+      stage_->show();
+      const double rate = controls.pace == 0.0 ? kFullPaceFramesPerSecond : Stage::kFramesPerSecond;
+      next_show_ = std::max(next_show_ + seconds(1.0 / rate), now);
+    }
+    if (controls.closed || interrupted()) return;
+    if (controls.paused) {
+      anchor_.reset();
+      if (controls.steps > 0) {
+        --controls.steps;
+        return;
+      }
+      stage_->take_input(time_s, kPausedWait_ms);
+    } else {
+      // A new pace begins with the next tick.
+      if (now >= target || controls.pace != anchor_pace_) return;
+      std::this_thread::sleep_until(std::min(target, next_show_));
+    }
+    now = Clock::now();
+  }
+}
+
+void LiveViewer::end() {
+  stage_->save_when_due(time_s_, true);
+}
+
+void LiveViewer::hold(const std::string& notice) {
+  if (!options_.window || options_.frames.has_value()) return;
+  stage_->set_notice(notice);
+  while (!stage_->controls().closed && !interrupted()) {
+    stage_->show();
+    stage_->take_input(time_s_, kPausedWait_ms);
+  }
+}
+
+}  // namespace screed::viewer

@@ -1,0 +1,59 @@
+// Looks on at a simulation as it runs.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/height_watch.h"
+#include "host_sim/run/simulation/onlooker.h"
+#include "tools/screed/viewer/keyboard_driver.h"
+#include "tools/screed/viewer/stage.h"
+
+namespace screed::viewer {
+
+class LiveViewer : public SimulationOnlooker {
+ public:
+  /// `driver` is told what the arrow keys want; it must outlive this. `end_run` is called when the
+  /// user closes the window.
+  LiveViewer(const Experiment& experiment, const std::string& board, const ViewerOptions& options,
+             KeyboardDriver& driver, std::function<void()> end_run);
+
+  void begin(const HeightField& ground) override;
+  void see(const Frame& frame, const HeightField& ground) override;
+  void end() override;
+
+  /// After the run: shows how it ended until the user closes the window.
+  void hold(const std::string& notice);
+  const FrameTimes& times() const { return stage_->times(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void steer();
+  void show_counted(double time_s);
+  void keep_pace(double time_s);
+
+  ViewerOptions options_;
+  StageSetup setup_;
+  KeyboardDriver& driver_;
+  std::function<void()> end_run_;
+  std::optional<HeightWatch> watch_;
+  std::optional<Stage> stage_;
+  uint64_t ticks_ = 0;
+  double travel_left_m_ = 0.0;
+  double travel_right_m_ = 0.0;
+  double time_s_ = 0.0;
+  double next_show_s_ = 0.0;  ///< of the run, when frames are counted
+  Clock::time_point next_show_{};
+  /// The pace is kept from here on.
+  std::optional<Clock::time_point> anchor_;
+  double anchor_s_ = 0.0;
+  double anchor_pace_ = 0.0;
+};
+
+/// Where and what, in one line: "hill_sensing on rigid ground, seed 1".
+std::string subtitle_of(const std::string& algorithm, const std::string& ground,
+                        const std::string& soil, uint64_t seed);
+
+}  // namespace screed::viewer

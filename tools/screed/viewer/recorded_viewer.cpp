@@ -1,0 +1,185 @@
+// A play head over a session.
+#include "tools/screed/viewer/recorded_viewer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/run_folder.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/viewer/live_viewer.h"
+
+namespace screed::viewer {
+namespace {
+
+constexpr uint64_t kBlockRows = 1024;
+constexpr uint64_t kTrailTicks = 10;
+constexpr const char* kNoHeights =
+    "The heights of the ticks were not recorded (sim --heights does): the ground is that of the "
+    "begin, at the end that of the end.";
+
+}  // namespace
+
+RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOptions& options)
+    : session_(session_file(run)), options_(options) {
+  if (session_.frames() == 0) throw InputError(run.string() + ": no frame was recorded");
+  const auto before = session_.has_heights() ? std::optional<HeightMap>(session_.heights_after(0))
+                                             : session_.terrain_before();
+  if (!before) throw InputError(run.string() + ": the session holds no height map");
+  const RunSetup setup = setup_of(session_.info(), run);
+  tick_s_ = 1.0 / session_.info().tick_rate_hz;
+  duration_s_ = static_cast<double>(session_.frames()) * tick_s_;
+  StageSetup stage;
+  stage.title = session_.info().experiment_name;
+  stage.subtitle = subtitle_of(setup.experiment.experiment.algorithm, setup.ground, setup.soil,
+                               session_.info().seed);
+  stage.duration_s = duration_s_;
+  stage.flat_deg = setup.experiment.experiment.flatness_deg;
+  stage.loose = setup.ground == "scm" || setup.ground == "particles";
+  stage.soft = setup.ground == "scm";
+  stage.recorded = true;
+  stage.shape =
+      shape_of(robot_model(setup, session_.info().board_name), setup.experiment.vehicle.tracks);
+  read_trail();
+  stage_.emplace(options_, std::move(stage), field_of(*before));
+  stage_->set_trail(trail_);
+  if (!session_.has_heights()) {
+    after_ = session_.terrain_after();
+    if (after_ && after_->heights == before->heights) after_.reset();
+    if (after_) stage_->set_notice(kNoHeights);
+  }
+  go_to(tick_s_);
+}
+
+void RecordedViewer::read_trail() {
+  double left_m = 0.0;
+  double right_m = 0.0;
+  std::vector<Frame> rows;
+  for (uint64_t first = 0; first < session_.frames(); first += rows.size()) {
+    rows.resize(std::min(kBlockRows, session_.frames() - first));
+    session_.read(first, std::span(rows));
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const Frame& row = rows[i];
+      left_m += std::isfinite(row.track_left) ? row.track_left * tick_s_ : 0.0;
+      right_m += std::isfinite(row.track_right) ? row.track_right * tick_s_ : 0.0;
+      if ((first + i) % kTrailTicks != 0) continue;
+      const auto state = static_cast<uint8_t>(std::clamp<int32_t>(row.leveling_state, 0, 31));
+      trail_.push_back({static_cast<float>(row.x), static_cast<float>(row.y), state});
+      travel_m_.emplace_back(left_m, right_m);
+    }
+  }
+}
+
+const Frame& RecordedViewer::frame(uint64_t row) {
+  if (block_.empty() || row < block_first_ || row >= block_first_ + block_.size()) {
+    block_first_ = row / kBlockRows * kBlockRows;
+    block_.resize(std::min(kBlockRows, session_.frames() - block_first_));
+    session_.read(block_first_, std::span(block_));
+  }
+  return block_[row - block_first_];
+}
+
+/// The path and the ground up to this time.
+void RecordedViewer::go_to(double time_s) {
+  time_s_ = std::clamp(time_s, tick_s_, duration_s_);
+  const auto ticks = std::clamp<uint64_t>(static_cast<uint64_t>(std::llround(time_s_ / tick_s_)), 1,
+                                          session_.frames());
+  const Frame& now = frame(ticks - 1);
+  const size_t point = std::min(trail_.size() - 1, (ticks - 1) / kTrailTicks);
+  stage_->show_trail_points(point + 1);
+  stage_->set_travel(travel_m_[point].first, travel_m_[point].second);
+  stage_->set_frame(now);
+  show_ground_after(ticks);
+}
+
+void RecordedViewer::show_ground_after(uint64_t ticks) {
+  const HeightMap* target = nullptr;
+  std::optional<HeightMap> before;
+  if (session_.has_heights()) {
+    target = &session_.heights_after(ticks);
+  } else if (after_) {
+    const bool end = ticks == session_.frames();
+    if (end == at_end_) return;
+    at_end_ = end;
+    if (!end) before = session_.terrain_before();
+    target = end ? &*after_ : &*before;
+  } else {
+    return;
+  }
+  changes_.clear();
+  const HeightField& shown = stage_->ground();
+  for (size_t i = 0; i < target->heights.size(); ++i) {
+    const Height by = target->heights[i] - shown.node(i);
+    if (by != 0) changes_.push_back({static_cast<uint32_t>(i), by});
+  }
+  stage_->change_ground(changes_);
+}
+
+void RecordedViewer::take_jumps() {
+  Controls& controls = stage_->controls();
+  if (controls.to_share.has_value()) go_to(*controls.to_share * duration_s_);
+  if (controls.jump_s.has_value()) go_to(time_s_ + *controls.jump_s);
+  controls.to_share.reset();
+  controls.jump_s.reset();
+  for (; controls.steps > 0; --controls.steps) go_to(time_s_ + tick_s_);
+}
+
+void RecordedViewer::film() {
+  constexpr double kFilmFramesPerSecond = 25.0;
+  const double pace = options_.pace > 0.0 ? options_.pace : 1.0;
+  while (!interrupted()) {
+    stage_->take_input(time_s_, 0);
+    take_jumps();
+    stage_->show();
+    stage_->save_when_due(time_s_, false);
+    if (time_s_ >= duration_s_ || stage_->controls().closed) break;
+    go_to(time_s_ + pace / kFilmFramesPerSecond);
+  }
+  stage_->save_when_due(time_s_, true);
+}
+
+void RecordedViewer::run() {
+  if (!options_.window && options_.film.empty()) {
+    // Keys before that time are pressed: a picture of help, or of slopes.
+    const double at = options_.screenshot_at.value_or(duration_s_);
+    go_to(at);
+    stage_->take_input(at, 0);
+    take_jumps();
+    stage_->save_when_due(time_s_, true);
+    return;
+  }
+  if (!options_.window) {
+    film();
+    return;
+  }
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  Clock::time_point next_show = last;
+  constexpr std::chrono::microseconds kFramePeriod(
+      static_cast<int64_t>(1e6 / Stage::kFramesPerSecond));
+  Controls& controls = stage_->controls();
+  while (!controls.closed && !interrupted() && !stage_->all_shown()) {
+    if (!options_.frames.has_value()) std::this_thread::sleep_until(next_show);
+    next_show = std::max(next_show + kFramePeriod, Clock::now());
+    stage_->take_input(time_s_, 0);
+    take_jumps();
+    const Clock::time_point now = Clock::now();
+    const double frame_s = options_.frames.has_value()
+                               ? 1.0 / Stage::kFramesPerSecond
+                               : std::chrono::duration<double>(now - last).count();
+    last = now;
+    // As fast as it goes is here as fast as anybody can look.
+    constexpr double kFullPace = 100.0;
+    const double pace = controls.pace > 0.0 ? controls.pace : kFullPace;
+    if (!controls.paused) go_to(time_s_ + pace * frame_s);
+    stage_->show();
+    stage_->save_when_due(time_s_, false);
+  }
+  stage_->save_when_due(time_s_, true);
+}
+
+}  // namespace screed::viewer

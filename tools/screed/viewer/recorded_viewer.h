@@ -1,0 +1,46 @@
+// Shows a recorded run, at any time of it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/run/session/session_reader.h"
+#include "tools/screed/viewer/stage.h"
+
+namespace screed::viewer {
+
+class RecordedViewer {
+ public:
+  /// Throws InputError when the run cannot be read, RunError when no window can be opened.
+  RecordedViewer(const std::filesystem::path& run, const ViewerOptions& options);
+
+  /// Until the user closes the window, the frames asked for are shown, or the picture is saved.
+  void run();
+  const FrameTimes& times() const { return stage_->times(); }
+
+ private:
+  void read_trail();
+  void go_to(double time_s);
+  const Frame& frame(uint64_t row);
+  void show_ground_after(uint64_t ticks);
+  void take_jumps();
+  void film();
+
+  SessionReader session_;
+  ViewerOptions options_;
+  std::optional<Stage> stage_;
+  std::optional<HeightMap> after_;  ///< when the heights of the ticks were not recorded
+  bool at_end_ = false;             ///< the ground is that of the end
+  std::vector<HeightChange> changes_;
+  std::vector<Frame> block_;
+  uint64_t block_first_ = 0;
+  std::vector<TrailPoint> trail_;
+  std::vector<std::pair<double, double>> travel_m_;  ///< of the tracks, at each point of the trail
+  double tick_s_ = 0.01;
+  double duration_s_ = 0.0;
+  double time_s_ = 0.0;
+};
+
+}  // namespace screed::viewer

@@ -1,0 +1,99 @@
+// What is to be seen in one frame of the viewer: plain data, made by whoever knows a simulation or
+// a recording, drawn by whoever knows a canvas.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/screed/viewer/camera.h"
+#include "tools/screed/viewer/ground_image.h"
+#include "tools/screed/viewer/pixel_drawing.h"
+#include "tools/screed/viewer/robot_shape.h"
+#include "tools/screed/viewer/slope_ledger.h"
+
+namespace screed::viewer {
+
+/// A place of the driven path; its state colours the path from here on.
+struct TrailPoint {
+  float x_m;
+  float y_m;
+  uint8_t state;  ///< LevelingState
+};
+
+struct RobotSight {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_rad = 0.0;
+  /// How far the tracks have run, m.
+  double travel_left_m = 0.0;
+  double travel_right_m = 0.0;
+};
+
+/// What is written beside the ground. Compared to know whether to write it again.
+struct Status {
+  struct Motion {
+    double speed_m_per_s = 0.0;  ///< true, of the chassis, forward
+    double turn_rad_per_s = 0.0;
+    double wanted_m_per_s = 0.0;
+    double wanted_rad_per_s = 0.0;
+    double pitch_rad = 0.0;
+    double roll_rad = 0.0;
+    double heading_rad = 0.0;
+    double slip_left = 0.0;
+    double slip_right = 0.0;
+    std::optional<double> sinkage_m;
+    double battery_v = 0.0;
+
+    bool operator==(const Motion&) const = default;
+  };
+  struct Terrain {
+    SlopeFigures before;
+    SlopeFigures now;
+    double flat_limit_deg = 0.0;
+    bool loose = false;  ///< the ground can change
+
+    bool operator==(const Terrain&) const = default;
+  };
+
+  std::string title;
+  std::string subtitle;
+  double time_s = 0.0;
+  double duration_s = 0.0;
+  std::string pace;          ///< "x 1", "paused"
+  int state = 0;             ///< RobotState
+  int leveling_state = 0;    ///< LevelingState
+  uint32_t states_seen = 0;  ///< bits of the LevelingStates of the path
+  int faults = 0;
+  Motion motion;
+  Terrain terrain;
+  std::string notice;  ///< one line the user should know
+  std::string driver;  ///< who drives, when it is the keyboard
+
+  bool operator==(const Status&) const = default;
+};
+
+/// A line of the help: keys and what they do.
+struct HelpLine {
+  std::string keys;
+  std::string what;
+};
+
+struct Scene {
+  const GroundImage* ground = nullptr;
+  GroundPlace place{};
+  Ground bed{};
+  Shading shading = Shading::kHeight;
+  Camera camera;
+  const RobotShape* shape = nullptr;
+  RobotSight robot;
+  const std::vector<TrailPoint>* trail = nullptr;
+  size_t trail_points = 0;  ///< of the trail, that many
+  bool show_trail = true;
+  Status status;
+  std::vector<std::string> badges;  ///< short words over the ground: paused, follow
+  bool show_timeline = false;       ///< a bar to scrub on, else only how far the run has come
+  const std::vector<HelpLine>* help = nullptr;  ///< shown when not null
+};
+
+}  // namespace screed::viewer

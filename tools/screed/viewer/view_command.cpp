@@ -1,0 +1,42 @@
+// Options of `screed view`.
+#include "tools/screed/viewer/view_command.h"
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/viewer/recorded_viewer.h"
+#include "tools/screed/viewer/view_options.h"
+
+namespace screed {
+namespace {
+
+struct Options {
+  std::string run;
+  ViewArguments view;
+};
+
+int run_view(const Options& options) {
+  // A picture or a film is made without a window.
+  const bool window = options.view.screenshot.empty() && options.view.film.empty();
+  const auto viewer_options_of_run = viewer_options(options.view, window);
+  catch_interrupts();
+  viewer::RecordedViewer viewer(options.run, viewer_options_of_run.value());
+  viewer.run();
+  if (options.view.frames.has_value()) std::cerr << viewer.times().text() << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void register_view_command(CLI::App& root, std::function<int()>& action) {
+  CLI::App* command =
+      root.add_subcommand("view", "Look at a recorded run from above: play it, scrub through it");
+  const auto options = std::make_shared<Options>();
+  command->add_option("RUN", options->run, "run folder, or a session.h5")->required();
+  add_view_options(*command, options->view);
+  command->callback([options, &action] { action = [options] { return run_view(*options); }; });
+}
+
+}  // namespace screed

@@ -1,0 +1,32 @@
+// What the user may say about pictures of a run: for `screed sim` and `screed view`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/screed/viewer/stage.h"
+
+namespace screed {
+
+struct ViewArguments {
+  std::optional<double> speed;
+  std::optional<uint64_t> frames;
+  std::string screenshot;
+  std::optional<double> at;
+  std::string film;
+  std::string shading = "height";
+  std::string size;
+  std::optional<double> span_m;
+  bool follow = false;
+  std::vector<std::string> presses;
+};
+
+void add_view_options(CLI::App& command, ViewArguments& arguments);
+
+/// What they come to; nothing when there is neither a window nor a picture to be made. Without
+/// `window` pictures are drawn without one. Throws InputError.
+std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& arguments, bool window);
+
+}  // namespace screed

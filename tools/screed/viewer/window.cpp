@@ -1,0 +1,177 @@
+// SDL 2. The canvas is copied to the window's own surface: no graphics card is needed, and what is
+// seen is what a screenshot holds.
+#include "tools/screed/viewer/window.h"
+
+#define SDL_MAIN_HANDLED
+#include <SDL.h>
+
+#include "host_sim/core/errors.h"
+
+namespace screed::viewer {
+namespace {
+
+RunError failure(const std::string& what) {
+  return RunError(what + ": " + SDL_GetError() +
+                  " (without a screen: --screenshot FILE draws without a window, "
+                  "SDL_VIDEODRIVER=dummy opens one that nobody sees)");
+}
+
+Key key_of(SDL_Keycode code) {
+  switch (code) {
+    case SDLK_LEFT:
+      return kKeyLeft;
+    case SDLK_RIGHT:
+      return kKeyRight;
+    case SDLK_UP:
+      return kKeyUp;
+    case SDLK_DOWN:
+      return kKeyDown;
+    case SDLK_HOME:
+      return kKeyHome;
+    case SDLK_END:
+      return kKeyEnd;
+    case SDLK_ESCAPE:
+      return kKeyEscape;
+    case SDLK_BACKSPACE:
+      return kKeyBackspace;
+    case SDLK_KP_PLUS:
+      return '+';
+    case SDLK_KP_MINUS:
+      return '-';
+    case SDLK_F1:
+      return 'h';
+    default:
+      return code > 0 && code < 128 ? static_cast<Key>(code) : 0;
+  }
+}
+
+}  // namespace
+
+class Window::Impl {
+ public:
+  Impl(const std::string& title, int width_px, int height_px) {
+    SDL_SetMainReady();
+    // Ctrl-C is ours.
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    // On X the surface goes straight to the server; SDL's way round a texture is slower without a
+    // graphics card and no faster with one.
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+    SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw failure("the viewer has no screen");
+    if (driver() == "wayland") SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "1");
+    window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                               width_px, height_px, SDL_WINDOW_RESIZABLE);
+    if (window_ == nullptr) {
+      const RunError error = failure("the viewer cannot open its window");
+      SDL_QuitSubSystem(SDL_INIT_VIDEO);
+      throw error;
+    }
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    SDL_DestroyWindow(window_);
+    SDL_QuitSubSystem(SDL_INIT_VIDEO);
+    SDL_Quit();
+  }
+
+  static std::string driver() {
+    const char* name = SDL_GetCurrentVideoDriver();
+    return name == nullptr ? "" : name;
+  }
+
+  std::vector<InputEvent> events(int wait_ms) const {
+    std::vector<InputEvent> events;
+    SDL_Event event;
+    bool more =
+        wait_ms > 0 ? SDL_WaitEventTimeout(&event, wait_ms) != 0 : SDL_PollEvent(&event) != 0;
+    while (more) {
+      take(event, events);
+      more = SDL_PollEvent(&event) != 0;
+    }
+    return events;
+  }
+
+  void show(Canvas& canvas) const {
+    SDL_Surface* screen = SDL_GetWindowSurface(window_);
+    if (screen == nullptr) throw failure("the viewer cannot draw");
+    constexpr int kBits = 32;
+    SDL_Surface* picture =
+        SDL_CreateRGBSurfaceWithFormatFrom(canvas.pixels().data(), canvas.width(), canvas.height(),
+                                           kBits, canvas.width() * 4, SDL_PIXELFORMAT_RGB888);
+    if (picture == nullptr) throw failure("the viewer cannot draw");
+    SDL_BlitSurface(picture, nullptr, screen, nullptr);
+    SDL_FreeSurface(picture);
+    // Fails while the window changes its size; the next frame has the new one.
+    SDL_UpdateWindowSurface(window_);
+  }
+
+ private:
+  static void take(const SDL_Event& from, std::vector<InputEvent>& events) {
+    using Kind = InputEvent::Kind;
+    InputEvent event;
+    switch (from.type) {
+      case SDL_QUIT:
+        event.kind = Kind::kClose;
+        break;
+      case SDL_KEYDOWN:
+      case SDL_KEYUP:
+        event.kind = from.type == SDL_KEYDOWN ? Kind::kKeyPressed : Kind::kKeyReleased;
+        event.key = key_of(from.key.keysym.sym);
+        event.shift = (from.key.keysym.mod & KMOD_SHIFT) != 0;
+        // A key held down repeats where that is of use.
+        if (event.key == 0 || (from.key.repeat != 0 && event.key != '.' && event.key != kKeyLeft &&
+                               event.key != kKeyRight)) {
+          return;
+        }
+        break;
+      case SDL_MOUSEWHEEL:
+        event.kind = Kind::kWheel;
+        event.amount = static_cast<double>(from.wheel.preciseY);
+        event.at = {static_cast<double>(from.wheel.mouseX), static_cast<double>(from.wheel.mouseY)};
+        break;
+      case SDL_MOUSEBUTTONDOWN:
+      case SDL_MOUSEBUTTONUP:
+        if (from.button.button != SDL_BUTTON_LEFT) return;
+        event.kind = from.type == SDL_MOUSEBUTTONDOWN ? Kind::kPress : Kind::kRelease;
+        event.at = {static_cast<double>(from.button.x), static_cast<double>(from.button.y)};
+        break;
+      case SDL_MOUSEMOTION:
+        if ((from.motion.state & SDL_BUTTON_LMASK) == 0) return;
+        event.kind = Kind::kMove;
+        event.at = {static_cast<double>(from.motion.x), static_cast<double>(from.motion.y)};
+        break;
+      case SDL_WINDOWEVENT:
+        if (from.window.event != SDL_WINDOWEVENT_SIZE_CHANGED) return;
+        event.kind = Kind::kSize;
+        event.width = from.window.data1;
+        event.height = from.window.data2;
+        break;
+      default:
+        return;
+    }
+    events.push_back(event);
+  }
+
+  SDL_Window* window_ = nullptr;
+};
+
+Window::Window(const std::string& title, int width_px, int height_px)
+    : impl_(std::make_unique<Impl>(title, width_px, height_px)) {}
+Window::Window(Window&&) noexcept = default;
+Window& Window::operator=(Window&&) noexcept = default;
+Window::~Window() = default;
+
+std::vector<InputEvent> Window::events(int wait_ms) {
+  return impl_->events(wait_ms);
+}
+
+void Window::show(Canvas& canvas) {
+  impl_->show(canvas);
+}
+
+std::string Window::driver() const {
+  return Impl::driver();
+}
+
+}  // namespace screed::viewer
