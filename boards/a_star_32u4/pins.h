@@ -3,7 +3,7 @@
 #pragma once
 
 #include "boards/common/pololu_32u4_pins.h"
-#include "hal/avr/axis_of_chip.h"
+#include "hal/avr/chip_axis.h"
 #include "hal/avr/pin.h"
 #include "hal/avr/quadrature.h"
 
@@ -53,7 +53,7 @@ constexpr bool kHasBarometer = true;
 // The AltIMU-10 v4 lies flat, components up, its printed x arrow forward. Its printed axes hold for
 // LSM303D and L3GD20H alike. The accelerometer shows +1 g on the axis that points up, as
 // SensorSample wants it.
-constexpr AxisOfChip kImuAxes[3] = {{0, false}, {1, false}, {2, false}};
+constexpr ChipAxis kImuAxes[3] = {{0, false}, {1, false}, {2, false}};
 
 }  // namespace avr
 }  // namespace screed

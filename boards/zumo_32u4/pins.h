@@ -4,7 +4,7 @@
 #pragma once
 
 #include "boards/common/pololu_32u4_pins.h"
-#include "hal/avr/axis_of_chip.h"
+#include "hal/avr/chip_axis.h"
 #include "hal/avr/pin.h"
 #include "hal/avr/quadrature.h"
 
@@ -55,7 +55,7 @@ constexpr bool kHasBarometer = false;
 // LSM303D and L3GD20H lie on the main board with x forward, y left, z up: Pololu's example
 // "Balancing" takes -a.x for up while the robot stands on its nose, and g.y > 0 for nose down. (The
 // comment in "FaceUphill" has the sign of x the other way round; its code does not use x.)
-constexpr AxisOfChip kImuAxes[3] = {{0, false}, {1, false}, {2, false}};
+constexpr ChipAxis kImuAxes[3] = {{0, false}, {1, false}, {2, false}};
 
 }  // namespace avr
 }  // namespace screed

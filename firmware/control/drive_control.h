@@ -3,8 +3,8 @@
 // A skid-steered track must slip to turn, by an amount the ground decides. So the turn rate is
 // closed over the gyro: a PI controller behind a low pass of 1 Hz adds to the commanded rate what
 // slip takes away, before the kinematics split it over the tracks. Its integral is the heading lost
-// since the robot last stood, so a robot told to drive straight on comes back to its heading. Its
-// proportional part is 0 by default: soft ground swings with it.
+// since the robot last stood, so a robot commanded to drive straight ahead returns to its heading.
+// Its proportional part is 0 by default: soft ground swings with it.
 #pragma once
 
 #include <stddef.h>

@@ -27,7 +27,7 @@ class SkidSteer {
       : half_arc_q22_((static_cast<uint32_t>(tread_mm) * 25736U) >> 7) {}  // 25736 = pi 2^13
 
   /// Thesis 5.1.2 without the division by the wheel radius: left = l - B w / 2, right = l + B w
-  /// / 2. When a track would pass `limit_mm_per_s`, the forward speed gives way first, so that the
+  /// / 2. When a track would pass `limit_mm_per_s`, the forward speed is reduced first, so that the
   /// turn stays as commanded whenever it can be made at all.
   TrackSpeeds tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t limit_mm_per_s) const;
 

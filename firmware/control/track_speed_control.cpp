@@ -14,7 +14,7 @@ constexpr int32_t kBeta_q12 = 109;
 // 1 - r: two first-order lags with this gain follow a target as that filter follows a speed.
 constexpr int32_t kLag_q8 = 42;
 // No track moves 40 counts (23 mm) in a tick: anything above is encoder noise.
-constexpr int16_t kMostCounts = 40;
+constexpr int16_t kMaxCounts = 40;
 // Below this speed a track with target 0 counts as standing.
 constexpr int16_t kStanding_dmm_per_s = 100;
 constexpr int32_t kIntegralLimit_q16 = static_cast<int32_t>(kDutyMax) << 16;
@@ -48,8 +48,7 @@ void TrackSpeedControl::expect(int16_t target_mm_per_s) {
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
-  const int32_t step_q12 =
-      static_cast<int32_t>(clamp_i16(counts, -kMostCounts, kMostCounts)) * 4096;
+  const int32_t step_q12 = static_cast<int32_t>(clamp_i16(counts, -kMaxCounts, kMaxCounts)) * 4096;
   const int32_t error = lag_q12_ + step_q12 - speed_q12_;
   lag_q12_ = error - asr(error * kAlpha_q8, 8);
   // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the

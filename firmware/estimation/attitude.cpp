@@ -57,7 +57,7 @@ constexpr int16_t kMotionBiasGain = 105;
 constexpr int16_t kYawRateScale = 16298;  // 2 * 100/s * 65536 / (2 pi) / 2^23 in Q16
 constexpr int16_t kMdpsScale = 22381;     // 70 / kHalfAnglePerCount * 2^8 in Q16
 
-constexpr uint32_t kLeastAccelSquared = static_cast<uint32_t>(512) * 512;  // (1/8 g)^2
+constexpr uint32_t kMinAccelSquared = static_cast<uint32_t>(512) * 512;  // (1/8 g)^2
 
 /// 1 / (n + 1) in Q16, n in 1..65534: the gain that turns a mean of n samples into one of n + 1.
 int16_t mean_gain_q16(uint16_t n) {
@@ -113,7 +113,7 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
   const uint32_t squared = static_cast<uint32_t>(mul_i16(accel[0], accel[0])) +
                            static_cast<uint32_t>(mul_i16(accel[1], accel[1])) +
                            static_cast<uint32_t>(mul_i16(accel[2], accel[2]));
-  if (squared < kLeastAccelSquared) return false;
+  if (squared < kMinAccelSquared) return false;
   // For a = (ax, ay, az) of length n: q is along (n + az, ay, -ax, 0). Upside down that vanishes,
   // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
   // the components.

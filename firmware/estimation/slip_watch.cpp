@@ -6,12 +6,12 @@
 namespace screed {
 namespace {
 
-// Means of the network's answer, of 65535: from where on it slips, is stuck, is no longer stuck.
+// Means of the network's output, of 65535: from where on it slips, is stuck, is no longer stuck.
 constexpr uint16_t kSlipEvidence = 22938;
 constexpr uint16_t kStuckEvidence = 47841;
 constexpr uint16_t kFreeEvidence = 9830;
 constexpr int16_t kStanding_dmm_per_s = 100;
-constexpr int16_t kMostShake = 250;  // counts; 64 * 4 of it fit 16 bits
+constexpr int16_t kMaxVibration = 250;  // counts; 64 * 4 of it fit 16 bits
 constexpr uint8_t kSmoothShift = 4;
 
 /// part / whole in Q14, limited to 16 bits; whole > 0.
@@ -31,26 +31,29 @@ bool SlipWatch::slips() const {
   return evidence_ >= kSlipEvidence;
 }
 
-int16_t SlipWatch::lost_share(uint8_t which, bool back) const {
-  const int16_t lost = saturate_i16(asr(lost_[which], 1));
-  return negated_if(back != (lost < 0), share_q14(abs_i16(lost), faster_));
+int16_t SlipWatch::velocity_loss_share(uint8_t which, bool backwards) const {
+  const int16_t lost = saturate_i16(asr(velocity_loss_[which], 1));
+  return negated_if(backwards != (lost < 0), share_q14(abs_i16(lost), faster_track_));
 }
 
-void SlipWatch::feel(Shake& shake, int16_t counts) {
-  const int32_t rest = counts - asr(shake.slow, 6);
-  shake.slow += rest;
-  const auto limited = static_cast<int16_t>(clamp_i32(rest, -kMostShake, kMostShake));
-  shake.quick = static_cast<int16_t>(shake.quick + limited - asr_i16(shake.quick, 2));
-  shake.amount = static_cast<uint16_t>(shake.amount + abs_i16(shake.quick) - (shake.amount >> 6));
+void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
+  const int32_t rest = counts - asr(vibration.mean, 6);
+  vibration.mean += rest;
+  const auto limited = static_cast<int16_t>(clamp_i32(rest, -kMaxVibration, kMaxVibration));
+  vibration.high_pass =
+      static_cast<int16_t>(vibration.high_pass + limited - asr_i16(vibration.high_pass, 2));
+  vibration.magnitude = static_cast<uint16_t>(vibration.magnitude + abs_i16(vibration.high_pass) -
+                                              (vibration.magnitude >> 6));
 }
 
 void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const int16_t* gyro,
-                     const int16_t* accel, int16_t sin_pitch_q14, int32_t yaw_rate, bool judged) {
+                     const int16_t* accel, int16_t sin_pitch_q14, int32_t yaw_rate,
+                     bool classify_now) {
   const int16_t half_left = asr_i16(left.speed_dmm_per_s, 1);
   const int16_t half_right = asr_i16(right.speed_dmm_per_s, 1);
   const uint16_t left_speed = abs_i16(half_left);
   const uint16_t right_speed = abs_i16(half_right);
-  faster_ = static_cast<uint16_t>((left_speed < right_speed ? right_speed : left_speed) * 2);
+  faster_track_ = static_cast<uint16_t>((left_speed < right_speed ? right_speed : left_speed) * 2);
   // A count of 0.244 mg over a tick is 0.239 of 0.1 mm/s. In two of these: the change of the belts'
   // speed minus that of the robot's. 16 bits, modulo: no track changes its speed by 1.6 m/s.
   const int16_t half_speed = asr_i16(static_cast<int16_t>(half_left + half_right), 1);
@@ -61,18 +64,18 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
                                             asr_i16(sin_pitch_q14, 3)) -
                        asr_i16(saturate_i16(asr(mean_, 8)), 1);
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
-  if (faster_ < kStanding_dmm_per_s) {
+  if (faster_track_ < kStanding_dmm_per_s) {
     mean_ += rest * 8;
-    lost_[0] = 0;
-    lost_[1] = 0;
+    velocity_loss_[0] = 0;
+    velocity_loss_[1] = 0;
   } else {
     mean_ += rest;
-    lost_[0] += rest - asr(lost_[0], 8);
-    lost_[1] += rest - asr(lost_[1], 10);
+    velocity_loss_[0] += rest - asr(velocity_loss_[0], 8);
+    velocity_loss_[1] += rest - asr(velocity_loss_[1], 10);
   }
-  feel(shake_[0], gyro[1]);
-  feel(shake_[1], accel[0]);
-  feel(shake_[2], accel[2]);
+  update_vibration(vibration_[0], gyro[1]);
+  update_vibration(vibration_[1], accel[0]);
+  update_vibration(vibration_[2], accel[2]);
   // Twice halved, so that a difference fits 16 bits.
   const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
   yaw_rate_ = static_cast<int16_t>(yaw_rate_ +
@@ -80,27 +83,28 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   effort_ = static_cast<int16_t>(effort_ + negated_if(half_left < 0, left.effort) +
                                  negated_if(half_right < 0, right.effort) -
                                  asr_i16(effort_, kSmoothShift));
-  if (judged) judge(half_left, half_right, sin_pitch_q14);
+  if (classify_now) classify(half_left, half_right, sin_pitch_q14);
 }
 
-void SlipWatch::judge(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14) {
-  const uint16_t faster = faster_;
-  if (faster < kSlowest_dmm_per_s) {
+void SlipWatch::classify(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14) {
+  const uint16_t faster = faster_track_;
+  if (faster < kMinTrackSpeed_dmm_per_s) {
     evidence_ = 0;
     stuck_ = false;
     return;
   }
-  const bool back = half_speed_ < 0;
-  inputs_[0] = lost_share(0, back);
-  inputs_[1] = lost_share(1, back);
+  const bool backwards = half_speed_ < 0;
+  inputs_[0] = velocity_loss_share(0, backwards);
+  inputs_[1] = velocity_loss_share(1, backwards);
   inputs_[2] =
       share_q14(static_cast<uint16_t>(mul_u16(abs_i16(yaw_rate_), arc_q16_) >> 16), faster);
   inputs_[3] = share_q14(abs_i16(static_cast<int16_t>(half_right - half_left)), faster);
   inputs_[4] = static_cast<int16_t>(faster >> 1);
-  inputs_[5] = negated_if(back, sin_pitch_q14);
+  inputs_[5] = negated_if(backwards, sin_pitch_q14);
   inputs_[6] = effort_;
-  for (uint8_t i = 0; i < 3; ++i) inputs_[7 + i] = static_cast<int16_t>(shake_[i].amount >> 1);
-  inputs_[10] = negated_if(back, saturate_i16(shake_[0].slow));
+  for (uint8_t i = 0; i < 3; ++i)
+    inputs_[7 + i] = static_cast<int16_t>(vibration_[i].magnitude >> 1);
+  inputs_[10] = negated_if(backwards, saturate_i16(vibration_[0].mean));
   nn::model_slip::run_held(inputs_, &held_);
 
   // Halves, so that a difference fits 16 bits.

@@ -86,9 +86,9 @@ MotionCommand Leveling::tick(const LevelingInput& input, const MotionCommand& dr
     return drive;
   }
 #if SCREED_TRAINING_DRIVE
-  if (algorithm_ == LevelingAlgorithm::kTraining) {
+  if (algorithm_ == LevelingAlgorithm::kTrainingDrive) {
     const MotionCommand motion = training_.tick();
-    enter(training_.finished() ? LevelingState::kDone : LevelingState::kTraining);
+    enter(training_.finished() ? LevelingState::kDone : LevelingState::kTrainingDrive);
     return motion;
   }
 #endif

@@ -4,8 +4,8 @@
 namespace screed {
 namespace {
 
-constexpr int16_t kLeastShare_q15 = 8192;  // 0.25
-constexpr int16_t kFullShare_q15 = 32767;
+constexpr int16_t kMinShare_q15 = 8192;  // 0.25
+constexpr int16_t kMaxShare_q15 = 32767;
 
 // Signs of l and omega in the eight blocks: those of the printed algorithm (the text beside it
 // turns the third block the other way and lets it drive).
@@ -38,7 +38,7 @@ MotionCommand TrainingDrive::tick() {
   --ticks_left_;
   if (segment_left_ == 0) {
     segment_left_ = kSegmentTicks;
-    share_q15_ = random_.uniform(kLeastShare_q15, kFullShare_q15);
+    share_q15_ = random_.uniform(kMinShare_q15, kMaxShare_q15);
   }
   --segment_left_;
   const int8_t* direction = kDirections[block_];

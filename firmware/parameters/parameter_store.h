@@ -7,9 +7,9 @@
 //   byte 4   s16  values     one a parameter, in the order of the table in parameters.h
 //   last 2   u16  crc        CRC-16/CCITT-FALSE of all bytes before it
 //
-// All numbers are little endian. Copy 0 begins at kParameterCopyAt(0), copy 1 at
-// kParameterCopyAt(1). A store in which every byte of both copies is 0xFF was never written: the
-// defaults hold.
+// All numbers are little endian. Copy 0 begins at parameter_copy_address(0), copy 1 at
+// parameter_copy_address(1). A store in which every byte of both copies is 0xFF was never written:
+// the defaults hold.
 #pragma once
 
 #include <stdint.h>
@@ -25,7 +25,7 @@ constexpr uint8_t kParameterCopySize = kParameterHeaderSize + 2 * kParameterCoun
 
 /// Address of the first byte of a copy. The first 16 bytes of the EEPROM stay free, and each copy
 /// has room to grow.
-constexpr uint16_t kParameterCopyAt(uint8_t copy) {
+constexpr uint16_t parameter_copy_address(uint8_t copy) {
   return static_cast<uint16_t>(0x10 + 0x80 * copy);
 }
 static_assert(kParameterCopySize <= 0x80, "a copy has 128 bytes");

@@ -8,9 +8,9 @@
 #include <stdint.h>
 
 // Whether the training drive is there. Not in a microcontroller's image: it drives blindly, which
-// simulated terrain without edges bears and a site does not, and flash is scarce (the drive takes
-// 434 bytes). An image without it takes algorithm 3 for an invalid parameter and refuses to arm;
-// -DSCREED_TRAINING_DRIVE=1 brings it in.
+// simulated terrain without edges tolerates and a site does not, and flash is scarce (the drive
+// takes 434 bytes). An image without it takes algorithm 3 for an invalid parameter and refuses to
+// arm; -DSCREED_TRAINING_DRIVE=1 brings it in.
 #ifndef SCREED_TRAINING_DRIVE
 #ifdef __AVR__
 #define SCREED_TRAINING_DRIVE 0
@@ -19,7 +19,8 @@
 #endif
 #endif
 
-/// Robots that run without a ground station unless told otherwise: make firmware STANDALONE=yes.
+/// Default of the parameter standalone, for robots that run without a ground station: make firmware
+/// STANDALONE=yes.
 #ifndef SCREED_STANDALONE
 #define SCREED_STANDALONE 0
 #endif
@@ -60,7 +61,7 @@
   X(mag_offset_z,           "0.16 mG",  -8000,  8000,      0, "likewise") \
   X(standalone,             "",            0,     1, SCREED_STANDALONE, "1: arm and run after power-up without a ground station") \
   X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run") \
-  X(stuck_time,             "ms",          0, 30000,      0, "stop with a fault when dug in or hung up for this long; 0: only tell")
+  X(stuck_time,             "ms",          0, 30000,      0, "stop with a fault when dug in or hung up for this long; 0: report only")
 // clang-format on
 
 namespace screed {

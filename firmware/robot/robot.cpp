@@ -119,9 +119,9 @@ void Robot::handle(const CanFrame& frame) {
   switch (frame.id) {
     case kIdCommand:
       // Its MAC protects it. Looked at when there is time for that; a second one meanwhile is lost.
-      if (frame.size != kCommandSize || command_waits_) break;
+      if (frame.size != kCommandSize || command_pending_) break;
       memcpy(command_, frame.data, kCommandSize);
-      command_waits_ = true;
+      command_pending_ = true;
       ++view_.frames_received;
       return;
     case kIdGroundHeartbeat:
@@ -151,19 +151,19 @@ void Robot::handle(const CanFrame& frame) {
 }
 
 // A MAC and a packet of telemetry in one tick would be the longest tick of all.
-void Robot::take_command() {
+void Robot::process_command() {
   gate_.tick();
   if (store_ticks_ != 0) --store_ticks_;
-  if (!command_waits_ || telemetry_.packet_due()) return;
-  command_waits_ = false;
+  if (!command_pending_ || telemetry_.packet_due()) return;
+  command_pending_ = false;
   const GateResult checked = gate_.check(kIdCommand, command_);
   if (checked == GateResult::kRepeated) {
     telemetry_.queue(frame_of(answer_));
     return;
   }
   const bool accepted = checked == GateResult::kAccepted;
-  const RequestResult result = accepted ? obey(command_) : static_cast<RequestResult>(checked);
-  const message::CommandAck answer = {command_[0], command_[kCommandFreshnessAt],
+  const RequestResult result = accepted ? execute(command_) : static_cast<RequestResult>(checked);
+  const message::CommandAck answer = {command_[0], command_[kCommandFreshnessOffset],
                                       static_cast<uint8_t>(result), detail_of(result)};
   telemetry_.queue(frame_of(answer));
   if (accepted) answer_ = answer;
@@ -192,7 +192,7 @@ void Robot::event(message::EventCode code, int32_t argument) {
   telemetry_.queue(frame_of(message::Event{static_cast<uint16_t>(code), argument}));
 }
 
-RequestResult Robot::obey(const uint8_t* data) {
+RequestResult Robot::execute(const uint8_t* data) {
   const uint8_t* const argument = data + 1;
   switch (static_cast<CommandOp>(data[0])) {
     case CommandOp::kArm:
@@ -274,7 +274,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   supervisor_.tick(input);
 }
 
-void Robot::choose_motion() {
+void Robot::select_motion() {
   const bool running = supervisor_.running();
   if (running && view_.state != RobotState::kRunning) {  // the state of the tick before
     leveling_.start();
@@ -342,9 +342,9 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
 
   estimate_pose(sample, deltas);
   receive(sample);
-  take_command();
+  process_command();
   supervise(sample, deltas);
-  choose_motion();
+  select_motion();
 
   const DriveMeasurement measured = {deltas.left, deltas.right, attitude_.yaw_rate(),
                                      view_.battery_mv};

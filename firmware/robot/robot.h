@@ -40,7 +40,7 @@ struct RobotMemory {
   int16_t store_value_;
   uint8_t store_ticks_;     ///< until the EEPROM takes another parameter
   uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
-  bool command_waits_;
+  bool command_pending_;
   bool started_;  ///< the first tick is over
 };
 
@@ -78,15 +78,15 @@ class Robot : private RobotMemory {
   void estimate_pose(const SensorSample& sample, const Deltas& deltas);
   void receive(const SensorSample& sample);
   void handle(const CanFrame& frame);
-  void take_command();
-  RequestResult obey(const uint8_t* data);
+  void process_command();
+  RequestResult execute(const uint8_t* data);
   int16_t& parameter(uint8_t index);
   RequestResult send_parameter(uint16_t index);
   RequestResult commit_parameter(uint8_t index, uint16_t crc);
   uint16_t detail_of(RequestResult result) const;
   void event(message::EventCode code, int32_t argument);
   void supervise(const SensorSample& sample, const Deltas& deltas);
-  void choose_motion();
+  void select_motion();
   void watch_slip(const SensorSample& sample);
   void report(const SensorSample& sample, RobotOutput& output);
 

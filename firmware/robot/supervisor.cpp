@@ -17,9 +17,9 @@ constexpr uint16_t kLinkStopTicks = 50;
 constexpr uint16_t kLinkDisarmTicks = 150;
 // The accelerometer is taken for a plumb line while nothing turns faster than 57 degrees/s and it
 // feels 0.8 to 1.2 g.
-constexpr uint16_t kQuietGyro = 814;
-constexpr int32_t kLeastQuietAccel = 819;
-constexpr int32_t kMostQuietAccel = 1229;
+constexpr uint16_t kMaxRestGyro = 814;
+constexpr int32_t kMinRestAccel = 819;
+constexpr int32_t kMaxRestAccel = 1229;
 // A track that does not move below this duty is not stalled, it is asked for too little.
 constexpr int16_t kStallDuty = 240;
 // From this duty on a track is meant to move.
@@ -57,7 +57,7 @@ void TrackWatch::tick(int16_t duty, int16_t counts) {
   still_ticks_ = push < kStallDuty ? static_cast<uint16_t>(0) : count_up(still_ticks_);
 }
 
-bool TrackWatch::to_and_fro() const {
+bool TrackWatch::alternates() const {
   return reversals_ >= kReversals;
 }
 
@@ -95,12 +95,12 @@ bool Supervisor::tilted(const SupervisorInput& input) {
   // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {
-    if (abs_u16(input.gyro[i]) > kQuietGyro) return false;
+    if (abs_u16(input.gyro[i]) > kMaxRestGyro) return false;
     const int32_t part = asr(input.accel[i], 2);
     square += static_cast<uint32_t>(part * part);
   }
   const int32_t length = isqrt32(square);
-  if (length < kLeastQuietAccel || length > kMostQuietAccel) return false;
+  if (length < kMinRestAccel || length > kMaxRestAccel) return false;
   return asr(input.accel[2], 2) < asr(length * cos_tilt_limit_q15_, 15);
 }
 
@@ -132,8 +132,8 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   right_.tick(input.duty_right, input.counts_right);
   if (left_.still_ticks() >= stall_ticks_) found |= kFaultStallLeft;
   if (right_.still_ticks() >= stall_ticks_) found |= kFaultStallRight;
-  if (left_.to_and_fro()) found |= kFaultEncoderLeft;
-  if (right_.to_and_fro()) found |= kFaultEncoderRight;
+  if (left_.alternates()) found |= kFaultEncoderLeft;
+  if (right_.alternates()) found |= kFaultEncoderRight;
 
   stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
   if (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_) found |= kFaultStuck;

@@ -39,7 +39,7 @@ enum FaultBit : uint16_t {
   kFaultAccelMagChip = 1 << 8,   ///< LSM303D does not answer or lost its settings
   kFaultGyroChip = 1 << 9,       ///< L3GD20H
   kFaultBaroChip = 1 << 10,      ///< LPS25H
-  kFaultEncoderLeft = 1 << 11,   ///< a driven track whose count steps to and fro: a broken wire
+  kFaultEncoderLeft = 1 << 11,   ///< a driven track whose count alternates: a broken wire
   kFaultEncoderRight = 1 << 12,
   kFaultStuck = 1 << 13,  ///< dug in or hung up for longer than stuck_time allows
 };
@@ -75,20 +75,20 @@ struct SupervisorInput {
 
 /// Watches one driven track for progress.
 ///
-/// A track that is stuck makes no counts. One with a broken encoder wire makes counts that step to
-/// and fro, since the other channel alone tells no direction. Both look still; a track that moves,
-/// either way, leaves the place where it was last seen by two counts.
+/// A track that is stuck makes no counts. One with a broken encoder wire makes counts that
+/// alternate, since the other channel alone tells no direction. Both look still; a track that
+/// moves, either way, leaves the place where it was last seen by two counts.
 class TrackWatch {
  public:
   void tick(int16_t duty, int16_t counts);
   /// Ticks at high duty without progress.
   uint16_t still_ticks() const { return still_ticks_; }
-  bool to_and_fro() const;
+  bool alternates() const;
 
  private:
   uint16_t still_ticks_ = 0;
   int8_t behind_ = 0;      ///< counts behind the farthest place reached in the direction pushed
-  uint8_t reversals_ = 0;  ///< steps to and fro since the last progress
+  uint8_t reversals_ = 0;  ///< alternations since the last progress
 };
 
 /// What the supervisor remembers, zero at the start but the time without a heartbeat: zeroed at

@@ -22,7 +22,7 @@ constexpr Schedule kSchedule[kTelemetryMessages] = {
 };
 
 // Credit is saved for the four lines that may come together, and no more.
-constexpr uint8_t kMostCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
+constexpr uint8_t kMaxCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
 
 /// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.
 int16_t centidegrees_per_s(YawRate rate) {
@@ -173,7 +173,7 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
   next_packet_ = packet ? kPacketTicks - 1 : static_cast<uint8_t>(next_packet_ - 1);
   if (packet) {
     const uint8_t credit = static_cast<uint8_t>(credit_ + kPacketBudget);
-    credit_ = credit < kMostCredit ? credit : kMostCredit;
+    credit_ = credit < kMaxCredit ? credit : kMaxCredit;
     uint8_t sent = 0;
     for (; sent < queued_ && room(output); ++sent) {
       const uint16_t id = queue_[sent].id;

@@ -11,8 +11,8 @@ GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
   if (counter_ != 0 && memcmp(data, last_, kCommandSize) == 0) return GateResult::kRepeated;
 
   // 1 to 256 above the last one.
-  const uint8_t steps =
-      static_cast<uint8_t>(data[kCommandFreshnessAt] - static_cast<uint8_t>(counter_ & 0xFFU) - 1U);
+  const uint8_t steps = static_cast<uint8_t>(data[kCommandFreshnessOffset] -
+                                             static_cast<uint8_t>(counter_ & 0xFFU) - 1U);
   if (counter_ > UINT16_MAX - 1U - steps) return GateResult::kUsedUp;
   const auto counter = static_cast<uint16_t>(counter_ + steps + 1U);
   uint8_t mac[kSipHashSize];
@@ -21,15 +21,15 @@ GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
   // All bytes are looked at, so that the time tells nothing of the right ones.
   uint8_t wrong = 0;
   for (uint8_t i = 0; i < kCommandMacSize; ++i) {
-    wrong = static_cast<uint8_t>(wrong | (mac[i] ^ data[kCommandMacAt + i]));
+    wrong = static_cast<uint8_t>(wrong | (mac[i] ^ data[kCommandMacOffset + i]));
   }
   if (wrong != 0) {
     ++refused_;
     ++bad_macs_;
-    if (bad_macs_ == 1) forgiven_in_ticks_ = kForgivenTicks;
-    if (bad_macs_ == kMostBadMacs) {
+    if (bad_macs_ == 1) bad_mac_decay_ticks_ = kBadMacDecayTicks;
+    if (bad_macs_ == kMaxBadMacs) {
       bad_macs_ = 0;
-      locked_ticks_ = kLockedTicks;
+      locked_ticks_ = kLockoutTicks;
     }
     return GateResult::kBadMac;
   }
@@ -41,9 +41,9 @@ GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
 void CommandGate::tick() {
   if (locked_ticks_ != 0) --locked_ticks_;
   if (bad_macs_ == 0) return;
-  if (--forgiven_in_ticks_ == 0) {
+  if (--bad_mac_decay_ticks_ == 0) {
     --bad_macs_;
-    forgiven_in_ticks_ = kForgivenTicks;
+    bad_mac_decay_ticks_ = kBadMacDecayTicks;
   }
 }
 

@@ -31,9 +31,9 @@ enum class GateResult : uint8_t {
 
 class CommandGate {
  public:
-  static constexpr uint8_t kMostBadMacs = 8;
-  static constexpr uint16_t kForgivenTicks = 4 * kTickRate_hz;
-  static constexpr uint16_t kLockedTicks = 30 * kTickRate_hz;
+  static constexpr uint8_t kMaxBadMacs = 8;
+  static constexpr uint16_t kBadMacDecayTicks = 4 * kTickRate_hz;
+  static constexpr uint16_t kLockoutTicks = 30 * kTickRate_hz;
 
   explicit CommandGate(const Credentials& credentials) : credentials_(credentials) {}
 
@@ -55,7 +55,7 @@ class CommandGate {
   Credentials credentials_;
   uint16_t counter_ = 0;
   uint16_t locked_ticks_ = 0;
-  uint16_t forgiven_in_ticks_ = 0;
+  uint16_t bad_mac_decay_ticks_ = 0;
   uint8_t bad_macs_ = 0;
   uint8_t refused_ = 0;
   uint8_t last_[kCommandSize] = {};  ///< the command that was accepted last

@@ -16,9 +16,9 @@
 
 namespace screed {
 
-constexpr uint8_t kCommandSize = 8;         ///< bytes of a COMMAND frame
-constexpr uint8_t kCommandFreshnessAt = 4;  ///< lower 8 bits of the counter
-constexpr uint8_t kCommandMacAt = 5;
+constexpr uint8_t kCommandSize = 8;             ///< bytes of a COMMAND frame
+constexpr uint8_t kCommandFreshnessOffset = 4;  ///< lower 8 bits of the counter
+constexpr uint8_t kCommandMacOffset = 5;
 constexpr uint8_t kCommandMacSize = 3;
 
 /// data: at least the first four bytes of the frame. mac: the first kCommandMacSize bytes count.

@@ -11,7 +11,7 @@ namespace {
 
 /// 0: nothing valid.
 uint16_t get_epoch(const CredentialRecord& record, uint8_t odd) {
-  const uint8_t* const slot = record.bytes + kEpochSlotOf(odd);
+  const uint8_t* const slot = record.bytes + epoch_slot_offset(odd);
   const uint16_t epoch = get_u16(slot);
   return get_u16(slot + 2) == static_cast<uint16_t>(~epoch) ? epoch : static_cast<uint16_t>(0);
 }
@@ -19,7 +19,7 @@ uint16_t get_epoch(const CredentialRecord& record, uint8_t odd) {
 }  // namespace
 
 void put_epoch(CredentialRecord& record, uint16_t epoch) {
-  uint8_t* const slot = record.bytes + kEpochSlotOf(epoch);
+  uint8_t* const slot = record.bytes + epoch_slot_offset(epoch);
   put_u16(slot, epoch);
   put_u16(slot + 2, static_cast<uint16_t>(~epoch));
 }

@@ -9,7 +9,7 @@
 //
 // Every start writes its number over that of two starts before: power that fails meanwhile leaves
 // the other one, and the start whose number was torn has accepted no command yet. 65,535 starts
-// wear a cell 33,000 times, a third of what it bears; after them no command is accepted any more.
+// wear a cell 33,000 times, a third of its endurance; after them no command is accepted any more.
 // Nor is one when both numbers are damaged, until a key is set anew: old commands would be fresh
 // again. All numbers are little endian.
 #pragma once
@@ -24,14 +24,14 @@ constexpr uint8_t kKeySize = kSipHashKeySize + 1;  ///< key and robot id
 constexpr uint8_t kEpochSlotSize = 4;
 constexpr uint8_t kCredentialRecordSize = kKeySize + 2 + 2 * kEpochSlotSize;
 /// Address of its first byte, behind the parameters.
-constexpr uint16_t kCredentialRecordAt = 0x110;
+constexpr uint16_t kCredentialRecordAddress = 0x110;
 
 struct CredentialRecord {
   uint8_t bytes[kCredentialRecordSize];
 };
 
 /// Place of the number of a start in the record.
-constexpr uint8_t kEpochSlotOf(uint16_t epoch) {
+constexpr uint8_t epoch_slot_offset(uint16_t epoch) {
   return static_cast<uint8_t>(kKeySize + 2U + (epoch & 1U) * kEpochSlotSize);
 }
 

@@ -47,19 +47,19 @@ struct State {
 };
 State state;
 
-void say(uint8_t byte) {
+void print(uint8_t byte) {
   if (state.out_count < kOutSize) state.out[state.out_count++] = byte;
 }
 
-void say_text(const char* text) {
-  for (uint8_t byte = pgm_read_byte(text); byte != 0; byte = pgm_read_byte(++text)) say(byte);
+void print_text(const char* text) {
+  for (uint8_t byte = pgm_read_byte(text); byte != 0; byte = pgm_read_byte(++text)) print(byte);
 }
 
-void say_number(int16_t value) {
+void print_number(int16_t value) {
   uint16_t rest = static_cast<uint16_t>(value);
-  say(' ');
+  print(' ');
   if (value < 0) {
-    say('-');
+    print('-');
     rest = static_cast<uint16_t>(0U - rest);
   }
   uint8_t digits[5];
@@ -68,7 +68,7 @@ void say_number(int16_t value) {
     digits[count++] = static_cast<uint8_t>('0' + rest % 10U);
     rest /= 10U;
   } while (rest != 0);
-  while (count > 0) say(digits[--count]);
+  while (count > 0) print(digits[--count]);
 }
 
 /// The decimal number after the blanks at `at`, which moves behind it. False when there is none, or
@@ -95,10 +95,10 @@ int16_t* draft_value(uint8_t index) {
   return reinterpret_cast<int16_t*>(&parameter_draft()) + index;
 }
 
-void say_parameter(uint8_t index) {
-  say('p');
-  say_number(index);
-  say_number(*draft_value(index));
+void print_parameter(uint8_t index) {
+  print('p');
+  print_number(index);
+  print_number(*draft_value(index));
 }
 
 bool parameter_command() {
@@ -114,20 +114,20 @@ bool parameter_command() {
     if (!number(at, value) || at != state.in_count) return false;
     *draft_value(static_cast<uint8_t>(index)) = value;
   }
-  say_parameter(static_cast<uint8_t>(index));
+  print_parameter(static_cast<uint8_t>(index));
   return true;
 }
 
-void say_ok() {
-  say_text(PSTR("ok"));
+void print_ok() {
+  print_text(PSTR("ok"));
 }
 
 bool key_command() {
   if (state.in_count == 1) {
-    say('k');
-    say_number(credentials().key_set ? 1 : 0);
-    say_number(credentials().robot_id);
-    say_number(static_cast<int16_t>(credentials().boot_epoch));
+    print('k');
+    print_number(credentials().key_set ? 1 : 0);
+    print_number(credentials().robot_id);
+    print_number(static_cast<int16_t>(credentials().boot_epoch));
     return true;
   }
   if (state.in_count != 1 + 2 * kKeySize) return false;
@@ -137,28 +137,28 @@ bool key_command() {
     if (!slcan_byte(digits, key[i])) return false;
   }
   if (!credential_eeprom_store(key)) return false;
-  say_ok();
+  print_ok();
   return true;
 }
 
-void say_health() {
-  say_text(PSTR("screed " SCREED_VERSION " " SCREED_BOARD));
-  say_number(static_cast<int16_t>(reset_cause()));
-  say_number(static_cast<int16_t>(parameter_store_state()));
-  say_number(static_cast<int16_t>(stack_free()));
-  say_number(radio_uart_overruns());
-  say_number(buttons_read());
+void print_health() {
+  print_text(PSTR("screed " SCREED_VERSION " " SCREED_BOARD));
+  print_number(static_cast<int16_t>(reset_cause()));
+  print_number(static_cast<int16_t>(parameter_store_state()));
+  print_number(static_cast<int16_t>(stack_free()));
+  print_number(radio_uart_overruns());
+  print_number(buttons_read());
 }
 
 /// False: not understood, or not possible now.
-bool obey() {
+bool execute() {
   const uint8_t command = state.in[0];
   if (command == 'p') return parameter_command();
   if (command == 'k') return key_command();
   if (state.in_count != 1) return false;
   switch (command) {
     case 'v':
-      say_health();
+      print_health();
       return true;
     case 'd':
       parameter_draft_defaults();
@@ -168,19 +168,19 @@ bool obey() {
       break;
     case 'r':
       if (motors_powered() || parameter_saving()) return false;
-      reset_will_be(ResetCause::kRequested);
+      set_next_reset_cause(ResetCause::kRequested);
       watchdog_reset_now();
     default:
       return false;
   }
-  say_ok();
+  print_ok();
   return true;
 }
 
 void end_line() {
   if (state.in_count != 0) {
-    if (state.in_count == kInSize || !obey()) say('?');
-    if (state.out_count != 0) say('\n');
+    if (state.in_count == kInSize || !execute()) print('?');
+    if (state.out_count != 0) print('\n');
   }
   state.in_count = 0;
 }
@@ -189,8 +189,8 @@ void end_line() {
 
 void console_step() {
   if (state.out_count == 0 && state.list_at < kNothingToList) {
-    say_parameter(state.list_at++);
-    say('\n');
+    print_parameter(state.list_at++);
+    print('\n');
   }
   if (state.out_count != 0) {
     if (usb_serial_put(state.out, state.out_count)) state.out_count = 0;

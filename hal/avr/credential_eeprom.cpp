@@ -16,10 +16,10 @@ State state;
 }  // namespace
 
 void credential_eeprom_init() {
-  eeprom_read(kCredentialRecordAt, state.record.bytes, kCredentialRecordSize);
+  eeprom_read(kCredentialRecordAddress, state.record.bytes, kCredentialRecordSize);
   if (!begin_start(state.record, state.in_force)) return;
-  const uint8_t slot = kEpochSlotOf(state.in_force.boot_epoch);
-  eeprom_write(kCredentialRecordAt + slot, state.record.bytes + slot, kEpochSlotSize);
+  const uint8_t slot = epoch_slot_offset(state.in_force.boot_epoch);
+  eeprom_write(kCredentialRecordAddress + slot, state.record.bytes + slot, kEpochSlotSize);
   while (eeprom_busy()) eeprom_step();
 }
 
@@ -30,7 +30,7 @@ const Credentials& credentials() {
 bool credential_eeprom_store(const uint8_t (&key)[kKeySize]) {
   if (eeprom_busy()) return false;
   put_key(state.record, key);
-  eeprom_write(kCredentialRecordAt, state.record.bytes, kCredentialRecordSize);
+  eeprom_write(kCredentialRecordAddress, state.record.bytes, kCredentialRecordSize);
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include "hal/avr/buttons.h"
 #include "hal/avr/console.h"
 #include "hal/avr/credential_eeprom.h"
+#include "hal/avr/emit_marker.h"
 #include "hal/avr/encoders.h"
 #include "hal/avr/imu.h"
 #include "hal/avr/leds.h"
@@ -17,7 +18,6 @@
 #include "hal/avr/parameter_eeprom.h"
 #include "hal/avr/radio_uart.h"
 #include "hal/avr/reset_cause.h"
-#include "hal/avr/show.h"
 #include "hal/avr/stack_guard.h"
 #include "hal/avr/tick_timer.h"
 #include "hal/avr/usb_serial.h"
@@ -35,7 +35,7 @@ void init() {
   avr::reset_cause_init();
   avr::parameter_eeprom_init();
   avr::credential_eeprom_init();
-  avr::show(avr::kShownStart, &avr::parameter_draft());
+  avr::emit_marker(avr::kMarkerStart, &avr::parameter_draft());
   avr::buttons_init();
   avr::leds_init();
   avr::encoders_init();
@@ -65,12 +65,12 @@ bool parameters_intact() {
 
 bool wait_for_tick() {
   // What has time until the next tick.
-  avr::usb_serial_watch_for_upload();
+  avr::usb_serial_check_upload_request();
   avr::console_step();
   avr::parameter_eeprom_step();
   avr::stack_guard_step();
   if (!avr::stack_intact()) {
-    avr::reset_will_be(avr::ResetCause::kStack);
+    avr::set_next_reset_cause(avr::ResetCause::kStack);
     avr::watchdog_reset_now();
   }
   avr::tick_timer_wait();
@@ -90,7 +90,7 @@ void read_sensors(SensorSample& sample) {
   sample.radio_errors = avr::radio_uart_overruns();
   sample.reset_cause = static_cast<uint8_t>(avr::reset_cause());
   sample.radio_in_count = avr::radio_uart_read(sample.radio_in, kRadioInCapacity);
-  avr::show(avr::kShownSample, &sample);
+  avr::emit_marker(avr::kMarkerSample, &sample);
 }
 
 void write_outputs(const RobotOutput& output) {
@@ -100,7 +100,7 @@ void write_outputs(const RobotOutput& output) {
   if (output.store_parameter != 0) {
     avr::parameter_store(output.store_parameter, output.store_value);
   }
-  avr::show(avr::kShownOutput, &output);
+  avr::emit_marker(avr::kMarkerOutput, &output);
 }
 
 }  // namespace hal

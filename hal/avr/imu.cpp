@@ -12,7 +12,7 @@ namespace avr {
 namespace {
 
 /// The transfers of a round, in their order.
-enum Step : uint8_t { kReadGyro, kReadAccel, kReadMag, kReadBaro, kCheckSetting, kMendSetting };
+enum Step : uint8_t { kReadGyro, kReadAccel, kReadMag, kReadBaro, kCheckSetting, kRewriteSetting };
 
 constexpr uint8_t kVectorBytes = 7;  // status and three axes
 constexpr uint8_t kBaroBytes = 6;    // status, pressure (3), temperature (2)
@@ -20,7 +20,7 @@ constexpr uint8_t kBaroRounds = 4;   // 25 Hz
 
 /// Who owns the state: the bus interrupt from the start of a round to its end, the main program
 /// while it reads.
-enum Phase : uint8_t { kIdle, kRunning, kHanging, kReading };
+enum Phase : uint8_t { kIdle, kRunning, kBusStuck, kReading };
 
 struct State {
   volatile Phase phase;
@@ -32,11 +32,11 @@ struct State {
   uint8_t mag[kVectorBytes];
   uint8_t baro[kBaroBytes];
   // The check of settings.
-  uint8_t setting;                 // the one checked in this round
-  uint8_t register_value;          // what was read, then what is to be written
-  uint8_t right_in_a_row[kChips];  // settings of a chip found right since the last wrong one
-  uint8_t failing;                 // ChipBit set: the last burst did not come
-  uint8_t errors;                  // transfers that failed
+  uint8_t setting;                   // the one checked in this round
+  uint8_t register_value;            // what was read, then what is to be written
+  uint8_t consecutive_good[kChips];  // settings of a chip found right since the last wrong one
+  uint8_t failing;                   // ChipBit set: the last burst did not come
+  uint8_t errors;                    // transfers that failed
 };
 State state;
 
@@ -57,7 +57,7 @@ constexpr uint8_t settings_of(Chip chip, uint8_t from = 0) {
 bool configured(Chip chip) {
   static constexpr uint8_t kNeeded[kChips] PROGMEM = {
       settings_of(kAccelMagChip), settings_of(kGyroChip), settings_of(kBaroChip)};
-  return state.right_in_a_row[chip] >= pgm_read_byte(&kNeeded[chip]);
+  return state.consecutive_good[chip] >= pgm_read_byte(&kNeeded[chip]);
 }
 
 TwiTransfer read_of(Chip chip, uint8_t reg, uint8_t* data, uint8_t size) {
@@ -75,10 +75,10 @@ TwiTransfer transfer_of(Step step) {
     case kReadBaro:
       return read_of(kBaroChip, kStatusAndData, state.baro, kBaroBytes);
     case kCheckSetting:
-    case kMendSetting:
+    case kRewriteSetting:
     default: {
       const Setting setting = setting_at(state.setting);
-      return {chip_address(setting.chip), setting.reg, 1, step == kMendSetting,
+      return {chip_address(setting.chip), setting.reg, 1, step == kRewriteSetting,
               &state.register_value};
     }
   }
@@ -87,7 +87,7 @@ TwiTransfer transfer_of(Step step) {
 /// Books what the check of a setting found; returns true when the register has to be written.
 bool judge_setting(bool ok) {
   const Setting setting = setting_at(state.setting);
-  uint8_t& right = state.right_in_a_row[setting.chip];
+  uint8_t& right = state.consecutive_good[setting.chip];
   if (ok && state.register_value == setting.value) {
     if (right < kSettingCount) ++right;
     return false;
@@ -105,11 +105,11 @@ bool next_step(bool ok) {
       return true;
     case kCheckSetting:
       if (judge_setting(ok)) {
-        state.step = kMendSetting;
+        state.step = kRewriteSetting;
         return true;
       }
       break;
-    case kMendSetting:
+    case kRewriteSetting:
       break;
     default:
       state.step = static_cast<Step>(state.step + 1);
@@ -128,7 +128,7 @@ static_assert(kFreshGyro == 1 << kReadGyro && kFreshAccel == 1 << kReadAccel &&
               "fresh_bit relies on the order");
 
 /// Remembers whether the chip that was to be read answered.
-void book_answer(bool ok) {
+void record_result(bool ok) {
   const uint8_t bit = state.step == kReadGyro    ? kChipGyro
                       : state.step == kReadAccel ? kChipAccelMag
                       : state.step == kReadBaro  ? kChipBaro
@@ -155,7 +155,7 @@ int16_t word_at(const uint8_t* bytes) {
 /// From the chip's axes to the robot's. An axis against the chip's turns -32768 into 32767.
 void to_robot_frame(const uint8_t* bytes, int16_t (&vector)[3]) {
   for (uint8_t i = 0; i < 3; ++i) {
-    const AxisOfChip axis = kImuAxes[i];
+    const ChipAxis axis = kImuAxes[i];
     const int16_t value = word_at(bytes + 2 * axis.index);
     vector[i] = !axis.reversed       ? value
                 : value == INT16_MIN ? static_cast<int16_t>(INT16_MAX)
@@ -192,7 +192,7 @@ bool twi_done(bool ok, TwiTransfer& next) {
   } else {
     state.errors = static_cast<uint8_t>(state.errors + 1);
   }
-  book_answer(ok);
+  record_result(ok);
   if (!next_step(ok)) {
     state.phase = kIdle;
     return false;
@@ -207,7 +207,7 @@ void imu_init() {
 }
 
 void imu_start_round() {
-  if (state.phase == kRunning) state.phase = kHanging;  // for 10 ms, when 1.3 ms is enough
+  if (state.phase == kRunning) state.phase = kBusStuck;  // for 10 ms, when 1.3 ms is enough
   if (state.phase != kIdle) return;
   state.phase = kRunning;
   state.step = kReadGyro;
@@ -224,7 +224,7 @@ void imu_read(SensorSample& sample) {
     if (phase != kRunning) state.phase = kReading;
   }
   if (phase == kRunning) return;  // the tick is late; the numbers come with the next one
-  if (phase == kHanging) {
+  if (phase == kBusStuck) {
     twi_recover();
     state.arrived = 0;
     state.failing = kChipAccelMag | kChipGyro | (kHasBarometer ? kChipBaro : 0);

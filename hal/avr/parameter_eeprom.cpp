@@ -34,7 +34,7 @@ struct State {
 State state;
 
 void read_copy(uint8_t index, ParameterCopy& copy) {
-  eeprom_read(kParameterCopyAt(index), copy.bytes, kParameterCopySize);
+  eeprom_read(parameter_copy_address(index), copy.bytes, kParameterCopySize);
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ bool parameter_saving() {
 void parameter_eeprom_step() {
   eeprom_step();
   if (state.copies == 0 || eeprom_busy()) return;
-  eeprom_write(kParameterCopyAt(state.next_copy), state.copy.bytes, kParameterCopySize);
+  eeprom_write(parameter_copy_address(state.next_copy), state.copy.bytes, kParameterCopySize);
   state.next_copy = static_cast<uint8_t>(1 - state.next_copy);
   --state.copies;
 }

@@ -44,14 +44,14 @@ void reset_cause_init() {
     cause = (kept.flags & _BV(WDRF)) != 0 && mark == ResetCause::kExternal ? ResetCause::kWatchdog
                                                                            : mark;
   }
-  reset_will_be(ResetCause::kExternal);
+  set_next_reset_cause(ResetCause::kExternal);
 }
 
 ResetCause reset_cause() {
   return cause;
 }
 
-void reset_will_be(ResetCause next) {
+void set_next_reset_cause(ResetCause next) {
   kept.mark = static_cast<uint16_t>(kMark | static_cast<uint8_t>(next));
 }
 

@@ -25,7 +25,7 @@ enum class ResetCause : uint8_t {
 ResetCause reset_cause();
 
 /// Says what the reset that is about to come will be.
-void reset_will_be(ResetCause cause);
+void set_next_reset_cause(ResetCause cause);
 
 /// Starts counting as `kExternal` again: called once the program runs.
 void reset_cause_init();

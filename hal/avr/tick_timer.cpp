@@ -51,7 +51,7 @@ ISR(TIMER3_COMPA_vect) {
 
 ISR(TIMER3_COMPB_vect) {
   imu_start_round();
-  watchdog_look();
+  watchdog_check();
 }
 
 void tick_timer_init() {

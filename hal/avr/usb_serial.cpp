@@ -37,12 +37,12 @@ bool usb_serial_put(const uint8_t* bytes, uint8_t count) {
   return sent;
 }
 
-void usb_serial_watch_for_upload() {
+void usb_serial_check_upload_request() {
   if (Serial.baud() != kTouchBaud || Serial.dtr()) return;
   // The core has written the bootloader's key, set the watchdog, and waits for the reset; but this
   // program feeds the watchdog. The key lies at 0x0800, between variables and stack: the build
   // checks that both keep off (firmware.mk).
-  reset_will_be(ResetCause::kUpload);
+  set_next_reset_cause(ResetCause::kUpload);
   watchdog_reset_now();
 }
 

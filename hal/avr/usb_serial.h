@@ -14,7 +14,7 @@ bool usb_serial_get(uint8_t& byte);
 bool usb_serial_put(const uint8_t* bytes, uint8_t count);
 
 /// Starts the bootloader when the host has asked for it: the line was closed at 1200 baud.
-void usb_serial_watch_for_upload();
+void usb_serial_check_upload_request();
 
 }  // namespace avr
 }  // namespace screed

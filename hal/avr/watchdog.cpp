@@ -11,7 +11,7 @@ namespace screed {
 namespace avr {
 namespace {
 
-constexpr uint8_t kMostLooks = 6;  // 60 ms
+constexpr uint8_t kMaxLooks = 6;  // 60 ms
 
 volatile uint8_t looks;  // since the last feed
 
@@ -28,14 +28,14 @@ void watchdog_feed() {
 
 // Not the watchdog's own interrupt: as long as that one is pending the hardware does not reset, so
 // a program that hangs with its interrupts off would hang for ever.
-void watchdog_look() {
+void watchdog_check() {
   const uint8_t now = static_cast<uint8_t>(looks + 1);
-  if (now < kMostLooks) {
+  if (now < kMaxLooks) {
     looks = now;
     return;
   }
   motors_off();
-  reset_will_be(ResetCause::kWatchdog);
+  set_next_reset_cause(ResetCause::kWatchdog);
 }
 
 void watchdog_reset_now() {

@@ -11,7 +11,7 @@ void watchdog_init();
 void watchdog_feed();
 
 /// Takes the motors' power from a main loop that hangs; called from an interrupt every 10 ms.
-void watchdog_look();
+void watchdog_check();
 
 /// Motors off, and the MCU is reset at once. Never returns.
 void watchdog_reset_now() __attribute__((noreturn));

@@ -44,7 +44,7 @@ void PartialFile::commit() {
 }
 
 AtomicFile::AtomicFile(const fs::path& path)
-    : place_(path), file_(std::fopen(place_.partial().c_str(), "wb")) {
+    : partial_file_(path), file_(std::fopen(partial_file_.partial().c_str(), "wb")) {
   if (file_ == nullptr) cannot_write(path, std::strerror(errno));
 }
 
@@ -54,13 +54,13 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) {
-    cannot_write(place_.path(), std::strerror(errno));
+    cannot_write(partial_file_.path(), std::strerror(errno));
   }
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
-    cannot_write(place_.path(), std::strerror(errno));
+    cannot_write(partial_file_.path(), std::strerror(errno));
   }
 }
 
@@ -69,9 +69,9 @@ void AtomicFile::commit() {
   const int closed = std::fclose(file_);  // also flushes: a full disk may show only here
   const int reason = errno;
   file_ = nullptr;
-  if (closed != 0) cannot_write(place_.path(), std::strerror(reason));
-  if (refused) cannot_write(place_.path(), "the disk did not take all of it");
-  place_.commit();
+  if (closed != 0) cannot_write(partial_file_.path(), std::strerror(reason));
+  if (refused) cannot_write(partial_file_.path(), "the disk did not take all of it");
+  partial_file_.commit();
 }
 
 void write_file(const fs::path& path, std::string_view text) {

@@ -52,7 +52,7 @@ class AtomicFile {
   void commit();
 
  private:
-  PartialFile place_;
+  PartialFile partial_file_;
   std::FILE* file_ = nullptr;
 };
 

@@ -23,7 +23,7 @@ struct Reading {
   std::string complaint;  // exceptions must not pass through C code
 
   /// About the line that was read last; reading ends there.
-  void complain(const std::string& what) {
+  void fail(const std::string& what) {
     complaint = name + ":" + std::to_string(line) + ": " + what;
   }
 };
@@ -46,11 +46,11 @@ char* read_line(char* buffer, int size, void* stream) {
   // line.
   text.erase(0, text.find_first_not_of(" \t\r"));
   if (text.size() + 2 > static_cast<size_t>(size)) {
-    reading.complain("line too long; at most " + std::to_string(size - 2) + " characters");
+    reading.fail("line too long; at most " + std::to_string(size - 2) + " characters");
     return nullptr;
   }
   if (has_more_than_section(text)) {
-    reading.complain("text behind [section]; a key stands in a line of its own");
+    reading.fail("text behind [section]; a key stands in a line of its own");
     return nullptr;
   }
   text.push_back('\n');
@@ -66,8 +66,8 @@ int take_entry(void* user, const char* section, const char* name, const char* va
   if (same != reading.entries.end()) {
     const std::string where =
         *section == '\0' ? " before the first section" : std::string(" in [") + section + "]";
-    reading.complain(std::string("key '") + name + "' is given twice" + where + ", first in line " +
-                     std::to_string(same->line));
+    reading.fail(std::string("key '") + name + "' is given twice" + where + ", first in line " +
+                 std::to_string(same->line));
     return 1;
   }
   // inih takes only ';' for a comment behind a value.

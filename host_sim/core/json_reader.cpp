@@ -1,4 +1,4 @@
-// A place in the document is built while walking down to it.
+// The path in the document is built while walking down to it.
 #include "host_sim/core/json_reader.h"
 
 #include <algorithm>
@@ -59,11 +59,11 @@ nlohmann::json read_json_file(const std::filesystem::path& file) {
 JsonValue::JsonValue(const nlohmann::json& value, std::string file)
     : value_(&value), file_(std::move(file)) {}
 
-JsonValue::JsonValue(const nlohmann::json& value, std::string file, std::string place)
-    : value_(&value), file_(std::move(file)), place_(std::move(place)) {}
+JsonValue::JsonValue(const nlohmann::json& value, std::string file, std::string path)
+    : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
 
 void JsonValue::refuse(const std::string& what) const {
-  throw InputError(file_ + ": " + (place_.empty() ? "" : place_ + ": ") + what);
+  throw InputError(file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what);
 }
 
 const nlohmann::json& JsonValue::object() const {
@@ -86,7 +86,7 @@ bool JsonValue::has(std::string_view name) const {
 JsonValue JsonValue::at(std::string_view name) const {
   const auto found = object().find(std::string(name));
   if (found == value_->end()) refuse("'" + std::string(name) + "' is missing");
-  return {*found, file_, place_.empty() ? std::string(name) : place_ + "." + std::string(name)};
+  return {*found, file_, path_.empty() ? std::string(name) : path_ + "." + std::string(name)};
 }
 
 std::vector<std::string> JsonValue::names() const {
@@ -95,19 +95,19 @@ std::vector<std::string> JsonValue::names() const {
   return found;
 }
 
-std::vector<JsonValue> JsonValue::list(std::size_t least, std::size_t most) const {
+std::vector<JsonValue> JsonValue::list(std::size_t minimum, std::size_t maximum) const {
   if (!value_->is_array()) refuse(shown(*value_) + "; allowed is a list");
-  if (value_->size() < least || value_->size() > most) {
-    const std::string range = least == most ? std::to_string(least)
-                              : most == SIZE_MAX
-                                  ? std::to_string(least) + " or more"
-                                  : std::to_string(least) + " to " + std::to_string(most);
+  if (value_->size() < minimum || value_->size() > maximum) {
+    const std::string range = minimum == maximum ? std::to_string(minimum)
+                              : maximum == SIZE_MAX
+                                  ? std::to_string(minimum) + " or more"
+                                  : std::to_string(minimum) + " to " + std::to_string(maximum);
     refuse(std::to_string(value_->size()) + " values; allowed is " + range);
   }
   std::vector<JsonValue> values;
   values.reserve(value_->size());
   for (const nlohmann::json& value : *value_) {
-    values.push_back({value, file_, place_ + "[" + std::to_string(values.size()) + "]"});
+    values.push_back({value, file_, path_ + "[" + std::to_string(values.size()) + "]"});
   }
   return values;
 }
@@ -130,13 +130,13 @@ bool JsonValue::flag() const {
   return value_->get<bool>();
 }
 
-std::int64_t JsonValue::integer(std::int64_t least, std::int64_t greatest) const {
+std::int64_t JsonValue::integer(std::int64_t minimum, std::int64_t maximum) const {
   const bool fits = value_->is_number_unsigned()
                         ? value_->get<std::uint64_t>() <= static_cast<std::uint64_t>(INT64_MAX)
                         : value_->is_number_integer();
-  if (!fits || value_->get<std::int64_t>() < least || value_->get<std::int64_t>() > greatest) {
-    refuse(shown(*value_) + "; allowed is an integer " + std::to_string(least) + " to " +
-           std::to_string(greatest));
+  if (!fits || value_->get<std::int64_t>() < minimum || value_->get<std::int64_t>() > maximum) {
+    refuse(shown(*value_) + "; allowed is an integer " + std::to_string(minimum) + " to " +
+           std::to_string(maximum));
   }
   return value_->get<std::int64_t>();
 }
@@ -146,11 +146,11 @@ std::uint64_t JsonValue::unsigned_integer() const {
   return value_->get<std::uint64_t>();
 }
 
-double JsonValue::number(double least, double greatest) const {
+double JsonValue::number(double minimum, double maximum) const {
   const double value = value_->is_number() ? value_->get<double>() : std::nan("");
-  if (!(value >= least && value <= greatest)) {
-    refuse(shown(*value_) + "; allowed is a number " + in_digits(least) + " to " +
-           in_digits(greatest));
+  if (!(value >= minimum && value <= maximum)) {
+    refuse(shown(*value_) + "; allowed is a number " + in_digits(minimum) + " to " +
+           in_digits(maximum));
   }
   return value;
 }

@@ -91,14 +91,14 @@ void check(const GridConfig& raw) {
   check_probability("fitness-threshold", config.fitness_threshold);
   check_positive("k", config.k, 255.0);
   if (config.k < 1.0 / 256.0) refuse("k", text(config.k), "at least 1/256");
-  check_range("memory", config.memory, 1, HeightMemory::kLongest);
-  check_range("chromosomes", config.chromosomes, 1, MemeticAgent::kMostChromosomes);
+  check_range("memory", config.memory, 1, HeightMemory::kMaxLength);
+  check_range("chromosomes", config.chromosomes, 1, MemeticAgent::kMaxChromosomes);
   check_range("repetitions", config.repetitions, 1, 100);
   check_range("averaging", config.averaging, 1, 32767);
   check_range("dead-band", *config.dead_band, 0, 255);
   check_range("patience", config.patience, 0, 65535);
   check_range("hold-out", *config.hold_out, 0, 65535);
-  check_range("epsilon", config.stop.epsilon, 0, kHighestStack);
+  check_range("epsilon", config.stop.epsilon, 0, kMaxStackHeight);
   if (config.max_cycles == 0) refuse("max-cycles", "0", "at least 1");
 
   if (config.image.empty()) {

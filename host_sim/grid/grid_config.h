@@ -53,11 +53,11 @@ struct GridConfig {
   std::optional<double> p_turn;   ///< 0.75; ours 0.05
   double p_pick_up = 0.3;         ///< probabilistic
   double p_deposit = 0.3;
-  double k = 6.0;                       ///< threshold
-  int memory = HeightMemory::kLongest;  ///< samples of the FIFO; the thesis' algorithms
-  double fitness_threshold = 1.0;       ///< memetic-2: a chromosome below it is replaced
-  int chromosomes = 5;                  ///< memetic-2, an agent
-  int repetitions = 5;                  ///< memetic-1, of a chromosome
+  double k = 6.0;                         ///< threshold
+  int memory = HeightMemory::kMaxLength;  ///< samples of the FIFO; the thesis' algorithms
+  double fitness_threshold = 1.0;         ///< memetic-2: a chromosome below it is replaced
+  int chromosomes = 5;                    ///< memetic-2, an agent
+  int repetitions = 5;                    ///< memetic-1, of a chromosome
   FitnessBase fitness_base = FitnessBase::kExecuted;
   int averaging = 1024;               ///< ours, samples
   std::optional<double> dead_band;    ///< ours, units: patient 0.9, forager 0.8

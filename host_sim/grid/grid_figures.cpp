@@ -164,14 +164,14 @@ FigureFiles write_figure(const std::filesystem::path& folder, const GridFigure& 
     const SweepPoint& point = figure.points[i];
     const Summary cycles = cycles_of(results[i]);
     const Summary units = units_of(results[i]);
-    const Summary least = summary_of(
-        results[i], [](const GridResult& r) { return static_cast<double>(r.least_units); });
+    const Summary minimum = summary_of(
+        results[i], [](const GridResult& r) { return static_cast<double>(r.min_units); });
     const Summary distance =
         summary_of(results[i], [](const GridResult& r) { return r.distance(); });
     char line[300];
     std::snprintf(line, sizeof line, "\"%s\",%zu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.1f\n",
                   point.label.c_str(), results[i].size(), failures_of(results[i]), cycles.mean,
-                  cycles.standard_error, units.mean, units.standard_error, least.mean,
+                  cycles.standard_error, units.mean, units.standard_error, minimum.mean,
                   distance.mean);
     csv += line;
     const Summary& shown = figure.shows_units ? units : cycles;

@@ -77,8 +77,8 @@ std::vector<T> read_table(hid_t file, const char* name, hid_t type, hsize_t (&si
     throw h5::Hdf5Failure(std::string("table '") + name + "' is not of two dimensions");
   }
   H5Sget_simple_extent_dims(space.get(), size, nullptr);
-  constexpr hsize_t kMost = hsize_t{1} << 31;
-  if (size[1] != 0 && size[0] > kMost / size[1]) {
+  constexpr hsize_t kMax = hsize_t{1} << 31;
+  if (size[1] != 0 && size[0] > kMax / size[1]) {
     throw h5::Hdf5Failure(std::string("table '") + name + "' is too large");
   }
   std::vector<T> values(size[0] * size[1]);
@@ -249,9 +249,9 @@ void GridReplay::cycle() {
     uint16_t& stack = frame_.terrain.heights[places_[entry]];
     FrameAgent& agent = frame_.agents[i];
     const bool takes = operation == GridOperation::kPickUp;
-    if (takes
-            ? (stack == 0 || agent.carries)
-            : (operation != GridOperation::kDeposit || stack >= kHighestStack || !agent.carries)) {
+    if (takes ? (stack == 0 || agent.carries)
+              : (operation != GridOperation::kDeposit || stack >= kMaxStackHeight ||
+                 !agent.carries)) {
       throw InputError(path_.string() + ": cycle " + std::to_string(frame_.cycle) + ", agent " +
                        std::to_string(i) + ": an operation that is not possible");
     }

@@ -23,7 +23,7 @@ GridRun::GridRun(const GridConfig& config) : config_(with_defaults(config)) {
   }
   world_ = std::make_unique<GridWorld>(terrain, config_.noise.border, config_.stop);
   swarm_ = make_swarm(config_, *world_);
-  least_units_ = world_->work_left(0, swarm_->size());
+  min_units_ = world_->work_left(0, swarm_->size());
   level_ = world_->is_level();
 }
 
@@ -34,14 +34,14 @@ void GridRun::cycle() {
 
 GridResult GridRun::result() const {
   const SwarmCounts& counts = swarm_->counts();
-  return {level_, counts.cycles, counts.units, least_units_, counts.straight, counts.diagonal};
+  return {level_, counts.cycles, counts.units, min_units_, counts.straight, counts.diagonal};
 }
 
 GridProgress GridRun::progress() const {
   const SwarmCounts& counts = swarm_->counts();
   const uint64_t left = world_->work_left(counts.carried, swarm_->size());
   const double share =
-      least_units_ == 0 ? 1.0 : 1.0 - static_cast<double>(left) / static_cast<double>(least_units_);
+      min_units_ == 0 ? 1.0 : 1.0 - static_cast<double>(left) / static_cast<double>(min_units_);
   return {counts.cycles, counts.units, counts.distance(), share};
 }
 

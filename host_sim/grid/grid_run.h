@@ -14,9 +14,9 @@ namespace screed {
 struct GridResult {
   bool level = false;  ///< the stop rule was met within the cap
   uint64_t cycles = 0;
-  uint64_t units = 0;        ///< successful pick-ups
-  uint64_t least_units = 0;  ///< no agents could have done with fewer (GridWorld::work_left)
-  uint64_t straight = 0;     ///< steps of all agents
+  uint64_t units = 0;      ///< successful pick-ups
+  uint64_t min_units = 0;  ///< no agents could have done with fewer (GridWorld::work_left)
+  uint64_t straight = 0;   ///< steps of all agents
   uint64_t diagonal = 0;
 
   /// Of all agents together, in cells.
@@ -54,7 +54,7 @@ class GridRun {
   GridConfig config_;
   std::unique_ptr<GridWorld> world_;
   std::unique_ptr<GridSwarm> swarm_;
-  uint64_t least_units_ = 0;
+  uint64_t min_units_ = 0;
   bool level_ = false;
 };
 

@@ -95,11 +95,11 @@ class SwarmOf : public GridSwarm {
     const GridAction action = member.agent.tick({world.stack(member.place), member.arrived});
     member.last_operation = action.operation;
     if (action.operation == GridOperation::kPickUp) {
-      world.take(member.place);
+      world.pick_up(member.place);
       ++counts_.units;
       ++counts_.carried;
     } else if (action.operation == GridOperation::kDeposit) {
-      world.put(member.place);
+      world.deposit(member.place);
       --counts_.carried;
     }
     member.arrived = false;

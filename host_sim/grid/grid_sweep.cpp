@@ -40,7 +40,7 @@ std::string first_lines(const std::vector<SweepPoint>& points) {
   return "# screed grid sweep " + hash.hex() + "\n" + kColumns + "\n";
 }
 
-constexpr size_t kMostRuns = 10'000'000;
+constexpr size_t kMaxRuns = 10'000'000;
 
 struct Task {
   size_t point;
@@ -52,7 +52,7 @@ std::string line_of(const std::vector<SweepPoint>& points, const Task& task,
   std::ostringstream line;
   line << task.point << ',' << task.run << ',' << points[task.point].config.seed + task.run << ','
        << (result.level ? 1 : 0) << ',' << result.cycles << ',' << result.units << ','
-       << result.least_units << ',' << result.straight << ',' << result.diagonal << '\n';
+       << result.min_units << ',' << result.straight << ',' << result.diagonal << '\n';
   return line.str();
 }
 
@@ -105,7 +105,7 @@ class ResultsFile {
     for (std::string line; std::getline(lines, line);) {
       ++number;
       const auto entry = parse(line);
-      if (!entry || entry->first.point >= points_.size() || entry->first.run > kMostRuns) {
+      if (!entry || entry->first.point >= points_.size() || entry->first.run > kMaxRuns) {
         throw InputError(path_.string() + ", line " + std::to_string(number) +
                          ": not a run of this sweep: " + line);
       }
@@ -157,9 +157,9 @@ class ResultsFile {
 }  // namespace
 
 SweepResult run_sweep(const std::vector<SweepPoint>& points, const SweepOptions& options) {
-  if (options.runs < 1 || options.runs > static_cast<int>(kMostRuns)) {
+  if (options.runs < 1 || options.runs > static_cast<int>(kMaxRuns)) {
     throw InputError("grid: runs = " + std::to_string(options.runs) + "; allowed is 1 to " +
-                     std::to_string(kMostRuns));
+                     std::to_string(kMaxRuns));
   }
   if (options.threads < 0 || options.threads > 1024) {
     throw InputError("grid: threads = " + std::to_string(options.threads) +
@@ -249,9 +249,9 @@ Summary summarise(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
   if (values.size() > 1) summary.standard_error = std::sqrt(squares / (n - 1.0) / n);
-  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
-  summary.least = *least;
-  summary.greatest = *greatest;
+  const auto [minimum, maximum] = std::minmax_element(values.begin(), values.end());
+  summary.minimum = *minimum;
+  summary.maximum = *maximum;
   return summary;
 }
 

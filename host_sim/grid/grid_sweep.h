@@ -46,8 +46,8 @@ SweepResult run_sweep(const std::vector<SweepPoint>& points, const SweepOptions&
 struct Summary {
   double mean = 0.0;
   double standard_error = 0.0;
-  double least = 0.0;
-  double greatest = 0.0;
+  double minimum = 0.0;
+  double maximum = 0.0;
 
   /// Half the width of the 95 % confidence interval (normal approximation).
   [[nodiscard]] double confidence() const { return 1.96 * standard_error; }

@@ -116,7 +116,7 @@ GridTerrain noise_terrain(const NoiseParameters& parameters, WorldRandom& random
   for (const double value : values) {
     const double height = std::round(parameters.mean + scale * value);
     terrain.heights.push_back(
-        static_cast<uint16_t>(std::clamp(height, 0.0, static_cast<double>(kHighestStack))));
+        static_cast<uint16_t>(std::clamp(height, 0.0, static_cast<double>(kMaxStackHeight))));
   }
   adjust_sum(terrain,
              static_cast<uint64_t>(std::llround(parameters.mean * static_cast<double>(cells))),
@@ -164,7 +164,7 @@ void adjust_sum(GridTerrain& terrain, uint64_t sum, WorldRandom& random) {
   while (now != sum) {
     uint16_t& height = terrain.heights[static_cast<size_t>(random.uniform() * cells)];
     if (now < sum) {
-      if (height == kHighestStack) continue;
+      if (height == kMaxStackHeight) continue;
       ++height;
       ++now;
     } else if (height > 0) {

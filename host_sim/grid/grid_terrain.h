@@ -20,7 +20,7 @@ enum class GridBorder {
 struct GridTerrain {
   int width = 0;                  ///< cells in x, 1..kLargestGridSide
   int height = 0;                 ///< cells in y
-  std::vector<uint16_t> heights;  ///< units, row by row, 0..kHighestStack
+  std::vector<uint16_t> heights;  ///< units, row by row, 0..kMaxStackHeight
 
   [[nodiscard]] uint64_t sum() const;
 };

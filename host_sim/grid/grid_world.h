@@ -57,9 +57,9 @@ class GridWorld {
   void occupy(GridPlace place) { cells_[place].state = State::kOccupied; }
   void leave(GridPlace place) { cells_[place].state = State::kFree; }
 
-  /// Take a unit off a stack of at least one; put one onto a stack below kHighestStack.
-  void take(GridPlace place) { change(place, -1); }
-  void put(GridPlace place) { change(place, 1); }
+  /// Take a unit off a stack of at least one; put one onto a stack below kMaxStackHeight.
+  void pick_up(GridPlace place) { change(place, -1); }
+  void deposit(GridPlace place) { change(place, 1); }
 
   [[nodiscard]] uint16_t lowest() const { return lowest_; }
   [[nodiscard]] uint16_t highest() const { return highest_; }
@@ -82,7 +82,7 @@ class GridWorld {
 
  private:
   enum class State : uint8_t { kFree, kOccupied, kFrame };
-  struct Cell {
+  struct GridCell {
     uint16_t stack = 0;
     State state = State::kFrame;
   };
@@ -98,7 +98,7 @@ class GridWorld {
   GridBorder border_;
   GridStopRule stop_;
   int offsets_[kGridDirections];
-  std::vector<Cell> cells_;  ///< with a frame of one cell, so that no step needs a comparison
+  std::vector<GridCell> cells_;  ///< with a frame of one cell, so that no step needs a comparison
   std::vector<uint32_t> histogram_;
   uint16_t lowest_ = 0;
   uint16_t highest_ = 0;

@@ -202,7 +202,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press
   const Eigen::Vector3d end = robot.position();
   result.end_x_m = end.x();
   result.end_y_m = end.y();
-  result.way_m = (end - start).head<2>().norm();
+  result.distance_m = (end - start).head<2>().norm();
   result.pull_n = robot.held_ns() / result.time_s;
   result.turned_rad = robot.turned_rad();
   result.lower_by_m = start.z() - end.z();
@@ -251,8 +251,8 @@ DigResult dig_one_bed(const DigTest& test, uint64_t seed) {
 }
 
 constexpr double DigResult::*kMeans[] = {
-    &DigResult::end_x_m, &DigResult::end_y_m,    &DigResult::time_s,     &DigResult::pull_n,
-    &DigResult::way_m,   &DigResult::turned_rad, &DigResult::lower_by_m, &DigResult::pitch_rad};
+    &DigResult::end_x_m,    &DigResult::end_y_m,    &DigResult::time_s,     &DigResult::pull_n,
+    &DigResult::distance_m, &DigResult::turned_rad, &DigResult::lower_by_m, &DigResult::pitch_rad};
 
 template <typename Change>
 void change_nodes(HeightField& field, const Change& change) {

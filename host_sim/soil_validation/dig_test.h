@@ -50,7 +50,7 @@ struct DigResult {
   double end_y_m = 0.0;
   double time_s = 0.0;      ///< that the drive took
   double pull_n = 0.0;      ///< slip: what held it back, mean
-  double way_m = 0.0;       ///< of the body from start to end, straight
+  double distance_m = 0.0;  ///< of the body from start to end, straight
   double turned_rad = 0.0;  ///< about the vertical, all turns counted
   double lower_by_m = 0.0;  ///< the body at the end against the start
   double pitch_rad = 0.0;   ///< greatest nose-up pitch

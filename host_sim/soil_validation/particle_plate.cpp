@@ -167,15 +167,16 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
   // Between the middles of the bins; before the first, from nothing.
   const double sought = (1.0 - std::exp(-1.0)) * drag.friction;
   double last = 0.0;
-  double last_way = 0.0;
+  double last_distance = 0.0;
   for (size_t i = 0; i < kBins; ++i) {
-    const double way = (static_cast<double>(i) + 0.5) * kBin_m;
+    const double distance = (static_cast<double>(i) + 0.5) * kBin_m;
     if (friction.at(i) >= sought) {
-      drag.way_to_most_m = last_way + (way - last_way) * (sought - last) / (friction.at(i) - last);
+      drag.shear_displacement_m =
+          last_distance + (distance - last_distance) * (sought - last) / (friction.at(i) - last);
       break;
     }
     last = friction.at(i);
-    last_way = way;
+    last_distance = distance;
   }
   return drag;
 }

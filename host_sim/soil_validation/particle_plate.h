@@ -30,8 +30,8 @@ struct ParticlePlatePoint {
 };
 
 struct ParticleDrag {
-  double friction;       ///< greatest force along over load, of means over 1.5 mm
-  double way_to_most_m;  ///< after which it is 1 - 1/e of that
+  double friction;              ///< greatest force along over load, of means over 1.5 mm
+  double shear_displacement_m;  ///< after which it is 1 - 1/e of that
 };
 
 /// One point for each pressure, 1 to 20 kPa. Throws InputError for figures out of range.

@@ -19,7 +19,7 @@ void check(const PlateTest& test) {
   check_range("plate", "cell", test.cell_m, 0.0005, 0.1);
   check_range("plate", "speed", test.speed_m_per_s, 1e-5, 10.0);
   check_range("plate", "step", test.step_s, 1e-5, 0.1);
-  for (const double depth : test.way_m) check_range("plate", "depth", depth, -0.1, 0.25);
+  for (const double depth : test.depths_m) check_range("plate", "depth", depth, -0.1, 0.25);
 }
 
 }  // namespace
@@ -50,13 +50,13 @@ std::vector<PlatePoint> press_plate(const PlateTest& test) {
 
   std::vector<PlatePoint> run;
   double begin = 0.0;
-  for (const double end : test.way_m) {
-    const double way = end - begin;
+  for (const double end : test.depths_m) {
+    const double travel = end - begin;
     const auto steps =
-        static_cast<int>(std::ceil(std::abs(way) / (test.speed_m_per_s * test.step_s) - 1e-9));
-    motion.velocity.z() = std::copysign(test.speed_m_per_s, -way);
+        static_cast<int>(std::ceil(std::abs(travel) / (test.speed_m_per_s * test.step_s) - 1e-9));
+    motion.velocity.z() = std::copysign(test.speed_m_per_s, -travel);
     for (int i = 1; i <= steps; ++i) {
-      const double depth = begin + way * i / steps;
+      const double depth = begin + travel * i / steps;
       pose.translation() << test.offset_x_m, test.offset_y_m, 0.5 * kThickness_m - depth;
       plate.set_pose(pose);
       const SoilReaction reaction = bed.press(plate, motion, test.step_s, memory);

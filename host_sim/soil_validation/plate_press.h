@@ -20,8 +20,8 @@ struct PlateTest {
   double yaw_rad = 0.0;
   double speed_m_per_s = 0.01;  ///< > 0
   double step_s = 1e-3;         ///< 1e-5..0.1
-  /// Depths that the plate goes to, one after the other, up or down, m.
-  std::vector<double> way_m = {0.02};
+  /// Depths that the plate moves to, one after the other, up or down, m.
+  std::vector<double> depths_m = {0.02};
 };
 
 struct PlatePoint {

@@ -22,10 +22,11 @@ double flank_deg(const HeightField& surface, const ReposeTest& test, double dx, 
   double low = 0.0;
   const int steps = static_cast<int>(0.5 * test.size_m / step);
   for (int i = 0; i < steps; ++i) {
-    const double way = i * step;
-    const double height = surface.at(test.centre_x_m + way * dx, test.centre_y_m + way * dy).height;
-    if (height >= 0.75 * top) high = way;
-    if (height >= 0.25 * top) low = way;
+    const double distance = i * step;
+    const double height =
+        surface.at(test.centre_x_m + distance * dx, test.centre_y_m + distance * dy).height;
+    if (height >= 0.75 * top) high = distance;
+    if (height >= 0.25 * top) low = distance;
   }
   return std::atan2(0.5 * top, low - high) / kDegree;
 }
@@ -66,7 +67,7 @@ ReposeResult collapse(const ReposeTest& test) {
   if (test.tap_m > 0.0) tap(bed, test);
   const int64_t moves = bed.settle();
   return {moves,
-          before - bed.surface().height_sum() - bed.balance().compacted - bed.balance().in_hand,
+          before - bed.surface().height_sum() - bed.balance().compacted - bed.balance().in_transit,
           repose_excess_units(bed.surface(), test.soil.repose_deg),
           flank_deg(bed.surface(), test, 1.0, 0.0),
           flank_deg(bed.surface(), test, std::numbers::sqrt2 / 2.0, std::numbers::sqrt2 / 2.0),

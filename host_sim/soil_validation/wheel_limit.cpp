@@ -54,9 +54,9 @@ class Contact {
       const double cos = std::cos(theta);
       const double dx = r * cos * slice;  // the hub's way while the soil passes this slice
       const double rate = radial_ ? rim_over_hub_ - cos : rim_over_hub_ * cos - 1.0;
-      const double way = rate * dx;  // of the rim against the soil below it
-      const double direction = way < 0.0 ? -1.0 : 1.0;
-      const double half = std::exp(-0.5 * std::abs(way) / soil_.shear_modulus_m);
+      const double slip_distance = rate * dx;  // of the rim against the soil below it
+      const double direction = slip_distance < 0.0 ? -1.0 : 1.0;
+      const double half = std::exp(-0.5 * std::abs(slip_distance) / soil_.shear_modulus_m);
       const double here = direction + (mobilised - direction) * half;
       mobilised = direction + (here - direction) * half;
       const double depth = sinkage - r * (1.0 - cos);

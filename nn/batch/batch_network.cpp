@@ -17,7 +17,7 @@ struct Block {
   std::size_t robots;
 };
 
-constexpr std::size_t kMostRobots = kAvx512Robots;
+constexpr std::size_t kMaxRobots = kAvx512Robots;
 
 Block block_of(BatchKernel kernel) {
   return kernel == BatchKernel::kAvx512 ? Block{run_block_avx512, kAvx512Robots}
@@ -76,8 +76,8 @@ BatchNetwork::BatchNetwork(const IntegerNetwork& network, BatchKernel kernel)
 void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t robots,
                        std::size_t stride) const {
   if (kernel_ == BatchKernel::kScalar) {
-    std::array<std::int16_t, kMostInputs> from;
-    std::array<std::int16_t, kMostInputs> to;
+    std::array<std::int16_t, kMaxInputs> from;
+    std::array<std::int16_t, kMaxInputs> to;
     for (std::size_t robot = 0; robot < robots; ++robot) {
       for (std::size_t i = 0; i < inputs(); ++i) from[i] = in[i * stride + robot];
       network_.run(from, to);
@@ -92,8 +92,8 @@ void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t ro
   }
   if (robot == robots) return;
   // The robots that do not fill a block, in a block of their own.
-  std::array<std::int16_t, kMostInputs * kMostRobots> from{};
-  std::array<std::int16_t, kMostInputs * kMostRobots> to;
+  std::array<std::int16_t, kMaxInputs * kMaxRobots> from{};
+  std::array<std::int16_t, kMaxInputs * kMaxRobots> to;
   const std::size_t rest = robots - robot;
   for (std::size_t i = 0; i < inputs(); ++i) {
     std::copy_n(in + i * stride + robot, rest, &from[i * block.robots]);

@@ -21,7 +21,7 @@ struct BlockLayer {
   std::vector<int32_t> bias;          ///< outputs
 };
 
-constexpr int kWidestLayer = 255;
+constexpr int kMaxLayerWidth = 255;
 
 // One block: kAvx2Robots or kAvx512Robots robots through all layers. Number i of robot r is
 // in[i * stride + r] and out[i * stride + r].

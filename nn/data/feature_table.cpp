@@ -60,7 +60,7 @@ FeatureTable read_features(const fs::path& session, const std::vector<std::strin
     throw InputError(session.string() + ": no training frames; screed record makes them");
   }
   before = std::min<std::size_t>(before, range.first);
-  std::vector<Frame> frames(before + range.count);
+  std::vector<SimFrame> frames(before + range.count);
   reader.read(range.first - before, std::span(frames));
 
   FeatureTable table;
@@ -70,7 +70,7 @@ FeatureTable read_features(const fs::path& session, const std::vector<std::strin
   table.columns.assign(names.size(), std::vector<double>(range.count));
   for (std::size_t row = 0; row < range.count; ++row) {
     table.frames.push_back(range.first + row);
-    const FrameWindow window(std::span<const Frame>(frames).first(before + row + 1));
+    const FrameWindow window(std::span<const SimFrame>(frames).first(before + row + 1));
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       const double value = wanted[i].value(window);
       if (!std::isfinite(value)) {

@@ -11,17 +11,17 @@
 namespace screed::nn {
 namespace {
 
-constexpr std::size_t kMostFramesAgo = 1000;
+constexpr std::size_t kMaxFramesAgo = 1000;
 
 /// Heading in the middle of the step that ended with this frame.
-double middle_yaw(const Frame& frame) {
+double middle_yaw(const SimFrame& frame) {
   return frame.yaw - 0.5 * frame.delta_theta;
 }
 
-double mean_wheel(const Frame& frame) {
+double mean_wheel(const SimFrame& frame) {
   return 0.5 * (frame.v_left + frame.v_right);
 }
-double wheel_difference(const Frame& frame) {
+double wheel_difference(const SimFrame& frame) {
   return frame.v_right - frame.v_left;
 }
 
@@ -34,33 +34,34 @@ constexpr Feature kFeatures[] = {
     {"pitch", "rad", "nose up positive", 1, [](const FrameWindow& w) { return w.now().pitch; }},
     {"roll", "rad", "left side up positive", 1, [](const FrameWindow& w) { return w.now().roll; }},
     // and outputs
-    {"v", "m/frame", "way in the plane, never negative", 1,
+    {"v", "m/frame", "distance in the plane, never negative", 1,
      [](const FrameWindow& w) { return std::hypot(w.now().delta_x, w.now().delta_y); }},
     {"delta_theta", "rad/frame", "change of heading", 1,
      [](const FrameWindow& w) { return w.now().delta_theta; }},
-    {"delta_x", "m/frame", "way eastwards", 1,
+    {"delta_x", "m/frame", "displacement to the east", 1,
      [](const FrameWindow& w) { return w.now().delta_x; }},
-    {"delta_y", "m/frame", "way northwards", 1,
+    {"delta_y", "m/frame", "displacement to the north", 1,
      [](const FrameWindow& w) { return w.now().delta_y; }},
     // Beyond the thesis
     {"linear", "m/s", "desired speed", 1, [](const FrameWindow& w) { return w.now().linear; }},
     {"angular", "rad/s", "desired rate of turn", 1,
      [](const FrameWindow& w) { return w.now().angular; }},
-    {"forward", "m/frame", "way along the heading", 1,
+    {"forward", "m/frame", "displacement along the heading", 1,
      [](const FrameWindow& w) {
        const double yaw = middle_yaw(w.now());
        return w.now().delta_x * std::cos(yaw) + w.now().delta_y * std::sin(yaw);
      }},
-    {"sideways", "m/frame", "way to the left of the heading", 1,
+    {"sideways", "m/frame", "displacement to the left of the heading", 1,
      [](const FrameWindow& w) {
        const double yaw = middle_yaw(w.now());
        return w.now().delta_y * std::cos(yaw) - w.now().delta_x * std::sin(yaw);
      }},
-    // Products and amounts, to be formed before a stage smooths: a mean over several headings on a
+    // Products and absolute values, to be formed before a stage smooths: a mean over several
+    // headings on a
     // slope, or over ahead and back, has lost them.
-    {"speed", "rad/s", "amount of the mean of both wheels, as commanded", 1,
+    {"speed", "rad/s", "absolute value of the mean of both wheels, as commanded", 1,
      [](const FrameWindow& w) { return std::abs(mean_wheel(w.now())); }},
-    {"spin", "rad/s", "amount of the wheels' difference, as commanded", 1,
+    {"spin", "rad/s", "absolute value of the wheels' difference, as commanded", 1,
      [](const FrameWindow& w) { return std::abs(wheel_difference(w.now())); }},
     {"climb", "rad/s", "slope along the heading times the wheels' mean: > 0 uphill", 1,
      [](const FrameWindow& w) { return std::sin(w.now().pitch) * mean_wheel(w.now()); }},
@@ -74,14 +75,14 @@ constexpr Feature kFeatures[] = {
      [](const FrameWindow& w) {
        return std::hypot(std::sin(w.now().pitch), std::sin(w.now().roll));
      }},
-    {"bank", "1", "amount of the sine of the roll", 1,
+    {"bank", "1", "absolute value of the sine of the roll", 1,
      [](const FrameWindow& w) { return std::abs(std::sin(w.now().roll)); }},
-    // What a gyro says; a world without one yet does not know them.
-    {"yaw_rate", "rad/s", "amount, about the chassis' upward axis", 1,
+    // Gyro rates; not available in the surrogate world.
+    {"yaw_rate", "rad/s", "absolute value, about the chassis' upward axis", 1,
      [](const FrameWindow& w) { return std::abs(w.now().rate_z); }},
-    {"pitch_rate", "rad/s", "amount, about its leftward axis", 1,
+    {"pitch_rate", "rad/s", "absolute value, about its leftward axis", 1,
      [](const FrameWindow& w) { return std::abs(w.now().rate_y); }},
-    {"roll_rate", "rad/s", "amount, about its forward axis", 1,
+    {"roll_rate", "rad/s", "absolute value, about its forward axis", 1,
      [](const FrameWindow& w) { return std::abs(w.now().rate_x); }},
     {"arc", "rad2/s2", "speed times yaw_rate", 1,
      [](const FrameWindow& w) { return std::abs(mean_wheel(w.now()) * w.now().rate_z); }},
@@ -114,10 +115,10 @@ NamedFeature::Term NamedFeature::term_of(std::string_view text) {
   if (at != std::string_view::npos) {
     const char* end = text.data() + text.size();
     const auto result = std::from_chars(text.data() + at + 1, end, ago);
-    if (result.ec != std::errc() || result.ptr != end || ago > kMostFramesAgo) {
+    if (result.ec != std::errc() || result.ptr != end || ago > kMaxFramesAgo) {
       throw InputError("feature '" + std::string(text) +
                        "': allowed behind the @ is an integer 0 to " +
-                       std::to_string(kMostFramesAgo));
+                       std::to_string(kMaxFramesAgo));
     }
   }
   return {found, ago};

@@ -1,4 +1,4 @@
-// What a network may see and foretell: features by name, each a function of the frames up to the
+// Inputs and outputs of a network: features by name, each a function of the frames up to the
 // present one. The same table serves training data from recorded sessions and a running world.
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host_sim/run/session/frame.h"
+#include "host_sim/run/session/sim_frame.h"
 
 namespace screed::nn {
 
@@ -16,11 +16,11 @@ namespace screed::nn {
 class FrameWindow {
  public:
   /// At least one frame, which must outlive the window.
-  explicit FrameWindow(std::span<const Frame> frames) : frames_(frames) {}
+  explicit FrameWindow(std::span<const SimFrame> frames) : frames_(frames) {}
 
-  const Frame& now() const { return frames_.back(); }
+  const SimFrame& now() const { return frames_.back(); }
   /// The frame so many frames ago; before the first one: the first.
-  const Frame& ago(std::size_t frames) const {
+  const SimFrame& ago(std::size_t frames) const {
     return frames_[frames < frames_.size() ? frames_.size() - 1 - frames : 0];
   }
   /// The same moment, without the last frames.
@@ -30,7 +30,7 @@ class FrameWindow {
   }
 
  private:
-  std::span<const Frame> frames_;
+  std::span<const SimFrame> frames_;
 };
 
 struct Feature {

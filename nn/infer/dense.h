@@ -23,8 +23,8 @@
 namespace screed {
 namespace nn {
 
-constexpr uint8_t kMostGainShift = 14;
-constexpr uint8_t kMostInputs = 255;
+constexpr uint8_t kMaxGainShift = 14;
+constexpr uint8_t kMaxInputs = 255;
 constexpr uint8_t kLinear = 0x40;  ///< in DenseShape::mode
 
 /// Bytes of a row with this many inputs.
@@ -35,7 +35,7 @@ constexpr uint16_t row_size(uint8_t inputs) {
 struct DenseShape {
   uint8_t inputs;   ///< 1..255
   uint8_t outputs;  ///< 1..255
-  uint8_t mode;     ///< gain_shift 0..kMostGainShift, | kLinear for a layer without tanh
+  uint8_t mode;     ///< gain_shift 0..kMaxGainShift, | kLinear for a layer without tanh
 };
 
 /// Odd piecewise linear tanh: argument (z + 1/2) / 2^13, result (y + 1/2) / 2^15. Within 7.5e-5 of

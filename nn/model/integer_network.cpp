@@ -27,9 +27,9 @@ void check(const std::vector<IntegerLayer>& layers) {
       refuse(i, std::to_string(layer.inputs) + " inputs after " +
                     std::to_string(layers[i - 1].outputs) + " outputs; they must be equal");
     }
-    if (layer.gain_shift > kMostGainShift) {
+    if (layer.gain_shift > kMaxGainShift) {
       refuse(i, "gain shift " + std::to_string(layer.gain_shift) + "; allowed is 0 to " +
-                    std::to_string(kMostGainShift));
+                    std::to_string(kMaxGainShift));
     }
     if (layer.weights.size() != std::size_t{layer.inputs} * layer.outputs ||
         layer.bias.size() != layer.outputs) {
@@ -38,8 +38,8 @@ void check(const std::vector<IntegerLayer>& layers) {
                     std::to_string(layer.weights.size()) + " and " +
                     std::to_string(layer.bias.size()));
     }
-    if (layer.greatest_sum() > std::numeric_limits<std::int32_t>::max()) {
-      refuse(i, "a sum can reach " + std::to_string(layer.greatest_sum()) +
+    if (layer.max_abs_sum() > std::numeric_limits<std::int32_t>::max()) {
+      refuse(i, "a sum can reach " + std::to_string(layer.max_abs_sum()) +
                     "; allowed is less than 2^31");
     }
   }
@@ -74,7 +74,7 @@ DenseShape IntegerLayer::shape() const {
   return {inputs, outputs, static_cast<std::uint8_t>(gain_shift | (linear ? kLinear : 0))};
 }
 
-std::int64_t IntegerLayer::greatest_sum() const {
+std::int64_t IntegerLayer::max_abs_sum() const {
   std::int64_t greatest = 0;
   for (std::size_t node = 0; node < outputs; ++node) {
     std::int64_t sum = std::abs(static_cast<std::int64_t>(bias[node]));
@@ -92,8 +92,8 @@ IntegerNetwork::IntegerNetwork(std::vector<IntegerLayer> layers) : layers_(std::
 }
 
 void IntegerNetwork::run(std::span<const std::int16_t> in, std::span<std::int16_t> out) const {
-  std::array<std::int16_t, kMostInputs> from;
-  std::array<std::int16_t, kMostInputs> to;
+  std::array<std::int16_t, kMaxInputs> from;
+  std::array<std::int16_t, kMaxInputs> to;
   std::copy_n(in.begin(), inputs(), from.begin());
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     dense(layers_[i].shape(), parameters_[i].data(), from.data(), to.data());

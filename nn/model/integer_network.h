@@ -21,7 +21,7 @@ struct IntegerLayer {
 
   DenseShape shape() const;
   /// The greatest |sum| that any input can bring about.
-  std::int64_t greatest_sum() const;
+  std::int64_t max_abs_sum() const;
 };
 
 class IntegerNetwork {

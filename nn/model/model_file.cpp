@@ -17,8 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "screed-network-model";
-constexpr std::size_t kMostNetworks = 64;
-constexpr std::size_t kMostLayers = 255;
+constexpr std::size_t kMaxNetworks = 64;
+constexpr std::size_t kMaxLayers = 255;
 
 template <class T>
 std::vector<T> integers(const JsonValue& list, std::size_t count) {
@@ -66,13 +66,13 @@ std::vector<ModelChannel> channels(const JsonValue& list, std::size_t count, boo
 
 IntegerNetwork integer_network(const JsonValue& list) {
   std::vector<IntegerLayer> layers;
-  for (const JsonValue& value : list.list(1, kMostLayers)) {
+  for (const JsonValue& value : list.list(1, kMaxLayers)) {
     value.only({"inputs", "outputs", "activation", "gain_shift", "weights", "bias"});
     IntegerLayer layer;
-    layer.inputs = static_cast<std::uint8_t>(value.at("inputs").integer(1, kMostInputs));
-    layer.outputs = static_cast<std::uint8_t>(value.at("outputs").integer(1, kMostInputs));
+    layer.inputs = static_cast<std::uint8_t>(value.at("inputs").integer(1, kMaxInputs));
+    layer.outputs = static_cast<std::uint8_t>(value.at("outputs").integer(1, kMaxInputs));
     layer.linear = value.at("activation").one_of({"tanh", "linear"}) == "linear";
-    layer.gain_shift = static_cast<std::uint8_t>(value.at("gain_shift").integer(0, kMostGainShift));
+    layer.gain_shift = static_cast<std::uint8_t>(value.at("gain_shift").integer(0, kMaxGainShift));
     for (const JsonValue& row : value.at("weights").list(layer.outputs, layer.outputs)) {
       const auto weights = integers<std::int16_t>(row, layer.inputs);
       layer.weights.insert(layer.weights.end(), weights.begin(), weights.end());
@@ -136,11 +136,11 @@ ModelNetwork model_network(const JsonValue& value) {
   return result;
 }
 
-std::vector<ModelStage> model_stages(const JsonValue& list) {
-  std::vector<ModelStage> stages;
+std::vector<ModelPreprocessingStage> model_preprocessing_stages(const JsonValue& list) {
+  std::vector<ModelPreprocessingStage> stages;
   for (const JsonValue& value : list.list()) {
     value.only({"stage", "feature", "low", "high", "value", "run_time"});
-    ModelStage stage;
+    ModelPreprocessingStage stage;
     stage.stage = not_empty(value.at("stage"));
     if (value.has("feature")) {
       stage.feature = not_empty(value.at("feature"));
@@ -167,8 +167,8 @@ Model model_of(const JsonValue& root) {
   model.description = root.at("description").text();
   model.seed = root.at("seed").unsigned_integer();
   model.training_data = root.at("training_data").text();
-  model.stages = model_stages(root.at("stages"));
-  for (const JsonValue& value : root.at("networks").list(1, kMostNetworks)) {
+  model.stages = model_preprocessing_stages(root.at("stages"));
+  for (const JsonValue& value : root.at("networks").list(1, kMaxNetworks)) {
     model.networks.push_back(model_network(value));
   }
   return model;
@@ -176,7 +176,7 @@ Model model_of(const JsonValue& root) {
 
 // ---- writing
 
-Json stage_json(const ModelStage& stage) {
+Json stage_json(const ModelPreprocessingStage& stage) {
   Json json = {{"stage", stage.stage}};
   if (!stage.feature.empty()) {
     json["feature"] = stage.feature;
@@ -310,7 +310,7 @@ Model read_model(const std::filesystem::path& file) {
 
 std::string model_text(const Model& model) {
   Json stages = Json::array();
-  for (const ModelStage& stage : model.stages) stages.push_back(stage_json(stage));
+  for (const ModelPreprocessingStage& stage : model.stages) stages.push_back(stage_json(stage));
   Json networks = Json::array();
   for (const ModelNetwork& network : model.networks) networks.push_back(network_json(network));
   const Json root = {{"format", kFormat},  {"format_version", kModelFormatVersion},

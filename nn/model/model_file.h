@@ -45,8 +45,9 @@ struct ModelNetwork {
   std::vector<GoldenVector> golden;
 };
 
-/// A stage of the pre-processing (nn/data/stages.h) with what it learned from the training data.
-struct ModelStage {
+/// A stage of the pre-processing (nn/data/preprocessing.h) with what it learned from the training
+/// data.
+struct ModelPreprocessingStage {
   std::string stage;
   std::string feature;  ///< of a stage that drops frames, else empty
   double low = 0.0;     ///< outside of which they are dropped
@@ -57,10 +58,11 @@ struct ModelStage {
 
 struct Model {
   std::string name;
-  std::string description;         ///< how it was made, one line
-  std::uint64_t seed = 0;          ///< of the training
-  std::string training_data;       ///< hash over what it was trained on
-  std::vector<ModelStage> stages;  ///< in their order; "normalise" is the channels' scale
+  std::string description;    ///< how it was made, one line
+  std::uint64_t seed = 0;     ///< of the training
+  std::string training_data;  ///< hash over what it was trained on
+  std::vector<ModelPreprocessingStage>
+      stages;  ///< in their order; "normalise" is the channels' scale
   std::vector<ModelNetwork> networks;
 
   /// The network with this output. Throws InputError when there is none.

@@ -42,14 +42,14 @@ std::optional<IntegerLayer> scaled(const FloatLayer& layer, int gain_shift) {
     if (std::abs(bias) > std::numeric_limits<std::int32_t>::max()) return std::nullopt;
     result.bias.push_back(static_cast<std::int32_t>(bias));
   }
-  if (result.greatest_sum() > std::numeric_limits<std::int32_t>::max()) return std::nullopt;
+  if (result.max_abs_sum() > std::numeric_limits<std::int32_t>::max()) return std::nullopt;
   return result;
 }
 
 IntegerLayer finest(const FloatLayer& layer, std::size_t number) {
   const std::string name = "network: layer " + std::to_string(number);
-  if (layer.inputs < 1 || layer.inputs > kMostInputs || layer.outputs < 1 ||
-      layer.outputs > kMostInputs || layer.weights.size() != layer.inputs * layer.outputs ||
+  if (layer.inputs < 1 || layer.inputs > kMaxInputs || layer.outputs < 1 ||
+      layer.outputs > kMaxInputs || layer.weights.size() != layer.inputs * layer.outputs ||
       layer.bias.size() != layer.outputs) {
     throw InputError(name + ": dimensions do not fit together; allowed is 1 to 255 a side");
   }
@@ -58,7 +58,7 @@ IntegerLayer finest(const FloatLayer& layer, std::size_t number) {
       !std::all_of(layer.bias.begin(), layer.bias.end(), finite)) {
     throw InputError(name + ": a weight or bias is not finite");
   }
-  for (int gain_shift = 0; gain_shift <= kMostGainShift; ++gain_shift) {
+  for (int gain_shift = 0; gain_shift <= kMaxGainShift; ++gain_shift) {
     if (std::optional<IntegerLayer> result = scaled(layer, gain_shift)) return *std::move(result);
   }
   throw InputError(name + ": weights are too large for 16 bits at any scale");

@@ -26,25 +26,25 @@ static_assert(std::size(kInputs) == kSlipInputs);
 // Of the log of the odds that the robot hardly moves: certain enough at either end.
 constexpr Channel kOutput = {"held", 2.0};
 
-constexpr std::size_t kEvery = 4;    // ticks: neighbours say much the same
-constexpr std::size_t kAround = 15;  // ticks before and after, over which motion is taken
-constexpr double kHardly = 0.3;      // share of motion below which it hardly moves
-constexpr double kUnclearFrom = 0.25;
-constexpr double kUnclearTo = 0.4;  // what lies between is not learned
+constexpr std::size_t kDecimation = 4;     // ticks: neighbours say much the same
+constexpr std::size_t kMotionWindow = 15;  // ticks before and after, over which motion is taken
+constexpr double kHeldShare = 0.3;         // share of motion below which it hardly moves
+constexpr double kAmbiguousMin = 0.25;
+constexpr double kAmbiguousMax = 0.4;  // what lies between is not learned
 constexpr std::size_t kGoldenVectors = 8;
 
 Examples examples_of(const std::vector<SlipRun>& runs) {
   Examples examples{kSlipInputs, 1, {}, {}};
   for (const SlipRun& run : runs) {
-    for (std::size_t i = kAround; i + kAround < run.ticks.size(); i += kEvery) {
+    for (std::size_t i = kMotionWindow; i + kMotionWindow < run.ticks.size(); i += kDecimation) {
       const SlipTick& tick = run.ticks[i];
-      if (!tick.running || !tick.looked) continue;
-      const double motion = share_between(run, i - kAround, i + kAround);
-      if (motion >= kUnclearFrom && motion <= kUnclearTo) continue;
+      if (!tick.running || !tick.evaluated) continue;
+      const double motion = travel_share(run, i - kMotionWindow, i + kMotionWindow);
+      if (motion >= kAmbiguousMin && motion <= kAmbiguousMax) continue;
       for (const std::int16_t input : tick.inputs) {
         examples.in.push_back(static_cast<float>(to_value(input)));
       }
-      examples.out.push_back(motion < kHardly ? 1.0F : 0.0F);
+      examples.out.push_back(motion < kHeldShare ? 1.0F : 0.0F);
     }
   }
   return examples;
@@ -52,13 +52,13 @@ Examples examples_of(const std::vector<SlipRun>& runs) {
 
 /// Means and deviations of the inputs: learned on inputs of mean 0 and deviation 1, then folded
 /// into the first layer.
-struct Spread {
+struct InputStatistics {
   std::array<double, kSlipInputs> mean{};
   std::array<double, kSlipInputs> deviation{};
 };
 
-Spread spread_of(const Examples& examples) {
-  Spread spread;
+InputStatistics statistics_of(const Examples& examples) {
+  InputStatistics statistics;
   const auto rows = static_cast<double>(examples.rows());
   for (std::size_t i = 0; i < kSlipInputs; ++i) {
     double sum = 0.0;
@@ -68,28 +68,28 @@ Spread spread_of(const Examples& examples) {
       sum += value;
       squares += value * value;
     }
-    spread.mean[i] = sum / rows;
-    spread.deviation[i] =
-        std::sqrt(std::max(squares / rows - spread.mean[i] * spread.mean[i], 1e-12));
+    statistics.mean[i] = sum / rows;
+    statistics.deviation[i] =
+        std::sqrt(std::max(squares / rows - statistics.mean[i] * statistics.mean[i], 1e-12));
   }
-  return spread;
+  return statistics;
 }
 
-Examples standardised(Examples examples, const Spread& spread) {
+Examples standardised(Examples examples, const InputStatistics& statistics) {
   for (std::size_t at = 0; at < examples.in.size(); ++at) {
     const std::size_t i = at % kSlipInputs;
-    examples.in[at] = static_cast<float>((static_cast<double>(examples.in[at]) - spread.mean[i]) /
-                                         spread.deviation[i]);
+    examples.in[at] = static_cast<float>(
+        (static_cast<double>(examples.in[at]) - statistics.mean[i]) / statistics.deviation[i]);
   }
   return examples;
 }
 
-void fold(const Spread& spread, FloatLayer& first) {
+void fold(const InputStatistics& statistics, FloatLayer& first) {
   for (std::size_t node = 0; node < first.outputs; ++node) {
     for (std::size_t i = 0; i < kSlipInputs; ++i) {
       double& weight = first.weights[node * kSlipInputs + i];
-      weight /= spread.deviation[i];
-      first.bias[node] -= weight * spread.mean[i];
+      weight /= statistics.deviation[i];
+      first.bias[node] -= weight * statistics.mean[i];
     }
   }
 }
@@ -111,8 +111,8 @@ double error_of(NetworkTrainer& trainer, const Examples& examples) {
 Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& options) {
   const Examples raw = examples_of(runs);
   if (raw.rows() < 1000) throw RunError("slip: fewer than 1000 ticks to learn from");
-  const Spread spread = spread_of(raw);
-  const Examples examples = standardised(raw, spread);
+  const InputStatistics statistics = statistics_of(raw);
+  const Examples examples = standardised(raw, statistics);
   NetworkConfiguration network;
   for (const Channel& input : kInputs) network.inputs.emplace_back(input.name);
   network.outputs = {kOutput.name};
@@ -140,7 +140,7 @@ Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& op
   model.seed = options.seed;
   model.training_data = hash.hex();
   std::vector<FloatLayer> layers = trainer.folded();
-  fold(spread, layers.front());
+  fold(statistics, layers.front());
   for (double& weight : layers.back().weights) weight /= kOutput.half_range;
   for (double& bias : layers.back().bias) bias /= kOutput.half_range;
   ModelNetwork result{{}, {}, quantise(layers), std::move(layers), {}};

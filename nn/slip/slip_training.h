@@ -19,8 +19,8 @@ struct SlipTrainingOptions {
 };
 
 /// The model "slip": output held, half the log of the odds that the chassis makes less than three
-/// tenths of the tracks' way (over 0.3 s around that moment), from the watch's inputs as they are
-/// on the robot.
+/// tenths of the tracks' travel (over 0.3 s around that moment), from the watch's inputs as they
+/// are on the robot.
 Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& options);
 
 }  // namespace screed::nn

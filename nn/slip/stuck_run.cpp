@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kSecond = kTickRate_hz;
 constexpr double kSmoothing = 1.0 / 8.0;
-constexpr float kLeastSpeed = 0.03F;  ///< of tracks that count as driven, m/s
+constexpr float kMinDrivenSpeed = 0.03F;  ///< of tracks that count as driven, m/s
 constexpr double kHalfTread_m = 0.0975;
 
 SlipTick tick_of(const World& world, const Robot& robot) {
@@ -32,11 +32,12 @@ SlipTick tick_of(const World& world, const Robot& robot) {
   std::copy_n(watch.network_inputs(), kSlipInputs, tick.inputs.begin());
   tick.running = robot.supervisor().running();
   const DriveControl& drive = robot.drive();
-  tick.looked = std::max(std::abs(drive.speed_left_dmm_per_s()),
-                         std::abs(drive.speed_right_dmm_per_s())) >= SlipWatch::kSlowest_dmm_per_s;
+  tick.evaluated =
+      std::max(std::abs(drive.speed_left_dmm_per_s()), std::abs(drive.speed_right_dmm_per_s())) >=
+      SlipWatch::kMinTrackSpeed_dmm_per_s;
   tick.speed = static_cast<float>(velocity.x());
   tick.turn = static_cast<float>(chassis.omega_body.z() * kHalfTread_m);
-  tick.faster = static_cast<float>(std::max(std::abs(left), std::abs(right)));
+  tick.faster_track = static_cast<float>(std::max(std::abs(left), std::abs(right)));
   tick.backwards = left + right < 0.0;
   tick.slips = watch.slips();
   tick.stuck = watch.stuck();
@@ -69,35 +70,35 @@ SlipRun drive(const StuckScenario& scenario) {
   return run;
 }
 
-double share_between(const SlipRun& run, std::size_t begin, std::size_t end) {
-  double way = 0.0;
+double travel_share(const SlipRun& run, std::size_t begin, std::size_t end) {
+  double distance = 0.0;
   double turn = 0.0;
   double of_track = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
-    way += static_cast<double>(run.ticks[i].speed);
+    distance += static_cast<double>(run.ticks[i].speed);
     turn += static_cast<double>(run.ticks[i].turn);
-    of_track += static_cast<double>(run.ticks[i].faster);
+    of_track += static_cast<double>(run.ticks[i].faster_track);
   }
-  return of_track <= 0.0 ? 1.0 : (std::abs(way) + std::abs(turn)) / of_track;
+  return of_track <= 0.0 ? 1.0 : (std::abs(distance) + std::abs(turn)) / of_track;
 }
 
 std::optional<std::size_t> dug_in_at(const SlipRun& run) {
   double speed = 0.0;
   double turn = 0.0;
-  double faster = 0.0;
+  double faster_track = 0.0;
   for (std::size_t i = 0; i + kSecond <= run.ticks.size(); ++i) {
     const SlipTick& tick = run.ticks[i];
     speed += (static_cast<double>(tick.speed) - speed) * kSmoothing;
     turn += (static_cast<double>(tick.turn) - turn) * kSmoothing;
-    faster += (static_cast<double>(tick.faster) - faster) * kSmoothing;
-    if (!tick.running || tick.faster < kLeastSpeed) continue;
-    if (std::abs(speed) + std::abs(turn) > (kDugInShare + 0.05) * faster) continue;
-    if (share_between(run, i, i + kSecond) < kDugInShare) return i;
+    faster_track += (static_cast<double>(tick.faster_track) - faster_track) * kSmoothing;
+    if (!tick.running || tick.faster_track < kMinDrivenSpeed) continue;
+    if (std::abs(speed) + std::abs(turn) > (kDugInShare + 0.05) * faster_track) continue;
+    if (travel_share(run, i, i + kSecond) < kDugInShare) return i;
   }
   return std::nullopt;
 }
 
-DugInResult detection_of(const SlipRun& run, std::size_t dug_in) {
+DetectionResult detection_of(const SlipRun& run, std::size_t dug_in) {
   const std::size_t begin = dug_in > kSecond ? dug_in - kSecond : 0;
   const std::size_t end = std::min(dug_in + kSecond + 1, run.ticks.size());
   for (std::size_t i = begin; i < end; ++i) {
@@ -110,14 +111,14 @@ DugInResult detection_of(const SlipRun& run, std::size_t dug_in) {
 FreeResult alarms_of(const SlipRun& run) {
   FreeResult result;
   for (std::size_t i = 0; i < run.ticks.size(); ++i) {
-    if (run.ticks[i].looked && run.ticks[i].running) result.driven_s += 1.0 / kTickRate_hz;
+    if (run.ticks[i].evaluated && run.ticks[i].running) result.driven_s += 1.0 / kTickRate_hz;
     if (i == 0 || !run.ticks[i].stuck || run.ticks[i - 1].stuck) continue;
     const std::size_t begin = i > kSecond / 2 ? i - kSecond / 2 : 0;
     const std::size_t end = std::min(i + kSecond / 2, run.ticks.size());
-    if (share_between(run, begin, i + 1) > kFreeShare) {
+    if (travel_share(run, begin, i + 1) > kFreeShare) {
       ++result.false_alarms;
-    } else if (share_between(run, begin, end) > kFreeShare) {
-      ++result.came_free_alarms;
+    } else if (travel_share(run, begin, end) > kFreeShare) {
+      ++result.recovered_alarms;
     } else {
       ++result.other_alarms;
     }

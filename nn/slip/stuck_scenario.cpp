@@ -1,4 +1,4 @@
-// Which ground, which way of driving, which trap.
+// Draws the soil, the kind of drive and the trap.
 #include "nn/slip/stuck_scenario.h"
 
 #include <cmath>
@@ -9,14 +9,14 @@
 namespace screed::nn {
 namespace {
 
-constexpr const char* kGrounds[] = {"rigid",    "rigid", "soft",      "viper", "lete_sand",
-                                    "dry_sand", "clay",  "ding_2011", "gravel"};
+constexpr const char* kSoils[] = {"rigid",    "rigid", "soft",      "viper", "lete_sand",
+                                  "dry_sand", "clay",  "ding_2011", "gravel"};
 constexpr const char* kTerrains[] = {"terrain_a.png", "terrain_b.png"};
 constexpr const char* kTraps[] = {"wall", "slope", "hump", "trench", "ruts", "ruts"};
 constexpr std::size_t kStartsInRuts = 4;  ///< the first of the two "ruts"
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-enum class Way : std::uint8_t { kRandom, kArc, kStraight };
+enum class DriveKind : std::uint8_t { kRandom, kArc, kStraight };
 
 class Draw {
  public:
@@ -32,8 +32,8 @@ class Draw {
   WorldRandom random_;
 };
 
-void choose_ground(Draw& draw, Experiment& e, std::string& ground) {
-  ground = kGrounds[draw.below(std::size(kGrounds))];
+void choose_soil(Draw& draw, Experiment& e, std::string& ground) {
+  ground = kSoils[draw.below(std::size(kSoils))];
   e.vehicle.track_friction = draw.between(0.6, 0.9);
   if (ground == "rigid") return;
   e.map.model = "scm";
@@ -54,7 +54,8 @@ void choose_terrain(Draw& draw, Experiment& e, bool trapped) {
   e.vehicle.heading_deg = draw.between(-180.0, 180.0);
 }
 
-void choose_trap(Draw& draw, Experiment& e, const std::string& ground, Way& way, bool& spins) {
+void choose_trap(Draw& draw, Experiment& e, const std::string& ground, DriveKind& drive_kind,
+                 bool& spins) {
   const std::size_t trap = draw.below(std::size(kTraps));
   e.trap.kind = kTraps[trap];
   e.trap.distance_m = trap == kStartsInRuts ? -0.25 : draw.between(0.25, 0.6);
@@ -68,7 +69,7 @@ void choose_trap(Draw& draw, Experiment& e, const std::string& ground, Way& way,
     e.trap.size = draw.between(0.045, 0.08);
   }
   // A hump and ruts are met straight on; who stands in ruts may try to turn.
-  if (e.trap.kind == "hump" || e.trap.kind == "ruts") way = Way::kStraight;
+  if (e.trap.kind == "hump" || e.trap.kind == "ruts") drive_kind = DriveKind::kStraight;
   spins = trap == kStartsInRuts && draw.one_in_two();
 }
 
@@ -82,20 +83,20 @@ StuckScenario stuck_scenario(std::uint64_t seed, bool trapped, double duration_s
   e.experiment.name = trapped ? "trapped" : "free";
   e.experiment.seed = seed;
   e.experiment.duration_s = duration_s;
-  choose_ground(draw, e, scenario.ground);
+  choose_soil(draw, e, scenario.ground);
   choose_terrain(draw, e, trapped);
-  Way way = static_cast<Way>(draw.below(3));
+  DriveKind drive_kind = static_cast<DriveKind>(draw.below(3));
   bool spins = false;
-  if (trapped) choose_trap(draw, e, scenario.ground, way, spins);
+  if (trapped) choose_trap(draw, e, scenario.ground, drive_kind, spins);
   e.drive.speed_m_per_s = draw.between(0.08, 0.2);
   const double side = draw.one_in_two() ? 1.0 : -1.0;
   const double rate = draw.between(5.0, 30.0);
-  if (way == Way::kArc) e.drive.yaw_rate_deg_per_s = side * rate;
+  if (drive_kind == DriveKind::kArc) e.drive.yaw_rate_deg_per_s = side * rate;
   if (spins) {
     if (draw.one_in_two()) e.drive.speed_m_per_s = 0.0;
     e.drive.yaw_rate_deg_per_s = side * (rate + 20.0);
   }
-  e.experiment.algorithm = way == Way::kRandom ? "hill_sensing" : "drive";
+  e.experiment.algorithm = drive_kind == DriveKind::kRandom ? "hill_sensing" : "drive";
   e.parameters.algorithm = algorithm_number(e.experiment.algorithm);
   e.parameters.random_seed = static_cast<int16_t>(seed % 32767 + 1);
   return scenario;

@@ -8,7 +8,7 @@ std::filesystem::path default_model_file() {
   return std::filesystem::path(kModelsFolder) / "v3.json";
 }
 
-std::filesystem::path default_bearing_file() {
+std::filesystem::path default_bearing_capacity_file() {
   return std::filesystem::path(kModelsFolder) / "terrain_tracks.json";
 }
 

@@ -1,4 +1,4 @@
-// The models that stand in for the physics when nobody names others.
+// The surrogate models used when no others are named.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 namespace screed::nn {
 
 std::filesystem::path default_model_file();
-/// The network of what bears tracks (nn/terrain) that goes with it.
-std::filesystem::path default_bearing_file();
+/// The bearing-capacity network (nn/terrain) that belongs to it.
+std::filesystem::path default_bearing_capacity_file();
 
 }  // namespace screed::nn

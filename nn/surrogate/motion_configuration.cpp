@@ -45,9 +45,9 @@ std::array<double, kMotions> as_array(const FrameMotion& motion) {
   return {motion.forward_m, motion.sideways_m, motion.turn_rad};
 }
 
-/// Of foretold against real motions, frame 2 being the first.
-template <class Foretell>
-std::array<double, kMotions> r2_of(const MotionSeries& series, Foretell foretell) {
+/// Of predicted against real motions, frame 2 being the first.
+template <class Predict>
+std::array<double, kMotions> r2_of(const MotionSeries& series, Predict predict) {
   std::array<double, kMotions> mean{};
   std::array<double, kMotions> wrong{};
   std::array<double, kMotions> spread{};
@@ -59,9 +59,9 @@ std::array<double, kMotions> r2_of(const MotionSeries& series, Foretell foretell
   }
   for (std::size_t k = 2; k < series.frames.size(); ++k) {
     const std::array<double, kMotions> real = as_array(series.frames[k].motion);
-    const std::array<double, kMotions> foretold = as_array(foretell(k));
+    const std::array<double, kMotions> predicted = as_array(predict(k));
     for (std::size_t m = 0; m < kMotions; ++m) {
-      wrong.at(m) += (foretold.at(m) - real.at(m)) * (foretold.at(m) - real.at(m));
+      wrong.at(m) += (predicted.at(m) - real.at(m)) * (predicted.at(m) - real.at(m));
       spread.at(m) += (real.at(m) - mean.at(m)) * (real.at(m) - mean.at(m));
     }
   }
@@ -136,7 +136,7 @@ std::array<double, 3> one_frame_r2(const Model& model, const MotionSeries& serie
   return r2_of(series, [&](std::size_t k) {
     const MotionFrame& now = series.frames[k];
     const MotionFrame& before = series.frames[k - 1];
-    robot.place(0, {}, before.motion, series.frames[k - 2].motion);
+    robot.set_pose(0, {}, before.motion, series.frames[k - 2].motion);
     robot.set_tracks(0, before.track_left_m_per_s, before.track_right_m_per_s);
     robot.step_on_slope(now.pitch, now.roll, {&now.track_left_m_per_s, 1},
                         {&now.track_right_m_per_s, 1});

@@ -28,10 +28,10 @@ std::vector<MotionSeries> read_motion_sessions(const std::filesystem::path& fold
 Model motion_model(const MotionConfiguration& configuration, const MotionTrainer& trainer,
                    const std::vector<MotionSeries>& series);
 
-/// How well a network foretells one frame from the recorded frames before it: 1 - sum of squared
+/// How well a network predicts one frame from the recorded frames before it: 1 - sum of squared
 /// errors / sum of squared differences from the mean, of forward, sideways and turn.
 std::array<double, 3> one_frame_r2(const Model& model, const MotionSeries& series);
-/// The same of foretelling that nothing changes.
+/// The same of the prediction that nothing changes.
 std::array<double, 3> unchanged_r2(const MotionSeries& series);
 
 /// Share of the tracks' speed and tread that fit the sessions best, frame by frame.

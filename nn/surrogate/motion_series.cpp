@@ -69,15 +69,15 @@ MotionSeries read_motion_series(const std::filesystem::path& session_folder) {
   series.soil = make_soil(experiment);
 
   const SupportGeometry geometry;
-  std::vector<Frame> rows;
-  std::optional<Frame> before;
+  std::vector<SimFrame> rows;
+  std::optional<SimFrame> before;
   PlanarPose pose;
   for (std::uint64_t begin = 0; begin < session.frames(); begin += kBlockRows) {
     rows.resize(std::min(kBlockRows, session.frames() - begin));
     session.read(begin, rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Frame& now = rows[i];
-      if (now.leveling_state == static_cast<std::int32_t>(LevelingState::kTraining) &&
+      const SimFrame& now = rows[i];
+      if (now.leveling_state == static_cast<std::int32_t>(LevelingState::kTrainingDrive) &&
           before.has_value()) {
         const std::uint64_t tick = begin + i;
         if (series.frames.empty()) {

@@ -1,5 +1,5 @@
 // Backpropagation through time over tiny-dnn's layers. Their forward and backward passes are called
-// directly, since a stretch needs the activations of all its frames at once.
+// directly, since a sequence needs the activations of all its frames at once.
 #include "nn/surrogate/motion_trainer.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
-#include "nn/data/signals.h"
+#include "nn/data/motion_signals.h"
 #include "nn/surrogate/surrogate.h"
 #include "nn/training/parameter_update.h"
 #include "nn/training/tiny_dnn.h"
@@ -27,7 +27,7 @@ constexpr std::size_t kMotions = 3;  // forward, sideways, turn
 // What an error is measured in, and where it stops counting by its square.
 constexpr std::array<double, kMotions> kErrorUnit = {0.002, 0.001, 0.02};
 constexpr double kFrameKnee = 0.1;
-constexpr double kLongestGradient = 0.5;
+constexpr double kMaxGradientNorm = 0.5;
 constexpr double kRisingShare = 0.1;
 constexpr double kLastRate = 0.001;
 constexpr double kFirstOutput = 0.1;  // first weights of the last layer, share of the usual
@@ -45,7 +45,7 @@ Huber huber(double error, double knee) {
 
 /// Where a signal comes from: the recording, or the network's own answers so many frames ago.
 struct Source {
-  Signal signal;
+  MotionSignal signal;
   double middle;
   double half_range;
   std::size_t own = kMotions;  ///< index of the motion, kMotions: from the recording
@@ -53,51 +53,51 @@ struct Source {
 };
 
 Source source_of(const ModelChannel& channel) {
-  const std::optional<Signal> signal = signal_named(channel.feature);
+  const std::optional<MotionSignal> signal = motion_signal_named(channel.feature);
   if (!signal.has_value()) {
     throw InputError("training: input '" + channel.feature + "' is not known to nn/surrogate");
   }
   Source source{*signal, channel.middle, channel.half_range, kMotions, 0};
   const std::size_t row = row_of(*signal);
-  const auto among = [&](Signal first, Signal last) {
+  const auto among = [&](MotionSignal first, MotionSignal last) {
     return row >= row_of(first) && row <= row_of(last);
   };
-  if (among(Signal::kForwardSettling, Signal::kTurnSettling) ||
-      among(Signal::kSpeed, Signal::kPivot)) {
+  if (among(MotionSignal::kForwardSettling, MotionSignal::kTurnSettling) ||
+      among(MotionSignal::kSpeed, MotionSignal::kPivot)) {
     throw InputError("training: input '" + channel.feature +
                      "' is not one that a network of motion learns from");
   }
-  if (row <= row_of(Signal::kTurn2)) {
+  if (row <= row_of(MotionSignal::kTurn2)) {
     source.own = row % kMotions;
     source.ago = 1 + row / kMotions;
   }
   return source;
 }
 
-double recorded(Signal signal, const std::vector<MotionFrame>& frames, std::size_t frame,
+double recorded(MotionSignal signal, const std::vector<MotionFrame>& frames, std::size_t frame,
                 const std::array<double, kSoilSignals>& soil) {
   const MotionFrame& now = frames[frame];
   const MotionFrame& before = frames[frame - 1];
   switch (signal) {
-    case Signal::kTrackLeft:
+    case MotionSignal::kTrackLeft:
       return now.track_left_m_per_s;
-    case Signal::kTrackRight:
+    case MotionSignal::kTrackRight:
       return now.track_right_m_per_s;
-    case Signal::kTrackLeft1:
+    case MotionSignal::kTrackLeft1:
       return before.track_left_m_per_s;
-    case Signal::kTrackRight1:
+    case MotionSignal::kTrackRight1:
       return before.track_right_m_per_s;
-    case Signal::kTrackLeft2:
+    case MotionSignal::kTrackLeft2:
       return frames[frame - 2].track_left_m_per_s;
-    case Signal::kTrackRight2:
+    case MotionSignal::kTrackRight2:
       return frames[frame - 2].track_right_m_per_s;
-    case Signal::kWheelLeft:
+    case MotionSignal::kWheelLeft:
       return now.track_left_m_per_s / SupportGeometry{}.wheel_radius_m;
-    case Signal::kWheelRight:
+    case MotionSignal::kWheelRight:
       return now.track_right_m_per_s / SupportGeometry{}.wheel_radius_m;
-    case Signal::kPitch:
+    case MotionSignal::kPitch:
       return now.pitch;
-    case Signal::kRoll:
+    case MotionSignal::kRoll:
       return now.roll;
     default:
       return soil.at(row_of(signal) - row_of(kFirstSoilSignal));
@@ -121,23 +121,23 @@ MotionFrame mirrored(const MotionFrame& frame) {
 }
 
 /// Frames to drive along, and two before them.
-struct Stretch {
+struct Sequence {
   std::vector<MotionFrame> frames;
   std::array<double, kSoilSignals> soil;
 };
 constexpr std::size_t kBefore = 2;
 
-/// What a motion is told a difference to: constant + last x the last frame's + before_last x that
-/// of the frame before.
+/// What a motion is predicted as a difference to: constant + last x the last frame's + before_last
+/// x that of the frame before.
 struct Baseline {
   bool settles = false;
-  double last() const { return settles ? kSwingLast : 1.0; }
-  double before_last() const { return settles ? kSwingBefore : 0.0; }
-  double constant(const Stretch& stretch, std::size_t frame, std::size_t motion) const {
+  double last() const { return settles ? kSettlingLast : 1.0; }
+  double before_last() const { return settles ? kSettlingBeforeLast : 0.0; }
+  double constant(const Sequence& sequence, std::size_t frame, std::size_t motion) const {
     if (!settles) return 0.0;
     const auto skid = [&](std::size_t ago) {
-      const MotionFrame& at = stretch.frames[frame - ago];
-      const FrameMotion usual = kUsualSkid.motion(at.track_left_m_per_s, at.track_right_m_per_s);
+      const MotionFrame& at = sequence.frames[frame - ago];
+      const FrameMotion usual = kNominalSkid.motion(at.track_left_m_per_s, at.track_right_m_per_s);
       const std::array<double, kMotions> all = {usual.forward_m, 0.0, usual.turn_rad};
       return all.at(motion);
     };
@@ -173,31 +173,31 @@ class MotionTrainer::Impl {
   double step(const std::vector<MotionSeries>& series) {
     double frames = 0.0;
     for (const MotionSeries& one : series) frames += static_cast<double>(one.frames.size());
-    std::vector<Stretch> stretches;
-    while (stretches.size() < training_.batch) {
+    std::vector<Sequence> sequences;
+    while (sequences.size() < training_.batch) {
       double at = random_.uniform() * frames;
       std::size_t chosen = 0;
       while (chosen + 1 < series.size() &&
              at >= static_cast<double>(series[chosen].frames.size())) {
         at -= static_cast<double>(series[chosen++].frames.size());
       }
-      stretches.push_back(stretch(series[chosen], random_.uniform()));
-      if (training_.mirror && stretches.size() % 2 == 0) {
-        for (MotionFrame& frame : stretches.back().frames) frame = mirrored(frame);
+      sequences.push_back(sequence(series[chosen], random_.uniform()));
+      if (training_.mirror && sequences.size() % 2 == 0) {
+        for (MotionFrame& frame : sequences.back().frames) frame = mirrored(frame);
       }
     }
-    const double loss = propagate(stretches, true);
+    const double loss = propagate(sequences, true);
     update();
     ++steps_;
     return loss;
   }
 
   double loss(const std::vector<MotionSeries>& series) {
-    return propagate(first_stretches(series), false);
+    return propagate(first_sequences(series), false);
   }
 
   std::vector<std::vector<float>> gradient(const std::vector<MotionSeries>& series) {
-    propagate(first_stretches(series), true);
+    propagate(first_sequences(series), true);
     std::vector<std::vector<float>> all;
     for (const vec_t& array : gradients_) all.emplace_back(array.begin(), array.end());
     return all;
@@ -245,11 +245,11 @@ class MotionTrainer::Impl {
     updates_.resize(parameters_.size());
   }
 
-  /// A stretch somewhere in a series; where: 0 to 1.
-  Stretch stretch(const MotionSeries& series, double where) const {
+  /// A sequence somewhere in a series; where: 0 to 1.
+  Sequence sequence(const MotionSeries& series, double where) const {
     const std::size_t last = series.frames.size() - training_.window;
     if (series.frames.size() < training_.window + kBefore + 1) {
-      throw InputError("training: session " + series.source + " is shorter than a stretch");
+      throw InputError("training: session " + series.source + " is shorter than a sequence");
     }
     const auto begin =
         kBefore + static_cast<std::size_t>(where * static_cast<double>(last - kBefore));
@@ -258,11 +258,11 @@ class MotionTrainer::Impl {
             soil_signals(series.soil)};
   }
 
-  std::vector<Stretch> first_stretches(const std::vector<MotionSeries>& series) const {
-    std::vector<Stretch> stretches;
-    stretches.reserve(series.size());
-    for (const MotionSeries& one : series) stretches.push_back(stretch(one, 0.0));
-    return stretches;
+  std::vector<Sequence> first_sequences(const std::vector<MotionSeries>& series) const {
+    std::vector<Sequence> sequences;
+    sequences.reserve(series.size());
+    for (const MotionSeries& one : series) sequences.push_back(sequence(one, 0.0));
+    return sequences;
   }
 
   void make_room(std::size_t batch) {
@@ -286,19 +286,19 @@ class MotionTrainer::Impl {
     }
   }
 
-  /// Drives along the stretches and, when asked, leaves the gradient in gradients_. Returns the
+  /// Drives along the sequences and, when asked, leaves the gradient in gradients_. Returns the
   /// loss.
-  double propagate(const std::vector<Stretch>& stretches, bool backwards) {
-    const std::size_t batch = stretches.size();
+  double propagate(const std::vector<Sequence>& sequences, bool backwards) {
+    const std::size_t batch = sequences.size();
     const std::size_t window = training_.window;
     make_room(batch);
-    // The two frames before the stretch, and those of it.
+    // The two frames before the sequence, and those of it.
     std::vector<std::vector<std::array<double, kMotions>>> driven(
         window + 2, std::vector<std::array<double, kMotions>>(batch));
     for (std::size_t b = 0; b < batch; ++b) {
       for (std::size_t k = 0; k < 2; ++k) {
         for (std::size_t m = 0; m < kMotions; ++m) {
-          driven[k][b].at(m) = motion_of(stretches[b].frames[k], m);
+          driven[k][b].at(m) = motion_of(sequences[b].frames[k], m);
         }
       }
     }
@@ -306,7 +306,7 @@ class MotionTrainer::Impl {
       for (std::size_t b = 0; b < batch; ++b) {
         for (std::size_t i = 0; i < inputs_.size(); ++i) {
           const Source& from = inputs_[i];
-          const Stretch& along = stretches[b];
+          const Sequence& along = sequences[b];
           const double value = from.own < kMotions
                                    ? driven[k + 2 - from.ago][b].at(from.own)
                                    : recorded(from.signal, along.frames, k + kBefore, along.soil);
@@ -319,7 +319,7 @@ class MotionTrainer::Impl {
         for (std::size_t m = 0; m < kMotions; ++m) {
           const Baseline& baseline = baselines_.at(m);
           driven[k + 2][b].at(m) =
-              baseline.constant(stretches[b], k + kBefore, m) +
+              baseline.constant(sequences[b], k + kBefore, m) +
               baseline.last() * driven[k + 1][b].at(m) +
               baseline.before_last() * driven[k][b].at(m) +
               training_.outputs[m].half_range * static_cast<double>(activations_[k].back()[b][m]);
@@ -338,7 +338,7 @@ class MotionTrainer::Impl {
       for (std::size_t m = 0; m < kMotions; ++m) {
         double sum = 0.0;
         for (std::size_t k = 0; k < window; ++k) {
-          const double real = motion_of(stretches[b].frames[k + kBefore], m);
+          const double real = motion_of(sequences[b].frames[k + kBefore], m);
           const double error = (driven[k + 2][b].at(m) - real) / kErrorUnit.at(m);
           const Huber of_frame = huber(error, kFrameKnee);
           loss += frame_share * of_frame.loss;
@@ -417,7 +417,7 @@ class MotionTrainer::Impl {
     }
     const double length = std::sqrt(square);
     const auto shrink =
-        static_cast<float>(length > kLongestGradient ? kLongestGradient / length : 1.0);
+        static_cast<float>(length > kMaxGradientNorm ? kMaxGradientNorm / length : 1.0);
     for (std::size_t i = 0; i < gradients_.size(); ++i) {
       for (float& value : gradients_[i]) value *= shrink;
       update_parameters(OptimiserKind::kAdam, learning_rate(), 0.0, gradients_[i],
@@ -447,7 +447,7 @@ class MotionTrainer::Impl {
   std::vector<vec_t> gradients_;
   std::size_t steps_ = 0;
 
-  // Of a batch: by frame of the stretch, then by layer.
+  // Of a batch: by frame of the sequence, then by layer.
   std::vector<std::vector<tensor_t>> activations_;
   std::vector<std::vector<tensor_t>> sums_;
   // Derivatives of the loss, by layer, for the frame at hand.

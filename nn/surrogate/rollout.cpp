@@ -15,7 +15,7 @@
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/simulation.h"
-#include "nn/terrain/pressed_drive.h"
+#include "nn/terrain/sinkage_replay.h"
 
 namespace screed::nn {
 namespace {
@@ -25,7 +25,7 @@ constexpr double kMeanVoltage = 7.5;  // from energy to charge
 constexpr double kFrame_s = 0.01;
 
 /// Standard deviation, value by value.
-class Spread {
+class StandardDeviation {
  public:
   void add(double value) {
     count_ += 1.0;
@@ -49,12 +49,12 @@ struct Recording {
   SessionReader session;
   Experiment experiment;
   SoilParameters soil;
-  std::vector<Frame> frames;
+  std::vector<SimFrame> frames;
   std::vector<SensorSample> samples;
   std::uint64_t first = 0;  ///< row with Algorithm 5's first frame
   std::vector<PlanarPose> poses;
   std::vector<FrameMotion> motions;
-  std::vector<double> ways;  ///< made since the first row, m
+  std::vector<double> distances;  ///< travelled since the first row, m
 
   explicit Recording(const std::filesystem::path& folder)
       : session(folder / "session.h5"), experiment(read_experiment(folder / "experiment.ini")) {
@@ -69,7 +69,7 @@ struct Recording {
     session.read(0, std::span(frames));
     session.read(0, std::span(samples));
     PlanarPose pose{frames[0].x, frames[0].y, frames[0].yaw};
-    for (const Frame& frame : frames) {
+    for (const SimFrame& frame : frames) {
       const double middle = pose.heading_rad + 0.5 * frame.delta_theta;
       const double c = std::cos(middle);
       const double s = std::sin(middle);
@@ -77,10 +77,11 @@ struct Recording {
                          frame.delta_y * c - frame.delta_x * s, frame.delta_theta});
       pose.move(motions.back());
       poses.push_back(pose);
-      ways.push_back((ways.empty() ? 0.0 : ways.back()) + std::hypot(frame.delta_x, frame.delta_y));
+      distances.push_back((distances.empty() ? 0.0 : distances.back()) +
+                          std::hypot(frame.delta_x, frame.delta_y));
     }
-    while (first < frames.size() &&
-           frames[first].leveling_state != static_cast<std::int32_t>(LevelingState::kTraining)) {
+    while (first < frames.size() && frames[first].leveling_state !=
+                                        static_cast<std::int32_t>(LevelingState::kTrainingDrive)) {
       ++first;
     }
     if (first + 3 >= frames.size()) {
@@ -88,16 +89,17 @@ struct Recording {
     }
   }
 
-  /// Behind the row at which a rollout from `row` on has made all ways; not more frames than that.
-  std::uint64_t end_of_rollout(std::uint64_t row, std::uint64_t most_frames) const {
-    const std::uint64_t last = std::min<std::uint64_t>(frames.size(), row + 1 + most_frames);
+  /// Behind the row at which a rollout from `row` on has travelled all distances; not more frames
+  /// than that.
+  std::uint64_t end_of_rollout(std::uint64_t row, std::uint64_t max_frames) const {
+    const std::uint64_t last = std::min<std::uint64_t>(frames.size(), row + 1 + max_frames);
     std::uint64_t end = row + 1;
-    while (end < last && ways[end - 1] - ways[row] < kRolloutWays_m.back()) ++end;
+    while (end < last && distances[end - 1] - distances[row] < kRolloutDistances_m.back()) ++end;
     return end;
   }
 
   DrivingState state(std::uint64_t row, double counts_per_turn) const {
-    const Frame& frame = frames[row];
+    const SimFrame& frame = frames[row];
     DrivingState state;
     state.pose = poses[row];
     state.last = motions[row];
@@ -114,34 +116,34 @@ struct Recording {
   }
 };
 
-/// Follows the recorded path and notes errors on the way.
+/// Follows the recorded path and records errors along it.
 class Checker {
  public:
   Checker(const Recording& recording, std::uint64_t start)
       : recording_(recording), heading_rad_(recording.poses[start].heading_rad) {
     rollout_.start = start;
   }
-  /// The stand-in's pose at a row. False: all ways are made.
-  bool note(std::uint64_t row, const PlanarPose& pose) {
+  /// The surrogate's pose at a row. False: all distances are travelled.
+  bool add_row(std::uint64_t row, const PlanarPose& pose) {
     if ((row - rollout_.start) % kPathFrames == 0) rollout_.path.push_back(pose);
     if (recording_.frames[row].angular != 0.0) straight_ = false;
-    wags_.add((pose.heading_rad - heading_rad_) / kFrame_s);
-    real_wags_.add(recording_.motions[row].turn_rad / kFrame_s);
+    yaw_rates_.add((pose.heading_rad - heading_rad_) / kFrame_s);
+    recorded_yaw_rates_.add(recording_.motions[row].turn_rad / kFrame_s);
     heading_rad_ = pose.heading_rad;
-    const double way = recording_.ways[row] - recording_.ways[rollout_.start];
-    while (next_ < kRolloutWays_m.size() && way >= kRolloutWays_m.at(next_)) {
+    const double distance = recording_.distances[row] - recording_.distances[rollout_.start];
+    while (next_ < kRolloutDistances_m.size() && distance >= kRolloutDistances_m.at(next_)) {
       const PlanarPose& real = recording_.poses[row];
       rollout_.checks.at(next_) = {
           true, straight_,
-          std::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m) / kRolloutWays_m.at(next_),
+          std::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m) / kRolloutDistances_m.at(next_),
           std::abs(pose.heading_rad - real.heading_rad)};
       ++next_;
     }
-    return next_ < kRolloutWays_m.size();
+    return next_ < kRolloutDistances_m.size();
   }
   Rollout take() {
-    rollout_.wags_rad_per_s = wags_.deviation();
-    rollout_.real_wags_rad_per_s = real_wags_.deviation();
+    rollout_.yaw_rate_deviation_rad_per_s = yaw_rates_.deviation();
+    rollout_.recorded_yaw_rate_deviation_rad_per_s = recorded_yaw_rates_.deviation();
     return std::move(rollout_);
   }
 
@@ -149,23 +151,23 @@ class Checker {
   const Recording& recording_;
   Rollout rollout_;
   double heading_rad_;
-  Spread wags_;
-  Spread real_wags_;
+  StandardDeviation yaw_rates_;
+  StandardDeviation recorded_yaw_rates_;
   std::size_t next_ = 0;
   bool straight_ = true;
 };
 
 Rollout by_tracks(const Recording& recording, std::uint64_t start, std::uint64_t end,
                   const HeightField& ground, Surrogate robot) {
-  const Frame& now = recording.frames[start];
+  const SimFrame& now = recording.frames[start];
   robot.set_soil(0, recording.soil);
-  robot.place(0, recording.poses[start], recording.motions[start], recording.motions[start - 1]);
+  robot.set_pose(0, recording.poses[start], recording.motions[start], recording.motions[start - 1]);
   robot.set_tracks(0, now.track_left, now.track_right);
   Checker checker(recording, start);
   for (std::uint64_t row = start + 1; row < end; ++row) {
-    const Frame& frame = recording.frames[row];
+    const SimFrame& frame = recording.frames[row];
     robot.step(ground, {&frame.track_left, 1}, {&frame.track_right, 1});
-    if (!checker.note(row, robot.pose(0))) break;
+    if (!checker.add_row(row, robot.pose(0))) break;
   }
   return checker.take();
 }
@@ -185,7 +187,7 @@ Rollout by_firmware(const Recording& recording, std::uint64_t start, std::uint64
     const std::array<double, 2> share = {static_cast<double>(output.duty_left) / kDutyMax,
                                          static_cast<double>(output.duty_right) / kDutyMax};
     for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(share);
-    if (!checker.note(row, plant.pose())) break;
+    if (!checker.add_row(row, plant.pose())) break;
     // Time and radio as they were.
     SensorSample sample = recording.samples[row];
     imu.measure(plant.motion(), sample);
@@ -206,7 +208,8 @@ ImuErrors imu_errors(const Experiment& experiment) {
 }  // namespace
 
 SessionRollouts roll_out(const std::filesystem::path& session_folder,
-                         const std::vector<StandIn>& stand_ins, const RolloutOptions& options) {
+                         const std::vector<SurrogateFactory>& surrogates,
+                         const RolloutOptions& options) {
   const Recording recording(session_folder);
   const SessionInfo& info = recording.session.info();
   const double counts_per_turn = board_motor(info.board_name).counts_per_turn;
@@ -218,17 +221,17 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
 
   SessionRollouts result;
   result.source = info.experiment_name;
-  result.by_stand_in.resize(stand_ins.size());
+  result.by_surrogate.resize(surrogates.size());
   Robot firmware(info.board, info.parameters, info.credentials);
   RobotOutput output{};
   ImuModel imu(recording.experiment.experiment.seed, imu_errors(recording.experiment));
   ImuTruth at_rest{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),
                    0.0};
   std::optional<DriveStrides> strides;
-  std::optional<PressedDrive> pressed;
+  std::optional<SinkageReplay> pressed;
   if (options.bearing != nullptr) {
     if (options.drive == RolloutDrive::kTracks) {
-      throw InputError("rollouts: ground gives way where the firmware drives alone");
+      throw InputError("rollouts: deformable ground needs --drive firmware");
     }
     pressed.emplace(strides.emplace(session_folder));
   }
@@ -242,36 +245,37 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
     imu.measure(at_rest, unused);  // so that its generators stand where they stood
     if (row < next) continue;
     ++started;
-    const std::uint64_t end = recording.end_of_rollout(row, options.most_frames);
+    const std::uint64_t end = recording.end_of_rollout(row, options.max_frames);
     next = options.starts == 0 ? std::max(end - 1, row + 1)
                                : begin + (rows - begin) * started / options.starts;
-    // A start from which not even the first way is made tells nothing.
-    if (recording.ways[end - 1] - recording.ways[row] < kRolloutWays_m[0]) continue;
+    // A start from which not even the first distance is travelled gives no error.
+    if (recording.distances[end - 1] - recording.distances[row] < kRolloutDistances_m[0]) continue;
     const HeightField ground = field_of(recording.session.heights_after(row + 1));
-    std::optional<HeightField> sunk;
-    if (pressed.has_value()) sunk = pressed->after(strides->ended_before(row + 1)).sunk();
-    for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+    std::optional<HeightField> sinkage;
+    if (pressed.has_value()) sinkage = pressed->after(strides->ended_before(row + 1)).sinkage();
+    for (std::size_t i = 0; i < surrogates.size(); ++i) {
       if (options.drive == RolloutDrive::kTracks) {
-        result.by_stand_in[i].push_back(
-            by_tracks(recording, row, end, ground, stand_ins[i].robot()));
+        result.by_surrogate[i].push_back(
+            by_tracks(recording, row, end, ground, surrogates[i].robot()));
       } else {
-        SurrogatePlant plant(ground, model, plant_options, stand_ins[i].robot());
-        if (sunk.has_value()) plant.let_give_way(options.bearing, &*sunk);
-        result.by_stand_in[i].push_back(
+        SurrogatePlant plant(ground, model, plant_options, surrogates[i].robot());
+        if (sinkage.has_value()) plant.enable_deformation(options.bearing, &*sinkage);
+        result.by_surrogate[i].push_back(
             by_firmware(recording, row, end, plant, firmware, output, imu, counts_per_turn));
       }
     }
     std::vector<PlanarPose> real;
     for (std::uint64_t at = row + kPathFrames; at < end; at += kPathFrames) {
       real.push_back(recording.poses[at]);
-      if (recording.ways[at] - recording.ways[row] > kRolloutWays_m.back()) break;
+      if (recording.distances[at] - recording.distances[row] > kRolloutDistances_m.back()) break;
     }
     result.real.push_back(std::move(real));
   }
   return result;
 }
 
-Rollout apart(const std::filesystem::path& session_folder, const std::filesystem::path& other) {
+Rollout divergence(const std::filesystem::path& session_folder,
+                   const std::filesystem::path& other) {
   const Recording recording(session_folder);
   const Recording twin(other);
   const PlanarPose& begin = recording.poses[recording.first];
@@ -284,7 +288,7 @@ Rollout apart(const std::filesystem::path& session_folder, const std::filesystem
     pose.x_m += begin.x_m - twin_begin.x_m;
     pose.y_m += begin.y_m - twin_begin.y_m;
     pose.heading_rad += begin.heading_rad - twin_begin.heading_rad;
-    if (!checker.note(recording.first + i, pose)) break;
+    if (!checker.add_row(recording.first + i, pose)) break;
   }
   return checker.take();
 }

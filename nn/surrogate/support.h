@@ -8,7 +8,7 @@ namespace screed::nn {
 
 /// Where the tracks stand, from the robot's origin; the Rover 5's.
 struct SupportGeometry {
-  double half_length_m = 0.05;   ///< to the points that bear, ahead and behind
+  double half_length_m = 0.05;   ///< to the support points, ahead and behind
   double half_tread_m = 0.0635;  ///< to the middle of a track
   double wheel_radius_m = 0.03;
 };

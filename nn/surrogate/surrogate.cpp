@@ -19,8 +19,8 @@ constexpr double kFloorBias = 65536.0;  // makes what is rounded towards zero po
   throw InputError("model '" + model.name + "': " + what);
 }
 
-/// A way has no sign; the tracks have (thesis 6.1). Tracks that turn against each other leave it to
-/// the last digit of their speeds: it goes from one to the other steadily.
+/// A distance has no sign; the tracks have (thesis 6.1). Tracks that turn against each other leave
+/// it to the last digit of their speeds: it goes from one to the other steadily.
 double direction(double left_m_per_s, double right_m_per_s) {
   constexpr double kSure_m_per_s = 0.02;
   return std::clamp(0.5 * (left_m_per_s + right_m_per_s) / kSure_m_per_s, -1.0, 1.0);
@@ -28,7 +28,7 @@ double direction(double left_m_per_s, double right_m_per_s) {
 
 std::string known_inputs() {
   std::string names;
-  for (const SignalInfo& info : signals()) {
+  for (const MotionSignalInfo& info : motion_signals()) {
     names += (names.empty() ? "" : ", ") + std::string(info.name);
   }
   return names;
@@ -61,7 +61,7 @@ Surrogate::Surrogate(const SkidKinematics& kinematics, const SupportGeometry& ge
     : geometry_(geometry),
       robots_(robots),
       kinematics_(kinematics),
-      signals_(kSignals * robots),
+      signals_(kMotionSignals * robots),
       x_(robots),
       y_(robots),
       heading_(robots),
@@ -75,8 +75,8 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
     : Surrogate(SkidKinematics{}, geometry, robots) {
   kinematics_.reset();
   arithmetic_ = arithmetic;
-  std::size_t most_inputs = 0;
-  std::size_t most_outputs = 0;
+  std::size_t max_inputs = 0;
+  std::size_t max_outputs = 0;
   std::array<bool, 3> known{};
   for (const ModelNetwork& from : model.networks) {
     Network network{
@@ -86,7 +86,7 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
         from.trained,
         {}};
     const auto signal = [&](const std::string& name, const char* what) {
-      const std::optional<Signal> found = signal_named(name);
+      const std::optional<MotionSignal> found = motion_signal_named(name);
       if (!found.has_value()) {
         refuse(model, std::string(what) + " '" + name +
                           "' is not known to the surrogate world; allowed is " + known_inputs());
@@ -99,24 +99,24 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
                                 channel.half_range, channel.middle, std::nullopt, -kNoLimit,
                                 kNoLimit});
       const std::size_t from_row = network.inputs.back().row;
-      if (from_row >= row_of(Signal::kSpeed) && from_row <= row_of(Signal::kPivot)) {
+      if (from_row >= row_of(MotionSignal::kSpeed) && from_row <= row_of(MotionSignal::kPivot)) {
         products_wanted_ = true;
       }
-      InputStages stages(model.stages, robots_);
+      InputPreprocessing stages(model.stages, robots_);
       if (!stages.empty()) network.stages.push_back(std::move(stages));
     }
     bool useful = false;
     for (const ModelChannel& channel : from.outputs) {
-      Output output = Output::kWay;
+      Output output = Output::kDistance;
       if (channel.feature == "forward") output = Output::kForward;
       if (channel.feature == "sideways") output = Output::kSideways;
       if (channel.feature == "delta_theta") output = Output::kTurn;
-      if (output == Output::kWay && channel.feature != "v") {
+      if (output == Output::kDistance && channel.feature != "v") {
         refuse(model, "output '" + channel.feature +
                           "' is not known to the surrogate world; allowed is forward, sideways, "
                           "delta_theta, v");
       }
-      known.at(output == Output::kWay ? 0 : static_cast<std::size_t>(output)) = true;
+      known.at(output == Output::kDistance ? 0 : static_cast<std::size_t>(output)) = true;
       useful = true;
       Channel to{static_cast<std::size_t>(output),
                  0.0,
@@ -140,31 +140,31 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
     if (arithmetic == Arithmetic::kFloat && from.trained.empty()) {
       refuse(model, "has no network in floating point");
     }
-    most_inputs = std::max(most_inputs, network.inputs.size());
-    most_outputs = std::max(most_outputs, network.outputs.size());
+    max_inputs = std::max(max_inputs, network.inputs.size());
+    max_outputs = std::max(max_outputs, network.outputs.size());
     networks_.push_back(std::move(network));
   }
   if (!known[0] || !known[2]) {
-    refuse(model, "foretells no motion; needed are forward (or v) and delta_theta");
+    refuse(model, "predicts no motion; needed are forward (or v) and delta_theta");
   }
-  if (!networks_.front().stages.empty()) prepared_.resize(most_inputs * robots_);
-  in_.resize(most_inputs * robots_);
-  out_.resize(most_outputs * robots_);
+  if (!networks_.front().stages.empty()) prepared_.resize(max_inputs * robots_);
+  in_.resize(max_inputs * robots_);
+  out_.resize(max_outputs * robots_);
 }
 
-void Surrogate::place(std::size_t robot, const PlanarPose& pose, const FrameMotion& last,
-                      const FrameMotion& before_last) {
+void Surrogate::set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last,
+                         const FrameMotion& before_last) {
   x_[robot] = pose.x_m;
   y_[robot] = pose.y_m;
   heading_[robot] = pose.heading_rad;
-  row(Signal::kForward1)[robot] = last.forward_m;
-  row(Signal::kSideways1)[robot] = last.sideways_m;
-  row(Signal::kTurn1)[robot] = last.turn_rad;
-  row(Signal::kForward2)[robot] = before_last.forward_m;
-  row(Signal::kSideways2)[robot] = before_last.sideways_m;
-  row(Signal::kTurn2)[robot] = before_last.turn_rad;
+  row(MotionSignal::kForward1)[robot] = last.forward_m;
+  row(MotionSignal::kSideways1)[robot] = last.sideways_m;
+  row(MotionSignal::kTurn1)[robot] = last.turn_rad;
+  row(MotionSignal::kForward2)[robot] = before_last.forward_m;
+  row(MotionSignal::kSideways2)[robot] = before_last.sideways_m;
+  row(MotionSignal::kTurn2)[robot] = before_last.turn_rad;
   for (Network& network : networks_) {
-    for (InputStages& stages : network.stages) stages.forget(robot);
+    for (InputPreprocessing& stages : network.stages) stages.reset(robot);
   }
 }
 
@@ -176,17 +176,17 @@ void Surrogate::set_soil(std::size_t robot, const SoilParameters& soil) {
 }
 
 void Surrogate::set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s) {
-  for (const Signal left : {Signal::kTrackLeft, Signal::kTrackLeft1}) {
+  for (const MotionSignal left : {MotionSignal::kTrackLeft, MotionSignal::kTrackLeft1}) {
     row(left)[robot] = left_m_per_s;
   }
-  for (const Signal right : {Signal::kTrackRight, Signal::kTrackRight1}) {
+  for (const MotionSignal right : {MotionSignal::kTrackRight, MotionSignal::kTrackRight1}) {
     row(right)[robot] = right_m_per_s;
   }
 }
 
-void Surrogate::feel_ground(const HeightField& ground) {
-  double* pitch = row(Signal::kPitch);
-  double* roll = row(Signal::kRoll);
+void Surrogate::update_slope(const HeightField& ground) {
+  double* pitch = row(MotionSignal::kPitch);
+  double* roll = row(MotionSignal::kRoll);
   for (std::size_t i = 0; i < robots_; ++i) {
     cos_[i] = std::cos(heading_[i]);
     sin_[i] = std::sin(heading_[i]);
@@ -196,20 +196,20 @@ void Surrogate::feel_ground(const HeightField& ground) {
   }
 }
 
-void Surrogate::take(const Channel& channel, const std::int16_t* activations) {
+void Surrogate::store_output(const Channel& channel, const std::int16_t* activations) {
   const double* baseline =
       channel.baseline.has_value() ? &signals_[*channel.baseline * robots_] : nullptr;
-  const bool way = channel.row == static_cast<std::size_t>(Output::kWay);
-  std::vector<double>& values = motion_.at(way ? 0 : channel.row);
+  const bool is_distance = channel.row == static_cast<std::size_t>(Output::kDistance);
+  std::vector<double>& values = motion_.at(is_distance ? 0 : channel.row);
   const double step = channel.half_range / kActivationOfOne;
   const double middle = channel.middle + 0.5 * step;
-  const double* left = row(Signal::kTrackLeft);
-  const double* right = row(Signal::kTrackRight);
+  const double* left = row(MotionSignal::kTrackLeft);
+  const double* right = row(MotionSignal::kTrackRight);
   for (std::size_t i = 0; i < robots_; ++i) {
     double value = middle + step * activations[i];
     if (baseline != nullptr)
       value = std::clamp(value + baseline[i], channel.lowest, channel.highest);
-    if (way) value *= direction(left[i], right[i]);
+    if (is_distance) value *= direction(left[i], right[i]);
     values[i] = value;
   }
 }
@@ -226,7 +226,7 @@ void Surrogate::prepare_inputs(Network& network) {
   }
 }
 
-void Surrogate::foretell(const Network& network) {
+void Surrogate::predict_integer(const Network& network) {
   const bool prepared = !network.stages.empty();
   for (std::size_t input = 0; input < network.inputs.size(); ++input) {
     const Channel& channel = network.inputs[input];
@@ -243,11 +243,11 @@ void Surrogate::foretell(const Network& network) {
   }
   network.batch.run(in_.data(), out_.data(), robots_, robots_);
   for (std::size_t output = 0; output < network.outputs.size(); ++output) {
-    take(network.outputs[output], &out_[output * robots_]);
+    store_output(network.outputs[output], &out_[output * robots_]);
   }
 }
 
-void Surrogate::foretell_in_float(const Network& network) {
+void Surrogate::predict_float(const Network& network) {
   for (std::size_t i = 0; i < robots_; ++i) {
     std::vector<double> values;
     for (std::size_t input = 0; input < network.inputs.size(); ++input) {
@@ -261,26 +261,27 @@ void Surrogate::foretell_in_float(const Network& network) {
     values = run(network.trained, std::move(values));
     for (std::size_t output = 0; output < network.outputs.size(); ++output) {
       const Channel& channel = network.outputs[output];
-      const bool way = channel.row == static_cast<std::size_t>(Output::kWay);
+      const bool is_distance = channel.row == static_cast<std::size_t>(Output::kDistance);
       double value = channel.middle + channel.half_range * std::clamp(values[output], -1.0, 1.0);
       if (channel.baseline.has_value()) {
         value = std::clamp(value + signals_[*channel.baseline * robots_ + i], channel.lowest,
                            channel.highest);
       }
-      if (way) value *= direction(row(Signal::kTrackLeft)[i], row(Signal::kTrackRight)[i]);
-      motion_.at(way ? 0 : channel.row)[i] = value;
+      if (is_distance)
+        value *= direction(row(MotionSignal::kTrackLeft)[i], row(MotionSignal::kTrackRight)[i]);
+      motion_.at(is_distance ? 0 : channel.row)[i] = value;
     }
   }
 }
 
 void Surrogate::move() {
-  const auto shift = [&](Signal last, Signal before, const std::vector<double>& now) {
+  const auto shift = [&](MotionSignal last, MotionSignal before, const std::vector<double>& now) {
     std::copy_n(row(last), robots_, row(before));
     std::copy_n(now.data(), robots_, row(last));
   };
-  shift(Signal::kForward1, Signal::kForward2, motion_[0]);
-  shift(Signal::kSideways1, Signal::kSideways2, motion_[1]);
-  shift(Signal::kTurn1, Signal::kTurn2, motion_[2]);
+  shift(MotionSignal::kForward1, MotionSignal::kForward2, motion_[0]);
+  shift(MotionSignal::kSideways1, MotionSignal::kSideways2, motion_[1]);
+  shift(MotionSignal::kTurn1, MotionSignal::kTurn2, motion_[2]);
   for (std::size_t i = 0; i < robots_; ++i) {
     PlanarPose pose{x_[i], y_[i], heading_[i]};
     pose.move({motion_[0][i], motion_[1][i], motion_[2][i]});
@@ -290,31 +291,31 @@ void Surrogate::move() {
   }
 }
 
-void Surrogate::feel_tracks(std::span<const double> left_m_per_s,
-                            std::span<const double> right_m_per_s) {
-  std::copy_n(row(Signal::kTrackLeft1), 2 * robots_, row(Signal::kTrackLeft2));
-  std::copy_n(row(Signal::kTrackLeft), 2 * robots_, row(Signal::kTrackLeft1));
-  std::copy_n(left_m_per_s.data(), robots_, row(Signal::kTrackLeft));
-  std::copy_n(right_m_per_s.data(), robots_, row(Signal::kTrackRight));
-  const double* tracks = row(Signal::kTrackLeft);
-  double* wheels = row(Signal::kWheelLeft);
+void Surrogate::update_tracks(std::span<const double> left_m_per_s,
+                              std::span<const double> right_m_per_s) {
+  std::copy_n(row(MotionSignal::kTrackLeft1), 2 * robots_, row(MotionSignal::kTrackLeft2));
+  std::copy_n(row(MotionSignal::kTrackLeft), 2 * robots_, row(MotionSignal::kTrackLeft1));
+  std::copy_n(left_m_per_s.data(), robots_, row(MotionSignal::kTrackLeft));
+  std::copy_n(right_m_per_s.data(), robots_, row(MotionSignal::kTrackRight));
+  const double* tracks = row(MotionSignal::kTrackLeft);
+  double* wheels = row(MotionSignal::kWheelLeft);
   for (std::size_t i = 0; i < 2 * robots_; ++i) wheels[i] = tracks[i] / geometry_.wheel_radius_m;
 }
 
-void Surrogate::swing() {
-  const double* left = row(Signal::kTrackLeft);
-  const double* right = row(Signal::kTrackRight);
-  const double* left1 = row(Signal::kTrackLeft1);
-  const double* right1 = row(Signal::kTrackRight1);
-  const double* left2 = row(Signal::kTrackLeft2);
-  const double* right2 = row(Signal::kTrackRight2);
-  const double* last = row(Signal::kForward1);
-  const double* before = row(Signal::kForward2);
-  double* to = row(Signal::kForwardSettling);
+void Surrogate::update_settling() {
+  const double* left = row(MotionSignal::kTrackLeft);
+  const double* right = row(MotionSignal::kTrackRight);
+  const double* left1 = row(MotionSignal::kTrackLeft1);
+  const double* right1 = row(MotionSignal::kTrackRight1);
+  const double* left2 = row(MotionSignal::kTrackLeft2);
+  const double* right2 = row(MotionSignal::kTrackRight2);
+  const double* last = row(MotionSignal::kForward1);
+  const double* before = row(MotionSignal::kForward2);
+  double* to = row(MotionSignal::kForwardSettling);
   for (std::size_t i = 0; i < robots_; ++i) {
-    const FrameMotion now = kUsualSkid.motion(left[i], right[i]);
-    const FrameMotion now1 = kUsualSkid.motion(left1[i], right1[i]);
-    const FrameMotion now2 = kUsualSkid.motion(left2[i], right2[i]);
+    const FrameMotion now = kNominalSkid.motion(left[i], right[i]);
+    const FrameMotion now1 = kNominalSkid.motion(left1[i], right1[i]);
+    const FrameMotion now2 = kNominalSkid.motion(left2[i], right2[i]);
     const std::size_t side = robots_ + i;
     const std::size_t turn = 2 * robots_ + i;
     to[i] = settling(last[i], before[i], now.forward_m, now1.forward_m, now2.forward_m);
@@ -323,30 +324,30 @@ void Surrogate::swing() {
   }
 }
 
-void Surrogate::feel_products() {
-  const double* left = row(Signal::kWheelLeft);
-  const double* right = row(Signal::kWheelRight);
+void Surrogate::update_products() {
+  const double* left = row(MotionSignal::kWheelLeft);
+  const double* right = row(MotionSignal::kWheelRight);
   for (std::size_t i = 0; i < robots_; ++i) {
     const double mean = 0.5 * (left[i] + right[i]);
     const double difference = right[i] - left[i];
-    const double along = std::sin(row(Signal::kPitch)[i]);
-    const double across = std::sin(row(Signal::kRoll)[i]);
-    row(Signal::kSpeed)[i] = std::abs(mean);
-    row(Signal::kSpin)[i] = std::abs(difference);
-    row(Signal::kClimb)[i] = along * mean;
-    row(Signal::kLean)[i] = across * difference;
-    row(Signal::kSlide)[i] = across * mean;
-    row(Signal::kPivot)[i] = along * difference;
+    const double along = std::sin(row(MotionSignal::kPitch)[i]);
+    const double across = std::sin(row(MotionSignal::kRoll)[i]);
+    row(MotionSignal::kSpeed)[i] = std::abs(mean);
+    row(MotionSignal::kSpin)[i] = std::abs(difference);
+    row(MotionSignal::kClimb)[i] = along * mean;
+    row(MotionSignal::kLean)[i] = across * difference;
+    row(MotionSignal::kSlide)[i] = across * mean;
+    row(MotionSignal::kPivot)[i] = along * difference;
   }
 }
 
-void Surrogate::answer() {
-  swing();
-  if (products_wanted_) feel_products();
+void Surrogate::predict() {
+  update_settling();
+  if (products_wanted_) update_products();
   if (kinematics_.has_value()) {
     for (std::size_t i = 0; i < robots_; ++i) {
       const FrameMotion motion =
-          kinematics_->motion(row(Signal::kTrackLeft)[i], row(Signal::kTrackRight)[i]);
+          kinematics_->motion(row(MotionSignal::kTrackLeft)[i], row(MotionSignal::kTrackRight)[i]);
       motion_[0][i] = motion.forward_m;
       motion_[1][i] = motion.sideways_m;
       motion_[2][i] = motion.turn_rad;
@@ -355,9 +356,9 @@ void Surrogate::answer() {
   for (Network& network : networks_) {
     prepare_inputs(network);
     if (arithmetic_ == Arithmetic::kFloat) {
-      foretell_in_float(network);
+      predict_float(network);
     } else {
-      foretell(network);
+      predict_integer(network);
     }
   }
   move();
@@ -365,17 +366,17 @@ void Surrogate::answer() {
 
 void Surrogate::step(const HeightField& ground, std::span<const double> left_m_per_s,
                      std::span<const double> right_m_per_s) {
-  feel_tracks(left_m_per_s, right_m_per_s);
-  feel_ground(ground);
-  answer();
+  update_tracks(left_m_per_s, right_m_per_s);
+  update_slope(ground);
+  predict();
 }
 
 void Surrogate::step_on_slope(double pitch, double roll, std::span<const double> left_m_per_s,
                               std::span<const double> right_m_per_s) {
-  feel_tracks(left_m_per_s, right_m_per_s);
-  std::fill_n(row(Signal::kPitch), robots_, pitch);
-  std::fill_n(row(Signal::kRoll), robots_, roll);
-  answer();
+  update_tracks(left_m_per_s, right_m_per_s);
+  std::fill_n(row(MotionSignal::kPitch), robots_, pitch);
+  std::fill_n(row(MotionSignal::kRoll), robots_, roll);
+  predict();
 }
 
 }  // namespace screed::nn

@@ -1,8 +1,8 @@
-// Robots whose motion a network foretells in place of physics, frame by frame (thesis 6.1), many at
+// Robots whose motion a network predicts in place of physics, frame by frame (thesis 6.1), many at
 // once: a row a signal, a column a robot. Knows no motors, no sensors and no firmware.
 //
-// A frame is 10 ms. Pitch and roll come from the height map under the tracks, the network answers
-// with the way forward, the way sideways and the turn, and these move the robot's pose:
+// A frame is 10 ms. Pitch and roll come from the height map under the tracks, the network outputs
+// the displacements forward and sideways and the turn, and these move the robot's pose:
 //   x += forward cos(theta + turn/2) - sideways sin(theta + turn/2), y likewise, theta += turn.
 // All arithmetic up to the network's outputs is exact, so any number of robots give the same bits
 // one by one and together.
@@ -17,9 +17,9 @@
 
 #include "host_sim/physics/terrain/height_field.h"
 #include "nn/batch/batch_network.h"
-#include "nn/data/signals.h"
+#include "nn/data/motion_signals.h"
 #include "nn/model/model_file.h"
-#include "nn/surrogate/input_stages.h"
+#include "nn/surrogate/input_preprocessing.h"
 #include "nn/surrogate/support.h"
 
 namespace screed::nn {
@@ -51,19 +51,21 @@ struct SkidKinematics {
   FrameMotion motion(double left_m_per_s, double right_m_per_s) const;
 };
 
-/// What tracks on soil do more or less whatever the soil, and how a robot that does otherwise comes
-/// back to it: in a swing on its springy ground contact that dies out within a tenth of a second.
-/// With d the motion less that of kUsualSkid, d(t) = kSwingLast d(t-1) + kSwingBefore d(t-2). A
-/// network that adds to it cannot run away, and one that adds nothing is still right in the mean.
-inline constexpr SkidKinematics kUsualSkid = {0.96, 0.275};
-inline constexpr double kSwingLast = 1.7;
-inline constexpr double kSwingBefore = -0.75;
+/// What tracks on soil do more or less whatever the soil, and how a robot that does otherwise
+/// returns to it: in an oscillation on its elastic ground contact that dies out within a tenth of a
+/// second. With d the motion less that of kUsualSkid, d(t) = kSwingLast d(t-1) + kSwingBefore
+/// d(t-2). A network that adds to it cannot run away, and one that adds nothing is still right in
+/// the mean.
+inline constexpr SkidKinematics kNominalSkid = {0.96, 0.275};
+inline constexpr double kSettlingLast = 1.7;
+inline constexpr double kSettlingBeforeLast = -0.75;
 
 /// The next value of one of the three motions by that, from those of the last two frames and of
 /// kUsualSkid in the three.
 constexpr double settling(double last, double before_last, double skid, double skid_last,
                           double skid_before_last) {
-  return skid + kSwingLast * (last - skid_last) + kSwingBefore * (before_last - skid_before_last);
+  return skid + kSettlingLast * (last - skid_last) +
+         kSettlingBeforeLast * (before_last - skid_before_last);
 }
 
 class Surrogate {
@@ -83,14 +85,14 @@ class Surrogate {
   std::size_t robots() const { return robots_; }
 
   /// Puts a robot somewhere with what it has just done: the last frame's motion and the one before.
-  void place(std::size_t robot, const PlanarPose& pose, const FrameMotion& last = {},
-             const FrameMotion& before_last = {});
+  void set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last = {},
+                const FrameMotion& before_last = {});
   void set_soil(std::size_t robot, const SoilParameters& soil);
   /// The speeds of its tracks before the first frame.
   void set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s);
 
   /// One frame of all robots; the speeds their tracks have at its end, a number a robot. Robots do
-  /// not feel each other.
+  /// not interact.
   void step(const HeightField& ground, std::span<const double> left_m_per_s,
             std::span<const double> right_m_per_s);
 
@@ -101,15 +103,15 @@ class Surrogate {
   PlanarPose pose(std::size_t robot) const { return {x_[robot], y_[robot], heading_[robot]}; }
   /// Of the last frame.
   FrameMotion motion(std::size_t robot) const {
-    return {row(Signal::kForward1)[robot], row(Signal::kSideways1)[robot],
-            row(Signal::kTurn1)[robot]};
+    return {row(MotionSignal::kForward1)[robot], row(MotionSignal::kSideways1)[robot],
+            row(MotionSignal::kTurn1)[robot]};
   }
-  /// The ground's inclination that the last frame felt.
-  double pitch(std::size_t robot) const { return row(Signal::kPitch)[robot]; }
-  double roll(std::size_t robot) const { return row(Signal::kRoll)[robot]; }
+  /// The terrain's inclination in the last frame.
+  double pitch(std::size_t robot) const { return row(MotionSignal::kPitch)[robot]; }
+  double roll(std::size_t robot) const { return row(MotionSignal::kRoll)[robot]; }
 
  private:
-  enum class Output : std::uint8_t { kForward, kSideways, kTurn, kWay };
+  enum class Output : std::uint8_t { kForward, kSideways, kTurn, kDistance };
   struct Channel {
     std::size_t row;  ///< signal, or Output
     double scale;     ///< activation = value * scale + offset, in steps of 2^-15
@@ -117,8 +119,8 @@ class Surrogate {
     double half_range;
     double middle;
     std::optional<std::size_t> baseline;  ///< row of a signal
-    /// Of an output with a baseline: what the network can be told of it in the next frame. Without
-    /// these ends a network that goes on adding would run away.
+    /// Of an output with a baseline: the range in which the network receives it in the next frame.
+    /// Without these ends a network that goes on adding would run away.
     double lowest;
     double highest;
   };
@@ -127,20 +129,21 @@ class Surrogate {
     std::vector<Channel> inputs;
     std::vector<Channel> outputs;
     std::vector<FloatLayer> trained;
-    std::vector<InputStages> stages;  ///< one an input; none: the model has no stage of run time
+    std::vector<InputPreprocessing>
+        stages;  ///< one an input; none: the model has no stage of run time
   };
 
-  double* row(Signal signal) { return &signals_[row_of(signal) * robots_]; }
-  const double* row(Signal signal) const { return &signals_[row_of(signal) * robots_]; }
-  void feel_tracks(std::span<const double> left_m_per_s, std::span<const double> right_m_per_s);
-  void swing();
-  void feel_products();
-  void feel_ground(const HeightField& ground);
-  void answer();
+  double* row(MotionSignal signal) { return &signals_[row_of(signal) * robots_]; }
+  const double* row(MotionSignal signal) const { return &signals_[row_of(signal) * robots_]; }
+  void update_tracks(std::span<const double> left_m_per_s, std::span<const double> right_m_per_s);
+  void update_settling();
+  void update_products();
+  void update_slope(const HeightField& ground);
+  void predict();
   void prepare_inputs(Network& network);
-  void foretell(const Network& network);
-  void foretell_in_float(const Network& network);
-  void take(const Channel& channel, const std::int16_t* activations);
+  void predict_integer(const Network& network);
+  void predict_float(const Network& network);
+  void store_output(const Channel& channel, const std::int16_t* activations);
   void move();
 
   SupportGeometry geometry_;

@@ -14,16 +14,16 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / kTickRate_hz;
 // Fitted to motor currents on four soils (docs/networks.md): what the ground takes from a track, as
-// shares of the weight it bears, while driving and while the robot is turned on the spot.
+// shares of the weight it carries, while driving and while the robot is turned on the spot.
 constexpr double kRollingShare = 0.03;
 constexpr double kTurningShare = 0.11;
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which they are felt in full
 constexpr double kTurningRate_rad_per_s = 0.3;
 // Of wheels and track, and what of the robot's mass a track feels when it speeds up.
 constexpr double kTurnedInertia_kg_m2 = 1.8e-4;
-// A track bridges what four points of the ground feel: share of the way to the new stance that the
-// body goes in a frame.
-constexpr double kStanceShare = 0.3;
+// A track bridges the four support points: share of the displacement to the new pose that the
+// body makes in a frame.
+constexpr double kPoseSmoothing = 0.3;
 
 Surrogate for_one(const Model& network) {
   return {network, SupportGeometry{}, 1};
@@ -77,18 +77,19 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
   set_state(start);
 }
 
-void SurrogatePlant::let_give_way(std::shared_ptr<const BearingNetwork> network,
-                                  const HeightField* sunk) {
+void SurrogatePlant::enable_deformation(std::shared_ptr<const BearingCapacityNetwork> network,
+                                        const HeightField* sinkage) {
   bearing_ = std::move(network);
-  if (pressed_) return;
-  pressed_ = sunk != nullptr ? std::make_unique<TrackGround>(ground_, *sunk, soil_, tracks_)
-                             : std::make_unique<TrackGround>(ground_, soil_, tracks_);
+  if (soil_model_) return;
+  soil_model_ = sinkage != nullptr
+                    ? std::make_unique<TrackSoilModel>(ground_, *sinkage, soil_, tracks_)
+                    : std::make_unique<TrackSoilModel>(ground_, soil_, tracks_);
   ground_ = HeightField::flat(1.0, 0.5);
 }
 
-/// A stride's ways in the robot's axes at its end. A robot that stands has pressed what it stands
-/// on.
-void SurrogatePlant::press_ground() {
+/// A stride's displacements in the robot's axes at its end. A robot that stands has pressed what it
+/// stands on.
+void SurrogatePlant::deform_terrain() {
   constexpr std::uint64_t kStandingStrides = 10;
   constexpr double kStill = 1e-6;  // m, rad
   const PlanarPose pose = robot_.pose(0);
@@ -111,11 +112,11 @@ void SurrogatePlant::press_ground() {
                      std::abs(stride.turn_rad) < kStill;
   still_strides_ = still ? still_strides_ + 1 : 0;
   if (still_strides_ > kStandingStrides) return;
-  pressed_->step(stride, bearing_.get());
+  soil_model_->step(stride, bearing_.get());
 }
 
 void SurrogatePlant::set_state(const DrivingState& state) {
-  robot_.place(0, state.pose, state.last, state.before_last);
+  robot_.set_pose(0, state.pose, state.last, state.before_last);
   robot_.set_tracks(0, state.track_speed_m_per_s[kLeft], state.track_speed_m_per_s[kRight]);
   for (const Side side : {kLeft, kRight}) {
     const auto i = static_cast<size_t>(side);
@@ -127,7 +128,7 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   stride_tracks_m_ = {};
   stride_frames_ = 0;
   still_strides_ = 0;
-  now_ = stance_on_ground();
+  now_ = pose_on_terrain();
   before_ = now_;
   const double c = std::cos(state.pose.heading_rad);
   const double s = std::sin(state.pose.heading_rad);
@@ -136,9 +137,9 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   imu_velocity_ = velocity_;
   imu_velocity_before_ = velocity_;
   rate_body_ << 0.0, 0.0, state.last.turn_rad / kFrame_s;
-  beds_passed_ = {0, 0};
+  wrap_counts_ = {0, 0};
   if (ground().wrap()) {
-    beds_passed_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
+    wrap_counts_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
                     beds_off(now_.place.y(), ground().y_max() - ground().y_min())};
   }
 }
@@ -173,7 +174,7 @@ void SurrogatePlant::step(const std::array<double, 2>& share) {
   if (steps_ % kStepsPerTick == 0) end_frame();
 }
 
-SurrogatePlant::Stance SurrogatePlant::stance_on_ground() const {
+SurrogatePlant::BodyPose SurrogatePlant::pose_on_terrain() const {
   const PlanarPose pose = robot_.pose(0);
   const Support support = support_at(ground(), geometry_, pose.x_m, pose.y_m,
                                      std::cos(pose.heading_rad), std::sin(pose.heading_rad));
@@ -181,7 +182,7 @@ SurrogatePlant::Stance SurrogatePlant::stance_on_ground() const {
           {pose.x_m, pose.y_m, support.height_m + standing_height_m_}};
 }
 
-void SurrogatePlant::stand_still() {
+void SurrogatePlant::set_at_rest() {
   before_ = now_;
   velocity_.setZero();
   imu_velocity_before_.setZero();
@@ -191,21 +192,21 @@ void SurrogatePlant::stand_still() {
 
 void SurrogatePlant::end_frame() {
   if (on_side_) {
-    stand_still();
+    set_at_rest();
     return;
   }
   const double left = vehicle_.track_speed_m_per_s(kLeft);
   const double right = vehicle_.track_speed_m_per_s(kRight);
   robot_.step(ground(), {&left, 1}, {&right, 1});
-  if (pressed_) {
+  if (soil_model_) {
     stride_tracks_m_[kLeft] += left * kFrame_s;
     stride_tracks_m_[kRight] += right * kFrame_s;
-    if (++stride_frames_ == kStrideFrames) press_ground();
+    if (++stride_frames_ == kStrideFrames) deform_terrain();
   }
 
   before_ = now_;
-  now_ = stance_on_ground();
-  const auto part = [](double from, double to) { return from + kStanceShare * (to - from); };
+  now_ = pose_on_terrain();
+  const auto part = [](double from, double to) { return from + kPoseSmoothing * (to - from); };
   now_.attitude.pitch = part(before_.attitude.pitch, now_.attitude.pitch);
   now_.attitude.roll = part(before_.attitude.roll, now_.attitude.roll);
   now_.place.z() = part(before_.place.z(), now_.place.z());
@@ -218,7 +219,7 @@ void SurrogatePlant::end_frame() {
   imu_velocity_before_ = imu_velocity_;
   imu_velocity_ = velocity_ + (to - from) * imu_position_ / kFrame_s;
   if (ground().wrap()) {
-    beds_passed_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
+    wrap_counts_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
                     beds_off(now_.place.y(), ground().y_max() - ground().y_min())};
   }
 }
@@ -242,10 +243,10 @@ void SurrogatePlant::lay_on_side() {
   on_side_ = true;
   now_.attitude.roll = -std::numbers::pi / 2.0;
   now_.attitude.pitch = 0.0;
-  stand_still();
+  set_at_rest();
 }
 
-Eigen::Vector3d SurrogatePlant::place_travelled() const {
+Eigen::Vector3d SurrogatePlant::unwrapped_position() const {
   return now_.place;
 }
 
@@ -256,9 +257,9 @@ ChassisState SurrogatePlant::Body::chassis() const {
   const HeightField& ground = plant_.ground();
   if (ground.wrap()) {
     state.pose.translation().x() -=
-        static_cast<double>(plant_.beds_passed_[0]) * (ground.x_max() - ground.x_min());
+        static_cast<double>(plant_.wrap_counts_[0]) * (ground.x_max() - ground.x_min());
     state.pose.translation().y() -=
-        static_cast<double>(plant_.beds_passed_[1]) * (ground.y_max() - ground.y_min());
+        static_cast<double>(plant_.wrap_counts_[1]) * (ground.y_max() - ground.y_min());
   }
   state.velocity = plant_.velocity_;
   state.omega_body = plant_.rate_body_;

@@ -2,8 +2,8 @@
 // are, below them tracks whose motion the network turns into the robot's. The firmware, its sensors
 // and its radio notice nothing.
 //
-// The ground bears and inclines the robot. With a network of what bears tracks (nn/terrain) it
-// gives way below them, a stride of five frames at a time; without one it stays as it is.
+// The terrain supports and inclines the robot. With a bearing-capacity network (nn/terrain) the
+// tracks deform it, a stride of five frames at a time; without one it stays as it is.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/drive_shaft.h"
+#include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/plant.h"
-#include "host_sim/physics/world/surroundings.h"
 #include "nn/surrogate/surrogate.h"
-#include "nn/terrain/track_ground.h"
+#include "nn/terrain/track_soil_model.h"
 
 namespace screed::nn {
 
@@ -30,20 +30,21 @@ struct DrivingState {
   Battery battery;
 };
 
-class SurrogatePlant : public Surroundings {
+class SurrogatePlant : public Environment {
  public:
   /// Of the options those of the physics do not count. Throws InputError when the ground is not
   /// soil, the robot has no tracks, or the model cannot be used here.
   SurrogatePlant(HeightField terrain, const Assembly& model, const PlantOptions& options,
                  const Model& network);
-  /// The same with another stand-in, of one robot.
+  /// The same with another surrogate, of one robot.
   SurrogatePlant(HeightField terrain, const Assembly& model, const PlantOptions& options,
                  Surrogate robot);
 
-  /// From now on the tracks press the ground, by this network or, when it is null, in closed form.
-  /// `sunk`: by how much earlier passes did, where that is known (TrackGround::sunk).
-  void let_give_way(std::shared_ptr<const BearingNetwork> network,
-                    const HeightField* sunk = nullptr);
+  /// From now on the tracks deform the terrain, by this network or, when it is null, in closed
+  /// form. `sinkage`: by how much earlier passes did, where that is known
+  /// (TrackSoilModel::sinkage).
+  void enable_deformation(std::shared_ptr<const BearingCapacityNetwork> network,
+                          const HeightField* sinkage = nullptr);
 
   /// Goes on from there.
   void set_state(const DrivingState& state);
@@ -58,15 +59,15 @@ class SurrogatePlant : public Surroundings {
   const HeightField& terrain() const override { return ground(); }
   const SoilBed* soil() const override { return nullptr; }
   const ParticleBed* particles() const override { return nullptr; }
-  bool ground_is_loose() const override { return true; }
+  bool is_deformable() const override { return true; }
   const VehicleState& vehicle() const override { return vehicle_; }
-  const std::array<int64_t, 2>& beds_passed() const override { return beds_passed_; }
-  Eigen::Vector3d place_travelled() const override;
+  const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
+  Eigen::Vector3d unwrapped_position() const override;
   const Battery& battery() const override { return battery_; }
 
-  /// The ground below the tracks; null while it does not give way.
-  const TrackGround* pressed() const { return pressed_.get(); }
-  /// Where the robot is, places as travelled.
+  /// The terrain below the tracks; null while it does not deform.
+  const TrackSoilModel* soil_model() const { return soil_model_.get(); }
+  /// Where the robot is, positions as travelled.
   PlanarPose pose() const { return robot_.pose(0); }
   FrameMotion last_motion() const { return robot_.motion(0); }
 
@@ -74,7 +75,7 @@ class SurrogatePlant : public Surroundings {
   static constexpr int kStepsPerTick = 10;
 
   /// The robot's body as the network's pose and the ground under it say.
-  struct Stance {
+  struct BodyPose {
     Attitude attitude{};
     Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of Body's origin, as travelled
   };
@@ -98,16 +99,16 @@ class SurrogatePlant : public Surroundings {
   /// The ground's push against a track, as a torque on its shaft.
   double resistance(Side side) const;
   void end_frame();
-  Stance stance_on_ground() const;
-  void stand_still();
-  const HeightField& ground() const { return pressed_ ? pressed_->surface() : ground_; }
-  void press_ground();
+  BodyPose pose_on_terrain() const;
+  void set_at_rest();
+  const HeightField& ground() const { return soil_model_ ? soil_model_->surface() : ground_; }
+  void deform_terrain();
 
   HeightField ground_;  ///< unless pressed_ holds it
   SoilParameters soil_;
   TrackGeometry tracks_;
-  std::unique_ptr<TrackGround> pressed_;
-  std::shared_ptr<const BearingNetwork> bearing_;
+  std::unique_ptr<TrackSoilModel> soil_model_;
+  std::shared_ptr<const BearingCapacityNetwork> bearing_;
   PlanarPose stride_begin_;  ///< since the ground was last pressed
   std::array<double, 2> stride_tracks_m_{};
   std::uint64_t stride_frames_ = 0;
@@ -124,10 +125,10 @@ class SurrogatePlant : public Surroundings {
   Body vehicle_;
   bool on_side_ = false;
   uint64_t steps_ = 0;
-  std::array<int64_t, 2> beds_passed_ = {0, 0};
+  std::array<int64_t, 2> wrap_counts_ = {0, 0};
 
-  Stance now_;
-  Stance before_;
+  BodyPose now_;
+  BodyPose before_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();      ///< of Body's origin
   Eigen::Vector3d imu_velocity_ = Eigen::Vector3d::Zero();  ///< over the last frame
   Eigen::Vector3d imu_velocity_before_ = Eigen::Vector3d::Zero();

@@ -19,23 +19,23 @@ constexpr const char* kWheels[4] = {"fl_Wheel", "fr_Wheel", "bl_Wheel", "br_Whee
 
 }  // namespace
 
-std::array<WheelPlace, 4> wheel_places(const Assembly& robot) {
-  std::array<WheelPlace, 4> places;
-  for (std::size_t i = 0; i < places.size(); ++i) {
+std::array<WheelPosition, 4> wheel_positions(const Assembly& robot) {
+  std::array<WheelPosition, 4> positions;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     const int index = robot.body_index(kWheels[i]);
     if (index < 0) throw InputError(std::string("robot model: no wheel '") + kWheels[i] + "'");
     const AssemblyBody& body = robot.bodies[static_cast<std::size_t>(index)];
     const Eigen::Vector3d at = body.pose.translation();
-    places[i] = {at.x(), at.y(), 0.0, i < 2};
+    positions[i] = {at.x(), at.y(), 0.0, i < 2};
     for (const Shape& shape : body.collision) {
       const auto* cylinder = std::get_if<Cylinder>(&shape.geometry);
-      if (cylinder != nullptr) places[i].radius_m = cylinder->radius;
+      if (cylinder != nullptr) positions[i].radius_m = cylinder->radius;
     }
-    if (places[i].radius_m <= 0.0) {
+    if (positions[i].radius_m <= 0.0) {
       throw InputError(std::string("robot model: '") + kWheels[i] + "' has no collision cylinder");
     }
   }
-  return places;
+  return positions;
 }
 
 DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_file(run)) {
@@ -45,12 +45,12 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
   }
   const RunSetup setup = setup_of(session_.info(), run);
   robot_ = robot_model(setup, session_.info().board_name);
-  wheels_ = wheel_places(robot_);
+  wheels_ = wheel_positions(robot_);
   tracks_ = setup.experiment.vehicle.tracks;
   on_soil_ = setup.ground == "scm";
   if (on_soil_) soil_ = make_soil(read_experiment(run / "experiment.ini"));
   const double tick_s = 1.0 / session_.info().tick_rate_hz;
-  std::vector<Frame> frames(session_.frames());
+  std::vector<SimFrame> frames(session_.frames());
   constexpr std::size_t kBlock = 1024;
   for (std::size_t at = 0; at < frames.size(); at += kBlock) {
     session_.read(at, std::span(frames).subspan(at, std::min(kBlock, frames.size() - at)));
@@ -69,7 +69,7 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
       stride.track_m[0] += frames[i].track_left * tick_s;
       stride.track_m[1] += frames[i].track_right * tick_s;
     }
-    const Frame& end = frames[begin + kStrideFrames - 1];
+    const SimFrame& end = frames[begin + kStrideFrames - 1];
     stride.x_m = end.x;
     stride.y_m = end.y;
     stride.z_m = end.z;
@@ -85,11 +85,11 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
   if (strides_.empty()) throw InputError(run.string() + ": the robot never ran");
 }
 
-HeightField DriveStrides::first_ground() const {
-  return ground_after(0);
+HeightField DriveStrides::initial_terrain() const {
+  return terrain_after(0);
 }
 
-HeightField DriveStrides::ground_after(std::size_t strides) const {
+HeightField DriveStrides::terrain_after(std::size_t strides) const {
   return field_of(session_.heights_after(first_frame_ + strides * kStrideFrames));
 }
 

@@ -20,14 +20,14 @@ inline constexpr std::uint64_t kStrideFrames = 5;
 inline constexpr double kStrideRate_hz = 100.0 / kStrideFrames;
 
 /// Where a wheel stands under the robot, m: x forward, y left.
-struct WheelPlace {
+struct WheelPosition {
   double x = 0.0;
   double y = 0.0;
   double radius_m = 0.0;
   bool front = false;
 };
 /// Front left, front right, rear left, rear right. Throws InputError when the model lacks one.
-std::array<WheelPlace, 4> wheel_places(const Assembly& robot);
+std::array<WheelPosition, 4> wheel_positions(const Assembly& robot);
 
 struct Stride {
   double x_m = 0.0;  ///< at its end, on the bed
@@ -37,7 +37,7 @@ struct Stride {
   double forward_m = 0.0;  ///< during it, in the robot's axes at its end
   double sideways_m = 0.0;
   double turn_rad = 0.0;
-  std::array<double, 2> track_m{};  ///< way of the wheels' surfaces, left and right
+  std::array<double, 2> track_m{};  ///< travel of the wheels' surfaces, left and right
   double v_left = 0.0;              ///< Table 5.1, at its end: rad/s, rad
   double v_right = 0.0;
   double pitch = 0.0;
@@ -55,7 +55,7 @@ class DriveStrides {
     return row < first_frame_ ? 0 : static_cast<std::size_t>((row - first_frame_) / kStrideFrames);
   }
   const Stride& operator[](std::size_t i) const { return strides_[i]; }
-  const std::array<WheelPlace, 4>& wheels() const { return wheels_; }
+  const std::array<WheelPosition, 4>& wheels() const { return wheels_; }
   const Assembly& robot() const { return robot_; }
   /// Meaningless where on_soil() is false.
   const SoilParameters& soil() const { return soil_; }
@@ -64,9 +64,9 @@ class DriveStrides {
   const std::string& name() const { return session_.info().experiment_name; }
 
   /// The ground before the first stride.
-  HeightField first_ground() const;
+  HeightField initial_terrain() const;
   /// The ground after so many strides.
-  HeightField ground_after(std::size_t strides) const;
+  HeightField terrain_after(std::size_t strides) const;
   /// Brings a field that shows the ground before stride i to the ground after it.
   void advance(std::size_t i, HeightField& ground) const;
 
@@ -77,7 +77,7 @@ class DriveStrides {
   SoilParameters soil_;
   bool on_soil_ = false;
   bool tracks_ = false;
-  std::array<WheelPlace, 4> wheels_{};
+  std::array<WheelPosition, 4> wheels_{};
   std::vector<Stride> strides_;
 };
 

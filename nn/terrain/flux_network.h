@@ -28,13 +28,13 @@ class FluxNetwork {
   /// Cells round a cell that its fluxes depend on, either way.
   static constexpr int kReachX = 2;
   static constexpr int kReachY = 4;
-  static constexpr int kSeenX = kCellsX + 2 * kReachX;  ///< cells that are looked at
-  static constexpr int kSeenY = kCellsY + 2 * kReachY;
-  static constexpr std::size_t kSeen = std::size_t{kSeenX} * kSeenY;
+  static constexpr int kObservedX = kCellsX + 2 * kReachX;  ///< cells that are looked at
+  static constexpr int kObservedY = kCellsY + 2 * kReachY;
+  static constexpr std::size_t kObservedCells = std::size_t{kObservedX} * kObservedY;
   static constexpr std::size_t kMotions = 8;
-  static constexpr std::size_t kSight = kSeen + kMotions;  ///< of a patch
-  static constexpr std::size_t kAround = std::size_t{2 * kReachX + 1} * (2 * kReachY + 1);
-  static constexpr std::size_t kInputs = kAround + 2 + kMotions;  ///< of a cell
+  static constexpr std::size_t kObservation = kObservedCells + kMotions;  ///< of a patch
+  static constexpr std::size_t kNeighbours = std::size_t{2 * kReachX + 1} * (2 * kReachY + 1);
+  static constexpr std::size_t kInputs = kNeighbours + 2 + kMotions;  ///< of a cell
   static constexpr std::size_t kFluxesX = std::size_t{kCellsX - 1} * kCellsY;
   static constexpr std::size_t kFluxes = kFluxesX + std::size_t{kCellsX} * (kCellsY - 1);
   /// One in the outputs is so many metres of height.
@@ -64,28 +64,30 @@ class FluxNetwork {
 
     std::array<double, 2> cell(int ix, int iy) const;
   };
-  static Patch patch_under(const WheelPlace& wheel, const Stride& stride);
+  static Patch patch_under(const WheelPosition& wheel, const Stride& stride);
   /// What the wheels stand on.
-  struct Footing {
+  struct WheelSupport {
     std::array<double, 4> height_m{};  ///< of the ground under each, a mean over its footprint
     /// Over the plane of the robot's pitch and roll through the two that stand highest: those carry
     /// a stiff robot; a wheel far below hangs in the air.
     std::array<double, 4> support_m{};
   };
-  static Footing footing(const HeightField& ground, const std::array<WheelPlace, 4>& wheels,
-                         const Stride& stride);
-  /// kSight numbers: the ground round a wheel and its motion.
-  static void look(const HeightField& ground, const Patch& patch, const WheelPlace& wheel,
-                   double height_m, double support_m, const Stride& stride, std::span<float> sight);
+  static WheelSupport wheel_support(const HeightField& ground,
+                                    const std::array<WheelPosition, 4>& wheels,
+                                    const Stride& stride);
+  /// kObservation numbers: the ground round a wheel and its motion.
+  static void observe(const HeightField& ground, const Patch& patch, const WheelPosition& wheel,
+                      double height_m, double support_m, const Stride& stride,
+                      std::span<float> observation);
   /// kInputs numbers: what a cell's fluxes depend on.
-  static void inputs_of(std::span<const float> sight, int ix, int iy, float* inputs);
+  static void inputs_of(std::span<const float> observation, int ix, int iy, float* inputs);
 
   /// kFluxes numbers: positive towards larger ix or iy.
-  void answer(std::span<const float> sight, std::span<float> fluxes) const;
+  void evaluate(std::span<const float> observation, std::span<float> fluxes) const;
 
   /// Moves the soil under all wheels.
-  void act(HeightField& ground, const std::array<WheelPlace, 4>& wheels,
-           const Stride& stride) const;
+  void apply(HeightField& ground, const std::array<WheelPosition, 4>& wheels,
+             const Stride& stride) const;
 
  private:
   std::size_t hidden_;
@@ -94,12 +96,12 @@ class FluxNetwork {
 };
 
 /// Of flux i: the cells it leads from and to.
-struct FluxSides {
+struct FluxCells {
   std::size_t from;
   std::size_t to;
   std::size_t row;  ///< 0: forward, 1: to the left
 };
-FluxSides sides_of(std::size_t flux);
+FluxCells cells_of(std::size_t flux);
 
 /// Takes units of height from the ground round one place and gives them to another, spread over the
 /// four nodes round each; the sum over all nodes stays the same.

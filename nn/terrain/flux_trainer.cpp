@@ -26,19 +26,21 @@ Eigen::Index index(std::size_t value) {
 }  // namespace
 
 void add_examples(const DriveStrides& drive, std::size_t every, FluxExamples& examples) {
-  HeightField before = drive.first_ground();
+  HeightField before = drive.initial_terrain();
   HeightField after = before;
-  std::vector<float> sight(FluxNetwork::kSight);
+  std::vector<float> observation(FluxNetwork::kObservation);
   for (std::size_t i = 0; i < drive.size(); ++i) {
     drive.advance(i, after);
     if (i % every == 0) {
-      const FluxNetwork::Footing feet = FluxNetwork::footing(before, drive.wheels(), drive[i]);
+      const FluxNetwork::WheelSupport support =
+          FluxNetwork::wheel_support(before, drive.wheels(), drive[i]);
       for (std::size_t w = 0; w < drive.wheels().size(); ++w) {
-        const WheelPlace& wheel = drive.wheels()[w];
+        const WheelPosition& wheel = drive.wheels()[w];
         const FluxNetwork::Patch patch = FluxNetwork::patch_under(wheel, drive[i]);
-        FluxNetwork::look(before, patch, wheel, feet.height_m[w], feet.support_m[w], drive[i],
-                          sight);
-        examples.sights.insert(examples.sights.end(), sight.begin(), sight.end());
+        FluxNetwork::observe(before, patch, wheel, support.height_m[w], support.support_m[w],
+                             drive[i], observation);
+        examples.observations.insert(examples.observations.end(), observation.begin(),
+                                     observation.end());
         for (int iy = 0; iy < FluxNetwork::kCellsY; ++iy) {
           for (int ix = 0; ix < FluxNetwork::kCellsX; ++ix) {
             const auto at = patch.cell(ix, iy);
@@ -80,10 +82,10 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
     for (std::size_t at = 0; at + kBatch <= order.size(); at += kBatch, ++batches) {
       for (std::size_t b = 0; b < kBatch; ++b) {
         const std::size_t row = order[at + b];
-        const std::span<const float> sight(&examples.sights[row * FluxNetwork::kSight],
-                                           FluxNetwork::kSight);
+        const std::span<const float> observation(
+            &examples.observations[row * FluxNetwork::kObservation], FluxNetwork::kObservation);
         for (std::size_t cell = 0; cell < kCells; ++cell) {
-          FluxNetwork::inputs_of(sight, static_cast<int>(cell % FluxNetwork::kCellsX),
+          FluxNetwork::inputs_of(observation, static_cast<int>(cell % FluxNetwork::kCellsX),
                                  static_cast<int>(cell / FluxNetwork::kCellsX),
                                  &x(0, index(b * kCells + cell)));
           error[b * kCells + cell] = -examples.changes[row * kCells + cell];
@@ -96,7 +98,7 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
       for (std::size_t b = 0; b < kBatch; ++b) {
         const std::size_t base = b * kCells;
         for (std::size_t flux = 0; flux < FluxNetwork::kFluxes; ++flux) {
-          const FluxSides sides = sides_of(flux);
+          const FluxCells sides = cells_of(flux);
           const float value = fluxes(index(sides.row), index(base + sides.from));
           error[base + sides.from] -= value;
           error[base + sides.to] += value;
@@ -110,7 +112,7 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
       for (std::size_t b = 0; b < kBatch; ++b) {
         const std::size_t base = b * kCells;
         for (std::size_t flux = 0; flux < FluxNetwork::kFluxes; ++flux) {
-          const FluxSides sides = sides_of(flux);
+          const FluxCells sides = cells_of(flux);
           flux_error(index(sides.row), index(base + sides.from)) =
               error[base + sides.to] - error[base + sides.from];
         }

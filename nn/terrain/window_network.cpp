@@ -132,15 +132,15 @@ void for_nodes(const HeightField& ground, const Stride& stride, Visit&& visit) {
       static_cast<int>(std::lround((stride.x_m - ground.x_min()) / ground.spacing_m())) - nodes / 2;
   const int south =
       static_cast<int>(std::lround((stride.y_m - ground.y_min()) / ground.spacing_m())) - nodes / 2;
-  const auto place = [&](int at, int count) {
+  const auto wrapped_node = [&](int at, int count) {
     if (!ground.wrap()) return at >= 0 && at < count ? at : -1;
     const int within = at % count;
     return within < 0 ? within + count : within;
   };
   for (int iy = 0; iy < nodes; ++iy) {
-    const int y = place(south + iy, ground.ny());
+    const int y = wrapped_node(south + iy, ground.ny());
     for (int ix = 0; ix < nodes; ++ix) {
-      const int x = place(west + ix, ground.nx());
+      const int x = wrapped_node(west + ix, ground.nx());
       if (x < 0 || y < 0) continue;
       visit(static_cast<std::size_t>(iy / per_cell) * WindowNetwork::kSide +
                 static_cast<std::size_t>(ix / per_cell),
@@ -150,8 +150,8 @@ void for_nodes(const HeightField& ground, const Stride& stride, Visit&& visit) {
 }
 
 /// What changed in the window, in units of the outputs.
-void look(const HeightField& before, const HeightField& after, const Stride& stride,
-          std::span<float> cells) {
+void observe(const HeightField& before, const HeightField& after, const Stride& stride,
+             std::span<float> cells) {
   std::fill(cells.begin(), cells.end(), 0.0F);
   for_nodes(before, stride, [&](std::size_t cell, int x, int y, double share) {
     const double change = static_cast<double>(after.node(x, y)) - before.node(x, y);
@@ -165,14 +165,14 @@ struct WindowExamples {
 };
 
 void add_examples(const DriveStrides& drive, WindowExamples& examples) {
-  HeightField before = drive.first_ground();
+  HeightField before = drive.initial_terrain();
   HeightField after = before;
   std::vector<float> last(WindowNetwork::kCells);
   std::vector<float> now(WindowNetwork::kCells);
   std::vector<float> motion(WindowNetwork::kMotions);
   for (std::size_t i = 0; i < drive.size(); ++i) {
     drive.advance(i, after);
-    look(before, after, drive[i], now);
+    observe(before, after, drive[i], now);
     drive.advance(i, before);
     WindowNetwork::add_motion(drive[i], motion);
     examples.inputs.insert(examples.inputs.end(), last.begin(), last.end());
@@ -245,7 +245,8 @@ WindowNetwork::WindowNetwork(const std::vector<const DriveStrides*>& drives, std
   constant_.assign(constant.data(), constant.data() + constant.size());
 }
 
-void WindowNetwork::act(HeightField& ground, const Stride& stride, std::vector<float>& last) const {
+void WindowNetwork::apply(HeightField& ground, const Stride& stride,
+                          std::vector<float>& last) const {
   std::vector<float> inputs(last);
   inputs.resize(kInputs);
   add_motion(stride, std::span(inputs).subspan(kCells));

@@ -32,7 +32,7 @@ class WindowNetwork {
 
   /// Changes the ground, and `last`: kCells numbers, what it changed in the stride before in units
   /// of kOutput_m; zeros at first.
-  void act(HeightField& ground, const Stride& stride, std::vector<float>& last) const;
+  void apply(HeightField& ground, const Stride& stride, std::vector<float>& last) const;
 
   static void add_motion(const Stride& stride, std::span<float> inputs);
 

@@ -13,8 +13,8 @@
 namespace screed::nn {
 namespace {
 
-constexpr std::int64_t kMostNodes = 255;
-constexpr std::int64_t kMostEpochs = 1'000'000;
+constexpr std::int64_t kMaxNodes = 255;
+constexpr std::int64_t kMaxEpochs = 1'000'000;
 
 std::vector<std::string> texts(const JsonValue& list) {
   std::vector<std::string> result;
@@ -33,7 +33,7 @@ std::string known_feature(const JsonValue& value) {
 
 std::vector<std::string> known_features(const JsonValue& list) {
   std::vector<std::string> names;
-  for (const JsonValue& value : list.list(1, kMostNodes)) names.push_back(known_feature(value));
+  for (const JsonValue& value : list.list(1, kMaxNodes)) names.push_back(known_feature(value));
   return names;
 }
 
@@ -78,8 +78,8 @@ NetworkConfiguration network_of(const JsonValue& value, const JsonValue* common)
     if (network.outputs.size() != 1) v.refuse("several outputs; allowed is one with a baseline");
   });
   keys.needed("hidden", [&](const JsonValue& v) {
-    for (const JsonValue& nodes : v.list(0, kMostNodes)) {
-      network.hidden.push_back(static_cast<std::size_t>(nodes.integer(1, kMostNodes)));
+    for (const JsonValue& nodes : v.list(0, kMaxNodes)) {
+      network.hidden.push_back(static_cast<std::size_t>(nodes.integer(1, kMaxNodes)));
     }
   });
   keys.if_there("nodes", [&](const JsonValue& v) {
@@ -114,13 +114,13 @@ NetworkConfiguration network_of(const JsonValue& value, const JsonValue* common)
                 [&](const JsonValue& v) { network.final_rate = v.number(1e-6, 1.0); });
   keys.if_there("l2", [&](const JsonValue& v) { network.l2 = v.number(0.0, 1.0); });
   keys.if_there("batch", [&](const JsonValue& v) {
-    network.batch = static_cast<std::size_t>(v.integer(0, kMostEpochs));
+    network.batch = static_cast<std::size_t>(v.integer(0, kMaxEpochs));
   });
   keys.needed("epochs", [&](const JsonValue& v) {
-    network.epochs = static_cast<std::size_t>(v.integer(1, kMostEpochs));
+    network.epochs = static_cast<std::size_t>(v.integer(1, kMaxEpochs));
   });
   keys.if_there("patience", [&](const JsonValue& v) {
-    network.patience = static_cast<std::size_t>(v.integer(0, kMostEpochs));
+    network.patience = static_cast<std::size_t>(v.integer(0, kMaxEpochs));
   });
   keys.if_there("keep", [&](const JsonValue& v) {
     network.keep_best = v.one_of({"best", "last"}) == "best";
@@ -149,22 +149,22 @@ TrainingConfiguration configuration_of(const JsonValue& root) {
   if (root.has("seed")) configuration.seed = root.at("seed").unsigned_integer();
   configuration.train = texts(root.at("train"));
   configuration.test = tests_of(root.at("test"));
-  configuration.stages = read_stages(root.at("stages"));
+  configuration.stages = read_preprocessing_stages(root.at("stages"));
   if (std::none_of(configuration.stages.begin(), configuration.stages.end(),
-                   [](const StageConfiguration& stage) { return stage.stage == "normalise"; })) {
+                   [](const PreprocessingStage& stage) { return stage.stage == "normalise"; })) {
     root.at("stages").refuse("no stage 'normalise'; networks need numbers within -1 and 1");
   }
   if (root.has("run_time")) {
     for (const JsonValue& value : root.at("run_time").list()) {
       const std::string name = value.one_of({"quantise", "exponential", "mean"});
       if (std::none_of(configuration.stages.begin(), configuration.stages.end(),
-                       [&](const StageConfiguration& stage) { return stage.stage == name; })) {
+                       [&](const PreprocessingStage& stage) { return stage.stage == name; })) {
         value.refuse("'" + name + "' is none of the stages");
       }
       configuration.run_time.push_back(name);
     }
   }
-  for (const StageConfiguration& stage : configuration.stages) {
+  for (const PreprocessingStage& stage : configuration.stages) {
     if (!stage.feature.empty()) static_cast<void>(NamedFeature(stage.feature));
   }
   if (root.has("thesis")) {
@@ -211,7 +211,7 @@ std::vector<std::string> TrainingConfiguration::features() const {
     add(network.baseline);
     if (!network.baseline.empty()) add(network.learned_output());
   }
-  for (const StageConfiguration& stage : stages) add(stage.feature);
+  for (const PreprocessingStage& stage : stages) add(stage.feature);
   return names;
 }
 

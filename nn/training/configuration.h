@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "nn/data/stages.h"
+#include "nn/data/preprocessing.h"
 
 namespace screed::nn {
 
@@ -76,7 +76,7 @@ struct TrainingConfiguration {
   std::uint64_t seed = 1;
   std::vector<std::string> train;  ///< names of sessions
   std::vector<TestSession> test;   ///< the first decides which epoch is best
-  std::vector<StageConfiguration> stages;
+  std::vector<PreprocessingStage> stages;
   std::vector<std::string> run_time;  ///< names of those stages that a running world applies too
   std::vector<NetworkConfiguration> networks;
   std::vector<ThesisFigure> thesis;  ///< to print beside ours

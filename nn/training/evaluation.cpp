@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFramesDrawn = 4000;  ///< of a time series
-constexpr std::size_t kMostPoints = 1000;   ///< of a line
-constexpr std::size_t kMostDots = 3000;     ///< of a scatter plot
+constexpr std::size_t kFramesDrawn = 4000;       ///< of a time series
+constexpr std::size_t kMaxPoints = 1000;         ///< of a line
+constexpr std::size_t kMaxScatterPoints = 3000;  ///< of a scatter plot
 
 struct OutputSeries {
   std::string output;
@@ -106,7 +106,7 @@ Chart time_series(const TestTable& test, const OutputSeries& series, const std::
   chart.from_zero = false;
   chart.width_px = 1200;
   const std::size_t rows = std::min(series.real.size(), kFramesDrawn);
-  const std::size_t every = std::max<std::size_t>(1, rows / kMostPoints);
+  const std::size_t every = std::max<std::size_t>(1, rows / kMaxPoints);
   ChartSeries real{"recorded", {}, false};
   ChartSeries predicted{"network", {}, false};
   // From the middle of the session, where no smoothing is cut short.
@@ -130,7 +130,7 @@ Chart regression(const TestTable& test, const OutputSeries& series, const std::s
   chart.width_px = 620;
   chart.height_px = 620;
   ChartSeries dots{"a frame", {}, false, false};
-  const std::size_t every = std::max<std::size_t>(1, series.real.size() / kMostDots);
+  const std::size_t every = std::max<std::size_t>(1, series.real.size() / kMaxScatterPoints);
   for (std::size_t i = 0; i < series.real.size(); i += every) {
     dots.points.push_back({series.real[i], series.predicted[i]});
   }
@@ -170,7 +170,7 @@ Evaluation evaluate(const Model& model, const std::vector<TestTable>& tests) {
       Score score{series.output, test.label, test.form, series.real.size(), 0.0, 0.0, 0.0, 0.0};
       score.mse = mean_squared_error(series.real, series.predicted);
       score.r2 = squared_correlation(series.real, series.predicted);
-      score.explained = explained_share(series.real, series.predicted);
+      score.explained = explained_variance(series.real, series.predicted);
       for (std::size_t i = 0; i < series.in_float.size(); ++i) {
         score.quantisation =
             std::max(score.quantisation, std::abs(series.in_float[i] - series.predicted[i]));
@@ -213,7 +213,7 @@ std::vector<fs::path> draw_losses(const TrainingConfiguration& configuration,
     chart.y_label = "mean squared error, normalised";
     ChartSeries training{"training", {}, false};
     ChartSeries test{"test", {}, false};
-    const std::size_t every = std::max<std::size_t>(1, networks[i].losses.size() / kMostPoints);
+    const std::size_t every = std::max<std::size_t>(1, networks[i].losses.size() / kMaxPoints);
     for (std::size_t epoch = 0; epoch < networks[i].losses.size(); epoch += every) {
       const auto x = static_cast<double>(epoch + 1);
       training.points.push_back({x, networks[i].losses[epoch].training});

@@ -8,7 +8,7 @@ namespace screed::nn {
 namespace {
 
 constexpr float kRpropFirstStep = 0.1F;
-constexpr float kRpropGreatestStep = 50.0F;
+constexpr float kRpropMaxStep = 50.0F;
 constexpr float kRpropGrowth = 1.2F;
 constexpr float kRpropShrinkage = 0.5F;
 
@@ -26,7 +26,7 @@ void irprop(std::span<const float> gradient, float l2, std::span<float> paramete
     float slope = gradient[i] + 2.0F * l2 * parameters[i];
     const float agreement = slope * state.second[i];
     if (agreement > 0.0F) {
-      state.first[i] = std::min(state.first[i] * kRpropGrowth, kRpropGreatestStep);
+      state.first[i] = std::min(state.first[i] * kRpropGrowth, kRpropMaxStep);
     } else if (agreement < 0.0F) {
       state.first[i] *= kRpropShrinkage;
       slope = 0.0F;

@@ -114,7 +114,7 @@ double squared_correlation(std::span<const double> a, std::span<const double> b)
   return r * r;
 }
 
-double explained_share(std::span<const double> real, std::span<const double> predicted) {
+double explained_variance(std::span<const double> real, std::span<const double> predicted) {
   const double mean = mean_of(real);
   double squares = 0.0;
   for (const double value : real) squares += (value - mean) * (value - mean);

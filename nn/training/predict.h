@@ -1,4 +1,4 @@
-// Networks over whole tables, and how good what they foretell is.
+// Networks over whole tables, and how good their predictions are.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ double mean_squared_error(std::span<const double> a, std::span<const double> b);
 /// Squared correlation after Pearson, the thesis' R^2; 0 where one of them never changes.
 double squared_correlation(std::span<const double> a, std::span<const double> b);
 /// 1 - sum (real - predicted)^2 / sum (real - mean)^2, which sees offset and scale as well.
-double explained_share(std::span<const double> real, std::span<const double> predicted);
+double explained_variance(std::span<const double> real, std::span<const double> predicted);
 /// Correlation of the ranks; equal values share the mean of theirs.
 double spearman(std::span<const double> a, std::span<const double> b);
 

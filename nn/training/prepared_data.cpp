@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 bool has_stage(const Preprocessing& preprocessing, std::initializer_list<std::string_view> names) {
   return std::any_of(preprocessing.stages().begin(), preprocessing.stages().end(),
-                     [&](const StageConfiguration& stage) {
+                     [&](const PreprocessingStage& stage) {
                        return std::find(names.begin(), names.end(), stage.stage) != names.end();
                      });
 }
@@ -50,9 +50,9 @@ std::string hash_of(const std::vector<FeatureTable>& tables) {
 
 /// What was learned, from a model's file.
 Preprocessing preprocessing_of(const Model& model) {
-  std::vector<StageConfiguration> stages;
+  std::vector<PreprocessingStage> stages;
   std::vector<Bounds> bounds;
-  for (const ModelStage& stage : model.stages) {
+  for (const ModelPreprocessingStage& stage : model.stages) {
     stages.push_back({stage.stage, stage.feature, stage.low, stage.high, stage.value});
     if (!stage.feature.empty()) bounds.push_back({stage.feature, stage.low, stage.high});
   }
@@ -135,12 +135,12 @@ Examples examples_of(const std::vector<const FeatureTable*>& tables,
   return examples;
 }
 
-std::vector<ModelStage> model_stages(const TrainingConfiguration& configuration,
-                                     const Preprocessing& preprocessing) {
-  std::vector<ModelStage> stages;
+std::vector<ModelPreprocessingStage> model_preprocessing_stages(
+    const TrainingConfiguration& configuration, const Preprocessing& preprocessing) {
+  std::vector<ModelPreprocessingStage> stages;
   std::size_t bounds = 0;
-  for (const StageConfiguration& stage : preprocessing.stages()) {
-    ModelStage learned;
+  for (const PreprocessingStage& stage : preprocessing.stages()) {
+    ModelPreprocessingStage learned;
     learned.stage = stage.stage;
     if (!stage.feature.empty()) {
       learned.feature = stage.feature;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "nn/data/stages.h"
+#include "nn/data/preprocessing.h"
 #include "nn/model/model_file.h"
 #include "nn/training/configuration.h"
 #include "nn/training/network_trainer.h"
@@ -45,8 +45,8 @@ Examples examples_of(const std::vector<const FeatureTable*>& tables,
                      const std::vector<std::string>& outputs);
 
 /// Stages with what they learned, for the model's file.
-std::vector<ModelStage> model_stages(const TrainingConfiguration& configuration,
-                                     const Preprocessing& preprocessing);
+std::vector<ModelPreprocessingStage> model_preprocessing_stages(
+    const TrainingConfiguration& configuration, const Preprocessing& preprocessing);
 
 /// The features that the network's outputs are compared with.
 std::vector<std::string> learned_outputs(const NetworkConfiguration& network);

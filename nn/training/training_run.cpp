@@ -189,7 +189,7 @@ Model make_model(const TrainingConfiguration& configuration, const PreparedData&
   model.description = configuration.about;
   model.seed = configuration.seed;
   model.training_data = data.hash;
-  model.stages = model_stages(configuration, data.preprocessing);
+  model.stages = model_preprocessing_stages(configuration, data.preprocessing);
   for (std::size_t i = 0; i < networks.size(); ++i) {
     const NetworkConfiguration& network = configuration.networks[i];
     const auto channel = [&](const std::string& feature, const std::string& learned) {

@@ -15,7 +15,7 @@ std::string line_for(const std::string& said, bool killed = false) {
   Avrdude avrdude;
   avrdude.programmer = "avr109";
   avrdude.port = "/dev/ttyACM0";
-  return what_went_wrong(avrdude, {1, killed, said});
+  return failure_message(avrdude, {1, killed, said});
 }
 
 bool contains(const std::string& text, const std::string& part) {

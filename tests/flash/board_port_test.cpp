@@ -40,16 +40,16 @@ bool contains(const std::string& text, const std::string& part) {
 /// A clock that stands still but for its pauses; `happen` is what the world does in them.
 struct World {
   milliseconds now{0};
-  std::function<void()> happen = [] {};
+  std::function<void()> on_pause = [] {};
   std::vector<std::string> told;
 
   std::filesystem::path bootloader(const BoardPort& board, const FakeUsb& usb) {
     const Clock clock{[this] { return now; },
                       [this](milliseconds duration) {
                         now += duration;
-                        happen();
+                        on_pause();
                       }};
-    return bootloader_port(board, usb.roots(), kBoard, Patience{}, clock,
+    return bootloader_port(board, usb.roots(), kBoard, Timeouts{}, clock,
                            [this](const std::string& line) { told.push_back(line); });
   }
 };
@@ -171,7 +171,7 @@ TEST(Bootloader, ComesBackUnderAnotherName) {
   usb.plug_in("1-1", kSketch, "ttyACM0", sketch.port());
   usb.plug_in("1-2", kBootloader, "ttyACM1", sketch.port());  // of another robot
   World world;
-  world.happen = [&] {
+  world.on_pause = [&] {
     if (!sketch.touched()) return;
     if (world.now == milliseconds(200)) usb.unplug("1-1", "ttyACM0");
     if (world.now == milliseconds(1500))
@@ -189,7 +189,7 @@ TEST(Bootloader, ComesBackUnderTheSameName) {
   const SketchPort bootloader;
   usb.plug_in("1-1", kSketch, "ttyACM0", sketch.port());
   World world;
-  world.happen = [&] {
+  world.on_pause = [&] {
     if (!sketch.touched() || world.now != milliseconds(800)) return;
     usb.unplug("1-1", "ttyACM0");
     usb.plug_in("1-1", kBootloader, "ttyACM0", bootloader.port());
@@ -203,7 +203,7 @@ TEST(Bootloader, IsTouchedForAgainWhenItDoesNotCome) {
   const SketchPort bootloader;
   usb.plug_in("1-1", kSketch, "ttyACM0", sketch.port());
   World world;
-  world.happen = [&] {
+  world.on_pause = [&] {
     if (world.told.size() == 1 && world.now == milliseconds(1000)) {  // only restarts its sketch
       usb.unplug("1-1", "ttyACM0");
       usb.plug_in("1-1", kSketch, "ttyACM5", sketch.port());

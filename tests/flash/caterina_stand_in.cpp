@@ -58,11 +58,11 @@ void CaterinaStandIn::answer_commands() {
     const std::uint8_t command = next_byte();
     commands_ += static_cast<char>(command);
     if (behaviour_.dies_after_blocks && blocks_ >= *behaviour_.dies_after_blocks) continue;
-    obey(command);
+    execute(command);
   }
 }
 
-void CaterinaStandIn::obey(std::uint8_t command) {
+void CaterinaStandIn::execute(std::uint8_t command) {
   switch (command) {
     case kEscape:
       return;

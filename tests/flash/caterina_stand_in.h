@@ -57,7 +57,7 @@ class CaterinaStandIn {
 
   void run();
   void answer_commands();
-  void obey(std::uint8_t command);
+  void execute(std::uint8_t command);
   void read_block();
   void write_block();
   void write_flash_page(std::uint32_t start, const std::vector<std::uint8_t>& block);

@@ -174,7 +174,7 @@ TEST_F(FlashProgram, ABootloaderThatDiesHalfWayEndsInBoundedTime) {
   CaterinaStandIn::Behaviour behaviour;
   behaviour.dies_after_blocks = 3;
   CaterinaStandIn board(behaviour);
-  const auto outcome = flash(image_of(1000), {"--port", board.port(), "--silence", "1"});
+  const auto outcome = flash(image_of(1000), {"--port", board.port(), "--idle-timeout", "1"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(contains(outcome.said, "no answer from " + board.port().string() + " half-way"))
       << outcome.said;
@@ -184,7 +184,7 @@ TEST_F(FlashProgram, APortWithoutABootloaderEndsInBoundedTime) {
   CaterinaStandIn::Behaviour behaviour;
   behaviour.dies_after_blocks = 0;
   CaterinaStandIn board(behaviour);
-  const auto outcome = flash(image_of(1000), {"--port", board.port(), "--silence", "1"});
+  const auto outcome = flash(image_of(1000), {"--port", board.port(), "--idle-timeout", "1"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(contains(outcome.said, "is it a bootloader")) << outcome.said;
 }

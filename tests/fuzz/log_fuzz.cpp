@@ -26,10 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   screed::DecodedFrame frame;
   uint64_t messages = 0;
   while (decoder.next(frame)) ++messages;
-  const screed::DecodeAccount& account = decoder.account();
-  SCREED_REQUIRE(account.messages == messages);
-  SCREED_REQUIRE(account.lines ==
-                 messages + account.damaged() + account.unknown_ids + account.other_frames);
-  SCREED_REQUIRE(!account.text().empty());
+  const screed::DecodeStatistics& statistics = decoder.statistics();
+  SCREED_REQUIRE(statistics.messages == messages);
+  SCREED_REQUIRE(statistics.lines == messages + statistics.damaged() + statistics.unknown_ids +
+                                         statistics.other_frames);
+  SCREED_REQUIRE(!statistics.text().empty());
   return 0;
 }

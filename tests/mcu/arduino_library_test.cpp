@@ -24,8 +24,8 @@ void run(Board& board, int ms) {
   for (int i = 0; i < ms; ++i) {
     const int step = i / 45;
     const int noise = step % 7 - 3;
-    board.feel_accel(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
-    board.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, step % 5 - 2));
+    board.set_acceleration(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
+    board.set_angular_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, step % 5 - 2));
     board.mcu.run_ms(1);
   }
 }

@@ -30,7 +30,7 @@ Bench::Bench()
       accel_mag(board.accel_mag),
       gyro(board.gyro),
       baro(*board.baro) {
-  mcu.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
+  mcu.write_eeprom(kCredentialRecordAddress, credential_record(credentials_of(test_key())).bytes);
   board.set_battery_v(7.2);
   board.set_encoder(kLeft, left_count_);
   board.set_encoder(kRight, right_count_);
@@ -38,9 +38,9 @@ Bench::Bench()
 
 void Bench::measure() {
   const int noise = ms_ % 7 - 3;
-  board.feel_accel(0.244 * Eigen::Vector3d(noise, -noise, accel_z + noise));
-  board.feel_mag(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
-  board.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms_ % 5 - 2));
+  board.set_acceleration(0.244 * Eigen::Vector3d(noise, -noise, accel_z + noise));
+  board.set_magnetic_field(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
+  board.set_angular_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms_ % 5 - 2));
   baro.measure(0x3F5678 / 4096.0, 42.5 + (0xD8DC - 0x10000) / 480.0);
 }
 
@@ -83,13 +83,13 @@ void Bench::run_ms(int ms) {
 }
 
 void Bench::command(CommandOp op, DriveArgument argument) {
-  ground_.hear(last_frame(kIdHeartbeat));
+  ground_.handle_frame(last_frame(kIdHeartbeat));
   mcu.receive(ground_.command(op, argument));
   run_ms(50);
 }
 
 void Bench::set_parameter(std::uint8_t index, std::int16_t value) {
-  ground_.hear(last_frame(kIdHeartbeat));
+  ground_.handle_frame(last_frame(kIdHeartbeat));
   mcu.receive(ground_.parameter(index, value));
   run_ms(50);
 }

@@ -32,12 +32,12 @@ class BoardParts : public testing::Test {
   BoardParts() : board_(kScreedImage, read_wiring(kWiring)), mcu_(board_.mcu), usb_(mcu_) {}
 
   void write_copy(std::uint8_t index, const ParameterCopy& copy) {
-    mcu_.write_eeprom(kParameterCopyAt(index), copy.bytes);
+    mcu_.write_eeprom(parameter_copy_address(index), copy.bytes);
   }
   ParameterCopy read_copy(std::uint8_t index) const {
     ParameterCopy copy{};
     const std::vector<std::uint8_t> eeprom = mcu_.read_eeprom();
-    std::copy_n(eeprom.begin() + kParameterCopyAt(index), sizeof(copy.bytes), copy.bytes);
+    std::copy_n(eeprom.begin() + parameter_copy_address(index), sizeof(copy.bytes), copy.bytes);
     return copy;
   }
 
@@ -199,11 +199,11 @@ TEST_F(BoardParts, WithoutAGoodCopyItRefusesToBeArmed) {
   bad.bytes[9] ^= 0x04;
   write_copy(0, bad);
   write_copy(1, bad);
-  mcu_.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
+  mcu_.write_eeprom(kCredentialRecordAddress, credential_record(credentials_of(test_key())).bytes);
   GroundLines ground;
   for (int i = 0; i < 60; ++i) {
-    board_.feel_accel(0.244 * Eigen::Vector3d(i % 3, 0, 4096));
-    board_.feel_rate(0.070 * Eigen::Vector3d(i % 3 - 1, 0, i % 2));
+    board_.set_acceleration(0.244 * Eigen::Vector3d(i % 3, 0, 4096));
+    board_.set_angular_rate(0.070 * Eigen::Vector3d(i % 3 - 1, 0, i % 2));
     mcu_.receive(ground.heartbeat(static_cast<std::uint32_t>(i) * 100));
     mcu_.run_ms(100);
   }
@@ -226,7 +226,7 @@ TEST_F(BoardParts, TakesAKeyOverUsbForTheNextStart) {
   EXPECT_EQ(ask("k"), "k 0 255 1\n") << "not yet, and never shown";
   const std::vector<std::uint8_t> eeprom = mcu_.read_eeprom();
   CredentialRecord record{};
-  std::copy_n(eeprom.begin() + kCredentialRecordAt, kCredentialRecordSize, record.bytes);
+  std::copy_n(eeprom.begin() + kCredentialRecordAddress, kCredentialRecordSize, record.bytes);
   Credentials next{};
   EXPECT_TRUE(begin_start(record, next));
   EXPECT_TRUE(next.key_set);
@@ -235,7 +235,7 @@ TEST_F(BoardParts, TakesAKeyOverUsbForTheNextStart) {
 }
 
 TEST_F(BoardParts, EveryStartHasItsNumber) {
-  mcu_.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
+  mcu_.write_eeprom(kCredentialRecordAddress, credential_record(credentials_of(test_key())).bytes);
   for (int start = 0; start < 5; ++start) {
     mcu_.run_ms(300);
     const std::vector<CanFrame> frames = frames_in(mcu_.sent());

@@ -21,9 +21,9 @@ class EachBoard : public testing::TestWithParam<const char*> {
   void run_ms(int ms) {
     for (int i = 0; i < ms; ++i, ++ms_) {
       const int noise = ms_ % 7 - 3;
-      board_.feel_accel(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
-      board_.feel_mag(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
-      board_.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms_ % 5 - 2));
+      board_.set_acceleration(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
+      board_.set_magnetic_field(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
+      board_.set_angular_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms_ % 5 - 2));
       if (ms_ % 100 == 0) board_.mcu.receive(ground_.heartbeat(static_cast<std::uint32_t>(ms_)));
       board_.mcu.run_ms(1);
     }
@@ -101,8 +101,9 @@ TEST_P(EachBoard, TurnsLeftWithTheRightTrackForward) {
   parameters.algorithm = 0;  // drives as the ground station says
   ParameterCopy copy{};
   encode_parameters(parameters, 1, copy);
-  board_.mcu.write_eeprom(kParameterCopyAt(0), copy.bytes);
-  board_.mcu.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
+  board_.mcu.write_eeprom(parameter_copy_address(0), copy.bytes);
+  board_.mcu.write_eeprom(kCredentialRecordAddress,
+                          credential_record(credentials_of(test_key())).bytes);
   run_ms(6000);
   board_.mcu.receive(ground_.command(CommandOp::kArm));
   run_ms(50);

@@ -24,8 +24,9 @@ TEST(CoSimulation, TheImageDrivesAtTheSpeedItIsTold) {
   drive.set_off();
   const double begin_x = drive.world.plant().vehicle().chassis().pose.translation().x();
   drive.run(5.0);
-  const double way = drive.world.plant().vehicle().chassis().pose.translation().x() - begin_x;
-  EXPECT_NEAR(way, 5.0 * ImageDrive::kSpeed_m_per_s, 0.05);
+  const double displacement =
+      drive.world.plant().vehicle().chassis().pose.translation().x() - begin_x;
+  EXPECT_NEAR(displacement, 5.0 * ImageDrive::kSpeed_m_per_s, 0.05);
   EXPECT_NEAR(forward_speed(drive), ImageDrive::kSpeed_m_per_s, 0.02);
   drive.expect_punctual();
   const CycleReport cycles = drive.world.cycles();

@@ -17,7 +17,7 @@ std::vector<std::uint8_t> line_of(const CanFrame& frame) {
 GroundLines::GroundLines() : signer_(test_key()) {
   message::Heartbeat heartbeat{};
   heartbeat.boot_epoch = kFirstBootEpoch;
-  hear(frame_of(heartbeat));
+  handle_frame(frame_of(heartbeat));
 }
 
 std::vector<std::uint8_t> GroundLines::heartbeat(std::uint32_t time_ms) {

@@ -11,10 +11,10 @@ namespace screed::mcu {
 
 class GroundLines {
  public:
-  /// Signs with the test key, for a robot in its first start with that key; hear() a heartbeat of
-  /// the robot when it is not.
+  /// Signs with the test key, for a robot in its first start with that key; handle_frame() a
+  /// heartbeat of the robot when it is not.
   GroundLines();
-  void hear(const CanFrame& frame) { signer_.hear(frame); }
+  void handle_frame(const CanFrame& frame) { signer_.handle_frame(frame); }
 
   std::vector<std::uint8_t> heartbeat(std::uint32_t time_ms);
   std::vector<std::uint8_t> command(CommandOp op, DriveArgument argument = {0, 0});

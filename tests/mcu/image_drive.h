@@ -95,7 +95,7 @@ class ImageDrive {
     options.board = "a_star_32u4";
     options.parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
     options.world.seed = seed;
-    options.world.drive = DriveOrder{speed_m_per_s, 0.0};
+    options.world.drive = DriveCommand{speed_m_per_s, 0.0};
     return options;
   }
 };

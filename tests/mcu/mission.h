@@ -44,7 +44,7 @@ class Mission {
       std::swap(sample_.accel[1], sample_.accel[2]);
     }
     if (tick > 2400) babble();
-    hear(tick);
+    handle_frame(tick);
     return sample_;
   }
 
@@ -72,7 +72,7 @@ class Mission {
     sample_.reset_cause = static_cast<std::uint8_t>(numbers_.any() & 0x0FU);
   }
 
-  void hear(int tick) {
+  void handle_frame(int tick) {
     std::vector<std::uint8_t> bytes;
     const auto add = [&bytes](const std::vector<std::uint8_t>& line) {
       bytes.insert(bytes.end(), line.begin(), line.end());

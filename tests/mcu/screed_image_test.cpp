@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kTickCycles = kClock_hz / kTickRate_hz;
 // Half of the tick is the most a tick may take, interrupts included.
-constexpr std::uint64_t kMostBusyCycles = kTickCycles / 2;
+constexpr std::uint64_t kMaxBusyCycles = kTickCycles / 2;
 
 void expect_healthy(const Bench& bench) {
   EXPECT_TRUE(bench.mcu.alive());
@@ -20,7 +20,7 @@ void expect_healthy(const Bench& bench) {
   // An interrupt that runs already, or one atomic block, may delay the tick.
   EXPECT_GT(bench.mcu.shortest_tick(), kTickCycles - 600);
   EXPECT_LT(bench.mcu.longest_tick(), kTickCycles + 600);
-  EXPECT_LE(bench.mcu.busiest_tick_cycles(), kMostBusyCycles);
+  EXPECT_LE(bench.mcu.busiest_tick_cycles(), kMaxBusyCycles);
   EXPECT_LE(bench.mcu.stack_used(), computed_stack());
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint8_t kControl = 0;
 constexpr std::uint8_t kToDevice = 2;    // CDC_ENDPOINT_OUT of the Arduino core
 constexpr std::uint8_t kFromDevice = 3;  // CDC_ENDPOINT_IN
-constexpr double kPatience_ms = 20;
+constexpr double kAnswerTimeout_ms = 20;
 constexpr double kStep_ms = 0.05;
 
 constexpr std::uint8_t kUsbGeneralVector = 10;
@@ -60,7 +60,7 @@ bool UsbHost::setup(const Setup& request) {
 }
 
 bool UsbHost::write(std::uint8_t endpoint, std::vector<std::uint8_t> bytes) {
-  for (double waited = 0; waited < kPatience_ms; waited += kStep_ms) {
+  for (double waited = 0; waited < kAnswerTimeout_ms; waited += kStep_ms) {
     avr_io_usb packet = {endpoint, static_cast<std::uint32_t>(bytes.size()), bytes.data()};
     const int result = avr_ioctl(mcu_.simulator(), AVR_IOCTL_USB_WRITE, &packet);
     run_step();
@@ -91,14 +91,15 @@ bool UsbHost::plug_in() {
   run_ms(5);
   std::vector<std::uint8_t> status;
   // SET_ADDRESS 1, SET_CONFIGURATION 1
-  if (!setup({0x00, 5, 1, 0, 0, 0, 0, 0}) || !read(kControl, status, kPatience_ms)) return false;
-  return setup({0x00, 9, 1, 0, 0, 0, 0, 0}) && read(kControl, status, kPatience_ms);
+  if (!setup({0x00, 5, 1, 0, 0, 0, 0, 0}) || !read(kControl, status, kAnswerTimeout_ms))
+    return false;
+  return setup({0x00, 9, 1, 0, 0, 0, 0, 0}) && read(kControl, status, kAnswerTimeout_ms);
 }
 
 std::vector<std::uint8_t> UsbHost::device_descriptor() {
   std::vector<std::uint8_t> bytes;
   // GET_DESCRIPTOR device, 18 bytes
-  if (!setup({0x80, 6, 0, 1, 0, 0, 18, 0}) || !read(kControl, bytes, kPatience_ms)) return {};
+  if (!setup({0x80, 6, 0, 1, 0, 0, 18, 0}) || !read(kControl, bytes, kAnswerTimeout_ms)) return {};
   write(kControl, {});
   return bytes;
 }
@@ -109,9 +110,9 @@ bool UsbHost::set_line(std::uint32_t baud, bool open) {
   const std::vector<std::uint8_t> coding = {
       byte_of(baud, 0), byte_of(baud, 1), byte_of(baud, 2), byte_of(baud, 3), 0, 0, 8};
   if (!setup({0x21, 0x20, 0, 0, 0, 0, 7, 0}) || !write(kControl, coding)) return false;
-  read(kControl, status, kPatience_ms);
+  read(kControl, status, kAnswerTimeout_ms);
   if (!setup({0x21, 0x22, static_cast<std::uint8_t>(open ? 1 : 0), 0, 0, 0, 0, 0})) return false;
-  read(kControl, status, kPatience_ms);
+  read(kControl, status, kAnswerTimeout_ms);
   return true;
 }
 

@@ -149,7 +149,7 @@ TEST(ChainTrack, ClimbsTwentyDegrees) {
 
 // The heading at the start is free: the chain is made in the frame of its side.
 TEST(ChainTrack, TheStartHeadingDoesNotMatter) {
-  const auto way = [](double heading_deg) {
+  const auto displacement = [](double heading_deg) {
     WorldOptions options = chains();
     options.start.attitude.heading = heading_deg * kDeg;
     Plant plant(level(), rover5(), options);
@@ -157,7 +157,7 @@ TEST(ChainTrack, TheStartHeadingDoesNotMatter) {
     run(plant, 5.0, 0.6, 0.5, worst);
     return plant.vehicle().chassis().pose.translation().head<2>().norm();
   };
-  EXPECT_NEAR(way(57.0), way(0.0), 1e-3);
+  EXPECT_NEAR(displacement(57.0), displacement(0.0), 1e-3);
 }
 
 // Lighter wheels carry it, the robot's mass is the same; in the air nothing pushes it sideways.

@@ -30,7 +30,7 @@ class Recorded {
       CommandSigner signer(test_key());
       message::Heartbeat heartbeat{};
       heartbeat.boot_epoch = epoch;
-      signer.hear(frame_of(heartbeat));
+      signer.handle_frame(frame_of(heartbeat));
       for (int i = 0; i < kOfAStart; ++i) {
         frames.push_back(signer.sign(CommandOp::kArm));
         if (epoch == kEpoch) gate.check(kIdCommand, frames.back().data);
@@ -69,7 +69,7 @@ TEST(Replay, TheMacAloneLetsThroughNoMoreThanChance) {
   message::Heartbeat heartbeat{};
   heartbeat.boot_epoch = Recorded::kEpoch;
   heartbeat.freshness = Recorded::kOfAStart;
-  signer.hear(frame_of(heartbeat));
+  signer.handle_frame(frame_of(heartbeat));
   CommandGate gate = recorded.gate;
   uint64_t accepted = 0;
   for (uint64_t i = 0; i < replays(); ++i) {

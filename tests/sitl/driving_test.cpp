@@ -55,11 +55,11 @@ TEST(DrivingOnSlopes, ClimbsTwentyDegrees) {
   ASSERT_TRUE(drive.start());
   const Eigen::Vector3d begin = drive.position();
   drive.run(20.0);
-  const Eigen::Vector3d way = drive.position() - begin;
+  const Eigen::Vector3d displacement = drive.position() - begin;
   // 0.1 m/s along the slope, less the start.
-  EXPECT_NEAR(way.norm(), 2.0, 0.1);
-  EXPECT_NEAR(way.z(), way.norm() * std::sin(20.0 * kDeg), 0.01);
-  EXPECT_NEAR(way.y(), 0.0, 0.05);
+  EXPECT_NEAR(displacement.norm(), 2.0, 0.1);
+  EXPECT_NEAR(displacement.z(), displacement.norm() * std::sin(20.0 * kDeg), 0.01);
+  EXPECT_NEAR(displacement.y(), 0.0, 0.05);
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
 

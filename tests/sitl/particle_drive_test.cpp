@@ -31,9 +31,9 @@ TEST_P(ParticleDrive, StandsAndDrives) {
   EXPECT_LT((drive.position() - begin).head<2>().norm(), 0.005);
   EXPECT_LT(drive.world.plant().particles()->counts().awake, 20U);
   drive.run(4.0);
-  const double way = (drive.position() - begin).head<2>().norm();
-  EXPECT_GT(way, 0.2);
-  EXPECT_LT(way, 0.42);
+  const double distance = (drive.position() - begin).head<2>().norm();
+  EXPECT_GT(distance, 0.2);
+  EXPECT_LT(distance, 0.42);
   const Attitude attitude = drive.attitude();
   EXPECT_LT(std::abs(attitude.roll), 0.35);
   EXPECT_LT(std::abs(attitude.pitch), 0.35);

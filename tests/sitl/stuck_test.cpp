@@ -20,7 +20,7 @@ std::vector<StuckScenario> on_rigid_ground(bool trapped, std::size_t count, doub
   return all;
 }
 
-TEST(Stuck, DugInTracksAreToldWithinASecond) {
+TEST(Stuck, DugInTracksAreDetectedWithinASecond) {
   int dug_in = 0;
   int detected = 0;
   for (const StuckScenario& scenario : on_rigid_ground(true, 8, 12.0)) {
@@ -41,7 +41,7 @@ TEST(Stuck, FreeDrivesRaiseNoAlarm) {
   for (const StuckScenario& scenario : on_rigid_ground(false, 6, 30.0)) {
     const FreeResult result = alarms_of(drive(scenario));
     driven_s += result.driven_s;
-    alarms += result.false_alarms + result.came_free_alarms + result.other_alarms;
+    alarms += result.false_alarms + result.recovered_alarms + result.other_alarms;
   }
   EXPECT_GT(driven_s, 120.0);
   EXPECT_EQ(alarms, 0);

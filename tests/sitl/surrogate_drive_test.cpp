@@ -42,7 +42,7 @@ struct SurrogateDrive {
       world.apply(output);
     }
   }
-  Eigen::Vector3d place() const { return world.plant().place_travelled(); }
+  Eigen::Vector3d place() const { return world.plant().unwrapped_position(); }
 
   World world;
   Robot robot;
@@ -51,7 +51,7 @@ struct SurrogateDrive {
 
 TEST(SurrogateDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
   WorldOptions options = on_soil();
-  options.drive = DriveOrder{0.1, 0.0};
+  options.drive = DriveCommand{0.1, 0.0};
   SurrogateDrive drive(HeightField::flat(20.0, 0.1), options);
   drive.run(8.0);
   ASSERT_TRUE(drive.robot.supervisor().running());
@@ -64,7 +64,7 @@ TEST(SurrogateDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
 
 TEST(SurrogateDrive, FirmwareTurnsAtTheCommandedRateAndSensorsFeelTheSlope) {
   WorldOptions options = on_soil();
-  options.drive = DriveOrder{0.0, 30.0};
+  options.drive = DriveCommand{0.0, 30.0};
   SurrogateDrive drive(HeightField::ramp(20.0, 0.1, 6.0), options);
   drive.run(8.0);
   const double before = attitude_of(drive.world.vehicle().chassis().pose.linear()).heading;
@@ -82,18 +82,18 @@ TEST(SurrogateDrive, FirmwareTurnsAtTheCommandedRateAndSensorsFeelTheSlope) {
 
 TEST(SurrogateDrive, WrapsAroundAndKeepsTheWayMade) {
   WorldOptions options = on_soil();
-  options.drive = DriveOrder{0.2, 0.0};
+  options.drive = DriveCommand{0.2, 0.0};
   SurrogateDrive drive(
       HeightField::from_function(32, 32, 0.05, true, [](double, double) { return 0.0; }), options);
   drive.run(20.0);
   EXPECT_GT(drive.place().x(), 1.6);
-  EXPECT_GT(drive.world.plant().beds_passed()[0], 0);
+  EXPECT_GT(drive.world.plant().wrap_counts()[0], 0);
   EXPECT_LT(std::abs(drive.world.vehicle().chassis().pose.translation().x()), 0.81);
 }
 
 TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {
   WorldOptions options = on_soil();
-  options.drive = DriveOrder{0.1, 0.0};
+  options.drive = DriveCommand{0.1, 0.0};
   SurrogateDrive drive(HeightField::flat(20.0, 0.1), options);
   drive.run(8.0);
   drive.world.lay_on_side();
@@ -103,13 +103,13 @@ TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {
   EXPECT_EQ((drive.place() - begin).norm(), 0.0);
 }
 
-/// Ten minutes in circles on a bed without end, whose ground gives way.
+/// Ten minutes in circles on a bed without end, with deformable soil.
 HeightField driven_ground(const HeightField& bed) {
   WorldOptions options = on_soil();
-  options.drive = DriveOrder{0.12, 9.0};
+  options.drive = DriveCommand{0.12, 9.0};
   auto plant = plant_of(bed, options);
-  plant->let_give_way(std::make_shared<const nn::BearingNetwork>(
-      nn::BearingNetwork::read(nn::default_bearing_file())));
+  plant->enable_deformation(std::make_shared<const nn::BearingCapacityNetwork>(
+      nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file())));
   const nn::SurrogatePlant& world_plant = *plant;
   World world(std::move(plant), kBoard, options, nullptr);
   Robot robot(kBoard, drive_parameters(), credentials_of(test_key()));
@@ -120,7 +120,7 @@ HeightField driven_ground(const HeightField& bed) {
     world.apply(output);
   }
   EXPECT_EQ(robot.supervisor().faults(), 0);
-  EXPECT_EQ(world_plant.terrain().height_sum() + world_plant.pressed()->in_hand(),
+  EXPECT_EQ(world_plant.terrain().height_sum() + world_plant.soil_model()->in_transit(),
             bed.height_sum());
   return world_plant.terrain();
 }
@@ -143,7 +143,7 @@ TEST(SurrogateDrive, PitchAndRollComeFromTheRuttedGround) {
   WorldOptions options = on_soil();
   options.soil = soil_preset("soft");
   auto plant = plant_of(HeightField::flat(4.0, 0.01), options);
-  plant->let_give_way(nullptr);
+  plant->enable_deformation(nullptr);
   const double before = plant->vehicle().chassis().pose.translation().z();
   for (int i = 0; i < 2000; ++i) plant->step({0.4, -0.4});
   double deviation = 0.0;
@@ -203,7 +203,7 @@ TEST_F(Surrogate, RefusesRigidGroundAndAForeignModel) {
   expect_refused(run("sim e.ini --hal surrogate"), 2, {"soil", "scm"});
   expect_refused(run("sim e.ini --model x.json"), 2, {"--model", "--hal surrogate"});
   expect_refused(run("sim e.ini --no-ruts"), 2, {"--no-ruts", "--hal surrogate"});
-  expect_refused(run("sim e.ini --hal surrogate --ruts-model e.ini"), 2, {"e.ini"});
+  expect_refused(run("sim e.ini --hal surrogate --soil-model e.ini"), 2, {"e.ini"});
 }
 
 }  // namespace

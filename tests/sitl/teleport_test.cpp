@@ -27,7 +27,7 @@ HeightField hills(double size_m, bool wrap) {
 }
 
 struct Step {
-  Frame frame;
+  SimFrame frame;
   Eigen::Vector3d velocity;
 };
 
@@ -55,8 +55,8 @@ void expect_no_glitch(const std::vector<Step>& steps, int least_teleports) {
   double x = steps[0].frame.x + kBed_m * steps[0].frame.beds_x;
   double y = steps[0].frame.y + kBed_m * steps[0].frame.beds_y;
   for (size_t i = 1; i < steps.size(); ++i) {
-    const Frame& frame = steps[i].frame;
-    const Frame& last = steps[i - 1].frame;
+    const SimFrame& frame = steps[i].frame;
+    const SimFrame& last = steps[i - 1].frame;
     ASSERT_TRUE(std::abs(frame.x) <= kBed_m / 2 && std::abs(frame.y) <= kBed_m / 2) << i;
     // A delta is what the velocity makes of a tick, teleported or not, and deltas add up.
     const Eigen::Vector3d mean = 0.5 * (steps[i].velocity + steps[i - 1].velocity);
@@ -87,8 +87,8 @@ TEST(Teleport, IsTheDriveOnABedThatIsLargeEnough) {
   constexpr double kSeconds = 20.0;
   const std::vector<Step> small = drive_over_the_edges(hills(kBed_m, true), kSeconds);
   const std::vector<Step> large = drive_over_the_edges(hills(15 * kBed_m, false), kSeconds);
-  const Frame& a = small.back().frame;
-  const Frame& b = large.back().frame;
+  const SimFrame& a = small.back().frame;
+  const SimFrame& b = large.back().frame;
   EXPECT_NE(a.beds_x, 0);
   EXPECT_EQ(b.beds_x, 0);
   EXPECT_NEAR(a.x + kBed_m * a.beds_x, b.x, 1e-3);

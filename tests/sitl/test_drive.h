@@ -75,7 +75,7 @@ class TestDrive {
 
 inline WorldOptions drive_options(double speed_m_per_s, double yaw_rate_deg_per_s) {
   WorldOptions options;
-  options.drive = DriveOrder{speed_m_per_s, yaw_rate_deg_per_s};
+  options.drive = DriveCommand{speed_m_per_s, yaw_rate_deg_per_s};
   return options;
 }
 

@@ -117,11 +117,11 @@ TEST(VehiclePhysics, SkidTurnFollowsTheMomentBalance) {
   bench.run(1.0);
   bench.run(3.0, -4.0, 4.0);
   double angle = 0.0;
-  double way = 0.0;
+  double distance = 0.0;
   for (int i = 0; i < 3000; ++i) {
     bench.run(kStep_s, -4.0, 4.0);
     angle += bench.vehicle.chassis().omega_body.z() * kStep_s;
-    way += bench.vehicle.track_speed_m_per_s(kRight) * kStep_s;
+    distance += bench.vehicle.track_speed_m_per_s(kRight) * kStep_s;
   }
   const double half_tread = bench.vehicle.tread_m() / 2.0;
   const double half_length = 0.185 / 2.0;
@@ -139,7 +139,7 @@ TEST(VehiclePhysics, SkidTurnFollowsTheMomentBalance) {
   }
   // Belt width, motor friction on the belt and the load's distribution are left out of the formula:
   // 5 %.
-  EXPECT_NEAR(way / (angle * half_tread), (low + half_tread) / half_tread,
+  EXPECT_NEAR(distance / (angle * half_tread), (low + half_tread) / half_tread,
               0.05 * (low + half_tread) / half_tread);
 }
 

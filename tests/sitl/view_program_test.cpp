@@ -33,9 +33,9 @@ class View : public Program {
     };
     return {number(18), number(22)};
   }
-  Frame last_frame(const std::string& folder) const {
+  SimFrame last_frame(const std::string& folder) const {
     const SessionReader session(root_ / folder / "session.h5");
-    Frame frame;
+    SimFrame frame;
     session.read(session.frames() - 1, std::span(&frame, 1));
     return frame;
   }
@@ -44,7 +44,8 @@ class View : public Program {
 TEST_F(View, ARunThatIsWatchedIsTheRunThatNobodyWatched) {
   ASSERT_EQ(run("sim e.ini --quiet --out alone").exit_code, 0);
   const Result watched = on_dummy(
-      "sim e.ini --quiet --out watched --view --frames 1000 --follow --press m@1 --press h@2");
+      "sim e.ini --quiet --out watched --view --frames 1000 --follow --key-script m@1 --key-script "
+      "h@2");
   ASSERT_EQ(watched.exit_code, 0) << watched.err;
   EXPECT_NE(watched.err.find(" frames, "), std::string::npos) << watched.err;
   EXPECT_EQ(hash("watched"), hash("alone"));
@@ -74,10 +75,11 @@ TEST_F(View, TheKeyboardDrivesOverTheRadio) {
   write("hills.ini",
         "[experiment]\nname = hills\nduration = 12\nalgorithm = hill_sensing\n[map]\nsize = 3\n");
   ASSERT_EQ(run("sim hills.ini --quiet --out alone").exit_code, 0);
-  const Result driven = run("sim hills.ini --quiet --out driven --press Up@6-30 --press Left@9-10");
+  const Result driven =
+      run("sim hills.ini --quiet --out driven --key-script Up@6-30 --key-script Left@9-10");
   ASSERT_EQ(driven.exit_code, 0) << driven.err;
   EXPECT_NE(hash("driven"), hash("alone"));
-  const Frame frame = last_frame("driven");
+  const SimFrame frame = last_frame("driven");
   EXPECT_EQ(frame.leveling_state, 5);  // drive
   EXPECT_NEAR(frame.linear, 0.18, 0.001);
   EXPECT_GT(frame.velocity_x, 0.1);
@@ -86,7 +88,7 @@ TEST_F(View, TheKeyboardDrivesOverTheRadio) {
 
   // And hands back.
   const Result returned =
-      run("sim hills.ini --quiet --out returned --press Up@6-8 --press Backspace@8");
+      run("sim hills.ini --quiet --out returned --key-script Up@6-8 --key-script Backspace@8");
   ASSERT_EQ(returned.exit_code, 0) << returned.err;
   EXPECT_EQ(last_frame("returned").leveling_state, 1);  // walk
   EXPECT_EQ(last_frame("returned").state, 2);           // running
@@ -94,7 +96,7 @@ TEST_F(View, TheKeyboardDrivesOverTheRadio) {
 
 TEST_F(View, ClosingTheWindowEndsTheRunAndSavesIt) {
   const Result result =
-      on_dummy("sim e.ini --quiet --out r --view --frames 1000 --press q@1 --heights");
+      on_dummy("sim e.ini --quiet --out r --view --frames 1000 --key-script q@1 --heights");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(SessionReader(root_ / "r" / "session.h5").frames(), 100U);
   EXPECT_TRUE(SessionReader(root_ / "r" / "session.h5").complete());
@@ -102,11 +104,12 @@ TEST_F(View, ClosingTheWindowEndsTheRunAndSavesIt) {
 
 TEST_F(View, ARecordedRunIsPlayedAndFilmed) {
   ASSERT_EQ(run("sim e.ini --quiet --heights --out r").exit_code, 0);
-  const Result played =
-      on_dummy("view r --frames 90 --press Right@0.5 --press 3@1 --press Space@2 --press Home@1.7");
+  const Result played = on_dummy(
+      "view r --frames 90 --key-script Right@0.5 --key-script 3@1 --key-script Space@2 "
+      "--key-script Home@1.7");
   ASSERT_EQ(played.exit_code, 0) << played.err;
   EXPECT_EQ(played.err.rfind("90 frames, ", 0), 0U) << played.err;
-  ASSERT_EQ(run("view r --film film --speed 8").exit_code, 0);
+  ASSERT_EQ(run("view r --frames-dir film --speed 8").exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(root_ / "film" / "frame_000009.png"));
   EXPECT_LE(std::distance(std::filesystem::directory_iterator(root_ / "film"), {}), 12);
 }
@@ -114,7 +117,7 @@ TEST_F(View, ARecordedRunIsPlayedAndFilmed) {
 TEST_F(View, WhatIsWrongIsSaidInOneLine) {
   expect_refused(run("sim e.ini --view", "SDL_VIDEODRIVER=none"), 1,
                  {"the viewer", "--screenshot"});
-  expect_refused(run("sim e.ini --press Wide@3"), 2, {"--press", "Wide@3", "Up@3-5.5"});
+  expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
   expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "640x420"});
   expect_refused(run("sim e.ini --at 3"), 2, {"--at", "--screenshot"});
   expect_refused(run("sim e.ini e.ini --screenshot p.png"), 2, {"one experiment"});

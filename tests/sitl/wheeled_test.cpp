@@ -34,8 +34,8 @@ TEST(WheeledRover, DrivesStraightAtTheOrderedSpeed) {
   drive.run(1.0);
   const Eigen::Vector3d begin = drive.position();
   drive.run(10.0);
-  const Eigen::Vector3d way = drive.position() - begin;
-  EXPECT_NEAR(way.norm(), 1.0, 0.05);
+  const Eigen::Vector3d displacement = drive.position() - begin;
+  EXPECT_NEAR(displacement.norm(), 1.0, 0.05);
   EXPECT_NEAR(drive.attitude().pitch, 0.0, 0.5 * kDeg);
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
@@ -89,9 +89,9 @@ TEST(WheeledRover, ClimbsTwentyDegrees) {
   ASSERT_TRUE(drive.start());
   const Eigen::Vector3d begin = drive.position();
   drive.run(20.0);
-  const Eigen::Vector3d way = drive.position() - begin;
-  EXPECT_NEAR(way.norm(), 2.0, 0.1);
-  EXPECT_NEAR(way.z(), way.norm() * std::sin(20.0 * kDeg), 0.01);
+  const Eigen::Vector3d displacement = drive.position() - begin;
+  EXPECT_NEAR(displacement.norm(), 2.0, 0.1);
+  EXPECT_NEAR(displacement.z(), displacement.norm() * std::sin(20.0 * kDeg), 0.01);
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
 
@@ -169,8 +169,8 @@ TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
           std::max({steepest, std::abs(drive.attitude().pitch), std::abs(drive.attitude().roll)});
       fastest = std::max(fastest, std::abs(drive.world.vehicle().chassis().velocity.z()));
     }
-    const double way = (drive.position() - begin).norm();
-    EXPECT_NEAR(way / (0.8 * (1.0 - own_slip(*options.soil))), 1.0, 0.05);
+    const double displacement = (drive.position() - begin).norm();
+    EXPECT_NEAR(displacement / (0.8 * (1.0 - own_slip(*options.soil))), 1.0, 0.05);
     EXPECT_LT(steepest, 5.0 * kDeg);
     EXPECT_LT(fastest, 0.05);
     EXPECT_EQ(drive.world.plant().soil()->balance().error(), 0);

@@ -18,7 +18,7 @@ class TestRobot {
  public:
   explicit TestRobot(const Parameters& parameters = {})
       : robot(kBoard, parameters, credentials_of(test_key())), signer(test_key()) {
-    signer.hear(frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0}));
+    signer.handle_frame(frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0}));
     sample.accel[2] = 4098;
     sample.mag[1] = 1217;
     sample.mag[2] = -3013;

@@ -31,12 +31,12 @@ bool contains(std::string_view text, std::string_view part) {
 std::string run(const Avrdude& avrdude, const Words& operations) {
   std::size_t shown = 0;
   const auto outcome =
-      run_child(call(avrdude, operations), avrdude.longest_silence, [&](std::string_view said) {
+      run_child(call(avrdude, operations), avrdude.idle_timeout, [&](std::string_view said) {
         if (avrdude.show_output) std::cerr << said.substr(shown) << std::flush;
         shown = said.size();
         return !contains(said, kNoAnswer);
       });
-  if (outcome.killed || outcome.exit_code != 0) throw RunError(what_went_wrong(avrdude, outcome));
+  if (outcome.killed || outcome.exit_code != 0) throw RunError(failure_message(avrdude, outcome));
   return outcome.said;
 }
 
@@ -102,7 +102,7 @@ Words fuse_operations(const Fuses& fuses) {
 
 }  // namespace
 
-std::string what_went_wrong(const Avrdude& avrdude, const ChildOutcome& outcome) {
+std::string failure_message(const Avrdude& avrdude, const ChildOutcome& outcome) {
   const std::string& said = outcome.said;
   for (const auto& line : {wrong_chip(said), wrong_byte(said)})
     if (!line.empty()) return line;
@@ -145,7 +145,7 @@ Fuses read_fuses(const Avrdude& avrdude) {
     try {
       fuses.*fuse.member = parse_hex_byte(value, fuse.name);
     } catch (const InputError&) {
-      throw RunError(avrdude.program + " did not tell the " + fuse.name + " fuse");
+      throw RunError(avrdude.program + " did not report the " + fuse.name + " fuse");
     }
   }
   return fuses;

@@ -17,7 +17,7 @@ struct Avrdude {
   std::string programmer;  ///< its -c: "avr109" is the bootloader
   std::string port;        ///< its -P; empty: the programmer's own (an ISP programmer on USB)
   /// avrdude waits 5 s for an answer of the bootloader, and erasing the chip takes 2 s.
-  std::chrono::milliseconds longest_silence{8000};
+  std::chrono::milliseconds idle_timeout{8000};
   bool show_output = false;
 };
 
@@ -41,6 +41,6 @@ void write_fuses(const Avrdude& avrdude, const Fuses& fuses);
 std::string fuse_command(const Avrdude& avrdude, const Fuses& fuses);
 
 /// The line for a failed call.
-std::string what_went_wrong(const Avrdude& avrdude, const ChildOutcome& outcome);
+std::string failure_message(const Avrdude& avrdude, const ChildOutcome& outcome);
 
 }  // namespace screed::flash

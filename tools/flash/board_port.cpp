@@ -78,30 +78,30 @@ BoardPort find_board(const SystemRoots& roots, const BoardUsb& usb, const std::s
 }
 
 fs::path bootloader_port(const BoardPort& board, const SystemRoots& roots, const BoardUsb& usb,
-                         const Patience& patience, const Clock& clock,
+                         const Timeouts& timeouts, const Clock& clock,
                          const std::function<void(const std::string&)>& tell) {
   if (board.in_bootloader) return board.device;
   fs::path closed_to_us;
-  for (int touch = 0; touch < patience.touches; ++touch) {
+  for (int touch = 0; touch < timeouts.touches; ++touch) {
     // A reset may have given the sketch's port another name; while it is away there is only
     // waiting.
     if (const auto sketch = in_socket(roots, board.socket, usb.sketch)) {
       tell("restarting " + sketch->device.string() + " in its bootloader");
       touch_at_1200_baud(sketch->device);
     }
-    const auto end = clock.now() + patience.after_touch;
+    const auto end = clock.now() + timeouts.after_touch;
     do {
       if (const auto found = in_socket(roots, board.socket, usb.bootloader)) {
         // The kernel shows a port a moment before udev has given it its rights.
         if (access(found->device.c_str(), R_OK | W_OK) == 0) return found->device;
         if (errno == EACCES) closed_to_us = found->device;
       }
-      clock.pause(patience.between_looks);
+      clock.pause(timeouts.between_looks);
     } while (clock.now() < end);
   }
   if (!closed_to_us.empty()) throw RunError(no_right_to_open(closed_to_us));
   throw RunError("no bootloader: " + board.device.string() + " was opened at 1200 baud " +
-                 std::to_string(patience.touches) + " times, but no USB " +
+                 std::to_string(timeouts.touches) + " times, but no USB " +
                  to_string(usb.bootloader) + " came up in its place; " + kResetTwice);
 }
 

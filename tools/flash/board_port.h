@@ -29,8 +29,8 @@ struct BoardPort {
 /// or belongs to another USB device.
 BoardPort find_board(const SystemRoots& roots, const BoardUsb& usb, const std::string& asked_for);
 
-/// How long to wait for what.
-struct Patience {
+/// Attempts and timeouts.
+struct Timeouts {
   int touches = 3;
   std::chrono::milliseconds after_touch{5000};  ///< reset 0.12 s, enumeration 1 to 2 s
   std::chrono::milliseconds between_looks{50};
@@ -40,7 +40,7 @@ struct Patience {
 /// that appears in the same socket after a touch, under whatever name. `tell` gets a line of
 /// progress a touch. Throws RunError when none appears, or this user may not open it.
 std::filesystem::path bootloader_port(const BoardPort& board, const SystemRoots& roots,
-                                      const BoardUsb& usb, const Patience& patience,
+                                      const BoardUsb& usb, const Timeouts& timeouts,
                                       const Clock& clock,
                                       const std::function<void(const std::string&)>& tell);
 

@@ -38,7 +38,7 @@ pid_t start(const std::vector<std::string>& command, int output) {
 }  // namespace
 
 ChildOutcome run_child(const std::vector<std::string>& command,
-                       std::chrono::milliseconds longest_silence,
+                       std::chrono::milliseconds idle_timeout,
                        const std::function<bool(std::string_view)>& listen) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
@@ -56,7 +56,7 @@ ChildOutcome run_child(const std::vector<std::string>& command,
   ChildOutcome outcome;
   while (true) {
     pollfd wait{ends[0], POLLIN, 0};
-    const int ready = poll(&wait, 1, static_cast<int>(longest_silence.count()));
+    const int ready = poll(&wait, 1, static_cast<int>(idle_timeout.count()));
     if (ready < 0 && errno == EINTR) continue;
     bool go_on = ready > 0;
     if (go_on) {

@@ -17,9 +17,9 @@ struct ChildOutcome {
 
 /// Runs `command` (found through PATH) with an empty standard input. `listen` gets all that was
 /// said so far whenever there is more. The program is killed when `listen` returns false, and when
-/// it says nothing for `longest_silence`. Throws RunError when the program cannot be started.
+/// it says nothing for `idle_timeout`. Throws RunError when the program cannot be started.
 ChildOutcome run_child(const std::vector<std::string>& command,
-                       std::chrono::milliseconds longest_silence,
+                       std::chrono::milliseconds idle_timeout,
                        const std::function<bool(std::string_view)>& listen);
 
 }  // namespace screed::flash

@@ -30,7 +30,7 @@ struct Options {
   std::string extended = "0xC8";
   std::string lock = "0xEF";
   bool write_fuses = false;
-  double silence_s = 8.0;
+  double idle_timeout_s = 8.0;
   double touch_s = 5.0;
   flash::SystemRoots roots;
   flash::Avrdude avrdude;
@@ -48,11 +48,11 @@ std::chrono::milliseconds milliseconds(double seconds) {
 void connect_to_bootloader(const Options& options, flash::Avrdude& avrdude) {
   const auto usb = board_usb(options);
   const auto board = flash::find_board(options.roots, usb, options.port);
-  flash::Patience patience;
-  patience.after_touch = milliseconds(options.touch_s);
+  flash::Timeouts timeouts;
+  timeouts.after_touch = milliseconds(options.touch_s);
   const auto tell = [](const std::string& line) { std::cout << line << std::endl; };
   const auto port =
-      flash::bootloader_port(board, options.roots, usb, patience, flash::machine_clock(), tell);
+      flash::bootloader_port(board, options.roots, usb, timeouts, flash::machine_clock(), tell);
   avrdude.programmer = flash::kBootloaderProtocol;
   avrdude.port = port.string();
 }
@@ -122,26 +122,33 @@ void add_usb_options(CLI::App& command, Options& options) {
   command
       .add_option("--sketch-usb", options.sketch_usb, "USB id of the board while its sketch runs")
       ->capture_default_str();
-  command.add_option("--bootloader-usb", options.bootloader_usb, "USB id of its bootloader")
+  command
+      .add_option("--bootloader-usb", options.bootloader_usb, "USB id of the board's bootloader")
       ->capture_default_str();
-  command.add_option("--port", options.port,
-                     "serial port; without it the board is looked for on USB");
-  command.add_option("--sys", options.roots.sys, "the kernel's devices")->capture_default_str();
-  command.add_option("--dev", options.roots.dev, "device files")->capture_default_str();
+  command.add_option("--port", options.port, "Serial port (default: search for the board on USB)");
+  command.add_option("--sys", options.roots.sys, "Directory of the kernel's devices")
+      ->capture_default_str();
+  command.add_option("--dev", options.roots.dev, "Directory of the device files")
+      ->capture_default_str();
 }
 
 void add_avrdude_options(CLI::App& command, Options& options) {
   add_usb_options(command, options);
-  command.add_option("--mcu", options.avrdude.mcu, "avrdude's name of the part")->required();
-  command.add_option("--avrdude", options.avrdude.program, "the program")->capture_default_str();
+  command.add_option("--mcu", options.avrdude.mcu, "avrdude's name of the microcontroller")
+      ->required();
+  command.add_option("--avrdude", options.avrdude.program, "Path of the avrdude program")
+      ->capture_default_str();
   command
-      .add_option("--silence", options.silence_s, "seconds without a word before avrdude is ended")
+      .add_option("--idle-timeout", options.idle_timeout_s,
+                  "Time without output after which avrdude is terminated [s]")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  command.add_option("--touch-wait", options.touch_s, "seconds to wait for the bootloader a touch")
+  command
+      .add_option("--touch-wait", options.touch_s,
+                  "Time to wait for the bootloader after each 1200 baud touch [s]")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  command.add_flag("--verbose", options.avrdude.show_output, "show what avrdude says");
+  command.add_flag("--verbose", options.avrdude.show_output, "Show avrdude's output");
 }
 
 }  // namespace
@@ -151,25 +158,31 @@ int main(int argc, char** argv) {
   CLI::App app("Flashes the robot's board over USB", "screed_flash");
   app.require_subcommand(1);
 
-  auto* write = app.add_subcommand("write", "find the board, start its bootloader, write, verify");
-  write->add_option("image", options.image, "Intel HEX file")->required();
+  auto* write = app.add_subcommand(
+      "write", "Find the board, start its bootloader, write and verify an image");
+  write->add_option("image", options.image, "Intel HEX file to write")->required();
   add_avrdude_options(*write, options);
 
-  auto* port = app.add_subcommand("port", "print the board's serial port");
+  auto* port = app.add_subcommand("port", "Print the board's serial port");
   add_usb_options(*port, options);
 
-  auto* fuse = app.add_subcommand("fuses", "print the board's fuses, or compare them");
+  auto* fuse =
+      app.add_subcommand("fuses", "Print the board's fuses, or compare them with given values");
   add_avrdude_options(*fuse, options);
-  fuse->add_option("--low", options.low)->capture_default_str();
-  fuse->add_option("--high", options.high)->capture_default_str();
-  fuse->add_option("--extended", options.extended)->capture_default_str();
-  fuse->add_option("--lock", options.lock)->capture_default_str();
+  fuse->add_option("--low", options.low, "Expected low fuse byte (hexadecimal)")
+      ->capture_default_str();
+  fuse->add_option("--high", options.high, "Expected high fuse byte (hexadecimal)")
+      ->capture_default_str();
+  fuse->add_option("--extended", options.extended, "Expected extended fuse byte (hexadecimal)")
+      ->capture_default_str();
+  fuse->add_option("--lock", options.lock, "Expected lock byte (hexadecimal)")
+      ->capture_default_str();
   fuse->add_option("--programmer", options.avrdude.programmer,
                    "avrdude's name of an ISP programmer, or avr109 for the bootloader");
-  fuse->add_flag("--write", options.write_fuses, "write them first");
+  fuse->add_flag("--write", options.write_fuses, "Write the fuses before comparing");
 
   return screed::run_program(app, argc, argv, [&] {
-    options.avrdude.longest_silence = milliseconds(options.silence_s);
+    options.avrdude.idle_timeout = milliseconds(options.idle_timeout_s);
     if (*write) write_image(options);
     if (*port) print_port(options);
     if (*fuse) fuses(options);

@@ -29,9 +29,9 @@ class Parser {
 
   Database parse() {
     while (peek().kind != Token::Kind::kEnd) statement();
-    for (Message& message : database_.messages) {
+    for (DbcMessage& message : database_.messages) {
       add_fallbacks("BO_", message.attributes);
-      for (Signal& signal : message.signals) add_fallbacks("SG_", signal.attributes);
+      for (DbcSignal& signal : message.signals) add_fallbacks("SG_", signal.attributes);
     }
     return database_;
   }
@@ -61,15 +61,15 @@ class Parser {
   std::string name() { return want(Kind::kWord, "a name").text; }
   std::string words() { return want(Kind::kString, "a text in quotation marks").text; }
 
-  std::int64_t integer(std::int64_t least, std::int64_t most) {
+  std::int64_t integer(std::int64_t minimum, std::int64_t maximum) {
     const Token& token = want(Kind::kNumber, "a number");
     std::int64_t value = 0;
     const char* const begin = token.text.data() + (token.text[0] == '+' ? 1 : 0);
     const char* const end = token.text.data() + token.text.size();
     const auto [stop, error] = std::from_chars(begin, end, value);
-    if (error != std::errc() || stop != end || value < least || value > most) {
-      fail(token, "'" + token.text + "' is not a whole number from " + std::to_string(least) +
-                      " to " + std::to_string(most));
+    if (error != std::errc() || stop != end || value < minimum || value > maximum) {
+      fail(token, "'" + token.text + "' is not a whole number from " + std::to_string(minimum) +
+                      " to " + std::to_string(maximum));
     }
     return value;
   }
@@ -148,7 +148,7 @@ class Parser {
     } else if (keyword == "VAL_") {
       value_names();
     } else if (keyword == "SIG_VALTYPE_") {
-      Signal& it = signal(message_by_id(), "the type of a value");
+      DbcSignal& it = signal(message_by_id(), "the type of a value");
       if (is(":")) take();
       it.is_float = integer(0, 2) != 0;
       want(";");
@@ -160,7 +160,7 @@ class Parser {
   }
 
   void message(int line) {
-    Message it;
+    DbcMessage it;
     it.line = line;
     it.id = static_cast<std::uint32_t>(integer(0, UINT32_MAX));
     it.name = name();
@@ -174,8 +174,8 @@ class Parser {
     database_.messages.push_back(it);
   }
 
-  Signal signal_line() {
-    Signal it;
+  DbcSignal signal_line() {
+    DbcSignal it;
     it.line = peek().line;
     it.name = name();
     if (peek().kind == Kind::kWord) it.multiplexer = take().text;
@@ -196,9 +196,9 @@ class Parser {
     it.offset = decimal();
     want(")");
     want("[");
-    it.least = decimal();
+    it.minimum = decimal();
     want("|");
-    it.most = decimal();
+    it.maximum = decimal();
     want("]");
     it.unit = words();
     do {
@@ -208,20 +208,20 @@ class Parser {
     return it;
   }
 
-  Message& message_by_id() {
+  DbcMessage& message_by_id() {
     const Token& token = peek();
     const std::int64_t id = integer(0, UINT32_MAX);
     const auto found = std::find_if(database_.messages.begin(), database_.messages.end(),
-                                    [&](const Message& it) { return it.id == id; });
+                                    [&](const DbcMessage& it) { return it.id == id; });
     if (found == database_.messages.end()) fail(token, "no message has the id " + token.text);
     return *found;
   }
 
-  Signal& signal(Message& message, const char* what) {
+  DbcSignal& signal(DbcMessage& message, const char* what) {
     const Token& token = peek();
     const std::string wanted = name();
     const auto found = std::find_if(message.signals.begin(), message.signals.end(),
-                                    [&](const Signal& it) { return it.name == wanted; });
+                                    [&](const DbcSignal& it) { return it.name == wanted; });
     if (found == message.signals.end()) {
       fail(token, std::string(what) + " is given for " + message.name + "." + wanted +
                       ", which is not there");
@@ -232,11 +232,11 @@ class Parser {
   void comment() {
     if (is("BO_")) {
       take();
-      Message& it = message_by_id();
+      DbcMessage& it = message_by_id();
       it.comment = words();
     } else if (is("SG_")) {
       take();
-      Signal& it = signal(message_by_id(), "a comment");
+      DbcSignal& it = signal(message_by_id(), "a comment");
       it.comment = words();
     } else if (is("BU_")) {
       take();
@@ -303,11 +303,11 @@ class Parser {
     const AttributeType& type = type_of(attribute);
     if (is("BO_")) {
       take();
-      Message& it = message_by_id();
+      DbcMessage& it = message_by_id();
       it.attributes[attribute.text] = attribute_value(type);
     } else if (is("SG_")) {
       take();
-      Signal& it = signal(message_by_id(), "an attribute");
+      DbcSignal& it = signal(message_by_id(), "an attribute");
       it.attributes[attribute.text] = attribute_value(type);
     } else if (is("BU_")) {
       take();
@@ -321,7 +321,7 @@ class Parser {
 
   void value_names() {
     const int line = peek().line;
-    Signal& it = signal(message_by_id(), "names of values");
+    DbcSignal& it = signal(message_by_id(), "names of values");
     it.values_line = line;
     while (!is(";")) {
       const int value_line = peek().line;
@@ -363,15 +363,15 @@ std::string Decimal::text() const {
   return (negative ? "-" : "") + digits;
 }
 
-std::string Signal::flags() const {
+std::string DbcSignal::flags() const {
   return attribute(attributes, "Flags");
 }
 
-bool Message::protected_by_crc() const {
+bool DbcMessage::protected_by_crc() const {
   return attribute(attributes, "Protection") == "e2e";
 }
 
-int Message::period_ms() const {
+int DbcMessage::period_ms() const {
   const std::string text = attribute(attributes, "GenMsgCycleTime");
   int value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);

@@ -27,7 +27,7 @@ struct ValueName {
   int line = 0;
 };
 
-struct Signal {
+struct DbcSignal {
   std::string name;
   int line = 0;
   std::string multiplexer;  ///< "M", "m0", ...; empty: none
@@ -38,8 +38,8 @@ struct Signal {
   bool is_float = false;  ///< by SIG_VALTYPE_
   Decimal scale;
   Decimal offset;
-  Decimal least;
-  Decimal most;
+  Decimal minimum;
+  Decimal maximum;
   std::string unit;
   std::string comment;
   std::vector<ValueName> values;  ///< of VAL_
@@ -50,14 +50,14 @@ struct Signal {
   [[nodiscard]] std::string flags() const;
 };
 
-struct Message {
+struct DbcMessage {
   std::uint32_t id = 0;  ///< as written: bit 31 set is an extended id
   std::string name;
   int line = 0;
   int size = 0;  ///< bytes
   std::string sender;
   std::string comment;
-  std::vector<Signal> signals;
+  std::vector<DbcSignal> signals;
   std::map<std::string, std::string> attributes;
 
   [[nodiscard]] bool protected_by_crc() const;  ///< attribute "Protection" is "e2e"
@@ -68,7 +68,7 @@ struct Database {
   std::string file;
   std::string comment;
   std::vector<std::string> nodes;
-  std::vector<Message> messages;
+  std::vector<DbcMessage> messages;
 };
 
 /// Parses a DBC file. Throws InputError "FILE:LINE: what" at the first thing that is not DBC, or

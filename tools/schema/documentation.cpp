@@ -11,25 +11,25 @@ namespace {
 constexpr const char* kBegin = "<!-- messages: made by `make telemetry-page` -->\n";
 constexpr const char* kEnd = "<!-- end of messages -->\n";
 
-std::string rate(const Message& message) {
+std::string rate(const DbcMessage& message) {
   if (message.period_ms() == 0) return "on occasion";
   Decimal hz = {10000 / message.period_ms(), 1};
   if (hz.mantissa % 10 == 0) hz = {hz.mantissa / 10, 0};
   return hz.text() + " Hz";
 }
 
-std::string type(const Signal& signal) {
+std::string type(const DbcSignal& signal) {
   return (signal.is_signed ? "s" : "u") + std::to_string(signal.length);
 }
 
-std::string unit(const Signal& signal) {
+std::string unit(const DbcSignal& signal) {
   if (signal.unit.empty()) return "";
   const std::string step = signal.scale.text() == "1" ? "" : signal.scale.text() + " ";
   const std::string offset = signal.offset.mantissa == 0 ? "" : " from " + signal.offset.text();
   return step + signal.unit + offset;
 }
 
-std::string meaning(const Message& message, const Signal& signal) {
+std::string meaning(const DbcMessage& message, const DbcSignal& signal) {
   if (is_protection(message, signal)) return "protection";
   std::string text = signal.comment;
   std::string names;
@@ -45,7 +45,7 @@ std::string meaning(const Message& message, const Signal& signal) {
 std::string table_of_messages(const Database& database) {
   std::string text =
       "| id, robot 1 | message | from | rate | bytes | |\n| --- | --- | --- | --- | --- | --- |\n";
-  for (const Message& message : database.messages) {
+  for (const DbcMessage& message : database.messages) {
     text += "| " + id_text(message.id) + " | " + message.name + " | " +
             (message.sender == "GROUND" ? "ground" : "robot") + " | " + rate(message) + " | " +
             std::to_string(message.size) + " | " + message.comment + " |\n";
@@ -57,15 +57,15 @@ std::string table_of_signals(const Database& database) {
   std::string text =
       "| message | signal | bits | type | unit | range | |\n"
       "| --- | --- | --- | --- | --- | --- | --- |\n";
-  for (const Message& message : database.messages) {
+  for (const DbcMessage& message : database.messages) {
     std::string name = message.name;
-    for (const Signal& signal : message.signals) {
+    for (const DbcSignal& signal : message.signals) {
       if (is_protection(message, signal)) continue;
       const bool ranged = !signal.unit.empty();
       text += "| " + name + " | " + signal.name + " | " + std::to_string(signal.start) +
               (signal.length == 1 ? "" : ".." + std::to_string(signal.start + signal.length - 1)) +
               " | " + type(signal) + " | " + unit(signal) + " | " +
-              (ranged ? signal.least.text() + " .. " + signal.most.text() : "") + " | " +
+              (ranged ? signal.minimum.text() + " .. " + signal.maximum.text() : "") + " | " +
               meaning(message, signal) + " |\n";
       name.clear();
     }

@@ -19,7 +19,7 @@ std::string small_letters(std::string text) {
   return text;
 }
 
-std::string values_name(const Message& message, const Signal& signal) {
+std::string values_name(const DbcMessage& message, const DbcSignal& signal) {
   return "k" + pascal_case(message.name) + pascal_case(signal.name) + "Values";
 }
 
@@ -28,12 +28,12 @@ std::string number_at(Decimal number, int decimals) {
   return std::to_string(number.mantissa);
 }
 
-std::string role(const Message& message, const Signal& signal) {
+std::string role(const DbcMessage& message, const DbcSignal& signal) {
   if (!is_protection(message, signal)) return "SignalRole::kData";
   return signal.name == "crc" ? "SignalRole::kCrc" : "SignalRole::kCounter";
 }
 
-std::string signal_row(const Message& message, const Signal& signal) {
+std::string signal_row(const DbcMessage& message, const DbcSignal& signal) {
   const int decimals = std::max(signal.scale.decimals, signal.offset.decimals);
   return "    {" + quoted(signal.name) + ", " + quoted(signal.unit) + ", " +
          quoted(signal.flags()) + ", " + quoted(signal.comment) + ", " + role(message, signal) +
@@ -49,8 +49,8 @@ std::string host_tables(const Database& database) {
   std::string text = "// " + made_from(database) +
                      "\n#pragma once\n\n#include \"host_sim/ground_station/telemetry/schema.h\"\n\n"
                      "namespace screed::schema_tables {\n\n";
-  for (const Message& message : database.messages) {
-    for (const Signal& signal : message.signals) {
+  for (const DbcMessage& message : database.messages) {
+    for (const DbcSignal& signal : message.signals) {
       if (signal.values.empty()) continue;
       text += "constexpr ValueInfo " + values_name(message, signal) + "[] = {";
       for (const ValueName& value : signal.values) {
@@ -60,11 +60,11 @@ std::string host_tables(const Database& database) {
       text += "};\n";
     }
     text += "constexpr SignalInfo k" + pascal_case(message.name) + "Signals[] = {\n";
-    for (const Signal& signal : message.signals) text += signal_row(message, signal);
+    for (const DbcSignal& signal : message.signals) text += signal_row(message, signal);
     text += "};\n";
   }
   text += "\nconstexpr MessageInfo kMessages[] = {\n";
-  for (const Message& message : database.messages) {
+  for (const DbcMessage& message : database.messages) {
     text += "    {" + quoted(message.name) + ", " + quoted(small_letters(message.name)) + ", " +
             quoted(message.comment) + ", " + id_text(message.id) + ", " +
             std::to_string(message.size) + ", " + std::to_string(message.period_ms()) + ", " +

@@ -87,10 +87,10 @@ std::string get_expression(const Field& field) {
 std::string meaning(const Field& field) {
   if (!field.signals.front()->flags().empty()) {
     std::string names = "flags:";
-    for (const Signal* signal : field.signals) names += " " + signal->name;
+    for (const DbcSignal* signal : field.signals) names += " " + signal->name;
     return names;
   }
-  const Signal& signal = *field.signals.front();
+  const DbcSignal& signal = *field.signals.front();
   std::string text = signal.comment;
   if (!signal.values.empty()) {
     std::string names;
@@ -105,10 +105,10 @@ std::string meaning(const Field& field) {
   return text.empty() ? unit : unit + ": " + text;
 }
 
-std::string enumerations(const Message& message) {
+std::string enumerations(const DbcMessage& message) {
   std::string text;
   for (const Field& field : fields_of(message)) {
-    const Signal& first = *field.signals.front();
+    const DbcSignal& first = *field.signals.front();
     if (first.values.empty() && first.flags().empty()) continue;
     text += "enum class " + pascal_case(message.name) + pascal_case(field.name) + " : " +
             unsigned_type(field.length) + " {\n";
@@ -116,7 +116,7 @@ std::string enumerations(const Message& message) {
       text += "  k" + pascal_case(value.name) + " = " + std::to_string(value.value) + ",\n";
     }
     if (!first.flags().empty()) {
-      for (const Signal* flag : field.signals) {
+      for (const DbcSignal* flag : field.signals) {
         text += "  k" + pascal_case(flag->name) + " = 1U << " +
                 std::to_string(flag->start - field.start) + ",\n";
       }
@@ -127,7 +127,7 @@ std::string enumerations(const Message& message) {
 }
 
 /// Bytes that a message's fields do not reach are 0; the CRC's is left alone.
-std::string pack_body(const Message& message) {
+std::string pack_body(const DbcMessage& message) {
   std::vector<std::string> bytes(static_cast<size_t>(message.size));
   std::string whole;
   std::vector<bool> written(bytes.size(), false);
@@ -154,7 +154,7 @@ std::string pack_body(const Message& message) {
   return text + whole;
 }
 
-std::string structure(const Message& message) {
+std::string structure(const DbcMessage& message) {
   const std::string name = pascal_case(message.name);
   std::string text = "/// " + message.comment + "\n";
   text += "struct " + name + " {\n";
@@ -182,11 +182,11 @@ std::string message_code(const Database& database) {
       "// what one step is.\n"
       "#pragma once\n\n#include <stdint.h>\n\n#include \"firmware/protocol/bytes.h\"\n\n"
       "namespace screed {\n\nenum MessageId : uint16_t {\n";
-  for (const Message& message : database.messages) {
+  for (const DbcMessage& message : database.messages) {
     text += "  kId" + pascal_case(message.name) + " = " + id_text(message.id) + ",\n";
   }
   text += "};\n\nnamespace message {\n\n";
-  for (const Message& message : database.messages) {
+  for (const DbcMessage& message : database.messages) {
     text += enumerations(message) + structure(message);
   }
   return text + "}  // namespace message\n\n}  // namespace screed\n";

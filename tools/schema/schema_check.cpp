@@ -44,7 +44,7 @@ class Checker {
     if (database_.messages.empty()) fail(1, "there is no message (BO_) in it");
     std::set<std::uint32_t> ids;
     std::set<std::string> names;
-    for (const Message& message : database_.messages) {
+    for (const DbcMessage& message : database_.messages) {
       check(message);
       if (!ids.insert(message.id).second) {
         fail(message.line, message.name + ": id " + std::to_string(message.id) + " is taken");
@@ -60,7 +60,7 @@ class Checker {
     throw InputError(database_.file + ":" + std::to_string(line) + ": " + what);
   }
 
-  void check(const Message& message) const {
+  void check(const DbcMessage& message) const {
     const std::string& name = message.name;
     const auto refuse = [&](const std::string& what) { fail(message.line, name + ": " + what); };
     if (!plain_name(name, true)) {
@@ -88,7 +88,7 @@ class Checker {
     check_flags(message);
   }
 
-  void check_protection(const Message& message) const {
+  void check_protection(const DbcMessage& message) const {
     if (message.size < 3) {
       fail(message.line, message.name + ": a protected message has 3 bytes or more");
     }
@@ -96,10 +96,10 @@ class Checker {
     check_protection(message, "counter", 8, 4);
   }
 
-  void check_protection(const Message& message, const std::string& name, int start,
+  void check_protection(const DbcMessage& message, const std::string& name, int start,
                         int length) const {
     const auto found = std::find_if(message.signals.begin(), message.signals.end(),
-                                    [&](const Signal& it) { return it.name == name; });
+                                    [&](const DbcSignal& it) { return it.name == name; });
     const std::string place =
         name + " : " + std::to_string(start) + "|" + std::to_string(length) + "@1+ (1,0)";
     if (found == message.signals.end()) {
@@ -112,10 +112,10 @@ class Checker {
     }
   }
 
-  void check_signals(const Message& message) const {
+  void check_signals(const DbcMessage& message) const {
     std::set<std::string> names;
-    std::array<const Signal*, 64> owner{};
-    for (const Signal& signal : message.signals) {
+    std::array<const DbcSignal*, 64> owner{};
+    for (const DbcSignal& signal : message.signals) {
       check(message, signal);
       const std::string place = message.name + "." + signal.name;
       if (!names.insert(signal.name).second) fail(signal.line, "the name " + place + " is taken");
@@ -124,7 +124,7 @@ class Checker {
                               ", the message has " + std::to_string(8 * message.size));
       }
       for (int bit = signal.start; bit < signal.start + signal.length; ++bit) {
-        const Signal*& other = owner[static_cast<size_t>(bit)];
+        const DbcSignal*& other = owner[static_cast<size_t>(bit)];
         if (other != nullptr) {
           fail(signal.line, place + ": overlaps " + other->name + " at bit " + std::to_string(bit));
         }
@@ -133,7 +133,7 @@ class Checker {
     }
   }
 
-  void check(const Message& message, const Signal& signal) const {
+  void check(const DbcMessage& message, const DbcSignal& signal) const {
     const auto refuse = [&](const std::string& what) {
       fail(signal.line, message.name + "." + signal.name + ": " + what);
     };
@@ -170,7 +170,7 @@ class Checker {
     if (!signal.unit.empty() && unitless) refuse("names of values and flags have no unit");
   }
 
-  void check_numbers(const Message& message, const Signal& signal) const {
+  void check_numbers(const DbcMessage& message, const DbcSignal& signal) const {
     const auto refuse = [&](const std::string& what) {
       fail(signal.line, message.name + "." + signal.name + ": " + what);
     };
@@ -185,17 +185,17 @@ class Checker {
     const double scale = signal.scale.value();
     const double offset = signal.offset.value();
     const double slack = scale * 1e-6;
-    if (signal.least.value() >= signal.most.value()) {
-      refuse("its range [" + signal.least.text() + "|" + signal.most.text() + "] is empty");
+    if (signal.minimum.value() >= signal.maximum.value()) {
+      refuse("its range [" + signal.minimum.text() + "|" + signal.maximum.text() + "] is empty");
     }
-    if (signal.least.value() < static_cast<double>(least_raw) * scale + offset - slack ||
-        signal.most.value() > static_cast<double>(most_raw) * scale + offset + slack) {
-      refuse("its range [" + signal.least.text() + "|" + signal.most.text() +
+    if (signal.minimum.value() < static_cast<double>(least_raw) * scale + offset - slack ||
+        signal.maximum.value() > static_cast<double>(most_raw) * scale + offset + slack) {
+      refuse("its range [" + signal.minimum.text() + "|" + signal.maximum.text() +
              "] does not fit into " + std::to_string(signal.length) + " bits");
     }
   }
 
-  void check_values(const Message& message, const Signal& signal) const {
+  void check_values(const DbcMessage& message, const DbcSignal& signal) const {
     if (signal.values.empty()) return;
     const std::string place = message.name + "." + signal.name;
     if (signal.is_signed || signal.scale.value() != 1.0 || signal.offset.mantissa != 0) {
@@ -219,8 +219,8 @@ class Checker {
     }
   }
 
-  void check_flags(const Message& message) const {
-    for (const Signal& signal : message.signals) {
+  void check_flags(const DbcMessage& message) const {
+    for (const DbcSignal& signal : message.signals) {
       if (signal.flags().empty()) continue;
       const std::string place = message.name + "." + signal.name;
       if (signal.length != 1 || signal.is_signed) {
@@ -231,14 +231,14 @@ class Checker {
       }
     }
     for (const Field& field : fields_of(message)) {
-      const Signal& first = *field.signals.front();
+      const DbcSignal& first = *field.signals.front();
       if (first.flags().empty()) continue;
       const std::string place = message.name + "." + field.name;
       if (field.start % 8 != 0) fail(first.line, place + ": flags begin with a byte");
       if (field.start + field.length > 8 * message.size) {
         fail(first.line, place + ": flags fill whole bytes, which the message does not have");
       }
-      for (const Signal& signal : message.signals) {
+      for (const DbcSignal& signal : message.signals) {
         const bool inside =
             signal.start + signal.length > field.start && signal.start < field.start + field.length;
         if ((inside && signal.flags() != field.name) || signal.name == field.name) {
@@ -255,18 +255,18 @@ class Checker {
 
 }  // namespace
 
-bool is_protection(const Message& message, const Signal& signal) {
+bool is_protection(const DbcMessage& message, const DbcSignal& signal) {
   return message.protected_by_crc() && signal.start < 16 &&
          (signal.name == "crc" || signal.name == "counter");
 }
 
-std::vector<Field> fields_of(const Message& message) {
+std::vector<Field> fields_of(const DbcMessage& message) {
   std::vector<Field> fields;
-  std::vector<const Signal*> signals;
-  for (const Signal& signal : message.signals) signals.push_back(&signal);
+  std::vector<const DbcSignal*> signals;
+  for (const DbcSignal& signal : message.signals) signals.push_back(&signal);
   std::stable_sort(signals.begin(), signals.end(),
-                   [](const Signal* a, const Signal* b) { return a->start < b->start; });
-  for (const Signal* signal : signals) {
+                   [](const DbcSignal* a, const DbcSignal* b) { return a->start < b->start; });
+  for (const DbcSignal* signal : signals) {
     if (is_protection(message, *signal)) continue;
     const std::string flags = signal->flags();
     const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& it) {

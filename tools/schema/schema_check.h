@@ -17,13 +17,13 @@ struct Field {
   int start = 0;
   int length = 0;
   bool is_signed = false;
-  std::vector<const Signal*> signals;  ///< several: flags, lowest bit first
+  std::vector<const DbcSignal*> signals;  ///< several: flags, lowest bit first
 };
 
 /// The fields of a checked message, by their place; without CRC and counter of its protection.
-std::vector<Field> fields_of(const Message& message);
+std::vector<Field> fields_of(const DbcMessage& message);
 
 /// CRC or alive counter of a protected message.
-bool is_protection(const Message& message, const Signal& signal);
+bool is_protection(const DbcMessage& message, const DbcSignal& signal);
 
 }  // namespace screed::schema

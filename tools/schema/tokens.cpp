@@ -71,7 +71,7 @@ std::vector<Token> tokens_of(const std::string& file, const std::string& text) {
       ++at;
     } else {
       fail(std::isprint(static_cast<unsigned char>(c)) != 0
-               ? "the character '" + std::string(1, c) + "' has no place here"
+               ? "the character '" + std::string(1, c) + "' is not allowed here"
                : "a byte that is not text (" + std::to_string(static_cast<unsigned char>(c)) + ")");
     }
   }

@@ -32,18 +32,18 @@ std::string small_letters(std::string text) {
 
 /// What the dissector reads one after the other: signals, and the gaps between them.
 struct Entry {
-  const Signal* signal;  ///< null: a gap
+  const DbcSignal* signal;  ///< null: a gap
   int bits;
 };
 
-std::vector<Entry> entries_of(const Message& message) {
-  std::vector<const Signal*> signals;
-  for (const Signal& signal : message.signals) signals.push_back(&signal);
+std::vector<Entry> entries_of(const DbcMessage& message) {
+  std::vector<const DbcSignal*> signals;
+  for (const DbcSignal& signal : message.signals) signals.push_back(&signal);
   std::sort(signals.begin(), signals.end(),
-            [](const Signal* a, const Signal* b) { return a->start < b->start; });
+            [](const DbcSignal* a, const DbcSignal* b) { return a->start < b->start; });
   std::vector<Entry> entries;
   int bit = 0;
-  for (const Signal* signal : signals) {
+  for (const DbcSignal* signal : signals) {
     if (signal->start > bit) entries.push_back({nullptr, signal->start - bit});
     entries.push_back({signal, signal->length});
     bit = signal->start + signal->length;
@@ -57,12 +57,12 @@ std::string base_bits(int bits) {
   return bits <= 8 ? "8" : bits <= 16 ? "16" : "32";
 }
 
-void add_signals(const Message& message, std::string& signals, std::string& values) {
+void add_signals(const DbcMessage& message, std::string& signals, std::string& values) {
   const std::vector<Entry> entries = entries_of(message);
   const std::string pdu = hex(message.id);
   for (size_t i = 0; i < entries.size(); ++i) {
     const Entry& entry = entries[i];
-    const Signal* const signal = entry.signal;
+    const DbcSignal* const signal = entry.signal;
     const std::string position = std::to_string(i);
     std::string name = signal == nullptr ? "unused" : signal->name;
     if (signal != nullptr && !signal->unit.empty()) name += " [" + signal->unit + "]";
@@ -91,7 +91,7 @@ std::map<std::string, std::string> wireshark_tables(const Database& database) {
   std::string signals = head;
   std::string values = head;
   std::string bindings = head;
-  for (const Message& message : database.messages) {
+  for (const DbcMessage& message : database.messages) {
     names += row({hex(message.id), message.name});
     add_signals(message, signals, values);
     const bool of_ground = (message.id >> 4 & 0xFU) == 0;

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "firmware/parameters/parameter_store.h"
-#include "hal/avr/observation.h"
+#include "hal/avr/trace_markers.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/record.h"
 
@@ -113,13 +113,13 @@ Eigen::Vector3d Board::in_chip_axes(const Eigen::Vector3d& robot) const {
   return chip;
 }
 
-void Board::feel_accel(const Eigen::Vector3d& mg) {
+void Board::set_acceleration(const Eigen::Vector3d& mg) {
   accel_mag.measure_accel(in_chip_axes(mg));
 }
-void Board::feel_mag(const Eigen::Vector3d& mgauss) {
+void Board::set_magnetic_field(const Eigen::Vector3d& mgauss) {
   accel_mag.measure_mag(in_chip_axes(mgauss));
 }
-void Board::feel_rate(const Eigen::Vector3d& dps) {
+void Board::set_angular_rate(const Eigen::Vector3d& dps) {
   gyro.measure(in_chip_axes(dps));
 }
 
@@ -154,7 +154,7 @@ std::uint8_t Board::leds() const {
 void Board::on_mark(std::uint8_t value) {
   const auto address = static_cast<std::uint16_t>(mcu.memory(kGpior1) | mcu.memory(kGpior2) << 8);
   switch (value) {
-    case avr::kShownStart:
+    case avr::kMarkerStart:
       ++programs_started_;
       mark_ = Mark::kStart;
       if (address + 2U * kParameterCount <= kRamEnd) {
@@ -163,7 +163,7 @@ void Board::on_mark(std::uint8_t value) {
         std::memcpy(&parameters_, bytes.data(), bytes.size());
       }
       break;
-    case avr::kShownSample: {
+    case avr::kMarkerSample: {
       std::array<std::uint8_t, kSampleBytes> row{};
       if (address + row.size() > kRamEnd) return;
       mcu.read_memory(address, row);
@@ -184,7 +184,7 @@ void Board::on_mark(std::uint8_t value) {
       count(kRight, sample_.encoder_right);
       break;
     }
-    case avr::kShownOutput: {
+    case avr::kMarkerOutput: {
       std::array<std::uint8_t, kOutputBytes> row{};
       if (address + row.size() > kRamEnd) return;
       mcu.read_memory(address, row);
@@ -196,7 +196,7 @@ void Board::on_mark(std::uint8_t value) {
     default:
       return;
   }
-  mcu.break_off();
+  mcu.request_stop();
 }
 
 Board::Mark Board::take_mark() {
@@ -208,7 +208,7 @@ Board::Mark Board::take_mark() {
 void Board::check() const {
   if (!mcu.alive()) {
     throw RunError("the image crashed or stopped after " + std::to_string(mcu.time_ms()) + " ms" +
-                   (mcu.last_words().empty() ? "" : ": " + mcu.last_words()));
+                   (mcu.last_message().empty() ? "" : ": " + mcu.last_message()));
   }
   if (programs_started_ > mcu.starts()) {
     throw RunError("the image started anew without a reset after " + std::to_string(mcu.time_ms()) +

@@ -38,9 +38,9 @@ class Board {
   /// A wire breaks: the pin is left to its pull-up. channel: 0 A, 1 B.
   void break_encoder_wire(Side side, int channel);
   void set_battery_v(double volt);
-  void feel_accel(const Eigen::Vector3d& mg);  ///< robot frame
-  void feel_mag(const Eigen::Vector3d& mgauss);
-  void feel_rate(const Eigen::Vector3d& dps);
+  void set_acceleration(const Eigen::Vector3d& mg);  ///< robot frame
+  void set_magnetic_field(const Eigen::Vector3d& mgauss);
+  void set_angular_rate(const Eigen::Vector3d& dps);
 
   // ---- what it does to the world
 
@@ -50,10 +50,10 @@ class Board {
   /// Lit LEDs, LedBit set.
   std::uint8_t leds() const;
 
-  // ---- what the program shows (hal/avr/observation.h); each mark breaks the run off
+  // ---- what the program shows (hal/avr/trace_markers.h); each mark interrupts the run
 
   enum class Mark : std::uint8_t { kNone, kStart, kSample, kOutput };
-  /// The mark that broke the last run off; asking takes it.
+  /// The mark that interrupted the last run; cleared by the call.
   Mark take_mark();
   const SensorSample& sample() const { return sample_; }
   const RobotOutput& output() const { return output_; }

@@ -114,7 +114,7 @@ struct Mcu::Hooks {
     if (avr == nullptr || level > LOG_ERROR || avr->custom.data == nullptr) return;
     std::array<char, 256> text{};
     std::vsnprintf(text.data(), text.size(), format, arguments);
-    of(avr->custom.data).last_words_ = text.data();
+    of(avr->custom.data).last_message_ = text.data();
   }
 
   static void sleep(avr_t* avr, avr_cycle_count_t cycles) {
@@ -122,7 +122,7 @@ struct Mcu::Hooks {
     if (!it.asleep_) {
       it.asleep_ = true;
       it.asleep_since_ = avr->cycle;
-      if (it.sleep_to_) it.sleep_to_();
+      if (it.sleep_callback_) it.sleep_callback_();
     }
     it.slept_ += cycles + 1;  // as simavr advances its clock
   }
@@ -133,7 +133,7 @@ struct Mcu::Hooks {
     it.asleep_ = false;
     it.feeding_ = false;
     it.apply_pins();
-    for (const auto& callback : it.reset_to_) callback();
+    for (const auto& callback : it.reset_callbacks_) callback();
   }
 
   // Again and again until it is cancelled: where the program falls asleep in this very cycle,
@@ -273,20 +273,20 @@ bool Mcu::alive() const {
   return avr_->state == cpu_Running || avr_->state == cpu_Sleeping;
 }
 
-void Mcu::break_off() {
-  broken_off_ = true;
+void Mcu::request_stop() {
+  stop_requested_ = true;
   avr_->run_cycle_count = 1;
 }
 
 bool Mcu::run_to(std::uint64_t cycle) {
-  broken_off_ = false;
+  stop_requested_ = false;
   // A timer ends a sleep there, and a stretch of instructions.
   if (cycle > avr_->cycle) {
     avr_cycle_timer_register(avr_, cycle - avr_->cycle, &Hooks::end, this);
   }
-  while (avr_->cycle < cycle && !broken_off_ && alive()) avr_run(avr_);
+  while (avr_->cycle < cycle && !stop_requested_ && alive()) avr_run(avr_);
   avr_cycle_timer_cancel(avr_, &Hooks::end, this);
-  return !broken_off_;
+  return !stop_requested_;
 }
 
 void Mcu::run_ms(double ms) {
@@ -308,7 +308,7 @@ void Mcu::reset(std::uint8_t mcusr) {
 }
 
 void Mcu::on_reset(std::function<void()> callback) {
-  reset_to_.push_back(std::move(callback));
+  reset_callbacks_.push_back(std::move(callback));
 }
 
 // ---- memory
@@ -471,12 +471,12 @@ void Mcu::receive(const std::vector<std::uint8_t>& bytes) {
 
 void Mcu::send_on(std::uint8_t byte) {
   ++sent_bytes_;
-  if (sent_to_) {
-    sent_to_(byte);
+  if (sent_callback_) {
+    sent_callback_(byte);
     return;
   }
   sent_.push_back(byte);
-  if (sent_.size() >= sent_limit_) break_off();
+  if (sent_.size() >= sent_limit_) request_stop();
 }
 
 // ---- time

@@ -79,18 +79,19 @@ class Mcu {
   std::uint64_t cycle() const;
   double time_ms() const;
   /// Runs until the clock shows `cycle` (a few cycles later when an instruction takes so long), the
-  /// program has crashed or stopped, or somebody calls break_off(). Returns false when broken off.
+  /// program has crashed or stopped, or request_stop() is called. Returns false after
+  /// request_stop().
   bool run_to(std::uint64_t cycle);
   /// To be called from a callback: run_to() returns after the present instruction.
-  void break_off();
+  void request_stop();
   /// Runs for a time of the simulated clock.
   void run_ms(double ms);
   /// Runs until the program has sent `bytes` bytes in all, has stopped, or `ms` have passed.
   void run_until_sent(std::size_t bytes, double ms);
   /// Neither crashed nor stopped.
   bool alive() const;
-  /// What simavr said last, for an error message.
-  const std::string& last_words() const { return last_words_; }
+  /// simavr's last message, for an error message.
+  const std::string& last_message() const { return last_message_; }
   /// Starts from the reset vector so far; 1 when all is well.
   int starts() const { return starts_; }
   /// A reset from outside, with the flags that MCUSR shows afterwards (PORF 1, EXTRF 2, BORF 4).
@@ -130,7 +131,7 @@ class Mcu {
 
   /// Bytes sent so far, and what becomes of the next ones instead.
   const std::vector<std::uint8_t>& sent() const { return sent_; }
-  void on_sent(std::function<void(std::uint8_t)> callback) { sent_to_ = std::move(callback); }
+  void on_sent(std::function<void(std::uint8_t)> callback) { sent_callback_ = std::move(callback); }
   /// The start bit of a byte begins now. Returns false, and the byte is lost as on the chip, when
   /// the receiver still holds three unread ones.
   bool receive_byte(std::uint8_t byte);
@@ -148,7 +149,7 @@ class Mcu {
   /// The first cycle of the sleep that goes on, or of the last one.
   std::uint64_t fell_asleep_at() const { return asleep_since_; }
   /// Called when the program goes to sleep.
-  void on_sleep(std::function<void()> callback) { sleep_to_ = std::move(callback); }
+  void on_sleep(std::function<void()> callback) { sleep_callback_ = std::move(callback); }
   const std::array<InterruptTimes, kVectors>& interrupts() const { return interrupts_; }
   /// Called when an interrupt's handler begins, before its five cycles are counted.
   void on_interrupt(std::uint8_t vector, std::function<void()> callback);
@@ -197,9 +198,9 @@ class Mcu {
   std::deque<PinHook> pin_hooks_;  // elements stay in place when it grows
   std::deque<std::function<void(std::uint8_t)>> byte_hooks_;
   std::array<VectorHook, kVectors> vector_hooks_{};
-  std::vector<std::function<void()>> reset_to_;
-  std::function<void(std::uint8_t)> sent_to_;
-  std::function<void()> sleep_to_;
+  std::vector<std::function<void()>> reset_callbacks_;
+  std::function<void(std::uint8_t)> sent_callback_;
+  std::function<void()> sleep_callback_;
   std::vector<std::uint8_t> sent_;
   std::deque<std::uint8_t> to_receive_;
   bool feeding_ = false;
@@ -207,8 +208,8 @@ class Mcu {
   std::uint64_t overruns_ = 0;
   std::uint64_t received_ = 0;
   std::uint64_t sent_bytes_ = 0;
-  bool broken_off_ = false;
-  std::string last_words_;
+  bool stop_requested_ = false;
+  std::string last_message_;
   int starts_ = 1;
   std::uint64_t end_ = 0;
   std::uint64_t slept_ = 0;

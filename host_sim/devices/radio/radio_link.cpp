@@ -94,9 +94,9 @@ void RadioLink::deliver(double arrival_us) {
   }
 }
 
-std::vector<uint8_t> RadioLink::receive(uint64_t now_us, size_t most) {
+std::vector<uint8_t> RadioLink::receive(uint64_t now_us, size_t max_bytes) {
   std::vector<uint8_t> bytes;
-  while (bytes.size() < most) {
+  while (bytes.size() < max_bytes) {
     const std::optional<Byte> byte = receive_byte(now_us);
     if (!byte.has_value()) break;
     bytes.push_back(byte->value);

@@ -46,8 +46,8 @@ class RadioLink {
   /// Hands bytes to the sending module, one after another from now on. Times rise.
   void send(uint64_t now_us, std::span<const uint8_t> bytes);
 
-  /// Takes what has arrived by now, at most `most` bytes, in order.
-  std::vector<uint8_t> receive(uint64_t now_us, size_t most);
+  /// Takes what has arrived by now, at most `max_bytes` bytes, in order.
+  std::vector<uint8_t> receive(uint64_t now_us, size_t max_bytes);
 
   struct Byte {
     uint64_t arrives_us;

@@ -6,10 +6,10 @@
 namespace screed {
 namespace {
 
-constexpr uint8_t kWorseTurns = 8;  // times as many turns while the height gets worse
+constexpr uint8_t kDownhillTurnFactor = 8;  // times as many turns while the height gets worse
 
 constexpr int32_t to_q16(uint16_t height) {
-  return static_cast<int32_t>(height) << 16;  // fits: heights end at kHighestStack
+  return static_cast<int32_t>(height) << 16;  // fits: heights end at kMaxStackHeight
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ int32_t ForagingAgent::claim_q16() const {
 
 GridOperation ForagingAgent::operate(uint16_t height) {
   if (waited_ != UINT16_MAX) ++waited_;
-  if (samples_ < kFewestSamples && samples_ < parameters_.averaging) return GridOperation::kNone;
+  if (samples_ < kMinSamples && samples_ < parameters_.averaging) return GridOperation::kNone;
   const int32_t above_q16 = to_q16(height) - average_q16_;
   const int32_t distance_q16 = carries_ ? -above_q16 : above_q16;
   if (distance_q16 <= claim_q16()) return GridOperation::kNone;
@@ -60,7 +60,7 @@ GridOperation ForagingAgent::operate(uint16_t height) {
 Probability ForagingAgent::turn_probability(uint16_t height) const {
   if (!parameters_.follows_slope || height == last_height_) return parameters_.turn;
   const bool better = carries_ ? height < last_height_ : height > last_height_;
-  return better ? 0 : parameters_.turn * kWorseTurns;
+  return better ? 0 : parameters_.turn * kDownhillTurnFactor;
 }
 
 uint8_t ForagingAgent::step(const GridInput& input, GridOperation operation) {
@@ -68,14 +68,14 @@ uint8_t ForagingAgent::step(const GridInput& input, GridOperation operation) {
     return static_cast<uint8_t>((direction_ + 4U) & 7U);
   }
   const uint32_t draw = random_.next();  // 16 bits for the choice, 3 for the direction
-  if (!input.arrived || happens(draw & 0xFFFFU, turn_probability(input.height))) {
+  if (!input.arrived || bernoulli(draw & 0xFFFFU, turn_probability(input.height))) {
     return static_cast<uint8_t>(draw >> 29);
   }
   return direction_;
 }
 
 GridAction ForagingAgent::tick(const GridInput& input) {
-  if (input.arrived && happens(random_.next() & 0xFFFFU, parameters_.sense)) {
+  if (input.arrived && bernoulli(random_.next() & 0xFFFFU, parameters_.sense)) {
     sense(to_q16(input.height));
   }
   const GridOperation operation = operate(input.height);

@@ -32,7 +32,7 @@ struct ForagingParameters {
 class ForagingAgent {
  public:
   /// Samples before the first operation.
-  static constexpr uint16_t kFewestSamples = 8;
+  static constexpr uint16_t kMinSamples = 8;
 
   ForagingAgent(const ForagingParameters& parameters, uint32_t seed, uint32_t stream);
 

@@ -39,7 +39,7 @@ class GridRandom {
 };
 
 /// Whether an event of that probability happens, by 16 random bits.
-inline bool happens(uint32_t bits16, Probability probability) {
+inline bool bernoulli(uint32_t bits16, Probability probability) {
   return bits16 < probability;
 }
 

@@ -1,7 +1,7 @@
 // What an agent of the grid world sees and answers (thesis 4.2). It must not know the grid: neither
 // its size nor its own place, nor that there are other agents.
 //
-// A cycle is one tick() of every agent: it is told the height of its cell and whether it has just
+// A cycle is one tick() of every agent: it receives the height of its cell and whether it has just
 // come there, and answers with at most one operation on that cell and at most one step to a
 // neighbour. The world carries out the operation first; a step to an occupied cell or out of the
 // grid fails, and the next tick says so.
@@ -12,7 +12,7 @@
 namespace screed {
 
 /// The highest stack of a cell, units.
-constexpr uint16_t kHighestStack = 32767;
+constexpr uint16_t kMaxStackHeight = 32767;
 
 enum class GridOperation : uint8_t {
   kNone = 0,
@@ -25,7 +25,7 @@ constexpr uint8_t kGridDirections = 8;
 constexpr uint8_t kGridStay = 8;
 
 struct GridInput {
-  uint16_t height;  ///< of the cell under the agent, 0..kHighestStack
+  uint16_t height;  ///< of the cell under the agent, 0..kMaxStackHeight
   bool arrived;     ///< the last tick's step succeeded, or this is the first tick
 };
 

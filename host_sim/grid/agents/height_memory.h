@@ -8,10 +8,10 @@ namespace screed {
 
 class HeightMemory {
  public:
-  static constexpr uint8_t kLongest = 8;
+  static constexpr uint8_t kMaxLength = 8;
 
-  /// length: samples kept, 1..kLongest.
-  explicit HeightMemory(uint8_t length = kLongest) : length_(length) {}
+  /// length: samples kept, 1..kMaxLength.
+  explicit HeightMemory(uint8_t length = kMaxLength) : length_(length) {}
 
   /// Forgets the oldest sample when there are `length` already.
   void add(uint16_t height);
@@ -27,7 +27,7 @@ class HeightMemory {
 
  private:
   uint32_t sum_ = 0;
-  uint16_t samples_[kLongest] = {};
+  uint16_t samples_[kMaxLength] = {};
   uint8_t length_;
   uint8_t count_ = 0;
   uint8_t oldest_ = 0;  ///< where the next sample goes

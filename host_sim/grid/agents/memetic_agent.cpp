@@ -5,11 +5,11 @@ namespace screed {
 
 MemeticAgent::MemeticAgent(const MemeticParameters& parameters, uint32_t seed, uint32_t stream)
     : random_(seed, stream), memory_(parameters.memory_length), parameters_(parameters) {
-  for (uint8_t i = 0; i < kMostChromosomes; ++i) chromosomes_[i] = random_chromosome(random_);
+  for (uint8_t i = 0; i < kMaxChromosomes; ++i) chromosomes_[i] = random_chromosome(random_);
 }
 
 GridAction MemeticAgent::tick(const GridInput& input) {
-  if (input.arrived && happens(random_.next() & 0xFFFFU, parameters_.sense)) {
+  if (input.arrived && bernoulli(random_.next() & 0xFFFFU, parameters_.sense)) {
     memory_.add(input.height);
   }
   const uint8_t gene = chromosomes_[current_].genes[gene_];

@@ -21,7 +21,7 @@ enum class FitnessBase : uint8_t {
 struct MemeticParameters {
   Probability sense;  ///< of sampling the height on arrival in a cell
   uint8_t memory_length;
-  uint8_t chromosomes;  ///< an agent, 1..MemeticAgent::kMostChromosomes
+  uint8_t chromosomes;  ///< an agent, 1..MemeticAgent::kMaxChromosomes
   uint8_t repetitions;  ///< executions of a chromosome in a row, 1..100
   bool selects_itself;  ///< variant 2: below `threshold` is replaced; variant 1: left to the oracle
   Probability threshold;
@@ -30,7 +30,7 @@ struct MemeticParameters {
 
 class MemeticAgent {
  public:
-  static constexpr uint8_t kMostChromosomes = 5;
+  static constexpr uint8_t kMaxChromosomes = 5;
 
   MemeticAgent(const MemeticParameters& parameters, uint32_t seed, uint32_t stream);
 
@@ -61,8 +61,8 @@ class MemeticAgent {
   GridRandom random_;
   HeightMemory memory_;
   MemeticParameters parameters_;
-  Chromosome chromosomes_[kMostChromosomes];
-  Fitness fitness_[kMostChromosomes];
+  Chromosome chromosomes_[kMaxChromosomes];
+  Fitness fitness_[kMaxChromosomes];
   uint16_t taken_from_ = 0;  ///< height left behind by the last pick-up
   uint8_t current_ = 0;
   uint8_t repetition_ = 0;

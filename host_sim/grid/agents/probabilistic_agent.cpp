@@ -19,19 +19,19 @@ Probability ProbabilisticAgent::probability(uint16_t height) const {
 GridAction ProbabilisticAgent::tick(const GridInput& input) {
   const uint16_t height = input.height;
   const uint32_t chances = random_.next();  // 16 bits for sensing, 16 for the operation
-  if (input.arrived && happens(chances & 0xFFFFU, parameters_.sense)) memory_.add(height);
+  if (input.arrived && bernoulli(chances & 0xFFFFU, parameters_.sense)) memory_.add(height);
 
   // Chance and condition are joined without branches: half of them would be guessed wrong.
   const bool wants = carries_ ? memory_.is_below(height) : memory_.is_above(height);
   GridOperation operation = GridOperation::kNone;
   if (static_cast<unsigned>(wants) &
-      static_cast<unsigned>(happens(chances >> 16, probability(height)))) {
+      static_cast<unsigned>(bernoulli(chances >> 16, probability(height)))) {
     carries_ = !carries_;
     operation = carries_ ? GridOperation::kPickUp : GridOperation::kDeposit;
   }
 
   const uint32_t step = random_.next();  // 16 bits for the choice, 3 for the direction
-  const uint8_t turns = happens(step & 0xFFFFU, parameters_.turn) ? 0xFFU : 0U;
+  const uint8_t turns = bernoulli(step & 0xFFFFU, parameters_.turn) ? 0xFFU : 0U;
   direction_ = static_cast<uint8_t>(direction_ ^ ((direction_ ^ (step >> 29)) & turns));
   return {operation, direction_};
 }

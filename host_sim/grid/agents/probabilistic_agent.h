@@ -18,7 +18,7 @@ struct ProbabilisticParameters {
   Probability turn;       ///< of a step in a random direction; otherwise the last one again
   uint16_t threshold_q8;  ///< k of the response curves in 1/256 unit; 0: the constant probabilities
                           ///< above
-  uint8_t memory_length;  ///< samples in the mean, 1..HeightMemory::kLongest
+  uint8_t memory_length;  ///< samples in the mean, 1..HeightMemory::kMaxLength
 };
 
 class ProbabilisticAgent {

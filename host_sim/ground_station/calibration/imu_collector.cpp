@@ -16,7 +16,7 @@ constexpr double kStillGyro_counts = 1.5 / 0.070;  // peak to peak; noise at res
 constexpr double kStillAccel_counts = 25.0 / 0.244;
 constexpr double kStillDeviation_counts = 0.5 / 0.070;
 constexpr size_t kRecent = 8;  // 0.8 s
-constexpr size_t kMostSamples = 5000;
+constexpr size_t kMaxSamples = 5000;
 
 template <class Message>
 Eigen::Vector3d vector_of(const CanFrame& frame) {
@@ -67,13 +67,13 @@ std::vector<CalibrationParameter> calibration_parameters(const ImuCalibration& c
   return parameters;
 }
 
-void ImuCollector::take(const CanFrame& frame) {
+void ImuCollector::add_frame(const CanFrame& frame) {
   if (frame.id == kIdMagRaw) {
-    if (mag_.size() < kMostSamples) mag_.push_back(vector_of<message::MagRaw>(frame));
+    if (mag_.size() < kMaxSamples) mag_.push_back(vector_of<message::MagRaw>(frame));
   } else if (frame.id == kIdGyroRaw) {
     keep_recent(recent_gyro_, vector_of<message::GyroRaw>(frame));
     // The oldest of the window: what came after it was still as well.
-    if (at_rest() && rest_gyro_.size() < kMostSamples) rest_gyro_.push_back(recent_gyro_.front());
+    if (at_rest() && rest_gyro_.size() < kMaxSamples) rest_gyro_.push_back(recent_gyro_.front());
   } else if (frame.id == kIdAccelRaw) {
     keep_recent(recent_accel_, vector_of<message::AccelRaw>(frame));
     const bool still = recent_gyro_.size() == kRecent && recent_accel_.size() == kRecent &&

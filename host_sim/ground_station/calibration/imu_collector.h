@@ -37,7 +37,7 @@ class ImuCollector {
   static constexpr size_t kEnoughMagSamples = 60;
 
   /// Looks at ACCEL_RAW, GYRO_RAW and MAG_RAW.
-  void take(const CanFrame& frame);
+  void add_frame(const CanFrame& frame);
 
   /// The robot has not moved for a while.
   bool at_rest() const { return still_ >= kRestSamples; }

@@ -17,14 +17,14 @@
 namespace screed {
 namespace {
 
-constexpr size_t kLeastSamples = 20;
+constexpr size_t kMinSamples = 20;
 /// Ratio of the singular values below which the samples leave a parameter open: 0.31 all round,
 /// 0.06 of half a sphere, 0.024 of a quarter of its surface.
-constexpr double kLeastRank = 0.03;
+constexpr double kMinRank = 0.03;
 /// Longest to shortest axis of an ellipsoid that a magnetometer can show.
-constexpr double kMostAxisRatio = 3.0;
+constexpr double kMaxAxisRatio = 3.0;
 /// What an accelerometer may be wrong by: the LSM303D's 60 mg and some.
-constexpr double kMostAccelError = 0.2;
+constexpr double kMaxAccelError = 0.2;
 constexpr double kPositionCosine = 0.866;  // 30 degrees
 
 std::string percent(double share) {
@@ -90,17 +90,17 @@ std::optional<Position> position_of(const Eigen::Vector3d& force) {
   return std::nullopt;
 }
 
-GyroFit fit_gyro(std::span<const Eigen::Vector3d> samples, double most_deviation) {
-  if (samples.size() < kLeastSamples) {
+GyroFit fit_gyro(std::span<const Eigen::Vector3d> samples, double max_deviation) {
+  if (samples.size() < kMinSamples) {
     throw RunError("gyro: only " + std::to_string(samples.size()) + " samples at rest; " +
-                   std::to_string(kLeastSamples) + " are needed");
+                   std::to_string(kMinSamples) + " are needed");
   }
   GyroFit fit;
   for (const Eigen::Vector3d& sample : samples) fit.bias += sample;
   fit.bias /= static_cast<double>(samples.size());
   for (const Eigen::Vector3d& sample : samples) fit.deviation += (sample - fit.bias).cwiseAbs2();
   fit.deviation = (fit.deviation / static_cast<double>(samples.size())).cwiseSqrt();
-  if (fit.deviation.maxCoeff() > most_deviation)
+  if (fit.deviation.maxCoeff() > max_deviation)
     throw RunError("gyro: the robot was moved; put it down and let go of it");
   return fit;
 }
@@ -133,9 +133,9 @@ VectorFit fit_accelerometer(const std::array<Eigen::Vector3d, kPositions>& force
     if (step.head<3>().norm() < 1e-9 * gravity) break;
   }
   if (!offset.allFinite() || !scale.allFinite() ||
-      offset.cwiseAbs().maxCoeff() > kMostAccelError * gravity ||
-      (scale - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff() > kMostAccelError) {
-    throw RunError("accelerometer: errors above " + percent(kMostAccelError) +
+      offset.cwiseAbs().maxCoeff() > kMaxAccelError * gravity ||
+      (scale - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff() > kMaxAccelError) {
+    throw RunError("accelerometer: errors above " + percent(kMaxAccelError) +
                    " of gravity; hold the robot still in each position, and look at the sensor");
   }
   VectorFit fit;
@@ -147,9 +147,9 @@ VectorFit fit_accelerometer(const std::array<Eigen::Vector3d, kPositions>& force
 }
 
 VectorFit fit_ellipsoid(std::span<const Eigen::Vector3d> samples) {
-  if (samples.size() < kLeastSamples) {
+  if (samples.size() < kMinSamples) {
     throw RunError("magnetometer: only " + std::to_string(samples.size()) + " samples; " +
-                   std::to_string(kLeastSamples) + " are needed");
+                   std::to_string(kMinSamples) + " are needed");
   }
   const auto count = static_cast<Eigen::Index>(samples.size());
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -167,7 +167,7 @@ VectorFit fit_ellipsoid(std::span<const Eigen::Vector3d> samples) {
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(design, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& singular = svd.singularValues();
-  if (singular[8] < kLeastRank * singular[0])
+  if (singular[8] < kMinRank * singular[0])
     throw RunError(
         "magnetometer: the samples do not reach round; turn the robot about all its axes");
   const Eigen::VectorXd v = svd.solve(Eigen::VectorXd::Ones(count));
@@ -177,7 +177,7 @@ VectorFit fit_ellipsoid(std::span<const Eigen::Vector3d> samples) {
 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shape(quadratic);
   const Eigen::Vector3d& curvature = shape.eigenvalues();
-  if (curvature[0] <= 0.0 || curvature[2] > kMostAxisRatio * kMostAxisRatio * curvature[0]) {
+  if (curvature[0] <= 0.0 || curvature[2] > kMaxAxisRatio * kMaxAxisRatio * curvature[0]) {
     throw RunError(
         "magnetometer: the samples lie on no ellipsoid; turn the robot about all its axes, away "
         "from iron");

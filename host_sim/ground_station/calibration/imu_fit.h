@@ -37,9 +37,9 @@ struct GyroFit {
   Eigen::Vector3d deviation = Eigen::Vector3d::Zero();  ///< of a single sample
 };
 
-/// Mean at rest. `most_deviation`: of an axis, above which the robot was moved, in the unit of the
+/// Mean at rest. `max_deviation`: of an axis, above which the robot was moved, in the unit of the
 /// samples. Throws RunError: fewer than 20 samples, or moved.
-GyroFit fit_gyro(std::span<const Eigen::Vector3d> samples, double most_deviation);
+GyroFit fit_gyro(std::span<const Eigen::Vector3d> samples, double max_deviation);
 
 /// The six positions: which way is up in the robot's frame.
 enum class Position { kLevel, kUpsideDown, kNoseUp, kNoseDown, kLeftUp, kRightUp };

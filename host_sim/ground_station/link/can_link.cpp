@@ -48,7 +48,7 @@ std::string words_of(const can_frame& frame) {
       {CAN_ERR_CRTL, "controller warns"},
       {CAN_ERR_PROT, "protocol violated"},
       {CAN_ERR_TRX, "transceiver fault"},
-      {CAN_ERR_ACK, "nobody acknowledges"},
+      {CAN_ERR_ACK, "no node acknowledges"},
       {CAN_ERR_BUSERROR, "bus error"},
   };
   std::string text;

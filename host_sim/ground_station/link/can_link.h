@@ -2,7 +2,7 @@
 // vcan.
 //
 // Only data frames with 11-bit ids are let through (a filter in the kernel); error frames are read
-// as well and told in status(). Times are the kernel's.
+// as well and reported in status(). Times are the kernel's.
 #pragma once
 
 #include <chrono>

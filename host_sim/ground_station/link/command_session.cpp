@@ -15,8 +15,8 @@ using Result = message::CommandAckResult;
 
 constexpr std::chrono::milliseconds kPump{20};
 /// The robot stores a parameter for 1.5 s and takes no other meanwhile.
-constexpr int kMostBusyAnswers = 12;
-constexpr int kMostStagings = 3;
+constexpr int kMaxBusyAnswers = 12;
+constexpr int kMaxStagings = 3;
 
 uint64_t steady_us() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -37,7 +37,7 @@ std::string names_of_faults(uint16_t bits) {
 
 }  // namespace
 
-std::string CommandAnswer::words() const {
+std::string CommandAnswer::description() const {
   struct Words {
     Result result;
     const char* text;
@@ -81,7 +81,7 @@ void CommandSession::pump(std::chrono::milliseconds wait) {
   frames_.clear();
   link_.receive(wait, frames_);
   for (const LinkFrame& frame : frames_) {
-    if (check_frame(frame.frame) == FrameFault::kNone) hear(frame.frame);
+    if (check_frame(frame.frame) == FrameFault::kNone) handle_frame(frame.frame);
     if (options_.on_frame) options_.on_frame(frame);
   }
   const uint64_t now_us = options_.clock();
@@ -92,7 +92,7 @@ void CommandSession::pump(std::chrono::milliseconds wait) {
   }
   if (waiting_ && now_us >= repeat_due_us_) {
     repeat_due_us_ = now_us + kRepeat_us;
-    if (attempts_++ == kMostAttempts) {
+    if (attempts_++ == kMaxAttempts) {
       waiting_ = false;
     } else if (signer_.ready()) {
       send_command();
@@ -117,15 +117,16 @@ void CommandSession::send_command() {
   link_.send(*command_);
 }
 
-void CommandSession::hear(const CanFrame& frame) {
-  signer_.hear(frame);
+void CommandSession::handle_frame(const CanFrame& frame) {
+  signer_.handle_frame(frame);
   if (frame.id == kIdParamValue) {
     const auto value = message::ParamValue::unpack(frame.data);
     parameters_[value.index] = value.value;
   }
   if (frame.id != kIdCommandAck || !waiting_ || !command_.has_value()) return;
   const auto ack = message::CommandAck::unpack(frame.data);
-  if (ack.op != command_->data[0] || ack.freshness != command_->data[kCommandFreshnessAt]) return;
+  if (ack.op != command_->data[0] || ack.freshness != command_->data[kCommandFreshnessOffset])
+    return;
   answer_ = {ack.op, ack.result, ack.detail};
   waiting_ = false;
 }
@@ -145,7 +146,7 @@ std::optional<int32_t> CommandSession::read_parameter(uint16_t index,
   parameters_.erase(index);
   answer = run(CommandOp::kParameterRead, index);
   // The value is a frame of its own, which may come after the answer, or be lost.
-  for (int again = 0; answer.has_value() && answer->done() && again < kMostStagings; ++again) {
+  for (int again = 0; answer.has_value() && answer->done() && again < kMaxStagings; ++again) {
     const uint64_t end_us = options_.clock() + kRepeat_us;
     while (!parameters_.contains(index) && options_.clock() < end_us) pump(kPump);
     if (parameters_.contains(index)) return parameters_.at(index);
@@ -166,14 +167,14 @@ void CommandSession::start_write(uint16_t index, int32_t value) {
 std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int32_t value) {
   std::optional<CommandAnswer> answer;
   int stagings = 0;
-  for (int attempt = 0; attempt < kMostBusyAnswers; ++attempt) {
+  for (int attempt = 0; attempt < kMaxBusyAnswers; ++attempt) {
     start_write(index, value);
     while (waiting_) pump(kPump);
     answer = take_answer();
     if (!answer.has_value() || answer->done()) break;
     const auto result = static_cast<Result>(answer->result);
     // Staging that was lost looks like a wrong argument.
-    if (result == Result::kBadArgument && ++stagings < kMostStagings) continue;
+    if (result == Result::kBadArgument && ++stagings < kMaxStagings) continue;
     if (result != Result::kBusy) break;
     const uint64_t end_us = options_.clock() + kRepeat_us;
     while (options_.clock() < end_us) pump(kPump);

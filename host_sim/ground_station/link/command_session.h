@@ -24,7 +24,7 @@ struct CommandAnswer {
 
   bool done() const { return result == 0; }
   /// "done", "refused: a fault is present (tilt, imu silent)".
-  std::string words() const;
+  std::string description() const;
 };
 
 struct SessionOptions {
@@ -43,7 +43,7 @@ class CommandSession {
   static constexpr uint64_t kHeartbeat_us = 200'000;
   /// Commands go at most four times a second.
   static constexpr uint64_t kRepeat_us = 300'000;
-  static constexpr int kMostAttempts = 8;
+  static constexpr int kMaxAttempts = 8;
 
   /// The link must outlive this.
   CommandSession(Link& link, SessionOptions options);
@@ -78,7 +78,7 @@ class CommandSession {
  private:
   void send_protected(CanFrame frame, uint8_t& counter);
   void send_command();
-  void hear(const CanFrame& frame);
+  void handle_frame(const CanFrame& frame);
 
   Link& link_;
   SessionOptions options_;
@@ -97,7 +97,7 @@ class CommandSession {
   int attempts_ = 0;
   uint64_t repeat_due_us_ = 0;
   std::optional<CommandAnswer> answer_;
-  std::map<uint16_t, int32_t> parameters_;  ///< as last told by the robot
+  std::map<uint16_t, int32_t> parameters_;  ///< as last reported by the robot
 };
 
 }  // namespace screed

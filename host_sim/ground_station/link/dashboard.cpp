@@ -153,7 +153,7 @@ void draw_values(TextCanvas& page, const DashboardInput& input, const RobotView&
   const bool alive = robot.value("heartbeat.link_alive").value_or(0.0) != 0.0;
   const std::optional<double> up = robot.value("link.quality");
   link.line("up",
-            std::string(alive ? "alive" : "the robot hears nobody") +
+            std::string(alive ? "alive" : "no ground station heard") +
                 (up.has_value() && alive ? number(", hears %.0f %%", *up) : ""),
             alive ? CellStyle::kGood : CellStyle::kWarning);
   link.line("refused", refused_text(input));
@@ -176,7 +176,7 @@ void draw_values(TextCanvas& page, const DashboardInput& input, const RobotView&
 
 int draw_curve(TextCanvas& page, int y, const DashboardInput& input, const RobotView& robot,
                const std::string& path) {
-  const SignalPlace place = find_signal(path);
+  const SignalRef place = find_signal(path);
   const std::vector<CurvePoint> points = robot.curve(place, input.now_us, input.window_s);
   double low = 0.0;
   double high = 0.0;
@@ -218,10 +218,10 @@ void draw_dashboard(TextCanvas& page, const DashboardInput& input) {
     if (y + kCurveHeight + 2 > page.height() - 1) break;
     y = draw_curve(page, y, input, *robot, path);
   }
-  for (const RobotView::Happening& happening : robot->happenings()) {
+  for (const RobotView::Event& event : robot->events()) {
     if (y >= page.height() - 1) break;
-    const int x = page.text(0, y, clock_text(happening.time_us) + "  ", CellStyle::kDim);
-    page.text(x, y++, happening.words, happening.style);
+    const int x = page.text(0, y, clock_text(event.time_us) + "  ", CellStyle::kDim);
+    page.text(x, y++, event.words, event.style);
   }
 }
 

@@ -1,6 +1,6 @@
-// A way on which CAN frames travel between this machine and robots: SocketCAN, a radio module on a
-// serial port. Frames in and out with their times, and how the way is doing. Knows nothing of what
-// the frames mean.
+// A channel on which CAN frames travel between this machine and robots: SocketCAN, a radio module
+// on a serial port. Frames in and out with their times, and the state of the channel. Knows nothing
+// of what the frames mean.
 //
 // A link survives what happens to links: a stick that is pulled and put back, an interface that is
 // taken down, a bus that is off. receive() and send() then do nothing, status() says why, and the

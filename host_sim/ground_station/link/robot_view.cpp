@@ -9,9 +9,9 @@
 namespace screed {
 namespace {
 
-constexpr size_t kMostHappenings = 100;
+constexpr size_t kMaxEvents = 100;
 /// Robots of one link; beyond it addresses are noise.
-constexpr size_t kMostRobots = 64;
+constexpr size_t kMaxRobots = 64;
 constexpr int kCounterModulus = 16;
 
 std::array<uint8_t, 8> data_of(const CanFrame& frame) {
@@ -27,13 +27,13 @@ const SignalInfo* with_role(const MessageInfo& message, SignalRole role) {
 }
 
 std::string fault_words(const SignalInfo& flag) {
-  const std::string name = spoken(flag.name);
+  const std::string name = display_name(flag.name);
   return flag.comment[0] == '\0' ? name : name + ": " + flag.comment;
 }
 
 }  // namespace
 
-std::string spoken(std::string_view name) {
+std::string display_name(std::string_view name) {
   std::string words(name);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
@@ -48,7 +48,7 @@ std::string RobotKey::text() const {
   return words + hex;
 }
 
-void RobotView::take(const LinkFrame& frame, const MessageInfo& message) {
+void RobotView::add_frame(const LinkFrame& frame, const MessageInfo& message) {
   if (frames_ == 0) first_us_ = frame.time_us;
   ++frames_;
   last_us_ = std::max(last_us_, frame.time_us);
@@ -73,8 +73,8 @@ void RobotView::take(const LinkFrame& frame, const MessageInfo& message) {
 }
 
 void RobotView::note(uint64_t time_us, CellStyle style, std::string words) {
-  happenings_.push_front({time_us, style, std::move(words)});
-  if (happenings_.size() > kMostHappenings) happenings_.pop_back();
+  events_.push_front({time_us, style, std::move(words)});
+  if (events_.size() > kMaxEvents) events_.pop_back();
 }
 
 void RobotView::look_for_changes(const MessageInfo& message, const Sample* before,
@@ -84,13 +84,13 @@ void RobotView::look_for_changes(const MessageInfo& message, const Sample* befor
     const SignalInfo& state = *message.signal("state");
     const int64_t state_now = state.raw(data);
     if (before == nullptr || state.raw(before->data.data()) != state_now)
-      note(now.time_us, CellStyle::kTitle, "state: " + spoken(state.text(state_now)));
+      note(now.time_us, CellStyle::kTitle, "state: " + display_name(state.text(state_now)));
     for (const SignalInfo& flag : message.signals) {
       if (flag.flags[0] == '\0') continue;
       const bool is = flag.raw(data) != 0;
       const bool was = before != nullptr && flag.raw(before->data.data()) != 0;
       if (is && !was) note(now.time_us, CellStyle::kAlarm, "fault: " + fault_words(flag));
-      if (!is && was) note(now.time_us, CellStyle::kGood, "fault gone: " + spoken(flag.name));
+      if (!is && was) note(now.time_us, CellStyle::kGood, "fault gone: " + display_name(flag.name));
     }
     const SignalInfo* const epoch = message.signal("boot_epoch");
     if (before != nullptr && epoch != nullptr &&
@@ -102,14 +102,15 @@ void RobotView::look_for_changes(const MessageInfo& message, const Sample* befor
     const SignalInfo& op = *message.signal("op");
     const bool done = result.raw(data) == 0;
     note(now.time_us, done ? CellStyle::kGood : CellStyle::kWarning,
-         spoken(op.text(op.raw(data))) + ": " + spoken(result.text(result.raw(data))));
+         display_name(op.text(op.raw(data))) + ": " + display_name(result.text(result.raw(data))));
   } else if (message.id == find_message("EVENT")->id) {
     const SignalInfo& code = *message.signal("code");
     // A change of state is told by the heartbeat, in full.
     if (code.raw(data) == static_cast<int64_t>(message::EventCode::kState)) return;
     const SignalInfo& argument = *message.signal("argument");
     note(now.time_us, CellStyle::kNormal,
-         "event: " + spoken(code.text(code.raw(data))) + ", " + argument.text(argument.raw(data)));
+         "event: " + display_name(code.text(code.raw(data))) + ", " +
+             argument.text(argument.raw(data)));
   }
 }
 
@@ -120,7 +121,7 @@ const std::deque<RobotView::Sample>& RobotView::history(const MessageInfo& messa
 }
 
 std::optional<int64_t> RobotView::raw(std::string_view path) const {
-  const SignalPlace place = find_signal(path);
+  const SignalRef place = find_signal(path);
   const std::deque<Sample>& samples = history(*place.message);
   if (samples.empty()) return std::nullopt;
   return place.signal->raw(samples.front().data.data());
@@ -134,10 +135,10 @@ std::optional<double> RobotView::value(std::string_view path) const {
 
 std::string RobotView::text(std::string_view path) const {
   const std::optional<int64_t> bits = raw(path);
-  return bits.has_value() ? spoken(find_signal(path).signal->text(*bits)) : "-";
+  return bits.has_value() ? display_name(find_signal(path).signal->text(*bits)) : "-";
 }
 
-std::vector<CurvePoint> RobotView::curve(const SignalPlace& place, uint64_t now_us,
+std::vector<CurvePoint> RobotView::curve(const SignalRef& place, uint64_t now_us,
                                          double window_s) const {
   std::vector<CurvePoint> points;
   for (const Sample& sample : history(*place.message)) {
@@ -192,7 +193,7 @@ std::optional<double> RobotView::loss_percent(uint64_t now_us) const {
   return 100.0 * static_cast<double>(missed) / static_cast<double>(got + missed);
 }
 
-RobotView* FleetView::take(const LinkFrame& frame) {
+RobotView* FleetView::add_frame(const LinkFrame& frame) {
   switch (check_frame(frame.frame)) {
     case FrameFault::kNone:
       break;
@@ -209,9 +210,9 @@ RobotView* FleetView::take(const LinkFrame& frame) {
     return nullptr;
   }
   const RobotKey key{frame.source.has_value() ? frame.source->address : 0, node_of(frame.frame.id)};
-  if (robots_.size() >= kMostRobots && !robots_.contains(key)) return nullptr;
+  if (robots_.size() >= kMaxRobots && !robots_.contains(key)) return nullptr;
   RobotView& robot = robots_[key];
-  robot.take(frame, message);
+  robot.add_frame(frame, message);
   return &robot;
 }
 

@@ -31,14 +31,14 @@ class RobotView {
     uint8_t missed;  ///< frames that were lost before this one, by the alive counter
   };
 
-  struct Happening {
+  struct Event {
     uint64_t time_us;
     CellStyle style;
     std::string words;
   };
 
   /// Takes a downlink frame that check_frame() found right. Times rise.
-  void take(const LinkFrame& frame, const MessageInfo& message);
+  void add_frame(const LinkFrame& frame, const MessageInfo& message);
 
   /// Notes something in the list of what happened.
   void note(uint64_t time_us, CellStyle style, std::string words);
@@ -52,7 +52,7 @@ class RobotView {
   std::string text(std::string_view path) const;
 
   /// Oldest first, x in seconds before now (negative), those of the last `window_s`.
-  std::vector<CurvePoint> curve(const SignalPlace& place, uint64_t now_us, double window_s) const;
+  std::vector<CurvePoint> curve(const SignalRef& place, uint64_t now_us, double window_s) const;
 
   /// The faults of the heartbeat in words, "high duty, no motion" behind their names.
   std::vector<std::string> faults() const;
@@ -67,13 +67,13 @@ class RobotView {
   uint64_t first_us() const { return first_us_; }
   uint64_t last_us() const { return last_us_; }
   std::optional<int> rssi_dbm() const { return rssi_dbm_; }
-  const std::deque<Happening>& happenings() const { return happenings_; }  ///< newest first
+  const std::deque<Event>& events() const { return events_; }  ///< newest first
 
  private:
   void look_for_changes(const MessageInfo& message, const Sample* before, const Sample& now);
 
   std::map<uint16_t, std::deque<Sample>> samples_;
-  std::deque<Happening> happenings_;
+  std::deque<Event> events_;
   uint64_t frames_ = 0;
   uint64_t lost_ = 0;
   uint64_t first_us_ = 0;
@@ -95,7 +95,7 @@ class FleetView {
  public:
   /// Sorts a frame to its robot; a frame that is damaged or unknown is counted. Returns the robot
   /// it belongs to, or null: damaged, or of the ground.
-  RobotView* take(const LinkFrame& frame);
+  RobotView* add_frame(const LinkFrame& frame);
 
   const std::map<RobotKey, RobotView>& robots() const { return robots_; }
   std::map<RobotKey, RobotView>& robots() { return robots_; }
@@ -113,6 +113,6 @@ class FleetView {
 };
 
 /// "stall_left" as people write it: "stall left".
-std::string spoken(std::string_view name);
+std::string display_name(std::string_view name);
 
 }  // namespace screed

@@ -136,23 +136,23 @@ void SerialLink::receive(std::chrono::milliseconds wait, std::vector<LinkFrame>&
   std::array<uint8_t, 4096> bytes;
   const ssize_t count = read(port_.get(), bytes.data(), bytes.size());
   if (count > 0) {
-    take(std::span(bytes).first(static_cast<size_t>(count)), frames);
+    process(std::span(bytes).first(static_cast<size_t>(count)), frames);
   } else if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
     lost("gone; waiting for it to come back");
   }
 }
 
-void SerialLink::take(std::span<const uint8_t> bytes, std::vector<LinkFrame>& frames) {
+void SerialLink::process(std::span<const uint8_t> bytes, std::vector<LinkFrame>& frames) {
   const uint64_t now_us = wall_clock_us();
   if (!api_.has_value()) return take_lines(bytes, now_us, std::nullopt, frames);
   std::vector<XbeeFrame> packets;
   const uint64_t refused = api_->refused();
   for (const uint8_t byte : bytes) api_->feed(byte, packets);
   status_.refused += api_->refused() - refused;
-  for (const XbeeFrame& packet : packets) take(packet, now_us, frames);
+  for (const XbeeFrame& packet : packets) process(packet, now_us, frames);
 }
 
-void SerialLink::take(const XbeeFrame& frame, uint64_t now_us, std::vector<LinkFrame>& frames) {
+void SerialLink::process(const XbeeFrame& frame, uint64_t now_us, std::vector<LinkFrame>& frames) {
   if (const auto packet = received_packet(frame)) {
     heard_type_ = frame.type;
     if (packet->source.rssi_dbm.has_value()) status_.rssi_dbm = packet->source.rssi_dbm;

@@ -39,8 +39,8 @@ class SerialLink : public Link {
   void open_port(const std::filesystem::path& device);
   void lost(const char* why);
   void look_for_port();
-  void take(std::span<const uint8_t> bytes, std::vector<LinkFrame>& frames);
-  void take(const XbeeFrame& frame, uint64_t now_us, std::vector<LinkFrame>& frames);
+  void process(std::span<const uint8_t> bytes, std::vector<LinkFrame>& frames);
+  void process(const XbeeFrame& frame, uint64_t now_us, std::vector<LinkFrame>& frames);
   void take_lines(std::span<const uint8_t> bytes, uint64_t now_us,
                   const std::optional<RadioSource>& source, std::vector<LinkFrame>& frames);
 

@@ -42,10 +42,10 @@ void XbeeApiParser::feed(uint8_t byte, std::vector<XbeeFrame>& frames) {
     if (escape_) byte = static_cast<uint8_t>(byte ^ kEscapeXor);
     escape_ = false;
   }
-  take(byte, frames);
+  process(byte, frames);
 }
 
-void XbeeApiParser::take(uint8_t byte, std::vector<XbeeFrame>& frames) {
+void XbeeApiParser::process(uint8_t byte, std::vector<XbeeFrame>& frames) {
   if (bytes_.empty() && byte != kStart) return;  // between frames
   bytes_.push_back(byte);
   if (bytes_.size() < kHeader) return;
@@ -64,7 +64,7 @@ void XbeeApiParser::start_again(std::vector<XbeeFrame>& frames) {
   const std::vector<uint8_t> rest(bytes_.begin() + 1, bytes_.end());
   bytes_.clear();
   if (mode_ == XbeeApiMode::kEscaped) return;  // an unescaped 0x7E in it is data
-  for (const uint8_t byte : rest) take(byte, frames);
+  for (const uint8_t byte : rest) process(byte, frames);
 }
 
 std::vector<uint8_t> encode_xbee(const XbeeFrame& frame, XbeeApiMode mode) {

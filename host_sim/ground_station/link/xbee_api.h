@@ -55,11 +55,11 @@ class XbeeApiParser {
   uint64_t refused() const { return refused_; }
 
  private:
-  void take(uint8_t byte, std::vector<XbeeFrame>& frames);
+  void process(uint8_t byte, std::vector<XbeeFrame>& frames);
   void start_again(std::vector<XbeeFrame>& frames);
 
   XbeeApiMode mode_;
-  std::vector<uint8_t> bytes_;  ///< of the frame in hand, from its start byte, unescaped
+  std::vector<uint8_t> bytes_;  ///< of the current frame, from its start byte, unescaped
   bool escape_ = false;
   uint64_t refused_ = 0;
 };
@@ -78,7 +78,7 @@ std::optional<XbeePacket> received_packet(const XbeeFrame& frame);
 /// A transmit status: true when the packet was delivered; nothing for frames of other types.
 std::optional<bool> delivered(const XbeeFrame& frame);
 
-/// The RSSI in an answer to the AT command DB: how modules without it in their packets tell it.
+/// The RSSI in an answer to the AT command DB: how modules without it in their packets report it.
 std::optional<int> answered_rssi_dbm(const XbeeFrame& frame);
 
 /// A request to send data, in the frame type of modules that speak `like` (a receive type), to all.

@@ -11,17 +11,17 @@ namespace {
 
 // A robot takes the 8 bits that travel for one of the next 256 numbers. Who is farther ahead,
 // because nothing got through, begins again where the robot is.
-constexpr int kMostAhead = 200;
+constexpr int kMaxAhead = 200;
 
 }  // namespace
 
-void CommandSigner::hear(const CanFrame& frame) {
+void CommandSigner::handle_frame(const CanFrame& frame) {
   if (frame.id != kIdHeartbeat || frame.size != message::Heartbeat::kSize) return;
   const auto heartbeat = message::Heartbeat::unpack(frame.data);
   const uint16_t epoch = heartbeat.boot_epoch;
   const uint16_t counter = heartbeat.freshness;
   const bool behind = counter > counter_;
-  if (epoch != boot_epoch_ || behind || counter_ - counter > kMostAhead) counter_ = counter;
+  if (epoch != boot_epoch_ || behind || counter_ - counter > kMaxAhead) counter_ = counter;
   boot_epoch_ = epoch;
 }
 
@@ -38,10 +38,10 @@ CanFrame CommandSigner::sign(CommandOp op, uint32_t argument) {
   frame.size = kCommandSize;
   frame.data[0] = static_cast<uint8_t>(op);
   for (int i = 0; i < 3; ++i) frame.data[1 + i] = static_cast<uint8_t>(argument >> (8 * i));
-  frame.data[kCommandFreshnessAt] = static_cast<uint8_t>(counter_ & 0xFFU);
+  frame.data[kCommandFreshnessOffset] = static_cast<uint8_t>(counter_ & 0xFFU);
   uint8_t mac[kSipHashSize];
   command_mac(key_.bytes.data(), frame.id, key_.robot_id, *boot_epoch_, counter_, frame.data, mac);
-  std::copy_n(mac, kCommandMacSize, frame.data + kCommandMacAt);
+  std::copy_n(mac, kCommandMacSize, frame.data + kCommandMacOffset);
   return frame;
 }
 

@@ -1,7 +1,7 @@
 // Makes COMMAND frames that a robot accepts: holds the key, and follows the robot's freshness.
 //
 //   CommandSigner signer(read_key_file(file));
-//   for every frame received:  signer.hear(frame);
+//   for every frame received:  signer.handle_frame(frame);
 //   if (signer.ready())        send(signer.sign(CommandOp::kArm));
 //
 // A command that was not answered is sent again as the same frame: the robot does it once and
@@ -21,7 +21,7 @@ class CommandSigner {
   explicit CommandSigner(const CommandKey& key) : key_(key) {}
 
   /// Takes a frame of the robot whose protection was found right. What is no heartbeat is ignored.
-  void hear(const CanFrame& frame);
+  void handle_frame(const CanFrame& frame);
 
   /// A heartbeat was heard: number of the robot's start and its counter are known.
   bool ready() const { return boot_epoch_.has_value(); }

@@ -8,14 +8,14 @@ namespace screed {
 void GroundEnd::tick(uint64_t now_us, GroundStation& station, RadioLink& uplink,
                      RadioLink& downlink) {
   if (port_ != nullptr) {
-    const std::vector<uint8_t> bytes = port_->take();
+    const std::vector<uint8_t> bytes = port_->receive();
     listen(bytes);
     uplink.send(now_us, bytes);
   }
   if (!handed_over_) uplink.send(now_us, station.transmit(now_us));
   const std::vector<uint8_t> arrived = downlink.receive(now_us, SIZE_MAX);
   station.receive(now_us, arrived);
-  if (port_ != nullptr) port_->give(arrived);
+  if (port_ != nullptr) port_->send(arrived);
 }
 
 void GroundEnd::listen(std::span<const uint8_t> bytes) {

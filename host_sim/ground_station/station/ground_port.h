@@ -16,9 +16,9 @@ class GroundPort {
   virtual ~GroundPort() = default;
 
   /// What has come down in this tick. Never waits.
-  virtual void give(std::span<const uint8_t> bytes) = 0;
+  virtual void send(std::span<const uint8_t> bytes) = 0;
   /// What is to go up. Never waits.
-  virtual std::vector<uint8_t> take() = 0;
+  virtual std::vector<uint8_t> receive() = 0;
 };
 
 }  // namespace screed

@@ -18,11 +18,11 @@ constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
 void GroundStation::receive(uint64_t now_us, std::span<const uint8_t> bytes) {
   CanFrame frame{};
   for (const uint8_t byte : bytes) {
-    if (parser_.feed(byte, frame)) take(now_us, frame);
+    if (parser_.feed(byte, frame)) handle_message(now_us, frame);
   }
 }
 
-void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
+void GroundStation::handle_message(uint64_t now_us, const CanFrame& frame) {
   if (!e2e_check(frame.id, frame.data, frame.size)) {
     ++rejected_;
     return;
@@ -38,7 +38,7 @@ void GroundStation::take(uint64_t now_us, const CanFrame& frame) {
   if (frame.id == kIdCommandAck && frame.size == message::CommandAck::kSize) {
     report_.answer = message::CommandAck::unpack(frame.data);
   }
-  signer_.hear(frame);
+  signer_.handle_frame(frame);
   if (log_ == nullptr) return;
   *log_ << candump_line(now_us, "screed0", frame);
 }

@@ -18,7 +18,7 @@
 namespace screed {
 
 /// What the ground station sends once the robot runs, for the algorithm "drive".
-struct DriveOrder {
+struct DriveCommand {
   double speed_m_per_s = 0.0;
   double yaw_rate_deg_per_s = 0.0;
 };
@@ -35,7 +35,7 @@ struct RobotReport {
 class GroundStation {
  public:
   /// log may be null. arm: arm and start the robot as soon as it is ready.
-  GroundStation(bool arm, std::optional<DriveOrder> drive, std::ostream* log,
+  GroundStation(bool arm, std::optional<DriveCommand> drive, std::ostream* log,
                 const CommandKey& key = test_key())
       : arm_(arm), drive_(drive), log_(log), signer_(key) {}
 
@@ -44,18 +44,18 @@ class GroundStation {
   /// What goes up in this tick: whole lines, one packet.
   std::vector<uint8_t> transmit(uint64_t now_us);
 
-  void set_drive(const DriveOrder& drive) { drive_ = drive; }
+  void set_drive(const DriveCommand& drive) { drive_ = drive; }
   const RobotReport& report() const { return report_; }
   uint64_t frames() const { return frames_; }
   uint64_t rejected_frames() const { return rejected_; }
 
  private:
-  void take(uint64_t now_us, const CanFrame& frame);
+  void handle_message(uint64_t now_us, const CanFrame& frame);
   void add_frame(CanFrame frame, uint8_t& counter, std::vector<uint8_t>& lines);
   static void add_line(const CanFrame& frame, std::vector<uint8_t>& lines);
 
   bool arm_;
-  std::optional<DriveOrder> drive_;
+  std::optional<DriveCommand> drive_;
   std::ostream* log_;
   CommandSigner signer_;
   SlcanParser parser_;

@@ -9,7 +9,7 @@ namespace screed {
 
 static_assert(std::endian::native == std::endian::little, "bits are taken as they stand in memory");
 
-std::string DecodeAccount::text() const {
+std::string DecodeStatistics::text() const {
   std::string text = std::to_string(messages) + " messages of " + std::to_string(lines) + " lines";
   const auto add = [&](uint64_t count, const std::string& what) {
     if (count > 0) text += ", " + std::to_string(count) + " " + what;
@@ -32,7 +32,7 @@ void LogDecoder::watch_counter(const CanFrame& frame) {
   const int counter = frame.data[1] & 0x0F;
   int8_t& last = counters_[frame.id];
   if (last >= 0 && counter != last) {
-    account_.missing += static_cast<uint64_t>((counter - last - 1) & 0x0F);
+    statistics_.missing += static_cast<uint64_t>((counter - last - 1) & 0x0F);
   }
   last = static_cast<int8_t>(counter);
 }
@@ -41,30 +41,30 @@ bool LogDecoder::next(DecodedFrame& decoded) {
   LineKind kind{};
   LoggedFrame logged;
   while (reader_.next(kind, logged)) {
-    ++account_.lines;
+    ++statistics_.lines;
     if (kind != LineKind::kFrame) {
       if (kind == LineKind::kOtherFrame) {
-        ++account_.other_frames;
-      } else if (++account_.unreadable_lines == 1) {
-        account_.first_unreadable_line = reader_.line_number();
+        ++statistics_.other_frames;
+      } else if (++statistics_.unreadable_lines == 1) {
+        statistics_.first_unreadable_line = reader_.line_number();
       }
       continue;
     }
     switch (check_frame(logged.frame)) {
       case FrameFault::kUnknownId:
-        ++account_.unknown_ids;
+        ++statistics_.unknown_ids;
         continue;
       case FrameFault::kWrongSize:
-        ++account_.wrong_sizes;
+        ++statistics_.wrong_sizes;
         continue;
       case FrameFault::kWrongCrc:
-        ++account_.wrong_crcs;
+        ++statistics_.wrong_crcs;
         continue;
       case FrameFault::kWrongWay:  // a log holds both ways
       case FrameFault::kNone:
         break;
     }
-    ++account_.messages;
+    ++statistics_.messages;
     decoded.time_us = logged.time_us;
     decoded.message = find_message(logged.frame.id);
     decoded.node = node_of(logged.frame.id);

@@ -1,4 +1,4 @@
-// A log of CAN frames as messages: what can be read, and the account of what cannot.
+// A log of CAN frames as messages: what can be read, and counts of what cannot.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct DecodedFrame {
 };
 
 /// What became of the lines of a log.
-struct DecodeAccount {
+struct DecodeStatistics {
   uint64_t lines = 0;     ///< that are not empty
   uint64_t messages = 0;  ///< decoded
   uint64_t unreadable_lines = 0;
@@ -45,13 +45,13 @@ class LogDecoder {
   /// The next message; false at the end of the log. Nothing in a log makes it throw.
   bool next(DecodedFrame& frame);
 
-  [[nodiscard]] const DecodeAccount& account() const { return account_; }
+  [[nodiscard]] const DecodeStatistics& statistics() const { return statistics_; }
 
  private:
   void watch_counter(const CanFrame& frame);
 
   CandumpReader reader_;
-  DecodeAccount account_;
+  DecodeStatistics statistics_;
   std::array<int8_t, 2048> counters_;  ///< the last alive counter of each id; -1: none yet
 };
 

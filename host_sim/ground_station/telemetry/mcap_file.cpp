@@ -110,7 +110,7 @@ McapFile::McapFile(const std::string& path) : file_(path), has_schema_(messages(
 
 void McapFile::write(const std::string& bytes) {
   file_.write(bytes);
-  place_ += bytes.size();
+  offset_ += bytes.size();
 }
 
 std::string McapFile::schema_record(uint16_t id, const MessageInfo& message) const {
@@ -135,16 +135,16 @@ std::string McapFile::channel_record(const Channel& channel) const {
 }
 
 McapFile::Channel& McapFile::channel_of(const DecodedFrame& frame) {
-  const auto place = static_cast<size_t>(frame.message - messages().data());
-  const auto id = static_cast<uint16_t>(place * 16 + frame.node + 1);
+  const auto offset = static_cast<size_t>(frame.message - messages().data());
+  const auto id = static_cast<uint16_t>(offset * 16 + frame.node + 1);
   Channel& channel = channels_[id];
   if (channel.message == nullptr) {
     channel.id = id;
     channel.message = frame.message;
     channel.node = frame.node;
-    if (!has_schema_[place]) {
-      has_schema_[place] = true;
-      chunk_ += schema_record(static_cast<uint16_t>(place + 1), *frame.message);
+    if (!has_schema_[offset]) {
+      has_schema_[offset] = true;
+      chunk_ += schema_record(static_cast<uint16_t>(offset + 1), *frame.message);
     }
     chunk_ += channel_record(channel);
   }
@@ -178,7 +178,7 @@ void McapFile::end_chunk() {
   ChunkEntry entry;
   entry.begin_ns = chunk_begin_ns_;
   entry.end_ns = chunk_end_ns_;
-  entry.place = place_;
+  entry.offset = offset_;
   entry.content_size = chunk_.size();
   std::string content;
   put(content, chunk_begin_ns_);
@@ -192,14 +192,14 @@ void McapFile::end_chunk() {
   write(chunk_record);
   for (auto& [id, channel] : channels_) {
     if (channel.index.empty()) continue;
-    entry.channel_index[id] = place_;
+    entry.channel_index[id] = offset_;
     std::string index;
     put(index, id);
     put_text(index, channel.index);
     write(record(kMessageIndex, index));
     channel.index.clear();
   }
-  entry.index_size = place_ - entry.place - entry.size;
+  entry.index_size = offset_ - entry.offset - entry.size;
   chunks_.push_back(entry);
   chunk_.clear();
   chunk_has_messages_ = false;
@@ -209,29 +209,29 @@ void McapFile::finish() {
   end_chunk();
   write(record(kDataEnd, std::string(4, '\0')));  // no checksum of the data
 
-  const uint64_t summary = place_;
+  const uint64_t summary = offset_;
   std::string offsets;
   uint64_t group_begin = 0;
   const auto end_group = [&](Opcode opcode) {
-    if (place_ == group_begin) return;
+    if (offset_ == group_begin) return;
     std::string content;
     content += static_cast<char>(opcode);
     put(content, group_begin);
-    put(content, place_ - group_begin);
+    put(content, offset_ - group_begin);
     offsets += record(kSummaryOffset, content);
   };
 
-  group_begin = place_;
+  group_begin = offset_;
   for (size_t i = 0; i < has_schema_.size(); ++i) {
     if (has_schema_[i]) write(schema_record(static_cast<uint16_t>(i + 1), messages()[i]));
   }
   end_group(kSchema);
 
-  group_begin = place_;
+  group_begin = offset_;
   for (const auto& [id, channel] : channels_) write(channel_record(channel));
   end_group(kChannel);
 
-  group_begin = place_;
+  group_begin = offset_;
   std::string statistics;
   put(statistics, messages_);
   put(statistics, static_cast<uint16_t>(std::count(has_schema_.begin(), has_schema_.end(), true)));
@@ -250,17 +250,17 @@ void McapFile::finish() {
   write(record(kStatistics, statistics));
   end_group(kStatistics);
 
-  group_begin = place_;
+  group_begin = offset_;
   for (const ChunkEntry& chunk : chunks_) {
     std::string content;
     put(content, chunk.begin_ns);
     put(content, chunk.end_ns);
-    put(content, chunk.place);
+    put(content, chunk.offset);
     put(content, chunk.size);
     std::string index;
-    for (const auto& [id, place] : chunk.channel_index) {
+    for (const auto& [id, offset] : chunk.channel_index) {
       put(index, id);
-      put(index, place);
+      put(index, offset);
     }
     put_text(content, index);
     put(content, chunk.index_size);
@@ -271,7 +271,7 @@ void McapFile::finish() {
   }
   end_group(kChunkIndex);
 
-  const uint64_t summary_offsets = place_;
+  const uint64_t summary_offsets = offset_;
   write(offsets);
   std::string footer;
   put(footer, summary);

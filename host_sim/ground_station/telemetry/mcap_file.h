@@ -35,7 +35,7 @@ class McapFile {
   struct ChunkEntry {
     uint64_t begin_ns = 0;
     uint64_t end_ns = 0;
-    uint64_t place = 0;
+    uint64_t offset = 0;
     uint64_t size = 0;
     uint64_t index_size = 0;
     uint64_t content_size = 0;
@@ -49,7 +49,7 @@ class McapFile {
   [[nodiscard]] std::string channel_record(const Channel& channel) const;
 
   AtomicFile file_;
-  uint64_t place_ = 0;  ///< bytes written
+  uint64_t offset_ = 0;  ///< bytes written
   std::map<uint16_t, Channel> channels_;
   std::vector<bool> has_schema_;  ///< by the message's place in the schema
   std::string chunk_;             ///< records of the chunk under way

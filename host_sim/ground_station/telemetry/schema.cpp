@@ -95,7 +95,7 @@ const MessageInfo* find_message(std::string_view name) {
   return nullptr;
 }
 
-SignalPlace find_signal(std::string_view path) {
+SignalRef find_signal(std::string_view path) {
   const size_t point = path.find('.');
   const MessageInfo* const message = find_message(path.substr(0, point));
   if (message == nullptr) {

@@ -72,11 +72,11 @@ const MessageInfo* find_message(uint16_t id);
 const MessageInfo* find_message(std::string_view name);
 
 /// A signal by "message.signal", as "attitude.pitch". Throws InputError that names what there is.
-struct SignalPlace {
+struct SignalRef {
   const MessageInfo* message;
   const SignalInfo* signal;
 };
-SignalPlace find_signal(std::string_view path);
+SignalRef find_signal(std::string_view path);
 
 /// The node of an id: 0 the ground, 1..15 a robot.
 constexpr uint8_t node_of(uint16_t id) {

@@ -13,7 +13,7 @@
 namespace screed {
 namespace {
 
-constexpr int64_t kMostParticles = 4'000'000;
+constexpr int64_t kMaxParticles = 4'000'000;
 constexpr double kScatter = 0.4;      // of the place a particle is let down, in radii
 constexpr double kFirstStride = 0.5;  // of the way into the hollow, in radii
 constexpr double kLastStride = 0.01;
@@ -60,7 +60,7 @@ class Deposit {
         stride *= 0.5;
       }
     }
-    set_down({x, y, height});
+    add_sphere({x, y, height});
   }
 
   /// The centres, column after column of the grid, each from below.
@@ -131,7 +131,7 @@ class Deposit {
     return difference < -0.5 * period ? difference + period : difference;
   }
 
-  void set_down(const Eigen::Vector3d& centre) {
+  void add_sphere(const Eigen::Vector3d& centre) {
     const int ix = grid_.column_x(centre.x());
     const int iy = grid_.column_y(centre.y());
     const int layer = grid_.layer(centre.z());
@@ -176,10 +176,10 @@ std::vector<int> stack_counts(const HeightField& top, const BedExtent& extent, d
       sum += counts.back();
     }
   }
-  if (sum < 1 || sum > kMostParticles) {
+  if (sum < 1 || sum > kMaxParticles) {
     throw InputError("particles: " + std::to_string(sum) + " of radius " +
                      std::to_string(radius_m) + " m fit below this surface; allowed: 1 to " +
-                     std::to_string(kMostParticles));
+                     std::to_string(kMaxParticles));
   }
   return counts;
 }

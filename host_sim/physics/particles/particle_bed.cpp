@@ -6,22 +6,23 @@
 #include <sstream>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/particles/solid_touch.h"
+#include "host_sim/physics/particles/solid_contact.h"
 
 namespace screed {
 namespace {
 
 // Lengths in radii.
-constexpr double kSkin = 0.1;       // pairs this near to touching are kept in the list
-constexpr double kNoticed = 0.02;   // a move that wakes the neighbours
-constexpr double kTouching = 0.02;  // a gap across which a neighbour is one
+constexpr double kSkin = 0.1;            // pairs this near to touching are kept in the list
+constexpr double kWakeThreshold = 0.02;  // a move that wakes the neighbours
+constexpr double kTouching = 0.02;       // a gap across which a neighbour is one
 
-constexpr double kWindow_s = 0.2;             // at rest this long: asleep
-constexpr double kSettlingWindow_s = 0.05;    // while a new bed settles
-constexpr double kSettlingDrag = 20.0;        // 1/s
-constexpr double kSettling_s = 2.0;           // at most
-constexpr double kGearWakes_m_per_s = 0.002;  // surface of running gear over a sleeping particle
-constexpr double kHeadroom_m = 0.1;           // of the grid above the bed
+constexpr double kWindow_s = 0.2;           // at rest this long: asleep
+constexpr double kSettlingWindow_s = 0.05;  // while a new bed settles
+constexpr double kSettlingDrag = 20.0;      // 1/s
+constexpr double kSettling_s = 2.0;         // at most
+constexpr double kGearWakeSpeed_m_per_s =
+    0.002;                           // surface of running gear over a sleeping particle
+constexpr double kHeadroom_m = 0.1;  // of the grid above the bed
 
 struct Range {
   const char* name;
@@ -96,7 +97,7 @@ ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedE
       window_s_(kWindow_s),
       grid_(extent.width_m, extent.depth_m, std::max(height_m, highest_of(centres) + kHeadroom_m),
             (2.0 + kSkin) * options.material.radius_m, extent.periodic),
-      place_(centres),
+      position_(centres),
       surface_(rays_along(extent.width_m, options.ray_spacing_m),
                rays_along(extent.depth_m,
                           extent.width_m / rays_along(extent.width_m, options.ray_spacing_m)),
@@ -106,10 +107,10 @@ ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedE
 }
 
 void ParticleBed::set_up() {
-  const size_t n = place_.size();
+  const size_t n = position_.size();
   velocity_.assign(n, Eigen::Vector3d::Zero());
-  turn_rate_ = force_ = moment_ = velocity_;
-  anchor_ = place_;
+  angular_velocity_ = force_ = moment_ = velocity_;
+  anchor_ = position_;
   rest_s_.assign(n, 0.0);
   state_.assign(n, kAwake);
   gear_step_.assign(n, 0);
@@ -124,7 +125,7 @@ void ParticleBed::set_up() {
   cast_columns_.reserve(columns);
   for (size_t i = 0; i < n; ++i) {
     const auto particle = static_cast<int32_t>(i);
-    grid_.insert(particle, grid_.cell_at(place_[i]));
+    grid_.insert(particle, grid_.cell_at(position_[i]));
     mark(grid_.cell_of(particle));
     awake_.push_back(particle);
   }
@@ -145,12 +146,12 @@ void ParticleBed::set_up() {
 }
 
 Eigen::Vector3d ParticleBed::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  Eigen::Vector3d way = to - from;
+  Eigen::Vector3d separation = to - from;
   if (extent_.periodic) {
-    way.x() -= extent_.width_m * std::round(way.x() / extent_.width_m);
-    way.y() -= extent_.depth_m * std::round(way.y() / extent_.depth_m);
+    separation.x() -= extent_.width_m * std::round(separation.x() / extent_.width_m);
+    separation.y() -= extent_.depth_m * std::round(separation.y() / extent_.depth_m);
   }
-  return way;
+  return separation;
 }
 
 // ---- sleep
@@ -166,11 +167,12 @@ void ParticleBed::wake(int32_t particle) {
 }
 
 void ParticleBed::wake_near(int32_t particle) {
-  const Eigen::Vector3d& here = place_[static_cast<size_t>(particle)];
+  const Eigen::Vector3d& here = position_[static_cast<size_t>(particle)];
   const double near = (2.0 + kTouching) * options_.material.radius_m;
   grid_.visit_near(here, near, [&](int32_t other) {
     const auto j = static_cast<size_t>(other);
-    if (state_[j] == kAsleep && between(here, place_[j]).squaredNorm() < near * near) wake(other);
+    if (state_[j] == kAsleep && between(here, position_[j]).squaredNorm() < near * near)
+      wake(other);
   });
 }
 
@@ -179,10 +181,10 @@ void ParticleBed::wake_all() {
 }
 
 void ParticleBed::set_motion(size_t particle, const Eigen::Vector3d& velocity,
-                             const Eigen::Vector3d& turn_rate) {
+                             const Eigen::Vector3d& angular_velocity) {
   wake(static_cast<int32_t>(particle));
   velocity_[particle] = velocity;
-  turn_rate_[particle] = turn_rate;
+  angular_velocity_[particle] = angular_velocity;
 }
 
 // ---- what contacts remember
@@ -198,7 +200,7 @@ ParticleBed::Slot* ParticleBed::slot_of(int32_t particle, int32_t partner) {
 ParticleBed::Slot* ParticleBed::take_slot(int32_t particle, int32_t partner) {
   Slot* slot = slot_of(particle, partner);
   if (slot != nullptr) return slot;
-  slot = slot_of(particle, kNobody);
+  slot = slot_of(particle, kNoPartner);
   if (slot != nullptr) *slot = {partner, {}};
   return slot;
 }
@@ -211,11 +213,11 @@ void ParticleBed::find_pairs() {
   pairs_.clear();
   const double near = (2.0 + kSkin) * options_.material.radius_m;
   for (const int32_t particle : awake_) {
-    const Eigen::Vector3d& here = place_[static_cast<size_t>(particle)];
+    const Eigen::Vector3d& here = position_[static_cast<size_t>(particle)];
     grid_.visit_near(here, near, [&](int32_t other) {
       const auto j = static_cast<size_t>(other);
       if (other == particle || (other < particle && state_[j] == kAwake)) return;
-      if (between(here, place_[j]).squaredNorm() >= near * near) return;
+      if (between(here, position_[j]).squaredNorm() >= near * near) return;
       const int32_t a = std::min(particle, other);
       const int32_t b = std::max(particle, other);
       const Slot* slot = slot_of(a, b);
@@ -229,14 +231,14 @@ void ParticleBed::find_pairs() {
   travelled_ = 0.0;
 }
 
-void ParticleBed::touch_pairs(double dt) {
+void ParticleBed::collide_pairs(double dt) {
   const double diameter = 2.0 * options_.material.radius_m;
-  for (Pair& pair : pairs_) {
+  for (ContactPair& pair : pairs_) {
     const auto a = static_cast<size_t>(pair.a);
     const auto b = static_cast<size_t>(pair.b);
     Slot* const slots = &slots_[a * kSlots];
-    const Eigen::Vector3d way = between(place_[b], place_[a]);
-    const double square = way.squaredNorm();
+    const Eigen::Vector3d separation = between(position_[b], position_[a]);
+    const double square = separation.squaredNorm();
     if (square >= diameter * diameter || square == 0.0) {
       if (pair.slot >= 0) slots[pair.slot] = {};
       pair.slot = -1;
@@ -248,16 +250,17 @@ void ParticleBed::touch_pairs(double dt) {
       pair.slot = slot == nullptr ? -1 : static_cast<int32_t>(slot - slots);
     }
     const double distance = std::sqrt(square);
-    SphereTouch touch;
-    touch.normal = way / distance;
-    touch.overlap = diameter - distance;
-    touch.velocity = velocity_[a] - velocity_[b] -
-                     0.5 * distance * (turn_rate_[a] + turn_rate_[b]).cross(touch.normal);
-    touch.turn_rate = turn_rate_[a] - turn_rate_[b];
+    SphereContact contact;
+    contact.normal = separation / distance;
+    contact.overlap = diameter - distance;
+    contact.velocity =
+        velocity_[a] - velocity_[b] -
+        0.5 * distance * (angular_velocity_[a] + angular_velocity_[b]).cross(contact.normal);
+    contact.angular_velocity = angular_velocity_[a] - angular_velocity_[b];
     ContactBristle passing{};
-    const SphereForce push = law_.force(touch, options_.material.friction, dt,
+    const SphereForce push = law_.force(contact, options_.material.friction, dt,
                                         pair.slot >= 0 ? slots[pair.slot].bristle : passing);
-    const Eigen::Vector3d turning = -0.5 * distance * touch.normal.cross(push.force);
+    const Eigen::Vector3d turning = -0.5 * distance * contact.normal.cross(push.force);
     if (state_[a] == kAwake) {
       force_[a] += push.force;
       moment_[a] += turning + push.moment;
@@ -269,35 +272,35 @@ void ParticleBed::touch_pairs(double dt) {
   }
 }
 
-void ParticleBed::touch_wall(int32_t particle, int32_t wall, const Eigen::Vector3d& normal,
-                             double distance, double dt) {
+void ParticleBed::collide_wall(int32_t particle, int32_t wall, const Eigen::Vector3d& normal,
+                               double distance, double dt) {
   const auto i = static_cast<size_t>(particle);
   if (distance >= options_.material.radius_m) {
     Slot* const slot = slot_of(particle, wall);
     if (slot != nullptr) *slot = {};
     return;
   }
-  SphereTouch touch;
-  touch.normal = normal;
-  touch.overlap = options_.material.radius_m - distance;
-  touch.velocity = velocity_[i] - distance * turn_rate_[i].cross(normal);
-  touch.turn_rate = turn_rate_[i];
+  SphereContact contact;
+  contact.normal = normal;
+  contact.overlap = options_.material.radius_m - distance;
+  contact.velocity = velocity_[i] - distance * angular_velocity_[i].cross(normal);
+  contact.angular_velocity = angular_velocity_[i];
   ContactBristle passing{};
   Slot* const slot = take_slot(particle, wall);
-  const SphereForce push =
-      law_.force(touch, options_.material.friction, dt, slot == nullptr ? passing : slot->bristle);
+  const SphereForce push = law_.force(contact, options_.material.friction, dt,
+                                      slot == nullptr ? passing : slot->bristle);
   force_[i] += push.force;
   moment_[i] += push.moment - distance * normal.cross(push.force);
 }
 
-void ParticleBed::touch_walls(double dt) {
+void ParticleBed::collide_walls(double dt) {
   const double near = (1.0 + kSkin) * options_.material.radius_m;
   const double half_x = 0.5 * extent_.width_m;
   const double half_y = 0.5 * extent_.depth_m;
   for (const int32_t particle : awake_) {
-    const Eigen::Vector3d at = place_[static_cast<size_t>(particle)];
+    const Eigen::Vector3d at = position_[static_cast<size_t>(particle)];
     const auto wall = [&](int number, const Eigen::Vector3d& normal, double distance) {
-      if (distance < near) touch_wall(particle, kFloor - number, normal, distance, dt);
+      if (distance < near) collide_wall(particle, kFloor - number, normal, distance, dt);
     };
     wall(0, Eigen::Vector3d::UnitZ(), at.z());
     if (extent_.periodic) continue;
@@ -309,7 +312,7 @@ void ParticleBed::touch_walls(double dt) {
 }
 
 void ParticleBed::move(double dt) {
-  const double noticed = kNoticed * options_.material.radius_m;
+  const double wake_distance = kWakeThreshold * options_.material.radius_m;
   const double kept_share = std::max(0.0, 1.0 - drag_ * dt);
   double fastest2 = 0.0;
   size_t kept = 0;
@@ -318,10 +321,10 @@ void ParticleBed::move(double dt) {
     const int32_t particle = awake_[k];
     const auto i = static_cast<size_t>(particle);
     velocity_[i] = kept_share * (velocity_[i] + dt * (force_[i] / mass_ + options_.gravity));
-    turn_rate_[i] = kept_share * (turn_rate_[i] + dt * (moment_[i] / inertia_));
+    angular_velocity_[i] = kept_share * (angular_velocity_[i] + dt * (moment_[i] / inertia_));
     force_[i].setZero();
     moment_[i].setZero();
-    Eigen::Vector3d& at = place_[i];
+    Eigen::Vector3d& at = position_[i];
     at += dt * velocity_[i];
     if (extent_.periodic) {
       at.x() -= extent_.width_m * std::floor(at.x() / extent_.width_m + 0.5);
@@ -335,16 +338,16 @@ void ParticleBed::move(double dt) {
       grid_.insert(particle, cell);
       mark(cell);
     }
-    if (between(anchor_[i], at).squaredNorm() > noticed * noticed) {
+    if (between(anchor_[i], at).squaredNorm() > wake_distance * wake_distance) {
       anchor_[i] = at;
       rest_s_[i] = 0.0;
       wake_near(particle);
     } else if ((rest_s_[i] += dt) >= window_s_) {
       // A sphere that spins in its place is not at rest.
-      if (turn_rate_[i].norm() * options_.material.radius_m * window_s_ <= noticed) {
+      if (angular_velocity_[i].norm() * options_.material.radius_m * window_s_ <= wake_distance) {
         state_[i] = kAsleep;
         velocity_[i].setZero();
-        turn_rate_[i].setZero();
+        angular_velocity_[i].setZero();
         continue;
       }
       rest_s_[i] = 0.0;
@@ -362,18 +365,18 @@ void ParticleBed::step(double dt) {
   counts_.awake = awake_.size();
   counts_.contacts = pairs_.size();
   counts_.sphere_steps += awake_.size();
-  touch_pairs(dt);
-  touch_walls(dt);
+  collide_pairs(dt);
+  collide_walls(dt);
   move(dt);
   ++steps_;
 }
 
-double ParticleBed::settle(double most_s) {
+double ParticleBed::settle(double max_s) {
   const double dt = longest_step_s();
   drag_ = kSettlingDrag;
   window_s_ = kSettlingWindow_s;
   double time = 0.0;
-  for (; time < most_s && !awake_.empty(); time += dt) step(dt);
+  for (; time < max_s && !awake_.empty(); time += dt) step(dt);
   drag_ = 0.0;
   window_s_ = kWindow_s;
   counts_.awake = awake_.size();
@@ -400,7 +403,7 @@ SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& m
   SoilReaction reaction;
   grid_.visit_box(centre - reach, centre + reach, [&](int32_t particle) {
     const auto i = static_cast<size_t>(particle);
-    const SolidTouch near = nearest_on(solid, axes.transpose() * between(centre, place_[i]));
+    const SolidContact near = nearest_on(solid, axes.transpose() * between(centre, position_[i]));
     if (near.distance >= radius) {
       if (gear_step_[i] + 1 >= steps_) {
         Slot* const slot = slot_of(particle, gear);
@@ -410,13 +413,14 @@ SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& m
     }
     const Eigen::Vector3d arm = axes * near.surface;
     const Eigen::Vector3d belt = axes * near.belt;
-    SphereTouch touch;
-    touch.normal = axes * near.normal;
-    touch.overlap = std::min(radius - near.distance, radius);
-    touch.velocity = velocity_[i] - near.distance * turn_rate_[i].cross(touch.normal) -
-                     motion.velocity - motion.omega.cross(arm) - motion.surface_speed * belt;
-    touch.turn_rate = turn_rate_[i] - motion.omega;
-    if (touch.velocity.squaredNorm() > kGearWakes_m_per_s * kGearWakes_m_per_s) wake(particle);
+    SphereContact contact;
+    contact.normal = axes * near.normal;
+    contact.overlap = std::min(radius - near.distance, radius);
+    contact.velocity = velocity_[i] - near.distance * angular_velocity_[i].cross(contact.normal) -
+                       motion.velocity - motion.omega.cross(arm) - motion.surface_speed * belt;
+    contact.angular_velocity = angular_velocity_[i] - motion.omega;
+    if (contact.velocity.squaredNorm() > kGearWakeSpeed_m_per_s * kGearWakeSpeed_m_per_s)
+      wake(particle);
     if (gear_step_[i] != steps_) {
       gear_step_[i] = steps_;
       pressed_.push_back(particle);
@@ -424,10 +428,10 @@ SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& m
     ContactBristle passing{};
     Slot* const slot = take_slot(particle, gear);
     const SphereForce push =
-        law_.force(touch, motion.friction, dt, slot == nullptr ? passing : slot->bristle);
+        law_.force(contact, motion.friction, dt, slot == nullptr ? passing : slot->bristle);
     if (state_[i] == kAwake) {
       force_[i] += push.force;
-      moment_[i] += push.moment - near.distance * touch.normal.cross(push.force);
+      moment_[i] += push.moment - near.distance * contact.normal.cross(push.force);
     }
     reaction.force -= push.force;
     reaction.torque -= arm.cross(push.force) + push.moment;
@@ -504,7 +508,7 @@ void ParticleBed::cast_rays(int column_x, int column_y) const {
             if (layer + 1 < grid_.layers() && grid_.layer_top(layer) + radius <= height) break;
             for (int32_t particle = grid_.first(grid_.cell(ix, iy, layer));
                  particle != SphereGrid::kNone; particle = grid_.next(particle)) {
-              const Eigen::Vector3d to = between(ray, place_[static_cast<size_t>(particle)]);
+              const Eigen::Vector3d to = between(ray, position_[static_cast<size_t>(particle)]);
               const double rest = radius * radius - to.x() * to.x() - to.y() * to.y();
               if (rest > 0.0) height = std::max(height, to.z() + std::sqrt(rest));
             }

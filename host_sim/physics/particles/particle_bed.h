@@ -2,7 +2,7 @@
 // gear, most of them asleep.
 //
 // Only particles that move are computed. One that has stayed in its place for a while is put to
-// sleep; it then stands as fixed as a wall, with what its contacts remember kept. It wakes when a
+// sleep; it then stands as fixed as a wall, with the state of its contacts kept. It wakes when a
 // neighbour has moved noticeably, when running gear moves against it or leaves it, or when a
 // particle hits it. So the cost of a step follows what happens, not the size of the bed.
 //
@@ -44,7 +44,7 @@ class ParticleBed {
   /// Fills the space below `top` and lets it come to rest (unless fixed). Throws InputError as
   /// stack_counts, and for material out of range.
   ParticleBed(const HeightField& top, const ParticleOptions& options);
-  /// Particles at these places, all awake, in a container of this extent and height.
+  /// Particles at these positions, all awake, in a container of this extent and height.
   ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedExtent& extent, double height_m,
               const ParticleOptions& options);
 
@@ -55,7 +55,7 @@ class ParticleBed {
   void step(double dt);
   double longest_step_s() const { return SphereLaw::longest_step_s(options_.material); }
   /// Steps until every particle sleeps, for at most this time; returns the time it took, s.
-  double settle(double most_s);
+  double settle(double max_s);
 
   /// The height map as it is now: under each ray the highest surface of a particle, or the floor.
   const HeightField& surface() const;
@@ -65,30 +65,32 @@ class ParticleBed {
   const ParticleOptions& options() const { return options_; }
   const BedExtent& extent() const { return extent_; }
   const ParticleCounts& counts() const { return counts_; }
-  size_t size() const { return place_.size(); }
-  const Eigen::Vector3d& place(size_t particle) const { return place_[particle]; }
+  size_t size() const { return position_.size(); }
+  const Eigen::Vector3d& position(size_t particle) const { return position_[particle]; }
   const Eigen::Vector3d& velocity(size_t particle) const { return velocity_[particle]; }
-  const Eigen::Vector3d& turn_rate(size_t particle) const { return turn_rate_[particle]; }
+  const Eigen::Vector3d& angular_velocity(size_t particle) const {
+    return angular_velocity_[particle];
+  }
   bool awake(size_t particle) const { return state_[particle] != kAsleep; }
   /// For experiments: gives a particle a motion and wakes it.
   void set_motion(size_t particle, const Eigen::Vector3d& velocity,
-                  const Eigen::Vector3d& turn_rate);
+                  const Eigen::Vector3d& angular_velocity);
   /// Wakes all, as on a bed that has been shaken.
   void wake_all();
 
  private:
   static constexpr int kSlots = 12;  // the kissing number; a particle keeps about half of its own
-  static constexpr int32_t kNobody = -1;
+  static constexpr int32_t kNoPartner = -1;
   static constexpr int32_t kFloor = -2;  // kFloor - 1 .. kFloor - 4: the walls
   static constexpr int32_t kGear = -8;   // kGear - n: the n-th body that ever pressed
 
   enum State : uint8_t { kAsleep, kAwake };
 
-  struct Slot {  // a contact that remembers
-    int32_t partner = kNobody;
+  struct Slot {  // a contact that keeps its state
+    int32_t partner = kNoPartner;
     ContactBristle bristle{};
   };
-  struct Pair {
+  struct ContactPair {
     int32_t a;  // the one that keeps the slot
     int32_t b;
     int32_t slot;  // or -1
@@ -100,10 +102,10 @@ class ParticleBed {
   Slot* slot_of(int32_t particle, int32_t partner);
   Slot* take_slot(int32_t particle, int32_t partner);
   void find_pairs();
-  void touch_pairs(double dt);
-  void touch_walls(double dt);
-  void touch_wall(int32_t particle, int32_t wall, const Eigen::Vector3d& normal, double distance,
-                  double dt);
+  void collide_pairs(double dt);
+  void collide_walls(double dt);
+  void collide_wall(int32_t particle, int32_t wall, const Eigen::Vector3d& normal, double distance,
+                    double dt);
   void move(double dt);
   void release_gear();
   void mark(int32_t cell);
@@ -122,19 +124,19 @@ class ParticleBed {
   ParticleCounts counts_;
 
   // Of each particle.
-  std::vector<Eigen::Vector3d> place_;
+  std::vector<Eigen::Vector3d> position_;
   std::vector<Eigen::Vector3d> velocity_;
-  std::vector<Eigen::Vector3d> turn_rate_;
+  std::vector<Eigen::Vector3d> angular_velocity_;
   std::vector<Eigen::Vector3d> force_;
   std::vector<Eigen::Vector3d> moment_;
-  std::vector<Eigen::Vector3d> anchor_;  // where it was when its neighbours last heard of it
+  std::vector<Eigen::Vector3d> anchor_;  // where it was when it last woke its neighbours
   std::vector<double> rest_s_;           // how long it has been there
   std::vector<uint8_t> state_;
   std::vector<uint64_t> gear_step_;  // the last step in which running gear touched it
   std::vector<Slot> slots_;
 
   std::vector<int32_t> awake_;
-  std::vector<Pair> pairs_;
+  std::vector<ContactPair> pairs_;
   bool pairs_stale_ = true;
   double travelled_ = 0.0;            // of the fastest particle since the pairs were found, m
   std::vector<int32_t> pressed_;      // particles that gear touches in this step

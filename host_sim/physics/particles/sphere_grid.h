@@ -1,4 +1,4 @@
-// Which particles are near a place: a uniform grid of cubes a little wider than a particle, each
+// Which particles are near a point: a uniform grid of cubes a little wider than a particle, each
 // with a chain of the particles whose centres are in it.
 #pragma once
 
@@ -49,8 +49,8 @@ class SphereGrid {
   int32_t cell(int ix, int iy, int layer) const {
     return static_cast<int32_t>(column(ix, iy) * static_cast<size_t>(layers_)) + layer;
   }
-  int32_t cell_at(const Eigen::Vector3d& place) const {
-    return cell(column_x(place.x()), column_y(place.y()), layer(place.z()));
+  int32_t cell_at(const Eigen::Vector3d& position) const {
+    return cell(column_x(position.x()), column_y(position.y()), layer(position.z()));
   }
   size_t column_of_cell(int32_t cell) const {
     return static_cast<size_t>(cell) / static_cast<size_t>(layers_);
@@ -83,12 +83,12 @@ class SphereGrid {
     *link = next(particle);
   }
 
-  /// Calls visit(particle) for those in the cubes round `place` that reach `radius` at least;
+  /// Calls visit(particle) for those in the cubes round `position` that reach `radius` at least;
   /// radius at most an edge. With `periodic` on a very small box a particle can come twice.
   template <class Visit>
-  void visit_near(const Eigen::Vector3d& place, double radius, const Visit& visit) const {
+  void visit_near(const Eigen::Vector3d& position, double radius, const Visit& visit) const {
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
-    visit_box(place - reach, place + reach, visit);
+    visit_box(position - reach, position + reach, visit);
   }
 
   /// Calls visit(particle) for those in the cubes that a box touches.

@@ -30,7 +30,7 @@ struct ParticleMaterial {
   double stiffness_n_per_m() const { return stiffness_pa * radius_m; }
 };
 
-/// What a contact remembers: how far the surfaces have moved (m) and turned (rad) over each other
+/// State of a contact: how far the surfaces have moved (m) and turned (rad) over each other
 /// while they stuck.
 struct ContactBristle {
   float slide[3];
@@ -38,11 +38,11 @@ struct ContactBristle {
 };
 
 /// One contact between a particle and a partner, as the law sees it.
-struct SphereTouch {
-  Eigen::Vector3d normal;     ///< from the partner to the particle, unit length
-  double overlap;             ///< m, positive
-  Eigen::Vector3d velocity;   ///< of the particle's surface relative to the partner's, m/s
-  Eigen::Vector3d turn_rate;  ///< of the particle relative to the partner, rad/s
+struct SphereContact {
+  Eigen::Vector3d normal;            ///< from the partner to the particle, unit length
+  double overlap;                    ///< m, positive
+  Eigen::Vector3d velocity;          ///< of the particle's surface relative to the partner's, m/s
+  Eigen::Vector3d angular_velocity;  ///< of the particle relative to the partner, rad/s
 };
 
 /// Force at the contact and moment on the particle; the partner gets the opposite.
@@ -68,29 +68,29 @@ class SphereLaw {
     return 0.25 * std::sqrt(material.mass_kg() / material.stiffness_n_per_m());
   }
 
-  SphereForce force(const SphereTouch& touch, double friction, double dt,
+  SphereForce force(const SphereContact& contact, double friction, double dt,
                     ContactBristle& bristle) const {
-    const double normal_speed = touch.velocity.dot(touch.normal);
-    const double normal_force = stiffness_ * touch.overlap - damping_ * normal_speed;
+    const double normal_speed = contact.velocity.dot(contact.normal);
+    const double normal_force = stiffness_ * contact.overlap - damping_ * normal_speed;
     if (normal_force <= 0.0) {
       bristle = {};
       return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     }
-    const Eigen::Vector3d sliding = touch.velocity - normal_speed * touch.normal;
+    const Eigen::Vector3d sliding = contact.velocity - normal_speed * contact.normal;
     Eigen::Vector3d bent = load(bristle.slide) + sliding * dt;
-    bent -= bent.dot(touch.normal) * touch.normal;
+    bent -= bent.dot(contact.normal) * contact.normal;
     Eigen::Vector3d tangential = -kShearShare * (stiffness_ * bent + damping_ * sliding);
     if (limit(tangential, friction * normal_force)) bent = tangential / (-kShearShare * stiffness_);
     store(bent, bristle.slide);
 
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
     if (rolling_arm_ > 0.0) {
-      Eigen::Vector3d turned = load(bristle.roll) + touch.turn_rate * dt;
-      moment = -roll_stiffness_ * turned - roll_damping_ * touch.turn_rate;
+      Eigen::Vector3d turned = load(bristle.roll) + contact.angular_velocity * dt;
+      moment = -roll_stiffness_ * turned - roll_damping_ * contact.angular_velocity;
       if (limit(moment, rolling_arm_ * normal_force)) turned = moment / -roll_stiffness_;
       store(turned, bristle.roll);
     }
-    return {normal_force * touch.normal + tangential, moment};
+    return {normal_force * contact.normal + tangential, moment};
   }
 
  private:
@@ -104,10 +104,10 @@ class SphereLaw {
   static void store(const Eigen::Vector3d& from, float* v) {
     for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(from[i]);
   }
-  static bool limit(Eigen::Vector3d& v, double most) {
+  static bool limit(Eigen::Vector3d& v, double max_length) {
     const double square = v.squaredNorm();
-    if (square <= most * most) return false;
-    v *= most / std::sqrt(square);
+    if (square <= max_length * max_length) return false;
+    v *= max_length / std::sqrt(square);
     return true;
   }
 

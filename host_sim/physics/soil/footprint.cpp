@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host_sim/physics/soil/pair.h"
+#include "host_sim/physics/soil/double2.h"
 
 namespace screed {
 namespace {
@@ -65,9 +65,9 @@ Eigen::Vector2d Footprint::reach_below(double level) const {
   const Eigen::Matrix3d& axes = pose_.linear();
   const Eigen::Vector2d forward = axes.col(0).head<2>().cwiseAbs();
   const Eigen::Vector2d axle = axes.col(1).head<2>().cwiseAbs();
-  const Eigen::Vector2d level_way =
+  const Eigen::Vector2d level_forward =
       ((up_.z() * axes.col(0) - up_.x() * axes.col(2)) / root_).head<2>().cwiseAbs();
-  return half_.x() * forward + half_chord * level_way +
+  return half_.x() * forward + half_chord * level_forward +
          (half_.y() + radius_ * std::abs(up_.y()) / root_) * axle;
 }
 
@@ -100,7 +100,7 @@ double Footprint::lowest_at_rim(double edge) const {
          (beyond < radius_ ? below : radius_) - std::abs(up_.x()) * radius_;
 }
 
-void FootprintPlaces::clear(size_t room) {
+void FootprintSamples::clear(size_t room) {
   count = 0;
   room += room % 2;  // whole pairs
   if (x.size() >= room) return;
@@ -110,123 +110,123 @@ void FootprintPlaces::clear(size_t room) {
   }
 }
 
-void Footprint::surface(double edge, const FootprintWay& came, FootprintPlaces& places) const {
-  surface(edge, &came, places);
+void Footprint::surface(double edge, const PathHistory& path, FootprintSamples& samples) const {
+  surface(edge, &path, samples);
 }
 
-void Footprint::surface(double edge, FootprintPlaces& places) const {
-  surface(edge, nullptr, places);
+void Footprint::surface(double edge, FootprintSamples& samples) const {
+  surface(edge, nullptr, samples);
 }
 
-void Footprint::surface(double edge, const FootprintWay* came, FootprintPlaces& places) const {
-  if (places.count % 2 != 0) {  // whole pairs
-    places.x[places.count] = places.x[places.count - 1];
-    places.y[places.count] = places.y[places.count - 1];
+void Footprint::surface(double edge, const PathHistory* path, FootprintSamples& samples) const {
+  if (samples.count % 2 != 0) {  // whole pairs
+    samples.x[samples.count] = samples.x[samples.count - 1];
+    samples.y[samples.count] = samples.y[samples.count - 1];
   }
   switch (kind_) {
     case Kind::kTrack:
       if (half_.x() > 0.0) {
-        track_surface<true>(edge, came, places);
+        track_surface<true>(edge, path, samples);
       } else {
-        track_surface<false>(edge, came, places);
+        track_surface<false>(edge, path, samples);
       }
       return;
     case Kind::kBox:
-      box_surface(edge, places);
+      box_surface(edge, samples);
       return;
     case Kind::kDisc:
       break;
   }
-  disc_surface(edge, places);
+  disc_surface(edge, samples);
 }
 
-// Two places at a time, without branches.
+// Two sample points at a time, without branches.
 template <bool kBelt>
-void Footprint::track_surface(double edge, const FootprintWay* came,
-                              FootprintPlaces& places) const {
+void Footprint::track_surface(double edge, const PathHistory* path,
+                              FootprintSamples& samples) const {
   if (square_ < 1e-6) {  // lying on its side: the caller uses a box
-    std::fill(places.share.begin(), places.share.end(), 0.0);
+    std::fill(samples.share.begin(), samples.share.end(), 0.0);
     return;
   }
-  const Pair zero = both(0.0);
+  const Double2 zero = broadcast(0.0);
   const Eigen::Matrix3d& axes = pose_.linear();
-  const Pair cx = both(pose_.translation().x());
-  const Pair cy = both(pose_.translation().y());
-  const Pair cz = both(pose_.translation().z());
+  const Double2 cx = broadcast(pose_.translation().x());
+  const Double2 cy = broadcast(pose_.translation().y());
+  const Double2 cz = broadcast(pose_.translation().z());
   // The vertical line's point at the height of the body's centre, in local axes; moving up along
   // the line adds `up`.
-  const Pair xx = both(to_local_(0, 0));
-  const Pair xy = both(to_local_(0, 1));
-  const Pair yx = both(to_local_(1, 0));
-  const Pair yy = both(to_local_(1, 1));
-  const Pair zx = both(to_local_(2, 0));
-  const Pair zy = both(to_local_(2, 1));
-  const Pair ux = both(up_.x());
-  const Pair uy = both(up_.y());
-  const Pair uz = both(up_.z());
-  const Pair square = both(square_);
-  const Pair per_square = both(1.0 / square_);
-  const Pair radius_square = both(radius_ * radius_);
-  const Pair half = both(half_.x());
-  const Pair width = both(half_.y());
-  const Pair per_edge = both(1.0 / edge);
+  const Double2 xx = broadcast(to_local_(0, 0));
+  const Double2 xy = broadcast(to_local_(0, 1));
+  const Double2 yx = broadcast(to_local_(1, 0));
+  const Double2 yy = broadcast(to_local_(1, 1));
+  const Double2 zx = broadcast(to_local_(2, 0));
+  const Double2 zy = broadcast(to_local_(2, 1));
+  const Double2 ux = broadcast(up_.x());
+  const Double2 uy = broadcast(up_.y());
+  const Double2 uz = broadcast(up_.z());
+  const Double2 square = broadcast(square_);
+  const Double2 per_square = broadcast(1.0 / square_);
+  const Double2 radius_square = broadcast(radius_ * radius_);
+  const Double2 half = broadcast(half_.x());
+  const Double2 width = broadcast(half_.y());
+  const Double2 per_edge = broadcast(1.0 / edge);
   // Bottom run (top run when upside down): local z = -+ radius between the axles. None when the
   // belt stands on end.
   const bool has_run = kBelt && std::abs(up_.z()) > 1e-9;
-  const Pair per_uz = both(has_run ? 1.0 / up_.z() : 0.0);
+  const Double2 per_uz = broadcast(has_run ? 1.0 / up_.z() : 0.0);
   const double side = up_.z() > 0.0 ? -1.0 : 1.0;
-  const Pair run_z = both(side * radius_);
-  // On its way each wheel swept down to a plane along the way that touches it from below, and has
-  // passed where the touching point is ahead, in the sense in which the body came. In local axes
-  // the plane is z = rise * x - deep.
-  const FootprintWay way = came != nullptr ? *came : FootprintWay{};
-  const Pair sense = both(way.along_m > 0.0 ? 1.0 : -1.0);
-  const Pair rise = both(way.rise);
-  const double slant = std::sqrt(1.0 + way.rise * way.rise);
-  const double climb = up_.z() - way.rise * up_.x();  // of a vertical line against that plane
-  const bool across_way = std::abs(climb) > kSteep;
-  const Pair reach = both(across_way ? std::abs(way.along_m) : -1.0);
-  const Pair per_climb = both(across_way ? 1.0 / climb : 0.0);
-  Pair deep[2];
-  Pair touch[2];
+  const Double2 run_z = broadcast(side * radius_);
+  // Along the path each wheel swept down to a plane along the path that touches it from below, and
+  // has passed where the touching point is ahead, in the sense in which the body came. In local
+  // axes the plane is z = rise * x - deep.
+  const PathHistory travelled = path != nullptr ? *path : PathHistory{};
+  const Double2 sense = broadcast(travelled.along_m > 0.0 ? 1.0 : -1.0);
+  const Double2 rise = broadcast(travelled.rise);
+  const double slant = std::sqrt(1.0 + travelled.rise * travelled.rise);
+  const double climb = up_.z() - travelled.rise * up_.x();  // of a vertical line against that plane
+  const bool crosses_swept_plane = std::abs(climb) > kSteep;
+  const Double2 reach = broadcast(crosses_swept_plane ? std::abs(travelled.along_m) : -1.0);
+  const Double2 per_climb = broadcast(crosses_swept_plane ? 1.0 / climb : 0.0);
+  Double2 deep[2];
+  Double2 touch[2];
   for (const int wheel : {0, 1}) {
     const double axle = wheel == 0 ? -half_.x() : half_.x();
-    deep[wheel] = both(way.rise * axle - side * radius_ * slant);
-    touch[wheel] = both(axle - side * radius_ * way.rise / slant);
+    deep[wheel] = broadcast(travelled.rise * axle - side * radius_ * slant);
+    touch[wheel] = broadcast(axle - side * radius_ * travelled.rise / slant);
   }
   // Normals over their vertical part, of local (nx, 0, nz): nx and nz times these, world x, y, z.
-  const Pair x0 = both(axes(0, 0));
-  const Pair y0 = both(axes(1, 0));
-  const Pair z0 = both(axes(2, 0));
-  const Pair x2 = both(axes(0, 2));
-  const Pair y2 = both(axes(1, 2));
-  const Pair z2 = both(axes(2, 2));
-  const Pair steepest = both(1e-3 * radius_);
+  const Double2 x0 = broadcast(axes(0, 0));
+  const Double2 y0 = broadcast(axes(1, 0));
+  const Double2 z0 = broadcast(axes(2, 0));
+  const Double2 x2 = broadcast(axes(0, 2));
+  const Double2 y2 = broadcast(axes(1, 2));
+  const Double2 z2 = broadcast(axes(2, 2));
+  const Double2 steepest = broadcast(1e-3 * radius_);
 
-  for (size_t i = 0; i < places.count; i += 2) {
-    const Pair dx = load(&places.x[i]) - cx;
-    const Pair dy = load(&places.y[i]) - cy;
-    const Pair lx = dx * xx + dy * xy;
-    const Pair ly = dx * yx + dy * yy;
-    const Pair lz = dx * zx + dy * zy;
-    Pair run_t = zero;
-    Pair flat = both(-1.0);
-    Pair hub = zero;
+  for (size_t i = 0; i < samples.count; i += 2) {
+    const Double2 dx = load(&samples.x[i]) - cx;
+    const Double2 dy = load(&samples.y[i]) - cy;
+    const Double2 lx = dx * xx + dy * xy;
+    const Double2 ly = dx * yx + dy * yy;
+    const Double2 lz = dx * zx + dy * zy;
+    Double2 run_t = zero;
+    Double2 flat = broadcast(-1.0);
+    Double2 hub = zero;
     if constexpr (kBelt) {
       run_t = (run_z - lz) * per_uz;
-      const Pair beyond = has_run ? lx + run_t * ux : -ux;
+      const Double2 beyond = has_run ? lx + run_t * ux : -ux;
       if (has_run) flat = half - magnitude(beyond);
       // The wheel on the side where the line passes beyond the run.
       hub = beyond >= zero ? half : -half;
     }
-    const Pair px = lx - hub;
-    const Pair along = px * ux + lz * uz;
-    const Pair rest = along * along + square * (radius_square - px * px - lz * lz);
-    const Pair wheel_t = (-along - square_root(greater(rest, zero))) * per_square;
+    const Double2 px = lx - hub;
+    const Double2 along = px * ux + lz * uz;
+    const Double2 rest = along * along + square * (radius_square - px * px - lz * lz);
+    const Double2 wheel_t = (-along - square_root(maximum(rest, zero))) * per_square;
     // Times the radius, into the body.
-    Pair nx = -(px + wheel_t * ux);
-    Pair nz = -(lz + wheel_t * uz);
-    Pair t = wheel_t;
+    Double2 nx = -(px + wheel_t * ux);
+    Double2 nz = -(lz + wheel_t * uz);
+    Double2 t = wheel_t;
     auto hit = rest > zero;
     if constexpr (kBelt) {
       const auto on_run = flat >= zero;
@@ -235,36 +235,36 @@ void Footprint::track_surface(double edge, const FootprintWay* came,
       nz = on_run ? -run_z : nz;
       hit = hit | on_run;
     }
-    const Pair wz = nx * z0 + nz * z2;
+    const Double2 wz = nx * z0 + nz * z2;
     hit = hit & (wz > steepest);
-    const Pair per_wz = both(1.0) / greater(wz, steepest);
-    const Pair across = ly + t * uy;
-    const Pair share = both(0.5) + (width - magnitude(across)) * per_edge;
-    store(hit ? smaller(greater(share, zero), both(1.0)) : zero, &places.share[i]);
-    const Pair height = cz + t;
-    store(height, &places.height[i]);
-    store((nx * x0 + nz * x2) * per_wz, &places.slope_x[i]);
-    store((nx * y0 + nz * y2) * per_wz, &places.slope_y[i]);
-    store(flat, &places.flat_within[i]);
-    if (came == nullptr) continue;
-    const Pair here = lx + t * ux;
-    Pair low = height;
+    const Double2 per_wz = broadcast(1.0) / maximum(wz, steepest);
+    const Double2 across = ly + t * uy;
+    const Double2 share = broadcast(0.5) + (width - magnitude(across)) * per_edge;
+    store(hit ? minimum(maximum(share, zero), broadcast(1.0)) : zero, &samples.share[i]);
+    const Double2 height = cz + t;
+    store(height, &samples.height[i]);
+    store((nx * x0 + nz * x2) * per_wz, &samples.slope_x[i]);
+    store((nx * y0 + nz * y2) * per_wz, &samples.slope_y[i]);
+    store(flat, &samples.flat_within[i]);
+    if (path == nullptr) continue;
+    const Double2 here = lx + t * ux;
+    Double2 low = height;
     for (const int wheel : {0, 1}) {
       if (!kBelt && wheel == 1) break;
       const auto ahead = sense * (touch[wheel] - here) > zero;
-      low = smaller(low, ahead ? cz + (rise * lx - deep[wheel] - lz) * per_climb : height);
+      low = minimum(low, ahead ? cz + (rise * lx - deep[wheel] - lz) * per_climb : height);
     }
-    store(magnitude(lx) <= reach ? low : height, &places.passed[i]);
+    store(magnitude(lx) <= reach ? low : height, &samples.passed[i]);
   }
 }
 
-void Footprint::box_surface(double edge, FootprintPlaces& places) const {
-  for (size_t i = 0; i < places.count; ++i) {
-    const double dx = places.x[i] - pose_.translation().x();
-    const double dy = places.y[i] - pose_.translation().y();
+void Footprint::box_surface(double edge, FootprintSamples& samples) const {
+  for (size_t i = 0; i < samples.count; ++i) {
+    const double dx = samples.x[i] - pose_.translation().x();
+    const double dy = samples.y[i] - pose_.translation().y();
     const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);
-    places.share[i] = 0.0;
-    places.flat_within[i] = 0.0;
+    samples.share[i] = 0.0;
+    samples.flat_within[i] = 0.0;
     double enter = -std::numeric_limits<double>::infinity();
     double leave = std::numeric_limits<double>::infinity();
     int face = 2;
@@ -285,31 +285,31 @@ void Footprint::box_surface(double edge, FootprintPlaces& places) const {
       share *= edge_share(half_[axis] - std::abs(local[axis] + enter * up_[axis]), edge);
     }
     const Eigen::Vector3d normal = (up_[face] > 0.0 ? 1.0 : -1.0) * to_local_.row(face).transpose();
-    places.share[i] = share;
-    places.height[i] = places.passed[i] = pose_.translation().z() + enter;
-    places.slope_x[i] = normal.x() / normal.z();
-    places.slope_y[i] = normal.y() / normal.z();
+    samples.share[i] = share;
+    samples.height[i] = samples.passed[i] = pose_.translation().z() + enter;
+    samples.slope_x[i] = normal.x() / normal.z();
+    samples.slope_y[i] = normal.y() / normal.z();
   }
 }
 
-void Footprint::disc_surface(double edge, FootprintPlaces& places) const {
+void Footprint::disc_surface(double edge, FootprintSamples& samples) const {
   if (std::abs(up_.z()) < 0.5) {
-    std::fill(places.share.begin(), places.share.end(), 0.0);
+    std::fill(samples.share.begin(), samples.share.end(), 0.0);
     return;
   }
   const double side = up_.z() > 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = -side * to_local_.row(2).transpose();
-  for (size_t i = 0; i < places.count; ++i) {
-    const double dx = places.x[i] - pose_.translation().x();
-    const double dy = places.y[i] - pose_.translation().y();
+  for (size_t i = 0; i < samples.count; ++i) {
+    const double dx = samples.x[i] - pose_.translation().x();
+    const double dy = samples.y[i] - pose_.translation().y();
     const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);
     const double t = (side * half_.z() - local.z()) / up_.z();
     const double distance = std::hypot(local.x() + t * up_.x(), local.y() + t * up_.y());
-    places.share[i] = edge_share(radius_ - distance, edge);
-    places.height[i] = places.passed[i] = pose_.translation().z() + t;
-    places.slope_x[i] = normal.x() / normal.z();
-    places.slope_y[i] = normal.y() / normal.z();
-    places.flat_within[i] = radius_ - distance;
+    samples.share[i] = edge_share(radius_ - distance, edge);
+    samples.height[i] = samples.passed[i] = pose_.translation().z() + t;
+    samples.slope_x[i] = normal.x() / normal.z();
+    samples.slope_y[i] = normal.y() / normal.z();
+    samples.flat_within[i] = radius_ - distance;
   }
 }
 

@@ -13,8 +13,8 @@
 
 namespace screed {
 
-/// A body's lower surface at many places at once, one array a property.
-struct FootprintPlaces {
+/// A body's lower surface at many sample points at once, one array a property.
+struct FootprintSamples {
   // Asked for:
   std::vector<double> x;
   std::vector<double> y;
@@ -24,7 +24,7 @@ struct FootprintPlaces {
   std::vector<double> slope_x;  ///< horizontal parts of the normal into the body, over its vertical
   std::vector<double> slope_y;
   std::vector<double> flat_within;  ///< the surface is plane at least this far around, m
-  std::vector<double> passed;       ///< lowest height of the body over (x, y) on its way there, m
+  std::vector<double> passed;       ///< lowest height of the body over (x, y) on its path there, m
 
   /// Begins anew, with room for so many. Room is kept: allocates only when it was never as much.
   void clear(size_t room);
@@ -36,10 +36,10 @@ struct FootprintPlaces {
   size_t count = 0;
 };
 
-/// The way that a body came, in its own axes.
-struct FootprintWay {
-  double along_m = 0.0;  ///< along local x, signed: it passed over no place that is further away
-  double rise = 0.0;     ///< along local z, over the way along local x
+/// The path that a body came along, in its own axes.
+struct PathHistory {
+  double along_m = 0.0;  ///< along local x, signed: it passed over no point that is further away
+  double rise = 0.0;     ///< along local z, over the displacement along local x
 };
 
 class Footprint {
@@ -86,13 +86,13 @@ class Footprint {
   /// The shorter side (or radius) of the body itself, a first guess at b, m.
   double narrow() const;
 
-  /// Answers for all places. `edge`: side of the small square, m; the share falls linearly across
-  /// the body's side over this length, so that sums over a lattice of such squares are exact for
-  /// edges along the lattice.
-  void surface(double edge, const FootprintWay& came, FootprintPlaces& places) const;
+  /// Answers for all sample points. `edge`: side of the small square, m; the share falls linearly
+  /// across the body's side over this length, so that sums over a lattice of such squares are exact
+  /// for edges along the lattice.
+  void surface(double edge, const PathHistory& path, FootprintSamples& samples) const;
   /// The same without `passed`, which then means nothing.
-  void surface(double edge, FootprintPlaces& places) const;
-  /// No place that a square of this side can share with the body reaches lower than this where its
+  void surface(double edge, FootprintSamples& samples) const;
+  /// No point that a square of this side can share with the body reaches lower than this where its
   /// middle lies outside, m.
   double lowest_at_rim(double edge) const;
 
@@ -102,10 +102,10 @@ class Footprint {
     set_pose(Eigen::Isometry3d::Identity());
   }
   template <bool kBelt>
-  void track_surface(double edge, const FootprintWay* came, FootprintPlaces& places) const;
-  void surface(double edge, const FootprintWay* came, FootprintPlaces& places) const;
-  void box_surface(double edge, FootprintPlaces& places) const;
-  void disc_surface(double edge, FootprintPlaces& places) const;
+  void track_surface(double edge, const PathHistory* path, FootprintSamples& samples) const;
+  void surface(double edge, const PathHistory* path, FootprintSamples& samples) const;
+  void box_surface(double edge, FootprintSamples& samples) const;
+  void disc_surface(double edge, FootprintSamples& samples) const;
 
   Eigen::Vector3d world_reach() const;
 
@@ -116,7 +116,7 @@ class Footprint {
   Eigen::Matrix3d to_local_;
   Eigen::Vector3d up_;  ///< the world's vertical in local axes
 
-  // Of a track, once a pose instead of once a place.
+  // Of a track, once a pose instead of once a sample point.
   double square_ = 1.0;  ///< of the vertical's part in the x-z plane
   double root_ = 1.0;    ///< of square_
 };

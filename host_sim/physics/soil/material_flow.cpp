@@ -13,7 +13,7 @@ struct Step {
   int dx;
   int dy;
 };
-constexpr int kThrows = 48;                 // places tried for what a footprint dug in one step
+constexpr int kTriesPerStep = 48;           // places tried for what a footprint dug in one step
 constexpr double kStanding_m_per_s = 1e-3;  // below it a body goes nowhere
 constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                  {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -44,19 +44,19 @@ void MaterialFlow::change(size_t node, Height units) {
   wake(node);
 }
 
-size_t MaterialFlow::begin_footprint(double way_x, double way_y) {
-  const double length = std::hypot(way_x, way_y);
+size_t MaterialFlow::begin_footprint(double direction_x, double direction_y) {
+  const double length = std::hypot(direction_x, direction_y);
   const double scale = length > kStanding_m_per_s ? 1.0 / length : 0.0;
-  footprints_.push_back({covered_list_.size(), way_x * scale, way_y * scale, 0});
+  footprints_.push_back({covered_list_.size(), direction_x * scale, direction_y * scale, 0});
   return footprints_.size() - 1;
 }
 
 void MaterialFlow::compact(int64_t units) {
-  in_hand_ -= units;
+  in_transit_ -= units;
   const int64_t old = std::min(units, left_over_);
   left_over_ -= old;
   units -= old;
-  for (Pressing& footprint : footprints_) {
+  for (ActiveFootprint& footprint : footprints_) {
     const int64_t here = std::min(units, footprint.units);
     footprint.units -= here;
     units -= here;
@@ -86,16 +86,16 @@ int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacte
     taken = until;
   }
   sheared_.clear();
-  in_hand_ += units - compacted;
+  in_transit_ += units - compacted;
   dug_.push_back({patch, units - compacted});
   return compacted;
 }
 
-void MaterialFlow::set_down() {
+void MaterialFlow::deposit() {
   for (const Dug& dug : dug_) left_over_ += dug.units - spread_dug(dug);
   dug_.clear();
   for (size_t i = 0; i < footprints_.size(); ++i) {
-    Pressing& footprint = footprints_[i];
+    ActiveFootprint& footprint = footprints_[i];
     footprint.units += left_over_;
     left_over_ = 0;
     if (footprint.units == 0) continue;
@@ -106,8 +106,8 @@ void MaterialFlow::set_down() {
 }
 
 /// On some places around the footprint, other ones each time, so that in a few steps all have got
-/// the same: a low-discrepancy sequence over the rectangle and its band. Returns the units set
-/// down: all or none.
+/// the same: a low-discrepancy sequence over the rectangle and its band. Returns the units
+/// deposited: all or none.
 int64_t MaterialFlow::spread_dug(const Dug& dug) {
   // Of the plastic number: the two-dimensional golden ratio.
   constexpr uint32_t kAlong = 3242174889U;
@@ -118,10 +118,10 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
   const double width = patch.half_width + patch.band;
   const double per_spacing = 1.0 / surface_.spacing_m();
   heap_.clear();
-  for (int i = 0; i < kThrows; ++i) {
-    ++throws_;
-    const double along = length * (2.0 * (throws_ * kAlong) * kPerTurn - 1.0);
-    const double across = width * (2.0 * (throws_ * kAcross) * kPerTurn - 1.0);
+  for (int i = 0; i < kTriesPerStep; ++i) {
+    ++tries_;
+    const double along = length * (2.0 * (tries_ * kAlong) * kPerTurn - 1.0);
+    const double across = width * (2.0 * (tries_ * kAcross) * kPerTurn - 1.0);
     if (std::abs(along) < patch.half_length && std::abs(across) < patch.half_width) continue;
     const double x = patch.centre.x() + along * patch.forward.x() - across * patch.forward.y();
     const double y = patch.centre.y() + along * patch.forward.y() + across * patch.forward.x();
@@ -132,63 +132,65 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
     heap_.push_back(static_cast<size_t>(node));
   }
   if (heap_.empty()) return 0;
-  const auto places = static_cast<int64_t>(heap_.size());
-  for (int64_t i = 0; i < places; ++i) {
-    const int64_t units = dug.units * (i + 1) / places - dug.units * i / places;
+  const auto count = static_cast<int64_t>(heap_.size());
+  for (int64_t i = 0; i < count; ++i) {
+    const int64_t units = dug.units * (i + 1) / count - dug.units * i / count;
     if (units != 0) change(heap_[static_cast<size_t>(i)], static_cast<Height>(units));
   }
-  in_hand_ -= dug.units;
+  in_transit_ -= dug.units;
   return dug.units;
 }
 
-/// Returns the units set down: all or none.
-int64_t MaterialFlow::spread(const Pressing& footprint, size_t end) {
+/// Returns the units deposited: all or none.
+int64_t MaterialFlow::spread(const ActiveFootprint& footprint, size_t end) {
   ring_.clear();
-  const auto ahead = [&](const Place& place) {
-    return place.ix * footprint.way_x + place.iy * footprint.way_y;
+  const auto ahead = [&](const GridNode& neighbour) {
+    return neighbour.ix * footprint.direction_x + neighbour.iy * footprint.direction_y;
   };
   double rear = std::numeric_limits<double>::infinity();
   for (size_t i = footprint.begin; i < end; ++i) {
-    const Place& here = covered_list_[i];
+    const GridNode& here = covered_list_[i];
     rear = std::min(rear, ahead(here));
     for (const Step& step : kNeighbours) {
-      Place place{0, here.ix + step.dx, here.iy + step.dy};
-      const int64_t node = node_at(place.ix, place.iy);
+      GridNode neighbour{0, here.ix + step.dx, here.iy + step.dy};
+      const int64_t node = node_at(neighbour.ix, neighbour.iy);
       if (node < 0) continue;
-      place.node = static_cast<size_t>(node);
-      if (covered_[place.node] != 0 || in_ring_[place.node] != 0) continue;
-      in_ring_[place.node] = 1;
-      ring_.push_back(place);
+      neighbour.node = static_cast<size_t>(node);
+      if (covered_[neighbour.node] != 0 || in_ring_[neighbour.node] != 0) continue;
+      in_ring_[neighbour.node] = 1;
+      ring_.push_back(neighbour);
     }
   }
-  for (const Place& place : ring_) in_ring_[place.node] = 0;
+  for (const GridNode& neighbour : ring_) in_ring_[neighbour.node] = 0;
   if (ring_.empty()) return 0;
   // Behind the footprint lies its rut.
   constexpr double kRounding = 1e-6;
-  const auto behind = [&](const Place& place) { return ahead(place) < rear - kRounding; };
+  const auto behind = [&](const GridNode& neighbour) {
+    return ahead(neighbour) < rear - kRounding;
+  };
   const auto open = static_cast<size_t>(
-      std::count_if(ring_.begin(), ring_.end(), [&](const Place& p) { return !behind(p); }));
+      std::count_if(ring_.begin(), ring_.end(), [&](const GridNode& p) { return !behind(p); }));
   if (open > 0 && open < ring_.size()) {
     ring_.erase(std::remove_if(ring_.begin(), ring_.end(), behind), ring_.end());
   }
-  const auto places = static_cast<int64_t>(ring_.size());
-  const int64_t each = footprint.units / places;
-  const int64_t rest = footprint.units % places;
+  const auto count = static_cast<int64_t>(ring_.size());
+  const int64_t each = footprint.units / count;
+  const int64_t rest = footprint.units % count;
   // What does not divide goes to a few places, each step to others.
   const auto first = static_cast<int64_t>(turn_ % ring_.size());
   turn_ += static_cast<uint64_t>(rest);
-  for (int64_t i = 0; i < places; ++i) {
-    const int64_t after = i >= first ? i - first : i - first + places;
+  for (int64_t i = 0; i < count; ++i) {
+    const int64_t after = i >= first ? i - first : i - first + count;
     const int64_t units = each + (after < rest ? 1 : 0);
     if (units != 0) change(ring_[static_cast<size_t>(i)].node, static_cast<Height>(units));
   }
-  in_hand_ -= footprint.units;
+  in_transit_ -= footprint.units;
   return footprint.units;
 }
 
-int64_t MaterialFlow::slide(int64_t most) {
+int64_t MaterialFlow::slide(int64_t max_moves) {
   int64_t moves = 0;
-  while (queue_size_ > 0 && moves < most) {
+  while (queue_size_ > 0 && moves < max_moves) {
     const size_t node = queue_[queue_begin_];
     queue_begin_ = queue_begin_ + 1 == queue_.size() ? 0 : queue_begin_ + 1;
     --queue_size_;
@@ -218,13 +220,13 @@ int64_t MaterialFlow::slide(int64_t most) {
 
 void MaterialFlow::uncover() {
   // What a body stood on may slide now.
-  for (const Place& place : covered_list_) {
-    covered_[place.node] = 0;
-    wake(place.node);
+  for (const GridNode& neighbour : covered_list_) {
+    covered_[neighbour.node] = 0;
+    wake(neighbour.node);
   }
   covered_list_.clear();
-  // What could not be set down waits.
-  for (const Pressing& footprint : footprints_) left_over_ += footprint.units;
+  // What could not be deposited waits.
+  for (const ActiveFootprint& footprint : footprints_) left_over_ += footprint.units;
   footprints_.clear();
 }
 

@@ -1,4 +1,4 @@
-// Moves material over the grid in whole units, always as much up as down: sets sunk soil down,
+// Moves material over the grid in whole units, always as much up as down: deposits sunk soil,
 // drags it, lets slopes slide.
 #pragma once
 
@@ -17,7 +17,7 @@ struct DugPatch {
   Eigen::Vector2d forward;  ///< unit length
   double half_length;       ///< m
   double half_width;        ///< m
-  double band;              ///< what is dug is set down as far as this around it, m
+  double band;              ///< what is dug is deposited as far as this around it, m
 };
 
 class MaterialFlow {
@@ -47,15 +47,15 @@ class MaterialFlow {
 
   /// A body's footprint that moves in the direction (x, y), any length, in the current step; what
   /// follows until the next one is its. Returns its number.
-  size_t begin_footprint(double way_x, double way_y);
+  size_t begin_footprint(double direction_x, double direction_y);
   /// It stands on this node: nothing slides onto or off it. `ix` and `iy` without wrap-around.
   void cover(size_t node, int ix, int iy) {
     if (covered_[node] != 0) return;
     covered_[node] = 1;
     covered_list_.push_back({node, ix, iy});
   }
-  /// Pushes a node's surface down by `units`: they are in hand until set down. The reference stays:
-  /// it is sinkage. `ix` and `iy` without wrap-around.
+  /// Pushes a node's surface down by `units`: they are in transit until deposited. The reference
+  /// stays: it is sinkage. `ix` and `iy` without wrap-around.
   void sink(size_t node, int ix, int iy, Height units) {
     const Height lower = height(node) - units;
     if (on_field(ix, iy)) {  // quicker than telling column and row by division
@@ -63,32 +63,32 @@ class MaterialFlow {
     } else {
       set_height(node, lower);
     }
-    in_hand_ += units;
+    in_transit_ += units;
     wake(node);
   }
   /// Tells how much a footprint has sunk in this step.
   void push(size_t footprint, int64_t units) { footprints_[footprint].units += units; }
-  int64_t in_hand() const { return in_hand_; }
+  int64_t in_transit() const { return in_transit_; }
   /// Takes `units` of sunk material out of hand, at most all: it stays where it is, denser.
   void compact(int64_t units);
-  /// Sets what is in hand down, in equal parts, on the free neighbours of each footprint's nodes,
-  /// those behind it left out: there lies the rut. Keeps it in hand when there are none.
-  void set_down();
+  /// Deposits what is in transit, in equal parts, on the free neighbours of each footprint's nodes,
+  /// those behind it left out: there lies the rut. Keeps it in transit when there are none.
+  void deposit();
 
   /// The current footprint slips over the soil of this node, that much in comparison with others.
   void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
   /// Takes `units` from below the current footprint, from where it slips most the most; the
   /// reference goes down with the surface. So many of them are `compacted` and gone, the others in
-  /// hand until they are set down around it. Returns the units that are gone: 0 when it slips
+  /// transit until they are deposited around it. Returns the units that are gone: 0 when it slips
   /// nowhere, and then none were taken.
   int64_t dig(const DugPatch& patch, int64_t units, int64_t compacted);
   /// Looks at every slope again, as on a bed that nobody has touched yet.
   void wake_all();
-  /// Slides slopes above the angle of repose, at most `most` moves; returns the moves made.
-  int64_t slide(int64_t most);
-  /// Whether the slopes round a node are still to be looked at.
-  bool waits(size_t node) const { return awake_[node] != 0; }
-  size_t waiting() const { return queue_size_; }
+  /// Slides slopes above the angle of repose, at most `max_moves` moves; returns the moves made.
+  int64_t slide(int64_t max_moves);
+  /// Whether the slopes round a node wait in the queue.
+  bool is_queued(size_t node) const { return awake_[node] != 0; }
+  size_t queued() const { return queue_size_; }
   /// Forgets which nodes are covered: the step is over.
   void uncover();
 
@@ -117,43 +117,43 @@ class MaterialFlow {
     ++queue_size_;
   }
 
-  struct Place {
+  struct GridNode {
     size_t node;
     int ix;
     int iy;
   };
-  struct Pressing {  // a footprint in this step
-    size_t begin;    // of its nodes among covered_list_
-    double way_x;    // unit length, or 0
-    double way_y;
-    int64_t units;  // in hand
+  struct ActiveFootprint {  // a footprint in this step
+    size_t begin;           // of its nodes among covered_list_
+    double direction_x;     // unit length, or 0
+    double direction_y;
+    int64_t units;  // in transit
   };
-  struct Dug {  // to be set down around it
+  struct Dug {  // to be deposited around it
     DugPatch patch;
     int64_t units;
   };
-  int64_t spread(const Pressing& footprint, size_t end);
+  int64_t spread(const ActiveFootprint& footprint, size_t end);
   int64_t spread_dug(const Dug& dug);
 
   HeightField surface_;
   std::vector<Height> reference_;
   Height limit_straight_;  // greatest stable difference between neighbours
   Height limit_diagonal_;
-  int64_t in_hand_ = 0;
+  int64_t in_transit_ = 0;
   uint64_t turn_ = 0;  // where the remainder of a division goes first
   std::vector<uint8_t> covered_;
-  std::vector<Place> covered_list_;
-  std::vector<Pressing> footprints_;
-  int64_t left_over_ = 0;  // in hand from earlier steps
+  std::vector<GridNode> covered_list_;
+  std::vector<ActiveFootprint> footprints_;
+  int64_t left_over_ = 0;  // in transit from earlier steps
   struct Sheared {
     size_t node;
     double weight;
   };
   std::vector<Sheared> sheared_;  // by the current footprint
   std::vector<Dug> dug_;
-  uint32_t throws_ = 0;  // places tried so far for what was dug
+  uint32_t tries_ = 0;  // places tried so far for what was dug
   std::vector<size_t> heap_;
-  std::vector<Place> ring_;
+  std::vector<GridNode> ring_;
   std::vector<uint8_t> in_ring_;
   std::vector<uint8_t> awake_;
   std::vector<size_t> queue_;  // ring buffer of nodes whose slopes may be too steep

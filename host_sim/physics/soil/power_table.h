@@ -8,7 +8,7 @@
 
 namespace screed {
 
-/// z^n for z >= 0 by linear interpolation between places whose distance grows with z: 32 in each
+/// z^n for z >= 0 by linear interpolation between points whose distance grows with z: 32 in each
 /// octave from 2^-24 m (60 nm) to 1 m. Relative error below 5e-4 for n <= 2.5 (3e-5 for 0.5 and
 /// 1.1). Below 60 nm a straight line to 0, above 1 m the last one goes on.
 class PowerTable {

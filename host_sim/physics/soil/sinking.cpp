@@ -9,14 +9,14 @@ namespace {
 
 constexpr double kGravity = 9.80665;  // m/s^2
 // What else pushes a body is a guess from the last step, kept sane.
-constexpr double kMostAcceleration = 500.0;         // m/s^2
-constexpr double kMostAngularAcceleration = 1.0e4;  // rad/s^2
+constexpr double kMaxAcceleration = 500.0;         // m/s^2
+constexpr double kMaxAngularAcceleration = 1.0e4;  // rad/s^2
 // Stands for a body that the soil does not tilt: its inertia, over its mass, m^2.
 constexpr double kNoTilt_m2 = 1e6;
 // Of the body's place: E times this is some hundredths of a pascal.
 constexpr double kConverged_m = 1e-10;
 constexpr double kTiltArm_m = 0.1;  // at which a tilt is felt
-constexpr int kMostTurns = 60;
+constexpr int kMaxIterations = 60;
 
 /// Sum of forces and their slope.
 struct Support {
@@ -80,42 +80,42 @@ void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>&
                              tilts ? body.omega.y() : 0.0);
   Eigen::Vector3d external(-kGravity, 0.0, 0.0);
   if (memory.touching) external = (rate - memory.rate) / dt - memory.push;
-  external.x() = std::clamp(external.x(), -kMostAcceleration, kMostAcceleration);
+  external.x() = std::clamp(external.x(), -kMaxAcceleration, kMaxAcceleration);
   for (const int i : {1, 2}) {
-    external[i] = std::clamp(external[i], -kMostAngularAcceleration, kMostAngularAcceleration);
+    external[i] = std::clamp(external[i], -kMaxAngularAcceleration, kMaxAngularAcceleration);
   }
   const Eigen::Vector3d free = rate * dt + external * (dt * dt);
 
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   Support at = support(springs, q);
   Eigen::Vector3d gradient = inertia * (q - free) - at.force;
-  for (int turn = 0; turn < kMostTurns;) {
+  for (int turn = 0; turn < kMaxIterations;) {
     const Eigen::Matrix3d hessian = inertia + at.stiffness;
-    const Eigen::Vector3d way = -hessian.llt().solve(gradient);
-    const double begin = gradient.dot(way);
+    const Eigen::Vector3d direction = -hessian.llt().solve(gradient);
+    const double begin = gradient.dot(direction);
     if (!(begin < 0.0)) break;
-    // Along the way the energy's slope rises; a full step that overshoots is taken back to near its
-    // lowest place.
+    // Along the direction the energy's slope rises; a full step that overshoots is taken back to
+    // near its lowest place.
     double step = 1.0;
     Eigen::Vector3d next;
     for (;;) {
       ++turn;
-      next = q + step * way;
+      next = q + step * direction;
       at = support(springs, next);
       gradient = inertia * (next - free) - at.force;
-      const double slope = gradient.dot(way);
-      if (slope <= -0.3 * begin || turn >= kMostTurns) break;
+      const double slope = gradient.dot(direction);
+      if (slope <= -0.3 * begin || turn >= kMaxIterations) break;
       step *= std::clamp(begin / (begin - slope), 0.1, 0.9);  // secant
     }
     const Eigen::Vector3d moved = next - q;
     q = next;
-    // The rest of the way is at most what the inertia alone would leave.
-    const double way_left = std::abs(gradient.x()) / inertia(0, 0) +
-                            kTiltArm_m * (std::abs(gradient.y()) / inertia(1, 1) +
-                                          std::abs(gradient.z()) / inertia(2, 2));
+    // The remaining displacement is at most what the inertia alone would leave.
+    const double remaining = std::abs(gradient.x()) / inertia(0, 0) +
+                             kTiltArm_m * (std::abs(gradient.y()) / inertia(1, 1) +
+                                           std::abs(gradient.z()) / inertia(2, 2));
     const double moved_by =
         std::abs(moved.x()) + kTiltArm_m * (std::abs(moved.y()) + std::abs(moved.z()));
-    if (std::min(way_left, moved_by) < kConverged_m) break;
+    if (std::min(remaining, moved_by) < kConverged_m) break;
   }
   for (SoilSpring& spring : springs) {
     spring.sinking = -(q.x() + q.y() * spring.y - q.z() * spring.x);

@@ -8,16 +8,17 @@
 
 namespace screed {
 
-/// The force of one cell over the body's way down there: max(0, min(elastic, virgin)), each a
-/// straight line.
+/// The force of one cell over the body's downward displacement there: max(0, min(elastic, virgin)),
+/// each a straight line.
 struct SoilSpring {
   double elastic;        ///< N, now
   double elastic_slope;  ///< N/m
   double virgin;
   double virgin_slope;
-  double x;  ///< place from the body's centre of mass, m
+  double x;  ///< position from the body's centre of mass, m
   double y;
-  double sinking = 0.0;  ///< the answer: the body's way down at this cell in this step, m
+  double sinking =
+      0.0;  ///< the answer: the body's downward displacement at this cell in this step, m
 };
 
 /// End-of-step implicit: the body moves by q (up, roll, pitch) so that M (q - q_free) / dt^2 is the

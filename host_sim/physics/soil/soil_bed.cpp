@@ -1,5 +1,5 @@
 // Deformable soil on a grid: a step of it. soil_cells.cpp has what lies under a footprint,
-// soil_reaction.cpp what gives way there.
+// soil_reaction.cpp how it yields there.
 #include "host_sim/physics/soil/soil_bed.h"
 
 #include <algorithm>
@@ -15,27 +15,27 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStableStiffness = 0.3;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
-// Greatest rise of a way over itself: what drops has not driven there.
-constexpr double kSteepestWay = 1.0;
+// Greatest rise over run of a path: what drops has not driven there.
+constexpr double kMaxPathGradient = 1.0;
 constexpr double kUpright = 1e-3;  // the vertical part of a body's own vertical that counts
 
-/// A footprint goes on by this way, world frame, m. Its rise is a mean over its own length, the
-/// more recent way counting more, or that of a level way.
-void go_on(const Footprint& footprint, const Eigen::Vector3d& way, bool follow_slopes,
-           FootprintWay& came) {
+/// Extends a footprint's path by this displacement, world frame, m. The rise is a mean over the
+/// footprint's own length that favours the recent path, or that of a level path.
+void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement,
+                 bool follow_slopes, PathHistory& path) {
   const Eigen::Matrix3d& axes = footprint.pose().linear();
-  const double along = way.dot(axes.col(0));
-  if (along * came.along_m < 0.0) came = {};
-  came.along_m += along;
+  const double along = displacement.dot(axes.col(0));
+  if (along * path.along_m < 0.0) path = {};
+  path.along_m += along;
   if (!follow_slopes) {
-    came.rise = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
+    path.rise = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
     return;
   }
   const double length = footprint.half().x() + footprint.radius();
   const double share = std::abs(along) / length;
-  const double most = kSteepestWay * std::abs(along);
-  const double up = std::clamp(way.dot(axes.col(2)), -most, most) / length;
-  came.rise = share < 1.0 ? came.rise + (along < 0.0 ? -up : up) - share * came.rise : 0.0;
+  const double max_rise = kMaxPathGradient * std::abs(along);
+  const double up = std::clamp(displacement.dot(axes.col(2)), -max_rise, max_rise) / length;
+  path.rise = share < 1.0 ? path.rise + (along < 0.0 ? -up : up) - share * path.rise : 0.0;
 }
 
 }  // namespace
@@ -48,23 +48,23 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
   check_soil(soil);
   const double spacing = flow_.surface().spacing_m();
   cell_area_ = spacing * spacing;
-  // Even, so that one place in each row and column can be spread evenly.
-  samples_ =
+  // Even, so that one sample point in each row and column can be spread evenly.
+  samples_per_side_ =
       2 * std::max(1, static_cast<int>(std::ceil(0.5 * spacing / options.sample_spacing_m - 1e-9)));
-  for (int j = 0; j < samples_; ++j) {
-    const double edge = spacing / samples_;
+  for (int j = 0; j < samples_per_side_; ++j) {
+    const double edge = spacing / samples_per_side_;
     const double first = 0.5 * (edge - spacing);
-    rook_x_.push_back(first + (2 * j + 1) % (samples_ + 1) * edge);
+    rook_x_.push_back(first + (2 * j + 1) % (samples_per_side_ + 1) * edge);
     rook_y_.push_back(first + j * edge);
   }
   volume_before_ = flow_.surface().height_sum();
-  traces_.resize(flow_.nodes());
+  histories_.resize(flow_.nodes());
   const auto more = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
   for (int i = 0; i <= more; ++i) tables_.emplace_back(soil.exponent + i * kExponentStep);
 }
 
 VolumeBalance SoilBed::balance() const {
-  return {volume_before_, flow_.surface().height_sum(), compacted_, flow_.in_hand()};
+  return {volume_before_, flow_.surface().height_sum(), compacted_, flow_.in_transit()};
 }
 
 SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
@@ -91,7 +91,7 @@ void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, d
     ContactMemory& kept = *contact.memory;
     const Eigen::Vector3d arm = footprint.pose().translation() - body.centre;
     const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
-    go_on(footprint, velocity * dt, options_.follow_slopes, kept.came);
+    extend_path(footprint, velocity * dt, options_.follow_slopes, kept.path);
     double elastic = soil_.elastic_pa_per_m;
     if (footprint.extended() && !tilts && !imposed) {
       // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step bears.
@@ -107,7 +107,7 @@ void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, d
     measure_patch(footprint, range.begin, kept);
     ranges_.back().footprint = flow_.begin_footprint(velocity.x(), velocity.y());
     for (size_t i = range.begin; i < range.end; ++i) {
-      const Cell& cell = cells_[i];
+      const SoilCell& cell = cells_[i];
       flow_.cover(cell.node, cell.ix, cell.iy);
       springs_.push_back({cell_area_ * (cell.pressure + elastic * (cell.pressed - cell.sunk)),
                           cell_area_ * elastic * cell.share, cell_area_ * cell.pressure,
@@ -123,7 +123,7 @@ void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, d
 }
 
 void SoilBed::end_step() {
-  const int64_t sunk = flow_.in_hand();
+  const int64_t sunk = flow_.in_transit();
   if (!options_.bulldozing) {
     compacted_ += sunk;
     flow_.compact(sunk);
@@ -135,17 +135,17 @@ void SoilBed::end_step() {
       compacted_ += units;
       flow_.compact(units);
     }
-    flow_.set_down();
+    flow_.deposit();
   }
   if (options_.avalanches) flow_.slide(kSlidesPerStep);
-  slopes_left_ = options_.avalanches ? flow_.waiting() : 0;
+  slopes_left_ = options_.avalanches ? flow_.queued() : 0;
   flow_.uncover();
   ++step_;
 }
 
-int64_t SoilBed::settle(int64_t most) {
+int64_t SoilBed::settle(int64_t max_moves) {
   flow_.wake_all();
-  return flow_.slide(most);
+  return flow_.slide(max_moves);
 }
 
 }  // namespace screed

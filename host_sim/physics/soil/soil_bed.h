@@ -5,10 +5,10 @@
 // the level from which Bekker's sinkage counts; their difference is the plastic sinkage. Material
 // that moves changes both, in pairwise opposite amounts, so that the volume is exact; material that
 // is compacted is booked. A node stands for a cell: its pressure is the mean over the cell, of
-// Bekker's law at a lattice of places below the body (footprint.h), so a body may cover a cell in
-// part and the result does not depend on where the grid lies. Places that the lowest point of a
-// rolling wheel has passed are known to be unloading, from the geometry alone, which spares a
-// memory finer than the grid.
+// Bekker's law at a lattice of sample points below the body (footprint.h), so a body may cover a
+// cell in part and the result does not depend on where the grid lies. Sample points that the lowest
+// point of a rolling wheel has passed are known to be unloading, from the geometry alone, which
+// spares a memory finer than the grid.
 //
 // Forces of a footprint are summed in a fixed order: the same bits on every compiler and any number
 // of worlds side by side.
@@ -38,21 +38,21 @@ struct SoilOptions {
   NormalStress normal_stress = NormalStress::kRadial;
   bool bulldozing = true;  ///< sunk and dragged material moves; false: it is compacted where it was
   bool avalanches = true;  ///< slopes above the angle of repose slide
-  /// Where a body passed, it is taken to have come along its way, uphill or downhill. false: level,
-  /// as if it had come at its present height, by which long belts sink too deep downhill (the
-  /// simpler model, for comparisons).
+  /// Where a body passed, it is taken to have come along its path, uphill or downhill. false:
+  /// level, as if it had come at its present height, by which long belts sink too deep downhill
+  /// (the simpler model, for comparisons).
   bool follow_slopes = true;
-  double sample_spacing_m = 0.00125;  ///< of the places inside a cell, at most
+  double sample_spacing_m = 0.00125;  ///< of the sample points inside a cell, at most
 };
 
 /// Volumes in units of height times cells. Always: heights_now = heights_before - compacted -
-/// in_hand.
+/// in_transit.
 struct VolumeBalance {
   int64_t before = 0;
   int64_t now = 0;
   int64_t compacted = 0;
-  int64_t in_hand = 0;  ///< sunk in the last steps and not yet set down
-  int64_t error() const { return before - compacted - in_hand - now; }
+  int64_t in_transit = 0;  ///< sunk in the last steps and not yet deposited
+  int64_t error() const { return before - compacted - in_transit - now; }
 };
 
 class SoilBed {
@@ -66,22 +66,22 @@ class SoilBed {
   /// A footprint by itself: it sinks and does not tilt.
   SoilReaction press(const Footprint& footprint, const FootprintMotion& motion, double dt,
                      ContactMemory& memory);
-  /// Ends a step: what was sunk is set down beside the footprints, slopes slide.
+  /// Ends a step: what was sunk is deposited beside the footprints, slopes slide.
   void end_step();
-  /// Lets slopes slide until none is too steep, or `most` moves were made; returns the moves.
-  int64_t settle(int64_t most = INT64_MAX);
+  /// Lets slopes slide until none is too steep, or `max_moves` moves were made; returns the moves.
+  int64_t settle(int64_t max_moves = INT64_MAX);
 
   const HeightField& surface() const { return flow_.surface(); }
   /// Whether the slopes round a node are still to be looked at: a body stood on it in the last step
   /// and held it, or more slid than a step has time for; then slopes_left() was not 0.
-  bool slope_waits(int ix, int iy) const { return flow_.waits(flow_.index(ix, iy)); }
+  bool is_slope_queued(int ix, int iy) const { return flow_.is_queued(flow_.index(ix, iy)); }
   /// Nodes that the last step had no time for.
   size_t slopes_left() const { return slopes_left_; }
   const SoilParameters& soil() const { return soil_; }
   VolumeBalance balance() const;
 
  private:
-  enum class Lattice : uint8_t {  // the places of a cell where the body's surface is looked at
+  enum class Lattice : uint8_t {  // the sample points of a cell
     kMiddle,                      // one: below a plane
     kRook,  // one in each row and column: sees what varies along or across as finely as all
     kFull,  // all: at the rim of a body with corners
@@ -91,8 +91,8 @@ class SoilBed {
     double elastic;  // E, Pa/m
     const PowerTable* table;
   };
-  /// What a node remembers of the last contact. Shear is the mean over the touching part.
-  struct Trace {
+  /// History of a node's last contact. Shear is the mean over the touching part.
+  struct CellHistory {
     uint32_t step = 0;     // of that contact
     float share = 0.0F;    // of the cell that touched
     float along = 0.0F;    // mobilised share of the shear strength along the belt, -1..1
@@ -107,11 +107,11 @@ class SoilBed {
     int iy;
     Lattice lattice;
   };
-  struct Cell {  // one cell under a footprint, sampled
+  struct SoilCell {  // one cell under a footprint, sampled
     size_t node;
     int ix;
     int iy;
-    double share;     // of the cell that bears
+    double share;     // of the cell that carries load
     double pressed;   // plastic sinkage that virgin soil would have by this contact, m
     double pressure;  // mean pressure of virgin soil, Pa
     double rate;      // of that pressure with further sinking, Pa/m
@@ -120,10 +120,10 @@ class SoilBed {
     double tilt_x;  // the same of the surface alone, mean over the touching part
     double tilt_y;
     Eigen::Vector3d moment;  // of mean pressure, about the footprint's centre
-    Eigen::Vector3d arm;     // mean place of the pressure, from the footprint's centre
-    double lead;  // mean place of the pressure ahead of the mean place of the touching part, along
-                  // local x, m
-    double sunk;  // plastic sinkage, m
+    Eigen::Vector3d arm;     // centre of pressure, from the footprint's centre
+    double lead;             // centre of pressure ahead of the centre of the contact area, along
+                             // local x, m
+    double sunk;             // plastic sinkage, m
   };
   struct Range {  // of one footprint among cells_
     size_t begin;
@@ -136,11 +136,11 @@ class SoilBed {
   struct Digging {
     Digging(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
         : forward(along), side(across) {}
-    void add(const Cell& cell, double sliding, double mobilised);
+    void add(const SoilCell& cell, double sliding, double mobilised);
     Eigen::Vector3d forward;  // level, unit length
     Eigen::Vector3d side;
     double share = 0.0;
-    double first_along = 0.0;  // of the cells' places
+    double first_along = 0.0;  // of the cells' positions
     double first_across = 0.0;
     double second_along = 0.0;
     double second_across = 0.0;
@@ -149,18 +149,20 @@ class SoilBed {
 
   Range find_cells(const SoilContact& contact, double elastic);
   void find_candidates(const Footprint& footprint, double rise);
-  void add_places(const Candidate& candidate);
+  void add_sample_points(const Candidate& candidate);
   bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
-              Cell& cell);
-  template <size_t places>
+              SoilCell& cell);
+  template <size_t static_count>
   bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, size_t number,
-              const Law& law, Cell& cell);
-  void remember_cover(Trace& trace, double covered, double sunk) const;
+              const Law& law, SoilCell& cell);
+  void update_coverage(CellHistory& history, double covered, double sunk) const;
   void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
   void react(const Range& range, const PressingBody& body, SoilContact& contact, double dt);
   void dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt);
-  size_t places_of(Lattice lattice) const;
-  bool fresh(const Trace& trace) const { return trace.step == 0 || trace.step + 1 < step_; }
+  size_t sample_count(Lattice lattice) const;
+  bool fresh(const CellHistory& history) const {
+    return history.step == 0 || history.step + 1 < step_;
+  }
 
   SoilParameters soil_;
   SoilOptions options_;
@@ -170,8 +172,9 @@ class SoilBed {
   std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
   double cell_area_;
-  int samples_;                 // along one side of a cell
-  std::vector<double> rook_x_;  // places in a cell, one in each row and column, from its middle, m
+  int samples_per_side_;  // along one side of a cell
+  std::vector<double>
+      rook_x_;  // sample points in a cell, one in each row and column, from its middle, m
   std::vector<double> rook_y_;
   int64_t volume_before_;
   int64_t compacted_ = 0;
@@ -179,12 +182,12 @@ class SoilBed {
   double dig_rest_ = 0.0;
   size_t slopes_left_ = 0;
   uint32_t step_ = 1;
-  std::vector<Trace> traces_;
+  std::vector<CellHistory> histories_;
 
   // Of the body being pressed; kept for their room.
-  FootprintPlaces places_;
+  FootprintSamples sample_points_;
   std::vector<Candidate> candidates_;
-  std::vector<Cell> cells_;  // the first cell_count_ of them
+  std::vector<SoilCell> cells_;  // the first cell_count_ of them
   size_t cell_count_ = 0;
   std::vector<SoilSpring> springs_;
   std::vector<Range> ranges_;

@@ -1,10 +1,10 @@
 // The cells of a soil bed under a footprint: which they are, and what Bekker's law gives as a mean
-// over places inside each.
+// over sample points inside each.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "host_sim/physics/soil/pair.h"
+#include "host_sim/physics/soil/double2.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
@@ -33,12 +33,12 @@ SoilBed::Range SoilBed::find_cells(const SoilContact& contact, double elastic) {
   const double rise = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
   find_candidates(footprint, rise);
   size_t needed = 0;
-  for (const Candidate& candidate : candidates_) needed += places_of(candidate.lattice);
-  places_.clear(needed);
-  for (const Candidate& candidate : candidates_) add_places(candidate);
-  FootprintWay came = memory.came;
-  if (came.along_m != 0.0) came.along_m += std::copysign(spacing, came.along_m);
-  footprint.surface(spacing / samples_, came, places_);
+  for (const Candidate& candidate : candidates_) needed += sample_count(candidate.lattice);
+  sample_points_.clear(needed);
+  for (const Candidate& candidate : candidates_) add_sample_points(candidate);
+  PathHistory path = memory.path;
+  if (path.along_m != 0.0) path.along_m += std::copysign(spacing, path.along_m);
+  footprint.surface(spacing / samples_per_side_, path, sample_points_);
   Range range{cell_count_, cell_count_, law, 0};
   if (cells_.size() < cell_count_ + candidates_.size()) {
     cells_.resize(cell_count_ + candidates_.size());
@@ -46,7 +46,7 @@ SoilBed::Range SoilBed::find_cells(const SoilContact& contact, double elastic) {
   size_t first = 0;
   for (const Candidate& candidate : candidates_) {
     if (sample(footprint, candidate, first, law, cells_[cell_count_])) ++cell_count_;
-    first += places_of(candidate.lattice);
+    first += sample_count(candidate.lattice);
   }
   range.end = cell_count_;
   return range;
@@ -77,13 +77,13 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
     iy1 = std::min(iy1, field.ny() - 1);
   }
   if (ix1 < ix0 || iy1 < iy0) return;
-  places_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
+  sample_points_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
   for (int iy = iy0; iy <= iy1; ++iy) {
-    for (int ix = ix0; ix <= ix1; ++ix) places_.add(field.node_x(ix), field.node_y(iy));
+    for (int ix = ix0; ix <= ix1; ++ix) sample_points_.add(field.node_x(ix), field.node_y(iy));
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.across(spacing);
-  footprint.surface(edge, places_);
+  footprint.surface(edge, sample_points_);
   const double rim = footprint.lowest_at_rim(spacing);
   size_t i = 0;
   for (int iy = iy0; iy <= iy1; ++iy) {
@@ -91,15 +91,16 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
       const size_t node = flow_.node_on(ix, iy);
       const double ground = flow_.height(node) * kHeightUnit_m + rise;
       Lattice lattice = Lattice::kRook;
-      if (places_.share[i] > 0.0) {
+      if (sample_points_.share[i] > 0.0) {
         // The lower surface of a convex body is a convex function: it lies above its tangent plane
         // at the middle of the cell.
         const double fall =
-            (std::abs(places_.slope_x[i]) + std::abs(places_.slope_y[i])) * 0.5 * spacing;
-        if (places_.height[i] - fall > ground) continue;
-        if (places_.share[i] < 1.0) {
+            (std::abs(sample_points_.slope_x[i]) + std::abs(sample_points_.slope_y[i])) * 0.5 *
+            spacing;
+        if (sample_points_.height[i] - fall > ground) continue;
+        if (sample_points_.share[i] < 1.0) {
           lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kRook;
-        } else if (places_.flat_within[i] > 0.75 * spacing) {
+        } else if (sample_points_.flat_within[i] > 0.75 * spacing) {
           lattice = Lattice::kMiddle;
         }
       } else if (rim > ground) {
@@ -110,43 +111,44 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
   }
 }
 
-size_t SoilBed::places_of(Lattice lattice) const {
-  const auto samples = static_cast<size_t>(samples_);
+size_t SoilBed::sample_count(Lattice lattice) const {
+  const auto samples = static_cast<size_t>(samples_per_side_);
   if (lattice == Lattice::kMiddle) return 2;  // the same place twice: they are taken in pairs
   return lattice == Lattice::kRook ? samples : samples * samples;
 }
 
-void SoilBed::add_places(const Candidate& candidate) {
+void SoilBed::add_sample_points(const Candidate& candidate) {
   const HeightField& field = flow_.surface();
   const double x = field.node_x(candidate.ix);
   const double y = field.node_y(candidate.iy);
   if (candidate.lattice == Lattice::kMiddle) {
-    places_.add(x, y);
-    places_.add(x, y);
+    sample_points_.add(x, y);
+    sample_points_.add(x, y);
     return;
   }
   if (candidate.lattice == Lattice::kFull) {
     for (const double dy : rook_y_) {
-      for (const double dx : rook_y_) places_.add(x + dx, y + dy);
+      for (const double dx : rook_y_) sample_points_.add(x + dx, y + dy);
     }
     return;
   }
   const bool mirror = ((candidate.ix + candidate.iy) & 1) != 0;  // every other cell mirrors them
   const double sense = mirror ? -1.0 : 1.0;
-  for (size_t i = 0; i < rook_x_.size(); ++i) places_.add(x + sense * rook_x_[i], y + rook_y_[i]);
+  for (size_t i = 0; i < rook_x_.size(); ++i)
+    sample_points_.add(x + sense * rook_x_[i], y + rook_y_[i]);
 }
 
 /// Where the body covers less or more of a cell than a step ago, the plastic sinkage of what it
-/// covers and of the rest is told anew; their sum stays.
-void SoilBed::remember_cover(Trace& trace, double covered, double sunk) const {
-  double before = static_cast<double>(trace.covered);
-  double beside = static_cast<double>(trace.beside);
-  double old = static_cast<double>(trace.old);
-  if (fresh(trace)) {
+/// covers and of the rest is divided anew; their sum stays.
+void SoilBed::update_coverage(CellHistory& history, double covered, double sunk) const {
+  double before = static_cast<double>(history.covered);
+  double beside = static_cast<double>(history.beside);
+  double old = static_cast<double>(history.old);
+  if (fresh(history)) {
     // What was pressed in an earlier contact lies below this body, as far as it covers it.
     old = sunk / std::max({covered, before, 1e-3});
     beside = sunk - covered * old;
-    trace.share = trace.along = trace.across = 0.0F;
+    history.share = history.along = history.across = 0.0F;
   } else if (covered < before) {
     beside = sunk - covered * (sunk - beside) / before;
   } else if (covered > before) {
@@ -154,26 +156,26 @@ void SoilBed::remember_cover(Trace& trace, double covered, double sunk) const {
     old = (before * old + (covered - before) * rest) / covered;
     beside -= (covered - before) * rest;
   }
-  trace.covered = static_cast<float>(covered);
-  trace.beside = static_cast<float>(beside);
-  trace.old = static_cast<float>(old);
+  history.covered = static_cast<float>(covered);
+  history.beside = static_cast<float>(beside);
+  history.old = static_cast<float>(old);
 }
 
-/// Means over a cell of what Bekker's law gives at a lattice of places in it, as if nothing but
-/// earlier contacts had touched it.
+/// Means over a cell of what Bekker's law gives at a lattice of sample points in it, as if nothing
+/// but earlier contacts had touched it.
 bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
-                     const Law& law, Cell& cell) {
+                     const Law& law, SoilCell& cell) {
   // A single pair, as on fine grids, needs no loop.
-  const size_t count = places_of(candidate.lattice);
+  const size_t count = sample_count(candidate.lattice);
   return count == 2 ? sample<2>(footprint, candidate, first, count, law, cell)
                     : sample<0>(footprint, candidate, first, count, law, cell);
 }
 
-/// `places`: known to the compiler, or 0.
-template <size_t places>
+/// `static_count`: the number of sample points where the compiler knows it, else 0.
+template <size_t static_count>
 bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
-                     size_t number, const Law& law, Cell& cell) {
-  const size_t count = places != 0 ? places : number;
+                     size_t number, const Law& law, SoilCell& cell) {
+  const size_t count = static_count != 0 ? static_count : number;
   const double mean = 1.0 / static_cast<double>(count);
   const Eigen::Vector3d& centre = footprint.pose().translation();
   const double forward_x = footprint.pose().linear()(0, 0);
@@ -183,68 +185,70 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   double covered = 0.0;
   double lowest = std::numeric_limits<double>::infinity();
   for (size_t i = first; i < first + count; ++i) {
-    covered += places_.share[i];
-    if (places_.share[i] > 0.0) lowest = std::min(lowest, places_.passed[i]);
+    covered += sample_points_.share[i];
+    if (sample_points_.share[i] > 0.0) lowest = std::min(lowest, sample_points_.passed[i]);
   }
   if (lowest >= reference) return false;
-  Trace& trace = traces_[candidate.node];
-  remember_cover(trace, covered * mean, cell.sunk);
-  const double old = static_cast<double>(trace.old);
+  CellHistory& history = histories_[candidate.node];
+  update_coverage(history, covered * mean, cell.sunk);
+  const double old = static_cast<double>(history.old);
   const double elastic = law.elastic;
   const double compliance = 1.0 / elastic;
   const double exponent = law.table->exponent();
 
-  const Pair zero = both(0.0);
-  const Pair level = both(reference);
-  const Pair bekker = both(law.bekker);
-  const Pair stiffness = both(elastic);
-  const Pair before = both(old);
-  const Pair cx = both(centre.x());
-  const Pair cy = both(centre.y());
-  const Pair cz = both(centre.z());
-  Pair shares = zero;
-  Pair depths = zero;
-  Pair pressures = zero;
-  Pair rates = zero;
-  Pair x_shares = zero;
-  Pair y_shares = zero;
-  Pair tilts_x = zero;
-  Pair tilts_y = zero;
-  Pair lifts_x = zero;
-  Pair lifts_y = zero;
-  Pair arms_x = zero;
-  Pair arms_y = zero;
-  Pair arms_z = zero;
-  Pair z_lifts_x = zero;
-  Pair z_lifts_y = zero;
-  Pair twists = zero;
+  const Double2 zero = broadcast(0.0);
+  const Double2 level = broadcast(reference);
+  const Double2 bekker = broadcast(law.bekker);
+  const Double2 stiffness = broadcast(elastic);
+  const Double2 before = broadcast(old);
+  const Double2 cx = broadcast(centre.x());
+  const Double2 cy = broadcast(centre.y());
+  const Double2 cz = broadcast(centre.z());
+  Double2 shares = zero;
+  Double2 depths = zero;
+  Double2 pressures = zero;
+  Double2 rates = zero;
+  Double2 x_shares = zero;
+  Double2 y_shares = zero;
+  Double2 tilts_x = zero;
+  Double2 tilts_y = zero;
+  Double2 lifts_x = zero;
+  Double2 lifts_y = zero;
+  Double2 arms_x = zero;
+  Double2 arms_y = zero;
+  Double2 arms_z = zero;
+  Double2 z_lifts_x = zero;
+  Double2 z_lifts_y = zero;
+  Double2 twists = zero;
   for (size_t i = first; i < first + count; i += 2) {
-    const Pair part = load(&places_.share[i]);
+    const Double2 part = load(&sample_points_.share[i]);
     const auto over = part > zero;
-    const Pair height = load(&places_.height[i]);
+    const Double2 height = load(&sample_points_.height[i]);
     // Deepest so far: where the surface rises again, what has passed before.
-    const Pair passed = load(&places_.passed[i]);
-    const Pair deepest = over ? greater(zero, level - passed) : zero;
+    const Double2 passed = load(&sample_points_.passed[i]);
+    const Double2 deepest = over ? maximum(zero, level - passed) : zero;
     // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
-    const Pair virgin = bekker * Pair{law.table->power(deepest[0]), law.table->power(deepest[1])};
-    const Pair stiff = stiffness * (deepest - before);
+    const Double2 virgin =
+        bekker * Double2{law.table->power(deepest[0]), law.table->power(deepest[1])};
+    const Double2 stiff = stiffness * (deepest - before);
     const auto yields = virgin < stiff;
-    const Pair loaded = greater(zero, yields ? virgin : stiff);
-    depths += part * greater(before, deepest - loaded * both(compliance));
-    const Pair now = loaded - stiffness * (height - passed);
-    const Pair bears = over & (now > zero) ? part : zero;
-    const Pair weight = bears > zero ? part * now : zero;
-    const Pair x = load(&places_.x[i]) - cx;
-    const Pair y = load(&places_.y[i]) - cy;
-    const Pair z = height - cz;
-    const Pair slope_x = bears > zero ? load(&places_.slope_x[i]) : zero;
-    const Pair slope_y = bears > zero ? load(&places_.slope_y[i]) : zero;
-    const Pair wx = weight * slope_x;
-    const Pair wy = weight * slope_y;
-    const Pair arm_z = bears > zero ? z : zero;
+    const Double2 loaded = maximum(zero, yields ? virgin : stiff);
+    depths += part * maximum(before, deepest - loaded * broadcast(compliance));
+    const Double2 now = loaded - stiffness * (height - passed);
+    const Double2 bears = over & (now > zero) ? part : zero;
+    const Double2 weight = bears > zero ? part * now : zero;
+    const Double2 x = load(&sample_points_.x[i]) - cx;
+    const Double2 y = load(&sample_points_.y[i]) - cy;
+    const Double2 z = height - cz;
+    const Double2 slope_x = bears > zero ? load(&sample_points_.slope_x[i]) : zero;
+    const Double2 slope_y = bears > zero ? load(&sample_points_.slope_y[i]) : zero;
+    const Double2 wx = weight * slope_x;
+    const Double2 wy = weight * slope_y;
+    const Double2 arm_z = bears > zero ? z : zero;
     shares += bears;
     pressures += weight;
-    rates += bears * (yields ? both(exponent) * virgin / greater(deepest, both(1e-9)) : stiffness);
+    rates += bears * (yields ? broadcast(exponent) * virgin / maximum(deepest, broadcast(1e-9))
+                             : stiffness);
     x_shares += bears * x;
     y_shares += bears * y;
     tilts_x += bears * slope_x;
@@ -266,7 +270,7 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   cell.ix = candidate.ix;
   cell.iy = candidate.iy;
   cell.share = share * mean;
-  cell.pressed = sum(depths) * mean + static_cast<double>(trace.beside);
+  cell.pressed = sum(depths) * mean + static_cast<double>(history.beside);
   cell.pressure = pressure * mean;
   cell.rate = sum(rates) * mean;
   cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;
@@ -297,7 +301,7 @@ void SoilBed::measure_patch(const Footprint& footprint, size_t begin, ContactMem
   double yy = 0.0;
   double own = 0.0;
   for (size_t i = begin; i < cell_count_; ++i) {
-    const Cell& cell = cells_[i];
+    const SoilCell& cell = cells_[i];
     const double cx = cell.arm.x();
     const double cy = cell.arm.y();
     area += cell.share;
@@ -315,9 +319,9 @@ void SoilBed::measure_patch(const Footprint& footprint, size_t begin, ContactMem
   const double vyy = (yy + own - y * y / area) / area;
   const double vxy = (xy - x * y / area) / area;
   const double half_trace = 0.5 * (vxx + vyy);
-  const double smaller =
+  const double minimum =
       half_trace - std::sqrt(std::max(0.0, 0.25 * (vxx - vyy) * (vxx - vyy) + vxy * vxy));
-  const double narrow = std::sqrt(std::max(0.0, smaller));
+  const double narrow = std::sqrt(std::max(0.0, minimum));
   memory.patch_b_m = footprint.round() ? 2.0 * narrow : std::sqrt(12.0) * narrow;
 }
 

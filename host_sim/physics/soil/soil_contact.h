@@ -1,4 +1,5 @@
-// What a body that presses on soil tells it, what it is told, and what is remembered in between.
+// Contact of a body with soil: the body's state, the soil's reaction, and what is kept between
+// steps.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -45,7 +46,7 @@ struct ContactMemory {
   double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
   double patch_area_m2 = 0.0;
   double sinkage = 0.0;  ///< greatest depth in the last step, m
-  FootprintWay came;     ///< since touching or turning back; its rise is that of late
+  PathHistory path;      ///< since contact began or the body turned back; its rise is recent
   BodyMemory alone;      ///< of a footprint that is pressed by itself
 };
 

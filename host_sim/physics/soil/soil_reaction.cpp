@@ -11,7 +11,7 @@ namespace {
 // Below this speed a body does not roll into new soil, m/s.
 constexpr double kRolling = 1e-3;
 // Of strength: what is mobilised more than all but this has no beginning to be looked for.
-constexpr double kHardlyLess = 1e-9;
+constexpr double kMinRemainder = 1e-9;
 
 /// 1 - exp(-x): x is mostly small, and there Pade's fraction of second order is within 2e-8.
 double fading(double x) {
@@ -20,7 +20,7 @@ double fading(double x) {
 
 }  // namespace
 
-void SoilBed::Digging::add(const Cell& cell, double sliding, double mobilised) {
+void SoilBed::Digging::add(const SoilCell& cell, double sliding, double mobilised) {
   const double along = cell.arm.dot(forward);
   const double across = cell.arm.dot(side);
   share += cell.share;
@@ -62,7 +62,7 @@ void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double 
   compacted_ += flow_.dig(patch, units, compacted);
 }
 
-/// What gives way in a footprint's cells, and their forces.
+/// How the soil yields in a footprint's cells, and the forces of the cells.
 void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& contact, double dt) {
   contact.reaction = {};
   if (range.begin == range.end) return;
@@ -78,25 +78,25 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
   const double elastic = range.law.elastic;
   const double units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
   const double per_shear_modulus = 1.0 / soil_.shear_modulus_m;
-  const Eigen::Vector3d level_way = axle.cross(Eigen::Vector3d::UnitZ()).normalized();
-  const Eigen::Vector3d level_side = Eigen::Vector3d::UnitZ().cross(level_way);
+  const Eigen::Vector3d level_forward = axle.cross(Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d level_side = Eigen::Vector3d::UnitZ().cross(level_forward);
   int64_t sunk_units = 0;
-  Digging digging(level_way, level_side);
+  Digging digging(level_forward, level_side);
 
   for (size_t i = range.begin; i < range.end; ++i) {
-    const Cell& cell = cells_[i];
-    Trace& trace = traces_[cell.node];
+    const SoilCell& cell = cells_[i];
+    CellHistory& history = histories_[cell.node];
     const double sinking = springs_[i].sinking;
     const double along_elastic =
         cell.pressure + elastic * (cell.pressed - cell.sunk + sinking * cell.share);
     const double pressure =
         std::max(0.0, std::min(along_elastic, cell.pressure + cell.rate * sinking));
-    // What the elastic part does not explain is plastic: soil gave way.
+    // What the elastic part does not explain is plastic: the soil yielded.
     const auto units =
         static_cast<Height>(std::lrint((along_elastic - pressure) * units_per_pressure));
     if (pressure <= 0.0) {
       // Not touching: the next contact finds what this one left.
-      trace.step = 0;
+      history.step = 0;
       continue;
     }
     if (units > 0) {
@@ -118,12 +118,12 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     // Forward along the surface, at right angles to the axle.
     const Eigen::Vector3d tread = axle.cross(face);
     const Eigen::Vector3d surface = velocity - contact.surface_speed * tread;
-    const double slide_along = surface.dot(radial ? tread : level_way);
+    const double slide_along = surface.dot(radial ? tread : level_forward);
     const double slide_across = surface.dot(radial ? face.cross(tread) : level_side);
     // Directions in the plane in which the soil shears.
     const Eigen::Vector3d normal = radial ? Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0)
                                           : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d lengthwise = radial ? along : level_way;
+    const Eigen::Vector3d lengthwise = radial ? along : level_forward;
     const Eigen::Vector3d sideways = radial ? normal.cross(along) / steep : level_side;
 
     // Mobilised shear: the mean over the touching part of the cell. What has just come into touch
@@ -132,24 +132,25 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     const double per_sliding = sliding > 0.0 ? 1.0 / sliding : 0.0;
     const double to_along = slide_along * per_sliding;
     const double to_across = slide_across * per_sliding;
-    const double kept = std::min(static_cast<double>(trace.share), cell.share) / cell.share;
+    const double kept = std::min(static_cast<double>(history.share), cell.share) / cell.share;
     const double fades = fading(sliding * dt * per_shear_modulus);
     const double stays = kept * (1.0 - fades);
     const double comes = 0.5 * (1.0 + kept) * fades;
-    const double mean_along = static_cast<double>(trace.along) * stays + to_along * comes;
-    const double mean_across = static_cast<double>(trace.across) * stays + to_across * comes;
-    trace.step = step_;
-    trace.share = static_cast<float>(cell.share);
-    trace.along = static_cast<float>(mean_along);
-    trace.across = static_cast<float>(mean_across);
+    const double mean_along = static_cast<double>(history.along) * stays + to_along * comes;
+    const double mean_across = static_cast<double>(history.across) * stays + to_across * comes;
+    history.step = step_;
+    history.share = static_cast<float>(cell.share);
+    history.along = static_cast<float>(mean_along);
+    history.across = static_cast<float>(mean_across);
 
-    // Where the pressure is higher the soil has sheared for longer, by the way between the two
-    // means of place. That stress answers to a shear that is further on is its damping.
+    // Where the pressure is higher the soil has sheared for longer, by the distance between the
+    // centre of pressure and that of the contact. That stress answers to a shear that is further on
+    // is its damping.
     const double ahead = soil_.shear_damping_s - cell.lead * per_speed;
-    // Nowhere does that lie before shear along this way began.
+    // Nowhere does that lie before shear in this direction began.
     const double begun = std::max(0.0, mean_along * to_along + mean_across * to_across);
     const double further = std::max(fading(sliding * ahead * per_shear_modulus),
-                                    -begun / std::max(1.0 - begun, kHardlyLess));
+                                    -begun / std::max(1.0 - begun, kMinRemainder));
     double m_along = mean_along + (to_along - mean_along) * further;
     double m_across = mean_across + (to_across - mean_across) * further;
     const double squared = m_along * m_along + m_across * m_across;

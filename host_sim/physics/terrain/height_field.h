@@ -101,9 +101,9 @@ class HeightField {
     if (height > highest) highest = height;
   }
 
-  /// For whoever follows the changes of a field: the bed in tiles of kTileNodes x kTileNodes nodes
-  /// (those at the east and north edge are cut off), row by row from the south, and how often a
-  /// node of each was set (modulo 2^32).
+  /// For code that follows the changes of a field: the bed in tiles of kTileNodes x kTileNodes
+  /// nodes (those at the east and north edge are cut off), row by row from the south, and how often
+  /// a node of each was set (modulo 2^32).
   static constexpr int kTileNodes = 16;
   [[nodiscard]] int tiles_x() const { return tiles_x_; }
   [[nodiscard]] const std::vector<uint32_t>& tile_revisions() const { return tile_revisions_; }
@@ -148,7 +148,7 @@ class HeightField {
     double beds_per_node;  // 1 / nodes
   };
   /// A place along one axis: between nodes `low` and `high`, `fraction` of the way.
-  struct Place {
+  struct AxisPosition {
     size_t low;
     size_t high;
     double fraction;
@@ -162,12 +162,12 @@ class HeightField {
   [[nodiscard]] size_t tile_index(int tx, int ty) const {
     return static_cast<size_t>(ty) * static_cast<size_t>(tiles_x_) + static_cast<size_t>(tx);
   }
-  [[nodiscard]] Place locate(double coordinate, const Axis& axis) const {
+  [[nodiscard]] AxisPosition locate(double coordinate, const Axis& axis) const {
     const double node = (coordinate - axis.begin_m) * nodes_per_m_;
     return wrap_ ? locate_wrapped(node, axis) : locate_clamped(node, axis);
   }
-  [[nodiscard]] Place locate_clamped(double node, const Axis& axis) const;
-  [[nodiscard]] Place locate_wrapped(double node, const Axis& axis) const;
+  [[nodiscard]] AxisPosition locate_clamped(double node, const Axis& axis) const;
+  [[nodiscard]] AxisPosition locate_wrapped(double node, const Axis& axis) const;
 
   Axis x_axis_;
   Axis y_axis_;
@@ -182,7 +182,7 @@ class HeightField {
   std::vector<uint32_t> tile_revisions_;
 };
 
-inline HeightField::Place HeightField::locate_clamped(double node, const Axis& axis) const {
+inline HeightField::AxisPosition HeightField::locate_clamped(double node, const Axis& axis) const {
   double clamped = node > 0.0 ? node : 0.0;  // also catches what is no number
   clamped = clamped < axis.last ? clamped : axis.last;
   int low = static_cast<int>(clamped);
@@ -191,11 +191,11 @@ inline HeightField::Place HeightField::locate_clamped(double node, const Axis& a
           clamped == node ? gradient_scale_ : 0.0};
 }
 
-inline HeightField::Place HeightField::locate_wrapped(double node, const Axis& axis) const {
-  constexpr double kMostBeds = 1e9;
+inline HeightField::AxisPosition HeightField::locate_wrapped(double node, const Axis& axis) const {
+  constexpr double kMaxBeds = 1e9;
   const double beds = node * axis.beds_per_node;
   double within = 0.0;
-  if (std::abs(beds) < kMostBeds) {
+  if (std::abs(beds) < kMaxBeds) {
     auto whole = static_cast<int64_t>(beds);
     whole -= beds < static_cast<double>(whole) ? 1 : 0;  // floor, without a call to the library
     within = node - static_cast<double>(whole) * axis.nodes;
@@ -208,8 +208,8 @@ inline HeightField::Place HeightField::locate_wrapped(double node, const Axis& a
 }
 
 inline SurfacePoint HeightField::at(double x, double y) const {
-  const Place u = locate(x, x_axis_);
-  const Place v = locate(y, y_axis_);
+  const AxisPosition u = locate(x, x_axis_);
+  const AxisPosition v = locate(y, y_axis_);
   const Height* south = heights_.data() + v.low * static_cast<size_t>(x_axis_.nodes);
   const Height* north = heights_.data() + v.high * static_cast<size_t>(x_axis_.nodes);
   // In doubles a difference of heights cannot overflow and is exact.

@@ -59,17 +59,17 @@ ChainTrack::ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& 
   axes_ << forward, Eigen::Vector3d::UnitY(), forward.cross(Eigen::Vector3d::UnitY());
 
   // Over the upper run to the front, down round the front wheel, back below, up round the rear one.
-  const auto on_loop = [&](double way, double r) -> Vector2 {
-    if (way < 2.0 * half_length_) return {way - half_length_, r};
-    way -= 2.0 * half_length_;
+  const auto on_loop = [&](double distance, double r) -> Vector2 {
+    if (distance < 2.0 * half_length_) return {distance - half_length_, r};
+    distance -= 2.0 * half_length_;
     const double half_turn = std::numbers::pi * radius;
-    if (way < half_turn) {
-      return {half_length_ + r * std::sin(way / radius), r * std::cos(way / radius)};
+    if (distance < half_turn) {
+      return {half_length_ + r * std::sin(distance / radius), r * std::cos(distance / radius)};
     }
-    way -= half_turn;
-    if (way < 2.0 * half_length_) return {half_length_ - way, -r};
-    way -= 2.0 * half_length_;
-    return {-half_length_ - r * std::sin(way / radius), -r * std::cos(way / radius)};
+    distance -= half_turn;
+    if (distance < 2.0 * half_length_) return {half_length_ - distance, -r};
+    distance -= 2.0 * half_length_;
+    return {-half_length_ - r * std::sin(distance / radius), -r * std::cos(distance / radius)};
   };
   // The middles of the links lie on the wheels, pressed on by the tension.
   const double pitch = loop / links;
@@ -95,14 +95,14 @@ ChainTrack::ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& 
 
   shoes_.assign(rest_.size(), Footprint::box({link_length_, geometry.width, kShoeThickness_m}));
   solver_ = ChainSolver(rest_.size());
-  touches_.reserve(kRows * rest_.size());
-  bites_.reserve(2 * rest_.size());
-  ground_force_.resize(rest_.size());
+  shoe_contacts_.reserve(kRows * rest_.size());
+  engagements_.reserve(2 * rest_.size());
+  terrain_force_.resize(rest_.size());
   reset();
 }
 
 void ChainTrack::reset() {
-  place_ = rest_;
+  position_ = rest_;
   velocity_.assign(pins(), Eigen::Vector3d::Zero());
   bristles_.assign(kRows * pins(), Eigen::Vector3d::Zero());
   teeth_.assign(pins(), {0.0, 0.0});
@@ -123,13 +123,13 @@ std::vector<Eigen::Vector3d> ChainTrack::points() const {
 
 double ChainTrack::length_m() const {
   double length = 0.0;
-  for (size_t i = 0; i < pins(); ++i) length += (place_[after(i)] - place_[i]).norm();
+  for (size_t i = 0; i < pins(); ++i) length += (position_[after(i)] - position_[i]).norm();
   return length;
 }
 
 double ChainTrack::farthest_from_loop_m() const {
   double farthest = 0.0;
-  for (const Vector2& pin : place_) {
+  for (const Vector2& pin : position_) {
     const double beyond = std::abs(pin.x()) - half_length_;
     const double from_line = beyond > 0.0 ? std::hypot(beyond, pin.y()) : std::abs(pin.y());
     farthest = std::max(farthest, std::abs(from_line - geometry_.radius));
@@ -147,18 +147,18 @@ double ChainTrack::kinetic_energy_j(const CarrierMotion& carrier) const {
   return energy;
 }
 
-ChainTrack::Frame ChainTrack::frame_of(const CarrierMotion& carrier) const {
+ChainTrack::PlaneFrame ChainTrack::frame_of(const CarrierMotion& carrier) const {
   return {carrier.rotation * axes_, carrier.origin + carrier.rotation * centre_, carrier};
 }
 
-ChainTrack::Frame ChainTrack::move_pins(const CarrierMotion& carrier, double dt) {
-  Frame frame = frame_of(carrier);
+ChainTrack::PlaneFrame ChainTrack::move_pins(const CarrierMotion& carrier, double dt) {
+  PlaneFrame frame = frame_of(carrier);
   for (size_t i = 0; i < pins(); ++i) {
-    const Eigen::Vector3d carried = frame.carrier_velocity(frame.place(place_[i]));
+    const Eigen::Vector3d carried = frame.carrier_velocity(frame.to_world(position_[i]));
     if (at_rest_) {
       velocity_[i] = carried;
     } else {
-      place_[i] += dt * frame.in_plane(velocity_[i] - carried);
+      position_[i] += dt * frame.in_plane(velocity_[i] - carried);
     }
   }
   at_rest_ = false;
@@ -172,10 +172,10 @@ void ChainTrack::add_force(size_t pin, const Vector2& force, const Matrix2& gain
   solver_.diagonal[pin] += dt * gain;
 }
 
-void ChainTrack::add_links(const Frame& frame, double dt) {
+void ChainTrack::add_links(const PlaneFrame& frame, double dt) {
   for (size_t i = 0; i < pins(); ++i) {
     const size_t j = after(i);
-    const Vector2 run = place_[j] - place_[i];
+    const Vector2 run = position_[j] - position_[i];
     const double length = run.norm();
     const Vector2 along = run / length;
     const Matrix2 lengthwise = along * along.transpose();
@@ -192,17 +192,17 @@ void ChainTrack::add_links(const Frame& frame, double dt) {
 
 // A wheel touches a link where the link comes closest to its axle: it rolls on links that lie flat,
 // as on a rail, and does not bump from pin to pin.
-void ChainTrack::add_wheels(const Frame& frame, const WheelRates& rates, double dt) {
-  bites_.clear();
+void ChainTrack::add_wheels(const PlaneFrame& frame, const WheelRates& rates, double dt) {
+  engagements_.clear();
   const double radius = geometry_.radius;
   for (size_t i = 0; i < pins(); ++i) {
     const size_t j = after(i);
-    const Vector2 run = place_[j] - place_[i];
+    const Vector2 run = position_[j] - position_[i];
     for (const size_t wheel : {0U, 1U}) {
       const Vector2 axle(wheel == 0 ? half_length_ : -half_length_, 0.0);
-      const double share = std::clamp((axle - place_[i]).dot(run) / run.squaredNorm(), 0.0, 1.0);
-      const Vector2 place = place_[i] + share * run;
-      const Vector2 arm = place - axle;
+      const double share = std::clamp((axle - position_[i]).dot(run) / run.squaredNorm(), 0.0, 1.0);
+      const Vector2 position = position_[i] + share * run;
+      const Vector2 arm = position - axle;
       const double distance = arm.norm();
       if (distance > radius + kToothHeight_m) {
         engaged_[i][wheel] = 0;
@@ -213,37 +213,38 @@ void ChainTrack::add_wheels(const Frame& frame, const WheelRates& rates, double 
         engaged_[i][wheel] = 1;
         teeth_[i][wheel] = 0.0;
       }
-      Bite bite{i, wheel, share, arm / distance, Vector2::Zero(), Matrix2::Zero()};
-      const Vector2& out = bite.out;
+      Engagement engagement{i, wheel, share, arm / distance, Vector2::Zero(), Matrix2::Zero()};
+      const Vector2& out = engagement.out;
       const Vector2 along(out.y(), -out.x());
       const Vector2 relative = frame.in_plane((1.0 - share) * velocity_[i] + share * velocity_[j] -
-                                              frame.carrier_velocity(frame.place(place)));
+                                              frame.carrier_velocity(frame.to_world(position)));
       const double outwards = relative.dot(out);
       const double push =
           kWheelStiffness * (radius - distance - dt * outwards) - kWheelDamping * outwards;
       if (distance < radius && push > 0.0) {
-        bite.force += push * out;
-        bite.gain += (kWheelDamping + dt * kWheelStiffness) * out * out.transpose();
+        engagement.force += push * out;
+        engagement.gain += (kWheelDamping + dt * kWheelStiffness) * out * out.transpose();
       }
       const double slide = relative.dot(along) - rates[wheel] * radius;
       teeth_[i][wheel] += dt * slide;  // the change of velocity follows in finish()
-      bite.force -= (kToothStiffness * teeth_[i][wheel] + kToothDamping * slide) * along;
-      bite.gain += (kToothDamping + dt * kToothStiffness) * along * along.transpose();
-      add_force(i, (1.0 - share) * bite.force, (1.0 - share) * (1.0 - share) * bite.gain, dt);
-      add_force(j, share * bite.force, share * share * bite.gain, dt);
-      solver_.next[i] += dt * share * (1.0 - share) * bite.gain;
-      bites_.push_back(bite);
+      engagement.force -= (kToothStiffness * teeth_[i][wheel] + kToothDamping * slide) * along;
+      engagement.gain += (kToothDamping + dt * kToothStiffness) * along * along.transpose();
+      add_force(i, (1.0 - share) * engagement.force,
+                (1.0 - share) * (1.0 - share) * engagement.gain, dt);
+      add_force(j, share * engagement.force, share * share * engagement.gain, dt);
+      solver_.next[i] += dt * share * (1.0 - share) * engagement.gain;
+      engagements_.push_back(engagement);
     }
   }
 }
 
-void ChainTrack::touch_ground(const HeightField& ground, const Frame& frame, double dt) {
-  GroundTouch touch;
+void ChainTrack::collide_terrain(const HeightField& ground, const PlaneFrame& frame, double dt) {
+  TerrainContact contact;
   for (size_t i = 0; i < pins(); ++i) {
-    const Vector2 chord = place_[after(i)] - place_[before(i)];
+    const Vector2 chord = position_[after(i)] - position_[before(i)];
     const Vector2 out = Vector2(-chord.y(), chord.x()).normalized();
     const bool above = out.x() * frame.axes(2, 0) + out.y() * frame.axes(2, 2) > kUpperSide;
-    const Eigen::Vector3d pin = frame.place(place_[i]);
+    const Eigen::Vector3d pin = frame.to_world(position_[i]);
     // Sideways the pin moves as the body does now.
     const Eigen::Vector3d axle = frame.axes.col(1);
     const Eigen::Vector3d moving =
@@ -251,29 +252,29 @@ void ChainTrack::touch_ground(const HeightField& ground, const Frame& frame, dou
     for (int row = 0; row < kRows; ++row) {
       Eigen::Vector3d& bristle = bristles_[kRows * i + static_cast<size_t>(row)];
       const Eigen::Vector3d edge = (row == 0 ? 0.5 : -0.5) * geometry_.width * axle;
-      if (above || !touches(ground, pin + edge, touch)) {
+      if (above || !find_contact(ground, pin + edge, contact)) {
         bristle.setZero();
         continue;
       }
       const Eigen::Vector3d velocity = moving + frame.carrier.omega.cross(edge);
-      const double normal_speed = velocity.dot(touch.normal);
+      const double normal_speed = velocity.dot(contact.normal);
       const double gain = law_.damping + dt * law_.stiffness;
-      const double normal_force = law_.stiffness * touch.depth - gain * normal_speed;
+      const double normal_force = law_.stiffness * contact.depth - gain * normal_speed;
       if (normal_force <= 0.0) {
         bristle.setZero();
         continue;
       }
-      const Eigen::Vector3d sliding = velocity - normal_speed * touch.normal;
-      bristle -= bristle.dot(touch.normal) * touch.normal;
+      const Eigen::Vector3d sliding = velocity - normal_speed * contact.normal;
+      bristle -= bristle.dot(contact.normal) * contact.normal;
       Eigen::Vector3d tangential = -law_.stiffness * bristle - gain * sliding;
       const double limit = law_.friction * normal_force;
       const double size = tangential.norm();
       const double grip = size > limit ? limit / size : 1.0;
       tangential *= grip;
       bristle += dt * sliding;
-      const Eigen::Vector3d force = normal_force * touch.normal + tangential;
-      touches_.push_back({i, row, touch.normal, force, gain, grip});
-      const Vector2 normal = frame.in_plane(touch.normal);
+      const Eigen::Vector3d force = normal_force * contact.normal + tangential;
+      shoe_contacts_.push_back({i, row, contact.normal, force, gain, grip});
+      const Vector2 normal = frame.in_plane(contact.normal);
       add_force(i, frame.in_plane(force),
                 gain * (grip * Matrix2::Identity() + (1.0 - grip) * normal * normal.transpose()),
                 dt);
@@ -281,75 +282,78 @@ void ChainTrack::touch_ground(const HeightField& ground, const Frame& frame, dou
   }
 }
 
-void ChainTrack::begin(const Frame& frame, double dt) {
+void ChainTrack::begin(const PlaneFrame& frame, double dt) {
   const Vector2 weight = -pin_mass_ * kGravity_m_per_s2 * frame.in_plane(Eigen::Vector3d::UnitZ());
   for (size_t i = 0; i < pins(); ++i) {
     solver_.diagonal[i] = pin_mass_ * Matrix2::Identity();
     solver_.right[i] = dt * weight;
-    ground_force_[i].setZero();
+    terrain_force_[i].setZero();
   }
-  touches_.clear();
+  shoe_contacts_.clear();
   normal_load_ = 0.0;
 }
 
-std::array<double, 2> ChainTrack::finish(const Frame& frame, double dt, Wrench& wrench) {
+std::array<double, 2> ChainTrack::finish(const PlaneFrame& frame, double dt, Wrench& wrench) {
   const std::vector<Vector2>& change = solver_.solve();
   const Eigen::Vector3d axle = frame.axes.col(1);
   const Eigen::Vector3d& origin = frame.carrier.origin;
 
-  for (Touch& touch : touches_) {
-    const Eigen::Vector3d more = frame.from_plane(change[touch.pin]);
-    const Eigen::Vector3d along_normal = more.dot(touch.normal) * touch.normal;
+  for (ShoeContact& contact : shoe_contacts_) {
+    const Eigen::Vector3d more = frame.from_plane(change[contact.pin]);
+    const Eigen::Vector3d along_normal = more.dot(contact.normal) * contact.normal;
     const Eigen::Vector3d along_ground = more - along_normal;
     const Eigen::Vector3d force =
-        touch.force - touch.gain * (along_normal + touch.grip * along_ground);
-    Eigen::Vector3d& bristle = bristles_[kRows * touch.pin + static_cast<size_t>(touch.row)];
+        contact.force - contact.gain * (along_normal + contact.grip * along_ground);
+    Eigen::Vector3d& bristle = bristles_[kRows * contact.pin + static_cast<size_t>(contact.row)];
     bristle += dt * along_ground;
-    const double longest = law_.friction * std::max(0.0, force.dot(touch.normal)) / law_.stiffness;
+    const double longest =
+        law_.friction * std::max(0.0, force.dot(contact.normal)) / law_.stiffness;
     const double length = bristle.norm();
     if (length > longest) bristle *= longest / length;
-    ground_force_[touch.pin] += force;
-    const Eigen::Vector3d edge = (touch.row == 0 ? 0.5 : -0.5) * geometry_.width * axle;
+    terrain_force_[contact.pin] += force;
+    const Eigen::Vector3d edge = (contact.row == 0 ? 0.5 : -0.5) * geometry_.width * axle;
     wrench.torque += edge.cross(force);
     normal_load_ += force.z();
   }
 
   std::array<double, 2> torque = {0.0, 0.0};
-  for (const Bite& bite : bites_) {
-    const size_t next = after(bite.link);
-    const Vector2 faster = (1.0 - bite.share) * change[bite.link] + bite.share * change[next];
-    const Vector2 force = bite.force - bite.gain * faster;
-    const Vector2 along(bite.out.y(), -bite.out.x());
-    teeth_[bite.link][bite.wheel] += dt * faster.dot(along);
-    torque[bite.wheel] -= force.dot(along) * geometry_.radius;
-    const Vector2 place = (1.0 - bite.share) * place_[bite.link] + bite.share * place_[next];
-    wrench.add(-frame.from_plane(force), frame.place(place) - origin);
+  for (const Engagement& engagement : engagements_) {
+    const size_t next = after(engagement.link);
+    const Vector2 faster =
+        (1.0 - engagement.share) * change[engagement.link] + engagement.share * change[next];
+    const Vector2 force = engagement.force - engagement.gain * faster;
+    const Vector2 along(engagement.out.y(), -engagement.out.x());
+    teeth_[engagement.link][engagement.wheel] += dt * faster.dot(along);
+    torque[engagement.wheel] -= force.dot(along) * geometry_.radius;
+    const Vector2 position =
+        (1.0 - engagement.share) * position_[engagement.link] + engagement.share * position_[next];
+    wrench.add(-frame.from_plane(force), frame.to_world(position) - origin);
   }
 
   // The guides make the pins follow the body sideways.
   for (size_t i = 0; i < pins(); ++i) {
-    const Eigen::Vector3d place = frame.place(place_[i]);
-    const double sideways = axle.dot(frame.carrier_velocity(place) - velocity_[i]);
+    const Eigen::Vector3d position = frame.to_world(position_[i]);
+    const double sideways = axle.dot(frame.carrier_velocity(position) - velocity_[i]);
     const double guide =
-        pin_mass_ * (sideways / dt + kGravity_m_per_s2 * axle.z()) - axle.dot(ground_force_[i]);
-    wrench.add(-guide * axle, place - origin);
+        pin_mass_ * (sideways / dt + kGravity_m_per_s2 * axle.z()) - axle.dot(terrain_force_[i]);
+    wrench.add(-guide * axle, position - origin);
     velocity_[i] += frame.from_plane(change[i]) + sideways * axle;
   }
   return torque;
 }
 
-double ChainTrack::surface_speed(const Frame& frame) const {
+double ChainTrack::surface_speed(const PlaneFrame& frame) const {
   double speed = 0.0;
   for (size_t i = 0; i < pins(); ++i) {
-    const Vector2 ahead = (place_[after(i)] - place_[before(i)]).normalized();
-    speed +=
-        ahead.dot(frame.in_plane(velocity_[i] - frame.carrier_velocity(frame.place(place_[i]))));
+    const Vector2 ahead = (position_[after(i)] - position_[before(i)]).normalized();
+    speed += ahead.dot(
+        frame.in_plane(velocity_[i] - frame.carrier_velocity(frame.to_world(position_[i]))));
   }
   return speed / static_cast<double>(pins());
 }
 
 SoilContact ChainTrack::soil_contact(const CarrierMotion& carrier) {
-  const Frame frame = frame_of(carrier);
+  const PlaneFrame frame = frame_of(carrier);
   const bool on_its_side = std::abs(frame.axes(2, 1)) > kOnItsSide;
   Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -371,7 +375,7 @@ SoilContact ChainTrack::soil_contact(const CarrierMotion& carrier) {
 
 // What drives along the band goes into the pins of the lower run; the rest goes straight into the
 // body, through wheels and guides that are stiff beside soil. The body has got all of it already.
-void ChainTrack::pull_on_lower_run(const SoilReaction& soil, const Frame& frame, double dt,
+void ChainTrack::pull_on_lower_run(const SoilReaction& soil, const PlaneFrame& frame, double dt,
                                    Wrench& wrench) {
   normal_load_ = soil.normal_load;
   sinkage_ = soil.sinkage;
@@ -380,18 +384,18 @@ void ChainTrack::pull_on_lower_run(const SoilReaction& soil, const Frame& frame,
   const auto in_lower_run = [&](const Vector2& pin) {
     return pin.y() * below > 0.0 && std::abs(pin.x()) <= half_length_;
   };
-  const auto lower = std::count_if(place_.begin(), place_.end(), in_lower_run);
+  const auto lower = std::count_if(position_.begin(), position_.end(), in_lower_run);
   const Vector2 each(soil.force.dot(frame.axes.col(0)) / static_cast<double>(lower), 0.0);
   for (size_t i = 0; i < pins(); ++i) {
-    if (!in_lower_run(place_[i])) continue;
+    if (!in_lower_run(position_[i])) continue;
     solver_.right[i] += dt * each;
-    wrench.add(-frame.from_plane(each), frame.place(place_[i]) - frame.carrier.origin);
+    wrench.add(-frame.from_plane(each), frame.to_world(position_[i]) - frame.carrier.origin);
   }
 }
 
 // Every link is a box to the particles. They push on it with stiff springs of their own: the pins
 // take them as if the springs were implicit, which only a change of their velocity feels.
-void ChainTrack::press_particles(ParticleBed& particles, const Frame& frame, double dt,
+void ChainTrack::press_particles(ParticleBed& particles, const PlaneFrame& frame, double dt,
                                  Wrench& wrench) {
   const ParticleMaterial& material = particles.options().material;
   const double gain =
@@ -401,7 +405,7 @@ void ChainTrack::press_particles(ParticleBed& particles, const Frame& frame, dou
   const Eigen::Vector3d axle = frame.axes.col(1);
   for (size_t i = 0; i < pins(); ++i) {
     const size_t j = after(i);
-    const Vector2 run = place_[j] - place_[i];
+    const Vector2 run = position_[j] - position_[i];
     const double length = run.norm();
     const Vector2 along = run / length;
     const Vector2 out(-along.y(), along.x());
@@ -409,7 +413,7 @@ void ChainTrack::press_particles(ParticleBed& particles, const Frame& frame, dou
 
     Eigen::Isometry3d pose;
     pose.linear() << frame.from_plane(along), axle, frame.from_plane(out);
-    pose.translation() = frame.place(place_[i] + 0.5 * run + inwards);
+    pose.translation() = frame.to_world(position_[i] + 0.5 * run + inwards);
     FootprintMotion motion;
     motion.friction = law_.friction;
     const Eigen::Vector3d& carried = frame.carrier.omega;
@@ -431,8 +435,8 @@ void ChainTrack::press_particles(ParticleBed& particles, const Frame& frame, dou
     const Matrix2 each = 0.5 * gain * Matrix2::Identity();
     add_force(i, 0.5 * force - couple, each, dt);
     add_force(j, 0.5 * force + couple, each, dt);
-    ground_force_[i] += 0.5 * reaction.force;
-    ground_force_[j] += 0.5 * reaction.force;
+    terrain_force_[i] += 0.5 * reaction.force;
+    terrain_force_[j] += 0.5 * reaction.force;
     wrench.torque += reaction.torque - about_axle * axle;
     normal_load_ += reaction.normal_load;
   }
@@ -441,7 +445,7 @@ void ChainTrack::press_particles(ParticleBed& particles, const Frame& frame, dou
 template <class Loading>
 std::array<double, 2> ChainTrack::step_under(const CarrierMotion& carrier, const WheelRates& rates,
                                              double dt, Wrench& wrench, Loading loading) {
-  const Frame frame = move_pins(carrier, dt);
+  const PlaneFrame frame = move_pins(carrier, dt);
   begin(frame, dt);
   add_links(frame, dt);
   add_wheels(frame, rates, dt);
@@ -452,19 +456,19 @@ std::array<double, 2> ChainTrack::step_under(const CarrierMotion& carrier, const
 std::array<double, 2> ChainTrack::step(const HeightField& ground, const CarrierMotion& carrier,
                                        const WheelRates& rates, double dt, Wrench& wrench) {
   return step_under(carrier, rates, dt, wrench,
-                    [&](const Frame& frame) { touch_ground(ground, frame, dt); });
+                    [&](const PlaneFrame& frame) { collide_terrain(ground, frame, dt); });
 }
 
 std::array<double, 2> ChainTrack::step(const SoilReaction& soil, const CarrierMotion& carrier,
                                        const WheelRates& rates, double dt, Wrench& wrench) {
   return step_under(carrier, rates, dt, wrench,
-                    [&](const Frame& frame) { pull_on_lower_run(soil, frame, dt, wrench); });
+                    [&](const PlaneFrame& frame) { pull_on_lower_run(soil, frame, dt, wrench); });
 }
 
 std::array<double, 2> ChainTrack::step(ParticleBed& particles, const CarrierMotion& carrier,
                                        const WheelRates& rates, double dt, Wrench& wrench) {
-  return step_under(carrier, rates, dt, wrench, [&](const Frame& frame) {
-    touch_ground(particles.floor(), frame, dt);
+  return step_under(carrier, rates, dt, wrench, [&](const PlaneFrame& frame) {
+    collide_terrain(particles.floor(), frame, dt);
     press_particles(particles, frame, dt, wrench);
   });
 }

@@ -21,8 +21,8 @@
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/vehicle/chain_solver.h"
-#include "host_sim/physics/vehicle/ground_contact.h"
 #include "host_sim/physics/vehicle/running_gear.h"
+#include "host_sim/physics/vehicle/terrain_contact.h"
 
 namespace screed {
 
@@ -47,7 +47,7 @@ class ChainTrack {
   /// front and rear wheel, N m, driving forward positive.
   std::array<double, 2> step(const HeightField& ground, const CarrierMotion& carrier,
                              const WheelRates& rates, double dt, Wrench& wrench);
-  /// On soil that gives way: the shoes as one band round the wheels (in a grid of some millimetres
+  /// On deformable soil: the shoes as one band round the wheels (in a grid of some millimetres
   /// a shoe is hardly wider than a cell), a footprint of the carrier; valid until the next call.
   SoilContact soil_contact(const CarrierMotion& carrier);
   /// The same step after the soil has answered; the carrying body has got the answer already.
@@ -68,9 +68,9 @@ class ChainTrack {
   /// Corners of the shoes at rest, in the frame of the carrier's centre of mass.
   std::vector<Eigen::Vector3d> points() const;
 
-  size_t pins() const { return place_.size(); }
+  size_t pins() const { return position_.size(); }
   /// Of a pin, in the frame of the carrier's centre of mass.
-  Eigen::Vector3d pin(size_t i) const { return on_axes(place_[i]) + centre_; }
+  Eigen::Vector3d pin(size_t i) const { return on_axes(position_[i]) + centre_; }
   double length_m() const;
   double unloaded_length_m() const { return link_length_ * static_cast<double>(pins()); }
   /// How far the pin that is farthest from the ideal loop round the wheels stands from it, m.
@@ -82,7 +82,7 @@ class ChainTrack {
   using Vector2 = Eigen::Vector2d;  // along and up, in the plane of the wheels
   using Matrix2 = Eigen::Matrix2d;
 
-  struct Frame {           // of this step, world
+  struct PlaneFrame {      // of this step, world
     Eigen::Matrix3d axes;  // forward, left, up of the plane
     Eigen::Vector3d centre;
     const CarrierMotion& carrier;
@@ -93,12 +93,12 @@ class ChainTrack {
     Eigen::Vector3d from_plane(const Vector2& v) const {
       return v.x() * axes.col(0) + v.y() * axes.col(2);
     }
-    Eigen::Vector3d place(const Vector2& p) const { return centre + from_plane(p); }
-    Eigen::Vector3d carrier_velocity(const Eigen::Vector3d& place) const {
-      return carrier.velocity + carrier.omega.cross(place - carrier.origin);
+    Eigen::Vector3d to_world(const Vector2& p) const { return centre + from_plane(p); }
+    Eigen::Vector3d carrier_velocity(const Eigen::Vector3d& position) const {
+      return carrier.velocity + carrier.omega.cross(position - carrier.origin);
     }
   };
-  struct Touch {  // one corner of a shoe in the ground
+  struct ShoeContact {  // one corner of a shoe in the ground
     size_t pin;
     int row;
     Eigen::Vector3d normal;
@@ -106,8 +106,8 @@ class ChainTrack {
     double gain;            // N s/m, of the velocity's change
     double grip;            // share of the gain along the ground
   };
-  struct Bite {   // a link on a wheel
-    size_t link;  // from pin `link` to the next one
+  struct Engagement {  // a link on a wheel
+    size_t link;       // from pin `link` to the next one
     size_t wheel;
     double share;  // of the way along the link
     Vector2 out;
@@ -118,23 +118,24 @@ class ChainTrack {
   Eigen::Vector3d on_axes(const Vector2& p) const {
     return p.x() * axes_.col(0) + p.y() * axes_.col(2);
   }
-  size_t after(size_t i) const { return i + 1 == place_.size() ? 0 : i + 1; }
-  size_t before(size_t i) const { return i == 0 ? place_.size() - 1 : i - 1; }
+  size_t after(size_t i) const { return i + 1 == position_.size() ? 0 : i + 1; }
+  size_t before(size_t i) const { return i == 0 ? position_.size() - 1 : i - 1; }
 
-  Frame frame_of(const CarrierMotion& carrier) const;
-  Frame move_pins(const CarrierMotion& carrier, double dt);
-  void begin(const Frame& frame, double dt);
-  void add_links(const Frame& frame, double dt);
-  void add_wheels(const Frame& frame, const WheelRates& rates, double dt);
-  void touch_ground(const HeightField& ground, const Frame& frame, double dt);
-  double surface_speed(const Frame& frame) const;
-  void pull_on_lower_run(const SoilReaction& soil, const Frame& frame, double dt, Wrench& wrench);
-  void press_particles(ParticleBed& particles, const Frame& frame, double dt, Wrench& wrench);
+  PlaneFrame frame_of(const CarrierMotion& carrier) const;
+  PlaneFrame move_pins(const CarrierMotion& carrier, double dt);
+  void begin(const PlaneFrame& frame, double dt);
+  void add_links(const PlaneFrame& frame, double dt);
+  void add_wheels(const PlaneFrame& frame, const WheelRates& rates, double dt);
+  void collide_terrain(const HeightField& ground, const PlaneFrame& frame, double dt);
+  double surface_speed(const PlaneFrame& frame) const;
+  void pull_on_lower_run(const SoilReaction& soil, const PlaneFrame& frame, double dt,
+                         Wrench& wrench);
+  void press_particles(ParticleBed& particles, const PlaneFrame& frame, double dt, Wrench& wrench);
   template <class Loading>
   std::array<double, 2> step_under(const CarrierMotion& carrier, const WheelRates& rates, double dt,
                                    Wrench& wrench, Loading loading);
   void add_force(size_t pin, const Vector2& force, const Matrix2& gain, double dt);
-  std::array<double, 2> finish(const Frame& frame, double dt, Wrench& wrench);
+  std::array<double, 2> finish(const PlaneFrame& frame, double dt, Wrench& wrench);
 
   RunningGearGeometry geometry_;
   Eigen::Vector3d centre_;
@@ -148,7 +149,7 @@ class ChainTrack {
   // A pin's neighbour of higher index is the one ahead of it when driving forward, on the upper
   // run.
   std::vector<Vector2> rest_;                 // where the pins are laid at the start
-  std::vector<Vector2> place_;                // from centre_, in the plane
+  std::vector<Vector2> position_;             // from centre_, in the plane
   std::vector<Eigen::Vector3d> velocity_;     // world
   std::vector<Eigen::Vector3d> bristles_;     // world, two rows
   std::vector<std::array<double, 2>> teeth_;  // how far the teeth of each wheel are bent, m
@@ -156,9 +157,9 @@ class ChainTrack {
   bool at_rest_ = true;  // just laid: takes over the body's velocity
 
   ChainSolver solver_;
-  std::vector<Touch> touches_;
-  std::vector<Bite> bites_;
-  std::vector<Eigen::Vector3d> ground_force_;  // on each pin, for the guides
+  std::vector<ShoeContact> shoe_contacts_;
+  std::vector<Engagement> engagements_;
+  std::vector<Eigen::Vector3d> terrain_force_;  // on each pin, for the guides
   double normal_load_ = 0.0;
   double sinkage_ = 0.0;
 

@@ -92,10 +92,10 @@ void Hull::close(double friction, double robot_kg) {
   law_.stiffness = robot_kg * kGravity_m_per_s2 / (4.0 * kHullSinkIn_m);
   law_.damping = std::sqrt(law_.stiffness * robot_kg / 4.0);
   for (const Eigen::Vector3d& point : points_) reach_ = std::max(reach_, point.norm());
-  let_go();
+  reset_contacts();
 }
 
-void Hull::let_go() {
+void Hull::reset_contacts() {
   bristles_.assign(points_.size(), Eigen::Vector3d::Zero());
   box_memories_.assign(boxes_.size(), ContactMemory{});
 }
@@ -105,19 +105,19 @@ void Hull::contact(const HeightField& ground, const CarrierMotion& motion, doubl
   const double ceiling =
       ground.max_height_within(motion.origin.x(), motion.origin.y(), reach_) - motion.origin.z();
   const Eigen::RowVector3d upwards = motion.rotation.row(2);
-  GroundTouch touch;
+  TerrainContact contact;
   for (size_t i = 0; i < points_.size(); ++i) {
     if (upwards.dot(points_[i]) > ceiling) {
       bristles_[i].setZero();
       continue;
     }
     const Eigen::Vector3d arm = motion.rotation * points_[i];
-    if (!touches(ground, motion.origin + arm, touch)) {
+    if (!find_contact(ground, motion.origin + arm, contact)) {
       bristles_[i].setZero();
       continue;
     }
     const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
-    wrench.add(contact_force(law_, touch, velocity, velocity, dt, bristles_[i]), arm);
+    wrench.add(contact_force(law_, contact, velocity, velocity, dt, bristles_[i]), arm);
   }
 }
 

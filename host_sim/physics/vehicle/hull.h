@@ -11,8 +11,8 @@
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/vehicle/assembly.h"
-#include "host_sim/physics/vehicle/ground_contact.h"
 #include "host_sim/physics/vehicle/running_gear.h"
+#include "host_sim/physics/vehicle/terrain_contact.h"
 
 namespace screed {
 
@@ -24,8 +24,8 @@ class Hull {
   /// sink in by a millimetre.
   void close(double friction, double robot_kg);
 
-  /// Forgets what the ground held.
-  void let_go();
+  /// Clears the state of all contacts.
+  void reset_contacts();
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 

@@ -92,12 +92,12 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, double friction, c
   law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * load.mass_kg / carrying);
 }
 
-void RunningGear::let_go() {
+void RunningGear::reset_contacts() {
   memory_ = {};
-  for (size_t i = 0; i < points_.size(); ++i) let_go(i);
+  for (size_t i = 0; i < points_.size(); ++i) reset_contacts(i);
 }
 
-void RunningGear::let_go(size_t point) {
+void RunningGear::reset_contacts(size_t point) {
   if (bent_[point] == 0) return;
   bristles_[point].setZero();
   carried_[point].setZero();
@@ -130,25 +130,25 @@ double RunningGear::contact(const HeightField& ground, const CarrierMotion& carr
   carry_bristles(speed, dt);
   double along_surface = 0.0;
   normal_load_ = 0.0;
-  GroundTouch touch;
+  TerrainContact contact;
   // A height field has no overhangs: a point on the upper side of the contour has a lower one right
   // below it, which touches first.
   const Eigen::RowVector3d upwards = carrier.rotation.row(2);
   for (size_t i = 0; i < points_.size(); ++i) {
     if (upwards.dot(outwards_[i]) > kUpperSide) {
-      let_go(i);
+      reset_contacts(i);
       continue;
     }
     const Eigen::Vector3d arm = carrier.rotation * points_[i];
-    if (!touches(ground, carrier.origin + arm, touch)) {
-      let_go(i);
+    if (!find_contact(ground, carrier.origin + arm, contact)) {
+      reset_contacts(i);
       continue;
     }
     bent_[i] = 1;
     const Eigen::Vector3d along = carrier.rotation * along_[i];
     const Eigen::Vector3d velocity = carrier.velocity + carrier.omega.cross(arm);
     const Eigen::Vector3d force =
-        contact_force(law_, touch, velocity, velocity + speed * along, dt, bristles_[i]);
+        contact_force(law_, contact, velocity, velocity + speed * along, dt, bristles_[i]);
     wrench.add(force, arm);
     along_surface += force.dot(along);
     normal_load_ += force.z();
@@ -156,7 +156,7 @@ double RunningGear::contact(const HeightField& ground, const CarrierMotion& carr
   return along_surface;
 }
 
-RunningGear::Pressing RunningGear::pressing(const CarrierMotion& carrier, double speed) const {
+RunningGear::GearSolid RunningGear::gear_solid(const CarrierMotion& carrier, double speed) const {
   const Eigen::Vector3d arm = carrier.rotation * centre_;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = carrier.rotation * axes_;
@@ -175,7 +175,7 @@ RunningGear::Pressing RunningGear::pressing(const CarrierMotion& carrier, double
 }
 
 SoilContact RunningGear::soil_contact(const CarrierMotion& carrier, double speed) {
-  const Pressing solid = pressing(carrier, speed);
+  const GearSolid solid = gear_solid(carrier, speed);
   const bool on_its_side = std::abs(solid.pose.linear()(2, 1)) > kOnItsSide;
   Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
   footprint.set_pose(solid.pose);
@@ -190,7 +190,7 @@ SoilContact RunningGear::soil_contact(const CarrierMotion& carrier, double speed
 double RunningGear::contact(ParticleBed& particles, const CarrierMotion& carrier, double speed,
                             double dt, Wrench& wrench) {
   const double of_floor = contact(particles.floor(), carrier, speed, dt, wrench);
-  const Pressing solid = pressing(carrier, speed);
+  const GearSolid solid = gear_solid(carrier, speed);
   footprint_.set_pose(solid.pose);
   const SoilReaction reaction = particles.press(footprint_, solid.motion, dt);
   wrench.add(reaction.force, solid.arm);

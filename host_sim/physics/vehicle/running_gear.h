@@ -12,7 +12,7 @@
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/physics/vehicle/ground_contact.h"
+#include "host_sim/physics/vehicle/terrain_contact.h"
 
 namespace screed {
 
@@ -59,11 +59,11 @@ class RunningGear {
   double contact(const HeightField& ground, const CarrierMotion& carrier, double speed, double dt,
                  Wrench& wrench);
 
-  /// On soil that gives way: the unit's lower surface as a footprint of the carrier; valid until
+  /// On deformable soil: the unit's lower surface as a footprint of the carrier; valid until
   /// the next call.
   SoilContact soil_contact(const CarrierMotion& carrier, double speed);
-  /// Remembers the soil's answer to it.
-  void answered(const SoilReaction& reaction) {
+  /// Stores the soil's reaction to it.
+  void set_soil_reaction(const SoilReaction& reaction) {
     normal_load_ = reaction.normal_load;
     sinkage_ = reaction.sinkage;
   }
@@ -72,8 +72,8 @@ class RunningGear {
   double contact(ParticleBed& particles, const CarrierMotion& carrier, double speed, double dt,
                  Wrench& wrench);
 
-  /// Lets go of the ground.
-  void let_go();
+  /// Clears the state of all contacts.
+  void reset_contacts();
 
   double radius_m() const { return geometry_.radius; }
   double normal_load_n() const { return normal_load_; }
@@ -84,17 +84,17 @@ class RunningGear {
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
-  struct Pressing {  // the unit's solid as it moves in this step
+  struct GearSolid {  // the unit's solid as it moves in this step
     Eigen::Isometry3d pose;
     FootprintMotion motion;
     Eigen::Vector3d arm;  // of its centre, from the carrier's centre of mass, world frame
   };
 
-  Pressing pressing(const CarrierMotion& carrier, double speed) const;
+  GearSolid gear_solid(const CarrierMotion& carrier, double speed) const;
   void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
                  const Eigen::Vector3d& along);
   void carry_bristles(double speed, double dt);
-  void let_go(size_t point);
+  void reset_contacts(size_t point);
 
   RunningGearGeometry geometry_;
   GearLoad load_;

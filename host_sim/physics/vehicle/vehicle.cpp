@@ -22,11 +22,11 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
     dBodySetRotation(carrier.body, rotation);
     dBodySetLinearVel(carrier.body, 0, 0, 0);
     dBodySetAngularVel(carrier.body, 0, 0, 0);
-    carrier.hull.let_go();
+    carrier.hull.reset_contacts();
     carrier.soil_memory = {};
   }
   for (Shaft& shaft : shafts_) shaft.shaft.halt();
-  for (Unit& unit : units_) unit.gear.let_go();
+  for (Unit& unit : units_) unit.gear.reset_contacts();
   for (Chain& chain : chains_) chain.track.reset();
 }
 
@@ -67,8 +67,8 @@ void Vehicle::step_chains(size_t carrier, Step step) {
   }
 }
 
-void Vehicle::ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
-                             Wrench& wrench) {
+void Vehicle::terrain_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
+                              Wrench& wrench) {
   Carrier& pressing = carriers_[carrier];
   soil_contacts_.clear();
   for (Unit& unit : units_) {
@@ -103,7 +103,7 @@ void Vehicle::ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion&
     if (unit.carrier != carrier) continue;
     const SoilReaction& reaction = soil_contacts_[i++].reaction;
     shafts_[unit.shaft].torque += unit.gear.radius_m() * reaction.along_surface;
-    unit.gear.answered(reaction);
+    unit.gear.set_soil_reaction(reaction);
   }
   step_chains(carrier, [&](Chain& chain) {
     return chain.track.step(soil_contacts_[i++].reaction, motion, wheel_rates(chain), dt, wrench);
@@ -111,8 +111,8 @@ void Vehicle::ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion&
 }
 
 template <class Ground>
-void Vehicle::ground_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
-                             Wrench& wrench) {
+void Vehicle::terrain_contact(Ground& ground, size_t carrier, const CarrierMotion& motion,
+                              double dt, Wrench& wrench) {
   for (Unit& unit : units_) {
     if (unit.carrier != carrier) continue;
     Shaft& shaft = shafts_[unit.shaft];
@@ -143,7 +143,7 @@ void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, 
     motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
 
     Wrench wrench;
-    ground_contact(ground, c, motion, dt, wrench);
+    terrain_contact(ground, c, motion, dt, wrench);
     dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
     dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
   }

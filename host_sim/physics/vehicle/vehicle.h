@@ -3,7 +3,7 @@
 //
 // Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
 // them and turn on shafts (drive_shaft.h) under their running gear (running_gear.h). Other revolute
-// joints are ODE hinges. All ground forces are our own (ground_contact.h).
+// joints are ODE hinges. All ground forces are our own (terrain_contact.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -60,7 +60,7 @@ class Vehicle : public VehicleState {
   void apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
                     double dt);
 
-  /// The same on soil that gives way; its end_step() is the caller's.
+  /// The same on deformable soil; its end_step() is the caller's.
   void apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt);
 
   /// The same on particles; their step() is the caller's.
@@ -117,10 +117,10 @@ class Vehicle : public VehicleState {
   void add_hinges(const Assembly& assembly);
   void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
   template <class Ground>
-  void ground_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
-                      Wrench& wrench);
-  void ground_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
-                      Wrench& wrench);
+  void terrain_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
+                       Wrench& wrench);
+  void terrain_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
+                       Wrench& wrench);
   /// The chains of a carrier; `step` takes a Chain and returns the torques on its wheels.
   template <class Step>
   void step_chains(size_t carrier, Step step);

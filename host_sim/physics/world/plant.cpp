@@ -64,7 +64,7 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
   }
   vehicle_.place(pose);
   wrap_around();
-  beds_passed_ = {0, 0};
+  wrap_counts_ = {0, 0};
   if (!start.z_m.has_value()) settle();
 }
 
@@ -79,7 +79,7 @@ void Plant::settle() {
   for (int i = 0; i < steps; ++i) {
     step_bodies({0.0, 0.0});
   }
-  forget_motion(imu_velocity(vehicle_.chassis()));
+  reset_motion_history(imu_velocity(vehicle_.chassis()));
 }
 
 void Plant::step_bodies(const std::array<double, 2>& motor_voltage) {
@@ -118,8 +118,8 @@ void Plant::wrap_around() {
   // A place that is no number stays: motion() says that the physics diverged.
   if (!std::isfinite(east) || !std::isfinite(north)) return;
   vehicle_.shift(-east * size[0], -north * size[1]);
-  beds_passed_[0] += static_cast<int64_t>(east);
-  beds_passed_[1] += static_cast<int64_t>(north);
+  wrap_counts_[0] += static_cast<int64_t>(east);
+  wrap_counts_[1] += static_cast<int64_t>(north);
 }
 
 std::array<double, 2> Plant::bed_size() const {
@@ -127,11 +127,11 @@ std::array<double, 2> Plant::bed_size() const {
   return {rigid_.x_max() - rigid_.x_min(), rigid_.y_max() - rigid_.y_min()};
 }
 
-Eigen::Vector3d Plant::place_travelled() const {
+Eigen::Vector3d Plant::unwrapped_position() const {
   const std::array<double, 2> size = bed_size();
   return vehicle_.chassis().pose.translation() +
-         Eigen::Vector3d(static_cast<double>(beds_passed_[0]) * size[0],
-                         static_cast<double>(beds_passed_[1]) * size[1], 0.0);
+         Eigen::Vector3d(static_cast<double>(wrap_counts_[0]) * size[0],
+                         static_cast<double>(wrap_counts_[1]) * size[1], 0.0);
 }
 
 Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {
@@ -139,7 +139,7 @@ Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {
   return chassis.velocity + rotation * chassis.omega_body.cross(imu_position_);
 }
 
-void Plant::forget_motion(const Eigen::Vector3d& velocity) {
+void Plant::reset_motion_history(const Eigen::Vector3d& velocity) {
   std::fill(moments_.begin(), moments_.end(), Moment{velocity, Eigen::Vector3d::Zero()});
 }
 
@@ -199,7 +199,7 @@ void Plant::lay_on_side() {
                                                    pose.translation().y(), pose.linear());
   vehicle_.place(pose);
   // A hand, not an impact: the accelerometer sees the new attitude, no jerk.
-  forget_motion(Eigen::Vector3d::Zero());
+  reset_motion_history(Eigen::Vector3d::Zero());
 }
 
 }  // namespace screed

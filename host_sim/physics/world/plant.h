@@ -16,7 +16,7 @@
 #include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
-#include "host_sim/physics/world/surroundings.h"
+#include "host_sim/physics/world/environment.h"
 
 namespace screed {
 
@@ -33,12 +33,12 @@ struct PlantOptions {
   StartPose start;
   VehicleOptions vehicle;
   Battery battery;
-  std::optional<SoilParameters> soil;  ///< ground that gives way; without it the ground is rigid
+  std::optional<SoilParameters> soil;  ///< deformable terrain; without it the ground is rigid
   SoilOptions soil_options;
   std::optional<ParticleOptions> particles;  ///< ground of spheres, as high as the terrain
 };
 
-class Plant : public Surroundings {
+class Plant : public Environment {
  public:
   /// Throws InputError when the options do not fit together.
   Plant(HeightField terrain, const Assembly& model, const PlantOptions& options);
@@ -54,10 +54,10 @@ class Plant : public Surroundings {
   const HeightField& terrain() const override;
   const SoilBed* soil() const override { return soil_ ? &*soil_ : nullptr; }
   const ParticleBed* particles() const override { return particles_ ? &*particles_ : nullptr; }
-  bool ground_is_loose() const override { return soil_.has_value() || particles_.has_value(); }
+  bool is_deformable() const override { return soil_.has_value() || particles_.has_value(); }
   const Vehicle& vehicle() const override { return vehicle_; }
-  const std::array<int64_t, 2>& beds_passed() const override { return beds_passed_; }
-  Eigen::Vector3d place_travelled() const override;
+  const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
+  Eigen::Vector3d unwrapped_position() const override;
   const Battery& battery() const override { return battery_; }
 
  private:
@@ -77,7 +77,7 @@ class Plant : public Surroundings {
   void step_bodies(const std::array<double, 2>& motor_voltage);
   Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
   /// The history says: the IMU has been moving at this velocity all the time.
-  void forget_motion(const Eigen::Vector3d& velocity);
+  void reset_motion_history(const Eigen::Vector3d& velocity);
 
   double step_s_;
   int steps_per_tick_;
@@ -90,7 +90,7 @@ class Plant : public Surroundings {
   Battery battery_;
   Eigen::Vector3d imu_position_;  ///< in the frame of Body
   uint64_t steps_ = 0;
-  std::array<int64_t, 2> beds_passed_ = {0, 0};
+  std::array<int64_t, 2> wrap_counts_ = {0, 0};
   /// The last tick's moments and the one before; the newest stands at newest_.
   std::vector<Moment> moments_;
   size_t newest_ = 0;

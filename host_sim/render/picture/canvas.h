@@ -60,7 +60,7 @@ class Canvas {
   /// Sets opaque pixels from (x, y) to the right; all must be on the canvas.
   void set_row(int x, int y, std::span<const Color> colors);
 
-  /// For whoever draws pixel by pixel: 0x00RRGGBB, row by row from the top, width() a row; good
+  /// For code that draws pixel by pixel: 0x00RRGGBB, row by row from the top, width() a row; good
   /// until the next call of anything else. release_pixels() when done with them.
   [[nodiscard]] std::span<uint32_t> pixels();
   void release_pixels();

@@ -303,17 +303,19 @@ class Drawing {
 
   void lines(size_t index) {
     const ChartSeries& series = chart_.series[index];
-    std::vector<std::pair<double, double>> way;
-    way.reserve(series.points.size());
-    for (const ChartPoint& point : series.points) way.emplace_back(x_(point.x), y_(point.y));
+    std::vector<std::pair<double, double>> line_points;
+    line_points.reserve(series.points.size());
+    for (const ChartPoint& point : series.points)
+      line_points.emplace_back(x_(point.x), y_(point.y));
     if (!series.joined) {
-      for (const auto& [x, y] : way) svg_.dot(x, y, color(index));
+      for (const auto& [x, y] : line_points) svg_.dot(x, y, color(index));
       return;
     }
-    if (way.size() > 1) svg_.polyline(way, color(index));
-    for (size_t i = 0; i < way.size(); ++i) {
-      error_bar(way[i].first, series.points[i], color(index));
-      if (series.markers) svg_.circle(way[i].first, way[i].second, 4.2, color(index));
+    if (line_points.size() > 1) svg_.polyline(line_points, color(index));
+    for (size_t i = 0; i < line_points.size(); ++i) {
+      error_bar(line_points[i].first, series.points[i], color(index));
+      if (series.markers)
+        svg_.circle(line_points[i].first, line_points[i].second, 4.2, color(index));
     }
   }
 

@@ -26,18 +26,18 @@ constexpr double kMargin_px = 20.0;
 
 }  // namespace
 
-Ticks round_ticks(double low, double high, int most) {
+Ticks round_ticks(double low, double high, int max_count) {
   Ticks ticks;
-  if (!(low < high) || most < 2) return ticks;
+  if (!(low < high) || max_count < 2) return ticks;
   // The smallest round step that needs no more than `most` ticks.
-  int exponent = static_cast<int>(std::floor(std::log10((high - low) / most))) - 1;
+  int exponent = static_cast<int>(std::floor(std::log10((high - low) / max_count))) - 1;
   constexpr std::array<double, 3> kMantissas = {1.0, 2.0, 5.0};
   constexpr double kSlack = 1e-9;  // of a step: an end that is a tick but for rounding counts
   for (size_t mantissa = 0;;) {
     const double step = kMantissas[mantissa] * std::pow(10.0, exponent);
     const double first = std::ceil(low / step - kSlack);
     const double last = std::floor(high / step + kSlack);
-    if (last - first + 1.0 <= most) {
+    if (last - first + 1.0 <= max_count) {
       ticks.step = step;
       ticks.decimals = std::max(0, -exponent);
       const auto count = static_cast<size_t>(last - first + 1.0);
@@ -61,7 +61,7 @@ std::string number_text(double value, int decimals) {
   return value < 0.0 && !is_zero ? "\u2212" + magnitude : magnitude;
 }
 
-MapFrame::MapFrame(Canvas& canvas, const Ground& ground, double legend_height_px)
+MapFrame::MapFrame(Canvas& canvas, const MapRectangle& ground, double legend_height_px)
     : canvas_(canvas), ground_(ground) {
   const double room_x = canvas.width() - kLeft_px - kRight_px;
   const double room_y = canvas.height() - kTop_px - kBottom_px;
@@ -115,12 +115,12 @@ void MapFrame::draw_axes() {
   const TextStyle along_x{.size_px = kTextSize_px, .color = kInk, .align = TextAlign::kCenter};
   const TextStyle along_y{.size_px = kTextSize_px, .color = kInk, .align = TextAlign::kRight};
   constexpr double kPixelsPerTick = 90.0;
-  const auto most = [](double pixels) {
+  const auto max_count = [](double pixels) {
     return std::max(2, static_cast<int>(pixels / kPixelsPerTick));
   };
 
   const double bottom = map_.top + map_.height;
-  const Ticks x_ticks = round_ticks(ground_.x_min, ground_.x_max, most(map_.width));
+  const Ticks x_ticks = round_ticks(ground_.x_min, ground_.x_max, max_count(map_.width));
   for (const double x : x_ticks.values) {
     const double place = std::floor(to_pixel(x, ground_.y_min).x) + 0.5;
     canvas_.line(std::array<Pixel, 2>{{{place, bottom}, {place, bottom + kTickLength_px}}}, 1.0,
@@ -129,7 +129,7 @@ void MapFrame::draw_axes() {
   }
   canvas_.text({map_.left + 0.5 * map_.width, bottom + 50.0}, "x, east (m)", along_x);
 
-  const Ticks y_ticks = round_ticks(ground_.y_min, ground_.y_max, most(map_.height));
+  const Ticks y_ticks = round_ticks(ground_.y_min, ground_.y_max, max_count(map_.height));
   double widest = 0.0;
   for (const double y : y_ticks.values) {
     const double place = std::floor(to_pixel(ground_.x_min, y).y) + 0.5;

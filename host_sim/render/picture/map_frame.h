@@ -10,20 +10,20 @@
 
 namespace screed {
 
-/// Round numbers (1, 2 or 5 times a power of ten apart) from low to high inclusive, at most `most`
-/// (at least 2); empty unless low < high.
+/// Round numbers (1, 2 or 5 times a power of ten apart) from low to high inclusive, at most
+/// `max_count` (at least 2); empty unless low < high.
 struct Ticks {
   double step = 0.0;
   int decimals = 0;  ///< digits after the point that tell neighbours apart
   std::vector<double> values;
 };
-Ticks round_ticks(double low, double high, int most);
+Ticks round_ticks(double low, double high, int max_count);
 
 /// A number with a fixed count of decimals and a real minus sign; never "-0".
 std::string number_text(double value, int decimals);
 
 /// A rectangle of ground in metres, x east and y north.
-struct Ground {
+struct MapRectangle {
   double x_min;
   double x_max;
   double y_min;
@@ -42,7 +42,7 @@ class MapFrame {
  public:
   /// Lays out a map of `ground` on the canvas, as large as fits and true to scale, with room for a
   /// legend under the colour bar.
-  MapFrame(Canvas& canvas, const Ground& ground, double legend_height_px);
+  MapFrame(Canvas& canvas, const MapRectangle& ground, double legend_height_px);
 
   [[nodiscard]] const PixelBox& map() const { return map_; }  ///< on whole pixels
   /// Left end of the legend's first base line.
@@ -62,7 +62,7 @@ class MapFrame {
   void draw_fitted(Pixel anchor, const std::string& words, TextStyle style);
 
   Canvas& canvas_;
-  Ground ground_;
+  MapRectangle ground_;
   double pixels_per_metre_;
   PixelBox map_;
   PixelBox bar_;

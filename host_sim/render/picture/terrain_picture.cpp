@@ -135,7 +135,7 @@ std::string moved(const HeightField& before, const HeightField& after) {
          number_text(static_cast<double>(fill - cut) * litres_per_unit, 2) + " L";
 }
 
-Ground ground_of(const HeightField& field) {
+MapRectangle ground_of(const HeightField& field) {
   return {field.x_min(), field.x_max(), field.y_min(), field.y_max()};
 }
 
@@ -158,9 +158,9 @@ void write_height_map_picture(const std::filesystem::path& path, const HeightFie
   MapFrame frame(canvas, ground_of(field), legend_height_px(options));
 
   const TerrainStatistics statistics = terrain_statistics(field);
-  constexpr double kLeastRange_m = 0.001;  // level ground still gets a colour bar
+  constexpr double kMinRange_m = 0.001;  // level ground still gets a colour bar
   const double low = statistics.lowest_m;
-  const double high = std::max(statistics.highest_m, low + kLeastRange_m);
+  const double high = std::max(statistics.highest_m, low + kMinRange_m);
   const auto color = [low, high](double height) {
     return height_color((height - low) / (high - low));
   };

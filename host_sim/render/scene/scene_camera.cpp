@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-struct NamedPlace {
+struct NamedOrbit {
   const char* name;
-  CameraPlace place;
+  CameraOrbit orbit;
 };
-constexpr NamedPlace kPlaces[] = {
+constexpr NamedOrbit kOrbits[] = {
     {"front", {38.0, 24.0, 0.72, false}}, {"back", {148.0, 30.0, 0.85, false}},
     {"side", {-90.0, 16.0, 0.70, false}}, {"above", {180.0, 80.0, 1.20, false}},
     {"bed", {-60.0, 38.0, 0.0, true}},
@@ -32,10 +32,10 @@ bool is_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
               const std::function<double(double, double)>& ground_m) {
   constexpr double kStep_m = 0.01;
   constexpr double kClearance_m = 0.02;
-  const Eigen::Vector3d way = to - from;
-  const int steps = static_cast<int>(way.norm() / kStep_m);
+  const Eigen::Vector3d ray = to - from;
+  const int steps = static_cast<int>(ray.norm() / kStep_m);
   for (int i = 5; i <= steps; ++i) {  // the first 5 cm belong to what is looked at
-    const Eigen::Vector3d at = from + way * (static_cast<double>(i) / steps);
+    const Eigen::Vector3d at = from + ray * (static_cast<double>(i) / steps);
     if (at.z() < ground_m(at.x(), at.y()) + kClearance_m) return false;
   }
   return true;
@@ -43,37 +43,37 @@ bool is_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
 
 }  // namespace
 
-CameraPlace camera_place(const std::string& text) {
+CameraOrbit camera_orbit(const std::string& text) {
   std::string names;
-  for (const NamedPlace& named : kPlaces) {
-    if (text == named.name) return named.place;
+  for (const NamedOrbit& named : kOrbits) {
+    if (text == named.name) return named.orbit;
     names += std::string(named.name) + ", ";
   }
-  CameraPlace place;
+  CameraOrbit orbit;
   int end = 0;
-  const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &place.azimuth_deg,
-                               &place.elevation_deg, &place.distance_m, &end);
+  const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &orbit.azimuth_deg,
+                               &orbit.elevation_deg, &orbit.distance_m, &end);
   const bool ok = read == 3 && static_cast<size_t>(end) == text.size() &&
-                  std::abs(place.azimuth_deg) <= 360.0 && place.elevation_deg >= 0.0 &&
-                  place.elevation_deg <= 89.0 && place.distance_m >= 0.2 &&
-                  place.distance_m <= 100.0;
+                  std::abs(orbit.azimuth_deg) <= 360.0 && orbit.elevation_deg >= 0.0 &&
+                  orbit.elevation_deg <= 89.0 && orbit.distance_m >= 0.2 &&
+                  orbit.distance_m <= 100.0;
   if (!ok) {
     throw InputError("camera = " + text + "; allowed is " + names +
                      "or AZIMUTH,ELEVATION,DISTANCE: degrees -360..360 from the robot's nose, "
                      "0..89 over the horizon, 0.2..100 m");
   }
-  return place;
+  return orbit;
 }
 
-SceneCamera camera_at(const CameraPlace& place, const Eigen::Vector3d& target, double heading_rad,
+SceneCamera camera_at(const CameraOrbit& orbit, const Eigen::Vector3d& target, double heading_rad,
                       const std::function<double(double, double)>& ground_m) {
   constexpr double kHighest_deg = 88.0;
   constexpr double kStep_deg = 2.0;
-  const double azimuth = place.azimuth_deg * kRadPerDeg + heading_rad;
-  for (double elevation = place.elevation_deg;; elevation += kStep_deg) {
+  const double azimuth = orbit.azimuth_deg * kRadPerDeg + heading_rad;
+  for (double elevation = orbit.elevation_deg;; elevation += kStep_deg) {
     const Eigen::Vector3d location =
-        target + place.distance_m * direction(azimuth, elevation * kRadPerDeg);
-    if (elevation >= kHighest_deg || place.whole_bed || is_clear(target, location, ground_m)) {
+        target + orbit.distance_m * direction(azimuth, elevation * kRadPerDeg);
+    if (elevation >= kHighest_deg || orbit.whole_bed || is_clear(target, location, ground_m)) {
       return {location, target};
     }
   }

@@ -9,7 +9,7 @@ namespace screed {
 
 /// A place round what is looked at: azimuth counter-clockwise from the robot's nose (0: from
 /// ahead), elevation over the horizon, degrees; distance in metres.
-struct CameraPlace {
+struct CameraOrbit {
   double azimuth_deg = 140.0;
   double elevation_deg = 28.0;
   double distance_m = 0.75;
@@ -18,16 +18,16 @@ struct CameraPlace {
 
 /// A name (`front`, `back`, `side`, `above`, `bed`) or "AZIMUTH,ELEVATION,DISTANCE". Throws
 /// InputError that lists what is allowed.
-CameraPlace camera_place(const std::string& text);
+CameraOrbit camera_orbit(const std::string& text);
 
 struct SceneCamera {
   Eigen::Vector3d location;
   Eigen::Vector3d target;
 };
 
-/// The camera at `place` round `target`; heading_rad is that of the robot. It is moved up until
+/// The camera on `orbit` round `target`; heading_rad is that of the robot. It is moved up until
 /// nothing of the ground stands between it and the target.
-SceneCamera camera_at(const CameraPlace& place, const Eigen::Vector3d& target, double heading_rad,
+SceneCamera camera_at(const CameraOrbit& orbit, const Eigen::Vector3d& target, double heading_rad,
                       const std::function<double(double x, double y)>& ground_m);
 
 /// Camera, sun, sky and a soft light from the other side. The sun stands behind the viewer's left

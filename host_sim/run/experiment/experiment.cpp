@@ -114,6 +114,8 @@ IniEntry from_sandbox(IniEntry entry) {
   };
   if (entry.section == "map" && entry.key == "model" && entry.value == "particle")
     entry.value = "particles";
+  if (entry.section == "experiment" && entry.key == "algorithm" && entry.value == "random")
+    entry.value = kTrainingDriveName;
   for (const Length& length : kLengths) {
     double value = 0.0;
     if (entry.section != length.section || entry.key != length.key) continue;
@@ -129,11 +131,11 @@ void set_training_length(Experiment& experiment, const std::string& source) {
   auto& frames = experiment.experiment.frames;
   if (!frames.has_value()) {
     const double wanted = std::floor(experiment.experiment.duration_s * kTickRate_hz / 8.0) * 8.0;
-    if (wanted < 8.0 || wanted > kMostFrames) {
+    if (wanted < 8.0 || wanted > kMaxFrames) {
       throw InputError(source +
                        ": [experiment] duration = " + shortest(experiment.experiment.duration_s) +
-                       " s: algorithm random needs 0.08 s to " +
-                       shortest(kMostFrames / double{kTickRate_hz}) + " s");
+                       " s: algorithm training_drive needs 0.08 s to " +
+                       shortest(kMaxFrames / double{kTickRate_hz}) + " s");
     }
     frames = static_cast<uint32_t>(wanted);
   }
@@ -201,7 +203,8 @@ Experiment read_experiment(const std::filesystem::path& path,
     *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
   for (const std::string& text : overrides) apply(experiment, parse_override(text), source);
   experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
-  if (experiment.experiment.algorithm == "random") set_training_length(experiment, source);
+  if (experiment.experiment.algorithm == kTrainingDriveName)
+    set_training_length(experiment, source);
   if (experiment.experiment.frames.has_value())
     experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};
   check(experiment, source);

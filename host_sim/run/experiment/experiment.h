@@ -18,6 +18,9 @@
 
 namespace screed {
 
+/// [experiment] algorithm of the drive that training data is recorded on (thesis Algorithm 5).
+inline constexpr const char* kTrainingDriveName = "training_drive";
+
 struct Experiment {
   std::string output_directory_prefix = "out";
 
@@ -48,7 +51,7 @@ struct Experiment {
     std::optional<double> max_slope_deg;
     double ramp_deg = 0.0;  ///< without an image: level ground inclined towards east
     bool wrap = false;
-    /// rigid, scm: soil that gives way, particles, or static_particles: those that never move
+    /// rigid, scm: deformable soil, particles, or static_particles: those that never move
     std::string model = "rigid";
     double particle_radius_m = 0.0125;
 
@@ -100,9 +103,10 @@ struct Experiment {
     std::string name = "experiment";
     std::string algorithm = "hill_sensing";
     double duration_s = 60.0;
-    /// In place of duration, control ticks; the n of algorithm random, for which it is always set.
+    /// In place of duration, control ticks; the n of algorithm training_drive, for which it is
+    /// always set.
     std::optional<uint32_t> frames;
-    std::optional<double> stop_after_s;  ///< of algorithm random's drive
+    std::optional<double> stop_after_s;  ///< of the training drive
     uint64_t seed = 1;
     double flatness_deg = 5.0;  ///< epsilon of the thesis' flatness, as a slope
     std::optional<double> lay_on_side_at_s;

@@ -84,7 +84,7 @@ struct AlgorithmName {
 constexpr AlgorithmName kAlgorithms[] = {
     {"drive", LevelingAlgorithm::kDrive},
     {"hill_sensing", LevelingAlgorithm::kHillSensing},
-    {"random", LevelingAlgorithm::kTraining},
+    {"training_drive", LevelingAlgorithm::kTrainingDrive},
     {"spin_on_peak", LevelingAlgorithm::kSpinOnPeak},
 };
 
@@ -105,7 +105,7 @@ bool is_soil(const std::string& name) {
                      [&](const SoilParameters& known) { return known.name == name; });
 }
 
-bool is_ground(const std::string& name) {
+bool is_terrain_model(const std::string& name) {
   return name == "rigid" || name == "scm" || name == "particles" || name == "static_particles";
 }
 
@@ -215,16 +215,16 @@ std::vector<ExperimentKey> make_keys() {
                           [](Experiment& e) -> bool& { return e.map.wrap; }));
   keys.push_back(text_key(
       "map", "model", "rigid, scm, particles or static_particles",
-      "how the ground answers; scm: soil that gives way, see [soil]; particles: a bed of spheres",
-      [](Experiment& e) -> std::string& { return e.map.model; }, is_ground));
+      "terrain model; scm: deformable soil, see [soil]; particles: a bed of spheres",
+      [](Experiment& e) -> std::string& { return e.map.model; }, is_terrain_model));
   keys.push_back(real_key("map", "particle_radius", "m", 0.001, 0.5,
-                          "model particles: of every particle",
+                          "model particles: radius of a particle",
                           [](Experiment& e) -> double& { return e.map.particle_radius_m; }));
 
   keys.push_back(real_key("particles", "depth", "m", 0, 10,
-                          "of the bed below the image's black; of level ground",
+                          "depth of the bed below the image's black; on level ground its depth",
                           [](Experiment& e) -> double& { return e.particles.depth_m; }));
-  keys.push_back(real_key("particles", "density", "kg/m^3", 10, 20000, "of a particle",
+  keys.push_back(real_key("particles", "density", "kg/m^3", 10, 20000, "density of a particle",
                           [](Experiment& e) -> double& { return e.particles.density_kg_per_m3; }));
   keys.push_back(real_key("particles", "friction", "", 0, 5,
                           "Coulomb friction between particles, and on the walls",
@@ -287,8 +287,8 @@ std::vector<ExperimentKey> make_keys() {
       "experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
       [](Experiment& e) -> std::string& { return e.experiment.name; }, is_file_name));
   keys.push_back(text_key(
-      "experiment", "algorithm", "drive, hill_sensing, random or spin_on_peak",
-      "what the firmware does; random: Algorithm 5, the drive for training data",
+      "experiment", "algorithm", "drive, hill_sensing, spin_on_peak or training_drive",
+      "what the firmware does; training_drive: the drive for training data (thesis Algorithm 5)",
       [](Experiment& e) -> std::string& { return e.experiment.algorithm; }, is_algorithm));
   ExperimentKey duration = real_key("experiment", "duration", "s", 0.01, 1e6, "simulated time",
                                     [](Experiment& e) -> double& {
@@ -298,11 +298,11 @@ std::vector<ExperimentKey> make_keys() {
   keys.push_back(in_force_unless(
       duration, [](const Experiment& e) { return e.experiment.frames.has_value(); }));
   keys.push_back(
-      {"experiment", "frames", "0.01 s", "a multiple of 8, 8.." + std::to_string(kMostFrames),
-       "in place of duration; algorithm random: the n of Algorithm 5",
+      {"experiment", "frames", "0.01 s", "a multiple of 8, 8.." + std::to_string(kMaxFrames),
+       "in place of duration; algorithm training_drive: the n of Algorithm 5",
        [](Experiment& e, const std::string& text) {
          uint32_t frames = 0;
-         if (!parse_number(text, frames) || frames < 8 || frames > kMostFrames || frames % 8 != 0)
+         if (!parse_number(text, frames) || frames < 8 || frames > kMaxFrames || frames % 8 != 0)
            return false;
          e.experiment.frames = frames;
          return true;
@@ -311,13 +311,13 @@ std::vector<ExperimentKey> make_keys() {
          if (!e.experiment.frames.has_value()) return std::nullopt;
          return std::to_string(*e.experiment.frames);
        }});
-  keys.push_back(
-      real_key("experiment", "stop_after", "s", 0.01, 1e4,
-               "algorithm random: the run ends when the drive has lasted so long, whatever its n",
-               [](Experiment& e) -> std::optional<double>& { return e.experiment.stop_after_s; }));
+  keys.push_back(real_key(
+      "experiment", "stop_after", "s", 0.01, 1e4,
+      "algorithm training_drive: the run ends when the drive has lasted so long, whatever its n",
+      [](Experiment& e) -> std::optional<double>& { return e.experiment.stop_after_s; }));
   keys.push_back(
       {"experiment", "seed", "", "an integer 0..18446744073709551615",
-       "of every random generator of the world",
+       "seed of every random generator of the world",
        [](Experiment& e, const std::string& text) { return parse_number(text, e.experiment.seed); },
        [](const Experiment& e) -> std::optional<std::string> {
          return std::to_string(e.experiment.seed);
@@ -332,15 +332,16 @@ std::vector<ExperimentKey> make_keys() {
 
   keys.push_back(text_key(
       "trap", "kind", "none, wall, slope, trench, hump or ruts",
-      "a place where robots get stuck: a wall, a slope or a trench all round the start; a hump "
+      "obstacle that robots get stuck at: a wall, a slope or a trench all round the start; a hump "
       "between the tracks, ruts under them, in front of it",
       [](Experiment& e) -> std::string& { return e.trap.kind; }, is_trap));
   const auto no_trap = [](const Experiment& e) { return e.trap.kind == "none"; };
-  keys.push_back(in_force_unless(
-      real_key("trap", "distance", "m", -10, 10,
-               "from the start to where it begins, 0.5 if left out; ruts may begin behind it",
-               [](Experiment& e) -> double& { return e.trap.distance_m; }),
-      no_trap));
+  keys.push_back(
+      in_force_unless(real_key("trap", "distance", "m", -10, 10,
+                               "distance from the start to the obstacle, 0.5 if left out; ruts may "
+                               "begin behind the start",
+                               [](Experiment& e) -> double& { return e.trap.distance_m; }),
+                      no_trap));
   keys.push_back(in_force_unless(
       real_key("trap", "size", "m or deg", 0.001, 60,
                "height or depth in m, 0.1 if left out; of a slope its angle in degrees",
@@ -366,9 +367,10 @@ std::vector<ExperimentKey> make_keys() {
       "the IMU feels a person turning the robot over, as screed calibrate asks; the robot stands",
       [](Experiment& e) -> bool& { return e.sensors.handled; }));
 
-  keys.push_back(real_key("radio", "delay", "s", 0, 10,
-                          "of a packet, from its end in one module to its way out of the other",
-                          [](Experiment& e) -> double& { return e.radio.delay_s; }));
+  keys.push_back(
+      real_key("radio", "delay", "s", 0, 10,
+               "latency of a packet, from its end in one module to its first byte out of the other",
+               [](Experiment& e) -> double& { return e.radio.delay_s; }));
   keys.push_back(real_key("radio", "loss", "", 0, 1, "probability that a packet is lost",
                           [](Experiment& e) -> double& { return e.radio.loss; }));
   keys.push_back(real_key("radio", "bit_errors", "", 0, 1,
@@ -382,7 +384,7 @@ std::vector<ExperimentKey> make_keys() {
                           "too far",
                           [](Experiment& e) -> std::optional<double>& { return e.radio.range_m; }));
   keys.push_back(real_key("radio", "baud", "baud", 1200, 1e6,
-                          "of the serial lines at the modules, 10 bits a byte",
+                          "baud rate of the serial lines at the modules, 10 bits a byte",
                           [](Experiment& e) -> double& { return e.radio.baud; }));
   keys.push_back(real_key("radio", "packet_pause", "characters", 1, 255,
                           "silence that ends a packet (the XBee's parameter RO)",
@@ -393,7 +395,8 @@ std::vector<ExperimentKey> make_keys() {
   keys.push_back(text_key(
       "radio", "key",
       "32 hexadecimal digits, then a blank and the robot's id if it is not 1; or none",
-      "of robot and ground station; left out: the test key 00 01 .. 0F; none: the robot has no key",
+      "command key of robot and ground station; left out: the test key 00 01 .. 0F; none: the "
+      "robot has no key",
       [](Experiment& e) -> std::string& { return e.radio.key; }, is_key));
   keys.push_back({"radio", "boot_epoch", "", "an integer 2..65535",
                   "number of the robot's start, part of every command's freshness",
@@ -405,7 +408,7 @@ std::vector<ExperimentKey> make_keys() {
                     return std::to_string(e.radio.boot_epoch);
                   }});
 
-  keys.push_back(real_key("physics", "step", "s", 1e-5, 0.01, "of the integration; divides 0.01 s",
+  keys.push_back(real_key("physics", "step", "s", 1e-5, 0.01, "integration step; divides 0.01 s",
                           [](Experiment& e) -> double& { return e.physics.step_s; }));
 
   for (const ParameterInfo& info : kParameterTable) {

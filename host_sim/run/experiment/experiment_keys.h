@@ -18,7 +18,7 @@ inline constexpr const char* kNoKey = "none";  ///< [radio] key of a robot witho
 inline constexpr const char* kUnitsKey = "units";
 inline constexpr const char* kSandboxKey = "chrono_data_path";
 inline constexpr double kSandboxUnitsPerMetre = 12.0;
-inline constexpr uint32_t kMostFrames = 8U * INT16_MAX;  // eight blocks of a parameter's range
+inline constexpr uint32_t kMaxFrames = 8U * INT16_MAX;  // eight blocks of a parameter's range
 
 /// One key of an experiment file: how its value is read, written back and described.
 struct ExperimentKey {

@@ -17,7 +17,7 @@ constexpr double kHalfHump_m = 0.04;  // of 0.16 m between the tracks
 constexpr double kHalfGauge_m = 0.0975;
 constexpr double kHalfRut_m = 0.035;
 
-struct Place {
+struct TrapPosition {
   double around;  ///< from the start, m
   double ahead;   ///< along the heading at the start, m
   double left;
@@ -25,7 +25,7 @@ struct Place {
 
 struct TrapKind {
   const char* name;
-  double (*height)(const Place& place, double distance, double size);
+  double (*height)(const TrapPosition& position, double distance, double size);
 };
 
 double smooth_step(double t) {
@@ -39,26 +39,29 @@ double dip(double along, double length) {
 }
 
 constexpr TrapKind kTraps[] = {
-    {"none", [](const Place& /*place*/, double /*distance*/, double /*size*/) { return 0.0; }},
-    {"wall", [](const Place& place, double distance,
-                double size) { return size * smooth_step((place.around - distance) / kSteep_m); }},
-    {"slope",
-     [](const Place& place, double distance, double size) {
-       return std::tan(size * std::numbers::pi / 180.0) *
-              std::clamp(place.around - distance, 0.0, kSlopeLength_m);
+    {"none",
+     [](const TrapPosition& /*position*/, double /*distance*/, double /*size*/) { return 0.0; }},
+    {"wall",
+     [](const TrapPosition& position, double distance, double size) {
+       return size * smooth_step((position.around - distance) / kSteep_m);
      }},
-    {"trench", [](const Place& place, double distance,
-                  double size) { return -size * dip(place.around - distance, kTrench_m); }},
+    {"slope",
+     [](const TrapPosition& position, double distance, double size) {
+       return std::tan(size * std::numbers::pi / 180.0) *
+              std::clamp(position.around - distance, 0.0, kSlopeLength_m);
+     }},
+    {"trench", [](const TrapPosition& position, double distance,
+                  double size) { return -size * dip(position.around - distance, kTrench_m); }},
     {"hump",
-     [](const Place& place, double distance, double size) {
-       return std::abs(place.left) < kHalfHump_m
-                  ? size * smooth_step((place.ahead - distance) / 0.1)
+     [](const TrapPosition& position, double distance, double size) {
+       return std::abs(position.left) < kHalfHump_m
+                  ? size * smooth_step((position.ahead - distance) / 0.1)
                   : 0.0;
      }},
     {"ruts",
-     [](const Place& place, double distance, double size) {
-       return std::abs(std::abs(place.left) - kHalfGauge_m) < kHalfRut_m
-                  ? -size * dip(place.ahead - distance, kRuts_m)
+     [](const TrapPosition& position, double distance, double size) {
+       return std::abs(std::abs(position.left) - kHalfGauge_m) < kHalfRut_m
+                  ? -size * dip(position.ahead - distance, kRuts_m)
                   : 0.0;
      }},
 };
@@ -83,10 +86,11 @@ void set_trap(const Experiment& experiment, HeightField& field) {
     for (int ix = 0; ix < field.nx(); ++ix) {
       const double east = field.node_x(ix) - experiment.vehicle.x_m;
       const double north = field.node_y(iy) - experiment.vehicle.y_m;
-      const Place place = {std::hypot(east, north),
-                           east * std::cos(heading) + north * std::sin(heading),
-                           north * std::cos(heading) - east * std::sin(heading)};
-      const double height = trap->height(place, experiment.trap.distance_m, experiment.trap.size);
+      const TrapPosition position = {std::hypot(east, north),
+                                     east * std::cos(heading) + north * std::sin(heading),
+                                     north * std::cos(heading) - east * std::sin(heading)};
+      const double height =
+          trap->height(position, experiment.trap.distance_m, experiment.trap.size);
       if (height == 0.0) continue;
       const double units = static_cast<double>(field.node(ix, iy)) + height / kHeightUnit_m;
       field.set_node(ix, iy, static_cast<Height>(std::clamp(units, -2.1e9, 2.1e9)));

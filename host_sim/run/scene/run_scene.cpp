@@ -8,9 +8,9 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/physics/vehicle/vehicle.h"
-#include "host_sim/render/scene/ground_scene.h"
 #include "host_sim/render/scene/povray.h"
 #include "host_sim/render/scene/robot_scene.h"
+#include "host_sim/render/scene/terrain_scene.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/session_reader.h"
 
@@ -31,38 +31,39 @@ std::filesystem::path session_of(const std::filesystem::path& run) {
   return file;
 }
 
-/// For soil_look().
+/// For soil_appearance().
 std::string soil_name(const RunSetup& setup) {
   if (setup.ground == "scm") return setup.soil;
   return setup.ground == "particles" || setup.ground == "static_particles" ? "gravel" : "";
 }
 
 /// The robot's way to a frame.
-struct Way {
-  Frame frame;
+struct DrivenPath {
+  SimFrame frame;
   std::vector<Eigen::Vector2d> path;
   std::array<double, 2> travel_m{};
 };
 
-Way way_to(const SessionReader& session, std::uint64_t last) {
+DrivenPath path_until(const SessionReader& session, std::uint64_t last) {
   constexpr std::uint64_t kBlockRows = 1024;
   constexpr double kPathStep_m = 0.01;
-  Way way;
-  std::vector<Frame> frames;
+  DrivenPath driven;
+  std::vector<SimFrame> frames;
   const double dt = 1.0 / session.info().tick_rate_hz;
   for (std::uint64_t first = 0; first <= last; first += frames.size()) {
     frames.resize(std::min(kBlockRows, last + 1 - first));
     session.read(first, std::span(frames));
-    for (const Frame& frame : frames) {
-      way.travel_m[0] += std::isfinite(frame.track_left) ? frame.track_left * dt : 0.0;
-      way.travel_m[1] += std::isfinite(frame.track_right) ? frame.track_right * dt : 0.0;
+    for (const SimFrame& frame : frames) {
+      driven.travel_m[0] += std::isfinite(frame.track_left) ? frame.track_left * dt : 0.0;
+      driven.travel_m[1] += std::isfinite(frame.track_right) ? frame.track_right * dt : 0.0;
       const Eigen::Vector2d at(frame.x, frame.y);
-      if (way.path.empty() || (at - way.path.back()).norm() >= kPathStep_m) way.path.push_back(at);
+      if (driven.path.empty() || (at - driven.path.back()).norm() >= kPathStep_m)
+        driven.path.push_back(at);
     }
   }
-  way.frame = frames.back();
-  way.path.emplace_back(way.frame.x, way.frame.y);
-  return way;
+  driven.frame = frames.back();
+  driven.path.emplace_back(driven.frame.x, driven.frame.y);
+  return driven;
 }
 
 std::uint64_t frame_number(const SessionReader& session, const RunSceneOptions& options,
@@ -78,15 +79,15 @@ std::uint64_t frame_number(const SessionReader& session, const RunSceneOptions& 
   return static_cast<std::uint64_t>(frame);
 }
 
-struct Ground {
+struct RecordedTerrain {
   HeightMap now;
   std::optional<HeightMap> before;
   bool is_later = false;
 };
 
-Ground ground_at(const SessionReader& session, std::uint64_t frame, bool soft,
-                 const std::filesystem::path& run) {
-  Ground ground;
+RecordedTerrain ground_at(const SessionReader& session, std::uint64_t frame, bool soft,
+                          const std::filesystem::path& run) {
+  RecordedTerrain ground;
   ground.before = session.terrain_before();
   if (!ground.before) throw InputError(run.string() + ": the session holds no height map");
   if (session.has_heights()) {
@@ -120,34 +121,34 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   const RunSetup setup = setup_of(session.info(), run);
   const Assembly robot = robot_model(setup, session.info().board_name, options.model);
 
-  const Way way = way_to(session, result.frame);
+  const DrivenPath driven = path_until(session, result.frame);
   RobotPose pose;
-  pose.body.linear() = rotation_from({way.frame.roll, way.frame.pitch, way.frame.yaw});
-  pose.body.translation() << way.frame.x, way.frame.y, way.frame.z;
-  pose.travel_m = way.travel_m;
+  pose.body.linear() = rotation_from({driven.frame.roll, driven.frame.pitch, driven.frame.yaw});
+  pose.body.translation() << driven.frame.x, driven.frame.y, driven.frame.z;
+  pose.travel_m = driven.travel_m;
   if (!pose.body.matrix().allFinite()) {
     throw InputError(run.string() + ": frame " + std::to_string(result.frame) +
                      " has no pose of the robot");
   }
 
-  const Ground ground = ground_at(session, result.frame, setup.ground != "rigid", run);
-  result.ground_is_later = ground.is_later;
-  const GroundSurface surface(ground.now);
-  CameraPlace place = options.camera;
+  const RecordedTerrain ground = ground_at(session, result.frame, setup.ground != "rigid", run);
+  result.terrain_is_later = ground.is_later;
+  const TerrainSurface surface(ground.now);
+  CameraOrbit orbit = options.camera;
   Eigen::Vector3d target = pose.body.translation() - Eigen::Vector3d(0.0, 0.0, 0.02);
-  double heading = way.frame.yaw;
-  if (place.whole_bed) {
+  double heading = driven.frame.yaw;
+  if (orbit.whole_bed) {
     target << surface.x_min() + surface.width_m() / 2, surface.y_min() + surface.depth_m() / 2,
         0.5 * (surface.lowest_m() + surface.highest_m());
     heading = 0.0;
-    place.distance_m = 1.75 * std::max(surface.width_m(), surface.depth_m());
+    orbit.distance_m = 1.75 * std::max(surface.width_m(), surface.depth_m());
   }
   const SceneCamera camera =
-      camera_at(place, target, heading, [&](double x, double y) { return surface.height_m(x, y); });
+      camera_at(orbit, target, heading, [&](double x, double y) { return surface.height_m(x, y); });
 
   PovrayJob job(picture);
   result.scene = job.scene();
-  GroundFiles files;
+  TerrainFiles files;
   files.heights = job.name_with("_ground.png");
   write_raster(job.in_the_making(files.heights), height_raster(surface));
   const GreyRaster change = change_raster(surface, *ground.before);
@@ -159,8 +160,8 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
       "// Made by `screed render`. Metres; x east, y north, z up.\n#version 3.7;\n"
       "global_settings { assumed_gamma 1.0 }\n" +
       camera_text(camera, kFieldOfView_deg) +
-      ground_text(surface, files, soil_look(soil_name(setup))) +
-      (options.path ? path_text(way.path, surface, kPathRadius * place.distance_m) : "") +
+      terrain_text(surface, files, soil_appearance(soil_name(setup))) +
+      (options.path ? path_text(driven.path, surface, kPathRadius * orbit.distance_m) : "") +
       robot_text(robot, setup.experiment.vehicle.tracks, pose));
   if (!options.pov_only) result.rendered = job.render(options.width_px, options.height_px);
   job.publish();

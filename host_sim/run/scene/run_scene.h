@@ -1,5 +1,5 @@
-// A picture of one frame of a recorded run: the ground as it lay then, the robot as it stood, the
-// way it had come.
+// A picture of one frame of a recorded run: the ground as it lay then, the robot as it stood, its
+// path.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ namespace screed {
 
 struct RunSceneOptions {
   std::optional<std::int64_t> frame;  ///< from 0; negative counts from the end; none: the last
-  CameraPlace camera;
+  CameraOrbit camera;
   std::optional<std::filesystem::path> model;  ///< the robot's URDF instead of the experiment's
-  bool path = true;                            ///< draw the way the robot has come
+  bool path = true;                            ///< draw the driven path
   bool pov_only = false;                       ///< only the scene
   int width_px = 1280;                         ///< 16..8000
   int height_px = 800;                         ///< 16..8000
@@ -24,9 +24,9 @@ struct RunSceneOptions {
 struct RunSceneResult {
   std::uint64_t frame = 0;
   std::filesystem::path scene;
-  bool rendered = false;         ///< false with pov_only, and when there is no povray
-  bool ground_is_later = false;  ///< the height map of this frame is not in the session: that of
-                                 ///< the run's end was drawn
+  bool rendered = false;          ///< false with pov_only, and when there is no povray
+  bool terrain_is_later = false;  ///< the height map of this frame is not in the session: that of
+                                  ///< the run's end was drawn
 };
 
 /// Draws frame of `run` (a run folder, or a session.h5) to `picture`, .png or .jpg; beside it stand

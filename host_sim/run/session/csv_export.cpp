@@ -44,7 +44,7 @@ T taken_from(const std::uint8_t* bytes) {
   return value;
 }
 
-char* put_line(char* cursor, std::span<const Column> columns, const Frame& frame) {
+char* put_line(char* cursor, std::span<const Column> columns, const SimFrame& frame) {
   std::array<std::uint8_t, kFrameBytes> row{};
   pack(frame, row);
   for (const Column& column : columns) {
@@ -59,7 +59,7 @@ char* put_line(char* cursor, std::span<const Column> columns, const Frame& frame
 void write_rows(const SessionReader& session, std::span<const Column> columns,
                 const FrameRange& range, bool numbered, AtomicFile& file) {
   file.write(header(columns, numbered));
-  std::vector<Frame> frames;
+  std::vector<SimFrame> frames;
   std::vector<char> text(kBlockRows * (columns.size() + 1) * (kNumberChars + 1));
   for (std::uint64_t done = 0; done < range.count; done += kBlockRows) {
     frames.resize(std::min(kBlockRows, range.count - done));
@@ -111,13 +111,14 @@ void export_columns_csv(const SessionReader& session, std::span<const Column> co
 
 FrameRange training_frames(const SessionReader& session) {
   FrameRange range;
-  std::vector<Frame> frames;
+  std::vector<SimFrame> frames;
   bool begun = false;
   for (std::uint64_t first = 0; first < session.frames(); first += kBlockRows) {
     frames.resize(std::min(kBlockRows, session.frames() - first));
     session.read(first, std::span(frames));
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (frames[i].leveling_state != static_cast<std::int32_t>(LevelingState::kTraining)) continue;
+      if (frames[i].leveling_state != static_cast<std::int32_t>(LevelingState::kTrainingDrive))
+        continue;
       if (!begun) range.first = first + i;
       begun = true;
       range.count = first + i + 1 - range.first;

@@ -108,7 +108,7 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
   PictureOptions options;
   options.state_names = {"driven"};
   std::uint64_t next = range.first;
-  std::vector<Frame> frames;
+  std::vector<SimFrame> frames;
   for_each_frame(session, range, every, [&](std::uint64_t frame, const HeightMap& map) {
     frames.resize(frame + 1 - next);
     session.read(next, std::span(frames));
@@ -116,7 +116,7 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
       if ((next + i - range.first) % kPathFrames == 0)
         options.path.push_back({frames[i].x, frames[i].y, 0});
     }
-    const Frame& now = frames.back();
+    const SimFrame& now = frames.back();
     next = frame + 1;
     options.robot = RobotOutline{now.x, now.y, now.yaw};
     options.title = session.info().experiment_name + ": frame " + std::to_string(frame);

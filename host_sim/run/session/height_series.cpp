@@ -78,9 +78,9 @@ void read_range(const h5::Handle& dataset, hsize_t first, hid_t type, std::vecto
 
 std::vector<std::uint64_t> read_all(hid_t group, const char* name) {
   const h5::Handle dataset = open_dataset(group, name);
-  constexpr std::uint64_t kMost = 1U << 28;
+  constexpr std::uint64_t kMax = 1U << 28;
   const std::uint64_t length = length_of(dataset, name);
-  if (length > kMost) damaged(std::string("'") + name + "' has an impossible length");
+  if (length > kMax) damaged(std::string("'") + name + "' has an impossible length");
   std::vector<std::uint64_t> values(length);
   read_range(dataset, 0, H5T_NATIVE_UINT64, values, name);
   return values;

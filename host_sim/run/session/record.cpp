@@ -92,7 +92,7 @@ std::string element_text(ColumnType type, const std::uint8_t* bytes) {
 
 }  // namespace
 
-void pack(const Frame& frame, FrameRow row) {
+void pack(const SimFrame& frame, FrameRow row) {
   std::uint8_t* cursor = row.data();
 #define SCREED_STORE(type, name, unit, meaning) store(frame.name, cursor);
   SCREED_FRAME_COLUMNS(SCREED_STORE)
@@ -115,7 +115,7 @@ void pack(const RobotOutput& output, OutputRow row) {
   zero_behind(output.radio_out_count, kRadioOutCapacity, cursor);
 }
 
-void unpack(std::span<const std::uint8_t, kFrameBytes> row, Frame& frame) {
+void unpack(std::span<const std::uint8_t, kFrameBytes> row, SimFrame& frame) {
   const std::uint8_t* cursor = row.data();
 #define SCREED_LOAD(type, name, unit, meaning) load(cursor, frame.name);
   SCREED_FRAME_COLUMNS(SCREED_LOAD)

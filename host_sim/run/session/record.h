@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "hal/sample.h"
-#include "host_sim/run/session/frame.h"
+#include "host_sim/run/session/sim_frame.h"
 
 // clang-format off
 //  name             unit            meaning
@@ -121,7 +121,7 @@ constexpr std::array<Column, N> with_offsets(std::array<Column, N> columns) {
 
 inline constexpr auto kFrameColumns = record_detail::with_offsets(std::to_array<Column>({
 #define SCREED_COLUMN(type, name, unit, meaning) \
-  record_detail::make_column<decltype(Frame::name)>(#name, unit, meaning),
+  record_detail::make_column<decltype(SimFrame::name)>(#name, unit, meaning),
     SCREED_FRAME_COLUMNS(SCREED_COLUMN)
 #undef SCREED_COLUMN
 }));
@@ -154,11 +154,11 @@ using FrameRow = std::span<std::uint8_t, kFrameBytes>;
 using SampleRow = std::span<std::uint8_t, kSampleBytes>;
 using OutputRow = std::span<std::uint8_t, kOutputBytes>;
 
-void pack(const Frame& frame, FrameRow row);
+void pack(const SimFrame& frame, FrameRow row);
 void pack(const SensorSample& sample, SampleRow row);
 void pack(const RobotOutput& output, OutputRow row);
 
-void unpack(std::span<const std::uint8_t, kFrameBytes> row, Frame& frame);
+void unpack(std::span<const std::uint8_t, kFrameBytes> row, SimFrame& frame);
 void unpack(std::span<const std::uint8_t, kSampleBytes> row, SensorSample& sample);
 void unpack(std::span<const std::uint8_t, kOutputBytes> row, RobotOutput& output);
 

@@ -310,7 +310,7 @@ class SessionReader::Impl {
     return file;
   }
 
-  static void check_radio(const Frame&, std::uint64_t) {}
+  static void check_radio(const SimFrame&, std::uint64_t) {}
   static void check_radio(const SensorSample& sample, std::uint64_t row) {
     check_count(sample.radio_in_count, kRadioInCapacity, "samples", row);
   }
@@ -366,7 +366,7 @@ const std::vector<std::string>& SessionReader::missing_parameters() const {
   return impl_->missing_parameters();
 }
 
-void SessionReader::read(std::uint64_t first, std::span<Frame> rows) const {
+void SessionReader::read(std::uint64_t first, std::span<SimFrame> rows) const {
   or_input_error(impl_->path(),
                  [&] { impl_->read<kFrameBytes>(impl_->frame_table(), first, rows); });
 }

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "hal/sample.h"
-#include "host_sim/run/session/frame.h"
 #include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/sim_frame.h"
 
 namespace screed {
 
@@ -40,7 +40,7 @@ class SessionReader {
 
   /// Fill the span with rows first, first + 1, ... Throw std::out_of_range behind the last row,
   /// InputError when the file is damaged. Blocks of some hundred rows are fastest.
-  void read(std::uint64_t first, std::span<Frame> rows) const;
+  void read(std::uint64_t first, std::span<SimFrame> rows) const;
   void read(std::uint64_t first, std::span<SensorSample> rows) const;
   void read(std::uint64_t first, std::span<RobotOutput> rows) const;
 

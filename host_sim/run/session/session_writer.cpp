@@ -149,7 +149,7 @@ class SessionWriter::Impl {
   }
 
   /// True when a whole block waits.
-  bool append(const Frame& frame, const SensorSample& sample, const RobotOutput& output,
+  bool append(const SimFrame& frame, const SensorSample& sample, const RobotOutput& output,
               std::span<const HeightChange> changes) {
     if (heights_) heights_->append(changes);
     pack(frame, FrameRow(frames_.row(waiting_), kFrameBytes));
@@ -270,7 +270,7 @@ SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
 SessionWriter& SessionWriter::operator=(SessionWriter&&) noexcept = default;
 SessionWriter::~SessionWriter() = default;
 
-void SessionWriter::append(const Frame& frame, const SensorSample& sample,
+void SessionWriter::append(const SimFrame& frame, const SensorSample& sample,
                            const RobotOutput& output, std::span<const HeightChange> changes) {
   or_run_error(impl_->path(), [&] {
     if (impl_->append(frame, sample, output, changes)) impl_->write_block();

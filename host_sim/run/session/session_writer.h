@@ -9,8 +9,8 @@
 #include <string>
 
 #include "hal/sample.h"
-#include "host_sim/run/session/frame.h"
 #include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/sim_frame.h"
 
 namespace screed {
 
@@ -32,7 +32,7 @@ class SessionWriter {
 
   /// Records one tick, and what it did to the recorded heights, each at most once. Throws RunError
   /// when a block cannot be written (disk full).
-  void append(const Frame& frame, const SensorSample& sample, const RobotOutput& output,
+  void append(const SimFrame& frame, const SensorSample& sample, const RobotOutput& output,
               std::span<const HeightChange> changes = {});
 
   /// What the ground is made of: at most once. Not part of the content hash, which has the

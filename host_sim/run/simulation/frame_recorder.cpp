@@ -24,7 +24,7 @@ double slip(double surface, double ground) {
 
 }  // namespace
 
-Frame FrameRecorder::record(const Surroundings& plant, const Robot& robot) {
+SimFrame FrameRecorder::record(const Environment& plant, const Robot& robot) {
   const VehicleState& vehicle = plant.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Matrix3d& rotation = chassis.pose.linear();
@@ -32,13 +32,13 @@ Frame FrameRecorder::record(const Surroundings& plant, const Robot& robot) {
   const Attitude attitude = attitude_of(rotation);
   const Eigen::Vector3d velocity = rotation.transpose() * chassis.velocity;
 
-  Frame frame;
+  SimFrame frame;
   frame.time = plant.time_s();
   frame.x = position.x();
   frame.y = position.y();
   frame.z = position.z();
   // As travelled: a teleport is no motion.
-  const Eigen::Vector3d travelled = plant.place_travelled();
+  const Eigen::Vector3d travelled = plant.unwrapped_position();
   if (!first_) {
     frame.delta_x = travelled.x() - last_travelled_.x();
     frame.delta_y = travelled.y() - last_travelled_.y();
@@ -84,8 +84,8 @@ Frame FrameRecorder::record(const Surroundings& plant, const Robot& robot) {
   frame.state = static_cast<int32_t>(robot.supervisor().state());
   frame.leveling_state = static_cast<int32_t>(robot.leveling().state());
   frame.faults = robot.supervisor().faults();
-  frame.beds_x = static_cast<int32_t>(plant.beds_passed()[0]);
-  frame.beds_y = static_cast<int32_t>(plant.beds_passed()[1]);
+  frame.beds_x = static_cast<int32_t>(plant.wrap_counts()[0]);
+  frame.beds_y = static_cast<int32_t>(plant.wrap_counts()[1]);
   return frame;
 }
 

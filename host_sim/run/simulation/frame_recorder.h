@@ -2,15 +2,15 @@
 #pragma once
 
 #include "firmware/robot/robot.h"
-#include "host_sim/physics/world/surroundings.h"
-#include "host_sim/run/session/frame.h"
+#include "host_sim/physics/world/environment.h"
+#include "host_sim/run/session/sim_frame.h"
 
 namespace screed {
 
 class FrameRecorder {
  public:
   /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
-  Frame record(const Surroundings& plant, const Robot& robot);
+  SimFrame record(const Environment& plant, const Robot& robot);
 
   /// Length of the chassis' path so far, m, and the time it was not on the bed, s.
   double distance_m() const { return distance_m_; }

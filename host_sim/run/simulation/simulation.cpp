@@ -31,13 +31,13 @@ constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
 constexpr uint64_t kFlatnessTicks =
     5U * uint64_t{kTickRate_hz};  // a look at the whole bed costs milliseconds
 // How long a training drive may take beyond its frames: to arm and to start.
-constexpr uint64_t kMostIdleTicks = 60U * uint64_t{kTickRate_hz};
+constexpr uint64_t kMaxIdleTicks = 60U * uint64_t{kTickRate_hz};
 constexpr uint64_t kPathTicks = kTickRate_hz / 10;  // a point of the drawn path ten times a second
 
 constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",
                                                    "fault"};
 constexpr const char* kLevelingStateNames[kLevelingStates] = {
-    "idle", "walk", "climb", "spin", "return", "drive", "training", "done"};
+    "idle", "walk", "climb", "spin", "return", "drive", "training_drive", "done"};
 constexpr const char* kFaultNames[] = {"tilt",
                                        "IMU silent",
                                        "gyro frozen",
@@ -113,8 +113,8 @@ std::vector<SoilAttribute> attributes_of(const SoilParameters& soil) {
 /// behind its HAL or in its microcontroller, does not.
 class Recorder {
  public:
-  Recorder(const Surroundings& plant, const Experiment& experiment,
-           const SimulationOptions& options, SessionWriter& writer)
+  Recorder(const Environment& plant, const Experiment& experiment, const SimulationOptions& options,
+           SessionWriter& writer)
       : plant_(plant),
         options_(options),
         shadow_(board_constants_of(options.board), experiment.parameters,
@@ -126,7 +126,7 @@ class Recorder {
         flatness_(flatness(plant.terrain(), flatness_deg_)),
         flatness_now_(flatness_),
         begin_(std::chrono::steady_clock::now()) {
-    if (options.onlooker != nullptr) options.onlooker->begin(plant.terrain());
+    if (options.observer != nullptr) options.observer->on_begin(plant.terrain());
     if (!options.heights) return;
     watch_.emplace(plant.terrain());
     std::vector<int32_t> heights;
@@ -138,7 +138,7 @@ class Recorder {
   bool done() const {
     if (training_frames_ == 0)
       return ticks_ >= static_cast<uint64_t>(std::llround(duration_s_ * kTickRate_hz));
-    return driven_ == training_frames_ || ticks_ >= training_frames_ + kMostIdleTicks;
+    return driven_ == training_frames_ || ticks_ >= training_frames_ + kMaxIdleTicks;
   }
 
   /// A training drive that a fault has ended: nobody clears it.
@@ -155,7 +155,7 @@ class Recorder {
   /// A bed of soil or particles ends at its edges: who drives over them falls.
   bool left_bed() const {
     const Eigen::Vector3d place = plant_.vehicle().chassis().pose.translation();
-    return plant_.ground_is_loose() && !plant_.terrain().wrap() &&
+    return plant_.is_deformable() && !plant_.terrain().wrap() &&
            !plant_.terrain().inside(place.x(), place.y());
   }
 
@@ -164,7 +164,8 @@ class Recorder {
     sample_ = sample;
     shadow_.tick(sample, expected_);
     frame_ = recorder_.record(plant_, shadow_);
-    if (shadow_.leveling().state() == LevelingState::kTraining && shadow_.supervisor().running())
+    if (shadow_.leveling().state() == LevelingState::kTrainingDrive &&
+        shadow_.supervisor().running())
       ++driven_;
     if (watch_) changes_ = watch_->changes(plant_.terrain());
   }
@@ -180,7 +181,7 @@ class Recorder {
     height_changes_ += changes_.size();
     if (ticks_ % kPathTicks == 1)
       path_.push_back({frame_.x, frame_.y, static_cast<size_t>(frame_.leveling_state)});
-    if (plant_.ground_is_loose() && ticks_ % kFlatnessTicks == 0) {
+    if (plant_.is_deformable() && ticks_ % kFlatnessTicks == 0) {
       flatness_now_ = flatness(plant_.terrain(), flatness_deg_);
     }
     if (options_.progress && (ticks_ % kProgressTicks == 0 || done())) {
@@ -188,7 +189,7 @@ class Recorder {
           {training_frames_ != 0 ? static_cast<double>(driven_) / kTickRate_hz : frame_.time,
            duration_s_, flatness_now_});
     }
-    if (options_.onlooker != nullptr) options_.onlooker->see(frame_, plant_.terrain());
+    if (options_.observer != nullptr) options_.observer->on_tick(frame_, plant_.terrain());
     if (options_.realtime) {
       std::this_thread::sleep_until(begin_ +
                                     std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -221,12 +222,12 @@ class Recorder {
     }
   }
 
-  const Surroundings& plant_;
+  const Environment& plant_;
   const SimulationOptions& options_;
   Robot shadow_;
   SensorSample sample_{};
   RobotOutput expected_{};
-  Frame frame_;
+  SimFrame frame_;
   SessionWriter& writer_;
   FrameRecorder recorder_;
   std::vector<PathPoint> path_;
@@ -292,20 +293,21 @@ class Run {
   Run(const Experiment& experiment, const SimulationOptions& options, std::ostream* telemetry_log)
       : experiment_(experiment), options_(options) {
     if (options.image.has_value()) {
-      if (experiment.experiment.algorithm == "random") {
+      if (experiment.experiment.algorithm == kTrainingDriveName) {
         throw InputError(
-            "[experiment] algorithm = random is not part of the microcontroller's image; it runs "
+            "[experiment] algorithm = training_drive is not part of the microcontroller's image; "
+            "it runs "
             "without --hal mcu");
       }
       image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image,
                                   options.ground_port);
     } else {
       world_ = make_world(experiment, telemetry_log, options.board, options.ground_port,
-                          options.surroundings);
+                          options.environment);
     }
   }
 
-  const Surroundings& plant() const { return image_ ? image_->plant() : world_->plant(); }
+  const Environment& plant() const { return image_ ? image_->plant() : world_->plant(); }
   const GroundStation& ground_station() const {
     return image_ ? image_->ground_station() : std::as_const(*world_).ground_station();
   }
@@ -348,7 +350,7 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
 }
 
 void write_pictures(const std::filesystem::path& folder, const HeightField& before,
-                    const Surroundings& plant, const Experiment& experiment,
+                    const Environment& plant, const Experiment& experiment,
                     std::vector<PathPoint> path) {
   PictureOptions options;
   options.title = experiment.experiment.name + ": before";
@@ -389,7 +391,7 @@ nlohmann::ordered_json terrain_json(const TerrainStatistics& statistics, double 
 }  // namespace
 
 uint64_t frames_to_drive(const Experiment& experiment) {
-  if (experiment.experiment.algorithm != "random") return 0;
+  if (experiment.experiment.algorithm != kTrainingDriveName) return 0;
   const uint64_t all = experiment.experiment.frames.value();
   if (!experiment.experiment.stop_after_s.has_value()) return all;
   const auto some = std::llround(*experiment.experiment.stop_after_s * kTickRate_hz);
@@ -433,7 +435,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   write_file(folder.path() / "experiment.ini", experiment.text());
   TextFile telemetry(folder.path() / "telemetry.log");
   telemetry_log.rdbuf(telemetry.stream().rdbuf());
-  const Surroundings& plant = run.plant();
+  const Environment& plant = run.plant();
   // As the experiment lays it out; the robot has settled into plant.terrain() already. Particles
   // lie as they fell.
   const HeightField before =
@@ -449,7 +451,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   Recorder recorder(plant, experiment, options, writer);
   run.drive(recorder);
   summary.wall_s = recorder.wall_s();
-  if (options.onlooker != nullptr) options.onlooker->end();
+  if (options.observer != nullptr) options.observer->on_end();
 
   writer.write_terrain_after(view_of(plant.terrain(), heights));
   summary.content_hash = writer.finish();

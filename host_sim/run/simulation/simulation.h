@@ -15,7 +15,7 @@
 #include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/simulation/onlooker.h"
+#include "host_sim/run/simulation/simulation_observer.h"
 #include "host_sim/run/world/co_simulation.h"
 #include "host_sim/run/world/world.h"
 #include "host_sim/run/world/world_setup.h"
@@ -40,8 +40,8 @@ struct SimulationOptions {
   /// Programs outside at the ground end of the radio; may be null. What they send is in the
   /// recorded samples, so that the run replays; running it again is another run.
   GroundPort* ground_port = nullptr;
-  /// Looks on; may be null.
-  SimulationOnlooker* onlooker = nullptr;
+  /// Is called at every tick; may be null.
+  SimulationObserver* observer = nullptr;
   /// Record the height map tick by tick, for training data.
   bool heights = false;
   /// Write frames.csv beside the session; it can be exported later as well.
@@ -52,7 +52,7 @@ struct SimulationOptions {
   /// natively.
   std::optional<std::string> image;
   /// Makes what the robot is driven in, in place of physics; may be empty.
-  SurroundingsFactory surroundings;
+  EnvironmentFactory environment;
 };
 
 struct SimulationSummary {

@@ -26,7 +26,7 @@ class CoSimulation {
   virtual const SensorSample& run_to_sample() = 0;
   virtual const RobotOutput& run_to_output() = 0;
 
-  virtual const Surroundings& plant() const = 0;
+  virtual const Environment& plant() const = 0;
   virtual const GroundStation& ground_station() const = 0;
   virtual CycleReport cycles() const = 0;
 };

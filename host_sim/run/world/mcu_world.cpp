@@ -15,7 +15,7 @@ namespace screed::mcu {
 namespace {
 
 // No healthy program is silent for so long, not even through a reset by the watchdog.
-constexpr std::uint64_t kPatience_us = 2'000'000;
+constexpr std::uint64_t kAnswerTimeout_us = 2'000'000;
 
 Wiring wiring_of(const std::string& board) {
   const std::filesystem::path folder = std::filesystem::path(kBoardsFolder) / board;
@@ -45,9 +45,9 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
   ParameterCopy copy{};
   encode_parameters(options.parameters, 1, copy);
   for (std::uint8_t i = 0; i < kParameterCopies; ++i) {
-    board_.mcu.write_eeprom(kParameterCopyAt(i), copy.bytes);
+    board_.mcu.write_eeprom(parameter_copy_address(i), copy.bytes);
   }
-  board_.mcu.write_eeprom(kCredentialRecordAt, credential_record(options.credentials).bytes);
+  board_.mcu.write_eeprom(kCredentialRecordAddress, credential_record(options.credentials).bytes);
   for (const Side side : {kLeft, kRight}) {
     position_.at(side) = encoder_position(side);
     board_.set_encoder(side, static_cast<std::int64_t>(std::floor(position_.at(side))));
@@ -76,9 +76,9 @@ void McuWorld::begin_tick() {
     plant_.lay_on_side();
   }
   const std::uint64_t at_us = us_at(plant_.steps());
-  const Eigen::Vector3d way = plant_.vehicle().chassis().pose.translation() - station_m_;
-  uplink_.set_distance(way.norm());
-  downlink_.set_distance(way.norm());
+  const Eigen::Vector3d offset = plant_.vehicle().chassis().pose.translation() - station_m_;
+  uplink_.set_distance(offset.norm());
+  downlink_.set_distance(offset.norm());
   ground_end_.tick(at_us, ground_, uplink_, downlink_);
 }
 
@@ -98,11 +98,11 @@ void McuWorld::begin_step() {
   add_edges(kRight);
   const auto begin = static_cast<double>(begin_us);
   const auto end = static_cast<double>(end_us);
-  add_measurements(What::kAccel, samplers_[0], board_.accel_mag.accel_rate_hz(), begin, end);
-  add_measurements(What::kMag, samplers_[1], board_.accel_mag.mag_rate_hz(), begin, end);
-  add_measurements(What::kGyro, samplers_[2], board_.gyro.rate_hz(), begin, end);
+  add_measurements(EventKind::kAccel, samplers_[0], board_.accel_mag.accel_rate_hz(), begin, end);
+  add_measurements(EventKind::kMag, samplers_[1], board_.accel_mag.mag_rate_hz(), begin, end);
+  add_measurements(EventKind::kGyro, samplers_[2], board_.gyro.rate_hz(), begin, end);
   if (board_.baro.has_value()) {
-    add_measurements(What::kBaro, samplers_[3], board_.baro->rate_hz(), begin, end);
+    add_measurements(EventKind::kBaro, samplers_[3], board_.baro->rate_hz(), begin, end);
   }
   add_radio(begin_us, end_us);
   std::stable_sort(events_.begin(), events_.end(),
@@ -126,11 +126,11 @@ void McuWorld::add_edges(Side side) {
     // Forward and back over the same edge take some time.
     cycle = std::max(cycle, last_edge_.at(side) + kCyclesPerUs);
     last_edge_.at(side) = cycle;
-    events_.push_back({cycle, What::kEdge, side, count});
+    events_.push_back({cycle, EventKind::kEdge, side, count});
   }
 }
 
-void McuWorld::add_measurements(What what, Sampler& sampler, double rate_hz, double begin_us,
+void McuWorld::add_measurements(EventKind kind, Sampler& sampler, double rate_hz, double begin_us,
                                 double end_us) {
   if (rate_hz <= 0.0) {
     sampler.rate_hz = 0.0;
@@ -144,7 +144,7 @@ void McuWorld::add_measurements(What what, Sampler& sampler, double rate_hz, dou
   for (; sampler.next_us < end_us; sampler.next_us += period_us) {
     const auto cycle = static_cast<std::uint64_t>(std::max(begin_us, sampler.next_us) *
                                                   static_cast<double>(kCyclesPerUs));
-    events_.push_back({cycle, what, kLeft, 0});
+    events_.push_back({cycle, kind, kLeft, 0});
   }
 }
 
@@ -155,35 +155,35 @@ void McuWorld::add_radio(std::uint64_t begin_us, std::uint64_t end_us) {
     flood_us_ = std::max(flood_us_, static_cast<double>(begin_us));
     for (; flood_us_ < static_cast<double>(end_us); flood_us_ += character_us) {
       events_.push_back({static_cast<std::uint64_t>(flood_us_ * static_cast<double>(kCyclesPerUs)),
-                         What::kRadioByte, kLeft, noise_.next() & 0xFFU});
+                         EventKind::kRadioByte, kLeft, noise_.next() & 0xFFU});
     }
   }
   while (const std::optional<RadioLink::Byte> byte = uplink_.receive_byte(end_us - 1)) {
     if (flood) continue;  // two senders at once: nothing gets through
     const std::uint64_t at_us = std::max(byte->arrives_us, begin_us);
-    events_.push_back({at_us * kCyclesPerUs, What::kRadioByte, kLeft, byte->value});
+    events_.push_back({at_us * kCyclesPerUs, EventKind::kRadioByte, kLeft, byte->value});
   }
 }
 
-void McuWorld::happen(const Event& event) {
-  if (event.what == What::kEdge) {
+void McuWorld::dispatch(const Event& event) {
+  if (event.kind == EventKind::kEdge) {
     board_.set_encoder(event.side, event.value);
     return;
   }
-  if (event.what == What::kRadioByte) {
+  if (event.kind == EventKind::kRadioByte) {
     board_.mcu.receive_byte(static_cast<std::uint8_t>(event.value));
     return;
   }
   if (!motion_.has_value()) motion_ = plant_.motion();
-  switch (event.what) {
-    case What::kAccel:
-      board_.feel_accel(imu_.accel_mg(*motion_));
+  switch (event.kind) {
+    case EventKind::kAccel:
+      board_.set_acceleration(imu_.accel_mg(*motion_));
       break;
-    case What::kMag:
-      board_.feel_mag(imu_.mag_mgauss(*motion_));
+    case EventKind::kMag:
+      board_.set_magnetic_field(imu_.mag_mgauss(*motion_));
       break;
-    case What::kGyro:
-      board_.feel_rate(imu_.gyro_dps(*motion_));
+    case EventKind::kGyro:
+      board_.set_angular_rate(imu_.gyro_dps(*motion_));
       break;
     default:
       board_.baro->measure(imu_.pressure_hpa(*motion_), ImuModel::kTemperature_degc);
@@ -192,7 +192,7 @@ void McuWorld::happen(const Event& event) {
 }
 
 void McuWorld::run_to(Board::Mark mark) {
-  const std::uint64_t limit_us = now_us() + kPatience_us;
+  const std::uint64_t limit_us = now_us() + kAnswerTimeout_us;
   for (;;) {
     const bool waiting = next_event_ < events_.size();
     const std::uint64_t target = waiting ? events_[next_event_].cycle : step_end_;
@@ -210,7 +210,7 @@ void McuWorld::run_to(Board::Mark mark) {
       continue;
     }
     if (waiting) {
-      happen(events_[next_event_++]);
+      dispatch(events_[next_event_++]);
       continue;
     }
     if (now_us() > limit_us) {

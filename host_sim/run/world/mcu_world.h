@@ -21,7 +21,7 @@ class McuWorld : public CoSimulation {
 
   const SensorSample& run_to_sample() override;
   const RobotOutput& run_to_output() override;
-  const Surroundings& plant() const override { return plant_; }
+  const Environment& plant() const override { return plant_; }
   const GroundStation& ground_station() const override { return ground_; }
   CycleReport cycles() const override { return board_.cycles(); }
 
@@ -32,10 +32,10 @@ class McuWorld : public CoSimulation {
   bool flood = false;
 
  private:
-  enum class What : std::uint8_t { kEdge, kAccel, kMag, kGyro, kBaro, kRadioByte };
+  enum class EventKind : std::uint8_t { kEdge, kAccel, kMag, kGyro, kBaro, kRadioByte };
   struct Event {
     std::uint64_t cycle;
-    What what;
+    EventKind kind;
     Side side;
     std::int64_t value;
   };
@@ -49,10 +49,10 @@ class McuWorld : public CoSimulation {
   void begin_step();
   void begin_tick();
   void add_edges(Side side);
-  void add_measurements(What what, Sampler& sampler, double rate_hz, double begin_us,
+  void add_measurements(EventKind kind, Sampler& sampler, double rate_hz, double begin_us,
                         double end_us);
   void add_radio(std::uint64_t begin_us, std::uint64_t end_us);
-  void happen(const Event& event);
+  void dispatch(const Event& event);
   double encoder_position(Side side) const;
   std::uint64_t us_at(std::uint64_t steps) const;
   std::uint64_t now_us() const;

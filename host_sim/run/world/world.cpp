@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/devices/sensors/handling.h"
+#include "host_sim/devices/sensors/calibration_motion.h"
 
 namespace screed {
 World::World(HeightField terrain, const Assembly& model, const BoardConstants& board,
@@ -13,7 +13,7 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
     : World(std::make_unique<Plant>(std::move(terrain), model, options), board, options,
             telemetry_log) {}
 
-World::World(std::unique_ptr<Surroundings> plant, const BoardConstants& board,
+World::World(std::unique_ptr<Environment> plant, const BoardConstants& board,
              const WorldOptions& options, std::ostream* telemetry_log)
     : options_(options),
       board_(board),
@@ -32,7 +32,7 @@ void World::step_physics() {
 }
 
 void World::measure() {
-  imu_.measure(options_.handled ? handled_motion(time_s()) : plant_->motion(), sample_);
+  imu_.measure(options_.handled ? calibration_motion(time_s()) : plant_->motion(), sample_);
 
   const auto counts = [&](Side side) {
     const double turns = vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
@@ -47,9 +47,9 @@ void World::measure() {
 }
 
 void World::exchange_radio() {
-  const Eigen::Vector3d way = vehicle().chassis().pose.translation() - station_m_;
-  uplink_.set_distance(way.norm());
-  downlink_.set_distance(way.norm());
+  const Eigen::Vector3d offset = vehicle().chassis().pose.translation() - station_m_;
+  uplink_.set_distance(offset.norm());
+  downlink_.set_distance(offset.norm());
   ground_end_.tick(now_us(), ground_, uplink_, downlink_);
   const std::vector<uint8_t> arrived = uplink_.receive(now_us(), kRadioInCapacity);
   sample_.radio_in_count = static_cast<uint8_t>(arrived.size());

@@ -27,11 +27,12 @@ struct WorldOptions : PlantOptions {
   ImuErrors imu;
   RadioOptions radio;
   bool ground_station_arms = true;
-  std::optional<DriveOrder> drive;
+  std::optional<DriveCommand> drive;
   CommandKey ground_key = test_key();  ///< what the ground station signs with
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
   GroundPort* ground_port = nullptr;
-  /// The IMU feels a person turning the robot over (handling.h) instead of its own motion.
+  /// The IMU feels a person turning the robot over (calibration_motion.h) instead of its own
+  /// motion.
   bool handled = false;
   double encoder_counts_per_turn = 1000.0 / 3.0;
   /// The robot is laid on its left side at this time, s: a fault to inject.
@@ -44,9 +45,9 @@ class World {
   /// not fit together.
   World(HeightField terrain, const Assembly& model, const BoardConstants& board,
         const WorldOptions& options, std::ostream* telemetry_log);
-  /// The same with the robot in surroundings of another kind; of the options only those count that
+  /// The same with the robot in another kind of environment; of the options only those count that
   /// are not the plant's.
-  World(std::unique_ptr<Surroundings> plant, const BoardConstants& board,
+  World(std::unique_ptr<Environment> plant, const BoardConstants& board,
         const WorldOptions& options, std::ostream* telemetry_log);
 
   /// Advances physics, sensors and radio by one control tick. Throws RunError when the physics has
@@ -59,7 +60,7 @@ class World {
 
   uint64_t ticks() const { return ticks_; }
   double time_s() const { return static_cast<double>(ticks_) / kTickRate_hz; }
-  const Surroundings& plant() const { return *plant_; }
+  const Environment& plant() const { return *plant_; }
   const HeightField& terrain() const { return plant_->terrain(); }
   const VehicleState& vehicle() const { return plant_->vehicle(); }
   const Battery& battery() const { return plant_->battery(); }
@@ -76,7 +77,7 @@ class World {
 
   WorldOptions options_;
   BoardConstants board_;
-  std::unique_ptr<Surroundings> plant_;
+  std::unique_ptr<Environment> plant_;
   ImuModel imu_;
   RadioLink uplink_;
   RadioLink downlink_;

@@ -107,7 +107,8 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
   options.ground_key = ground_key_of(experiment);
   options.ground_station_arms = experiment.radio.ground_station;
   if (experiment.experiment.algorithm == "drive") {
-    options.drive = DriveOrder{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
+    options.drive =
+        DriveCommand{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
   }
   options.lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
   if (experiment.map.model == "scm") {
@@ -170,11 +171,11 @@ Assembly make_robot_model(const Experiment& experiment, const std::string& board
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const std::string& board, GroundPort* ground_port,
-                                  const SurroundingsFactory& surroundings) {
+                                  const EnvironmentFactory& environment) {
   const WorldOptions options = world_options(experiment, board, ground_port);
-  if (surroundings) {
+  if (environment) {
     return std::make_unique<World>(
-        surroundings(make_terrain(experiment), make_robot_model(experiment, board), options),
+        environment(make_terrain(experiment), make_robot_model(experiment, board), options),
         board_constants_of(board), options, telemetry_log);
   }
   return std::make_unique<World>(make_terrain(experiment), make_robot_model(experiment, board),

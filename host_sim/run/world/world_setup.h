@@ -18,7 +18,7 @@ namespace screed {
 
 /// Makes what a robot is driven in from the ground, the robot and the options of an experiment.
 /// Throws InputError when they do not suit.
-using SurroundingsFactory = std::function<std::unique_ptr<Surroundings>(
+using EnvironmentFactory = std::function<std::unique_ptr<Environment>(
     HeightField terrain, const Assembly& model, const PlantOptions& options)>;
 
 /// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
@@ -31,7 +31,7 @@ Assembly make_robot_model(const Experiment& experiment, const std::string& board
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const std::string& board = kDefaultBoard,
                                   GroundPort* ground_port = nullptr,
-                                  const SurroundingsFactory& surroundings = {});
+                                  const EnvironmentFactory& environment = {});
 /// The same world with the image running in it (co_simulation.h).
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,

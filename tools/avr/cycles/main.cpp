@@ -41,7 +41,7 @@ class Ground {
   Ground() : signer_(test_key()) {
     message::Heartbeat first{};
     first.boot_epoch = kFirstBootEpoch;
-    signer_.hear(frame_of(first));
+    signer_.handle_frame(frame_of(first));
   }
   std::vector<std::uint8_t> heartbeat() {
     CanFrame frame = frame_of(message::GroundHeartbeat{});
@@ -58,14 +58,15 @@ class Ground {
 
 int run(const Options& options) {
   mcu::Board board(options.image, mcu::read_wiring(options.wiring));
-  board.mcu.write_eeprom(kCredentialRecordAt, credential_record(credentials_of(test_key())).bytes);
+  board.mcu.write_eeprom(kCredentialRecordAddress,
+                         credential_record(credentials_of(test_key())).bytes);
   Ground ground;
   double travel[2] = {0, 0};
   for (int ms = 0; ms < kStandStill_ms + kDrive_ms; ++ms) {
     const int noise = ms % 7 - 3;
-    board.feel_accel(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
-    board.feel_mag(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
-    board.feel_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms % 5 - 2));
+    board.set_acceleration(0.244 * Eigen::Vector3d(noise, -noise, 4096 + noise));
+    board.set_magnetic_field(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
+    board.set_angular_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms % 5 - 2));
     for (const Side side : {kLeft, kRight}) {
       travel[side] += kCountsPerMs * board.motor_share(side);
       board.set_encoder(side, static_cast<std::int64_t>(travel[side]));
@@ -104,8 +105,10 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app("Cycles of the longest control tick of an AVR image, in the simulator",
                "avr_cycles");
-  app.add_option("image", options.image, "ELF file")->required();
-  app.add_option("wiring", options.wiring, "boards/<board>/wiring.ini")->required();
-  app.add_option("--budget", options.budget, "cycles")->capture_default_str();
+  app.add_option("image", options.image, "ELF file of the image")->required();
+  app.add_option("wiring", options.wiring, "Wiring of the board (boards/<board>/wiring.ini)")
+      ->required();
+  app.add_option("--budget", options.budget, "Budget of the longest control tick [cycles]")
+      ->capture_default_str();
   return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

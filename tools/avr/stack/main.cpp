@@ -107,18 +107,21 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("Worst-case stack and memory budget of a linked AVR image", "avr_stack");
-  app.add_option("disassembly", options.disassembly,
-                 "output of avr-objdump -d, - for standard input")
+  app.add_option("disassembly", options.disassembly, "Output of avr-objdump -d; -: standard input")
       ->required();
   app.add_option("--indirect-calls", options.indirect_calls,
-                 "file: what indirect calls reach, FUNCTION -> TARGET | TARGET (or never) a line");
-  app.add_option("--sizes", options.sizes, "output of avr-size -A: checks the budgets as well");
-  app.add_option("--flash-budget", options.flash_budget, "bytes")->capture_default_str();
-  app.add_option("--ram-budget", options.ram_budget, "bytes, static RAM and stack together")
+                 "File with the targets of indirect calls, a line each: FUNCTION -> TARGET | "
+                 "TARGET (or never)");
+  app.add_option("--sizes", options.sizes, "Output of avr-size -A; also checks the memory budgets");
+  app.add_option("--flash-budget", options.flash_budget, "Flash budget [bytes]")
       ->capture_default_str();
-  app.add_option("--ram-spare", options.ram_spare, "bytes of the RAM budget that must stay free")
+  app.add_option("--ram-budget", options.ram_budget,
+                 "RAM budget of static data and stack together [bytes]")
+      ->capture_default_str();
+  app.add_option("--ram-spare", options.ram_spare,
+                 "Part of the RAM budget that must stay free [bytes]")
       ->capture_default_str();
   app.add_option("--free-word", options.free_word,
-                 "address of two bytes of RAM that neither variables nor stack may reach");
+                 "Address of two bytes of RAM that neither variables nor stack may reach");
   return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

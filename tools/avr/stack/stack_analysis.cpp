@@ -110,13 +110,13 @@ std::vector<std::uint32_t> Analysis::successors(const Instruction& instruction,
     return known ? std::vector{*known} : indirect_targets(instruction);
   }
   if (is_any(what, {"jmp", "rjmp"})) {
-    if (!instruction.target) refuse(instruction, "jump to an unknown place");
+    if (!instruction.target) refuse(instruction, "jump to an unknown address");
     if (*instruction.target == kReset) return {};  // starts again with an empty stack
     return {*instruction.target};
   }
   std::vector<std::uint32_t> next = {instruction.next()};
   if (what.starts_with("br") && what != "break") {
-    if (!instruction.target) refuse(instruction, "branch to an unknown place");
+    if (!instruction.target) refuse(instruction, "branch to an unknown address");
     next.push_back(*instruction.target);
   }
   if (is_any(what, {"cpse", "sbrc", "sbrs", "sbic", "sbis"})) {
@@ -144,7 +144,7 @@ std::vector<std::uint32_t> Analysis::callees(const Instruction& instruction) con
   const std::string_view what = instruction.mnemonic;
   if (is_any(what, {"icall", "eicall"})) return indirect_targets(instruction);
   if (!is_any(what, {"call", "rcall"}) || instruction.target == instruction.next()) return {};
-  if (!instruction.target) refuse(instruction, "call of an unknown place");
+  if (!instruction.target) refuse(instruction, "call of an unknown address");
   return {*instruction.target};
 }
 

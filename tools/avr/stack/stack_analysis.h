@@ -20,7 +20,7 @@
 namespace screed::avr_stack {
 
 /// One function on the deepest path.
-struct Frame {
+struct StackFrame {
   std::string name;         ///< demangled
   std::uint32_t bytes = 0;  ///< its return address and what it holds at the deepest point
 };
@@ -29,7 +29,7 @@ struct Frame {
 struct StackPath {
   std::string entry;  ///< "reset" or the name of the interrupt function
   std::uint32_t bytes = 0;
-  std::vector<Frame> frames;
+  std::vector<StackFrame> frames;
 };
 
 struct StackReport {

@@ -9,7 +9,7 @@
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate.h"
-#include "nn/terrain/track_ground.h"
+#include "nn/terrain/track_soil_model.h"
 
 namespace screed {
 namespace {
@@ -26,7 +26,7 @@ void surrogate_frame(benchmark::State& state) {
   std::vector<double> left;
   std::vector<double> right;
   for (std::size_t i = 0; i < robots; ++i) {
-    surrogate.place(
+    surrogate.set_pose(
         i, {random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-3.0, 3.0)});
     surrogate.set_soil(i, soil_preset("viper"));
     left.push_back(random.uniform(0.05, 0.2));
@@ -42,23 +42,24 @@ void surrogate_frame(benchmark::State& state) {
 }
 BENCHMARK(surrogate_frame)->Arg(1)->Arg(32)->Arg(1024);
 
-/// The same with ground that gives way below one robot: a stride of five frames at a time.
+/// The same with deformable terrain below one robot: a stride of five frames at a time.
 void surrogate_ruts(benchmark::State& state) {
-  constexpr double kWay_m = 0.0075;
+  constexpr double kStride_m = 0.0075;
   constexpr double kTurn_rad = 0.003;
-  const nn::BearingNetwork network = nn::BearingNetwork::read(nn::default_bearing_file());
+  const nn::BearingCapacityNetwork network =
+      nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file());
   const HeightField ground = HeightField::from_function(
       2048, 2048, 0.005, true,
       [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });
-  nn::TrackGround pressed(ground, soil_preset("ding_2011"), nn::TrackGeometry{});
+  nn::TrackSoilModel pressed(ground, soil_preset("ding_2011"), nn::TrackGeometry{});
   nn::Stride stride;
-  stride.forward_m = kWay_m;
+  stride.forward_m = kStride_m;
   stride.turn_rad = kTurn_rad;
-  stride.track_m = {kWay_m, kWay_m};
+  stride.track_m = {kStride_m, kStride_m};
   while (state.KeepRunning()) {
     stride.yaw_rad += kTurn_rad;
-    stride.x_m += std::cos(stride.yaw_rad) * kWay_m;
-    stride.y_m += std::sin(stride.yaw_rad) * kWay_m;
+    stride.x_m += std::cos(stride.yaw_rad) * kStride_m;
+    stride.y_m += std::sin(stride.yaw_rad) * kStride_m;
     pressed.step(stride, &network);
   }
   state.counters["s_per_robot_frame"] =

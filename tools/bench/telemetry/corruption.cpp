@@ -88,12 +88,12 @@ class Damage {
   WorldRandom& random_;
 };
 
-struct Way {
+struct DamageMode {
   const char* name;
   void (*damage)(Damage&, TwoLines&);
 };
 
-constexpr Way kWays[] = {
+constexpr DamageMode kDamageModes[] = {
     {"one wrong bit", [](Damage& d, TwoLines& it) { d.wrong_bits(it, 1); }},
     {"two wrong bits", [](Damage& d, TwoLines& it) { d.wrong_bits(it, 2); }},
     {"three wrong bits", [](Damage& d, TwoLines& it) { d.wrong_bits(it, 3); }},
@@ -117,12 +117,12 @@ bool same(const CanFrame& a, const CanFrame& b) {
 
 std::vector<CorruptionResult> damage_lines(uint64_t lines, uint64_t seed) {
   std::vector<CorruptionResult> results;
-  for (const Way& way : kWays) {
-    WorldRandom random(seed, way.name);
+  for (const DamageMode& mode : kDamageModes) {
+    WorldRandom random(seed, mode.name);
     Damage damage(random);
     RandomFrames frames(random.next());
     CorruptionResult result;
-    result.damage = way.name;
+    result.damage = mode.name;
     TwoLines text;
     for (; result.lines < lines; ++result.lines) {
       const bool uplink = (result.lines & 1U) != 0;
@@ -131,7 +131,7 @@ std::vector<CorruptionResult> damage_lines(uint64_t lines, uint64_t seed) {
       text.first_size = slcan_encode(sent[0], line);
       text.bytes.assign(line, line + text.first_size);
       text.bytes.insert(text.bytes.end(), line, line + slcan_encode(sent[1], line));
-      way.damage(damage, text);
+      mode.damage(damage, text);
       text.bytes.push_back('\r');  // whatever was begun ends here
       SlcanParser parser;
       CanFrame got{};

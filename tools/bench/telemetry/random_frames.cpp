@@ -18,7 +18,7 @@ constexpr uint16_t kCounter = 0x0142;  // of the next command that the robot wou
 /// The MAC that the robot expects: over what the frame says, its own epoch and counter.
 void expected_mac(const CanFrame& frame, uint8_t (&mac)[kSipHashSize]) {
   command_mac(kKey, frame.id, kRobot, kBootEpoch,
-              static_cast<uint16_t>((kCounter & 0xFF00U) | frame.data[kCommandFreshnessAt]),
+              static_cast<uint16_t>((kCounter & 0xFF00U) | frame.data[kCommandFreshnessOffset]),
               frame.data, mac);
 }
 
@@ -51,7 +51,7 @@ CanFrame RandomFrames::fill(const MessageInfo& message) {
   } else {
     uint8_t mac[kSipHashSize];
     expected_mac(frame, mac);
-    std::memcpy(frame.data + kCommandMacAt, mac, kCommandMacSize);
+    std::memcpy(frame.data + kCommandMacOffset, mac, kCommandMacSize);
   }
   return frame;
 }
@@ -61,7 +61,7 @@ bool RandomFrames::accepts(const CanFrame& frame, bool uplink) {
   if (find_message(frame.id)->protected_by_crc) return true;
   uint8_t mac[kSipHashSize];
   expected_mac(frame, mac);
-  return std::memcmp(frame.data + kCommandMacAt, mac, kCommandMacSize) == 0;
+  return std::memcmp(frame.data + kCommandMacOffset, mac, kCommandMacSize) == 0;
 }
 
 }  // namespace screed

@@ -178,16 +178,19 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app("Time and memory of a frame on every terrain: thesis figures 5.6 to 5.9 again",
                "terrain_bench");
-  app.add_option("--out", options.out, "folder for table and charts")->capture_default_str();
-  app.add_option("--frames", options.frames, "frames to time, a case")
+  app.add_option("--out", options.out, "Output folder for the table and the charts")
+      ->capture_default_str();
+  app.add_option("--frames", options.frames, "Number of frames to time per case")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "longest time to go on timing, a case")
+  app.add_option("--seconds", options.seconds, "Maximum time to measure per case [s]")
       ->check(CLI::Range(0.1, 36000.0))
       ->capture_default_str();
-  app.add_option("--bed", options.bed, "measure one case here: its experiment file");
-  app.add_option("--set", options.set, "what is different in it, section.key=value")
+  app.add_option("--bed", options.bed,
+                 "Measure a single case in this process: its experiment file");
+  app.add_option("--set", options.set, "Override a key of that case: section.key=value")
       ->allow_extra_args(false);
-  app.add_option("--threads", options.threads, "worlds at once in it")->check(CLI::Range(1, 64));
+  app.add_option("--threads", options.threads, "Number of worlds run at once in that case")
+      ->check(CLI::Range(1, 64));
   return run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -164,7 +164,7 @@ class Drive {
 }  // namespace
 
 Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
-                    int threads, std::uint64_t most_frames, double longest_s) {
+                    int threads, std::uint64_t max_frames, double longest_s) {
   using Clock = std::chrono::steady_clock;
   const Experiment experiment = read_experiment(bed, overrides);
   Measurement result;
@@ -191,7 +191,7 @@ Measurement measure(const std::filesystem::path& bed, const std::vector<std::str
       const Eigen::Vector3d from = drive->place();
       double farthest_m = 0.0;
       std::uint64_t frames = 0;
-      while (frames < most_frames && wall_s() < longest_s) {
+      while (frames < max_frames && wall_s() < longest_s) {
         drive->frame();
         ++frames;
         farthest_m = std::max(farthest_m, (drive->place() - from).norm());

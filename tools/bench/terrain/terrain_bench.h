@@ -42,6 +42,6 @@ std::filesystem::path write_bed(const std::filesystem::path& folder);
 /// Runs the experiment with these overrides in this process, once in every thread: until the robot
 /// drives, then frames are timed, at most so many in a world and for so long.
 Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
-                    int threads, std::uint64_t most_frames, double longest_s);
+                    int threads, std::uint64_t max_frames, double longest_s);
 
 }  // namespace screed::terrain_bench

@@ -289,10 +289,9 @@ void register_attitude_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* command = root.add_subcommand(
       "attitude",
       "Run the attitude estimator over recordings with an optical reference and print its errors");
-  command
-      ->add_option("FILES", options->files, "recordings in CSV (the format is in docs/attitude.md)")
+  command->add_option("FILES", options->files, "CSV recordings (format: docs/attitude.md)")
       ->required();
-  command->add_flag("--json", options->json, "print JSON");
+  command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] {
     action = [options] { return run_attitude(options->files, options->json, std::cout); };
   });

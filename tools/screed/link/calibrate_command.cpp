@@ -24,7 +24,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPump{50};
-constexpr uint64_t kPatience_us = 5'000'000;
+constexpr uint64_t kAnswerTimeout_us = 5'000'000;
 constexpr uint64_t kPutDown_us = 180'000'000;
 constexpr double kGyro_dps = 0.070;
 constexpr double kAccel_mg = 0.244;
@@ -44,7 +44,7 @@ class Calibration {
         link_(open_link(arguments.link)),
         session_(*link_, {command_key(arguments.link),
                           true,
-                          [this](const LinkFrame& frame) { take(frame); },
+                          [this](const LinkFrame& frame) { on_frame(frame); },
                           {}}) {}
 
   int run() {
@@ -67,9 +67,9 @@ class Calibration {
  private:
   bool over() const { return interrupted() || given_up_; }
 
-  void take(const LinkFrame& frame) {
-    if (fleet_.take(frame) == nullptr) return;
-    collector_.take(frame.frame);
+  void on_frame(const LinkFrame& frame) {
+    if (fleet_.add_frame(frame) == nullptr) return;
+    collector_.add_frame(frame.frame);
     if (frame.frame.id != find_message("MAG_RAW")->id) return;
     const double field = collector_.mag_samples().back().norm() * kMag_mg;
     field_.push_back({static_cast<double>(frame.time_us) * 1e-6, field});
@@ -77,7 +77,7 @@ class Calibration {
   }
 
   void meet() {
-    const uint64_t end_us = wall_clock_us() + kPatience_us;
+    const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
     while (!interrupted() && wall_clock_us() < end_us && !session_.ready()) session_.pump(kPump);
     if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
     if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
@@ -210,7 +210,7 @@ class Calibration {
       wait_until_disarmed();
       const std::optional<CommandAnswer> answer = session_.write_parameter(index, parameter.value);
       std::cout << parameter.name << " = " << parameter.value << ": "
-                << (answer.has_value() ? answer->words() : "no answer") << std::endl;
+                << (answer.has_value() ? answer->description() : "no answer") << std::endl;
       if (!answer.has_value() || !answer->done())
         throw RunError("not all parameters were stored; calibrate again");
     }
@@ -231,12 +231,14 @@ class Calibration {
 
 void register_calibrate_command(CLI::App& root, std::function<int()>& action) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = root.add_subcommand(
-      "calibrate", "Calibrate a robot's IMU: hold it in six positions, turn it over, store");
+  CLI::App* command = root.add_subcommand("calibrate",
+                                          "Calibrate a robot's IMU from six positions and a turn "
+                                          "in all directions, and store the result");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
-  command->add_flag("--plain", arguments->plain, "lines of text instead of a page");
-  command->add_flag("--yes", arguments->yes, "store without asking");
+  command->add_flag("--plain", arguments->plain,
+                    "Print lines of text instead of a full-screen page");
+  command->add_flag("--yes", arguments->yes, "Store the result without asking");
   command->callback([arguments, &action] {
     action = [arguments] {
       catch_interrupts();

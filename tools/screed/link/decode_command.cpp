@@ -37,21 +37,21 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
     file.finish();
     out << target << "\n";
   }
-  err << options.log << ": " << decoder.account().text() << "\n";
-  return decoder.account().damaged() > 0 ? 1 : 0;
+  err << options.log << ": " << decoder.statistics().text() << "\n";
+  return decoder.statistics().damaged() > 0 ? 1 : 0;
 }
 
 void register_decode_command(CLI::App& root, std::function<int()>& action) {
   const auto options = std::make_shared<DecodeOptions>();
   CLI::App* command = root.add_subcommand(
-      "decode", "Turn a log of the radio into tables or into a file for Foxglove");
-  command->add_option("LOG", options->log, "as candump -L writes it; -: standard input")
+      "decode", "Convert a radio log to CSV tables or to an MCAP file for Foxglove");
+  command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
       ->required();
-  command->add_flag("--csv", options->csv, "a folder of tables, one a message");
-  command->add_flag("--mcap", options->mcap, "an MCAP file");
+  command->add_flag("--csv", options->csv, "Write a folder of CSV tables, one per message");
+  command->add_flag("--mcap", options->mcap, "Write an MCAP file");
   command->add_option("--out", options->out,
-                      "where to (LOG without its ending, and _csv or .mcap)");
-  command->add_flag("--numbers", options->numbers, "CSV: named values as numbers");
+                      "Output path (default: LOG without its extension, with _csv or .mcap)");
+  command->add_flag("--numbers", options->numbers, "Write named values as numbers (CSV)");
   command->callback([options, &action] {
     action = [options] { return run_decode(*options, std::cout, std::cerr); };
   });

@@ -21,7 +21,7 @@
 namespace screed {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{500};
+constexpr std::chrono::milliseconds kAnswerTimeout{500};
 // 27 bytes of EEPROM take 0.3 s; until then the console does not restart.
 constexpr int kRestartTries = 3;
 
@@ -54,7 +54,7 @@ class UsbConsole {
     if (write(port_.get(), sent.data(), sent.size()) != static_cast<ssize_t>(sent.size()))
       return "";
     std::string answer;
-    const auto end = std::chrono::steady_clock::now() + kPatience;
+    const auto end = std::chrono::steady_clock::now() + kAnswerTimeout;
     while (answer.empty() || answer.back() != '\n') {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
           end - std::chrono::steady_clock::now());
@@ -93,7 +93,7 @@ CommandKey key_in(const Arguments& arguments) {
 int run_key_command(const Arguments& arguments) {
   const CommandKey key = key_in(arguments);
   if (arguments.port.empty()) return 0;
-  const bool restarted = give_key(arguments.port, key);
+  const bool restarted = provision_key(arguments.port, key);
   std::printf(restarted
                   ? "%s: the robot has the key and restarts\n"
                   : "%s: the robot has the key, but cannot restart now: switch it off and on\n",
@@ -112,7 +112,7 @@ CommandKey random_key(uint8_t robot_id) {
   return key;
 }
 
-bool give_key(const AskConsole& ask, const std::string& port, const CommandKey& key) {
+bool provision_key(const AskConsole& ask, const std::string& port, const CommandKey& key) {
   ask("");  // ends what somebody has typed
   const std::string version = ask("v");
   if (version.rfind("screed ", 0) != 0) {
@@ -130,20 +130,23 @@ bool give_key(const AskConsole& ask, const std::string& port, const CommandKey& 
   return false;
 }
 
-bool give_key(const std::string& port, const CommandKey& key) {
+bool provision_key(const std::string& port, const CommandKey& key) {
   UsbConsole console(port);
-  return give_key([&console](const std::string& line) { return console.ask(line); }, port, key);
+  return provision_key([&console](const std::string& line) { return console.ask(line); }, port,
+                       key);
 }
 
 void register_key_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* command = root.add_subcommand(
-      "key", "Make the key that commands are signed with, and give it to a robot over USB");
+      "key", "Create the key that signs commands, and provision a robot with it over USB");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("FILE", arguments->file, "the key; made when there is none yet, mode 0600")
+  command
+      ->add_option("FILE", arguments->file,
+                   "Key file; created with mode 0600 when it does not exist")
       ->required();
   command->add_option("--port", arguments->port,
-                      "the robot's USB port, as /dev/ttyACM0; left out: the file alone is made");
-  command->add_option("--robot-id", arguments->robot_id, "of a new key; 1 by default")
+                      "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)");
+  command->add_option("--robot-id", arguments->robot_id, "Robot id of a new key (default: 1)")
       ->check(CLI::Range(0, 255));
   command->callback(
       [arguments, &action] { action = [arguments] { return run_key_command(*arguments); }; });

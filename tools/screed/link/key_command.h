@@ -21,9 +21,9 @@ using AskConsole = std::function<std::string(const std::string& line)>;
 /// Stores the key on the robot behind `ask` and restarts it. The key is sent only when a robot's
 /// console has answered before: not over a radio module by mistake. Returns false when the robot
 /// has the key but cannot restart now. Throws RunError.
-bool give_key(const AskConsole& ask, const std::string& port, const CommandKey& key);
+bool provision_key(const AskConsole& ask, const std::string& port, const CommandKey& key);
 
 /// Opens the port and does that. Throws RunError, InputError for a port that does not exist.
-bool give_key(const std::string& port, const CommandKey& key);
+bool provision_key(const std::string& port, const CommandKey& key);
 
 }  // namespace screed

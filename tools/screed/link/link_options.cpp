@@ -8,20 +8,21 @@
 namespace screed {
 
 void add_link_options(CLI::App& command, LinkArguments& arguments) {
-  command.add_option("--port", arguments.port, "serial port of the radio module: /dev/ttyUSB0");
-  command.add_option("--can", arguments.can, "CAN interface: slcan0, vcan0");
-  command.add_option("--pty", arguments.pty, "virtual serial port that screed sim --pty offers");
-  command.add_option("--baud", arguments.baud, "of the serial port; 57600 by default");
+  command.add_option("--port", arguments.port,
+                     "Serial port of the radio module, e.g. /dev/ttyUSB0");
+  command.add_option("--can", arguments.can, "CAN interface, e.g. slcan0 or vcan0");
+  command.add_option("--pty", arguments.pty, "Virtual serial port offered by screed sim --pty");
+  command.add_option("--baud", arguments.baud, "Baud rate of the serial port (default: 57600)");
   command
       .add_option("--api", arguments.api,
-                  "the module is in API mode (parameter AP): 1 plain, 2 escaped; 0: transparent")
+                  "API mode of the radio module (parameter AP): 1 plain, 2 escaped; 0: transparent")
       ->check(CLI::IsMember({0, 1, 2}));
 }
 
 void add_key_option(CLI::App& command, LinkArguments& arguments) {
-  command.add_option("--key", arguments.key,
-                     "file with the robot's command key; by default the test key, which every "
-                     "simulated robot has");
+  command.add_option(
+      "--key", arguments.key,
+      "File with the robot's command key (default: the test key of simulated robots)");
 }
 
 std::unique_ptr<Link> open_link(const LinkArguments& arguments) {

@@ -25,7 +25,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPump{50};
 constexpr uint64_t kPlainPeriod_us = 1'000'000;
-constexpr uint64_t kPatience_us = 5'000'000;
+constexpr uint64_t kAnswerTimeout_us = 5'000'000;
 constexpr int kTabKey = '\t';
 
 struct MonitorArguments {
@@ -45,7 +45,7 @@ class Monitor {
         link_(open_link(arguments.link)),
         session_(*link_, {command_key(arguments.link),
                           !arguments.listen,
-                          [this](const LinkFrame& frame) { take(frame); },
+                          [this](const LinkFrame& frame) { on_frame(frame); },
                           {}}),
         curves_(arguments.curves),
         begin_us_(wall_clock_us()) {
@@ -76,13 +76,13 @@ class Monitor {
     if (arguments_.duration_s > 0.0)
       return static_cast<double>(passed_us) >= arguments_.duration_s * 1e6;
     // One report: a second after the first word, but no waiting for ever.
-    return arguments_.once && (passed_us >= kPatience_us ||
+    return arguments_.once && (passed_us >= kAnswerTimeout_us ||
                                (heard_us_ != 0 && wall_clock_us() >= heard_us_ + kPlainPeriod_us));
   }
 
-  void take(const LinkFrame& frame) {
+  void on_frame(const LinkFrame& frame) {
     if (log_.is_open()) log_ << candump_line(frame.time_us, interface_name(), frame.frame);
-    RobotView* const robot = fleet_.take(frame);
+    RobotView* const robot = fleet_.add_frame(frame);
     if (robot != nullptr && heard_us_ == 0) heard_us_ = wall_clock_us();
     if (robot != nullptr && !fleet_.robots().contains(robot_))
       robot_ = fleet_.robots().begin()->first;
@@ -155,7 +155,7 @@ class Monitor {
     commanded_ = false;
     const std::optional<CommandAnswer> answer = session_.take_answer();
     if (!answer.has_value()) note(CellStyle::kAlarm, "no answer to the command");
-    if (answer.has_value() && !answer->done()) note(CellStyle::kWarning, answer->words());
+    if (answer.has_value() && !answer->done()) note(CellStyle::kWarning, answer->description());
   }
 
   void command(CommandOp op) {
@@ -244,20 +244,21 @@ void register_monitor_command(CLI::App& root, std::function<int()>& action) {
   auto arguments = std::make_shared<MonitorArguments>();
   arguments->curves = {"attitude.pitch", "leveling.speed", "gyro_raw.z"};
   CLI::App* command = root.add_subcommand(
-      "monitor", "Show what a robot says, live; its heartbeats keep the robot going");
+      "monitor", "Show a robot's telemetry live and send it heartbeats as its ground station");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
-  command->add_option("--log", arguments->log, "append every frame to this candump log");
+  command->add_option("--log", arguments->log, "Append every frame to this candump log");
   command
       ->add_option("--curves", arguments->curves,
-                   "signals to draw: attitude.pitch,motors.duty_left")
+                   "Signals to draw, e.g. attitude.pitch,motors.duty_left")
       ->delimiter(',');
   command->add_flag("--listen", arguments->listen,
-                    "send no heartbeats: another ground station is in charge");
+                    "Send no heartbeats: another ground station is in charge");
   command->add_flag("--plain", arguments->plain,
-                    "lines of text, a report a second; so it is anyway where there is no terminal");
-  command->add_flag("--once", arguments->once, "one report, then end");
-  command->add_option("--duration", arguments->duration_s, "end after this many seconds")
+                    "Print one text report per second instead of a full-screen page (default "
+                    "without a terminal)");
+  command->add_flag("--once", arguments->once, "Print one report and exit");
+  command->add_option("--duration", arguments->duration_s, "Exit after this time [s]")
       ->check(CLI::NonNegativeNumber);
   command->callback([arguments, &action] {
     action = [arguments] {

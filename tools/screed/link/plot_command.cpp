@@ -41,7 +41,7 @@ bool ends_with(const std::string& text, const char* ending) {
 }  // namespace
 
 Chart plot_chart(const PlotOptions& options, std::ostream& err) {
-  std::vector<SignalPlace> places;
+  std::vector<SignalRef> places;
   std::set<std::string> units;
   for (const std::string& path : options.signals) {
     places.push_back(find_signal(path));
@@ -66,8 +66,8 @@ Chart plot_chart(const PlotOptions& options, std::ostream& err) {
       robots.insert(frame.node);
     }
   }
-  if (decoder.account().damaged() > 0) {
-    err << options.log << ": " << decoder.account().text() << "\n";
+  if (decoder.statistics().damaged() > 0) {
+    err << options.log << ": " << decoder.statistics().text() << "\n";
   }
 
   Chart chart;
@@ -90,7 +90,7 @@ Chart plot_chart(const PlotOptions& options, std::ostream& err) {
   }
   if (chart.series.empty()) {
     throw InputError(options.log + ": holds none of these signals in this time; " +
-                     decoder.account().text());
+                     decoder.statistics().text());
   }
   return chart;
 }
@@ -111,19 +111,25 @@ int run_plot(const PlotOptions& options, std::ostream& err) {
 
 void register_plot_command(CLI::App& root, std::function<int()>& action) {
   const auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = root.add_subcommand("plot", "Draw signals of a log of the radio over time");
-  command->add_option("LOG", options->log, "as candump -L writes it; -: standard input")
+  CLI::App* command = root.add_subcommand("plot", "Plot signals of a radio log over time");
+  command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
       ->required();
-  command->add_option("SIGNALS", options->signals, "as attitude.pitch (docs/telemetry.md)")
+  command
+      ->add_option("SIGNALS", options->signals,
+                   "Signals to plot, e.g. attitude.pitch (docs/telemetry.md)")
       ->required();
-  command->add_option("--out", options->out, "the picture, .svg or .png")->required();
-  command->add_option("--robot", options->robot, "of one robot only, 1 to 15");
-  command->add_option("--from", options->from_s, "seconds after the log's first message")
+  command->add_option("--out", options->out, "Output picture, .svg or .png")->required();
+  command->add_option("--robot", options->robot, "Plot one robot only, 1 to 15");
+  command->add_option("--from", options->from_s, "Start, after the log's first message [s]")
       ->capture_default_str();
-  command->add_option("--to", options->to_s, "seconds after the log's first message");
-  command->add_option("--width", options->width_px, "pixels of the SVG; a PNG has twice as many")
+  command->add_option("--to", options->to_s, "End, after the log's first message [s]");
+  command
+      ->add_option("--width", options->width_px, "Width of the SVG [px]; a PNG has twice as many")
       ->capture_default_str();
-  command->add_option("--height", options->height_px, "likewise")->capture_default_str();
+  command
+      ->add_option("--height", options->height_px,
+                   "Height of the SVG [px]; a PNG has twice as many")
+      ->capture_default_str();
   command->callback(
       [options, &action] { action = [options] { return run_plot(*options, std::cerr); }; });
 }

@@ -20,7 +20,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPump{20};
-constexpr uint64_t kPatience_us = 3'000'000;
+constexpr uint64_t kAnswerTimeout_us = 3'000'000;
 
 struct SendArguments {
   LinkArguments link;
@@ -37,11 +37,11 @@ struct SimpleCommand {
   const char* meaning;
 };
 constexpr SimpleCommand kSimpleCommands[] = {
-    {"arm", CommandOp::kArm, "Arm the robot: it may then be told to run"},
-    {"run", CommandOp::kRun, "Start the leveling algorithm, or go on after a stop"},
-    {"stop", CommandOp::kStop, "Ramp down and stand"},
-    {"disarm", CommandOp::kDisarm, "Stop and take the motors' power away"},
-    {"clear", CommandOp::kClear, "Forget a fault whose cause is gone"},
+    {"arm", CommandOp::kArm, "Arm the robot so that it accepts run"},
+    {"run", CommandOp::kRun, "Start the leveling algorithm, or resume after a stop"},
+    {"stop", CommandOp::kStop, "Ramp down and stop"},
+    {"disarm", CommandOp::kDisarm, "Stop and cut the motors' power"},
+    {"clear", CommandOp::kClear, "Clear a fault whose cause is gone"},
 };
 
 /// One robot at the other end of a link.
@@ -52,7 +52,7 @@ class Sender {
         link_(open_link(arguments.link)),
         session_(*link_, {command_key(arguments.link),
                           true,
-                          [this](const LinkFrame& frame) { fleet_.take(frame); },
+                          [this](const LinkFrame& frame) { fleet_.add_frame(frame); },
                           {}}) {}
 
   int command(CommandOp op, uint32_t argument, const std::string& name) {
@@ -87,7 +87,7 @@ class Sender {
   int emergency_stop() {
     // Sent before anything is heard: the robot may be deaf to the ground but not the ground to it.
     session_.emergency_stop();
-    const uint64_t end_us = wall_clock_us() + kPatience_us;
+    const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
     uint64_t again_us = wall_clock_us() + 200'000;
     while (!interrupted() && wall_clock_us() < end_us) {
       session_.pump(kPump);
@@ -109,7 +109,7 @@ class Sender {
  private:
   /// Waits until the robot is heard, and hears this ground station.
   void meet() {
-    const uint64_t end_us = wall_clock_us() + kPatience_us;
+    const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
     const auto heard = [this] {
       return std::any_of(fleet_.robots().begin(), fleet_.robots().end(), [](const auto& robot) {
         return robot.second.value("heartbeat.link_alive").value_or(0.0) != 0.0;
@@ -122,7 +122,8 @@ class Sender {
   }
 
   int say(const std::string& what, const std::optional<CommandAnswer>& answer) {
-    std::cout << what << ": " << (answer.has_value() ? answer->words() : "no answer") << std::endl;
+    std::cout << what << ": " << (answer.has_value() ? answer->description() : "no answer")
+              << std::endl;
     return answer.has_value() && answer->done() ? 0 : 1;
   }
 
@@ -149,7 +150,7 @@ void register_send_command(CLI::App& root, std::function<int()>& action) {
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
   command->add_flag("--hold", arguments->hold,
-                    "stay the robot's ground station afterwards: it goes on until Ctrl-C");
+                    "Keep sending heartbeats after the command, until Ctrl-C");
   command->require_subcommand(1);
   command->fallthrough();
   const auto on = [arguments, &action](CLI::App* what, std::function<int(Sender&)> act) {
@@ -166,14 +167,15 @@ void register_send_command(CLI::App& root, std::function<int()>& action) {
     on(command->add_subcommand(simple.name, simple.meaning),
        [simple](Sender& sender) { return sender.command(simple.op, 0, simple.name); });
   }
-  on(command->add_subcommand("estop", "Stop at once; needs no key"),
+  on(command->add_subcommand("estop", "Stop immediately (emergency stop); needs no key"),
      [](Sender& sender) { return sender.emergency_stop(); });
 
   CLI::App* drive = command->add_subcommand("drive", "Drive, with the algorithm \"drive\" running");
-  drive->add_option("SPEED", arguments->speed_m_per_s, "m/s")
+  drive->add_option("SPEED", arguments->speed_m_per_s, "Speed [m/s]")
       ->required()
       ->check(CLI::Range(-2.0, 2.0));
-  drive->add_option("YAW_RATE", arguments->yaw_rate_deg_per_s, "degrees/s, counter-clockwise")
+  drive
+      ->add_option("YAW_RATE", arguments->yaw_rate_deg_per_s, "Yaw rate, counter-clockwise [deg/s]")
       ->check(CLI::Range(-200.0, 200.0));
   on(drive, [arguments](Sender& sender) {
     const DriveArgument argument = {
@@ -189,15 +191,15 @@ void register_send_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* param = command->add_subcommand("param", "Read or set parameters");
   param->require_subcommand(1);
   param->fallthrough();
-  CLI::App* get = param->add_subcommand("get", "Print a parameter as the robot has it, or all");
-  get->add_option("NAME", arguments->name, "left out: all");
+  CLI::App* get = param->add_subcommand("get", "Print a parameter of the robot, or all of them");
+  get->add_option("NAME", arguments->name, "Name of the parameter (default: all)");
   on(get, [arguments](Sender& sender) {
     if (!arguments->name.empty()) parameter_index(arguments->name);
     return sender.read_parameters(arguments->name);
   });
-  CLI::App* set = param->add_subcommand("set", "Set a parameter; the robot keeps it");
-  set->add_option("NAME", arguments->name)->required();
-  set->add_option("VALUE", arguments->value)->required();
+  CLI::App* set = param->add_subcommand("set", "Set and store a parameter");
+  set->add_option("NAME", arguments->name, "Name of the parameter")->required();
+  set->add_option("VALUE", arguments->value, "New value")->required();
   on(set, [arguments](Sender& sender) {
     const uint16_t index = parameter_index(arguments->name);
     return sender.write_parameter(index, parameter_value(index, arguments->value));

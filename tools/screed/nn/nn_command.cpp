@@ -264,7 +264,7 @@ int run_features() {
     std::printf("%-14s %-10s %s\n", feature.name, feature.unit, feature.meaning);
   }
   std::printf("\n%-16s %-20s %s\n", "stage", "numbers", "");
-  for (const nn::StageKind& stage : nn::stage_kinds()) {
+  for (const nn::PreprocessingStageKind& stage : nn::preprocessing_stage_kinds()) {
     std::printf("%-16s %-20s %s\n", stage.name, stage.parameters, stage.meaning);
   }
   return 0;
@@ -276,7 +276,7 @@ CLI::App* nn_command(CLI::App& root) {
   const std::vector<CLI::App*> there =
       root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
   if (!there.empty()) return there.front();
-  CLI::App* nn = root.add_subcommand("nn", "Networks: from recorded sessions to the robot");
+  CLI::App* nn = root.add_subcommand("nn", "Train, evaluate and export networks");
   nn->require_subcommand(1);
   return nn;
 }
@@ -292,61 +292,63 @@ void register_nn_command(CLI::App& root, std::function<int()>& action) {
   const auto configuration = [&](CLI::App* command) {
     command
         ->add_option("CONFIGURATION", arguments->configuration,
-                     "what to train (nn/configurations/*.json)")
+                     "Training configuration (nn/configurations/*.json)")
         ->required();
-    command->add_option("--sessions", arguments->sessions, "folder of the recorded sessions")
+    command->add_option("--sessions", arguments->sessions, "Folder with the recorded sessions")
         ->capture_default_str();
   };
   const auto model = [&](CLI::App* command) {
-    command->add_option("MODEL", arguments->model, "a trained model (nn/models/*.json)")
-        ->required();
+    command->add_option("MODEL", arguments->model, "Trained model (nn/models/*.json)")->required();
   };
   const auto folder = [&](CLI::App* command) {
-    command->add_option("--out", arguments->out, "folder of the results (default out/nn/NAME)");
+    command->add_option("--out", arguments->out, "Output folder (default: out/nn/NAME)");
   };
   const auto json = [&](CLI::App* command) {
-    command->add_flag("--json", arguments->json, "the figures as JSON");
-    command->add_flag("!--no-pictures", arguments->pictures, "draw nothing");
+    command->add_flag("--json", arguments->json, "Print results as JSON");
+    command->add_flag("!--no-pictures", arguments->pictures, "Draw no charts");
   };
 
   CLI::App* preprocess =
-      add("preprocess", "Outliers, normalisation, smoothing: sessions to tables", run_preprocess);
+      add("preprocess", "Convert sessions to training tables: outliers, normalisation, smoothing",
+          run_preprocess);
   configuration(preprocess);
   folder(preprocess);
 
   CLI::App* train = add("train", "Train the networks of a configuration", run_train);
   configuration(train);
   folder(train);
-  train->add_option("--epochs", arguments->epochs, "epochs, whatever the configuration says");
-  train->add_option("--seed", arguments->seed, "seed, whatever the configuration says");
-  train->add_flag("--resume", arguments->resume, "go on from the checkpoints in the folder");
+  train->add_option("--epochs", arguments->epochs, "Number of epochs; overrides the configuration");
+  train->add_option("--seed", arguments->seed, "Seed; overrides the configuration");
+  train->add_flag("--resume", arguments->resume,
+                  "Resume from the checkpoints in the output folder");
   json(train);
 
   CLI::App* quantise =
-      add("quantise", "The integers of a trained model anew, from what it was trained on",
-          run_quantise);
+      add("quantise", "Quantise a trained model again, from its training data", run_quantise);
   model(quantise);
   configuration(quantise);
-  quantise->add_option("--out", arguments->out, "the file to write (default: the model)");
+  quantise->add_option("--out", arguments->out, "Model file to write (default: MODEL)");
 
-  CLI::App* eval = add("eval", "The thesis' tables 6.1 to 6.3, and charts", run_eval);
+  CLI::App* eval =
+      add("eval", "Evaluate a model: the thesis' tables 6.1 to 6.3, and charts", run_eval);
   model(eval);
   configuration(eval);
   folder(eval);
   json(eval);
 
-  CLI::App* header = add("export", "A model as a C++ header for the robot", run_export);
+  CLI::App* header = add("export", "Export a model as a C++ header for the robot", run_export);
   model(header);
-  header->add_option("--header", arguments->out, "the file (default: standard output)");
+  header->add_option("--header", arguments->out, "Header file to write (default: standard output)");
 
-  model(add("show", "What a model is", run_show));
+  model(add("show", "Describe a model", run_show));
 
-  CLI::App* check = add("check", "Random and edge vectors, one by one against SIMD", run_check);
+  CLI::App* check =
+      add("check", "Compare scalar and SIMD inference on random and edge-case vectors", run_check);
   model(check);
-  check->add_option("--vectors", arguments->vectors, "how many")->capture_default_str();
-  check->add_option("--seed", arguments->seed, "of the vectors");
+  check->add_option("--vectors", arguments->vectors, "Number of vectors")->capture_default_str();
+  check->add_option("--seed", arguments->seed, "Seed of the vectors");
 
-  CLI::App* features = nn->add_subcommand("features", "Every feature and stage there is");
+  CLI::App* features = nn->add_subcommand("features", "List all features and preprocessing stages");
   features->callback([&action] { action = [] { return run_features(); }; });
 }
 

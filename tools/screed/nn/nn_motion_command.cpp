@@ -89,14 +89,14 @@ struct Column {
 };
 
 /// Errors of all rollouts of a stand-in after one of the ways: of straight ways, or of others.
-Column column_of(const std::vector<nn::SessionRollouts>& all, std::size_t stand_in, std::size_t way,
-                 bool straight) {
+Column column_of(const std::vector<nn::SessionRollouts>& all, std::size_t surrogate,
+                 std::size_t distance, bool straight) {
   Column column;
   for (const nn::SessionRollouts& session : all) {
-    for (const nn::Rollout& rollout : session.by_stand_in[stand_in]) {
-      const nn::RolloutCheck& check = rollout.checks.at(way);
+    for (const nn::Rollout& rollout : session.by_surrogate[surrogate]) {
+      const nn::RolloutCheck& check = rollout.checks.at(distance);
       if (!check.reached || check.straight != straight) continue;
-      column.place.push_back(kPercent * check.place_error);
+      column.place.push_back(kPercent * check.position_error);
       column.heading.push_back(kDegrees * check.heading_error_rad);
     }
   }
@@ -104,18 +104,18 @@ Column column_of(const std::vector<nn::SessionRollouts>& all, std::size_t stand_
 }
 
 void print_table(const std::vector<nn::SessionRollouts>& all,
-                 const std::vector<nn::StandIn>& stand_ins, bool straight) {
-  std::printf("  %-24s", straight ? "straight ways" : "ways with turns");
-  for (const double way : nn::kRolloutWays_m) std::printf(" | %26.0f m", way);
+                 const std::vector<nn::SurrogateFactory>& surrogates, bool straight) {
+  std::printf("  %-24s", straight ? "straight paths" : "paths with turns");
+  for (const double distance : nn::kRolloutDistances_m) std::printf(" | %26.0f m", distance);
   std::printf("\n  %-24s", "");
-  for (std::size_t i = 0; i < nn::kRolloutWays_m.size(); ++i) {
+  for (std::size_t i = 0; i < nn::kRolloutDistances_m.size(); ++i) {
     std::printf(" | %4s %7s %7s %7s", "n", "place", "p90", "head");
   }
   std::printf("\n");
-  for (std::size_t i = 0; i < stand_ins.size(); ++i) {
-    std::printf("  %-24s", stand_ins[i].name.c_str());
-    for (std::size_t way = 0; way < nn::kRolloutWays_m.size(); ++way) {
-      const Column column = column_of(all, i, way, straight);
+  for (std::size_t i = 0; i < surrogates.size(); ++i) {
+    std::printf("  %-24s", surrogates[i].name.c_str());
+    for (std::size_t distance = 0; distance < nn::kRolloutDistances_m.size(); ++distance) {
+      const Column column = column_of(all, i, distance, straight);
       if (column.place.empty()) {
         std::printf(" | %4d %7s %7s %7s", 0, "-", "-", "-");
         continue;
@@ -148,24 +148,25 @@ std::array<double, 2> range_of(const std::vector<std::vector<double>>& by_sessio
 
 /// After the last of the ways, with 95 % ranges, and how the robots wagged.
 void print_ranges(const std::vector<nn::SessionRollouts>& all,
-                  const std::vector<nn::StandIn>& stand_ins, bool straight) {
-  const std::size_t way = nn::kRolloutWays_m.size() - 1;
+                  const std::vector<nn::SurrogateFactory>& surrogates, bool straight) {
+  const std::size_t distance = nn::kRolloutDistances_m.size() - 1;
   std::printf("  %-24s | after %.0f m, 95 %% ranges over sessions | rate of turn, s.d. (physics)\n",
-              straight ? "straight ways" : "ways with turns", nn::kRolloutWays_m.at(way));
-  for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+              straight ? "straight paths" : "paths with turns",
+              nn::kRolloutDistances_m.at(distance));
+  for (std::size_t i = 0; i < surrogates.size(); ++i) {
     std::vector<std::vector<double>> by_session;
     std::vector<double> values;
     std::vector<double> wags;
     std::vector<double> real;
     for (const nn::SessionRollouts& session : all) {
-      const Column column = column_of({session}, i, way, straight);
+      const Column column = column_of({session}, i, distance, straight);
       if (!column.place.empty()) by_session.push_back(column.place);
       values.insert(values.end(), column.place.begin(), column.place.end());
-      for (const nn::Rollout& rollout : session.by_stand_in[i]) {
-        const nn::RolloutCheck& check = rollout.checks.at(way);
+      for (const nn::Rollout& rollout : session.by_surrogate[i]) {
+        const nn::RolloutCheck& check = rollout.checks.at(distance);
         if (!check.reached || check.straight != straight) continue;
-        wags.push_back(kDegrees * rollout.wags_rad_per_s);
-        real.push_back(kDegrees * rollout.real_wags_rad_per_s);
+        wags.push_back(kDegrees * rollout.yaw_rate_deviation_rad_per_s);
+        real.push_back(kDegrees * rollout.recorded_yaw_rate_deviation_rad_per_s);
       }
     }
     if (values.empty()) continue;
@@ -174,7 +175,7 @@ void print_ranges(const std::vector<nn::SessionRollouts>& all,
     std::printf(
         "  %-24s | n %zu of %zu, median %.2f%% (%.2f to %.2f), p90 %.2f%% (%.2f to %.2f) | "
         "%.1f\u00b0/s (%.1f\u00b0/s)\n",
-        stand_ins[i].name.c_str(), values.size(), by_session.size(), quantile(values, 0.5),
+        surrogates[i].name.c_str(), values.size(), by_session.size(), quantile(values, 0.5),
         middle[0], middle[1], quantile(values, 0.9), high[0], high[1], quantile(wags, 0.5),
         quantile(real, 0.5));
   }
@@ -184,25 +185,28 @@ void print_ranges(const std::vector<nn::SessionRollouts>& all,
 /// way, in per cent of it.
 void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t one,
                       std::size_t other, const std::string& what) {
-  std::vector<double> apart;
+  std::vector<double> divergence;
   for (const nn::SessionRollouts& session : all) {
     for (std::size_t i = 0; i < session.real.size(); ++i) {
-      const auto& a = session.by_stand_in[one][i].path;
-      const auto& b = session.by_stand_in[other][i].path;
-      double way = 0.0;
+      const auto& a = session.by_surrogate[one][i].path;
+      const auto& b = session.by_surrogate[other][i].path;
+      double distance = 0.0;
       for (std::size_t k = 1; k < a.size(); ++k) {
-        way += std::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
+        distance += std::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
       }
-      apart.push_back(kPercent *
-                      std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) / way);
+      divergence.push_back(kPercent *
+                           std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) /
+                           distance);
     }
   }
-  if (apart.empty()) {
-    std::printf("  %s: no way was made\n", what.c_str());
+  if (divergence.empty()) {
+    std::printf("  %s: no distance was driven\n", what.c_str());
     return;
   }
-  std::printf("  %s: median %.4f %%, p90 %.4f %% of the way\n", what.c_str(), quantile(apart, 0.5),
-              quantile(apart, 0.9));
+  std::printf(
+      "  %s: median %.4f %%, p90 %.4f %% of the distance\
+",
+      what.c_str(), quantile(divergence, 0.5), quantile(divergence, 0.9));
 }
 
 /// The model in floating point with one part in 10^9 on its outputs. How far that leads tells which
@@ -215,14 +219,13 @@ nn::Model nudged(nn::Model model) {
 }
 
 void draw(const fs::path& folder, const nn::SessionRollouts& session,
-          const std::vector<nn::StandIn>& stand_ins, const std::string& drive) {
-  constexpr std::size_t kMostPictures = 3;
-  for (std::size_t i = 0; i < std::min(kMostPictures, session.real.size()); ++i) {
-    const std::size_t which =
-        i * session.real.size() / std::min(kMostPictures, session.real.size());
+          const std::vector<nn::SurrogateFactory>& surrogates, const std::string& drive) {
+  constexpr std::size_t kMaxPictures = 3;
+  for (std::size_t i = 0; i < std::min(kMaxPictures, session.real.size()); ++i) {
+    const std::size_t which = i * session.real.size() / std::min(kMaxPictures, session.real.size());
     Chart chart;
     chart.title = session.source + ", from frame " +
-                  std::to_string(session.by_stand_in[0][which].start) + ", " + drive + " drive";
+                  std::to_string(session.by_surrogate[0][which].start) + ", " + drive + " drive";
     chart.subtitle = "paths from above: the physics, and what stands in for it";
     chart.x_label = "east, m";
     chart.y_label = "north, m";
@@ -233,8 +236,8 @@ void draw(const fs::path& folder, const nn::SessionRollouts& session,
       if (!series.points.empty()) chart.series.push_back(std::move(series));
     };
     add("physics", session.real[which]);
-    for (std::size_t s = 0; s < stand_ins.size(); ++s) {
-      add(stand_ins[s].name, session.by_stand_in[s][which].path);
+    for (std::size_t s = 0; s < surrogates.size(); ++s) {
+      add(surrogates[s].name, session.by_surrogate[s][which].path);
     }
     const fs::path file =
         folder / (session.source + "-" + drive + "-" + std::to_string(i + 1) + ".svg");
@@ -249,11 +252,11 @@ int run_rollout(const RolloutArguments& arguments) {
   options.drive =
       arguments.drive == "tracks" ? nn::RolloutDrive::kTracks : nn::RolloutDrive::kFirmware;
   if (arguments.ruts) {
-    options.bearing = std::make_shared<const nn::BearingNetwork>(
-        nn::BearingNetwork::read(nn::default_bearing_file()));
+    options.bearing = std::make_shared<const nn::BearingCapacityNetwork>(
+        nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file()));
   }
   const nn::SupportGeometry geometry;
-  std::vector<nn::StandIn> stand_ins = {
+  std::vector<nn::SurrogateFactory> surrogates = {
       {"no slip", [=] { return nn::Surrogate(nn::SkidKinematics{}, geometry, 1); }}};
   std::vector<nn::MotionSeries> fitted;
   fitted.reserve(arguments.fit.size());
@@ -264,64 +267,65 @@ int run_rollout(const RolloutArguments& arguments) {
     const nn::SkidKinematics kinematics = nn::fitted_kinematics(fitted);
     std::printf("constant slip: %.3f of the tracks' speed, tread of %.3f m\n",
                 kinematics.speed_share, kinematics.tread_m);
-    stand_ins.push_back({"constant slip", [=] { return nn::Surrogate(kinematics, geometry, 1); }});
+    surrogates.push_back({"constant slip", [=] { return nn::Surrogate(kinematics, geometry, 1); }});
   }
   std::vector<std::size_t> floats;
   std::vector<std::string> models = arguments.models;
   if (models.empty()) models.push_back(nn::default_model_file().string());
   for (const std::string& file : models) {
     const auto model = std::make_shared<const nn::Model>(nn::read_model(file));
-    stand_ins.push_back({model->name, [=] { return nn::Surrogate(*model, geometry, 1); }});
+    surrogates.push_back({model->name, [=] { return nn::Surrogate(*model, geometry, 1); }});
     if (model->networks.front().trained.empty()) continue;
-    floats.push_back(stand_ins.size());
+    floats.push_back(surrogates.size());
     for (const auto& [name, floating] :
          {std::pair{model->name + ", floating", model},
           {model->name + ", 1e-9 off", std::make_shared<const nn::Model>(nudged(*model))}}) {
-      stand_ins.push_back({name, [=, which = floating] {
-                             return nn::Surrogate(*which, geometry, 1,
-                                                  nn::Surrogate::Arithmetic::kFloat);
-                           }});
+      surrogates.push_back({name, [=, which = floating] {
+                              return nn::Surrogate(*which, geometry, 1,
+                                                   nn::Surrogate::Arithmetic::kFloat);
+                            }});
     }
   }
   std::vector<nn::SessionRollouts> all;
   for (const std::string& folder : arguments.sessions) {
-    all.push_back(nn::roll_out(folder, stand_ins, options));
+    all.push_back(nn::roll_out(folder, surrogates, options));
     std::printf("\n%s, %s drive\n", all.back().source.c_str(), arguments.drive.c_str());
-    for (const bool straight : {true, false}) print_table({all.back()}, stand_ins, straight);
+    for (const bool straight : {true, false}) print_table({all.back()}, surrogates, straight);
     std::fflush(stdout);
   }
   if (all.size() > 1) {
     std::printf("\nall sessions\n");
-    for (const bool straight : {true, false}) print_table(all, stand_ins, straight);
-    for (const bool straight : {true, false}) print_ranges(all, stand_ins, straight);
+    for (const bool straight : {true, false}) print_table(all, surrogates, straight);
+    for (const bool straight : {true, false}) print_ranges(all, surrogates, straight);
   }
   std::printf("\n");
   for (const std::size_t floating : floats) {
     print_divergence(all, floating - 1, floating,
-                     stand_ins[floating - 1].name + ", integers from floating point");
-    print_divergence(all, floating + 1, floating, stand_ins[floating + 1].name);
+                     surrogates[floating - 1].name + ", integers from floating point");
+    print_divergence(all, floating + 1, floating, surrogates[floating + 1].name);
   }
   if (!arguments.out.empty()) {
     fs::create_directories(arguments.out);
     for (const nn::SessionRollouts& session : all) {
-      draw(arguments.out, session, stand_ins, arguments.drive);
+      draw(arguments.out, session, surrogates, arguments.drive);
     }
   }
   return 0;
 }
 
-struct ApartArguments {
+struct DivergenceArguments {
   std::vector<std::string> sessions;
 };
 
-int run_apart(const ApartArguments& arguments) {
+int run_divergence(const DivergenceArguments& arguments) {
   if (arguments.sessions.size() % 2 != 0) {
-    throw InputError("screed nn apart: an odd number of sessions; allowed are pairs");
+    throw InputError("screed nn divergence: an odd number of sessions; allowed are pairs");
   }
   nn::SessionRollouts pairs;
-  pairs.by_stand_in.resize(1);
+  pairs.by_surrogate.resize(1);
   for (std::size_t i = 0; i < arguments.sessions.size(); i += 2) {
-    pairs.by_stand_in[0].push_back(nn::apart(arguments.sessions[i], arguments.sessions[i + 1]));
+    pairs.by_surrogate[0].push_back(
+        nn::divergence(arguments.sessions[i], arguments.sessions[i + 1]));
   }
   for (const bool straight : {true, false}) {
     print_table({pairs}, {{"physics", {}}}, straight);
@@ -336,46 +340,50 @@ void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
 
   auto motion = std::make_shared<MotionArguments>();
   CLI::App* motion_command =
-      nn->add_subcommand("motion", "Train a network of motion on its own predictions");
-  motion_command->add_option("CONFIGURATION", motion->configuration, "a JSON file")->required();
-  motion_command->add_option("--sessions", motion->sessions, "folder with the recorded sessions")
+      nn->add_subcommand("motion", "Train a motion network on its own predictions");
+  motion_command
+      ->add_option("CONFIGURATION", motion->configuration, "Training configuration (JSON)")
+      ->required();
+  motion_command->add_option("--sessions", motion->sessions, "Folder with the recorded sessions")
       ->capture_default_str();
-  motion_command->add_option("--steps", motion->steps, "in place of the configuration's");
-  motion_command->add_option("--out", motion->out, "the model file to write")->required();
+  motion_command->add_option("--steps", motion->steps,
+                             "Number of training steps; overrides the configuration");
+  motion_command->add_option("--out", motion->out, "Model file to write")->required();
   motion_command->callback(
       [motion, &action] { action = [motion] { return run_motion(*motion); }; });
 
   auto rollout = std::make_shared<RolloutArguments>();
   CLI::App* rollout_command =
-      nn->add_subcommand("rollout", "Let networks drive beside recorded physics, and compare");
-  rollout_command->add_option("SESSION", rollout->sessions, "run folders of screed record")
+      nn->add_subcommand("rollout", "Compare motion predicted by networks with recorded physics");
+  rollout_command->add_option("SESSION", rollout->sessions, "Run folders of screed record")
       ->required();
   rollout_command->add_option("--model", rollout->models,
-                              "model files; by default the one of screed sim --hal surrogate");
-  rollout_command->add_option("--fit", rollout->fit,
-                              "run folders that the constant slip is fitted to");
+                              "Model files (default: the model of screed sim --hal surrogate)");
+  rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to");
   rollout_command->add_option("--starts", rollout->starts,
-                              "rollouts a session, spread evenly over it; by default each begins "
-                              "where the one before ended");
+                              "Number of rollouts per session, spread evenly (default: each begins "
+                              "where the previous one ends)");
   rollout_command->add_flag("--ruts", rollout->ruts,
-                            "the ground gives way below the stand-ins' tracks, as in screed sim "
-                            "--hal surrogate; else it stays as it was at the start");
+                            "Deform the terrain below the surrogates' tracks, as screed sim --hal "
+                            "surrogate does; otherwise it stays as at the start");
   rollout_command
       ->add_option("--drive", rollout->drive,
-                   "firmware: it drives and feels the network's motion; tracks: they turn as "
-                   "recorded")
+                   "Input of the rollout: firmware: the firmware drives and measures the predicted "
+                   "motion; tracks: recorded track motion")
       ->capture_default_str()
       ->check(CLI::IsMember({"firmware", "tracks"}));
-  rollout_command->add_option("--out", rollout->out, "folder for pictures of some paths");
+  rollout_command->add_option("--out", rollout->out, "Output folder for pictures of some paths");
   rollout_command->callback(
       [rollout, &action] { action = [rollout] { return run_rollout(*rollout); }; });
 
-  auto apart = std::make_shared<ApartArguments>();
-  CLI::App* apart_command = nn->add_subcommand(
-      "apart", "How far pairs of recorded sessions come apart: physics beside physics");
-  apart_command->add_option("SESSION", apart->sessions, "run folders of screed record, in pairs")
+  auto divergence = std::make_shared<DivergenceArguments>();
+  CLI::App* divergence_command = nn->add_subcommand(
+      "divergence", "Measure how far pairs of recorded sessions diverge: physics against physics");
+  divergence_command
+      ->add_option("SESSION", divergence->sessions, "Run folders of screed record, in pairs")
       ->required();
-  apart_command->callback([apart, &action] { action = [apart] { return run_apart(*apart); }; });
+  divergence_command->callback(
+      [divergence, &action] { action = [divergence] { return run_divergence(*divergence); }; });
 }
 
 }  // namespace screed

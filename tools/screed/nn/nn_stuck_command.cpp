@@ -66,7 +66,7 @@ void count(Share& share, bool detected) {
 void add(nn::FreeResult& sum, const nn::FreeResult& result) {
   sum.driven_s += result.driven_s;
   sum.false_alarms += result.false_alarms;
-  sum.came_free_alarms += result.came_free_alarms;
+  sum.recovered_alarms += result.recovered_alarms;
   sum.other_alarms += result.other_alarms;
 }
 
@@ -76,7 +76,7 @@ Figures figures_of(const std::vector<nn::SlipRun>& trapped, const std::vector<nn
     figures.failures += run.failure.empty() ? 0 : 1;
     const auto dug_in = nn::dug_in_at(run);
     if (!dug_in) continue;
-    const nn::DugInResult result = nn::detection_of(run, *dug_in);
+    const nn::DetectionResult result = nn::detection_of(run, *dug_in);
     count(figures.all, result.detected);
     count(figures.by_trap[run.scenario.experiment.trap.kind], result.detected);
     count(figures.by_ground[run.scenario.ground], result.detected);
@@ -118,7 +118,7 @@ void print(const StuckArguments& arguments, const Figures& figures) {
   std::printf("  driven                  %.2f h\n", figures.free.driven_s / 3600.0);
   std::printf("  false alarms            %d, %.2f an hour (must be 1)\n", figures.free.false_alarms,
               an_hour(figures.free));
-  std::printf("  alarms as it came free  %d\n", figures.free.came_free_alarms);
+  std::printf("  alarms as it came free  %d\n", figures.free.recovered_alarms);
   std::printf("  alarms while it hardly moved  %d\n", figures.free.other_alarms);
   std::printf("%-12s %14s %22s\n", "ground", "detected", "false alarms");
   for (const auto& [ground, result] : figures.free_by_ground) {
@@ -147,7 +147,7 @@ void print_json(const StuckArguments& arguments, const Figures& figures) {
       {"driven_h", figures.free.driven_s / 3600.0},
       {"false_alarms", figures.free.false_alarms},
       {"false_alarms_per_hour", an_hour(figures.free)},
-      {"alarms_as_it_came_free", figures.free.came_free_alarms},
+      {"alarms_as_it_came_free", figures.free.recovered_alarms},
       {"alarms_while_hardly_moving", figures.free.other_alarms},
       {"missed_seeds", figures.missed},
   };
@@ -198,27 +198,32 @@ void register_nn_stuck_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* nn = nn_command(root);
   auto arguments = std::make_shared<StuckArguments>();
   CLI::App* command = nn->add_subcommand(
-      "stuck", "How the robot's slip and stuck flags do in seeded drives with and without traps");
-  command->add_option("--seed", arguments->seed, "of the first drive; the next has the next")
+      "stuck",
+      "Evaluate the robot's slip and stuck detection in seeded drives with and without traps");
+  command
+      ->add_option("--seed", arguments->seed, "Seed of the first drive; each further drive adds 1")
       ->capture_default_str();
-  command->add_option("--runs", arguments->runs, "drives with a trap, and as many without")
+  command
+      ->add_option("--runs", arguments->runs,
+                   "Number of drives with a trap, and of drives without one")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  command->add_option("--free", arguments->free_s, "s, of a drive without a trap")
+  command->add_option("--free", arguments->free_s, "Duration of a drive without a trap [s]")
       ->capture_default_str()
       ->check(CLI::Range(5.0, 36000.0));
-  command->add_option("--threads", arguments->threads, "drives at a time")
+  command->add_option("--threads", arguments->threads, "Number of drives run in parallel")
       ->check(CLI::Range(1, 256));
   command->add_option("--train", arguments->train,
-                      "train the network on these drives and write this model file");
-  command->add_option("--epochs", arguments->epochs, "of the training")->capture_default_str();
-  command->add_option("--hidden", arguments->hidden, "nodes of the hidden layer")
+                      "Train the network on these drives and write this model file");
+  command->add_option("--epochs", arguments->epochs, "Number of training epochs")
+      ->capture_default_str();
+  command->add_option("--hidden", arguments->hidden, "Number of nodes of the hidden layer")
       ->capture_default_str();
   command
       ->add_option("--experiment", arguments->experiment,
-                   "print the experiment of the first seed: trapped or free")
+                   "Print the experiment of the first seed: trapped or free")
       ->check(CLI::IsMember({"trapped", "free"}));
-  command->add_flag("--json", arguments->json, "the figures as JSON");
+  command->add_flag("--json", arguments->json, "Print results as JSON");
   command->callback(
       [arguments, &action] { action = [arguments] { return run_stuck(*arguments); }; });
 }

@@ -14,15 +14,15 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"
-#include "nn/terrain/bearing_trainer.h"
+#include "nn/terrain/bearing_capacity_trainer.h"
 #include "nn/terrain/flux_network.h"
 #include "nn/terrain/flux_trainer.h"
-#include "nn/terrain/ground_comparison.h"
-#include "nn/terrain/pressed_drive.h"
+#include "nn/terrain/sinkage_replay.h"
+#include "nn/terrain/terrain_comparison.h"
 #include "nn/terrain/window_network.h"
 #include "tools/screed/viewer/camera.h"
-#include "tools/screed/viewer/ground_image.h"
 #include "tools/screed/viewer/pixel_drawing.h"
+#include "tools/screed/viewer/terrain_image.h"
 
 namespace screed {
 namespace {
@@ -95,12 +95,12 @@ Segments segments_of(const std::vector<std::string>& runs, const TrainTracksOpti
 
 /// The middle one of each drive's errors: in some segments a robot rocks, and nobody can tell.
 void print_errors(const std::vector<std::string>& runs, const Segments& drives,
-                  const nn::BearingNetwork& network) {
+                  const nn::BearingCapacityNetwork& network) {
   const auto middle = [](const std::vector<nn::DriveSegment>& segments,
-                         const nn::BearingNetwork* by) {
+                         const nn::BearingCapacityNetwork* by) {
     std::vector<double> shares;
     shares.reserve(segments.size());
-    for (const nn::DriveSegment& segment : segments) shares.push_back(error_share(segment, by));
+    for (const nn::DriveSegment& segment : segments) shares.push_back(relative_error(segment, by));
     std::sort(shares.begin(), shares.end());
     return 0.5 * (shares[(shares.size() - 1) / 2] + shares[shares.size() / 2]);
   };
@@ -114,7 +114,7 @@ void print_errors(const std::vector<std::string>& runs, const Segments& drives,
 int run_train_tracks(const TrainTracksOptions& options) {
   const Segments drives = segments_of(options.runs, options);
   const Segments tests = segments_of(options.test, options);
-  nn::BearingNetwork network(options.hidden, options.seed);
+  nn::BearingCapacityNetwork network(options.hidden, options.seed);
   std::cerr << network.weights().size() << " weights\n";
   train(network, drives, options.generations, options.seed,
         [](std::size_t generation, double error) {
@@ -130,9 +130,9 @@ int run_train_tracks(const TrainTracksOptions& options) {
 }
 
 void print_row(const std::string& who, const HeightField& before, const HeightField& real,
-               const HeightField& ground, const std::vector<nn::Stride>& way) {
-  const nn::GroundComparison c = nn::compare(before, real, ground);
-  const nn::RutCount ruts = nn::count_ruts(before, ground, way);
+               const HeightField& ground, const std::vector<nn::Stride>& path) {
+  const nn::TerrainComparison c = nn::compare(before, real, ground);
+  const nn::RutCount ruts = nn::count_ruts(before, ground, path);
   std::printf("  %-11s %12.3f %12.3f %12.1f %12.4f %14lld %8.2f\n", who.c_str(), c.error_mm,
               c.outside_mm, c.moved_cm3, c.volume_cm3, static_cast<long long>(c.volume_units),
               ruts.mean);
@@ -149,15 +149,15 @@ std::vector<HeightChange> changes_between(const HeightField& from, const HeightF
   return changes;
 }
 
-/// What was changed along the way, a panel each, all in the colours of the first.
+/// What was changed along the path, a panel each, all in the colours of the first.
 void draw_changes(const fs::path& file, const HeightField& before,
                   const std::vector<std::pair<std::string, const HeightField*>>& grounds,
-                  const std::vector<nn::Stride>& way) {
+                  const std::vector<nn::Stride>& path) {
   constexpr double kRobot_m = 0.2;
   constexpr double kWidth_px = 1000.0;
   constexpr double kTitle_px = 30.0;
-  Ground area{1e9, -1e9, 1e9, -1e9};
-  for (const nn::Stride& stride : way) {
+  MapRectangle area{1e9, -1e9, 1e9, -1e9};
+  for (const nn::Stride& stride : path) {
     area.x_min = std::min(area.x_min, stride.x_m - kRobot_m);
     area.x_max = std::max(area.x_max, stride.x_m + kRobot_m);
     area.y_min = std::min(area.y_min, stride.y_m - kRobot_m);
@@ -168,7 +168,7 @@ void draw_changes(const fs::path& file, const HeightField& before,
   Canvas canvas(static_cast<int>(kWidth_px),
                 static_cast<int>(grounds.size()) * static_cast<int>(height + kTitle_px),
                 {1.0, 1.0, 1.0});
-  viewer::GroundImage image(before);
+  viewer::TerrainImage image(before);
   const HeightField* shown = &before;
   double top = 0.0;
   for (const auto& [name, ground] : grounds) {
@@ -179,9 +179,9 @@ void draw_changes(const fs::path& file, const HeightField& before,
     camera.set_box({0.0, top + kTitle_px, kWidth_px, height});
     camera.zoom(scale / camera.scale(), camera.middle());
     camera.look_at(0.5 * (area.x_min + area.x_max), 0.5 * (area.y_min + area.y_max));
-    viewer::draw_ground({canvas.pixels(), canvas.width()}, camera, image,
-                        {before.x_min(), before.y_min(), before.spacing_m(), before.wrap()},
-                        0x00FFFFFFU);
+    viewer::draw_terrain({canvas.pixels(), canvas.width()}, camera, image,
+                         {before.x_min(), before.y_min(), before.spacing_m(), before.wrap()},
+                         0x00FFFFFFU);
     canvas.release_pixels();
     const double end_mm = image.scale(viewer::Shading::kChange).high;
     canvas.text({8.0, top + 21.0}, name, {.size_px = 16.0, .bold = true});
@@ -198,7 +198,7 @@ void draw_changes(const fs::path& file, const HeightField& before,
 struct AnyNetwork {
   std::string file;
   std::shared_ptr<const nn::FluxNetwork> wheels;
-  std::shared_ptr<const nn::BearingNetwork> tracks;
+  std::shared_ptr<const nn::BearingCapacityNetwork> tracks;
 };
 
 AnyNetwork read_network(const std::string& file) {
@@ -209,15 +209,16 @@ AnyNetwork read_network(const std::string& file) {
   } catch (const InputError&) {  // then it may be the other kind
   }
   try {
-    network.tracks = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(file));
+    network.tracks =
+        std::make_shared<const nn::BearingCapacityNetwork>(nn::BearingCapacityNetwork::read(file));
     return network;
   } catch (const InputError&) {
     throw InputError(file + ": is neither a network of `train` (wheels) nor one of `train-tracks`");
   }
 }
 
-/// A ground that goes its own way along a drive.
-struct Foretold {
+/// A terrain that a network changes along a drive.
+struct Prediction {
   std::string name;
   std::function<void(std::size_t stride)> step;
   std::function<const HeightField&()> ground;
@@ -234,37 +235,38 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
       std::min(drive.size(), static_cast<std::size_t>(options.from * nn::kStrideRate_hz));
   const std::size_t end = std::min(
       drive.size(), begin + static_cast<std::size_t>(options.seconds * nn::kStrideRate_hz));
-  const HeightField before = drive.ground_after(begin);
-  const HeightField real = drive.ground_after(end);
+  const HeightField before = drive.terrain_after(begin);
+  const HeightField real = drive.terrain_after(end);
 
-  std::vector<Foretold> all;
-  const auto add_tracks = [&](const std::string& name, const std::shared_ptr<nn::TrackGround>& on,
-                              const std::function<void(nn::TrackGround&, std::size_t)>& step) {
+  std::vector<Prediction> all;
+  const auto add_tracks = [&](const std::string& name,
+                              const std::shared_ptr<nn::TrackSoilModel>& on,
+                              const std::function<void(nn::TrackSoilModel&, std::size_t)>& step) {
     all.push_back({name, [on, step](std::size_t i) { step(*on, i); },
                    [on]() -> const HeightField& { return on->surface(); }});
   };
   if (drive.tracks()) {
     const auto& network = any.tracks;
-    nn::PressedDrive pressed(drive);
-    const nn::TrackGround& as_it_was = pressed.after(begin);
-    const auto fresh = [&] { return std::make_shared<nn::TrackGround>(as_it_was); };
+    nn::SinkageReplay pressed(drive);
+    const nn::TrackSoilModel& as_it_was = pressed.after(begin);
+    const auto fresh = [&] { return std::make_shared<nn::TrackSoilModel>(as_it_was); };
     add_tracks("even depth", fresh(),
-               [&](nn::TrackGround& on, std::size_t i) { on.step_evenly(drive[i]); });
+               [&](nn::TrackSoilModel& on, std::size_t i) { on.step_evenly(drive[i]); });
     add_tracks("closed", fresh(),
-               [&](nn::TrackGround& on, std::size_t i) { on.step(drive[i], nullptr); });
-    add_tracks("network", fresh(), [&, network](nn::TrackGround& on, std::size_t i) {
+               [&](nn::TrackSoilModel& on, std::size_t i) { on.step(drive[i], nullptr); });
+    add_tracks("network", fresh(), [&, network](nn::TrackSoilModel& on, std::size_t i) {
       on.step(drive[i], network.get());
     });
     const nn::TrackGeometry tracks = nn::track_geometry(drive.robot());
-    add_tracks("true stance", fresh(), [&, tracks](nn::TrackGround& on, std::size_t i) {
-      on.step_at(drive[i], stance_of(tracks, drive[i]));
+    add_tracks("true stance", fresh(), [&, tracks](nn::TrackSoilModel& on, std::size_t i) {
+      on.step_at(drive[i], track_plane_of(tracks, drive[i]));
     });
   } else {
     const auto& network = any.wheels;
     const auto ground = std::make_shared<HeightField>(before);
     all.push_back({"fluxes",
                    [&drive, network, ground](std::size_t i) {
-                     network->act(*ground, drive.wheels(), drive[i]);
+                     network->apply(*ground, drive.wheels(), drive[i]);
                    },
                    [ground]() -> const HeightField& { return *ground; }});
   }
@@ -273,31 +275,31 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
     const auto last = std::make_shared<std::vector<float>>(nn::WindowNetwork::kCells);
     all.push_back(
         {"window",
-         [&drive, window, ground, last](std::size_t i) { window->act(*ground, drive[i], *last); },
+         [&drive, window, ground, last](std::size_t i) { window->apply(*ground, drive[i], *last); },
          [ground]() -> const HeightField& { return *ground; }});
   }
 
-  std::vector<nn::Stride> way;
+  std::vector<nn::Stride> path;
   for (std::size_t i = begin; i < end; ++i) {
-    way.push_back(drive[i]);
-    for (const Foretold& one : all) one.step(i);
+    path.push_back(drive[i]);
+    for (const Prediction& one : all) one.step(i);
   }
-  const nn::GroundComparison c = nn::compare(before, real, real);
+  const nn::TerrainComparison c = nn::compare(before, real, real);
   std::printf("%s: %zu strides, touched %.3f m^2, changed there by %.3f mm RMS\n", run.c_str(),
-              way.size(), c.touched_m2, c.true_change_mm);
+              path.size(), c.touched_m2, c.true_change_mm);
   std::printf("  %-11s %12s %12s %12s %12s %14s %8s\n", "", "RMSE mm", "outside mm", "moved cm3",
               "volume cm3", "volume units", "ruts");
-  print_row("recorded", before, real, real, way);
-  print_row("no change", before, real, before, way);
-  for (const Foretold& one : all) print_row(one.name, before, real, one.ground(), way);
+  print_row("recorded", before, real, real, path);
+  print_row("no change", before, real, before, path);
+  for (const Prediction& one : all) print_row(one.name, before, real, one.ground(), path);
   if (options.pictures.empty()) return;
   fs::create_directories(options.pictures);
   std::vector<std::pair<std::string, const HeightField*>> grounds = {{"recorded", &real}};
-  for (const Foretold& one : all) {
+  for (const Prediction& one : all) {
     if (one.name != "true stance") grounds.emplace_back(one.name, &one.ground());
   }
   draw_changes(fs::path(options.pictures) / (fs::path(run).filename().string() + ".png"), before,
-               grounds, way);
+               grounds, path);
 }
 
 int run_compare(const CompareOptions& options) {
@@ -320,73 +322,73 @@ int run_compare(const CompareOptions& options) {
 }  // namespace
 
 void register_terrain_net_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* command = root.add_subcommand(
-      "terrain-net",
-      "Networks that foretell what wheels and tracks do to the ground (thesis 6.3.1)");
+  CLI::App* command = root.add_subcommand("terrain-net",
+                                          "Train and compare networks that predict how wheels and "
+                                          "tracks deform the terrain (thesis 6.3.1)");
   command->require_subcommand(1);
 
   const auto train = std::make_shared<TrainOptions>();
   CLI::App* train_command =
-      command->add_subcommand("train", "Teach a network of fluxes from recorded runs with wheels");
-  train_command->add_option("RUN", train->runs, "runs with recorded heights")->required();
-  train_command->add_option("--out", train->out, "the network's file")->capture_default_str();
-  train_command->add_option("--hidden", train->hidden, "nodes of the hidden layer")
+      command->add_subcommand("train", "Train a flux network on recorded runs with wheels");
+  train_command->add_option("RUN", train->runs, "Runs with recorded heights")->required();
+  train_command->add_option("--out", train->out, "Network file to write")->capture_default_str();
+  train_command->add_option("--hidden", train->hidden, "Number of nodes of the hidden layer")
       ->check(CLI::Range(1, 512))
       ->capture_default_str();
-  train_command->add_option("--every", train->every, "one stride of so many is an example")
+  train_command->add_option("--every", train->every, "Use every n-th stride as an example")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  train_command->add_option("--epochs", train->epochs)->capture_default_str();
-  train_command->add_option("--seed", train->seed)->capture_default_str();
+  train_command->add_option("--epochs", train->epochs, "Number of epochs")->capture_default_str();
+  train_command->add_option("--seed", train->seed, "Seed of the training")->capture_default_str();
   train_command->callback([train, &action] { action = [train] { return run_train(*train); }; });
 
   const auto tracks = std::make_shared<TrainTracksOptions>();
   CLI::App* tracks_command = command->add_subcommand(
-      "train-tracks", "Teach a network of what bears tracks from recorded runs on soil");
-  tracks_command->add_option("RUN", tracks->runs, "runs with recorded heights")->required();
-  tracks_command
-      ->add_option("--test", tracks->test, "a run to judge the network on; may be repeated")
+      "train-tracks", "Train a bearing-capacity network for tracks on recorded runs on soil");
+  tracks_command->add_option("RUN", tracks->runs, "Runs with recorded heights")->required();
+  tracks_command->add_option("--test", tracks->test, "Run to test the network on; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
-  tracks_command->add_option("--out", tracks->out, "the network's file")->capture_default_str();
-  tracks_command->add_option("--hidden", tracks->hidden, "nodes of the hidden layer")
+  tracks_command->add_option("--out", tracks->out, "Network file to write")->capture_default_str();
+  tracks_command->add_option("--hidden", tracks->hidden, "Number of nodes of the hidden layer")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  tracks_command->add_option("--segments", tracks->segments, "pieces of each run")
+  tracks_command->add_option("--segments", tracks->segments, "Number of segments of each run")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  tracks_command->add_option("--seconds", tracks->seconds, "of each piece")
+  tracks_command->add_option("--seconds", tracks->seconds, "Duration of each segment [s]")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
-  tracks_command->add_option("--generations", tracks->generations)->capture_default_str();
-  tracks_command->add_option("--seed", tracks->seed)->capture_default_str();
+  tracks_command->add_option("--generations", tracks->generations, "Number of generations")
+      ->capture_default_str();
+  tracks_command->add_option("--seed", tracks->seed, "Seed of the training")->capture_default_str();
   tracks_command->callback(
       [tracks, &action] { action = [tracks] { return run_train_tracks(*tracks); }; });
 
   const auto compared = std::make_shared<CompareOptions>();
   CLI::App* compare_command = command->add_subcommand(
-      "compare", "Let networks change the ground along recorded drives, and compare it");
+      "compare", "Compare terrain deformed by networks with recorded drives");
   compare_command
-      ->add_option("NETWORK", compared->network,
-                   "file of train for runs with wheels, of train-tracks for runs with tracks")
+      ->add_option(
+          "NETWORK", compared->network,
+          "Network file: of train for runs with wheels, of train-tracks for runs with tracks")
       ->required();
-  compare_command->add_option("RUN", compared->runs, "runs to compare with")->required();
+  compare_command->add_option("RUN", compared->runs, "Runs to compare with")->required();
   compare_command
       ->add_option("--window", compared->window,
-                   "train the network of the thesis on this run, and compare it as well; may be "
-                   "repeated")
+                   "Also train the thesis' network on this run and compare it; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
-  compare_command->add_option("--epochs", compared->epochs, "of that training")
+  compare_command->add_option("--epochs", compared->epochs, "Number of epochs of that training")
       ->capture_default_str();
-  compare_command->add_option("--from", compared->from, "seconds of each run to leave out")
+  compare_command->add_option("--from", compared->from, "Time to skip at the start of each run [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  compare_command->add_option("--seconds", compared->seconds, "of each run")
+  compare_command->add_option("--seconds", compared->seconds, "Duration to compare of each run [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   compare_command->add_option("--pictures", compared->pictures,
-                              "folder for pictures of what was changed");
+                              "Output folder for pictures of the height change");
   compare_command->callback(
       [compared, &action] { action = [compared] { return run_compare(*compared); }; });
 }

@@ -1,4 +1,4 @@
-// `screed terrain-net`: trains networks that foretell what the robot does to the ground, and
+// `screed terrain-net`: trains networks that predict what the robot does to the terrain, and
 // compares them with recorded runs.
 #pragma once
 

@@ -97,22 +97,23 @@ int run_parity_command(const Arguments& arguments) {
 }  // namespace
 
 void register_parity_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* command = root.add_subcommand(
-      "parity",
-      "Run the image that is flashed in a simulated world and compare every output byte with the "
-      "firmware compiled for this machine");
+  CLI::App* command =
+      root.add_subcommand("parity",
+                          "Run the flash image in a simulated world and compare every output byte "
+                          "with the firmware compiled for this machine");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("FILE", arguments->file, "experiment file (INI)")->required();
-  command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
-  command->add_option("--elf", arguments->elf, "the image; by default that of make firmware");
-  command->add_option("--minutes", arguments->minutes, "simulated time; 1 by default")
+  command->add_option("FILE", arguments->file, "Experiment file (INI)")->required();
+  command->add_option("--board", arguments->board,
+                      "Board: a folder in boards/ (default: a_star_32u4)");
+  command->add_option("--elf", arguments->elf, "ELF image (default: the one of make firmware)");
+  command->add_option("--minutes", arguments->minutes, "Simulated time [min] (default: 1)")
       ->check(CLI::Range(0.001, 1e5));
   command
-      ->add_option("--set", arguments->sets, "override a key: section.key=value; may be repeated")
+      ->add_option("--set", arguments->sets, "Override a key: section.key=value; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_flag("--quiet", arguments->quiet, "no progress");
-  command->add_flag("--json", arguments->json, "print the result as JSON");
+  command->add_flag("--quiet", arguments->quiet, "Show no progress");
+  command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->callback(
       [arguments, &action] { action = [arguments] { return run_parity_command(*arguments); }; });
 }

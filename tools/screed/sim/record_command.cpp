@@ -8,13 +8,13 @@
 #include <optional>
 
 #include "host_sim/core/errors.h"
-#include "tools/screed/cli/succession.h"
+#include "tools/screed/cli/run_batch.h"
 
 namespace screed {
 namespace {
 
 struct RecordArguments {
-  SuccessionArguments runs;
+  BatchArguments runs;
   std::optional<std::string> seed;
   std::optional<std::string> frames;
   bool table = false;
@@ -50,7 +50,7 @@ void print_session(const SimulationSummary& s) {
 }
 
 int run_record(const RecordArguments& arguments, const std::string& version) {
-  std::vector<std::string> overrides = {"experiment.algorithm=random"};
+  std::vector<std::string> overrides = {std::string("experiment.algorithm=") + kTrainingDriveName};
   if (arguments.seed.has_value()) add_seed(*arguments.seed, overrides);
   if (arguments.frames.has_value()) overrides.push_back("experiment.frames=" + *arguments.frames);
 
@@ -60,27 +60,27 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
   options.table = arguments.table;
   bool short_of_frames = false;
   std::vector<SimulationSummary> summaries;
-  run_in_succession(
-      arguments.runs, overrides, options,
-      [&](const Experiment& experiment, const SimulationSummary& summary) {
-        summaries.push_back(summary);
-        const uint64_t wanted = frames_to_drive(experiment);
-        if (summary.training_frames < wanted) {
-          short_of_frames = true;
-          std::cerr << "note: " << experiment.experiment.name << ": " << summary.training_frames
-                    << " of " << wanted << " frames; the robot is " << summary.state
-                    << (summary.faults != 0 ? " (" + fault_names(summary.faults) + ")" : "")
-                    << (summary.left_bed ? ", it left the bed" : "") << "\n";
-        }
-        if (arguments.runs.json) return;
-        if (arguments.runs.quiet) {
-          std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
-        } else {
-          std::printf("\n%s, seed %llu\n", experiment.experiment.name.c_str(),
-                      static_cast<unsigned long long>(experiment.experiment.seed));
-          print_session(summary);
-        }
-      });
+  run_batch(arguments.runs, overrides, options,
+            [&](const Experiment& experiment, const SimulationSummary& summary) {
+              summaries.push_back(summary);
+              const uint64_t wanted = frames_to_drive(experiment);
+              if (summary.training_frames < wanted) {
+                short_of_frames = true;
+                std::cerr << "note: " << experiment.experiment.name << ": "
+                          << summary.training_frames << " of " << wanted << " frames; the robot is "
+                          << summary.state
+                          << (summary.faults != 0 ? " (" + fault_names(summary.faults) + ")" : "")
+                          << (summary.left_bed ? ", it left the bed" : "") << "\n";
+              }
+              if (arguments.runs.json) return;
+              if (arguments.runs.quiet) {
+                std::printf("%s %s\n", summary.folder.c_str(), summary.content_hash.c_str());
+              } else {
+                std::printf("\n%s, seed %llu\n", experiment.experiment.name.c_str(),
+                            static_cast<unsigned long long>(experiment.experiment.seed));
+                print_session(summary);
+              }
+            });
   if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.files.size() > 1);
   return short_of_frames ? 1 : 0;
 }
@@ -90,15 +90,16 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
 void register_record_command(CLI::App& root, const std::string& version,
                              std::function<int()>& action) {
   auto arguments = std::make_shared<RecordArguments>();
-  CLI::App* command = root.add_subcommand(
-      "record", "Record training sessions: Algorithm 5 drives, heights are kept frame by frame");
-  add_succession_options(*command, arguments->runs);
-  command->add_option("--seed", arguments->seed,
-                      "seed of world and drive; overrides [experiment] seed and [parameters] "
-                      "random_seed");
+  CLI::App* command = root.add_subcommand("record",
+                                          "Record training sessions: run the training drive "
+                                          "(Algorithm 5) and record the height map of every frame");
+  add_batch_options(*command, arguments->runs);
+  command->add_option(
+      "--seed", arguments->seed,
+      "Seed of world and training drive; overrides [experiment] seed and [parameters] random_seed");
   command->add_option("--frames", arguments->frames,
-                      "frames that Algorithm 5 drives; overrides [experiment] frames");
-  command->add_flag("--table", arguments->table, "write frames.csv as well");
+                      "Number of frames of the training drive; overrides [experiment] frames");
+  command->add_flag("--table", arguments->table, "Also write frames.csv");
   command->callback([arguments, version, &action] {
     if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
     action = [arguments, version] { return run_record(*arguments, version); };

@@ -33,13 +33,13 @@ std::filesystem::path default_picture(const Options& options) {
 }
 
 int run_render(Options options) {
-  options.scene.camera = camera_place(options.camera);
+  options.scene.camera = camera_orbit(options.camera);
   options.scene.path = !options.no_path;
   if (!options.model.empty()) options.scene.model = options.model;
   const std::filesystem::path picture =
       options.out.empty() ? default_picture(options) : std::filesystem::path(options.out);
   const RunSceneResult result = render_run(options.run, picture, options.scene);
-  if (result.ground_is_later) {
+  if (result.terrain_is_later) {
     std::cerr << "note: the session holds no height map of frame " << result.frame
               << "; the ground is drawn as the run left it\n";
   }
@@ -58,26 +58,26 @@ int run_render(Options options) {
 
 void register_render_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* command = root.add_subcommand(
-      "render", "Draw one frame of a recorded run as a ray-traced picture (needs povray)");
+      "render", "Render one frame of a recorded run as a ray-traced picture (needs povray)");
   const auto options = std::make_shared<Options>();
-  command->add_option("RUN", options->run, "run folder, or a session.h5")->required();
+  command->add_option("RUN", options->run, "Run folder or session.h5")->required();
   command->add_option("--frame", options->scene.frame,
-                      "frame to draw, from 0; negative counts from the end (default: the last)");
-  command->add_option(
-      "--out", options->out,
-      "the picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, and its "
-      "images go beside it");
-  command->add_option("--width", options->scene.width_px, "pixels")->capture_default_str();
-  command->add_option("--height", options->scene.height_px, "pixels")->capture_default_str();
+                      "Frame to render, from 0; negative counts from the end (default: the last)");
+  command->add_option("--out", options->out,
+                      "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
+                      "and its images are written beside it");
+  command->add_option("--width", options->scene.width_px, "Width of the picture [px]")
+      ->capture_default_str();
+  command->add_option("--height", options->scene.height_px, "Height of the picture [px]")
+      ->capture_default_str();
   command
       ->add_option("--camera", options->camera,
-                   "front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the robot: "
-                   "degrees from its nose, degrees over the horizon, metres")
+                   "Camera: front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the "
+                   "robot [degrees from its nose, degrees above the horizon, m]")
       ->capture_default_str();
-  command->add_option("--model", options->model,
-                      "URDF of the robot, when the one of the experiment is elsewhere");
-  command->add_flag("--no-path", options->no_path, "do not draw the way the robot has come");
-  command->add_flag("--pov-only", options->scene.pov_only, "write the scene, do not render it");
+  command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)");
+  command->add_flag("--no-path", options->no_path, "Do not draw the driven path");
+  command->add_flag("--pov-only", options->scene.pov_only, "Write the scene without rendering it");
   command->callback([options, &action] { action = [options] { return run_render(*options); }; });
 }
 

@@ -68,8 +68,8 @@ void register_replay_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* command = root.add_subcommand(
       "replay", "Feed a recorded run to the firmware again and compare its outputs byte for byte");
   const auto options = std::make_shared<Options>();
-  command->add_option("RUN", options->run, "run folder, or a session.h5")->required();
-  command->add_flag("--json", options->json, "print the result as JSON");
+  command->add_option("RUN", options->run, "Run folder or session.h5")->required();
+  command->add_flag("--json", options->json, "Print the result as JSON");
   command->callback([options, &action] { action = [options] { return run_replay(*options); }; });
 }
 

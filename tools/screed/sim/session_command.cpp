@@ -58,7 +58,7 @@ Json describe(const fs::path& file, const SessionReader& session) {
   json["content_hash"] = session.content_hash();
   json["missing_columns"] = session.missing_columns();
   if (session.frames() > 0) {
-    std::vector<Frame> last(1);
+    std::vector<SimFrame> last(1);
     session.read(session.frames() - 1, std::span(last));
     json["faults"] = last[0].faults;
   }
@@ -194,34 +194,35 @@ int run_export(const ExportArguments& arguments) {
 }  // namespace
 
 void register_session_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* session = root.add_subcommand("session", "Look into a recorded run, or export it");
+  CLI::App* session = root.add_subcommand("session", "Inspect or export a recorded run");
   session->require_subcommand(1);
 
   auto info = std::make_shared<InfoArguments>();
-  CLI::App* info_command = session->add_subcommand("info", "What a session holds");
-  info_command->add_option("RUN", info->run, "run folder or session file")->required();
-  info_command->add_flag("--json", info->json, "as JSON");
+  CLI::App* info_command = session->add_subcommand("info", "Show the content of a session");
+  info_command->add_option("RUN", info->run, "Run folder or session file")->required();
+  info_command->add_flag("--json", info->json, "Print JSON");
   info_command->callback([info, &action] { action = [info] { return run_info(*info); }; });
 
   auto exported = std::make_shared<ExportArguments>();
-  CLI::App* command = session->add_subcommand(
-      "export", "Write tables, height maps and pictures for other programs");
-  command->add_option("RUN", exported->run, "run folder or session file")->required();
-  command->add_flag("--csv", exported->csv, "thesis Table 5.1 as CSV, units in the header");
+  CLI::App* command = session->add_subcommand("export", "Export tables, height maps and pictures");
+  command->add_option("RUN", exported->run, "Run folder or session file")->required();
+  command->add_flag("--csv", exported->csv,
+                    "Export thesis Table 5.1 as CSV, with units in the header");
   command->add_flag(
       "--all", exported->all,
-      "all frames, and with --csv all columns; otherwise those of the training drive");
+      "Export all frames, and with --csv all columns (default: the training drive's)");
   command->add_flag("--heights", exported->heights,
-                    "height maps as 16-bit PNGs, their scale in scale.json");
-  command->add_flag("--pictures", exported->pictures, "height maps as pictures with the path");
+                    "Export height maps as 16-bit PNGs, with their scale in scale.json");
+  command->add_flag("--pictures", exported->pictures,
+                    "Export shaded height maps with the driven path");
   command
-      ->add_option("--every", exported->every,
-                   "frames from one image to the next; 100 for --heights, a tenth of all for "
-                   "--pictures")
+      ->add_option(
+          "--every", exported->every,
+          "Frames between two images (default: 100 for --heights, a tenth of all for --pictures)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--first", exported->first, "first frame, counted from 0 in the session");
-  command->add_option("--count", exported->count, "number of frames")->check(CLI::PositiveNumber);
-  command->add_option("--out", exported->out, "folder to write to; by default RUN/export");
+  command->add_option("--first", exported->first, "First frame, counted from 0 in the session");
+  command->add_option("--count", exported->count, "Number of frames")->check(CLI::PositiveNumber);
+  command->add_option("--out", exported->out, "Output folder (default: RUN/export)");
   command->callback([exported, &action] { action = [exported] { return run_export(*exported); }; });
 }
 

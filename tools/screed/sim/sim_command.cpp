@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/ground_station/link/outside_port.h"
+#include "host_sim/ground_station/link/external_port.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
 #include "tools/screed/cli/interrupt.h"
-#include "tools/screed/cli/succession.h"
+#include "tools/screed/cli/run_batch.h"
 #include "tools/screed/viewer/keyboard_driver.h"
 #include "tools/screed/viewer/live_viewer.h"
 #include "tools/screed/viewer/view_options.h"
@@ -25,14 +25,14 @@ namespace screed {
 namespace {
 
 struct SimArguments {
-  SuccessionArguments runs;
+  BatchArguments runs;
   std::optional<std::string> seed;
   std::optional<std::string> duration;
   std::string hal = "native";
   std::optional<std::string> board;
   std::optional<std::string> elf;
   std::optional<std::string> model;
-  std::optional<std::string> ruts_model;
+  std::optional<std::string> soil_model;
   bool no_ruts = false;
   std::optional<std::string> can;
   std::optional<std::string> pty;
@@ -153,27 +153,27 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     const auto model = std::make_shared<const nn::Model>(
         nn::read_model(arguments.model.has_value() ? std::filesystem::path(*arguments.model)
                                                    : nn::default_model_file()));
-    std::shared_ptr<const nn::BearingNetwork> bearing;
+    std::shared_ptr<const nn::BearingCapacityNetwork> bearing;
     if (!arguments.no_ruts) {
-      bearing = std::make_shared<const nn::BearingNetwork>(nn::BearingNetwork::read(
-          arguments.ruts_model.has_value() ? std::filesystem::path(*arguments.ruts_model)
-                                           : nn::default_bearing_file()));
+      bearing = std::make_shared<const nn::BearingCapacityNetwork>(nn::BearingCapacityNetwork::read(
+          arguments.soil_model.has_value() ? std::filesystem::path(*arguments.soil_model)
+                                           : nn::default_bearing_capacity_file()));
     }
-    options.surroundings = [model, bearing](HeightField terrain, const Assembly& robot,
-                                            const PlantOptions& plant) {
+    options.environment = [model, bearing](HeightField terrain, const Assembly& robot,
+                                           const PlantOptions& plant) {
       auto world = std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
-      if (bearing) world->let_give_way(bearing);
+      if (bearing) world->enable_deformation(bearing);
       return world;
     };
-  } else if (arguments.model.has_value() || arguments.ruts_model.has_value() || arguments.no_ruts) {
-    throw InputError("--model, --ruts-model and --no-ruts need --hal surrogate");
+  } else if (arguments.model.has_value() || arguments.soil_model.has_value() || arguments.no_ruts) {
+    throw InputError("--model, --soil-model and --no-ruts need --hal surrogate");
   }
 
   const std::optional<viewer::ViewerOptions> view =
       viewer_options(arguments.viewer, arguments.view);
   const bool several = arguments.runs.files.size() > 1;
   if (several && view.has_value() && !view->window)
-    throw InputError("--screenshot and --film are for one experiment at a time");
+    throw InputError("--screenshot and --frames-dir are for one experiment at a time");
   Watching watching;
   const Prepare prepare = [&](const Experiment& experiment, SimulationOptions& of_run) {
     if (!view.has_value()) return;
@@ -184,13 +184,13 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     watching.viewer = std::make_unique<viewer::LiveViewer>(experiment, of_run.board, *view,
                                                            *watching.driver, interrupt);
     of_run.ground_port = watching.driver.get();
-    of_run.onlooker = watching.viewer.get();
+    of_run.observer = watching.viewer.get();
     // The viewer keeps the pace.
     of_run.realtime = of_run.realtime && !view->window;
   };
 
   std::vector<SimulationSummary> summaries;
-  run_in_succession(
+  run_batch(
       arguments.runs, overrides, options,
       [&](const Experiment& experiment, const SimulationSummary& summary) {
         summaries.push_back(summary);
@@ -218,46 +218,46 @@ void register_sim_command(CLI::App& root, const std::string& version,
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command =
       root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
-  add_succession_options(*command, arguments->runs);
-  command->add_option("--seed", arguments->seed, "seed of the world; overrides [experiment] seed");
+  add_batch_options(*command, arguments->runs);
+  command->add_option("--seed", arguments->seed, "Seed of the world; overrides [experiment] seed");
   command->add_option("--duration", arguments->duration,
-                      "simulated seconds; overrides [experiment] duration");
+                      "Simulated time [s]; overrides [experiment] duration");
   command
-      ->add_option(
-          "--hal", arguments->hal,
-          "native: the firmware compiled for this machine; mcu: the image that is flashed, "
-          "under a cycle-accurate simulation of the microcontroller; surrogate: the native one "
-          "where "
-          "a network stands in for the physics")
+      ->add_option("--hal", arguments->hal,
+                   "How the firmware runs: native: compiled for this machine; mcu: the flash image "
+                   "under a cycle-accurate simulation of the microcontroller; surrogate: native, "
+                   "with a network in place of the physics")
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
-  command->add_option("--board", arguments->board, "a folder in boards/; a_star_32u4 by default");
+  command->add_option("--board", arguments->board,
+                      "Board: a folder in boards/ (default: a_star_32u4)");
   command->add_option("--elf", arguments->elf,
-                      "with --hal mcu: the image; by default that of make firmware");
+                      "ELF image for --hal mcu (default: the one of make firmware)");
   command->add_option("--model", arguments->model,
-                      "with --hal surrogate: the model file; by default the one that comes along");
-  command->add_option("--ruts-model", arguments->ruts_model,
-                      "with --hal surrogate: the network of what tracks do to the ground; by "
-                      "default the one that comes along");
+                      "Motion network for --hal surrogate (default: the installed model)");
+  command->add_option(
+      "--soil-model", arguments->soil_model,
+      "Network of the soil below the tracks for --hal surrogate (default: the installed model)");
   command
-      ->add_flag("--no-ruts", arguments->no_ruts, "with --hal surrogate: the ground stays as it is")
-      ->excludes("--ruts-model");
+      ->add_flag("--no-ruts", arguments->no_ruts,
+                 "Keep the terrain undeformed with --hal surrogate")
+      ->excludes("--soil-model");
   command->add_option("--can", arguments->can,
-                      "publish the radio's frames on this CAN interface and take commands from it; "
-                      "implies --realtime");
+                      "Publish the radio's frames on this CAN interface and receive commands from "
+                      "it; implies --realtime");
   command
       ->add_option("--pty", arguments->pty,
-                   "offer the radio as a virtual serial port, like that of an XBee, with a "
+                   "Offer the radio as a virtual serial port, like that of an XBee, with a "
                    "symbolic link LINK to it; implies --realtime")
       ->type_name("LINK")
       ->expected(0, 1);
-  command->add_flag("--realtime", arguments->realtime, "do not run faster than the clock");
+  command->add_flag("--realtime", arguments->realtime, "Do not run faster than real time");
   command->add_flag("--heights", arguments->heights,
-                    "record the height map tick by tick, for `screed view` and for training");
+                    "Record the height map of every tick, for `screed view` and for training");
   command->add_flag("--view", arguments->view,
-                    "show the run in a window while it goes on; arrow keys drive (H: all keys)");
+                    "Show the running simulation in a window; arrow keys drive (H: all keys)");
   add_view_options(*command, arguments->viewer);
   auto list_keys = std::make_shared<bool>(false);
-  command->add_flag("--keys", *list_keys, "list every key of an experiment file and stop");
+  command->add_flag("--keys", *list_keys, "List all keys of an experiment file and exit");
   command->callback([arguments, list_keys, version, &action] {
     if (*list_keys) {
       action = [] {

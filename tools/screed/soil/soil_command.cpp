@@ -6,7 +6,7 @@
 namespace screed {
 
 void register_soil_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* command = root.add_subcommand("soil", "Reference tests of the deformable soil");
+  CLI::App* command = root.add_subcommand("soil", "Run reference tests of the deformable soil");
   command->require_subcommand(1);
   add_soil_plate(*command, action);
   add_soil_wheel(*command, action);

@@ -111,35 +111,43 @@ void add_soil_options(CLI::App& command, SoilArguments& common) {
   for (const SoilParameters& preset : soil_presets()) {
     names += (names.empty() ? "" : ", ") + preset.name;
   }
-  command.add_option("--soil", common.preset, names);
+  command.add_option("--soil", common.preset, "Soil preset: " + names);
   const auto parameter = [&](const char* name, double SoilParameters::*member, const char* what) {
     common.given.emplace_back(command.add_option(name, common.custom.*member, what), member);
   };
-  parameter("--k-phi", &SoilParameters::k_phi, "N/m^(n+2); this and the next override the soil's");
-  parameter("--k-c", &SoilParameters::k_c, "N/m^(n+1)");
-  parameter("--exponent", &SoilParameters::exponent, "n of Bekker's law");
-  parameter("--cohesion", &SoilParameters::cohesion_pa, "Pa");
-  parameter("--friction", &SoilParameters::friction_deg, "angle of internal friction, degrees");
-  parameter("--shear-modulus", &SoilParameters::shear_modulus_m, "K of Janosi and Hanamoto, m");
-  parameter("--elastic", &SoilParameters::elastic_pa_per_m, "E of unloading, Pa/m");
-  parameter("--damping", &SoilParameters::damping_pa_s_per_m, "R, Pa s/m");
+  parameter("--k-phi", &SoilParameters::k_phi,
+            "Bekker frictional modulus [N/m^(n+2)]; overrides the preset, as do the following "
+            "parameters");
+  parameter("--k-c", &SoilParameters::k_c, "Bekker cohesive modulus [N/m^(n+1)]");
+  parameter("--exponent", &SoilParameters::exponent, "Bekker sinkage exponent n");
+  parameter("--cohesion", &SoilParameters::cohesion_pa, "Cohesion [Pa]");
+  parameter("--friction", &SoilParameters::friction_deg, "Angle of internal friction [deg]");
+  parameter("--shear-modulus", &SoilParameters::shear_modulus_m,
+            "Janosi-Hanamoto shear modulus K [m]");
+  parameter("--elastic", &SoilParameters::elastic_pa_per_m, "Stiffness E of unloading [Pa/m]");
+  parameter("--damping", &SoilParameters::damping_pa_s_per_m, "Damping R of sinking [Pa s/m]");
   parameter("--shear-damping", &SoilParameters::shear_damping_s,
-            "damping of small shear, over its stiffness, s");
-  parameter("--repose", &SoilParameters::repose_deg, "angle of repose, degrees");
-  parameter("--compaction", &SoilParameters::compaction, "share of the sunk volume, 0..1");
+            "Damping of small shear over its stiffness [s]");
+  parameter("--repose", &SoilParameters::repose_deg, "Angle of repose [deg]");
+  parameter("--compaction", &SoilParameters::compaction,
+            "Share of the sunk volume that is compacted, 0..1");
   parameter("--drag-depth", &SoilParameters::drag_depth_m,
-            "layer that moves with a slipping rim, m");
-  parameter("--slip-sinkage", &SoilParameters::slip_sinkage, "n grows by this times the slip");
-  command.add_option("--normal-stress", common.normal_stress, "radial, vertical");
+            "Thickness of the layer that a slipping rim digs away [m]");
+  parameter("--slip-sinkage", &SoilParameters::slip_sinkage,
+            "Growth of the sinkage exponent with slip");
+  command.add_option("--normal-stress", common.normal_stress,
+                     "Direction of the normal stress: radial or vertical");
   command.add_flag("--bulldozing,!--no-bulldozing", common.bulldozing,
-                   "sunk material is pushed aside; else compacted");
-  command.add_flag("--avalanches,!--no-avalanches", common.avalanches, "steep slopes slide");
+                   "Push sunk material aside; otherwise compact it");
+  command.add_flag("--avalanches,!--no-avalanches", common.avalanches,
+                   "Let slopes above the angle of repose slide");
   command.add_flag("--follow-slopes,!--no-follow-slopes", common.follow_slopes,
-                   "bodies came along their way; else level");
-  command.add_option("--sample-spacing", common.sample_spacing_m, "of places inside a cell, m");
-  command.add_option("--cell", common.cell_m, "of the grid, m");
-  command.add_option("--step", common.step_s, "s");
-  command.add_flag("--json", common.json, "print JSON");
+                   "Assume that bodies follow the slope of their path; otherwise a level path");
+  command.add_option("--sample-spacing", common.sample_spacing_m,
+                     "Spacing of sample points inside a cell [m]");
+  command.add_option("--cell", common.cell_m, "Cell size of the grid [m]");
+  command.add_option("--step", common.step_s, "Time step [s]");
+  command.add_flag("--json", common.json, "Print JSON");
 }
 
 nlohmann::json soil_json(const SoilArguments& common) {

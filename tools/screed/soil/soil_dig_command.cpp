@@ -81,7 +81,7 @@ int run_dig(DigArguments a) {
   add("raised_behind_share", result.behind_share, "%.3f");
   add("time_s", result.time_s, "%.2f");
   if (a.test.manoeuvre == Manoeuvre::kSlip) add("pull_n", result.pull_n, "%.2f");
-  add("way_m", result.way_m, "%.4f");
+  add("distance_m", result.distance_m, "%.4f");
   add("turned_deg", result.turned_rad * kDegrees, "%.1f");
   add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
   add("pitch_deg", result.pitch_rad * kDegrees, "%.2f");
@@ -105,24 +105,26 @@ int run_dig(DigArguments a) {
 void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<DigArguments>();
   CLI::App* command = soil.add_subcommand(
-      "dig", "A tracked robot digs: moved volume, depth, where the material went");
+      "dig", "Let a tracked robot dig: moved volume, depth, distribution of the material");
   a->common.bulldozing = a->common.avalanches = true;
   a->common.preset = "gravel";
   add_soil_options(*command, a->common);
   a->test.particle.radius_m = 0.0075;
-  command->add_option("--manoeuvre", a->manoeuvre, "spin, charge (a mound of 20 degrees), slip");
-  command->add_option("--ground", a->ground, "scm, particles");
-  command->add_option("--particle-radius", a->test.particle.radius_m, "m");
-  command->add_option("--particle-friction", a->test.particle.friction, "coefficient");
-  command->add_option("--depth", a->test.depth_m, "of the bed of particles, m");
-  command->add_option("--size", a->test.size_m, "of the bed's side, m");
-  command->add_option("--track-speed", a->test.track_m_per_s, "of the belts, m/s");
-  command->add_option("--duration", a->test.duration_s, "s");
-  command->add_option("--seed", a->test.seed, "of the particles' layout");
-  command->add_option("--beds", a->test.beds, "of particles, whose heights are averaged");
+  command->add_option("--manoeuvre", a->manoeuvre,
+                      "Manoeuvre: spin, charge (a mound of 20 degrees) or slip");
+  command->add_option("--ground", a->ground, "Terrain model: scm or particles");
+  command->add_option("--particle-radius", a->test.particle.radius_m, "Particle radius [m]");
+  command->add_option("--particle-friction", a->test.particle.friction,
+                      "Friction coefficient of the particles");
+  command->add_option("--depth", a->test.depth_m, "Depth of the particle bed [m]");
+  command->add_option("--size", a->test.size_m, "Side length of the bed [m]");
+  command->add_option("--track-speed", a->test.track_m_per_s, "Belt speed [m/s]");
+  command->add_option("--duration", a->test.duration_s, "Duration [s]");
+  command->add_option("--seed", a->test.seed, "Seed of the particle layout");
+  command->add_option("--beds", a->test.beds, "Number of particle beds whose heights are averaged");
   command->add_option("--fit-raised", a->fit_cm3,
-                      "fit --drag-depth so that so much is raised, cm^3; scm");
-  command->add_option("--charts", a->common.charts, "folder for a PNG of what changed");
+                      "Fit --drag-depth to this raised volume [cm^3] (scm)");
+  command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change");
   command->callback([a, &action] { action = [a] { return run_dig(*a); }; });
 }
 

@@ -34,7 +34,7 @@ int run_match(const MatchArguments& a) {
   constexpr double kDegrees = 57.29577951308232;
   lines.push_back({"block", "friction_deg", std::atan(drag.friction) * kDegrees, "%.1f",
                    soil.friction_deg, SoilLine::Error::kNone});
-  lines.push_back({"block", "shear_modulus_mm", drag.way_to_most_m * kMilli, "%.2f",
+  lines.push_back({"block", "shear_modulus_mm", drag.shear_displacement_m * kMilli, "%.2f",
                    soil.shear_modulus_m * kMilli, SoilLine::Error::kNone});
   return finish(
       a.common, "match",
@@ -47,18 +47,19 @@ int run_match(const MatchArguments& a) {
 void add_soil_match(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<MatchArguments>();
   CLI::App* command = soil.add_subcommand(
-      "match", "What soil a bed of particles is like: a plate pressed in, a block dragged");
+      "match", "Identify the soil parameters of a particle bed: press a plate, drag a block");
   a->common.preset = "gravel";
   add_soil_options(*command, a->common);
   a->test.particle.radius_m = 0.0075;
-  command->add_option("--particle-radius", a->test.particle.radius_m, "m");
-  command->add_option("--particle-friction", a->test.particle.friction, "coefficient");
-  command->add_option("--depth", a->test.depth_m, "of the bed of particles, m");
-  command->add_option("--length", a->test.length_m, "of plate and block, m");
-  command->add_option("--width", a->test.width_m, "m");
-  command->add_option("--load", a->test.load_pa, "below the block, Pa");
-  command->add_option("--seed", a->test.seed, "of the particles' layout");
-  command->add_option("--beds", a->test.beds, "of particles, for means");
+  command->add_option("--particle-radius", a->test.particle.radius_m, "Particle radius [m]");
+  command->add_option("--particle-friction", a->test.particle.friction,
+                      "Friction coefficient of the particles");
+  command->add_option("--depth", a->test.depth_m, "Depth of the particle bed [m]");
+  command->add_option("--length", a->test.length_m, "Length of plate and block [m]");
+  command->add_option("--width", a->test.width_m, "Width of plate and block [m]");
+  command->add_option("--load", a->test.load_pa, "Pressure below the block [Pa]");
+  command->add_option("--seed", a->test.seed, "Seed of the particle layout");
+  command->add_option("--beds", a->test.beds, "Number of particle beds to average over");
   command->callback([a, &action] { action = [a] { return run_match(*a); }; });
 }
 

@@ -72,8 +72,8 @@ int run_plate(PlateArguments a) {
   a.test.cell_m = a.common.cell_m;
   a.test.step_s = a.common.step_s;
   a.test.yaw_rad = a.yaw_deg * kDegree;
-  a.test.way_m = {a.depth_m};
-  if (a.lift_m > 0.0) a.test.way_m.push_back(a.depth_m - a.lift_m);
+  a.test.depths_m = {a.depth_m};
+  if (a.lift_m > 0.0) a.test.depths_m.push_back(a.depth_m - a.lift_m);
   check_range("plate", "offsets", a.offsets, 0, 10000);
   const std::vector<PlatePoint> run = press_plate(a.test);
   std::vector<SoilLine> lines;
@@ -117,7 +117,7 @@ int run_plate(PlateArguments a) {
         }
       }
       const std::string where =
-          std::to_string(a.offsets) + (turned ? " places and yaws" : " places");
+          std::to_string(a.offsets) + (turned ? " positions and yaws" : " positions");
       lines.push_back({where, "worst_pressure_percent", 100.0 * worst, "%.3f"});
       lines.push_back({where, "worst_b_percent", 100.0 * worst_b, "%.3f"});
     }
@@ -135,20 +135,24 @@ int run_plate(PlateArguments a) {
 
 void add_soil_plate(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<PlateArguments>();
-  CLI::App* command = soil.add_subcommand("plate", "Press a plate in, beside Bekker's law");
+  CLI::App* command =
+      soil.add_subcommand("plate", "Press a plate into soil and compare with Bekker's law");
   add_soil_options(*command, a->common);
-  command->add_flag("--round", a->test.round, "a disc; --length is its diameter");
-  command->add_option("--length", a->test.length_m, "m");
-  command->add_option("--width", a->test.width_m, "m");
-  command->add_option("--depth", a->depth_m, "m");
-  command->add_option("--lift", a->lift_m, "by so much afterwards, m");
-  command->add_option("--speed", a->test.speed_m_per_s, "m/s");
-  command->add_option("--offset-x", a->test.offset_x_m, "of the plate against the grid, m");
-  command->add_option("--offset-y", a->test.offset_y_m, "m");
-  command->add_option("--yaw", a->yaw_deg, "degrees");
-  command->add_option("--offsets", a->offsets, "worst error over so many random places and yaws");
-  command->add_option("--seed", a->seed, "of these");
-  command->add_option("--charts", a->common.charts, "folder for soil_plate.svg");
+  command->add_flag("--round", a->test.round, "Press a disc; --length is its diameter");
+  command->add_option("--length", a->test.length_m, "Length of the plate [m]");
+  command->add_option("--width", a->test.width_m, "Width of the plate [m]");
+  command->add_option("--depth", a->depth_m, "Depth to press to [m]");
+  command->add_option("--lift", a->lift_m, "Distance to lift the plate afterwards [m]");
+  command->add_option("--speed", a->test.speed_m_per_s, "Pressing speed [m/s]");
+  command->add_option("--offset-x", a->test.offset_x_m,
+                      "Offset of the plate against the grid in x [m]");
+  command->add_option("--offset-y", a->test.offset_y_m,
+                      "Offset of the plate against the grid in y [m]");
+  command->add_option("--yaw", a->yaw_deg, "Yaw of the plate [deg]");
+  command->add_option("--offsets", a->offsets,
+                      "Number of random positions and yaws to find the worst error over");
+  command->add_option("--seed", a->seed, "Seed of the random positions");
+  command->add_option("--charts", a->common.charts, "Output folder for soil_plate.svg");
   command->callback([a, &action] { action = [a] { return run_plate(*a); }; });
 }
 

@@ -34,15 +34,17 @@ int run_repose(ReposeArguments a) {
 
 void add_soil_repose(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<ReposeArguments>();
-  CLI::App* command = soil.add_subcommand("repose", "Let a tower collapse to its angle of repose");
+  CLI::App* command =
+      soil.add_subcommand("repose", "Let a column of soil collapse to its angle of repose");
   add_soil_options(*command, a->common);
-  command->add_option("--size", a->test.size_m, "of the bed's side, m");
-  command->add_option("--radius", a->test.radius_m, "of the tower, m");
-  command->add_option("--height", a->test.height_m, "of the tower, m");
-  command->add_option("--tap", a->test.tap_m, "a plate taps the tower first, m; 0: untouched");
-  command->add_option("--x", a->test.centre_x_m, "of its middle, m");
-  command->add_option("--y", a->test.centre_y_m, "m");
-  command->add_flag("--wrap", a->test.wrap, "the bed continues at its other side");
+  command->add_option("--size", a->test.size_m, "Side length of the bed [m]");
+  command->add_option("--radius", a->test.radius_m, "Radius of the column [m]");
+  command->add_option("--height", a->test.height_m, "Height of the column [m]");
+  command->add_option("--tap", a->test.tap_m,
+                      "Depth by which a plate first taps the column [m]; 0: untouched");
+  command->add_option("--x", a->test.centre_x_m, "Centre position in x [m]");
+  command->add_option("--y", a->test.centre_y_m, "Centre position in y [m]");
+  command->add_flag("--wrap", a->test.wrap, "Wrap the bed around at its edges");
   command->callback([a, &action] { action = [a] { return run_repose(*a); }; });
 }
 

@@ -63,12 +63,12 @@ int run_robot(const RobotArguments& a) {
   std::clock_t begin = std::clock();
   const double level = robot.position().z();
   double load = 0.0;
-  double way = 0.0;
+  double distance = 0.0;
   for (int64_t i = 0; i < steps; ++i) {
     if (i == untimed) begin = std::clock();
     robot.step(a.left_m_per_s, a.right_m_per_s, dt);
     if (i >= untimed) load += robot.load_n();
-    way += dt * robot.velocity().head<2>().norm();
+    distance += dt * robot.velocity().head<2>().norm();
   }
   const auto timed = static_cast<double>(steps - untimed);
   const double us = static_cast<double>(std::clock() - begin) * 1e6 / CLOCKS_PER_SEC / timed;
@@ -77,11 +77,11 @@ int run_robot(const RobotArguments& a) {
       {"", "step_us", us, "%.2f", std::nullopt, SoilLine::Error::kNone, peer_step_us(a)},
       {"", "mean_load_n", load / timed, "%.4f"},
       {"", "lower_by_mm", (level - place.z()) * kMilli, "%.3f"},
-      {"", "way_m", way, "%.4f"},
+      {"", "distance_m", distance, "%.4f"},
       {"", "away_m", std::hypot(place.x() - a.x_m, place.y() - a.y_m), "%.4f"},
       {"", "speed_m_per_s", robot.velocity().dot(robot.rotation().col(0)), "%.4f"},
       {"", "volume_error", static_cast<double>(bed.balance().error()), "%.0f", 0.0},
-      {"", "volume_in_hand", static_cast<double>(bed.balance().in_hand), "%.0f"},
+      {"", "volume_in_transit", static_cast<double>(bed.balance().in_transit), "%.0f"},
       {"", "compacted_cm3",
        static_cast<double>(bed.balance().compacted) * kHeightUnit_m * a.common.cell_m *
            a.common.cell_m * 1e6,
@@ -117,16 +117,16 @@ int run_robot(const RobotArguments& a) {
 void add_soil_robot(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<RobotArguments>();
   CLI::App* command =
-      soil.add_subcommand("robot", "Drive a four-wheeled body: CPU time a step, volume balance");
+      soil.add_subcommand("robot", "Drive a four-wheeled body: CPU time per step, volume balance");
   add_soil_options(*command, a->common);
-  command->add_option("--size", a->size_m, "of the bed's side, m");
-  command->add_flag("--wrap", a->wrap, "the bed continues at its other side");
-  command->add_option("--relief", a->relief_m, "of waves on the bed, m");
-  command->add_option("--duration", a->duration_s, "s; the first fifth is not timed");
-  command->add_option("--left", a->left_m_per_s, "rim speed of the left wheels, m/s");
-  command->add_option("--right", a->right_m_per_s, "rim speed of the right wheels, m/s");
-  command->add_option("--x", a->x_m, "start, m");
-  command->add_option("--y", a->y_m, "start, m");
+  command->add_option("--size", a->size_m, "Side length of the bed [m]");
+  command->add_flag("--wrap", a->wrap, "Wrap the bed around at its edges");
+  command->add_option("--relief", a->relief_m, "Amplitude of the waves on the bed [m]");
+  command->add_option("--duration", a->duration_s, "Duration [s]; the first fifth is not timed");
+  command->add_option("--left", a->left_m_per_s, "Rim speed of the left wheels [m/s]");
+  command->add_option("--right", a->right_m_per_s, "Rim speed of the right wheels [m/s]");
+  command->add_option("--x", a->x_m, "Start position in x [m]");
+  command->add_option("--y", a->y_m, "Start position in y [m]");
   command->callback([a, &action] { action = [a] { return run_robot(*a); }; });
 }
 

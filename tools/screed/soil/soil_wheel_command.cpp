@@ -153,26 +153,28 @@ int run_wheel_command(WheelArguments a) {
 void add_soil_wheel(CLI::App& soil, std::function<int()>& action) {
   const auto a = std::make_shared<WheelArguments>();
   CLI::App* command = soil.add_subcommand(
-      "wheel", "Roll a wheel at imposed slip, beside the limit of an infinitely fine grid");
+      "wheel",
+      "Roll a wheel at imposed slip and compare with the limit of an infinitely fine grid");
   add_soil_options(*command, a->common);
-  command->add_option("--slip", a->slips, "one or several, -1..0.99")->delimiter(',');
-  command->add_option("--load", a->test.wheel.load_n, "N");
-  command->add_option("--radius", a->test.wheel.radius_m, "m");
-  command->add_option("--width", a->test.wheel.width_m, "m");
-  command->add_option("--mass", a->test.mass_kg, "that moves up and down, kg");
-  command->add_option("--speed", a->test.speed_m_per_s, "m/s");
-  command->add_option("--duration", a->test.duration_s, "of a pass, s");
-  command->add_option("--offset", a->test.offset_m, "of the track against the grid, m");
-  command->add_option("--yaw", a->yaw_deg, "of the track, degrees");
-  command->add_option("--passes", a->test.passes, "over the same track");
+  command->add_option("--slip", a->slips, "Slip, one or several values, -1..0.99")->delimiter(',');
+  command->add_option("--load", a->test.wheel.load_n, "Load on the wheel [N]");
+  command->add_option("--radius", a->test.wheel.radius_m, "Radius of the wheel [m]");
+  command->add_option("--width", a->test.wheel.width_m, "Width of the wheel [m]");
+  command->add_option("--mass", a->test.mass_kg, "Mass that moves vertically [kg]");
+  command->add_option("--speed", a->test.speed_m_per_s, "Travel speed [m/s]");
+  command->add_option("--duration", a->test.duration_s, "Duration of a pass [s]");
+  command->add_option("--offset", a->test.offset_m,
+                      "Offset of the wheel's track across the grid [m]");
+  command->add_option("--yaw", a->yaw_deg, "Yaw of the wheel's track against the grid [deg]");
+  command->add_option("--passes", a->test.passes, "Number of passes over the same track");
   CLI::Option* measured =
       command->add_option("--measured", a->measured,
-                          "beside measurements: a CSV file, by default Ding's wheel of 2011");
+                          "Compare with measurements: a CSV file (default: Ding et al. 2011)");
   measured->expected(0, 1)->default_str(std::string(kDataFolder) +
                                         "/soil/single_wheel_ding2011.csv");
-  command->add_option("--case", a->cases, "rows whose case_id begins so");
-  command->add_flag("--fit", a->fit, "fit --slip-sinkage to the measured sinkage first");
-  command->add_option("--charts", a->common.charts, "folder for SVG charts");
+  command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text");
+  command->add_flag("--fit", a->fit, "Fit --slip-sinkage to the measured sinkage first");
+  command->add_option("--charts", a->common.charts, "Output folder for SVG charts");
   command->callback([a, measured, &action] {
     action = [a, measured] {
       if (measured->count() > 0 && a->measured.empty()) {

@@ -208,7 +208,7 @@ void print_run(const GridRun& run, bool json) {
     print_json({{"level", result.level},
                 {"cycles", result.cycles},
                 {"units", result.units},
-                {"least_units", result.least_units},
+                {"least_units", result.min_units},
                 {"distance", result.distance()},
                 {"progress", run.progress().progress},
                 {"lowest", world.lowest()},
@@ -223,7 +223,7 @@ void print_run(const GridRun& run, bool json) {
   std::printf("  %-22s %12llu\n", "cycles", static_cast<unsigned long long>(result.cycles));
   std::printf("  %-22s %12llu\n", "units moved", static_cast<unsigned long long>(result.units));
   std::printf("  %-22s %12llu\n", "fewest possible",
-              static_cast<unsigned long long>(result.least_units));
+              static_cast<unsigned long long>(result.min_units));
   std::printf("  %-22s %12.0f cells\n", "distance", result.distance());
   std::printf("  %-22s %12s\n", "leveled", percent(run.progress().progress).c_str());
   std::printf("  %-22s %9u to %u, deviation %.3f\n", "heights", world.lowest(), world.highest(),
@@ -313,9 +313,9 @@ int run_replay(const GridOptions& options) {
     std::optional<LiveView> view;
     if (is_live(options)) {
       const auto& heights = replay.frame().terrain.heights;
-      const auto [least, greatest] = std::minmax_element(heights.begin(), heights.end());
+      const auto [minimum, maximum] = std::minmax_element(heights.begin(), heights.end());
       view.emplace(replay.value("algorithm") + ", seed " + replay.value("seed") + ", recorded",
-                   *least, *greatest, options.speed);
+                   *minimum, *maximum, options.speed);
     }
     const auto show = [&] {
       const double all = static_cast<double>(std::max<uint64_t>(1, replay.cycles()));
@@ -383,7 +383,7 @@ void print_points(const std::vector<SweepPoint>& points,
     const Summary units = units_of(results[i]);
     double fewest = 0.0;
     for (const GridResult& run : results[i]) {
-      fewest += static_cast<double>(run.least_units) / static_cast<double>(results[i].size());
+      fewest += static_cast<double>(run.min_units) / static_cast<double>(results[i].size());
     }
     std::printf("%-28s %9.0f +- %5.0f %9.0f +- %5.0f %8.0f %8.2f %4zu/%zu\n",
                 points[i].label.c_str(), cycles.mean, cycles.standard_error, units.mean,
@@ -487,66 +487,79 @@ void register_grid_command(CLI::App& root, const std::string& version,
   const auto options = std::make_shared<GridOptions>();
   GridConfig& config = options->config;
   CLI::App* command = root.add_subcommand(
-      "grid", "Leveling agents on a grid of stacks (thesis 4.2): one run, or thousands");
-  command->add_option("--algorithm", options->algorithm,
-                      "probabilistic, threshold, memetic-1, memetic-2, patient, forager");
-  command->add_option("--seed", options->seed, "of the first run; further runs count up");
-  command->add_option("--agents", config.agents, "how many");
-  command->add_option("--size", options->size, "cells a side, or WIDTHxHEIGHT");
-  command->add_option("--border", options->border, "walls or torus");
-  command->add_option("--terrain", config.image, "a grey image as terrain; default is noise");
-  command->add_option("--white", config.white, "units of a white pixel");
-  command->add_option("--mean", options->mean, "mean height, units; noise: 6.5");
-  command->add_option("--amplitude", config.noise.amplitude, "of the noise, units");
-  command->add_option("--lattice", config.noise.lattice, "of the noise, cells");
-  command->add_option("--stop", options->stop,
-                      "when it counts as level: level, gradient, deviation");
-  command->add_option("--epsilon", options->epsilon,
-                      "of that rule, units (level 1, gradient 1.5, deviation 0.5)");
-  command->add_option("--max-cycles", options->max_cycles, "a run longer than that has failed");
+      "grid", "Run leveling agents on a grid of stacks (thesis 4.2), once or many times");
+  command->add_option(
+      "--algorithm", options->algorithm,
+      "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager");
+  command->add_option("--seed", options->seed, "Seed of the first run; each further run adds 1");
+  command->add_option("--agents", config.agents, "Number of agents");
+  command->add_option("--size", options->size,
+                      "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
+  command->add_option("--border", options->border, "Border of the grid: walls or torus");
+  command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)");
+  command->add_option("--white", config.white, "Height of a white pixel [units]");
+  command->add_option("--mean", options->mean, "Mean height [units] (noise: 6.5)");
+  command->add_option("--amplitude", config.noise.amplitude, "Amplitude of the noise [units]");
+  command->add_option("--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]");
+  command->add_option("--stop", options->stop, "Stop criterion: level, gradient or deviation");
+  command->add_option(
+      "--epsilon", options->epsilon,
+      "Threshold of the stop criterion [units] (level 1, gradient 1.5, deviation 0.5)");
+  command->add_option("--max-cycles", options->max_cycles,
+                      "Maximum number of cycles; a longer run counts as failed");
 
-  command->add_option("-p,--probability", options->probability, "of picking up and of depositing");
-  command->add_option("--p-pick-up", config.p_pick_up, "of picking up alone");
-  command->add_option("--p-deposit", config.p_deposit, "of depositing alone");
-  command->add_option("--p-sense", config.p_sense, "of sampling a height on arrival in a cell");
-  command->add_option("--p-turn", config.p_turn, "of a step in a random direction");
-  command->add_option("-k", config.k, "threshold: k of the response curves");
-  command->add_option("--memory", config.memory, "samples of the FIFO, 1 to 8");
+  command->add_option("-p,--probability", options->probability,
+                      "Probability of picking up and of depositing");
+  command->add_option("--p-pick-up", config.p_pick_up, "Probability of picking up");
+  command->add_option("--p-deposit", config.p_deposit, "Probability of depositing");
+  command->add_option("--p-sense", config.p_sense,
+                      "Probability of sampling the height on arrival in a cell");
+  command->add_option("--p-turn", config.p_turn, "Probability of a step in a random direction");
+  command->add_option("-k", config.k, "Parameter k of the response curves (threshold)");
+  command->add_option("--memory", config.memory, "Length of the height memory [samples], 1 to 8");
   command->add_option("--fitness-threshold", config.fitness_threshold,
-                      "memetic-2: chromosomes below it are replaced");
+                      "Fitness below which chromosomes are replaced (memetic-2)");
   command->add_option("--fitness-base", options->fitness_base,
-                      "memetic: operations that count, executed or attempted");
-  command->add_option("--chromosomes", config.chromosomes, "memetic-2: an agent, 1 to 5");
-  command->add_option("--repetitions", config.repetitions, "memetic-1: of a chromosome");
-  command->add_option("--averaging", config.averaging, "patient, forager: samples of the average");
-  command->add_option("--dead-band", config.dead_band,
-                      "patient, forager: units around the average where nothing is moved");
+                      "Operations counted by the fitness: executed or attempted (memetic)");
+  command->add_option("--chromosomes", config.chromosomes,
+                      "Chromosomes per agent, 1 to 5 (memetic-2)");
+  command->add_option("--repetitions", config.repetitions,
+                      "Repetitions of a chromosome (memetic-1)");
+  command->add_option("--averaging", config.averaging,
+                      "Window of the running average [samples] (patient, forager)");
+  command->add_option(
+      "--dead-band", config.dead_band,
+      "Dead band around the average in which nothing is moved [units] (patient, forager)");
   command->add_option("--patience", config.patience,
-                      "patient, forager: idle cycles before the dead band shrinks; 0: never");
+                      "Idle cycles before the dead band shrinks; 0: never (patient, forager)");
   command->add_option("--hold-out", config.hold_out,
-                      "patient, forager: cycles over which the claim goes down; 0: none (0, 200)");
-  command->add_option("--follow-slope", options->follow_slope,
-                      "patient, forager: uphill empty, downhill loaded; yes or no (no, yes)");
+                      "Cycles over which the hold-out decays; 0: none (patient 0, forager 200)");
+  command->add_option(
+      "--follow-slope", options->follow_slope,
+      "Walk uphill when empty and downhill when loaded: yes or no (patient no, forager yes)");
   command->add_option("--turn-back", options->turn_back,
-                      "patient, forager: back after an operation; yes or no (no, yes)");
+                      "Turn back after an operation: yes or no (patient no, forager yes)");
 
   CLI::Option* runs = command->add_option("--runs", options->runs,
-                                          "so many runs, on all cores; a figure: of every point");
-  command->add_option("--threads", options->threads, "0: one a core; results do not depend on it");
-  command->add_option("--figure", options->figure, "4.2, 4.3, 4.4, 4.5, better, better-units");
+                                          "Number of runs, on all cores; with --figure: per point");
+  command->add_option("--threads", options->threads,
+                      "Number of threads; 0: one per core; results do not depend on it");
+  command->add_option("--figure", options->figure,
+                      "Reproduce a figure: 4.2, 4.3, 4.4, 4.5, better or better-units");
   command->add_option("--out", options->out,
-                      "folder for the runs, tables and charts of --figure "
-                      "(out/grid) or --runs; goes on where it stopped");
-  command->add_option("--record", options->record, "record the run to this HDF5 file");
-  command->add_option("--replay", options->replay, "play a recording instead of a run");
+                      "Output folder for runs, tables and charts of --figure (default: out/grid) "
+                      "or --runs; resumes an interrupted sweep");
+  command->add_option("--record", options->record, "Record the run to this HDF5 file");
+  command->add_option("--replay", options->replay, "Play a recording instead of a run");
   command->add_option("--render", options->render,
-                      "ray-traced picture (PNG) of the stacks before and after");
-  command->add_option("--render-width", options->render_width, "px");
-  command->add_option("--curve", options->curve, "write the progress curve to this CSV file");
-  command->add_option("--speed", options->speed, "of the live view, cycles a second");
-  command->add_flag("--headless", options->headless, "no live view, full speed");
-  command->add_flag("--quiet", options->quiet, "no live view and no progress");
-  command->add_flag("--json", options->json, "print results as JSON");
+                      "Render a ray-traced picture (PNG) of the stacks before and after");
+  command->add_option("--render-width", options->render_width,
+                      "Width of the rendered picture [px]");
+  command->add_option("--curve", options->curve, "Write the progress curve to this CSV file");
+  command->add_option("--speed", options->speed, "Speed of the live view [cycles/s]");
+  command->add_flag("--headless", options->headless, "Run at full speed without live view");
+  command->add_flag("--quiet", options->quiet, "Show neither live view nor progress");
+  command->add_flag("--json", options->json, "Print results as JSON");
   command->callback([options, runs, version, &action] {
     action = [options, runs, version] { return run_command(*options, runs->count() > 0, version); };
   });

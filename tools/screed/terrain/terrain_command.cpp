@@ -32,22 +32,23 @@ int generate(const std::string& file, const NoiseTerrainOptions& options) {
 }  // namespace
 
 void register_terrain_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* terrain = root.add_subcommand("terrain", "Height maps");
+  CLI::App* terrain = root.add_subcommand("terrain", "Generate height maps");
   terrain->require_subcommand(1);
   CLI::App* command = terrain->add_subcommand(
-      "generate", "Make a height map of seeded noise that tiles: for [map] wrap = true");
+      "generate", "Generate a tileable height map of seeded noise, for [map] wrap = true");
   auto file = std::make_shared<std::string>();
   auto options = std::make_shared<NoiseTerrainOptions>();
-  command->add_option("FILE", *file, "a 16-bit PNG, or an 8-bit BMP")->required();
-  command->add_option("--seed", options->seed, "of the noise")->capture_default_str();
-  command->add_option("--size", options->size, "samples a side, 16..4096")->capture_default_str();
-  command->add_option("--waves", options->waves, "hills along a side, 1..64")
+  command->add_option("FILE", *file, "Output image: 16-bit PNG or 8-bit BMP")->required();
+  command->add_option("--seed", options->seed, "Seed of the noise")->capture_default_str();
+  command->add_option("--size", options->size, "Side length [samples], 16..4096")
       ->capture_default_str();
-  command->add_option("--octaves", options->octaves, "levels of detail, 1..10")
+  command->add_option("--waves", options->waves, "Number of hills along a side, 1..64")
+      ->capture_default_str();
+  command->add_option("--octaves", options->octaves, "Number of octaves, 1..10")
       ->capture_default_str();
   command
       ->add_option("--persistence", options->persistence,
-                   "height of a level as a share of that before, 0..1")
+                   "Amplitude ratio of successive octaves, 0..1")
       ->capture_default_str();
   command->callback(
       [file, options, &action] { action = [file, options] { return generate(*file, *options); }; });

@@ -10,15 +10,15 @@ namespace screed::viewer {
 
 class Camera {
  public:
-  static constexpr double kLeastScale = 5.0;     ///< pixels a metre
-  static constexpr double kMostScale = 20000.0;  ///< a millimetre is 20 pixels
+  static constexpr double kMinScale = 5.0;      ///< pixels a metre
+  static constexpr double kMaxScale = 20000.0;  ///< a millimetre is 20 pixels
 
   /// The part of the window that shows the ground; its middle goes on showing the same place.
   void set_box(const PixelBox& box) { box_ = box; }
   const PixelBox& box() const { return box_; }
 
   /// Shows all of `ground`, with a small margin.
-  void fit(const Ground& ground);
+  void fit(const MapRectangle& ground);
   /// Looks at a place.
   void look_at(double x_m, double y_m) {
     x_ = x_m;

@@ -26,19 +26,19 @@ PixelBox grown(const PixelBox& box, double by) {
 }  // namespace
 
 Drawing::Drawing(int width_px, int height_px)
-    : canvas_(std::max(width_px, kLeastWidth), std::max(height_px, kLeastHeight), kBackground) {}
+    : canvas_(std::max(width_px, kMinWidth), std::max(height_px, kMinHeight), kBackground) {}
 
 void Drawing::resize(int width_px, int height_px) {
-  canvas_ = Canvas(std::max(width_px, kLeastWidth), std::max(height_px, kLeastHeight), kBackground);
+  canvas_ = Canvas(std::max(width_px, kMinWidth), std::max(height_px, kMinHeight), kBackground);
   drawn_.reset();
 }
 
-PixelBox Drawing::ground_box() const {
+PixelBox Drawing::terrain_box() const {
   return {0.0, 0.0, canvas_.width() - kPanelWidth_px, canvas_.height() - kTimeline_px};
 }
 
 PixelBox Drawing::timeline_box() const {
-  const PixelBox ground = ground_box();
+  const PixelBox ground = terrain_box();
   return {0.0, ground.height, ground.width, kTimeline_px};
 }
 
@@ -50,14 +50,14 @@ double Drawing::share_at(double pixel_x) const {
 void Drawing::draw(const Scene& scene) {
   {
     const PixelBuffer buffer{canvas_.pixels(), canvas_.width()};
-    draw_ground(buffer, scene.camera, *scene.ground, scene.place, packed(kBeyond));
+    draw_terrain(buffer, scene.camera, *scene.ground, scene.place, packed(kBeyond));
     canvas_.release_pixels();
   }
-  canvas_.clip(ground_box());
+  canvas_.clip(terrain_box());
   draw_bed_edge(scene);
   canvas_.unclip();
   if (scene.show_trail) draw_trail(scene);
-  canvas_.clip(ground_box());
+  canvas_.clip(terrain_box());
   draw_robot(scene);
   draw_scale_bar(scene);
   draw_color_bar(scene);
@@ -82,7 +82,7 @@ void Drawing::draw_trail(const Scene& scene) {
   const size_t count = std::min(scene.trail_points, trail.size());
   if (count == 0) return;
   const PixelBuffer buffer{canvas_.pixels(), canvas_.width()};
-  const PixelBox box = ground_box();
+  const PixelBox box = terrain_box();
   const double jump_px =
       0.5 * std::min(scene.bed.x_max - scene.bed.x_min, scene.bed.y_max - scene.bed.y_min) *
       scene.camera.scale();
@@ -173,7 +173,7 @@ void Drawing::draw_scale_bar(const Scene& scene) {
   const Ticks ticks = round_ticks(0.0, kLongest_px / scene.camera.scale(), 3);
   const double length_m = ticks.values.back();
   const double length = length_m * scene.camera.scale();
-  const PixelBox ground = ground_box();
+  const PixelBox ground = terrain_box();
   const double left = 30.0;
   const double base = ground.height - 30.0;
   const std::string words = length_m >= 1.0    ? number_text(length_m, 0) + " m"
@@ -190,7 +190,7 @@ void Drawing::draw_scale_bar(const Scene& scene) {
 void Drawing::draw_color_bar(const Scene& scene) {
   constexpr double kBarHeight_px = 170.0;
   constexpr double kBarWidth_px = 14.0;
-  const PixelBox ground = ground_box();
+  const PixelBox ground = terrain_box();
   const ShadingScale scale = scene.ground->scale(scene.shading);
   const double left = ground.width - 78.0;
   const double top = ground.height - kBarHeight_px - 34.0;
@@ -199,7 +199,7 @@ void Drawing::draw_color_bar(const Scene& scene) {
   canvas_.text({left - 4.0, top - 8.0}, scale.unit, {.size_px = 11.0, .color = kFaintInk});
   for (int i = 0; i < static_cast<int>(kBarHeight_px); ++i) {
     canvas_.rectangle({left, top + i, kBarWidth_px, 1.0},
-                      GroundImage::color(scene.shading, 1.0 - (i + 0.5) / kBarHeight_px));
+                      TerrainImage::color(scene.shading, 1.0 - (i + 0.5) / kBarHeight_px));
   }
   for (const double value : round_ticks(scale.low, scale.high, 6).values) {
     const double y = top + kBarHeight_px * (scale.high - value) / (scale.high - scale.low);
@@ -226,7 +226,7 @@ void Drawing::draw_help(const std::vector<HelpLine>& help) {
   constexpr double kRow_px = 25.0;
   constexpr double kWidth_px = 560.0;
   constexpr double kKeys_px = 165.0;
-  const PixelBox ground = ground_box();
+  const PixelBox ground = terrain_box();
   const double height = kRow_px * static_cast<double>(help.size()) + 74.0;
   const PixelBox box{std::max(0.0, 0.5 * (ground.width - kWidth_px)),
                      std::max(0.0, 0.5 * (ground.height - height)), kWidth_px, height};

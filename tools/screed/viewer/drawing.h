@@ -11,8 +11,8 @@ namespace screed::viewer {
 
 class Drawing {
  public:
-  static constexpr int kLeastWidth = 640;
-  static constexpr int kLeastHeight = 420;
+  static constexpr int kMinWidth = 640;
+  static constexpr int kMinHeight = 420;
 
   /// Smaller sizes are drawn as the least.
   Drawing(int width_px, int height_px);
@@ -21,7 +21,7 @@ class Drawing {
   Canvas& canvas() { return canvas_; }
 
   /// Where the ground is to be seen.
-  PixelBox ground_box() const;
+  PixelBox terrain_box() const;
   /// The bar that shows and sets the time.
   PixelBox timeline_box() const;
   /// The share of the run, 0..1, at a place on that bar.

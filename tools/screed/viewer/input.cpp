@@ -41,7 +41,7 @@ const std::vector<HelpLine> kCommonHelp = {
     {"M   1 2 3", "shade by height, slope, change of height"},
     {"T", "driven path on, off"},
     {"P", "save a picture of this window"},
-    {"R", "record a film (PNG files), stop recording"},
+    {"R", "Start and stop recording PNG frames"},
 };
 
 const std::vector<HelpLine> kLiveHelp = {
@@ -69,7 +69,7 @@ std::vector<HelpLine> joined(const std::vector<HelpLine>& first,
 
 ScriptedKey parse_scripted_key(const std::string& text) {
   const auto fail = [&]() {
-    return InputError("--press = '" + text +
+    return InputError("--key-script = '" + text +
                       "' is not allowed; expected KEY@SECONDS or KEY@FROM-TO, as m@2 or Up@3-5.5");
   };
   const size_t at = text.rfind('@');
@@ -185,7 +185,7 @@ void Controls::key_down(Key key, bool shift) {
       screenshot = true;
       break;
     case 'r':
-      film = !film;
+      recording = !recording;
       break;
     case 'h':
       help = !help;

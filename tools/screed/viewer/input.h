@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "host_sim/render/picture/canvas.h"
-#include "tools/screed/viewer/ground_image.h"
 #include "tools/screed/viewer/scene.h"
+#include "tools/screed/viewer/terrain_image.h"
 
 namespace screed::viewer {
 
@@ -73,7 +73,7 @@ class Controls {
   bool follow = false;
   bool trail = true;
   bool help = false;
-  bool film = false;
+  bool recording = false;
   Shading shading = Shading::kHeight;
   double pace = 1.0;  ///< simulated seconds a second; 0: as fast as it goes
 

@@ -15,14 +15,14 @@ namespace {
 constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
 constexpr uint64_t kHeardTicks = 2U * uint64_t{kTickRate_hz};  // of the robot, before it is ours
 
-uint32_t drive_argument(const DriveOrder& order) {
+uint32_t drive_argument(const DriveCommand& command) {
   uint8_t bytes[3];
-  put_drive_argument(bytes, {static_cast<int16_t>(std::lround(order.speed_m_per_s * 1000.0)),
-                             static_cast<int16_t>(std::lround(order.yaw_rate_deg_per_s * 10.0))});
+  put_drive_argument(bytes, {static_cast<int16_t>(std::lround(command.speed_m_per_s * 1000.0)),
+                             static_cast<int16_t>(std::lround(command.yaw_rate_deg_per_s * 10.0))});
   return bytes[0] | static_cast<uint32_t>(bytes[1]) << 8U | static_cast<uint32_t>(bytes[2]) << 16U;
 }
 
-bool same(const DriveOrder& a, const DriveOrder& b) {
+bool same(const DriveCommand& a, const DriveCommand& b) {
   return drive_argument(a) == drive_argument(b);
 }
 
@@ -43,23 +43,23 @@ void KeyboardDriver::begin() {
   session_.emplace(static_cast<Link&>(*this), std::move(options));
 }
 
-void KeyboardDriver::drive(const DriveOrder& order) {
+void KeyboardDriver::drive(const DriveCommand& command) {
   begin();
   wanted_ = kDriveAlgorithm;
-  order_ = order;
+  command_ = command;
 }
 
 void KeyboardDriver::hand_back() {
   if (!wanted_.has_value()) return;
   wanted_ = first_algorithm_;
-  order_ = {};
+  command_ = {};
 }
 
 void KeyboardDriver::clear_fault() {
   clear_ = wanted_.has_value() && state_ == RobotState::kFault;
 }
 
-std::string KeyboardDriver::words() const {
+std::string KeyboardDriver::description() const {
   if (!wanted_.has_value()) return "";
   if (state_ == RobotState::kFault) return "fault: C clears it when its cause is gone";
   if (!refusal_.empty()) return refusal_;
@@ -70,8 +70,8 @@ std::string KeyboardDriver::words() const {
   return "the keyboard drives";
 }
 
-void KeyboardDriver::give(std::span<const uint8_t> bytes) {
-  if (beside_ != nullptr) beside_->give(bytes);
+void KeyboardDriver::send(std::span<const uint8_t> bytes) {
+  if (beside_ != nullptr) beside_->send(bytes);
   CanFrame frame{};
   for (const uint8_t byte : bytes) {
     if (!parser_.feed(byte, frame)) continue;
@@ -83,10 +83,10 @@ void KeyboardDriver::give(std::span<const uint8_t> bytes) {
   if (!session_.has_value()) arrived_.clear();
 }
 
-std::vector<uint8_t> KeyboardDriver::take() {
+std::vector<uint8_t> KeyboardDriver::receive() {
   ++ticks_;
   std::vector<uint8_t> bytes;
-  if (beside_ != nullptr) bytes = beside_->take();
+  if (beside_ != nullptr) bytes = beside_->receive();
   if (!session_.has_value()) return bytes;
   session_->pump(std::chrono::milliseconds(0));
   if (!session_->waiting()) {
@@ -142,19 +142,19 @@ void KeyboardDriver::next_command() {
     default:
       break;
   }
-  if (drives() && (!order_is_sent_ || !same(order_, sent_))) {
-    sent_ = order_;
-    order_is_sent_ = true;
-    start(Step::kDrive, CommandOp::kDrive, drive_argument(order_));
+  if (drives() && (!command_is_sent_ || !same(command_, sent_))) {
+    sent_ = command_;
+    command_is_sent_ = true;
+    start(Step::kDrive, CommandOp::kDrive, drive_argument(command_));
   }
 }
 
 void KeyboardDriver::finish_command(const std::optional<CommandAnswer>& answer) {
   const Step step = std::exchange(step_, Step::kNone);
   const bool done = answer.has_value() && answer->done();
-  refusal_ = done ? "" : (answer.has_value() ? answer->words() : "the robot does not answer");
+  refusal_ = done ? "" : (answer.has_value() ? answer->description() : "the robot does not answer");
   if (!done) {
-    if (step == Step::kDrive) order_is_sent_ = false;
+    if (step == Step::kDrive) command_is_sent_ = false;
     return;
   }
   // Known before the next heartbeat says so.
@@ -165,14 +165,14 @@ void KeyboardDriver::finish_command(const std::optional<CommandAnswer>& answer) 
       break;
     case Step::kAlgorithm:
       algorithm_ = *wanted_;
-      order_is_sent_ = false;
+      command_is_sent_ = false;
       break;
     case Step::kArm:
       state_ = RobotState::kArmed;
       break;
     case Step::kRun:
       state_ = RobotState::kRunning;
-      order_is_sent_ = false;
+      command_is_sent_ = false;
       break;
     default:
       break;

@@ -24,7 +24,7 @@ class KeyboardDriver : public GroundPort, private Link {
   KeyboardDriver(const CommandKey& key, int algorithm, GroundPort* beside = nullptr);
 
   /// The robot is to be stopped, set to follow the ground station, started, and to move like this.
-  void drive(const DriveOrder& order);
+  void drive(const DriveCommand& command);
   /// The algorithm drives again.
   void hand_back();
   /// Clears a latched fault whose cause is gone, and starts the robot again. Only after taking
@@ -33,10 +33,10 @@ class KeyboardDriver : public GroundPort, private Link {
 
   bool drives() const { return wanted_.has_value() && *wanted_ == kDriveAlgorithm; }
   /// One line for the user; empty before the first drive().
-  std::string words() const;
+  std::string description() const;
 
-  void give(std::span<const uint8_t> bytes) override;
-  std::vector<uint8_t> take() override;
+  void send(std::span<const uint8_t> bytes) override;
+  std::vector<uint8_t> receive() override;
 
  private:
   static constexpr int kDriveAlgorithm = 0;
@@ -59,13 +59,13 @@ class KeyboardDriver : public GroundPort, private Link {
   int algorithm_;  ///< in force
   GroundPort* beside_;
   std::optional<int> wanted_;  ///< algorithm; nothing before the user takes over
-  DriveOrder order_;
+  DriveCommand command_;
   bool clear_ = false;
   std::optional<CommandSession> session_;
   RobotState state_ = RobotState::kDisarmed;
   Step step_ = Step::kNone;
-  DriveOrder sent_;
-  bool order_is_sent_ = false;
+  DriveCommand sent_;
+  bool command_is_sent_ = false;
   uint64_t ticks_ = 0;
   uint64_t next_command_tick_ = 0;
   std::string refusal_;

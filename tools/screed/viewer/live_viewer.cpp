@@ -15,7 +15,7 @@ constexpr uint64_t kTrailTicks = kTickRate_hz / 10;
 constexpr double kDriveSpeed_m_per_s = 0.18;
 constexpr double kDriveTurn_deg_per_s = 60.0;
 constexpr double kFullPaceFramesPerSecond = 20.0;  // most of the time is for the simulation
-constexpr double kMostLag_s = 0.25;                // what is lost beyond it is not made good
+constexpr double kMaxLag_s = 0.25;                 // what is lost beyond it is not made good
 constexpr int kPausedWait_ms = 15;
 
 std::chrono::steady_clock::duration seconds(double value) {
@@ -48,38 +48,38 @@ LiveViewer::LiveViewer(const Experiment& experiment, const std::string& board,
   setup_.shape = shape_of(make_robot_model(experiment, board), experiment.vehicle.tracks);
 }
 
-void LiveViewer::begin(const HeightField& ground) {
+void LiveViewer::on_begin(const HeightField& ground) {
   watch_.emplace(ground);
-  stage_.emplace(options_, setup_, ground);
+  display_.emplace(options_, setup_, ground);
 }
 
-void LiveViewer::see(const Frame& frame, const HeightField& ground) {
-  stage_->change_ground(watch_->changes(ground));
+void LiveViewer::on_tick(const SimFrame& frame, const HeightField& ground) {
+  display_->change_terrain(watch_->changes(ground));
   travel_left_m_ += frame.track_left / kTickRate_hz;
   travel_right_m_ += frame.track_right / kTickRate_hz;
-  stage_->set_travel(travel_left_m_, travel_right_m_);
+  display_->set_travel(travel_left_m_, travel_right_m_);
   if (ticks_ % kTrailTicks == 0) {
-    stage_->add_trail({static_cast<float>(frame.x), static_cast<float>(frame.y),
-                       static_cast<uint8_t>(frame.leveling_state)});
+    display_->add_trail({static_cast<float>(frame.x), static_cast<float>(frame.y),
+                         static_cast<uint8_t>(frame.leveling_state)});
   }
   ++ticks_;
   time_s_ = frame.time;
-  stage_->set_frame(frame);
+  display_->set_frame(frame);
   if (!options_.window) {
-    stage_->take_input(time_s_, 0);
+    display_->handle_input(time_s_, 0);
     steer();
-    if (stage_->film_is_due()) stage_->show();
+    if (display_->capture_is_due()) display_->show();
   } else if (options_.frames.has_value()) {
     show_counted(time_s_);
   } else {
     keep_pace(time_s_);
   }
-  stage_->save_when_due(time_s_, false);
-  if (stage_->controls().closed || stage_->all_shown()) end_run_();
+  display_->save_when_due(time_s_, false);
+  if (display_->controls().closed || display_->all_shown()) end_run_();
 }
 
 void LiveViewer::steer() {
-  Controls& controls = stage_->controls();
+  Controls& controls = display_->controls();
   if (controls.hand_back) driver_.hand_back();
   if (controls.clear_fault) driver_.clear_fault();
   controls.hand_back = false;
@@ -88,22 +88,22 @@ void LiveViewer::steer() {
     driver_.drive(
         {controls.forward() * kDriveSpeed_m_per_s, controls.left() * kDriveTurn_deg_per_s});
   }
-  stage_->set_driver(driver_.words());
+  display_->set_driver(driver_.description());
 }
 
 void LiveViewer::show_counted(double time_s) {
-  stage_->take_input(time_s, 0);
+  display_->handle_input(time_s, 0);
   steer();
   // Nobody presses a key that would end a pause.
-  while (!stage_->all_shown() && (time_s >= next_show_s_ || stage_->controls().paused)) {
-    stage_->show();
-    next_show_s_ += stage_->controls().pace / Stage::kFramesPerSecond;
-    if (stage_->controls().pace == 0.0) break;
+  while (!display_->all_shown() && (time_s >= next_show_s_ || display_->controls().paused)) {
+    display_->show();
+    next_show_s_ += display_->controls().pace / ViewerDisplay::kFramesPerSecond;
+    if (display_->controls().pace == 0.0) break;
   }
 }
 
 void LiveViewer::keep_pace(double time_s) {
-  Controls& controls = stage_->controls();
+  Controls& controls = display_->controls();
   Clock::time_point now = Clock::now();
   if (!anchor_.has_value() || controls.pace != anchor_pace_) {
     anchor_ = now;
@@ -112,13 +112,14 @@ void LiveViewer::keep_pace(double time_s) {
   }
   Clock::time_point target = now;
   if (controls.pace > 0.0) target = *anchor_ + seconds((time_s - anchor_s_) / controls.pace);
-  if (now > target + seconds(kMostLag_s)) anchor_.reset();
+  if (now > target + seconds(kMaxLag_s)) anchor_.reset();
   for (;;) {
     if (now >= next_show_) {
-      stage_->take_input(time_s, 0);
+      display_->handle_input(time_s, 0);
       steer();
-      stage_->show();
-      const double rate = controls.pace == 0.0 ? kFullPaceFramesPerSecond : Stage::kFramesPerSecond;
+      display_->show();
+      const double rate =
+          controls.pace == 0.0 ? kFullPaceFramesPerSecond : ViewerDisplay::kFramesPerSecond;
       next_show_ = std::max(next_show_ + seconds(1.0 / rate), now);
     }
     if (controls.closed || interrupted()) return;
@@ -128,7 +129,7 @@ void LiveViewer::keep_pace(double time_s) {
         --controls.steps;
         return;
       }
-      stage_->take_input(time_s, kPausedWait_ms);
+      display_->handle_input(time_s, kPausedWait_ms);
     } else {
       // A new pace begins with the next tick.
       if (now >= target || controls.pace != anchor_pace_) return;
@@ -138,16 +139,16 @@ void LiveViewer::keep_pace(double time_s) {
   }
 }
 
-void LiveViewer::end() {
-  stage_->save_when_due(time_s_, true);
+void LiveViewer::on_end() {
+  display_->save_when_due(time_s_, true);
 }
 
 void LiveViewer::hold(const std::string& notice) {
   if (!options_.window || options_.frames.has_value()) return;
-  stage_->set_notice(notice);
-  while (!stage_->controls().closed && !interrupted()) {
-    stage_->show();
-    stage_->take_input(time_s_, kPausedWait_ms);
+  display_->set_notice(notice);
+  while (!display_->controls().closed && !interrupted()) {
+    display_->show();
+    display_->handle_input(time_s_, kPausedWait_ms);
   }
 }
 

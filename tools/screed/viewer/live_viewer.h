@@ -1,4 +1,4 @@
-// Looks on at a simulation as it runs.
+// Shows a simulation as it runs.
 #pragma once
 
 #include <chrono>
@@ -6,26 +6,26 @@
 
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/height_watch.h"
-#include "host_sim/run/simulation/onlooker.h"
+#include "host_sim/run/simulation/simulation_observer.h"
 #include "tools/screed/viewer/keyboard_driver.h"
-#include "tools/screed/viewer/stage.h"
+#include "tools/screed/viewer/viewer_display.h"
 
 namespace screed::viewer {
 
-class LiveViewer : public SimulationOnlooker {
+class LiveViewer : public SimulationObserver {
  public:
   /// `driver` is told what the arrow keys want; it must outlive this. `end_run` is called when the
   /// user closes the window.
   LiveViewer(const Experiment& experiment, const std::string& board, const ViewerOptions& options,
              KeyboardDriver& driver, std::function<void()> end_run);
 
-  void begin(const HeightField& ground) override;
-  void see(const Frame& frame, const HeightField& ground) override;
-  void end() override;
+  void on_begin(const HeightField& ground) override;
+  void on_tick(const SimFrame& frame, const HeightField& ground) override;
+  void on_end() override;
 
   /// After the run: shows how it ended until the user closes the window.
   void hold(const std::string& notice);
-  const FrameTimes& times() const { return stage_->times(); }
+  const FrameTimes& times() const { return display_->times(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -35,11 +35,11 @@ class LiveViewer : public SimulationOnlooker {
   void keep_pace(double time_s);
 
   ViewerOptions options_;
-  StageSetup setup_;
+  DisplaySetup setup_;
   KeyboardDriver& driver_;
   std::function<void()> end_run_;
   std::optional<HeightWatch> watch_;
-  std::optional<Stage> stage_;
+  std::optional<ViewerDisplay> display_;
   uint64_t ticks_ = 0;
   double travel_left_m_ = 0.0;
   double travel_right_m_ = 0.0;

@@ -52,8 +52,8 @@ uint32_t packed(Color color) {
   return channel(color.red) << 16U | channel(color.green) << 8U | channel(color.blue);
 }
 
-void draw_ground(const PixelBuffer& buffer, const Camera& camera, const GroundImage& image,
-                 const GroundPlace& place, uint32_t beyond) {
+void draw_terrain(const PixelBuffer& buffer, const Camera& camera, const TerrainImage& image,
+                  const TerrainPlacement& place, uint32_t beyond) {
   const PixelBox& box = camera.box();
   const int left = static_cast<int>(box.left);
   const int top = static_cast<int>(box.top);

@@ -7,7 +7,7 @@
 
 #include "host_sim/render/picture/canvas.h"
 #include "tools/screed/viewer/camera.h"
-#include "tools/screed/viewer/ground_image.h"
+#include "tools/screed/viewer/terrain_image.h"
 
 namespace screed::viewer {
 
@@ -20,7 +20,7 @@ struct PixelBuffer {
 uint32_t packed(Color color);
 
 /// How a ground image lies in the world.
-struct GroundPlace {
+struct TerrainPlacement {
   double x_min_m;
   double y_min_m;
   double spacing_m;
@@ -29,8 +29,8 @@ struct GroundPlace {
 
 /// Fills the camera's box with the ground, bilinear between nodes. Beyond the edges of the bed:
 /// `beyond`; with wrap its copies, darker.
-void draw_ground(const PixelBuffer& buffer, const Camera& camera, const GroundImage& image,
-                 const GroundPlace& place, uint32_t beyond);
+void draw_terrain(const PixelBuffer& buffer, const Camera& camera, const TerrainImage& image,
+                  const TerrainPlacement& place, uint32_t beyond);
 
 /// A line with round ends, cut off at the box.
 void draw_stroke(const PixelBuffer& buffer, const PixelBox& box, Pixel from, Pixel to,

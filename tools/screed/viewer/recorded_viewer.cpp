@@ -33,7 +33,7 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   const RunSetup setup = setup_of(session_.info(), run);
   tick_s_ = 1.0 / session_.info().tick_rate_hz;
   duration_s_ = static_cast<double>(session_.frames()) * tick_s_;
-  StageSetup stage;
+  DisplaySetup stage;
   stage.title = session_.info().experiment_name;
   stage.subtitle = subtitle_of(setup.experiment.experiment.algorithm, setup.ground, setup.soil,
                                session_.info().seed);
@@ -45,12 +45,12 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   stage.shape =
       shape_of(robot_model(setup, session_.info().board_name), setup.experiment.vehicle.tracks);
   read_trail();
-  stage_.emplace(options_, std::move(stage), field_of(*before));
-  stage_->set_trail(trail_);
+  display_.emplace(options_, std::move(stage), field_of(*before));
+  display_->set_trail(trail_);
   if (!session_.has_heights()) {
     after_ = session_.terrain_after();
     if (after_ && after_->heights == before->heights) after_.reset();
-    if (after_) stage_->set_notice(kNoHeights);
+    if (after_) display_->set_notice(kNoHeights);
   }
   go_to(tick_s_);
 }
@@ -58,12 +58,12 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
 void RecordedViewer::read_trail() {
   double left_m = 0.0;
   double right_m = 0.0;
-  std::vector<Frame> rows;
+  std::vector<SimFrame> rows;
   for (uint64_t first = 0; first < session_.frames(); first += rows.size()) {
     rows.resize(std::min(kBlockRows, session_.frames() - first));
     session_.read(first, std::span(rows));
     for (size_t i = 0; i < rows.size(); ++i) {
-      const Frame& row = rows[i];
+      const SimFrame& row = rows[i];
       left_m += std::isfinite(row.track_left) ? row.track_left * tick_s_ : 0.0;
       right_m += std::isfinite(row.track_right) ? row.track_right * tick_s_ : 0.0;
       if ((first + i) % kTrailTicks != 0) continue;
@@ -74,7 +74,7 @@ void RecordedViewer::read_trail() {
   }
 }
 
-const Frame& RecordedViewer::frame(uint64_t row) {
+const SimFrame& RecordedViewer::frame(uint64_t row) {
   if (block_.empty() || row < block_first_ || row >= block_first_ + block_.size()) {
     block_first_ = row / kBlockRows * kBlockRows;
     block_.resize(std::min(kBlockRows, session_.frames() - block_first_));
@@ -88,15 +88,15 @@ void RecordedViewer::go_to(double time_s) {
   time_s_ = std::clamp(time_s, tick_s_, duration_s_);
   const auto ticks = std::clamp<uint64_t>(static_cast<uint64_t>(std::llround(time_s_ / tick_s_)), 1,
                                           session_.frames());
-  const Frame& now = frame(ticks - 1);
+  const SimFrame& now = frame(ticks - 1);
   const size_t point = std::min(trail_.size() - 1, (ticks - 1) / kTrailTicks);
-  stage_->show_trail_points(point + 1);
-  stage_->set_travel(travel_m_[point].first, travel_m_[point].second);
-  stage_->set_frame(now);
-  show_ground_after(ticks);
+  display_->show_trail_points(point + 1);
+  display_->set_travel(travel_m_[point].first, travel_m_[point].second);
+  display_->set_frame(now);
+  show_terrain_after(ticks);
 }
 
-void RecordedViewer::show_ground_after(uint64_t ticks) {
+void RecordedViewer::show_terrain_after(uint64_t ticks) {
   const HeightMap* target = nullptr;
   std::optional<HeightMap> before;
   if (session_.has_heights()) {
@@ -111,16 +111,16 @@ void RecordedViewer::show_ground_after(uint64_t ticks) {
     return;
   }
   changes_.clear();
-  const HeightField& shown = stage_->ground();
+  const HeightField& shown = display_->ground();
   for (size_t i = 0; i < target->heights.size(); ++i) {
     const Height by = target->heights[i] - shown.node(i);
     if (by != 0) changes_.push_back({static_cast<uint32_t>(i), by});
   }
-  stage_->change_ground(changes_);
+  display_->change_terrain(changes_);
 }
 
 void RecordedViewer::take_jumps() {
-  Controls& controls = stage_->controls();
+  Controls& controls = display_->controls();
   if (controls.to_share.has_value()) go_to(*controls.to_share * duration_s_);
   if (controls.jump_s.has_value()) go_to(time_s_ + *controls.jump_s);
   controls.to_share.reset();
@@ -128,58 +128,58 @@ void RecordedViewer::take_jumps() {
   for (; controls.steps > 0; --controls.steps) go_to(time_s_ + tick_s_);
 }
 
-void RecordedViewer::film() {
-  constexpr double kFilmFramesPerSecond = 25.0;
+void RecordedViewer::capture_frames() {
+  constexpr double kCaptureFramesPerSecond = 25.0;
   const double pace = options_.pace > 0.0 ? options_.pace : 1.0;
   while (!interrupted()) {
-    stage_->take_input(time_s_, 0);
+    display_->handle_input(time_s_, 0);
     take_jumps();
-    stage_->show();
-    stage_->save_when_due(time_s_, false);
-    if (time_s_ >= duration_s_ || stage_->controls().closed) break;
-    go_to(time_s_ + pace / kFilmFramesPerSecond);
+    display_->show();
+    display_->save_when_due(time_s_, false);
+    if (time_s_ >= duration_s_ || display_->controls().closed) break;
+    go_to(time_s_ + pace / kCaptureFramesPerSecond);
   }
-  stage_->save_when_due(time_s_, true);
+  display_->save_when_due(time_s_, true);
 }
 
 void RecordedViewer::run() {
-  if (!options_.window && options_.film.empty()) {
+  if (!options_.window && options_.frames_dir.empty()) {
     // Keys before that time are pressed: a picture of help, or of slopes.
     const double at = options_.screenshot_at.value_or(duration_s_);
     go_to(at);
-    stage_->take_input(at, 0);
+    display_->handle_input(at, 0);
     take_jumps();
-    stage_->save_when_due(time_s_, true);
+    display_->save_when_due(time_s_, true);
     return;
   }
   if (!options_.window) {
-    film();
+    capture_frames();
     return;
   }
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
   Clock::time_point next_show = last;
   constexpr std::chrono::microseconds kFramePeriod(
-      static_cast<int64_t>(1e6 / Stage::kFramesPerSecond));
-  Controls& controls = stage_->controls();
-  while (!controls.closed && !interrupted() && !stage_->all_shown()) {
+      static_cast<int64_t>(1e6 / ViewerDisplay::kFramesPerSecond));
+  Controls& controls = display_->controls();
+  while (!controls.closed && !interrupted() && !display_->all_shown()) {
     if (!options_.frames.has_value()) std::this_thread::sleep_until(next_show);
     next_show = std::max(next_show + kFramePeriod, Clock::now());
-    stage_->take_input(time_s_, 0);
+    display_->handle_input(time_s_, 0);
     take_jumps();
     const Clock::time_point now = Clock::now();
     const double frame_s = options_.frames.has_value()
-                               ? 1.0 / Stage::kFramesPerSecond
+                               ? 1.0 / ViewerDisplay::kFramesPerSecond
                                : std::chrono::duration<double>(now - last).count();
     last = now;
     // As fast as it goes is here as fast as anybody can look.
     constexpr double kFullPace = 100.0;
     const double pace = controls.pace > 0.0 ? controls.pace : kFullPace;
     if (!controls.paused) go_to(time_s_ + pace * frame_s);
-    stage_->show();
-    stage_->save_when_due(time_s_, false);
+    display_->show();
+    display_->save_when_due(time_s_, false);
   }
-  stage_->save_when_due(time_s_, true);
+  display_->save_when_due(time_s_, true);
 }
 
 }  // namespace screed::viewer

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host_sim/run/session/session_reader.h"
-#include "tools/screed/viewer/stage.h"
+#include "tools/screed/viewer/viewer_display.h"
 
 namespace screed::viewer {
 
@@ -18,23 +18,23 @@ class RecordedViewer {
 
   /// Until the user closes the window, the frames asked for are shown, or the picture is saved.
   void run();
-  const FrameTimes& times() const { return stage_->times(); }
+  const FrameTimes& times() const { return display_->times(); }
 
  private:
   void read_trail();
   void go_to(double time_s);
-  const Frame& frame(uint64_t row);
-  void show_ground_after(uint64_t ticks);
+  const SimFrame& frame(uint64_t row);
+  void show_terrain_after(uint64_t ticks);
   void take_jumps();
-  void film();
+  void capture_frames();
 
   SessionReader session_;
   ViewerOptions options_;
-  std::optional<Stage> stage_;
+  std::optional<ViewerDisplay> display_;
   std::optional<HeightMap> after_;  ///< when the heights of the ticks were not recorded
   bool at_end_ = false;             ///< the ground is that of the end
   std::vector<HeightChange> changes_;
-  std::vector<Frame> block_;
+  std::vector<SimFrame> block_;
   uint64_t block_first_ = 0;
   std::vector<TrailPoint> trail_;
   std::vector<std::pair<double, double>> travel_m_;  ///< of the tracks, at each point of the trail

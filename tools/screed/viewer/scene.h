@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tools/screed/viewer/camera.h"
-#include "tools/screed/viewer/ground_image.h"
 #include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/robot_shape.h"
-#include "tools/screed/viewer/slope_ledger.h"
+#include "tools/screed/viewer/slope_statistics.h"
+#include "tools/screed/viewer/terrain_image.h"
 
 namespace screed::viewer {
 
@@ -21,7 +21,7 @@ struct TrailPoint {
   uint8_t state;  ///< LevelingState
 };
 
-struct RobotSight {
+struct RobotMarker {
   double x_m = 0.0;
   double y_m = 0.0;
   double heading_rad = 0.0;
@@ -80,13 +80,13 @@ struct HelpLine {
 };
 
 struct Scene {
-  const GroundImage* ground = nullptr;
-  GroundPlace place{};
-  Ground bed{};
+  const TerrainImage* ground = nullptr;
+  TerrainPlacement place{};
+  MapRectangle bed{};
   Shading shading = Shading::kHeight;
   Camera camera;
   const RobotShape* shape = nullptr;
-  RobotSight robot;
+  RobotMarker robot;
   const std::vector<TrailPoint>* trail = nullptr;
   size_t trail_points = 0;  ///< of the trail, that many
   bool show_trail = true;

@@ -18,8 +18,8 @@ struct Options {
 };
 
 int run_view(const Options& options) {
-  // A picture or a film is made without a window.
-  const bool window = options.view.screenshot.empty() && options.view.film.empty();
+  // A picture or frames are made without a window.
+  const bool window = options.view.screenshot.empty() && options.view.frames_dir.empty();
   const auto viewer_options_of_run = viewer_options(options.view, window);
   catch_interrupts();
   viewer::RecordedViewer viewer(options.run, viewer_options_of_run.value());
@@ -32,9 +32,9 @@ int run_view(const Options& options) {
 
 void register_view_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* command =
-      root.add_subcommand("view", "Look at a recorded run from above: play it, scrub through it");
+      root.add_subcommand("view", "View a recorded run from above: play it, scrub through it");
   const auto options = std::make_shared<Options>();
-  command->add_option("RUN", options->run, "run folder, or a session.h5")->required();
+  command->add_option("RUN", options->run, "Run folder or session.h5")->required();
   add_view_options(*command, options->view);
   command->callback([options, &action] { action = [options] { return run_view(*options); }; });
 }

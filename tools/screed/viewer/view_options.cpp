@@ -9,13 +9,13 @@ namespace screed {
 namespace {
 
 void read_size(const std::string& text, viewer::ViewerOptions& options) {
-  constexpr int kMost = 8000;
+  constexpr int kMax = 8000;
   int width = 0;
   int height = 0;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 ||
-      width < viewer::Drawing::kLeastWidth || height < viewer::Drawing::kLeastHeight ||
-      width > kMost || height > kMost) {
+      width < viewer::Drawing::kMinWidth || height < viewer::Drawing::kMinHeight || width > kMax ||
+      height > kMax) {
     throw InputError("--size = '" + text + "' is not allowed; expected WIDTHxHEIGHT, 640x420 to " +
                      "8000x8000 pixels");
   }
@@ -29,40 +29,43 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
   const char* const kGroup = "Viewer";
   command
       .add_option("--speed", arguments.speed,
-                  "simulated seconds a second, 0.01 to 1000; 0: as fast as it goes (default: 1)")
+                  "Speed [simulated s / s], 0.01 to 1000; 0: as fast as possible (default: 1)")
       ->group(kGroup)
       ->check(CLI::Range(0.0, 1000.0));
-  command.add_option("--screenshot", arguments.screenshot, "write a picture of the viewer, PNG")
+  command
+      .add_option("--screenshot", arguments.screenshot,
+                  "Write a screenshot of the viewer to this PNG file")
       ->group(kGroup);
   command
-      .add_option("--at", arguments.at,
-                  "the time the screenshot shows, simulated seconds (default: the end)")
+      .add_option("--at", arguments.at, "Time of the screenshot [simulated s] (default: the end)")
       ->group(kGroup)
       ->check(CLI::NonNegativeNumber);
   command
-      .add_option("--film", arguments.film,
-                  "folder for PNGs of the whole run: a film of 25 frames a second, at --speed")
+      .add_option("--frames-dir", arguments.frames_dir,
+                  "Write PNG frames of the whole run to this folder, 25 frames/s at --speed")
       ->group(kGroup);
-  command.add_option("--shading", arguments.shading, "what the colours of the ground say at first")
+  command.add_option("--shading", arguments.shading, "Initial colouring of the terrain")
       ->group(kGroup)
       ->check(CLI::IsMember({"height", "slope", "change"}))
       ->capture_default_str();
-  command.add_option("--span", arguments.span_m, "width of the ground seen at first, m")
+  command.add_option("--span", arguments.span_m, "Initial width of the view [m]")
       ->group(kGroup)
       ->check(CLI::Range(0.05, 1000.0));
-  command.add_flag("--follow", arguments.follow, "the robot stays in the middle")->group(kGroup);
-  command.add_option("--size", arguments.size, "of the window or picture, pixels (1280x800)")
+  command.add_flag("--follow", arguments.follow, "Keep the robot in the centre")->group(kGroup);
+  command
+      .add_option("--size", arguments.size,
+                  "Size of the window or picture [px] (default: 1280x800)")
       ->group(kGroup);
   command
       .add_option("--frames", arguments.frames,
-                  "show so many frames in the window, each 1/60 s on, as fast as it goes; then "
-                  "close it and tell how long they took")
+                  "Show this number of frames, 1/60 s apart, as fast as possible, then exit and "
+                  "print the timing")
       ->group(kGroup)
       ->check(CLI::PositiveNumber);
   command
-      .add_option("--press", arguments.presses,
-                  "a key pressed by itself, KEY@SECONDS or KEY@FROM-TO of simulated time, as "
-                  "Up@3-5; may be repeated")
+      .add_option("--key-script", arguments.key_script,
+                  "Scripted key press, KEY@SECONDS or KEY@FROM-TO [simulated s], e.g. Up@3-5; may "
+                  "be repeated")
       ->group(kGroup)
       ->type_size(1)
       ->allow_extra_args(false);
@@ -78,17 +81,18 @@ std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& argumen
   options.frames = arguments.frames;
   options.screenshot = arguments.screenshot;
   options.screenshot_at = arguments.at;
-  options.film = arguments.film;
+  options.frames_dir = arguments.frames_dir;
   options.follow = arguments.follow;
   options.span_m = arguments.span_m;
   if (!arguments.size.empty()) read_size(arguments.size, options);
   if (arguments.shading == "slope") options.shading = viewer::Shading::kSlope;
   if (arguments.shading == "change") options.shading = viewer::Shading::kChange;
-  for (const std::string& press : arguments.presses) {
+  for (const std::string& press : arguments.key_script) {
     options.script.push_back(viewer::parse_scripted_key(press));
   }
   // Keys alone drive as well, unseen.
-  if (!window && arguments.screenshot.empty() && arguments.film.empty() && options.script.empty())
+  if (!window && arguments.screenshot.empty() && arguments.frames_dir.empty() &&
+      options.script.empty())
     return std::nullopt;
   return options;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/screed/viewer/stage.h"
+#include "tools/screed/viewer/viewer_display.h"
 
 namespace screed {
 
@@ -15,12 +15,12 @@ struct ViewArguments {
   std::optional<uint64_t> frames;
   std::string screenshot;
   std::optional<double> at;
-  std::string film;
+  std::string frames_dir;
   std::string shading = "height";
   std::string size;
   std::optional<double> span_m;
   bool follow = false;
-  std::vector<std::string> presses;
+  std::vector<std::string> key_script;
 };
 
 void add_view_options(CLI::App& command, ViewArguments& arguments);

@@ -13,7 +13,7 @@ namespace {
 RunError failure(const std::string& what) {
   return RunError(what + ": " + SDL_GetError() +
                   " (without a screen: --screenshot FILE draws without a window, "
-                  "SDL_VIDEODRIVER=dummy opens one that nobody sees)");
+                  "SDL_VIDEODRIVER=dummy opens an invisible one)");
 }
 
 Key key_of(SDL_Keycode code) {
@@ -86,7 +86,7 @@ class Window::Impl {
     bool more =
         wait_ms > 0 ? SDL_WaitEventTimeout(&event, wait_ms) != 0 : SDL_PollEvent(&event) != 0;
     while (more) {
-      take(event, events);
+      convert_event(event, events);
       more = SDL_PollEvent(&event) != 0;
     }
     return events;
@@ -107,7 +107,7 @@ class Window::Impl {
   }
 
  private:
-  static void take(const SDL_Event& from, std::vector<InputEvent>& events) {
+  static void convert_event(const SDL_Event& from, std::vector<InputEvent>& events) {
     using Kind = InputEvent::Kind;
     InputEvent event;
     switch (from.type) {

@@ -27,7 +27,7 @@ std::filesystem::path mesh_path(const std::filesystem::path& urdf_file, std::str
 
 Shape to_shape(const urdf::Pose& origin, const urdf::Geometry& geometry,
                const std::filesystem::path& urdf_file, const LinkElement& link,
-               const Complaint& complain) {
+               const Diagnostic& diagnostic) {
   Shape shape;
   shape.pose = to_eigen(origin);
   if (geometry.type == urdf::Geometry::BOX) {
@@ -40,14 +40,14 @@ Shape to_shape(const urdf::Pose& origin, const urdf::Geometry& geometry,
     try {
       shape.geometry = load_mesh(mesh_path(urdf_file, mesh.filename), to_eigen(mesh.scale));
     } catch (const InputError& error) {
-      complain.at_element(*link.xml, error.what());
+      diagnostic.at_element(*link.xml, error.what());
     }
   }
   return shape;
 }
 
 Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
-                   const Complaint& complain) {
+                   const Diagnostic& diagnostic) {
   Inertia inertia;
   inertia.mass = inertial.mass;
   inertia.pose = to_eigen(inertial.origin);
@@ -62,10 +62,10 @@ Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
   const std::string values = "principal moments " + to_text(moments[0]) + ", " +
                              to_text(moments[1]) + ", " + to_text(moments[2]) + " kg m^2";
   if (!(moments[0] > 0.0)) {
-    complain.at_element(element, "<inertia> is not positive definite (" + values + ")");
+    diagnostic.at_element(element, "<inertia> is not positive definite (" + values + ")");
   }
   if (moments[2] > (moments[0] + moments[1]) * (1.0 + kRelativeInertiaTolerance)) {
-    complain.at_element(
+    diagnostic.at_element(
         element,
         "<inertia> breaks the triangle inequality, the greatest moment exceeds the sum "
         "of the others (" +
@@ -77,15 +77,16 @@ Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
 }  // namespace
 
 AssemblyBody to_body(const LinkElement& element, const urdf::Link& link,
-                     const std::filesystem::path& urdf_file, const Complaint& complain) {
+                     const std::filesystem::path& urdf_file, const Diagnostic& diagnostic) {
   AssemblyBody body;
   body.name = element.name;
-  if (link.inertial) body.inertia = to_inertia(*link.inertial, element, complain);
+  if (link.inertial) body.inertia = to_inertia(*link.inertial, element, diagnostic);
   for (const urdf::CollisionSharedPtr& item : link.collision_array) {
-    body.collision.push_back(to_shape(item->origin, *item->geometry, urdf_file, element, complain));
+    body.collision.push_back(
+        to_shape(item->origin, *item->geometry, urdf_file, element, diagnostic));
   }
   for (const urdf::VisualSharedPtr& item : link.visual_array) {
-    body.visual.push_back(to_shape(item->origin, *item->geometry, urdf_file, element, complain));
+    body.visual.push_back(to_shape(item->origin, *item->geometry, urdf_file, element, diagnostic));
   }
   return body;
 }

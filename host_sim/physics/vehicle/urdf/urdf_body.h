@@ -11,6 +11,6 @@ namespace screed::urdf_parts {
 
 /// The body without its pose. Meshes are searched relative to the folder of urdf_file.
 AssemblyBody to_body(const LinkElement& element, const urdf::Link& link,
-                     const std::filesystem::path& urdf_file, const Complaint& complain);
+                     const std::filesystem::path& urdf_file, const Diagnostic& diagnostic);
 
 }  // namespace screed::urdf_parts

@@ -55,16 +55,16 @@ std::string attribute(const TiXmlElement& element, const char* name) {
   return value == nullptr ? std::string() : std::string(value);
 }
 
-void Complaint::about_file(const std::string& what) const {
+void Diagnostic::about_file(const std::string& what) const {
   throw InputError(one_line(file_.string() + ": " + what));
 }
 
-void Complaint::at_row(int row, const std::string& what) const {
+void Diagnostic::at_row(int row, const std::string& what) const {
   const std::string line = row > 0 ? ":" + std::to_string(row) : "";  // 0: TinyXML knows none
   throw InputError(one_line(file_.string() + line + ": " + what));
 }
 
-void Complaint::at_element(const TiXmlElement& element, const std::string& what) const {
+void Diagnostic::at_element(const TiXmlElement& element, const std::string& what) const {
   at_row(element.Row(), owner(element) + what);
 }
 
@@ -97,29 +97,30 @@ std::optional<double> parse_number(std::string_view text) {
 
 }  // namespace
 
-void parse_xml(const std::filesystem::path& file, const Complaint& complain, TiXmlDocument& xml) {
+void parse_xml(const std::filesystem::path& file, const Diagnostic& diagnostic,
+               TiXmlDocument& xml) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    complain.about_file("no such file, or not a file");
+    diagnostic.about_file("no such file, or not a file");
   }
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) complain.about_file("cannot be read");
-  if (text.find('\0') != std::string::npos) complain.about_file("is not an XML text file");
+  if (!stream) diagnostic.about_file("cannot be read");
+  if (text.find('\0') != std::string::npos) diagnostic.about_file("is not an XML text file");
   if (nesting_depth(text) > kDeepestNesting) {
-    complain.about_file("elements are nested more than " + std::to_string(kDeepestNesting) +
-                        " deep");
+    diagnostic.about_file("elements are nested more than " + std::to_string(kDeepestNesting) +
+                          " deep");
   }
   xml.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (xml.Error()) {
-    complain.at_row(xml.ErrorRow(), std::string("malformed XML: ") + xml.ErrorDesc());
+    diagnostic.at_row(xml.ErrorRow(), std::string("malformed XML: ") + xml.ErrorDesc());
   }
   const TiXmlElement* root = xml.RootElement();
   if (root == nullptr || root->ValueStr() != "robot") {
-    complain.about_file("not a URDF file: the outermost element must be <robot>");
+    diagnostic.about_file("not a URDF file: the outermost element must be <robot>");
   }
   if (root->NextSiblingElement() != nullptr) {
-    complain.at_row(root->NextSiblingElement()->Row(), "nothing may follow </robot>");
+    diagnostic.at_row(root->NextSiblingElement()->Row(), "nothing may follow </robot>");
   }
 }
 
@@ -174,10 +175,11 @@ constexpr NumberRule kNumberRules[] = {
     {"dynamics", "friction", 1, Sign::NotNegative, false},
 };
 
-void check_number(const TiXmlElement& element, const NumberRule& rule, const Complaint& complain) {
+void check_number(const TiXmlElement& element, const NumberRule& rule,
+                  const Diagnostic& diagnostic) {
   const std::string tag = "<" + element.ValueStr() + "> ";
   if (element.Attribute(rule.name) == nullptr) {
-    if (rule.required) complain.at_element(element, tag + "needs " + in_quotes(rule.name));
+    if (rule.required) diagnostic.at_element(element, tag + "needs " + in_quotes(rule.name));
     return;
   }
   const std::string text = attribute(element, rule.name);
@@ -193,61 +195,63 @@ void check_number(const TiXmlElement& element, const NumberRule& rule, const Com
   const std::string kind = rule.sign == Sign::Positive      ? "positive finite"
                            : rule.sign == Sign::NotNegative ? "finite, not negative"
                                                             : "finite";
-  complain.at_element(element, tag + in_quotes(rule.name) + " is '" + text +
-                                   "'; allowed: " + (rule.count == 1 ? "one " : "three ") + kind +
-                                   " number" + (rule.count == 1 ? "" : "s separated by spaces"));
+  diagnostic.at_element(element, tag + in_quotes(rule.name) + " is '" + text +
+                                     "'; allowed: " + (rule.count == 1 ? "one " : "three ") + kind +
+                                     " number" + (rule.count == 1 ? "" : "s separated by spaces"));
 }
 
-void check_shape(const TiXmlElement& element, const Complaint& complain) {
+void check_shape(const TiXmlElement& element, const Diagnostic& diagnostic) {
   const TiXmlElement* geometry = element.FirstChildElement("geometry");
   const TiXmlElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
   if (shape == nullptr) {
-    complain.at_element(
+    diagnostic.at_element(
         element, "<" + element.ValueStr() + "> needs a <geometry> with a box, cylinder or mesh");
   }
   const std::string& kind = shape->ValueStr();
   if (kind != "box" && kind != "cylinder" && kind != "mesh") {
-    complain.at_element(*shape,
-                        "geometry <" + kind + "> is not supported; allowed: box, cylinder, mesh");
+    diagnostic.at_element(*shape,
+                          "geometry <" + kind + "> is not supported; allowed: box, cylinder, mesh");
   }
   if (kind == "mesh" && attribute(*shape, "filename").empty()) {
-    complain.at_element(*shape, "<mesh> needs 'filename'");
+    diagnostic.at_element(*shape, "<mesh> needs 'filename'");
   }
 }
 
 }  // namespace
 
 // Everything below a link or a joint.
-void check_values(const TiXmlElement& parent, const Complaint& complain) {
+void check_values(const TiXmlElement& parent, const Diagnostic& diagnostic) {
   for (const TiXmlElement* element = parent.FirstChildElement(); element != nullptr;
        element = element->NextSiblingElement()) {
     const std::string& tag = element->ValueStr();
-    if (tag == "visual" || tag == "collision") check_shape(*element, complain);
+    if (tag == "visual" || tag == "collision") check_shape(*element, diagnostic);
     for (const char* part : {"mass", "inertia"}) {
       if (tag == "inertial" && element->FirstChildElement(part) == nullptr) {
-        complain.at_element(*element, "<inertial> needs <" + std::string(part) + ">");
+        diagnostic.at_element(*element, "<inertial> needs <" + std::string(part) + ">");
       }
     }
     for (const NumberRule& rule : kNumberRules) {
-      if (tag == rule.element) check_number(*element, rule, complain);
+      if (tag == rule.element) check_number(*element, rule, diagnostic);
     }
-    check_values(*element, complain);
+    check_values(*element, diagnostic);
   }
 }
 
 namespace {
 
 template <typename Item>
-void read_items(const TiXmlElement& robot, const char* tag, const Complaint& complain,
+void read_items(const TiXmlElement& robot, const char* tag, const Diagnostic& diagnostic,
                 std::vector<Item>& items) {
   for (const TiXmlElement* element = robot.FirstChildElement(tag); element != nullptr;
        element = element->NextSiblingElement(tag)) {
     const std::string name = attribute(*element, "name");
-    if (name.empty()) complain.at_row(element->Row(), "<" + std::string(tag) + "> needs a 'name'");
+    if (name.empty())
+      diagnostic.at_row(element->Row(), "<" + std::string(tag) + "> needs a 'name'");
     if (const int first = index_of(items, name); first >= 0) {
-      complain.at_row(element->Row(),
-                      std::string(tag) + " " + in_quotes(name) + " is there twice, first on line " +
-                          std::to_string(items[at(first)].xml->Row()) + "; names are unique");
+      diagnostic.at_row(element->Row(), std::string(tag) + " " + in_quotes(name) +
+                                            " is there twice, first on line " +
+                                            std::to_string(items[at(first)].xml->Row()) +
+                                            "; names are unique");
     }
     Item item;
     item.name = name;
@@ -257,16 +261,16 @@ void read_items(const TiXmlElement& robot, const char* tag, const Complaint& com
 }
 
 int linked_body(const JointElement& joint, const char* role, const std::vector<LinkElement>& links,
-                const Complaint& complain) {
+                const Diagnostic& diagnostic) {
   const TiXmlElement* element = joint.xml->FirstChildElement(role);
   const std::string name = element == nullptr ? std::string() : attribute(*element, "link");
   if (name.empty()) {
-    complain.at_element(*joint.xml, "needs <" + std::string(role) + " link=\"...\"/>");
+    diagnostic.at_element(*joint.xml, "needs <" + std::string(role) + " link=\"...\"/>");
   }
   const int link = index_of(links, name);
   if (link < 0) {
-    complain.at_element(*joint.xml,
-                        std::string(role) + " link " + in_quotes(name) + " does not exist");
+    diagnostic.at_element(*joint.xml,
+                          std::string(role) + " link " + in_quotes(name) + " does not exist");
   }
   return link;
 }
@@ -278,10 +282,10 @@ int parent_link(const Outline& outline, int link) {
 
 }  // namespace
 
-Outline read_outline(const TiXmlElement& robot, const Complaint& complain) {
+Outline read_outline(const TiXmlElement& robot, const Diagnostic& diagnostic) {
   Outline outline;
-  read_items(robot, "link", complain, outline.links);
-  read_items(robot, "joint", complain, outline.joints);
+  read_items(robot, "link", diagnostic, outline.links);
+  read_items(robot, "joint", diagnostic, outline.joints);
 
   for (const char* name : kRequiredLinks) {
     if (index_of(outline.links, name) >= 0) continue;
@@ -289,27 +293,28 @@ Outline read_outline(const TiXmlElement& robot, const Complaint& complain) {
     for (const char* required : kRequiredLinks) {
       all += (all.empty() ? "" : ", ") + std::string(required);
     }
-    complain.about_file("there is no link named " + in_quotes(name) +
-                        "; a robot needs exactly one link each named " + all);
+    diagnostic.about_file("there is no link named " + in_quotes(name) +
+                          "; a robot needs exactly one link each named " + all);
   }
   for (std::size_t j = 0; j < outline.joints.size(); ++j) {
     JointElement& joint = outline.joints[j];
     joint.type = attribute(*joint.xml, "type");
     if (joint.type != "fixed" && joint.type != "revolute" && joint.type != "continuous") {
-      complain.at_element(*joint.xml,
-                          "type " + in_quotes(joint.type) +
-                              " is not supported; allowed: fixed, revolute, continuous");
+      diagnostic.at_element(*joint.xml,
+                            "type " + in_quotes(joint.type) +
+                                " is not supported; allowed: fixed, revolute, continuous");
     }
     if (joint.xml->FirstChildElement("mimic") != nullptr) {
-      complain.at_element(*joint.xml, "<mimic> is not supported");
+      diagnostic.at_element(*joint.xml, "<mimic> is not supported");
     }
-    joint.parent = linked_body(joint, "parent", outline.links, complain);
-    joint.child = linked_body(joint, "child", outline.links, complain);
+    joint.parent = linked_body(joint, "parent", outline.links, diagnostic);
+    joint.child = linked_body(joint, "child", outline.links, diagnostic);
     LinkElement& child = outline.links[at(joint.child)];
     if (child.parent_joint >= 0) {
-      complain.at_element(*joint.xml, "link " + in_quotes(child.name) + " has two parents, joint " +
-                                          in_quotes(outline.joints[at(child.parent_joint)].name) +
-                                          " and this one; a robot is a tree");
+      diagnostic.at_element(*joint.xml, "link " + in_quotes(child.name) +
+                                            " has two parents, joint " +
+                                            in_quotes(outline.joints[at(child.parent_joint)].name) +
+                                            " and this one; a robot is a tree");
     }
     child.parent_joint = static_cast<int>(j);
   }
@@ -318,7 +323,7 @@ Outline read_outline(const TiXmlElement& robot, const Complaint& complain) {
 
 // Every link has at most one parent by now: it is a tree when nobody is its own ancestor and only
 // one has no parent.
-void check_tree(const Outline& outline, const Complaint& complain) {
+void check_tree(const Outline& outline, const Diagnostic& diagnostic) {
   const LinkElement* root = nullptr;
   for (std::size_t i = 0; i < outline.links.size(); ++i) {
     const LinkElement& link = outline.links[i];
@@ -326,14 +331,14 @@ void check_tree(const Outline& outline, const Complaint& complain) {
     int ancestor = parent_link(outline, self);
     for (std::size_t step = 0; step < outline.links.size() && ancestor >= 0; ++step) {
       if (ancestor == self) {
-        complain.at_element(*link.xml, "its joints form a cycle; a robot is a tree");
+        diagnostic.at_element(*link.xml, "its joints form a cycle; a robot is a tree");
       }
       ancestor = parent_link(outline, ancestor);
     }
     if (link.parent_joint >= 0) continue;
     if (root != nullptr) {
-      complain.at_element(*link.xml, "neither this link nor link " + in_quotes(root->name) +
-                                         " is the child of a joint; a robot is one tree");
+      diagnostic.at_element(*link.xml, "neither this link nor link " + in_quotes(root->name) +
+                                           " is the child of a joint; a robot is one tree");
     }
     root = &link;
   }

@@ -52,11 +52,11 @@ std::string attribute(const TiXmlElement& element, const char* name);
 /// Numbers separated by spaces; empty when one of them is no plain decimal number.
 std::vector<double> parse_numbers(std::string_view text);
 
-// Every complaint about the file goes through here: one line with the file, the line in it and the
+// Every error of the file is reported here: one line with the file, the line in it and the
 // link or joint.
-class Complaint {
+class Diagnostic {
  public:
-  explicit Complaint(std::filesystem::path file) : file_(std::move(file)) {}
+  explicit Diagnostic(std::filesystem::path file) : file_(std::move(file)) {}
 
   [[noreturn]] void about_file(const std::string& what) const;
   [[noreturn]] void at_row(int row, const std::string& what) const;
@@ -67,12 +67,12 @@ class Complaint {
 };
 
 /// Reads the file and refuses what is no URDF text.
-void parse_xml(const std::filesystem::path& file, const Complaint& complain, TiXmlDocument& xml);
+void parse_xml(const std::filesystem::path& file, const Diagnostic& diagnostic, TiXmlDocument& xml);
 /// Checks every number and shape below a link or a joint.
-void check_values(const TiXmlElement& parent, const Complaint& complain);
+void check_values(const TiXmlElement& parent, const Diagnostic& diagnostic);
 /// Links and joints of the robot, with the names that a robot needs.
-Outline read_outline(const TiXmlElement& robot, const Complaint& complain);
+Outline read_outline(const TiXmlElement& robot, const Diagnostic& diagnostic);
 /// Refuses cycles and a second root.
-void check_tree(const Outline& outline, const Complaint& complain);
+void check_tree(const Outline& outline, const Diagnostic& diagnostic);
 
 }  // namespace screed::urdf_parts

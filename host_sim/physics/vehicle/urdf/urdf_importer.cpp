@@ -17,13 +17,13 @@ using namespace urdf_parts;  // NOLINT(google-build-using-namespace)
 namespace {
 
 // What moves on its own needs mass.
-void check_masses(const Assembly& assembly, const Outline& outline, const Complaint& complain) {
+void check_masses(const Assembly& assembly, const Outline& outline, const Diagnostic& diagnostic) {
   for (std::size_t i = 0; i < assembly.bodies.size(); ++i) {
     const int link = static_cast<int>(i);
     const int joint = outline.links[i].parent_joint;
     if (joint >= 0 && assembly.joints[at(joint)].kind == AssemblyJoint::Kind::Fixed) continue;
     if (composed_inertia(assembly, rigid_group(assembly, link)).mass > 0.0) continue;
-    complain.at_element(
+    diagnostic.at_element(
         *outline.links[i].xml,
         "needs an <inertial> with a mass, here or on a link fixed to it: it moves on its own");
   }
@@ -32,33 +32,33 @@ void check_masses(const Assembly& assembly, const Outline& outline, const Compla
 }  // namespace
 
 Assembly import_urdf(const std::filesystem::path& file, const UrdfOptions& options) {
-  const Complaint complain(file);
+  const Diagnostic diagnostic(file);
   TiXmlDocument xml;
-  parse_xml(file, complain, xml);
+  parse_xml(file, diagnostic, xml);
   const TiXmlElement& robot = *xml.RootElement();
-  const Outline outline = read_outline(robot, complain);
-  check_tree(outline, complain);
-  for (const LinkElement& link : outline.links) check_values(*link.xml, complain);
-  for (const JointElement& joint : outline.joints) check_values(*joint.xml, complain);
-  const urdf::ModelInterfaceSharedPtr model = parse_model(xml, complain);
+  const Outline outline = read_outline(robot, diagnostic);
+  check_tree(outline, diagnostic);
+  for (const LinkElement& link : outline.links) check_values(*link.xml, diagnostic);
+  for (const JointElement& joint : outline.joints) check_values(*joint.xml, diagnostic);
+  const urdf::ModelInterfaceSharedPtr model = parse_model(xml, diagnostic);
 
   std::vector<JointData> joints;
   for (const JointElement& element : outline.joints) {
-    joints.push_back(to_joint(element, *model->getJoint(element.name), complain));
+    joints.push_back(to_joint(element, *model->getJoint(element.name), diagnostic));
   }
   for (const auto& [name, angle_rad] : options.joint_angles_rad) {
     const int index = index_of(outline.joints, name);
-    if (index < 0) complain.about_file("there is no joint named " + in_quotes(name) + " to hold");
-    hold(joints[at(index)], outline.joints[at(index)], angle_rad, complain);
+    if (index < 0) diagnostic.about_file("there is no joint named " + in_quotes(name) + " to hold");
+    hold(joints[at(index)], outline.joints[at(index)], angle_rad, diagnostic);
   }
-  if (options.leg_angle_rad) set_leg_angle(*options.leg_angle_rad, outline, joints, complain);
+  if (options.leg_angle_rad) set_leg_angle(*options.leg_angle_rad, outline, joints, diagnostic);
 
   Assembly assembly;
   assembly.name = model->getName();
   const std::vector<Eigen::Isometry3d> poses = link_poses(outline, joints);
   for (std::size_t i = 0; i < outline.links.size(); ++i) {
     const LinkElement& element = outline.links[i];
-    assembly.bodies.push_back(to_body(element, *model->getLink(element.name), file, complain));
+    assembly.bodies.push_back(to_body(element, *model->getLink(element.name), file, diagnostic));
     assembly.bodies.back().pose = poses[i];
   }
   for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -77,7 +77,7 @@ Assembly import_urdf(const std::filesystem::path& file, const UrdfOptions& optio
     joint.effort_n_m = data.effort_n_m;
     assembly.joints.push_back(joint);
   }
-  check_masses(assembly, outline, complain);
+  check_masses(assembly, outline, diagnostic);
   return assembly;
 }
 

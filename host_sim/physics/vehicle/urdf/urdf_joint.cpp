@@ -16,7 +16,7 @@ constexpr double kAngleTolerance_rad = 1e-6;
 
 // A fixed joint's axis is of use too (it can be held at another angle), but urdfdom drops it: read
 // from the XML.
-std::optional<Eigen::Vector3d> joint_axis(const JointElement& joint, const Complaint& complain) {
+std::optional<Eigen::Vector3d> joint_axis(const JointElement& joint, const Diagnostic& diagnostic) {
   const TiXmlElement* element = joint.xml->FirstChildElement("axis");
   if (element == nullptr) {
     if (joint.type == "fixed") return {};
@@ -26,7 +26,7 @@ std::optional<Eigen::Vector3d> joint_axis(const JointElement& joint, const Compl
   const Eigen::Vector3d axis(xyz[0], xyz[1], xyz[2]);
   // stableNorm: neither overflow nor underflow makes an odd axis look like zero.
   if (axis.stableNorm() == 0.0) {
-    complain.at_element(*element, "<axis> is zero; it needs a direction");
+    diagnostic.at_element(*element, "<axis> is zero; it needs a direction");
   }
   return axis.stableNormalized();
 }
@@ -39,10 +39,10 @@ bool in_range(const JointData& joint, double angle_rad) {
 }  // namespace
 
 JointData to_joint(const JointElement& element, const urdf::Joint& joint,
-                   const Complaint& complain) {
+                   const Diagnostic& diagnostic) {
   JointData data;
   data.origin = to_eigen(joint.parent_to_joint_origin_transform);
-  data.axis = joint_axis(element, complain);
+  data.axis = joint_axis(element, diagnostic);
   if (element.type != "fixed") data.kind = AssemblyJoint::Kind::Revolute;
   if (!joint.limits) return data;
   data.effort_n_m = joint.limits->effort;
@@ -56,22 +56,22 @@ JointData to_joint(const JointElement& element, const urdf::Joint& joint,
   data.lower_rad = joint.limits->lower;
   data.upper_rad = joint.limits->upper;
   if (data.lower_rad > data.upper_rad) {
-    complain.at_element(limit, "<limit> lower " + to_text(data.lower_rad) + " is above upper " +
-                                   to_text(data.upper_rad));
+    diagnostic.at_element(limit, "<limit> lower " + to_text(data.lower_rad) + " is above upper " +
+                                     to_text(data.upper_rad));
   }
   return data;
 }
 
 void hold(JointData& joint, const JointElement& element, double angle_rad,
-          const Complaint& complain) {
-  if (!joint.axis) complain.at_element(*element.xml, "has no <axis> to turn it about");
+          const Diagnostic& diagnostic) {
+  if (!joint.axis) diagnostic.at_element(*element.xml, "has no <axis> to turn it about");
   if (!std::isfinite(angle_rad)) {
-    complain.at_element(*element.xml, "the angle to hold it at is not finite");
+    diagnostic.at_element(*element.xml, "the angle to hold it at is not finite");
   }
   if (!in_range(joint, angle_rad)) {
-    complain.at_element(*element.xml, "cannot be held at " + to_text(angle_rad) +
-                                          " rad; allowed: " + to_text(joint.lower_rad) + " to " +
-                                          to_text(joint.upper_rad));
+    diagnostic.at_element(*element.xml, "cannot be held at " + to_text(angle_rad) +
+                                            " rad; allowed: " + to_text(joint.lower_rad) + " to " +
+                                            to_text(joint.upper_rad));
   }
   joint.held_at_rad = angle_rad;
 }
@@ -98,26 +98,26 @@ std::vector<Eigen::Isometry3d> link_poses(const Outline& outline,
 }
 
 void set_leg_angle(double angle_rad, const Outline& outline, std::vector<JointData>& joints,
-                   const Complaint& complain) {
-  if (!std::isfinite(angle_rad)) complain.about_file("the leg angle is not finite");
+                   const Diagnostic& diagnostic) {
+  if (!std::isfinite(angle_rad)) diagnostic.about_file("the leg angle is not finite");
   const std::vector<Eigen::Isometry3d> poses = link_poses(outline, joints);
   for (const std::string_view corner : {"fl_", "fr_", "bl_", "br_"}) {
     const std::string name = std::string(corner) + "Leg_joint";
     const int index = index_of(outline.joints, name);
     if (index < 0) {
-      complain.about_file("the leg angle cannot be set: there is no joint named " +
-                          in_quotes(name));
+      diagnostic.about_file("the leg angle cannot be set: there is no joint named " +
+                            in_quotes(name));
     }
     const JointElement& element = outline.joints[at(index)];
     JointData& joint = joints[at(index)];
     const Eigen::Isometry3d& leg = poses[at(element.child)];
     const double axis_y = joint.axis ? (leg.linear() * *joint.axis).y() : 0.0;
     if (element.type != "fixed" || std::abs(axis_y) < 1.0 - 1e-9) {
-      complain.at_element(*element.xml,
-                          "the leg angle needs a fixed joint with an <axis> along y of 'Body'");
+      diagnostic.at_element(*element.xml,
+                            "the leg angle needs a fixed joint with an <axis> along y of 'Body'");
     }
     if (joint.held_at_rad) {
-      complain.at_element(*element.xml, "is set both by the leg angle and by its own angle");
+      diagnostic.at_element(*element.xml, "is set both by the leg angle and by its own angle");
     }
     const int wheel = index_of(outline.links, std::string(corner) + "Wheel");
     const Eigen::Vector3d reach = poses[at(wheel)].translation() - leg.translation();
@@ -129,9 +129,9 @@ void set_leg_angle(double angle_rad, const Outline& outline, std::vector<JointDa
     if (!in_range(joint, turn_rad)) {
       const auto [lowest, highest] =
           std::minmax({now_rad + sense * joint.lower_rad, now_rad + sense * joint.upper_rad});
-      complain.at_element(*element.xml, "a leg angle of " + to_text(angle_rad) +
-                                            " rad is out of range; allowed: " + to_text(lowest) +
-                                            " to " + to_text(highest));
+      diagnostic.at_element(*element.xml, "a leg angle of " + to_text(angle_rad) +
+                                              " rad is out of range; allowed: " + to_text(lowest) +
+                                              " to " + to_text(highest));
     }
     joint.held_at_rad = turn_rad;
   }

@@ -26,13 +26,13 @@ struct JointData {
 };
 
 JointData to_joint(const JointElement& element, const urdf::Joint& joint,
-                   const Complaint& complain);
+                   const Diagnostic& diagnostic);
 /// Holds a joint at an angle; refuses one without axis or out of range.
 void hold(JointData& joint, const JointElement& element, double angle_rad,
-          const Complaint& complain);
+          const Diagnostic& diagnostic);
 /// As UrdfOptions::leg_angle_rad says.
 void set_leg_angle(double angle_rad, const Outline& outline, std::vector<JointData>& joints,
-                   const Complaint& complain);
+                   const Diagnostic& diagnostic);
 /// Poses of all links in the frame of `Body`.
 std::vector<Eigen::Isometry3d> link_poses(const Outline& outline,
                                           const std::vector<JointData>& joints);

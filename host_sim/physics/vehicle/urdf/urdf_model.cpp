@@ -55,7 +55,7 @@ void remove_unused(TiXmlElement& parent, bool is_robot) {
 
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Complaint& complain) {
+urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Diagnostic& diagnostic) {
   TiXmlDocument reduced(xml);
   remove_unused(*reduced.RootElement(), true);
   TiXmlPrinter printer;
@@ -69,10 +69,10 @@ urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Compla
   try {
     model = urdf::parseURDF(printer.Str());
   } catch (const std::exception& error) {
-    complain.about_file(std::string("not a valid URDF model: ") + error.what());
+    diagnostic.about_file(std::string("not a valid URDF model: ") + error.what());
   }
   if (!model || !log.first_error.empty()) {
-    complain.about_file("not a valid URDF model: " + log.first_error);
+    diagnostic.about_file("not a valid URDF model: " + log.first_error);
   }
   return model;
 }

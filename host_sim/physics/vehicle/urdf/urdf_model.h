@@ -13,7 +13,7 @@
 namespace screed::urdf_parts {
 
 /// What urdfdom makes of a checked document; any error it logs is a refusal.
-urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Complaint& complain);
+urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Diagnostic& diagnostic);
 
 Eigen::Vector3d to_eigen(const urdf::Vector3& v);
 Eigen::Isometry3d to_eigen(const urdf::Pose& pose);

@@ -66,7 +66,7 @@ TEST(SlipWatch, TracksThatStandTellNothing) {
   EXPECT_FALSE(drive.watch.stuck());
 }
 
-TEST(SlipWatch, ARobotThatFeelsItsStartIsFree) {
+TEST(SlipWatch, ARobotThatMeasuresItsStartIsFree) {
   for (const double speed : {80.0, 150.0, 200.0}) {
     Drive drive;
     drive.go(0.0, 5.0, kStands);

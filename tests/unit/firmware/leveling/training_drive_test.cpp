@@ -17,7 +17,7 @@ namespace {
 
 Parameters parameters_of(int16_t block, int16_t seed) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kTraining);
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kTrainingDrive);
   parameters.training_block = block;
   parameters.random_seed = seed;
   return parameters;
@@ -118,7 +118,7 @@ TEST(TrainingDrive, TheRobotStandsWhenAllBlocksAreDriven) {
   const LevelingInput input{};
   for (int i = 0; i < 16; ++i) {
     const MotionCommand motion = leveling.tick(input, {0, 0});
-    EXPECT_EQ(leveling.state(), LevelingState::kTraining);
+    EXPECT_EQ(leveling.state(), LevelingState::kTrainingDrive);
     EXPECT_TRUE(motion.speed_mm_per_s != 0 || motion.yaw_rate != 0);
   }
   for (int i = 0; i < 3; ++i) {
@@ -136,7 +136,7 @@ TEST(TrainingDrive, AStopInBetweenLosesNoFrame) {
     leveling.start();
     for (int i = 0; i < 5; ++i) {
       leveling.tick({}, {0, 0});
-      frames += leveling.state() == LevelingState::kTraining ? 1 : 0;
+      frames += leveling.state() == LevelingState::kTrainingDrive ? 1 : 0;
     }
   }
   EXPECT_EQ(frames, 16);

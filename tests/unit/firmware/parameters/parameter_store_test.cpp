@@ -62,8 +62,8 @@ TEST(ParameterStore, LiesInTheEepromAsDocumented) {
     at += 2;
   }
   EXPECT_EQ(at + 2, sizeof(copy.bytes));
-  EXPECT_LE(kParameterCopyAt(0) + kParameterCopySize, kParameterCopyAt(1));
-  EXPECT_LE(kParameterCopyAt(1) + kParameterCopySize, 1024) << "the EEPROM's size";
+  EXPECT_LE(parameter_copy_address(0) + kParameterCopySize, parameter_copy_address(1));
+  EXPECT_LE(parameter_copy_address(1) + kParameterCopySize, 1024) << "the EEPROM's size";
 }
 
 /// CRC-16/CCITT-FALSE by definition: the remainder of the message polynomial, bit by bit.

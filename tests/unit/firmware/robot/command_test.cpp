@@ -31,7 +31,7 @@ RequestResult result_of(TestRobot& robot, const CanFrame& command) {
   EXPECT_TRUE(answer.has_value());
   if (!answer.has_value()) return RequestResult::kDone;
   EXPECT_EQ(answer->op, command.data[0]);
-  EXPECT_EQ(answer->freshness, command.data[kCommandFreshnessAt]);
+  EXPECT_EQ(answer->freshness, command.data[kCommandFreshnessOffset]);
   return static_cast<RequestResult>(answer->result);
 }
 RequestResult result_of(TestRobot& robot, CommandOp op) {
@@ -58,7 +58,7 @@ TEST(Command, WithoutTheKeyNothingMovesAndTheReasonIsSaid) {
   robot.signer = CommandSigner(other);
   message::Heartbeat heartbeat{};
   heartbeat.boot_epoch = kFirstBootEpoch;
-  robot.signer.hear(frame_of(heartbeat));
+  robot.signer.handle_frame(frame_of(heartbeat));
   for (const CommandOp op : {CommandOp::kArm, CommandOp::kRun, CommandOp::kParameterRead}) {
     EXPECT_EQ(result_of(robot, op), RequestResult::kBadMac);
   }
@@ -93,7 +93,7 @@ TEST(Command, OfAnotherRobotIsRefusedFault11) {
   robot.signer = CommandSigner(key);
   message::Heartbeat heartbeat{};
   heartbeat.boot_epoch = kFirstBootEpoch;
-  robot.signer.hear(frame_of(heartbeat));
+  robot.signer.handle_frame(frame_of(heartbeat));
   EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kBadMac);
   CanFrame elsewhere = ready_robot().command(CommandOp::kArm);
   elsewhere.id = 0x120;  // node 2
@@ -115,7 +115,7 @@ TEST(Command, AFloodOfWrongMacsLocksOutAndTheEmergencyStopStillWorksFault9) {
     if (wrong.data[7] != good.data[7]) robot.send(wrong);
     robot.tick();
   }
-  EXPECT_LE(robot.robot.gate().refused(), 2 * CommandGate::kMostBadMacs);
+  EXPECT_LE(robot.robot.gate().refused(), 2 * CommandGate::kMaxBadMacs);
   EXPECT_EQ(robot.state(), RobotState::kRunning) << "the ground heartbeat was not harmed";
   robot.queue.clear();
   robot.run(2);
@@ -123,7 +123,7 @@ TEST(Command, AFloodOfWrongMacsLocksOutAndTheEmergencyStopStillWorksFault9) {
   robot.send(robot.emergency_stop());
   robot.tick();
   EXPECT_EQ(robot.state(), RobotState::kFault);
-  robot.run(CommandGate::kLockedTicks);
+  robot.run(CommandGate::kLockoutTicks);
   EXPECT_EQ(result_of(robot, CommandOp::kClear), RequestResult::kDone);
 }
 

@@ -12,7 +12,7 @@ TEST(TrackWatch, CountsStepToAndFroWithABrokenWire) {
   for (const int16_t duty : std::initializer_list<int16_t>{60, 240, -60, -400}) {
     TrackWatch watch;
     int ticks = 0;
-    while (!watch.to_and_fro() && ticks < 100) {
+    while (!watch.alternates() && ticks < 100) {
       watch.tick(duty, static_cast<int16_t>(ticks % 2 == 0 ? 1 : -1));
       ++ticks;
     }
@@ -35,7 +35,7 @@ TEST(TrackWatch, MotionEitherWayIsNeither) {
       TrackWatch watch;
       for (int tick = 0; tick < 200; ++tick) {
         watch.tick(duty, tick % 4 == 0 ? counts : static_cast<int16_t>(0));
-        EXPECT_FALSE(watch.to_and_fro());
+        EXPECT_FALSE(watch.alternates());
         EXPECT_LT(watch.still_ticks(), 18);
       }
     }
@@ -46,7 +46,7 @@ TEST(TrackWatch, ATrackWithoutPowerMayRockAsItLikes) {
   TrackWatch watch;
   for (int tick = 0; tick < 200; ++tick)
     watch.tick(59, static_cast<int16_t>(tick % 2 == 0 ? 1 : -1));
-  EXPECT_FALSE(watch.to_and_fro());
+  EXPECT_FALSE(watch.alternates());
   EXPECT_EQ(watch.still_ticks(), 0);
 }
 
@@ -56,7 +56,7 @@ TEST(TrackWatch, GreatStepsDoNotOverflow) {
     watch.tick(-kDutyMax, counts);
     watch.tick(400, counts);
   }
-  EXPECT_FALSE(watch.to_and_fro());
+  EXPECT_FALSE(watch.alternates());
 }
 
 /// A tick of a healthy robot with these chips failing.

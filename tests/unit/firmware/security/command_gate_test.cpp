@@ -22,7 +22,7 @@ CanFrame heartbeat(uint16_t epoch, uint16_t counter) {
 struct Pair {
   explicit Pair(uint16_t epoch = 7, const CommandKey& key = test_key())
       : gate(credentials_of(key, epoch)), signer(key) {
-    signer.hear(heartbeat(epoch, 0));
+    signer.handle_frame(heartbeat(epoch, 0));
   }
   GateResult check(const CanFrame& frame) { return gate.check(frame.id, frame.data); }
   GateResult send(CommandOp op = CommandOp::kArm) { return check(signer.sign(op)); }
@@ -66,7 +66,7 @@ TEST(CommandGate, WithoutAKeyNothingPasses) {
   none.key_set = false;
   CommandGate gate(none);
   CommandSigner signer(test_key());
-  signer.hear(heartbeat(1, 0));
+  signer.handle_frame(heartbeat(1, 0));
   EXPECT_EQ(gate.check(kIdCommand, signer.sign(CommandOp::kArm).data), GateResult::kNoKey);
   EXPECT_EQ(gate.counter(), 0);
 }
@@ -96,21 +96,21 @@ TEST(CommandGate, TheSignerFollowsTheRobot) {
   Pair pair;
   // Another ground station has sent 1000 commands meanwhile.
   CommandSigner other(test_key());
-  other.hear(heartbeat(7, 0));
+  other.handle_frame(heartbeat(7, 0));
   for (int i = 0; i < 1000; ++i) pair.check(other.sign(CommandOp::kStop));
-  pair.signer.hear(heartbeat(7, pair.gate.counter()));
+  pair.signer.handle_frame(heartbeat(7, pair.gate.counter()));
   EXPECT_EQ(pair.send(), GateResult::kAccepted);
   // A heartbeat that was sent before the last command does not set it back.
-  pair.signer.hear(heartbeat(7, 1000));
+  pair.signer.handle_frame(heartbeat(7, 1000));
   EXPECT_EQ(pair.send(), GateResult::kAccepted);
   // Nothing got through for long: it begins again where the robot is.
   for (int i = 0; i < 300; ++i) pair.signer.sign(CommandOp::kStop);
-  pair.signer.hear(heartbeat(7, pair.gate.counter()));
+  pair.signer.handle_frame(heartbeat(7, pair.gate.counter()));
   EXPECT_EQ(pair.send(), GateResult::kAccepted);
   // The robot was restarted.
   pair.gate = CommandGate(credentials_of(test_key(), 8));
   EXPECT_EQ(pair.send(), GateResult::kBadMac);
-  pair.signer.hear(heartbeat(8, 0));
+  pair.signer.handle_frame(heartbeat(8, 0));
   EXPECT_EQ(pair.send(), GateResult::kAccepted);
 }
 
@@ -118,15 +118,15 @@ TEST(CommandGate, EightWrongMacsShutItFor30Seconds) {
   Pair pair;
   CanFrame wrong = pair.signer.sign(CommandOp::kArm);
   wrong.data[7] ^= 0x80U;
-  for (int i = 0; i < CommandGate::kMostBadMacs; ++i) {
+  for (int i = 0; i < CommandGate::kMaxBadMacs; ++i) {
     EXPECT_EQ(pair.check(wrong), GateResult::kBadMac);
   }
   EXPECT_EQ(pair.send(), GateResult::kLockedOut);
-  for (int tick = 1; tick < CommandGate::kLockedTicks; ++tick) pair.gate.tick();
+  for (int tick = 1; tick < CommandGate::kLockoutTicks; ++tick) pair.gate.tick();
   EXPECT_EQ(pair.send(), GateResult::kLockedOut);
   pair.gate.tick();
   EXPECT_EQ(pair.send(), GateResult::kAccepted);
-  EXPECT_EQ(pair.gate.refused(), CommandGate::kMostBadMacs);
+  EXPECT_EQ(pair.gate.refused(), CommandGate::kMaxBadMacs);
 }
 
 TEST(CommandGate, AWrongMacNowAndThenIsForgiven) {
@@ -135,7 +135,7 @@ TEST(CommandGate, AWrongMacNowAndThenIsForgiven) {
   wrong.data[7] ^= 0x80U;
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(pair.check(wrong), GateResult::kBadMac) << i;
-    for (int tick = 0; tick < CommandGate::kForgivenTicks; ++tick) pair.gate.tick();
+    for (int tick = 0; tick < CommandGate::kBadMacDecayTicks; ++tick) pair.gate.tick();
   }
   // Right ones in between do not make more guesses possible.
   int guesses = 0;
@@ -153,7 +153,7 @@ TEST(CommandGate, TheCounterDoesNotWrap) {
   EXPECT_EQ(pair.gate.counter(), 65535);
   CanFrame frame{kIdCommand, 8, {}};
   for (int low = 0; low < 256; ++low) {
-    frame.data[kCommandFreshnessAt] = static_cast<uint8_t>(low);
+    frame.data[kCommandFreshnessOffset] = static_cast<uint8_t>(low);
     EXPECT_EQ(pair.check(frame), GateResult::kUsedUp);
   }
 }

@@ -64,7 +64,7 @@ TEST(KeyStore, NoTwoStartsHaveTheSameNumberWhereverPowerFails) {
     CredentialRecord record = eeprom;
     Credentials credentials{};
     ASSERT_TRUE(begin_start(record, credentials));
-    const uint8_t slot = kEpochSlotOf(credentials.boot_epoch);
+    const uint8_t slot = epoch_slot_offset(credentials.boot_epoch);
     const int written = start % 5;  // bytes until power fails; 4: it does not
     std::copy_n(record.bytes + slot, written, eeprom.bytes + slot);
     if (written < kEpochSlotSize) continue;  // it accepts no command before its number is written
@@ -77,7 +77,7 @@ TEST(KeyStore, NoTwoStartsHaveTheSameNumberWhereverPowerFails) {
 
 TEST(KeyStore, WithoutANumberTheKeyIsRefusedUntilItIsSetAnew) {
   CredentialRecord record = credential_record(credentials_of(some_key(), 500));
-  std::fill_n(record.bytes + kEpochSlotOf(0), 2 * kEpochSlotSize, static_cast<uint8_t>(0xFF));
+  std::fill_n(record.bytes + epoch_slot_offset(0), 2 * kEpochSlotSize, static_cast<uint8_t>(0xFF));
   const CredentialRecord eeprom = record;
   Credentials read{};
   EXPECT_FALSE(begin_start(record, read)) << "nothing is written: the next start is not better";
@@ -102,8 +102,8 @@ TEST(KeyStore, TheLastNumberIsTheEnd) {
 }
 
 TEST(KeyStore, LiesBehindTheParameters) {
-  EXPECT_GE(kCredentialRecordAt, kParameterCopyAt(kParameterCopies));
-  EXPECT_LE(kCredentialRecordAt + kCredentialRecordSize, 1024) << "the EEPROM's size";
+  EXPECT_GE(kCredentialRecordAddress, parameter_copy_address(kParameterCopies));
+  EXPECT_LE(kCredentialRecordAddress + kCredentialRecordSize, 1024) << "the EEPROM's size";
 }
 
 }  // namespace

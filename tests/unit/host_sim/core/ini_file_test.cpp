@@ -20,7 +20,7 @@ class IniFile : public ::testing::Test {
     return read_ini_file(path());
   }
   /// The message without the path, "" when nothing is wrong.
-  std::string complaint(const std::string& text) {
+  std::string error_message(const std::string& text) {
     try {
       read(text);
     } catch (const InputError& error) {
@@ -99,38 +99,38 @@ TEST_F(IniFile, ASectionMayComeAgain) {
 
 TEST_F(IniFile, EveryKindOfBadLineIsNamed) {
   const std::string neither = ": neither [section] nor 'key = value' nor a comment";
-  EXPECT_EQ(complaint("[a]\nx = 1\njust words\n"), ":3" + neither);
-  EXPECT_EQ(complaint("x = 1\n\n[never closed\ny = 1\n"), ":3" + neither);
-  EXPECT_EQ(complaint("\n\n]\n"), ":3" + neither);
-  EXPECT_EQ(complaint("[a]\r\nwords\r\n"), ":2" + neither);
-  EXPECT_EQ(complaint("[a]\n   words\n"), ":2" + neither);
-  EXPECT_EQ(complaint("\n[a] x = 1\n"),
+  EXPECT_EQ(error_message("[a]\nx = 1\njust words\n"), ":3" + neither);
+  EXPECT_EQ(error_message("x = 1\n\n[never closed\ny = 1\n"), ":3" + neither);
+  EXPECT_EQ(error_message("\n\n]\n"), ":3" + neither);
+  EXPECT_EQ(error_message("[a]\r\nwords\r\n"), ":2" + neither);
+  EXPECT_EQ(error_message("[a]\n   words\n"), ":2" + neither);
+  EXPECT_EQ(error_message("\n[a] x = 1\n"),
             ":2: text behind [section]; a key stands in a line of its own");
 }
 
 TEST_F(IniFile, DuplicateKeysNameBothLines) {
-  EXPECT_EQ(complaint("[a]\nx=1\n[b]\nx=1\n[a]\ny=1\nx=2\n"),
+  EXPECT_EQ(error_message("[a]\nx=1\n[b]\nx=1\n[a]\ny=1\nx=2\n"),
             ":7: key 'x' is given twice in [a], first in line 2");
-  EXPECT_EQ(complaint("x=1\n\nx=1\n"),
+  EXPECT_EQ(error_message("x=1\n\nx=1\n"),
             ":3: key 'x' is given twice before the first section, first in line 1");
 }
 
 TEST_F(IniFile, LongLinesAreRefusedNotCut) {
   EXPECT_EQ(read("k = " + std::string(194, 'x') + "\n").at(0).value.size(), 194U);
   for (const size_t length : {195U, 196U, 1000U, 100000U}) {
-    EXPECT_EQ(complaint("a = 1\nk = " + std::string(length, 'x') + "\nb = 1\n"),
+    EXPECT_EQ(error_message("a = 1\nk = " + std::string(length, 'x') + "\nb = 1\n"),
               ":2: line too long; at most 198 characters");
   }
-  EXPECT_EQ(complaint("a = 1\n; " + std::string(500, '-') + "\n"),
+  EXPECT_EQ(error_message("a = 1\n; " + std::string(500, '-') + "\n"),
             ":2: line too long; at most 198 characters");
 }
 
 TEST_F(IniFile, OfTwoComplaintsTheFirstIsTold) {
-  EXPECT_EQ(complaint("words\nx=1\nx=2\n").substr(0, 3), ":1:");
-  EXPECT_EQ(complaint("x=1\nx=2\nwords\n").substr(0, 3), ":2:");
-  EXPECT_EQ(complaint("x=1\nx=2\n" + std::string(500, 'x') + "\n").substr(0, 3), ":2:");
-  EXPECT_EQ(complaint("words\n" + std::string(500, 'x') + "\n").substr(0, 3), ":1:");
-  EXPECT_EQ(complaint("[a] b\nwords\n").substr(0, 3), ":1:");
+  EXPECT_EQ(error_message("words\nx=1\nx=2\n").substr(0, 3), ":1:");
+  EXPECT_EQ(error_message("x=1\nx=2\nwords\n").substr(0, 3), ":2:");
+  EXPECT_EQ(error_message("x=1\nx=2\n" + std::string(500, 'x') + "\n").substr(0, 3), ":2:");
+  EXPECT_EQ(error_message("words\n" + std::string(500, 'x') + "\n").substr(0, 3), ":1:");
+  EXPECT_EQ(error_message("[a] b\nwords\n").substr(0, 3), ":1:");
 }
 
 TEST_F(IniFile, MissingFilesAndFolders) {
@@ -141,7 +141,7 @@ TEST_F(IniFile, MissingFilesAndFolders) {
 TEST_F(IniFile, BinaryContentEndsWithOneLine) {
   std::string text;
   for (int i = 0; i < 4096; ++i) text.push_back(static_cast<char>((i * 7919) >> 3));
-  EXPECT_NE(complaint(text), "");
+  EXPECT_NE(error_message(text), "");
 }
 
 TEST(IniOverride, SectionKeyAndValue) {

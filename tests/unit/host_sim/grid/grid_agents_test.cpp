@@ -81,10 +81,10 @@ TEST(HeightMemory, ComparesWithTheMeanOfTheLastSamples) {
 
 TEST(HeightMemory, HoldsEightOfTheHighestStacks) {
   HeightMemory memory;
-  for (int i = 0; i < 20; ++i) memory.add(kHighestStack);
-  EXPECT_EQ(memory.sum(), 8U * kHighestStack);
-  EXPECT_TRUE(memory.is_below(kHighestStack - 1));
-  EXPECT_FALSE(memory.is_above(kHighestStack));
+  for (int i = 0; i < 20; ++i) memory.add(kMaxStackHeight);
+  EXPECT_EQ(memory.sum(), 8U * kMaxStackHeight);
+  EXPECT_TRUE(memory.is_below(kMaxStackHeight - 1));
+  EXPECT_FALSE(memory.is_above(kMaxStackHeight));
 }
 
 TEST(ResponseCurve, IsTheFormulaOfTheThesis) {
@@ -99,8 +99,8 @@ TEST(ResponseCurve, IsTheFormulaOfTheThesis) {
                   3.0 / 65536.0);
     }
   }
-  EXPECT_NEAR(response_pick_up(kHighestStack, 256) / 65536.0, 1.0, 1.0 / 256.0);
-  EXPECT_NEAR(response_deposit(kHighestStack, 65535) / 65536.0, 0.0, 1.0 / 256.0);
+  EXPECT_NEAR(response_pick_up(kMaxStackHeight, 256) / 65536.0, 1.0, 1.0 / 256.0);
+  EXPECT_NEAR(response_deposit(kMaxStackHeight, 65535) / 65536.0, 0.0, 1.0 / 256.0);
 }
 
 constexpr ProbabilisticParameters kAlgorithm1 = {655, 19661, 19661, 49152, 0, 8};
@@ -386,9 +386,9 @@ TEST(ForagingAgent, AveragesWhatItSees) {
 TEST(ForagingAgent, AveragesTheHighestStacksWithoutOverflow) {
   ForagingAgent agent(kForager, 1, 1);
   for (int i = 0; i < 3000; ++i) {
-    agent.tick({static_cast<uint16_t>(i % 2 == 0 ? 0 : kHighestStack), true});
+    agent.tick({static_cast<uint16_t>(i % 2 == 0 ? 0 : kMaxStackHeight), true});
   }
-  EXPECT_NEAR(agent.average_q16() / 65536.0, kHighestStack / 2.0, 40.0);
+  EXPECT_NEAR(agent.average_q16() / 65536.0, kMaxStackHeight / 2.0, 40.0);
 }
 
 TEST(ForagingAgent, LeavesTheDeadBandAloneUntilItsPatienceEnds) {

@@ -113,8 +113,8 @@ TEST(GridSummary, IsTextbookStatistics) {
   EXPECT_DOUBLE_EQ(summary.mean, 5.0);
   // Sample deviation sqrt(32 / 7), over sqrt(8).
   EXPECT_NEAR(summary.standard_error, std::sqrt(32.0 / 7.0 / 8.0), 1e-12);
-  EXPECT_EQ(summary.least, 2.0);
-  EXPECT_EQ(summary.greatest, 9.0);
+  EXPECT_EQ(summary.minimum, 2.0);
+  EXPECT_EQ(summary.maximum, 9.0);
   EXPECT_EQ(summarise({3.0}).standard_error, 0.0);
 }
 

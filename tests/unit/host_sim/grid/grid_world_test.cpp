@@ -185,9 +185,9 @@ TEST(GridWorld, MeasuresFollowEveryChange) {
           const GridPlace place = world.place(static_cast<int>(random.uniform() * width),
                                               static_cast<int>(random.uniform() * height));
           if (world.stack(place) < 1 + static_cast<int>(random.uniform() * 5)) {
-            world.put(place);
+            world.deposit(place);
           } else {
-            world.take(place);
+            world.pick_up(place);
           }
           expect_measures(world, stop, border);
           if (HasFatalFailure()) return;
@@ -203,11 +203,11 @@ TEST(GridWorld, MeasuresFollowEveryChange) {
 
 TEST(GridWorld, StacksGrowBeyondTheFirstRange) {
   GridWorld world(flat(2, 1, 0), GridBorder::kWalls, {});
-  for (int i = 0; i < 300; ++i) world.put(world.place(0, 0));
+  for (int i = 0; i < 300; ++i) world.deposit(world.place(0, 0));
   EXPECT_EQ(world.highest(), 300);
   EXPECT_EQ(world.stacks_of(300), 1U);
   EXPECT_EQ(world.stacks_of(299), 0U);
-  for (int i = 0; i < 300; ++i) world.take(world.place(0, 0));
+  for (int i = 0; i < 300; ++i) world.pick_up(world.place(0, 0));
   EXPECT_EQ(world.highest(), 0);
 }
 
@@ -323,7 +323,7 @@ TEST(GridRun, EveryAlgorithmLevels) {
     EXPECT_EQ(run.progress().progress, 0.0);
     while (!run.finished()) run.cycle();
     EXPECT_TRUE(run.result().level) << name_of(algorithm);
-    EXPECT_GE(run.result().units, run.result().least_units);
+    EXPECT_GE(run.result().units, run.result().min_units);
     EXPECT_EQ(run.progress().progress, 1.0);
   }
 }
@@ -345,7 +345,7 @@ TEST(GridRun, LevelTerrainNeedsNoCycle) {
   const GridResult result = run_grid(config);
   EXPECT_TRUE(result.level);
   EXPECT_EQ(result.cycles, 0U);
-  EXPECT_EQ(result.least_units, 0U);
+  EXPECT_EQ(result.min_units, 0U);
 }
 
 /// Mean cycles and units over paired seeds.

@@ -28,7 +28,7 @@ TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
   const DigResult charge = dig(Manoeuvre::kCharge, 0.005);
   EXPECT_GT(charge.raised_m3, 15e-6 / 2.0);
   EXPECT_LT(charge.raised_m3, 15e-6 * 2.0);
-  EXPECT_GT(charge.way_m, 0.5);  // it comes over the mound
+  EXPECT_GT(charge.distance_m, 0.5);  // it comes over the mound
 }
 
 TEST(SoilDigTest, WithoutDraggingASpinOnlySinks) {

@@ -111,21 +111,21 @@ TEST(SoilPlateTest, UnloadingFollowsEAndSinkageStays) {
     const double deepest = bekker_pressure(test, 0.005);
     const double elastic = test.soil.elastic_pa_per_m;
     const double rise = deepest / elastic;
-    test.way_m = {0.005, 0.005 - 2.0 * rise, 0.006};
+    test.depths_m = {0.005, 0.005 - 2.0 * rise, 0.006};
     const std::vector<PlatePoint> run = press_plate(test);
     double before = 0.0;
-    int way = 0;  // which part of the way: down, up, down
+    int phase = 0;  // down, up, down
     for (const PlatePoint& point : run) {
-      if (way == 0 && point.depth_m < before) way = 1;
-      if (way == 1 && point.depth_m > before) way = 2;
+      if (phase == 0 && point.depth_m < before) phase = 1;
+      if (phase == 1 && point.depth_m > before) phase = 2;
       before = point.depth_m;
       const double unloaded =
           std::max(0.0, deepest - elastic * std::max(0.0, 0.005 - point.depth_m));
-      const double expected = way == 0 || point.depth_m > 0.005 ? point.bekker_pa : unloaded;
+      const double expected = phase == 0 || point.depth_m > 0.005 ? point.bekker_pa : unloaded;
       EXPECT_NEAR(point.pressure_pa, expected, 0.01 * deepest)
-          << soil << ", way " << way << ", depth " << point.depth_m;
+          << soil << ", phase " << phase << ", depth " << point.depth_m;
     }
-    EXPECT_EQ(way, 2);
+    EXPECT_EQ(phase, 2);
   }
 }
 

@@ -143,7 +143,7 @@ TEST(Network, IntegersFittedToTheirInputsComeCloser) {
     const IntegerNetwork network = quantise(layers, rows);
     for (std::size_t i = 0; i < layers.size(); ++i) {
       EXPECT_EQ(network.layers()[i].gain_shift, quantise(layers).layers()[i].gain_shift);
-      EXPECT_LE(network.layers()[i].greatest_sum(), std::numeric_limits<std::int32_t>::max());
+      EXPECT_LE(network.layers()[i].max_abs_sum(), std::numeric_limits<std::int32_t>::max());
     }
     const Off before = off(quantise(layers), layers, others);
     const Off after = off(network, layers, others);
@@ -177,7 +177,7 @@ TEST(Network, TheQuantiserProvesThatNoSumOverflows) {
   for (const double greatest : {0.1, 1.0, 10.0, 100.0, 1000.0}) {
     const IntegerNetwork network = quantise(random_network(random, {20, 7, 3}, greatest));
     for (const IntegerLayer& layer : network.layers()) {
-      EXPECT_LE(layer.greatest_sum(), std::numeric_limits<std::int32_t>::max());
+      EXPECT_LE(layer.max_abs_sum(), std::numeric_limits<std::int32_t>::max());
       // A finer scale would not have been possible.
       if (layer.gain_shift > 0) {
         std::int16_t greatest_weight = 0;
@@ -186,7 +186,7 @@ TEST(Network, TheQuantiserProvesThatNoSumOverflows) {
               std::max<std::int16_t>(greatest_weight, static_cast<std::int16_t>(std::abs(w)));
         }
         EXPECT_TRUE(2 * greatest_weight > INT16_MAX ||
-                    2 * layer.greatest_sum() > std::numeric_limits<std::int32_t>::max());
+                    2 * layer.max_abs_sum() > std::numeric_limits<std::int32_t>::max());
       }
     }
   }

@@ -66,7 +66,8 @@ MotionTraining settling_training() {
   MotionTraining training = small_training();
   for (ModelChannel& output : training.outputs) {
     output.baseline = output.feature + "_settling";
-    output.half_range *= 1.0 - kSwingLast - kSwingBefore;  // which the swing adds up to the whole
+    output.half_range *=
+        1.0 - kSettlingLast - kSettlingBeforeLast;  // which the swing adds up to the whole
   }
   return training;
 }

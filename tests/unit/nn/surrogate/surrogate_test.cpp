@@ -1,5 +1,5 @@
-// Robots whose motion is foretold: kinematics against closed forms, and many at once against one by
-// one.
+// Robots whose motion is predicted: kinematics against closed forms, and many at once against one
+// by one.
 #include "nn/surrogate/surrogate.h"
 
 #include <gtest/gtest.h>
@@ -41,10 +41,10 @@ Model linear_model(std::vector<ModelChannel> inputs, std::vector<ModelChannel> o
 Model random_model() {
   WorldRandom random(5, "random model");
   std::vector<ModelChannel> inputs;
-  for (const SignalInfo& info : signals()) inputs.push_back(channel(info.name, 0.3));
-  inputs[row_of(Signal::kSoilStiffness)].middle = 6.0;
+  for (const MotionSignalInfo& info : motion_signals()) inputs.push_back(channel(info.name, 0.3));
+  inputs[row_of(MotionSignal::kSoilStiffness)].middle = 6.0;
   std::vector<FloatLayer> layers;
-  const std::vector<std::size_t> widths = {kSignals, 12, 3};
+  const std::vector<std::size_t> widths = {kMotionSignals, 12, 3};
   for (std::size_t i = 1; i < widths.size(); ++i) {
     FloatLayer layer{widths[i - 1], widths[i], i == 2, {}, {}};
     for (std::size_t n = 0; n < layer.inputs * layer.outputs; ++n) {
@@ -64,7 +64,7 @@ Model random_model() {
   return model;
 }
 
-TEST(Surrogate, FeelsTheInclinationOfAPlane) {
+TEST(Surrogate, MeasuresTheInclinationOfAPlane) {
   const double rise = std::tan(7.0 * std::numbers::pi / 180.0);
   const HeightField ramp = HeightField::ramp(4.0, 0.05, 7.0);
   const SupportGeometry geometry;
@@ -80,7 +80,7 @@ TEST(Surrogate, FeelsTheInclinationOfAPlane) {
 TEST(Surrogate, WithoutSlipDrivesTheArcOfItsTracks) {
   const HeightField ground = HeightField::flat(10.0, 0.1);
   Surrogate robot(SkidKinematics{}, SupportGeometry{}, 1);
-  robot.place(0, {1.0, 2.0, 0.7});
+  robot.set_pose(0, {1.0, 2.0, 0.7});
   const double left = 0.1;
   const double right = 0.14;
   constexpr int kFrames = 500;
@@ -95,7 +95,7 @@ TEST(Surrogate, WithoutSlipDrivesTheArcOfItsTracks) {
   EXPECT_NEAR(robot.pose(0).heading_rad, 0.7 + kFrames * turn, 1e-12);
 }
 
-TEST(Surrogate, TakesWaySidewaysAndTurnFromTheNetwork) {
+TEST(Surrogate, TakesDisplacementsAndTurnFromTheNetwork) {
   // forward = 0.008 m/s of 0.5 (left + right), sideways = 0.1 roll a frame, turn grows by 0.001.
   const Model model =
       linear_model({channel("track_left", 0.3), channel("track_right", 0.3), channel("roll", 0.2)},
@@ -104,7 +104,7 @@ TEST(Surrogate, TakesWaySidewaysAndTurnFromTheNetwork) {
                    {0.12, 0.12, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.1});
   const HeightField ramp = HeightField::ramp(4.0, 0.05, 5.0);
   Surrogate robot(model, SupportGeometry{}, 1);
-  robot.place(0, {0.0, 0.0, -std::numbers::pi / 2.0});  // the slope rises to its left
+  robot.set_pose(0, {0.0, 0.0, -std::numbers::pi / 2.0});  // the slope rises to its left
   const double left = 0.1;
   const double right = 0.2;
   robot.step(ramp, {&left, 1}, {&right, 1});
@@ -117,7 +117,7 @@ TEST(Surrogate, TakesWaySidewaysAndTurnFromTheNetwork) {
   EXPECT_NEAR(robot.motion(0).turn_rad, 0.002, 0.01 * 8 * kHalf);
 }
 
-TEST(Surrogate, GivesAWayWithoutSignThatOfTheTracks) {
+TEST(Surrogate, GivesADistanceTheSignOfTheTracks) {
   const Model model =
       linear_model({channel("v_left", 10.0)}, {channel("v", 0.01), channel("delta_theta", 0.01)},
                    {0.0, 0.0}, {0.25, 0.0});
@@ -165,7 +165,7 @@ TEST(Surrogate, DoesNotRunAwayWhenTheNetworkGoesOnAdding) {
   }
 }
 
-/// A network that always answers so much, beside the swing back to slipping tracks.
+/// A network with a constant output, beside settling to slipping tracks.
 Model settling_model(double forward, double turn) {
   return linear_model({channel("pitch", 1.0)},
                       {channel("forward", 0.0001, "forward_settling"),
@@ -178,11 +178,11 @@ TEST(Surrogate, SwingsBackToSlippingTracksAndWhatTheNetworkAdds) {
   const HeightField ground = HeightField::flat(4.0, 0.1);
   const double left = 0.1;
   const double right = 0.15;
-  const FrameMotion skid = kUsualSkid.motion(left, right);
+  const FrameMotion skid = kNominalSkid.motion(left, right);
   constexpr double kForward = 2e-5;
   constexpr double kTurn = -1e-4;
   Surrogate robot(settling_model(kForward, kTurn), SupportGeometry{}, 1);
-  robot.place(0, {}, {0.002, 0.0004, 0.01}, {0.001, 0.0002, -0.01});
+  robot.set_pose(0, {}, {0.002, 0.0004, 0.01}, {0.001, 0.0002, -0.01});
   robot.set_tracks(0, left, right);
   robot.step(ground, {&left, 1}, {&right, 1});
   EXPECT_NEAR(
@@ -219,7 +219,7 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
   for (std::size_t i = 0; i < kRobots; ++i) {
     Surrogate robot(model, SupportGeometry{}, 1, Surrogate::Arithmetic::kInteger,
                     BatchKernel::kScalar);
-    robot.place(0, places[i]);
+    robot.set_pose(0, places[i]);
     robot.set_soil(0, soil(i));
     for (int frame = 0; frame < kFrames; ++frame) {
       robot.step(ground, {&left[i], 1}, {&right[i], 1});
@@ -229,7 +229,7 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
   for (const BatchKernel kernel : batch_kernels()) {
     Surrogate robots(model, SupportGeometry{}, kRobots, Surrogate::Arithmetic::kInteger, kernel);
     for (std::size_t i = 0; i < kRobots; ++i) {
-      robots.place(i, places[i]);
+      robots.set_pose(i, places[i]);
       robots.set_soil(i, soil(i));
     }
     for (int frame = 0; frame < kFrames; ++frame) robots.step(ground, left, right);
@@ -242,11 +242,11 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
 }
 
 /// forward = 0.01 times the normalised speed of the left track.
-Model staged_model(std::vector<ModelStage> stages) {
+Model staged_model(std::vector<ModelPreprocessingStage> stages) {
   Model model = linear_model({channel("track_left", 0.2)},
                              {channel("forward", 0.01), channel("delta_theta", 0.01)}, {0.5, 0.0},
                              {0.0, 0.0});
-  for (ModelStage& stage : stages) stage.run_time = true;
+  for (ModelPreprocessingStage& stage : stages) stage.run_time = true;
   model.stages = std::move(stages);
   return model;
 }
@@ -274,9 +274,9 @@ void expect_felt(const Model& model, const std::vector<double>& speeds,
 }
 
 TEST(Surrogate, AppliesTheStagesOfRunTimeToItsInputsInTheirOrder) {
-  const ModelStage mean{"mean", "", 0.0, 0.0, 3.0, false};
-  const ModelStage exponential{"exponential", "", 0.0, 0.0, 0.25, false};
-  const ModelStage quantise{"quantise", "", 0.0, 0.0, 0.2, false};
+  const ModelPreprocessingStage mean{"mean", "", 0.0, 0.0, 3.0, false};
+  const ModelPreprocessingStage exponential{"exponential", "", 0.0, 0.0, 0.25, false};
+  const ModelPreprocessingStage quantise{"quantise", "", 0.0, 0.0, 0.2, false};
   const std::vector<double> speeds = {0.1, 0.04, 0.16, 0.0, 0.0};  // 0.5, 0.2, 0.8, 0, 0
   expect_felt(staged_model({mean}), speeds, {0.5, 0.35, 0.5, 1.0 / 3.0, 0.8 / 3.0});
   expect_felt(staged_model({exponential}), speeds, {0.5, 0.425, 0.51875, 0.3890625, 0.291796875});
@@ -286,8 +286,8 @@ TEST(Surrogate, AppliesTheStagesOfRunTimeToItsInputsInTheirOrder) {
   EXPECT_THROW(felt(staged_model({{"remove_far", "v", 0.0, 1.0, 0.0, false}}), speeds), InputError);
 }
 
-TEST(Surrogate, FeelsProductsOfWheelsAndSlopeAsTheFeaturesSayThem) {
-  Frame frame;
+TEST(Surrogate, ProductsOfWheelsAndSlopeEqualTheFeatures) {
+  SimFrame frame;
   frame.pitch = 0.2;
   frame.roll = -0.1;
   const double left = -0.12;
@@ -324,9 +324,9 @@ TEST(Surrogate, SmoothsEveryRobotByItself) {
     std::vector<double> speeds;
     for (std::size_t i = 0; i < kRobots; ++i) speeds.push_back(random.uniform(-0.2, 0.2));
     if (frame == 10) {  // put elsewhere, it begins anew
-      together.place(2, {1.0, 0.0, 0.0});
+      together.set_pose(2, {1.0, 0.0, 0.0});
       alone[2] = Surrogate(model, SupportGeometry{}, 1);
-      alone[2].place(0, {1.0, 0.0, 0.0});
+      alone[2].set_pose(0, {1.0, 0.0, 0.0});
     }
     together.step(ground, speeds, speeds);
     for (std::size_t i = 0; i < kRobots; ++i) {

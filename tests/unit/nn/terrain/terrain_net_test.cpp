@@ -8,16 +8,16 @@
 #include "host_sim/core/random.h"
 #include "nn/terrain/flux_network.h"
 #include "nn/terrain/flux_trainer.h"
-#include "nn/terrain/ground_comparison.h"
+#include "nn/terrain/terrain_comparison.h"
 #include "tests/temp_folder.h"
 
 namespace screed::nn {
 namespace {
 
-constexpr std::array<WheelPlace, 4> kWheels = {{{0.09, 0.1, 0.03, true},
-                                                {0.09, -0.1, 0.03, true},
-                                                {-0.09, 0.1, 0.03, false},
-                                                {-0.09, -0.1, 0.03, false}}};
+constexpr std::array<WheelPosition, 4> kWheels = {{{0.09, 0.1, 0.03, true},
+                                                   {0.09, -0.1, 0.03, true},
+                                                   {-0.09, 0.1, 0.03, false},
+                                                   {-0.09, -0.1, 0.03, false}}};
 
 HeightField bumps(bool wrap) {
   return HeightField::from_function(120, 100, 0.005, wrap, [](double x, double y) {
@@ -41,7 +41,7 @@ TEST(FluxNetwork, VolumeIsKeptToTheLastUnitWhateverTheWeights) {
       stride.yaw_rad = 0.3 * i;
       stride.forward_m = 0.005;
       stride.track_m = {0.006, 0.004};
-      network.act(ground, kWheels, stride);
+      network.apply(ground, kWheels, stride);
       ASSERT_EQ(ground.height_sum(), before) << i;
     }
     EXPECT_GT(compare(start, ground, ground).true_change_mm, 0.1);
@@ -75,19 +75,20 @@ TEST(FluxTrainer, LearnsTheFluxesOfAnotherNetwork) {
   WorldRandom random(2, "examples");
   double squares = 0.0;
   for (int i = 0; i < 96; ++i) {
-    std::vector<float> sight(FluxNetwork::kSight);
-    for (float& value : sight) value = static_cast<float>(random.uniform(-1.0, 1.0));
+    std::vector<float> observation(FluxNetwork::kObservation);
+    for (float& value : observation) value = static_cast<float>(random.uniform(-1.0, 1.0));
     std::vector<float> fluxes(FluxNetwork::kFluxes);
-    teacher.answer(sight, fluxes);
+    teacher.evaluate(observation, fluxes);
     std::vector<float> changes(FluxNetwork::kCells);
     for (std::size_t flux = 0; flux < fluxes.size(); ++flux) {
-      changes[sides_of(flux).from] -= fluxes[flux];
-      changes[sides_of(flux).to] += fluxes[flux];
+      changes[cells_of(flux).from] -= fluxes[flux];
+      changes[cells_of(flux).to] += fluxes[flux];
     }
     for (const float change : changes) {
       squares += static_cast<double>(change) * static_cast<double>(change);
     }
-    examples.sights.insert(examples.sights.end(), sight.begin(), sight.end());
+    examples.observations.insert(examples.observations.end(), observation.begin(),
+                                 observation.end());
     examples.changes.insert(examples.changes.end(), changes.begin(), changes.end());
   }
   constexpr double kOutput_mm = FluxNetwork::kOutput_m * 1e3;
@@ -99,7 +100,7 @@ TEST(FluxTrainer, LearnsTheFluxesOfAnotherNetwork) {
   EXPECT_LT(last, 0.5 * untaught);
 }
 
-TEST(GroundComparison, CountsRuts) {
+TEST(TerrainComparison, CountsRuts) {
   const HeightField before = HeightField::from_function(
       200, 200, 0.005, false, [](double x, double y) { return 0.1 * x + 0.02 * y; });
   std::vector<Stride> way;
@@ -128,15 +129,15 @@ TEST(GroundComparison, CountsRuts) {
   EXPECT_EQ(with_ruts({0.3}).mean, 0.0);  // not of this robot
 }
 
-TEST(GroundComparison, VolumeAndError) {
+TEST(TerrainComparison, VolumeAndError) {
   const HeightField before = HeightField::flat(1.0, 0.1);
   HeightField real = before;
-  HeightField foretold = before;
+  HeightField predicted = before;
   const auto millimetre = static_cast<Height>(0.001 / kHeightUnit_m);
   real.set_node(3, 3, -millimetre);
-  foretold.set_node(3, 3, -2 * millimetre);
-  foretold.set_node(7, 7, millimetre);
-  const GroundComparison c = compare(before, real, foretold);
+  predicted.set_node(3, 3, -2 * millimetre);
+  predicted.set_node(7, 7, millimetre);
+  const TerrainComparison c = compare(before, real, predicted);
   EXPECT_NEAR(c.true_change_mm, 1.0, 1e-3);
   EXPECT_NEAR(c.error_mm, 1.0, 1e-3);
   EXPECT_NEAR(c.outside_mm, 1.0 / std::sqrt(120.0), 1e-3);

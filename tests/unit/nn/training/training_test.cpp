@@ -298,7 +298,7 @@ TEST(Measures, AgainstValuesByHand) {
   const std::vector<double> bent = {1.0, 10.0, 100.0, 1000.0};
   EXPECT_DOUBLE_EQ(mean_squared_error(real, twice), (1.0 + 4.0 + 9.0 + 16.0) / 4.0);
   EXPECT_NEAR(squared_correlation(real, twice), 1.0, 1e-12);
-  EXPECT_NEAR(explained_share(real, twice), 1.0 - 30.0 / 5.0, 1e-12);
+  EXPECT_NEAR(explained_variance(real, twice), 1.0 - 30.0 / 5.0, 1e-12);
   EXPECT_NEAR(spearman(real, bent), 1.0, 1e-12);
   // Ranks 0, 1.5, 1.5, 3 against 0..3: 4.5 / sqrt(4.5 * 5).
   const std::vector<double> tied = {1.0, 5.0, 5.0, 9.0};

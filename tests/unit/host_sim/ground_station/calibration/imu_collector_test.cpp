@@ -7,7 +7,7 @@
 #include "firmware/protocol/messages.h"
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/devices/sensors/handling.h"
+#include "host_sim/devices/sensors/calibration_motion.h"
 #include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 
@@ -27,10 +27,10 @@ CanFrame frame_with(const int16_t (&counts)[3]) {
 void hold(ImuModel& imu, double from_s, double to_s, ImuCollector& collector) {
   SensorSample sample{};
   for (int tick = static_cast<int>(from_s * kTickRate_hz); tick < to_s * kTickRate_hz; ++tick) {
-    imu.measure(handled_motion(static_cast<double>(tick) / kTickRate_hz), sample);
-    if (tick % 10 == 0) collector.take(frame_with<message::AccelRaw>(sample.accel));
-    if (tick % 10 == 5) collector.take(frame_with<message::GyroRaw>(sample.gyro));
-    if (tick % 50 == 0) collector.take(frame_with<message::MagRaw>(sample.mag));
+    imu.measure(calibration_motion(static_cast<double>(tick) / kTickRate_hz), sample);
+    if (tick % 10 == 0) collector.add_frame(frame_with<message::AccelRaw>(sample.accel));
+    if (tick % 10 == 5) collector.add_frame(frame_with<message::GyroRaw>(sample.gyro));
+    if (tick % 50 == 0) collector.add_frame(frame_with<message::MagRaw>(sample.mag));
   }
 }
 
@@ -44,9 +44,9 @@ ImuTruth level_at_rest() {
 }
 
 TEST(Handling, TheMotionIsOneThatABodyCanMake) {
-  for (double t = 0.02; t < kHandlingPeriod_s + 1.0; t += 0.37) {
-    const ImuTruth now = handled_motion(t);
-    const ImuTruth before = handled_motion(t - 0.01);
+  for (double t = 0.02; t < kCalibrationMotionPeriod_s + 1.0; t += 0.37) {
+    const ImuTruth now = calibration_motion(t);
+    const ImuTruth before = calibration_motion(t - 0.01);
     EXPECT_NEAR(now.mean_specific_force.norm(), kGravity_m_per_s2, 1e-9);
     // Nobody turns a robot faster than the gyro can say.
     EXPECT_LT(now.mean_rate_rad_per_s.norm(), 10.0);
@@ -70,7 +70,7 @@ TEST(ImuCollector, ARobotInTheHandIsCalibrated) {
     EXPECT_TRUE(collector.positions_done()) << collector.advice();
     EXPECT_FALSE(collector.complete());
     EXPECT_NE(collector.advice().find("all directions"), std::string::npos);
-    hold(imu, 56.0, kHandlingPeriod_s, collector);
+    hold(imu, 56.0, kCalibrationMotionPeriod_s, collector);
     ASSERT_TRUE(collector.complete()) << collector.mag_coverage();
     const ImuCalibration found = collector.fit();
 
@@ -107,7 +107,7 @@ TEST(ImuCollector, ARobotInTheHandIsCalibrated) {
 TEST(ImuCollector, ARobotThatIsNeverStillIsNotCalibrated) {
   ImuModel imu(1, ImuErrors::uncalibrated());
   ImuCollector collector;
-  hold(imu, 60.0, kHandlingPeriod_s, collector);
+  hold(imu, 60.0, kCalibrationMotionPeriod_s, collector);
   EXPECT_FALSE(collector.complete());
   EXPECT_THROW(static_cast<void>(collector.fit()), RunError);
 }

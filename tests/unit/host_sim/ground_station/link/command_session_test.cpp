@@ -41,7 +41,7 @@ class FakeRobot : public Link {
     if (frame.id != kIdCommand) return true;
     const GateResult checked = gate_.check(frame.id, frame.data);
     if (checked != GateResult::kRepeated) {
-      result_ = checked == GateResult::kAccepted ? obey(frame) : static_cast<Result>(checked);
+      result_ = checked == GateResult::kAccepted ? execute(frame) : static_cast<Result>(checked);
       if (checked == GateResult::kAccepted) ++done;
     }
     message::CommandAck ack{};
@@ -76,7 +76,7 @@ class FakeRobot : public Link {
     out_.push_back(frame);
   }
 
-  Result obey(const CanFrame& frame) {
+  Result execute(const CanFrame& frame) {
     const auto op = static_cast<CommandOp>(frame.data[0]);
     if (op == CommandOp::kRun) return Result::kWrongState;
     if (op == CommandOp::kParameterRead) {
@@ -115,7 +115,7 @@ TEST_F(CommandSessionTest, ACommandWaitsForTheRobotsHeartbeatAndIsAnswered) {
   const auto answer = session_.run(CommandOp::kArm);
   ASSERT_TRUE(answer.has_value());
   EXPECT_TRUE(answer->done());
-  EXPECT_EQ(answer->words(), "done");
+  EXPECT_EQ(answer->description(), "done");
   EXPECT_EQ(robot_.done, 1);
 }
 
@@ -123,8 +123,8 @@ TEST_F(CommandSessionTest, ARefusalIsSaidInWords) {
   const auto answer = session_.run(CommandOp::kRun);
   ASSERT_TRUE(answer.has_value());
   EXPECT_FALSE(answer->done());
-  EXPECT_EQ(answer->words(), "refused: not possible in the robot's present state");
-  EXPECT_EQ((CommandAnswer{1, static_cast<uint8_t>(Result::kFaultPresent), 5}.words()),
+  EXPECT_EQ(answer->description(), "refused: not possible in the robot's present state");
+  EXPECT_EQ((CommandAnswer{1, static_cast<uint8_t>(Result::kFaultPresent), 5}.description()),
             "refused: a fault is present (tilt, gyro_frozen)");
 }
 
@@ -163,7 +163,7 @@ TEST_F(CommandSessionTest, AnotherKeyIsRefused) {
   CommandSession session{robot_, {other, true, {}, [this] { return robot_.now_us; }}};
   const auto answer = session.run(CommandOp::kArm);
   ASSERT_TRUE(answer.has_value());
-  EXPECT_EQ(answer->words(), "refused: signed with another key than the robot's (--key)");
+  EXPECT_EQ(answer->description(), "refused: signed with another key than the robot's (--key)");
   EXPECT_EQ(robot_.done, 0);
 }
 

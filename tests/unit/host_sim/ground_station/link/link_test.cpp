@@ -9,7 +9,7 @@
 #include "firmware/protocol/e2e.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/can_link.h"
-#include "host_sim/ground_station/link/outside_port.h"
+#include "host_sim/ground_station/link/external_port.h"
 #include "host_sim/ground_station/link/pseudo_terminal.h"
 #include "host_sim/ground_station/link/serial_link.h"
 #include "host_sim/ground_station/station/ground_end.h"
@@ -268,10 +268,10 @@ TEST(CanLink, WithoutCanOrInterfaceOneClearLine) {
 
 class RecordingPort : public GroundPort {
  public:
-  void give(std::span<const uint8_t> bytes) override {
+  void send(std::span<const uint8_t> bytes) override {
     given.insert(given.end(), bytes.begin(), bytes.end());
   }
-  std::vector<uint8_t> take() override { return std::exchange(waiting, {}); }
+  std::vector<uint8_t> receive() override { return std::exchange(waiting, {}); }
 
   std::vector<uint8_t> given;
   std::vector<uint8_t> waiting;

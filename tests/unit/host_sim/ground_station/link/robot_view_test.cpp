@@ -86,8 +86,8 @@ message::Heartbeat heartbeat(message::HeartbeatState state, uint16_t faults) {
 
 TEST(RobotView, ValuesAreTheNewestInTheirUnits) {
   FleetView fleet;
-  ASSERT_NE(fleet.take(frame_with(attitude(-1234, 500), 0, kStart_us)), nullptr);
-  RobotView* const robot = fleet.take(frame_with(attitude(-1235, 501), 1, kStart_us + 40'000));
+  ASSERT_NE(fleet.add_frame(frame_with(attitude(-1234, 500), 0, kStart_us)), nullptr);
+  RobotView* const robot = fleet.add_frame(frame_with(attitude(-1235, 501), 1, kStart_us + 40'000));
   ASSERT_NE(robot, nullptr);
   EXPECT_DOUBLE_EQ(robot->value("attitude.roll").value_or(0.0), -12.35);
   EXPECT_EQ(robot->text("attitude.pitch"), "5.01");
@@ -108,7 +108,7 @@ TEST(RobotView, LostFramesAreCountedByTheAliveCounter) {
   uint64_t time_us = kStart_us;
   // 100 frames are sent, of which each tenth is lost.
   for (int i = 0; i < 100; ++i, time_us += 40'000) {
-    if (i % 10 != 5) robot = fleet.take(frame_with(attitude(0, 0), i & 0xF, time_us));
+    if (i % 10 != 5) robot = fleet.add_frame(frame_with(attitude(0, 0), i & 0xF, time_us));
   }
   ASSERT_NE(robot, nullptr);
   EXPECT_EQ(robot->frames(), 90U);
@@ -122,11 +122,11 @@ TEST(RobotView, DamagedAndForeignFramesAreCountedAndNotShown) {
   FleetView fleet;
   LinkFrame damaged = frame_with(attitude(0, 0), 0, kStart_us);
   damaged.frame.data[3] ^= 1U;
-  EXPECT_EQ(fleet.take(damaged), nullptr);
+  EXPECT_EQ(fleet.add_frame(damaged), nullptr);
   LinkFrame unknown;
   unknown.frame = {0x7FF, 3, {1, 2, 3}};
-  EXPECT_EQ(fleet.take(unknown), nullptr);
-  EXPECT_EQ(fleet.take(frame_with(message::GroundHeartbeat{1}, 0, kStart_us)), nullptr);
+  EXPECT_EQ(fleet.add_frame(unknown), nullptr);
+  EXPECT_EQ(fleet.add_frame(frame_with(message::GroundHeartbeat{1}, 0, kStart_us)), nullptr);
   EXPECT_EQ(fleet.damaged(), 1U);
   EXPECT_EQ(fleet.unknown(), 1U);
   EXPECT_EQ(fleet.uplink(), 1U);
@@ -137,9 +137,9 @@ TEST(RobotView, RobotsAreToldApartByModuleAndNode) {
   FleetView fleet;
   LinkFrame frame = frame_with(attitude(100, 0), 0, kStart_us);
   frame.source = RadioSource{0x0013A20040522BAA, -60};
-  fleet.take(frame);
+  fleet.add_frame(frame);
   frame.source = RadioSource{0x0013A20040522BAB, -70};
-  fleet.take(frame);
+  fleet.add_frame(frame);
   ASSERT_EQ(fleet.robots().size(), 2U);
   EXPECT_EQ(fleet.robots().begin()->first.text(), "robot 1 at 0013A20040522BAA");
   EXPECT_EQ(fleet.robots().begin()->second.rssi_dbm(), -60);
@@ -147,23 +147,22 @@ TEST(RobotView, RobotsAreToldApartByModuleAndNode) {
 
 TEST(RobotView, WhatHappensIsSaidInWords) {
   FleetView fleet;
-  fleet.take(frame_with(heartbeat(message::HeartbeatState::kDisarmed, 0), 0, kStart_us));
+  fleet.add_frame(frame_with(heartbeat(message::HeartbeatState::kDisarmed, 0), 0, kStart_us));
   const auto stall = static_cast<uint16_t>(message::HeartbeatFaults::kStallLeft);
-  RobotView* const robot = fleet.take(
+  RobotView* const robot = fleet.add_frame(
       frame_with(heartbeat(message::HeartbeatState::kFault, stall), 1, kStart_us + 200'000));
   ASSERT_NE(robot, nullptr);
   EXPECT_EQ(robot->faults(), std::vector<std::string>{"stall left: high duty, no motion"});
   message::CommandAck ack{};
   ack.op = static_cast<uint8_t>(CommandOp::kArm);
   ack.result = static_cast<uint8_t>(message::CommandAckResult::kFaultPresent);
-  fleet.take(frame_with(ack, 0, kStart_us + 300'000));
+  fleet.add_frame(frame_with(ack, 0, kStart_us + 300'000));
   message::Heartbeat restarted = heartbeat(message::HeartbeatState::kDisarmed, 0);
   restarted.boot_epoch = 8;
-  fleet.take(frame_with(restarted, 0, kStart_us + 400'000));
+  fleet.add_frame(frame_with(restarted, 0, kStart_us + 400'000));
 
   std::vector<std::string> words;
-  for (const RobotView::Happening& happening : robot->happenings())
-    words.push_back(happening.words);
+  for (const RobotView::Event& event : robot->events()) words.push_back(event.words);
   EXPECT_EQ(words, (std::vector<std::string>{
                        "the robot restarted, start 8", "fault gone: stall left", "state: disarmed",
                        "arm: fault present", "fault: stall left: high duty, no motion",
@@ -176,10 +175,10 @@ class DashboardTest : public ::testing::Test {
  protected:
   DashboardTest() {
     const auto tilt = static_cast<uint16_t>(message::HeartbeatFaults::kTilt);
-    fleet_.take(frame_with(heartbeat(message::HeartbeatState::kFault, tilt), 0, kStart_us));
+    fleet_.add_frame(frame_with(heartbeat(message::HeartbeatState::kFault, tilt), 0, kStart_us));
     for (int i = 0; i < 100; ++i) {
-      fleet_.take(frame_with(attitude(static_cast<int16_t>(i * 10), -700), i & 0xF,
-                             kStart_us + static_cast<uint64_t>(i) * 40'000));
+      fleet_.add_frame(frame_with(attitude(static_cast<int16_t>(i * 10), -700), i & 0xF,
+                                  kStart_us + static_cast<uint64_t>(i) * 40'000));
     }
     input_.now_us = kStart_us + 4'000'000;
     input_.link_name = "vcan0";

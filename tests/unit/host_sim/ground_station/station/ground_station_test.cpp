@@ -69,13 +69,13 @@ TEST(GroundStation, HeartbeatsFiveTimesASecondWithTimeAndRisingCounter) {
 }
 
 TEST(GroundStation, SaysNothingElseBeforeItHearsTheRobot) {
-  GroundStation ground(true, DriveOrder{}, nullptr);
+  GroundStation ground(true, DriveCommand{}, nullptr);
   EXPECT_TRUE(commands(ground).empty());
   EXPECT_FALSE(ground.report().heard);
 }
 
 TEST(GroundStation, ArmsThenRunsThenDrives) {
-  GroundStation ground(true, DriveOrder{0.1, -45.0}, nullptr);
+  GroundStation ground(true, DriveCommand{0.1, -45.0}, nullptr);
   ground.receive(0, robot_heartbeat(RobotState::kDisarmed));
   EXPECT_EQ(commands(ground),
             std::vector<int>(
@@ -113,7 +113,7 @@ TEST(GroundStation, DoesNotStartARobotThatHasBeenRunning) {
 }
 
 TEST(GroundStation, DoesNotArmUnlessTold) {
-  GroundStation ground(false, DriveOrder{}, nullptr);
+  GroundStation ground(false, DriveCommand{}, nullptr);
   for (const RobotState state : {RobotState::kDisarmed, RobotState::kArmed}) {
     ground.receive(0, robot_heartbeat(state));
     EXPECT_TRUE(commands(ground).empty());
@@ -121,7 +121,7 @@ TEST(GroundStation, DoesNotArmUnlessTold) {
 }
 
 TEST(GroundStation, NoTickCarriesMoreThanOnePacketOfFourLines) {
-  GroundStation ground(true, DriveOrder{}, nullptr);
+  GroundStation ground(true, DriveCommand{}, nullptr);
   ground.receive(0, robot_heartbeat(RobotState::kRunning));
   for (uint64_t tick = 0; tick < 1000; ++tick)
     EXPECT_LE(ground.transmit(tick * 10000).size(), kSlcanLineMax);
@@ -185,7 +185,7 @@ TEST(GroundStation, DamagedFramesAreCountedAndNotLogged) {
 }
 
 TEST(GroundStation, BringsARealRobotToRun) {
-  GroundStation ground(true, DriveOrder{0.1, 0.0}, nullptr);
+  GroundStation ground(true, DriveCommand{0.1, 0.0}, nullptr);
   Parameters parameters;
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   TestRobot robot(parameters);

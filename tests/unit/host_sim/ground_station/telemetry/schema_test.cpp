@@ -197,12 +197,12 @@ TEST(Schema, NamesAreThoseOfTheFirmware) {
                                   {n(LevelingState::kSpin), "spin"},
                                   {n(LevelingState::kReturn), "return"},
                                   {n(LevelingState::kDrive), "drive"},
-                                  {n(LevelingState::kTraining), "training"},
+                                  {n(LevelingState::kTrainingDrive), "training_drive"},
                                   {n(LevelingState::kDone), "done"}});
   expect_names("leveling.algorithm", {{n(LevelingAlgorithm::kDrive), "drive"},
                                       {n(LevelingAlgorithm::kHillSensing), "hill_sensing"},
                                       {n(LevelingAlgorithm::kSpinOnPeak), "spin_on_peak"},
-                                      {n(LevelingAlgorithm::kTraining), "random"}});
+                                      {n(LevelingAlgorithm::kTrainingDrive), "training_drive"}});
   expect_names("health.reset_cause", {{n(avr::ResetCause::kPowerOn), "power_on"},
                                       {n(avr::ResetCause::kBrownOut), "brown_out"},
                                       {n(avr::ResetCause::kWatchdog), "watchdog"},

@@ -13,7 +13,7 @@
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/particles/solid_touch.h"
+#include "host_sim/physics/particles/solid_contact.h"
 #include "tests/unit/allocations.h"
 
 namespace screed {
@@ -48,9 +48,9 @@ std::string fingerprint(const ParticleBed& bed) {
   ContentHash hash;
   for (size_t i = 0; i < bed.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      hash.add(bed.place(i)[axis]);
+      hash.add(bed.position(i)[axis]);
       hash.add(bed.velocity(i)[axis]);
-      hash.add(bed.turn_rate(i)[axis]);
+      hash.add(bed.angular_velocity(i)[axis]);
     }
     hash.add(bed.awake(i));
   }
@@ -139,14 +139,15 @@ TEST(ParticleLayout, NoneOverlapAndAllRestOnSomething) {
       int touching = 0;
       double nearest = 1.0;
       for (size_t j = 0; j < centres.size(); ++j) {
-        Eigen::Vector3d way = centres[j] - centres[i];
+        Eigen::Vector3d separation = centres[j] - centres[i];
         if (periodic) {
-          way.x() -= extent.width_m * std::round(way.x() / extent.width_m);
-          way.y() -= extent.depth_m * std::round(way.y() / extent.depth_m);
+          separation.x() -= extent.width_m * std::round(separation.x() / extent.width_m);
+          separation.y() -= extent.depth_m * std::round(separation.y() / extent.depth_m);
         }
         if (j == i) continue;
-        nearest = std::min(nearest, way.norm());
-        touching += way.norm() < 2.0 * kRadius * (1.0 + 1e-9) && way.z() < 0.0 ? 1 : 0;
+        nearest = std::min(nearest, separation.norm());
+        touching +=
+            separation.norm() < 2.0 * kRadius * (1.0 + 1e-9) && separation.z() < 0.0 ? 1 : 0;
       }
       EXPECT_GE(nearest, 2.0 * kRadius * (1.0 - 1e-9));
       EXPECT_TRUE(touching > 0 || centres[i].z() < kRadius * (1.0 + 1e-9)) << "hangs in the air";
@@ -185,12 +186,12 @@ TEST(ParticleBed, SleepHidesNoMotion) {
   ParticleBed bed(mound(0.5, 0.1, 0.06), {});
   run(bed, 0.5);
   std::vector<Eigen::Vector3d> before;
-  for (size_t i = 0; i < bed.size(); ++i) before.push_back(bed.place(i));
+  for (size_t i = 0; i < bed.size(); ++i) before.push_back(bed.position(i));
   bed.wake_all();
   run(bed, 2.0);
   EXPECT_EQ(bed.counts().awake, 0U);
   double sum = 0.0;
-  for (size_t i = 0; i < bed.size(); ++i) sum += (bed.place(i) - before[i]).norm();
+  for (size_t i = 0; i < bed.size(); ++i) sum += (bed.position(i) - before[i]).norm();
   EXPECT_LT(sum / static_cast<double>(bed.size()), 0.02 * kRadius);
 }
 
@@ -203,7 +204,7 @@ TEST(ParticleBed, PacksAsDenselyAsPouredSpheres) {
   const double half = 0.2;
   double volume = 0.0;
   for (size_t i = 0; i < bed.size(); ++i) {
-    const Eigen::Vector3d& at = bed.place(i);
+    const Eigen::Vector3d& at = bed.position(i);
     if (at.head<2>().cwiseAbs().maxCoeff() > half) continue;
     // A ball that a horizontal plane cuts: the spherical segment between low and high.
     const auto below = [&](double plane) {
@@ -278,7 +279,7 @@ TEST(ParticleBed, RaysReadTheSphereAndFollowIt) {
   bed.set_motion(0, {0.4, 0.1, 0.05}, Eigen::Vector3d::Zero());
   for (int k = 0; k < 4; ++k) {
     const HeightField& surface = bed.surface();
-    const Eigen::Vector3d at = bed.place(0);
+    const Eigen::Vector3d at = bed.position(0);
     int hits = 0;
     for (int iy = 0; iy < surface.ny(); ++iy) {
       for (int ix = 0; ix < surface.nx(); ++ix) {
@@ -330,8 +331,8 @@ TEST(ParticleBed, MomentumGoesFromTheGearToTheParticlesAndNowhereElse) {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();
   for (size_t i = 0; i < bed.size(); ++i) {
     momentum += mass * bed.velocity(i);
-    angular += mass * (bed.place(i) - centre).cross(bed.velocity(i)) +
-               options.material.inertia_kg_m2() * bed.turn_rate(i);
+    angular += mass * (bed.position(i) - centre).cross(bed.velocity(i)) +
+               options.material.inertia_kg_m2() * bed.angular_velocity(i);
   }
   EXPECT_GT(momentum.norm(), 1e-3);
   EXPECT_LT((momentum + impulse).norm(), 1e-15);
@@ -405,7 +406,7 @@ TEST(ParticleBed, SameSeedGivesTheSameBitsEverywhere) {
 // --------------------------------------------------------------------------------------
 
 // The distance of a point from a body is that of the nearest of many points of the body.
-TEST(SolidTouch, IsTheNearestPlaceOfTheSurface) {
+TEST(SolidContact, IsTheNearestPlaceOfTheSurface) {
   const Footprint solids[] = {Footprint::track(0.06, 0.03, 0.04), Footprint::wheel(0.03, 0.02),
                               Footprint::box({0.1, 0.06, 0.04}), Footprint::disc(0.04, 0.03)};
   const auto holds = [](const Footprint& solid, const Eigen::Vector3d& p) {
@@ -426,12 +427,12 @@ TEST(SolidTouch, IsTheNearestPlaceOfTheSurface) {
     for (int k = 0; k < 60; ++k) {
       const Eigen::Vector3d point(0.013 * (k % 7) - 0.04, 0.011 * (k % 9) - 0.045,
                                   0.012 * (k % 8) - 0.04);
-      const SolidTouch touch = nearest_on(solid, point);
-      EXPECT_NEAR(touch.normal.norm(), 1.0, 1e-12);
-      EXPECT_LT((touch.surface + touch.distance * touch.normal - point).norm(), 1e-12);
-      EXPECT_TRUE(holds(solid, touch.surface - 1e-9 * touch.normal));
+      const SolidContact contact = nearest_on(solid, point);
+      EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-12);
+      EXPECT_LT((contact.surface + contact.distance * contact.normal - point).norm(), 1e-12);
+      EXPECT_TRUE(holds(solid, contact.surface - 1e-9 * contact.normal));
       const bool inside = holds(solid, point);
-      EXPECT_EQ(touch.distance < 0.0, inside);
+      EXPECT_EQ(contact.distance < 0.0, inside);
       double nearest = 1.0;  // of what is on the other side of the surface
       const auto cells = static_cast<int>(0.1 / kMesh);
       for (int i = -cells; i <= cells; i += 2) {
@@ -444,8 +445,8 @@ TEST(SolidTouch, IsTheNearestPlaceOfTheSurface) {
           }
         }
       }
-      EXPECT_GE(nearest, std::abs(touch.distance) - 1e-9);
-      EXPECT_LE(nearest, std::abs(touch.distance) + 4.0 * kMesh);
+      EXPECT_GE(nearest, std::abs(contact.distance) - 1e-9);
+      EXPECT_LE(nearest, std::abs(contact.distance) + 4.0 * kMesh);
     }
   }
 }

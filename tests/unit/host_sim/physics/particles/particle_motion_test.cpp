@@ -58,19 +58,19 @@ TEST(ParticleMotion, FallsFreely) {
   // Exactly what the integration makes of it: v = g t, and half a step more way than g t^2 / 2.
   const double time = steps * dt;
   EXPECT_NEAR(bed.velocity(0).z(), -kGravity * time, 1e-9);
-  EXPECT_NEAR(2.0 - bed.place(0).z(), 0.5 * kGravity * time * (time + dt), 1e-9);
-  EXPECT_EQ(bed.place(0).x(), 0.0);
+  EXPECT_NEAR(2.0 - bed.position(0).z(), 0.5 * kGravity * time * (time + dt), 1e-9);
+  EXPECT_EQ(bed.position(0).x(), 0.0);
 }
 
 TEST(ParticleMotion, RestsWhereTheFloorBearsItsWeightAndSleeps) {
   const ParticleOptions options;
   ParticleBed bed({{0.0, 0.0, kRadius}}, box(0.5), 0.1, options);
   run(bed, 1.0);
-  EXPECT_NEAR(bed.place(0).z(), resting(options), 1e-7);
+  EXPECT_NEAR(bed.position(0).z(), resting(options), 1e-7);
   EXPECT_FALSE(bed.awake(0));
-  const Eigen::Vector3d there = bed.place(0);
+  const Eigen::Vector3d there = bed.position(0);
   run(bed, 10.0);
-  EXPECT_EQ(bed.place(0), there);
+  EXPECT_EQ(bed.position(0), there);
 }
 
 // A particle that cannot roll slides iff the slope is steeper than its friction.
@@ -85,7 +85,7 @@ TEST(ParticleMotion, SlidesIffTheSlopeLeavesTheFrictionCone) {
       const double begin = bed.velocity(0).x();
       if (share < 1.0) {
         EXPECT_EQ(begin, 0.0) << "friction " << friction << ", slope " << share;
-        EXPECT_LT(bed.place(0).x(), 0.002);  // the springs had to be loaded
+        EXPECT_LT(bed.position(0).x(), 0.002);  // the springs had to be loaded
         EXPECT_FALSE(bed.awake(0));
       } else {
         run(bed, 0.5);
@@ -107,7 +107,7 @@ TEST(ParticleMotion, RollsAndSlipsDownASlopeAsASphereDoes) {
     ParticleBed bed({{-4.0, 0.0, resting(options)}}, box(10.0), 0.1, options);
     run(bed, 0.25);
     const double begin = bed.velocity(0).x();
-    const double turning = bed.turn_rate(0).y();
+    const double turning = bed.angular_velocity(0).y();
     run(bed, 0.5);
     const double angle = std::atan(tangent);
     const bool slips = tangent > 3.5 * 0.3;
@@ -116,7 +116,8 @@ TEST(ParticleMotion, RollsAndSlipsDownASlopeAsASphereDoes) {
     const double turning_up =
         slips ? 2.5 * 0.3 * kGravity * std::cos(angle) / kRadius : acceleration / kRadius;
     EXPECT_NEAR((bed.velocity(0).x() - begin) / 0.5, acceleration, 0.01 * acceleration) << tangent;
-    EXPECT_NEAR((bed.turn_rate(0).y() - turning) / 0.5, turning_up, 0.02 * turning_up) << tangent;
+    EXPECT_NEAR((bed.angular_velocity(0).y() - turning) / 0.5, turning_up, 0.02 * turning_up)
+        << tangent;
   }
 }
 
@@ -129,8 +130,8 @@ TEST(ParticleMotion, RollingResistanceStopsARollingSphere) {
   ParticleBed bed({{-2.0, 0.0, resting(options)}}, box(10.0), 0.1, options);
   bed.set_motion(0, {speed, 0.0, 0.0}, {0.0, speed / kRadius, 0.0});
   run(bed, 3.0);
-  const double way = speed * speed / (2.0 * 5.0 / 7.0 * 0.1 * kGravity);
-  EXPECT_NEAR(bed.place(0).x() + 2.0, way, 0.02 * way);
+  const double distance = speed * speed / (2.0 * 5.0 / 7.0 * 0.1 * kGravity);
+  EXPECT_NEAR(bed.position(0).x() + 2.0, distance, 0.02 * distance);
   EXPECT_FALSE(bed.awake(0));
 }
 
@@ -143,9 +144,9 @@ TEST(ParticleMotion, RollingResistanceHoldsOnGentleSlopes) {
     run(bed, 1.0);
     if (share < 1.0) {
       EXPECT_FALSE(bed.awake(0));
-      EXPECT_LT(bed.place(0).x(), 0.001);
+      EXPECT_LT(bed.position(0).x(), 0.001);
     } else {
-      EXPECT_GT(bed.place(0).x(), 0.02);
+      EXPECT_GT(bed.position(0).x(), 0.02);
     }
   }
 }
@@ -164,7 +165,7 @@ TEST(ParticleMotion, ContactsKeepMomentumAndAngularMomentum) {
   const auto angular = [&] {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const size_t i : {0U, 1U}) {
-      sum += mass * bed.place(i).cross(bed.velocity(i)) + inertia * bed.turn_rate(i);
+      sum += mass * bed.position(i).cross(bed.velocity(i)) + inertia * bed.angular_velocity(i);
     }
     return sum;
   };
@@ -217,7 +218,7 @@ TEST(ParticleMotion, WallsContainWhatIsThrownAtThem) {
   for (int k = 0; k < 20; ++k) {
     run(bed, 0.1);
     for (size_t i = 0; i < bed.size(); ++i) {
-      const Eigen::Vector3d& at = bed.place(i);
+      const Eigen::Vector3d& at = bed.position(i);
       ASSERT_LT(at.head<2>().cwiseAbs().maxCoeff(), 0.15 - kRadius + 0.007);
       ASSERT_GT(at.z(), kRadius - 0.007);
     }
@@ -238,7 +239,7 @@ TEST(ParticleMotion, ARepeatingBedHasNoEdge) {
   // Equal masses, elastic, head on: they exchange their speeds.
   EXPECT_NEAR(bed.velocity(1).x(), 0.5, 0.01);
   EXPECT_NEAR(bed.velocity(0).x(), 0.0, 0.01);
-  EXPECT_LT(bed.place(0).x(), 0.0);
+  EXPECT_LT(bed.position(0).x(), 0.0);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(SoilBedTest, VolumeIsExactWhileDriving) {
       EXPECT_EQ(end.error(), 0);
       if (compaction == 0.0) {
         EXPECT_EQ(end.compacted, 0);
-        EXPECT_EQ(end.now + end.in_hand, before);
+        EXPECT_EQ(end.now + end.in_transit, before);
       } else {
         EXPECT_GT(end.compacted, 0);
         EXPECT_LT(end.now, before);
@@ -79,7 +79,7 @@ TEST(SoilBedTest, WithoutBulldozingSunkMaterialIsCompacted) {
   SoilRobot robot(bed, {}, 0.0, 0.0);
   for (int i = 0; i < 3000; ++i) robot.step(0.2, 0.2, kStep_s);
   EXPECT_EQ(bed.balance().error(), 0);
-  EXPECT_EQ(bed.balance().in_hand, 0);
+  EXPECT_EQ(bed.balance().in_transit, 0);
   EXPECT_GT(bed.balance().compacted, 0);
   EXPECT_EQ(bed.balance().now, bed.balance().before - bed.balance().compacted);
 }
@@ -119,7 +119,7 @@ double forgotten_excess_units(const SoilBed& bed) {
         const double excess = std::abs(field.node(x, y) - field.node(beside_x, beside_y)) -
                               slope * field.spacing_m() * std::hypot(dx, dy) / kHeightUnit_m;
         if (excess <= most) continue;
-        if (bed.slope_waits(x, y) || bed.slope_waits(beside_x, beside_y)) continue;
+        if (bed.is_slope_queued(x, y) || bed.is_slope_queued(beside_x, beside_y)) continue;
         most = excess;
       }
     }
@@ -272,7 +272,7 @@ struct RoverRun {
   double highest_m = 0.0;        // of Body above where it was put down
   double fastest_m_per_s = 0.0;  // up or down, after the first 0.4 s
   double steepest_rad = 0.0;     // pitch or roll
-  double way_m = 0.0;
+  double distance_m = 0.0;
   int64_t volume_error = 0;
 };
 
@@ -302,14 +302,14 @@ RoverRun rover_on_stiff_soil(bool tracks, double step_s) {
       run.fastest_m_per_s = std::max(run.fastest_m_per_s, std::abs(state.velocity.z()));
     }
   }
-  run.way_m = vehicle.chassis().pose.translation().x() - pose.translation().x();
+  run.distance_m = vehicle.chassis().pose.translation().x() - pose.translation().x();
   run.volume_error = bed.balance().error();
   return run;
 }
 
 bool stays_on_the_ground(const RoverRun& run) {
   return run.highest_m < 0.001 && run.fastest_m_per_s < 0.03 && run.steepest_rad < 0.02 &&
-         run.way_m > 0.3 && run.volume_error == 0;
+         run.distance_m > 0.3 && run.volume_error == 0;
 }
 
 TEST(SoilBedTest, TheTrackedRoverIsStableOnStiffSoilAtLongSteps) {
@@ -321,7 +321,7 @@ TEST(SoilBedTest, TheWheeledRoverIsStableOnStiffSoilAtLongSteps) {
     const RoverRun run = rover_on_stiff_soil(false, step_s);
     EXPECT_TRUE(stays_on_the_ground(run))
         << "step " << step_s << " s: " << run.highest_m << " m up, " << run.fastest_m_per_s
-        << " m/s, " << run.steepest_rad << " rad, " << run.way_m << " m on";
+        << " m/s, " << run.steepest_rad << " rad, " << run.distance_m << " m on";
   }
 }
 

@@ -29,12 +29,12 @@ class ShearBox {
     for (int i = 0; i < 5; ++i) shear({0.0, 0.0}, kStep_s);  // until the area's b has settled
   }
 
-  /// Shears by `way` (along the plate and across it, m) within `seconds`; returns what of the
-  /// shear strength the soil answers with in the end, against the motion.
-  Eigen::Vector2d shear(const Eigen::Vector2d& way, double seconds) {
+  /// Shears by `displacement` (along the plate and across it, m) within `seconds`; returns what of
+  /// the shear strength the soil answers with in the end, against the motion.
+  Eigen::Vector2d shear(const Eigen::Vector2d& displacement, double seconds) {
     const auto steps = static_cast<int>(std::lround(seconds / kStep_s));
-    motion_.surface_speed = -way.x() / seconds;
-    motion_.velocity.y() = way.y() / seconds;
+    motion_.surface_speed = -displacement.x() / seconds;
+    motion_.velocity.y() = displacement.y() / seconds;
     Eigen::Vector2d mobilised = Eigen::Vector2d::Zero();
     for (int i = 0; i < steps; ++i) {
       const SoilReaction reaction = bed_.press(plate_, motion_, kStep_s, memory_);
@@ -43,7 +43,7 @@ class ShearBox {
           soil_.cohesion_pa * reaction.area +
           reaction.normal_load * std::tan(soil_.friction_deg * std::numbers::pi / 180.0);
       mobilised = -reaction.force.head<2>() / strength;
-      work_j_ -= reaction.force.head<2>().dot(way) / steps;
+      work_j_ -= reaction.force.head<2>().dot(displacement) / steps;
     }
     return mobilised;
   }

@@ -7,10 +7,10 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
-#include "host_sim/render/scene/ground_scene.h"
 #include "host_sim/render/scene/povray.h"
 #include "host_sim/render/scene/robot_scene.h"
 #include "host_sim/render/scene/scene_camera.h"
+#include "host_sim/render/scene/terrain_scene.h"
 #include "paths.h"
 
 namespace screed {
@@ -40,9 +40,9 @@ size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST(GroundSurface, IsBilinearAndEndsLevel) {
+TEST(TerrainSurface, IsBilinearAndEndsLevel) {
   const HeightMap map = slope(false);
-  const GroundSurface ground(map);
+  const TerrainSurface ground(map);
   EXPECT_NEAR(ground.height_m(-0.2, -0.15), 0.0, 1e-12);
   EXPECT_NEAR(ground.height_m(0.2, 0.15), 0.1, 1e-12);
   EXPECT_NEAR(ground.height_m(-0.15, -0.1), 0.015, 1e-12);
@@ -53,9 +53,9 @@ TEST(GroundSurface, IsBilinearAndEndsLevel) {
   EXPECT_NEAR(ground.highest_m(), 0.1, 1e-12);
 }
 
-TEST(GroundSurface, RepeatsWithWrapAround) {
+TEST(TerrainSurface, RepeatsWithWrapAround) {
   const HeightMap map = slope(true);
-  const GroundSurface ground(map);
+  const TerrainSurface ground(map);
   EXPECT_NEAR(ground.width_m(), 0.5, 1e-12);
   for (const double beds : {-7.0, -1.0, 1.0, 12.0}) {
     EXPECT_NEAR(ground.height_m(-0.13 + beds * 0.5, -0.02 - beds * 0.4),
@@ -64,15 +64,15 @@ TEST(GroundSurface, RepeatsWithWrapAround) {
   EXPECT_NEAR(ground.height_m(0.25, -0.15), 0.02, 1e-12);  // halfway back from 40 mm to 0
 }
 
-TEST(GroundSurface, RefusesWhatIsNoSurface) {
+TEST(TerrainSurface, RefusesWhatIsNoSurface) {
   HeightMap map = slope(false);
   map.geometry.nx = 1;
-  EXPECT_THROW(GroundSurface{map}, InputError);
+  EXPECT_THROW(TerrainSurface{map}, InputError);
 }
 
 TEST(HeightRaster, NorthIsOnTopAndTheRangeIsUsed) {
   const HeightMap map = slope(false);
-  const GreyRaster raster = height_raster(GroundSurface(map));
+  const GreyRaster raster = height_raster(TerrainSurface(map));
   ASSERT_EQ(raster.width, 5);
   ASSERT_EQ(raster.height, 4);
   EXPECT_EQ(raster.samples[4], 65535);  // north-east
@@ -83,7 +83,7 @@ TEST(HeightRaster, NorthIsOnTopAndTheRangeIsUsed) {
 
 TEST(HeightRaster, EndsWhereTheBedBeginsAgain) {
   const HeightMap map = slope(true);
-  const GreyRaster raster = height_raster(GroundSurface(map));
+  const GreyRaster raster = height_raster(TerrainSurface(map));
   ASSERT_EQ(raster.width, 6);
   ASSERT_EQ(raster.height, 5);
   for (size_t column = 0; column < 6; ++column) {
@@ -96,11 +96,11 @@ TEST(HeightRaster, EndsWhereTheBedBeginsAgain) {
 
 TEST(ChangeRaster, ShowsWhereGroundWasMovedOnly) {
   const HeightMap before = slope(false);
-  EXPECT_TRUE(change_raster(GroundSurface(before), before).samples.empty());
+  EXPECT_TRUE(change_raster(TerrainSurface(before), before).samples.empty());
   HeightMap after = before;
   after.heights[7] -= 3;  // ix 2, iy 1: 3 mm of the 6 that are full white
   after.heights[19] += 50;
-  const GreyRaster raster = change_raster(GroundSurface(after), before);
+  const GreyRaster raster = change_raster(TerrainSurface(after), before);
   ASSERT_EQ(raster.samples.size(), 20u);
   EXPECT_EQ(at(raster, 2, 2), 32768);
   EXPECT_EQ(raster.samples[4], 65535);
@@ -110,11 +110,13 @@ TEST(ChangeRaster, ShowsWhereGroundWasMovedOnly) {
 TEST(Ground, IsDrawnOnceOrAllAround) {
   const HeightMap single = slope(false);
   const HeightMap repeated = slope(true);
-  const std::string once = ground_text(GroundSurface(single), {"h.png", ""}, soil_look("clay"));
+  const std::string once =
+      terrain_text(TerrainSurface(single), {"h.png", ""}, soil_appearance("clay"));
   EXPECT_EQ(count(once, "object { Bed"), 1u);
   EXPECT_EQ(count(once, "mesh2"), 4u);  // the cuts
   EXPECT_NE(once.find("\"h.png\""), std::string::npos);
-  const std::string many = ground_text(GroundSurface(repeated), {"h.png", "c.png"}, soil_look(""));
+  const std::string many =
+      terrain_text(TerrainSurface(repeated), {"h.png", "c.png"}, soil_appearance(""));
   EXPECT_EQ(count(many, "object { Bed"), 49u);
   EXPECT_EQ(count(many, "mesh2"), 0u);
   EXPECT_NE(many.find("\"c.png\""), std::string::npos);
@@ -122,7 +124,7 @@ TEST(Ground, IsDrawnOnceOrAllAround) {
 
 TEST(Path, BreaksWhereTheRobotWasPutElsewhere) {
   const HeightMap map = slope(false);
-  const GroundSurface ground(map);
+  const TerrainSurface ground(map);
   const std::vector<Eigen::Vector2d> path = {{0, 0}, {0.05, 0}, {0.1, 0}, {-0.2, 0}, {-0.15, 0}};
   EXPECT_EQ(count(path_text(path, ground, 0.002), "cylinder"), 3u);
   EXPECT_EQ(path_text({}, ground, 0.002), "");
@@ -131,9 +133,9 @@ TEST(Path, BreaksWhereTheRobotWasPutElsewhere) {
 TEST(Camera, StandsWhereItIsTold) {
   const Eigen::Vector3d target(1.0, 2.0, 0.5);
   // From ahead of a robot that faces north: to its north.
-  const SceneCamera ahead = camera_at(camera_place("0,0,2"), target, std::numbers::pi / 2.0, flat);
+  const SceneCamera ahead = camera_at(camera_orbit("0,0,2"), target, std::numbers::pi / 2.0, flat);
   EXPECT_NEAR((ahead.location - Eigen::Vector3d(1.0, 4.0, 0.5)).norm(), 0.0, 1e-9);
-  const SceneCamera left = camera_at(camera_place("90,30,1"), target, 0.0, flat);
+  const SceneCamera left = camera_at(camera_orbit("90,30,1"), target, 0.0, flat);
   EXPECT_NEAR(left.location.y(), 2.0 + std::cos(std::numbers::pi / 6.0), 1e-9);
   EXPECT_NEAR(left.location.z(), 1.0, 1e-9);
 }
@@ -141,7 +143,7 @@ TEST(Camera, StandsWhereItIsTold) {
 TEST(Camera, LooksOverAHill) {
   const auto hill = [](double x, double) { return x > 0.2 && x < 0.4 ? 0.4 : 0.0; };
   const Eigen::Vector3d target(0.0, 0.0, 0.05);
-  const SceneCamera camera = camera_at(camera_place("0,10,0.8"), target, 0.0, hill);
+  const SceneCamera camera = camera_at(camera_orbit("0,10,0.8"), target, 0.0, hill);
   const double slope = (camera.location.z() - target.z()) / camera.location.x();
   EXPECT_GT(target.z() + slope * 0.21, 0.4);
   EXPECT_NEAR((camera.location - target).norm(), 0.8, 1e-9);
@@ -150,10 +152,10 @@ TEST(Camera, LooksOverAHill) {
 TEST(Camera, RefusesOtherPlaces) {
   for (const char* text : {"", "behind", "1,2", "1,2,3,4", "0,-5,1", "0,90,1", "0,10,0.1",
                            "0,10,nan", "nan,10,1", "0,10,1m"}) {
-    EXPECT_THROW(camera_place(text), InputError) << text;
+    EXPECT_THROW(camera_orbit(text), InputError) << text;
   }
   for (const char* name : {"front", "back", "side", "above", "bed"}) {
-    EXPECT_NO_THROW(camera_place(name)) << name;
+    EXPECT_NO_THROW(camera_orbit(name)) << name;
   }
 }
 

@@ -26,7 +26,8 @@ class ExperimentFile : public ::testing::Test {
     std::ofstream(path(), std::ios::binary) << text;
     return read_experiment(path(), overrides);
   }
-  std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  std::string error_message(const std::string& text,
+                            const std::vector<std::string>& overrides = {}) {
     try {
       read(text, overrides);
     } catch (const InputError& error) {
@@ -110,7 +111,7 @@ std::string value_in(const std::string& text, const Row& row) {
 std::vector<std::string> good_values(const Row& row) {
   if (row.allowed == "true or false") return {row.value == "true" ? "false" : "true"};
   if (!ends_of(row.allowed).empty()) return ends_of(row.allowed);
-  if (row.key == "algorithm") return {"drive", "spin_on_peak"};  // random needs frames: below
+  if (row.key == "algorithm") return {"drive", "spin_on_peak"};  // training_drive needs frames: below
   if (row.key == "model" && row.section == "map") return {"rigid", "scm"};
   if (row.key == "track_model") return {"chain"};
   if (row.section == "radio" && row.key == "key") {
@@ -179,7 +180,7 @@ TEST_F(ExperimentFile, ValuesBeyondTheirEndsAreRefused) {
     if (row.key == "algorithm") bad.insert(bad.end(), {"1", "Random", "Drive"});
     if (row.key == "name") bad.insert(bad.end(), {"a/b", "..", "a b", std::string(65, 'a')});
     for (const std::string& value : bad) {
-      const std::string message = complaint(file_with(row, value));
+      const std::string message = error_message(file_with(row, value));
       const std::string line = row.section.empty() ? "1" : "2";
       EXPECT_EQ(message.rfind("FILE:" + line + ": ", 0), 0U)
           << row.key << " = '" << value << "': " << message;
@@ -191,25 +192,25 @@ TEST_F(ExperimentFile, ValuesBeyondTheirEndsAreRefused) {
 }
 
 TEST_F(ExperimentFile, UnknownNamesSayWhatIsKnown) {
-  EXPECT_EQ(complaint("[drive]\nsped = 1\n"),
+  EXPECT_EQ(error_message("[drive]\nsped = 1\n"),
             "FILE:2: unknown key 'sped' in [drive]; known are speed, yaw_rate");
   EXPECT_EQ(
-      complaint("tracks = true\n"),
+      error_message("tracks = true\n"),
       "FILE:1: unknown key 'tracks' before the first section; known are output_directory_prefix, "
       "units, chrono_data_path");
-  const std::string section = complaint("\n\n[vehicel]\nx = 1\n");
+  const std::string section = error_message("\n\n[vehicel]\nx = 1\n");
   EXPECT_EQ(section.rfind("FILE:4: unknown section [vehicel]; known are [vehicle], [map], ", 0), 0U)
       << section;
   EXPECT_TRUE(contains(section, "[parameters]")) << section;
-  EXPECT_TRUE(contains(complaint("[Map]\nsize = 1\n"), "unknown section [Map]"));
-  EXPECT_TRUE(contains(complaint("[map]\nSize = 1\n"), "unknown key 'Size'"));
-  EXPECT_TRUE(contains(complaint("[parameters]\nalgorithm = 1\n"), "unknown key 'algorithm'"));
+  EXPECT_TRUE(contains(error_message("[Map]\nsize = 1\n"), "unknown section [Map]"));
+  EXPECT_TRUE(contains(error_message("[map]\nSize = 1\n"), "unknown key 'Size'"));
+  EXPECT_TRUE(contains(error_message("[parameters]\nalgorithm = 1\n"), "unknown key 'algorithm'"));
 }
 
 TEST_F(ExperimentFile, MistakesOfTheFileItselfComeThrough) {
-  EXPECT_EQ(complaint("[map]\nsize = 1\nsize = 2\n"),
+  EXPECT_EQ(error_message("[map]\nsize = 1\nsize = 2\n"),
             "FILE:3: key 'size' is given twice in [map], first in line 2");
-  EXPECT_EQ(complaint("[map]\nsize\n").rfind("FILE:2: ", 0), 0U);
+  EXPECT_EQ(error_message("[map]\nsize\n").rfind("FILE:2: ", 0), 0U);
 }
 
 TEST_F(ExperimentFile, OverridesWinAndTheLastOfThemMost) {
@@ -217,18 +218,20 @@ TEST_F(ExperimentFile, OverridesWinAndTheLastOfThemMost) {
       read("[map]\nsize = 4\n", {"map.size=5", "map.size=6", "experiment.seed=7"});
   EXPECT_EQ(experiment.map.size_m, 6.0);
   EXPECT_EQ(experiment.experiment.seed, 7U);
-  EXPECT_EQ(complaint("", {"map.size=0"}),
+  EXPECT_EQ(error_message("", {"map.size=0"}),
             "--set: [map] size = '0' is not allowed; expected a number 0.1..1000 (m)");
-  EXPECT_TRUE(contains(complaint("", {"map.sise=0"}), "--set: unknown key 'sise' in [map]"));
-  EXPECT_TRUE(contains(complaint("", {"size=3"}), "before the first section"));
-  EXPECT_TRUE(contains(complaint("", {"map.size"}), "section.key=value"));
+  EXPECT_TRUE(contains(error_message("", {"map.sise=0"}), "--set: unknown key 'sise' in [map]"));
+  EXPECT_TRUE(contains(error_message("", {"size=3"}), "before the first section"));
+  EXPECT_TRUE(contains(error_message("", {"map.size"}), "section.key=value"));
 }
 
 TEST_F(ExperimentFile, KeysThatDoNotFitTogether) {
-  EXPECT_TRUE(contains(complaint("[parameters]\nwalk_speed_min = 200\nwalk_speed_max = 100\n"),
+  EXPECT_TRUE(contains(error_message("[parameters]\nwalk_speed_min = 200\nwalk_speed_max = 100\n"),
                        "walk_speed_min = 200"));
-  EXPECT_TRUE(contains(complaint("[parameters]\nwalk_leg_min = 5000\n"), "walk_leg_min = 5000"));
-  EXPECT_TRUE(contains(complaint("[map]\nfilename = a.png\nramp = 5\n"), "both filename and ramp"));
+  EXPECT_TRUE(
+      contains(error_message("[parameters]\nwalk_leg_min = 5000\n"), "walk_leg_min = 5000"));
+  EXPECT_TRUE(
+      contains(error_message("[map]\nfilename = a.png\nramp = 5\n"), "both filename and ramp"));
 }
 
 TEST_F(ExperimentFile, TheAlgorithmReachesTheParameters) {
@@ -236,21 +239,21 @@ TEST_F(ExperimentFile, TheAlgorithmReachesTheParameters) {
   EXPECT_EQ(read("").parameters.algorithm, 1);
   EXPECT_EQ(read("[experiment]\nalgorithm = spin_on_peak\n").parameters.algorithm, 2);
   EXPECT_EQ(algorithm_number("hill_sensing"), 1);
-  EXPECT_EQ(algorithm_number("random"), 3);
+  EXPECT_EQ(algorithm_number(kTrainingDriveName), 3);
   EXPECT_THROW(algorithm_number("Random"), InputError);
 }
 
 TEST_F(ExperimentFile, TheTrainingDriveTakesItsLengthFromFramesOrDuration) {
-  const Experiment frames = read("[experiment]\nalgorithm = random\nframes = 64000\n");
+  const Experiment frames = read("[experiment]\nalgorithm = training_drive\nframes = 64000\n");
   EXPECT_EQ(frames.parameters.algorithm, 3);
   EXPECT_EQ(frames.parameters.training_block, 8000);
   EXPECT_EQ(frames.experiment.duration_s, 640.0);
-  const Experiment duration = read("[experiment]\nalgorithm = random\nduration = 20.05\n");
+  const Experiment duration = read("[experiment]\nalgorithm = training_drive\nduration = 20.05\n");
   EXPECT_EQ(duration.experiment.frames, 2000U);
   EXPECT_EQ(duration.parameters.training_block, 250);
   EXPECT_EQ(read("[experiment]\nframes = 800\n").experiment.duration_s, 8.0);
-  EXPECT_TRUE(contains(complaint("[experiment]\nalgorithm = random\nduration = 1e5\n"),
-                       "duration = 1e+05 s: algorithm random needs 0.08 s to"));
+  EXPECT_TRUE(contains(error_message("[experiment]\nalgorithm = training_drive\nduration = 1e5\n"),
+                       "duration = 1e+05 s: algorithm training_drive needs 0.08 s to"));
 }
 
 TEST_F(ExperimentFile, OfTwoKeysForTheSameTheLaterOneHolds) {
@@ -289,7 +292,7 @@ TEST_F(ExperimentFile, AFileOfSandboxIsReadInItsUnitsAndAxes) {
   EXPECT_FALSE(si.map.wrap);
   EXPECT_EQ(si.notes.size(), 1U);
   EXPECT_EQ(read("units = sandbox\n[vehicle]\nx = -20\n", {"vehicle.x=1"}).vehicle.x_m, 1.0);
-  const std::string wrong = complaint("chrono_data_path = ../data/\n[vehicle]\nx = east\n");
+  const std::string wrong = error_message("chrono_data_path = ../data/\n[vehicle]\nx = east\n");
   EXPECT_TRUE(contains(wrong, "FILE:3: [vehicle] x = 'east'")) << wrong;
 }
 

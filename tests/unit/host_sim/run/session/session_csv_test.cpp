@@ -25,9 +25,9 @@ TEST_F(SessionTest, CsvHasAllNumbersExactly) {
   EXPECT_NE(line.find(",pitch [rad],"), std::string::npos);
   EXPECT_NE(line.find(",slip_left [1],"), std::string::npos);
   EXPECT_TRUE(line.ends_with(",faults,beds_x,beds_y")) << line;
-  for (const Frame& frame : run.frames) {
+  for (const SimFrame& frame : run.frames) {
     ASSERT_TRUE(std::getline(csv, line));
-    Frame read;
+    SimFrame read;
     const char* cursor = line.c_str();
     char* end = nullptr;
 #define SCREED_READ(type, name, unit, meaning)                                               \

@@ -123,9 +123,9 @@ TEST_F(SessionTest, OldFilesWithFewerFrameColumnsAreRead) {
   EXPECT_EQ(reader.missing_columns(), (std::vector<std::string>{"battery", "faults"}));
   EXPECT_EQ(reader.missing_parameters(), (std::vector<std::string>{"climb_speed"}));
   EXPECT_EQ(reader.info().parameters.climb_speed, Parameters{}.climb_speed);
-  std::vector<Frame> frames(3);
+  std::vector<SimFrame> frames(3);
   reader.read(0, std::span(frames));
-  for (const Frame& frame : frames) {
+  for (const SimFrame& frame : frames) {
     EXPECT_TRUE(std::isnan(frame.battery));
     EXPECT_EQ(frame.faults, 0);
     EXPECT_EQ(frame.state, 5);

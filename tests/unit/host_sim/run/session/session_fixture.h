@@ -45,7 +45,7 @@ class Noise {
 
 struct Recording {
   SessionInfo info;
-  std::vector<Frame> frames;
+  std::vector<SimFrame> frames;
   std::vector<SensorSample> samples;
   std::vector<RobotOutput> outputs;
   HeightMap before;
@@ -64,7 +64,7 @@ inline Recording random_run(std::size_t ticks, std::uint64_t seed = 1) {
   run.info.parameters.climb_speed = 123;
   Noise noise(seed);
   for (std::size_t i = 0; i < ticks; ++i) {
-    Frame frame;
+    SimFrame frame;
     SensorSample sample{};
     RobotOutput output{};
     unpack(noise.bytes<kFrameBytes>(), frame);

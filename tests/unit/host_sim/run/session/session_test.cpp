@@ -34,7 +34,7 @@ TEST(Record, RowsAreLittleEndianWithoutPadding) {
   EXPECT_EQ(std::vector<std::uint8_t>(row.begin() + 36, row.begin() + 46),
             (std::vector<std::uint8_t>{0xAB, 0, 1, 2, 3, 4, 2, 0x55, 0x55, 0}));
 
-  Frame frame;
+  SimFrame frame;
   frame.time = 1.0;
   frame.beds_y = 0x01020304;
   const auto frame_row = packed<kFrameBytes>(frame);
@@ -106,7 +106,7 @@ TEST_F(SessionTest, AnyRangeOfRowsCanBeRead) {
   const Recording run = random_run(1500);
   write_run(file_, run);
   const SessionReader reader(file_);
-  std::vector<Frame> rows(100);
+  std::vector<SimFrame> rows(100);
   reader.read(1000, std::span(rows));  // across a block
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(packed<kFrameBytes>(rows[i]), packed<kFrameBytes>(run.frames[1000 + i]));
@@ -199,7 +199,7 @@ std::vector<double> dumped_numbers(const std::string& dump) {
 
 TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   Recording run = random_run(3);
-  for (Frame& frame : run.frames) {
+  for (SimFrame& frame : run.frames) {
     double value = 1.0 / 3 + static_cast<double>(&frame - run.frames.data());
 #define SCREED_SET(type, name, unit, meaning) frame.name = static_cast<type>(value *= -1.5);
     SCREED_FRAME_COLUMNS(SCREED_SET)
@@ -208,7 +208,7 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   const std::string hash = write_run(file_, run);
 
   std::vector<double> expected;
-  for (const Frame& frame : run.frames) {
+  for (const SimFrame& frame : run.frames) {
 #define SCREED_GET(type, name, unit, meaning) expected.push_back(frame.name);
     SCREED_FRAME_COLUMNS(SCREED_GET)
 #undef SCREED_GET

@@ -46,12 +46,12 @@ class Decode : public ::testing::Test {
     std::ofstream(path, std::ios::binary) << text;
     return path;
   }
-  DecodeAccount account_of(const std::string& text) {
+  DecodeStatistics account_of(const std::string& text) {
     LogDecoder decoder(log(text));
     DecodedFrame frame;
     while (decoder.next(frame)) {
     }
-    return decoder.account();
+    return decoder.statistics();
   }
   int csv(const std::string& text, bool numbers = false) {
     DecodeOptions options;
@@ -76,21 +76,21 @@ TEST_F(Decode, AccountsForEveryLine) {
   wrong.data[4] ^= 1U;
   CanFrame cut = protected_frame(message::Attitude{1, 2, 3}, 3);
   cut.size = 5;
-  const DecodeAccount account = account_of(
+  const DecodeStatistics statistics = account_of(
       attitude_line(0.1, 1, 0) + attitude_line(0.2, 2, 1) + candump_line(0, "can0", wrong) +
       candump_line(0, "can0", cut) + candump_line(0, "can0", {0x777, 1, {1}}) +
       "(0.000000) can0 044##1A2B\n\nnonsense\n" + attitude_line(0.3, 3, 4) +
       attitude_line(0.3, 3, 4) + attitude_line(0.4, 4, 5, 2) + "(0000000000.4");
-  EXPECT_EQ(account.lines, 11U);
-  EXPECT_EQ(account.messages, 5U);
-  EXPECT_EQ(account.wrong_crcs, 1U);
-  EXPECT_EQ(account.wrong_sizes, 1U);
-  EXPECT_EQ(account.unknown_ids, 1U);
-  EXPECT_EQ(account.other_frames, 1U);
-  EXPECT_EQ(account.unreadable_lines, 2U);
-  EXPECT_EQ(account.first_unreadable_line, 8U);
-  EXPECT_EQ(account.missing, 2U) << "counters 2 and 3 of robot 1; robot 2 counts for itself";
-  EXPECT_EQ(account.text(),
+  EXPECT_EQ(statistics.lines, 11U);
+  EXPECT_EQ(statistics.messages, 5U);
+  EXPECT_EQ(statistics.wrong_crcs, 1U);
+  EXPECT_EQ(statistics.wrong_sizes, 1U);
+  EXPECT_EQ(statistics.unknown_ids, 1U);
+  EXPECT_EQ(statistics.other_frames, 1U);
+  EXPECT_EQ(statistics.unreadable_lines, 2U);
+  EXPECT_EQ(statistics.first_unreadable_line, 8U);
+  EXPECT_EQ(statistics.missing, 2U) << "counters 2 and 3 of robot 1; robot 2 counts for itself";
+  EXPECT_EQ(statistics.text(),
             "5 messages of 11 lines, 2 unreadable (the first is line 8), 1 of a wrong size, 1 with "
             "a wrong CRC, 1 with ids of others, 1 remote, error, FD or 29-bit frames, 2 messages "
             "missing by their counters");

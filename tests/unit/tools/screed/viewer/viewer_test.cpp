@@ -9,7 +9,7 @@
 #include "host_sim/run/simulation/height_watch.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
-#include "tools/screed/viewer/stage.h"
+#include "tools/screed/viewer/viewer_display.h"
 
 namespace screed::viewer {
 namespace {
@@ -59,17 +59,17 @@ TEST(ViewerCamera, KeepsWhatLiesUnderTheMouse) {
   EXPECT_NEAR(camera.x_at(mouse.x + 30.0), x, 1e-12);
   EXPECT_NEAR(camera.y_at(mouse.y - 20.0), y, 1e-12);
   camera.zoom(1e9, mouse);
-  EXPECT_EQ(camera.scale(), Camera::kMostScale);
+  EXPECT_EQ(camera.scale(), Camera::kMaxScale);
   camera.zoom(1e-12, mouse);
-  EXPECT_EQ(camera.scale(), Camera::kLeastScale);
+  EXPECT_EQ(camera.scale(), Camera::kMinScale);
 }
 
 TEST(ViewerGroundImage, ChangedCellsAloneGiveTheWholePicture) {
   for (const bool wrap : {false, true}) {
     for (const Shading shading : {Shading::kHeight, Shading::kSlope, Shading::kChange}) {
       HeightField field = hills(wrap);
-      GroundImage image(field);
-      GroundImage fresh(field);
+      TerrainImage image(field);
+      TerrainImage fresh(field);
       EXPECT_EQ(image.paint(field, shading), 60U * 50U);
       size_t painted = 0;
       dig(field, [&](std::span<const HeightChange> changes) {
@@ -91,7 +91,7 @@ TEST(ViewerGroundImage, ChangedCellsAloneGiveTheWholePicture) {
 TEST(ViewerSlopeLedger, AgreesWithTheStatisticsOfTheTerrain) {
   for (const bool wrap : {false, true}) {
     HeightField field = hills(wrap);
-    SlopeLedger ledger(field, 5.0);
+    SlopeStatistics ledger(field, 5.0);
     const auto expect_same = [&] {
       const TerrainStatistics expected = terrain_statistics(field);
       const SlopeFigures figures = ledger.figures();
@@ -105,7 +105,7 @@ TEST(ViewerSlopeLedger, AgreesWithTheStatisticsOfTheTerrain) {
     expect_same();
   }
   const HeightField level = HeightField::flat(1.0, 0.1);
-  const SlopeFigures figures = SlopeLedger(level, 0.0).figures();
+  const SlopeFigures figures = SlopeStatistics(level, 0.0).figures();
   EXPECT_EQ(figures.mean_deg, 0.0);
   EXPECT_EQ(figures.steepest_deg, 0.0);
   EXPECT_EQ(figures.flat, 1.0);
@@ -196,7 +196,7 @@ class ViewerDrawing : public ::testing::Test {
     scene_.ground = &image_;
     scene_.place = {field_.x_min(), field_.y_min(), field_.spacing_m(), field_.wrap()};
     scene_.bed = {field_.x_min(), field_.x_max(), field_.y_min(), field_.y_max()};
-    scene_.camera.set_box(drawing_.ground_box());
+    scene_.camera.set_box(drawing_.terrain_box());
     scene_.camera.fit(scene_.bed);
     scene_.shape = &shape_;
     scene_.trail = &trail_;
@@ -213,7 +213,7 @@ class ViewerDrawing : public ::testing::Test {
   }
 
   HeightField field_;
-  GroundImage image_;
+  TerrainImage image_;
   Drawing drawing_;
   RobotShape shape_;
   std::vector<TrailPoint> trail_;
@@ -272,8 +272,8 @@ TEST_F(ViewerDrawing, SameSceneSamePixelsAtAnySize) {
   drawing_.draw(scene_);
   EXPECT_EQ(drawing_.canvas().rgb(), first);
   drawing_.resize(10, 10);
-  EXPECT_EQ(drawing_.canvas().width(), Drawing::kLeastWidth);
-  scene_.camera.set_box(drawing_.ground_box());
+  EXPECT_EQ(drawing_.canvas().width(), Drawing::kMinWidth);
+  scene_.camera.set_box(drawing_.terrain_box());
   scene_.help = &Controls(false, 1.0).help_lines();
   drawing_.draw(scene_);
   EXPECT_EQ(drawing_.share_at(-5.0), 0.0);
@@ -281,12 +281,12 @@ TEST_F(ViewerDrawing, SameSceneSamePixelsAtAnySize) {
 }
 
 TEST_F(ViewerDrawing, ScaleBarIsNeverEmpty) {
-  for (double scale = Camera::kLeastScale; scale < Camera::kMostScale; scale *= 1.13) {
+  for (double scale = Camera::kMinScale; scale < Camera::kMaxScale; scale *= 1.13) {
     scene_.camera.zoom(scale / scene_.camera.scale(), scene_.camera.middle());
     drawing_.draw(scene_);
     // Left of the bar's middle there is ink: the bar is at least 40 pixels long.
     const std::span<uint32_t> pixels = drawing_.canvas().pixels();
-    const auto y = static_cast<size_t>(drawing_.ground_box().height - 30.0);
+    const auto y = static_cast<size_t>(drawing_.terrain_box().height - 30.0);
     const auto width = static_cast<size_t>(drawing_.canvas().width());
     EXPECT_GT(brightness(pixels[y * width + 60]), 500) << scale;
   }

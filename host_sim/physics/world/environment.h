@@ -1,0 +1,59 @@
+// What a robot is driven in, as the rest of the program sees it: the ground, the robot's true
+// state, the battery, advanced a step at a time. Behind it stands physics (plant.h), or a network
+// that has learned from physics (surrogate_plant.h).
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+#include "host_sim/devices/sensors/imu_model.h"
+#include "host_sim/physics/particles/particle_bed.h"
+#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/vehicle_state.h"
+
+namespace screed {
+
+class Environment {
+ public:
+  virtual ~Environment() = default;
+
+  /// One step with the motor drivers at these shares of the battery voltage, -1..1, left and right;
+  /// positive drives forward.
+  virtual void step(const std::array<double, 2>& share) = 0;
+
+  /// True motion over the last control tick, whenever it is asked for. Throws RunError when the
+  /// physics has diverged.
+  virtual ImuTruth motion() const = 0;
+
+  /// Picks the robot up and lays it on its left side where it is.
+  virtual void lay_on_side() = 0;
+
+  virtual int steps_per_tick() const = 0;
+  virtual uint64_t steps() const = 0;
+  virtual double time_s() const = 0;
+  /// The ground's surface as it is now.
+  virtual const HeightField& terrain() const = 0;
+  /// Null on ground of another kind.
+  virtual const SoilBed* soil() const = 0;
+  virtual const ParticleBed* particles() const = 0;
+  /// Whether the ground gives way and, without wrap-around, ends at the edges of its bed.
+  virtual bool is_deformable() const = 0;
+  virtual const VehicleState& vehicle() const = 0;
+  /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
+  /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,
+  /// so that the way it made is its place plus these times the bed's size.
+  virtual const std::array<int64_t, 2>& wrap_counts() const = 0;
+  /// The chassis' place as if there had been no teleport, m.
+  virtual Eigen::Vector3d unwrapped_position() const = 0;
+  virtual const Battery& battery() const = 0;
+
+ protected:
+  Environment() = default;
+  Environment(const Environment&) = default;
+  Environment& operator=(const Environment&) = default;
+};
+
+}  // namespace screed

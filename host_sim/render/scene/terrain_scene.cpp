@@ -1,0 +1,237 @@
+// Height fields, spheres, paths.
+#include "host_sim/render/scene/terrain_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/render/scene/pov_text.h"
+
+namespace screed {
+namespace {
+
+constexpr double kTurned_m = 0.006;   // a change of height that counts as turned over entirely
+constexpr double kBedFloor_m = 0.06;  // soil under the lowest place, where the bed is cut
+
+int64_t wrapped(int64_t index, int64_t count) {
+  const int64_t rest = index % count;
+  return rest < 0 ? rest + count : rest;
+}
+
+/// Grains, lumps and two tones; `turned` names the image of what the robot has turned over.
+std::string soil_texture(const TerrainSurface& ground, const TerrainFiles& files,
+                         const SoilAppearance& look) {
+  const auto tones = [&](double share) {
+    const auto mix = [&](double tone) {
+      const auto one = [&](double light, double dark) {
+        return share * (tone * light + (1.0 - tone) * dark);
+      };
+      return pov_color({one(look.light.red, look.dark.red), one(look.light.green, look.dark.green),
+                        one(look.light.blue, look.dark.blue), 1.0});
+    };
+    // Grains of a millimetre in patches of a hand.
+    return "pigment { bozo scale 0.09 turbulence 0.6 pigment_map { "
+           "[0.25 granite scale 0.011 color_map { [0.2 " +
+           mix(0.75) + "] [0.6 " + mix(1.0) + "] [0.9 " + mix(0.45) +
+           "] }] [0.8 granite scale 0.008 color_map { [0.2 " + mix(0.35) + "] [0.6 " + mix(0.7) +
+           "] [0.9 " + mix(0.1) + "] }] } }";
+  };
+  const std::string finish = " finish { ambient 0 diffuse 0.9 }";
+  const auto grain = [](double strength) {
+    return pov_line(
+        " normal { average normal_map { [1.0 granite %.2f scale 0.006] [0.6 bumps %.2f scale "
+        "0.003] } }",
+        strength, strength);
+  };
+  std::string text = "#declare Firm = texture { " + tones(1.0) + grain(0.25) + finish + " }\n";
+  if (files.change.empty()) return text + "#declare Soil = texture { Firm }\n";
+  text += "#declare Turned = texture { " + tones(0.70) + grain(0.50) + finish + " }\n";
+  // The image covers the unit square of x and y. What moves and stretches it onto the bed acts on
+  // the textures in the map too, so they are moved the other way before.
+  const std::string undo =
+      pov_line(" translate <%.6f,%.6f,0> scale <%.8f,%.8f,1>", -ground.x_min(), -ground.y_min(),
+               1.0 / ground.width_m(), 1.0 / ground.depth_m());
+  return text + "#declare Soil = texture { image_pattern { png \"" + files.change +
+         "\" gamma 1.0 interpolate 2" + (ground.wrap() ? "" : " once") +
+         " } texture_map { [0.0 Firm" + undo + "] [1.0 Turned" + undo + "] }" +
+         pov_line(" scale <%.6f,%.6f,1> translate <%.6f,%.6f,0> }\n", ground.width_m(),
+                  ground.depth_m(), ground.x_min(), ground.y_min());
+}
+
+constexpr const char* kTable =
+    "plane { z, %.5f texture { pigment { srgb <0.80,0.81,0.82> } finish { ambient 0 diffuse 0.85 "
+    "} "
+    "} }\n";
+
+}  // namespace
+
+TerrainSurface::TerrainSurface(const HeightMap& map) : map_(map) {
+  if (map.geometry.nx < 2 || map.geometry.ny < 2) {
+    throw InputError("a height map of " + std::to_string(map.geometry.nx) + " x " +
+                     std::to_string(map.geometry.ny) + " heights cannot be drawn");
+  }
+  const auto [lowest, highest] = std::minmax_element(map.heights.begin(), map.heights.end());
+  lowest_m_ = *lowest * map.geometry.unit_m;
+  highest_m_ = *highest * map.geometry.unit_m;
+}
+
+double TerrainSurface::width_m() const {
+  return (map_.geometry.nx - (wrap() ? 0 : 1)) * map_.geometry.spacing_m;
+}
+
+double TerrainSurface::depth_m() const {
+  return (map_.geometry.ny - (wrap() ? 0 : 1)) * map_.geometry.spacing_m;
+}
+
+double TerrainSurface::node_m(int64_t ix, int64_t iy) const {
+  const int64_t nx = map_.geometry.nx;
+  const int64_t ny = map_.geometry.ny;
+  ix = wrap() ? wrapped(ix, nx) : std::clamp<int64_t>(ix, 0, nx - 1);
+  iy = wrap() ? wrapped(iy, ny) : std::clamp<int64_t>(iy, 0, ny - 1);
+  return map_.heights[static_cast<size_t>(iy * nx + ix)] * map_.geometry.unit_m;
+}
+
+double TerrainSurface::height_m(double x, double y) const {
+  const double u = (x - x_min()) / map_.geometry.spacing_m;
+  const double v = (y - y_min()) / map_.geometry.spacing_m;
+  const double fu = std::floor(u);
+  const double fv = std::floor(v);
+  const auto ix = static_cast<int64_t>(fu);
+  const auto iy = static_cast<int64_t>(fv);
+  const double a = u - fu;
+  const double b = v - fv;
+  return (1 - b) * ((1 - a) * node_m(ix, iy) + a * node_m(ix + 1, iy)) +
+         b * ((1 - a) * node_m(ix, iy + 1) + a * node_m(ix + 1, iy + 1));
+}
+
+SoilAppearance soil_appearance(const std::string& preset) {
+  struct Named {
+    const char* preset;
+    SoilAppearance look;
+  };
+  static constexpr SoilAppearance kLoam{{0.66, 0.54, 0.41}, {0.42, 0.32, 0.23}};
+  static constexpr Named kLooks[] = {
+      {"", {{0.64, 0.62, 0.58}, {0.45, 0.43, 0.40}}},
+      {"lete_sand", {{0.85, 0.74, 0.55}, {0.66, 0.54, 0.37}}},
+      {"dry_sand", {{0.85, 0.74, 0.55}, {0.66, 0.54, 0.37}}},
+      {"clay", {{0.66, 0.43, 0.31}, {0.42, 0.25, 0.18}}},
+      {"gravel", {{0.66, 0.64, 0.60}, {0.38, 0.37, 0.35}}},
+      {"ding_2011", {{0.62, 0.60, 0.57}, {0.42, 0.41, 0.39}}},
+  };
+  for (const Named& named : kLooks) {
+    if (preset == named.preset) return named.look;
+  }
+  return kLoam;
+}
+
+GreyRaster height_raster(const TerrainSurface& ground) {
+  const HeightMapGeometry& geometry = ground.map().geometry;
+  // One column and row more where the bed repeats: the image ends where it begins again.
+  const int extra = ground.wrap() ? 1 : 0;
+  GreyRaster raster;
+  raster.width = static_cast<int>(geometry.nx) + extra;
+  raster.height = static_cast<int>(geometry.ny) + extra;
+  raster.samples.reserve(static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
+  const double range = std::max(ground.highest_m() - ground.lowest_m(), geometry.unit_m);
+  for (int row = raster.height - 1; row >= 0; --row) {
+    for (int column = 0; column < raster.width; ++column) {
+      const auto ix = static_cast<size_t>(column) % geometry.nx;
+      const auto iy = static_cast<size_t>(row) % geometry.ny;
+      const double height = ground.map().heights[iy * geometry.nx + ix] * geometry.unit_m;
+      raster.samples.push_back(
+          static_cast<uint16_t>(std::lround((height - ground.lowest_m()) / range * 65535.0)));
+    }
+  }
+  return raster;
+}
+
+GreyRaster change_raster(const TerrainSurface& ground, const HeightMap& before) {
+  const HeightMap& now = ground.map();
+  if (before.geometry.nx != now.geometry.nx || before.geometry.ny != now.geometry.ny) return {};
+  GreyRaster raster;
+  bool changed = false;
+  for (size_t row = now.geometry.ny; row-- > 0;) {
+    for (size_t column = 0; column < now.geometry.nx; ++column) {
+      const size_t i = row * now.geometry.nx + column;
+      const double change = std::abs(now.heights[i] * now.geometry.unit_m -
+                                     before.heights[i] * before.geometry.unit_m);
+      changed = changed || change > 0.0;
+      raster.samples.push_back(
+          static_cast<uint16_t>(std::lround(std::min(1.0, change / kTurned_m) * 65535.0)));
+    }
+  }
+  if (!changed) return {};
+  raster.width = static_cast<int>(now.geometry.nx);
+  raster.height = static_cast<int>(now.geometry.ny);
+  return raster;
+}
+
+std::string terrain_text(const TerrainSurface& ground, const TerrainFiles& files,
+                         const SoilAppearance& look) {
+  const double rise = std::max(ground.highest_m() - ground.lowest_m(), 1e-6);
+  std::string text = soil_texture(ground, files, look);
+  // POV-Ray's height field fills the unit cube, y up: swapped to z up while it is scaled.
+  text += "#declare Bed = height_field { png \"" + files.heights + "\" gamma 1.0 smooth" +
+          pov_line(" matrix <%.6f,0,0, 0,0,%.8f, 0,%.6f,0, %.6f,%.6f,%.8f> }\n", ground.width_m(),
+                   rise, ground.depth_m(), ground.x_min(), ground.y_min(), ground.lowest_m());
+  if (ground.wrap()) {
+    constexpr int kCopies = 3;  // a side; the horizon hides what would be further
+    text += "union {\n";
+    for (int i = -kCopies; i <= kCopies; ++i) {
+      for (int j = -kCopies; j <= kCopies; ++j) {
+        text += pov_line("  object { Bed translate <%.6f,%.6f,0> }\n", i * ground.width_m(),
+                         j * ground.depth_m());
+      }
+    }
+    return text + "  texture { Soil }\n}\n";
+  }
+  const double floor = ground.lowest_m() - kBedFloor_m;
+  text += "object { Bed texture { Soil } }\n";
+  // The cut through the soil at each edge.
+  const auto wall = [&](bool along_x, double across) {
+    const HeightMapGeometry& g = ground.map().geometry;
+    const size_t count = along_x ? g.nx : g.ny;
+    std::string vertices;
+    std::string faces;
+    for (size_t i = 0; i < count; ++i) {
+      const double along =
+          (along_x ? g.origin_x_m : g.origin_y_m) + static_cast<double>(i) * g.spacing_m;
+      const double x = along_x ? along : across;
+      const double y = along_x ? across : along;
+      vertices +=
+          ", " + pov_vector({x, y, floor}) + ", " + pov_vector({x, y, ground.height_m(x, y)});
+      if (i > 0) {
+        faces += pov_line(", <%zu,%zu,%zu>, <%zu,%zu,%zu>", 2 * i - 2, 2 * i - 1, 2 * i, 2 * i - 1,
+                          2 * i + 1, 2 * i);
+      }
+    }
+    return pov_line("mesh2 { vertex_vectors { %zu", 2 * count) + vertices +
+           pov_line(" } face_indices { %zu", 2 * (count - 1)) + faces + " } texture { Firm } }\n";
+  };
+  text += wall(true, ground.y_min()) + wall(true, ground.y_min() + ground.depth_m()) +
+          wall(false, ground.x_min()) + wall(false, ground.x_min() + ground.width_m());
+  return text + pov_line(kTable, floor);
+}
+
+std::string path_text(std::span<const Eigen::Vector2d> path, const TerrainSurface& ground,
+                      double radius_m) {
+  constexpr double kJump_m = 0.2;
+  const auto over = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector3d(p.x(), p.y(), ground.height_m(p.x(), p.y()) + 0.5 * radius_m);
+  };
+  std::string text;
+  for (size_t i = 1; i < path.size(); ++i) {
+    if ((path[i] - path[i - 1]).norm() > kJump_m) continue;
+    const Eigen::Vector3d from = over(path[i - 1]);
+    const Eigen::Vector3d to = over(path[i]);
+    if ((to - from).norm() < 1e-4) continue;
+    text += pov_line("cylinder { ") + pov_vector(from) + ", " + pov_vector(to) +
+            pov_line(", %.4f } sphere { ", radius_m) + pov_vector(to) +
+            pov_line(", %.4f }\n", radius_m);
+  }
+  if (text.empty()) return text;
+  return "union {\n" + text +
+         "  texture { pigment { srgb <0.12,0.42,0.72> } finish { ambient 0 diffuse 0.9 } }\n}\n";
+}
+
+}  // namespace screed

@@ -1,0 +1,77 @@
+// The ground as part of a POV-Ray scene: a height field with the look of soil, or a bed of spheres,
+// and the driven path. Knows height maps, no robots and no sessions.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host_sim/render/picture/color_map.h"
+#include "host_sim/run/session/session_info.h"
+
+namespace screed {
+
+/// The surface of a height map at any place, metres: bilinear, its edges going on outwards, or
+/// repeated.
+class TerrainSurface {
+ public:
+  /// Throws InputError for a map of less than 2 x 2 heights.
+  explicit TerrainSurface(const HeightMap& map);
+  double height_m(double x, double y) const;
+
+  double x_min() const { return map_.geometry.origin_x_m; }
+  double y_min() const { return map_.geometry.origin_y_m; }
+  /// Of the bed: with wrap-around up to where it repeats.
+  double width_m() const;
+  double depth_m() const;
+  double lowest_m() const { return lowest_m_; }
+  double highest_m() const { return highest_m_; }
+  bool wrap() const { return map_.geometry.wrap; }
+  const HeightMap& map() const { return map_; }
+
+ private:
+  double node_m(int64_t ix, int64_t iy) const;
+
+  const HeightMap& map_;
+  double lowest_m_;
+  double highest_m_;
+};
+
+/// How soil looks: two tones that it varies between, and what has been turned over.
+struct SoilAppearance {
+  Color light;
+  Color dark;
+};
+/// The look of a soil by the name of its preset; "gravel" for particles, "" for hard ground.
+SoilAppearance soil_appearance(const std::string& preset);
+
+/// A grey image that the scene needs: 16 bits for heights.
+struct GreyRaster {
+  int width = 0;
+  int height = 0;
+  std::vector<uint16_t> samples;  ///< row 0 = north
+};
+
+/// The heights of the map as an image, black the lowest, white the highest.
+GreyRaster height_raster(const TerrainSurface& ground);
+/// How far the ground has changed between the maps, black: not at all, white: 6 mm or more. Empty
+/// when nothing has changed or the grids differ.
+GreyRaster change_raster(const TerrainSurface& ground, const HeightMap& before);
+
+struct TerrainFiles {
+  std::string heights;  ///< name of the height image
+  std::string change;   ///< name of the change image; empty: none
+};
+/// The height field. With wrap-around it is repeated on all sides; otherwise the bed ends in a cut
+/// through the soil, on a plane table.
+std::string terrain_text(const TerrainSurface& ground, const TerrainFiles& files,
+                         const SoilAppearance& look);
+
+/// A thin line over the ground along these places; it breaks where two of them are further apart
+/// than the robot can drive between them.
+std::string path_text(std::span<const Eigen::Vector2d> path, const TerrainSurface& ground,
+                      double radius_m);
+
+}  // namespace screed

@@ -1,0 +1,25 @@
+// Observes a run: is called at every tick and changes nothing.
+#pragma once
+
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/run/session/sim_frame.h"
+
+namespace screed {
+
+class SimulationObserver {
+ public:
+  SimulationObserver() = default;
+  SimulationObserver(const SimulationObserver&) = delete;
+  SimulationObserver& operator=(const SimulationObserver&) = delete;
+  virtual ~SimulationObserver() = default;
+
+  /// Before the first tick, with the ground as the robot stands on it.
+  virtual void on_begin(const HeightField& ground) = 0;
+  /// After each tick, with the frame as it was recorded and the ground of that moment. May take its
+  /// time: the run waits.
+  virtual void on_tick(const SimFrame& frame, const HeightField& ground) = 0;
+  /// After the last tick; the run is not saved yet.
+  virtual void on_end() = 0;
+};
+
+}  // namespace screed

@@ -1,0 +1,45 @@
+// Several experiments as a batch, for `screed sim` and `screed record`: what the user may say
+// about them, and running one after the other.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/simulation.h"
+
+namespace screed {
+
+struct BatchArguments {
+  std::vector<std::string> files;
+  std::vector<std::string> sets;
+  std::optional<std::string> out;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// FILE..., --set, --out, --quiet and --json.
+void add_batch_options(CLI::App& command, BatchArguments& arguments);
+
+/// Called after each run.
+using Report = std::function<void(const Experiment&, const SimulationSummary&)>;
+
+/// Called before each run, with the options of that run.
+using Prepare = std::function<void(const Experiment&, SimulationOptions&)>;
+
+/// Reads and checks all files, then runs them one after the other, each in a world of its own;
+/// tells on stderr what the user should know. `overrides` hold for all. Of one file --out is the
+/// run folder, of several the folder in which each makes one of its own. Ctrl-C ends the run that
+/// goes on, saved as it is, and the batch. Throws InputError before the first run when
+/// anything is wrong with one of the files.
+void run_batch(const BatchArguments& arguments, const std::vector<std::string>& overrides,
+               SimulationOptions options, const Report& report, const Prepare& prepare = {});
+
+/// The summaries as the commands print them under --json: of one file its object, of several an
+/// array.
+std::string json_of(const std::vector<SimulationSummary>& summaries, bool several);
+
+}  // namespace screed

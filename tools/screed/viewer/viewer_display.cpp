@@ -1,0 +1,272 @@
+// The stage.
+#include "tools/screed/viewer/viewer_display.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "host_sim/core/errors.h"
+
+namespace screed::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kCaptureFramesPerSecond = 25.0;
+constexpr double kZoomStep = 1.18;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+MapRectangle bed_of(const HeightField& field) {
+  return {field.x_min(), field.x_max(), field.y_min(), field.y_max()};
+}
+
+bool inside(const PixelBox& box, Pixel at) {
+  return at.x >= box.left && at.x < box.left + box.width && at.y >= box.top &&
+         at.y < box.top + box.height;
+}
+
+std::string numbered(const char* before, uint64_t number) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%s%06llu.png", before, static_cast<unsigned long long>(number));
+  return text;
+}
+
+}  // namespace
+
+std::string FrameTimes::text() const {
+  if (frames < 2 || total_s <= 0.0) return "no frames";
+  const auto count = static_cast<double>(frames);
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%llu frames, %.1f a second (drawing %.2f ms, showing %.2f ms, the rest %.2f ms)",
+                static_cast<unsigned long long>(frames), (count - 1.0) / total_s,
+                drawing_s / count * 1e3, showing_s / count * 1e3,
+                (total_s / (count - 1.0) - (drawing_s + showing_s) / count) * 1e3);
+  return text;
+}
+
+ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
+                             const HeightField& ground)
+    : options_(options),
+      setup_(std::move(setup)),
+      ground_(ground),
+      image_(ground_),
+      slopes_(ground_, setup_.flat_deg),
+      controls_(setup_.recorded, options.pace),
+      drawing_(options.width_px, options.height_px) {
+  if (options_.window) {
+    window_.emplace("Screed: " + setup_.title, options_.width_px, options_.height_px);
+  }
+  controls_.shading = options_.shading;
+  controls_.follow = options_.follow;
+  controls_.recording = !options_.frames_dir.empty();
+  camera_.set_box(drawing_.terrain_box());
+  camera_.fit(bed_of(ground_));
+  if (options_.span_m.has_value()) {
+    camera_.zoom(camera_.box().width / *options_.span_m / camera_.scale(), camera_.middle());
+  }
+  status_.title = setup_.title;
+  status_.subtitle = setup_.subtitle;
+  status_.duration_s = setup_.duration_s;
+  status_.terrain.before = slopes_.figures();
+  status_.terrain.flat_limit_deg = setup_.flat_deg;
+  status_.terrain.loose = setup_.loose;
+}
+
+void ViewerDisplay::change_terrain(std::span<const HeightChange> changes) {
+  for (const HeightChange& change : changes) {
+    const int ix = static_cast<int>(change.node % static_cast<uint32_t>(ground_.nx()));
+    const int iy = static_cast<int>(change.node / static_cast<uint32_t>(ground_.nx()));
+    ground_.set_node(ix, iy, ground_.node(ix, iy) + change.by);
+  }
+  image_.update(ground_, changes);
+  slopes_.update(ground_, changes);
+}
+
+void ViewerDisplay::set_frame(const SimFrame& frame) {
+  const auto finite = [](double value) { return std::isfinite(value) ? value : 0.0; };
+  robot_.x_m = finite(frame.x);
+  robot_.y_m = finite(frame.y);
+  robot_.heading_rad = finite(frame.yaw);
+  status_.time_s = frame.time;
+  // A training drive lasts for its frames, and some seconds before them.
+  status_.duration_s = std::max(setup_.duration_s, frame.time);
+  status_.state = frame.state;
+  status_.leveling_state = frame.leveling_state;
+  status_.faults = frame.faults;
+  motion_.speed_m_per_s = finite(frame.velocity_x);
+  motion_.turn_rad_per_s = finite(frame.rate_z);
+  motion_.wanted_m_per_s = finite(frame.linear);
+  motion_.wanted_rad_per_s = finite(frame.angular);
+  motion_.pitch_rad = finite(frame.pitch);
+  motion_.roll_rad = finite(frame.roll);
+  motion_.heading_rad = finite(frame.yaw);
+  motion_.slip_left = finite(frame.slip_left);
+  motion_.slip_right = finite(frame.slip_right);
+  if (setup_.soft) {
+    motion_.sinkage_m = std::max(finite(frame.sinkage_left), finite(frame.sinkage_right));
+  }
+  motion_.battery_v = finite(frame.battery);
+}
+
+void ViewerDisplay::handle_input(double time_s, int wait_ms) {
+  for (const InputEvent& event : scripted_events(options_.script, scripted_until_s_, time_s)) {
+    handle_event(event);
+  }
+  scripted_until_s_ = std::max(scripted_until_s_, time_s);
+  if (!window_.has_value()) return;
+  for (const InputEvent& event : window_->events(wait_ms)) handle_event(event);
+}
+
+void ViewerDisplay::handle_event(const InputEvent& event) {
+  using Kind = InputEvent::Kind;
+  switch (event.kind) {
+    case Kind::kClose:
+      controls_.closed = true;
+      break;
+    case Kind::kKeyPressed:
+      controls_.key_down(event.key, event.shift);
+      break;
+    case Kind::kKeyReleased:
+      controls_.key_up(event.key);
+      break;
+    case Kind::kSize:
+      drawing_.resize(event.width, event.height);
+      camera_.set_box(drawing_.terrain_box());
+      break;
+    default:
+      handle_mouse(event);
+      break;
+  }
+}
+
+void ViewerDisplay::handle_mouse(const InputEvent& event) {
+  using Kind = InputEvent::Kind;
+  const bool on_timeline = controls_.recorded() && inside(drawing_.timeline_box(), event.at);
+  switch (event.kind) {
+    case Kind::kWheel:
+      camera_.zoom(std::pow(kZoomStep, event.amount),
+                   controls_.follow ? camera_.middle() : event.at);
+      break;
+    case Kind::kPress:
+      scrubbing_ = on_timeline;
+      if (scrubbing_) controls_.to_share = drawing_.share_at(event.at.x);
+      if (inside(drawing_.terrain_box(), event.at)) drag_ = event.at;
+      break;
+    case Kind::kMove:
+      if (scrubbing_) controls_.to_share = drawing_.share_at(event.at.x);
+      if (drag_.has_value()) {
+        camera_.drag(event.at.x - drag_->x, event.at.y - drag_->y);
+        controls_.follow = false;
+        drag_ = event.at;
+      }
+      break;
+    default:
+      drag_.reset();
+      scrubbing_ = false;
+      break;
+  }
+}
+
+Scene ViewerDisplay::scene() {
+  if (controls_.fit) camera_.fit(bed_of(ground_));
+  controls_.fit = false;
+  if (controls_.follow) camera_.look_at(robot_.x_m, robot_.y_m);
+  status_.pace = controls_.paused ? "paused" : controls_.pace_text();
+  status_.terrain.now = slopes_.figures();
+  const size_t points = trail_points_.value_or(trail_.size());
+  status_.states_seen = 1U << static_cast<unsigned>(status_.leveling_state);
+  for (size_t i = 0; i < points; ++i) status_.states_seen |= 1U << trail_[i].state;
+
+  Scene scene;
+  scene.ground = &image_;
+  scene.place = {ground_.x_min(), ground_.y_min(), ground_.spacing_m(), ground_.wrap()};
+  scene.bed = bed_of(ground_);
+  scene.shading = controls_.shading;
+  scene.camera = camera_;
+  scene.shape = &setup_.shape;
+  scene.robot = robot_;
+  scene.trail = &trail_;
+  scene.trail_points = points;
+  scene.show_trail = controls_.trail;
+  scene.status = status_;
+  if (controls_.paused) scene.badges.emplace_back("paused");
+  if (controls_.follow) scene.badges.emplace_back("follow");
+  if (controls_.recording) scene.badges.emplace_back("\u25cf recording");
+  scene.show_timeline = controls_.recorded();
+  if (controls_.help) scene.help = &controls_.help_lines();
+  return scene;
+}
+
+void ViewerDisplay::draw(bool exact) {
+  if (exact) status_.motion = motion_;
+  image_.paint(ground_, controls_.shading);
+  drawing_.draw(scene());
+}
+
+void ViewerDisplay::show() {
+  const Clock::time_point begin = Clock::now();
+  if (times_.frames == 0) first_shown_ = begin;
+  // Figures that change sixty times a second cannot be read.
+  constexpr uint64_t kFramesPerReading = 6;
+  draw(times_.frames % kFramesPerReading == 0 || controls_.paused);
+  const double drawn_s = seconds_since(begin);
+  if (window_.has_value()) window_->show(drawing_.canvas());
+  ++times_.frames;
+  times_.drawing_s += drawn_s;
+  times_.showing_s += seconds_since(begin) - drawn_s;
+  times_.total_s = std::chrono::duration<double>(begin - first_shown_).count();
+  save_on_demand();
+}
+
+bool ViewerDisplay::capture_is_due() const {
+  if (!controls_.recording) return false;
+  if (!captured_until_s_.has_value() || status_.time_s < *captured_until_s_) return true;
+  constexpr double kRounding_s = 1e-9;
+  const double pace = controls_.pace > 0.0 ? controls_.pace : 1.0;
+  return status_.time_s >= *captured_until_s_ + pace / kCaptureFramesPerSecond - kRounding_s;
+}
+
+void ViewerDisplay::save_on_demand() {
+  if (controls_.screenshot) {
+    controls_.screenshot = false;
+    std::string name;
+    do {
+      name = numbered("screed-", ++pictures_);
+    } while (std::filesystem::exists(name));
+    drawing_.canvas().write_png(name);
+    std::cerr << "picture " << name << "\n";
+  }
+  if (!controls_.recording) captured_until_s_.reset();
+  if (!capture_is_due()) return;
+  const std::filesystem::path folder = options_.frames_dir.empty() ? "frames" : options_.frames_dir;
+  if (captured_frames_ == 0) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
+    std::cerr << "frames " << folder.string() << "/frame_000001.png ...\n";
+  }
+  drawing_.canvas().write_png(folder / numbered("frame_", ++captured_frames_));
+  captured_until_s_ = status_.time_s;
+}
+
+void ViewerDisplay::save(const std::filesystem::path& file) {
+  draw(true);
+  drawing_.canvas().write_png(file);
+}
+
+void ViewerDisplay::save_when_due(double time_s, bool end) {
+  if (options_.screenshot.empty() || screenshot_saved_) return;
+  constexpr double kRounding_s = 1e-6;
+  if (!end &&
+      !(options_.screenshot_at.has_value() && time_s >= *options_.screenshot_at - kRounding_s)) {
+    return;
+  }
+  screenshot_saved_ = true;
+  save(options_.screenshot);
+}
+
+}  // namespace screed::viewer

@@ -1,0 +1,134 @@
+// What the viewers of a running and of a recorded simulation share: the ground as it is shown, the
+// path, the camera, the window, pictures and recorded frames.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/run/session/sim_frame.h"
+#include "tools/screed/viewer/drawing.h"
+#include "tools/screed/viewer/input.h"
+#include "tools/screed/viewer/window.h"
+
+namespace screed::viewer {
+
+struct ViewerOptions {
+  bool window = true;
+  int width_px = 1280;
+  int height_px = 800;
+  double pace = 1.0;                    ///< simulated seconds a second; 0: as fast as it goes
+  std::optional<uint64_t> frames;       ///< draw so many, each pace / 60 s on, and close
+  std::string screenshot;               ///< a PNG to write; empty: none
+  std::optional<double> screenshot_at;  ///< the time it shows, s; without it the end
+  std::string frames_dir;               ///< folder for PNGs from the first frame on; empty: none
+  Shading shading = Shading::kHeight;
+  bool follow = false;
+  std::optional<double> span_m;  ///< width of the ground that is seen at first; without it all
+  std::vector<ScriptedKey> script;
+};
+
+/// What does not change while something is shown.
+struct DisplaySetup {
+  std::string title;
+  std::string subtitle;
+  double duration_s = 0.0;
+  double flat_deg = 5.0;
+  bool loose = false;  ///< the ground can change
+  bool soft = false;   ///< the robot sinks in
+  bool recorded = false;
+  RobotShape shape;
+};
+
+/// How long frames took, for those who count them.
+struct FrameTimes {
+  uint64_t frames = 0;
+  double drawing_s = 0.0;
+  double showing_s = 0.0;
+  double total_s = 0.0;  ///< from the first to the last frame
+
+  std::string text() const;
+};
+
+class ViewerDisplay {
+ public:
+  static constexpr double kFramesPerSecond = 60.0;
+
+  /// Opens the window, if there is to be one. Throws RunError when that fails.
+  ViewerDisplay(const ViewerOptions& options, DisplaySetup setup, const HeightField& ground);
+
+  const ViewerOptions& options() const { return options_; }
+  Controls& controls() { return controls_; }
+  /// The ground as it is shown.
+  const HeightField& ground() const { return ground_; }
+
+  /// The ground has changed: by that much, since the last call.
+  void change_terrain(std::span<const HeightChange> changes);
+  /// Where the path goes on.
+  void add_trail(const TrailPoint& point) { trail_.push_back(point); }
+  void set_trail(std::vector<TrailPoint> trail) { trail_ = std::move(trail); }
+  /// How many points of it are shown; all without a call.
+  void show_trail_points(size_t points) { trail_points_ = points; }
+  void set_notice(std::string notice) { status_.notice = std::move(notice); }
+  void set_driver(std::string driver) { status_.driver = std::move(driver); }
+  void set_travel(double left_m, double right_m) {
+    robot_.travel_left_m = left_m;
+    robot_.travel_right_m = right_m;
+  }
+  /// The moment to be shown.
+  void set_frame(const SimFrame& frame);
+
+  /// Takes what the user does; waits at most so long for it. A time of the run goes with it: the
+  /// script's keys up to it are pressed.
+  void handle_input(double time_s, int wait_ms);
+  /// Frames are recorded and the next one is due: 25 a second at the pace that is set.
+  bool capture_is_due() const;
+  /// Draws, shows, records.
+  void show();
+  /// All frames that were asked for have been shown.
+  bool all_shown() const {
+    return options_.frames.has_value() && times_.frames >= *options_.frames;
+  }
+  /// Draws what is to be seen into a file.
+  void save(const std::filesystem::path& file);
+  /// The screenshot of the options, when it is due or when this is the end; once.
+  void save_when_due(double time_s, bool end);
+
+  const FrameTimes& times() const { return times_; }
+
+ private:
+  void handle_event(const InputEvent& event);
+  void handle_mouse(const InputEvent& event);
+  Scene scene();
+  /// exact: with the figures of this very moment.
+  void draw(bool exact);
+  void save_on_demand();
+
+  ViewerOptions options_;
+  DisplaySetup setup_;
+  HeightField ground_;
+  TerrainImage image_;
+  SlopeStatistics slopes_;
+  Controls controls_;
+  Drawing drawing_;
+  std::optional<Window> window_;
+  Camera camera_;
+  Status status_;
+  Status::Motion motion_;
+  RobotMarker robot_;
+  std::vector<TrailPoint> trail_;
+  std::optional<size_t> trail_points_;
+  std::optional<Pixel> drag_;
+  bool scrubbing_ = false;
+  double scripted_until_s_ = -1.0;
+  bool screenshot_saved_ = false;
+  uint64_t pictures_ = 0;
+  uint64_t captured_frames_ = 0;
+  std::optional<double> captured_until_s_;
+  FrameTimes times_;
+  std::chrono::steady_clock::time_point first_shown_;
+};
+
+}  // namespace screed::viewer
