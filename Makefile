@@ -29,7 +29,8 @@ ifndef INSTALLED
 # `lint` goes on after a finding, to show all of them.
 WORK := $(filter-out help deps clean,$(MAKECMDGOALS))
 .PHONY: work $(WORK)
-$(WORK): work ;
+$(WORK): work
+	@:
 work: deps
 	+@$(MAKE) --no-print-directory $(if $(filter 0,$(MAKELEVEL)),$(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))) $(if $(filter lint,$(WORK)),-k) INSTALLED=yes $(WORK)
 else

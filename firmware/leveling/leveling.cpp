@@ -92,7 +92,7 @@ MotionCommand Leveling::tick(const LevelingInput& input, const MotionCommand& dr
     return motion;
   }
 #endif
-  // A spin stays where it is; everything else obeys the fence.
+  // A spin stays where it is; all other states respect the fence.
   if (state_ != LevelingState::kSpin && fence_.outside(input.x_mm, input.y_mm)) {
     enter(LevelingState::kReturn);
     return fence_.steer(input.x_mm, input.y_mm, input.heading);

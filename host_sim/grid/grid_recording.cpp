@@ -5,7 +5,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/session/hdf5_handle.h"
+#include "host_sim/core/hdf5_handle.h"
 
 namespace screed {
 namespace {

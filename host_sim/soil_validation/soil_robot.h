@@ -33,7 +33,7 @@ class SoilRobot {
   Eigen::Vector3d position() const;  ///< of the centre of mass
   Eigen::Vector3d velocity() const;
   Eigen::Matrix3d rotation() const;
-  double load_n() const { return load_; }  ///< that the soil bore in the last step
+  double load_n() const { return load_; }  ///< that the soil supported in the last step
 
  private:
   struct Wheel {

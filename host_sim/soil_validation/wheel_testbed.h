@@ -31,7 +31,7 @@ struct WheelPass {
   double drawbar_pull_n = 0.0;
   double side_force_n = 0.0;
   double torque_nm = 0.0;
-  double load_n = 0.0;    ///< that the soil bears
+  double load_n = 0.0;    ///< that the soil supports
   double ripple_m = 0.0;  ///< highest minus lowest sinkage
   double rut_m = 0.0;     ///< depth of the rut behind the wheel after the pass, along its middle
 };

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host_sim/run/session/sim_frame.h"
+#include "host_sim/core/sim_frame.h"
 
 namespace screed::nn {
 

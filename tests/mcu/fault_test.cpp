@@ -1,5 +1,5 @@
 // Faults of the hardware under the image that is flashed, driving in the world: the robot stops in
-// time, the tick keeps its deadline, and the ground station is told the cause.
+// time, the tick keeps its deadline, and the cause is reported to the ground station.
 #include <gtest/gtest.h>
 
 #include "firmware/protocol/messages.h"

@@ -4,7 +4,8 @@
 # Needs host.mk and hal/avr/firmware.mk; adds to TESTS and TEST_IMAGES.
 
 MCU_TESTS := $(B)/tests/mcu_tests
-MCU_TEST_OBJECTS := $(call objects,$(wildcard tests/mcu/*.cpp))
+MCU_TEST_SOURCES := $(wildcard tests/mcu/*.cpp)
+MCU_TEST_OBJECTS := $(call objects,$(MCU_TEST_SOURCES))
 TESTS += $(MCU_TESTS)
 
 # An image: its main program and what it uses of the firmware's core.

@@ -37,7 +37,7 @@ TEST_P(ParticleDrive, StandsAndDrives) {
   const Attitude attitude = drive.attitude();
   EXPECT_LT(std::abs(attitude.roll), 0.35);
   EXPECT_LT(std::abs(attitude.pitch), 0.35);
-  // The bed bears it: its weight lies between floor and surface.
+  // The bed supports it: its weight lies between floor and surface.
   EXPECT_GT(drive.position().z(), 0.08);
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
@@ -45,7 +45,7 @@ TEST_P(ParticleDrive, StandsAndDrives) {
 INSTANTIATE_TEST_SUITE_P(Gear, ParticleDrive, ::testing::Bool(),
                          [](const auto& gear) { return gear.param ? "Tracks" : "Wheels"; });
 
-// At rest the ground bears the robot's weight; the bed around it sleeps.
+// At rest the ground supports the robot's weight; the bed around it sleeps.
 TEST(ParticleDriveTest, ARobotAtRestCostsNothing) {
   WorldOptions options = on_particles(0.1, 0.0, true);
   options.ground_station_arms = false;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 
-/// A soil that hardly bears the robot: its friction angle is half of most.
+/// A soil that hardly supports the robot: its friction angle is half of most.
 SoilParameters weak_soil() {
   SoilParameters soil = soil_preset("viper");
   soil.k_phi = 1161187.0;
@@ -77,7 +77,7 @@ TEST(SoilDriving, ToleratesTwiceTheYawGain) {
   }
 }
 
-// Along a slope at full speed the tracks have no room left for a turn: the speed gives way, and
+// Along a slope at full speed the tracks have no room left for a turn: the speed is reduced, and
 // what the slope turned the robot by is turned back.
 TEST(SoilDriving, KeepsItsHeadingAtFullSpeed) {
   for (const char* soil : {"viper", "dry_sand", "clay"}) {

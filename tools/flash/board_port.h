@@ -24,7 +24,7 @@ struct BoardPort {
 };
 
 /// Without `asked_for`: the one board that is plugged in. With it: that port; one that is not on
-/// USB (a pty, a plain UART) is taken for a bootloader, since nothing can be told from outside.
+/// USB (a pty, a plain UART) is taken for a bootloader, since nothing can be detected from outside.
 /// Throws RunError when no board or several are found, InputError when `asked_for` does not exist
 /// or belongs to another USB device.
 BoardPort find_board(const SystemRoots& roots, const BoardUsb& usb, const std::string& asked_for);

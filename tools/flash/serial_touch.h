@@ -1,4 +1,4 @@
-// The touch: how a sketch with the Arduino core is told to restart in its bootloader.
+// The touch: how a sketch with the Arduino core is made to restart in its bootloader.
 #pragma once
 
 #include <filesystem>

@@ -58,7 +58,7 @@ function read_dependencies(file,    line, parts, count, i) {
 function header(of) { sub(/\.cpp$/, ".h", of); return of }
 
 function fits(group,    i) {
-  if (class[group] != $1 || size[group] >= most || alone[source] || alone[member[group, 1]]) return 0
+  if (class[group] != $1 || $1 == "avr" || size[group] >= most || alone[source] || alone[member[group, 1]]) return 0
   if (testing[source] && testing_of[group] && testing[source] != testing_of[group]) return 0
   for (i = 1; i <= names[source]; ++i) if ((group, own[source, i]) in taken) return 0
   if ((group, header(source)) in known) return 0

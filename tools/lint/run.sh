@@ -5,13 +5,21 @@
 # the headers of the libraries, the same for all. What a group brings up is only a hint; each of its sources is then looked at alone,
 # and what is said of it there counts.
 #
-# Needs BUILD/firmware.flags and BUILD/lint.flags, and the objects' .d files.
+# Needs BUILD/firmware.flags, BUILD/lint.flags and BUILD/mcu_tests.flags, and the objects' .d files; of hal/avr BUILD/avr.flags, and no
+# objects: those sources are looked at one by one.
 set -uo pipefail
 build=$1
 shift
 self=tools/lint
 
-flags_of() { case $1 in firmware/* | nn/infer/*) echo firmware ;; *) echo lint ;; esac; }
+flags_of() {
+  case $1 in
+    firmware/* | nn/infer/*) echo firmware ;;
+    hal/avr/*) echo avr ;;
+    tests/mcu/*) echo mcu_tests ;;
+    *) echo lint ;;
+  esac
+}
 
 # The sources pasted together; an #include that an earlier one has makes place for an empty line.
 paste() {
@@ -60,6 +68,7 @@ for source in "$@"; do
   stamp=$build/${source%.cpp}.tidy
   class=$(flags_of "$source")
   for newer in "$source" "${stamp%.tidy}.o" "$build/$class.flags" .clang-tidy; do
+    if [ "$class" = avr ] && [ "$newer" = "${stamp%.tidy}.o" ]; then continue; fi
     [ "$stamp" -nt "$newer" ] && continue
     echo "$class $source ${stamp%.tidy}.d"
     break

@@ -8,7 +8,7 @@
 #include "firmware/parameters/parameter_store.h"
 #include "hal/avr/trace_markers.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/session/record.h"
+#include "host_sim/core/record.h"
 
 namespace screed::mcu {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/random.h"
+#include "host_sim/physics/world/imu_truth.h"
 
 namespace screed {
 
@@ -55,14 +56,6 @@ struct ImuErrors {
     errors.gyro_noise_dps = 0.035;
     return errors;
   }
-};
-
-/// True motion over the last tick.
-struct ImuTruth {
-  Eigen::Vector3d mean_rate_rad_per_s;  ///< body frame
-  Eigen::Vector3d mean_specific_force;  ///< body frame, m/s^2: acceleration minus gravity
-  Eigen::Matrix3d body_to_world;
-  double altitude_m;
 };
 
 class ImuModel {

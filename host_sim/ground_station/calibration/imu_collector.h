@@ -1,4 +1,4 @@
-// Collects what a person does with a robot in the hand into the data that the fits of imu_fit.h
+// Collects the motions of a hand-held robot into the data that the fits of imu_fit.h
 // need: samples at rest, the mean force in each of six positions, magnetometer samples all round.
 //
 // Takes the raw frames in the order they come; positions may be held in any order, and again.
@@ -55,7 +55,7 @@ class ImuCollector {
   /// The fits. Throws RunError as they do, and when a position is missing.
   ImuCalibration fit() const;
 
-  /// What to do next, for the person with the robot in the hand.
+  /// What to do next, for the person who holds the robot.
   std::string advice() const;
 
  private:

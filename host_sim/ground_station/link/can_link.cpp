@@ -106,7 +106,7 @@ bool CanLink::bind_socket() {
   return bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
-void CanLink::set_down(const std::string& why) {
+void CanLink::mark_down(const std::string& why) {
   if (status_.up) ++status_.interruptions;
   status_.up = false;
   status_.text = why;
@@ -125,16 +125,16 @@ void CanLink::look_at_interface() {
     case InterfaceState::kNoCan:
       index_ = 0;
       bus_off_ = false;  // a controller that was stopped starts anew
-      return set_down("the interface is gone; waiting for it to come back");
+      return mark_down("the interface is gone; waiting for it to come back");
     case InterfaceState::kDown:
       bus_off_ = false;
-      return set_down("the interface is down (ip link set " + interface_ + " up)");
+      return mark_down("the interface is down (ip link set " + interface_ + " up)");
     case InterfaceState::kUp:
       break;
   }
   // An interface that was taken away and made anew is another one to the socket.
   if (index_ != if_nametoindex(interface_.c_str()) && !bind_socket())
-    return set_down(std::string("cannot be bound: ") + std::strerror(errno));
+    return mark_down(std::string("cannot be bound: ") + std::strerror(errno));
   if (!bus_off_ && !status_.up) set_up();
 }
 
@@ -197,7 +197,7 @@ void CanLink::take_error(const can_frame& frame) {
   ++status_.errors;
   if ((frame.can_id & CAN_ERR_BUSOFF) != 0) {
     bus_off_ = true;
-    set_down("bus off: too many errors; the interface restarts by itself when restart-ms is set");
+    mark_down("bus off: too many errors; the interface restarts by itself when restart-ms is set");
   } else if ((frame.can_id & CAN_ERR_RESTARTED) != 0) {
     bus_off_ = false;
     set_up();

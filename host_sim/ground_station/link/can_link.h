@@ -31,7 +31,7 @@ class CanLink : public Link {
   void look_at_interface();
   void read_frames(std::vector<LinkFrame>& frames);
   void take_error(const can_frame& frame);
-  void set_down(const std::string& why);
+  void mark_down(const std::string& why);
   void set_up();
 
   std::string interface_;

@@ -105,7 +105,7 @@ void RobotView::look_for_changes(const MessageInfo& message, const Sample* befor
          display_name(op.text(op.raw(data))) + ": " + display_name(result.text(result.raw(data))));
   } else if (message.id == find_message("EVENT")->id) {
     const SignalInfo& code = *message.signal("code");
-    // A change of state is told by the heartbeat, in full.
+    // The heartbeat reports every change of state, in full.
     if (code.raw(data) == static_cast<int64_t>(message::EventCode::kState)) return;
     const SignalInfo& argument = *message.signal("argument");
     note(now.time_us, CellStyle::kNormal,

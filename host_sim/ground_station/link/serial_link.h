@@ -52,7 +52,7 @@ class SerialLink : public Link {
   std::chrono::steady_clock::time_point looked_at_;
   std::optional<XbeeApiParser> api_;
   XbeeFrameType heard_type_ = XbeeFrameType::kReceive;
-  /// Lines of several robots are told apart by their modules' addresses; 0 without API mode.
+  /// Lines of several robots are distinguished by their modules' addresses; 0 without API mode.
   std::map<uint64_t, SlcanParser> parsers_;
 };
 

@@ -1,5 +1,5 @@
 // Lays a bed of equal spheres below a surface (thesis 5.1.3): a stack a pixel, each as high as the
-// surface says, set down sphere by sphere where it finds a hollow.
+// surface says, placed sphere by sphere where it finds a hollow.
 #pragma once
 
 #include <Eigen/Core>

@@ -94,7 +94,8 @@ void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, d
     extend_path(footprint, velocity * dt, options_.follow_slopes, kept.path);
     double elastic = soil_.elastic_pa_per_m;
     if (footprint.extended() && !tilts && !imposed) {
-      // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step bears.
+      // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step
+      // allows.
       const double area = std::max(kept.patch_area_m2, cell_area_);
       elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
     }

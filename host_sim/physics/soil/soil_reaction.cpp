@@ -1,4 +1,4 @@
-// What gives way under a footprint and what it feels: plastic sinkage, normal stress, shear,
+// How soil yields under a footprint, and the reaction: plastic sinkage, normal stress, shear,
 // digging.
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double 
   dig_rest_ += volume / (cell_area_ * kHeightUnit_m);
   const auto units = static_cast<int64_t>(dig_rest_);
   dig_rest_ -= static_cast<double>(units);
-  // Sheared soil settles too; nothing is set down where nothing is pushed aside.
+  // Sheared soil settles too; nothing is deposited where nothing is pushed aside.
   const double lost = options_.bulldozing ? soil_.compaction : 1.0;
   compaction_rest_ += lost * static_cast<double>(units);
   const auto compacted = std::min(units, static_cast<int64_t>(compaction_rest_));

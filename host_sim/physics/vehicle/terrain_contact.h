@@ -43,7 +43,7 @@ inline bool find_contact(const HeightField& ground, const Eigen::Vector3d& posit
 /// Force on a surface point that touches the ground. The surface moves at `velocity` over it, belt
 /// motion included; the contact point sinks in at `body_velocity`, without it: a wheel that
 /// rolls does not press deeper where its rim goes down. `bristle` is the state of the point, world
-/// frame, m; it becomes zero when the point is being pulled out and bears nothing.
+/// frame, m; it becomes zero when the point is being pulled out and carries no load.
 inline Eigen::Vector3d contact_force(const ContactLaw& law, const TerrainContact& contact,
                                      const Eigen::Vector3d& body_velocity,
                                      const Eigen::Vector3d& velocity, double dt,

@@ -7,12 +7,12 @@
 #include <array>
 #include <cstdint>
 
-#include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
+#include "host_sim/physics/world/imu_truth.h"
 
 namespace screed {
 
@@ -39,7 +39,7 @@ class Environment {
   /// Null on ground of another kind.
   virtual const SoilBed* soil() const = 0;
   virtual const ParticleBed* particles() const = 0;
-  /// Whether the ground gives way and, without wrap-around, ends at the edges of its bed.
+  /// Whether the terrain is deformable and, without wrap-around, ends at the edges of its bed.
   virtual bool is_deformable() const = 0;
   virtual const VehicleState& vehicle() const = 0;
   /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever

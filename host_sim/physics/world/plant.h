@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "host_sim/devices/sensors/imu_model.h"
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
@@ -17,6 +16,7 @@
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/physics/world/environment.h"
+#include "host_sim/physics/world/imu_truth.h"
 
 namespace screed {
 
@@ -24,7 +24,7 @@ struct StartPose {
   double x_m = 0.0;
   double y_m = 0.0;
   std::optional<double>
-      z_m;  ///< of Body's origin; without it the robot is set down and comes to rest
+      z_m;  ///< of Body's origin; without it the robot is placed on the terrain and settles
   Attitude attitude = {0.0, 0.0, 0.0};
 };
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/physics/terrain/height_map.h"
 #include "host_sim/render/picture/color_map.h"
-#include "host_sim/run/session/session_info.h"
 
 namespace screed {
 

@@ -142,7 +142,7 @@ struct Experiment {
 
   Parameters parameters;
 
-  /// What the reader of the file should be told: keys that were understood in another way than
+  /// Notes for the user of the file: keys that were understood in another way than
   /// they look. Not part of text().
   std::vector<std::string> notes;
 

@@ -164,7 +164,7 @@ std::vector<ExperimentKey> make_keys() {
   keys.push_back(real_key("vehicle", "y", "m", -500, 500, "start position, north",
                           [](Experiment& e) -> double& { return e.vehicle.y_m; }));
   keys.push_back(real_key("vehicle", "z", "m", -200, 200,
-                          "start height of the chassis; left out: set down on the ground",
+                          "start height of the chassis; left out: resting on the terrain",
                           [](Experiment& e) -> std::optional<double>& { return e.vehicle.z_m; }));
   keys.push_back(real_key("vehicle", "r", "deg", -180, 180, "start roll, left side up",
                           [](Experiment& e) -> double& { return e.vehicle.roll_deg; }));

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "host_sim/run/session/record.h"
+#include "host_sim/core/record.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host_sim/core/content_hash.h"
-#include "host_sim/run/session/hdf5_handle.h"
+#include "host_sim/core/hdf5_handle.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed {

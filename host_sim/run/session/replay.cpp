@@ -8,7 +8,7 @@
 #include "firmware/robot/robot.h"
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/session/record.h"
+#include "host_sim/core/record.h"
 #include "host_sim/run/session/session_layout.h"
 #include "host_sim/run/session/session_reader.h"
 

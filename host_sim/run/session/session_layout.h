@@ -6,8 +6,8 @@
 #include <span>
 
 #include "firmware/parameters/board_constants.h"
-#include "host_sim/run/session/hdf5_handle.h"
-#include "host_sim/run/session/record.h"
+#include "host_sim/core/hdf5_handle.h"
+#include "host_sim/core/record.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed::layout {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "hal/sample.h"
+#include "host_sim/core/sim_frame.h"
 #include "host_sim/run/session/session_info.h"
-#include "host_sim/run/session/sim_frame.h"
 
 namespace screed {
 

@@ -10,9 +10,9 @@
 
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/run/session/hdf5_handle.h"
+#include "host_sim/core/hdf5_handle.h"
+#include "host_sim/core/record.h"
 #include "host_sim/run/session/height_series.h"
-#include "host_sim/run/session/record.h"
 #include "host_sim/run/session/session_hash.h"
 #include "host_sim/run/session/session_layout.h"
 

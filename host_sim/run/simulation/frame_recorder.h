@@ -2,8 +2,8 @@
 #pragma once
 
 #include "firmware/robot/robot.h"
+#include "host_sim/core/sim_frame.h"
 #include "host_sim/physics/world/environment.h"
-#include "host_sim/run/session/sim_frame.h"
 
 namespace screed {
 

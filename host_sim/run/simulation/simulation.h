@@ -22,7 +22,7 @@
 
 namespace screed {
 
-/// What is told while a run goes on.
+/// Progress of a run.
 struct SimulationProgress {
   double time_s;
   double duration_s;

@@ -1,8 +1,8 @@
 // Observes a run: is called at every tick and changes nothing.
 #pragma once
 
+#include "host_sim/core/sim_frame.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/run/session/sim_frame.h"
 
 namespace screed {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "firmware/robot/robot.h"
-#include "host_sim/run/session/record.h"
+#include "host_sim/core/record.h"
 
 namespace screed {
 

@@ -1,5 +1,5 @@
 // The thesis' performance figures 5.6 to 5.9 again: one case is a terrain of one kind and size
-// under the driving robot. Each runs in a process of its own, so that its memory can be told.
+// under the driving robot. Each runs in a process of its own, so that its memory can be measured.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ struct PlotOptions {
   int height_px = 480;
 };
 
-/// The chart of a log; `err` is told what could not be read, if anything. Throws InputError for an
+/// The chart of a log; what could not be read is reported on `err`. Throws InputError for an
 /// unknown signal, and when there is nothing to draw.
 Chart plot_chart(const PlotOptions& options, std::ostream& err);
 

@@ -162,7 +162,7 @@ int run_stuck(const StuckArguments& arguments) {
     std::cout << scenario.experiment.text();
     return 0;
   }
-  // That it cannot be written is told before the drives, not after.
+  // Reports an unwritable file before the drives, not after.
   if (!arguments.train.empty()) {
     const AtomicFile place(arguments.train);
   }

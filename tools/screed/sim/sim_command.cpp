@@ -42,7 +42,7 @@ struct SimArguments {
   ViewArguments viewer;
 };
 
-/// Who looks on at a run, and may drive in it.
+/// Viewer of a run, which may drive in it.
 struct Watching {
   std::unique_ptr<viewer::KeyboardDriver> driver;
   std::unique_ptr<viewer::LiveViewer> viewer;

@@ -14,7 +14,7 @@ namespace screed::viewer {
 
 class LiveViewer : public SimulationObserver {
  public:
-  /// `driver` is told what the arrow keys want; it must outlive this. `end_run` is called when the
+  /// `driver` receives what the arrow keys request; it must outlive this. `end_run` is called when the
   /// user closes the window.
   LiveViewer(const Experiment& experiment, const std::string& board, const ViewerOptions& options,
              KeyboardDriver& driver, std::function<void()> end_run);

@@ -1,4 +1,4 @@
-// The slope of every cell, and what of them is told to people, kept up to date at the cost of what
+// The slope of every cell and statistics of them, kept up to date at the cost of what
 // changes: statistics of a bed of 360,000 cells at every frame.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace screed::viewer {
 
 /// Of all cells, each at its centre; as terrain_statistics() and flatness() to the resolution of
-/// the ledger.
+/// the bins.
 struct SlopeFigures {
   double mean_deg = 0.0;
   double p95_deg = 0.0;

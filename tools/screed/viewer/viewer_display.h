@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/run/session/sim_frame.h"
+#include "host_sim/core/sim_frame.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
 #include "tools/screed/viewer/window.h"

@@ -77,7 +77,7 @@ TEST(DriveControl, TurnsAsCommandedThoughTheTracksSlip) {
   }
 }
 
-// At full speed a track comes to its limit: then the speed gives way and the heading is kept. What
+// At full speed a track comes to its limit: then the speed is reduced and the heading is kept. What
 // turned the robot while it had no room is turned back.
 TEST(DriveControl, KeepsItsHeadingAtFullSpeed) {
   for (const int16_t degrees_per_s : std::initializer_list<int16_t>{0, 20, -45}) {

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path image_path(const std::string& name) {
-  return fs::path(__FILE__).parent_path().parent_path() / "data" / "images" / name;
+  return fs::path("tests/data/images") / name;
 }
 
 const std::vector<uint16_t> kGrey8 = {0, 1, 2, 3, 64, 128, 192, 254, 255, 10, 20, 30};

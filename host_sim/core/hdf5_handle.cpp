@@ -1,5 +1,5 @@
 // The HDF5 C library behind RAII and exceptions.
-#include "host_sim/run/session/hdf5_handle.h"
+#include "host_sim/core/hdf5_handle.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,5 +1,5 @@
 // Packs and unpacks the rows; the column lists in record.h decide what and in which order.
-#include "host_sim/run/session/record.h"
+#include "host_sim/core/record.h"
 
 #include <algorithm>
 #include <bit>

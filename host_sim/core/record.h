@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "hal/sample.h"
-#include "host_sim/run/session/sim_frame.h"
+#include "host_sim/core/sim_frame.h"
 
 // clang-format off
 //  name             unit            meaning
