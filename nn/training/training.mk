@@ -30,12 +30,11 @@ sessions: $(SCREED)  ## record the thesis' training sessions into out/sessions (
 
 # ---- V3, and what tracks do to the ground --------------------------------------------------------------------------------------
 
-V3_SESSIONS := $(sort $(wildcard host_sim/data/experiments/sessions/v3/*.ini))
+V3 := host_sim/data/experiments/sessions/v3/v3
 V3_OUT := $(OUT)/sessions/v3$(if $(FRAMES),-$(FRAMES))
 .PHONY: v3-sessions surrogate-v3 terrain-tracks
 v3-sessions: $(SCREED)
-	@set -e ; for file in $(V3_SESSIONS) ; do session=$(V3_OUT)/$$(basename $$file .ini)-0001 ; \
-	  test -e $$session/session.h5 || $(SCREED) record $$file --out $$session $(if $(FRAMES),--frames $(FRAMES)) ; done
+	@$(SCREED) record $(V3).ini --table $(V3).csv --missing --out $(V3_OUT) $(if $(FRAMES),--frames $(FRAMES))
 surrogate-v3: v3-sessions  ## record V3's sessions, train it, drive it beside the physics (two hours; short: FRAMES=800 ARGS='--steps 20')
 	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(V3_OUT) --out $(OUT)/v3.json $(ARGS)
 	@$(SCREED) nn rollout $(V3_OUT)/e_*-0001 --model $(OUT)/v3.json --fit $(V3_OUT)/t_viper-0001 \

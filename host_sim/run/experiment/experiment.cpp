@@ -9,6 +9,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
 #include "host_sim/run/experiment/experiment_keys.h"
+#include "host_sim/run/experiment/experiment_table.h"
 #include "paths.h"
 
 namespace screed {
@@ -25,47 +26,13 @@ std::string full_name(const std::string& section, const std::string& key) {
   return section.empty() ? key : "[" + section + "] " + key;
 }
 
-/// The known names most like what was written, to say what is allowed.
-std::string known_names(const std::string& section) {
-  std::string names;
-  for (const ExperimentKey& key : experiment_keys()) {
-    if (key.section == section) names += (names.empty() ? "" : ", ") + key.name;
-  }
-  return names;
-}
-
-std::string known_sections() {
-  std::string names;
-  std::string last;
-  for (const ExperimentKey& key : experiment_keys()) {
-    if (key.section != last && !key.section.empty())
-      names += (names.empty() ? "[" : ", [") + key.section + "]";
-    last = key.section;
-  }
-  return names;
-}
-
-void apply(Experiment& experiment, const IniEntry& entry, const std::string& source) {
-  const std::string where = entry.line > 0 ? source + ":" + std::to_string(entry.line) : "--set";
-  const auto key = std::find_if(experiment_keys().begin(), experiment_keys().end(),
-                                [&](const ExperimentKey& known) {
-                                  return known.section == entry.section && known.name == entry.key;
-                                });
-  if (key == experiment_keys().end()) {
-    const std::string names = known_names(entry.section);
-    if (names.empty()) {
-      throw InputError(where + ": unknown section [" + entry.section + "]; known are " +
-                       known_sections());
-    }
-    throw InputError(
-        where + ": unknown key '" + entry.key + "'" +
-        (entry.section.empty() ? " before the first section" : " in [" + entry.section + "]") +
-        "; known are " + names);
-  }
-  if (!key->set(experiment, entry.value)) {
+/// `where` names the entry's place in messages.
+void apply(Experiment& experiment, const IniEntry& entry, const std::string& where) {
+  const ExperimentKey& key = find_experiment_key(entry.section, entry.key, where);
+  if (!key.set(experiment, entry.value)) {
     throw InputError(where + ": " + full_name(entry.section, entry.key) + " = '" + entry.value +
-                     "' is not allowed; expected " + key->allowed +
-                     (key->unit.empty() ? "" : " (" + key->unit + ")"));
+                     "' is not allowed; expected " + key.allowed +
+                     (key.unit.empty() ? "" : " (" + key.unit + ")"));
   }
 }
 
@@ -188,6 +155,11 @@ std::string Experiment::text() const {
 
 Experiment read_experiment(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides) {
+  return read_experiment_row(path, {}, overrides);
+}
+
+Experiment read_experiment_row(const std::filesystem::path& path, const ExperimentRow& row,
+                               const std::vector<std::string>& overrides) {
   Experiment experiment;
   experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
   const std::string source = path.string();
@@ -197,17 +169,20 @@ Experiment read_experiment(const std::filesystem::path& path,
   experiment.map.wrap = sandbox;
   if (sandbox) experiment.particles.depth_m = 0.0;
   for (const IniEntry& entry : entries)
-    apply(experiment, sandbox ? from_sandbox(entry) : entry, source);
+    apply(experiment, sandbox ? from_sandbox(entry) : entry,
+          source + ":" + std::to_string(entry.line));
   // A pixel's width is a length; of particles the key is a share.
   if (sandbox && experiment.map.xy_scale.has_value() && !experiment.map.of_particles())
     *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
-  for (const std::string& text : overrides) apply(experiment, parse_override(text), source);
+  for (const ExperimentRow::Value& value : row.values)
+    apply(experiment, value.entry, row.where + ", column '" + value.column + "'");
+  for (const std::string& text : overrides) apply(experiment, parse_override(text), "--set");
+  const std::string& whole = row.where.empty() ? source : row.where;
   experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
-  if (experiment.experiment.algorithm == kTrainingDriveName)
-    set_training_length(experiment, source);
+  if (experiment.experiment.algorithm == kTrainingDriveName) set_training_length(experiment, whole);
   if (experiment.experiment.frames.has_value())
     experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};
-  check(experiment, source);
+  check(experiment, whole);
   return experiment;
 }
 

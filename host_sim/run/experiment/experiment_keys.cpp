@@ -431,6 +431,26 @@ std::vector<ExperimentKey> make_keys() {
   return keys;
 }
 
+/// The known names most like what was written, to say what is allowed.
+std::string known_names(const std::string& section) {
+  std::string names;
+  for (const ExperimentKey& key : experiment_keys()) {
+    if (key.section == section) names += (names.empty() ? "" : ", ") + key.name;
+  }
+  return names;
+}
+
+std::string known_sections() {
+  std::string names;
+  std::string last;
+  for (const ExperimentKey& key : experiment_keys()) {
+    if (key.section != last && !key.section.empty())
+      names += (names.empty() ? "[" : ", [") + key.section + "]";
+    last = key.section;
+  }
+  return names;
+}
+
 }  // namespace
 
 std::string shortest(double value) {
@@ -449,6 +469,21 @@ int16_t algorithm_number(const std::string& name) {
     if (name == known.name) return static_cast<int16_t>(known.algorithm);
   }
   throw InputError("unknown algorithm '" + name + "'");
+}
+
+const ExperimentKey& find_experiment_key(const std::string& section, const std::string& name,
+                                         const std::string& where) {
+  const auto key = std::find_if(
+      experiment_keys().begin(), experiment_keys().end(),
+      [&](const ExperimentKey& known) { return known.section == section && known.name == name; });
+  if (key != experiment_keys().end()) return *key;
+  const std::string names = known_names(section);
+  if (names.empty()) {
+    throw InputError(where + ": unknown section [" + section + "]; known are " + known_sections());
+  }
+  throw InputError(where + ": unknown key '" + name + "'" +
+                   (section.empty() ? " before the first section" : " in [" + section + "]") +
+                   "; known are " + names);
 }
 
 }  // namespace screed

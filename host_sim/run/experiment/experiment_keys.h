@@ -35,6 +35,9 @@ struct ExperimentKey {
 
 /// By section, in the order in which they are written.
 const std::vector<ExperimentKey>& experiment_keys();
+/// The key of this name. Throws InputError that begins with `where` and lists what is known.
+const ExperimentKey& find_experiment_key(const std::string& section, const std::string& name,
+                                         const std::string& where);
 
 /// The shortest text that reads back as this number.
 std::string shortest(double value);

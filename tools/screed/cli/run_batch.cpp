@@ -3,10 +3,13 @@
 
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/run/experiment/experiment_table.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/progress_bar.h"
+#include "tools/screed/cli/recorded_runs.h"
 
 namespace screed {
 namespace {
@@ -14,11 +17,41 @@ namespace {
 std::vector<Experiment> read_all(const BatchArguments& arguments,
                                  const std::vector<std::string>& overrides) {
   std::vector<Experiment> experiments;
-  for (const std::string& file : arguments.files) {
-    experiments.push_back(read_experiment(file, overrides));
-    for (const std::string& note : experiments.back().notes) std::cerr << "note: " << note << "\n";
+  if (arguments.table.has_value()) {
+    if (arguments.files.size() != 1)
+      throw InputError("--table needs one FILE, which says what its rows have in common");
+    for (const ExperimentRow& row :
+         select_rows(read_experiment_table(*arguments.table), arguments.rows))
+      experiments.push_back(read_experiment_row(arguments.files.front(), row, overrides));
+  } else {
+    for (const std::string& file : arguments.files)
+      experiments.push_back(read_experiment(file, overrides));
   }
+  std::set<std::string> told;  // the rows of a table have the notes of their file in common
+  for (const Experiment& experiment : experiments) {
+    for (const std::string& note : experiment.notes)
+      if (told.insert(note).second) std::cerr << "note: " << note << "\n";
+  }
+  if (arguments.missing) leave_out_recorded(experiments, arguments.out);
   return experiments;
+}
+
+/// Checks several experiments; what is wrong with one begins with its name. Building a world on
+/// soil takes a quarter of a second, so many of them show how far they are.
+void check_all(const std::vector<Experiment>& experiments, const SimulationOptions& options,
+               bool quiet) {
+  ProgressBar bar(std::cerr);
+  for (size_t i = 0; i < experiments.size(); ++i) {
+    const std::string& name = experiments[i].experiment.name;
+    try {
+      check_simulation(experiments[i], options);
+    } catch (const InputError& error) {
+      throw InputError("experiment " + name + ": " + error.what());
+    }
+    const double share = static_cast<double>(i + 1) / static_cast<double>(experiments.size());
+    if (!quiet) bar.show_share(share, "checked " + name);
+  }
+  bar.finish();
 }
 
 SimulationSummary run_one(const Experiment& experiment, SimulationOptions options, bool quiet,
@@ -46,12 +79,23 @@ SimulationSummary run_one(const Experiment& experiment, SimulationOptions option
 void add_batch_options(CLI::App& command, BatchArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Experiment files (INI), run one after the other, each in its own world");
+  CLI::Option* table =
+      command.add_option("--table", arguments.table,
+                         "CSV table with one experiment per row; FILE holds the common keys");
+  command
+      .add_option("--rows", arguments.rows,
+                  "Run only the rows that match this name pattern, e.g. 'e_*'; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->needs(table);
+  command.add_flag("--missing", arguments.missing,
+                   "Skip experiments whose run folder (NAME-0001) already exists");
   command.add_option("--set", arguments.sets, "Override a key: section.key=value; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
-  command.add_option(
-      "--out", arguments.out,
-      "Run folder, must not exist yet; with several files the parent folder of their run folders");
+  command.add_option("--out", arguments.out,
+                     "Run folder, must not exist yet; with several files, --table or --missing the "
+                     "parent folder of the run folders");
   command.add_flag("--quiet", arguments.quiet,
                    "Show no progress; print only run folder and content hash");
   command.add_flag("--json", arguments.json, "Print the summary as JSON");
@@ -62,11 +106,9 @@ void run_batch(const BatchArguments& arguments, const std::vector<std::string>& 
   std::vector<std::string> all = arguments.sets;
   all.insert(all.end(), overrides.begin(), overrides.end());
   const std::vector<Experiment> experiments = read_all(arguments, all);
-  const bool several = experiments.size() > 1;
+  const bool several = arguments.several();
   if (several) {
-    for (const Experiment& experiment : experiments) {
-      check_simulation(experiment, options);
-    }
+    check_all(experiments, options, arguments.quiet);
     if (arguments.out.has_value()) options.root = *arguments.out;
   } else if (arguments.out.has_value()) {
     options.out = *arguments.out;

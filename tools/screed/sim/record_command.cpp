@@ -17,7 +17,7 @@ struct RecordArguments {
   BatchArguments runs;
   std::optional<std::string> seed;
   std::optional<std::string> frames;
-  bool table = false;
+  bool csv = false;
 };
 
 /// The seed of the world, and that of the drive: a parameter of the robot, of 15 bits.
@@ -57,7 +57,7 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
   SimulationOptions options;
   options.program_version = version;
   options.heights = true;
-  options.table = arguments.table;
+  options.table = arguments.csv;
   bool short_of_frames = false;
   std::vector<SimulationSummary> summaries;
   run_batch(arguments.runs, overrides, options,
@@ -81,7 +81,7 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
                 print_session(summary);
               }
             });
-  if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.files.size() > 1);
+  if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.several());
   return short_of_frames ? 1 : 0;
 }
 
@@ -99,7 +99,7 @@ void register_record_command(CLI::App& root, const std::string& version,
       "Seed of world and training drive; overrides [experiment] seed and [parameters] random_seed");
   command->add_option("--frames", arguments->frames,
                       "Number of frames of the training drive; overrides [experiment] frames");
-  command->add_flag("--table", arguments->table, "Also write frames.csv");
+  command->add_flag("--csv", arguments->csv, "Also write frames.csv");
   command->callback([arguments, version, &action] {
     if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
     action = [arguments, version] { return run_record(*arguments, version); };
