@@ -12,7 +12,7 @@ MAKEFLAGS += --no-builtin-rules
 
 DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
-PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz,$(MAKECMDGOALS)),tests/fuzz/debian-packages.txt) \
+PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
                  $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt)
 BUILD_FILES := Makefile $(sort $(wildcard tools/build/*.mk hal/avr/*.mk nn/*/*.mk tests/*.mk tests/*/*.mk tools/*/*.mk tools/*/*/*.mk))
 
@@ -46,6 +46,7 @@ include tools/bench/bench.mk
 include tools/bench/telemetry/telemetry_lab.mk
 include tests/fuzz/fuzz.mk
 include tests/can/can.mk
+include tests/asan.mk
 include nn/training/training.mk
 include tools/lint/lint.mk
 -include $(shell find $(BUILD_ROOT) -name '*.d' 2> /dev/null)

@@ -1,6 +1,6 @@
 #!/bin/bash
 # run.sh PROGRAM...: runs GoogleTest programs, two shards each in parallel, and ends with "N passed, N failed".
-# A program that dies counts as a failed test; its output is shown.
+# A program that dies counts as a failed test; its output is shown. With CI=true a skipped test counts as failed.
 set -uo pipefail
 
 folder=$(mktemp -d)
@@ -29,17 +29,21 @@ for name in "${jobs_begun[@]}"; do
   for ((shard = 0; shard < shards; ++shard)); do
     base=$folder/$name.$shard
     status=$(cat "$base.status")
-    # Of the program's own summary; absent when it died on the way.
-    tests=$(grep -m1 -oE '"tests": [0-9]+' "$base.json" 2> /dev/null | grep -oE '[0-9]+' || echo 0)
-    failures=$(grep -m1 -oE '"failures": [0-9]+' "$base.json" 2> /dev/null | grep -oE '[0-9]+' || echo 0)
-    if [ "$status" -ne 0 ]; then
+    # Of the program's own summary; absent when it ended on the way, with whatever status.
+    tests=0
+    failures=0
+    skips=0
+    if [ -s "$base.json" ]; then
+      tests=$(grep -m1 -oE '"tests": [0-9]+' "$base.json" | grep -oE '[0-9]+')
+      failures=$(grep -m1 -oE '"failures": [0-9]+' "$base.json" | grep -oE '[0-9]+')
+      # A skipped test has not passed: it is said, and not counted.
+      skips=$(grep -c '"result": "SKIPPED"' "$base.json")
+    fi
+    if [ "$status" -ne 0 ] || [ ! -s "$base.json" ]; then
       cat "$base.log"
-      [ "$failures" -eq 0 ] && failures=1 && echo "$name, shard $shard: ended with status $status"
+      [ "$failures" -eq 0 ] && failures=1 && echo "$name, shard $shard: ended with status $status$([ -s "$base.json" ] || echo ' before its summary')"
       [ "$tests" -lt "$failures" ] && tests=$failures
     fi
-    # A skipped test has not passed: it is said, and not counted.
-    skips=$(grep -c '"result": "SKIPPED"' "$base.json" 2> /dev/null || true)
-    skips=${skips:-0}
     [ "$skips" -gt 0 ] && grep -A1 ': Skipped$' "$base.log"
     skipped=$((skipped + skips))
     passed=$((passed + tests - failures - skips))
@@ -48,5 +52,9 @@ for name in "${jobs_begun[@]}"; do
 done
 
 [ "$skipped" -gt 0 ] && echo "$skipped skipped"
+if [ "$skipped" -gt 0 ] && [ "${CI:-}" = true ]; then
+  echo "with CI=true nothing may be skipped: a missing tool is a failure"
+  failed=$((failed + skipped))
+fi
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,7 +19,9 @@ class TempFolder {
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create " + name);
     path_ = name;
   }
+  /// A child process that ends by exit() leaves its parent's folders alone.
   ~TempFolder() {
+    if (getpid() != owner_) return;
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
@@ -29,6 +32,7 @@ class TempFolder {
 
  private:
   std::filesystem::path path_;
+  pid_t owner_ = getpid();
 };
 
 /// All bytes of a file; "" when there is none.

@@ -72,7 +72,6 @@ class SlipWatch : private SlipMemory {
 
   // For training and tests.
   const int16_t* network_inputs() const { return inputs_; }
-  int16_t network_output() const { return held_; }
   uint16_t evidence() const { return evidence_; }
 
   static constexpr int16_t kMinTrackSpeed_dmm_per_s = 350;  ///< below, slip is not observable

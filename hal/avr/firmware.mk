@@ -62,7 +62,7 @@ ALLOWED_VTABLES := Serial_
 
 firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
 	@echo "$(FIRMWARE_ELF)"
-	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | grep -vxF '$(ALLOWED_VTABLES)' || true) ; \
+	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | { grep -vxF '$(ALLOWED_VTABLES)' || [ $$? -eq 1 ] ; }) ; \
 	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which $(INDIRECT_CALLS) does not know" >&2 ; exit 1 ; }
 	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
 	  --indirect-calls $(INDIRECT_CALLS) --flash-budget $(FLASH_BUDGET) --ram-budget $(RAM_BUDGET) \

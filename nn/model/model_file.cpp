@@ -267,17 +267,6 @@ void put(std::string& text, const Json& value, const std::string& indent) {
 
 }  // namespace
 
-const ModelNetwork& Model::with_output(const std::string& feature) const {
-  std::string known;
-  for (const ModelNetwork& network : networks) {
-    for (const ModelChannel& output : network.outputs) {
-      if (output.feature == feature) return network;
-      known += (known.empty() ? "" : ", ") + output.feature;
-    }
-  }
-  throw InputError("model " + name + ": no output '" + feature + "'; it has " + known);
-}
-
 std::vector<GoldenVector> golden_vectors(const IntegerNetwork& network, std::size_t count,
                                          std::uint64_t seed) {
   WorldRandom random(seed, "golden vectors");

@@ -64,9 +64,6 @@ struct Model {
   std::vector<ModelPreprocessingStage>
       stages;  ///< in their order; "normalise" is the channels' scale
   std::vector<ModelNetwork> networks;
-
-  /// The network with this output. Throws InputError when there is none.
-  const ModelNetwork& with_output(const std::string& feature) const;
 };
 
 /// Makes the golden vectors of a network: the corners and `count` random vectors.

@@ -69,7 +69,6 @@ class SurrogatePlant : public Environment {
   const TrackSoilModel* soil_model() const { return soil_model_.get(); }
   /// Where the robot is, positions as travelled.
   PlanarPose pose() const { return robot_.pose(0); }
-  FrameMotion last_motion() const { return robot_.motion(0); }
 
  private:
   static constexpr int kStepsPerTick = 10;

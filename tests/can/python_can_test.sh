@@ -10,7 +10,7 @@ $python -c 'import can' 2> /dev/null || { echo "python3-can is not installed: ap
 work=$(mktemp -d)
 "$SCREED_PROGRAM" sim host_sim/data/experiments/first_drive.ini --pty "$work/radio" --duration 60 --out "$work/run" --quiet > "$work/sim.log" 2>&1 &
 sim=$!
-trap 'kill $sim 2> /dev/null || true; rm -rf "$work"' EXIT
+trap 'if kill -0 $sim 2> /dev/null; then kill $sim; fi; rm -rf "$work"' EXIT
 for _ in $(seq 100); do [ -e "$work/radio" ] && break; sleep 0.1; done
 $python tests/can/python_can_test.py "$work/radio"
 kill -INT $sim

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,11 @@ class Program : public ::testing::Test {
  protected:
   void SetUp() override {
     const char* program = std::getenv("SCREED_PROGRAM");
-    ASSERT_NE(program, nullptr)
-        << "SCREED_PROGRAM names the program under test; `make test` sets it";
+    // Thrown, since after a failed assertion the SetUp() of a derived fixture would go on, and
+    // write its files and logs into the current folder.
+    if (program == nullptr) {
+      throw std::runtime_error("SCREED_PROGRAM names the program under test; `make test` sets it");
+    }
     program_ = program;
     root_ = folder_.path() / "run";
     std::filesystem::create_directories(root_);

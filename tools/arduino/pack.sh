@@ -16,7 +16,7 @@ library=$folder/Screed
 src=$library/src
 
 # The IDE wants a version MAJOR.MINOR.PATCH; what comes from elsewhere stays readable in build_info.h.
-number=$(grep -oE '^v?[0-9]+(\.[0-9]+){0,2}' <<< "$version" | tr -d v || true)
+number=$({ grep -oE '^v?[0-9]+(\.[0-9]+){0,2}' <<< "$version" || [ $? -eq 1 ]; } | tr -d v)
 [[ $number =~ \. ]] || number=0.0.0
 while [[ $number != *.*.* ]]; do number=$number.0; done
 

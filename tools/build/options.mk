@@ -12,7 +12,7 @@ VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
 OPTIMISE_release := -O2 -DNDEBUG
 OPTIMISE_debug := -O0 -g
-OPTIMISE_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPTIMISE_asan := -O1 -gline-tables-only -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 ifeq ($(OPTIMISE_$(BUILD)),)
 $(error BUILD=$(BUILD): release, debug or asan)
 endif

@@ -20,7 +20,14 @@ extern "C" {
 
 #include "host_sim/core/errors.h"
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef __SANITIZE_ADDRESS__  // gcc's word
+#define SCREED_LEAK_CHECKER
+#elif defined(__has_feature)  // clang's
+#if __has_feature(address_sanitizer)
+#define SCREED_LEAK_CHECKER
+#endif
+#endif
+#ifdef SCREED_LEAK_CHECKER
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -30,7 +37,7 @@ namespace {
 /// simavr frees not everything an MCU holds: what is allocated while one of these lives is no leak
 /// of ours.
 struct SimavrAllocates {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SCREED_LEAK_CHECKER
   __lsan::ScopedDisabler disabler;
 #else
   SimavrAllocates() {}  // NOLINT(modernize-use-equals-default): else the object counts as unused
@@ -121,7 +128,6 @@ struct Mcu::Hooks {
     Mcu& it = of(avr->custom.data);
     if (!it.asleep_) {
       it.asleep_ = true;
-      it.asleep_since_ = avr->cycle;
       if (it.sleep_callback_) it.sleep_callback_();
     }
     it.slept_ += cycles + 1;  // as simavr advances its clock

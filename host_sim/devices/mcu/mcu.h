@@ -146,8 +146,6 @@ class Mcu {
   // ---- time
 
   std::uint64_t slept_cycles() const { return slept_; }
-  /// The first cycle of the sleep that goes on, or of the last one.
-  std::uint64_t fell_asleep_at() const { return asleep_since_; }
   /// Called when the program goes to sleep.
   void on_sleep(std::function<void()> callback) { sleep_callback_ = std::move(callback); }
   const std::array<InterruptTimes, kVectors>& interrupts() const { return interrupts_; }
@@ -214,7 +212,6 @@ class Mcu {
   std::uint64_t end_ = 0;
   std::uint64_t slept_ = 0;
   bool asleep_ = false;
-  std::uint64_t asleep_since_ = 0;
   std::array<InterruptTimes, kVectors> interrupts_{};
   std::uint64_t ticks_ = 0;
   std::uint64_t busiest_ = 0;

@@ -64,7 +64,6 @@ class RobotView {
 
   uint64_t frames() const { return frames_; }
   uint64_t lost() const { return lost_; }
-  uint64_t first_us() const { return first_us_; }
   uint64_t last_us() const { return last_us_; }
   std::optional<int> rssi_dbm() const { return rssi_dbm_; }
   const std::deque<Event>& events() const { return events_; }  ///< newest first

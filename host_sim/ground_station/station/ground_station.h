@@ -44,7 +44,6 @@ class GroundStation {
   /// What goes up in this tick: whole lines, one packet.
   std::vector<uint8_t> transmit(uint64_t now_us);
 
-  void set_drive(const DriveCommand& drive) { drive_ = drive; }
   const RobotReport& report() const { return report_; }
   uint64_t frames() const { return frames_; }
   uint64_t rejected_frames() const { return rejected_; }

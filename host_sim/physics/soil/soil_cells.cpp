@@ -248,7 +248,7 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
     shares += in_contact;
     pressures += weight;
     rates += in_contact * (yields ? broadcast(exponent) * virgin / maximum(deepest, broadcast(1e-9))
-                             : stiffness);
+                                  : stiffness);
     x_shares += in_contact * x;
     y_shares += in_contact * y;
     tilts_x += in_contact * slope_x;

@@ -137,16 +137,6 @@ double ChainTrack::farthest_from_loop_m() const {
   return farthest;
 }
 
-double ChainTrack::kinetic_energy_j(const CarrierMotion& carrier) const {
-  double energy = 0.0;
-  for (size_t i = 0; i < pins(); ++i) {
-    const Eigen::Vector3d arm = carrier.rotation * pin(i);
-    energy += 0.5 * pin_mass_ *
-              (velocity_[i] - carrier.velocity - carrier.omega.cross(arm)).squaredNorm();
-  }
-  return energy;
-}
-
 ChainTrack::PlaneFrame ChainTrack::frame_of(const CarrierMotion& carrier) const {
   return {carrier.rotation * axes_, carrier.origin + carrier.rotation * centre_, carrier};
 }

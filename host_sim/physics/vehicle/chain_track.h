@@ -75,8 +75,6 @@ class ChainTrack {
   double unloaded_length_m() const { return link_length_ * static_cast<double>(pins()); }
   /// How far the pin that is farthest from the ideal loop round the wheels stands from it, m.
   double farthest_from_loop_m() const;
-  /// Motion of the pins beside that of the carrying body, J.
-  double kinetic_energy_j(const CarrierMotion& carrier) const;
 
  private:
   using Vector2 = Eigen::Vector2d;  // along and up, in the plane of the wheels

@@ -83,11 +83,6 @@ constexpr std::array<Color, kCategoryColors> kCategories = {{
 
 }  // namespace
 
-Color with_alpha(Color color, double alpha) {
-  color.alpha = alpha;
-  return color;
-}
-
 Color height_color(double t) {
   return along(kHeightAnchors, t);
 }

@@ -14,9 +14,6 @@ struct Color {
   double alpha = 1.0;
 };
 
-/// The same colour with another opacity.
-Color with_alpha(Color color, double alpha);
-
 /// Heights: dark slate over green and sand to near white as t goes from 0 to 1 (clamped). Lightness
 /// rises evenly, so equal steps of height look equal, also in grey print.
 Color height_color(double t);

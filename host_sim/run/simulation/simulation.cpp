@@ -516,10 +516,6 @@ nlohmann::ordered_json json_of(const CycleReport& cycles) {
 
 }  // namespace
 
-std::string cycles_json(const CycleReport& cycles) {
-  return json_of(cycles).dump(2) + "\n";
-}
-
 std::string summary_json(const SimulationSummary& summary) {
   nlohmann::ordered_json json = {
       {"content_hash", summary.content_hash},

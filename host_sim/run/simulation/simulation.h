@@ -98,9 +98,6 @@ void check_simulation(const Experiment& experiment, const SimulationOptions& opt
 /// written, RunError when the run cannot be saved; then nothing half-written stays behind.
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options);
 
-/// What the microcontroller's time went into, as JSON: deterministic as the run itself.
-std::string cycles_json(const CycleReport& cycles);
-
 /// The summary as JSON, as written to summary.json: all of the above but wall time and folder,
 /// which are not part of the result.
 std::string summary_json(const SimulationSummary& summary);

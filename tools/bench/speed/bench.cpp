@@ -9,9 +9,11 @@
 
 #include "boards/a_star_32u4/board.h"
 #include "firmware/robot/robot.h"
+#include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "paths.h"
+#include "tools/bench/require.h"
 
 namespace screed {
 namespace {
@@ -20,51 +22,100 @@ Experiment first_drive() {
   return read_experiment(std::filesystem::path(kDataFolder) / "experiments" / "first_drive.ini");
 }
 
-/// Samples of a real run, so that the firmware takes the ways it takes when driving.
-const std::vector<SensorSample>& recorded_samples() {
-  static const std::vector<SensorSample> samples = [] {
-    const Experiment experiment = first_drive();
-    const std::unique_ptr<World> world = make_world(experiment, nullptr);
-    Robot robot(kBoard, experiment.parameters, credentials_of(experiment));
-    RobotOutput output{};
-    std::vector<SensorSample> recorded;
-    for (int i = 0; i < 60 * kTickRate_hz; ++i) {
-      world->advance();
-      recorded.push_back(world->sample());
-      robot.tick(world->sample(), output);
-      world->apply(output);
+/// A world with its robot, which is running.
+class Drive {
+ public:
+  Drive()
+      : experiment_(first_drive()),
+        world_(make_world(experiment_, nullptr)),
+        robot_(kBoard, experiment_.parameters, credentials_of(experiment_)) {
+    constexpr uint64_t kLongestStart = 20U * uint64_t{kTickRate_hz};
+    while (!is_running(robot_)) {
+      if (world_->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
+      tick();
     }
-    return recorded;
+  }
+
+  static bool is_running(const Robot& robot) {
+    return robot.supervisor().state() == RobotState::kRunning;
+  }
+
+  void tick() {
+    world_->advance();
+    robot_.tick(world_->sample(), output_);
+    world_->apply(output_);
+  }
+
+  bool is_over() const {
+    return static_cast<double>(world_->ticks()) >= experiment_.experiment.duration_s * kTickRate_hz;
+  }
+  const Robot& robot() const { return robot_; }
+  /// Of the last tick.
+  const SensorSample& sample() const { return world_->sample(); }
+
+ private:
+  Experiment experiment_;
+  std::unique_ptr<World> world_;
+  Robot robot_;
+  RobotOutput output_{};
+};
+
+/// A robot that has begun to drive, and the samples of the minute that follows.
+struct RecordedDrive {
+  Robot robot;
+  std::vector<SensorSample> samples;
+};
+
+const RecordedDrive& recorded_drive() {
+  static const RecordedDrive recorded = [] {
+    Drive drive;
+    RecordedDrive result{drive.robot(), {}};
+    for (int i = 0; i < 60 * kTickRate_hz; ++i) {
+      drive.tick();
+      result.samples.push_back(drive.sample());
+    }
+    return result;
   }();
-  return samples;
+  return recorded;
 }
 
-/// One tick of the firmware core on the host.
+constexpr const char* kDoesNotRun = "the robot is not running at the end";
+
+/// One tick of the firmware core on the host, of a robot that is running. The samples come from a
+/// real run, so that the firmware takes the branches it takes when driving; each time through them
+/// begins with the robot they belong to, since to any other the counts of its encoders would jump.
 void firmware_tick(benchmark::State& state) {
-  const std::vector<SensorSample>& samples = recorded_samples();
-  Robot robot(kBoard, first_drive().parameters, credentials_of(test_key()));
+  const RecordedDrive& recorded = recorded_drive();
+  Robot robot = recorded.robot;
   RobotOutput output{};
   size_t next = 0;
   while (state.KeepRunning()) {
-    robot.tick(samples[next], output);
+    robot.tick(recorded.samples[next], output);
     benchmark::DoNotOptimize(output);
-    next = next + 1 == samples.size() ? 0 : next + 1;
+    if (++next < recorded.samples.size()) continue;
+    state.PauseTiming();
+    if (!require(state, Drive::is_running(robot), kDoesNotRun)) break;
+    robot = recorded.robot;
+    next = 0;
+    state.ResumeTiming();
   }
+  require(state, Drive::is_running(robot), kDoesNotRun);
 }
 BENCHMARK(firmware_tick);
 
-/// One control tick of the world with the robot in it: ten physics steps of 1 ms, sensors, radio,
-/// firmware.
+/// One control tick of the world with the running robot in it: ten physics steps of 1 ms, sensors,
+/// radio, firmware.
 void world_tick(benchmark::State& state) {
-  const Experiment experiment = first_drive();
-  const std::unique_ptr<World> world = make_world(experiment, nullptr);
-  Robot robot(kBoard, experiment.parameters, credentials_of(experiment));
-  RobotOutput output{};
+  auto drive = std::make_unique<Drive>();
   while (state.KeepRunning()) {
-    world->advance();
-    robot.tick(world->sample(), output);
-    world->apply(output);
+    drive->tick();
+    if (!drive->is_over()) continue;
+    state.PauseTiming();
+    if (!require(state, Drive::is_running(drive->robot()), kDoesNotRun)) break;
+    drive = std::make_unique<Drive>();
+    state.ResumeTiming();
   }
+  require(state, Drive::is_running(drive->robot()), kDoesNotRun);
   state.counters["real_time_factor"] = benchmark::Counter(
       static_cast<double>(state.iterations()) / kTickRate_hz, benchmark::Counter::kIsRate);
 }
@@ -74,8 +125,9 @@ BENCHMARK(world_tick);
 /// real_time_factor counts the loop with recording, as the program prints it;
 /// whole_real_time_factor everything.
 void recorded_run(benchmark::State& state) {
+  constexpr double kDuration_s = 300.0;
   Experiment experiment = first_drive();
-  experiment.experiment.duration_s = 300.0;
+  experiment.experiment.duration_s = kDuration_s;
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("screed-bench-" + std::to_string(getpid()));
   double simulated = 0.0;
@@ -84,6 +136,10 @@ void recorded_run(benchmark::State& state) {
     SimulationOptions options;
     options.out = folder;
     const SimulationSummary summary = run_simulation(experiment, options);
+    if (!require(state, summary.state == "running" && summary.time_s == kDuration_s, kDoesNotRun)) {
+      std::filesystem::remove_all(folder);
+      break;
+    }
     simulated += summary.time_s;
     wall += summary.wall_s;
     state.PauseTiming();
@@ -96,7 +152,25 @@ void recorded_run(benchmark::State& state) {
 }
 BENCHMARK(recorded_run)->Unit(benchmark::kMillisecond)->Iterations(3)->UseRealTime();
 
+bool all_hold = true;
+
 }  // namespace
+
+bool require(benchmark::State& state, bool holds, const char* error) {
+  if (!holds) {
+    all_hold = false;
+    state.SkipWithError(error);
+  }
+  return holds;
+}
+
 }  // namespace screed
 
-BENCHMARK_MAIN();
+// BENCHMARK_MAIN() ends with 0 whatever the benchmarks say of themselves, and when none is run.
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  const size_t run = benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return run > 0 && screed::all_hold ? 0 : 1;
+}

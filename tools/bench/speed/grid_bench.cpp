@@ -7,6 +7,7 @@
 #include <string>
 
 #include "host_sim/grid/grid_run.h"
+#include "tools/bench/require.h"
 
 namespace screed {
 namespace {
@@ -23,6 +24,7 @@ GridConfig config_of(GridAlgorithm algorithm, int side, int agents) {
 /// Cycles of whole runs, 20 000 at most each; the check of the stop rule is part of a cycle.
 void grid_cycle(benchmark::State& state, GridAlgorithm algorithm, int side, int agents) {
   constexpr uint64_t kLongest = 20'000;
+  constexpr uint64_t kEnoughToBegin = 1000;  // cycles; by then some agent has moved a unit
   GridConfig config = config_of(algorithm, side, agents);
   auto run = std::make_unique<GridRun>(config);
   while (state.KeepRunning()) {
@@ -34,6 +36,8 @@ void grid_cycle(benchmark::State& state, GridAlgorithm algorithm, int side, int 
       state.ResumeTiming();
     }
   }
+  const GridResult result = run->result();
+  require(state, result.cycles < kEnoughToBegin || result.units > 0, "the agents move no units");
   // The inverse of a rate is a time.
   state.counters["per_agent_cycle"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * agents,

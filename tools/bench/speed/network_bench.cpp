@@ -13,6 +13,7 @@
 #include "nn/batch/batch_network.h"
 #include "nn/model/quantiser.h"
 #include "nn/training/tiny_dnn.h"
+#include "tools/bench/require.h"
 
 namespace screed::nn {
 namespace {
@@ -69,7 +70,8 @@ void ours_batched(benchmark::State& state, bool deep, BatchKernel kernel) {
     state.SkipWithError("this processor does not have it");
     return;
   }
-  const BatchNetwork network(quantise(layers(deep)), kernel);
+  const IntegerNetwork scalar = quantise(layers(deep));
+  const BatchNetwork network(scalar, kernel);
   WorldRandom random(2, "bench");
   std::vector<std::int16_t> in(kInputs * kRobots);
   std::vector<std::int16_t> out(kRobots);
@@ -77,6 +79,13 @@ void ours_batched(benchmark::State& state, bool deep, BatchKernel kernel) {
   while (state.KeepRunning()) {
     network.run(in.data(), out.data(), kRobots, kRobots);
     benchmark::ClobberMemory();
+  }
+  std::vector<std::int16_t> one_in(kInputs);
+  std::vector<std::int16_t> one_out(1);
+  for (const std::size_t robot : {std::size_t{0}, kRobots - 1}) {
+    for (std::size_t i = 0; i < kInputs; ++i) one_in[i] = in[i * kRobots + robot];
+    scalar.run(one_in, one_out);
+    require(state, out[robot] == one_out[0], "a batch gives other bits than one robot");
   }
   per_robot(state, kRobots);
 }
@@ -103,6 +112,7 @@ void fann_fixed(benchmark::State& state, bool deep) {
   const std::vector<unsigned> sizes(all.begin(), all.end());
   fann* const network =
       fann_create_standard_array(static_cast<unsigned>(sizes.size()), sizes.data());
+  if (!require(state, network != nullptr, "FANN makes no network")) return;
   fann_set_activation_function_hidden(network, FANN_SIGMOID_SYMMETRIC_STEPWISE);
   fann_set_activation_function_output(network, FANN_SIGMOID_SYMMETRIC_STEPWISE);
   const auto one = static_cast<fann_type>(fann_get_multiplier(network));

@@ -10,12 +10,14 @@
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate.h"
 #include "nn/terrain/track_soil_model.h"
+#include "tools/bench/require.h"
 
 namespace screed {
 namespace {
 
 /// So many robots, spread over a bed of 10 m with 512 x 512 nodes.
 void surrogate_frame(benchmark::State& state) {
+  constexpr double kMoves = 1e-4;  // m and rad a frame
   const auto robots = static_cast<std::size_t>(state.range(0));
   const nn::Model model = nn::read_model(nn::default_model_file());
   const HeightField ground = HeightField::from_function(
@@ -36,6 +38,12 @@ void surrogate_frame(benchmark::State& state) {
     surrogate.step(ground, left, right);
     benchmark::ClobberMemory();
   }
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < robots; ++i) {
+    const nn::FrameMotion motion = surrogate.motion(i);
+    if (std::abs(motion.forward_m) + std::abs(motion.turn_rad) > kMoves) ++moving;
+  }
+  require(state, moving == robots, "not every robot moves");
   state.counters["s_per_robot_frame"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(robots),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
@@ -62,6 +70,7 @@ void surrogate_ruts(benchmark::State& state) {
     stride.y_m += std::sin(stride.yaw_rad) * kStride_m;
     pressed.step(stride, &network);
   }
+  require(state, pressed.sunk().height_sum() > 0, "the soil does not deform");
   state.counters["s_per_robot_frame"] =
       benchmark::Counter(static_cast<double>(state.iterations() * nn::kStrideFrames),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

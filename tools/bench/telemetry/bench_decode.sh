@@ -29,7 +29,7 @@ measure "screed decode --csv" 3 "$screed" decode "$folder/radio.log" --csv
 all_read
 measure "screed decode --mcap" 3 "$screed" decode "$folder/radio.log" --mcap
 all_read
-command -v tshark > /dev/null || { echo "tshark is not installed: make deps, or apt install tshark" >&2 ; exit 1 ; }
+command -v tshark > /dev/null || { echo "tshark is not installed: apt install tshark" >&2 ; exit 1 ; }
 mkdir -p "$folder/config/profiles"
 cp -r "$profile" "$folder/config/profiles/screed"
 export WIRESHARK_CONFIG_DIR=$folder/config

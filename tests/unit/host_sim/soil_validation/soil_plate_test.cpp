@@ -8,15 +8,13 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
+#include "tests/sanitizers.h"
 
 namespace screed {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kPlaces = 4;  // the same paths; the figures are those of the plain build
-#else
-constexpr int kPlaces = 64;
-#endif
+// Fewer take the same paths; the figures are those of the plain build.
+constexpr int kPlaces = testing::kSanitized ? 4 : 64;
 
 PlateTest plate_in(const char* soil) {
   PlateTest test;

@@ -8,15 +8,10 @@
 
 #include "host_sim/core/errors.h"
 #include "paths.h"
+#include "tests/sanitizers.h"
 
 namespace screed {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 constexpr NormalStress kBoth[] = {NormalStress::kRadial, NormalStress::kVertical};
 constexpr double kSlips[] = {0.0, 0.2, 0.4};
@@ -114,7 +109,7 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
 // yaw).
 TEST(SoilWheelTest, PlaceAndYawOnTheGridDoNotMatter) {
   for (const double yaw_deg : {0.0, 17.0, 45.0, 90.0, -63.0, 180.0}) {
-    if (kSanitized && yaw_deg != 17.0) continue;  // the rest repeats it elsewhere
+    if (testing::kSanitized && yaw_deg != 17.0) continue;  // the rest repeats it elsewhere
     const bool square = std::fmod(yaw_deg, 90.0) == 0.0;
     for (const double offset : {0.0, 0.0013, 0.0025}) {
       WheelTest test = wheel_on("viper", 0.2, NormalStress::kRadial, 0.005);

@@ -69,8 +69,9 @@ TEST(ModelFile, WhatIsWrittenIsRead) {
   EXPECT_EQ(again.stages[0].high, 1.22);
   EXPECT_EQ(again.stages[1].value, 250.0);
   EXPECT_TRUE(again.stages[1].run_time);
-  EXPECT_EQ(again.with_output("v").inputs[1].feature, "pitch");
-  EXPECT_THROW(static_cast<void>(again.with_output("delta_theta")), InputError);
+  ASSERT_EQ(again.networks[0].inputs.size(), model.networks[0].inputs.size());
+  EXPECT_EQ(again.networks[0].inputs[1].feature, "pitch");
+  EXPECT_EQ(again.networks[0].outputs[0].feature, "v");
 }
 
 TEST(ModelFile, ScalesGoBothWays) {

@@ -15,17 +15,14 @@
 #include "host_sim/soil_validation/repose_pile.h"
 #include "host_sim/soil_validation/soil_robot.h"
 #include "paths.h"
+#include "tests/sanitizers.h"
 #include "tests/unit/allocations.h"
 
 namespace screed {
 namespace {
 
 constexpr double kStep_s = 1e-3;
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kDrivenSteps = 5000;
-#else
-constexpr int kDrivenSteps = 20000;
-#endif
+constexpr int kDrivenSteps = testing::kSanitized ? 5000 : 20000;
 
 HeightField waves(double size_m, double cell_m, double relief_m, bool wrap) {
   const int nodes = static_cast<int>(std::lround(size_m / cell_m)) + (wrap ? 0 : 1);

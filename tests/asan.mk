@@ -1,0 +1,64 @@
+# Tests under the address and undefined-behaviour sanitizers. Included by the top Makefile.
+#
+# `make test-asan` runs the tests below: those whose code indexes memory with what comes from outside. Small enough for CI.
+# `make test BUILD=asan` runs every test. Needs host.mk, tests/tests.mk and tests/mcu/mcu_tests.mk.
+
+.PHONY: test-asan asan-tests
+test-asan:  ## the tests of what reads foreign bytes, files and images, under the sanitizers
+	+@$(MAKE) --no-print-directory BUILD=asan asan-tests
+
+ifeq ($(BUILD),asan)
+
+# clang instruments in two thirds of gcc's time, and with more checks. Warnings are for the release build, which gcc and clang-tidy see.
+CXX := clang++
+WARNINGS := -w
+
+# Bytes of the radio and of a console; CAN frames; keys and parameters as an EEPROM holds them.
+ASAN_UNIT := command command_gate command_key command_session corruption e2e ground_station host_hal key_command key_store link messages \
+  parameter_store parameters radio_link robot robot_view siphash slcan supervisor telemetry
+# Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
+ASAN_UNIT += attitude_command avr_indirect_calls avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
+  header_export height_field height_series ini_file mesh model_file network picture run_folder schema schema_compiler session session_csv \
+  session_damage session_failure session_hash session_replay urdf urdf_refusal
+# Grids that a position indexes.
+ASAN_UNIT += grid_world particle_motion soil_bed soil_dig soil_shear
+# The simulated board: registers, bus and USB, which an image writes as it likes.
+ASAN_MCU := board_parts chips quadrature screed_image
+
+ASAN_UNIT_SOURCES := $(foreach name,$(ASAN_UNIT),$(filter %/$(name)_test.cpp,$(UNIT_SOURCES))) tests/unit/allocations.cpp
+ASAN_MCU_OBJECTS := $(filter-out %_test.o,$(MCU_TEST_OBJECTS)) $(ASAN_MCU:%=$(B)/tests/mcu/%_test.o)
+ASAN_MISSING := $(strip $(foreach name,$(ASAN_UNIT) $(ASAN_MCU),$(if $(filter %/$(name)_test.cpp,$(UNIT_SOURCES) $(MCU_TEST_SOURCES)),,$(name))))
+ifneq ($(ASAN_MISSING),)
+$(error tests/asan.mk: no such test: $(ASAN_MISSING))
+endif
+
+# The library without what none of these tests links: training, the surrogate, calibration, most subcommands, windows.
+ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
+  sim/replay_command.cpp cli/interrupt.cpp)
+ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/% host_sim/ground_station/calibration/%,$(LIBRARY_SOURCES))
+$(B)/libasan_tested.a: $(call objects,$(ASAN_LIBRARY_SOURCES))
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(B)/tests/asan_unit_tests: $(call objects,$(ASAN_UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) \
+                            $(B)/libasan_tested.a $(B)/libavr_stack.a $(B)/link.flags
+$(B)/tests/asan_mcu_tests: $(ASAN_MCU_OBJECTS) $(B)/libasan_tested.a $(B)/libavr_stack.a $(B)/link.flags
+ASAN_TESTS := $(B)/tests/asan_unit_tests $(if $(filter yes,$(MCU)),$(B)/tests/asan_mcu_tests)
+$(ASAN_TESTS):
+	$(call link,$(TEST_LIBRARIES))
+
+# Half of a test's compilation goes into these headers.
+ASAN_PREFIX := $(B)/tests/prefix.h.pch
+$(ASAN_PREFIX): tests/asan_prefix.h $(B)/host.flags
+	@mkdir -p $(@D)
+	@$(CXX) @$(B)/host.flags -fpch-instantiate-templates -x c++-header $< -o $@
+$(call objects,$(UNIT_SOURCES)): EXTRA_FLAGS = -include-pch $(ASAN_PREFIX)
+$(call objects,$(UNIT_SOURCES)): $(ASAN_PREFIX)
+
+# Figures of whole runs, half of the time of all: they go through the code that the others of their files go through.
+ASAN_LONG := GridFigures.*:SoilDigTest.MovesAsMuchAsAmongParticles
+ASAN_IMAGES := $(addprefix $(FIRMWARE_BUILD)/,screed.elf screed.lst screed.size golden.elf)
+asan-tests: $(ASAN_TESTS) $(if $(filter yes,$(MCU)),$(ASAN_IMAGES))
+	@GTEST_FILTER='-$(ASAN_LONG)' tests/run.sh $(ASAN_TESTS)
+
+endif
