@@ -14,6 +14,7 @@
 
 #include "firmware/parameters/parameters.h"
 #include "host_sim/ground_station/station/command_key.h"
+#include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/run/experiment/board_table.h"
 
 namespace screed {
@@ -84,19 +85,7 @@ struct Experiment {
     bool bulldozing = true;
     bool avalanches = true;
     bool follow_slopes = true;
-    std::optional<double> k_phi;
-    std::optional<double> k_c;
-    std::optional<double> exponent;
-    std::optional<double> cohesion_pa;
-    std::optional<double> friction_deg;
-    std::optional<double> shear_modulus_m;
-    std::optional<double> elastic_pa_per_m;
-    std::optional<double> damping_pa_s_per_m;
-    std::optional<double> shear_damping_s;
-    std::optional<double> repose_deg;
-    std::optional<double> compaction;
-    std::optional<double> drag_depth_m;
-    std::optional<double> slip_sinkage;
+    SoilOverrides overrides;
   } soil;
 
   struct {

@@ -8,6 +8,7 @@
 #include "firmware/leveling/leveling.h"
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/name_list.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/run/experiment/trap.h"
 
@@ -65,6 +66,30 @@ ExperimentKey text_key(const char* section, const char* name, const char* allowe
   return {section, name, "", allowed, meaning, set, get};
 }
 
+/// A key whose value is one of these names.
+template <class Get>
+ExperimentKey choice_key(const char* section, const char* name,
+                         const std::vector<std::string>& choices, const char* meaning, Get field) {
+  const auto set = [=](Experiment& experiment, const std::string& text) {
+    if (std::find(choices.begin(), choices.end(), text) == choices.end()) return false;
+    field(experiment) = text;
+    return true;
+  };
+  const auto get = [=](const Experiment& experiment) -> std::optional<std::string> {
+    Experiment copy = experiment;
+    return field(copy);
+  };
+  return {section, name, "", name_list(choices, " or "), meaning, set, get};
+}
+
+/// A soil parameter in place of the preset's.
+ExperimentKey soil_key(const SoilParameterInfo& parameter) {
+  return real_key("soil", parameter.key, parameter.unit, parameter.min, parameter.max,
+                  parameter.meaning, [&parameter](Experiment& e) -> std::optional<double>& {
+                    return e.soil.overrides.*parameter.override_member;
+                  });
+}
+
 /// A key that is not written back when another one holds in its place.
 ExperimentKey in_force_unless(ExperimentKey key, bool (*replaced)(const Experiment&)) {
   key.get = [get = std::move(key.get), replaced](const Experiment& experiment) {
@@ -100,15 +125,6 @@ bool is_file_name(const std::string& text) {
              std::string::npos;
 }
 
-bool is_soil(const std::string& name) {
-  return std::any_of(soil_presets().begin(), soil_presets().end(),
-                     [&](const SoilParameters& known) { return known.name == name; });
-}
-
-bool is_terrain_model(const std::string& name) {
-  return name == "rigid" || name == "scm" || name == "particles" || name == "static_particles";
-}
-
 bool is_key(const std::string& text) {
   if (text == kNoKey) return true;
   try {
@@ -137,10 +153,9 @@ std::vector<ExperimentKey> make_keys() {
 
   keys.push_back(bool_key("vehicle", "tracks", "tracks round the wheels; false: four driven wheels",
                           [](Experiment& e) -> bool& { return e.vehicle.tracks; }));
-  keys.push_back(text_key(
-      "vehicle", "track_model", "belt or chain", "what a track is; chain: links round its wheels",
-      [](Experiment& e) -> std::string& { return e.vehicle.track_model; },
-      [](const std::string& text) { return text == "belt" || text == "chain"; }));
+  keys.push_back(choice_key("vehicle", "track_model", {"belt", "chain"},
+                            "what a track is; chain: links round its wheels",
+                            [](Experiment& e) -> std::string& { return e.vehicle.track_model; }));
   keys.push_back({"vehicle", "track_links", "", "an integer 0..400",
                   "track_model chain: links of each side; 0: as many as are about 10 mm long",
                   [](Experiment& e, const std::string& text) {
@@ -213,10 +228,10 @@ std::vector<ExperimentKey> make_keys() {
   keys.push_back(bool_key("map", "wrap",
                           "the terrain repeats at its edges; the image must be tileable",
                           [](Experiment& e) -> bool& { return e.map.wrap; }));
-  keys.push_back(text_key(
-      "map", "model", "rigid, scm, particles or static_particles",
-      "terrain model; scm: deformable soil, see [soil]; particles: a bed of spheres",
-      [](Experiment& e) -> std::string& { return e.map.model; }, is_terrain_model));
+  keys.push_back(
+      choice_key("map", "model", {"rigid", "scm", "particles", "static_particles"},
+                 "terrain model; scm: deformable soil, see [soil]; particles: a bed of spheres",
+                 [](Experiment& e) -> std::string& { return e.map.model; }));
   keys.push_back(real_key("map", "particle_radius", "m", 0.001, 0.5,
                           "model particles: radius of a particle",
                           [](Experiment& e) -> double& { return e.map.particle_radius_m; }));
@@ -237,10 +252,8 @@ std::vector<ExperimentKey> make_keys() {
                           "model particles: rays a metre that read the height map",
                           [](Experiment& e) -> double& { return e.raygrid.resolution_per_m; }));
 
-  keys.push_back(text_key(
-      "soil", "preset", "soft, viper, lete_sand, dry_sand, clay, ding_2011 or gravel",
-      "model scm: a named soil", [](Experiment& e) -> std::string& { return e.soil.preset; },
-      is_soil));
+  keys.push_back(choice_key("soil", "preset", soil_preset_names(), "model scm: a named soil",
+                            [](Experiment& e) -> std::string& { return e.soil.preset; }));
   keys.push_back(real_key("soil", "cell", "m", 0.001, 0.05, "model scm: side of a grid cell",
                           [](Experiment& e) -> double& { return e.soil.cell_m; }));
   keys.push_back(bool_key("soil", "bulldozing", "sunk material is pushed aside; false: compacted",
@@ -251,37 +264,7 @@ std::vector<ExperimentKey> make_keys() {
                           "ruts uphill and downhill are as deep as on the level; false: too deep "
                           "below belts going downhill",
                           [](Experiment& e) -> bool& { return e.soil.follow_slopes; }));
-  using Optional = std::optional<double>;
-  keys.push_back(real_key("soil", "k_phi", "N/m^(n+2)", 0, 1e12,
-                          "Bekker's frictional modulus; left out: the preset's",
-                          [](Experiment& e) -> Optional& { return e.soil.k_phi; }));
-  keys.push_back(real_key("soil", "k_c", "N/m^(n+1)", 0, 1e12, "Bekker's cohesive modulus",
-                          [](Experiment& e) -> Optional& { return e.soil.k_c; }));
-  keys.push_back(real_key("soil", "n", "", 0.1, 2.5, "Bekker's exponent of sinkage",
-                          [](Experiment& e) -> Optional& { return e.soil.exponent; }));
-  keys.push_back(real_key("soil", "c", "Pa", 0, 1e7, "cohesion",
-                          [](Experiment& e) -> Optional& { return e.soil.cohesion_pa; }));
-  keys.push_back(real_key("soil", "phi", "deg", 0, 60, "angle of internal friction",
-                          [](Experiment& e) -> Optional& { return e.soil.friction_deg; }));
-  keys.push_back(real_key("soil", "K", "m", 1e-5, 1, "Janosi-Hanamoto shear modulus",
-                          [](Experiment& e) -> Optional& { return e.soil.shear_modulus_m; }));
-  keys.push_back(real_key("soil", "E", "Pa/m", 1e4, 1e12, "stiffness of unloading",
-                          [](Experiment& e) -> Optional& { return e.soil.elastic_pa_per_m; }));
-  keys.push_back(real_key("soil", "R", "Pa s/m", 0, 1e9, "damping of sinking",
-                          [](Experiment& e) -> Optional& { return e.soil.damping_pa_s_per_m; }));
-  keys.push_back(real_key("soil", "shear_damping", "s", 0, 0.1,
-                          "damping of small shear, over its stiffness; 0.002 by default",
-                          [](Experiment& e) -> Optional& { return e.soil.shear_damping_s; }));
-  keys.push_back(real_key("soil", "repose", "deg", 1, 60, "angle of repose",
-                          [](Experiment& e) -> Optional& { return e.soil.repose_deg; }));
-  keys.push_back(real_key("soil", "compaction", "", 0, 1,
-                          "share of the sunk volume that is compacted",
-                          [](Experiment& e) -> Optional& { return e.soil.compaction; }));
-  keys.push_back(real_key("soil", "drag_depth", "m", 0, 1,
-                          "thickness of the layer that a slipping surface digs away",
-                          [](Experiment& e) -> Optional& { return e.soil.drag_depth_m; }));
-  keys.push_back(real_key("soil", "slip_sinkage", "", 0, 2, "growth of n with slip",
-                          [](Experiment& e) -> Optional& { return e.soil.slip_sinkage; }));
+  for (const SoilParameterInfo& parameter : kSoilParameters) keys.push_back(soil_key(parameter));
 
   keys.push_back(text_key(
       "experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
@@ -330,11 +313,11 @@ std::vector<ExperimentKey> make_keys() {
       "fault: the robot is laid on its side at this time",
       [](Experiment& e) -> std::optional<double>& { return e.experiment.lay_on_side_at_s; }));
 
-  keys.push_back(text_key(
-      "trap", "kind", "none, wall, slope, trench, hump or ruts",
+  keys.push_back(choice_key(
+      "trap", "kind", trap_kinds(),
       "obstacle that robots get stuck at: a wall, a slope or a trench all round the start; a hump "
       "between the tracks, ruts under them, in front of it",
-      [](Experiment& e) -> std::string& { return e.trap.kind; }, is_trap));
+      [](Experiment& e) -> std::string& { return e.trap.kind; }));
   const auto no_trap = [](const Experiment& e) { return e.trap.kind == "none"; };
   keys.push_back(
       in_force_unless(real_key("trap", "distance", "m", -10, 10,

@@ -51,13 +51,6 @@ struct HeightMap {
   HeightMapView view() const { return {geometry, heights}; }
 };
 
-/// One number of the soil.
-struct SoilAttribute {
-  const char* name;
-  const char* unit;
-  double value;
-};
-
 /// What a tick did to one height of a map.
 struct HeightChange {
   std::uint32_t node = 0;  ///< iy * nx + ix

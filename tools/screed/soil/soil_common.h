@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host_sim/physics/soil/soil_bed.h"
@@ -35,8 +34,7 @@ struct SoilLine {
 /// Options that every test has.
 struct SoilArguments {
   std::string preset = "viper";
-  SoilParameters custom;  // values of the options that were given
-  std::vector<std::pair<CLI::Option*, double SoilParameters::*>> given;
+  SoilOverrides overrides;
   std::string normal_stress = "radial";
   bool bulldozing = false;
   bool avalanches = false;
