@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -63,13 +62,5 @@ nlohmann::json soil_json(const SoilArguments& arguments);
 /// Prints table or JSON; the exit code.
 int finish(const SoilArguments& arguments, const char* test, const std::string& heading,
            const char* limit_name, const std::vector<SoilLine>& lines);
-
-// Each adds its subcommand of `screed soil`.
-void add_soil_plate(CLI::App& soil, std::function<int()>& action);
-void add_soil_wheel(CLI::App& soil, std::function<int()>& action);
-void add_soil_robot(CLI::App& soil, std::function<int()>& action);
-void add_soil_repose(CLI::App& soil, std::function<int()>& action);
-void add_soil_dig(CLI::App& soil, std::function<int()>& action);
-void add_soil_match(CLI::App& soil, std::function<int()>& action);
 
 }  // namespace screed
