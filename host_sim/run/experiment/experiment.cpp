@@ -233,7 +233,7 @@ std::filesystem::path find_model_file(const Experiment& experiment, const std::s
   if (experiment.vehicle.model == "board") return board_model(board);
   // Figure 5.3 calls the chassis Dagu5.
   if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
-    return std::filesystem::path(kBoardsFolder) / "a_star_32u4" / "rover5.urdf";
+    if (const auto rover = file_of_a_board("rover5.urdf")) return *rover;
   }
   return find_data_file(experiment, experiment.vehicle.model, "[vehicle] model");
 }
