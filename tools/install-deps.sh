@@ -1,12 +1,12 @@
 #!/bin/bash
-# install-deps.sh yes|no LIST: installs the Debian packages of LIST that are missing.
+# install-deps.sh yes|no LIST...: installs the Debian packages of the lists that are missing.
 set -euo pipefail
 
 wanted=$1
-list=$2
+shift
 [ "$wanted" = no ] && exit 0
 
-mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$list")
+mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@")
 command -v dpkg-query > /dev/null || { echo "make deps: no dpkg-query; install these by other means, then use DEPS=no: ${packages[*]}" >&2; exit 1; }
 # dpkg-query ends with 1 when it does not know one of them.
 installed=$({ dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' "${packages[@]}" 2> /dev/null || [ $? -eq 1 ] || { echo "make deps: dpkg-query failed" >&2; false; }; } | awk '$2 == "ii" {print $1}')

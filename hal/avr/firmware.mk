@@ -53,7 +53,7 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
 
 .PHONY: firmware size firmware-budget
-firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget  ## build the image for the robot (BOARD=a_star_32u4)
+firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget  ## build the image for the robot (BOARD=NAME, a folder in boards/)
 
 # What the analysis cannot see: targets of indirect calls. Its "never" lines hold as long as the core's serial line is the
 # only object with virtual functions.

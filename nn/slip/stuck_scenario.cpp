@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "host_sim/core/random.h"
+#include "host_sim/physics/soil/soil_parameters.h"
 
 namespace screed::nn {
 namespace {
 
-constexpr const char* kSoils[] = {"rigid",    "rigid", "soft",      "viper", "lete_sand",
-                                  "dry_sand", "clay",  "ding_2011", "gravel"};
+constexpr std::size_t kRigidShares = 2;  ///< of rigid ground, where each named soil has one
 constexpr const char* kTerrains[] = {"terrain_a.png", "terrain_b.png"};
 constexpr const char* kTraps[] = {"wall", "slope", "hump", "trench", "ruts", "ruts"};
 constexpr std::size_t kStartsInRuts = 4;  ///< the first of the two "ruts"
@@ -33,14 +33,15 @@ class Draw {
 };
 
 void choose_soil(Draw& draw, Experiment& e, std::string& ground) {
-  ground = kSoils[draw.below(std::size(kSoils))];
+  const std::size_t drawn = draw.below(kRigidShares + soil_presets().size());
+  ground = drawn < kRigidShares ? "rigid" : soil_presets()[drawn - kRigidShares].soil.name;
   e.vehicle.track_friction = draw.between(0.6, 0.9);
   if (ground == "rigid") return;
   e.map.model = "scm";
   e.soil.preset = ground;
   e.soil.cell_m = 0.02;
-  e.soil.slip_sinkage = draw.between(0.0, 0.4);
-  e.soil.drag_depth_m = draw.between(0.0, 0.003);
+  e.soil.overrides.slip_sinkage = draw.between(0.0, 0.4);
+  e.soil.overrides.drag_depth_m = draw.between(0.0, 0.003);
 }
 
 void choose_terrain(Draw& draw, Experiment& e, bool trapped) {

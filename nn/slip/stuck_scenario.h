@@ -14,10 +14,11 @@ struct StuckScenario {
   std::string ground;  ///< rigid, or the soil's preset
 };
 
-/// A drive of this seed: on one of eight grounds, hilly by up to 8 degrees, straight on, in arcs or
-/// at random (Algorithm 6), at 0.08 to 0.2 m/s; its sensors have the noise and the errors of their
-/// data sheets. A trapped one meets a wall, a slope too steep, a trench, a hump between the tracks,
-/// or ruts within the first metre. Every scenario is an experiment that `screed sim` can run.
+/// A drive of this seed: on rigid ground (twice as often) or one of the named soils, hilly by up to
+/// 8 degrees, straight on, in arcs or at random (Algorithm 6), at 0.08 to 0.2 m/s; its sensors have
+/// the noise and the errors of their data sheets. A trapped one meets a wall, a slope too steep, a
+/// trench, a hump between the tracks, or ruts within the first metre. Every scenario is an
+/// experiment that `screed sim` can run.
 StuckScenario stuck_scenario(std::uint64_t seed, bool trapped, double duration_s);
 
 }  // namespace screed::nn

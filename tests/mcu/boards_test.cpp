@@ -4,13 +4,14 @@
 
 #include "firmware/parameters/parameter_store.h"
 #include "host_sim/devices/mcu/board.h"
+#include "host_sim/run/experiment/board_table.h"
 #include "tests/mcu/ground_lines.h"
 #include "tests/mcu/images_of_boards.h"
 
 namespace screed::mcu {
 namespace {
 
-class EachBoard : public testing::TestWithParam<const char*> {
+class EachBoard : public testing::TestWithParam<std::string> {
  protected:
   EachBoard() : board_(image_of(GetParam()), wiring_of(GetParam())) {
     board_.set_encoder(kLeft, 0);
@@ -115,8 +116,8 @@ TEST_P(EachBoard, TurnsLeftWithTheRightTrackForward) {
   EXPECT_GT(board_.motor_share(kRight), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, EachBoard, testing::Values("a_star_32u4", "zumo_32u4"),
-                         [](const auto& it) { return std::string(it.param); });
+INSTANTIATE_TEST_SUITE_P(Boards, EachBoard, testing::ValuesIn(board_names()),
+                         [](const auto& it) { return it.param; });
 
 }  // namespace
 }  // namespace screed::mcu

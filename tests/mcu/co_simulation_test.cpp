@@ -40,7 +40,7 @@ TEST(CoSimulation, HostAndImageGiveTheSameBytes) {
   Parameters parameters;
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   const ParityResult result =
-      run_parity(drive.world, board_constants_of("a_star_32u4"), parameters,
+      run_parity(drive.world, board_constants_of(kDefaultBoard), parameters,
                  credentials_of(test_key()), 15.0, [](const ParityResult&) { return true; });
   EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
   EXPECT_GT(result.ticks, 1490U);
@@ -53,7 +53,7 @@ TEST(CoSimulation, ParityFindsADifference) {
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   parameters.speed_kp = 25;  // the image has 24
   const ParityResult result =
-      run_parity(drive.world, board_constants_of("a_star_32u4"), parameters,
+      run_parity(drive.world, board_constants_of(kDefaultBoard), parameters,
                  credentials_of(test_key()), 10.0, [](const ParityResult&) { return true; });
   EXPECT_GT(result.differing_bytes, 0U);
   ASSERT_TRUE(result.first_difference_tick.has_value());
@@ -81,7 +81,7 @@ TEST(CoSimulation, SensorsSayWhatTheWorldIs) {
   EXPECT_NEAR(drive.sample.pressure / 4096.0, 1013.25, 1.0);
   EXPECT_NEAR(drive.sample.temperature / 480.0 + 42.5, ImuModel::kTemperature_degc, 0.01);
   const double volt =
-      drive.sample.battery * board_constants_of("a_star_32u4").battery_uv_per_lsb * 1e-6;
+      drive.sample.battery * board_constants_of(kDefaultBoard).battery_uv_per_lsb * 1e-6;
   EXPECT_NEAR(volt, drive.world.plant().battery().terminal_v, 0.02);
 }
 

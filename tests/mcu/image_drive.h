@@ -12,6 +12,7 @@
 
 #include "firmware/leveling/leveling.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/world/mcu_world.h"
 #include "tests/mcu/images.h"
@@ -92,7 +93,7 @@ class ImageDrive {
   static CoSimulationOptions options(std::uint64_t seed, double speed_m_per_s) {
     CoSimulationOptions options;
     options.elf = kScreedImage;
-    options.board = "a_star_32u4";
+    options.board = kDefaultBoard;
     options.parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
     options.world.seed = seed;
     options.world.drive = DriveCommand{speed_m_per_s, 0.0};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "host_sim/run/experiment/board_table.h"
 #include "paths.h"
 #include "tests/mcu/images.h"
 
@@ -102,7 +103,7 @@ TEST_F(McuProgram, SaysWhatIsMissing) {
   refused("sim " + first_drive() + " --hal mcu --board unheard_of", "unheard_of");
   refused("sim " + first_drive() + " --elf none.elf", "--hal mcu");
   refused("sim " + first_drive() + " --hal cloud", "--hal");
-  refused("parity " + first_drive() + " --board unheard_of", "a_star_32u4");
+  refused("parity " + first_drive() + " --board unheard_of", kDefaultBoard);
 }
 
 }  // namespace

@@ -2,7 +2,11 @@
 // nothing left behind.
 #include "tests/sitl/program.h"
 
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "paths.h"
 
@@ -69,6 +73,34 @@ TEST_F(Program, DocsHaveTheKeysAsTheyAre) {
   }
   EXPECT_GT(rows, 100U);
   EXPECT_NE(page.find(block), std::string::npos) << "rows in another order";
+}
+
+// Every subcommand is a file, and they are listed by name.
+TEST_F(Program, ListsEverySubcommandByName) {
+  std::vector<std::string> expected;
+  for (const auto& file : std::filesystem::recursive_directory_iterator("tools/screed")) {
+    std::string name = file.path().filename().string();
+    const std::size_t end = name.find("_command.cpp");
+    if (end == std::string::npos) continue;
+    name.resize(end);
+    const std::string group = name.substr(0, name.find('_'));
+    if (group != name &&
+        std::filesystem::exists(file.path().parent_path() / (group + "_command.cpp")))
+      continue;
+    std::replace(name.begin(), name.end(), '_', '-');
+    expected.push_back(name);
+  }
+  std::sort(expected.begin(), expected.end());
+  EXPECT_GT(expected.size(), 15U);
+  std::istringstream help(run("--help").out);
+  std::vector<std::string> listed;
+  std::string line;
+  while (std::getline(help, line) && line != "Subcommands:") {
+  }
+  while (std::getline(help, line)) {
+    if (line.size() > 2 && line[2] != ' ') listed.push_back(line.substr(2, line.find(' ', 2) - 2));
+  }
+  EXPECT_EQ(listed, expected);
 }
 
 TEST_F(Program, ShowsATable) {

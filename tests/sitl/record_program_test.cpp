@@ -176,8 +176,9 @@ TEST_F(RecordProgram, WrongInputIsOneLine) {
 }
 
 TEST_F(RecordProgram, TheImageHasNoTrainingDrive) {
-  expect_refused(run("sim hard.ini --set experiment.algorithm=training_drive --hal mcu --elf /dev/null"), 2,
-                 {"algorithm = training_drive", "--hal mcu"});
+  expect_refused(
+      run("sim hard.ini --set experiment.algorithm=training_drive --hal mcu --elf /dev/null"), 2,
+      {"algorithm = training_drive", "--hal mcu"});
 }
 
 TEST_F(RecordProgram, AnExportedMapIsTheSameTerrainAgain) {

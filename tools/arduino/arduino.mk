@@ -10,7 +10,7 @@ ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE $(shell find firmware nn/i
   $(GENERATED_FOLDER)/schema/messages.h
 
 .PHONY: arduino
-arduino: $(ARDUINO_ZIP)  ## the firmware as a library for the Arduino IDE (BOARD=a_star_32u4)
+arduino: $(ARDUINO_ZIP)  ## the firmware as a library for the Arduino IDE (BOARD=NAME)
 	@echo "$(ARDUINO_ZIP)"
 
 $(ARDUINO_ZIP): $(ARDUINO_PACKED)

@@ -24,6 +24,8 @@ $(error MCU=$(MCU): yes or no)
 endif
 HOST_SOURCES := $(filter-out $(CORE_SOURCES) $(LEFT_OUT_$(MCU)),$(call sources,hal/host host_sim nn))
 PROGRAM_SOURCES := $(filter-out tools/screed/main.cpp,$(call sources,tools/screed))
+# A subcommand is one file.
+COMMAND_SOURCES := $(filter %_command.cpp,$(PROGRAM_SOURCES))
 LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(PROGRAM_SOURCES)
 LIBRARY := $(B)/libscreed.a
 SCREED := $(B)/screed
@@ -90,8 +92,12 @@ $(B)/generated/boards.h: FORCE
 	   echo '#include "firmware/parameters/board_constants.h"' ; \
 	   for board in $(BOARDS) ; do echo "#define kBoard kBoard_$$board" ; echo "#include \"boards/$$board/board.h\"" ; \
 	     echo '#undef kBoard' ; done ; \
-	   echo '#define SCREED_BOARDS(X) $(foreach board,$(BOARDS),X($(board)))' ; } | $(WRITE_CHANGED)
-GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(SCHEMA_HEADERS)
+	   echo '#define SCREED_BOARDS(X) $(foreach board,$(BOARDS),X($(board)))' ; \
+	   echo '#define SCREED_DEFAULT_BOARD "$(DEFAULT_BOARD)"' ; } | $(WRITE_CHANGED)
+$(B)/generated/commands.h: FORCE
+	@mkdir -p $(@D)
+	@tools/build/commands.sh $(COMMAND_SOURCES) | $(WRITE_CHANGED)
+GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boards.h $(B)/generated/commands.h $(SCHEMA_HEADERS)
 
 # ---- objects, library, program -------------------------------------------------------------------------------------------------
 

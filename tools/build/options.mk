@@ -1,7 +1,9 @@
 # Options of a build that every part reads, and where things lie. Included first by the top Makefile.
 
 BUILD ?= release
-BOARD ?= a_star_32u4
+# The board that the programs mean when none is named, whatever this build is for.
+DEFAULT_BOARD := a_star_32u4
+BOARD ?= $(DEFAULT_BOARD)
 ARGS ?=
 PREFIX ?= /usr/local
 

@@ -28,7 +28,7 @@ $(SCREED_FLASH): $(call objects,$(FLASH_SOURCES))
 	@$(CXX) $(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $^ -pthread -o $@
 
 # `firmware` also checks the budget: an image that reaches into the bootloader is not flashed.
-flash: $(SCREED_FLASH) firmware  ## build it and bring it onto the board (BOARD=a_star_32u4 PORT=/dev/ttyACM0)
+flash: $(SCREED_FLASH) firmware  ## build it and bring it onto the board (BOARD=NAME PORT=/dev/ttyACM0)
 	@$(SCREED_FLASH) write $(FIRMWARE_BUILD)/screed.hex --mcu $(BOARD_MCU) $(FLASH_BOARD) $(ARGS)
 fuses: $(SCREED_FLASH)  ## the fuses the board should have (PROGRAMMER=avr109|NAME: compare; WRITE=yes: write)
 	@$(SCREED_FLASH) fuses --mcu $(BOARD_MCU) $(FLASH_BOARD) --low $(BOARD_FUSE_LOW) --high $(BOARD_FUSE_HIGH) \

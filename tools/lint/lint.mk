@@ -7,8 +7,8 @@ HOST_TIDY_SOURCES := $(sort $(ALL_HOST_SOURCES) $(MCU_TEST_SOURCES))
 
 # Checks of a moment come first; then clang-tidy over sources whose object, flags or checks changed since they were last found clean,
 # as many at a time as go together.
-.PHONY: lint check-format check-includes check-words check-root format
-lint: check-root check-format check-includes check-words check-telemetry-page $(call objects,$(HOST_TIDY_SOURCES)) $(B)/lint.flags $(B)/mcu_tests.flags $(B)/avr.flags \
+.PHONY: lint check-format check-includes check-words check-root check-one-source format
+lint: check-root check-format check-includes check-words check-one-source check-telemetry-page $(call objects,$(HOST_TIDY_SOURCES)) $(B)/lint.flags $(B)/mcu_tests.flags $(B)/avr.flags \
       $(FIRMWARE_BUILD)/generated/build_info.h  ## formatting, layers, words, static analysis
 	@tools/lint/run.sh $(B) $(HOST_TIDY_SOURCES) $(AVR_TIDY_SOURCES)
 	@echo "lint: $(words $(HOST_TIDY_SOURCES) $(AVR_TIDY_SOURCES)) sources clean"
@@ -20,6 +20,8 @@ check-includes:
 	@tools/lint/include_graph.sh
 check-words:
 	@tools/lint/glossary.sh
+check-one-source:
+	@tools/lint/one_source.sh
 format:  ## clang-format over the tree
 	clang-format -i $(CPP_FILES)
 $(B)/lint.flags: $(B)/host.flags | $(B)/tiny_dnn/third_party/stb

@@ -1,12 +1,35 @@
-// Named soils and their limits.
+// Named soils, and what is made from the table of parameters.
 #include "host_sim/physics/soil/soil_parameters.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/name_list.h"
 
 namespace screed {
 namespace {
+
+/// Whether no two rows share a key, an option or a member, and defaults lie in their ranges.
+constexpr bool table_is_sound() {
+  for (const SoilParameterInfo& row : kSoilParameters) {
+    if (!(row.min <= row.default_value && row.default_value <= row.max)) return false;
+    for (const SoilParameterInfo& other : kSoilParameters) {
+      if (&row == &other) continue;
+      if (std::string_view(row.key) == other.key || std::string_view(row.option) == other.option)
+        return false;
+    }
+  }
+  return true;
+}
+static_assert(table_is_sound(),
+              "SCREED_SOIL_PARAMETERS: a key or option stands twice, or a "
+              "default is out of its range");
+
+constexpr SoilTones kLoam{{0.66, 0.54, 0.41}, {0.42, 0.32, 0.23}};
+constexpr SoilTones kSand{{0.85, 0.74, 0.55}, {0.66, 0.54, 0.37}};
+constexpr SoilTones kClay{{0.66, 0.43, 0.31}, {0.42, 0.25, 0.18}};
+constexpr SoilTones kSimulant{{0.62, 0.60, 0.57}, {0.42, 0.41, 0.39}};
+constexpr SoilTones kGravel{{0.66, 0.64, 0.60}, {0.38, 0.37, 0.35}};
 
 SoilParameters soil(const char* name, double k_phi, double k_c, double n, double c, double phi,
                     double shear, double elastic) {
@@ -33,55 +56,74 @@ SoilParameters gravel() {
   return s;
 }
 
+const SoilPreset* preset_named(std::string_view name) {
+  const auto found =
+      std::find_if(soil_presets().begin(), soil_presets().end(),
+                   [&](const SoilPreset& preset) { return preset.soil.name == name; });
+  return found == soil_presets().end() ? nullptr : &*found;
+}
+
 }  // namespace
 
-const std::vector<SoilParameters>& soil_presets() {
+const std::vector<SoilPreset>& soil_presets() {
   // soft and viper: loose sands of rover studies, origin not verified; lete_sand, dry_sand, clay:
   // Wong, Theory of Ground Vehicles, table 2.3; ding_2011: the simulant of Ding et al., Journal of
   // Terramechanics 48(1), 2011. The stiffness of unloading is not in these sources: chosen so that
   // the elastic part of the sinkage stays small.
-  static const std::vector<SoilParameters> presets = {
-      soil("soft", 0.2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 4e7),
-      soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 2e8),
-      soil("lete_sand", 5301e3, 102e3, 0.793, 1.3e3, 31.1, 0.012, 4e8),
-      soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 2e8),
-      soil("clay", 692.15e3, 13.19e3, 0.5, 4.14e3, 13.0, 0.010, 2e8),
-      soil("ding_2011", 2407.4e3, 15.6e3, 1.1, 250.0, 31.9, 0.011, 2e8),
-      gravel(),
+  static const std::vector<SoilPreset> presets = {
+      {soil("soft", 0.2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 4e7), kLoam},
+      {soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 2e8), kLoam},
+      {soil("lete_sand", 5301e3, 102e3, 0.793, 1.3e3, 31.1, 0.012, 4e8), kSand},
+      {soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 2e8), kSand},
+      {soil("clay", 692.15e3, 13.19e3, 0.5, 4.14e3, 13.0, 0.010, 2e8), kClay},
+      {soil("ding_2011", 2407.4e3, 15.6e3, 1.1, 250.0, 31.9, 0.011, 2e8), kSimulant},
+      {gravel(), kGravel},
   };
   return presets;
 }
 
-const SoilParameters& soil_preset(std::string_view name) {
-  std::string known;
-  for (const SoilParameters& preset : soil_presets()) {
-    if (preset.name == name) return preset;
-    known += (known.empty() ? "" : ", ") + preset.name;
-  }
-  throw InputError("unknown soil '" + std::string(name) + "'; known are " + known);
+std::vector<std::string> soil_preset_names() {
+  std::vector<std::string> names;
+  for (const SoilPreset& preset : soil_presets()) names.push_back(preset.soil.name);
+  return names;
 }
 
-void check_soil(const SoilParameters& s) {
+const SoilParameters& soil_preset(std::string_view name) {
+  if (const SoilPreset* const preset = preset_named(name)) return preset->soil;
+  throw InputError("unknown soil '" + std::string(name) + "'; known are " +
+                   name_list(soil_preset_names()));
+}
+
+const SoilTones& soil_tones(std::string_view name) {
+  const SoilPreset* const preset = preset_named(name);
+  return preset != nullptr ? preset->tones : kLoam;
+}
+
+bool SoilOverrides::empty() const {
+  return std::none_of(std::begin(kSoilParameters), std::end(kSoilParameters),
+                      [this](const SoilParameterInfo& parameter) {
+                        return (this->*parameter.override_member).has_value();
+                      });
+}
+
+void SoilOverrides::apply_to(SoilParameters& soil) const {
+  for (const SoilParameterInfo& parameter : kSoilParameters) {
+    const std::optional<double>& value = this->*parameter.override_member;
+    if (value.has_value()) soil.*parameter.member = *value;
+  }
+}
+
+void check_soil(const SoilParameters& soil) {
   const auto require = [](const char* name, double value, double min, double max) {
     if (!(value >= min && value <= max)) {
       throw InputError(std::string("soil: ") + name + " = " + std::to_string(value) +
                        "; allowed is " + std::to_string(min) + " to " + std::to_string(max));
     }
   };
-  require("k_phi", s.k_phi, 0.0, 1e12);
-  require("k_c", s.k_c, 0.0, 1e12);
-  require("k_phi + k_c", s.k_phi + s.k_c, 1.0, 2e12);
-  require("n", s.exponent, 0.1, 2.5);
-  require("c", s.cohesion_pa, 0.0, 1e7);
-  require("phi", s.friction_deg, 0.0, 60.0);
-  require("K", s.shear_modulus_m, 1e-5, 1.0);
-  require("E", s.elastic_pa_per_m, 1e4, 1e12);
-  require("R", s.damping_pa_s_per_m, 0.0, 1e9);
-  require("shear_damping", s.shear_damping_s, 0.0, 0.1);
-  require("repose", s.repose_deg, 1.0, 60.0);
-  require("compaction", s.compaction, 0.0, 1.0);
-  require("drag_depth", s.drag_depth_m, 0.0, 1.0);
-  require("slip_sinkage", s.slip_sinkage, 0.0, 2.0);
+  for (const SoilParameterInfo& parameter : kSoilParameters)
+    require(parameter.key, soil.*parameter.member, parameter.min, parameter.max);
+  // A soil that carries nothing.
+  require("k_phi + k_c", soil.k_phi + soil.k_c, 1.0, 2e12);
 }
 
 }  // namespace screed

@@ -1,40 +1,113 @@
-// What a soil is, in the terms of terramechanics. Knows no grid and no robot.
+// What a soil is, in the terms of terramechanics: one table of its parameters, one of named soils.
+// Knows no grid and no robot.
+//
+// The table of parameters is a macro so that the struct, its defaults, the range check, the keys of
+// experiment files, the options of `screed soil` and the attributes of recorded runs are made from
+// the same lines. A new parameter is a row here and its use. The named soils stand in
+// soil_parameters.cpp, a row each.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace screed {
 
+// member: of the structs, and its key in JSON; key: symbol in experiment files, recorded runs and
+// messages; option: of `screed soil`.
+// clang-format off
+//  member              key              option             unit         min   max   default  meaning
+#define SCREED_SOIL_PARAMETERS(X) \
+  X(k_phi,              "k_phi",         "--k-phi",         "N/m^(n+2)", 0.0,  1e12, 2e6,   "Bekker's frictional modulus; left out: the preset's") \
+  X(k_c,                "k_c",           "--k-c",           "N/m^(n+1)", 0.0,  1e12, 0.0,   "Bekker's cohesive modulus") \
+  X(exponent,           "n",             "--exponent",      "",          0.1,  2.5,  1.1,   "Bekker's exponent of sinkage") \
+  X(cohesion_pa,        "c",             "--cohesion",      "Pa",        0.0,  1e7,  0.0,   "cohesion") \
+  X(friction_deg,       "phi",           "--friction",      "deg",       0.0,  60.0, 30.0,  "angle of internal friction") \
+  X(shear_modulus_m,    "K",             "--shear-modulus", "m",         1e-5, 1.0,  0.01,  "Janosi-Hanamoto shear modulus") \
+  X(elastic_pa_per_m,   "E",             "--elastic",       "Pa/m",      1e4,  1e12, 2e8,   "stiffness of unloading") \
+  X(damping_pa_s_per_m, "R",             "--damping",       "Pa s/m",    0.0,  1e9,  0.0,   "damping of sinking") \
+  X(shear_damping_s,    "shear_damping", "--shear-damping", "s",         0.0,  0.1,  0.002, "damping of small shear, over its stiffness; 0.002 by default") \
+  X(repose_deg,         "repose",        "--repose",        "deg",       1.0,  60.0, 30.0,  "angle of repose") \
+  X(compaction,         "compaction",    "--compaction",    "",          0.0,  1.0,  0.0,   "share of the sunk volume that is compacted") \
+  X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0,   "thickness of the layer that a slipping surface digs away") \
+  X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip")
+// clang-format on
+
 /// Bekker pressure-sinkage p = (k_c / b + k_phi) z^n with elastic unloading, Janosi-Hanamoto shear
 /// tau = (c + p tan phi) (1 - exp(-j / K)), which on the way back does not come back: in its rate
-/// form d tau = ((c + p tan phi) dj - tau |dj|) / K, in two directions.
+/// form d tau = ((c + p tan phi) dj - tau |dj|) / K, in two directions. With slip s the exponent is
+/// n + slip_sinkage s (Ding et al. 2011).
 /// Sources: M. G. Bekker, Introduction to Terrain-Vehicle Systems, 1969; Z. Janosi, B. Hanamoto,
 /// 1961; P. R. Dahl, A solid friction model, 1968; J. Y. Wong, Theory of Ground Vehicles, ch. 2.
 struct SoilParameters {
   std::string name = "custom";
-  double k_phi = 2e6;               ///< N/m^(n+2), > 0 unless k_c is
-  double k_c = 0.0;                 ///< N/m^(n+1), >= 0
-  double exponent = 1.1;            ///< n, 0.1..2.5
-  double cohesion_pa = 0.0;         ///< c, >= 0
-  double friction_deg = 30.0;       ///< phi, 0..60
-  double shear_modulus_m = 0.01;    ///< K, > 0
-  double elastic_pa_per_m = 2e8;    ///< E, of unloading and reloading, > 0
-  double damping_pa_s_per_m = 0.0;  ///< R, on the speed of sinking, >= 0
-  double shear_damping_s = 0.002;   ///< of small shear, 0..0.1: stiffness times this is its damping
-  double repose_deg = 30.0;         ///< angle of repose of loose material, 1..60
-  double compaction =
-      0.0;  ///< share of the sunk and dug volume that is compacted, 0..1; the rest moves aside
-  double drag_depth_m = 0.0;  ///< of the layer that a slipping surface digs away, >= 0; 0: none
-  double slip_sinkage =
-      0.0;  ///< exponent n grows by this times the slip (Ding et al. 2011), 0..2; 0: none
+#define SCREED_FIELD(member, key, option, unit, min, max, value, meaning) double member = (value);
+  SCREED_SOIL_PARAMETERS(SCREED_FIELD)
+#undef SCREED_FIELD
 };
 
-/// Named soils: soft, viper, lete_sand, dry_sand, clay, ding_2011, gravel.
-const std::vector<SoilParameters>& soil_presets();
+/// What stands in place of a soil's own parameters.
+struct SoilOverrides {
+#define SCREED_FIELD(member, key, option, unit, min, max, value, meaning) \
+  std::optional<double> member;
+  SCREED_SOIL_PARAMETERS(SCREED_FIELD)
+#undef SCREED_FIELD
+
+  bool empty() const;
+  void apply_to(SoilParameters& soil) const;
+};
+
+/// A row of the table.
+struct SoilParameterInfo {
+  const char* member_name;
+  const char* key;
+  const char* option;
+  const char* unit;  ///< "": none
+  double min;
+  double max;
+  double default_value;
+  const char* meaning;
+  double SoilParameters::*member;
+  std::optional<double> SoilOverrides::*override_member;
+};
+inline constexpr SoilParameterInfo kSoilParameters[] = {
+#define SCREED_INFO(member, key, option, unit, min, max, value, meaning) \
+  {#member,                                                              \
+   key,                                                                  \
+   option,                                                               \
+   unit,                                                                 \
+   min,                                                                  \
+   max,                                                                  \
+   value,                                                                \
+   meaning,                                                              \
+   &SoilParameters::member,                                              \
+   &SoilOverrides::member},
+    SCREED_SOIL_PARAMETERS(SCREED_INFO)
+#undef SCREED_INFO
+};
+
+/// Two tones that a soil varies between in pictures, sRGB, components 0..1.
+struct SoilTones {
+  std::array<double, 3> light;
+  std::array<double, 3> dark;
+};
+
+/// A named soil. Its look stands beside its numbers, since both describe the same material, and so
+/// that a named soil is one row; physics does not read it.
+struct SoilPreset {
+  SoilParameters soil;
+  SoilTones tones;
+};
+
+const std::vector<SoilPreset>& soil_presets();
+std::vector<std::string> soil_preset_names();
 /// Throws InputError, listing the known names.
 const SoilParameters& soil_preset(std::string_view name);
+/// The look of a named soil; of an unknown one that of loam.
+const SoilTones& soil_tones(std::string_view name);
+
 /// Throws InputError that names the first parameter out of its range.
 void check_soil(const SoilParameters& soil);
 

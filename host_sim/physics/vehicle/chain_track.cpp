@@ -21,8 +21,8 @@ constexpr double kUpperSide = 0.2;  // these three as in running_gear.cpp
 constexpr double kSlipSpeed = 1e-3;
 constexpr double kOnItsSide = 0.8;
 
-// Between pin and wheel. The teeth are as soft as the light rear wheel allows, whose own motion is a
-// step behind the pins'.
+// Between pin and wheel. The teeth are as soft as the light rear wheel allows, whose own motion is
+// a step behind the pins'.
 constexpr double kWheelStiffness = 8e3;  // N/m
 constexpr double kWheelDamping = 2.0;    // N s/m
 constexpr double kToothStiffness = 4e3;

@@ -2,9 +2,11 @@
 #include "host_sim/render/scene/terrain_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/render/scene/pov_text.h"
 
 namespace screed {
@@ -105,23 +107,10 @@ double TerrainSurface::height_m(double x, double y) const {
 }
 
 SoilAppearance soil_appearance(const std::string& preset) {
-  struct Named {
-    const char* preset;
-    SoilAppearance look;
-  };
-  static constexpr SoilAppearance kLoam{{0.66, 0.54, 0.41}, {0.42, 0.32, 0.23}};
-  static constexpr Named kLooks[] = {
-      {"", {{0.64, 0.62, 0.58}, {0.45, 0.43, 0.40}}},
-      {"lete_sand", {{0.85, 0.74, 0.55}, {0.66, 0.54, 0.37}}},
-      {"dry_sand", {{0.85, 0.74, 0.55}, {0.66, 0.54, 0.37}}},
-      {"clay", {{0.66, 0.43, 0.31}, {0.42, 0.25, 0.18}}},
-      {"gravel", {{0.66, 0.64, 0.60}, {0.38, 0.37, 0.35}}},
-      {"ding_2011", {{0.62, 0.60, 0.57}, {0.42, 0.41, 0.39}}},
-  };
-  for (const Named& named : kLooks) {
-    if (preset == named.preset) return named.look;
-  }
-  return kLoam;
+  static constexpr SoilTones kHardGround{{0.64, 0.62, 0.58}, {0.45, 0.43, 0.40}};
+  const SoilTones& tones = preset.empty() ? kHardGround : soil_tones(preset);
+  const auto color = [](const std::array<double, 3>& rgb) { return Color{rgb[0], rgb[1], rgb[2]}; };
+  return {color(tones.light), color(tones.dark)};
 }
 
 GreyRaster height_raster(const TerrainSurface& ground) {

@@ -44,7 +44,7 @@ struct SoilAppearance {
   Color light;
   Color dark;
 };
-/// The look of a soil by the name of its preset; "gravel" for particles, "" for hard ground.
+/// The look of a named soil (soil_parameters.h); "gravel" for particles, "" for hard ground.
 SoilAppearance soil_appearance(const std::string& preset);
 
 /// A grey image that the scene needs: 16 bits for heights.

@@ -4,10 +4,12 @@
 #include <charconv>
 #include <map>
 #include <numbers>
+#include <system_error>
 
 #include "boards.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
+#include "host_sim/core/name_list.h"
 #include "paths.h"
 
 namespace screed {
@@ -17,19 +19,37 @@ std::filesystem::path folder_of(const std::string& board) {
   return std::filesystem::path(kBoardsFolder) / board;
 }
 
-}  // namespace
-
-const BoardConstants& board_constants_of(const std::string& name) {
-  static const std::map<std::string, const BoardConstants*> boards = {
+const std::map<std::string, const BoardConstants*>& boards() {
+  static const std::map<std::string, const BoardConstants*> table = {
 #define SCREED_BOARD(board) {#board, &kBoard_##board},
       SCREED_BOARDS(SCREED_BOARD)
 #undef SCREED_BOARD
   };
-  const auto found = boards.find(name);
-  if (found != boards.end()) return *found->second;
-  std::string known;
-  for (const auto& [board, constants] : boards) known += (known.empty() ? "" : ", ") + board;
-  throw InputError("board '" + name + "' is not known; there are: " + known);
+  return table;
+}
+
+}  // namespace
+
+const char* const kDefaultBoard = SCREED_DEFAULT_BOARD;
+
+std::vector<std::string> board_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, constants] : boards()) names.push_back(name);
+  return names;
+}
+
+const BoardConstants& board_constants_of(const std::string& name) {
+  const auto found = boards().find(name);
+  if (found != boards().end()) return *found->second;
+  throw InputError("board '" + name + "' is not known; there are: " + name_list(board_names()));
+}
+
+std::optional<std::filesystem::path> file_of_a_board(const std::string& name) {
+  for (const std::string& board : board_names()) {
+    std::error_code error;
+    if (std::filesystem::exists(folder_of(board) / name, error)) return folder_of(board) / name;
+  }
+  return std::nullopt;
 }
 
 std::filesystem::path board_model(const std::string& name) {

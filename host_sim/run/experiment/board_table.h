@@ -2,20 +2,29 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware/parameters/board_constants.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
 
 namespace screed {
 
-inline constexpr const char* kDefaultBoard = "a_star_32u4";
+/// The board that is meant when none is named: DEFAULT_BOARD in tools/build/options.mk.
+extern const char* const kDefaultBoard;
+
+/// By name.
+std::vector<std::string> board_names();
 
 /// Throws InputError for an unknown name; lists the known ones.
 const BoardConstants& board_constants_of(const std::string& name);
 
 /// The robot model in the board's folder: its only .urdf file. Throws InputError.
 std::filesystem::path board_model(const std::string& name);
+
+/// The file of this name in the first board's folder that has one.
+std::optional<std::filesystem::path> file_of_a_board(const std::string& name);
 
 struct BoardMotor {
   GearMotor motor;

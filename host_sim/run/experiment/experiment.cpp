@@ -130,12 +130,12 @@ void check(const Experiment& experiment, const std::string& source) {
 
 CommandKey ground_key_of(const Experiment& experiment) {
   const std::string& key = experiment.radio.key;
-  return key.empty() || key == kNoKey ? test_key() : parse_key(key, "[radio] key");
+  return key.empty() || key == kNoCommandKey ? test_key() : parse_key(key, "[radio] key");
 }
 
 Credentials credentials_of(const Experiment& experiment) {
   Credentials credentials = credentials_of(ground_key_of(experiment), experiment.radio.boot_epoch);
-  credentials.key_set = experiment.radio.key != kNoKey;
+  credentials.key_set = experiment.radio.key != kNoCommandKey;
   return credentials;
 }
 
@@ -208,7 +208,7 @@ std::filesystem::path find_model_file(const Experiment& experiment, const std::s
   if (experiment.vehicle.model == "board") return board_model(board);
   // Figure 5.3 calls the chassis Dagu5.
   if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
-    return std::filesystem::path(kBoardsFolder) / "a_star_32u4" / "rover5.urdf";
+    if (const auto rover = file_of_a_board("rover5.urdf")) return *rover;
   }
   return find_data_file(experiment, experiment.vehicle.model, "[vehicle] model");
 }

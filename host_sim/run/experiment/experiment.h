@@ -4,6 +4,9 @@
 // Reading is strict: an unknown section or key, a value out of range or of the wrong kind ends with
 // one line that names file, line, key and what is allowed. docs/experiments.md lists every key; the
 // list is made from the same table.
+//
+// A section is a file in sections/: its fields, and below them its keys. A new key is a field and a
+// row there.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +18,17 @@
 #include "firmware/parameters/parameters.h"
 #include "host_sim/ground_station/station/command_key.h"
 #include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/sections/drive_section.h"
+#include "host_sim/run/experiment/sections/experiment_section.h"
+#include "host_sim/run/experiment/sections/map_section.h"
+#include "host_sim/run/experiment/sections/particles_section.h"
+#include "host_sim/run/experiment/sections/physics_section.h"
+#include "host_sim/run/experiment/sections/radio_section.h"
+#include "host_sim/run/experiment/sections/raygrid_section.h"
+#include "host_sim/run/experiment/sections/sensors_section.h"
+#include "host_sim/run/experiment/sections/soil_section.h"
+#include "host_sim/run/experiment/sections/trap_section.h"
+#include "host_sim/run/experiment/sections/vehicle_section.h"
 
 namespace screed {
 
@@ -24,122 +38,17 @@ inline constexpr const char* kTrainingDriveName = "training_drive";
 struct Experiment {
   std::string output_directory_prefix = "out";
 
-  struct {
-    bool tracks = true;
-    std::string track_model = "belt";  ///< or chain: links round the wheels
-    int track_links = 0;               ///< of a chain, each side; 0: of about 10 mm
-    double track_tension_n = 10.0;     ///< of a chain at rest
-    std::string model = "board";       ///< a URDF file, rover5, or board: the board's own
-    double x_m = 0.0;
-    double y_m = 0.0;
-    std::optional<double> z_m;
-    double roll_deg = 0.0;
-    double pitch_deg = 0.0;
-    double heading_deg = 0.0;
-    std::optional<double> leg_angle_deg;
-    double track_friction = 0.8;
-    double chassis_friction = 0.4;
-  } vehicle;
-
-  struct {
-    std::string filename;  ///< a grey image; empty: level ground
-    double size_m = 3.0;
-    /// In place of size: metres a pixel of the image (rigid, scm).
-    std::optional<double> xy_scale;
-    double scale_m = 0.2;
-    double smoothing_m = 0.0;
-    std::optional<double> max_slope_deg;
-    double ramp_deg = 0.0;  ///< without an image: level ground inclined towards east
-    bool wrap = false;
-    /// rigid, scm: deformable soil, particles, or static_particles: those that never move
-    std::string model = "rigid";
-    double particle_radius_m = 0.0125;
-
-    bool of_particles() const { return model == "particles" || model == "static_particles"; }
-  } map;
-
-  /// What the particles of the models particles and static_particles are, and how many lie there.
-  struct {
-    double depth_m = 0.1;  ///< of the bed below the image's black
-    double density_kg_per_m3 = 2600.0;
-    double friction = 0.6;
-    double rolling = 0.1;
-  } particles;
-
-  /// A place that the robot does not get out of, in front of its start (trap.h).
-  struct {
-    std::string kind = "none";
-    double distance_m = 0.5;
-    double size = 0.1;  ///< m; of a slope degrees
-  } trap;
-
-  struct {
-    double resolution_per_m = 200.0;  ///< rays a metre that read the height map of particles
-  } raygrid;
-
-  /// Soil of the model scm: a named preset and what differs from it.
-  struct {
-    std::string preset = "viper";
-    double cell_m = 0.005;
-    bool bulldozing = true;
-    bool avalanches = true;
-    bool follow_slopes = true;
-    std::optional<double> k_phi;
-    std::optional<double> k_c;
-    std::optional<double> exponent;
-    std::optional<double> cohesion_pa;
-    std::optional<double> friction_deg;
-    std::optional<double> shear_modulus_m;
-    std::optional<double> elastic_pa_per_m;
-    std::optional<double> damping_pa_s_per_m;
-    std::optional<double> shear_damping_s;
-    std::optional<double> repose_deg;
-    std::optional<double> compaction;
-    std::optional<double> drag_depth_m;
-    std::optional<double> slip_sinkage;
-  } soil;
-
-  struct {
-    std::string name = "experiment";
-    std::string algorithm = "hill_sensing";
-    double duration_s = 60.0;
-    /// In place of duration, control ticks; the n of algorithm training_drive, for which it is
-    /// always set.
-    std::optional<uint32_t> frames;
-    std::optional<double> stop_after_s;  ///< of the training drive
-    uint64_t seed = 1;
-    double flatness_deg = 5.0;  ///< epsilon of the thesis' flatness, as a slope
-    std::optional<double> lay_on_side_at_s;
-  } experiment;
-
-  struct {
-    double speed_m_per_s = 0.1;
-    double yaw_rate_deg_per_s = 0.0;
-  } drive;
-
-  struct {
-    bool noise = true;
-    bool calibrated = true;
-    bool handled = false;
-  } sensors;
-
-  struct {
-    double delay_s = 0.012;
-    double loss = 0.0;
-    double bit_errors = 0.0;
-    double duplication = 0.0;
-    std::optional<double> range_m;
-    double baud = 58823.5;
-    double packet_pause = 3.0;
-    bool ground_station = true;
-    std::string key;                        ///< of robot and ground station; empty: the test key
-    uint16_t boot_epoch = kFirstBootEpoch;  ///< number of the robot's start
-  } radio;
-
-  struct {
-    double step_s = 0.001;
-  } physics;
-
+  VehicleSection vehicle;
+  MapSection map;
+  ParticlesSection particles;
+  TrapSection trap;
+  RaygridSection raygrid;
+  SoilSection soil;
+  ExperimentSection experiment;
+  DriveSection drive;
+  SensorsSection sensors;
+  RadioSection radio;
+  PhysicsSection physics;
   Parameters parameters;
 
   /// Notes for the user of the file: keys that were understood in another way than

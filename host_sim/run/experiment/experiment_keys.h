@@ -1,5 +1,5 @@
-// The keys of experiment files: one table for reading, writing back and the documentation. A new
-// key is a line in experiment_keys.cpp and a field in experiment.h.
+// The keys of experiment files: one table for reading, writing back and the documentation, made
+// from the sections (sections/, key_list.h).
 #pragma once
 
 #include <charconv>
@@ -14,11 +14,9 @@
 
 namespace screed {
 
-inline constexpr const char* kNoKey = "none";  ///< [radio] key of a robot without one
 inline constexpr const char* kUnitsKey = "units";
 inline constexpr const char* kSandboxKey = "chrono_data_path";
 inline constexpr double kSandboxUnitsPerMetre = 12.0;
-inline constexpr uint32_t kMaxFrames = 8U * INT16_MAX;  // eight blocks of a parameter's range
 
 /// One key of an experiment file: how its value is read, written back and described.
 struct ExperimentKey {

@@ -74,8 +74,10 @@ const TrapKind* trap_named(const std::string& name) {
 
 }  // namespace
 
-bool is_trap(const std::string& kind) {
-  return trap_named(kind) != nullptr;
+std::vector<std::string> trap_kinds() {
+  std::vector<std::string> names;
+  for (const TrapKind& kind : kTraps) names.emplace_back(kind.name);
+  return names;
 }
 
 void set_trap(const Experiment& experiment, HeightField& field) {

@@ -1,15 +1,10 @@
 // Places that robots do not get out of, cut into the terrain of an experiment ([trap]).
 #pragma once
 
-#include <string>
-
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/run/experiment/experiment.h"
 
 namespace screed {
-
-/// Whether [trap] kind knows the name.
-bool is_trap(const std::string& kind);
 
 /// Changes the terrain as the experiment's trap asks. Widths are the Rover 5's. A wall, slope or
 /// trench lies all round the start, so that a robot that turns or walks at random meets it too.

@@ -25,11 +25,4 @@ struct SessionInfo {
   Credentials credentials = credentials_of(test_key());
 };
 
-/// One number of the soil.
-struct SoilAttribute {
-  const char* name;
-  const char* unit;
-  double value;
-};
-
 }  // namespace screed

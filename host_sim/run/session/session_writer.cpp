@@ -173,13 +173,13 @@ class SessionWriter::Impl {
     flush();
   }
 
-  void write_soil(std::span<const SoilAttribute> soil) {
+  void write_soil(const SoilParameters& soil) {
     const h5::Handle group = layout::create_group(file_.get(), layout::kSoilGroup);
-    for (const SoilAttribute& attribute : soil) {
-      h5::write_attribute(group.get(), attribute.name, attribute.value);
-      if (*attribute.unit != '\0') {
-        h5::write_attribute(group.get(), (std::string(attribute.name) + ".unit").c_str(),
-                            std::string(attribute.unit));
+    for (const SoilParameterInfo& parameter : kSoilParameters) {
+      h5::write_attribute(group.get(), parameter.key, soil.*parameter.member);
+      if (*parameter.unit != '\0') {
+        h5::write_attribute(group.get(), (std::string(parameter.key) + ".unit").c_str(),
+                            std::string(parameter.unit));
       }
     }
     flush();
@@ -282,7 +282,7 @@ void SessionWriter::record_heights(const HeightMapView& map) {
   or_run_error(impl_->path(), [&] { impl_->record_heights(map); });
 }
 
-void SessionWriter::write_soil(std::span<const SoilAttribute> soil) {
+void SessionWriter::write_soil(const SoilParameters& soil) {
   or_run_error(impl_->path(), [&] { impl_->write_soil(soil); });
 }
 

@@ -10,6 +10,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed {
@@ -35,9 +36,9 @@ class SessionWriter {
   void append(const SimFrame& frame, const SensorSample& sample, const RobotOutput& output,
               std::span<const HeightChange> changes = {});
 
-  /// What the ground is made of: at most once. Not part of the content hash, which has the
-  /// experiment's text.
-  void write_soil(std::span<const SoilAttribute> soil);
+  /// What the ground is made of, as it is used: the preset with what the experiment changed. At
+  /// most once. Not part of the content hash, which has the experiment's text.
+  void write_soil(const SoilParameters& soil);
 
   /// The terrain as the run found it and left it: each at most once, at any time before finish().
   void write_terrain_before(const HeightMapView& map);

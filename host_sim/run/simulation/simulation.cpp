@@ -89,23 +89,6 @@ HeightMapView view_of(const HeightField& field, std::vector<int32_t>& heights) {
   return view;
 }
 
-/// The soil as it is used: the preset with what the experiment changed.
-std::vector<SoilAttribute> attributes_of(const SoilParameters& soil) {
-  return {{"k_phi", "N/m^(n+2)", soil.k_phi},
-          {"k_c", "N/m^(n+1)", soil.k_c},
-          {"n", "", soil.exponent},
-          {"c", "Pa", soil.cohesion_pa},
-          {"phi", "deg", soil.friction_deg},
-          {"K", "m", soil.shear_modulus_m},
-          {"E", "Pa/m", soil.elastic_pa_per_m},
-          {"R", "Pa s/m", soil.damping_pa_s_per_m},
-          {"shear_damping", "s", soil.shear_damping_s},
-          {"repose", "deg", soil.repose_deg},
-          {"compaction", "", soil.compaction},
-          {"drag_depth", "m", soil.drag_depth_m},
-          {"slip_sinkage", "", soil.slip_sinkage}};
-}
-
 /// Takes what every tick gives and keeps it: frames, path, progress.
 ///
 /// Beside the robot that drives runs a second one on the same samples. The core is a pure function,
@@ -446,7 +429,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   SessionWriter writer(folder.path() / "session.h5", session_info(experiment, options));
   std::vector<int32_t> heights;
   writer.write_terrain_before(view_of(before, heights));
-  if (experiment.map.model == "scm") writer.write_soil(attributes_of(make_soil(experiment)));
+  if (experiment.map.model == "scm") writer.write_soil(make_soil(experiment));
 
   Recorder recorder(plant, experiment, options, writer);
   run.drive(recorder);

@@ -12,6 +12,7 @@
 #include "hal/sample.h"
 #include "host_sim/devices/mcu/cycle_report.h"
 #include "host_sim/ground_station/station/ground_station.h"
+#include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/world/world.h"
 
 namespace screed {
@@ -33,7 +34,7 @@ class CoSimulation {
 
 struct CoSimulationOptions {
   std::string elf;
-  std::string board = "a_star_32u4";  ///< a folder in boards/
+  std::string board = kDefaultBoard;  ///< a folder in boards/
   Parameters parameters;              ///< stored in the EEPROM before the program starts
   Credentials credentials = credentials_of(test_key());  ///< likewise
   WorldOptions world;

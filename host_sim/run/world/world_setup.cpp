@@ -134,24 +134,8 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
 }  // namespace
 
 SoilParameters make_soil(const Experiment& experiment) {
-  const auto& keys = experiment.soil;
-  SoilParameters soil = soil_preset(keys.preset);
-  const auto take = [](const std::optional<double>& value, double& parameter) {
-    if (value.has_value()) parameter = *value;
-  };
-  take(keys.k_phi, soil.k_phi);
-  take(keys.k_c, soil.k_c);
-  take(keys.exponent, soil.exponent);
-  take(keys.cohesion_pa, soil.cohesion_pa);
-  take(keys.friction_deg, soil.friction_deg);
-  take(keys.shear_modulus_m, soil.shear_modulus_m);
-  take(keys.elastic_pa_per_m, soil.elastic_pa_per_m);
-  take(keys.damping_pa_s_per_m, soil.damping_pa_s_per_m);
-  take(keys.shear_damping_s, soil.shear_damping_s);
-  take(keys.repose_deg, soil.repose_deg);
-  take(keys.compaction, soil.compaction);
-  take(keys.drag_depth_m, soil.drag_depth_m);
-  take(keys.slip_sinkage, soil.slip_sinkage);
+  SoilParameters soil = soil_preset(experiment.soil.preset);
+  experiment.soil.overrides.apply_to(soil);
   check_soil(soil);
   return soil;
 }

@@ -18,6 +18,7 @@
 
 #include "firmware/estimation/attitude.h"
 #include "host_sim/core/errors.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 
@@ -280,7 +281,7 @@ int run_attitude(const std::vector<std::string>& files, bool json, std::ostream&
   return 0;
 }
 
-void register_attitude_command(CLI::App& root, std::function<int()>& action) {
+void register_attitude_command(CLI::App& root, Program& program) {
   struct Options {
     std::vector<std::string> files;
     bool json = false;
@@ -292,8 +293,8 @@ void register_attitude_command(CLI::App& root, std::function<int()>& action) {
   command->add_option("FILES", options->files, "CSV recordings (format: docs/attitude.md)")
       ->required();
   command->add_flag("--json", options->json, "Print JSON");
-  command->callback([options, &action] {
-    action = [options] { return run_attitude(options->files, options->json, std::cout); };
+  command->callback([options, &program] {
+    program.action = [options] { return run_attitude(options->files, options->json, std::cout); };
   });
 }
 

@@ -1,8 +1,6 @@
 // `screed attitude FILES...`: how far is the attitude estimator from an optical reference?
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -26,8 +24,5 @@ AttitudeScore score_attitude(const std::string& file);
 
 /// Scores every file and prints a table with the mean, or JSON. Returns 0; throws InputError.
 int run_attitude(const std::vector<std::string>& files, bool json, std::ostream& out);
-
-/// Adds the subcommand; its callback sets `action` to what is to be run after parsing.
-void register_attitude_command(CLI::App& root, std::function<int()>& action);
 
 }  // namespace screed

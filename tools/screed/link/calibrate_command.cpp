@@ -1,6 +1,5 @@
-// `screed calibrate`.
-#include "tools/screed/link/calibrate_command.h"
-
+// `screed calibrate`: walks a person through calibrating a robot's IMU over the radio and stores
+// what was found in the robot.
 #include <unistd.h>
 
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "host_sim/ground_station/calibration/imu_collector.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_view.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/cli/terminal_screen.h"
@@ -229,7 +229,7 @@ class Calibration {
 
 }  // namespace
 
-void register_calibrate_command(CLI::App& root, std::function<int()>& action) {
+void register_calibrate_command(CLI::App& root, Program& program) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = root.add_subcommand("calibrate",
                                           "Calibrate a robot's IMU from six positions and a turn "
@@ -239,8 +239,8 @@ void register_calibrate_command(CLI::App& root, std::function<int()>& action) {
   command->add_flag("--plain", arguments->plain,
                     "Print lines of text instead of a full-screen page");
   command->add_flag("--yes", arguments->yes, "Store the result without asking");
-  command->callback([arguments, &action] {
-    action = [arguments] {
+  command->callback([arguments, &program] {
+    program.action = [arguments] {
       catch_interrupts();
       return Calibration(*arguments).run();
     };

@@ -9,6 +9,7 @@
 #include "host_sim/ground_station/telemetry/csv_tables.h"
 #include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "host_sim/ground_station/telemetry/mcap_file.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -41,7 +42,7 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
   return decoder.statistics().damaged() > 0 ? 1 : 0;
 }
 
-void register_decode_command(CLI::App& root, std::function<int()>& action) {
+void register_decode_command(CLI::App& root, Program& program) {
   const auto options = std::make_shared<DecodeOptions>();
   CLI::App* command = root.add_subcommand(
       "decode", "Convert a radio log to CSV tables or to an MCAP file for Foxglove");
@@ -52,8 +53,8 @@ void register_decode_command(CLI::App& root, std::function<int()>& action) {
   command->add_option("--out", options->out,
                       "Output path (default: LOG without its extension, with _csv or .mcap)");
   command->add_flag("--numbers", options->numbers, "Write named values as numbers (CSV)");
-  command->callback([options, &action] {
-    action = [options] { return run_decode(*options, std::cout, std::cerr); };
+  command->callback([options, &program] {
+    program.action = [options] { return run_decode(*options, std::cout, std::cerr); };
   });
 }
 

@@ -1,8 +1,6 @@
 // `screed decode LOG --csv|--mcap`: a log of CAN frames as tables or as an MCAP file.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
 #include <iosfwd>
 #include <string>
 
@@ -20,8 +18,5 @@ struct DecodeOptions {
 /// `err`. Returns 0, or 1 when lines or frames of the log were damaged. Throws InputError when the
 /// log cannot be opened, RunError when a file cannot be written.
 int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& err);
-
-/// Adds the subcommand; its callback sets `action` to what is to be run after parsing.
-void register_decode_command(CLI::App& root, std::function<int()>& action);
 
 }  // namespace screed

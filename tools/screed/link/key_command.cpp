@@ -17,6 +17,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/file_descriptor.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -136,7 +137,7 @@ bool provision_key(const std::string& port, const CommandKey& key) {
                        key);
 }
 
-void register_key_command(CLI::App& root, std::function<int()>& action) {
+void register_key_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand(
       "key", "Create the key that signs commands, and provision a robot with it over USB");
   const auto arguments = std::make_shared<Arguments>();
@@ -148,8 +149,9 @@ void register_key_command(CLI::App& root, std::function<int()>& action) {
                       "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)");
   command->add_option("--robot-id", arguments->robot_id, "Robot id of a new key (default: 1)")
       ->check(CLI::Range(0, 255));
-  command->callback(
-      [arguments, &action] { action = [arguments] { return run_key_command(*arguments); }; });
+  command->callback([arguments, &program] {
+    program.action = [arguments] { return run_key_command(*arguments); };
+  });
 }
 
 }  // namespace screed

@@ -1,15 +1,12 @@
 // `screed key`: makes the key that commands are signed with, and gives it to a robot over USB.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
 #include "host_sim/ground_station/station/command_key.h"
 
 namespace screed {
-
-void register_key_command(CLI::App& root, std::function<int()>& action);
 
 /// A key nobody else has, from the kernel's random numbers. Throws RunError.
 CommandKey random_key(uint8_t robot_id);

@@ -1,6 +1,5 @@
-// `screed monitor`.
-#include "tools/screed/link/monitor_command.h"
-
+// `screed monitor`: what a robot says, live in a terminal or as text in a pipe, logged as candump
+// does; and the ground station whose heartbeats keep the robot going.
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include "host_sim/ground_station/link/dashboard.h"
 #include "host_sim/ground_station/link/robot_view.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/link/link_options.h"
@@ -240,7 +240,7 @@ class Monitor {
 
 }  // namespace
 
-void register_monitor_command(CLI::App& root, std::function<int()>& action) {
+void register_monitor_command(CLI::App& root, Program& program) {
   auto arguments = std::make_shared<MonitorArguments>();
   arguments->curves = {"attitude.pitch", "leveling.speed", "gyro_raw.z"};
   CLI::App* command = root.add_subcommand(
@@ -260,8 +260,8 @@ void register_monitor_command(CLI::App& root, std::function<int()>& action) {
   command->add_flag("--once", arguments->once, "Print one report and exit");
   command->add_option("--duration", arguments->duration_s, "Exit after this time [s]")
       ->check(CLI::NonNegativeNumber);
-  command->callback([arguments, &action] {
-    action = [arguments] {
+  command->callback([arguments, &program] {
+    program.action = [arguments] {
       catch_interrupts();
       return Monitor(*arguments).run();
     };

@@ -11,6 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "host_sim/render/picture/svg_png.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -109,7 +110,7 @@ int run_plot(const PlotOptions& options, std::ostream& err) {
   return 0;
 }
 
-void register_plot_command(CLI::App& root, std::function<int()>& action) {
+void register_plot_command(CLI::App& root, Program& program) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command = root.add_subcommand("plot", "Plot signals of a radio log over time");
   command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
@@ -130,8 +131,9 @@ void register_plot_command(CLI::App& root, std::function<int()>& action) {
       ->add_option("--height", options->height_px,
                    "Height of the SVG [px]; a PNG has twice as many")
       ->capture_default_str();
-  command->callback(
-      [options, &action] { action = [options] { return run_plot(*options, std::cerr); }; });
+  command->callback([options, &program] {
+    program.action = [options] { return run_plot(*options, std::cerr); };
+  });
 }
 
 }  // namespace screed

@@ -1,8 +1,6 @@
 // `screed plot LOG attitude.pitch ... --out x.svg`: signals of a log over time.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -30,8 +28,5 @@ Chart plot_chart(const PlotOptions& options, std::ostream& err);
 /// Draws it; returns 0. Throws InputError as above and for another ending than .svg or .png,
 /// RunError when the file cannot be written.
 int run_plot(const PlotOptions& options, std::ostream& err);
-
-/// Adds the subcommand; its callback sets `action` to what is to be run after parsing.
-void register_plot_command(CLI::App& root, std::function<int()>& action);
 
 }  // namespace screed

@@ -1,6 +1,5 @@
-// `screed send`. Exit codes: 0 done, 1 refused or no answer, 2 wrong input.
-#include "tools/screed/link/send_command.h"
-
+// `screed send`: one command to a robot, and its answer in words. Exit codes: 0 done, 1 refused or
+// no answer, 2 wrong input.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -10,6 +9,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_view.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/link/link_options.h"
@@ -144,7 +144,7 @@ class Sender {
 
 }  // namespace
 
-void register_send_command(CLI::App& root, std::function<int()>& action) {
+void register_send_command(CLI::App& root, Program& program) {
   auto arguments = std::make_shared<SendArguments>();
   CLI::App* command = root.add_subcommand("send", "Send a robot a command and print its answer");
   add_link_options(*command, arguments->link);
@@ -153,10 +153,10 @@ void register_send_command(CLI::App& root, std::function<int()>& action) {
                     "Keep sending heartbeats after the command, until Ctrl-C");
   command->require_subcommand(1);
   command->fallthrough();
-  const auto on = [arguments, &action](CLI::App* what, std::function<int(Sender&)> act) {
+  const auto on = [arguments, &program](CLI::App* what, std::function<int(Sender&)> act) {
     what->fallthrough();
-    what->callback([arguments, &action, act] {
-      action = [arguments, act] {
+    what->callback([arguments, &program, act] {
+      program.action = [arguments, act] {
         catch_interrupts();
         Sender sender(*arguments);
         return act(sender);

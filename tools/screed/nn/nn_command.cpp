@@ -1,6 +1,4 @@
-// `screed nn`: preprocess, train, quantise, eval, export, show, check.
-#include "tools/screed/nn/nn_command.h"
-
+// `screed nn ...`: networks from recorded sessions to the robot.
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "commands.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
@@ -272,21 +271,14 @@ int run_features() {
 
 }  // namespace
 
-CLI::App* nn_command(CLI::App& root) {
-  const std::vector<CLI::App*> there =
-      root.get_subcommands([](const CLI::App* command) { return command->get_name() == "nn"; });
-  if (!there.empty()) return there.front();
+void register_nn_command(CLI::App& root, Program& program) {
+  auto arguments = std::make_shared<NnArguments>();
   CLI::App* nn = root.add_subcommand("nn", "Train, evaluate and export networks");
   nn->require_subcommand(1);
-  return nn;
-}
-
-void register_nn_command(CLI::App& root, std::function<int()>& action) {
-  auto arguments = std::make_shared<NnArguments>();
-  CLI::App* nn = nn_command(root);
   const auto add = [&](const char* name, const char* help, int (*run)(const NnArguments&)) {
     CLI::App* command = nn->add_subcommand(name, help);
-    command->callback([arguments, run, &action] { action = [=] { return run(*arguments); }; });
+    command->callback(
+        [arguments, run, &program] { program.action = [=] { return run(*arguments); }; });
     return command;
   };
   const auto configuration = [&](CLI::App* command) {
@@ -349,7 +341,9 @@ void register_nn_command(CLI::App& root, std::function<int()>& action) {
   check->add_option("--seed", arguments->seed, "Seed of the vectors");
 
   CLI::App* features = nn->add_subcommand("features", "List all features and preprocessing stages");
-  features->callback([&action] { action = [] { return run_features(); }; });
+  features->callback([&program] { program.action = [] { return run_features(); }; });
+
+  register_nn_subcommands(*nn, program);
 }
 
 }  // namespace screed

@@ -1,5 +1,5 @@
-#include "tools/screed/nn/nn_motion_command.h"
-
+// `screed nn motion|rollout|divergence`: networks of motion are trained, and driven beside the
+// physics.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/motion_configuration.h"
 #include "nn/surrogate/rollout.h"
-#include "tools/screed/nn/nn_command.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -335,12 +335,10 @@ int run_divergence(const DivergenceArguments& arguments) {
 
 }  // namespace
 
-void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* nn = nn_command(root);
-
+void register_nn_motion_command(CLI::App& nn, Program& program) {
   auto motion = std::make_shared<MotionArguments>();
   CLI::App* motion_command =
-      nn->add_subcommand("motion", "Train a motion network on its own predictions");
+      nn.add_subcommand("motion", "Train a motion network on its own predictions");
   motion_command
       ->add_option("CONFIGURATION", motion->configuration, "Training configuration (JSON)")
       ->required();
@@ -350,11 +348,11 @@ void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
                              "Number of training steps; overrides the configuration");
   motion_command->add_option("--out", motion->out, "Model file to write")->required();
   motion_command->callback(
-      [motion, &action] { action = [motion] { return run_motion(*motion); }; });
+      [motion, &program] { program.action = [motion] { return run_motion(*motion); }; });
 
   auto rollout = std::make_shared<RolloutArguments>();
   CLI::App* rollout_command =
-      nn->add_subcommand("rollout", "Compare motion predicted by networks with recorded physics");
+      nn.add_subcommand("rollout", "Compare motion predicted by networks with recorded physics");
   rollout_command->add_option("SESSION", rollout->sessions, "Run folders of screed record")
       ->required();
   rollout_command->add_option("--model", rollout->models,
@@ -374,16 +372,17 @@ void register_nn_motion_command(CLI::App& root, std::function<int()>& action) {
       ->check(CLI::IsMember({"firmware", "tracks"}));
   rollout_command->add_option("--out", rollout->out, "Output folder for pictures of some paths");
   rollout_command->callback(
-      [rollout, &action] { action = [rollout] { return run_rollout(*rollout); }; });
+      [rollout, &program] { program.action = [rollout] { return run_rollout(*rollout); }; });
 
   auto divergence = std::make_shared<DivergenceArguments>();
-  CLI::App* divergence_command = nn->add_subcommand(
+  CLI::App* divergence_command = nn.add_subcommand(
       "divergence", "Measure how far pairs of recorded sessions diverge: physics against physics");
   divergence_command
       ->add_option("SESSION", divergence->sessions, "Run folders of screed record, in pairs")
       ->required();
-  divergence_command->callback(
-      [divergence, &action] { action = [divergence] { return run_divergence(*divergence); }; });
+  divergence_command->callback([divergence, &program] {
+    program.action = [divergence] { return run_divergence(*divergence); };
+  });
 }
 
 }  // namespace screed

@@ -1,6 +1,4 @@
-// `screed nn stuck`: drives, figures, training.
-#include "tools/screed/nn/nn_stuck_command.h"
-
+// `screed nn stuck`: the robot's slip watch in seeded drives, and the training of its network.
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -14,7 +12,7 @@
 #include "nn/slip/slip_training.h"
 #include "nn/slip/stuck_run.h"
 #include "nn/slip/stuck_scenario.h"
-#include "tools/screed/nn/nn_command.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -194,10 +192,9 @@ int run_stuck(const StuckArguments& arguments) {
 
 }  // namespace
 
-void register_nn_stuck_command(CLI::App& root, std::function<int()>& action) {
-  CLI::App* nn = nn_command(root);
+void register_nn_stuck_command(CLI::App& nn, Program& program) {
   auto arguments = std::make_shared<StuckArguments>();
-  CLI::App* command = nn->add_subcommand(
+  CLI::App* command = nn.add_subcommand(
       "stuck",
       "Evaluate the robot's slip and stuck detection in seeded drives with and without traps");
   command
@@ -225,7 +222,7 @@ void register_nn_stuck_command(CLI::App& root, std::function<int()>& action) {
       ->check(CLI::IsMember({"trapped", "free"}));
   command->add_flag("--json", arguments->json, "Print results as JSON");
   command->callback(
-      [arguments, &action] { action = [arguments] { return run_stuck(*arguments); }; });
+      [arguments, &program] { program.action = [arguments] { return run_stuck(*arguments); }; });
 }
 
 }  // namespace screed

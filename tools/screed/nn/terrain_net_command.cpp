@@ -1,6 +1,5 @@
-// Training and comparing networks of the terrain.
-#include "tools/screed/nn/terrain_net_command.h"
-
+// `screed terrain-net`: trains networks that predict what the robot does to the terrain, and
+// compares them with recorded runs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +19,7 @@
 #include "nn/terrain/sinkage_replay.h"
 #include "nn/terrain/terrain_comparison.h"
 #include "nn/terrain/window_network.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/viewer/camera.h"
 #include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/terrain_image.h"
@@ -321,7 +321,7 @@ int run_compare(const CompareOptions& options) {
 
 }  // namespace
 
-void register_terrain_net_command(CLI::App& root, std::function<int()>& action) {
+void register_terrain_net_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand("terrain-net",
                                           "Train and compare networks that predict how wheels and "
                                           "tracks deform the terrain (thesis 6.3.1)");
@@ -340,7 +340,8 @@ void register_terrain_net_command(CLI::App& root, std::function<int()>& action) 
       ->capture_default_str();
   train_command->add_option("--epochs", train->epochs, "Number of epochs")->capture_default_str();
   train_command->add_option("--seed", train->seed, "Seed of the training")->capture_default_str();
-  train_command->callback([train, &action] { action = [train] { return run_train(*train); }; });
+  train_command->callback(
+      [train, &program] { program.action = [train] { return run_train(*train); }; });
 
   const auto tracks = std::make_shared<TrainTracksOptions>();
   CLI::App* tracks_command = command->add_subcommand(
@@ -363,7 +364,7 @@ void register_terrain_net_command(CLI::App& root, std::function<int()>& action) 
       ->capture_default_str();
   tracks_command->add_option("--seed", tracks->seed, "Seed of the training")->capture_default_str();
   tracks_command->callback(
-      [tracks, &action] { action = [tracks] { return run_train_tracks(*tracks); }; });
+      [tracks, &program] { program.action = [tracks] { return run_train_tracks(*tracks); }; });
 
   const auto compared = std::make_shared<CompareOptions>();
   CLI::App* compare_command = command->add_subcommand(
@@ -390,7 +391,7 @@ void register_terrain_net_command(CLI::App& root, std::function<int()>& action) 
   compare_command->add_option("--pictures", compared->pictures,
                               "Output folder for pictures of the height change");
   compare_command->callback(
-      [compared, &action] { action = [compared] { return run_compare(*compared); }; });
+      [compared, &program] { program.action = [compared] { return run_compare(*compared); }; });
 }
 
 }  // namespace screed

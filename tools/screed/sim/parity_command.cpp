@@ -1,6 +1,5 @@
-// Options and results of `screed parity`.
-#include "tools/screed/sim/parity_command.h"
-
+// `screed parity FILE`: does the image compute what the host computes? Exit codes: 0 no byte
+// differs, 1 one does, 2 wrong input.
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -14,6 +13,7 @@
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "host_sim/run/world/parity.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
@@ -96,7 +96,7 @@ int run_parity_command(const Arguments& arguments) {
 
 }  // namespace
 
-void register_parity_command(CLI::App& root, std::function<int()>& action) {
+void register_parity_command(CLI::App& root, Program& program) {
   CLI::App* command =
       root.add_subcommand("parity",
                           "Run the flash image in a simulated world and compare every output byte "
@@ -104,7 +104,7 @@ void register_parity_command(CLI::App& root, std::function<int()>& action) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->file, "Experiment file (INI)")->required();
   command->add_option("--board", arguments->board,
-                      "Board: a folder in boards/ (default: a_star_32u4)");
+                      std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
   command->add_option("--elf", arguments->elf, "ELF image (default: the one of make firmware)");
   command->add_option("--minutes", arguments->minutes, "Simulated time [min] (default: 1)")
       ->check(CLI::Range(0.001, 1e5));
@@ -114,8 +114,9 @@ void register_parity_command(CLI::App& root, std::function<int()>& action) {
       ->allow_extra_args(false);
   command->add_flag("--quiet", arguments->quiet, "Show no progress");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
-  command->callback(
-      [arguments, &action] { action = [arguments] { return run_parity_command(*arguments); }; });
+  command->callback([arguments, &program] {
+    program.action = [arguments] { return run_parity_command(*arguments); };
+  });
 }
 
 }  // namespace screed

@@ -1,6 +1,4 @@
-// `screed record`: experiments under Algorithm 5, with the height map of every frame.
-#include "tools/screed/sim/record_command.h"
-
+// `screed record FILE...`: training sessions.
 #include <charconv>
 #include <cstdio>
 #include <iostream>
@@ -8,6 +6,7 @@
 #include <optional>
 
 #include "host_sim/core/errors.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/run_batch.h"
 
 namespace screed {
@@ -87,8 +86,7 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_record_command(CLI::App& root, const std::string& version,
-                             std::function<int()>& action) {
+void register_record_command(CLI::App& root, Program& program) {
   auto arguments = std::make_shared<RecordArguments>();
   CLI::App* command = root.add_subcommand("record",
                                           "Record training sessions: run the training drive "
@@ -100,9 +98,11 @@ void register_record_command(CLI::App& root, const std::string& version,
   command->add_option("--frames", arguments->frames,
                       "Number of frames of the training drive; overrides [experiment] frames");
   command->add_flag("--csv", arguments->csv, "Also write frames.csv");
-  command->callback([arguments, version, &action] {
+  command->callback([arguments, &program] {
     if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
-    action = [arguments, version] { return run_record(*arguments, version); };
+    program.action = [arguments, version = program.version] {
+      return run_record(*arguments, version);
+    };
   });
 }
 

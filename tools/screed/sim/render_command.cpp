@@ -1,6 +1,4 @@
-// Options of `screed render`.
-#include "tools/screed/sim/render_command.h"
-
+// `screed render`: one frame of a recorded run as a ray-traced picture.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,6 +6,7 @@
 #include <string>
 
 #include "host_sim/run/scene/run_scene.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -56,7 +55,7 @@ int run_render(Options options) {
 
 }  // namespace
 
-void register_render_command(CLI::App& root, std::function<int()>& action) {
+void register_render_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand(
       "render", "Render one frame of a recorded run as a ray-traced picture (needs povray)");
   const auto options = std::make_shared<Options>();
@@ -78,7 +77,8 @@ void register_render_command(CLI::App& root, std::function<int()>& action) {
   command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)");
   command->add_flag("--no-path", options->no_path, "Do not draw the driven path");
   command->add_flag("--pov-only", options->scene.pov_only, "Write the scene without rendering it");
-  command->callback([options, &action] { action = [options] { return run_render(*options); }; });
+  command->callback(
+      [options, &program] { program.action = [options] { return run_render(*options); }; });
 }
 
 }  // namespace screed

@@ -1,6 +1,5 @@
-// Options and results of `screed replay`.
-#include "tools/screed/sim/replay_command.h"
-
+// `screed replay RUN`: does this build still compute what was recorded? Exit codes: 0 the outputs
+// are identical, 1 they differ, 2 wrong RUN.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -9,6 +8,7 @@
 
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -64,13 +64,14 @@ int run_replay(const Options& options) {
 
 }  // namespace
 
-void register_replay_command(CLI::App& root, std::function<int()>& action) {
+void register_replay_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand(
       "replay", "Feed a recorded run to the firmware again and compare its outputs byte for byte");
   const auto options = std::make_shared<Options>();
   command->add_option("RUN", options->run, "Run folder or session.h5")->required();
   command->add_flag("--json", options->json, "Print the result as JSON");
-  command->callback([options, &action] { action = [options] { return run_replay(*options); }; });
+  command->callback(
+      [options, &program] { program.action = [options] { return run_replay(*options); }; });
 }
 
 }  // namespace screed

@@ -1,6 +1,5 @@
-// Options and output of `screed session`.
-#include "tools/screed/sim/session_command.h"
-
+// `screed session info|export RUN`: what a recorded run holds, and its content as files that other
+// programs read.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -193,7 +193,7 @@ int run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-void register_session_command(CLI::App& root, std::function<int()>& action) {
+void register_session_command(CLI::App& root, Program& program) {
   CLI::App* session = root.add_subcommand("session", "Inspect or export a recorded run");
   session->require_subcommand(1);
 
@@ -201,7 +201,7 @@ void register_session_command(CLI::App& root, std::function<int()>& action) {
   CLI::App* info_command = session->add_subcommand("info", "Show the content of a session");
   info_command->add_option("RUN", info->run, "Run folder or session file")->required();
   info_command->add_flag("--json", info->json, "Print JSON");
-  info_command->callback([info, &action] { action = [info] { return run_info(*info); }; });
+  info_command->callback([info, &program] { program.action = [info] { return run_info(*info); }; });
 
   auto exported = std::make_shared<ExportArguments>();
   CLI::App* command = session->add_subcommand("export", "Export tables, height maps and pictures");
@@ -223,7 +223,8 @@ void register_session_command(CLI::App& root, std::function<int()>& action) {
   command->add_option("--first", exported->first, "First frame, counted from 0 in the session");
   command->add_option("--count", exported->count, "Number of frames")->check(CLI::PositiveNumber);
   command->add_option("--out", exported->out, "Output folder (default: RUN/export)");
-  command->callback([exported, &action] { action = [exported] { return run_export(*exported); }; });
+  command->callback(
+      [exported, &program] { program.action = [exported] { return run_export(*exported); }; });
 }
 
 }  // namespace screed

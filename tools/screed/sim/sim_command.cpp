@@ -1,6 +1,4 @@
-// `screed sim FILE`.
-#include "tools/screed/sim/sim_command.h"
-
+// `screed sim FILE`: runs an experiment and shows what happened.
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -10,11 +8,13 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/external_port.h"
+#include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/run_batch.h"
 #include "tools/screed/viewer/keyboard_driver.h"
@@ -213,8 +213,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_sim_command(CLI::App& root, const std::string& version,
-                          std::function<int()>& action) {
+void register_sim_command(CLI::App& root, Program& program) {
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command =
       root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
@@ -229,7 +228,7 @@ void register_sim_command(CLI::App& root, const std::string& version,
                    "with a network in place of the physics")
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
   command->add_option("--board", arguments->board,
-                      "Board: a folder in boards/ (default: a_star_32u4)");
+                      std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
   command->add_option("--elf", arguments->elf,
                       "ELF image for --hal mcu (default: the one of make firmware)");
   command->add_option("--model", arguments->model,
@@ -258,9 +257,9 @@ void register_sim_command(CLI::App& root, const std::string& version,
   add_view_options(*command, arguments->viewer);
   auto list_keys = std::make_shared<bool>(false);
   command->add_flag("--keys", *list_keys, "List all keys of an experiment file and exit");
-  command->callback([arguments, list_keys, version, &action] {
+  command->callback([arguments, list_keys, &program] {
     if (*list_keys) {
-      action = [] {
+      program.action = [] {
         std::cout
             << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
             << experiment_key_table();
@@ -269,7 +268,9 @@ void register_sim_command(CLI::App& root, const std::string& version,
       return;
     }
     if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
-    action = [arguments, version] { return run_sim(*arguments, version); };
+    program.action = [arguments, version = program.version] {
+      return run_sim(*arguments, version);
+    };
   });
 }
 

@@ -1,19 +1,12 @@
-// `screed soil`: its subcommands, each in a file of its own.
-#include "tools/screed/soil/soil_command.h"
-
-#include "tools/screed/soil/soil_common.h"
+// `screed soil`: the reference tests of the deformable soil, each in a file of its own.
+#include "commands.h"
 
 namespace screed {
 
-void register_soil_command(CLI::App& root, std::function<int()>& action) {
+void register_soil_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand("soil", "Run reference tests of the deformable soil");
   command->require_subcommand(1);
-  add_soil_plate(*command, action);
-  add_soil_wheel(*command, action);
-  add_soil_robot(*command, action);
-  add_soil_repose(*command, action);
-  add_soil_dig(*command, action);
-  add_soil_match(*command, action);
+  register_soil_subcommands(*command, program);
 }
 
 }  // namespace screed

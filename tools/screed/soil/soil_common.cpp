@@ -2,10 +2,12 @@
 #include "tools/screed/soil/soil_common.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <iostream>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/name_list.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {
@@ -15,6 +17,15 @@ std::string error_of(const SoilLine& line) {
   if (!line.limit || line.error == SoilLine::Error::kNone) return "";
   if (line.error == SoilLine::Error::kAbsolute) return text("%+.5f", line.value - *line.limit);
   return *line.limit == 0.0 ? "" : text("%+.3f %%", 100.0 * (line.value / *line.limit - 1.0));
+}
+
+/// The meaning as a sentence, its unit and range before what it adds behind a semicolon.
+std::string option_help(const SoilParameterInfo& parameter) {
+  std::string help = parameter.meaning;
+  help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+  const std::string unit = *parameter.unit != '\0' ? std::string(" [") + parameter.unit + "]" : "";
+  const std::string range = text(", %g", parameter.min) + text("..%g", parameter.max);
+  return help.insert(std::min(help.find(';'), help.size()), unit + range);
 }
 
 }  // namespace
@@ -69,11 +80,8 @@ nlohmann::json to_json(const std::vector<SoilLine>& lines) {
 
 SoilParameters SoilArguments::soil() const {
   SoilParameters soil = soil_preset(preset);
-  for (const auto& [option, member] : given) {
-    if (option->count() == 0) continue;
-    soil.*member = custom.*member;
-    soil.name = preset + ", changed";
-  }
+  overrides.apply_to(soil);
+  if (!overrides.empty()) soil.name = preset + ", changed";
   check_soil(soil);
   return soil;
 }
@@ -101,40 +109,15 @@ std::filesystem::path SoilArguments::chart(const char* name) const {
 }
 
 bool SoilArguments::as_peer() const {
-  if (preset != "viper" || step_s != 1e-3) return false;
-  return std::none_of(given.begin(), given.end(),
-                      [](const auto& option) { return option.first->count() > 0; });
+  return preset == "viper" && step_s == 1e-3 && overrides.empty();
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& common) {
-  std::string names;
-  for (const SoilParameters& preset : soil_presets()) {
-    names += (names.empty() ? "" : ", ") + preset.name;
+  command.add_option("--soil", common.preset, "Soil preset: " + name_list(soil_preset_names()));
+  for (const SoilParameterInfo& parameter : kSoilParameters) {
+    command.add_option(parameter.option, common.overrides.*parameter.override_member,
+                       option_help(parameter));
   }
-  command.add_option("--soil", common.preset, "Soil preset: " + names);
-  const auto parameter = [&](const char* name, double SoilParameters::*member, const char* what) {
-    common.given.emplace_back(command.add_option(name, common.custom.*member, what), member);
-  };
-  parameter("--k-phi", &SoilParameters::k_phi,
-            "Bekker frictional modulus [N/m^(n+2)]; overrides the preset, as do the following "
-            "parameters");
-  parameter("--k-c", &SoilParameters::k_c, "Bekker cohesive modulus [N/m^(n+1)]");
-  parameter("--exponent", &SoilParameters::exponent, "Bekker sinkage exponent n");
-  parameter("--cohesion", &SoilParameters::cohesion_pa, "Cohesion [Pa]");
-  parameter("--friction", &SoilParameters::friction_deg, "Angle of internal friction [deg]");
-  parameter("--shear-modulus", &SoilParameters::shear_modulus_m,
-            "Janosi-Hanamoto shear modulus K [m]");
-  parameter("--elastic", &SoilParameters::elastic_pa_per_m, "Stiffness E of unloading [Pa/m]");
-  parameter("--damping", &SoilParameters::damping_pa_s_per_m, "Damping R of sinking [Pa s/m]");
-  parameter("--shear-damping", &SoilParameters::shear_damping_s,
-            "Damping of small shear over its stiffness [s]");
-  parameter("--repose", &SoilParameters::repose_deg, "Angle of repose [deg]");
-  parameter("--compaction", &SoilParameters::compaction,
-            "Share of the sunk volume that is compacted, 0..1");
-  parameter("--drag-depth", &SoilParameters::drag_depth_m,
-            "Thickness of the layer that a slipping rim digs away [m]");
-  parameter("--slip-sinkage", &SoilParameters::slip_sinkage,
-            "Growth of the sinkage exponent with slip");
   command.add_option("--normal-stress", common.normal_stress,
                      "Direction of the normal stress: radial or vertical");
   command.add_flag("--bulldozing,!--no-bulldozing", common.bulldozing,
@@ -151,27 +134,17 @@ void add_soil_options(CLI::App& command, SoilArguments& common) {
 }
 
 nlohmann::json soil_json(const SoilArguments& common) {
-  const SoilParameters s = common.soil();
-  return {{"name", s.name},
-          {"k_phi", s.k_phi},
-          {"k_c", s.k_c},
-          {"exponent", s.exponent},
-          {"cohesion_pa", s.cohesion_pa},
-          {"friction_deg", s.friction_deg},
-          {"shear_modulus_m", s.shear_modulus_m},
-          {"elastic_pa_per_m", s.elastic_pa_per_m},
-          {"damping_pa_s_per_m", s.damping_pa_s_per_m},
-          {"shear_damping_s", s.shear_damping_s},
-          {"repose_deg", s.repose_deg},
-          {"compaction", s.compaction},
-          {"drag_depth_m", s.drag_depth_m},
-          {"slip_sinkage", s.slip_sinkage},
-          {"normal_stress", common.normal_stress},
-          {"bulldozing", common.bulldozing},
-          {"avalanches", common.avalanches},
-          {"follow_slopes", common.follow_slopes},
-          {"cell_m", common.cell_m},
-          {"step_s", common.step_s}};
+  const SoilParameters soil = common.soil();
+  nlohmann::json json = {{"name", soil.name},
+                         {"normal_stress", common.normal_stress},
+                         {"bulldozing", common.bulldozing},
+                         {"avalanches", common.avalanches},
+                         {"follow_slopes", common.follow_slopes},
+                         {"cell_m", common.cell_m},
+                         {"step_s", common.step_s}};
+  for (const SoilParameterInfo& parameter : kSoilParameters)
+    json[parameter.member_name] = soil.*parameter.member;
+  return json;
 }
 
 int finish(const SoilArguments& common, const char* test, const std::string& heading,

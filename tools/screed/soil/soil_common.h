@@ -4,11 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host_sim/physics/soil/soil_bed.h"
@@ -35,8 +33,7 @@ struct SoilLine {
 /// Options that every test has.
 struct SoilArguments {
   std::string preset = "viper";
-  SoilParameters custom;  // values of the options that were given
-  std::vector<std::pair<CLI::Option*, double SoilParameters::*>> given;
+  SoilOverrides overrides;
   std::string normal_stress = "radial";
   bool bulldozing = false;
   bool avalanches = false;
@@ -65,13 +62,5 @@ nlohmann::json soil_json(const SoilArguments& arguments);
 /// Prints table or JSON; the exit code.
 int finish(const SoilArguments& arguments, const char* test, const std::string& heading,
            const char* limit_name, const std::vector<SoilLine>& lines);
-
-// Each adds its subcommand of `screed soil`.
-void add_soil_plate(CLI::App& soil, std::function<int()>& action);
-void add_soil_wheel(CLI::App& soil, std::function<int()>& action);
-void add_soil_robot(CLI::App& soil, std::function<int()>& action);
-void add_soil_repose(CLI::App& soil, std::function<int()>& action);
-void add_soil_dig(CLI::App& soil, std::function<int()>& action);
-void add_soil_match(CLI::App& soil, std::function<int()>& action);
 
 }  // namespace screed

@@ -6,6 +6,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/soil_validation/dig_test.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -102,7 +103,7 @@ int run_dig(DigArguments a) {
 
 }  // namespace
 
-void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
+void register_soil_dig_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<DigArguments>();
   CLI::App* command = soil.add_subcommand(
       "dig", "Let a tracked robot dig: moved volume, depth, distribution of the material");
@@ -125,7 +126,7 @@ void add_soil_dig(CLI::App& soil, std::function<int()>& action) {
   command->add_option("--fit-raised", a->fit_cm3,
                       "Fit --drag-depth to this raised volume [cm^3] (scm)");
   command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change");
-  command->callback([a, &action] { action = [a] { return run_dig(*a); }; });
+  command->callback([a, &program] { program.action = [a] { return run_dig(*a); }; });
 }
 
 }  // namespace screed

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "host_sim/soil_validation/particle_plate.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -44,7 +45,7 @@ int run_match(const MatchArguments& a) {
 
 }  // namespace
 
-void add_soil_match(CLI::App& soil, std::function<int()>& action) {
+void register_soil_match_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<MatchArguments>();
   CLI::App* command = soil.add_subcommand(
       "match", "Identify the soil parameters of a particle bed: press a plate, drag a block");
@@ -60,7 +61,7 @@ void add_soil_match(CLI::App& soil, std::function<int()>& action) {
   command->add_option("--load", a->test.load_pa, "Pressure below the block [Pa]");
   command->add_option("--seed", a->test.seed, "Seed of the particle layout");
   command->add_option("--beds", a->test.beds, "Number of particle beds to average over");
-  command->callback([a, &action] { action = [a] { return run_match(*a); }; });
+  command->callback([a, &program] { program.action = [a] { return run_match(*a); }; });
 }
 
 }  // namespace screed

@@ -8,6 +8,7 @@
 #include "host_sim/render/picture/line_chart.h"
 #include "host_sim/soil_validation/check_range.h"
 #include "host_sim/soil_validation/plate_press.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -133,7 +134,7 @@ int run_plate(PlateArguments a) {
 
 }  // namespace
 
-void add_soil_plate(CLI::App& soil, std::function<int()>& action) {
+void register_soil_plate_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<PlateArguments>();
   CLI::App* command =
       soil.add_subcommand("plate", "Press a plate into soil and compare with Bekker's law");
@@ -153,7 +154,7 @@ void add_soil_plate(CLI::App& soil, std::function<int()>& action) {
                       "Number of random positions and yaws to find the worst error over");
   command->add_option("--seed", a->seed, "Seed of the random positions");
   command->add_option("--charts", a->common.charts, "Output folder for soil_plate.svg");
-  command->callback([a, &action] { action = [a] { return run_plate(*a); }; });
+  command->callback([a, &program] { program.action = [a] { return run_plate(*a); }; });
 }
 
 }  // namespace screed

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "host_sim/soil_validation/repose_pile.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -32,7 +33,7 @@ int run_repose(ReposeArguments a) {
 
 }  // namespace
 
-void add_soil_repose(CLI::App& soil, std::function<int()>& action) {
+void register_soil_repose_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<ReposeArguments>();
   CLI::App* command =
       soil.add_subcommand("repose", "Let a column of soil collapse to its angle of repose");
@@ -45,7 +46,7 @@ void add_soil_repose(CLI::App& soil, std::function<int()>& action) {
   command->add_option("--x", a->test.centre_x_m, "Centre position in x [m]");
   command->add_option("--y", a->test.centre_y_m, "Centre position in y [m]");
   command->add_flag("--wrap", a->test.wrap, "Wrap the bed around at its edges");
-  command->callback([a, &action] { action = [a] { return run_repose(*a); }; });
+  command->callback([a, &program] { program.action = [a] { return run_repose(*a); }; });
 }
 
 }  // namespace screed

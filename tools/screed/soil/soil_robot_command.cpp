@@ -8,6 +8,7 @@
 #include "host_sim/soil_validation/check_range.h"
 #include "host_sim/soil_validation/repose_pile.h"
 #include "host_sim/soil_validation/soil_robot.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -114,7 +115,7 @@ int run_robot(const RobotArguments& a) {
 
 }  // namespace
 
-void add_soil_robot(CLI::App& soil, std::function<int()>& action) {
+void register_soil_robot_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<RobotArguments>();
   CLI::App* command =
       soil.add_subcommand("robot", "Drive a four-wheeled body: CPU time per step, volume balance");
@@ -127,7 +128,7 @@ void add_soil_robot(CLI::App& soil, std::function<int()>& action) {
   command->add_option("--right", a->right_m_per_s, "Rim speed of the right wheels [m/s]");
   command->add_option("--x", a->x_m, "Start position in x [m]");
   command->add_option("--y", a->y_m, "Start position in y [m]");
-  command->callback([a, &action] { action = [a] { return run_robot(*a); }; });
+  command->callback([a, &program] { program.action = [a] { return run_robot(*a); }; });
 }
 
 }  // namespace screed

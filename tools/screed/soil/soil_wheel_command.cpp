@@ -6,6 +6,7 @@
 #include "host_sim/render/picture/line_chart.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "paths.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -150,7 +151,7 @@ int run_wheel_command(WheelArguments a) {
 
 }  // namespace
 
-void add_soil_wheel(CLI::App& soil, std::function<int()>& action) {
+void register_soil_wheel_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<WheelArguments>();
   CLI::App* command = soil.add_subcommand(
       "wheel",
@@ -175,8 +176,8 @@ void add_soil_wheel(CLI::App& soil, std::function<int()>& action) {
   command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text");
   command->add_flag("--fit", a->fit, "Fit --slip-sinkage to the measured sinkage first");
   command->add_option("--charts", a->common.charts, "Output folder for SVG charts");
-  command->callback([a, measured, &action] {
-    action = [a, measured] {
+  command->callback([a, measured, &program] {
+    program.action = [a, measured] {
       if (measured->count() > 0 && a->measured.empty()) {
         a->measured = std::string(kDataFolder) + "/soil/single_wheel_ding2011.csv";
       }

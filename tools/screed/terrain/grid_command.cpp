@@ -1,6 +1,4 @@
-// Options and output of `screed grid`.
-#include "tools/screed/terrain/grid_command.h"
-
+// `screed grid`: the grid world of thesis 4.2, one run or thousands.
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -24,6 +22,7 @@
 #include "host_sim/grid/grid_sweep.h"
 #include "host_sim/grid/grid_text_view.h"
 #include "host_sim/render/scene/povray.h"
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 
 namespace screed {
@@ -482,8 +481,7 @@ int run_command(GridOptions options, bool runs_given, const std::string& version
 
 }  // namespace
 
-void register_grid_command(CLI::App& root, const std::string& version,
-                           std::function<int()>& action) {
+void register_grid_command(CLI::App& root, Program& program) {
   const auto options = std::make_shared<GridOptions>();
   GridConfig& config = options->config;
   CLI::App* command = root.add_subcommand(
@@ -560,8 +558,10 @@ void register_grid_command(CLI::App& root, const std::string& version,
   command->add_flag("--headless", options->headless, "Run at full speed without live view");
   command->add_flag("--quiet", options->quiet, "Show neither live view nor progress");
   command->add_flag("--json", options->json, "Print results as JSON");
-  command->callback([options, runs, version, &action] {
-    action = [options, runs, version] { return run_command(*options, runs->count() > 0, version); };
+  command->callback([options, runs, &program] {
+    program.action = [options, runs, version = program.version] {
+      return run_command(*options, runs->count() > 0, version);
+    };
   });
 }
 

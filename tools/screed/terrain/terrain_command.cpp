@@ -1,6 +1,4 @@
-// Options of `screed terrain`.
-#include "tools/screed/terrain/terrain_command.h"
-
+// `screed terrain generate`: height maps of made-up terrain.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -8,6 +6,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/noise_terrain.h"
+#include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
@@ -31,7 +30,7 @@ int generate(const std::string& file, const NoiseTerrainOptions& options) {
 
 }  // namespace
 
-void register_terrain_command(CLI::App& root, std::function<int()>& action) {
+void register_terrain_command(CLI::App& root, Program& program) {
   CLI::App* terrain = root.add_subcommand("terrain", "Generate height maps");
   terrain->require_subcommand(1);
   CLI::App* command = terrain->add_subcommand(
@@ -50,8 +49,9 @@ void register_terrain_command(CLI::App& root, std::function<int()>& action) {
       ->add_option("--persistence", options->persistence,
                    "Amplitude ratio of successive octaves, 0..1")
       ->capture_default_str();
-  command->callback(
-      [file, options, &action] { action = [file, options] { return generate(*file, *options); }; });
+  command->callback([file, options, &program] {
+    program.action = [file, options] { return generate(*file, *options); };
+  });
 }
 
 }  // namespace screed

@@ -14,8 +14,8 @@ namespace screed::viewer {
 
 class LiveViewer : public SimulationObserver {
  public:
-  /// `driver` receives what the arrow keys request; it must outlive this. `end_run` is called when the
-  /// user closes the window.
+  /// `driver` receives what the arrow keys request; it must outlive this. `end_run` is called when
+  /// the user closes the window.
   LiveViewer(const Experiment& experiment, const std::string& board, const ViewerOptions& options,
              KeyboardDriver& driver, std::function<void()> end_run);
 

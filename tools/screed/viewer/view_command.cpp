@@ -1,10 +1,9 @@
-// Options of `screed view`.
-#include "tools/screed/viewer/view_command.h"
-
+// `screed view RUN`: looks at a recorded run, at any time of it.
 #include <iostream>
 #include <memory>
 #include <string>
 
+#include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/viewer/recorded_viewer.h"
 #include "tools/screed/viewer/view_options.h"
@@ -30,13 +29,14 @@ int run_view(const Options& options) {
 
 }  // namespace
 
-void register_view_command(CLI::App& root, std::function<int()>& action) {
+void register_view_command(CLI::App& root, Program& program) {
   CLI::App* command =
       root.add_subcommand("view", "View a recorded run from above: play it, scrub through it");
   const auto options = std::make_shared<Options>();
   command->add_option("RUN", options->run, "Run folder or session.h5")->required();
   add_view_options(*command, options->view);
-  command->callback([options, &action] { action = [options] { return run_view(*options); }; });
+  command->callback(
+      [options, &program] { program.action = [options] { return run_view(*options); }; });
 }
 
 }  // namespace screed

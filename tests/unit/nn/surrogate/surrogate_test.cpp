@@ -214,7 +214,7 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
     left.push_back(random.uniform(-0.25, 0.25));
     right.push_back(random.uniform(-0.25, 0.25));
   }
-  const auto soil = [](std::size_t i) { return soil_presets()[i % soil_presets().size()]; };
+  const auto soil = [](std::size_t i) { return soil_presets()[i % soil_presets().size()].soil; };
   std::vector<PlanarPose> alone;
   for (std::size_t i = 0; i < kRobots; ++i) {
     Surrogate robot(model, SupportGeometry{}, 1, Surrogate::Arithmetic::kInteger,

@@ -3,19 +3,24 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
 #include "host_sim/physics/vehicle/vehicle.h"
+#include "paths.h"
 
 namespace screed {
 namespace {
 
 // Geometry, motor and encoder of the model against what the firmware is told in board.h.
 TEST(BoardTable, ModelAndMotorAgreeWithTheFirmwaresConstants) {
-  for (const char* name : {"a_star_32u4", "zumo_32u4"}) {
+  for (const std::string& name : board_names()) {
     SCOPED_TRACE(name);
     const BoardConstants& board = board_constants_of(name);
     const BoardMotor motor = board_motor(name);
@@ -33,6 +38,25 @@ TEST(BoardTable, ModelAndMotorAgreeWithTheFirmwaresConstants) {
     EXPECT_GT(motor.motor.efficiency, 0.2);
     EXPECT_LT(motor.motor.efficiency, 0.9);
   }
+}
+
+TEST(BoardTable, HasAFolderOfEachNameAndTheDefaultAmongThem) {
+  const std::vector<std::string> names = board_names();
+  EXPECT_NE(std::find(names.begin(), names.end(), kDefaultBoard), names.end());
+  std::vector<std::string> folders;
+  for (const auto& folder : std::filesystem::directory_iterator(kBoardsFolder)) {
+    if (std::filesystem::exists(folder.path() / "board.mk"))
+      folders.push_back(folder.path().filename().string());
+  }
+  std::sort(folders.begin(), folders.end());
+  EXPECT_EQ(names, folders);
+}
+
+TEST(BoardTable, FindsAFileOfABoard) {
+  const auto rover = file_of_a_board("rover5.urdf");
+  ASSERT_TRUE(rover.has_value());
+  EXPECT_TRUE(std::filesystem::exists(*rover));
+  EXPECT_FALSE(file_of_a_board("toaster.urdf").has_value());
 }
 
 TEST(BoardTable, RefusesAnUnknownBoard) {

@@ -111,7 +111,8 @@ std::string value_in(const std::string& text, const Row& row) {
 std::vector<std::string> good_values(const Row& row) {
   if (row.allowed == "true or false") return {row.value == "true" ? "false" : "true"};
   if (!ends_of(row.allowed).empty()) return ends_of(row.allowed);
-  if (row.key == "algorithm") return {"drive", "spin_on_peak"};  // training_drive needs frames: below
+  if (row.key == "algorithm")
+    return {"drive", "spin_on_peak"};  // training_drive needs frames: below
   if (row.key == "model" && row.section == "map") return {"rigid", "scm"};
   if (row.key == "track_model") return {"chain"};
   if (row.section == "radio" && row.key == "key") {

@@ -1,11 +1,11 @@
 // A recorded run replays to the byte, and the command says what differs.
 #include <algorithm>
 
+#include "commands.h"
 #include "firmware/robot/robot.h"
 #include "host_sim/core/content_hash.h"
 #include "host_sim/run/session/replay.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
-#include "tools/screed/sim/replay_command.h"
 
 namespace screed {
 namespace {
@@ -100,8 +100,8 @@ struct CommandResult {
 
 CommandResult replay_command(const std::vector<std::string>& arguments) {
   CLI::App app;
-  std::function<int()> action;
-  register_replay_command(app, action);
+  Program program;
+  register_replay_command(app, program);
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
   reversed.emplace_back("replay");
   app.parse(reversed);
@@ -109,7 +109,7 @@ CommandResult replay_command(const std::vector<std::string>& arguments) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   try {
-    result.status = action();
+    result.status = program.action();
   } catch (const InputError&) {
     result.status = 2;
   }

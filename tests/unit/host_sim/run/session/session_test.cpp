@@ -270,5 +270,35 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   EXPECT_NE(listing.find("/outputs                 Dataset {3/Inf}"), std::string::npos) << listing;
 }
 
+TEST_F(SessionTest, TheSoilIsAnAttributeAParameter) {
+  SoilParameters soil;
+  double value = 0.5;
+  for (const SoilParameterInfo& parameter : kSoilParameters) soil.*parameter.member = value += 1.25;
+  {
+    SessionWriter writer(file_, random_run(1).info);
+    writer.write_soil(soil);
+    writer.finish();
+  }
+  const std::string printed = output_of("h5dump -y -N soil " + file_.string());
+  const auto attribute = [&](const std::string& name) {
+    const size_t begin = printed.find("ATTRIBUTE \"" + name + "\"");
+    EXPECT_NE(begin, std::string::npos) << name;
+    return printed.substr(begin, printed.find("ATTRIBUTE", begin + 1) - begin);
+  };
+  for (const SoilParameterInfo& parameter : kSoilParameters) {
+    std::ostringstream number;
+    number << soil.*parameter.member;
+    const std::string unit = std::string(parameter.key) + ".unit";
+    EXPECT_NE(attribute(parameter.key).find(" " + number.str() + "\n"), std::string::npos)
+        << attribute(parameter.key);
+    if (*parameter.unit == '\0') {
+      EXPECT_EQ(printed.find('"' + unit + '"'), std::string::npos) << unit;
+    } else {
+      EXPECT_NE(attribute(unit).find('"' + std::string(parameter.unit) + '"'), std::string::npos)
+          << attribute(unit);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace screed

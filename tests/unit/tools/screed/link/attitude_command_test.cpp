@@ -11,6 +11,7 @@
 #include <string>
 #include <system_error>
 
+#include "commands.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
@@ -101,16 +102,16 @@ TEST_F(AttitudeCommand, JsonMeanIsTheMeanOverFiles) {
 
 TEST_F(AttitudeCommand, CallbackSetsTheAction) {
   CLI::App root;
-  std::function<int()> action;
-  register_attitude_command(root, action);
+  Program program;
+  register_attitude_command(root, program);
   root.parse("attitude --json " + kExcerpt);
-  ASSERT_TRUE(action);
+  ASSERT_TRUE(program.action);
   ::testing::internal::CaptureStdout();
-  EXPECT_EQ(action(), 0);
+  EXPECT_EQ(program.action(), 0);
   EXPECT_TRUE(nlohmann::json::accept(::testing::internal::GetCapturedStdout()));
 
   CLI::App without_files;
-  register_attitude_command(without_files, action);
+  register_attitude_command(without_files, program);
   EXPECT_THROW(without_files.parse("attitude"), CLI::RequiredError);
 }
 

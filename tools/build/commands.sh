@@ -1,0 +1,42 @@
+#!/bin/bash
+# commands.sh FILE...: C++ that declares and calls the registration of every subcommand, a file NAME_command.cpp each
+# (tools/screed/cli/command.h), by name. GROUP_NAME_command.cpp beside GROUP_command.cpp is a subcommand of `screed GROUP`.
+set -euo pipefail
+export LC_ALL=C
+
+declare -A file_of subcommands
+for file in "$@"; do
+  name=$(basename "$file" _command.cpp)
+  grep -q "^void register_${name}_command(CLI::App&" "$file" || {
+    echo "$file: defines no void register_${name}_command(CLI::App& ..., Program& ...)" >&2
+    exit 1
+  }
+  [ -z "${file_of[$name]:-}" ] || {
+    echo "$file: there is a subcommand of this name in ${file_of[$name]}" >&2
+    exit 1
+  }
+  file_of[$name]=$file
+done
+
+names=$(printf '%s\n' "${!file_of[@]}" | sort)
+for name in $names; do
+  group=screed
+  for prefix in $names; do
+    [[ $name == "$prefix"_* && $(dirname "${file_of[$name]}") == $(dirname "${file_of[$prefix]}") ]] && group=$prefix
+  done
+  subcommands[$group]+="$name "
+done
+
+echo '// The subcommands of this build, from the names of their files. Made by tools/build/commands.sh.'
+echo '#pragma once'
+echo '#include "tools/screed/cli/command.h"'
+echo 'namespace screed {'
+for name in $names; do
+  echo "void register_${name}_command(CLI::App& parent, Program& program);"
+done
+for group in $(printf '%s\n' "${!subcommands[@]}" | sort); do
+  echo "inline void register_${group}_subcommands(CLI::App& parent, Program& program) {"
+  for name in ${subcommands[$group]}; do echo "  register_${name}_command(parent, program);"; done
+  echo '}'
+done
+echo '}  // namespace screed'
