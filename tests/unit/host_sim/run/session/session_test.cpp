@@ -279,7 +279,7 @@ TEST_F(SessionTest, TheSoilIsAnAttributeAParameter) {
     writer.write_soil(soil);
     writer.finish();
   }
-  const std::string printed = output_of("h5dump -y -N soil " + file_.string());
+  const std::string printed = output_of("h5dump -y -g /soil " + file_.string());
   const auto attribute = [&](const std::string& name) {
     const size_t begin = printed.find("ATTRIBUTE \"" + name + "\"");
     EXPECT_NE(begin, std::string::npos) << name;

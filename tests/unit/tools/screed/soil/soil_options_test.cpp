@@ -19,7 +19,7 @@ TEST(SoilOptions, EachSetsItsParameterAndShowsInTheJson) {
   for (const SoilParameterInfo& changed : kSoilParameters) {
     SCOPED_TRACE(changed.option);
     const SoilArguments arguments = parsed(std::string("--soil clay ") + changed.option + " 1");
-    if (changed.max < 1.0) {
+    if (changed.min > 1.0 || changed.max < 1.0) {
       EXPECT_THROW(arguments.soil(), InputError);
       continue;
     }
