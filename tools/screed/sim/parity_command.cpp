@@ -13,7 +13,7 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
-#include "host_sim/run/world/parity.h"
+#include "host_sim/run/simulation/parity.h"
 #include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
