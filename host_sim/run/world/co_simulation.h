@@ -12,7 +12,7 @@
 #include "hal/sample.h"
 #include "host_sim/devices/mcu/cycle_report.h"
 #include "host_sim/ground_station/station/ground_station.h"
-#include "host_sim/run/world/world.h"
+#include "host_sim/run/world/world_options.h"
 
 namespace screed {
 
