@@ -32,17 +32,18 @@ std::optional<RunEnd> RunLoop::reason_to_end() const {
 /// The robot has read its sensors; the world stands as they saw it.
 void RunLoop::on_sample(const SensorSample& sample) {
   robot_.sample = sample;
+  // The shadow answers before the robot does: a frame shows what they think of this sample.
   robot_.parity.tick(sample);
   robot_.frame = robot_.frames.record(plant_, robot_.parity.shadow());
   recorder_.observe_terrain(plant_.terrain());
 }
 
-/// The robot has answered the sample.
+/// The robot has answered the sample; a native world has not taken the answer yet.
 void RunLoop::on_output(const RobotOutput& output) {
-  const Robot& shadow = robot_.parity.shadow();
   robot_.parity.require_equal(output);
   robot_.telemetry.add(output);
   recorder_.append(robot_.frame, robot_.sample, output);
+  const Robot& shadow = robot_.parity.shadow();
   stop_.count_tick(shadow.supervisor().state(), shadow.leveling().state());
   progress_.on_tick(stop_, robot_.frame.time, plant_);
   if (observer_ != nullptr) observer_->on_tick(robot_.frame, plant_.terrain());
@@ -51,7 +52,8 @@ void RunLoop::on_output(const RobotOutput& output) {
 
 // ---- firmware compiled for this machine --------------------------------------------------------
 
-/// The hardware of the firmware's main loop, which calls these three in turn, for ever:
+/// The hardware of the firmware's main loop, which calls these three in turn until the first one
+/// says no:
 ///
 ///     while (hal::wait_for_tick()) {   // the world advances by 10 ms: physics, sensors, radio
 ///       hal::read_sensors(sample);     // on_sample()

@@ -1,8 +1,6 @@
 // Which of the two worlds a run needs.
 #include "host_sim/run/simulation/run_world.h"
 
-#include <utility>
-
 #include "host_sim/core/errors.h"
 #include "host_sim/run/world/world_setup.h"
 

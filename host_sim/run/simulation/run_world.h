@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation_options.h"
@@ -26,6 +27,9 @@ class RunWorld {
   /// options cannot be run, and then no file has been made.
   RunWorld(const Experiment& experiment, const SimulationOptions& options,
            std::ostream* telemetry_log);
+  /// With an image that is there already.
+  RunWorld(const RobotSettings& robot, std::unique_ptr<CoSimulation> image)
+      : robot_(robot), image_(std::move(image)) {}
 
   /// Exactly one of the two is there.
   World* native() { return native_.get(); }
