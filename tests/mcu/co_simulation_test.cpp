@@ -8,7 +8,7 @@
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/board_table.h"
-#include "host_sim/run/world/parity.h"
+#include "host_sim/run/simulation/parity.h"
 #include "tests/mcu/image_drive.h"
 
 namespace screed::mcu {

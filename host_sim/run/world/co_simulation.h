@@ -13,7 +13,7 @@
 #include "host_sim/devices/mcu/cycle_report.h"
 #include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/run/experiment/board_table.h"
-#include "host_sim/run/world/world.h"
+#include "host_sim/run/world/world_options.h"
 
 namespace screed {
 

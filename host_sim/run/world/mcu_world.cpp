@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <numbers>
 
 #include "firmware/parameters/parameter_store.h"
 #include "host_sim/core/errors.h"
@@ -32,13 +31,7 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
                    std::ostream* telemetry_log)
     : options_(options),
       plant_(std::move(terrain), model, options.world),
-      imu_(options.world.seed, options.world.imu),
-      uplink_(options.world.seed, "uplink", options.world.radio),
-      downlink_(options.world.seed, "downlink", options.world.radio),
-      ground_(options.world.ground_station_arms, options.world.drive, telemetry_log,
-              options.world.ground_key),
-      ground_end_(options.world.ground_port),
-      station_m_(plant_.vehicle().chassis().pose.translation()),
+      devices_(options.world, plant_, telemetry_log),
       board_(options.elf, wiring_of(options.board)),
       chip_clock_(options.world.seed, "chip clocks"),
       noise_(options.world.seed, "flood") {
@@ -49,11 +42,11 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
   }
   board_.mcu.write_eeprom(kCredentialRecordAddress, credential_record(options.credentials).bytes);
   for (const Side side : {kLeft, kRight}) {
-    position_.at(side) = encoder_position(side);
+    position_.at(side) = devices_.encoder_position(plant_, side);
     board_.set_encoder(side, static_cast<std::int64_t>(std::floor(position_.at(side))));
   }
   board_.set_battery_v(plant_.battery().terminal_v);
-  board_.mcu.on_sent([this](std::uint8_t byte) { downlink_.send(now_us(), {&byte, 1}); });
+  board_.mcu.on_sent([this](std::uint8_t byte) { devices_.downlink().send(now_us(), {&byte, 1}); });
 }
 
 std::uint64_t McuWorld::us_at(std::uint64_t steps) const {
@@ -64,22 +57,9 @@ std::uint64_t McuWorld::now_us() const {
   return board_.mcu.cycle() / kCyclesPerUs;
 }
 
-double McuWorld::encoder_position(Side side) const {
-  return plant_.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi) *
-         options_.world.encoder_counts_per_turn;
-}
-
 void McuWorld::begin_tick() {
-  ++ticks_;
-  const std::optional<double>& lay = options_.world.lay_on_side_at_s;
-  if (lay.has_value() && ticks_ == static_cast<std::uint64_t>(std::llround(*lay * kTickRate_hz))) {
-    plant_.lay_on_side();
-  }
-  const std::uint64_t at_us = us_at(plant_.steps());
-  const Eigen::Vector3d offset = plant_.vehicle().chassis().pose.translation() - station_m_;
-  uplink_.set_distance(offset.norm());
-  downlink_.set_distance(offset.norm());
-  ground_end_.tick(at_us, ground_, uplink_, downlink_);
+  devices_.execute_events(++ticks_, plant_);
+  devices_.exchange_radio(us_at(plant_.steps()), plant_);
 }
 
 void McuWorld::begin_step() {
@@ -112,7 +92,7 @@ void McuWorld::begin_step() {
 /// Edges stand where the shaft, turning evenly within the step, passes a whole count.
 void McuWorld::add_edges(Side side) {
   const double from = position_.at(side);
-  const double to = encoder_position(side);
+  const double to = devices_.encoder_position(plant_, side);
   position_.at(side) = to;
   const auto first = static_cast<std::int64_t>(std::floor(from));
   const auto last = static_cast<std::int64_t>(std::floor(to));
@@ -158,7 +138,7 @@ void McuWorld::add_radio(std::uint64_t begin_us, std::uint64_t end_us) {
                          EventKind::kRadioByte, kLeft, noise_.next() & 0xFFU});
     }
   }
-  while (const std::optional<RadioLink::Byte> byte = uplink_.receive_byte(end_us - 1)) {
+  while (const std::optional<RadioLink::Byte> byte = devices_.uplink().receive_byte(end_us - 1)) {
     if (flood) continue;  // two senders at once: nothing gets through
     const std::uint64_t at_us = std::max(byte->arrives_us, begin_us);
     events_.push_back({at_us * kCyclesPerUs, EventKind::kRadioByte, kLeft, byte->value});
@@ -177,16 +157,16 @@ void McuWorld::dispatch(const Event& event) {
   if (!motion_.has_value()) motion_ = plant_.motion();
   switch (event.kind) {
     case EventKind::kAccel:
-      board_.set_acceleration(imu_.accel_mg(*motion_));
+      board_.set_acceleration(devices_.imu().accel_mg(*motion_));
       break;
     case EventKind::kMag:
-      board_.set_magnetic_field(imu_.mag_mgauss(*motion_));
+      board_.set_magnetic_field(devices_.imu().mag_mgauss(*motion_));
       break;
     case EventKind::kGyro:
-      board_.set_angular_rate(imu_.gyro_dps(*motion_));
+      board_.set_angular_rate(devices_.imu().gyro_dps(*motion_));
       break;
     default:
-      board_.baro->measure(imu_.pressure_hpa(*motion_), ImuModel::kTemperature_degc);
+      board_.baro->measure(devices_.imu().pressure_hpa(*motion_), ImuModel::kTemperature_degc);
       break;
   }
 }

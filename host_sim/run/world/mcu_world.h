@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "host_sim/devices/mcu/board.h"
-#include "host_sim/devices/radio/radio_link.h"
 #include "host_sim/run/world/co_simulation.h"
+#include "host_sim/run/world/robot_devices.h"
 
 namespace screed::mcu {
 
@@ -22,10 +22,10 @@ class McuWorld : public CoSimulation {
   const SensorSample& run_to_sample() override;
   const RobotOutput& run_to_output() override;
   const Environment& plant() const override { return plant_; }
-  const GroundStation& ground_station() const override { return ground_; }
+  const GroundStation& ground_station() const override { return devices_.ground_station(); }
   CycleReport cycles() const override { return board_.cycles(); }
 
-  GroundStation& ground_station() { return ground_; }
+  GroundStation& ground_station() { return devices_.ground_station(); }
   Plant& plant() { return plant_; }
   Board& board() { return board_; }
   /// While true, something else sends random bytes on the robot's receive line, back to back.
@@ -53,18 +53,12 @@ class McuWorld : public CoSimulation {
                         double end_us);
   void add_radio(std::uint64_t begin_us, std::uint64_t end_us);
   void dispatch(const Event& event);
-  double encoder_position(Side side) const;
   std::uint64_t us_at(std::uint64_t steps) const;
   std::uint64_t now_us() const;
 
   CoSimulationOptions options_;
   Plant plant_;
-  ImuModel imu_;
-  RadioLink uplink_;
-  RadioLink downlink_;
-  GroundStation ground_;
-  GroundEnd ground_end_;
-  Eigen::Vector3d station_m_;  ///< the ground station stands where the robot starts
+  RobotDevices devices_;
   Board board_;
   WorldRandom chip_clock_;
   WorldRandom noise_;

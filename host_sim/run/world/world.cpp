@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host_sim/devices/sensors/calibration_motion.h"
 
 namespace screed {
+
 World::World(HeightField terrain, const Assembly& model, const BoardConstants& board,
              const WorldOptions& options, std::ostream* telemetry_log)
     : World(std::make_unique<Plant>(std::move(terrain), model, options), board, options,
@@ -15,15 +15,10 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
 
 World::World(std::unique_ptr<Environment> plant, const BoardConstants& board,
              const WorldOptions& options, std::ostream* telemetry_log)
-    : options_(options),
+    : handled_(options.handled),
       board_(board),
       plant_(std::move(plant)),
-      imu_(options.seed, options.imu),
-      uplink_(options.seed, "uplink", options.radio),
-      downlink_(options.seed, "downlink", options.radio),
-      ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key),
-      ground_end_(options.ground_port),
-      station_m_(plant_->vehicle().chassis().pose.translation()) {}
+      devices_(options, *plant_, telemetry_log) {}
 
 void World::step_physics() {
   const std::array<double, 2> share = {static_cast<double>(duty_[kLeft]) / kDutyMax,
@@ -32,12 +27,11 @@ void World::step_physics() {
 }
 
 void World::measure() {
-  imu_.measure(options_.handled ? calibration_motion(time_s()) : plant_->motion(), sample_);
+  devices_.imu().measure(handled_ ? calibration_motion(time_s()) : plant_->motion(), sample_);
 
-  const auto counts = [&](Side side) {
-    const double turns = vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+  const auto counts = [this](Side side) {
     return static_cast<uint16_t>(
-        static_cast<int64_t>(std::floor(turns * options_.encoder_counts_per_turn)) & 0xFFFF);
+        static_cast<int64_t>(std::floor(devices_.encoder_position(*plant_, side))) & 0xFFFF);
   };
   sample_.encoder_left = counts(kLeft);
   sample_.encoder_right = counts(kRight);
@@ -46,12 +40,8 @@ void World::measure() {
   sample_.time_us = static_cast<uint32_t>(now_us());
 }
 
-void World::exchange_radio() {
-  const Eigen::Vector3d offset = vehicle().chassis().pose.translation() - station_m_;
-  uplink_.set_distance(offset.norm());
-  downlink_.set_distance(offset.norm());
-  ground_end_.tick(now_us(), ground_, uplink_, downlink_);
-  const std::vector<uint8_t> arrived = uplink_.receive(now_us(), kRadioInCapacity);
+void World::receive_radio() {
+  const std::vector<uint8_t> arrived = devices_.uplink().receive(now_us(), kRadioInCapacity);
   sample_.radio_in_count = static_cast<uint8_t>(arrived.size());
   std::fill(std::copy(arrived.begin(), arrived.end(), sample_.radio_in),
             sample_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));
@@ -59,19 +49,18 @@ void World::exchange_radio() {
 
 void World::advance() {
   ++ticks_;
-  if (options_.lay_on_side_at_s.has_value() &&
-      ticks_ == static_cast<uint64_t>(std::llround(*options_.lay_on_side_at_s * kTickRate_hz))) {
-    lay_on_side();
-  }
+  devices_.execute_events(ticks_, *plant_);
   step_physics();
   measure();
-  exchange_radio();
+  devices_.exchange_radio(now_us(), *plant_);
+  receive_radio();
 }
 
 void World::apply(const RobotOutput& output) {
   duty_ = {std::clamp<int16_t>(output.duty_left, -kDutyMax, kDutyMax),
            std::clamp<int16_t>(output.duty_right, -kDutyMax, kDutyMax)};
-  downlink_.send(now_us(), {output.radio_out, std::min(output.radio_out_count, kRadioOutCapacity)});
+  devices_.downlink().send(now_us(),
+                           {output.radio_out, std::min(output.radio_out_count, kRadioOutCapacity)});
 }
 
 }  // namespace screed

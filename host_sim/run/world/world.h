@@ -9,35 +9,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <ostream>
 
 #include "firmware/parameters/board_constants.h"
 #include "hal/sample.h"
-#include "host_sim/devices/radio/radio_link.h"
-#include "host_sim/devices/sensors/imu_model.h"
-#include "host_sim/ground_station/station/ground_end.h"
-#include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/physics/world/plant.h"
+#include "host_sim/run/world/robot_devices.h"
+#include "host_sim/run/world/world_options.h"
 
 namespace screed {
-
-struct WorldOptions : PlantOptions {
-  uint64_t seed = 1;
-  ImuErrors imu;
-  RadioOptions radio;
-  bool ground_station_arms = true;
-  std::optional<DriveCommand> drive;
-  CommandKey ground_key = test_key();  ///< what the ground station signs with
-  /// Programs outside at the ground end of the radio; may be null, must outlive the world.
-  GroundPort* ground_port = nullptr;
-  /// The IMU feels a person turning the robot over (calibration_motion.h) instead of its own
-  /// motion.
-  bool handled = false;
-  double encoder_counts_per_turn = 1000.0 / 3.0;
-  /// The robot is laid on its left side at this time, s: a fault to inject.
-  std::optional<double> lay_on_side_at_s;
-};
 
 class World {
  public:
@@ -64,26 +44,21 @@ class World {
   const HeightField& terrain() const { return plant_->terrain(); }
   const VehicleState& vehicle() const { return plant_->vehicle(); }
   const Battery& battery() const { return plant_->battery(); }
-  const GroundStation& ground_station() const { return ground_; }
-  GroundStation& ground_station() { return ground_; }
+  const GroundStation& ground_station() const { return devices_.ground_station(); }
+  GroundStation& ground_station() { return devices_.ground_station(); }
   /// Picks the robot up and lays it on its left side where it is.
   void lay_on_side() { plant_->lay_on_side(); }
 
  private:
   void step_physics();
   void measure();
-  void exchange_radio();
+  void receive_radio();
   uint64_t now_us() const { return ticks_ * kTickPeriod_us; }
 
-  WorldOptions options_;
+  bool handled_;
   BoardConstants board_;
   std::unique_ptr<Environment> plant_;
-  ImuModel imu_;
-  RadioLink uplink_;
-  RadioLink downlink_;
-  GroundStation ground_;
-  GroundEnd ground_end_;
-  Eigen::Vector3d station_m_;  ///< the ground station stands where the robot starts
+  RobotDevices devices_;
   uint64_t ticks_ = 0;
   std::array<int16_t, 2> duty_ = {0, 0};
   SensorSample sample_{};

@@ -11,8 +11,8 @@
 
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/simulation/simulation.h"
-#include "host_sim/run/world/parity.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/progress_bar.h"
 

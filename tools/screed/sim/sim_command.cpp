@@ -10,6 +10,7 @@
 #include "host_sim/ground_station/link/external_port.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
@@ -86,11 +87,11 @@ void print_cycles(const CycleReport& c) {
 }
 
 void print_table(const Experiment& experiment, const SimulationSummary& s) {
+  const std::string ended =
+      s.end == RunEnd::kDone ? "" : std::string(" (ended: ") + end_text(s.end) + ")";
   std::printf("\n%s, %s, seed %llu%s\n", experiment.experiment.name.c_str(),
               experiment.experiment.algorithm.c_str(),
-              static_cast<unsigned long long>(experiment.experiment.seed),
-              s.left_bed ? " (ended: the robot left the bed)"
-                         : (s.stopped_early ? " (stopped early)" : ""));
+              static_cast<unsigned long long>(experiment.experiment.seed), ended.c_str());
   std::printf("  %-26s %12s\n", "simulated time", format("%.1f s", s.time_s).c_str());
   std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
   std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());

@@ -1,0 +1,74 @@
+// Who calls whom in a control tick: world, firmware, and everything that watches them.
+//
+// The firmware is either the main loop compiled for this machine (firmware/main_loop.cpp), which
+// asks its HAL for the next tick and so advances the world, or the flash image, which lives in a
+// co-simulation that is asked to run on. The watchers see the same two moments in both: a sample
+// has been read, an answer has been given.
+#pragma once
+
+#include "hal/sample.h"
+#include "host_sim/core/sim_frame.h"
+#include "host_sim/run/simulation/frame_recorder.h"
+#include "host_sim/run/simulation/pacer.h"
+#include "host_sim/run/simulation/parity_checker.h"
+#include "host_sim/run/simulation/progress.h"
+#include "host_sim/run/simulation/run_world.h"
+#include "host_sim/run/simulation/session_recorder.h"
+#include "host_sim/run/simulation/simulation_observer.h"
+#include "host_sim/run/simulation/stop_condition.h"
+#include "host_sim/run/simulation/telemetry_meter.h"
+
+namespace screed {
+
+/// What a run keeps of one robot while it drives; everything else in the loop is the run's.
+struct WatchedRobot {
+  explicit WatchedRobot(const RobotSettings& settings)
+      : parity(settings.board, settings.parameters, settings.credentials) {}
+
+  ParityChecker parity;
+  FrameRecorder frames;
+  TelemetryMeter telemetry;
+  SensorSample sample{};  ///< of this tick
+  SimFrame frame;         ///< of this tick
+};
+
+/// What takes part in every tick. The observer may be null.
+struct RunParts {
+  WatchedRobot& robot;
+  SessionRecorder& recorder;
+  StopCondition& stop;
+  Progress& progress;
+  Pacer& pacer;
+  SimulationObserver* observer;
+};
+
+class RunLoop {
+ public:
+  /// World and parts must outlive the loop.
+  RunLoop(RunWorld& world, const RunParts& parts);
+
+  /// Drives until the run is to end, and says why it did. Throws RunError when the two robots
+  /// differ, the session cannot be written, the physics diverges or the image crashes.
+  RunEnd run();
+
+ private:
+  class NativeTarget;
+
+  RunEnd run_native(World& world);
+  RunEnd run_image(CoSimulation& image);
+
+  std::optional<RunEnd> reason_to_end() const;
+  void on_sample(const SensorSample& sample);
+  void on_output(const RobotOutput& output);
+
+  RunWorld& world_;
+  const Environment& plant_;
+  WatchedRobot& robot_;
+  SessionRecorder& recorder_;
+  StopCondition& stop_;
+  Progress& progress_;
+  Pacer& pacer_;
+  SimulationObserver* observer_;
+};
+
+}  // namespace screed

@@ -1,0 +1,51 @@
+// Titles, legend and outline of a run's pictures.
+#include "host_sim/run/simulation/run_pictures.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "firmware/leveling/leveling.h"
+#include "host_sim/run/simulation/names.h"
+
+namespace screed {
+namespace {
+
+/// Names the states that occurred, in their order, and renumbers the path's states to match.
+std::vector<std::string> make_legend(std::vector<PathPoint>& path) {
+  std::array<bool, kLevelingStates> occurred{};
+  for (const PathPoint& point : path) occurred.at(point.state) = true;
+  std::vector<std::string> names;
+  std::array<size_t, kLevelingStates> row{};
+  for (size_t state = 0; state < kLevelingStates; ++state) {
+    row.at(state) = names.size();
+    if (occurred.at(state)) {
+      names.emplace_back(leveling_state_name(static_cast<LevelingState>(state)));
+    }
+  }
+  for (PathPoint& point : path) point.state = row.at(point.state);
+  return names;
+}
+
+}  // namespace
+
+void write_run_pictures(const std::filesystem::path& folder, const Experiment& experiment,
+                        const HeightField& before, const Environment& plant,
+                        std::vector<PathPoint> path) {
+  PictureOptions options;
+  options.title = experiment.experiment.name + ": before";
+  write_height_map_picture(folder / "terrain_before.png", before, options);
+
+  options.title = experiment.experiment.name + ": after " +
+                  std::to_string(std::lround(plant.time_s())) + " s of " +
+                  experiment.experiment.algorithm;
+  options.state_names = make_legend(path);
+  options.path = std::move(path);
+  const ChassisState chassis = plant.vehicle().chassis();
+  options.robot = RobotOutline{chassis.pose.translation().x(), chassis.pose.translation().y(),
+                               attitude_of(chassis.pose.linear()).heading};
+  write_height_map_picture(folder / "terrain_after.png", plant.terrain(), options);
+}
+
+}  // namespace screed

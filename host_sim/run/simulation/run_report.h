@@ -1,0 +1,55 @@
+// What came of a run: its summary, and the summary as JSON.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/devices/mcu/cycle_report.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
+#include "host_sim/run/simulation/stop_condition.h"
+
+namespace screed {
+
+struct SimulationSummary {
+  std::filesystem::path folder;
+  std::string content_hash;
+  RunEnd end = RunEnd::kDone;
+  /// The run has not lasted as many ticks as it was to.
+  bool stopped_early = false;
+  /// Frames that Algorithm 5 drove; 0 under another algorithm.
+  uint64_t training_frames = 0;
+  /// Changes of single heights, when they were recorded.
+  uint64_t height_changes = 0;
+  bool left_bed = false;  ///< the robot stands beyond the edge of the soil
+  double time_s = 0.0;
+  double wall_s = 0.0;  ///< of the loop alone: building the world and writing pictures do not count
+  double distance_m = 0.0;  ///< length of the chassis' true path, in space
+  double energy_j = 0.0;
+  double outside_s = 0.0;  ///< time off the bed
+  double battery_v = 0.0;
+  int peaks = 0;
+  std::string state;  ///< of the supervisor at the end
+  uint16_t faults = 0;
+  uint64_t telemetry_frames = 0;          ///< that reached the ground whole
+  uint64_t telemetry_frames_sent = 0;     ///< lines the robot handed to its radio
+  uint64_t telemetry_frames_damaged = 0;  ///< that reached the ground with a wrong check
+  double telemetry_share = 0.0;           ///< of what the radio's line carries, 0..1
+  TerrainStatistics before;
+  TerrainStatistics after;
+  double flatness_before = 0.0;  ///< share of flat cells, 0..1
+  double flatness_after = 0.0;
+  std::vector<std::filesystem::path>
+      leftovers;                      ///< folders of interrupted runs that were passed over
+  std::optional<CycleReport> cycles;  ///< of a run with an image
+
+  double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
+};
+
+/// The summary as JSON, as written to summary.json: what is part of the result, so neither wall
+/// time nor folders. Same run, same bytes.
+std::string summary_json(const SimulationSummary& summary);
+
+}  // namespace screed

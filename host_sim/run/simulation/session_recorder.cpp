@@ -1,0 +1,57 @@
+// From a tick to the rows of the session file.
+#include "host_sim/run/simulation/session_recorder.h"
+
+namespace screed {
+namespace {
+
+constexpr uint64_t kPathTicks = kTickRate_hz / 10;
+
+HeightMap height_map_of(const HeightField& field) {
+  HeightMap map;
+  map.geometry = {static_cast<uint32_t>(field.nx()),
+                  static_cast<uint32_t>(field.ny()),
+                  kHeightUnit_m,
+                  field.spacing_m(),
+                  field.node_x(0),
+                  field.node_y(0),
+                  field.wrap()};
+  map.heights.reserve(static_cast<size_t>(field.nx()) * static_cast<size_t>(field.ny()));
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) map.heights.push_back(field.node(ix, iy));
+  }
+  return map;
+}
+
+}  // namespace
+
+SessionRecorder::SessionRecorder(const std::filesystem::path& file, const SessionInfo& info,
+                                 const HeightField& before,
+                                 const std::optional<SoilParameters>& soil)
+    : writer_(file, info) {
+  writer_.write_terrain_before(height_map_of(before).view());
+  if (soil.has_value()) writer_.write_soil(*soil);
+}
+
+void SessionRecorder::record_heights(const HeightField& terrain) {
+  watch_.emplace(terrain);
+  writer_.record_heights(height_map_of(terrain).view());
+}
+
+void SessionRecorder::observe_terrain(const HeightField& terrain) {
+  if (watch_) changes_ = watch_->changes(terrain);
+}
+
+void SessionRecorder::append(const SimFrame& frame, const SensorSample& sample,
+                             const RobotOutput& output) {
+  writer_.append(frame, sample, output, changes_);
+  height_changes_ += changes_.size();
+  if (ticks_++ % kPathTicks == 0)
+    path_.push_back({frame.x, frame.y, static_cast<size_t>(frame.leveling_state)});
+}
+
+std::string SessionRecorder::finish(const HeightField& after) {
+  writer_.write_terrain_after(height_map_of(after).view());
+  return writer_.finish();
+}
+
+}  // namespace screed

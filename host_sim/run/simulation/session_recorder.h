@@ -1,0 +1,58 @@
+// Records a run in its session file: frames, samples and answers of every tick, heights where asked
+// for, and the terrain before and after. Keeps the driven path, for the pictures.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/sample.h"
+#include "host_sim/core/sim_frame.h"
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/render/picture/terrain_picture.h"
+#include "host_sim/run/session/session_info.h"
+#include "host_sim/run/session/session_writer.h"
+#include "host_sim/run/simulation/height_watch.h"
+
+namespace screed {
+
+class SessionRecorder {
+ public:
+  /// Creates the file. `before`: the terrain as the experiment lays it out. `soil`: none on
+  /// terrain that is no soil. Throws RunError when the file cannot be written.
+  SessionRecorder(const std::filesystem::path& file, const SessionInfo& info,
+                  const HeightField& before, const std::optional<SoilParameters>& soil);
+
+  /// Records the changes of single heights as well, from this terrain on. Before the first tick, at
+  /// most once.
+  void record_heights(const HeightField& terrain);
+
+  /// Looks for heights that have changed, when the robot has read its sensors: what is recorded of
+  /// a tick is the world as its sample saw it.
+  void observe_terrain(const HeightField& terrain);
+  /// Records the tick. Throws RunError when the disk is full.
+  void append(const SimFrame& frame, const SensorSample& sample, const RobotOutput& output);
+
+  /// Closes the file with the terrain as the run left it. Returns the content hash. Nothing may be
+  /// called afterwards but the two below.
+  std::string finish(const HeightField& after);
+
+  /// Changes of single heights so far; 0 when they are not recorded.
+  uint64_t height_changes() const { return height_changes_; }
+  /// A point ten times a simulated second, coloured by the leveling algorithm's state.
+  const std::vector<PathPoint>& path() const { return path_; }
+
+ private:
+  SessionWriter writer_;
+  std::optional<HeightWatch> watch_;
+  std::span<const HeightChange> changes_;  ///< of this tick
+  uint64_t height_changes_ = 0;
+  uint64_t ticks_ = 0;
+  std::vector<PathPoint> path_;
+};
+
+}  // namespace screed

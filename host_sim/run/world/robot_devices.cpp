@@ -1,0 +1,50 @@
+// What surrounds a robot, tick by tick.
+#include "host_sim/run/world/robot_devices.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "hal/sample.h"
+
+namespace screed {
+namespace {
+
+Eigen::Vector3d robot_position(const Environment& plant) {
+  return plant.vehicle().chassis().pose.translation();
+}
+
+std::optional<uint64_t> tick_at(const std::optional<double>& time_s) {
+  if (!time_s.has_value()) return std::nullopt;
+  return static_cast<uint64_t>(std::llround(*time_s * kTickRate_hz));
+}
+
+}  // namespace
+
+RobotDevices::RobotDevices(const WorldOptions& options, const Environment& plant,
+                           std::ostream* telemetry_log)
+    : imu_(options.seed, options.imu),
+      uplink_(options.seed, "uplink", options.radio),
+      downlink_(options.seed, "downlink", options.radio),
+      ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key),
+      ground_end_(options.ground_port),
+      station_m_(robot_position(plant)),
+      encoder_counts_per_turn_(options.encoder_counts_per_turn),
+      lay_on_side_tick_(tick_at(options.lay_on_side_at_s)) {}
+
+void RobotDevices::execute_events(uint64_t tick, Environment& plant) {
+  if (lay_on_side_tick_ == tick) plant.lay_on_side();
+}
+
+void RobotDevices::exchange_radio(uint64_t now_us, const Environment& plant) {
+  const double distance_m = (robot_position(plant) - station_m_).norm();
+  uplink_.set_distance(distance_m);
+  downlink_.set_distance(distance_m);
+  ground_end_.tick(now_us, ground_, uplink_, downlink_);
+}
+
+double RobotDevices::encoder_position(const Environment& plant, Side side) const {
+  const double turns = plant.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+  return turns * encoder_counts_per_turn_;
+}
+
+}  // namespace screed

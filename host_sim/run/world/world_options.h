@@ -1,0 +1,34 @@
+// What a world is made of beside its terrain and the robot's bodies: physics, sensors, radio,
+// ground station, scripted events.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "host_sim/devices/radio/radio_link.h"
+#include "host_sim/devices/sensors/imu_model.h"
+#include "host_sim/ground_station/station/command_key.h"
+#include "host_sim/ground_station/station/ground_port.h"
+#include "host_sim/ground_station/station/ground_station.h"
+#include "host_sim/physics/world/plant.h"
+
+namespace screed {
+
+struct WorldOptions : PlantOptions {
+  uint64_t seed = 1;
+  ImuErrors imu;
+  RadioOptions radio;
+  bool ground_station_arms = true;
+  std::optional<DriveCommand> drive;
+  CommandKey ground_key = test_key();  ///< what the ground station signs with
+  /// Programs outside at the ground end of the radio; may be null, must outlive the world.
+  GroundPort* ground_port = nullptr;
+  /// The IMU feels a person turning the robot over (calibration_motion.h) instead of its own
+  /// motion.
+  bool handled = false;
+  double encoder_counts_per_turn = 1000.0 / 3.0;
+  /// The robot is laid on its left side at this time, s: a fault to inject.
+  std::optional<double> lay_on_side_at_s;
+};
+
+}  // namespace screed

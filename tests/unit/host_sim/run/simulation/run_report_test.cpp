@@ -1,0 +1,98 @@
+// summary.json, key by key.
+#include "host_sim/run/simulation/run_report.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace screed {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Every number another one, so that none can stand in another's place.
+SimulationSummary summary() {
+  SimulationSummary s;
+  s.folder = "out/hill-0001";
+  s.content_hash = "0123456789abcdef";
+  s.end = RunEnd::kLeftBed;
+  s.stopped_early = true;
+  s.left_bed = true;
+  s.training_frames = 11;
+  s.height_changes = 12;
+  s.time_s = 13.5;
+  s.wall_s = 14.5;
+  s.distance_m = 15.5;
+  s.energy_j = 16.5;
+  s.outside_s = 17.5;
+  s.battery_v = 18.5;
+  s.peaks = 19;
+  s.state = "fault";
+  s.faults = 0x0081;
+  s.telemetry_frames = 20;
+  s.telemetry_frames_sent = 21;
+  s.telemetry_frames_damaged = 22;
+  s.telemetry_share = 0.25;
+  s.before.lowest_m = 31.5;
+  s.before.highest_m = 32.5;
+  s.before.mean_height_m = 33.5;
+  s.before.height_deviation_m = 34.5;
+  s.before.mean_slope_deg = 35.5;
+  s.before.rms_slope_deg = 36.5;
+  s.before.p95_slope_deg = 37.5;
+  s.before.max_slope_deg = 38.5;
+  s.before.steepest_slope_deg = 39.5;
+  s.after = s.before;
+  s.after.mean_slope_deg = 45.5;
+  s.flatness_before = 0.5;
+  s.flatness_after = 0.75;
+  return s;
+}
+
+TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
+  const std::string terrain =
+      R"("lowest_m": 31.5, "highest_m": 32.5, "mean_height_m": 33.5, "height_deviation_m": 34.5,)";
+  const std::string slopes =
+      R"("rms_slope_deg": 36.5, "p95_slope_deg": 37.5, "max_slope_deg": 38.5,
+         "steepest_slope_deg": 39.5,)";
+  const Json expected =
+      Json::parse(R"({"content_hash": "0123456789abcdef", "stopped_early": true,
+      "left_bed": true, "time_s": 13.5, "distance_m": 15.5, "energy_j": 16.5,
+      "outside_bed_s": 17.5, "battery_v": 18.5, "peaks": 19, "training_frames": 11,
+      "height_changes": 12, "state": "fault", "faults": "tilt, emergency stop",
+      "telemetry_frames": 20, "telemetry_frames_sent": 21, "telemetry_frames_damaged": 22,
+      "telemetry_share": 0.25,
+      "terrain_before": {)" +
+                  terrain + R"("mean_slope_deg": 35.5,)" + slopes + R"("flatness": 0.5},
+      "terrain_after": {)" +
+                  terrain + R"("mean_slope_deg": 45.5,)" + slopes + R"("flatness": 0.75}})");
+  EXPECT_EQ(summary_json(summary()), expected.dump(2) + "\n");
+}
+
+TEST(RunReport, ARunWithAnImageSaysWhatTheMicrocontrollersTimeWentInto) {
+  SimulationSummary s = summary();
+  CycleReport cycles;
+  cycles.ticks = 51;
+  cycles.longest_tick_cycles = 52;
+  cycles.mean_tick_cycles = 53.5;
+  cycles.missed_ticks = 54;
+  cycles.load = 0.125;
+  cycles.encoder_latency_cycles = 55;
+  cycles.encoder_edges = 56;
+  cycles.encoder_missing = -57;
+  cycles.uart_received = 58;
+  cycles.uart_overruns = 59;
+  cycles.uart_sent = 60;
+  cycles.resets = 61;
+  cycles.interrupts = {{"timer", 62, 63, 64.5}};
+  s.cycles = cycles;
+  const Json expected = Json::parse(R"({"ticks": 51, "longest_tick_cycles": 52,
+      "mean_tick_cycles": 53.5, "missed_ticks": 54, "load": 0.125, "encoder_latency_cycles": 55,
+      "encoder_edges": 56, "encoder_edges_missed": -57, "uart_bytes_received": 58,
+      "uart_bytes_lost": 59, "uart_bytes_sent": 60, "resets": 61,
+      "interrupts": {"timer": {"count": 62, "longest_cycles": 63, "mean_cycles": 64.5}}})");
+  EXPECT_EQ(Json::parse(summary_json(s)).at("microcontroller").dump(), expected.dump());
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,37 @@
+// What a robot sent, in frames and as a share of its line.
+#include "host_sim/run/simulation/telemetry_meter.h"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+namespace screed {
+namespace {
+
+RobotOutput sending(std::string_view bytes) {
+  RobotOutput output{};
+  std::copy(bytes.begin(), bytes.end(), output.radio_out);
+  output.radio_out_count = static_cast<uint8_t>(bytes.size());
+  return output;
+}
+
+TEST(TelemetryMeter, CountsWholeLinesAndAllBytes) {
+  TelemetryMeter meter;
+  meter.add(sending("t1001FF\rt1011"));
+  meter.add(sending("00\r"));
+  meter.add(sending(""));
+  EXPECT_EQ(meter.frames(), 2U);
+  EXPECT_DOUBLE_EQ(meter.line_share(1.0), 16.0 / 5760.0);
+  EXPECT_DOUBLE_EQ(meter.line_share(0.01), 16.0 / 57.6);
+}
+
+TEST(TelemetryMeter, BytesBehindTheValidOnesAreNotSent) {
+  RobotOutput output = sending("t1000\rt1000\r");
+  output.radio_out_count = 6;
+  TelemetryMeter meter;
+  meter.add(output);
+  EXPECT_EQ(meter.frames(), 1U);
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,102 @@
+// Radio, encoders and scripted events round a robot.
+#include "host_sim/run/world/robot_devices.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <sstream>
+
+#include "firmware/protocol/e2e.h"
+#include "hal/sample.h"
+#include "tests/unit/host_sim/run/rover5_plant.h"
+
+namespace screed {
+namespace {
+
+Plant plant_at(double x_m) {
+  return {HeightField::flat(4.0, 0.1), rover5(), held_at(x_m, 0.0)};
+}
+
+/// Roll, degrees; 0 upright.
+double roll_deg(const Environment& plant) {
+  return attitude_of(plant.vehicle().chassis().pose.linear()).roll * 180.0 / std::numbers::pi;
+}
+
+/// Bytes that reach the robot within a second, with the station at x = 0 and the robot at x.
+size_t bytes_at(double x_m) {
+  WorldOptions options;
+  options.radio.range_m = 30.0;
+  const Plant station = plant_at(0.0);
+  const Plant robot = plant_at(x_m);
+  RobotDevices devices(options, station, nullptr);
+  size_t bytes = 0;
+  for (uint64_t tick = 1; tick <= kTickRate_hz; ++tick) {
+    devices.exchange_radio(tick * kTickPeriod_us, robot);
+    bytes += devices.uplink().receive(tick * kTickPeriod_us, kRadioInCapacity).size();
+  }
+  return bytes;
+}
+
+TEST(RobotDevices, TheRobotIsLaidOnItsSideInItsTickAndInNoOther) {
+  WorldOptions options;
+  options.lay_on_side_at_s = 0.03;
+  Plant plant = plant_at(0.0);
+  RobotDevices devices(options, plant, nullptr);
+  devices.execute_events(1, plant);
+  devices.execute_events(2, plant);
+  EXPECT_NEAR(roll_deg(plant), 0.0, 1e-6);
+  devices.execute_events(3, plant);
+  EXPECT_NEAR(std::abs(roll_deg(plant)), 90.0, 1.0);
+
+  Plant upright = plant_at(0.0);
+  devices.execute_events(4, upright);
+  EXPECT_NEAR(roll_deg(upright), 0.0, 1e-6);
+}
+
+TEST(RobotDevices, NothingIsScriptedUnlessAskedFor) {
+  Plant plant = plant_at(0.0);
+  RobotDevices devices(WorldOptions{}, plant, nullptr);
+  for (uint64_t tick = 0; tick < 100; ++tick) devices.execute_events(tick, plant);
+  EXPECT_NEAR(roll_deg(plant), 0.0, 1e-6);
+}
+
+TEST(RobotDevices, TheRadioReachesAsFarAsTheRobotIsFromItsStart) {
+  const size_t near = bytes_at(0.0);
+  EXPECT_GT(near, 50U);
+  EXPECT_EQ(bytes_at(1.5), near);
+  EXPECT_EQ(bytes_at(1000.0), 0U);
+}
+
+TEST(RobotDevices, WhatTheRobotSendsReachesGroundStationAndLog) {
+  std::ostringstream log;
+  const Plant plant = plant_at(0.0);
+  RobotDevices devices(WorldOptions{}, plant, &log);
+  CanFrame frame = frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0});
+  e2e_protect(frame.id, 0, frame.data, frame.size);
+  uint8_t line[kSlcanLineMax];
+  devices.downlink().send(0, {line, slcan_encode(frame, line)});
+  for (uint64_t tick = 1; tick <= 10; ++tick) {
+    devices.exchange_radio(tick * kTickPeriod_us, plant);
+  }
+  EXPECT_EQ(devices.ground_station().frames(), 1U);
+  EXPECT_TRUE(devices.ground_station().report().heard);
+  EXPECT_NE(log.str(), "");
+}
+
+TEST(RobotDevices, AnEncoderCountsTurnsOfItsShaft) {
+  WorldOptions options;
+  options.encoder_counts_per_turn = 100.0;
+  Plant plant = plant_at(0.0);
+  const RobotDevices devices(options, plant, nullptr);
+  for (int step = 0; step < 200; ++step) plant.step({0.5, -0.5});
+  for (const Side side : {kLeft, kRight}) {
+    const double turns = plant.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+    EXPECT_GT(std::abs(turns), 0.1);
+    EXPECT_DOUBLE_EQ(devices.encoder_position(plant, side), turns * 100.0);
+  }
+  EXPECT_GT(devices.encoder_position(plant, kLeft), 0.0);
+  EXPECT_LT(devices.encoder_position(plant, kRight), 0.0);
+}
+
+}  // namespace
+}  // namespace screed
