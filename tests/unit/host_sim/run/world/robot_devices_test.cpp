@@ -22,13 +22,13 @@ double roll_deg(const Environment& plant) {
   return attitude_of(plant.vehicle().chassis().pose.linear()).roll * 180.0 / std::numbers::pi;
 }
 
-/// Bytes that reach the robot within a second, with the station at x = 0 and the robot at x.
-size_t bytes_at(double x_m) {
+/// Bytes that reach a robot within a second that started at one x and stands at another.
+size_t bytes_received(double start_x_m, double x_m) {
   WorldOptions options;
   options.radio.range_m = 30.0;
-  const Plant station = plant_at(0.0);
+  const Plant start = plant_at(start_x_m);
   const Plant robot = plant_at(x_m);
-  RobotDevices devices(options, station, nullptr);
+  RobotDevices devices(options, start, nullptr);
   size_t bytes = 0;
   for (uint64_t tick = 1; tick <= kTickRate_hz; ++tick) {
     devices.exchange_radio(tick * kTickPeriod_us, robot);
@@ -61,10 +61,12 @@ TEST(RobotDevices, NothingIsScriptedUnlessAskedFor) {
 }
 
 TEST(RobotDevices, TheRadioReachesAsFarAsTheRobotIsFromItsStart) {
-  const size_t near = bytes_at(0.0);
+  const size_t near = bytes_received(0.0, 0.0);
   EXPECT_GT(near, 50U);
-  EXPECT_EQ(bytes_at(1.5), near);
-  EXPECT_EQ(bytes_at(1000.0), 0U);
+  EXPECT_EQ(bytes_received(0.0, 1.5), near);
+  EXPECT_EQ(bytes_received(0.0, 1000.0), 0U);
+  EXPECT_EQ(bytes_received(1000.0, 1000.0), near);
+  EXPECT_EQ(bytes_received(1000.0, 0.0), 0U);
 }
 
 TEST(RobotDevices, WhatTheRobotSendsReachesGroundStationAndLog) {
