@@ -70,7 +70,7 @@ void surrogate_ruts(benchmark::State& state) {
     stride.y_m += std::sin(stride.yaw_rad) * kStride_m;
     pressed.step(stride, &network);
   }
-  require(state, pressed.sunk().height_sum() > 0, "the soil does not deform");
+  require(state, pressed.sinkage().height_sum() > 0, "the soil does not deform");
   state.counters["s_per_robot_frame"] =
       benchmark::Counter(static_cast<double>(state.iterations() * nn::kStrideFrames),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
