@@ -47,6 +47,7 @@ include tools/bench/telemetry/telemetry_lab.mk
 include tests/fuzz/fuzz.mk
 include tests/can/can.mk
 include tests/asan.mk
+include tools/mutants/mutants.mk
 include nn/training/training.mk
 include tools/lint/lint.mk
 -include $(shell find $(BUILD_ROOT) -name '*.d' 2> /dev/null)

@@ -13,13 +13,14 @@ include tests/mcu/mcu_tests.mk
 endif
 
 TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
-$(B)/tests/unit_tests: $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
+UNIT_TESTS_PARTS := $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/libmutants.a
+$(B)/tests/unit_tests: $(UNIT_TESTS_PARTS) $(B)/link.flags
 	$(call link,$(TEST_LIBRARIES))
 $(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flags
 	$(call link,$(TEST_LIBRARIES))
 
 # Every host source that is compiled with the host's flags or the firmware's: what lint and clangd look at.
-ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/flash tests/unit tests/sitl tests/flash)
+ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants tests/unit tests/sitl tests/flash)
 
 # Expanded twice: later parts add their tests.
 .SECONDEXPANSION:

@@ -184,5 +184,93 @@ TEST(DriveControl, ExtremeMeasurementsStayWithinTheDutyRange) {
   }
 }
 
+/// The yaw loop of drive_control.h in floating point: the rate that the tracks are asked for.
+class YawLoopInNumbers {
+ public:
+  YawLoopInNumbers(double kp, double ki) : kp_(kp / 256.0), ki_(ki / 256.0) {}
+  double rate(double wanted, double measured) {
+    error_ += (std::clamp(wanted - measured, -16000.0, 16000.0) - error_) / 16.0;
+    integral_ = std::clamp(integral_ + ki_ * error_ / 100.0, -16384.0, 16384.0);
+    return wanted + std::clamp(kp_ * error_ + integral_, -16384.0, 16384.0);
+  }
+  void forget() { error_ = integral_ = 0.0; }
+
+ private:
+  double kp_;
+  double ki_;
+  double error_ = 0.0;
+  double integral_ = 0.0;
+};
+
+TEST(DriveControl, TheYawLoopFollowsItsLawInNumbers) {
+  struct Part {
+    MotionCommand command;
+    int32_t measured;  ///< rate, angle units/s
+    int ticks;
+    bool idle;
+  };
+  const Part parts[] = {{{100, 0}, 1500, 150, false},    {{100, 3000}, 1000, 100, false},
+                        {{0, 4000}, 9000, 100, false},   {{0, 0}, 2000, 30, false},
+                        {{-80, -2000}, 0, 200, false},   {{50, 0}, 40000, 300, false},
+                        {{0, 0}, 0, 30, true},           {{50, 0}, 200, 60, false},
+                        {{50, 0}, -40000, 300, false},   {{0, 0}, 0, 1, true},
+                        {{120, 500}, -14800, 60, false}, {{120, 500}, 16100, 60, false}};
+  for (const auto& [kp, ki] : {std::pair{0, 768}, {128, 0}, {512, 300}, {1024, 2000}}) {
+    Parameters parameters;
+    parameters.yaw_kp = static_cast<int16_t>(kp);
+    parameters.yaw_ki = static_cast<int16_t>(ki);
+    parameters.accel_limit = 5000;
+    DriveControl control(kBoard, parameters);
+    YawLoopInNumbers law(kp, ki);
+    const SkidSteer kinematics(kBoard.tread_mm);
+    double left = 0.0;
+    double right = 0.0;
+    for (const Part& part : parts) {
+      for (int tick = 0; tick < part.ticks; ++tick) {
+        const DriveMeasurement measured = {0, 0, part.measured, 7200};
+        if (part.idle) {
+          control.idle(measured);
+          law.forget();
+          left = right = 0.0;
+        } else {
+          control.tick(part.command, measured);
+          TrackSpeeds wanted = {0, 0};
+          if (part.command.speed_mm_per_s == 0 && part.command.yaw_rate == 0) {
+            law.forget();
+          } else {
+            const auto rate =
+                static_cast<int32_t>(std::lround(law.rate(part.command.yaw_rate, part.measured)));
+            wanted = kinematics.tracks(part.command.speed_mm_per_s, rate,
+                                       static_cast<int16_t>(kBoard.full_speed_mm_per_s));
+          }
+          left = std::clamp(1.0 * wanted.left, left - 50.0, left + 50.0);
+          right = std::clamp(1.0 * wanted.right, right - 50.0, right + 50.0);
+        }
+        ASSERT_NEAR(control.targets().left, left, 3.0)
+            << "gains " << kp << " " << ki << ", measured " << part.measured << ", tick " << tick;
+        ASSERT_NEAR(control.targets().right, right, 3.0) << part.measured << ", tick " << tick;
+      }
+    }
+  }
+}
+
+TEST(DriveControl, TheAccelerationLimitIsRoundedUpToWholeStepsATick) {
+  for (const auto& [limit, step] : {std::pair{600, 6}, {601, 7}, {599, 6}, {700, 7}, {50, 1}}) {
+    Parameters parameters;
+    parameters.accel_limit = static_cast<int16_t>(limit);
+    DriveControl control(kBoard, parameters);
+    control.tick({200, 0}, {0, 0, 0, 7200});
+    EXPECT_EQ(control.targets().left, step) << limit;
+    EXPECT_EQ(control.targets().right, step) << limit;
+  }
+}
+
+TEST(DriveControl, MotorsThatAreOffAreStillObserved) {
+  DriveControl control(kBoard, Parameters{});
+  for (int tick = 0; tick < 200; ++tick) control.idle({2, -3, 0, 7200});
+  EXPECT_NEAR(control.speed_left_dmm_per_s(), 2 * 9048.0 / 16.0, 3.0);
+  EXPECT_NEAR(control.speed_right_dmm_per_s(), -3 * 9048.0 / 16.0, 3.0);
+}
+
 }  // namespace
 }  // namespace screed

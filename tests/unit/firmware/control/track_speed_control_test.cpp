@@ -164,5 +164,90 @@ TEST(TrackSpeedControl, EveryParameterAtItsEndsStaysWithinTheDutyRange) {
   }
 }
 
+/// The control law of track_speed_control.h in floating point.
+class LawInNumbers {
+ public:
+  LawInNumbers(double kp, double ki) : kp_(kp / 16.0), ki_(ki / 16.0) {}
+
+  double tick(double target_mm_per_s, double counts, double battery_mv) {
+    constexpr double kPole = 0.837;
+    const double filter_error = lag_ + std::clamp(counts, -40.0, 40.0) - speed_;
+    lag_ = filter_error * kPole * kPole;
+    speed_ += (1.0 - kPole) * (1.0 - kPole) * filter_error;
+    halfway_ += (target_mm_per_s - halfway_) * 42.0 / 256.0;
+    expected_ += (halfway_ - expected_) * 42.0 / 256.0;
+    const double speed_mm_per_s = speed_ * kDmmPerCount / 10.0;
+    effort = 0.0;
+    if (target_mm_per_s == 0.0 && std::abs(speed_mm_per_s) < 10.0) {
+      integral_ = 0.0;
+      return 0.0;
+    }
+    const double error = std::clamp(expected_ - speed_mm_per_s, -300.0, 300.0);
+    const double feed_forward = target_mm_per_s * kDutyMax / kBoard.full_speed_mm_per_s *
+                                kNominal_mv / std::max(battery_mv, kNominal_mv / 2.0);
+    const double without_integral = feed_forward + kp_ * error;
+    const double unlimited = without_integral + integral_;
+    const bool pushes_out = std::abs(unlimited) >= kDutyMax && unlimited * error > 0.0;
+    if (!pushes_out) {
+      integral_ = std::clamp(integral_ + ki_ * error / 100.0, -1.0 * kDutyMax, 1.0 * kDutyMax);
+    }
+    const double duty = std::clamp(without_integral + integral_, -1.0 * kDutyMax, 1.0 * kDutyMax);
+    effort = duty - feed_forward;
+    return duty;
+  }
+
+  double effort = 0.0;  ///< duty beyond what drives the unloaded track
+
+ private:
+  double kp_;
+  double ki_;
+  double lag_ = 0.0;
+  double speed_ = 0.0;
+  double halfway_ = 0.0;
+  double expected_ = 0.0;
+  double integral_ = 0.0;
+};
+
+TEST(TrackSpeedControl, FollowsItsLawInNumbers) {
+  struct Part {
+    int16_t target;
+    int16_t counts;  ///< a tick, twice as many in every second one and none in the others
+    uint16_t battery_mv;
+    int ticks;
+  };
+  // Follows, lags, is blocked, is pushed, overtakes, stands; either way and with any battery.
+  const Part parts[] = {{0, 0, 7200, 20},     {200, 4, 7200, 120},   {200, 3, 6400, 60},
+                        {-150, -3, 8000, 90}, {-150, 0, 7200, 40},   {120, 1, 7200, 80},
+                        {120, 4, 3000, 50},   {-60, -2, 3601, 60},   {0, 0, 7200, 60},
+                        {250, 20, 7200, 60},  {-250, -20, 7200, 60}, {30, 0, 7200, 200},
+                        {-30, 0, 7200, 200},  {1, 0, 7200, 50},      {0, 0, 7200, 50}};
+  for (const auto& [kp, ki] : {std::pair{24, 160}, {0, 400}, {60, 40}, {6, 2400}}) {
+    Parameters parameters;
+    parameters.speed_kp = static_cast<int16_t>(kp);
+    parameters.speed_ki = static_cast<int16_t>(ki);
+    TrackSpeedControl control = make_control(parameters);
+    LawInNumbers law(kp, ki);
+    const double tolerance = 9.0 + 0.15 * kp;  // gains of the filters are whole 256ths
+    for (const Part& part : parts) {
+      for (int tick = 0; tick < part.ticks; ++tick) {
+        const auto counts = static_cast<int16_t>(tick % 2 == 0 ? 2 * part.counts : 0);
+        const double expected = law.tick(part.target, counts, part.battery_mv);
+        ASSERT_NEAR(control.tick(part.target, counts, part.battery_mv), expected, tolerance)
+            << "gains " << kp << " " << ki << ", target " << part.target << ", tick " << tick;
+        ASSERT_NEAR(control.motion().effort, law.effort, tolerance)
+            << part.target << ", tick " << tick;
+      }
+    }
+  }
+}
+
+TEST(TrackSpeedControl, ReleasedItAsksForNoEffort) {
+  TrackSpeedControl control = make_control();
+  for (int tick = 0; tick < 50; ++tick) control.tick(200, 1, kNominal_mv);
+  ASSERT_GT(control.motion().effort, 20);
+  control.release(0);
+  EXPECT_EQ(control.motion().effort, 0);
+}
+
 }  // namespace
 }  // namespace screed

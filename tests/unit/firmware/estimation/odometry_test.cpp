@@ -99,5 +99,43 @@ TEST(Odometry, StopsAtTheEndOfItsRange) {
   EXPECT_EQ(odometry.path_mm(), 0U);
 }
 
+TEST(Odometry, APathOfAMillimetreIsCountedWhenItIsFull) {
+  // 16 counts of a sixteenth of a millimetre.
+  Odometry odometry(1000);
+  for (int count = 1; count <= 64; ++count) {
+    odometry.update(1, 1, 0, 0);
+    // Each is 62.5 um, rounded to 63.
+    EXPECT_EQ(odometry.path_mm(), static_cast<uint32_t>(count * 63 / 1000)) << count;
+  }
+  Odometry exact(16000);
+  exact.update(1, 1, 0, 0);
+  EXPECT_EQ(exact.path_mm(), 1U);
+  exact.update(-1, -1, 0, 0);
+  EXPECT_EQ(exact.path_mm(), 2U);
+  EXPECT_EQ(exact.x_mm(), 0);
+}
+
+TEST(Odometry, TakesAsManyCountsAsATickCanHold) {
+  Odometry odometry(16000);  // a count is a millimetre
+  odometry.update(100, 100, 0, 0);
+  EXPECT_EQ(odometry.path_mm(), 100U);
+  odometry.update(101, 2000, 0, 0);
+  EXPECT_EQ(odometry.path_mm(), 200U);
+}
+
+TEST(Odometry, AResetForgetsPlaceAndPathToTheLastPart) {
+  Odometry odometry(1000);
+  for (int count = 0; count < 47; ++count) odometry.update(1, 1, 8192, 0);  // 2.961 mm
+  odometry.reset();
+  EXPECT_EQ(odometry.x_mm(), 0);
+  EXPECT_EQ(odometry.y_mm(), 0);
+  for (int count = 0; count < 15; ++count) odometry.update(1, 1, 0, 0);  // 0.945 mm
+  EXPECT_EQ(odometry.path_mm(), 0U);
+  EXPECT_EQ(odometry.x_mm(), 0);
+  odometry.update(1, 1, 16384, 0);
+  EXPECT_EQ(odometry.path_mm(), 1U);
+  EXPECT_EQ(odometry.y_mm(), 0);
+}
+
 }  // namespace
 }  // namespace screed

@@ -119,6 +119,48 @@ TEST(SlipWatch, ATurnThatTheGyroDoesNotSeeIsNone) {
   EXPECT_TRUE(dug_in.watch.stuck());
 }
 
+// Means of the network's answer from which the robot slips, is stuck, and is free again.
+TEST(SlipWatch, SlipsFromAThirdIsStuckFromThreeQuartersAndFreeBelowAnEighth) {
+  const auto share = [](double of_certainty) { return of_certainty * 65535.0; };
+  Drive drive;
+  int rising = 0;
+  int falling = 0;
+  bool was_stuck = false;
+  const auto watch = [&](double seconds, const Drive::Feeling& feeling) {
+    for (int i = 0; i < std::lround(seconds * 50.0); ++i) {
+      drive.go(150.0, 0.02, feeling);
+      const SlipWatch& now = drive.watch;
+      if (now.evidence() >= share(0.36)) {
+        EXPECT_TRUE(now.slips()) << now.evidence();
+      }
+      if (now.evidence() < share(0.34)) {
+        EXPECT_FALSE(now.slips()) << now.evidence();
+      }
+      if (now.evidence() >= share(0.74)) {
+        EXPECT_TRUE(now.stuck()) << now.evidence();
+      }
+      if (now.evidence() < share(0.14)) {
+        EXPECT_FALSE(now.stuck()) << now.evidence();
+      }
+      if (now.evidence() >= share(0.16) && now.evidence() < share(0.72)) {
+        EXPECT_EQ(now.stuck(), was_stuck) << now.evidence();
+      }
+      if (now.evidence() > share(0.65) && now.evidence() < share(0.72) && !was_stuck) ++rising;
+      if (now.evidence() > share(0.16) && now.evidence() < share(0.3) && was_stuck) ++falling;
+      was_stuck = now.stuck();
+    }
+  };
+  drive.go(0.0, 5.0, kStands);
+  for (int round = 0; round < 8; ++round) {
+    watch(3.0, {});
+    watch(0.2, {0.0, 60, 0.75, 0});
+    watch(0.5 + 0.1 * round, {0.0, 60, 0.0, 0});
+    watch(0.2, {1.0, 12, -0.75, 0});
+  }
+  EXPECT_GT(rising, 0) << "the band below the threshold was seen";
+  EXPECT_GT(falling, 0);
+}
+
 TEST(SlipWatch, BearsAnything) {
   std::mt19937 random(1);
   const auto any = [&] { return static_cast<int16_t>(random()); };

@@ -179,5 +179,73 @@ TEST(Leveling, StartBeginsAnew) {
   EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
 }
 
+/// The state after one more tick at exactly this pitch.
+LevelingState state_at(Leveling& leveling, int32_t pitch) {
+  leveling.tick({static_cast<Angle>(pitch), 0, 0, 0}, {0, 0});
+  return leveling.state();
+}
+
+TEST(HillSensing, TheThresholdItselfIsNoIncline) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
+  parameters.climb_threshold = 500;
+  parameters.climb_hysteresis = 100;
+  const Angle rising = angle_from_centidegrees(500);
+  const int32_t falling = rising - angle_from_centidegrees(100);
+  Leveling leveling(parameters);
+  leveling.start();
+  EXPECT_EQ(state_at(leveling, rising), LevelingState::kWalk);
+  EXPECT_EQ(state_at(leveling, rising + 1), LevelingState::kClimb);
+  EXPECT_EQ(state_at(leveling, falling + 1), LevelingState::kClimb);
+  EXPECT_EQ(state_at(leveling, falling), LevelingState::kWalk);
+}
+
+TEST(SpinOnPeak, ThresholdsThemselvesAreNeitherInclineNorDecline) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
+  parameters.climb_threshold = 500;
+  parameters.climb_hysteresis = 100;
+  const Angle rising = angle_from_centidegrees(500);
+  const Angle hysteresis = angle_from_centidegrees(100);
+  Leveling leveling(parameters);
+  leveling.start();
+  EXPECT_EQ(state_at(leveling, rising), LevelingState::kWalk);
+  EXPECT_EQ(state_at(leveling, rising + 1), LevelingState::kClimb);
+  EXPECT_EQ(state_at(leveling, -hysteresis), LevelingState::kClimb);
+  EXPECT_EQ(state_at(leveling, -hysteresis - 1), LevelingState::kSpin);
+  // Just below the incline it is a plateau, just above it goes on climbing.
+  for (const int above : {0, 1}) {
+    Leveling climber(parameters);
+    climber.start();
+    state_at(climber, rising + 1);
+    for (int tick = 0; tick < 400; ++tick) state_at(climber, rising - hysteresis + above);
+    EXPECT_EQ(climber.state(), above == 1 ? LevelingState::kClimb : LevelingState::kWalk);
+  }
+}
+
+TEST(SpinOnPeak, TheFirstSpinIsToTheRight) {
+  Walker walker(parameters_of(LevelingAlgorithm::kSpinOnPeak));
+  walker.tick(20.0);
+  ASSERT_EQ(walker.tick(-20.0), LevelingState::kSpin);
+  EXPECT_LT(walker.motion.yaw_rate, 0);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, 0);
+}
+
+TEST(Leveling, ATrainingDriveIsDrivenToItsEnd) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kTrainingDrive);
+  parameters.training_block = 20;
+  Leveling leveling(parameters);
+  leveling.start();
+  int ticks = 0;
+  bool moved = false;
+  for (; leveling.state() != LevelingState::kDone && ticks < 1000; ++ticks) {
+    const MotionCommand motion = leveling.tick({0, 0, 0, 0}, {0, 0});
+    moved = moved || motion.speed_mm_per_s != 0;
+    const bool over = ticks >= 150;
+    ASSERT_TRUE(over || leveling.state() == LevelingState::kTrainingDrive) << ticks;
+  }
+  EXPECT_TRUE(moved);
+  EXPECT_NEAR(ticks, 8 * 20, 1);
+  EXPECT_EQ(leveling.tick({0, 0, 0, 0}, {0, 0}).speed_mm_per_s, 0);
+}
+
 }  // namespace
 }  // namespace screed

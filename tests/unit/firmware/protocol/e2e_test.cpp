@@ -163,6 +163,12 @@ TEST(E2e, AFrameOfAnotherSizeIsFound) {
   EXPECT_FALSE(e2e_check(kIdAttitude, data, 255));
 }
 
+TEST(E2e, AFrameLongerThanCanHoldsIsRefusedThoughItsCrcIsRight) {
+  uint8_t data[9] = {0, 0, 1, 2, 3, 4, 5, 6, 7};
+  e2e_protect(kIdAttitude, 3, data, 9);
+  EXPECT_FALSE(e2e_check(kIdAttitude, data, 9));
+}
+
 TEST(E2e, TheHeaderAloneIsRefused) {
   uint8_t data[2] = {0, 0};
   e2e_protect(kIdEmergencyStop, 0, data, 2);

@@ -226,12 +226,29 @@ TEST(RobotFaults, ShortAndForeignFramesAreHarmless) {
   }
 }
 
-TEST(RobotFaults, AFloodOfBytesIsTakenWithinTheCapacity) {
+TEST(RobotFaults, BytesBeyondTheCapacityAreNotRead) {
   TestRobot robot(drive_parameters());
-  robot.sample.radio_in_count = 255;
-  RobotOutput output{};
-  robot.robot.tick(robot.sample, output);  // must not read beyond radio_in
-  SUCCEED();
+  robot.heartbeats = false;
+  robot.run(600);
+  // A count that no receiver can have, and behind the sample what would be a heartbeat.
+  struct {
+    SensorSample sample;
+    uint8_t behind[192];
+  } memory{};
+  uint8_t line[kSlcanLineMax];
+  const uint8_t length = slcan_encode(robot.heartbeat(), line);
+  memory.sample = robot.sample;
+  std::memset(memory.sample.radio_in, '\r', sizeof memory.sample.radio_in);
+  memory.behind[0] = '\r';
+  std::memcpy(memory.behind + 1, line, length);
+  memory.sample.radio_in_count = 255;
+  memory.sample.time_us += kTickPeriod_us;
+  robot.robot.tick(memory.sample, robot.output);
+  robot.send(robot.command(CommandOp::kArm));
+  const auto answer = robot.answer();
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->result, static_cast<uint8_t>(message::CommandAckResult::kNoLink))
+      << "no heartbeat was received";
 }
 
 // ---- purity

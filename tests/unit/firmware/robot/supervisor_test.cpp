@@ -262,6 +262,54 @@ TEST(SupervisorFaults, StopWithinTheDeadlineAndStayLatched) {
   }
 }
 
+TEST(SupervisorFaults, AreTakenForRealAfterTheirNumberOfTicks) {
+  constexpr int kTicks[] = {6, 6, 6, 8, 8, 8, 18, 17, 17, 100};  // of kFaultCases
+  static_assert(std::size(kTicks) == std::size(kFaultCases));
+  for (size_t i = 0; i < std::size(kTicks); ++i) {
+    Watch watch;
+    watch.bring_to(RobotState::kRunning);
+    for (int tick = 0; tick < 10; ++tick) watch.tick();
+    kFaultCases[i].begin(watch);
+    EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 1000), kTicks[i]) << kFaultCases[i].name;
+  }
+}
+
+TEST(SupervisorFaults, ADipOfTheBatteryAtAStartIsNoFault) {
+  Watch watch;
+  watch.bring_to(RobotState::kRunning);
+  for (int dip = 0; dip < 3; ++dip) {
+    watch.battery_mv = 5000;
+    EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 99), 99);
+    EXPECT_EQ(watch.supervisor.state(), RobotState::kRunning);
+    watch.battery_mv = 6000;  // at the limit it is not low
+    watch.tick();
+  }
+  EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 500), 500);
+}
+
+TEST(SupervisorFaults, TheAccelerometerIsAWitnessAtRestAndBetweenFourAndSixFifthsOfG) {
+  // A robot on its side, by the force that it feels in g and its rate of turn in degrees/s.
+  struct Case {
+    double g;
+    double rate;
+    bool tilted;
+  };
+  for (const Case c : {Case{0.79, 0.0, false}, Case{0.81, 0.0, true}, Case{1.19, 0.0, true},
+                       Case{1.21, 0.0, false}, Case{1.0, 56.5, true}, Case{1.0, 57.5, false},
+                       Case{1.0, -56.5, true}, Case{1.0, -57.5, false}}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Watch watch;
+      watch.bring_to(RobotState::kRunning);
+      watch.accel[1] = static_cast<int16_t>(std::lround(4098.0 * c.g));
+      watch.accel[2] = 0;
+      watch.gyro_frozen = axis == 2;  // its last axis is the test's
+      watch.gyro[axis] = static_cast<int16_t>(std::lround(c.rate / 0.07));
+      EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 10) < 10, c.tilted)
+          << c.g << " g, " << c.rate << " degrees/s about " << axis;
+    }
+  }
+}
+
 TEST(SupervisorFaults, KeepADisarmedRobotFromBeingArmed) {  // 14 among them
   for (const FaultCase& fault : kFaultCases) {
     Watch watch;
@@ -270,6 +318,78 @@ TEST(SupervisorFaults, KeepADisarmedRobotFromBeingArmed) {  // 14 among them
     EXPECT_EQ(watch.supervisor.state(), RobotState::kDisarmed) << fault.name;
     EXPECT_EQ(watch.supervisor.request(Request::kArm), RequestResult::kFaultPresent) << fault.name;
   }
+}
+
+TEST(SupervisorFaults, AnEncoderThatStepsToAndFroIsNamed) {
+  for (const bool left : {true, false}) {
+    Watch watch;
+    watch.bring_to(RobotState::kRunning);
+    watch.duty_left = watch.duty_right = 100;
+    for (int tick = 0; tick < 10; ++tick) {
+      const auto broken = static_cast<int16_t>(tick % 2 == 0 ? 1 : -1);
+      watch.counts_left = left ? broken : static_cast<int16_t>(3);
+      watch.counts_right = left ? static_cast<int16_t>(3) : broken;
+      watch.tick();
+    }
+    EXPECT_EQ(watch.supervisor.state(), RobotState::kFault);
+    EXPECT_EQ(watch.supervisor.faults(), left ? kFaultEncoderLeft : kFaultEncoderRight);
+  }
+}
+
+TEST(SupervisorFaults, ACauseThatStaysIsPresentForAsLongAsItStays) {
+  for (const FaultCase& fault : kFaultCases) {
+    Watch watch;
+    watch.bring_to(RobotState::kRunning);
+    for (int tick = 0; tick < 10; ++tick) watch.tick();
+    fault.begin(watch);
+    for (int tick = 0; tick < 110; ++tick) watch.tick();
+    for (int tick = 0; tick < 600; ++tick) {
+      watch.tick();
+      ASSERT_EQ(watch.supervisor.present_faults(), fault.bit) << fault.name << ", tick " << tick;
+    }
+  }
+}
+
+TEST(SupervisorFaults, LimitsOfTheAccelerometerAsAWitnessAreIncluded) {
+  // Counts of the raw sensors: 819 and 1229 quarters of the accelerometer, 814 of the gyro.
+  struct Case {
+    int16_t accel;
+    int16_t gyro;
+    bool tilted;
+  };
+  for (const Case c : {Case{4 * 819, 0, true}, Case{4 * 818, 0, false}, Case{4 * 1229, 0, true},
+                       Case{4 * 1230, 0, false}, Case{4098, 814, true}, Case{4098, 815, false},
+                       Case{4098, -814, true}, Case{4098, -815, false}}) {
+    Watch watch;
+    watch.bring_to(RobotState::kRunning);
+    watch.accel[1] = c.accel;
+    watch.accel[2] = 0;
+    watch.gyro[0] = c.gyro;
+    EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 10) < 10, c.tilted) << c.accel << " " << c.gyro;
+  }
+}
+
+TEST(SupervisorFaults, TheEstimatorsInclinationIsComparedWithTheLimitItself) {
+  Parameters parameters;
+  parameters.tilt_limit = 6000;
+  for (const double degrees : {59.9, 60.1}) {
+    Watch watch(parameters);
+    watch.bring_to(RobotState::kRunning);
+    watch.cos_tilt_q30 =
+        static_cast<int32_t>(kQ30One * std::cos(degrees * std::numbers::pi / 180.0));
+    EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 300) == 300, degrees < 60.0) << degrees;
+  }
+}
+
+TEST(SupervisorLink, IsAliveForHalfASecond) {
+  Watch watch;
+  watch.tick();
+  watch.heard = false;
+  for (int tick = 1; tick < 50; ++tick) watch.tick();
+  EXPECT_TRUE(watch.supervisor.link_alive());
+  EXPECT_EQ(watch.supervisor.request(Request::kArm), RequestResult::kDone);
+  watch.tick();
+  EXPECT_FALSE(watch.supervisor.link_alive());
 }
 
 TEST(SupervisorFaults, SeveralCausesAreAllTold) {

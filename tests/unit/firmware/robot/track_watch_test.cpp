@@ -16,8 +16,38 @@ TEST(TrackWatch, CountsStepToAndFroWithABrokenWire) {
       watch.tick(duty, static_cast<int16_t>(ticks % 2 == 0 ? 1 : -1));
       ++ticks;
     }
-    EXPECT_LE(ticks, 8) << duty;
+    EXPECT_EQ(ticks, duty > 0 ? 5 : 4) << duty << ": forward the first step is progress";
   }
+}
+
+TEST(TrackWatch, BelowTheDutyOfAStallNothingIsCounted) {
+  TrackWatch watch;
+  for (int tick = 0; tick < 10; ++tick) watch.tick(239, 0);
+  EXPECT_EQ(watch.still_ticks(), 0);
+  for (int tick = 0; tick < 10; ++tick) watch.tick(240, 0);
+  EXPECT_EQ(watch.still_ticks(), 10);
+  watch.tick(-239, 0);
+  EXPECT_EQ(watch.still_ticks(), 0);
+}
+
+TEST(TrackWatch, TwoCountsInATickAreProgressEitherWay) {
+  for (const int16_t counts : std::initializer_list<int16_t>{2, -2, 3, -3, 40, -40}) {
+    TrackWatch watch;
+    for (int tick = 0; tick < 10; ++tick) watch.tick(300, 0);
+    watch.tick(300, counts);
+    EXPECT_EQ(watch.still_ticks(), 0) << counts;
+  }
+}
+
+TEST(TrackWatch, TwoCountsInARowLeaveThePlaceOneDoesNotBackwards) {
+  TrackWatch watch;
+  for (int tick = 0; tick < 10; ++tick) watch.tick(300, 0);
+  watch.tick(300, -1);
+  EXPECT_EQ(watch.still_ticks(), 11) << "one count behind";
+  watch.tick(300, -1);
+  EXPECT_EQ(watch.still_ticks(), 0) << "two: it rolls back";
+  watch.tick(300, -1);
+  EXPECT_EQ(watch.still_ticks(), 1) << "the place is where it was seen last";
 }
 
 TEST(TrackWatch, StepsThatCancelWithinATickAreAStandstill) {

@@ -158,5 +158,47 @@ TEST(CommandGate, TheCounterDoesNotWrap) {
   }
 }
 
+/// Wrong MACs until the gate is shut, by a copy of it.
+int guesses_left(CommandGate gate, const CanFrame& wrong) {
+  int guesses = 0;
+  while (gate.check(wrong.id, wrong.data) == GateResult::kBadMac) ++guesses;
+  return guesses;
+}
+
+TEST(CommandGate, OneWrongMacIsForgivenEveryFourSecondsFromTheFirstOn) {
+  Pair pair;
+  CanFrame wrong = pair.signer.sign(CommandOp::kArm);
+  wrong.data[7] ^= 0x80U;
+  const auto wait = [&](int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) pair.gate.tick();
+  };
+  EXPECT_EQ(guesses_left(pair.gate, wrong), 8);
+  pair.check(wrong);
+  wait(390);
+  pair.check(wrong);  // does not put off the first one's
+  pair.check(wrong);
+  wait(9);
+  EXPECT_EQ(guesses_left(pair.gate, wrong), 5);
+  wait(1);
+  EXPECT_EQ(guesses_left(pair.gate, wrong), 6);
+  wait(399);
+  EXPECT_EQ(guesses_left(pair.gate, wrong), 6);
+  wait(1);
+  EXPECT_EQ(guesses_left(pair.gate, wrong), 7);
+  wait(400);
+  EXPECT_EQ(guesses_left(pair.gate, wrong), 8);
+}
+
+TEST(CommandGate, AGateThatOpensAgainForgivesAsManyAsANewOne) {
+  Pair pair;
+  CanFrame wrong = pair.signer.sign(CommandOp::kArm);
+  wrong.data[7] ^= 0x80U;
+  for (int round = 0; round < 3; ++round) {
+    ASSERT_EQ(guesses_left(pair.gate, wrong), CommandGate::kMaxBadMacs) << round;
+    for (int i = 0; i < CommandGate::kMaxBadMacs; ++i) pair.check(wrong);
+    for (int tick = 0; tick < CommandGate::kLockoutTicks; ++tick) pair.gate.tick();
+  }
+}
+
 }  // namespace
 }  // namespace screed

@@ -58,6 +58,26 @@ TEST(SoilPlateTest, PressureIsBekkersAtAnyPlaceAndYaw) {
   }
 }
 
+TEST(SoilPlateTest, DampingAddsToThePressureOfASinkingPlateOnly) {
+  PlateTest test = plate_in("viper");
+  test.depths_m = {0.01, 0.0};
+  const std::vector<PlatePoint> undamped = press_plate(test);
+  test.soil.damping_pa_s_per_m = 1e5;
+  const std::vector<PlatePoint> damped = press_plate(test);
+  ASSERT_EQ(damped.size(), undamped.size());
+  const double expected = 1e5 * test.speed_m_per_s;
+  int sinking = 0;
+  for (size_t i = 1; i < damped.size(); ++i) {
+    if (undamped[i].pressure_pa <= 0.0) continue;
+    const bool down = damped[i].depth_m > damped[i - 1].depth_m;
+    EXPECT_NEAR(damped[i].pressure_pa - undamped[i].pressure_pa, down ? expected : 0.0,
+                0.01 * expected)
+        << damped[i].depth_m;
+    sinking += down ? 1 : 0;
+  }
+  EXPECT_GT(sinking, 10);
+}
+
 TEST(SoilPlateTest, PublishedPressuresOnViper) {
   const std::vector<PlatePoint> run = press_plate(plate_in("viper"));
   constexpr std::pair<double, double> kPressures[] = {

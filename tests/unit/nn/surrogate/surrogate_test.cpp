@@ -10,6 +10,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "nn/data/features.h"
+#include "nn/data/motion_signals.h"
 
 namespace screed::nn {
 namespace {
@@ -75,6 +76,32 @@ TEST(Surrogate, MeasuresTheInclinationOfAPlane) {
     EXPECT_NEAR(support.roll, std::atan(-rise * std::sin(heading)), 1e-6);
     EXPECT_NEAR(support.height_m, 0.31 * rise, 1e-6);
   }
+}
+
+TEST(SoilSignals, AreTheLawsParametersInTheOrderOfTheirNames) {
+  SoilParameters soil;
+  soil.k_c = 900.0;
+  soil.k_phi = 70000.0;
+  soil.exponent = 0.8;
+  soil.cohesion_pa = 250.0;
+  soil.friction_deg = 45.0;
+  soil.shear_modulus_m = 0.015;
+  const std::array<double, kSoilSignals> values = soil_signals(soil);
+  EXPECT_DOUBLE_EQ(values[0], 5.0) << "log10 of 900 / 0.03 + 70,000";
+  EXPECT_DOUBLE_EQ(values[1], 0.8);
+  EXPECT_DOUBLE_EQ(values[2], 250.0);
+  EXPECT_NEAR(values[3], 1.0, 1e-12) << "tan 45 degrees";
+  EXPECT_DOUBLE_EQ(values[4], 0.015);
+  // p = k z^n at that depth.
+  EXPECT_NEAR(1e5 * std::pow(std::pow(10.0, values[5]), 0.8), 6000.0, 1e-6);
+}
+
+TEST(Signals, AreFoundByTheirNamesAndNoOthersAre) {
+  for (const MotionSignalInfo& info : motion_signals()) {
+    ASSERT_TRUE(motion_signal_named(info.name).has_value()) << info.name;
+    EXPECT_EQ(*motion_signal_named(info.name), info.signal);
+  }
+  EXPECT_FALSE(motion_signal_named("wheel").has_value());
 }
 
 TEST(Surrogate, WithoutSlipDrivesTheArcOfItsTracks) {

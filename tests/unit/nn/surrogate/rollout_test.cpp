@@ -1,0 +1,149 @@
+// How far two recordings of the same drive are apart, on made-up ones.
+#include "nn/surrogate/rollout.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "firmware/leveling/leveling.h"
+#include "tests/unit/host_sim/run/session/session_fixture.h"
+
+namespace screed::nn {
+namespace {
+
+/// A drive straight on from a place, with every frame the same way and change of heading.
+struct MadeUpDrive {
+  double x = 0.0;
+  double y = 0.0;
+  double heading_rad = 0.0;
+  double distance_m = 0.005;  ///< a frame
+  double turn_rad = 0.0;      ///< a frame
+  double angular = 0.0;       ///< rate of turn that was wanted
+  std::size_t frames = 1200;
+  std::size_t before = 5;  ///< frames at rest before Algorithm 5 begins
+};
+
+void record(const fs::path& folder, const MadeUpDrive& drive) {
+  fs::create_directories(folder);
+  write_text(folder / "experiment.ini",
+             "[map]\nmodel = scm\n[soil]\npreset = viper\n[experiment]\nname = made_up\n");
+  screed::Recording run = random_run(0);
+  run.info.parameters = {};
+  SessionWriter writer(folder / "session.h5", run.info);
+  writer.record_heights(run.before.view());
+  double x = drive.x;
+  double y = drive.y;
+  double heading = drive.heading_rad;
+  for (std::size_t i = 0; i < drive.before + drive.frames; ++i) {
+    const bool drives = i >= drive.before;
+    SimFrame frame{};
+    frame.x = x;
+    frame.y = y;
+    frame.yaw = heading;
+    if (drives) {
+      const double middle = heading + 0.5 * drive.turn_rad;
+      frame.delta_x = drive.distance_m * std::cos(middle);
+      frame.delta_y = drive.distance_m * std::sin(middle);
+      frame.delta_theta = drive.turn_rad;
+      frame.angular = drive.angular;
+      frame.leveling_state = static_cast<std::int32_t>(LevelingState::kTrainingDrive);
+    }
+    writer.append(frame, SensorSample{}, RobotOutput{});
+    x += frame.delta_x;
+    y += frame.delta_y;
+    heading += frame.delta_theta;
+  }
+  writer.finish();
+}
+
+struct Pair {
+  TempFolder folder;
+  Rollout divergence(const MadeUpDrive& one, const MadeUpDrive& other) const {
+    record(folder.path() / "one", one);
+    record(folder.path() / "other", other);
+    const Rollout result = nn::divergence(folder.path() / "one", folder.path() / "other");
+    fs::remove_all(folder.path() / "one");
+    fs::remove_all(folder.path() / "other");
+    return result;
+  }
+};
+
+TEST(Apart, TheSameDriveFromAnotherPlaceIsNotApart) {
+  MadeUpDrive other;
+  other.x = 0.7;
+  other.y = -0.2;
+  other.before = 9;
+  const Rollout result = Pair().divergence({}, other);
+  EXPECT_EQ(result.start, 5U);
+  for (std::size_t i = 0; i < 2; ++i) {  // 6 m: the last of the ways is not made
+    ASSERT_TRUE(result.checks[i].reached) << i;
+    EXPECT_TRUE(result.checks[i].straight);
+    EXPECT_NEAR(result.checks[i].position_error, 0.0, 1e-9);
+    EXPECT_NEAR(result.checks[i].heading_error_rad, 0.0, 1e-9);
+  }
+  EXPECT_FALSE(result.checks[2].reached);
+}
+
+TEST(Apart, ThePlaceErrorIsTheDistanceAsShareOfTheWay) {
+  MadeUpDrive other;
+  other.distance_m = 0.0051;  // two per cent longer
+  const Rollout result = Pair().divergence({}, other);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(result.checks[i].position_error, 0.02, 5e-4) << i;
+    EXPECT_NEAR(result.checks[i].heading_error_rad, 0.0, 1e-9);
+  }
+}
+
+TEST(Apart, TheHeadingErrorGrowsWithTheTurn) {
+  MadeUpDrive other;
+  other.turn_rad = -1e-4;
+  const Rollout result = Pair().divergence({}, other);
+  EXPECT_NEAR(result.checks[0].heading_error_rad, 0.02, 3e-4) << "after 200 frames";
+  EXPECT_NEAR(result.checks[1].heading_error_rad, 0.1, 3e-4) << "after 1000";
+  // A circle of 50 m radius leaves its tangent by way^2 / (2 radius).
+  EXPECT_NEAR(result.checks[0].position_error, 0.01, 3e-4);
+  EXPECT_NEAR(result.checks[1].position_error, 0.05, 3e-4);
+}
+
+TEST(Apart, AWantedTurnMakesAWayThatIsNotStraight) {
+  MadeUpDrive one;
+  one.angular = 0.5;
+  EXPECT_FALSE(Pair().divergence(one, {}).checks[0].straight);
+}
+
+TEST(Apart, ThePathHasTenPlacesASecondFromTheFirstOne) {
+  const Rollout result = Pair().divergence({}, {});
+  ASSERT_GT(result.path.size(), 10U);
+  // The comparison begins one frame behind the start.
+  EXPECT_NEAR(result.path[1].x_m - result.path[0].x_m, 0.05, 1e-9);
+  EXPECT_NEAR(result.path.back().x_m, 5.95, 0.06);
+}
+
+TEST(Apart, AnEvenTurnHasNoWagsAndAnUnevenOneHas) {
+  MadeUpDrive even;
+  even.turn_rad = 2e-4;
+  const Rollout result = Pair().divergence(even, even);
+  EXPECT_NEAR(result.recorded_yaw_rate_deviation_rad_per_s, 0.0, 1e-3);
+  EXPECT_NEAR(result.yaw_rate_deviation_rad_per_s, result.recorded_yaw_rate_deviation_rad_per_s,
+              1e-3);
+}
+
+TEST(Apart, ARecordingWithoutSoilOrWithoutADriveIsRefused) {
+  const TempFolder folder;
+  MadeUpDrive still;
+  still.frames = 2;
+  record(folder.path() / "still", still);
+  EXPECT_NE(message_of<InputError>([&] {
+              divergence(folder.path() / "still", folder.path() / "still");
+            }).find("drove no frame"),
+            std::string::npos);
+  record(folder.path() / "rigid", {});
+  write_text(folder.path() / "rigid" / "experiment.ini", "[map]\nmodel = rigid\n");
+  EXPECT_NE(message_of<InputError>([&] {
+              divergence(folder.path() / "rigid", folder.path() / "rigid");
+            }).find("session on soil"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace screed::nn

@@ -1,0 +1,164 @@
+// The mutation tool: what it changes in a small text, what it leaves alone, and its tables.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/temp_folder.h"
+#include "tools/mutants/operators.h"
+#include "tools/mutants/tables.h"
+#include "tools/mutants/tests_of_build.h"
+
+namespace screed::mutants {
+namespace {
+
+/// The text of a function's body after each of its mutants.
+std::vector<std::string> mutants_of(const std::string& body) {
+  const std::string head = "void f() { ";
+  const std::string source = head + body + " }";
+  std::vector<std::string> texts;
+  for (const Site& site : find_mutations(source).sites) {
+    for (const Mutant& mutant : site.mutants) {
+      const std::string text = with_edit(source, mutant.edit);
+      texts.push_back(text.substr(head.size(), text.size() - head.size() - 2));
+    }
+  }
+  std::sort(texts.begin(), texts.end());
+  return texts;
+}
+
+std::vector<std::string> sorted(std::vector<std::string> texts) {
+  std::sort(texts.begin(), texts.end());
+  return texts;
+}
+
+TEST(MutantOperators, ComparisonsMoveTheirBoundaryAndTurnRound) {
+  EXPECT_EQ(mutants_of("bool b = x < y;"), sorted({"bool b = x <= y;", "bool b = x >= y;"}));
+  EXPECT_EQ(mutants_of("bool b = x == y;"), sorted({"bool b = x != y;"}));
+}
+
+TEST(MutantOperators, ArithmeticTurnsIntoItsOpposite) {
+  EXPECT_EQ(mutants_of("int a = b + c * d;"), sorted({"int a = b - c * d;", "int a = b + c / d;"}));
+  EXPECT_EQ(mutants_of("int a = -b;"), sorted({"int a = b;"}));
+}
+
+TEST(MutantOperators, StatementsAreLeftOutButNotDeclarations) {
+  EXPECT_EQ(mutants_of("int a = b; Type c(d); call(a);"), sorted({"int a = b; Type c(d); ;"}));
+  EXPECT_EQ(mutants_of("a.b += c;"), sorted({";", "a.b -= c;"}));
+  EXPECT_EQ(mutants_of("++a;"), sorted({";", "--a;"}));
+  EXPECT_EQ(mutants_of("return;"), sorted({";"}));
+  EXPECT_EQ(mutants_of("return a;"), std::vector<std::string>{});
+}
+
+TEST(MutantOperators, AGuardIsTakenAwayOrTurnedRound) {
+  EXPECT_EQ(mutants_of("if (a) call();"),
+            sorted({"if (true) call();", "if (!(a)) call();", "if (a) ;"}));
+  // The opposite of a comparison is the comparison's own mutant.
+  EXPECT_EQ(mutants_of("if (a == b) return;"),
+            sorted({"if (a != b) return;", "if (true) return;", "if (a == b) ;"}));
+}
+
+TEST(MutantOperators, AndTurnsIntoOr) {
+  EXPECT_EQ(mutants_of("bool a = b && c;"), sorted({"bool a = b || c;"}));
+}
+
+TEST(MutantOperators, MinimumAndTruthAreSwapped) {
+  EXPECT_EQ(mutants_of("int a = std::min(b, c);"), sorted({"int a = std::max(b, c);"}));
+  EXPECT_EQ(mutants_of("bool a = true;"), sorted({"bool a = false;"}));
+}
+
+TEST(MutantOperators, NumbersBecomeTheirNeighboursOrAnEighthMoreAndLess) {
+  EXPECT_EQ(other_numbers("0"), (std::vector<std::string>{"1"}));
+  EXPECT_EQ(other_numbers("1U"), (std::vector<std::string>{"0U", "2U"}));
+  EXPECT_EQ(other_numbers("100"), (std::vector<std::string>{"88", "112"}));
+  EXPECT_EQ(other_numbers("0x80U"), (std::vector<std::string>{"0x70U", "0x90U"}));
+  EXPECT_EQ(other_numbers("48'000"), (std::vector<std::string>{"42000", "54000"}));
+  EXPECT_EQ(other_numbers("0.0"), (std::vector<std::string>{"1.0"}));
+  EXPECT_EQ(other_numbers("0.5F"), (std::vector<std::string>{"0.25F", "1.0F"}));
+}
+
+TEST(MutantOperators, LeaveCommentsTextsIncludesAndTypesAlone) {
+  const std::vector<std::string> nothing;
+  EXPECT_EQ(mutants_of("// a + 1 < 2"), nothing);
+  EXPECT_EQ(mutants_of("/* call(1); */"), nothing);
+  EXPECT_EQ(mutants_of("auto a = \"1 + 1 == 2\";"), nothing);
+  EXPECT_EQ(mutants_of("auto a = R\"(1 < \" 2)\";"), nothing);
+  EXPECT_EQ(mutants_of("\n#define A 1 + 1\n"), nothing);
+  EXPECT_EQ(mutants_of("static_assert(1 + 1 == 2);"), nothing);
+  EXPECT_EQ(mutants_of("std::array<int, 3> a; int b[4];"), nothing);
+}
+
+TEST(MutantSwitches, StandInOneTextThatKeepsItsLines) {
+  const std::string source = "constexpr int kA = 5;\nbool f(int a) {\n  return a < kA;\n}\n";
+  const Mutations mutations = find_mutations(source);
+  EXPECT_EQ(with_switches(source, mutations, {}, {}),
+            "const int kA = (::mutants::on(1) ? 4 : ::mutants::on(2) ? 6 : 5);\nbool f(int a) {\n"
+            "  return a < ::mutants::Less{3} < kA;\n}\n");
+  EXPECT_EQ(with_switches(source, mutations, {1}, {"kA"}), source);
+}
+
+TEST(MutantSwitches, NestAsTheirExpressionsDo) {
+  const std::string source = "void f() {\n  if (a && b) ++c;\n}\n";
+  EXPECT_EQ(with_switches(source, find_mutations(source), {2, 3}, {}),
+            "void f() {\n  if (::mutants::condition(1, 2, static_cast<bool>("
+            "::mutants::flip(3, static_cast<bool>(::mutants::flip(3, static_cast<bool>(a)) && "
+            "::mutants::flip(3, static_cast<bool>(b))))))) ++c;\n}\n");
+}
+
+TEST(MutantTables, AnEquivalentMutantIsFoundByItsTextWhereverItStands) {
+  const TempFolder folder;
+  const std::filesystem::path table = folder.path() / "equivalent.txt";
+  write_text(table, "# why\n\nfile a.cpp\n- x   = 1;\n+ x = 2;\n= nobody reads x\n");
+  const std::vector<Equivalent> entries = read_equivalents(table);
+  ASSERT_EQ(entries.size(), 1U);
+  const std::string source = "void f() {\n\n    x = 1;\n}\n";
+  const Change change = change_of(source, {20, 21, "2"});
+  EXPECT_EQ(change.line, 3U);
+  EXPECT_EQ(change.column, 9U);
+  ASSERT_NE(equivalent(entries, "moved/to/a.cpp", change), nullptr);
+  EXPECT_EQ(equivalent(entries, "moved/to/a.cpp", change)->reason, "nobody reads x");
+  EXPECT_EQ(equivalent(entries, "b.cpp", change), nullptr);
+  EXPECT_EQ(equivalent(entries, "a.cpp", change_of(source, {20, 21, "3"})), nullptr);
+}
+
+TEST(MutantTables, AnIncompleteEntryIsRefusedWithItsLine) {
+  const TempFolder folder;
+  const std::filesystem::path table = folder.path() / "equivalent.txt";
+  write_text(table, "file a.cpp\n- x = 1;\n= nobody reads x\n");
+  try {
+    read_equivalents(table);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("equivalent.txt:3:"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(MutantTables, ATargetsPatternStandsForAllItsFiles) {
+  const TempFolder folder;
+  write_text(folder.path() / "a.cpp", "");
+  write_text(folder.path() / "b.cpp", "");
+  const std::filesystem::path table = folder.path() / "targets.txt";
+  write_text(table, "*.cpp 85 sample=7 tests=Soil*  # these\n");
+  const std::vector<Target> targets = read_targets(table, folder.path());
+  ASSERT_EQ(targets.size(), 2U);
+  EXPECT_EQ(targets[1].source, "b.cpp");
+  EXPECT_EQ(targets[1].bound, 85.0);
+  EXPECT_EQ(targets[1].sample, 7U);
+  EXPECT_EQ(targets[1].tests, "Soil*");
+  write_text(table, "c.cpp 85\n");
+  EXPECT_THROW(read_targets(table, folder.path()), std::runtime_error);
+  write_text(table, "a.cpp 120\n");
+  EXPECT_THROW(read_targets(table, folder.path()), std::runtime_error);
+}
+
+TEST(MutantTests, ATestWithParametersIsKnownByItsPlainName) {
+  EXPECT_EQ(plain_name("Suite.Name"), "Suite.Name");
+  EXPECT_EQ(plain_name("All/Suite.Name/3"), "Suite.Name");
+  EXPECT_EQ(plain_name("Suite/0.Name"), "Suite.Name");
+}
+
+}  // namespace
+}  // namespace screed::mutants

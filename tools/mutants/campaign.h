@@ -1,0 +1,91 @@
+// A campaign: builds the mutants of all targets, finds what tests reach them, runs those tests, and
+// keeps what came out in a file, so that the next campaign does only what is missing.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "tools/mutants/builder.h"
+#include "tools/mutants/tables.h"
+#include "tools/mutants/tests_of_build.h"
+
+namespace screed::mutants {
+
+struct Options {
+  std::filesystem::path build;  ///< objects and programs without mutants
+  std::filesystem::path work;
+  std::vector<std::string> files;  ///< only targets whose name contains one of these; empty: all
+  std::size_t jobs = 1;
+  std::size_t sample = 0;  ///< of each file; 0: what its line of the table says
+  unsigned seed = 1;
+  bool list = false;
+  std::string tests = "*";  ///< only these tests, as GoogleTest filters them; without exclusions
+  bool unit_only = false;   ///< without the tests of whole runs
+};
+
+enum class Fate { kUnknown, kKilled, kSurvived, kInvalid, kEquivalent };
+
+/// A mutant of a file of the table.
+struct Candidate {
+  std::size_t site;
+  std::size_t number;  ///< in its file, from 1
+  Mutant mutant;
+  Change change;
+  std::string id;  ///< "line:column:operator"
+  Fate fate = Fate::kUnknown;
+  std::string detail;  ///< the test that kills it, or the reason why none can
+};
+
+struct Subject {
+  Target target;
+  std::string text;
+  Mutations mutations;
+  std::vector<Candidate> candidates;
+  std::size_t first = 0;  ///< its number 0 among those of all files
+  // What is built of it:
+  std::filesystem::path folder;
+  Objects objects{};
+  std::string switched;
+  std::set<std::size_t> alone;
+  std::set<std::string> kept;
+};
+
+class Campaign {
+ public:
+  explicit Campaign(Options options);
+  void run();
+  /// Prints the table. False: a file is below its bound.
+  bool report() const;
+
+ private:
+  bool chosen(const Target& target) const;
+  void read_subjects();
+  void draw_sample(Subject& subject) const;
+  void build_switches(Subject& subject) const;
+  void find_reach();
+  void link_all();
+  /// The tests that may notice a mutant, the quickest first, unit tests before the others.
+  std::vector<const TestCase*> tests_for(const Subject& subject, const Candidate& candidate) const;
+  std::string key_of(const std::vector<const TestCase*>& tests) const;
+  bool recall(const Subject& subject, Candidate& candidate) const;
+  void decide(const Subject& subject, Candidate& candidate, std::size_t job);
+  Fate decide_alone(const Subject& subject, const Candidate& candidate,
+                    const std::vector<const TestCase*>& tests, std::size_t job,
+                    std::string& by) const;
+
+  Options options_;
+  Builder builder_;
+  std::vector<Equivalent> equivalents_;
+  std::vector<Subject> subjects_;
+  std::vector<TestCase> tests_;
+  std::map<std::string, const TestCase*> test_of_name_;
+  std::vector<std::vector<const TestCase*>> reached_by_;  // by number among all files
+  std::map<std::string, std::string> results_;            // by "hash id"
+  std::map<std::string, int> kills_;                      // by test, in this campaign
+  std::mutex mutex_;
+};
+
+}  // namespace screed::mutants
