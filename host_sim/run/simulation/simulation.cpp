@@ -439,7 +439,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   // As the experiment lays it out; the robot has settled into plant.terrain() already. Particles
   // lie as they fell.
   const HeightField before =
-      plant.particles() != nullptr ? plant.terrain() : make_terrain(experiment);
+      experiment.map.of_particles() ? plant.terrain() : make_terrain(experiment);
 
   SimulationSummary summary;
   summary.before = terrain_statistics(before);
