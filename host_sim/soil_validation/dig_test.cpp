@@ -54,9 +54,6 @@ void check(const DigTest& test) {
   check_range("dig", "beds", test.beds, 1, 64);
 }
 
-/// Presses the belts into the ground in one step: fills in the reactions.
-using Press = std::function<void(const PressingBody&, std::array<SoilContact, 2>&, double dt)>;
-
 class DiggingRobot {
  public:
   DiggingRobot(double x, double ground_m) : body_(dBodyCreate(world_.id())) {
@@ -67,8 +64,7 @@ class DiggingRobot {
     dBodySetPosition(body_, x, 0.0, ground_m + kWheelRadius_m + kBodyAboveAxles_m);
   }
 
-  void step(const Press& press, const std::array<double, 2>& belts, double hold_m_per_s,
-            double dt) {
+  void step(Terrain& bed, const std::array<double, 2>& belts, double hold_m_per_s, double dt) {
     PressingBody body;
     const Eigen::Matrix3d axes = rotation();
     body.mass_kg = kMass_kg;
@@ -76,7 +72,7 @@ class DiggingRobot {
     body.centre = position();
     body.velocity = to_eigen(dBodyGetLinearVel(body_));
     body.omega = to_eigen(dBodyGetAngularVel(body_));
-    std::array<SoilContact, 2> contacts;
+    std::array<FootprintContact, 2> contacts;
     for (size_t i = 0; i < 2; ++i) {
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.linear() = axes;
@@ -86,14 +82,17 @@ class DiggingRobot {
       belts_[i].set_pose(pose);
       contacts[i].footprint = &belts_[i];
       contacts[i].memory = &memories_[i];
-      contacts[i].surface_speed = belts[i];
-      contacts[i].slip = hold_m_per_s > 0.0 ? kSlip : 0.0;
+      contacts[i].arm = pose.translation() - body.centre;
+      contacts[i].motion.velocity = body.velocity + body.omega.cross(contacts[i].arm);
+      contacts[i].motion.omega = body.omega;
+      contacts[i].motion.surface_speed = belts[i];
+      contacts[i].motion.slip = hold_m_per_s > 0.0 ? kSlip : 0.0;
     }
-    press(body, contacts, dt);
-    for (const SoilContact& contact : contacts) {
+    bed.press(body, contacts, dt, memory_);
+    bed.end_step(dt);
+    for (const FootprintContact& contact : contacts) {
       const Eigen::Vector3d& force = contact.reaction.force;
-      const Eigen::Vector3d arm = contact.footprint->pose().translation() - body.centre;
-      const Eigen::Vector3d torque = arm.cross(force) + contact.reaction.torque;
+      const Eigen::Vector3d torque = contact.arm.cross(force) + contact.reaction.torque;
       dBodyAddForce(body_, force.x(), force.y(), force.z());
       dBodyAddTorque(body_, torque.x(), torque.y(), torque.z());
     }
@@ -116,7 +115,6 @@ class DiggingRobot {
   Eigen::Matrix3d rotation() const { return rotation_to_eigen(dBodyGetRotation(body_)); }
   double turned_rad() const { return turned_; }
   double held_ns() const { return held_; }  ///< the winch's force over time
-  BodyMemory& memory() { return memory_; }
 
  private:
   OdeWorld world_;
@@ -176,13 +174,11 @@ void measure(DigResult& result) {
   if (result.sunk_m3 > 0.0) result.sunk_radius_m /= result.sunk_m3;
 }
 
-/// Drives the manoeuvre; `ground` is asked for before and after the drive, the robot standing on
-/// it.
-DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press& press,
-                const std::function<HeightField()>& ground) {
-  DigResult result{averaged(ground()), HeightField::flat(1.0, 0.1)};
+/// Drives the manoeuvre, with the robot standing at its start.
+DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& bed) {
+  DigResult result{averaged(bed.surface()), HeightField::flat(1.0, 0.1)};
   const auto settling = static_cast<int>(std::lround(kSettle_s / dt));
-  for (int i = 0; i < settling; ++i) robot.step(press, {0.0, 0.0}, 0.0, dt);
+  for (int i = 0; i < settling; ++i) robot.step(bed, {0.0, 0.0}, 0.0, dt);
   const Eigen::Vector3d start = robot.position();
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
@@ -191,14 +187,14 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, const Press
   const double edge = 0.5 * test.size_m - 0.17;
   const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
   for (int64_t i = 0; i < steps; ++i) {
-    robot.step(press, belts, hold, dt);
+    robot.step(bed, belts, hold, dt);
     result.time_s += dt;
     const Eigen::Vector3d place = robot.position();
     result.pitch_rad =
         std::max(result.pitch_rad, std::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
     if (std::max(std::abs(place.x()), std::abs(place.y())) > edge + 0.01) break;
   }
-  result.after = averaged(ground());
+  result.after = averaged(bed.surface());
   const Eigen::Vector3d end = robot.position();
   result.end_x_m = end.x();
   result.end_y_m = end.y();
@@ -216,12 +212,7 @@ DigResult dig_soil(const DigTest& test) {
   SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
   bed.settle();
   DiggingRobot robot(start_x(test), 0.0);
-  const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
-                          double dt) {
-    bed.press(body, contacts, dt, robot.memory());
-    bed.end_step();
-  };
-  DigResult result = drive(test, robot, test.step_s, press, [&] { return bed.surface(); });
+  DigResult result = drive(test, robot, test.step_s, bed);
   measure(result);
   return result;
 }
@@ -235,19 +226,7 @@ DigResult dig_one_bed(const DigTest& test, uint64_t seed) {
   options.seed = seed;
   ParticleBed bed(ground_before(test, test.depth_m), options);
   DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
-  const Press press = [&](const PressingBody& body, std::array<SoilContact, 2>& contacts,
-                          double dt) {
-    for (SoilContact& contact : contacts) {
-      FootprintMotion motion;
-      const Eigen::Vector3d arm = contact.footprint->pose().translation() - body.centre;
-      motion.velocity = body.velocity + body.omega.cross(arm);
-      motion.omega = body.omega;
-      motion.surface_speed = contact.surface_speed;
-      contact.reaction = bed.press(*contact.footprint, motion, dt);
-    }
-    bed.step(dt);
-  };
-  return drive(test, robot, bed.longest_step_s(), press, [&] { return bed.surface(); });
+  return drive(test, robot, bed.longest_step_s(), bed);
 }
 
 constexpr double DigResult::*kMeans[] = {

@@ -104,7 +104,7 @@ std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test) {
       plate.set_pose(pose);
       FootprintMotion motion;
       motion.velocity.z() = speed;
-      const SoilReaction reaction = bed.press(plate, motion, dt);
+      const TerrainReaction reaction = bed.press(plate, motion, dt);
       bed.step(dt);
       pressure += kAverage * (reaction.force.z() * per_area - pressure);
     };
@@ -142,7 +142,7 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.translation() = place;
       block.set_pose(pose);
-      const SoilReaction reaction = bed.press(block, motion, dt);
+      const TerrainReaction reaction = bed.press(block, motion, dt);
       bed.step(dt);
       motion.velocity.z() +=
           dt * (reaction.force.z() / mass - 9.80665 - kDamping_per_s * motion.velocity.z());

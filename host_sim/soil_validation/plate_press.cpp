@@ -59,7 +59,7 @@ std::vector<PlatePoint> press_plate(const PlateTest& test) {
       const double depth = begin + travel * i / steps;
       pose.translation() << test.offset_x_m, test.offset_y_m, 0.5 * kThickness_m - depth;
       plate.set_pose(pose);
-      const SoilReaction reaction = bed.press(plate, motion, test.step_s, memory);
+      const TerrainReaction reaction = bed.press(plate, motion, test.step_s, memory);
       bed.end_step();
       run.push_back(
           {depth, reaction.force.z() / area, bekker_pressure(test, depth), memory.patch_b_m});

@@ -57,7 +57,7 @@ void SoilRobot::step(double left_m_per_s, double right_m_per_s, double dt) {
   body.centre = origin;
   body.velocity = speed;
   body.omega = to_eigen(dBodyGetAngularVel(body_));
-  std::array<SoilContact, 4> contacts;
+  std::array<FootprintContact, 4> contacts;
   for (size_t i = 0; i < wheels_.size(); ++i) {
     Wheel& wheel = wheels_[i];
     const Eigen::Vector3d arm = axes * wheel.place;
@@ -65,20 +65,21 @@ void SoilRobot::step(double left_m_per_s, double right_m_per_s, double dt) {
     pose.linear() = axes;
     pose.translation() = origin + arm;
     wheel.footprint.set_pose(pose);
-    SoilContact& contact = contacts[i];
+    FootprintContact& contact = contacts[i];
     contact.footprint = &wheel.footprint;
     contact.memory = &wheel.memory;
-    contact.surface_speed = i % 2 == 0 ? left_m_per_s : right_m_per_s;
+    contact.motion.surface_speed = i % 2 == 0 ? left_m_per_s : right_m_per_s;
     const double ground = (speed + body.omega.cross(arm)).dot(axes.col(0));
-    const double faster = std::max(std::abs(ground), std::abs(contact.surface_speed));
-    contact.slip = faster > kSlipSpeed
-                       ? std::min(1.0, std::abs(contact.surface_speed - ground) / faster)
-                       : 0.0;
+    const double faster = std::max(std::abs(ground), std::abs(contact.motion.surface_speed));
+    contact.motion.slip =
+        faster > kSlipSpeed
+            ? std::min(1.0, std::abs(contact.motion.surface_speed - ground) / faster)
+            : 0.0;
   }
   bed_.press(body, contacts, dt, memory_);
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  for (const SoilContact& contact : contacts) {
+  for (const FootprintContact& contact : contacts) {
     const Eigen::Vector3d arm = contact.footprint->pose().translation() - origin;
     force += contact.reaction.force;
     torque += arm.cross(contact.reaction.force) + contact.reaction.torque;

@@ -73,7 +73,7 @@ class Testbed {
       pose.translation() = axes_ * Eigen::Vector3d(along, test_.offset_m, height);
       wheel_.set_pose(pose);
       motion.velocity = axes_ * Eigen::Vector3d(test_.speed_m_per_s, 0.0, rising);
-      const SoilReaction reaction = bed_.press(wheel_, motion, test_.step_s, memory);
+      const TerrainReaction reaction = bed_.press(wheel_, motion, test_.step_s, memory);
       bed_.end_step();
       const Eigen::Vector3d force = axes_.transpose() * reaction.force;
       const double sinkage = radius - height;

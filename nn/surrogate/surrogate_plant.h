@@ -57,8 +57,6 @@ class SurrogatePlant : public Environment {
   uint64_t steps() const override { return steps_; }
   double time_s() const override;
   const HeightField& terrain() const override { return ground(); }
-  const SoilBed* soil() const override { return nullptr; }
-  const ParticleBed* particles() const override { return nullptr; }
   bool is_deformable() const override { return true; }
   const VehicleState& vehicle() const override { return vehicle_; }
   const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }

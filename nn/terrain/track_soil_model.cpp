@@ -197,7 +197,7 @@ void TrackSoilModel::lookup(TrackCell& cell) const {
 }
 
 /// What the tracks passed before, each along its own way: where a track has risen over it since,
-/// as PathHistory has it (host_sim/physics/soil/footprint.h), in the last steps' stance.
+/// as PathHistory has it (host_sim/physics/terrain/footprint.h), in the last steps' stance.
 void TrackSoilModel::update_paths(const Stride& stride) {
   const double length = tracks_.half_length_m + tracks_.radius_m;
   for (const std::size_t side : {0U, 1U}) {

@@ -187,7 +187,7 @@ TEST(ChainTrack, TheFirmwareDrivesItOnSoil) {
     const Eigen::Vector3d begin = drive.position();
     drive.run(8.0);
     EXPECT_NEAR((drive.position() - begin).norm(), 0.8, 0.05);
-    EXPECT_EQ(drive.world.plant().soil()->balance().error(), 0);
+    EXPECT_EQ(drive.world.plant().volume_balance().error(), 0);
     EXPECT_EQ(drive.robot.supervisor().faults(), 0);
   }
 }
@@ -199,7 +199,7 @@ TEST(ChainTrack, CrossesRoughSoil) {
   Worst worst;
   run(plant, 20.0, 0.8, 0.7, worst);
   expect_whole(worst, 0.01);
-  EXPECT_EQ(plant.soil()->balance().error(), 0);
+  EXPECT_EQ(plant.volume_balance().error(), 0);
 }
 
 // Where Sandbox' tracks came off: gravel, straight on, turning and back.

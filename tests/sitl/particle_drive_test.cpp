@@ -29,7 +29,7 @@ TEST_P(ParticleDrive, StandsAndDrives) {
   const Eigen::Vector3d begin = drive.position();
   ASSERT_TRUE(drive.start());
   EXPECT_LT((drive.position() - begin).head<2>().norm(), 0.005);
-  EXPECT_LT(drive.world.plant().particles()->counts().awake, 20U);
+  EXPECT_LT(drive.world.plant().terrain_work().awake, 20U);
   drive.run(4.0);
   const double distance = (drive.position() - begin).head<2>().norm();
   EXPECT_GT(distance, 0.2);
@@ -51,10 +51,10 @@ TEST(ParticleDriveTest, ARobotAtRestCostsNothing) {
   options.ground_station_arms = false;
   TestDrive drive(level_bed(), options);
   drive.run(2.0);
-  const uint64_t work = drive.world.plant().particles()->counts().sphere_steps;
+  const uint64_t work = drive.world.plant().terrain_work().element_steps;
   const Eigen::Vector3d begin = drive.position();
   drive.run(2.0);
-  EXPECT_EQ(drive.world.plant().particles()->counts().sphere_steps, work);
+  EXPECT_EQ(drive.world.plant().terrain_work().element_steps, work);
   EXPECT_LT((drive.position() - begin).norm(), 1e-5);
 }
 

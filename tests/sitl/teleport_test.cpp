@@ -83,6 +83,26 @@ TEST(Teleport, OnSoilToo) {
   expect_no_glitch(drive_over_the_edges(hills(kBed_m, true), 30.0, soil_preset("viper")), 2);
 }
 
+TEST(Teleport, OnParticlesToo) {
+  constexpr double kSize_m = 0.6;
+  WorldOptions options = drive_options(0.2, 0.0);
+  options.start.x_m = 0.25;
+  options.particles.emplace();
+  TestDrive drive(
+      HeightField::from_function(48, 48, kSize_m / 48, true, [](double, double) { return 0.1; }),
+      options);
+  ASSERT_TRUE(drive.start());
+  const double begin = drive.world.plant().unwrapped_position().x();
+  drive.run(3.0);
+  EXPECT_EQ(drive.world.plant().wrap_counts()[0], 1);
+  EXPECT_LT(std::abs(drive.position().x()), kSize_m / 2);
+  const double end = drive.world.plant().unwrapped_position().x();
+  EXPECT_DOUBLE_EQ(end, drive.position().x() + kSize_m);
+  EXPECT_GT(end - begin, 0.2);
+  EXPECT_LT(end - begin, 0.7);
+  EXPECT_LT(std::abs(drive.attitude().pitch), 0.35);
+}
+
 TEST(Teleport, IsTheDriveOnABedThatIsLargeEnough) {
   constexpr double kSeconds = 20.0;
   const std::vector<Step> small = drive_over_the_edges(hills(kBed_m, true), kSeconds);

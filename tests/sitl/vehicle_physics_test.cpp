@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "host_sim/physics/terrain/rigid_terrain.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {
@@ -21,7 +22,7 @@ struct Bench {
   void put_down(double x, double y, const Attitude& attitude = {0, 0, 0}) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = rotation_from(attitude);
-    pose.translation() << x, y, vehicle.resting_height(ground, x, y, pose.linear());
+    pose.translation() << x, y, vehicle.resting_height(ground.surface(), x, y, pose.linear());
     vehicle.place(pose);
   }
   void run(double seconds, double left_v = 0.0, double right_v = 0.0) {
@@ -32,7 +33,7 @@ struct Bench {
     }
   }
 
-  HeightField ground;
+  RigidTerrain ground;
   OdeWorld ode;
   Vehicle vehicle;
 };

@@ -173,7 +173,7 @@ TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
     EXPECT_NEAR(displacement / (0.8 * (1.0 - own_slip(*options.soil))), 1.0, 0.05);
     EXPECT_LT(steepest, 5.0 * kDeg);
     EXPECT_LT(fastest, 0.05);
-    EXPECT_EQ(drive.world.plant().soil()->balance().error(), 0);
+    EXPECT_EQ(drive.world.plant().volume_balance().error(), 0);
     EXPECT_EQ(drive.robot.supervisor().faults(), 0);
   }
 }

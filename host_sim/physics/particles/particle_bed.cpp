@@ -108,6 +108,7 @@ ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedE
 
 void ParticleBed::set_up() {
   const size_t n = position_.size();
+  work_.elements = n;
   velocity_.assign(n, Eigen::Vector3d::Zero());
   angular_velocity_ = force_ = moment_ = velocity_;
   anchor_ = position_;
@@ -152,6 +153,11 @@ Eigen::Vector3d ParticleBed::between(const Eigen::Vector3d& from, const Eigen::V
     separation.y() -= extent_.depth_m * std::round(separation.y() / extent_.depth_m);
   }
   return separation;
+}
+
+BedBounds ParticleBed::bounds() const {
+  return {extent_.width_m, extent_.depth_m,
+          extent_.periodic ? BedEdge::kWrapped : BedEdge::kWalled};
 }
 
 // ---- sleep
@@ -362,9 +368,9 @@ void ParticleBed::move(double dt) {
 void ParticleBed::step(double dt) {
   release_gear();
   if (pairs_stale_ || 2.0 * travelled_ > kSkin * options_.material.radius_m) find_pairs();
-  counts_.awake = awake_.size();
-  counts_.contacts = pairs_.size();
-  counts_.sphere_steps += awake_.size();
+  work_.awake = awake_.size();
+  work_.contacts = pairs_.size();
+  work_.element_steps += awake_.size();
   collide_pairs(dt);
   collide_walls(dt);
   move(dt);
@@ -379,7 +385,7 @@ double ParticleBed::settle(double max_s) {
   for (; time < max_s && !awake_.empty(); time += dt) step(dt);
   drag_ = 0.0;
   window_s_ = kWindow_s;
-  counts_.awake = awake_.size();
+  work_.awake = awake_.size();
   return time;
 }
 
@@ -392,7 +398,21 @@ int32_t ParticleBed::gear_number(const Footprint* solid) {
   return kGear - static_cast<int32_t>(at - gear_.begin());
 }
 
-SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& motion, double dt) {
+void ParticleBed::press(const PressingBody& /*body*/, std::span<FootprintContact> contacts,
+                        double dt, BodyMemory& /*memory*/) {
+  for (FootprintContact& contact : contacts) {
+    contact.reaction = press(*contact.footprint, contact.motion, dt);
+  }
+}
+
+ContactStiffness ParticleBed::contact_stiffness() const {
+  const ParticleMaterial& material = options_.material;
+  const double stiffness = material.stiffness_n_per_m();
+  return {stiffness, 2.0 * material.damping_ratio * std::sqrt(stiffness * material.mass_kg())};
+}
+
+TerrainReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& motion,
+                                   double dt) {
   const double radius = options_.material.radius_m;
   const Eigen::Vector3d centre = solid.pose().translation();
   const Eigen::Matrix3d& axes = solid.pose().linear();
@@ -400,7 +420,7 @@ SoilReaction ParticleBed::press(const Footprint& solid, const FootprintMotion& m
   Eigen::Vector3d reach;
   reach << solid.reach(), solid.reach_down();
   reach.array() += radius;
-  SoilReaction reaction;
+  TerrainReaction reaction;
   grid_.visit_box(centre - reach, centre + reach, [&](int32_t particle) {
     const auto i = static_cast<size_t>(particle);
     const SolidContact near = nearest_on(solid, axes.transpose() * between(centre, position_[i]));

@@ -18,9 +18,10 @@
 #include "host_sim/physics/particles/bed_layout.h"
 #include "host_sim/physics/particles/sphere_grid.h"
 #include "host_sim/physics/particles/sphere_law.h"
-#include "host_sim/physics/soil/footprint.h"
-#include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/footprint.h"
+#include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 
 namespace screed {
 
@@ -32,14 +33,7 @@ struct ParticleOptions {
   Eigen::Vector3d gravity = {0.0, 0.0, -9.80665};
 };
 
-/// What the bed's running has cost so far, in numbers that do not depend on a clock.
-struct ParticleCounts {
-  size_t awake = 0;
-  size_t contacts = 0;  ///< pairs near enough to be looked at in the last step
-  uint64_t sphere_steps = 0;
-};
-
-class ParticleBed {
+class ParticleBed final : public Terrain {
  public:
   /// Fills the space below `top` and lets it come to rest (unless fixed). Throws InputError as
   /// stack_counts, and for material out of range.
@@ -48,23 +42,30 @@ class ParticleBed {
   ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedExtent& extent, double height_m,
               const ParticleOptions& options);
 
-  /// Running gear or hull against the particles in this step; forces act on both. Every body
-  /// before step(). A solid is known by its address, which must not change.
-  SoilReaction press(const Footprint& solid, const FootprintMotion& motion, double dt);
+  /// One footprint after the other; forces act on bodies and particles. Needs no memories.
+  void press(const PressingBody& body, std::span<FootprintContact> contacts, double dt,
+             BodyMemory& memory) override;
+  /// A solid against the particles in this step. It is known by its address, which must not change.
+  TerrainReaction press(const Footprint& solid, const FootprintMotion& motion, double dt);
   /// One step of at most longest_step_s().
   void step(double dt);
-  double longest_step_s() const { return SphereLaw::longest_step_s(options_.material); }
+  void end_step(double dt) override { step(dt); }
+  double longest_step_s() const override { return SphereLaw::longest_step_s(options_.material); }
   /// Steps until every particle sleeps, for at most this time; returns the time it took, s.
   double settle(double max_s);
 
   /// The height map as it is now: under each ray the highest surface of a particle, or the floor.
-  const HeightField& surface() const;
-  /// The floor below the particles, for bodies: level, at height 0, without end.
-  const HeightField& floor() const { return floor_; }
+  const HeightField& surface() const override;
+  bool is_deformable() const override { return true; }
+  BedBounds bounds() const override;
+  /// The floor below the particles: level, at height 0, without end.
+  const HeightField* hard_surface() const override { return &floor_; }
+  FootprintShape footprint_shape() const override { return FootprintShape::kSolid; }
+  ContactStiffness contact_stiffness() const override;
 
   const ParticleOptions& options() const { return options_; }
   const BedExtent& extent() const { return extent_; }
-  const ParticleCounts& counts() const { return counts_; }
+  TerrainWork work() const override { return work_; }
   size_t size() const { return position_.size(); }
   const Eigen::Vector3d& position(size_t particle) const { return position_[particle]; }
   const Eigen::Vector3d& velocity(size_t particle) const { return velocity_[particle]; }
@@ -121,7 +122,7 @@ class ParticleBed {
   double drag_ = 0.0;      // share of the speed lost in a second, while settling
   double window_s_ = 0.0;  // of rest before sleep
   SphereGrid grid_;
-  ParticleCounts counts_;
+  TerrainWork work_;
 
   // Of each particle.
   std::vector<Eigen::Vector3d> position_;

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "host_sim/physics/soil/footprint.h"
+#include "host_sim/physics/terrain/footprint.h"
 
 namespace screed {
 

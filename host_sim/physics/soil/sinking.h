@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "host_sim/physics/soil/soil_contact.h"
+#include "host_sim/physics/terrain/footprint_contact.h"
 
 namespace screed {
 

@@ -67,29 +67,29 @@ VolumeBalance SoilBed::balance() const {
   return {volume_before_, flow_.surface().height_sum(), compacted_, flow_.in_transit()};
 }
 
-SoilReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
-                            ContactMemory& memory) {
+TerrainReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
+                               ContactMemory& memory) {
   PressingBody body;
   body.mass_kg = motion.mass_kg;
   body.centre = footprint.pose().translation();
   body.velocity = motion.velocity;
   body.omega = motion.omega;
-  SoilContact contact{&footprint, &memory, motion.surface_speed, motion.slip};
+  FootprintContact contact{&footprint, &memory, motion};
   press(body, {&contact, 1}, dt, memory.alone);
   return contact.reaction;
 }
 
-void SoilBed::press(const PressingBody& body, std::span<SoilContact> contacts, double dt,
+void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contacts, double dt,
                     BodyMemory& memory) {
   cell_count_ = 0;
   ranges_.clear();
   springs_.clear();
   const bool imposed = !std::isfinite(body.mass_kg);
   const bool tilts = !body.inverse_inertia.isZero(0.0);
-  for (SoilContact& contact : contacts) {
+  for (FootprintContact& contact : contacts) {
     const Footprint& footprint = *contact.footprint;
     ContactMemory& kept = *contact.memory;
-    const Eigen::Vector3d arm = footprint.pose().translation() - body.centre;
+    const Eigen::Vector3d arm = contact.arm = footprint.pose().translation() - body.centre;
     const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
     extend_path(footprint, velocity * dt, options_.follow_slopes, kept.path);
     double elastic = soil_.elastic_pa_per_m;

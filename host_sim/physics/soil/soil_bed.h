@@ -22,9 +22,10 @@
 #include "host_sim/physics/soil/material_flow.h"
 #include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/sinking.h"
-#include "host_sim/physics/soil/soil_contact.h"
 #include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 
 namespace screed {
 
@@ -45,40 +46,37 @@ struct SoilOptions {
   double sample_spacing_m = 0.00125;  ///< of the sample points inside a cell, at most
 };
 
-/// Volumes in units of height times cells. Always: heights_now = heights_before - compacted -
-/// in_transit.
-struct VolumeBalance {
-  int64_t before = 0;
-  int64_t now = 0;
-  int64_t compacted = 0;
-  int64_t in_transit = 0;  ///< sunk in the last steps and not yet deposited
-  int64_t error() const { return before - compacted - in_transit - now; }
-};
-
-class SoilBed {
+class SoilBed final : public Terrain {
  public:
   SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options = {});
 
-  /// A body in this step, with all its footprints: how it sinks and tilts on them is solved
-  /// together. Every body of a step before end_step().
-  void press(const PressingBody& body, std::span<SoilContact> contacts, double dt,
-             BodyMemory& memory);
+  /// How the body sinks and tilts on all its footprints is solved together. Each contact needs a
+  /// memory.
+  void press(const PressingBody& body, std::span<FootprintContact> contacts, double dt,
+             BodyMemory& memory) override;
   /// A footprint by itself: it sinks and does not tilt.
-  SoilReaction press(const Footprint& footprint, const FootprintMotion& motion, double dt,
-                     ContactMemory& memory);
+  TerrainReaction press(const Footprint& footprint, const FootprintMotion& motion, double dt,
+                        ContactMemory& memory);
   /// Ends a step: what was sunk is deposited beside the footprints, slopes slide.
   void end_step();
+  void end_step(double /*dt*/) override { end_step(); }
   /// Lets slopes slide until none is too steep, or `max_moves` moves were made; returns the moves.
   int64_t settle(int64_t max_moves = INT64_MAX);
 
-  const HeightField& surface() const { return flow_.surface(); }
+  const HeightField& surface() const override { return flow_.surface(); }
+  bool is_deformable() const override { return true; }
+  BedBounds bounds() const override { return bounds_of(surface()); }
+  FootprintShape footprint_shape() const override { return FootprintShape::kLowerSurface; }
+  double max_height_within(double x, double y, double radius) const override {
+    return surface().max_height_within(x, y, radius);
+  }
   /// Whether the slopes round a node are still to be looked at: a body stood on it in the last step
   /// and held it, or more slid than a step has time for; then slopes_left() was not 0.
   bool is_slope_queued(int ix, int iy) const { return flow_.is_queued(flow_.index(ix, iy)); }
   /// Nodes that the last step had no time for.
   size_t slopes_left() const { return slopes_left_; }
   const SoilParameters& soil() const { return soil_; }
-  VolumeBalance balance() const;
+  VolumeBalance balance() const override;
 
  private:
   enum class Lattice : uint8_t {  // the sample points of a cell
@@ -147,7 +145,7 @@ class SoilBed {
     double swept = 0.0;  // of their mobilised slip
   };
 
-  Range find_cells(const SoilContact& contact, double elastic);
+  Range find_cells(const FootprintContact& contact, double elastic);
   void find_candidates(const Footprint& footprint, double rise);
   void add_sample_points(const Candidate& candidate);
   bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
@@ -157,7 +155,7 @@ class SoilBed {
               const Law& law, SoilCell& cell);
   void update_coverage(CellHistory& history, double covered, double sunk) const;
   void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
-  void react(const Range& range, const PressingBody& body, SoilContact& contact, double dt);
+  void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
   void dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt);
   size_t sample_count(Lattice lattice) const;
   bool fresh(const CellHistory& history) const {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "host_sim/physics/soil/double2.h"
 #include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/double2.h"
 
 namespace screed {
 namespace {
@@ -17,12 +17,13 @@ constexpr double kStepSinkage_m = 0.001;
 }  // namespace
 
 /// The cells that a footprint touches, sampled.
-SoilBed::Range SoilBed::find_cells(const SoilContact& contact, double elastic) {
+SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elastic) {
   const Footprint& footprint = *contact.footprint;
   const ContactMemory& memory = *contact.memory;
   const double spacing = flow_.surface().spacing_m();
   // Slip-sinkage raises the exponent with the slip of the moment.
-  const double more = std::clamp(contact.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
+  const double more =
+      std::clamp(contact.motion.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
   const PowerTable& table = tables_[static_cast<size_t>(std::lround(more))];
   // The patch of the last step decides this step's b; at the first touch the body itself does.
   const double b = memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, 1e-3) : footprint.narrow();

@@ -63,10 +63,11 @@ void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double 
 }
 
 /// How the soil yields in a footprint's cells, and the forces of the cells.
-void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& contact, double dt) {
+void SoilBed::react(const Range& range, const PressingBody& body, FootprintContact& contact,
+                    double dt) {
   contact.reaction = {};
   if (range.begin == range.end) return;
-  SoilReaction reaction;  // by itself, so that the sums stay in registers
+  TerrainReaction reaction;  // by itself, so that the sums stay in registers
   const bool radial = options_.normal_stress == NormalStress::kRadial;
   const Eigen::Isometry3d& pose = contact.footprint->pose();
   const Eigen::Vector3d centre = pose.translation();
@@ -117,7 +118,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, SoilContact& c
     const Eigen::Vector3d face(cell.tilt_x * per_length, cell.tilt_y * per_length, per_length);
     // Forward along the surface, at right angles to the axle.
     const Eigen::Vector3d tread = axle.cross(face);
-    const Eigen::Vector3d surface = velocity - contact.surface_speed * tread;
+    const Eigen::Vector3d surface = velocity - contact.motion.surface_speed * tread;
     const double slide_along = surface.dot(radial ? tread : level_forward);
     const double slide_across = surface.dot(radial ? face.cross(tread) : level_side);
     // Directions in the plane in which the soil shears.

@@ -17,9 +17,6 @@ constexpr int kRows = 2;            // of contact points: the outer and the inne
 constexpr double kSinkIn_m = 0.0004;
 constexpr double kCarryingPins = 6;  // on level ground: three under each wheel
 constexpr double kDampingRatio = 0.7;
-constexpr double kUpperSide = 0.2;  // these three as in running_gear.cpp
-constexpr double kSlipSpeed = 1e-3;
-constexpr double kOnItsSide = 0.8;
 
 // Between pin and wheel. The teeth are as soft as the light rear wheel allows, whose own motion is
 // a step behind the pins'.
@@ -28,11 +25,6 @@ constexpr double kWheelDamping = 2.0;    // N s/m
 constexpr double kToothStiffness = 4e3;
 constexpr double kToothDamping = 1.0;
 constexpr double kToothHeight_m = 0.002;
-
-// Of the shoes, inwards from the pins: what particles meet.
-constexpr double kShoeThickness_m = 0.008;
-// That push on one link at a time, about: particles are larger than links.
-constexpr double kSpheresOnALink = 2.0;
 
 }  // namespace
 
@@ -93,7 +85,8 @@ ChainTrack::ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& 
   law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * load.mass_kg / touching) *
                  std::sqrt(carrying / touching);
 
-  shoes_.assign(rest_.size(), Footprint::box({link_length_, geometry.width, kShoeThickness_m}));
+  shoes_.assign(rest_.size(),
+                Footprint::box({link_length_, geometry.width, kChainShoeThickness_m}));
   solver_ = ChainSolver(rest_.size());
   shoe_contacts_.reserve(kRows * rest_.size());
   engagements_.reserve(2 * rest_.size());
@@ -228,7 +221,7 @@ void ChainTrack::add_wheels(const PlaneFrame& frame, const WheelRates& rates, do
   }
 }
 
-void ChainTrack::collide_terrain(const HeightField& ground, const PlaneFrame& frame, double dt) {
+void ChainTrack::stand_on(const HeightField& hard, const PlaneFrame& frame, double dt) {
   TerrainContact contact;
   for (size_t i = 0; i < pins(); ++i) {
     const Vector2 chord = position_[after(i)] - position_[before(i)];
@@ -242,7 +235,7 @@ void ChainTrack::collide_terrain(const HeightField& ground, const PlaneFrame& fr
     for (int row = 0; row < kRows; ++row) {
       Eigen::Vector3d& bristle = bristles_[kRows * i + static_cast<size_t>(row)];
       const Eigen::Vector3d edge = (row == 0 ? 0.5 : -0.5) * geometry_.width * axle;
-      if (above || !find_contact(ground, pin + edge, contact)) {
+      if (above || !find_contact(hard, pin + edge, contact)) {
         bristle.setZero();
         continue;
       }
@@ -332,135 +325,40 @@ std::array<double, 2> ChainTrack::finish(const PlaneFrame& frame, double dt, Wre
   return torque;
 }
 
-double ChainTrack::surface_speed(const PlaneFrame& frame) const {
-  double speed = 0.0;
-  for (size_t i = 0; i < pins(); ++i) {
-    const Vector2 ahead = (position_[after(i)] - position_[before(i)]).normalized();
-    speed += ahead.dot(
-        frame.in_plane(velocity_[i] - frame.carrier_velocity(frame.to_world(position_[i]))));
-  }
-  return speed / static_cast<double>(pins());
+size_t ChainTrack::footprint_count(FootprintShape shape) const {
+  if (shape == FootprintShape::kNone) return 0;
+  return shape == FootprintShape::kSolid ? shoes_.size() : 1;
 }
 
-SoilContact ChainTrack::soil_contact(const CarrierMotion& carrier) {
-  const PlaneFrame frame = frame_of(carrier);
-  const bool on_its_side = std::abs(frame.axes(2, 1)) > kOnItsSide;
-  Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = frame.axes;
-  pose.translation() = frame.centre;
-  footprint.set_pose(pose);
-  SoilContact contact;
-  contact.footprint = &footprint;
-  contact.memory = &memory_;
-  if (on_its_side || at_rest_) return contact;
-  contact.surface_speed = surface_speed(frame);
-  const double over_ground = frame.carrier_velocity(frame.centre).dot(frame.axes.col(0));
-  const double faster = std::max(std::abs(over_ground), std::abs(contact.surface_speed));
-  if (faster > kSlipSpeed) {
-    contact.slip = std::min(1.0, std::abs(contact.surface_speed - over_ground) / faster);
-  }
-  return contact;
-}
-
-// What drives along the band goes into the pins of the lower run; the rest goes straight into the
-// body, through wheels and guides that are stiff beside soil. The body has got all of it already.
-void ChainTrack::pull_on_lower_run(const SoilReaction& soil, const PlaneFrame& frame, double dt,
-                                   Wrench& wrench) {
-  normal_load_ = soil.normal_load;
-  sinkage_ = soil.sinkage;
-  if (std::abs(frame.axes(2, 1)) > kOnItsSide) return;
-  const double below = frame.axes(2, 2) < 0.0 ? 1.0 : -1.0;
-  const auto in_lower_run = [&](const Vector2& pin) {
-    return pin.y() * below > 0.0 && std::abs(pin.x()) <= half_length_;
-  };
-  const auto lower = std::count_if(position_.begin(), position_.end(), in_lower_run);
-  const Vector2 each(soil.force.dot(frame.axes.col(0)) / static_cast<double>(lower), 0.0);
-  for (size_t i = 0; i < pins(); ++i) {
-    if (!in_lower_run(position_[i])) continue;
-    solver_.right[i] += dt * each;
-    wrench.add(-frame.from_plane(each), frame.to_world(position_[i]) - frame.carrier.origin);
-  }
-}
-
-// Every link is a box to the particles. They push on it with stiff springs of their own: the pins
-// take them as if the springs were implicit, which only a change of their velocity feels.
-void ChainTrack::press_particles(ParticleBed& particles, const PlaneFrame& frame, double dt,
-                                 Wrench& wrench) {
-  const ParticleMaterial& material = particles.options().material;
-  const double gain =
-      kSpheresOnALink *
-      (2.0 * material.damping_ratio * std::sqrt(material.stiffness_n_per_m() * material.mass_kg()) +
-       dt * material.stiffness_n_per_m());
-  const Eigen::Vector3d axle = frame.axes.col(1);
-  for (size_t i = 0; i < pins(); ++i) {
-    const size_t j = after(i);
-    const Vector2 run = position_[j] - position_[i];
-    const double length = run.norm();
-    const Vector2 along = run / length;
-    const Vector2 out(-along.y(), along.x());
-    const Vector2 inwards = -0.5 * kShoeThickness_m * out;
-
-    Eigen::Isometry3d pose;
-    pose.linear() << frame.from_plane(along), axle, frame.from_plane(out);
-    pose.translation() = frame.to_world(position_[i] + 0.5 * run + inwards);
-    FootprintMotion motion;
-    motion.friction = law_.friction;
-    const Eigen::Vector3d& carried = frame.carrier.omega;
-    const double turning = -out.dot(frame.in_plane(velocity_[j] - velocity_[i])) / length;
-    motion.omega = carried + (turning - axle.dot(carried)) * axle;
-    const Eigen::Vector3d pins_velocity = 0.5 * (velocity_[i] + velocity_[j]);
-    motion.velocity =
-        pins_velocity + axle.dot(frame.carrier_velocity(pose.translation()) - pins_velocity) * axle;
-    motion.velocity += (turning * axle).cross(frame.from_plane(inwards));
-    shoes_[i].set_pose(pose);
-    const SoilReaction reaction = particles.press(shoes_[i], motion, dt);
-    if (reaction.force.isZero(0.0)) continue;
-
-    const Vector2 force = frame.in_plane(reaction.force);
-    const double about_axle = axle.dot(reaction.torque);
-    // About the left axis a force at (x, z) has the moment z Fx - x Fz.
-    const double moment = about_axle + inwards.y() * force.x() - inwards.x() * force.y();
-    const Vector2 couple = -moment / length * out;
-    const Matrix2 each = 0.5 * gain * Matrix2::Identity();
-    add_force(i, 0.5 * force - couple, each, dt);
-    add_force(j, 0.5 * force + couple, each, dt);
-    terrain_force_[i] += 0.5 * reaction.force;
-    terrain_force_[j] += 0.5 * reaction.force;
-    wrench.torque += reaction.torque - about_axle * axle;
-    normal_load_ += reaction.normal_load;
-  }
-}
-
-template <class Loading>
-std::array<double, 2> ChainTrack::step_under(const CarrierMotion& carrier, const WheelRates& rates,
-                                             double dt, Wrench& wrench, Loading loading) {
+void ChainTrack::begin_step(FootprintShape shape, const CarrierMotion& carrier,
+                            const WheelRates& rates, double dt,
+                            std::vector<FootprintContact>& contacts) {
+  if (shape == FootprintShape::kLowerSurface) contacts.push_back(band_contact(carrier));
   const PlaneFrame frame = move_pins(carrier, dt);
   begin(frame, dt);
   add_links(frame, dt);
   add_wheels(frame, rates, dt);
-  loading(frame);
+  if (shape != FootprintShape::kSolid) return;
+  for (size_t i = 0; i < pins(); ++i) contacts.push_back(shoe_contact(frame, i));
+}
+
+std::array<double, 2> ChainTrack::end_step(const Terrain& terrain,
+                                           std::span<const FootprintContact> pressed,
+                                           const CarrierMotion& carrier, double dt,
+                                           Wrench& wrench) {
+  const PlaneFrame frame = frame_of(carrier);
+  if (terrain.hard_surface() != nullptr) stand_on(*terrain.hard_surface(), frame, dt);
+  switch (terrain.footprint_shape()) {
+    case FootprintShape::kNone:
+      break;
+    case FootprintShape::kLowerSurface:
+      pull_on_lower_run(pressed.front().reaction, frame, dt, wrench);
+      break;
+    case FootprintShape::kSolid:
+      push_shoes(pressed, terrain.contact_stiffness(), frame, dt, wrench);
+      break;
+  }
   return finish(frame, dt, wrench);
-}
-
-std::array<double, 2> ChainTrack::step(const HeightField& ground, const CarrierMotion& carrier,
-                                       const WheelRates& rates, double dt, Wrench& wrench) {
-  return step_under(carrier, rates, dt, wrench,
-                    [&](const PlaneFrame& frame) { collide_terrain(ground, frame, dt); });
-}
-
-std::array<double, 2> ChainTrack::step(const SoilReaction& soil, const CarrierMotion& carrier,
-                                       const WheelRates& rates, double dt, Wrench& wrench) {
-  return step_under(carrier, rates, dt, wrench,
-                    [&](const PlaneFrame& frame) { pull_on_lower_run(soil, frame, dt, wrench); });
-}
-
-std::array<double, 2> ChainTrack::step(ParticleBed& particles, const CarrierMotion& carrier,
-                                       const WheelRates& rates, double dt, Wrench& wrench) {
-  return step_under(carrier, rates, dt, wrench, [&](const PlaneFrame& frame) {
-    collide_terrain(particles.floor(), frame, dt);
-    press_particles(particles, frame, dt, wrench);
-  });
 }
 
 }  // namespace screed

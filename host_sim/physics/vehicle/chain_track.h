@@ -15,16 +15,18 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "host_sim/physics/particles/particle_bed.h"
-#include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/chain_solver.h"
 #include "host_sim/physics/vehicle/running_gear.h"
 #include "host_sim/physics/vehicle/terrain_contact.h"
 
 namespace screed {
+
+/// Of the shoes, inwards from the pins: the solid that loose elements meet.
+inline constexpr double kChainShoeThickness_m = 0.008;
 
 struct ChainOptions {
   int links = 0;             ///< of each side; 0: as many as make links of about 10 mm
@@ -42,20 +44,19 @@ class ChainTrack {
   ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& options, double friction,
              const GearLoad& load);
 
-  /// One step on rigid ground: moves the pins with the velocities of the last step, then finds the
-  /// new ones. Adds what the chain does to the carrying body to `wrench`; returns the torques on
-  /// front and rear wheel, N m, driving forward positive.
-  std::array<double, 2> step(const HeightField& ground, const CarrierMotion& carrier,
-                             const WheelRates& rates, double dt, Wrench& wrench);
-  /// On deformable soil: the shoes as one band round the wheels (in a grid of some millimetres
-  /// a shoe is hardly wider than a cell), a footprint of the carrier; valid until the next call.
-  SoilContact soil_contact(const CarrierMotion& carrier);
-  /// The same step after the soil has answered; the carrying body has got the answer already.
-  std::array<double, 2> step(const SoilReaction& soil, const CarrierMotion& carrier,
-                             const WheelRates& rates, double dt, Wrench& wrench);
-  /// The same on particles, and on the floor where there are none.
-  std::array<double, 2> step(ParticleBed& particles, const CarrierMotion& carrier,
-                             const WheelRates& rates, double dt, Wrench& wrench);
+  /// Begins a step: moves the pins with the velocities of the last one, and adds what the terrain
+  /// is to be given to `contacts` (footprint_count() of them, valid until the next call). As a
+  /// lower surface the shoes are one band round the wheels, a footprint of the carrier: in a grid
+  /// of some millimetres a shoe is hardly wider than a cell. As solids they are one each.
+  void begin_step(FootprintShape shape, const CarrierMotion& carrier, const WheelRates& rates,
+                  double dt, std::vector<FootprintContact>& contacts);
+  size_t footprint_count(FootprintShape shape) const;
+  /// Ends it once the terrain has answered: finds the pins' new velocities. `pressed`: the contacts
+  /// of begin_step(). Adds what the chain does to the carrying body to `wrench` (a band's reaction
+  /// it must have got already); returns the torques on front and rear wheel, N m, driving forward
+  /// positive.
+  std::array<double, 2> end_step(const Terrain& terrain, std::span<const FootprintContact> pressed,
+                                 const CarrierMotion& carrier, double dt, Wrench& wrench);
 
   /// Lays the chain round its wheels as at the start, at rest with the body.
   void reset();
@@ -63,7 +64,7 @@ class ChainTrack {
   double radius_m() const { return geometry_.radius; }
   const Eigen::Vector3d& centre() const { return centre_; }
   double normal_load_n() const { return normal_load_; }
-  /// Greatest depth below the undisturbed soil, 0 on other ground.
+  /// Greatest depth below the undisturbed terrain, 0 on terrain that remembers none.
   double sinkage_m() const { return sinkage_; }
   /// Corners of the shoes at rest, in the frame of the carrier's centre of mass.
   std::vector<Eigen::Vector3d> points() const;
@@ -96,6 +97,12 @@ class ChainTrack {
       return carrier.velocity + carrier.omega.cross(position - carrier.origin);
     }
   };
+  struct Link {     // from a pin to the next
+    Vector2 along;  // unit length
+    double length;
+    Vector2 out;      // away from the wheels, unit length
+    Vector2 inwards;  // from the pins to the middle of the shoe
+  };
   struct ShoeContact {  // one corner of a shoe in the ground
     size_t pin;
     int row;
@@ -121,17 +128,18 @@ class ChainTrack {
 
   PlaneFrame frame_of(const CarrierMotion& carrier) const;
   PlaneFrame move_pins(const CarrierMotion& carrier, double dt);
+  Link link(size_t i) const;
   void begin(const PlaneFrame& frame, double dt);
   void add_links(const PlaneFrame& frame, double dt);
   void add_wheels(const PlaneFrame& frame, const WheelRates& rates, double dt);
-  void collide_terrain(const HeightField& ground, const PlaneFrame& frame, double dt);
+  void stand_on(const HeightField& hard, const PlaneFrame& frame, double dt);
   double surface_speed(const PlaneFrame& frame) const;
-  void pull_on_lower_run(const SoilReaction& soil, const PlaneFrame& frame, double dt,
+  FootprintContact band_contact(const CarrierMotion& carrier);
+  FootprintContact shoe_contact(const PlaneFrame& frame, size_t i);
+  void pull_on_lower_run(const TerrainReaction& band, const PlaneFrame& frame, double dt,
                          Wrench& wrench);
-  void press_particles(ParticleBed& particles, const PlaneFrame& frame, double dt, Wrench& wrench);
-  template <class Loading>
-  std::array<double, 2> step_under(const CarrierMotion& carrier, const WheelRates& rates, double dt,
-                                   Wrench& wrench, Loading loading);
+  void push_shoes(std::span<const FootprintContact> shoes, const ContactStiffness& stiffness,
+                  const PlaneFrame& frame, double dt, Wrench& wrench);
   void add_force(size_t pin, const Vector2& force, const Matrix2& gain, double dt);
   std::array<double, 2> finish(const PlaneFrame& frame, double dt, Wrench& wrench);
 
@@ -161,8 +169,8 @@ class ChainTrack {
   double normal_load_ = 0.0;
   double sinkage_ = 0.0;
 
-  Footprint footprint_;
-  Footprint side_footprint_;
+  Footprint footprint_;           // the band
+  Footprint side_footprint_;      // when it lies on its side
   std::vector<Footprint> shoes_;  // of each link
   ContactMemory memory_;
 };

@@ -58,7 +58,7 @@ struct HullBox {
   Eigen::Vector3d size;
 };
 
-// The box that stands for a shape on soil: itself, or the box round a cylinder or a mesh.
+// The box that stands for a shape as a footprint: itself, or the box round a cylinder or a mesh.
 std::optional<HullBox> box_of(const Shape& shape, const Eigen::Isometry3d& pose) {
   Eigen::Isometry3d at = pose * shape.pose;
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
@@ -100,10 +100,10 @@ void Hull::reset_contacts() {
   box_memories_.assign(boxes_.size(), ContactMemory{});
 }
 
-void Hull::contact(const HeightField& ground, const CarrierMotion& motion, double dt,
-                   Wrench& wrench) {
+void Hull::stand_on(const HeightField& hard, const CarrierMotion& motion, double dt,
+                    Wrench& wrench) {
   const double ceiling =
-      ground.max_height_within(motion.origin.x(), motion.origin.y(), reach_) - motion.origin.z();
+      hard.max_height_within(motion.origin.x(), motion.origin.y(), reach_) - motion.origin.z();
   const Eigen::RowVector3d upwards = motion.rotation.row(2);
   TerrainContact contact;
   for (size_t i = 0; i < points_.size(); ++i) {
@@ -112,7 +112,7 @@ void Hull::contact(const HeightField& ground, const CarrierMotion& motion, doubl
       continue;
     }
     const Eigen::Vector3d arm = motion.rotation * points_[i];
-    if (!find_contact(ground, motion.origin + arm, contact)) {
+    if (!find_contact(hard, motion.origin + arm, contact)) {
       bristles_[i].setZero();
       continue;
     }
@@ -121,8 +121,9 @@ void Hull::contact(const HeightField& ground, const CarrierMotion& motion, doubl
   }
 }
 
-void Hull::contact(ParticleBed& particles, const CarrierMotion& motion, double dt, Wrench& wrench) {
-  contact(particles.floor(), motion, dt, wrench);
+void Hull::add_footprint_contacts(const Terrain& terrain, const CarrierMotion& motion,
+                                  std::vector<FootprintContact>& contacts) {
+  const double ceiling = terrain.max_height_within(motion.origin.x(), motion.origin.y(), reach_);
   for (size_t i = 0; i < boxes_.size(); ++i) {
     Eigen::Isometry3d pose = box_poses_[i];
     const Eigen::Vector3d arm = motion.rotation * pose.translation();
@@ -130,33 +131,17 @@ void Hull::contact(ParticleBed& particles, const CarrierMotion& motion, double d
     pose.translation() = motion.origin + arm;
     Footprint& box = boxes_[i];
     box.set_pose(pose);
-    FootprintMotion moving;
-    moving.velocity = motion.velocity + motion.omega.cross(arm);
-    moving.omega = motion.omega;
-    moving.friction = law_.friction;
-    const SoilReaction reaction = particles.press(box, moving, dt);
-    wrench.add(reaction.force, arm);
-    wrench.torque += reaction.torque;
-  }
-}
-
-void Hull::add_soil_contacts(const SoilBed& soil, const CarrierMotion& motion,
-                             std::vector<SoilContact>& contacts) {
-  const double ceiling =
-      soil.surface().max_height_within(motion.origin.x(), motion.origin.y(), reach_);
-  for (size_t i = 0; i < boxes_.size(); ++i) {
-    Eigen::Isometry3d pose = box_poses_[i];
-    pose.translation() = motion.origin + motion.rotation * pose.translation();
-    pose.linear() = motion.rotation * pose.linear();
-    Footprint& box = boxes_[i];
-    box.set_pose(pose);
     if (pose.translation().z() - box.reach_down() > ceiling) {
       box_memories_[i] = {};
       continue;
     }
-    SoilContact contact;
+    FootprintContact contact;
     contact.footprint = &box;
     contact.memory = &box_memories_[i];
+    contact.motion.velocity = motion.velocity + motion.omega.cross(arm);
+    contact.motion.omega = motion.omega;
+    contact.motion.friction = law_.friction;
+    contact.arm = arm;
     contacts.push_back(contact);
   }
 }

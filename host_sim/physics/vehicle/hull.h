@@ -1,5 +1,5 @@
 // The parts of a body that are no running gear, in contact with the ground: points all over them
-// on what is rigid, boxes round them on soil and particles.
+// on a hard surface, boxes round them as footprints.
 //
 // Everything is in the frame of the body's centre of mass.
 #pragma once
@@ -7,9 +7,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "host_sim/physics/particles/particle_bed.h"
-#include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/running_gear.h"
 #include "host_sim/physics/vehicle/terrain_contact.h"
@@ -29,12 +27,11 @@ class Hull {
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
-  /// Adds what the ground does to the body in this step.
-  void contact(const HeightField& ground, const CarrierMotion& motion, double dt, Wrench& wrench);
-  void contact(ParticleBed& particles, const CarrierMotion& motion, double dt, Wrench& wrench);
-  /// Adds the boxes that may touch the soil; they stay valid until the hull is changed.
-  void add_soil_contacts(const SoilBed& soil, const CarrierMotion& motion,
-                         std::vector<SoilContact>& contacts);
+  /// Adds what a hard surface does to the body's points in this step.
+  void stand_on(const HeightField& hard, const CarrierMotion& motion, double dt, Wrench& wrench);
+  /// Adds the boxes that may touch the terrain; they stay valid until the hull is changed.
+  void add_footprint_contacts(const Terrain& terrain, const CarrierMotion& motion,
+                              std::vector<FootprintContact>& contacts);
 
  private:
   std::vector<Eigen::Vector3d> points_;

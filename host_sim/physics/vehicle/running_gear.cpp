@@ -13,13 +13,6 @@ constexpr double kSpacing_m = 0.0125;  // of contact points along a belt
 constexpr double kWheelSpacing = 0.1;
 constexpr double kSinkIn_m = 0.0004;  // under the unit's own load on level ground
 constexpr double kDampingRatio = 0.7;
-constexpr double kUpperSide =
-    0.2;  // vertical part of the outward normal; above 0, so that a robot on its side counts
-
-// Below this speed slip means nothing, m/s.
-constexpr double kSlipSpeed = 1e-3;
-// Sine of the axles' inclination from which a unit lies on its side.
-constexpr double kOnItsSide = 0.8;
 
 }  // namespace
 
@@ -125,11 +118,10 @@ void RunningGear::carry_bristles(double speed, double dt) {
   }
 }
 
-double RunningGear::contact(const HeightField& ground, const CarrierMotion& carrier, double speed,
-                            double dt, Wrench& wrench) {
+double RunningGear::stand_on(const HeightField& hard, const CarrierMotion& carrier, double speed,
+                             double dt, Wrench& wrench) {
   carry_bristles(speed, dt);
   double along_surface = 0.0;
-  normal_load_ = 0.0;
   TerrainContact contact;
   // A height field has no overhangs: a point on the upper side of the contour has a lower one right
   // below it, which touches first.
@@ -140,7 +132,7 @@ double RunningGear::contact(const HeightField& ground, const CarrierMotion& carr
       continue;
     }
     const Eigen::Vector3d arm = carrier.rotation * points_[i];
-    if (!find_contact(ground, carrier.origin + arm, contact)) {
+    if (!find_contact(hard, carrier.origin + arm, contact)) {
       reset_contacts(i);
       continue;
     }
@@ -156,47 +148,45 @@ double RunningGear::contact(const HeightField& ground, const CarrierMotion& carr
   return along_surface;
 }
 
-RunningGear::GearSolid RunningGear::gear_solid(const CarrierMotion& carrier, double speed) const {
-  const Eigen::Vector3d arm = carrier.rotation * centre_;
+FootprintContact RunningGear::footprint_contact(FootprintShape shape, const CarrierMotion& carrier,
+                                                double speed) {
+  FootprintContact contact;
+  contact.arm = carrier.rotation * centre_;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = carrier.rotation * axes_;
-  pose.translation() = carrier.origin + arm;
+  pose.translation() = carrier.origin + contact.arm;
+  // A solid is touched from any side; the lower surface of a contour on its side is a plane.
+  const bool on_its_side =
+      shape == FootprintShape::kLowerSurface && std::abs(pose.linear()(2, 1)) > kOnItsSide;
+  Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
+  footprint.set_pose(pose);
+  contact.footprint = &footprint;
+  contact.memory = &memory_;
 
-  FootprintMotion motion;
-  motion.velocity = carrier.velocity + carrier.omega.cross(arm);
+  FootprintMotion& motion = contact.motion;
+  motion.velocity = carrier.velocity + carrier.omega.cross(contact.arm);
   motion.omega = carrier.omega;
-  motion.surface_speed = speed;
+  motion.surface_speed = on_its_side ? 0.0 : speed;
   motion.friction = law_.friction;
   motion.mass_kg = load_.mass_kg;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
   const double faster = std::max(std::abs(ground_speed), std::abs(speed));
   motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed - ground_speed) / faster) : 0.0;
-  return {pose, motion, arm};
-}
-
-SoilContact RunningGear::soil_contact(const CarrierMotion& carrier, double speed) {
-  const GearSolid solid = gear_solid(carrier, speed);
-  const bool on_its_side = std::abs(solid.pose.linear()(2, 1)) > kOnItsSide;
-  Footprint& footprint = on_its_side ? side_footprint_ : footprint_;
-  footprint.set_pose(solid.pose);
-  SoilContact contact;
-  contact.footprint = &footprint;
-  contact.memory = &memory_;
-  contact.surface_speed = on_its_side ? 0.0 : speed;
-  contact.slip = solid.motion.slip;
   return contact;
 }
 
-double RunningGear::contact(ParticleBed& particles, const CarrierMotion& carrier, double speed,
-                            double dt, Wrench& wrench) {
-  const double of_floor = contact(particles.floor(), carrier, speed, dt, wrench);
-  const GearSolid solid = gear_solid(carrier, speed);
-  footprint_.set_pose(solid.pose);
-  const SoilReaction reaction = particles.press(footprint_, solid.motion, dt);
-  wrench.add(reaction.force, solid.arm);
-  wrench.torque += reaction.torque;
-  normal_load_ += reaction.normal_load;
-  return of_floor + reaction.along_surface;
+double RunningGear::contact(const HeightField* hard, const FootprintContact* pressed,
+                            const CarrierMotion& carrier, double speed, double dt, Wrench& wrench) {
+  double along_surface = 0.0;
+  normal_load_ = 0.0;
+  if (hard != nullptr) along_surface = stand_on(*hard, carrier, speed, dt, wrench);
+  if (pressed != nullptr) {
+    wrench.add(*pressed);
+    along_surface += pressed->reaction.along_surface;
+    normal_load_ += pressed->reaction.normal_load;
+    sinkage_ = pressed->reaction.sinkage;
+  }
+  return along_surface;
 }
 
 }  // namespace screed

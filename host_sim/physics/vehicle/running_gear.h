@@ -9,12 +9,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "host_sim/physics/particles/particle_bed.h"
-#include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/terrain_contact.h"
 
 namespace screed {
+
+/// Vertical part of the outward normal from which a point of a contour is on its upper side; above
+/// 0, so that a robot on its side counts.
+inline constexpr double kUpperSide = 0.2;
+/// Below this speed slip means nothing, m/s.
+inline constexpr double kSlipSpeed = 1e-3;
+/// Sine of the axles' inclination from which running gear lies on its side.
+inline constexpr double kOnItsSide = 0.8;
 
 /// Motion of the carrying body at this step, world frame.
 struct CarrierMotion {
@@ -32,6 +38,11 @@ struct Wrench {
   void add(const Eigen::Vector3d& f, const Eigen::Vector3d& arm) {
     force += f;
     torque += arm.cross(f);
+  }
+  /// What terrain does to a footprint of the body.
+  void add(const FootprintContact& contact) {
+    add(contact.reaction.force, contact.arm);
+    torque += contact.reaction.torque;
   }
 };
 
@@ -53,44 +64,30 @@ class RunningGear {
  public:
   RunningGear(const RunningGearGeometry& geometry, double friction, const GearLoad& load);
 
-  /// Contact forces of this step, added to `wrench`, while the surface moves at `speed` over the
-  /// wheels (m/s, driving forward positive). Returns the ground's force along the surface's motion,
-  /// N.
-  double contact(const HeightField& ground, const CarrierMotion& carrier, double speed, double dt,
-                 Wrench& wrench);
-
-  /// On deformable soil: the unit's lower surface as a footprint of the carrier; valid until
-  /// the next call.
-  SoilContact soil_contact(const CarrierMotion& carrier, double speed);
-  /// Stores the soil's reaction to it.
-  void set_soil_reaction(const SoilReaction& reaction) {
-    normal_load_ = reaction.normal_load;
-    sinkage_ = reaction.sinkage;
-  }
-
-  /// The same on particles, and on the floor where there are none.
-  double contact(ParticleBed& particles, const CarrierMotion& carrier, double speed, double dt,
-                 Wrench& wrench);
+  /// The unit as a footprint of the carrier, while its surface moves at `speed` over the wheels
+  /// (m/s, driving forward positive); valid until the next call.
+  FootprintContact footprint_contact(FootprintShape shape, const CarrierMotion& carrier,
+                                     double speed);
+  /// What this step does to the unit, added to `wrench`: the forces of its points on a hard surface
+  /// and the terrain's reaction to its footprint, either null where there is none. Returns the
+  /// ground's force along the surface's motion, N.
+  double contact(const HeightField* hard, const FootprintContact* pressed,
+                 const CarrierMotion& carrier, double speed, double dt, Wrench& wrench);
 
   /// Clears the state of all contacts.
   void reset_contacts();
 
   double radius_m() const { return geometry_.radius; }
   double normal_load_n() const { return normal_load_; }
-  /// Greatest depth below the undisturbed soil, 0 on rigid ground.
+  /// Greatest depth below the undisturbed terrain, 0 on terrain that remembers none.
   double sinkage_m() const { return sinkage_; }
   const Eigen::Vector3d& centre() const { return centre_; }
   /// The contour's points in the frame of the carrier's centre of mass.
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
-  struct GearSolid {  // the unit's solid as it moves in this step
-    Eigen::Isometry3d pose;
-    FootprintMotion motion;
-    Eigen::Vector3d arm;  // of its centre, from the carrier's centre of mass, world frame
-  };
-
-  GearSolid gear_solid(const CarrierMotion& carrier, double speed) const;
+  double stand_on(const HeightField& hard, const CarrierMotion& carrier, double speed, double dt,
+                  Wrench& wrench);
   void add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& out,
                  const Eigen::Vector3d& along);
   void carry_bristles(double speed, double dt);
@@ -112,8 +109,8 @@ class RunningGear {
   std::vector<Eigen::Vector3d> carried_;   ///< bristles before carry_bristles
   std::vector<uint8_t> bent_;              ///< whether a bristle may differ from zero
 
-  Footprint footprint_;       ///< of the contour on soil, upright
-  Footprint side_footprint_;  ///< of a unit that lies on its side
+  Footprint footprint_;
+  Footprint side_footprint_;  ///< its lower surface when it lies on its side
   Eigen::Matrix3d axes_;      ///< forward, left, up of the contour in the carrier's frame
   ContactMemory memory_;
   double normal_load_ = 0.0;

@@ -7,7 +7,7 @@
 namespace screed {
 namespace {
 
-// How much easier soil has to think a body tilts whose chains follow it a step late (measured:
+// How much easier terrain has to think a body tilts whose chains follow it a step late (measured:
 // calm from 1.5 on, chatter at 1).
 constexpr double kChainYields = 2.0;
 
@@ -23,7 +23,7 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
     dBodySetLinearVel(carrier.body, 0, 0, 0);
     dBodySetAngularVel(carrier.body, 0, 0, 0);
     carrier.hull.reset_contacts();
-    carrier.soil_memory = {};
+    carrier.memory = {};
   }
   for (Shaft& shaft : shafts_) shaft.shaft.halt();
   for (Unit& unit : units_) unit.gear.reset_contacts();
@@ -58,33 +58,31 @@ double Vehicle::resting_height(const HeightField& ground, double x, double y,
   return height;
 }
 
-template <class Step>
-void Vehicle::step_chains(size_t carrier, Step step) {
+void Vehicle::collect_contacts(const Terrain& terrain, size_t carrier, const CarrierMotion& motion,
+                               double dt) {
+  const FootprintShape shape = terrain.footprint_shape();
+  contacts_.clear();
+  for (Unit& unit : units_) {
+    if (unit.carrier != carrier || shape == FootprintShape::kNone) continue;
+    contacts_.push_back(unit.gear.footprint_contact(shape, motion, surface_speed(unit)));
+  }
   for (Chain& chain : chains_) {
     if (chain.carrier != carrier) continue;
-    const std::array<double, 2> torque = step(chain);
-    for (const size_t wheel : {0U, 1U}) shafts_[chain.shafts[wheel]].torque += torque[wheel];
+    chain.track.begin_step(shape, motion, wheel_rates(chain), dt, contacts_);
+  }
+  if (shape != FootprintShape::kNone) {
+    carriers_[carrier].hull.add_footprint_contacts(terrain, motion, contacts_);
   }
 }
 
-void Vehicle::terrain_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
-                              Wrench& wrench) {
-  Carrier& pressing = carriers_[carrier];
-  soil_contacts_.clear();
-  for (Unit& unit : units_) {
-    if (unit.carrier != carrier) continue;
-    const double speed = shafts_[unit.shaft].shaft.omega_rad_per_s() * unit.gear.radius_m();
-    soil_contacts_.push_back(unit.gear.soil_contact(motion, speed));
-  }
-  for (Chain& chain : chains_) {
-    if (chain.carrier == carrier) soil_contacts_.push_back(chain.track.soil_contact(motion));
-  }
-  const size_t gear = soil_contacts_.size();
-  pressing.hull.add_soil_contacts(soil, motion, soil_contacts_);
-
+PressingBody Vehicle::pressing_body(size_t carrier, const CarrierMotion& motion) const {
+  const Carrier& pressing = carriers_[carrier];
+  const auto here = [&](const auto& gear) { return gear.carrier == carrier; };
+  const auto gears = std::count_if(units_.begin(), units_.end(), here) +
+                     std::count_if(chains_.begin(), chains_.end(), here);
   PressingBody body;
   // What hangs on it by hinges rests on it, too: never less than its units' share of the robot.
-  body.mass_kg = std::max(pressing.mass, mass_ * static_cast<double>(gear) /
+  body.mass_kg = std::max(pressing.mass, mass_ * static_cast<double>(gears) /
                                              static_cast<double>(units_.size() + chains_.size()));
   const double yields = chains_.empty() ? 1.0 : kChainYields;
   body.inverse_inertia =
@@ -92,38 +90,53 @@ void Vehicle::terrain_contact(SoilBed& soil, size_t carrier, const CarrierMotion
   body.centre = motion.origin;
   body.velocity = motion.velocity;
   body.omega = motion.omega;
-  soil.press(body, soil_contacts_, dt, pressing.soil_memory);
-
-  for (const SoilContact& contact : soil_contacts_) {
-    wrench.add(contact.reaction.force, contact.footprint->pose().translation() - motion.origin);
-    wrench.torque += contact.reaction.torque;
-  }
-  size_t i = 0;
-  for (Unit& unit : units_) {
-    if (unit.carrier != carrier) continue;
-    const SoilReaction& reaction = soil_contacts_[i++].reaction;
-    shafts_[unit.shaft].torque += unit.gear.radius_m() * reaction.along_surface;
-    unit.gear.set_soil_reaction(reaction);
-  }
-  step_chains(carrier, [&](Chain& chain) {
-    return chain.track.step(soil_contacts_[i++].reaction, motion, wheel_rates(chain), dt, wrench);
-  });
+  return body;
 }
 
-template <class Ground>
-void Vehicle::terrain_contact(Ground& ground, size_t carrier, const CarrierMotion& motion,
+void Vehicle::end_chains(const Terrain& terrain, size_t carrier, size_t first,
+                         const CarrierMotion& motion, double dt, Wrench& wrench) {
+  const std::span<const FootprintContact> all = contacts_;
+  for (Chain& chain : chains_) {
+    if (chain.carrier != carrier) continue;
+    const size_t count = chain.track.footprint_count(terrain.footprint_shape());
+    const std::array<double, 2> torque =
+        chain.track.end_step(terrain, all.subspan(first, count), motion, dt, wrench);
+    for (const size_t wheel : {0U, 1U}) shafts_[chain.shafts[wheel]].torque += torque[wheel];
+    first += count;
+  }
+}
+
+void Vehicle::terrain_contact(Terrain& terrain, size_t carrier, const CarrierMotion& motion,
                               double dt, Wrench& wrench) {
+  const HeightField* hard = terrain.hard_surface();
+  const FootprintShape shape = terrain.footprint_shape();
+  collect_contacts(terrain, carrier, motion, dt);
+  if (shape != FootprintShape::kNone) {
+    terrain.press(pressing_body(carrier, motion), contacts_, dt, carriers_[carrier].memory);
+  }
+
+  // The contacts in the order of collect_contacts().
+  const FootprintContact* contact = contacts_.data();
   for (Unit& unit : units_) {
     if (unit.carrier != carrier) continue;
-    Shaft& shaft = shafts_[unit.shaft];
-    const double radius = unit.gear.radius_m();
-    const double speed = shaft.shaft.omega_rad_per_s() * radius;
-    shaft.torque += radius * unit.gear.contact(ground, motion, speed, dt, wrench);
+    const FootprintContact* pressed = shape == FootprintShape::kNone ? nullptr : contact++;
+    shafts_[unit.shaft].torque +=
+        unit.gear.radius_m() *
+        unit.gear.contact(hard, pressed, motion, surface_speed(unit), dt, wrench);
   }
-  step_chains(carrier, [&](Chain& chain) {
-    return chain.track.step(ground, motion, wheel_rates(chain), dt, wrench);
-  });
-  carriers_[carrier].hull.contact(ground, motion, dt, wrench);
+  const auto chains_begin = static_cast<size_t>(contact - contacts_.data());
+  // A band is the carrier's own footprint: its pins follow once the carrier has got all of its own.
+  const bool bands = shape == FootprintShape::kLowerSurface;
+  if (!bands) end_chains(terrain, carrier, chains_begin, motion, dt, wrench);
+  for (const Chain& chain : chains_) {
+    if (chain.carrier != carrier) continue;
+    if (bands) wrench.add(*contact);
+    contact += chain.track.footprint_count(shape);
+  }
+  Hull& hull = carriers_[carrier].hull;
+  if (hard != nullptr) hull.stand_on(*hard, motion, dt, wrench);
+  for (; contact != contacts_.data() + contacts_.size(); ++contact) wrench.add(*contact);
+  if (bands) end_chains(terrain, carrier, chains_begin, motion, dt, wrench);
 }
 
 ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
@@ -131,8 +144,8 @@ ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
           shafts_[chain.shafts[1]].shaft.omega_rad_per_s()};
 }
 
-template <class Ground>
-void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt) {
+void Vehicle::apply_forces(Terrain& terrain, const std::array<double, 2>& motor_voltage,
+                           double dt) {
   for (Shaft& shaft : shafts_) shaft.torque = 0.0;
   for (size_t c = 0; c < carriers_.size(); ++c) {
     Carrier& carrier = carriers_[c];
@@ -143,27 +156,13 @@ void Vehicle::apply(Ground& ground, const std::array<double, 2>& motor_voltage, 
     motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
 
     Wrench wrench;
-    terrain_contact(ground, c, motion, dt, wrench);
+    terrain_contact(terrain, c, motion, dt, wrench);
     dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
     dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
   }
   for (Shaft& shaft : shafts_) {
     shaft.shaft.step(motor_voltage[static_cast<size_t>(shaft.side)], shaft.torque, dt);
   }
-}
-
-void Vehicle::apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
-                           double dt) {
-  apply(ground, motor_voltage, dt);
-}
-
-void Vehicle::apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt) {
-  apply(soil, motor_voltage, dt);
-}
-
-void Vehicle::apply_forces(ParticleBed& particles, const std::array<double, 2>& motor_voltage,
-                           double dt) {
-  apply(particles, motor_voltage, dt);
 }
 
 ChassisState Vehicle::chassis() const {

@@ -1,9 +1,10 @@
 // A skid-steered robot in the world: rigid bodies integrated by ODE, running gear and chassis in
-// contact with the ground.
+// contact with the terrain.
 //
 // Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
 // them and turn on shafts (drive_shaft.h) under their running gear (running_gear.h). Other revolute
-// joints are ODE hinges. All ground forces are our own (terrain_contact.h).
+// joints are ODE hinges. All forces of the terrain are our own
+// (terrain.h, terrain_contact.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,8 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/chain_track.h"
 #include "host_sim/physics/vehicle/drive_shaft.h"
@@ -55,16 +55,9 @@ class Vehicle : public VehicleState {
   double resting_height(const HeightField& ground, double x, double y,
                         const Eigen::Matrix3d& rotation) const;
 
-  /// Adds the forces of this step to the bodies and advances the motors; the world steps
-  /// afterwards.
-  void apply_forces(const HeightField& ground, const std::array<double, 2>& motor_voltage,
-                    double dt);
-
-  /// The same on deformable soil; its end_step() is the caller's.
-  void apply_forces(SoilBed& soil, const std::array<double, 2>& motor_voltage, double dt);
-
-  /// The same on particles; their step() is the caller's.
-  void apply_forces(ParticleBed& particles, const std::array<double, 2>& motor_voltage, double dt);
+  /// Adds the forces of this step to the bodies and advances the motors. The terrain's end_step()
+  /// and the world's step() are the caller's, afterwards.
+  void apply_forces(Terrain& terrain, const std::array<double, 2>& motor_voltage, double dt);
 
   ChassisState chassis() const override;
   double mass_kg() const { return mass_; }
@@ -86,7 +79,7 @@ class Vehicle : public VehicleState {
     dBodyID body;
     Eigen::Isometry3d rest;  // its centre of mass in the frame of Body, joints at zero
     Hull hull;
-    BodyMemory soil_memory;
+    BodyMemory memory;
     double mass;
     Eigen::Matrix3d inverse_inertia;  // in its own axes
   };
@@ -116,17 +109,19 @@ class Vehicle : public VehicleState {
                     const VehicleOptions& options);
   void add_hinges(const Assembly& assembly);
   void add_running_gear(const Assembly& assembly, const VehicleOptions& options);
-  template <class Ground>
-  void terrain_contact(Ground& ground, size_t carrier, const CarrierMotion& motion, double dt,
+  void terrain_contact(Terrain& terrain, size_t carrier, const CarrierMotion& motion, double dt,
                        Wrench& wrench);
-  void terrain_contact(SoilBed& soil, size_t carrier, const CarrierMotion& motion, double dt,
-                       Wrench& wrench);
-  /// The chains of a carrier; `step` takes a Chain and returns the torques on its wheels.
-  template <class Step>
-  void step_chains(size_t carrier, Step step);
+  /// Fills contacts_ with the footprints of a carrier: running gear, chains, hull.
+  void collect_contacts(const Terrain& terrain, size_t carrier, const CarrierMotion& motion,
+                        double dt);
+  PressingBody pressing_body(size_t carrier, const CarrierMotion& motion) const;
+  /// Ends the step of a carrier's chains; theirs begin at `first` among contacts_.
+  void end_chains(const Terrain& terrain, size_t carrier, size_t first, const CarrierMotion& motion,
+                  double dt, Wrench& wrench);
   ChainTrack::WheelRates wheel_rates(const Chain& chain) const;
-  template <class Ground>
-  void apply(Ground& ground, const std::array<double, 2>& motor_voltage, double dt);
+  double surface_speed(const Unit& unit) const {
+    return shafts_[unit.shaft].shaft.omega_rad_per_s() * unit.gear.radius_m();
+  }
   const SideGear& of(Side side) const { return sides_[static_cast<size_t>(side)]; }
   const DriveShaft& shaft_of(Side side) const { return shafts_[of(side).shaft].shaft; }
 
@@ -136,7 +131,7 @@ class Vehicle : public VehicleState {
   std::vector<Shaft> shafts_;
   std::vector<Unit> units_;
   std::vector<Chain> chains_;               // none, or one a side: left, right
-  std::vector<SoilContact> soil_contacts_;  // of one carrier in one step; kept for its room
+  std::vector<FootprintContact> contacts_;  // of one carrier in one step; kept for its room
   size_t chassis_carrier_ = 0;
   std::array<SideGear, 2> sides_{};
   double mass_ = 0.0;

@@ -7,9 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "host_sim/physics/particles/particle_bed.h"
-#include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/imu_truth.h"
@@ -36,11 +34,11 @@ class Environment {
   virtual double time_s() const = 0;
   /// The ground's surface as it is now.
   virtual const HeightField& terrain() const = 0;
-  /// Null on ground of another kind.
-  virtual const SoilBed* soil() const = 0;
-  virtual const ParticleBed* particles() const = 0;
   /// Whether the terrain is deformable and, without wrap-around, ends at the edges of its bed.
   virtual bool is_deformable() const = 0;
+  /// As Terrain::balance() and Terrain::work(); all zero where nothing of the kind is booked.
+  virtual VolumeBalance volume_balance() const { return {}; }
+  virtual TerrainWork terrain_work() const { return {}; }
   virtual const VehicleState& vehicle() const = 0;
   /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
   /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,

@@ -34,10 +34,14 @@ Eigen::Vector3d imu_position(const Assembly& model) {
 
 }  // namespace
 
-Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& options)
+Plant::Plant(HeightField surface, const Assembly& model, const PlantOptions& options)
+    : Plant(build_terrain(std::move(surface), options), model, options) {}
+
+Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const PlantOptions& options)
     : step_s_(options.physics_step_s),
       steps_per_tick_(steps_in_tick(options.physics_step_s)),
-      rigid_(std::move(terrain)),
+      terrain_(std::move(terrain)),
+      substeps_(std::max(1, static_cast<int>(std::ceil(step_s_ / terrain_->longest_step_s())))),
       vehicle_(ode_, model, options.vehicle),
       battery_(options.battery),
       imu_position_(imu_position(model)),
@@ -45,11 +49,6 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
   if (vehicle_.chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
     throw InputError("[physics] step = " + std::to_string(step_s_) +
                      " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
-  }
-  if (options.soil.has_value()) soil_.emplace(rigid_, *options.soil, options.soil_options);
-  if (options.particles.has_value()) {
-    particles_.emplace(rigid_, *options.particles);
-    particle_steps_ = static_cast<int>(std::ceil(step_s_ / particles_->longest_step_s()));
   }
   const StartPose& start = options.start;
   const Eigen::Matrix3d rotation = rotation_from(start.attitude);
@@ -68,11 +67,6 @@ Plant::Plant(HeightField terrain, const Assembly& model, const PlantOptions& opt
   if (!start.z_m.has_value()) settle();
 }
 
-const HeightField& Plant::terrain() const {
-  if (particles_) return particles_->surface();
-  return soil_ ? soil_->surface() : rigid_;
-}
-
 void Plant::settle() {
   constexpr double kSettle_s = 1.5;
   const auto steps = static_cast<int>(std::lround(kSettle_s / step_s_));
@@ -83,27 +77,18 @@ void Plant::settle() {
 }
 
 void Plant::step_bodies(const std::array<double, 2>& motor_voltage) {
-  if (soil_) {
-    vehicle_.apply_forces(*soil_, motor_voltage, step_s_);
-    soil_->end_step();
-  } else if (particles_) {
-    // Light spheres on stiff contacts need shorter steps than the robot.
-    const double dt = step_s_ / particle_steps_;
-    for (int i = 0; i < particle_steps_; ++i) {
-      vehicle_.apply_forces(*particles_, motor_voltage, dt);
-      particles_->step(dt);
-      ode_.step(dt);
-    }
-    return;
-  } else {
-    vehicle_.apply_forces(rigid_, motor_voltage, step_s_);
+  const double dt = step_s_ / substeps_;
+  for (int i = 0; i < substeps_; ++i) {
+    vehicle_.apply_forces(*terrain_, motor_voltage, dt);
+    terrain_->end_step(dt);
+    ode_.step(dt);
   }
-  ode_.step(step_s_);
   wrap_around();
 }
 
 void Plant::wrap_around() {
-  if (!rigid_.wrap()) return;
+  const BedBounds bed = terrain_->bounds();
+  if (bed.edge != BedEdge::kWrapped) return;
   const Eigen::Vector3d at = vehicle_.chassis().pose.translation();
   const auto beds_off = [](double coordinate, double size) {
     // Half open, so that a robot on the very edge stays where it is put.
@@ -111,27 +96,21 @@ void Plant::wrap_around() {
                ? 0.0
                : std::floor(coordinate / size + 0.5);
   };
-  const std::array<double, 2> size = bed_size();
-  const double east = beds_off(at.x(), size[0]);
-  const double north = beds_off(at.y(), size[1]);
+  const double east = beds_off(at.x(), bed.width_m);
+  const double north = beds_off(at.y(), bed.depth_m);
   if (east == 0.0 && north == 0.0) return;
   // A place that is no number stays: motion() says that the physics diverged.
   if (!std::isfinite(east) || !std::isfinite(north)) return;
-  vehicle_.shift(-east * size[0], -north * size[1]);
+  vehicle_.shift(-east * bed.width_m, -north * bed.depth_m);
   wrap_counts_[0] += static_cast<int64_t>(east);
   wrap_counts_[1] += static_cast<int64_t>(north);
 }
 
-std::array<double, 2> Plant::bed_size() const {
-  if (particles_) return {particles_->extent().width_m, particles_->extent().depth_m};
-  return {rigid_.x_max() - rigid_.x_min(), rigid_.y_max() - rigid_.y_min()};
-}
-
 Eigen::Vector3d Plant::unwrapped_position() const {
-  const std::array<double, 2> size = bed_size();
+  const BedBounds bed = terrain_->bounds();
   return vehicle_.chassis().pose.translation() +
-         Eigen::Vector3d(static_cast<double>(wrap_counts_[0]) * size[0],
-                         static_cast<double>(wrap_counts_[1]) * size[1], 0.0);
+         Eigen::Vector3d(static_cast<double>(wrap_counts_[0]) * bed.width_m,
+                         static_cast<double>(wrap_counts_[1]) * bed.depth_m, 0.0);
 }
 
 Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {

@@ -5,18 +5,18 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "host_sim/physics/particles/particle_bed.h"
-#include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/imu_truth.h"
+#include "host_sim/physics/world/terrain_factory.h"
 
 namespace screed {
 
@@ -28,20 +28,19 @@ struct StartPose {
   Attitude attitude = {0.0, 0.0, 0.0};
 };
 
-struct PlantOptions {
+struct PlantOptions : TerrainOptions {
   double physics_step_s = 0.001;  ///< divides the control tick of 10 ms
   StartPose start;
   VehicleOptions vehicle;
   Battery battery;
-  std::optional<SoilParameters> soil;  ///< deformable terrain; without it the ground is rigid
-  SoilOptions soil_options;
-  std::optional<ParticleOptions> particles;  ///< ground of spheres, as high as the terrain
 };
 
 class Plant : public Environment {
  public:
-  /// Throws InputError when the options do not fit together.
-  Plant(HeightField terrain, const Assembly& model, const PlantOptions& options);
+  /// A robot on this terrain. Throws InputError when the options do not fit together.
+  Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const PlantOptions& options);
+  /// The same on terrain of the kind that the options name, with this surface.
+  Plant(HeightField surface, const Assembly& model, const PlantOptions& options);
 
   void step(const std::array<double, 2>& share) override;
   ImuTruth motion() const override;
@@ -51,10 +50,10 @@ class Plant : public Environment {
   double step_s() const { return step_s_; }
   uint64_t steps() const override { return steps_; }
   double time_s() const override;
-  const HeightField& terrain() const override;
-  const SoilBed* soil() const override { return soil_ ? &*soil_ : nullptr; }
-  const ParticleBed* particles() const override { return particles_ ? &*particles_ : nullptr; }
-  bool is_deformable() const override { return soil_.has_value() || particles_.has_value(); }
+  const HeightField& terrain() const override { return terrain_->surface(); }
+  bool is_deformable() const override { return terrain_->is_deformable(); }
+  VolumeBalance volume_balance() const override { return terrain_->balance(); }
+  TerrainWork terrain_work() const override { return terrain_->work(); }
   const Vehicle& vehicle() const override { return vehicle_; }
   const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
   Eigen::Vector3d unwrapped_position() const override;
@@ -69,11 +68,9 @@ class Plant : public Environment {
   /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
   /// when it was switched on.
   void settle();
-  /// Of the bed, east and north, m: what it repeats after when it does.
-  std::array<double, 2> bed_size() const;
   /// Teleports the robot when it has left the bed.
   void wrap_around();
-  /// Forces, integration and soil of one physics step.
+  /// Forces, integration and terrain of one physics step.
   void step_bodies(const std::array<double, 2>& motor_voltage);
   Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
   /// The history says: the IMU has been moving at this velocity all the time.
@@ -81,10 +78,8 @@ class Plant : public Environment {
 
   double step_s_;
   int steps_per_tick_;
-  HeightField rigid_;
-  std::optional<SoilBed> soil_;
-  std::optional<ParticleBed> particles_;
-  int particle_steps_ = 1;  // in one physics step
+  std::unique_ptr<Terrain> terrain_;
+  int substeps_;  // in one physics step, as short as the terrain needs them
   OdeWorld ode_;
   Vehicle vehicle_;
   Battery battery_;

@@ -30,7 +30,7 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
 /// As the experiment lays it out; the robot has settled into plant.terrain() already. Particles lie
 /// as they fell.
 HeightField terrain_before(const Experiment& experiment, const Environment& plant) {
-  return plant.particles() != nullptr ? plant.terrain() : make_terrain(experiment);
+  return experiment.map.of_particles() ? plant.terrain() : make_terrain(experiment);
 }
 
 std::optional<SoilParameters> soil_of(const Experiment& experiment) {

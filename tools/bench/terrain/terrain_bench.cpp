@@ -150,7 +150,8 @@ class Drive {
   Eigen::Vector3d place() const { return world_->vehicle().chassis().pose.translation(); }
 
   std::uint64_t elements() const {
-    if (const ParticleBed* particles = world_->plant().particles()) return particles->size();
+    const std::size_t elements = world_->plant().terrain_work().elements;
+    if (elements > 0) return elements;
     return static_cast<std::uint64_t>(world_->terrain().nx()) *
            static_cast<std::uint64_t>(world_->terrain().ny());
   }

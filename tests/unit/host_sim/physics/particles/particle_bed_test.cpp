@@ -69,7 +69,7 @@ class RollingWheel {
     motion_.velocity = {speed, 0.0, 0.0};
     motion_.surface_speed = speed / (1.0 - slip);
   }
-  SoilReaction press(ParticleBed& bed, double dt) {
+  TerrainReaction press(ParticleBed& bed, double dt) {
     pose_.translation() += dt * motion_.velocity;
     wheel_.set_pose(pose_);
     return bed.press(wheel_, motion_, dt);
@@ -173,12 +173,12 @@ TEST(ParticleLayout, RefusesBedsOfNothingOrTooMuch) {
 TEST(ParticleBed, AFreshBedIsAtRestAndStaysSo) {
   ParticleBed bed(mound(0.5, 0.1, 0.06), {});
   run(bed, 0.5);
-  EXPECT_EQ(bed.counts().awake, 0U);
+  EXPECT_EQ(bed.work().awake, 0U);
   const std::string before = fingerprint(bed);
-  const uint64_t work = bed.counts().sphere_steps;
+  const uint64_t work = bed.work().element_steps;
   run(bed, 10.0);
   EXPECT_EQ(fingerprint(bed), before);
-  EXPECT_EQ(bed.counts().sphere_steps, work);
+  EXPECT_EQ(bed.work().element_steps, work);
 }
 
 // Shaken awake it finds that it was at rest: sleep hides no motion.
@@ -189,7 +189,7 @@ TEST(ParticleBed, SleepHidesNoMotion) {
   for (size_t i = 0; i < bed.size(); ++i) before.push_back(bed.position(i));
   bed.wake_all();
   run(bed, 2.0);
-  EXPECT_EQ(bed.counts().awake, 0U);
+  EXPECT_EQ(bed.work().awake, 0U);
   double sum = 0.0;
   for (size_t i = 0; i < bed.size(); ++i) sum += (bed.position(i) - before[i]).norm();
   EXPECT_LT(sum / static_cast<double>(bed.size()), 0.02 * kRadius);
@@ -322,7 +322,7 @@ TEST(ParticleBed, MomentumGoesFromTheGearToTheParticlesAndNowhereElse) {
   Eigen::Vector3d turning = Eigen::Vector3d::Zero();
   const double dt = bed.longest_step_s();
   for (int i = 0; i < 200; ++i) {
-    const SoilReaction reaction = bed.press(track, motion, dt);
+    const TerrainReaction reaction = bed.press(track, motion, dt);
     impulse += dt * reaction.force;
     turning += dt * reaction.torque;
     bed.step(dt);
@@ -349,7 +349,7 @@ TEST(ParticleBed, ABeltDragsWithItsFriction) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation().z() = 2.0 * kRadius + 0.04 - 0.0005;
   track.set_pose(pose);
-  const SoilReaction reaction = bed.press(track, motion, bed.longest_step_s());
+  const TerrainReaction reaction = bed.press(track, motion, bed.longest_step_s());
   EXPECT_GT(reaction.normal_load, 1.0);
   EXPECT_NEAR(reaction.force.x(), 0.4 * reaction.normal_load, 1e-9);
   EXPECT_NEAR(reaction.along_surface, -0.4 * reaction.normal_load, 1e-9);
@@ -366,7 +366,7 @@ TEST(ParticleBed, SteppingUnderAWheelAllocatesNothing) {
     }
   };
   roll(600);
-  EXPECT_GT(bed.counts().awake, 10U);
+  EXPECT_GT(bed.work().awake, 10U);
   const long before = testing::allocations();
   roll(1200);
   EXPECT_EQ(testing::allocations(), before);

@@ -37,7 +37,7 @@ class ShearBox {
     motion_.velocity.y() = displacement.y() / seconds;
     Eigen::Vector2d mobilised = Eigen::Vector2d::Zero();
     for (int i = 0; i < steps; ++i) {
-      const SoilReaction reaction = bed_.press(plate_, motion_, kStep_s, memory_);
+      const TerrainReaction reaction = bed_.press(plate_, motion_, kStep_s, memory_);
       bed_.end_step();
       const double strength =
           soil_.cohesion_pa * reaction.area +
@@ -145,7 +145,7 @@ TEST(SoilShearTest, AWheelThatSpinsOnTheSpotFeelsNoMoreThanTheStrength) {
   for (int i = 0; i < 2000; ++i) {
     pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.03 - 0.003;
     wheel.set_pose(pose);
-    const SoilReaction reaction = bed.press(wheel, motion, kStep_s, memory);
+    const TerrainReaction reaction = bed.press(wheel, motion, kStep_s, memory);
     bed.end_step();
     ASSERT_TRUE(reaction.force.allFinite() && reaction.torque.allFinite()) << "step " << i;
     ASSERT_LT(reaction.force.head<2>().norm(), 2.0 * reaction.normal_load + 10.0) << "step " << i;
@@ -170,7 +170,7 @@ TEST(SoilShearTest, AWheelThatSlipsIsDrawnForwardFromTheFirstStepOn) {
       for (int i = 0; i < 2000; ++i) {
         pose.translation() << motion.velocity.x() * i * kStep_s, 0.0, 0.03 - 0.003;
         wheel.set_pose(pose);
-        const SoilReaction reaction = bed.press(wheel, motion, kStep_s, memory);
+        const TerrainReaction reaction = bed.press(wheel, motion, kStep_s, memory);
         bed.end_step();
         ASSERT_GE(reaction.force.x(), 0.0)
             << shear_modulus_m << " " << slip_speed << ", step " << i;

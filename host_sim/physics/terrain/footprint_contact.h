@@ -1,14 +1,15 @@
-// Contact of a body with soil: the body's state, the soil's reaction, and what is kept between
-// steps.
+// Contact of a body with terrain by its footprints: the body's state, the terrain's reaction, and
+// what is kept between steps.
 #pragma once
 
 #include <Eigen/Geometry>
 
-#include "host_sim/physics/soil/footprint.h"
+#include "host_sim/physics/terrain/footprint.h"
 
 namespace screed {
 
-/// Motion of the pressing surface: that of the body plus the speed of its belt or rim.
+/// Motion of the pressing surface: that of the body plus the speed of its belt or rim. Of a body
+/// with several footprints soil takes the motion from the body, and from here what the belt adds.
 struct FootprintMotion {
   Eigen::Vector3d velocity =
       Eigen::Vector3d::Zero();                      ///< of the footprint's centre, world frame, m/s
@@ -16,14 +17,14 @@ struct FootprintMotion {
   double surface_speed =
       0.0;  ///< of the belt over its wheels, forward drive positive: below it goes backward, m/s
   double slip = 0.0;      ///< for slip-sinkage, 0..1
-  double friction = 0.8;  ///< Coulomb's, against particles; soil has its own
+  double friction = 0.8;  ///< Coulomb's, against solid elements; soil has its own
   double mass_kg =
       1.0;  ///< that the footprint carries; infinite: the motion is imposed, whatever the force
 };
 
 /// Force and torque on the footprint, world frame, torque about its centre; what drives it; what it
 /// rests on.
-struct SoilReaction {
+struct TerrainReaction {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
   double along_surface = 0.0;  ///< force of the ground along the belt's direction of motion, N
@@ -50,7 +51,7 @@ struct ContactMemory {
   BodyMemory alone;      ///< of a footprint that is pressed by itself
 };
 
-/// A rigid body that stands on soil with one footprint or several, in one step.
+/// A rigid body that stands on terrain with one footprint or several, in one step.
 struct PressingBody {
   double mass_kg = 1.0;  ///< infinite: the motion is imposed
   Eigen::Matrix3d inverse_inertia =
@@ -61,12 +62,14 @@ struct PressingBody {
 };
 
 /// One footprint of such a body; the reaction is the answer.
-struct SoilContact {
-  const Footprint* footprint = nullptr;
-  ContactMemory* memory = nullptr;
-  double surface_speed = 0.0;  ///< as in FootprintMotion
-  double slip = 0.0;
-  SoilReaction reaction = {};
+struct FootprintContact {
+  const Footprint* footprint = nullptr;  ///< known by its address, which must not change
+  ContactMemory* memory = nullptr;       ///< null where the terrain keeps nothing by footprint
+  FootprintMotion motion = {};
+  /// From the body's centre to the footprint's, world frame, m. Soil, which counts in the world's
+  /// places, replaces it by their difference (equal but for rounding).
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+  TerrainReaction reaction = {};
 };
 
 }  // namespace screed

@@ -1,11 +1,11 @@
 // Lower surfaces in closed form.
-#include "host_sim/physics/soil/footprint.h"
+#include "host_sim/physics/terrain/footprint.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "host_sim/physics/soil/double2.h"
+#include "host_sim/physics/terrain/double2.h"
 
 namespace screed {
 namespace {

@@ -1,0 +1,112 @@
+// What robots drive on, whatever it is made of: rigid ground (rigid_terrain.h), deformable soil,
+// beds of particles. Plant and vehicle know this contract alone.
+//
+// A body meets terrain in two ways, and each terrain says which of them it has:
+// - point by point on a hard surface, a height field that never deforms. The bodies keep the state
+//   of their points (a belt carries its bristles along) and compute these forces themselves.
+// - with its footprints (footprint_contact.h), in press(): one call a body and step, never one a
+//   point.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "host_sim/physics/terrain/footprint_contact.h"
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+/// What a body lays against a terrain in press().
+enum class FootprintShape : uint8_t {
+  kNone,          ///< nothing: the terrain has its hard surface alone
+  kLowerSurface,  ///< the lower surface of running gear (a track of links as one band) and hull
+  kSolid,         ///< whole solids that are touched from any side, every link of a track its own
+};
+
+/// What is beyond the edge of a bed.
+enum class BedEdge : uint8_t {
+  kOpen,     ///< the terrain ends; its edge heights go on, level across the edge
+  kWrapped,  ///< the same bed again: what leaves on one side comes back on the other
+  kWalled,   ///< walls that hold the terrain's material; robots do not meet them yet
+};
+
+/// A rectangle round (0, 0) of the world.
+struct BedBounds {
+  double width_m;  ///< west to east
+  double depth_m;  ///< south to north
+  BedEdge edge;
+};
+
+/// A height field's own: wrapped or open.
+inline BedBounds bounds_of(const HeightField& field) {
+  return {field.x_max() - field.x_min(), field.y_max() - field.y_min(),
+          field.wrap() ? BedEdge::kWrapped : BedEdge::kOpen};
+}
+
+/// Volumes in units of height times cells. Always: heights_now = heights_before - compacted -
+/// in_transit. All zero on terrain that does not book its material in heights.
+struct VolumeBalance {
+  int64_t before = 0;
+  int64_t now = 0;
+  int64_t compacted = 0;
+  int64_t in_transit = 0;  ///< sunk in the last steps and not yet deposited
+  int64_t error() const { return before - compacted - in_transit - now; }
+};
+
+/// What stepping has cost, in numbers that do not depend on a clock: for tests and benchmarks. All
+/// zero on terrain that is not made of discrete elements.
+struct TerrainWork {
+  size_t elements = 0;
+  size_t awake = 0;            ///< elements that moved in the last step
+  size_t contacts = 0;         ///< pairs near enough to be looked at in the last step
+  uint64_t element_steps = 0;  ///< sum of `awake` over all steps
+};
+
+/// One contact between an element of the terrain and a solid: a spring and a damper side by side.
+struct ContactStiffness {
+  double stiffness_n_per_m = 0.0;
+  double damping_n_s_per_m = 0.0;
+};
+
+class Terrain {
+ public:
+  virtual ~Terrain() = default;
+
+  /// The surface as it is now, for those who look at it.
+  virtual const HeightField& surface() const = 0;
+  /// Whether the terrain deforms. Such terrain ends at the edges of its bed, unless it is
+  /// wrapped.
+  virtual bool is_deformable() const = 0;
+  virtual BedBounds bounds() const = 0;
+
+  /// What never deforms: bodies stand on it point by point. Null: nothing does.
+  virtual const HeightField* hard_surface() const { return nullptr; }
+  /// What press() wants to be given.
+  virtual FootprintShape footprint_shape() const = 0;
+  /// A height that press() can do nothing above, within `radius` of (x, y), m.
+  virtual double max_height_within(double /*x*/, double /*y*/, double /*radius*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
+  /// A body in this step with all its footprints; fills in their reactions. `memory` is kept by the
+  /// body from step to step. Every body of a step before end_step().
+  virtual void press(const PressingBody& body, std::span<FootprintContact> contacts, double dt,
+                     BodyMemory& memory) = 0;
+  /// Of one contact with FootprintShape::kSolid, for a body that takes its reaction implicitly.
+  virtual ContactStiffness contact_stiffness() const { return {}; }
+
+  /// The terrain's own motion in a step, after all bodies.
+  virtual void end_step(double dt) = 0;
+  /// Longer steps diverge, s: whoever wants them divides them.
+  virtual double longest_step_s() const { return std::numeric_limits<double>::infinity(); }
+
+  virtual VolumeBalance balance() const { return {}; }
+  virtual TerrainWork work() const { return {}; }
+
+ protected:
+  Terrain() = default;
+  Terrain(const Terrain&) = default;
+  Terrain& operator=(const Terrain&) = default;
+};
+
+}  // namespace screed
