@@ -14,6 +14,7 @@
 #include "firmware/leveling/site_fence.h"
 #include "firmware/leveling/training_drive.h"
 #include "firmware/parameters/parameters.h"
+#include "schema/values.h"
 
 namespace screed {
 
@@ -24,26 +25,9 @@ struct LevelingInput {
   int32_t y_mm;
 };
 
-/// Values of the parameter `algorithm`.
-enum class LevelingAlgorithm : uint8_t {
-  kDrive = 0,          ///< no algorithm: the ground station commands the motion
-  kHillSensing = 1,    ///< Algorithm 6
-  kSpinOnPeak = 2,     ///< its successor in 7.1.1
-  kTrainingDrive = 3,  ///< Algorithm 5: no leveling, the drive that training data is recorded on
-};
-
-/// What an algorithm is doing; recorded and shown to people.
-enum class LevelingState : uint8_t {
-  kIdle = 0,
-  kWalk = 1,           ///< random walk
-  kClimb = 2,          ///< straight on, up an incline
-  kSpin = 3,           ///< spinning on a peak
-  kReturn = 4,         ///< outside the site, driving back
-  kDrive = 5,          ///< following the ground station
-  kTrainingDrive = 6,  ///< a block of Algorithm 5
-  kDone = 7,           ///< all of its blocks are driven
-};
-constexpr uint8_t kLevelingStates = 8;
+/// Names and numbers come from the schema: screed.dbc.
+using LevelingAlgorithm = message::LevelingAlgorithm;
+using LevelingState = message::LevelingState;
 
 class Leveling {
  public:

@@ -13,13 +13,25 @@ struct Schedule {
   uint8_t first;   ///< tick of the first one: spreads the load
 };
 
+/// A row: the message by its period in the schema.
+template <typename Message>
+constexpr Schedule every(uint8_t first) {
+  constexpr uint8_t kTick_ms = kTickPeriod_us / 1000;
+  static_assert(Message::kPeriod_ms % kTick_ms == 0 && Message::kPeriod_ms / kTick_ms <= UINT8_MAX,
+                "periods are whole ticks, at most 255");
+  return {Message::kId, static_cast<uint8_t>(Message::kPeriod_ms / kTick_ms), first};
+}
+
 // In order of importance; 119 lines a second of 200 possible, 2566 of the 2850 bytes of the budget.
-constexpr Schedule kSchedule[kTelemetryMessages] = {
-    {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2},  {kIdMotors, 5, 3},
-    {kIdLeveling, 10, 4},  {kIdOdometry, 10, 6}, {kIdAccelRaw, 10, 8}, {kIdGyroRaw, 10, 9},
-    {kIdPower, 50, 14},    {kIdMagRaw, 50, 24},  {kIdBaro, 100, 34},   {kIdHealth, 50, 44},
-    {kIdLink, 100, 54},    {kIdTime, 100, 64},
+constexpr Schedule kSchedule[] = {
+    every<message::Heartbeat>(0), every<message::Attitude>(1), every<message::Encoders>(2),
+    every<message::Motors>(3),    every<message::Leveling>(4), every<message::Odometry>(6),
+    every<message::AccelRaw>(8),  every<message::GyroRaw>(9),  every<message::Power>(14),
+    every<message::MagRaw>(24),   every<message::Baro>(34),    every<message::Health>(44),
+    every<message::Link>(54),     every<message::Time>(64),
 };
+static_assert(sizeof(kSchedule) / sizeof(kSchedule[0]) == kTelemetryMessages,
+              "every message with a period has a row");
 
 // Credit is saved for the four lines that may come together, and no more.
 constexpr uint8_t kMaxCredit = kRadioOutCapacity + Telemetry::kPacketBudget;

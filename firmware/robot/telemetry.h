@@ -46,8 +46,8 @@ struct TelemetryView {
   uint16_t battery_mv;
 };
 
-constexpr uint8_t kTelemetryMessages = 14;  ///< sent by their rate
-constexpr uint8_t kUrgentMessages = 3;      ///< sent when there is something to say
+constexpr uint8_t kTelemetryMessages = kPeriodicMessages;  ///< sent by their rate
+constexpr uint8_t kUrgentMessages = 3;                     ///< sent when there is something to say
 
 /// What the downlink remembers, zero at the start: zeroed at once, which takes less flash.
 struct TelemetryMemory {
@@ -58,6 +58,7 @@ struct TelemetryMemory {
   uint8_t next_packet_;  ///< ticks
   uint8_t credit_;       ///< bytes
   uint16_t due_;         ///< a bit a message: it waits for room
+  static_assert(kTelemetryMessages <= 16, "due_ has a bit for each");
   uint8_t countdown_[kTelemetryMessages];
   uint8_t counter_[kTelemetryMessages + kUrgentMessages];
   bool started_;

@@ -47,7 +47,7 @@ std::string table_of_messages(const Database& database) {
       "| id, robot 1 | message | from | rate | bytes | |\n| --- | --- | --- | --- | --- | --- |\n";
   for (const DbcMessage& message : database.messages) {
     text += "| " + id_text(message.id) + " | " + message.name + " | " +
-            (message.sender == "GROUND" ? "ground" : "robot") + " | " + rate(message) + " | " +
+            (message.from_ground() ? "ground" : "robot") + " | " + rate(message) + " | " +
             std::to_string(message.size) + " | " + message.comment + " |\n";
   }
   return text;

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
-#include "firmware/leveling/leveling.h"
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/run/experiment/trap.h"
 
@@ -49,7 +50,7 @@ ExperimentKey bool_key(const char* section, const char* name, const char* meanin
 }
 
 template <class Get>
-ExperimentKey text_key(const char* section, const char* name, const char* allowed,
+ExperimentKey text_key(const char* section, const char* name, const std::string& allowed,
                        const char* meaning, Get field, bool (*accepts)(const std::string&)) {
   const auto set = [=](Experiment& experiment, const std::string& text) {
     if (!accepts(text)) return false;
@@ -77,20 +78,25 @@ bool is_units(const std::string& text) {
   return text == "si" || text == "sandbox";
 }
 
-struct AlgorithmName {
-  const char* name;
-  LevelingAlgorithm algorithm;
-};
-constexpr AlgorithmName kAlgorithms[] = {
-    {"drive", LevelingAlgorithm::kDrive},
-    {"hill_sensing", LevelingAlgorithm::kHillSensing},
-    {"training_drive", LevelingAlgorithm::kTrainingDrive},
-    {"spin_on_peak", LevelingAlgorithm::kSpinOnPeak},
-};
+/// The leveling algorithms of the schema: numbers and names.
+std::span<const ValueInfo> algorithms() {
+  return find_signal("leveling.algorithm").signal->values;
+}
 
 bool is_algorithm(const std::string& name) {
-  return std::any_of(std::begin(kAlgorithms), std::end(kAlgorithms),
-                     [&](const AlgorithmName& known) { return name == known.name; });
+  return std::any_of(algorithms().begin(), algorithms().end(),
+                     [&](const ValueInfo& known) { return name == known.name; });
+}
+
+/// "a, b or c".
+std::string algorithm_list() {
+  std::string text;
+  const std::vector<std::string> names = value_names("leveling.algorithm");
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
+    text += names[i];
+  }
+  return text;
 }
 
 bool is_file_name(const std::string& text) {
@@ -287,7 +293,7 @@ std::vector<ExperimentKey> make_keys() {
       "experiment", "name", "letters, digits, _ and -; at most 64", "names the run folder",
       [](Experiment& e) -> std::string& { return e.experiment.name; }, is_file_name));
   keys.push_back(text_key(
-      "experiment", "algorithm", "drive, hill_sensing, spin_on_peak or training_drive",
+      "experiment", "algorithm", algorithm_list(),
       "what the firmware does; training_drive: the drive for training data (thesis Algorithm 5)",
       [](Experiment& e) -> std::string& { return e.experiment.algorithm; }, is_algorithm));
   ExperimentKey duration = real_key("experiment", "duration", "s", 0.01, 1e6, "simulated time",
@@ -445,8 +451,8 @@ const std::vector<ExperimentKey>& experiment_keys() {
 }
 
 int16_t algorithm_number(const std::string& name) {
-  for (const AlgorithmName& known : kAlgorithms) {
-    if (name == known.name) return static_cast<int16_t>(known.algorithm);
+  for (const ValueInfo& known : algorithms()) {
+    if (name == known.name) return static_cast<int16_t>(known.value);
   }
   throw InputError("unknown algorithm '" + name + "'");
 }

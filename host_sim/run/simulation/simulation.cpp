@@ -22,6 +22,7 @@
 #include "host_sim/run/session/session_writer.h"
 #include "host_sim/run/simulation/frame_recorder.h"
 #include "host_sim/run/simulation/height_watch.h"
+#include "host_sim/run/simulation/names.h"
 
 namespace screed {
 namespace {
@@ -33,25 +34,6 @@ constexpr uint64_t kFlatnessTicks =
 // How long a training drive may take beyond its frames: to arm and to start.
 constexpr uint64_t kMaxIdleTicks = 60U * uint64_t{kTickRate_hz};
 constexpr uint64_t kPathTicks = kTickRate_hz / 10;  // a point of the drawn path ten times a second
-
-constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",
-                                                   "fault"};
-constexpr const char* kLevelingStateNames[kLevelingStates] = {
-    "idle", "walk", "climb", "spin", "return", "drive", "training_drive", "done"};
-constexpr const char* kFaultNames[] = {"tilt",
-                                       "IMU silent",
-                                       "gyro frozen",
-                                       "left track stalled",
-                                       "right track stalled",
-                                       "battery low",
-                                       "parameters",
-                                       "emergency stop",
-                                       "LSM303D fails",
-                                       "L3GD20H fails",
-                                       "LPS25H fails",
-                                       "left encoder",
-                                       "right encoder",
-                                       "stuck"};
 
 /// A text file of the run folder; RunError when the disk is full.
 class TextFile {
@@ -365,7 +347,8 @@ void write_pictures(const std::filesystem::path& folder, const HeightField& befo
   std::array<size_t, kLevelingStates> legend{};
   for (size_t state = 0; state < kLevelingStates; ++state) {
     legend.at(state) = options.state_names.size();
-    if (occurred.at(state)) options.state_names.emplace_back(kLevelingStateNames[state]);
+    if (occurred.at(state))
+      options.state_names.emplace_back(leveling_state_name(static_cast<LevelingState>(state)));
   }
   for (PathPoint& point : path) point.state = legend.at(point.state);
   options.path = std::move(path);
@@ -396,25 +379,6 @@ uint64_t frames_to_drive(const Experiment& experiment) {
   if (!experiment.experiment.stop_after_s.has_value()) return all;
   const auto some = std::llround(*experiment.experiment.stop_after_s * kTickRate_hz);
   return std::min(all, static_cast<uint64_t>(some));
-}
-
-const char* state_name(RobotState state) {
-  const auto index = static_cast<size_t>(state);
-  return index < kRobotStates ? kStateNames[index] : "unknown";
-}
-
-const char* leveling_state_name(LevelingState state) {
-  const auto index = static_cast<size_t>(state);
-  return index < kLevelingStates ? kLevelingStateNames[index] : "unknown";
-}
-
-std::string fault_names(uint16_t faults) {
-  std::string names;
-  for (size_t bit = 0; bit < std::size(kFaultNames); ++bit) {
-    if ((faults >> bit & 1U) != 0)
-      names += (names.empty() ? "" : ", ") + std::string(kFaultNames[bit]);
-  }
-  return names.empty() ? "none" : names;
 }
 
 void check_simulation(const Experiment& experiment, const SimulationOptions& options) {

@@ -105,9 +105,4 @@ std::string cycles_json(const CycleReport& cycles);
 /// which are not part of the result.
 std::string summary_json(const SimulationSummary& summary);
 
-/// Names of the supervisor's states, of the algorithm's states and of the set fault bits ("none").
-const char* state_name(RobotState state);
-const char* leveling_state_name(LevelingState state);
-std::string fault_names(uint16_t faults);
-
 }  // namespace screed

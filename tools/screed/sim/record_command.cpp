@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/run/simulation/names.h"
 #include "tools/screed/cli/run_batch.h"
 
 namespace screed {

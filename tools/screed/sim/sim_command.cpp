@@ -11,6 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/external_port.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"

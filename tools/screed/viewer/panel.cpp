@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "host_sim/render/picture/map_frame.h"
-#include "host_sim/run/simulation/simulation.h"
+#include "host_sim/run/simulation/names.h"
 #include "tools/screed/viewer/style.h"
 
 namespace screed::viewer {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/protocol/e2e.h"
+#include "tools/schema/dbc.h"
 
 namespace screed {
 namespace {
@@ -68,18 +69,24 @@ class TelemetryTest : public ::testing::Test {
   Downlink downlink_;
 };
 
-// Messages a second as the protocol wants them.
-const std::map<uint16_t, size_t> kRates = {
-    {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10},
-    {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},  {kIdMagRaw, 2},  {kIdPower, 2},
-    {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},      {kIdTime, 1},
-};
+/// Messages a second as the schema wants them, by id.
+std::map<uint16_t, size_t> rates() {
+  std::map<uint16_t, size_t> all;
+  for (const schema::DbcMessage& message :
+       schema::read_dbc("firmware/protocol/screed.dbc").messages) {
+    if (message.from_ground() || message.period_ms() == 0) continue;
+    EXPECT_EQ(1000 % message.period_ms(), 0) << message.name;
+    all[static_cast<uint16_t>(message.id)] = static_cast<size_t>(1000 / message.period_ms());
+  }
+  return all;
+}
 
 TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
   run(1);
   const Downlink downlink = run(1000);
-  EXPECT_EQ(downlink.frames.size(), kRates.size());
-  for (const auto& [id, rate] : kRates)
+  EXPECT_EQ(rates().size(), kTelemetryMessages);
+  EXPECT_EQ(downlink.frames.size(), rates().size());
+  for (const auto& [id, rate] : rates())
     EXPECT_EQ(downlink.frames.at(id).size(), rate * 10) << std::hex << id;
   EXPECT_LE(downlink.bytes, 5760 * 10 / 2);
 }
@@ -87,7 +94,7 @@ TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
 TEST_F(TelemetryTest, AnswersDelayButDoNotDisplace) {
   run(3);
   const Downlink downlink = run(10000, 10);
-  for (const auto& [id, rate] : kRates) {
+  for (const auto& [id, rate] : rates()) {
     const size_t sent = downlink.frames.at(id).size();
     EXPECT_GE(sent, rate * 100 - 1) << std::hex << id;
     EXPECT_LE(sent, rate * 100 + 1) << std::hex << id;
