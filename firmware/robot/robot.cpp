@@ -291,8 +291,8 @@ void Robot::select_motion() {
     drive_command_ = {0, 0};
     return;
   }
-  const LevelingInput input = {pitch_, heading_, view_.x_mm, view_.y_mm};
-  view_.motion = leveling_.tick(input, drive_command_);
+  const LevelingInput input = {pitch_, heading_, view_.x_mm, view_.y_mm, drive_command_};
+  view_.motion = leveling_.tick(input);
 }
 
 void Robot::watch_slip(const SensorSample& sample) {
