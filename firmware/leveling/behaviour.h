@@ -17,7 +17,7 @@
 // the object holds then begins anew. One object of every algorithm of the image lies in Leveling
 // for good: no heap, no virtual functions. tick() runs 100 times a second while the robot runs, and
 // ends with one of the motions of Behaviour or with enter(): the state it enters is what the robot
-// reports and records. It may take 200 us and calls nothing that waits.
+// reports and records. Its time counts against the tick's (make size), and it waits for nothing.
 #pragma once
 
 #include <stdint.h>
@@ -40,7 +40,7 @@ struct LevelingInput {
   Angle heading;  ///< counter-clockwise from east
   int32_t x_mm;   ///< dead reckoning from the start of the run
   int32_t y_mm;
-  MotionCommand drive = {0, 0};  ///< what the ground station commands
+  MotionCommand drive;  ///< what the ground station commands
 };
 
 /// What holds for an algorithm that does not say otherwise.

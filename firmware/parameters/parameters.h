@@ -72,7 +72,7 @@
 namespace screed {
 
 /// The leveling algorithms of this build, a bit each.
-#define SCREED_ALGORITHM_BIT(number, name, Name) | 1U << number
+#define SCREED_ALGORITHM_BIT(number, name, Name) | 1U << (number)
 constexpr uint16_t kAlgorithmsInBuild =
     (0U SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_BIT)) &
     ~(SCREED_TRAINING_DRIVE != 0

@@ -31,13 +31,12 @@ std::string unit(const DbcSignal& signal) {
 
 std::string meaning(const DbcMessage& message, const DbcSignal& signal) {
   if (is_protection(message, signal)) return "protection";
-  std::string text = signal.comment;
-  std::string names;
+  std::string text;
   for (const ValueName& value : signal.values) {
-    names += (names.empty() ? "" : ", ") + std::to_string(value.value) + " `" + value.name + "`";
+    text += (text.empty() ? "" : ", ") + std::to_string(value.value) + " `" + value.name + "`";
   }
-  if (!text.empty() && !names.empty()) text += ": ";
-  text += names;
+  if (!text.empty() && !signal.comment.empty()) text += "; ";
+  text += signal.comment;
   if (!signal.flags().empty()) text += " (" + signal.flags() + ")";
   return text;
 }

@@ -64,7 +64,7 @@ TEST(AlgorithmTable, TheFenceHoldsThoseThatKeepToTheSite) {
   for (const schema::ValueName& it : algorithms()) {
     Leveling leveling(parameters_of(it.value));
     leveling.start();
-    leveling.tick({0, 0, 1100, 0});
+    leveling.tick({0, 0, 1100, 0, {0, 0}});
     if (leveling.state() == LevelingState::kReturn) kept.push_back(it.name);
   }
   std::vector<std::string> expected;
@@ -81,11 +81,11 @@ TEST(AlgorithmTable, OneThatIsLeftOutOfABuildStands) {
   const Parameters parameters;
   Behaviour behaviour(parameters);
   Slot<HillSensing, false> left_out(parameters);
-  const MotionCommand motion = left_out.tick({8192, 0, 0, 0}, behaviour);
+  const MotionCommand motion = left_out.tick({8192, 0, 0, 0, {0, 0}}, behaviour);
   EXPECT_EQ(motion.speed_mm_per_s, 0);
   EXPECT_EQ(behaviour.state(), LevelingState::kIdle);
   Slot<HillSensing, true> there(parameters);
-  EXPECT_GT(there.tick({8192, 0, 0, 0}, behaviour).speed_mm_per_s, 0);
+  EXPECT_GT(there.tick({8192, 0, 0, 0, {0, 0}}, behaviour).speed_mm_per_s, 0);
   EXPECT_EQ(behaviour.state(), LevelingState::kClimb);
 }
 
