@@ -8,6 +8,8 @@
 
 #include <stdint.h>
 
+#include "schema/values.h"
+
 namespace screed {
 
 /// Control ticks per second, a compile-time constant of the whole project.
@@ -30,11 +32,7 @@ enum FreshBit : uint8_t {
 };
 
 /// Bits of SensorSample::chips_failing: the chip does not answer, or does not hold its settings.
-enum ChipBit : uint8_t {
-  kChipAccelMag = 1 << 0,
-  kChipGyro = 1 << 1,
-  kChipBaro = 1 << 2,
-};
+using ChipBit = message::HealthChipsFailing;
 
 /// What the robot knows of the world at one tick.
 struct SensorSample {
@@ -53,7 +51,7 @@ struct SensorSample {
   uint8_t chips_failing;   ///< ChipBit set
   uint8_t bus_errors;      ///< I2C transfers that failed, wraps
   uint8_t radio_errors;    ///< received bytes that were lost, wraps
-  uint8_t reset_cause;     ///< why the program started; 0: power was switched on
+  uint8_t reset_cause;     ///< why the program started: message::HealthResetCause
   uint8_t radio_in_count;  ///< valid bytes in radio_in
   uint8_t radio_in[kRadioInCapacity];
 };

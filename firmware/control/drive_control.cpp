@@ -7,12 +7,13 @@ namespace screed {
 namespace {
 
 // The correction may at most add 90 degrees/s: beyond that the robot is stuck, not slipping.
-constexpr int32_t kYawCorrectionLimit = 16384;
+constexpr int16_t kYawCorrectionLimit = 16384;
+constexpr int32_t kYawIntegralLimit_q8 = static_cast<int32_t>(kYawCorrectionLimit) * 256;
 // Of the yaw rate's error, 2^4 ticks: 1 Hz. Tracks on soft ground swing in yaw at 2 to 6 Hz with
 // little damping; what the loop would answer there must not reach them.
 constexpr uint8_t kYawLag = 4;
 // Twice that and half a step still fit 16 bits; 88 degrees/s.
-constexpr int32_t kYawErrorLimit = 16000;
+constexpr int16_t kYawErrorLimit = 16000;
 
 int16_t approach(int16_t value, int16_t target, int16_t step) {
   return static_cast<int16_t>(
@@ -45,8 +46,8 @@ void DriveControl::forget_yaw() {
 }
 
 int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
-  const auto seen = static_cast<int16_t>(clamp_i32(
-      static_cast<int32_t>(command.yaw_rate) - measured_rate, -kYawErrorLimit, kYawErrorLimit));
+  const int16_t seen =
+      limit_i16(static_cast<int32_t>(command.yaw_rate) - measured_rate, kYawErrorLimit);
   yaw_error_ = static_cast<int16_t>(
       yaw_error_ +
       asr_i16(static_cast<int16_t>(seen - yaw_error_ + (1 << (kYawLag - 1))), kYawLag));
@@ -57,9 +58,9 @@ int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t m
   // shifted in two parts to fit 32 bits.
   const int32_t step = asr(asr(mul_i16(yaw_ki_, error), 4) * 41, 8);
   yaw_integral_q8_ =
-      clamp_i32(yaw_integral_q8_ + step, -kYawCorrectionLimit * 256, kYawCorrectionLimit * 256);
+      clamp_i32(yaw_integral_q8_ + step, -kYawIntegralLimit_q8, kYawIntegralLimit_q8);
   const int32_t correction = asr(mul_i16(yaw_kp_, error), 8) + asr(yaw_integral_q8_, 8);
-  return command.yaw_rate + clamp_i32(correction, -kYawCorrectionLimit, kYawCorrectionLimit);
+  return command.yaw_rate + limit_i16(correction, kYawCorrectionLimit);
 }
 
 DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurement& measured) {

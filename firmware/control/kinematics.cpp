@@ -5,12 +5,11 @@ namespace screed {
 
 TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate,
                               int16_t limit_mm_per_s) const {
-  const int32_t limit = limit_mm_per_s;
-  const int32_t rate = clamp_i32(yaw_rate, -INT16_MAX, INT16_MAX);
-  const int32_t turn =
-      clamp_i32(asr_round(rate * static_cast<int32_t>(half_arc_q22_), 22), -limit, limit);
-  const int32_t room = limit - (turn < 0 ? -turn : turn);
-  const int32_t speed = clamp_i32(speed_mm_per_s, -room, room);
+  const int32_t rate = limit_i16(yaw_rate, INT16_MAX);
+  const int16_t turn =
+      limit_i16(asr_round(rate * static_cast<int32_t>(half_arc_q22_), 22), limit_mm_per_s);
+  const auto room = static_cast<int16_t>(limit_mm_per_s - (turn < 0 ? -turn : turn));
+  const int16_t speed = limit_i16(speed_mm_per_s, room);
   return {static_cast<int16_t>(speed - turn), static_cast<int16_t>(speed + turn)};
 }
 
@@ -18,7 +17,7 @@ int32_t SkidSteer::yaw_rate(const TrackSpeeds& tracks) const {
   const int32_t difference = static_cast<int32_t>(tracks.right) - tracks.left;
   // difference / 2 / half_arc, with the numerator scaled so that it fits 32 bits: |difference| <=
   // 1023 mm/s.
-  return (clamp_i32(difference, -1023, 1023) * (static_cast<int32_t>(1) << 21)) /
+  return (limit_i16(difference, 1023) * (static_cast<int32_t>(1) << 21)) /
          static_cast<int32_t>(half_arc_q22_);
 }
 

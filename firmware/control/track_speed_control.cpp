@@ -69,8 +69,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
     return 0;
   }
 
-  const int32_t error = clamp_i32(asr_round(expected_q4_, 4) - motion_.speed_dmm_per_s,
-                                  -kErrorLimit_dmm_per_s, kErrorLimit_dmm_per_s);
+  const int32_t error =
+      limit_i16(asr_round(expected_q4_, 4) - motion_.speed_dmm_per_s, kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is.
   const auto least_mv = static_cast<uint16_t>(nominal_mv_ / 2);
@@ -92,8 +92,7 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
     integral_q16_ = clamp_i32(integral_q16_ + asr(static_cast<int32_t>(ki_) * error * 131, 5),
                               -kIntegralLimit_q16, kIntegralLimit_q16);
   }
-  const auto duty = static_cast<int16_t>(clamp_i32(without_integral + asr(integral_q16_, 16),
-                                                   -static_cast<int32_t>(kDutyMax), kDutyMax));
+  const int16_t duty = limit_i16(without_integral + asr(integral_q16_, 16), kDutyMax);
   motion_.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));
   return duty;
 }

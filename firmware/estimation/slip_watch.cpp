@@ -39,7 +39,7 @@ int16_t SlipWatch::velocity_loss_share(uint8_t which, bool backwards) const {
 void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
   const int32_t rest = counts - asr(vibration.mean, 6);
   vibration.mean += rest;
-  const auto limited = static_cast<int16_t>(clamp_i32(rest, -kMaxVibration, kMaxVibration));
+  const int16_t limited = limit_i16(rest, kMaxVibration);
   vibration.high_pass =
       static_cast<int16_t>(vibration.high_pass + limited - asr_i16(vibration.high_pass, 2));
   vibration.magnitude = static_cast<uint16_t>(vibration.magnitude + abs_i16(vibration.high_pass) -

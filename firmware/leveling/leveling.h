@@ -1,49 +1,29 @@
-// What every leveling algorithm sees and answers, and the one place that knows which algorithms
-// there are.
+// The leveling algorithms of a robot: one object of each, of which the parameter `algorithm` says
+// which one drives.
 //
-// The algorithms level with the robot's own motion alone (thesis 7.1.1): they seek hills and drive
-// over them. They see attitude and dead reckoning, no map, and answer with a commanded body motion.
-// A new algorithm is a new file, a value of LevelingAlgorithm and a case in leveling.cpp.
+// Which ones there are stands in screed.dbc, LEVELING.algorithm; what makes a class one of them in
+// behaviour.h. Nothing here names one.
 #pragma once
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "firmware/control/kinematics.h"
-#include "firmware/leveling/random_walk.h"
-#include "firmware/leveling/site_fence.h"
-#include "firmware/leveling/training_drive.h"
-#include "firmware/parameters/parameters.h"
+#include "firmware/leveling/behaviour.h"
+#include "schema/classes.h"
 
 namespace screed {
 
-struct LevelingInput {
-  Angle pitch;    ///< nose up positive
-  Angle heading;  ///< counter-clockwise from east
-  int32_t x_mm;   ///< dead reckoning from the start of the run
-  int32_t y_mm;
+/// An algorithm, or what stands for one that this build leaves out.
+template <class Algorithm, bool kInBuild>
+class Slot : public Algorithm {
+  using Algorithm::Algorithm;
 };
-
-/// Values of the parameter `algorithm`.
-enum class LevelingAlgorithm : uint8_t {
-  kDrive = 0,          ///< no algorithm: the ground station commands the motion
-  kHillSensing = 1,    ///< Algorithm 6
-  kSpinOnPeak = 2,     ///< its successor in 7.1.1
-  kTrainingDrive = 3,  ///< Algorithm 5: no leveling, the drive that training data is recorded on
+template <class Algorithm>
+class Slot<Algorithm, false> {
+ public:
+  explicit Slot(const Parameters& /*parameters*/) {}
+  MotionCommand tick(const LevelingInput& /*input*/, Behaviour& /*behaviour*/) { return {0, 0}; }
 };
-
-/// What an algorithm is doing; recorded and shown to people.
-enum class LevelingState : uint8_t {
-  kIdle = 0,
-  kWalk = 1,           ///< random walk
-  kClimb = 2,          ///< straight on, up an incline
-  kSpin = 3,           ///< spinning on a peak
-  kReturn = 4,         ///< outside the site, driving back
-  kDrive = 5,          ///< following the ground station
-  kTrainingDrive = 6,  ///< a block of Algorithm 5
-  kDone = 7,           ///< all of its blocks are driven
-};
-constexpr uint8_t kLevelingStates = 8;
 
 class Leveling {
  public:
@@ -53,41 +33,24 @@ class Leveling {
   /// first, and what lies there beyond 63 bytes costs flash wherever it is used.
   static void* operator new(size_t /*size*/, void* place) noexcept { return place; }
 
-  /// Starts a run: the state begins anew. Random sequence, fence, the side of the next spin and
-  /// what is left of a training drive go on.
-  void start();
+  /// Starts a run: the state begins anew. What an algorithm holds, the random sequence and the
+  /// fence go on.
+  void start() { behaviour_.start(); }
 
-  /// One tick of the selected algorithm. `drive` is what the ground station commands, used by
-  /// kDrive alone.
-  MotionCommand tick(const LevelingInput& input, const MotionCommand& drive);
+  /// One tick of the selected algorithm.
+  MotionCommand tick(const LevelingInput& input);
 
   LevelingAlgorithm algorithm() const { return algorithm_; }
-  LevelingState state() const { return state_; }
+  LevelingState state() const { return behaviour_.state(); }
   /// Peaks met since power-up: climbs that ended.
-  uint16_t peaks() const { return peaks_; }
+  uint16_t peaks() const { return behaviour_.peaks(); }
 
  private:
-  LevelingState next_hill_sensing(Angle pitch) const;
-  LevelingState next_spin_on_peak(Angle pitch);
-  MotionCommand motion();
-  void enter(LevelingState next);
-
   LevelingAlgorithm algorithm_;
-  Angle threshold_;
-  Angle hysteresis_;
-  int16_t climb_speed_;
-  YawRate spin_rate_;
-  uint16_t spin_ticks_;
-  RandomWalk walk_;
-  SiteFence fence_;
-#if SCREED_TRAINING_DRIVE
-  TrainingDrive training_;
-#endif
-  LevelingState state_ = LevelingState::kIdle;
-  uint16_t ticks_in_state_ = 0;  ///< this one included; in a climb since the last incline
-  uint16_t peaks_ = 0;
-  bool spin_left_ =
-      true;  ///< the next spin turns left: alternating, so that heading errors do not add up
+  Behaviour behaviour_;
+#define SCREED_OBJECT(number, name, Name) Slot<Name, algorithm_in_build(number)> name##_;
+  SCREED_LEVELING_ALGORITHM(SCREED_OBJECT)
+#undef SCREED_OBJECT
 };
 
 }  // namespace screed

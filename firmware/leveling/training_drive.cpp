@@ -32,6 +32,11 @@ uint16_t TrainingDrive::length_of(uint8_t block) const {
   return block_ticks_;
 }
 
+MotionCommand TrainingDrive::tick(const LevelingInput& /*input*/, Behaviour& behaviour) {
+  const MotionCommand motion = tick();
+  return behaviour.enter(finished() ? LevelingState::kDone : LevelingState::kTrainingDrive, motion);
+}
+
 MotionCommand TrainingDrive::tick() {
   while (!finished() && ticks_left_ == 0) ticks_left_ = length_of(++block_);
   if (finished()) return {0, 0};

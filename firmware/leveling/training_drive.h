@@ -8,14 +8,14 @@
 
 #include <stdint.h>
 
-#include "firmware/control/kinematics.h"
+#include "firmware/leveling/behaviour.h"
 #include "firmware/math/random.h"
-#include "firmware/parameters/parameters.h"
 
 namespace screed {
 
-class TrainingDrive {
+class TrainingDrive : public AlgorithmDefaults {
  public:
+  static constexpr bool kKeepsToSite = false;
   static constexpr uint8_t kBlocks = 8;
   static constexpr uint8_t kSegmentTicks = 250;
   /// 3 thesis units/s at 1/12 m a unit, and pi/2 rad/s.
@@ -24,7 +24,9 @@ class TrainingDrive {
 
   explicit TrainingDrive(const Parameters& parameters);
 
-  /// One tick: the desired motion, standstill once all blocks are driven.
+  /// One tick: state kTrainingDrive, kDone and standstill once all blocks are driven.
+  MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
+  /// The drive alone: the desired motion of one tick.
   MotionCommand tick();
 
   /// All blocks are driven.

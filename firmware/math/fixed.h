@@ -76,6 +76,11 @@ SCREED_OUT_OF_LINE constexpr int32_t clamp_i32(int32_t value, int32_t low, int32
   return value < low ? low : (value > high ? high : value);
 }
 
+/// value limited to [-limit, limit]; limit >= 0. A call of it is shorter than one of clamp_i32().
+SCREED_OUT_OF_LINE constexpr int16_t limit_i16(int32_t value, int16_t limit) {
+  return static_cast<int16_t>(value > limit ? limit : value < -limit ? -limit : value);
+}
+
 /// value limited to [low, high]; low <= high.
 constexpr int16_t clamp_i16(int16_t value, int16_t low, int16_t high) {
   return value < low ? low : (value > high ? high : value);

@@ -24,6 +24,9 @@ bool Parameters::valid() const {
         *value > nn::read_program_i16(&kRanges[i][1]))
       return false;
   }
+  // Their numbers follow each other, or the range has let one pass that there is not.
+  constexpr bool kGapless = (kAlgorithmsInBuild & (kAlgorithmsInBuild + 1U)) == 0;
+  if (!kGapless && !algorithm_in_build(algorithm)) return false;
   return walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;
 }
 

@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "schema/values.h"
+
 // Whether the training drive is there. Not in a microcontroller's image: it drives blindly, which
 // simulated terrain without edges tolerates and a site does not, and flash is scarce (the drive
 // takes 434 bytes). An image without it takes algorithm 3 for an invalid parameter and refuses to
@@ -25,10 +27,13 @@
 #define SCREED_STANDALONE 0
 #endif
 
+/// A row's text of one leveling algorithm.
+#define SCREED_ALGORITHM_TEXT(number, name, Name) ", " #number " " #name
+
 // clang-format off
 //  name                    unit         min    max  default  meaning
 #define SCREED_PARAMETERS(X) \
-  X(algorithm,              "",            0, 2 + SCREED_TRAINING_DRIVE,     1, "leveling algorithm: 0 drive (ground commands), 1 hill sensing, 2 spin on the peak, 3 training drive (Algorithm 5)") \
+  X(algorithm,              "",            0, kMaxAlgorithm, static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing), "leveling algorithm" SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_TEXT)) \
   X(random_seed,            "",            0, 32767,      1, "seed of the random walk and of the training drive") \
   X(training_block,         "tick",        1, 32767,   2000, "training drive: length of each of the eight blocks of Algorithm 5") \
   X(climb_threshold,        "0.01 deg",  100,  4500,    500, "pitch above which a hill is being climbed (epsilon of Algorithm 6)") \
@@ -65,6 +70,26 @@
 // clang-format on
 
 namespace screed {
+
+/// The leveling algorithms of this build, a bit each.
+#define SCREED_ALGORITHM_BIT(number, name, Name) | 1U << (number)
+constexpr uint16_t kAlgorithmsInBuild =
+    (0U SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_BIT)) &
+    ~(SCREED_TRAINING_DRIVE != 0
+          ? 0U
+          : 1U << static_cast<uint8_t>(message::LevelingAlgorithm::kTrainingDrive));
+#undef SCREED_ALGORITHM_BIT
+static_assert(message::kLevelingAlgorithmMax < 16, "kAlgorithmsInBuild has 16 bits");
+
+constexpr bool algorithm_in_build(int16_t number) {
+  return (kAlgorithmsInBuild >> number & 1) != 0;
+}
+
+/// The greatest number of an algorithm of this build.
+constexpr int16_t max_algorithm(int16_t from) {
+  return algorithm_in_build(from) ? from : max_algorithm(static_cast<int16_t>(from - 1));
+}
+constexpr int16_t kMaxAlgorithm = max_algorithm(message::kLevelingAlgorithmMax);
 
 struct Parameters {
 #define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = (value);

@@ -90,20 +90,13 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
   }
   imu.mag_fresh = (sample.fresh & kFreshMag) != 0;
   // Turning tracks are no standstill, however evenly the robot turns.
-  const bool tracks_at_rest =
-      view_.duty_left == 0 && view_.duty_right == 0 && deltas.left == 0 && deltas.right == 0;
+  const bool tracks_at_rest = status_.duty.duty_left == 0 && status_.duty.duty_right == 0 &&
+                              deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
-  const AttitudeAngles angles = attitude_.angles();
-  pitch_ = angles.pitch;
-  heading_ = angles.heading;
-  sin_pitch_q14_ = angles.sin_pitch_q14;
-  view_.roll_cdeg = centidegrees_from_angle(angles.roll);
-  view_.pitch_cdeg = centidegrees_from_angle(pitch_);
-  view_.heading_cdeg = static_cast<uint16_t>(
-      (static_cast<uint32_t>(static_cast<uint16_t>(heading_)) * 36000U) >> 16);
-  odometry_.update(deltas.left, deltas.right, heading_, pitch_);
-  view_.x_mm = odometry_.x_mm();
-  view_.y_mm = odometry_.y_mm();
+  status_.angles = attitude_.angles();
+  odometry_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch);
+  status_.x_mm = odometry_.x_mm();
+  status_.y_mm = odometry_.y_mm();
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -122,13 +115,13 @@ void Robot::handle(const CanFrame& frame) {
       if (frame.size != kCommandSize || command_pending_) break;
       memcpy(command_, frame.data, kCommandSize);
       command_pending_ = true;
-      ++view_.frames_received;
+      ++uplink_.frames_received;
       return;
     case kIdGroundHeartbeat:
     case kIdEmergencyStop:
     case kIdParamStage:
       if (!e2e_check(frame.id, frame.data, frame.size)) break;
-      ++view_.frames_received;
+      ++uplink_.frames_received;
       if (frame.id == kIdEmergencyStop) {
         supervisor_.request(Request::kEmergencyStop);
       } else if (frame.id == kIdParamStage) {
@@ -138,16 +131,16 @@ void Robot::handle(const CanFrame& frame) {
         // A sender whose counter stands still has crashed: not a sign of life.
         if (counter != ground_counter_) {
           supervisor_.heartbeat();
-          ++view_.ground_heartbeats;
+          ++uplink_.ground_heartbeats;
         }
         ground_counter_ = counter;
-        view_.ground_time_ms = get_u16(frame.data + kE2eHeaderSize);
+        uplink_.ground_time_ms = get_u16(frame.data + kE2eHeaderSize);
       }
       return;
     default:
       return;  // for somebody else
   }
-  ++view_.rejected_frames;
+  ++uplink_.rejected_frames;
 }
 
 // A MAC and a packet of telemetry in one tick would be the longest tick of all.
@@ -208,8 +201,7 @@ RequestResult Robot::execute(const uint8_t* data) {
       const DriveArgument drive = get_drive_argument(argument);
       // 0.1 degree/s -> angle units/s
       const int32_t rate = asr(static_cast<int32_t>(drive.turn_ddeg_per_s) * 9321, 9);
-      drive_command_ = {drive.speed_mm_per_s,
-                        static_cast<YawRate>(clamp_i32(rate, -INT16_MAX, INT16_MAX))};
+      drive_command_ = {drive.speed_mm_per_s, limit_i16(rate, INT16_MAX)};
       return RequestResult::kDone;
     }
     case CommandOp::kParameterRead:
@@ -265,79 +257,87 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.accel = sample.accel;
   input.cos_tilt_q30 = cos_tilt_q30(attitude_.orientation());
   input.estimator_ready = attitude_.ready();
-  input.battery_mv = view_.battery_mv;
-  input.duty_left = view_.duty_left;
-  input.duty_right = view_.duty_right;
+  input.battery_mv = status_.battery_mv;
+  input.duty_left = status_.duty.duty_left;
+  input.duty_right = status_.duty.duty_right;
   input.counts_left = deltas.left;
   input.counts_right = deltas.right;
-  input.stuck = view_.stuck != 0;
+  input.stuck = slip_watch_.stuck();
   supervisor_.tick(input);
 }
 
 void Robot::select_motion() {
   const bool running = supervisor_.running();
-  if (running && view_.state != RobotState::kRunning) {  // the state of the tick before
+  if (running && status_.state != RobotState::kRunning) {  // the state of the tick before
     leveling_.start();
     // The site lies round the place where the run began. One that goes on after a stop is the same
     // run: otherwise the site would wander with every stop.
-    if (view_.state != RobotState::kStopped) {
+    if (status_.state != RobotState::kStopped) {
       odometry_.reset();
-      view_.x_mm = 0;
-      view_.y_mm = 0;
+      status_.x_mm = 0;
+      status_.y_mm = 0;
     }
   }
   if (!running) {
-    view_.motion = {0, 0};
+    status_.motion = {0, 0};
     drive_command_ = {0, 0};
     return;
   }
-  const LevelingInput input = {pitch_, heading_, view_.x_mm, view_.y_mm};
-  view_.motion = leveling_.tick(input, drive_command_);
+  const LevelingInput input = {status_.angles.pitch, status_.angles.heading, status_.x_mm,
+                               status_.y_mm, drive_command_};
+  status_.motion = leveling_.tick(input);
 }
 
 void Robot::watch_slip(const SensorSample& sample) {
-  slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel, sin_pitch_q14_,
-                   attitude_.yaw_rate(), telemetry_.packet_due());
-  view_.slip = slip_watch_.slips() ? 1 : 0;
-  view_.stuck = slip_watch_.stuck() ? 1 : 0;
+  slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel,
+                   status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.packet_due());
+}
+
+void Robot::announce_state() {
+  const RobotState state = supervisor_.state();
+  if (state == status_.state) return;
+  status_.state = state;
+  event(message::EventCode::kState,
+        static_cast<int32_t>(supervisor_.faults()) * 256 + static_cast<uint8_t>(state));
 }
 
 void Robot::report(const SensorSample& sample, RobotOutput& output) {
-  view_.sample = &sample;
-  view_.faults = supervisor_.faults();
-  const RobotState state = supervisor_.state();
-  if (state != view_.state) {
-    view_.state = state;
-    event(message::EventCode::kState,
-          static_cast<int32_t>(view_.faults) * 256 + static_cast<uint8_t>(state));
-  }
-  view_.link_alive = supervisor_.link_alive();
-  view_.boot_epoch = gate_.boot_epoch();
-  view_.freshness = gate_.counter();
-  view_.rejected_lines = parser_.rejected();
-  view_.rejected_commands = gate_.refused();
-  view_.algorithm = leveling_.algorithm();
-  view_.leveling_state = leveling_.state();
-  view_.peaks = leveling_.peaks();
-  telemetry_.tick(view_, output);
+  TelemetryView view;
+  view.sample = &sample;
+  view.robot = &status_;
+  view.uplink = &uplink_;
+  view.slip = slip_watch_.slips() ? 1 : 0;
+  view.stuck = slip_watch_.stuck() ? 1 : 0;
+  view.faults = supervisor_.faults();
+  view.link_alive = supervisor_.link_alive();
+  view.boot_epoch = gate_.boot_epoch();
+  view.freshness = gate_.counter();
+  view.rejected_lines = parser_.rejected();
+  view.rejected_commands = gate_.refused();
+  view.algorithm = leveling_.algorithm();
+  view.leveling_state = leveling_.state();
+  view.peaks = leveling_.peaks();
+  telemetry_.tick(view, output);
+}
 
+void Robot::act(RobotOutput& output) {
   output.store_parameter = store_parameter_;
   output.store_value = store_value_;
   store_parameter_ = 0;
-  output.duty_left = view_.duty_left;
-  output.duty_right = view_.duty_right;
+  output.duty_left = status_.duty.duty_left;
+  output.duty_right = status_.duty.duty_right;
   // Yellow: motors may move. Red: fault. Green: the ground station is heard.
   output.leds = static_cast<uint8_t>((supervisor_.powered() ? kLedYellow : 0) |
-                                     (view_.state == RobotState::kFault ? kLedRed : 0) |
-                                     (view_.link_alive ? kLedGreen : 0));
+                                     (status_.state == RobotState::kFault ? kLedRed : 0) |
+                                     (supervisor_.link_alive() ? kLedGreen : 0));
 }
 
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   // At most 65,535 mV: what the sensor can say (8184 LSB) is far below.
   const uint32_t battery_uv = static_cast<uint32_t>(sample.battery) * board_.battery_uv_per_lsb;
-  view_.battery_mv = battery_uv < static_cast<uint32_t>(1000) << 16
-                         ? quotient_u16(battery_uv, 1000)
-                         : static_cast<uint16_t>(0xFFFFU);
+  status_.battery_mv = battery_uv < static_cast<uint32_t>(1000) << 16
+                           ? quotient_u16(battery_uv, 1000)
+                           : static_cast<uint16_t>(0xFFFFU);
   const Deltas deltas = count_deltas(sample);
 
   estimate_pose(sample, deltas);
@@ -347,18 +347,17 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   select_motion();
 
   const DriveMeasurement measured = {deltas.left, deltas.right, attitude_.yaw_rate(),
-                                     view_.battery_mv};
+                                     status_.battery_mv};
   if (supervisor_.powered()) {
-    const DriveOutput duty = drive_.tick(view_.motion, measured);
-    view_.duty_left = duty.duty_left;
-    view_.duty_right = duty.duty_right;
+    status_.duty = drive_.tick(status_.motion, measured);
   } else {
     drive_.idle(measured);
-    view_.duty_left = 0;
-    view_.duty_right = 0;
+    status_.duty = {0, 0};
   }
   watch_slip(sample);
+  announce_state();
   report(sample, output);
+  act(output);
 }
 
 }  // namespace screed

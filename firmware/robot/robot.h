@@ -12,6 +12,7 @@
 #include "firmware/leveling/leveling.h"
 #include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/parameters.h"
+#include "firmware/robot/robot_status.h"
 #include "firmware/robot/supervisor.h"
 #include "firmware/robot/telemetry.h"
 #include "firmware/security/command_gate.h"
@@ -24,12 +25,7 @@ namespace screed {
 struct RobotMemory {
   static constexpr uint8_t kStagedSize = 6;  ///< u16, s32
 
-  // What the robot does and has found out, as it is told: asked for once a tick, since on the AVR
-  // an angle costs 1500 cycles and a position a division.
-  TelemetryView view_;
-  Angle heading_;
-  Angle pitch_;
-  int16_t sin_pitch_q14_;
+  RobotStatus status_;
   MotionCommand drive_command_;  ///< last CommandOp::kDrive
   uint16_t last_left_;
   uint16_t last_right_;
@@ -40,6 +36,7 @@ struct RobotMemory {
   int16_t store_value_;
   uint8_t store_ticks_;     ///< until the EEPROM takes another parameter
   uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
+  UplinkCounts uplink_;
   bool command_pending_;
   bool started_;  ///< the first tick is over
 };
@@ -61,7 +58,7 @@ class Robot : private RobotMemory {
   const Supervisor& supervisor() const { return supervisor_; }
   const Leveling& leveling() const { return leveling_; }
   const DriveControl& drive() const { return drive_; }
-  const MotionCommand& motion() const { return view_.motion; }
+  const MotionCommand& motion() const { return status_.motion; }
   const Parameters& parameters() const { return parameters_; }
   const CommandGate& gate() const { return gate_; }
   const SlipWatch& slip_watch() const { return slip_watch_; }
@@ -88,7 +85,9 @@ class Robot : private RobotMemory {
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void select_motion();
   void watch_slip(const SensorSample& sample);
+  void announce_state();
   void report(const SensorSample& sample, RobotOutput& output);
+  void act(RobotOutput& output);
 
   BoardConstants board_;
   Parameters parameters_;

@@ -61,8 +61,9 @@ bool TrackWatch::alternates() const {
   return reversals_ >= kReversals;
 }
 
-static_assert(kFaultAccelMagChip == kChipAccelMag << 8 && kFaultGyroChip == kChipGyro << 8 &&
-                  kFaultBaroChip == kChipBaro << 8,
+static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
+                  Fault::kGyroChip == ChipBit::kGyroChip << 8 &&
+                  Fault::kBaroChip == ChipBit::kBaroChip << 8,
               "faults of chips are their bits, shifted");
 
 Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
@@ -105,14 +106,14 @@ bool Supervisor::tilted(const SupervisorInput& input) {
 }
 
 uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
-  uint16_t found = parameters_valid_ ? 0 : static_cast<uint16_t>(kFaultParameters);
+  uint16_t found = parameters_valid_ ? 0 : static_cast<uint16_t>(Fault::kParameters);
 
-  if (lasts(tilted(input), tilt_ticks_, kTiltTicks)) found |= kFaultTilt;
+  if (lasts(tilted(input), tilt_ticks_, kTiltTicks)) found |= Fault::kTilt;
 
   const bool new_gyro = (input.fresh & kFreshGyro) != 0;
-  if (lasts(!new_gyro, silent_gyro_ticks_, kSilentTicks)) found |= kFaultImuSilent;
+  if (lasts(!new_gyro, silent_gyro_ticks_, kSilentTicks)) found |= Fault::kImuSilent;
   if (lasts((input.fresh & kFreshAccel) == 0, silent_accel_ticks_, kSilentTicks)) {
-    found |= kFaultImuSilent;
+    found |= Fault::kImuSilent;
   }
 
   // The noise of a live gyro moves its last digit within a few samples.
@@ -122,7 +123,7 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
     last_gyro_[i] = input.gyro[i];
   }
   if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
-  if (frozen_gyro_ticks_ >= kFrozenTicks) found |= kFaultGyroFrozen;
+  if (frozen_gyro_ticks_ >= kFrozenTicks) found |= Fault::kGyroFrozen;
 
   if (lasts(input.chips_failing != 0, chip_ticks_, kChipTicks)) {
     found |= static_cast<uint16_t>(static_cast<uint16_t>(input.chips_failing & 0x07U) << 8);
@@ -130,16 +131,16 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
 
   left_.tick(input.duty_left, input.counts_left);
   right_.tick(input.duty_right, input.counts_right);
-  if (left_.still_ticks() >= stall_ticks_) found |= kFaultStallLeft;
-  if (right_.still_ticks() >= stall_ticks_) found |= kFaultStallRight;
-  if (left_.alternates()) found |= kFaultEncoderLeft;
-  if (right_.alternates()) found |= kFaultEncoderRight;
+  if (left_.still_ticks() >= stall_ticks_) found |= Fault::kStallLeft;
+  if (right_.still_ticks() >= stall_ticks_) found |= Fault::kStallRight;
+  if (left_.alternates()) found |= Fault::kEncoderLeft;
+  if (right_.alternates()) found |= Fault::kEncoderRight;
 
   stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
-  if (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_) found |= kFaultStuck;
+  if (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_) found |= Fault::kStuck;
 
   if (lasts(input.battery_mv < battery_low_mv_, battery_ticks_, kBatteryTicks)) {
-    found |= kFaultBattery;
+    found |= Fault::kBattery;
   }
   return found;
 }
@@ -217,7 +218,7 @@ RequestResult Supervisor::request(Request request) {
       state_ = RobotState::kDisarmed;
       return RequestResult::kDone;
     case Request::kEmergencyStop:
-      latched_ |= kFaultEmergencyStop;
+      latched_ |= Fault::kEmergencyStop;
       state_ = RobotState::kFault;
       return RequestResult::kDone;
     case Request::kNone:

@@ -17,32 +17,12 @@
 
 namespace screed {
 
-enum class RobotState : uint8_t {
-  kDisarmed = 0,
-  kArmed = 1,
-  kRunning = 2,
-  kStopped = 3,
-  kFault = 4
-};
-constexpr uint8_t kRobotStates = 5;
+/// Names and numbers come from the schema: screed.dbc.
+using RobotState = message::HeartbeatState;
 
-/// Causes, one bit each, as latched and as sent in the heartbeat.
-enum FaultBit : uint16_t {
-  kFaultTilt = 1 << 0,        ///< inclination beyond tilt_limit, or rolled over
-  kFaultImuSilent = 1 << 1,   ///< gyro or accelerometer gave nothing new for 80 ms
-  kFaultGyroFrozen = 1 << 2,  ///< the gyro repeats itself to the bit
-  kFaultStallLeft = 1 << 3,   ///< high duty, no motion
-  kFaultStallRight = 1 << 4,
-  kFaultBattery = 1 << 5,        ///< below battery_low
-  kFaultParameters = 1 << 6,     ///< a parameter is out of its range, or the stored ones are lost
-  kFaultEmergencyStop = 1 << 7,  ///< ESTOP received
-  kFaultAccelMagChip = 1 << 8,   ///< LSM303D does not answer or lost its settings
-  kFaultGyroChip = 1 << 9,       ///< L3GD20H
-  kFaultBaroChip = 1 << 10,      ///< LPS25H
-  kFaultEncoderLeft = 1 << 11,   ///< a driven track whose count alternates: a broken wire
-  kFaultEncoderRight = 1 << 12,
-  kFaultStuck = 1 << 13,  ///< dug in or hung up for longer than stuck_time allows
-};
+/// Causes of kFault, one bit each, as latched and as sent in the heartbeat. A new one is a line of
+/// screed.dbc and its logic in Supervisor::look_for_faults().
+using Fault = message::HeartbeatFaults;
 
 /// Requests, from the ground station.
 enum class Request : uint8_t {

@@ -13,13 +13,26 @@ struct Schedule {
   uint8_t first;   ///< tick of the first one: spreads the load
 };
 
+constexpr uint16_t kTick_ms = kTickPeriod_us / 1000;
+
+/// A row: the message by its period in the schema.
+template <typename Message>
+constexpr Schedule every(uint8_t first) {
+  static_assert(Message::kPeriod_ms % kTick_ms == 0 && Message::kPeriod_ms / kTick_ms <= UINT8_MAX,
+                "periods are whole ticks, at most 255");
+  return {Message::kId, static_cast<uint8_t>(Message::kPeriod_ms / kTick_ms), first};
+}
+
 // In order of importance; 119 lines a second of 200 possible, 2566 of the 2850 bytes of the budget.
-constexpr Schedule kSchedule[kTelemetryMessages] = {
-    {kIdHeartbeat, 20, 0}, {kIdAttitude, 4, 1},  {kIdEncoders, 5, 2},  {kIdMotors, 5, 3},
-    {kIdLeveling, 10, 4},  {kIdOdometry, 10, 6}, {kIdAccelRaw, 10, 8}, {kIdGyroRaw, 10, 9},
-    {kIdPower, 50, 14},    {kIdMagRaw, 50, 24},  {kIdBaro, 100, 34},   {kIdHealth, 50, 44},
-    {kIdLink, 100, 54},    {kIdTime, 100, 64},
+constexpr Schedule kSchedule[] = {
+    every<message::Heartbeat>(0), every<message::Attitude>(1), every<message::Encoders>(2),
+    every<message::Motors>(3),    every<message::Leveling>(4), every<message::Odometry>(6),
+    every<message::AccelRaw>(8),  every<message::GyroRaw>(9),  every<message::Power>(14),
+    every<message::MagRaw>(24),   every<message::Baro>(34),    every<message::Health>(44),
+    every<message::Link>(54),     every<message::Time>(64),
 };
+static_assert(sizeof(kSchedule) / sizeof(kSchedule[0]) == kTelemetryMessages,
+              "every message with a period has a row");
 
 // Credit is saved for the four lines that may come together, and no more.
 constexpr uint8_t kMaxCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
@@ -27,6 +40,12 @@ constexpr uint8_t kMaxCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
 /// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.
 int16_t centidegrees_per_s(YawRate rate) {
   return centidegrees_from_angle(rate);
+}
+
+/// 0..35999, as 16 bits.
+SCREED_OUT_OF_LINE int16_t heading_cdeg(Angle heading) {
+  return static_cast<int16_t>((static_cast<uint32_t>(static_cast<uint16_t>(heading)) * 36000U) >>
+                              16);
 }
 
 // Fills size and data; the protection is written afterwards.
@@ -49,10 +68,12 @@ void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
 
 SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
   const SensorSample& sample = *view.sample;
+  const RobotStatus& robot = *view.robot;
+  const UplinkCounts& uplink = *view.uplink;
   switch (frame.id) {
     case kIdHeartbeat: {
       message::Heartbeat it{};
-      it.state = static_cast<uint8_t>(view.state);
+      it.state = static_cast<uint8_t>(robot.state);
       it.faults = view.faults;
       it.link_alive = view.link_alive ? 1 : 0;
       it.boot_epoch = view.boot_epoch;
@@ -61,15 +82,16 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       break;
     }
     case kIdAttitude:
-      set_words(frame, view.roll_cdeg, view.pitch_cdeg, static_cast<int16_t>(view.heading_cdeg));
+      set_words(frame, centidegrees_from_angle(robot.angles.roll),
+                centidegrees_from_angle(robot.angles.pitch), heading_cdeg(robot.angles.heading));
       break;
     case kIdLeveling: {
       message::Leveling it{};
       it.state = static_cast<uint8_t>(view.leveling_state);
       it.algorithm = static_cast<uint8_t>(view.algorithm);
       it.peaks = static_cast<uint8_t>(view.peaks & 0xFFU);
-      it.speed = view.motion.speed_mm_per_s;
-      it.turn_rate = centidegrees_per_s(view.motion.yaw_rate);
+      it.speed = robot.motion.speed_mm_per_s;
+      it.turn_rate = centidegrees_per_s(robot.motion.yaw_rate);
       set(frame, it);
       break;
     }
@@ -79,12 +101,12 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
                 static_cast<int16_t>(kTickPeriod_us / 4));
       break;
     case kIdMotors:
-      set(frame, message::Motors{view.slip, view.stuck, view.duty_left, view.duty_right,
+      set(frame, message::Motors{view.slip, view.stuck, robot.duty.duty_left, robot.duty.duty_right,
                                  sample.encoder_errors});
       break;
     case kIdOdometry:
-      set_words(frame, saturate_i16(view.x_mm), saturate_i16(view.y_mm),
-                static_cast<int16_t>(view.heading_cdeg));
+      set_words(frame, saturate_i16(robot.x_mm), saturate_i16(robot.y_mm),
+                heading_cdeg(robot.angles.heading));
       break;
     case kIdAccelRaw:
       set_vector(frame, sample.accel);
@@ -97,7 +119,7 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       break;
     case kIdPower: {
       const uint16_t load = static_cast<uint16_t>(sample.last_tick_us / (kTickPeriod_us / 100U));
-      set(frame, message::Power{view.battery_mv, static_cast<uint8_t>(load > 255 ? 255 : load)});
+      set(frame, message::Power{robot.battery_mv, static_cast<uint8_t>(load > 255 ? 255 : load)});
       break;
     }
     case kIdHealth: {
@@ -113,19 +135,19 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
     }
     case kIdLink: {
       message::Link it{};
-      it.frames_received = view.frames_received;
+      it.frames_received = uplink.frames_received;
       it.lines_rejected = view.rejected_lines;
-      it.frames_rejected = view.rejected_frames;
+      it.frames_rejected = uplink.rejected_frames;
       it.commands_rejected = view.rejected_commands;
       // Five a second.
-      const uint8_t heard = static_cast<uint8_t>(view.ground_heartbeats - heartbeats_before_);
+      const uint8_t heard = static_cast<uint8_t>(uplink.ground_heartbeats - heartbeats_before_);
       it.quality = heard < 5 ? static_cast<uint8_t>(20U * heard) : static_cast<uint8_t>(100);
-      heartbeats_before_ = view.ground_heartbeats;
+      heartbeats_before_ = uplink.ground_heartbeats;
       set(frame, it);
       break;
     }
     case kIdTime:
-      set(frame, message::Time{quotient_u32(sample.time_us, 1000), view.ground_time_ms});
+      set(frame, message::Time{quotient_u32(sample.time_us, 1000), uplink.ground_time_ms});
       break;
     case kIdBaro:
     default: {

@@ -11,43 +11,32 @@
 
 #include "firmware/leveling/leveling.h"
 #include "firmware/protocol/messages.h"
-#include "firmware/robot/supervisor.h"
+#include "firmware/robot/robot_status.h"
 #include "hal/sample.h"
 
 namespace screed {
 
-/// Everything the downlink may say, gathered by the robot each tick.
+/// Everything the downlink may say, gathered by the robot once a tick. What it points to is read in
+/// that tick alone.
 struct TelemetryView {
   const SensorSample* sample;
-  int16_t roll_cdeg;
-  int16_t pitch_cdeg;
-  uint16_t heading_cdeg;  ///< 0..35999
-  int32_t x_mm;
-  int32_t y_mm;
-  int16_t duty_left;
-  int16_t duty_right;
+  const RobotStatus* robot;
+  const UplinkCounts* uplink;
   uint8_t slip;   ///< 1: the tracks move much more than the robot
   uint8_t stuck;  ///< 1: and have done so for long
-  MotionCommand motion;
-  RobotState state;
   uint16_t faults;
   bool link_alive;
-  uint8_t ground_heartbeats;  ///< valid ones since start, wraps
-  uint16_t ground_time_ms;    ///< lower 16 bits of the last one's time
   uint16_t boot_epoch;
-  uint16_t freshness;        ///< counter of the last command that was accepted
-  uint16_t frames_received;  ///< of the uplink, accepted
+  uint16_t freshness;  ///< counter of the last command that was accepted
   uint8_t rejected_lines;
-  uint8_t rejected_frames;
   uint8_t rejected_commands;
   LevelingAlgorithm algorithm;
   LevelingState leveling_state;
   uint16_t peaks;
-  uint16_t battery_mv;
 };
 
-constexpr uint8_t kTelemetryMessages = 14;  ///< sent by their rate
-constexpr uint8_t kUrgentMessages = 3;      ///< sent when there is something to say
+constexpr uint8_t kTelemetryMessages = kPeriodicMessages;  ///< sent by their rate
+constexpr uint8_t kUrgentMessages = 3;                     ///< sent when there is something to say
 
 /// What the downlink remembers, zero at the start: zeroed at once, which takes less flash.
 struct TelemetryMemory {
@@ -58,6 +47,7 @@ struct TelemetryMemory {
   uint8_t next_packet_;  ///< ticks
   uint8_t credit_;       ///< bytes
   uint16_t due_;         ///< a bit a message: it waits for room
+  static_assert(kTelemetryMessages <= 16, "due_ has a bit for each");
   uint8_t countdown_[kTelemetryMessages];
   uint8_t counter_[kTelemetryMessages + kUrgentMessages];
   bool started_;

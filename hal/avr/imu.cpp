@@ -129,9 +129,9 @@ static_assert(kFreshGyro == 1 << kReadGyro && kFreshAccel == 1 << kReadAccel &&
 
 /// Remembers whether the chip that was to be read answered.
 void record_result(bool ok) {
-  const uint8_t bit = state.step == kReadGyro    ? kChipGyro
-                      : state.step == kReadAccel ? kChipAccelMag
-                      : state.step == kReadBaro  ? kChipBaro
+  const uint8_t bit = state.step == kReadGyro    ? ChipBit::kGyroChip
+                      : state.step == kReadAccel ? ChipBit::kAccelMagChip
+                      : state.step == kReadBaro  ? ChipBit::kBaroChip
                                                  : 0;
   state.failing = static_cast<uint8_t>(ok ? state.failing & ~bit : state.failing | bit);
 }
@@ -143,8 +143,8 @@ uint8_t chips_failing() {
   }
   return failing;
 }
-static_assert(kChipAccelMag == 1 << kAccelMagChip && kChipGyro == 1 << kGyroChip &&
-                  kChipBaro == 1 << kBaroChip,
+static_assert(ChipBit::kAccelMagChip == 1 << kAccelMagChip &&
+                  ChipBit::kGyroChip == 1 << kGyroChip && ChipBit::kBaroChip == 1 << kBaroChip,
               "chips_failing relies on the order");
 
 int16_t word_at(const uint8_t* bytes) {
@@ -227,7 +227,8 @@ void imu_read(SensorSample& sample) {
   if (phase == kBusStuck) {
     twi_recover();
     state.arrived = 0;
-    state.failing = kChipAccelMag | kChipGyro | (kHasBarometer ? kChipBaro : 0);
+    state.failing =
+        ChipBit::kAccelMagChip | ChipBit::kGyroChip | (kHasBarometer ? ChipBit::kBaroChip : 0);
     state.errors = static_cast<uint8_t>(state.errors + 1);
   }
   take_vector(state.gyro, kGyroChip, kFreshGyro, sample.gyro, sample);

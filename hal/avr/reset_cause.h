@@ -7,20 +7,12 @@
 // bootloader's own variables lie below, its stack above.
 #pragma once
 
-#include <stdint.h>
+#include "schema/values.h"
 
 namespace screed {
 namespace avr {
 
-enum class ResetCause : uint8_t {
-  kPowerOn = 0,
-  kBrownOut = 1,   ///< the supply fell below the fuses' level (4.3 V) while the program ran
-  kWatchdog = 2,   ///< the main loop hung
-  kExternal = 3,   ///< the reset button, or a program that hung with its interrupts off
-  kRequested = 4,  ///< the console asked for it
-  kUpload = 5,     ///< the bootloader was asked for over USB
-  kStack = 6,      ///< the stack met the variables
-};
+using ResetCause = message::HealthResetCause;
 
 ResetCause reset_cause();
 

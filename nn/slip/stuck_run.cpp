@@ -41,7 +41,7 @@ SlipTick tick_of(const World& world, const Robot& robot) {
   tick.backwards = left + right < 0.0;
   tick.slips = watch.slips();
   tick.stuck = watch.stuck();
-  tick.stalled = (robot.supervisor().faults() & (kFaultStallLeft | kFaultStallRight)) != 0;
+  tick.stalled = (robot.supervisor().faults() & (Fault::kStallLeft | Fault::kStallRight)) != 0;
   return tick;
 }
 

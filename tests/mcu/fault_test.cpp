@@ -9,12 +9,12 @@
 namespace screed::mcu {
 namespace {
 
-constexpr std::uint16_t kChipFaults = kFaultAccelMagChip | kFaultGyroChip | kFaultBaroChip;
+constexpr std::uint16_t kChipFaults = Fault::kAccelMagChip | Fault::kGyroChip | Fault::kBaroChip;
 
-I2cChip& chip_of(ImageDrive& drive, ChipBit bit) {
+I2cChip& chip_of(ImageDrive& drive, uint8_t bit) {
   Board& board = drive.world.board();
-  if (bit == kChipAccelMag) return board.accel_mag;
-  if (bit == kChipGyro) return board.gyro;
+  if (bit == ChipBit::kAccelMagChip) return board.accel_mag;
+  if (bit == ChipBit::kGyroChip) return board.gyro;
   return *board.baro;
 }
 
@@ -35,8 +35,8 @@ TEST(Fault, DataLineHeldLowForFiveSecondsStopsTheRobot) {
   drive.run(5.0);
   EXPECT_FALSE(drive.powered());
   EXPECT_EQ(drive.report().state, RobotState::kFault);
-  EXPECT_NE(drive.report().faults & (kChipFaults | kFaultImuSilent), 0);
-  EXPECT_EQ(failing_chips(drive), kChipAccelMag | kChipGyro | kChipBaro);
+  EXPECT_NE(drive.report().faults & (kChipFaults | Fault::kImuSilent), 0);
+  EXPECT_EQ(failing_chips(drive), ChipBit::kAccelMagChip | ChipBit::kGyroChip | ChipBit::kBaroChip);
   drive.expect_punctual();
   // The bus comes back, and with it the numbers; the fault stays latched.
   drive.world.board().bus.release_data();
@@ -66,7 +66,7 @@ TEST(Fault, ADeviceInTheMiddleOfAByteIsClockedFreeWithin25Ms) {
 
 // 14
 TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
-  for (const ChipBit bit : {kChipAccelMag, kChipGyro, kChipBaro}) {
+  for (const uint8_t bit : {ChipBit::kAccelMagChip, ChipBit::kGyroChip, ChipBit::kBaroChip}) {
     ImageDrive drive;
     chip_of(drive, bit).present = false;
     for (int i = 0; i < 1200; ++i) {
@@ -76,7 +76,7 @@ TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
     EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
     EXPECT_EQ(failing_chips(drive), bit) << "says which chip";
     drive.expect_punctual();
-    if (bit != kChipBaro) continue;
+    if (bit != ChipBit::kBaroChip) continue;
     const std::vector<std::uint8_t> ack = drive.last_frame(kIdCommandAck);
     ASSERT_EQ(ack.size(), message::CommandAck::kSize);
     EXPECT_EQ(ack[4], static_cast<std::uint8_t>(RequestResult::kFaultPresent));
@@ -85,7 +85,7 @@ TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
 
 // 15
 TEST(Fault, AChipThatVanishesStopsTheRobotWithin100Ms) {
-  for (const ChipBit bit : {kChipAccelMag, kChipGyro, kChipBaro}) {
+  for (const uint8_t bit : {ChipBit::kAccelMagChip, ChipBit::kGyroChip, ChipBit::kBaroChip}) {
     ImageDrive drive;
     drive.set_off();
     chip_of(drive, bit).present = false;
@@ -106,7 +106,7 @@ TEST(Fault, AChipThatLosesItsSettingsStopsTheRobotAndIsConfiguredAgain) {
   drive.world.board().gyro.power_up();
   EXPECT_TRUE(drive.ms_until_stop().has_value());
   drive.run(1.0);
-  EXPECT_NE(drive.report().faults & kFaultGyroChip, 0);
+  EXPECT_NE(drive.report().faults & Fault::kGyroChip, 0);
   EXPECT_EQ(failing_chips(drive), 0);
   EXPECT_NE(drive.sample.fresh & kFreshGyro, 0);
 }
@@ -134,8 +134,8 @@ TEST(Fault, ABrokenEncoderStopsTheRobotWithin200Ms) {
     EXPECT_LE(*stopped, 200.0) << (broken.side == kLeft ? "left " : "right ") << broken.a
                                << broken.b << " at " << broken.speed_m_per_s;
     drive.run(1.0);
-    const std::uint16_t of_side = broken.side == kLeft ? kFaultEncoderLeft | kFaultStallLeft
-                                                       : kFaultEncoderRight | kFaultStallRight;
+    const std::uint16_t of_side = broken.side == kLeft ? Fault::kEncoderLeft | Fault::kStallLeft
+                                                       : Fault::kEncoderRight | Fault::kStallRight;
     EXPECT_EQ(drive.report().state, RobotState::kFault);
     EXPECT_NE(drive.report().faults & of_side, 0);
     EXPECT_EQ(drive.report().faults & ~of_side, 0) << "the other track is well";

@@ -123,7 +123,7 @@ TEST(ScreedImage, StopsWhenASensorVanishesWhileDriving) {
     bench.run_ms(200);
     const CanFrame heartbeat = bench.last_frame(kIdHeartbeat);
     EXPECT_EQ(state_of(heartbeat), RobotState::kFault);
-    EXPECT_NE(get_u16(heartbeat.data + 2) & kFaultImuSilent, 0);
+    EXPECT_NE(get_u16(heartbeat.data + 2) & Fault::kImuSilent, 0);
     expect_healthy(bench);
   }
 }

@@ -19,11 +19,11 @@ TEST(Safety, ARobotLaidOnItsSideIsReportedAndStopped) {
       1.0, [&] { return drive.output.duty_left == 0 && drive.output.duty_right == 0; }));
   EXPECT_LE(drive.world.ticks() - begin, 10u);  // 100 ms
   EXPECT_EQ(drive.robot.supervisor().state(), RobotState::kFault);
-  EXPECT_EQ(drive.robot.supervisor().faults(), kFaultTilt);
+  EXPECT_EQ(drive.robot.supervisor().faults(), Fault::kTilt);
   // Reported: the ground station knows within two heartbeats.
   drive.run(0.5);
   EXPECT_EQ(drive.world.ground_station().report().state, RobotState::kFault);
-  EXPECT_EQ(drive.world.ground_station().report().faults, kFaultTilt);
+  EXPECT_EQ(drive.world.ground_station().report().faults, Fault::kTilt);
   // Latched: it stays so.
   drive.run(5.0);
   EXPECT_EQ(drive.output.duty_left, 0);
@@ -85,7 +85,7 @@ TEST(Safety, ATrackThatCannotMoveLosesPower) {
     drive.world.apply(drive.output);
     ++ticks;
   }
-  EXPECT_EQ(drive.robot.supervisor().faults(), kFaultStallLeft);
+  EXPECT_EQ(drive.robot.supervisor().faults(), Fault::kStallLeft);
   EXPECT_EQ(drive.output.duty_left, 0);
   EXPECT_EQ(drive.output.duty_right, 0);
 }

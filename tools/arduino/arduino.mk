@@ -7,7 +7,7 @@
 ARDUINO_ZIP := $(BUILD_ROOT)/arduino/Screed-$(VERSION).zip
 ARDUINO_TEST_ELF := $(BUILD_ROOT)/arduino/example.elf
 ARDUINO_PACKED := $(wildcard tools/arduino/*) LICENSE $(shell find firmware nn/infer hal boards -name '*.cpp' -o -name '*.h') \
-  $(GENERATED_FOLDER)/schema/messages.h
+  $(FIRMWARE_SCHEMA_HEADERS)
 
 .PHONY: arduino
 arduino: $(ARDUINO_ZIP)  ## the firmware as a library for the Arduino IDE (BOARD=NAME)

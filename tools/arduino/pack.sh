@@ -29,7 +29,7 @@ rm "$src/hal/avr/main.cpp"  # the sketch takes its place
 # The IDE has flags of its own, and 28,672 bytes as well: what makes the image smaller stands in the sources.
 pragma=$(printf ', "%s"' ${SMALLER:-})
 [ -z "${SMALLER:-}" ] || find "$src" -name '*.cpp' -exec sed -i "1i #pragma GCC optimize (${pragma#, })" {} +
-install -D -m 644 "$generated/schema/messages.h" "$src/schema/messages.h"
+install -D -m 644 -t "$src/schema" "$generated"/schema/{values,classes,messages}.h
 cp "$here/Screed.h" "$src"
 
 { echo '// The board this library was packed for: change it here and in pins.h.' ; echo "#include \"boards/$board/board.h\"" ; } > "$src/board.h"

@@ -26,8 +26,9 @@ format:  ## clang-format over the tree
 	clang-format -i $(CPP_FILES)
 $(B)/lint.flags: $(B)/host.flags | $(B)/tiny_dnn/third_party/stb
 	@echo "$$(cat $<) -idirafter $(B)/tiny_dnn $(RSVG_FLAGS) $(SDL_FLAGS)" > $@
+# Flags are taken as they stand, by no shell: without the quotes that keep the others from one.
 $(B)/mcu_tests.flags: $(B)/lint.flags $(B)/tests/mcu.flags
-	@echo "$$(cat $^)" > $@
+	@cat $^ | tr -d "'" > $@
 # gcc-avr's own flags are not clang's.
 $(B)/avr.flags: FORCE
 	@mkdir -p $(@D)

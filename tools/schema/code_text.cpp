@@ -21,6 +21,16 @@ std::string pascal_case(const std::string& name) {
   return out;
 }
 
+std::string capitals(std::string name) {
+  for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
+std::string small_letters(std::string name) {
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
+}
+
 std::string id_text(std::uint32_t id) {
   char text[16];
   std::snprintf(text, sizeof text, "0x%03X", static_cast<unsigned>(id));

@@ -10,6 +10,10 @@ namespace screed::schema {
 /// COMMAND_ACK or command_ack -> CommandAck.
 std::string pascal_case(const std::string& name);
 
+/// command_ack -> COMMAND_ACK, and back.
+std::string capitals(std::string name);
+std::string small_letters(std::string name);
+
 /// 529 -> "0x211".
 std::string id_text(std::uint32_t id);
 

@@ -367,6 +367,14 @@ std::string DbcSignal::flags() const {
   return attribute(attributes, "Flags");
 }
 
+std::string DbcSignal::class_folder() const {
+  return attribute(attributes, "ClassFolder");
+}
+
+bool DbcMessage::from_ground() const {
+  return sender == "GROUND";
+}
+
 bool DbcMessage::protected_by_crc() const {
   return attribute(attributes, "Protection") == "e2e";
 }

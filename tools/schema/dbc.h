@@ -48,6 +48,9 @@ struct DbcSignal {
 
   /// The attribute "Flags": the field of the message that this bit belongs to; empty: none.
   [[nodiscard]] std::string flags() const;
+  /// The attribute "ClassFolder": every value is a class of its name, pascal case, in
+  /// FOLDER/<name>.h; empty: none.
+  [[nodiscard]] std::string class_folder() const;
 };
 
 struct DbcMessage {
@@ -60,6 +63,7 @@ struct DbcMessage {
   std::vector<DbcSignal> signals;
   std::map<std::string, std::string> attributes;
 
+  [[nodiscard]] bool from_ground() const;       ///< its sender is the node GROUND
   [[nodiscard]] bool protected_by_crc() const;  ///< attribute "Protection" is "e2e"
   [[nodiscard]] int period_ms() const;          ///< attribute "GenMsgCycleTime"; 0: no period
 };

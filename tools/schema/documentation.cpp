@@ -31,13 +31,12 @@ std::string unit(const DbcSignal& signal) {
 
 std::string meaning(const DbcMessage& message, const DbcSignal& signal) {
   if (is_protection(message, signal)) return "protection";
-  std::string text = signal.comment;
-  std::string names;
+  std::string text;
   for (const ValueName& value : signal.values) {
-    names += (names.empty() ? "" : ", ") + std::to_string(value.value) + " `" + value.name + "`";
+    text += (text.empty() ? "" : ", ") + std::to_string(value.value) + " `" + value.name + "`";
   }
-  if (!text.empty() && !names.empty()) text += ": ";
-  text += names;
+  if (!text.empty() && !signal.comment.empty()) text += "; ";
+  text += signal.comment;
   if (!signal.flags().empty()) text += " (" + signal.flags() + ")";
   return text;
 }
@@ -47,7 +46,7 @@ std::string table_of_messages(const Database& database) {
       "| id, robot 1 | message | from | rate | bytes | |\n| --- | --- | --- | --- | --- | --- |\n";
   for (const DbcMessage& message : database.messages) {
     text += "| " + id_text(message.id) + " | " + message.name + " | " +
-            (message.sender == "GROUND" ? "ground" : "robot") + " | " + rate(message) + " | " +
+            (message.from_ground() ? "ground" : "robot") + " | " + rate(message) + " | " +
             std::to_string(message.size) + " | " + message.comment + " |\n";
   }
   return text;

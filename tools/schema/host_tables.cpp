@@ -2,7 +2,6 @@
 #include "tools/schema/host_tables.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "tools/schema/code_text.h"
 #include "tools/schema/schema_check.h"
@@ -12,11 +11,6 @@ namespace {
 
 std::string quoted(const std::string& text) {
   return "\"" + text + "\"";
-}
-
-std::string small_letters(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 std::string values_name(const DbcMessage& message, const DbcSignal& signal) {
@@ -68,7 +62,7 @@ std::string host_tables(const Database& database) {
     text += "    {" + quoted(message.name) + ", " + quoted(small_letters(message.name)) + ", " +
             quoted(message.comment) + ", " + id_text(message.id) + ", " +
             std::to_string(message.size) + ", " + std::to_string(message.period_ms()) + ", " +
-            (message.sender == "GROUND" ? "true" : "false") + ", " +
+            (message.from_ground() ? "true" : "false") + ", " +
             (message.protected_by_crc() ? "true" : "false") + ", k" + pascal_case(message.name) +
             "Signals},\n";
   }

@@ -15,14 +15,18 @@
 #include "tools/schema/host_tables.h"
 #include "tools/schema/message_code.h"
 #include "tools/schema/schema_check.h"
+#include "tools/schema/value_code.h"
 #include "tools/schema/wireshark_tables.h"
 
 namespace screed::schema {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: schema_compiler SCHEMA.dbc [--messages FILE] [--tables FILE] [--wireshark FOLDER]\n"
-    "                       [--document FILE] [--check-document FILE]\n"
+    "usage: schema_compiler SCHEMA.dbc [--values FILE] [--classes FILE] [--messages FILE]\n"
+    "                       [--tables FILE] [--wireshark FOLDER] [--document FILE]\n"
+    "                       [--check-document FILE]\n"
+    "  --values      C++ enumerations of names of values and of flags\n"
+    "  --classes     the #include lines of classes that values name (attribute ClassFolder)\n"
     "  --messages    C++ structures with pack() and unpack()\n"
     "  --tables      C++ tables for the host\n"
     "  --wireshark   a configuration profile for Wireshark and tshark\n"
@@ -48,6 +52,8 @@ int run(const std::vector<std::string>& arguments) {
   const Database database = read_dbc(arguments[0]);
   check_schema(database);
   const std::map<std::string, std::function<void(const std::string&)>> actions = {
+      {"--values", [&](const std::string& path) { write(path, value_code(database)); }},
+      {"--classes", [&](const std::string& path) { write(path, class_includes(database)); }},
       {"--messages", [&](const std::string& path) { write(path, message_code(database)); }},
       {"--tables", [&](const std::string& path) { write(path, host_tables(database)); }},
       {"--wireshark",

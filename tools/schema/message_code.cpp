@@ -105,27 +105,6 @@ std::string meaning(const Field& field) {
   return text.empty() ? unit : unit + ": " + text;
 }
 
-std::string enumerations(const DbcMessage& message) {
-  std::string text;
-  for (const Field& field : fields_of(message)) {
-    const DbcSignal& first = *field.signals.front();
-    if (first.values.empty() && first.flags().empty()) continue;
-    text += "enum class " + pascal_case(message.name) + pascal_case(field.name) + " : " +
-            unsigned_type(field.length) + " {\n";
-    for (const ValueName& value : first.values) {
-      text += "  k" + pascal_case(value.name) + " = " + std::to_string(value.value) + ",\n";
-    }
-    if (!first.flags().empty()) {
-      for (const DbcSignal* flag : field.signals) {
-        text += "  k" + pascal_case(flag->name) + " = 1U << " +
-                std::to_string(flag->start - field.start) + ",\n";
-      }
-    }
-    text += "};\n\n";
-  }
-  return text;
-}
-
 /// Bytes that a message's fields do not reach are 0; the CRC's is left alone.
 std::string pack_body(const DbcMessage& message) {
   std::vector<std::string> bytes(static_cast<size_t>(message.size));
@@ -159,7 +138,11 @@ std::string structure(const DbcMessage& message) {
   std::string text = "/// " + message.comment + "\n";
   text += "struct " + name + " {\n";
   text += "  enum : uint16_t { kId = " + id_text(message.id) + " };\n";
-  text += "  enum : uint8_t { kSize = " + std::to_string(message.size) + " };\n\n";
+  text += "  enum : uint8_t { kSize = " + std::to_string(message.size) + " };\n";
+  if (message.period_ms() != 0) {
+    text += "  enum : uint16_t { kPeriod_ms = " + std::to_string(message.period_ms()) + " };\n";
+  }
+  text += "\n";
   const std::vector<Field> fields = fields_of(message);
   for (const Field& field : fields) {
     text += "  " + type_of(field) + " " + field.name + ";  ///< " + meaning(field) + "\n";
@@ -172,6 +155,12 @@ std::string structure(const DbcMessage& message) {
   return text + "    return message;\n  }\n};\n\n";
 }
 
+std::ptrdiff_t periodic_messages(const Database& database) {
+  return std::count_if(
+      database.messages.begin(), database.messages.end(),
+      [](const DbcMessage& it) { return it.period_ms() != 0 && !it.from_ground(); });
+}
+
 }  // namespace
 
 std::string message_code(const Database& database) {
@@ -180,14 +169,18 @@ std::string message_code(const Database& database) {
       "// pack() fills kSize bytes. Of a protected message it leaves byte 0, the CRC, alone and\n"
       "// writes 0 into the counter: e2e_protect() fills both. Fields are raw; their comments say\n"
       "// what one step is.\n"
-      "#pragma once\n\n#include <stdint.h>\n\n#include \"firmware/protocol/bytes.h\"\n\n"
+      "#pragma once\n\n#include <stdint.h>\n\n#include \"firmware/protocol/bytes.h\"\n"
+      "#include \"schema/values.h\"\n\n"
       "namespace screed {\n\nenum MessageId : uint16_t {\n";
   for (const DbcMessage& message : database.messages) {
     text += "  kId" + pascal_case(message.name) + " = " + id_text(message.id) + ",\n";
   }
-  text += "};\n\nnamespace message {\n\n";
+  text +=
+      "};\n\n/// Messages that the robot sends by their periods.\nconstexpr uint8_t "
+      "kPeriodicMessages = " +
+      std::to_string(periodic_messages(database)) + ";\n\nnamespace message {\n\n";
   for (const DbcMessage& message : database.messages) {
-    text += enumerations(message) + structure(message);
+    text += structure(message);
   }
   return text + "}  // namespace message\n\n}  // namespace screed\n";
 }

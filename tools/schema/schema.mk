@@ -1,6 +1,8 @@
 # The schema of the radio's messages and what is made of it. Included by the top Makefile, before the first use of what it makes.
 #
-#   firmware/protocol/screed.dbc -> build/generated/schema/messages.h   pack and unpack, for the microcontroller and the host
+#   firmware/protocol/screed.dbc -> build/generated/schema/values.h     names of values and flags, for the microcontroller and the host
+#                                    build/generated/schema/classes.h    the headers of classes that values name, likewise
+#                                    build/generated/schema/messages.h   pack and unpack, likewise
 #                                    build/generated/schema/tables.h     names, units, scales, for the host
 #                                    build/generated/wireshark           a profile for Wireshark and tshark
 #
@@ -11,7 +13,8 @@ GENERATED_FOLDER := $(BUILD_ROOT)/generated
 SCHEMA_COMPILER := $(BUILD_ROOT)/schema/schema_compiler
 SCHEMA_SOURCES := $(call sources,tools/schema)
 SCHEMA_OBJECTS := $(SCHEMA_SOURCES:%.cpp=$(BUILD_ROOT)/schema/%.o)
-SCHEMA_HEADERS := $(GENERATED_FOLDER)/schema/messages.h $(GENERATED_FOLDER)/schema/tables.h
+FIRMWARE_SCHEMA_HEADERS := $(addprefix $(GENERATED_FOLDER)/schema/,values.h classes.h messages.h)
+SCHEMA_HEADERS := $(FIRMWARE_SCHEMA_HEADERS) $(GENERATED_FOLDER)/schema/tables.h
 
 # The compiler is built once for every kind of build, and before everything else.
 $(BUILD_ROOT)/schema/%.o: %.cpp tools/schema/schema.mk
@@ -24,7 +27,8 @@ $(SCHEMA_COMPILER): $(SCHEMA_OBJECTS)
 # The stamp is new when the compiler has run; the headers only when they changed.
 $(GENERATED_FOLDER)/schema.stamp: $(SCHEMA) $(SCHEMA_COMPILER)
 	@mkdir -p $(GENERATED_FOLDER)/schema $(GENERATED_FOLDER)/wireshark
-	@$(SCHEMA_COMPILER) $(SCHEMA) --messages $(GENERATED_FOLDER)/schema/messages.h --tables $(GENERATED_FOLDER)/schema/tables.h \
+	@$(SCHEMA_COMPILER) $(SCHEMA) --values $(GENERATED_FOLDER)/schema/values.h --classes $(GENERATED_FOLDER)/schema/classes.h \
+	  --messages $(GENERATED_FOLDER)/schema/messages.h --tables $(GENERATED_FOLDER)/schema/tables.h \
 	  --wireshark $(GENERATED_FOLDER)/wireshark
 	@touch $@
 $(SCHEMA_HEADERS): $(GENERATED_FOLDER)/schema.stamp ;

@@ -31,6 +31,10 @@ constexpr std::string_view kReserved[] = {
     "sizeof", "static",   "struct", "switch",  "this",   "throw",    "true",   "try",    "union",
     "unpack", "unsigned", "using",  "virtual", "void",   "volatile", "while",  "xor"};
 
+bool is_reserved(const std::string& name) {
+  return std::find(std::begin(kReserved), std::end(kReserved), name) != std::end(kReserved);
+}
+
 bool plain_text(const std::string& text) {
   return std::all_of(text.begin(), text.end(),
                      [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
@@ -140,7 +144,7 @@ class Checker {
     if (!plain_name(signal.name, false)) {
       refuse("names of signals are small letters, digits and single underscores, at most 32");
     }
-    if (std::find(std::begin(kReserved), std::end(kReserved), signal.name) != std::end(kReserved)) {
+    if (is_reserved(signal.name)) {
       refuse("is a word of C++ or of the generated code");
     }
     if (!signal.multiplexer.empty()) {
@@ -158,6 +162,7 @@ class Checker {
     }
     check_numbers(message, signal);
     check_values(message, signal);
+    check_classes(message, signal);
     if (!plain_text(signal.comment)) refuse("its comment is not plain ASCII on one line");
     if (!plain_text(signal.unit) || signal.unit.find(',') != std::string::npos) {
       refuse("its unit is not plain ASCII without commas");
@@ -215,6 +220,26 @@ class Checker {
       if (!numbers.insert(value.value).second || !names.insert(value.name).second) {
         fail(value.line,
              place + ": " + std::to_string(value.value) + " \"" + value.name + "\" is there twice");
+      }
+    }
+  }
+
+  /// The folder and the names become part of an #include line, the names of a C++ class as well.
+  void check_classes(const DbcMessage& message, const DbcSignal& signal) const {
+    const std::string folder = signal.class_folder();
+    if (folder.empty()) return;
+    const std::string place = message.name + "." + signal.name;
+    if (signal.values.empty()) {
+      fail(signal.line, place + ": has the attribute ClassFolder, but no names of values (VAL_)");
+    }
+    if (folder.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_/") != std::string::npos ||
+        folder.front() == '/' || folder.back() == '/') {
+      fail(signal.line, place + ": its ClassFolder '" + folder +
+                            "' is no folder of small letters, digits, _ and / below the project");
+    }
+    for (const ValueName& value : signal.values) {
+      if (is_reserved(value.name)) {
+        fail(value.line, place + ": '" + value.name + "' is a word of C++, so it can be no class");
       }
     }
   }

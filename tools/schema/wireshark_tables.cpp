@@ -2,7 +2,6 @@
 #include "tools/schema/wireshark_tables.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <vector>
 
@@ -23,11 +22,6 @@ std::string row(const std::vector<std::string>& values) {
   std::string line;
   for (const std::string& value : values) line += (line.empty() ? "\"" : ",\"") + value + "\"";
   return line + "\n";
-}
-
-std::string small_letters(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 /// What the dissector reads one after the other: signals, and the gaps between them.

@@ -23,18 +23,6 @@ uint64_t steady_us() {
   return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
 }
 
-std::string names_of_faults(uint16_t bits) {
-  std::string names;
-  const MessageInfo& heartbeat = *find_message("HEARTBEAT");
-  unsigned bit = 0;
-  for (const SignalInfo& signal : heartbeat.signals) {
-    if (signal.flags[0] == '\0') continue;
-    if ((bits >> bit & 1U) != 0) names += (names.empty() ? "" : ", ") + std::string(signal.name);
-    ++bit;
-  }
-  return names;
-}
-
 }  // namespace
 
 std::string CommandAnswer::description() const {
@@ -58,7 +46,9 @@ std::string CommandAnswer::description() const {
   for (const Words& known : kWords) {
     if (static_cast<uint8_t>(known.result) != result) continue;
     std::string text = "refused: " + std::string(known.text);
-    if (known.result == Result::kFaultPresent) text += " (" + names_of_faults(detail) + ")";
+    if (known.result == Result::kFaultPresent) {
+      text += " (" + flag_names("heartbeat", "faults", detail) + ")";
+    }
     if (known.result == Result::kLockedOut)
       text += " for " + std::to_string(detail / 100 + 1) + " s";
     return text;

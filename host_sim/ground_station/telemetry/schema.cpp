@@ -35,6 +35,15 @@ std::string list_of(std::span<const char* const> names) {
   return text;
 }
 
+/// As find_message(), but InputError says what there is. path: what was asked for.
+const MessageInfo& message_of(std::string_view name, std::string_view path) {
+  const MessageInfo* const message = find_message(name);
+  if (message != nullptr) return *message;
+  std::vector<const char*> names;
+  for (const MessageInfo& it : kMessages) names.push_back(it.title);
+  throw InputError(std::string(path) + ": no message of this name; there are " + list_of(names));
+}
+
 }  // namespace
 
 int64_t SignalInfo::raw(uint64_t bits) const {
@@ -97,21 +106,36 @@ const MessageInfo* find_message(std::string_view name) {
 
 SignalRef find_signal(std::string_view path) {
   const size_t point = path.find('.');
-  const MessageInfo* const message = find_message(path.substr(0, point));
-  if (message == nullptr) {
-    std::vector<const char*> names;
-    for (const MessageInfo& it : kMessages) names.push_back(it.title);
-    throw InputError(std::string(path) + ": no message of this name; there are " + list_of(names));
-  }
+  const MessageInfo& message = message_of(path.substr(0, point), path);
   const SignalInfo* const signal =
-      point == std::string_view::npos ? nullptr : message->signal(path.substr(point + 1));
+      point == std::string_view::npos ? nullptr : message.signal(path.substr(point + 1));
   if (signal == nullptr) {
     std::vector<const char*> names;
-    for (const SignalInfo& it : message->signals) names.push_back(it.name);
-    throw InputError(std::string(path) + ": no signal of this name; " + message->title + " has " +
+    for (const SignalInfo& it : message.signals) names.push_back(it.name);
+    throw InputError(std::string(path) + ": no signal of this name; " + message.title + " has " +
                      list_of(names));
   }
-  return {message, signal};
+  return {&message, signal};
+}
+
+std::vector<std::string> value_names(std::string_view path) {
+  std::vector<std::string> names;
+  for (const ValueInfo& it : find_signal(path).signal->values) names.emplace_back(it.name);
+  return names;
+}
+
+std::string flag_names(std::string_view message, std::string_view field, uint32_t bits) {
+  std::vector<const SignalInfo*> flags;
+  for (const SignalInfo& it : message_of(message, message).signals) {
+    if (it.flags == field) flags.push_back(&it);
+  }
+  std::sort(flags.begin(), flags.end(),
+            [](const SignalInfo* a, const SignalInfo* b) { return a->start < b->start; });
+  std::vector<const char*> names;
+  for (const SignalInfo* it : flags) {
+    if ((bits >> (it->start - flags.front()->start) & 1U) != 0) names.push_back(it->name);
+  }
+  return list_of(names);
 }
 
 FrameFault check_frame(const CanFrame& frame) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "firmware/protocol/slcan.h"
 
@@ -77,6 +78,15 @@ struct SignalRef {
   const SignalInfo* signal;
 };
 SignalRef find_signal(std::string_view path);
+
+/// The names of a signal's values, in the order of the schema: value_names("leveling.algorithm").
+/// Throws as find_signal.
+std::vector<std::string> value_names(std::string_view path);
+
+/// The names of the set bits of a field of flags, in their order, with ", " between them:
+/// flag_names("heartbeat", "faults", 5) is "tilt, gyro_frozen"; empty: none. Bits without a name
+/// are passed over. Throws InputError when there is no such message.
+std::string flag_names(std::string_view message, std::string_view field, uint32_t bits);
 
 /// The node of an id: 0 the ground, 1..15 a robot.
 constexpr uint8_t node_of(uint16_t id) {

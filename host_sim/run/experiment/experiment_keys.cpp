@@ -1,11 +1,13 @@
 // The table of keys.
 #include "host_sim/run/experiment/experiment_keys.h"
 
+#include <algorithm>
 #include <array>
+#include <span>
 
-#include "firmware/leveling/leveling.h"
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/experiment/key_list.h"
 
 namespace screed {
@@ -15,16 +17,10 @@ bool is_units(const std::string& text) {
   return text == "si" || text == "sandbox";
 }
 
-struct AlgorithmName {
-  const char* name;
-  LevelingAlgorithm algorithm;
-};
-constexpr AlgorithmName kAlgorithms[] = {
-    {"drive", LevelingAlgorithm::kDrive},
-    {"hill_sensing", LevelingAlgorithm::kHillSensing},
-    {"spin_on_peak", LevelingAlgorithm::kSpinOnPeak},
-    {"training_drive", LevelingAlgorithm::kTrainingDrive},
-};
+/// The leveling algorithms of the schema: numbers and names.
+std::span<const ValueInfo> algorithms() {
+  return find_signal("leveling.algorithm").signal->values;
+}
 
 /// Keys that stand before the first section.
 void list_keys_without_section(std::vector<ExperimentKey>& keys) {
@@ -120,14 +116,12 @@ const std::vector<ExperimentKey>& experiment_keys() {
 }
 
 std::vector<std::string> algorithm_names() {
-  std::vector<std::string> names;
-  for (const AlgorithmName& known : kAlgorithms) names.emplace_back(known.name);
-  return names;
+  return value_names("leveling.algorithm");
 }
 
 int16_t algorithm_number(const std::string& name) {
-  for (const AlgorithmName& known : kAlgorithms) {
-    if (name == known.name) return static_cast<int16_t>(known.algorithm);
+  for (const ValueInfo& known : algorithms()) {
+    if (name == known.name) return static_cast<int16_t>(known.value);
   }
   throw InputError("unknown algorithm '" + name + "'");
 }

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/leveling/leveling.h"
 #include "host_sim/core/atomic_file.h"
+#include "schema/values.h"
 
 namespace screed {
 namespace {
@@ -117,7 +117,8 @@ FrameRange training_frames(const SessionReader& session) {
     frames.resize(std::min(kBlockRows, session.frames() - first));
     session.read(first, std::span(frames));
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (frames[i].leveling_state != static_cast<std::int32_t>(LevelingState::kTrainingDrive))
+      if (frames[i].leveling_state !=
+          static_cast<std::int32_t>(message::LevelingState::kTrainingDrive))
         continue;
       if (!begun) range.first = first + i;
       begun = true;

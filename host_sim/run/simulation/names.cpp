@@ -1,49 +1,30 @@
-// The tables of names.
+// Names of states and faults, looked up in the schema.
 #include "host_sim/run/simulation/names.h"
 
-#include <cstddef>
-#include <iterator>
+#include "host_sim/ground_station/telemetry/schema.h"
 
 namespace screed {
 namespace {
 
-constexpr const char* kStateNames[kRobotStates] = {"disarmed", "armed", "running", "stopped",
-                                                   "fault"};
-constexpr const char* kLevelingStateNames[kLevelingStates] = {
-    "idle", "walk", "climb", "spin", "return", "drive", "training_drive", "done"};
-constexpr const char* kFaultNames[] = {"tilt",
-                                       "IMU silent",
-                                       "gyro frozen",
-                                       "left track stalled",
-                                       "right track stalled",
-                                       "battery low",
-                                       "parameters",
-                                       "emergency stop",
-                                       "LSM303D fails",
-                                       "L3GD20H fails",
-                                       "LPS25H fails",
-                                       "left encoder",
-                                       "right encoder",
-                                       "stuck"};
+const char* name_of(const SignalInfo& signal, int64_t value) {
+  const char* const name = signal.value_name(value);
+  return name == nullptr ? "unknown" : name;
+}
 
 }  // namespace
 
 const char* state_name(RobotState state) {
-  const auto index = static_cast<size_t>(state);
-  return index < kRobotStates ? kStateNames[index] : "unknown";
+  static const SignalInfo& signal = *find_signal("heartbeat.state").signal;
+  return name_of(signal, static_cast<int64_t>(state));
 }
 
 const char* leveling_state_name(LevelingState state) {
-  const auto index = static_cast<size_t>(state);
-  return index < kLevelingStates ? kLevelingStateNames[index] : "unknown";
+  static const SignalInfo& signal = *find_signal("leveling.state").signal;
+  return name_of(signal, static_cast<int64_t>(state));
 }
 
 std::string fault_names(uint16_t faults) {
-  std::string names;
-  for (size_t bit = 0; bit < std::size(kFaultNames); ++bit) {
-    if ((faults >> bit & 1U) != 0)
-      names += (names.empty() ? "" : ", ") + std::string(kFaultNames[bit]);
-  }
+  const std::string names = flag_names("heartbeat", "faults", faults);
   return names.empty() ? "none" : names;
 }
 

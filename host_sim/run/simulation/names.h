@@ -1,6 +1,8 @@
-// Names of the supervisor's states, of the leveling algorithm's states and of the faults.
+// Names of the supervisor's states, of the leveling algorithm's states and of the faults: those of
+// the schema (firmware/protocol/screed.dbc).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -9,9 +11,13 @@
 
 namespace screed {
 
-/// Names of the supervisor's states, of the algorithm's states and of the set fault bits ("none").
+/// How many states there are; they are numbered from 0.
+inline constexpr std::size_t kLevelingStates = message::kLevelingStateMax + 1U;
+
+/// The name of a state; "unknown" for a number that has none.
 const char* state_name(RobotState state);
 const char* leveling_state_name(LevelingState state);
+/// The names of the set fault bits, or "none".
 std::string fault_names(uint16_t faults);
 
 }  // namespace screed

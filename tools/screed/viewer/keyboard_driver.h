@@ -39,7 +39,7 @@ class KeyboardDriver : public GroundPort, private Link {
   std::vector<uint8_t> receive() override;
 
  private:
-  static constexpr int kDriveAlgorithm = 0;
+  static constexpr int kDriveAlgorithm = static_cast<int>(message::LevelingAlgorithm::kDrive);
 
   void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override;
   bool send(const CanFrame& frame) override;

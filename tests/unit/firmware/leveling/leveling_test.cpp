@@ -25,7 +25,7 @@ class Walker {
   explicit Walker(const Parameters& parameters) : leveling(parameters) { leveling.start(); }
 
   LevelingState tick(double pitch_deg) {
-    motion = leveling.tick({degrees(pitch_deg), 0, x_mm, 0}, drive);
+    motion = leveling.tick({degrees(pitch_deg), 0, x_mm, 0, drive});
     return leveling.state();
   }
   /// Number of ticks, this one included, for which the state stays the same at this pitch.

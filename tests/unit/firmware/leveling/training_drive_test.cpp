@@ -117,12 +117,12 @@ TEST(TrainingDrive, TheRobotStandsWhenAllBlocksAreDriven) {
   leveling.start();
   const LevelingInput input{};
   for (int i = 0; i < 16; ++i) {
-    const MotionCommand motion = leveling.tick(input, {0, 0});
+    const MotionCommand motion = leveling.tick(input);
     EXPECT_EQ(leveling.state(), LevelingState::kTrainingDrive);
     EXPECT_TRUE(motion.speed_mm_per_s != 0 || motion.yaw_rate != 0);
   }
   for (int i = 0; i < 3; ++i) {
-    const MotionCommand motion = leveling.tick(input, {0, 0});
+    const MotionCommand motion = leveling.tick(input);
     EXPECT_EQ(leveling.state(), LevelingState::kDone);
     EXPECT_EQ(motion.speed_mm_per_s, 0);
     EXPECT_EQ(motion.yaw_rate, 0);
@@ -135,7 +135,7 @@ TEST(TrainingDrive, AStopInBetweenLosesNoFrame) {
   for (int run = 0; run < 4; ++run) {
     leveling.start();
     for (int i = 0; i < 5; ++i) {
-      leveling.tick({}, {0, 0});
+      leveling.tick({});
       frames += leveling.state() == LevelingState::kTrainingDrive ? 1 : 0;
     }
   }

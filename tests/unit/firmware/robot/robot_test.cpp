@@ -185,7 +185,7 @@ TEST(RobotFaults, EmergencyStopCutsThePowerInItsTick) {
   robot.send(robot.emergency_stop());
   robot.tick();
   EXPECT_TRUE(idle(robot));
-  EXPECT_EQ(robot.robot.supervisor().faults(), kFaultEmergencyStop);
+  EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kEmergencyStop);
   EXPECT_EQ(robot.output.leds & kLedRed, kLedRed);
   EXPECT_EQ(robot.output.leds & kLedYellow, 0);
 }
@@ -207,7 +207,7 @@ TEST(RobotFaults, OneDeadEncoderFault21) {
       ++ticks;
     }
     EXPECT_LE(ticks, c.deadline_ticks) << c.speed;
-    EXPECT_EQ(robot.robot.supervisor().faults(), kFaultStallRight);
+    EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kStallRight);
   }
 }
 

@@ -77,6 +77,8 @@ constexpr RobotState kAllStates[] = {RobotState::kDisarmed, RobotState::kArmed,
 
 // ---- requests
 
+constexpr int kRobotStates = message::kHeartbeatStateMax + 1;
+
 struct Transition {
   Request request;
   RobotState after[kRobotStates];  ///< from disarmed, armed, running, stopped, fault
@@ -210,23 +212,24 @@ struct FaultCase {
 
 const FaultCase kFaultCases[] = {
     // 27: stop within 100 ms
-    {"tilt seen by the accelerometer", kFaultTilt, 10, [](Watch& w) { w.roll_to(60.0); }},
-    {"tilt seen by the estimator", kFaultTilt, 10,
+    {"tilt seen by the accelerometer", Fault::kTilt, 10, [](Watch& w) { w.roll_to(60.0); }},
+    {"tilt seen by the estimator", Fault::kTilt, 10,
      [](Watch& w) {
        w.cos_tilt_q30 = static_cast<int32_t>(kQ30One * std::cos(60.0 * std::numbers::pi / 180.0));
      }},
-    {"upside down", kFaultTilt, 10, [](Watch& w) { w.roll_to(180.0); }},
+    {"upside down", Fault::kTilt, 10, [](Watch& w) { w.roll_to(180.0); }},
     // 15: stop within 100 ms
-    {"gyro silent", kFaultImuSilent, 10, [](Watch& w) { w.fresh = kFreshAccel; }},
-    {"accelerometer silent", kFaultImuSilent, 10, [](Watch& w) { w.fresh = kFreshGyro; }},
-    {"both silent", kFaultImuSilent, 10, [](Watch& w) { w.fresh = 0; }},
+    {"gyro silent", Fault::kImuSilent, 10, [](Watch& w) { w.fresh = kFreshAccel; }},
+    {"accelerometer silent", Fault::kImuSilent, 10, [](Watch& w) { w.fresh = kFreshGyro; }},
+    {"both silent", Fault::kImuSilent, 10, [](Watch& w) { w.fresh = 0; }},
     // 16: stop within 200 ms
-    {"gyro frozen", kFaultGyroFrozen, 20, [](Watch& w) { w.gyro_frozen = true; }},
+    {"gyro frozen", Fault::kGyroFrozen, 20, [](Watch& w) { w.gyro_frozen = true; }},
     // 21: one encoder dead, 200 ms; 24: track stalled, 300 ms: the same to see
-    {"left track stalled", kFaultStallLeft, 20, [](Watch& w) { w.duty_left = 240; }},
-    {"right track stalled backwards", kFaultStallRight, 20, [](Watch& w) { w.duty_right = -400; }},
+    {"left track stalled", Fault::kStallLeft, 20, [](Watch& w) { w.duty_left = 240; }},
+    {"right track stalled backwards", Fault::kStallRight, 20,
+     [](Watch& w) { w.duty_right = -400; }},
     // 30: a sag of a second
-    {"battery", kFaultBattery, 100, [](Watch& w) { w.battery_mv = 5999; }},
+    {"battery", Fault::kBattery, 100, [](Watch& w) { w.battery_mv = 5999; }},
 };
 
 TEST(SupervisorFaults, StopWithinTheDeadlineAndStayLatched) {
@@ -398,14 +401,14 @@ TEST(SupervisorFaults, SeveralCausesAreAllTold) {
   watch.fresh = 0;
   watch.roll_to(90.0);
   for (int tick = 0; tick < 20; ++tick) watch.tick();
-  EXPECT_EQ(watch.supervisor.faults(), kFaultTilt | kFaultImuSilent);
+  EXPECT_EQ(watch.supervisor.faults(), Fault::kTilt | Fault::kImuSilent);
 }
 
 TEST(SupervisorFaults, EmergencyStopIsClearedByHandOnly) {
   Watch watch;
   watch.bring_to(RobotState::kRunning);
   watch.supervisor.request(Request::kEmergencyStop);
-  EXPECT_EQ(watch.supervisor.faults(), kFaultEmergencyStop);
+  EXPECT_EQ(watch.supervisor.faults(), Fault::kEmergencyStop);
   for (int tick = 0; tick < 100; ++tick) watch.tick();
   EXPECT_EQ(watch.supervisor.state(), RobotState::kFault);
   watch.heard = false;
@@ -593,7 +596,7 @@ TEST(Supervisor, StopsARobotThatIsStuckForTooLong) {
   watch.tick();
   watch.stuck = true;
   EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 1000), 200);
-  EXPECT_EQ(watch.supervisor.faults(), kFaultStuck);
+  EXPECT_EQ(watch.supervisor.faults(), Fault::kStuck);
 }
 
 TEST(Supervisor, OnlyTellsOfAStuckRobotByDefault) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/protocol/e2e.h"
+#include "tools/schema/dbc.h"
 
 namespace screed {
 namespace {
@@ -20,7 +21,11 @@ struct Downlink {
 
 class TelemetryTest : public ::testing::Test {
  protected:
-  TelemetryTest() { view_.sample = &sample_; }
+  TelemetryTest() {
+    view_.sample = &sample_;
+    view_.robot = &robot_;
+    view_.uplink = &uplink_;
+  }
 
   /// Runs ticks, with an acknowledgement to send every so many of them (0: never).
   Downlink run(int ticks, int ack_period = 0) {
@@ -63,23 +68,31 @@ class TelemetryTest : public ::testing::Test {
   }
 
   SensorSample sample_{};
+  RobotStatus robot_{};
+  UplinkCounts uplink_{};
   TelemetryView view_{};
   Telemetry telemetry_;
   Downlink downlink_;
 };
 
-// Messages a second as the protocol wants them.
-const std::map<uint16_t, size_t> kRates = {
-    {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10},
-    {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},  {kIdMagRaw, 2},  {kIdPower, 2},
-    {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},      {kIdTime, 1},
-};
+/// Messages a second as the schema wants them, by id.
+std::map<uint16_t, size_t> rates() {
+  std::map<uint16_t, size_t> all;
+  for (const schema::DbcMessage& message :
+       schema::read_dbc("firmware/protocol/screed.dbc").messages) {
+    if (message.from_ground() || message.period_ms() == 0) continue;
+    EXPECT_EQ(1000 % message.period_ms(), 0) << message.name;
+    all[static_cast<uint16_t>(message.id)] = static_cast<size_t>(1000 / message.period_ms());
+  }
+  return all;
+}
 
 TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
   run(1);
   const Downlink downlink = run(1000);
-  EXPECT_EQ(downlink.frames.size(), kRates.size());
-  for (const auto& [id, rate] : kRates)
+  EXPECT_EQ(rates().size(), kTelemetryMessages);
+  EXPECT_EQ(downlink.frames.size(), rates().size());
+  for (const auto& [id, rate] : rates())
     EXPECT_EQ(downlink.frames.at(id).size(), rate * 10) << std::hex << id;
   EXPECT_LE(downlink.bytes, 5760 * 10 / 2);
 }
@@ -87,7 +100,7 @@ TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
 TEST_F(TelemetryTest, AnswersDelayButDoNotDisplace) {
   run(3);
   const Downlink downlink = run(10000, 10);
-  for (const auto& [id, rate] : kRates) {
+  for (const auto& [id, rate] : rates()) {
     const size_t sent = downlink.frames.at(id).size();
     EXPECT_GE(sent, rate * 100 - 1) << std::hex << id;
     EXPECT_LE(sent, rate * 100 + 1) << std::hex << id;
@@ -147,7 +160,7 @@ TEST_F(TelemetryTest, AnAcknowledgementIsSentOnceInTheNextTick) {
 }
 
 TEST_F(TelemetryTest, Heartbeat) {
-  view_.state = RobotState::kStopped;
+  robot_.state = RobotState::kStopped;
   view_.faults = 0x1234;
   view_.link_alive = true;
   view_.boot_epoch = 0x5678;
@@ -167,13 +180,13 @@ TEST_F(TelemetryTest, Heartbeat) {
 }
 
 TEST_F(TelemetryTest, LinkAndTime) {
-  view_.frames_received = 1000;
+  uplink_.frames_received = 1000;
   view_.rejected_lines = 200;
-  view_.rejected_frames = 201;
+  uplink_.rejected_frames = 201;
   view_.rejected_commands = 202;
-  view_.ground_time_ms = 4321;
+  uplink_.ground_time_ms = 4321;
   for (const int heard : {5, 3, 0, 9}) {  // heartbeats since the last message
-    view_.ground_heartbeats = static_cast<uint8_t>(view_.ground_heartbeats + heard);
+    uplink_.ground_heartbeats = static_cast<uint8_t>(uplink_.ground_heartbeats + heard);
     downlink_ = run(100);
     const auto link = message::Link::unpack(downlink_.frames[kIdLink].front().data);
     EXPECT_EQ(link.quality, std::min(100, 20 * heard));
@@ -202,14 +215,12 @@ TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
 }
 
 TEST_F(TelemetryTest, AttitudeAndOdometry) {
-  view_.roll_cdeg = -18000;
-  view_.pitch_cdeg = 1234;
-  view_.heading_cdeg = 35999;
-  view_.x_mm = -40000;
-  view_.y_mm = 32767;
+  robot_.angles = {INT16_MIN, 8192, -1, 0};  // 65536 a turn
+  robot_.x_mm = -40000;
+  robot_.y_mm = 32767;
   const uint8_t* at = payload(kIdAttitude);
   EXPECT_EQ(get_s16(at), -18000);
-  EXPECT_EQ(get_s16(at + 2), 1234);
+  EXPECT_EQ(get_s16(at + 2), 4500);
   EXPECT_EQ(get_u16(at + 4), 35999);
   at = payload(kIdOdometry);
   EXPECT_EQ(get_s16(at), -32768);  // stops at its range
@@ -221,7 +232,7 @@ TEST_F(TelemetryTest, Leveling) {
   view_.algorithm = LevelingAlgorithm::kSpinOnPeak;
   view_.leveling_state = LevelingState::kSpin;
   view_.peaks = 258;
-  view_.motion = {-123, 16384};  // 90 degrees/s
+  robot_.motion = {-123, 16384};  // 90 degrees/s
   const uint8_t* at = payload(kIdLeveling);
   EXPECT_EQ(at[0], 2);
   EXPECT_EQ(at[1], 2);  // the lower byte of 258
@@ -234,8 +245,8 @@ TEST_F(TelemetryTest, EncodersAndMotors) {
   sample_.encoder_left = 65535;
   sample_.encoder_right = 1;
   sample_.encoder_errors = 77;
-  view_.duty_left = -400;
-  view_.duty_right = 400;
+  robot_.duty.duty_left = -400;
+  robot_.duty.duty_right = 400;
   const uint8_t* at = payload(kIdEncoders);
   EXPECT_EQ(get_u16(at), 65535);
   EXPECT_EQ(get_u16(at + 2), 1);
@@ -269,7 +280,7 @@ TEST_F(TelemetryTest, RawVectors) {
 }
 
 TEST_F(TelemetryTest, PowerAndLoad) {
-  view_.battery_mv = 7312;
+  robot_.battery_mv = 7312;
   sample_.last_tick_us = 4321;
   const uint8_t* at = payload(kIdPower);
   EXPECT_EQ(get_u16(at), 7312);

@@ -106,7 +106,7 @@ void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
 }
 
 TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
-  for (const uint8_t chip : {kChipAccelMag, kChipGyro, kChipBaro}) {
+  for (const uint8_t chip : {ChipBit::kAccelMagChip, ChipBit::kGyroChip, ChipBit::kBaroChip}) {
     const Parameters parameters;
     Supervisor supervisor(parameters);
     for (int i = 0; i < 10; ++i) tick(supervisor, 0, i);
@@ -127,7 +127,7 @@ TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
 TEST(SupervisorChips, ARobotWithAFailingChipIsNotArmed) {
   const Parameters parameters;
   Supervisor supervisor(parameters);
-  for (int i = 0; i < 10; ++i) tick(supervisor, kChipBaro, i);
+  for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kBaroChip, i);
   EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kFaultPresent);
   EXPECT_EQ(supervisor.faults(), 0) << "nothing latched in a robot that nobody armed";
 }

@@ -9,6 +9,7 @@
 #include "tools/schema/host_tables.h"
 #include "tools/schema/message_code.h"
 #include "tools/schema/schema_check.h"
+#include "tools/schema/value_code.h"
 #include "tools/schema/wireshark_tables.h"
 
 namespace screed::schema {
@@ -209,7 +210,7 @@ TEST(SchemaCompiler, WritesTheCodeOfTheFieldsPlace) {
   const Database it = parse_dbc("it.dbc", kRight);
   const std::string code = message_code(it);
   for (const char* line : {"  kIdAttitude = 0x210,\n", "  enum : uint8_t { kSize = 8 };\n",
-                           "  kBusy = 1,\n", "    put_s16(data + 2, roll);\n",
+                           "    put_s16(data + 2, roll);\n",
                            "    data[1] = static_cast<uint8_t>(((mode & 0x0FU) << 4));\n",
                            "    message.mode = static_cast<uint8_t>((data[1] >> 4));\n"}) {
     EXPECT_NE(code.find(line), std::string::npos) << line << code;
@@ -217,6 +218,85 @@ TEST(SchemaCompiler, WritesTheCodeOfTheFieldsPlace) {
   const std::string tables = host_tables(it);
   EXPECT_NE(tables.find("\"ATTITUDE\", \"attitude\""), std::string::npos) << tables;
   EXPECT_NE(tables.find("16, 16, true, 2, 1, 0, {}}"), std::string::npos) << tables;
+}
+
+TEST(SchemaCompiler, WritesEnumerationsOfValuesAndFlags) {
+  const std::string flags = with(" SG_ mode : 12|4@1+ (1,0) [0|15] \"\" GROUND\n",
+                                 " SG_ mode : 12|4@1+ (1,0) [0|15] \"\" GROUND\n"
+                                 " SG_ hot : 32|1@1+ (1,0) [0|1] \"\" GROUND\n"
+                                 " SG_ wet_feet : 41|1@1+ (1,0) [0|1] \"\" GROUND\n") +
+                            "CM_ SG_ 528 mode \"what it does\";\n"
+                            "CM_ SG_ 528 hot \"beyond 60 degC\";\n"
+                            "BA_DEF_ SG_ \"Flags\" STRING;\n"
+                            "BA_ \"Flags\" SG_ 528 hot \"faults\";\n"
+                            "BA_ \"Flags\" SG_ 528 wet_feet \"faults\";\n";
+  ASSERT_EQ(said_of(flags), "");
+  const std::string code = value_code(parse_dbc("it.dbc", flags));
+  for (const char* part :
+       {"/// ATTITUDE.mode: what it does\nenum class AttitudeMode : uint8_t {\n  kIdle = 0,\n"
+        "  kBusy = 1,\n};\nconstexpr uint8_t kAttitudeModeMax = 1;",
+        "struct AttitudeFaults {\n  enum : uint16_t {\n    kHot = 1U << 0,  ///< beyond 60 degC\n"
+        "    kWetFeet = 1U << 9,\n  };\n};\n"}) {
+    EXPECT_NE(code.find(part), std::string::npos) << part << code;
+  }
+  EXPECT_EQ(code.find("#define"), std::string::npos) << "a list is for classes alone" << code;
+  EXPECT_EQ(code.find("#include \""), std::string::npos) << "it stands below every layer" << code;
+}
+
+TEST(SchemaCompiler, WritesTheListOfClassesThatValuesName) {
+  const auto of = [](const std::string& folder) {
+    return with("\"busy\"", "\"very_busy\"") + "BA_DEF_ SG_ \"ClassFolder\" STRING;\n" +
+           "BA_ \"ClassFolder\" SG_ 528 mode \"" + folder + "\";\n";
+  };
+  const Database it = parse_dbc("it.dbc", of("firmware/modes"));
+  check_schema(it);
+  const std::string code = value_code(it);
+  EXPECT_NE(code.find("#define SCREED_ATTITUDE_MODE(X) \\\n  X(0, idle, Idle) \\\n"
+                      "  X(1, very_busy, VeryBusy)\n"),
+            std::string::npos)
+      << code;
+  const std::string includes = class_includes(it);
+  EXPECT_NE(includes.find("\n#include \"firmware/modes/idle.h\"\n"
+                          "#include \"firmware/modes/very_busy.h\"\n"),
+            std::string::npos)
+      << includes;
+
+  for (const char* wrong : {"/firmware", "firmware/", "../firmware", "Firmware"}) {
+    EXPECT_EQ(said_of(of(wrong)), "it.dbc:7: ATTITUDE.mode: its ClassFolder '" +
+                                      std::string(wrong) +
+                                      "' is no folder of small letters, digits, _ and / below the "
+                                      "project");
+  }
+  std::string word = of("firmware/modes");
+  EXPECT_EQ(said_of(word.replace(word.find("very_busy"), 9, "return")),
+            "it.dbc:11: ATTITUDE.mode: 'return' is a word of C++, so it can be no class");
+  EXPECT_EQ(said_of(with("VAL_ 528 mode 0 \"idle\" 1 \"busy\" ;\n",
+                         "BA_DEF_ SG_ \"ClassFolder\" STRING;\n"
+                         "BA_ \"ClassFolder\" SG_ 528 roll \"firmware\";\n")),
+            "it.dbc:6: ATTITUDE.roll: has the attribute ClassFolder, but no names of values "
+            "(VAL_)");
+}
+
+TEST(SchemaCompiler, WritesPeriodsAndHowManyTheRobotKeeps) {
+  const std::string text = std::string(kRight) +
+                           "BO_ 2 PING: 3 GROUND\n"
+                           " SG_ crc : 0|8@1+ (1,0) [0|255] \"\" ROBOT\n"
+                           " SG_ counter : 8|4@1+ (1,0) [0|15] \"\" ROBOT\n"
+                           " SG_ a : 16|8@1+ (1,0) [0|255] \"1\" ROBOT\n"
+                           "CM_ BO_ 2 \"The ground lives.\";\n"
+                           "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\n"
+                           "BA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n"
+                           "BA_ \"GenMsgCycleTime\" BO_ 2 200;\n";
+  ASSERT_EQ(said_of(text), "");
+  const auto has = [](const std::string& code, const std::string& part) {
+    return code.find(part) != std::string::npos;
+  };
+  std::string code = message_code(parse_dbc("it.dbc", text));
+  EXPECT_TRUE(has(code, "kPeriodicMessages = 0;")) << "the ground's do not count" << code;
+  EXPECT_TRUE(has(code, "kPeriod_ms = 200 };")) << code;
+  code = message_code(parse_dbc("it.dbc", text + "BA_ \"GenMsgCycleTime\" BO_ 528 40;\n"));
+  EXPECT_TRUE(has(code, "kPeriodicMessages = 1;")) << code;
+  EXPECT_TRUE(has(code, "kPeriod_ms = 40 };")) << code;
 }
 
 TEST(SchemaCompiler, WritesWiresharksTablesWithGapsAndAllRobots) {

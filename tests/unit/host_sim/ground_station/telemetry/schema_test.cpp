@@ -14,6 +14,8 @@
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
+#include "tools/schema/dbc.h"
+#include "tools/schema/schema_check.h"
 
 namespace screed {
 namespace {
@@ -177,73 +179,70 @@ TEST(Schema, ChecksFrames) {
   EXPECT_EQ(check_frame(frame_of(message::Command{})), FrameFault::kNone) << "has a MAC, no CRC";
 }
 
-/// The numbers and names of a table must be those of the firmware's own enumeration.
-void expect_names(const char* path, std::initializer_list<std::pair<int, const char*>> names) {
-  const SignalInfo& signal = *find_signal(path).signal;
-  EXPECT_EQ(signal.values.size(), names.size()) << path;
-  for (const auto& [value, name] : names) EXPECT_EQ(signal.text(value), name) << path;
+/// The schema itself, as the compiler reads it.
+schema::Database dbc() {
+  return schema::read_dbc("firmware/protocol/screed.dbc");
 }
 
-TEST(Schema, NamesAreThoseOfTheFirmware) {
-  const auto n = [](auto value) { return static_cast<int>(value); };
-  expect_names("heartbeat.state", {{n(RobotState::kDisarmed), "disarmed"},
-                                   {n(RobotState::kArmed), "armed"},
-                                   {n(RobotState::kRunning), "running"},
-                                   {n(RobotState::kStopped), "stopped"},
-                                   {n(RobotState::kFault), "fault"}});
-  expect_names("leveling.state", {{n(LevelingState::kIdle), "idle"},
-                                  {n(LevelingState::kWalk), "walk"},
-                                  {n(LevelingState::kClimb), "climb"},
-                                  {n(LevelingState::kSpin), "spin"},
-                                  {n(LevelingState::kReturn), "return"},
-                                  {n(LevelingState::kDrive), "drive"},
-                                  {n(LevelingState::kTrainingDrive), "training_drive"},
-                                  {n(LevelingState::kDone), "done"}});
-  expect_names("leveling.algorithm", {{n(LevelingAlgorithm::kDrive), "drive"},
-                                      {n(LevelingAlgorithm::kHillSensing), "hill_sensing"},
-                                      {n(LevelingAlgorithm::kSpinOnPeak), "spin_on_peak"},
-                                      {n(LevelingAlgorithm::kTrainingDrive), "training_drive"}});
-  expect_names("health.reset_cause", {{n(avr::ResetCause::kPowerOn), "power_on"},
-                                      {n(avr::ResetCause::kBrownOut), "brown_out"},
-                                      {n(avr::ResetCause::kWatchdog), "watchdog"},
-                                      {n(avr::ResetCause::kExternal), "external"},
-                                      {n(avr::ResetCause::kRequested), "requested"},
-                                      {n(avr::ResetCause::kUpload), "upload"},
-                                      {n(avr::ResetCause::kStack), "stack"}});
-}
-
-TEST(Schema, FlagsAreThoseOfTheFirmware) {
-  const auto expect_flag = [](const char* message_name, const char* flags, unsigned mask,
-                              const char* name) {
-    const MessageInfo& info = *find_message(std::string_view(message_name));
-    const SignalInfo* const signal = info.signal(name);
-    ASSERT_NE(signal, nullptr) << name;
-    EXPECT_STREQ(signal->flags, flags);
-    EXPECT_EQ(mask << 16U, 1U << signal->start) << name;  // flags stand in byte 2
-  };
-  const std::pair<unsigned, const char*> faults[] = {{kFaultTilt, "tilt"},
-                                                     {kFaultImuSilent, "imu_silent"},
-                                                     {kFaultGyroFrozen, "gyro_frozen"},
-                                                     {kFaultStallLeft, "stall_left"},
-                                                     {kFaultStallRight, "stall_right"},
-                                                     {kFaultBattery, "battery"},
-                                                     {kFaultParameters, "parameters"},
-                                                     {kFaultEmergencyStop, "emergency_stop"},
-                                                     {kFaultAccelMagChip, "accel_mag_chip"},
-                                                     {kFaultGyroChip, "gyro_chip"},
-                                                     {kFaultBaroChip, "baro_chip"},
-                                                     {kFaultEncoderLeft, "encoder_left"},
-                                                     {kFaultEncoderRight, "encoder_right"},
-                                                     {kFaultStuck, "stuck"}};
-  size_t flags = 0;
-  for (const SignalInfo& it : find_message(uint16_t{kIdHeartbeat})->signals) {
-    flags += it.flags[0] != '\0';
+TEST(Schema, TablesHoldTheNamesOfTheFile) {
+  size_t named = 0;
+  for (const schema::DbcMessage& message : dbc().messages) {
+    const MessageInfo* const info = find_message(message.name);
+    ASSERT_NE(info, nullptr) << message.name;
+    EXPECT_EQ(info->period_ms, message.period_ms()) << message.name;
+    for (const schema::DbcSignal& signal : message.signals) {
+      const std::string path = message.name + "." + signal.name;
+      const SignalInfo* const it = info->signal(signal.name);
+      ASSERT_NE(it, nullptr) << path;
+      EXPECT_EQ(it->comment, signal.comment) << path;
+      EXPECT_EQ(it->flags, signal.flags()) << path;
+      EXPECT_EQ(it->start, signal.start) << path;
+      ASSERT_EQ(it->values.size(), signal.values.size()) << path;
+      std::vector<std::string> names;
+      for (const schema::ValueName& value : signal.values) {
+        EXPECT_EQ(it->text(value.value), value.name) << path;
+        names.push_back(value.name);
+      }
+      EXPECT_EQ(value_names(std::string(info->title) + "." + signal.name), names);
+      named += names.size();
+    }
   }
-  EXPECT_EQ(flags, std::size(faults));
-  for (const auto& [mask, name] : faults) expect_flag("heartbeat", "faults", mask, name);
-  expect_flag("health", "chips_failing", kChipAccelMag, "accel_mag_chip");
-  expect_flag("health", "chips_failing", kChipGyro, "gyro_chip");
-  expect_flag("health", "chips_failing", kChipBaro, "baro_chip");
+  EXPECT_GT(named, 30U);
+}
+
+TEST(Schema, TheFirmwaresEnumerationsAreThoseOfTheTables) {
+  const auto name = [](const char* path, auto value) {
+    return find_signal(path).signal->text(static_cast<int64_t>(value));
+  };
+  EXPECT_EQ(name("heartbeat.state", RobotState::kStopped), "stopped");
+  EXPECT_EQ(name("leveling.state", LevelingState::kTrainingDrive), "training_drive");
+  EXPECT_EQ(name("leveling.algorithm", LevelingAlgorithm::kSpinOnPeak), "spin_on_peak");
+  EXPECT_EQ(name("health.reset_cause", avr::ResetCause::kBrownOut), "brown_out");
+  EXPECT_EQ(name("event.code", message::EventCode::kLockedOut), "locked_out");
+  EXPECT_THROW(value_names("leveling.colour"), InputError);
+}
+
+TEST(Schema, FlagsHaveTheNamesOfTheirBits) {
+  EXPECT_EQ(flag_names("heartbeat", "faults", 0), "");
+  EXPECT_EQ(flag_names("heartbeat", "faults", Fault::kStuck), "stuck");
+  EXPECT_EQ(flag_names("heartbeat", "faults", Fault::kBaroChip | Fault::kTilt), "tilt, baro_chip");
+  EXPECT_EQ(flag_names("health", "chips_failing", ChipBit::kBaroChip | ChipBit::kAccelMagChip),
+            "accel_mag_chip, baro_chip");
+  EXPECT_EQ(flag_names("heartbeat", "faults", 0x8000), "") << "a bit without a name";
+  EXPECT_THROW(flag_names("heart", "faults", 1), InputError);
+  // Every bit by itself, as the file has it.
+  unsigned bits = 0;
+  for (const schema::DbcMessage& message : dbc().messages) {
+    for (const schema::Field& field : schema::fields_of(message)) {
+      if (field.signals.front()->flags().empty()) continue;
+      for (const schema::DbcSignal* flag : field.signals) {
+        EXPECT_EQ(flag_names(message.name, field.name, 1U << (flag->start - field.start)),
+                  flag->name);
+        ++bits;
+      }
+    }
+  }
+  EXPECT_GT(bits, 16U);
 }
 
 }  // namespace

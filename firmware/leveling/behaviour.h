@@ -1,0 +1,96 @@
+// What the leveling algorithms have in common: what they see, the states they may be in, the random
+// walk, the climb and the way back to the site.
+//
+// The algorithms level with the robot's own motion alone (thesis 7.1.1): they seek hills and drive
+// over them. They see attitude and dead reckoning, no map, and answer with a commanded body motion.
+//
+// An algorithm is a value of LEVELING.algorithm in screed.dbc, say `dig_holes`, and the class of
+// that name, DigHoles, in firmware/leveling/dig_holes.h:
+//
+//   class DigHoles : public AlgorithmDefaults {
+//    public:
+//     explicit DigHoles(const Parameters& parameters);
+//     MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
+//   };
+//
+// The constructor runs at power-up and whenever a parameter was changed, on a robot at rest; what
+// the object holds then begins anew. One object of every algorithm of the image lies in Leveling
+// for good: no heap, no virtual functions. tick() runs 100 times a second while the robot runs, and
+// ends with one of the motions of Behaviour or with enter(): the state it enters is what the robot
+// reports and records. Its time counts against the tick's (make size), and it waits for nothing.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/kinematics.h"
+#include "firmware/leveling/random_walk.h"
+#include "firmware/leveling/site_fence.h"
+#include "firmware/parameters/parameters.h"
+#include "schema/values.h"
+
+namespace screed {
+
+/// Names and numbers come from the schema: screed.dbc.
+using LevelingAlgorithm = message::LevelingAlgorithm;
+using LevelingState = message::LevelingState;
+
+/// What an algorithm sees.
+struct LevelingInput {
+  Angle pitch;    ///< nose up positive
+  Angle heading;  ///< counter-clockwise from east
+  int32_t x_mm;   ///< dead reckoning from the start of the run
+  int32_t y_mm;
+  MotionCommand drive;  ///< what the ground station commands
+};
+
+/// What holds for an algorithm that does not say otherwise.
+struct AlgorithmDefaults {
+  /// Outside the site the robot drives back, and the algorithm is not asked, unless it spins.
+  static constexpr bool kKeepsToSite = true;
+};
+
+class Behaviour {
+ public:
+  explicit Behaviour(const Parameters& parameters);
+
+  LevelingState state() const { return state_; }
+  /// Ticks in this state, the next one not included; since the last restart_time().
+  uint16_t ticks_in_state() const { return ticks_in_state_; }
+  void restart_time() { ticks_in_state_ = 0; }
+  /// Peaks met since power-up: climbs that ended in another way than at the site's fence.
+  uint16_t peaks() const { return peaks_; }
+
+  /// The pitch is that of an incline worth climbing. A climb goes on until the pitch has fallen
+  /// below the threshold by the hysteresis.
+  bool uphill(Angle pitch) const;
+  /// The pitch is that of a decline.
+  bool downhill(Angle pitch) const { return pitch < static_cast<Angle>(-hysteresis_); }
+
+  /// A leg of the random walk; a new one where the walk begins.
+  MotionCommand walk();
+  /// Straight on.
+  MotionCommand climb();
+  /// Any other motion, in a state of its own.
+  MotionCommand enter(LevelingState state, MotionCommand motion);
+
+  // For Leveling.
+  /// The state begins anew: a run starts.
+  void start();
+  /// The robot has to drive back to the site.
+  bool leaves_site(const LevelingInput& input);
+  MotionCommand return_to_site(const LevelingInput& input);
+
+ private:
+  void enter(LevelingState next);
+
+  Angle threshold_;
+  Angle hysteresis_;
+  int16_t climb_speed_;
+  RandomWalk walk_;
+  SiteFence fence_;
+  LevelingState state_ = LevelingState::kIdle;
+  uint16_t ticks_in_state_ = 0;
+  uint16_t peaks_ = 0;
+};
+
+}  // namespace screed

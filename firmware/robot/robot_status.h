@@ -1,0 +1,33 @@
+// What the robot knows of itself and does: its own state from tick to tick, that supervisor,
+// leveling and motors work on. The downlink reports of it and does not own it.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/drive_control.h"
+#include "firmware/estimation/attitude.h"
+#include "firmware/robot/supervisor.h"
+
+namespace screed {
+
+struct RobotStatus {
+  // Pose: asked for once a tick, since on the AVR an angle costs 1500 cycles and a position a
+  // division.
+  AttitudeAngles angles;
+  int32_t x_mm;  ///< dead reckoning from the start of the run, east
+  int32_t y_mm;  ///< north
+  uint16_t battery_mv;
+  MotionCommand motion;  ///< commanded
+  DriveOutput duty;      ///< of the motors; until a tick sets it that of the tick before
+  RobotState state;      ///< of the supervisor at the end of a tick
+};
+
+/// What came from the ground station; counts wrap.
+struct UplinkCounts {
+  uint8_t ground_heartbeats;  ///< valid ones since start
+  uint16_t ground_time_ms;    ///< lower 16 bits of the last one's time
+  uint16_t frames_received;   ///< accepted
+  uint8_t rejected_frames;    ///< wrong CRC or size
+};
+
+}  // namespace screed
