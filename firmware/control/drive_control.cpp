@@ -1,4 +1,16 @@
 // From a commanded body motion to the duty of both motors.
+//
+// A tick in real numbers, in the order of the code; T = 0.01 s:
+//   seen        = command.yaw_rate - measured.yaw_rate, within kYawErrorLimit
+//   error      += (seen - error) / 2^kYawLag       low pass of 16 T = 0.16 s, 1 Hz
+//   integral   += ki T error                       ki = yaw_ki / 256; within kYawCorrectionLimit
+//   correction  = kp error + integral              kp = yaw_kp / 256; within kYawCorrectionLimit
+//   wanted      = speed -+ tread / 2 (command.yaw_rate + correction)     left -, right +
+//   targets     = wanted, as far as accel_limit T (step_mm_per_s_) lets them change
+//   duty        = track_speed_control.h, each side
+// Kinematics: thesis 5.1.2. Loop: PI behind a first-order filter, as in K. J. Astrom, T. Hagglund,
+// PID Controllers, 1995. Rates are in angle units (65536 a turn) a second, the integral has 8 more
+// binary digits.
 #include "firmware/control/drive_control.h"
 
 #include "firmware/math/fixed.h"

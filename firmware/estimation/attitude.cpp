@@ -4,6 +4,25 @@
 // cheapest there is on the AVR. A rotation of one tick is rounded to 16 bits (7.6e-6 rad), and what
 // rounding took is carried into the next tick, so nothing is lost over time. Corrections are
 // rounded as well: what they leave stays in the filter.
+//
+// update() in real numbers, in the order of the code. T = 0.01 s, q = orientation_, E = to_earth
+// (the matrix of q), g = kCountsPerG, n = the samples so far, counted up to a limit:
+//   detect_rest           mean += (count - mean) / 2^kMeanShift
+//                         at rest: |count - mean| < kRestGyro, kRestAccel for kRestTicks
+//   learn_bias_at_rest    bias += (mean - bias) / (n + 1)
+//   integrate             h = half_angle_ = T (gyro - bias) / 2,  s = h^2
+//                         q += q (-s/2, h (1 - s/6))       series of (cos |h|, h sin |h| / |h|)
+//                         yaw_rate = (row 2 of E) 2 h / T
+//   filter_gravity        difference = E accel - gravity
+//                         slope += wn^2 difference - sqrt(2) wn slope,  gravity += slope
+//                         at first gravity += difference / (n + 1)
+//   correction            w = (1 - |q|^2) / 2,  x = gravity[1] / (2 g),  y = -gravity[0] / (2 g)
+//   learn_bias_in_motion  bias -= 0.02/s T (E transposed) (x, y, 0)
+//   heading_correction    m = E mag,  error = atan2(m[0], m[1]),  z = gain error / 2
+//                         gain = 1 / (n + 1) at first, then T / 9 s a tick
+//   correct               q += (w, x, y, z) q,  gravity turned about x and y by twice that
+// Sources: Laidig and Seel 2023 (filter, rest, gains), Mahony, Hamel and Pflimlin 2008 (bias in
+// motion); docs/attitude.md has them in full.
 #include "firmware/estimation/attitude.h"
 
 #include <stddef.h>

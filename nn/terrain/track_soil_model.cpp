@@ -170,30 +170,13 @@ void TrackSoilModel::find_cells(const Stride& stride, const TrackPlane& about) {
         if (beyond > 0.0) cell.over = r - std::sqrt(r * r - beyond * beyond);
         cell.level = flow_.reference(cell.node) * kHeightUnit_m;
         cell.sinkage = (flow_.reference(cell.node) - flow_.height(cell.node)) * kHeightUnit_m;
-        lookup(cell);
+        cell.division = histories_[cell.node].divide(cell.share, cell.sinkage, step_);
+        cell.prior = cell.division.under(cell.share, cell.sinkage);
         cells_.push_back(cell);
       }
     }
   }
   sides_[2] = cells_.size();
-}
-
-/// How much of a cell's sinkage belongs to the part that is below the track now.
-void TrackSoilModel::lookup(TrackCell& cell) const {
-  const TrackCellHistory& history = histories_[cell.node];
-  const double before = static_cast<double>(history.covered);
-  const double beside = static_cast<double>(history.beside);
-  if (history.step == 0 || history.step + 1 < step_) {
-    // What an earlier track pressed lies below this one as far as it covers it.
-    cell.beside = cell.sinkage - cell.share * cell.sinkage / std::max(cell.share, before);
-  } else if (cell.share < before) {
-    cell.beside = cell.sinkage - cell.share * (cell.sinkage - beside) / before;
-  } else if (cell.share > before && before < 1.0) {
-    cell.beside = beside * (1.0 - cell.share) / (1.0 - before);
-  } else {
-    cell.beside = beside;
-  }
-  cell.prior = (cell.sinkage - cell.beside) / cell.share;
 }
 
 /// What the tracks passed before, each along its own way: where a track has risen over it since,
@@ -365,14 +348,13 @@ void TrackSoilModel::compact_cells(const Stride& stride, double unloading_pa_per
     std::int64_t pressed = 0;
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       const TrackCell& cell = cells_[i];
-      TrackCellHistory& history = histories_[cell.node];
+      CellHistory& history = histories_[cell.node];
       if (cell.pressure <= 0.0) {
-        history.step = 0;
+        history.release();
         continue;
       }
-      history.step = step_;
-      history.covered = static_cast<float>(cell.share);
-      history.beside = static_cast<float>(cell.beside);
+      history.keep(cell.share, cell.division);
+      history.touch(step_);
       flow_.cover(cell.node, cell.ix, cell.iy);
       const double now = cell.depth - cell.pressure / unloading_pa_per_m;
       const auto units =

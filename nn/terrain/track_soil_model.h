@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "host_sim/physics/soil/cell_history.h"
 #include "host_sim/physics/soil/material_flow.h"
 #include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/soil_parameters.h"
@@ -83,21 +84,16 @@ class TrackSoilModel {
     int iy;
     double x;  // from where the plane's height counts, in the robot's axes, m
     double y;
-    double share;           // of the cell that lies below
-    double over;            // of the track's lower surface over its lower run, m
-    double level;           // from which sinkage counts, m
-    double sinkage;         // of the whole cell so far, m
+    double share;    // of the cell that lies below
+    double over;     // of the track's lower surface over its lower run, m
+    double level;    // from which sinkage counts, m
+    double sinkage;  // of the whole cell so far, m
+    SinkageDivision division;
     double prior;           // of the part below the track, m
-    double beside;          // of the rest, times its share, m
     double capacity_share;  // share of Bekker's pressure
     double gap;             // of the track over what it passed, that counts, m
     double depth;           // of the track below the level, m
     double pressure;        // Pa
-  };
-  struct TrackCellHistory {  // of a node, of the track on it
-    std::uint32_t step = 0;
-    float covered = 0.0F;  // share of the cell
-    float beside = 0.0F;
   };
   struct TrackPath {  // of a track since it last reversed
     double distance_m = 0.0;
@@ -106,7 +102,6 @@ class TrackSoilModel {
   };
 
   void find_cells(const Stride& stride, const TrackPlane& about);
-  void lookup(TrackCell& cell) const;
   void update_paths(const Stride& stride);
   std::array<float, BearingCapacityNetwork::kInputs> network_inputs(const Stride& stride) const;
   void apply_capacity(const BearingCapacity& bearing);
@@ -126,7 +121,7 @@ class TrackSoilModel {
   double bekker_;
   double sinkage_m_;  // at 2 kPa
   std::array<float, 6> soil_inputs_{};
-  std::vector<TrackCellHistory> histories_;
+  std::vector<CellHistory> histories_;  // of the track on a node
   std::vector<TrackCell> cells_;
   std::array<std::size_t, 3> sides_{};  // where a side's cells begin
   std::array<TrackPath, 2> paths_{};

@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "host_sim/physics/soil/cell_history.h"
 #include "host_sim/physics/soil/material_flow.h"
 #include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/sinking.h"
@@ -90,14 +91,10 @@ class SoilBed final : public Terrain {
     const PowerTable* table;
   };
   /// History of a node's last contact. Shear is the mean over the touching part.
-  struct CellHistory {
-    uint32_t step = 0;     // of that contact
-    float share = 0.0F;    // of the cell that touched
-    float along = 0.0F;    // mobilised share of the shear strength along the belt, -1..1
-    float across = 0.0F;   // and across it
-    float covered = 0.0F;  // share of the cell below the body
-    float old = 0.0F;      // plastic sinkage of that part before the contact, m
-    float beside = 0.0F;   // plastic sinkage of the rest, times its share, m
+  struct SoilCellHistory : CellHistory {
+    float share = 0.0F;   // of the cell that touched
+    float along = 0.0F;   // mobilised share of the shear strength along the belt, -1..1
+    float across = 0.0F;  // and across it
   };
   struct Candidate {
     size_t node;
@@ -153,14 +150,19 @@ class SoilBed final : public Terrain {
   template <size_t static_count>
   bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, size_t number,
               const Law& law, SoilCell& cell);
-  void update_coverage(CellHistory& history, double covered, double sunk) const;
   void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
+  struct FootprintState;  // these three in soil_reaction.cpp
+  struct SurfaceSlip;
+  struct Mobilised;
+  double yield(const SoilCell& cell, double sinking, const FootprintState& state,
+               int64_t& sunk_units);
+  Mobilised mobilise(const SoilCell& cell, const SurfaceSlip& slip, const FootprintState& state,
+                     double dt, SoilCellHistory& history) const;
+  FootprintState footprint_state(const FootprintContact& contact, double elastic,
+                                 const Eigen::Vector3d& middle) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
   void dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt);
   size_t sample_count(Lattice lattice) const;
-  bool fresh(const CellHistory& history) const {
-    return history.step == 0 || history.step + 1 < step_;
-  }
 
   SoilParameters soil_;
   SoilOptions options_;
@@ -180,7 +182,7 @@ class SoilBed final : public Terrain {
   double dig_rest_ = 0.0;
   size_t slopes_left_ = 0;
   uint32_t step_ = 1;
-  std::vector<CellHistory> histories_;
+  std::vector<SoilCellHistory> histories_;
 
   // Of the body being pressed; kept for their room.
   FootprintSamples sample_points_;

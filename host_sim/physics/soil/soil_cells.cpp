@@ -1,5 +1,20 @@
 // The cells of a soil bed under a footprint: which they are, and what Bekker's law gives as a mean
 // over sample points inside each.
+//
+// The equations of sample(), in the order of the code. n is Bekker's exponent, b the shorter side
+// of the touched area (measure_patch()), E the stiffness of unloading. At a sample point whose cell
+// has its undisturbed surface at `level` and was pressed to `before` in earlier contacts
+// (cell_history.h), below a body at `height` now that was as low as `passed` on its way:
+//   deepest = max(0, level - passed)
+//   virgin  = (k_c / b + k_phi) deepest^n                     Bekker 1969
+//   stiff   = E (deepest - before)                            reloading along E
+//   loaded  = max(0, min(virgin, stiff))                      p at its deepest
+//   depths  : plastic sinkage, max(before, deepest - loaded / E)
+//   now     = loaded - E (height - passed)                    unloading: it carries when > 0
+//   rates   : d now / d height, n virgin / deepest where it yields, else E
+// A cell has the means of these, each point weighed with its `part` of the body above it; a centre
+// of pressure, from points weighed with their pressure; and, for radial stress, the moment of the
+// normal's horizontal parts (slope_x, slope_y) about the footprint's centre.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -139,29 +154,6 @@ void SoilBed::add_sample_points(const Candidate& candidate) {
     sample_points_.add(x + sense * rook_x_[i], y + rook_y_[i]);
 }
 
-/// Where the body covers less or more of a cell than a step ago, the plastic sinkage of what it
-/// covers and of the rest is divided anew; their sum stays.
-void SoilBed::update_coverage(CellHistory& history, double covered, double sunk) const {
-  double before = static_cast<double>(history.covered);
-  double beside = static_cast<double>(history.beside);
-  double old = static_cast<double>(history.old);
-  if (fresh(history)) {
-    // What was pressed in an earlier contact lies below this body, as far as it covers it.
-    old = sunk / std::max({covered, before, 1e-3});
-    beside = sunk - covered * old;
-    history.share = history.along = history.across = 0.0F;
-  } else if (covered < before) {
-    beside = sunk - covered * (sunk - beside) / before;
-  } else if (covered > before) {
-    const double rest = before < 1.0 ? beside / (1.0 - before) : 0.0;
-    old = (before * old + (covered - before) * rest) / covered;
-    beside -= (covered - before) * rest;
-  }
-  history.covered = static_cast<float>(covered);
-  history.beside = static_cast<float>(beside);
-  history.old = static_cast<float>(old);
-}
-
 /// Means over a cell of what Bekker's law gives at a lattice of sample points in it, as if nothing
 /// but earlier contacts had touched it.
 bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
@@ -190,9 +182,11 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
     if (sample_points_.share[i] > 0.0) lowest = std::min(lowest, sample_points_.passed[i]);
   }
   if (lowest >= reference) return false;
-  CellHistory& history = histories_[candidate.node];
-  update_coverage(history, covered * mean, cell.sunk);
-  const double old = static_cast<double>(history.old);
+  SoilCellHistory& history = histories_[candidate.node];
+  const double covered_share = covered * mean;
+  if (history.is_contact_new(step_)) history.share = history.along = history.across = 0.0F;
+  history.keep(covered_share, history.divide(covered_share, cell.sunk, step_));
+  const double old = history.old();
   const double elastic = law.elastic;
   const double compliance = 1.0 / elastic;
   const double exponent = law.table->exponent();
@@ -271,7 +265,7 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   cell.ix = candidate.ix;
   cell.iy = candidate.iy;
   cell.share = share * mean;
-  cell.pressed = sum(depths) * mean + static_cast<double>(history.beside);
+  cell.pressed = sum(depths) * mean + history.beside();
   cell.pressure = pressure * mean;
   cell.rate = sum(rates) * mean;
   cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;

@@ -1,5 +1,36 @@
 // How soil yields under a footprint, and the reaction: plastic sinkage, normal stress, shear,
 // digging.
+//
+// The equations in the order of the code. Values of a cell are means over it; E, c, phi, K, R as in
+// soil_parameters.h, A the area of a cell, v the body's velocity there.
+//
+// Yielding. A body that goes down by `sinking` meets the lower of two lines, unloading and
+// reloading along E and Bekker's curve (Bekker 1969; soil_cells.cpp), linear over a step. What E
+// does not explain is plastic:
+//   along_elastic = cell.pressure + E (pressed - sunk + sinking share)
+//   pressure      = max(0, min(along_elastic, cell.pressure + rate sinking))
+//   units         = (along_elastic - pressure) / E                  in units of height
+//   damped        = pressure + R max(0, -v_z) share
+//
+// Shear. Janosi and Hanamoto's curve (1961), tau = strength (1 - exp(-j / K)), in its rate form for
+// slip that turns (Dahl 1968). With m = tau / strength, a vector along and across, and slip in the
+// direction `to` with the speed `sliding`:
+//   dm/dt = sliding (to - m) / K,      over a step m <- m + (to - m) fades,
+//   fades = 1 - exp(-sliding dt / K)
+// Of the touching part only `kept` was there a step ago; the rest came evenly over the step, from
+// m = 0, and so has had half of it:
+//   mean  = kept (1 - fades) m + (1 + kept) / 2 fades to
+// The force acts at the centre of pressure, which has sheared for `ahead` longer than the centre of
+// the contact area, and stress answers `shear_damping` early:
+//   ahead   = shear_damping - lead / speed
+//   further = 1 - exp(-sliding ahead / K)    no less than leads back to where shear began
+//   m       = mean + (to - mean) further     no longer than 1
+//   strength = c share + damped tan phi      Mohr and Coulomb (Wong, ch. 2)
+//
+// Forces. Radial normal stress is along the surface's normal (slope_x, slope_y, 1), whose length is
+// `steep`; vertical stress is straight up and shears in the horizontal.
+//   force    = damped A (slope_x, slope_y, 1)
+//   traction = -strength A steep (m_along lengthwise + m_across sideways)
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +50,40 @@ double fading(double x) {
 }
 
 }  // namespace
+
+/// Of a footprint as a whole.
+struct SoilBed::FootprintState {
+  bool radial;  // normal stress
+  Eigen::Vector3d centre;
+  Eigen::Vector3d axle;
+  Eigen::Vector3d level_forward;
+  Eigen::Vector3d level_side;
+  double surface_speed;
+  double per_speed;  // one over its speed forward, s/m; 0: it does not roll
+  double elastic;    // E, Pa/m
+  double units_per_pressure;
+  double per_shear_modulus;  // 1 / K
+
+  SurfaceSlip slip_over(const SoilCell& cell, const Eigen::Vector3d& velocity) const;
+};
+
+/// How a footprint's surface slips over one cell.
+struct SoilBed::SurfaceSlip {
+  double steep;                // length of (slope_x, slope_y, 1)
+  Eigen::Vector3d along;       // forward along the surface where the pressure is
+  Eigen::Vector3d lengthwise;  // directions in the plane in which the soil shears
+  Eigen::Vector3d sideways;
+  double sliding;   // m/s
+  double to_along;  // its direction
+  double to_across;
+};
+
+/// Mobilised shares of the shear strength.
+struct SoilBed::Mobilised {
+  double along;
+  double across;
+  double squared;  // of both, before it is limited to 1
+};
 
 void SoilBed::Digging::add(const SoilCell& cell, double sliding, double mobilised) {
   const double along = cell.arm.dot(forward);
@@ -62,125 +127,149 @@ void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double 
   compacted_ += flow_.dig(patch, units, compacted);
 }
 
+/// Plastic sinkage and pressure of a cell; books what sinks. 0: not touching.
+inline double SoilBed::yield(const SoilCell& cell, double sinking, const FootprintState& state,
+                             int64_t& sunk_units) {
+  const double along_elastic =
+      cell.pressure + state.elastic * (cell.pressed - cell.sunk + sinking * cell.share);
+  const double pressure =
+      std::max(0.0, std::min(along_elastic, cell.pressure + cell.rate * sinking));
+  const auto units =
+      static_cast<Height>(std::lrint((along_elastic - pressure) * state.units_per_pressure));
+  if (pressure > 0.0 && units > 0) {
+    flow_.sink(cell.node, cell.ix, cell.iy, units);
+    sunk_units += units;
+  }
+  return pressure;
+}
+
+/// Forces act where the pressure is, the surface slides where it touches: two means of its slope.
+inline SoilBed::SurfaceSlip SoilBed::FootprintState::slip_over(
+    const SoilCell& cell, const Eigen::Vector3d& velocity) const {
+  SurfaceSlip slip;
+  slip.steep = std::sqrt(1.0 + cell.slope_x * cell.slope_x + cell.slope_y * cell.slope_y);
+  slip.along = axle.cross(Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0) / slip.steep);
+  const double per_length =
+      1.0 / std::sqrt(1.0 + cell.tilt_x * cell.tilt_x + cell.tilt_y * cell.tilt_y);
+  const Eigen::Vector3d face(cell.tilt_x * per_length, cell.tilt_y * per_length, per_length);
+  // Forward along the surface, at right angles to the axle.
+  const Eigen::Vector3d tread = axle.cross(face);
+  const Eigen::Vector3d surface = velocity - surface_speed * tread;
+  const double slide_along = surface.dot(radial ? tread : level_forward);
+  const double slide_across = surface.dot(radial ? face.cross(tread) : level_side);
+  slip.lengthwise = level_forward;
+  slip.sideways = level_side;
+  if (radial) {
+    const Eigen::Vector3d normal(cell.slope_x, cell.slope_y, 1.0);
+    slip.lengthwise = slip.along;
+    slip.sideways = normal.cross(slip.along) / slip.steep;
+  }
+  slip.sliding = std::sqrt(slide_along * slide_along + slide_across * slide_across);
+  const double per_sliding = slip.sliding > 0.0 ? 1.0 / slip.sliding : 0.0;
+  slip.to_along = slide_along * per_sliding;
+  slip.to_across = slide_across * per_sliding;
+  return slip;
+}
+
+/// Mobilised shear of a cell after this step, at its centre of pressure; `history` keeps the mean.
+inline SoilBed::Mobilised SoilBed::mobilise(const SoilCell& cell, const SurfaceSlip& slip,
+                                            const FootprintState& state, double dt,
+                                            SoilCellHistory& history) const {
+  const double kept = std::min(static_cast<double>(history.share), cell.share) / cell.share;
+  const double fades = fading(slip.sliding * dt * state.per_shear_modulus);
+  const double stays = kept * (1.0 - fades);
+  const double comes = 0.5 * (1.0 + kept) * fades;
+  const double mean_along = static_cast<double>(history.along) * stays + slip.to_along * comes;
+  const double mean_across = static_cast<double>(history.across) * stays + slip.to_across * comes;
+  history.touch(step_);
+  history.share = static_cast<float>(cell.share);
+  history.along = static_cast<float>(mean_along);
+  history.across = static_cast<float>(mean_across);
+
+  const double ahead = soil_.shear_damping_s - cell.lead * state.per_speed;
+  // Nowhere does that lie before shear in this direction began.
+  const double begun = std::max(0.0, mean_along * slip.to_along + mean_across * slip.to_across);
+  const double further = std::max(fading(slip.sliding * ahead * state.per_shear_modulus),
+                                  -begun / std::max(1.0 - begun, kMinRemainder));
+  Mobilised m;
+  m.along = mean_along + (slip.to_along - mean_along) * further;
+  m.across = mean_across + (slip.to_across - mean_across) * further;
+  m.squared = m.along * m.along + m.across * m.across;
+  if (m.squared > 1.0) {
+    const double to_strength = 1.0 / std::sqrt(m.squared);
+    m.along *= to_strength;
+    m.across *= to_strength;
+  }
+  return m;
+}
+
+inline SoilBed::FootprintState SoilBed::footprint_state(const FootprintContact& contact,
+                                                        double elastic,
+                                                        const Eigen::Vector3d& middle) const {
+  const Eigen::Isometry3d& pose = contact.footprint->pose();
+  FootprintState state;
+  state.radial = options_.normal_stress == NormalStress::kRadial;
+  state.centre = pose.translation();
+  state.axle = pose.linear().col(1);
+  state.level_forward = state.axle.cross(Eigen::Vector3d::UnitZ()).normalized();
+  state.level_side = Eigen::Vector3d::UnitZ().cross(state.level_forward);
+  state.surface_speed = contact.motion.surface_speed;
+  const Eigen::Vector3d forward = pose.linear().col(0);
+  const double speed = middle.dot(forward);
+  state.per_speed = std::abs(speed) > kRolling ? 1.0 / speed : 0.0;
+  state.elastic = elastic;
+  state.units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
+  state.per_shear_modulus = 1.0 / soil_.shear_modulus_m;
+  return state;
+}
+
 /// How the soil yields in a footprint's cells, and the forces of the cells.
 void SoilBed::react(const Range& range, const PressingBody& body, FootprintContact& contact,
                     double dt) {
   contact.reaction = {};
   if (range.begin == range.end) return;
   TerrainReaction reaction;  // by itself, so that the sums stay in registers
-  const bool radial = options_.normal_stress == NormalStress::kRadial;
   const Eigen::Isometry3d& pose = contact.footprint->pose();
-  const Eigen::Vector3d centre = pose.translation();
-  const Eigen::Vector3d axle = pose.linear().col(1);
-  const Eigen::Vector3d forward = pose.linear().col(0);
-  const Eigen::Vector3d middle = body.velocity + body.omega.cross(centre - body.centre);
-  const double speed = middle.dot(forward);
-  const double per_speed = std::abs(speed) > kRolling ? 1.0 / speed : 0.0;
-  const double elastic = range.law.elastic;
-  const double units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
-  const double per_shear_modulus = 1.0 / soil_.shear_modulus_m;
-  const Eigen::Vector3d level_forward = axle.cross(Eigen::Vector3d::UnitZ()).normalized();
-  const Eigen::Vector3d level_side = Eigen::Vector3d::UnitZ().cross(level_forward);
+  const Eigen::Vector3d middle = body.velocity + body.omega.cross(pose.translation() - body.centre);
+  const FootprintState state = footprint_state(contact, range.law.elastic, middle);
   int64_t sunk_units = 0;
-  Digging digging(level_forward, level_side);
+  Digging digging(state.level_forward, state.level_side);
 
   for (size_t i = range.begin; i < range.end; ++i) {
     const SoilCell& cell = cells_[i];
-    CellHistory& history = histories_[cell.node];
-    const double sinking = springs_[i].sinking;
-    const double along_elastic =
-        cell.pressure + elastic * (cell.pressed - cell.sunk + sinking * cell.share);
-    const double pressure =
-        std::max(0.0, std::min(along_elastic, cell.pressure + cell.rate * sinking));
-    // What the elastic part does not explain is plastic: the soil yielded.
-    const auto units =
-        static_cast<Height>(std::lrint((along_elastic - pressure) * units_per_pressure));
+    SoilCellHistory& history = histories_[cell.node];
+    const double pressure = yield(cell, springs_[i].sinking, state, sunk_units);
     if (pressure <= 0.0) {
-      // Not touching: the next contact finds what this one left.
-      history.step = 0;
+      history.release();
       continue;
-    }
-    if (units > 0) {
-      flow_.sink(cell.node, cell.ix, cell.iy, units);
-      sunk_units += units;
     }
     const Eigen::Vector3d velocity = middle + body.omega.cross(cell.arm);
     const double damped =
         pressure + soil_.damping_pa_s_per_m * std::max(0.0, -velocity.z()) * cell.share;
+    const SurfaceSlip slip = state.slip_over(cell, velocity);
+    const Mobilised m = mobilise(cell, slip, state, dt, history);
 
-    // Forces act where the pressure is, the surface slides where it touches: two means of its
-    // slope.
-    const double steep = std::sqrt(1.0 + cell.slope_x * cell.slope_x + cell.slope_y * cell.slope_y);
-    const Eigen::Vector3d along =
-        axle.cross(Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0) / steep);
-    const double per_length =
-        1.0 / std::sqrt(1.0 + cell.tilt_x * cell.tilt_x + cell.tilt_y * cell.tilt_y);
-    const Eigen::Vector3d face(cell.tilt_x * per_length, cell.tilt_y * per_length, per_length);
-    // Forward along the surface, at right angles to the axle.
-    const Eigen::Vector3d tread = axle.cross(face);
-    const Eigen::Vector3d surface = velocity - contact.motion.surface_speed * tread;
-    const double slide_along = surface.dot(radial ? tread : level_forward);
-    const double slide_across = surface.dot(radial ? face.cross(tread) : level_side);
-    // Directions in the plane in which the soil shears.
-    const Eigen::Vector3d normal = radial ? Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0)
-                                          : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d lengthwise = radial ? along : level_forward;
-    const Eigen::Vector3d sideways = radial ? normal.cross(along) / steep : level_side;
-
-    // Mobilised shear: the mean over the touching part of the cell. What has just come into touch
-    // starts at zero.
-    const double sliding = std::sqrt(slide_along * slide_along + slide_across * slide_across);
-    const double per_sliding = sliding > 0.0 ? 1.0 / sliding : 0.0;
-    const double to_along = slide_along * per_sliding;
-    const double to_across = slide_across * per_sliding;
-    const double kept = std::min(static_cast<double>(history.share), cell.share) / cell.share;
-    const double fades = fading(sliding * dt * per_shear_modulus);
-    const double stays = kept * (1.0 - fades);
-    const double comes = 0.5 * (1.0 + kept) * fades;
-    const double mean_along = static_cast<double>(history.along) * stays + to_along * comes;
-    const double mean_across = static_cast<double>(history.across) * stays + to_across * comes;
-    history.step = step_;
-    history.share = static_cast<float>(cell.share);
-    history.along = static_cast<float>(mean_along);
-    history.across = static_cast<float>(mean_across);
-
-    // Where the pressure is higher the soil has sheared for longer, by the distance between the
-    // centre of pressure and that of the contact. That stress answers to a shear that is further on
-    // is its damping.
-    const double ahead = soil_.shear_damping_s - cell.lead * per_speed;
-    // Nowhere does that lie before shear in this direction began.
-    const double begun = std::max(0.0, mean_along * to_along + mean_across * to_across);
-    const double further = std::max(fading(sliding * ahead * per_shear_modulus),
-                                    -begun / std::max(1.0 - begun, kMinRemainder));
-    double m_along = mean_along + (to_along - mean_along) * further;
-    double m_across = mean_across + (to_across - mean_across) * further;
-    const double squared = m_along * m_along + m_across * m_across;
-    if (squared > 1.0) {
-      const double to_strength = 1.0 / std::sqrt(squared);
-      m_along *= to_strength;
-      m_across *= to_strength;
-    }
     const double load = damped * cell_area_;
     Eigen::Vector3d force(0.0, 0.0, load);
-    if (radial) force << load * cell.slope_x, load * cell.slope_y, load;
+    if (state.radial) force << load * cell.slope_x, load * cell.slope_y, load;
     Eigen::Vector3d torque = load * cell.moment;
     reaction.normal_load += load;
     const double strength = soil_.cohesion_pa * cell.share + damped * tan_friction_;
-    const Eigen::Vector3d traction = (-strength * cell_area_ * (radial ? steep : 1.0)) *
-                                     (m_along * lengthwise + m_across * sideways);
+    const Eigen::Vector3d traction = (-strength * cell_area_ * (state.radial ? slip.steep : 1.0)) *
+                                     (m.along * slip.lengthwise + m.across * slip.sideways);
     force += traction;
     torque += cell.arm.cross(traction);
-    reaction.along_surface -= traction.dot(along);
+    reaction.along_surface -= traction.dot(slip.along);
     if (soil_.drag_depth_m > 0.0) {
-      const double mobilised = std::sqrt(std::min(squared, 1.0));
-      digging.add(cell, sliding, mobilised);
-      flow_.shear(cell.node, cell.share * mobilised * sliding);
+      const double mobilised = std::sqrt(std::min(m.squared, 1.0));
+      digging.add(cell, slip.sliding, mobilised);
+      flow_.shear(cell.node, cell.share * mobilised * slip.sliding);
     }
     reaction.force += force;
     reaction.torque += torque;
     reaction.area += cell.share * cell_area_;
-    reaction.sinkage = std::max(
-        reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m - (centre.z() + cell.arm.z()));
+    reaction.sinkage = std::max(reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m -
+                                                      (state.centre.z() + cell.arm.z()));
   }
   flow_.push(range.footprint, sunk_units);
   if (soil_.drag_depth_m > 0.0) dig(digging, pose, dt);

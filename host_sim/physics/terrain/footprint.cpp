@@ -1,4 +1,24 @@
 // Lower surfaces in closed form.
+//
+// A vertical line at (x, y) is, in the body's axes, l + t u: l its point at the height of the
+// body's centre, u the world's vertical (up_), t the height over the centre, m. It enters a convex
+// body at the lowest t.
+//
+// Track, a capsule in the local x-z plane round axles at -+half, radius r:
+//   lower run  l_z + t u_z = run_z = -+r               t = run_t, where |l_x + t u_x| <= half
+//   wheel      |(p_x, l_z) + t (u_x, u_z)|^2 = r^2,    p_x = l_x - hub
+//              square = u_x^2 + u_z^2,  along = p_x u_x + l_z u_z
+//              rest = along^2 + square (r^2 - p_x^2 - l_z^2)
+//              t = (-along - sqrt(rest)) / square,     none where rest <= 0
+//   normal     r times, into the body: n = -(p_x + t u_x, 0, l_z + t u_z); slopes are its parts
+//              along the world's x and y over that along z
+//   share      1/2 + (width - |l_y + t u_y|) / edge, within 0..1: of a square of this side, across
+//              the track's side
+//   passed     each wheel swept the ground down to the plane z = rise x - deep that touches it from
+//              below in x = touch; where that point is ahead, the line meets the plane at
+//              t = (rise l_x - deep - l_z) / (u_z - rise u_x)
+// Box: t between the planes of each pair of faces, the largest of the lower ones (slabs; Kay and
+// Kajiya, Ray tracing complex scenes, 1986). Disc: t where the line meets the plane of its end.
 #include "host_sim/physics/terrain/footprint.h"
 
 #include <algorithm>
