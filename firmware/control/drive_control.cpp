@@ -72,7 +72,8 @@ int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t m
   yaw_integral_q8_ =
       clamp_i32(yaw_integral_q8_ + step, -kYawIntegralLimit_q8, kYawIntegralLimit_q8);
   const int32_t correction = asr(mul_i16(yaw_kp_, error), 8) + asr(yaw_integral_q8_, 8);
-  return command.yaw_rate + limit_i16(correction, kYawCorrectionLimit);
+  // In 32 bits: the sum of two numbers of 16 does not fit the AVR's int.
+  return static_cast<int32_t>(command.yaw_rate) + limit_i16(correction, kYawCorrectionLimit);
 }
 
 DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurement& measured) {

@@ -26,8 +26,8 @@ class Chips : public testing::Test {
     EXPECT_TRUE(chip.select(address, false));
     EXPECT_TRUE(chip.write(number));
     EXPECT_TRUE(chip.select(address, true));
-    std::vector<int> bytes;
-    for (int i = 0; i < count; ++i) bytes.push_back(chip.read());
+    std::vector<int> bytes(static_cast<std::size_t>(count));
+    for (int& byte : bytes) byte = chip.read();
     chip.stop();
     return bytes;
   }

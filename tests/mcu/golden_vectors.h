@@ -306,7 +306,7 @@ void golden_leveling(Link& link) {
     parameters.random_seed = static_cast<int16_t>(32767 - run);
     Leveling leveling(parameters);
     leveling.start();
-    LevelingInput input = {0, 0, 0, 0};
+    LevelingInput input = {0, 0, 0, 0, {0, 0}};
     for (uint16_t i = 0; i < 400; ++i) {
       if (i % 10U == 0) {
         input.pitch = numbers.within(3000);
@@ -315,7 +315,8 @@ void golden_leveling(Link& link) {
         input.y_mm =
             i % 100U == 0 ? extreme(static_cast<uint8_t>(i / 100U)) / 2 : asr(numbers.wide(), 14);
       }
-      const MotionCommand motion = leveling.tick(input, {numbers.narrow(), 77});
+      input.drive = {numbers.narrow(), 77};
+      const MotionCommand motion = leveling.tick(input);
       put_word(link, static_cast<uint16_t>(motion.speed_mm_per_s));
       put_word(link, static_cast<uint16_t>(motion.yaw_rate));
       link.put(static_cast<uint8_t>(leveling.state()));

@@ -19,13 +19,17 @@ std::string error_of(const SoilLine& line) {
   return *line.limit == 0.0 ? "" : text("%+.3f %%", 100.0 * (line.value / *line.limit - 1.0));
 }
 
-/// The meaning as a sentence, its unit and range before what it adds behind a semicolon.
+/// The meaning as a sentence; before what it adds behind a semicolon the symbol, where the option's
+/// name does not say it, unit and range.
 std::string option_help(const SoilParameterInfo& parameter) {
   std::string help = parameter.meaning;
   help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+  std::string named = parameter.option + 2;
+  std::replace(named.begin(), named.end(), '-', '_');
+  const std::string symbol = named == parameter.key ? "" : std::string(" ") + parameter.key;
   const std::string unit = *parameter.unit != '\0' ? std::string(" [") + parameter.unit + "]" : "";
   const std::string range = text(", %g", parameter.min) + text("..%g", parameter.max);
-  return help.insert(std::min(help.find(';'), help.size()), unit + range);
+  return help.insert(std::min(help.find(';'), help.size()), symbol + unit + range);
 }
 
 }  // namespace

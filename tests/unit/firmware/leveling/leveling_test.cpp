@@ -181,7 +181,7 @@ TEST(Leveling, StartBeginsAnew) {
 
 /// The state after one more tick at exactly this pitch.
 LevelingState state_at(Leveling& leveling, int32_t pitch) {
-  leveling.tick({static_cast<Angle>(pitch), 0, 0, 0}, {0, 0});
+  leveling.tick({static_cast<Angle>(pitch), 0, 0, 0, {0, 0}});
   return leveling.state();
 }
 
@@ -237,14 +237,14 @@ TEST(Leveling, ATrainingDriveIsDrivenToItsEnd) {
   int ticks = 0;
   bool moved = false;
   for (; leveling.state() != LevelingState::kDone && ticks < 1000; ++ticks) {
-    const MotionCommand motion = leveling.tick({0, 0, 0, 0}, {0, 0});
+    const MotionCommand motion = leveling.tick({0, 0, 0, 0, {0, 0}});
     moved = moved || motion.speed_mm_per_s != 0;
     const bool over = ticks >= 150;
     ASSERT_TRUE(over || leveling.state() == LevelingState::kTrainingDrive) << ticks;
   }
   EXPECT_TRUE(moved);
   EXPECT_NEAR(ticks, 8 * 20, 1);
-  EXPECT_EQ(leveling.tick({0, 0, 0, 0}, {0, 0}).speed_mm_per_s, 0);
+  EXPECT_EQ(leveling.tick({0, 0, 0, 0, {0, 0}}).speed_mm_per_s, 0);
 }
 
 }  // namespace

@@ -335,7 +335,7 @@ TEST(SupervisorFaults, AnEncoderThatStepsToAndFroIsNamed) {
       watch.tick();
     }
     EXPECT_EQ(watch.supervisor.state(), RobotState::kFault);
-    EXPECT_EQ(watch.supervisor.faults(), left ? kFaultEncoderLeft : kFaultEncoderRight);
+    EXPECT_EQ(watch.supervisor.faults(), left ? Fault::kEncoderLeft : Fault::kEncoderRight);
   }
 }
 

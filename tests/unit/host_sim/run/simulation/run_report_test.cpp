@@ -59,7 +59,7 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
       Json::parse(R"({"content_hash": "0123456789abcdef", "stopped_early": true,
       "left_bed": true, "time_s": 13.5, "distance_m": 15.5, "energy_j": 16.5,
       "outside_bed_s": 17.5, "battery_v": 18.5, "peaks": 19, "training_frames": 11,
-      "height_changes": 12, "state": "fault", "faults": "tilt, emergency stop",
+      "height_changes": 12, "state": "fault", "faults": "tilt, emergency_stop",
       "telemetry_frames": 20, "telemetry_frames_sent": 21, "telemetry_frames_damaged": 22,
       "telemetry_share": 0.25,
       "terrain_before": {)" +
