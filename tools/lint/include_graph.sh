@@ -16,16 +16,15 @@ find ${folders[@]} \( -name '*.h' -o -name '*.cpp' -o -name '*.inc' -o -name '*.
 status=0
 awk -v edges="$work/edges" -f "$self/include_graph.awk" "$self/layers.txt" "$work/includes" || status=1
 if ! tsort "$work/edges" > /dev/null 2> "$work/loop"; then
-  # tsort names the members of a loop a line each, behind a line that says so.
-  sed -e '/input contains a loop/d' -e 's/^tsort: //' "$work/loop" | awk '!seen[$0]++' | paste -sd ' ' \
-    | sed 's/^/include graph: a cycle of folders: /'
-  while read -r from to; do
-    if grep -qx "tsort: $from" "$work/loop" && grep -qx "tsort: $to" "$work/loop"; then
-      awk -v from="$from" -v to="$to" '
-        function folder(path) { return sub(/\/[^\/]*$/, "", path) ? path : "." }
-        folder($1) == from && folder($2) == to { print "  " $1 " includes " $2 }' "$work/includes"
-    fi
-  done < "$work/edges"
+  # tsort names the folders of a loop a line each, neighbours beside each other, behind a line that says so. Of each step one include.
+  mapfile -t loop < <(sed -e '/input contains a loop/d' -e 's/^tsort: //' "$work/loop" | awk '!seen[$0]++')
+  echo "include graph: a cycle of folders: ${loop[*]}"
+  for ((i = 0; i < ${#loop[@]}; ++i)); do
+    awk -v one="${loop[i]}" -v other="${loop[(i + 1) % ${#loop[@]}]}" '
+      function folder(path) { return sub(/\/[^\/]*$/, "", path) ? path : "." }
+      { from = folder($1); to = folder($2) }
+      ((from == one && to == other) || (from == other && to == one)) && !said[from]++ { print "  " $1 " includes " $2 }' "$work/includes"
+  done | sort -u
   status=1
 fi
 exit $status
