@@ -86,7 +86,7 @@ struct Transition {
 };
 
 TEST(Supervisor, EveryRequestInEveryState) {
-  using enum RobotState;
+  using enum message::HeartbeatState;  // clang takes no alias here
   constexpr RequestResult kOk = RequestResult::kDone;
   constexpr RequestResult kNo = RequestResult::kWrongState;
   const Transition table[] = {
