@@ -61,7 +61,7 @@ struct Pair {
   Rollout divergence(const MadeUpDrive& one, const MadeUpDrive& other) const {
     record(folder.path() / "one", one);
     record(folder.path() / "other", other);
-    const Rollout result = nn::divergence(folder.path() / "one", folder.path() / "other");
+    Rollout result = nn::divergence(folder.path() / "one", folder.path() / "other");
     fs::remove_all(folder.path() / "one");
     fs::remove_all(folder.path() / "other");
     return result;
