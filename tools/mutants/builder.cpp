@@ -133,7 +133,7 @@ Objects Builder::compile_switches(const std::string& source, const Mutations& mu
   const std::string original = read_file(source);
   for (;;) {
     text = with_switches(original, mutations, alone, kept);
-    const Objects objects = compile(source, text, folder, {});
+    Objects objects = compile(source, text, folder, {});
     if (objects.compiled) return objects;
     std::set<std::size_t> lines;
     std::set<std::string> names;

@@ -151,7 +151,7 @@ void Campaign::build_switches(Subject& subject) const {
   for (const std::size_t site : subject.alone) text += "alone " + std::to_string(site) + "\n";
   for (const std::string& name : subject.kept) text += "kept " + name + "\n";
   for (const auto& [original, mutated] : subject.objects.objects) {
-    text += "object " + original + " " + mutated + "\n";
+    text.append("object ").append(original).append(" ").append(mutated).append("\n");
   }
   write_file(notes, text);
   for (const std::string& program : builder_.programs()) fs::remove(subject.folder / program);

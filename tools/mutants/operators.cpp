@@ -321,8 +321,8 @@ class Finder {
     const bool minus = text(i) == "-";
     Site site;
     site.mutants.push_back({{token(i).begin, token(i).end, ""}, minus ? "sign" : "negation"});
-    site.wraps.push_back({token(i).begin, token(behind - 1).end,
-                          minus ? "" : "::mutants::flip(@0, ", minus ? ")" : ")"});
+    site.wraps.push_back(
+        {token(i).begin, token(behind - 1).end, minus ? "" : "::mutants::flip(@0, ", ")"});
     if (minus) {
       site.replacements.push_back({token(i).begin, token(i).end, "::mutants::negative(@0, "});
     }

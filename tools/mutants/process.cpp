@@ -67,6 +67,7 @@ Ended run(const std::vector<std::string>& command,
           const std::map<std::string, std::string>& environment, double limit_s,
           const std::filesystem::path& output) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   const pid_t child = fork();
   if (child == 0) become(arguments, environment, limit_s, output);

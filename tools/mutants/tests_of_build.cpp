@@ -190,7 +190,8 @@ std::vector<TestCase> find_reach(const fs::path& folder, const std::vector<std::
           std::string text;
           for (std::string line; std::getline(lines, line);) {
             const std::string name = line.substr(0, line.find(' '));
-            text += key + " " + program + " " + of_test[name] + " " + line + "\n";
+            text.append(key).append(" ").append(program).append(" ");
+            text.append(of_test[name]).append(" ").append(line).append("\n");
           }
           const std::scoped_lock lock(writing);
           std::ofstream(log, std::ios::app) << text;
