@@ -49,7 +49,7 @@ look_at() {
   for source in "$@"; do
     echo "  TIDY $source"
     if said=$(tidy "$source" "$class"); then
-      touch "$build/${source%.cpp}.tidy"
+      mkdir -p "$(dirname "$build/$source")" && touch "$build/${source%.cpp}.tidy"
     else
       status=1
       grep -vE '^[0-9]+ warnings? generated|^Suppressed|^Use -header-filter|^$' <<< "$said"
