@@ -184,6 +184,7 @@ void ParticleBed::wake_near(int32_t particle) {
 
 void ParticleBed::wake_all() {
   for (size_t i = 0; i < size(); ++i) wake(static_cast<int32_t>(i));
+  std::fill(rest_s_.begin(), rest_s_.end(), 0.0);
 }
 
 void ParticleBed::set_motion(size_t particle, const Eigen::Vector3d& velocity,
@@ -371,6 +372,7 @@ void ParticleBed::step(double dt) {
   work_.awake = awake_.size();
   work_.contacts = pairs_.size();
   work_.element_steps += awake_.size();
+  ++work_.steps;
   collide_pairs(dt);
   collide_walls(dt);
   move(dt);

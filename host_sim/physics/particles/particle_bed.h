@@ -76,7 +76,7 @@ class ParticleBed final : public Terrain {
   /// For experiments: gives a particle a motion and wakes it.
   void set_motion(size_t particle, const Eigen::Vector3d& velocity,
                   const Eigen::Vector3d& angular_velocity);
-  /// Wakes all, as on a bed that has been shaken.
+  /// Wakes all, as on a bed that has been shaken: none sleeps before it has rested anew.
   void wake_all();
 
  private:

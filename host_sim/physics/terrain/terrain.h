@@ -60,6 +60,7 @@ struct TerrainWork {
   size_t elements = 0;
   size_t awake = 0;            ///< elements that moved in the last step
   size_t contacts = 0;         ///< pairs near enough to be looked at in the last step
+  uint64_t steps = 0;
   uint64_t element_steps = 0;  ///< sum of `awake` over all steps
 };
 

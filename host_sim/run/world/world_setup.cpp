@@ -117,21 +117,23 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
     options.soil_options.avalanches = experiment.soil.avalanches;
     options.soil_options.follow_slopes = experiment.soil.follow_slopes;
   }
-  if (experiment.map.of_particles()) {
-    ParticleOptions particles;
-    particles.material.radius_m = experiment.map.particle_radius_m;
-    particles.material.density_kg_per_m3 = experiment.particles.density_kg_per_m3;
-    particles.material.friction = experiment.particles.friction;
-    particles.material.rolling = experiment.particles.rolling;
-    particles.ray_spacing_m = 1.0 / experiment.raygrid.resolution_per_m;
-    particles.seed = experiment.experiment.seed;
-    particles.fixed = experiment.map.model == "static_particles";
-    options.particles = particles;
-  }
+  if (experiment.map.of_particles()) options.particles = make_particles(experiment);
   return options;
 }
 
 }  // namespace
+
+ParticleOptions make_particles(const Experiment& experiment) {
+  ParticleOptions particles;
+  particles.material.radius_m = experiment.map.particle_radius_m;
+  particles.material.density_kg_per_m3 = experiment.particles.density_kg_per_m3;
+  particles.material.friction = experiment.particles.friction;
+  particles.material.rolling = experiment.particles.rolling;
+  particles.ray_spacing_m = 1.0 / experiment.raygrid.resolution_per_m;
+  particles.seed = experiment.experiment.seed;
+  particles.fixed = experiment.map.model == "static_particles";
+  return particles;
+}
 
 SoilParameters make_soil(const Experiment& experiment) {
   SoilParameters soil = soil_preset(experiment.soil.preset);

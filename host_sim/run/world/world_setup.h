@@ -23,7 +23,9 @@ using EnvironmentFactory = std::function<std::unique_ptr<Environment>(
 
 /// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
 SoilParameters make_soil(const Experiment& experiment);
-/// The terrain an experiment asks for.
+/// The particles of an experiment on such a bed.
+ParticleOptions make_particles(const Experiment& experiment);
+/// The terrain an experiment asks for; the surface that particles are laid up to.
 HeightField make_terrain(const Experiment& experiment);
 /// The robot of an experiment, on a board of boards/. Throws InputError.
 Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard);

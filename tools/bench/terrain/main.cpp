@@ -31,6 +31,7 @@ struct Options {
   std::string bed;  ///< of a child: it measures one case and prints it as JSON
   std::vector<std::string> set;
   int threads = 1;
+  bool all_awake = false;
 };
 
 /// A case and what came of it.
@@ -40,13 +41,17 @@ struct Row {
 };
 
 void print_measurement(const Options& options) {
-  const Measurement m = terrain_bench::measure(options.bed, options.set, options.threads,
-                                               options.frames, options.seconds);
+  const Measurement m = options.all_awake
+                            ? terrain_bench::measure_all_awake(options.bed, options.set,
+                                                               options.frames, options.seconds)
+                            : terrain_bench::measure(options.bed, options.set, options.threads,
+                                                     options.frames, options.seconds);
   std::printf("%s\n", nlohmann::json({{"frames", m.frames},
                                       {"wall_ms", m.wall_ms},
                                       {"processor_ms", m.processor_ms},
                                       {"memory_mb", m.memory_mb},
-                                      {"elements", m.elements}})
+                                      {"elements", m.elements},
+                                      {"awake", m.awake}})
                           .dump()
                           .c_str());
 }
@@ -57,6 +62,7 @@ Measurement measure_in_child(const Case& bench, const std::string& bed, const Op
                         "' --bed '" + bed + "' --frames " + std::to_string(options.frames) +
                         " --seconds " + std::to_string(options.seconds) + " --threads " +
                         std::to_string(bench.threads);
+  if (bench.load == terrain_bench::Load::kAllAwake) command += " --all-awake";
   for (const std::string& text : bench.overrides) command += " --set '" + text + "'";
   std::FILE* child = popen(command.c_str(), "r");
   if (child == nullptr) throw RunError("no child process can be started");
@@ -66,23 +72,25 @@ Measurement measure_in_child(const Case& bench, const std::string& bed, const Op
   const int status = pclose(child);
   if (status != 0) throw RunError("a case failed: " + command);
   const auto json = nlohmann::json::parse(said);
-  return Measurement{json["frames"], json["wall_ms"], json["processor_ms"], json["memory_mb"],
-                     json["elements"]};
+  return Measurement{json["frames"],    json["wall_ms"],  json["processor_ms"],
+                     json["memory_mb"], json["elements"], json["awake"]};
 }
 
 void print_head() {
   std::printf(
-      "| terrain | bed, m | heights or particles | worlds at once | ms a frame | processor ms | "
+      "| terrain | bed, m | heights or particles | awake | worlds at once | ms a frame | processor "
+      "ms | "
       "thesis, ms | times faster | memory, MB |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
 }
 
 void print_row(const Row& row) {
   std::printf("| %s | %.1f | ", row.bench.terrain.c_str(), row.bench.size_m);
   const Measurement& m = row.measured;
   const auto thesis_s = terrain_bench::thesis_frame_s(row.bench.terrain, row.bench.size_m);
-  std::printf("%llu | %d | %.3f | %.3f | ", static_cast<unsigned long long>(m.elements),
-              row.bench.threads, m.wall_ms, m.processor_ms);
+  std::printf("%llu | ", static_cast<unsigned long long>(m.elements));
+  if (m.awake > 0.0) std::printf("%.0f", m.awake);
+  std::printf(" | %d | %.3f | %.3f | ", row.bench.threads, m.wall_ms, m.processor_ms);
   if (thesis_s) {
     std::printf("%.0f | %.0f | ", *thesis_s * 1e3, *thesis_s * 1e3 / m.processor_ms);
   } else {
@@ -94,12 +102,12 @@ void print_row(const Row& row) {
 
 void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) {
   std::ostringstream file;
-  file << "terrain,bed_m,threads,elements,frames,wall_ms,processor_ms,memory_mb\n";
+  file << "terrain,bed_m,threads,elements,awake,frames,wall_ms,processor_ms,memory_mb\n";
   for (const Row& row : rows) {
     const Measurement& m = row.measured;
     file << '"' << row.bench.terrain << "\"," << row.bench.size_m << ',' << row.bench.threads << ','
-         << m.elements << ',' << m.frames << ',' << m.wall_ms << ',' << m.processor_ms << ','
-         << m.memory_mb << '\n';
+         << m.elements << ',' << m.awake << ',' << m.frames << ',' << m.wall_ms << ','
+         << m.processor_ms << ',' << m.memory_mb << '\n';
   }
   write_file(path, file.str());
 }
@@ -136,7 +144,7 @@ void write_bars(const std::filesystem::path& path, const std::vector<Row>& rows,
 void write_charts(const std::filesystem::path& folder, const std::vector<Row>& rows) {
   const auto one_thread = [](const Case& bench) { return bench.threads == 1; };
   const auto soft = [](const Case& bench) {
-    return bench.threads == 1 && bench.terrain != "particles";
+    return bench.threads == 1 && bench.terrain.find("particles") == std::string::npos;
   };
   const auto particles = [](const Case& bench) { return bench.terrain == "particles"; };
   const char* time = "processor ms a frame";
@@ -190,6 +198,8 @@ int main(int argc, char** argv) {
                  "Measure a single case in this process: its experiment file");
   app.add_option("--set", options.set, "Override a key of that case: section.key=value")
       ->allow_extra_args(false);
+  app.add_flag("--all-awake", options.all_awake,
+               "Without a robot, all particles of that case awake");
   app.add_option("--threads", options.threads, "Number of worlds run at once in that case")
       ->check(CLI::Range(1, 64));
   return run_program(app, argc, argv, [&] { return run(options); });

@@ -19,6 +19,7 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
+#include "host_sim/run/world/world_setup.h"
 
 namespace screed::terrain_bench {
 namespace {
@@ -74,9 +75,9 @@ double peak_memory_mb() {
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   const auto add = [&](const char* terrain, int threads, double size_m,
-                       std::vector<std::string> overrides) {
+                       std::vector<std::string> overrides, Load load = Load::kRobot) {
     overrides.push_back("map.size=" + number(size_m));
-    cases.push_back({terrain, size_m, threads, std::move(overrides)});
+    cases.push_back({terrain, size_m, threads, std::move(overrides), load});
   };
   for (const double size : kSizes_m) add("rigid", 1, size, {"map.model=rigid"});
   // The thesis' mesh has the height map's 600 x 600 points at any size ...
@@ -90,12 +91,17 @@ std::vector<Case> all_cases() {
       add("SCM, 5 mm", threads, size, {"map.model=scm", "soil.cell=0.005"});
     }
   }
+  const auto particles = [](size_t i) {
+    return std::vector<std::string>{"map.model=particles", "particles.depth=0",
+                                    "map.scale=" + number(kParticleScales_m[i])};
+  };
   for (const int threads : {1, 2}) {
     for (size_t i = 0; i < std::size(kSizes_m); ++i) {
-      add("particles", threads, kSizes_m[i],
-          {"map.model=particles", "particles.depth=0",
-           "map.scale=" + number(kParticleScales_m[i])});
+      add("particles", threads, kSizes_m[i], particles(i));
     }
+  }
+  for (size_t i = 0; i < std::size(kSizes_m); ++i) {
+    add("particles, all awake", 1, kSizes_m[i], particles(i), Load::kAllAwake);
   }
   return cases;
 }
@@ -123,6 +129,13 @@ std::filesystem::path write_bed(const std::filesystem::path& folder) {
 
 namespace {
 
+/// Elements awake between two readings of the work, mean over the steps; 0 without any.
+double mean_awake(const TerrainWork& before, const TerrainWork& after) {
+  const auto steps = static_cast<double>(after.steps - before.steps);
+  return steps == 0.0 ? 0.0
+                      : static_cast<double>(after.element_steps - before.element_steps) / steps;
+}
+
 /// A world with its robot, in a thread of its own.
 class Drive {
  public:
@@ -149,8 +162,10 @@ class Drive {
 
   Eigen::Vector3d place() const { return world_->vehicle().chassis().pose.translation(); }
 
+  TerrainWork terrain_work() const { return world_->plant().terrain_work(); }
+
   std::uint64_t elements() const {
-    const std::size_t elements = world_->plant().terrain_work().elements;
+    const std::size_t elements = terrain_work().elements;
     if (elements > 0) return elements;
     return static_cast<std::uint64_t>(world_->terrain().nx()) *
            static_cast<std::uint64_t>(world_->terrain().ny());
@@ -190,6 +205,7 @@ Measurement measure(const std::filesystem::path& bed, const std::vector<std::str
       }
       all_drive.arrive_and_wait();
       const Eigen::Vector3d from = drive->place();
+      const TerrainWork before = drive->terrain_work();
       double farthest_m = 0.0;
       std::uint64_t frames = 0;
       while (frames < max_frames && wall_s() < longest_s) {
@@ -201,7 +217,10 @@ Measurement measure(const std::filesystem::path& bed, const std::vector<std::str
       if (farthest_m < std::min(1e-4 * static_cast<double>(frames), 0.05)) {
         throw RunError("the robot did not drive while it was timed");
       }
-      if (i == 0) result.elements = drive->elements();
+      if (i == 0) {
+        result.elements = drive->elements();
+        result.awake = mean_awake(before, drive->terrain_work());
+      }
       return frames;
     }));
   }
@@ -210,6 +229,39 @@ Measurement measure(const std::filesystem::path& bed, const std::vector<std::str
   result.processor_ms =
       1e3 * (processor_s() - processor_begin) / static_cast<double>(result.frames);
   result.memory_mb = peak_memory_mb();
+  return result;
+}
+
+Measurement measure_all_awake(const std::filesystem::path& bed,
+                              const std::vector<std::string>& overrides, std::uint64_t max_frames,
+                              double longest_s) {
+  using Clock = std::chrono::steady_clock;
+  const Experiment experiment = read_experiment(bed, overrides);
+  ParticleBed particles(make_terrain(experiment), make_particles(experiment));
+  const double frame_s = 1.0 / kTickRate_hz;
+  const auto steps = static_cast<int>(std::ceil(frame_s / particles.longest_step_s()));
+  // After 0.2 s in its place a particle falls asleep: woken every 0.1 s none does.
+  constexpr std::uint64_t kFramesAwake = 10;
+  const TerrainWork before = particles.work();
+  const Clock::time_point begin = Clock::now();
+  const double processor_begin = processor_s();
+  const auto wall_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  Measurement result;
+  while (result.frames < max_frames && wall_s() < longest_s) {
+    if (result.frames % kFramesAwake == 0) particles.wake_all();
+    for (int i = 0; i < steps; ++i) particles.step(frame_s / steps);
+    ++result.frames;
+  }
+  const auto frames = static_cast<double>(result.frames);
+  result.wall_ms = 1e3 * wall_s() / frames;
+  result.processor_ms = 1e3 * (processor_s() - processor_begin) / frames;
+  result.elements = particles.size();
+  result.awake = mean_awake(before, particles.work());
+  result.memory_mb = peak_memory_mb();
+  if (result.awake < 0.99 * static_cast<double>(result.elements)) {
+    throw RunError("only " + number(result.awake) + " of " + std::to_string(result.elements) +
+                   " particles were awake while they were timed");
+  }
   return result;
 }
 

@@ -1,5 +1,6 @@
 // The thesis' performance figures 5.6 to 5.9 again: one case is a terrain of one kind and size
-// under the driving robot. Each runs in a process of its own, so that its memory can be measured.
+// under the driving robot, or a bed of particles that are all awake. Each runs in a process of its
+// own, so that its memory can be measured.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +11,12 @@
 
 namespace screed::terrain_bench {
 
+/// What runs on the terrain.
+enum class Load {
+  kRobot,     ///< the robot drives; particles that it does not touch sleep
+  kAllAwake,  ///< no robot: particles of a bed that has been shaken, all of them awake
+};
+
 struct Case {
   std::string terrain;  ///< as the table calls it
   double size_m;
@@ -18,6 +25,7 @@ struct Case {
   int threads;
   /// What makes the experiment of this case from the common one: "section.key=value".
   std::vector<std::string> overrides;
+  Load load = Load::kRobot;
 };
 
 /// All of them, in the order of the table.
@@ -30,6 +38,7 @@ struct Measurement {
   double processor_ms = 0.0;   ///< mean of a frame
   double memory_mb = 0.0;      ///< most that the process ever had resident, 10^6 bytes
   std::uint64_t elements = 0;  ///< heights or particles of a world
+  double awake = 0.0;          ///< particles of a world that are computed, mean over the steps
 };
 
 /// What the thesis says in words about a frame of that terrain and size, s; most of its results are
@@ -43,5 +52,10 @@ std::filesystem::path write_bed(const std::filesystem::path& folder);
 /// drives, then frames are timed, at most so many in a world and for so long.
 Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
                     int threads, std::uint64_t max_frames, double longest_s);
+/// The particles of the experiment without a robot, in one thread, woken before any falls asleep.
+/// Throws RunError when more than 1 % of them slept.
+Measurement measure_all_awake(const std::filesystem::path& bed,
+                              const std::vector<std::string>& overrides, std::uint64_t max_frames,
+                              double longest_s);
 
 }  // namespace screed::terrain_bench
