@@ -26,11 +26,20 @@ constexpr double kStart_s = 1.0;
 constexpr double kFirstPart_ms = 300.0;
 constexpr std::size_t kReachPart = 12;  // tests
 
-std::string last_begun(const std::string& said) {
-  static const std::string kRun = "[ RUN      ] ";
-  const std::size_t at = said.rfind(kRun);
+/// The word behind the mark at `at`, to the end of the line or a comma or blank.
+std::string word_behind(const std::string& said, const std::string& mark, std::size_t at) {
   if (at == std::string::npos) return "";
-  return said.substr(at + kRun.size(), said.find('\n', at) - at - kRun.size());
+  at += mark.size();
+  return said.substr(at, said.find_first_of("\n, ", at) - at);
+}
+
+/// The test that failed. With --gtest_fail_fast those behind it are begun, too, as skipped ones;
+/// one that crashed or was ended has no result and is the last.
+std::string failed_test(const std::string& said) {
+  static const std::string kFailed = "[  FAILED  ] ";
+  static const std::string kRun = "[ RUN      ] ";
+  const std::string failed = word_behind(said, kFailed, said.find(kFailed));
+  return failed.empty() ? word_behind(said, kRun, said.rfind(kRun)) : failed;
 }
 
 std::map<std::string, std::string> test_environment(const fs::path& programs,
@@ -135,7 +144,7 @@ Verdict TestRun::operator()(std::vector<const TestCase*> tests, std::size_t muta
     fs::remove_all(scratch_ / "tmp", ignored);
     fs::create_directories(scratch_ / "tmp");
     if (ended.good) continue;
-    const std::string by = last_begun(ended.said);
+    const std::string by = failed_test(ended.said);
     return {true, (by.empty() ? filter.substr(0, filter.find(':')) : by) +
                       (ended.out_of_time ? " (time)" : "")};
   }
