@@ -305,6 +305,21 @@ TEST(SupervisorFaults, AGyroSlowerThanTheTickIsNotFrozen) {
   EXPECT_EQ(watch.supervisor.state(), RobotState::kRunning);
 }
 
+TEST(SupervisorFaults, AFrozenGyroIsCountedInSamplesNotInTicks) {
+  SupervisedRobot watch;
+  watch.bring_to(RobotState::kRunning);
+  watch.gyro_frozen = true;
+  // A sample in four ticks: the same 17 times, which is 68 ticks, and another one then.
+  for (int round = 0; round < 5; ++round) {
+    for (int tick = 0; tick < 4 * 17; ++tick) {
+      watch.fresh = tick % 4 == 0 ? kFreshGyro | kFreshAccel : kFreshAccel;
+      watch.tick();
+      ASSERT_EQ(watch.supervisor.state(), RobotState::kRunning) << round << ", " << tick;
+    }
+    watch.gyro[2] = watch.gyro[2] == 0 ? 1 : 0;
+  }
+}
+
 TEST(SupervisorFaults, SlowOrWeaklyDrivenTracksAreNotStalled) {
   SupervisedRobot weak;
   weak.bring_to(RobotState::kRunning);
