@@ -201,6 +201,13 @@ void Campaign::find_reach() {
   const std::size_t mutants = last.first + last.candidates.size() + last.mutations.sites.size() * 3;
   tests_ = mutants::find_reach(folder, builder_.programs(), options_.work / "reach.txt", key,
                                mutants, options_.jobs, options_.tests);
+  if (options_.longest_s > 0.0) {
+    const std::size_t before = tests_.size();
+    std::erase_if(tests_,
+                  [&](const TestCase& test) { return test.cpu_ms > 1e3 * options_.longest_s; });
+    std::fprintf(stderr, "mutants: %zu tests of more than %g s are left out (--longest)\n",
+                 before - tests_.size(), options_.longest_s);
+  }
   reached_by_.assign(mutants + 1, {});
   for (const TestCase& test : tests_) {
     test_of_name_[test.name] = &test;

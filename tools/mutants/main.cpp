@@ -20,6 +20,10 @@ int main(int argc, char** argv) {
   app.add_flag("--list", options.list, "only list the mutants");
   app.add_option("--tests", options.tests, "only these tests: PATTERN:PATTERN with * and ?");
   app.add_flag("--unit", options.unit_only, "without the tests of whole runs (tests/sitl)");
+  app.add_option("--longest", options.longest_s,
+                 "without the tests that take longer, s of processor time; 0: all")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   setpriority(PRIO_PROCESS, 0, 19);
   try {
