@@ -1,0 +1,480 @@
+// What the robot says of itself over the radio, against what it was given and what it knows.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "firmware/math/crc16.h"
+#include "tests/unit/test_robot.h"
+
+namespace screed {
+namespace {
+
+/// A robot whose frames are taken off the line in the tick they are sent in.
+class HeardRobot : public TestRobot {
+ public:
+  using TestRobot::TestRobot;
+
+  /// One tick and the frames sent in it.
+  std::vector<CanFrame> hear() {
+    tick();
+    std::vector<CanFrame> frames;
+    CanFrame frame{};
+    for (uint8_t at = 0; at < output.radio_out_count; ++at) {
+      if (!parser_.feed(output.radio_out[at], frame)) continue;
+      EXPECT_TRUE(frame.id == kIdCommandAck || e2e_check(frame.id, frame.data, frame.size));
+      frames.push_back(frame);
+    }
+    return frames;
+  }
+  /// The next message of a type, within 2 s.
+  template <class Message>
+  Message next() {
+    for (int i = 0; i < 200; ++i) {
+      for (const CanFrame& frame : hear()) {
+        if (frame.id == Message::kId) return Message::unpack(frame.data);
+      }
+    }
+    ADD_FAILURE() << "no such message in 2 s";
+    return {};
+  }
+  std::vector<message::Event> events(int duration) {
+    std::vector<message::Event> all;
+    for (int i = 0; i < duration; ++i) {
+      for (const CanFrame& frame : hear()) {
+        if (frame.id == message::Event::kId) all.push_back(message::Event::unpack(frame.data));
+      }
+    }
+    return all;
+  }
+
+ private:
+  SlcanParser parser_;
+};
+
+Parameters driven() {
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  return parameters;
+}
+
+/// A message of a tick against the robot at the end of that tick.
+void compare(const HeardRobot& robot, const CanFrame& frame) {
+  const Robot& core = robot.robot;
+  const AttitudeAngles angles = core.attitude().angles();
+  const SensorSample& sample = robot.sample;
+  switch (frame.id) {
+    case message::Heartbeat::kId: {
+      const auto it = message::Heartbeat::unpack(frame.data);
+      EXPECT_EQ(it.state, static_cast<int>(core.supervisor().state()));
+      EXPECT_EQ(it.faults, core.supervisor().faults());
+      EXPECT_EQ(it.link_alive, core.supervisor().link_alive() ? 1 : 0);
+      EXPECT_EQ(it.boot_epoch, kFirstBootEpoch);
+      EXPECT_EQ(it.freshness, core.gate().counter());
+      break;
+    }
+    case message::Attitude::kId: {
+      const auto it = message::Attitude::unpack(frame.data);
+      EXPECT_NEAR(it.roll, angles.roll * 36000.0 / 65536.0, 1.0);
+      EXPECT_NEAR(it.pitch, angles.pitch * 36000.0 / 65536.0, 1.0);
+      break;
+    }
+    case message::Leveling::kId: {
+      const auto it = message::Leveling::unpack(frame.data);
+      EXPECT_EQ(it.state, static_cast<int>(core.leveling().state()));
+      EXPECT_EQ(it.algorithm, static_cast<int>(core.leveling().algorithm()));
+      EXPECT_EQ(it.peaks, core.leveling().peaks());
+      EXPECT_EQ(it.speed, core.motion().speed_mm_per_s);
+      EXPECT_NEAR(it.turn_rate, core.motion().yaw_rate * 36000.0 / 65536.0, 1.0);
+      break;
+    }
+    case message::Motors::kId: {
+      const auto it = message::Motors::unpack(frame.data);
+      EXPECT_EQ(it.duty_left, robot.output.duty_left);
+      EXPECT_EQ(it.duty_right, robot.output.duty_right);
+      EXPECT_EQ(it.slip, core.slip_watch().slips() ? 1 : 0);
+      EXPECT_EQ(it.stuck, core.slip_watch().stuck() ? 1 : 0);
+      EXPECT_EQ(it.missed_edges, sample.encoder_errors);
+      break;
+    }
+    case message::Odometry::kId: {
+      const auto it = message::Odometry::unpack(frame.data);
+      EXPECT_EQ(it.x, core.odometry().x_mm());
+      EXPECT_EQ(it.y, core.odometry().y_mm());
+      break;
+    }
+    case message::AccelRaw::kId:
+      EXPECT_EQ(message::AccelRaw::unpack(frame.data).z, sample.accel[2]);
+      break;
+    default:
+      break;
+  }
+}
+
+TEST(RobotDownlink, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
+  HeardRobot robot(driven());
+  std::set<uint16_t> seen;
+  std::set<int> states;
+  const auto hear = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      for (const CanFrame& frame : robot.hear()) {
+        compare(robot, frame);
+        seen.insert(frame.id);
+        if (frame.id == message::Heartbeat::kId) {
+          states.insert(message::Heartbeat::unpack(frame.data).state);
+        }
+      }
+    }
+  };
+  hear(600);
+  robot.send(robot.command(CommandOp::kArm));
+  hear(40);
+  robot.send(robot.command(CommandOp::kRun));
+  hear(4);
+  robot.send(robot.command(CommandOp::kDrive, {150, 100}));
+  hear(300);
+  EXPECT_GT(robot.robot.odometry().x_mm() + robot.robot.odometry().y_mm(), 100);
+  robot.sample.accel[1] = 700;  // rolls
+  robot.sample.encoder_errors = 9;
+  hear(100);
+  robot.sample.accel[1] = 0;
+  robot.send(robot.command(CommandOp::kStop));
+  hear(60);
+  robot.heartbeats = false;  // is disarmed for that
+  hear(200);
+  robot.send(robot.emergency_stop());
+  hear(40);
+  EXPECT_EQ(states, (std::set<int>{0, 1, 2, 3, 4}));
+  EXPECT_GE(seen.size(), 14U);
+}
+
+TEST(RobotDownlink, AnIncliningRobotSaysItsAngles) {
+  HeardRobot robot;
+  robot.sample.accel[0] = static_cast<int16_t>(std::lround(4098.0 * std::sin(0.2)));
+  robot.sample.accel[2] = static_cast<int16_t>(std::lround(4098.0 * std::cos(0.2)));
+  robot.run(1000);
+  EXPECT_NEAR(robot.next<message::Attitude>().pitch / 100.0, 0.2 * 180.0 / 3.14159265, 0.3);
+  EXPECT_NEAR(robot.next<message::Attitude>().roll, 0, 30);
+}
+
+// ---- the battery
+
+TEST(RobotDownlink, TheBatteryIsTheSumOfEightConversionsInTheBoardsUnit) {
+  HeardRobot robot;
+  for (const int sum : {0, 1, 3932, 8184}) {
+    robot.sample.battery = static_cast<uint16_t>(sum);
+    robot.run(2);
+    const double expected_mv = sum * static_cast<double>(kBoard.battery_uv_per_lsb) / 1000.0;
+    EXPECT_NEAR(robot.next<message::Power>().battery, expected_mv, 1.0) << sum;
+  }
+  // No sensor can say that: it stays at what 16 bits hold.
+  robot.sample.battery = 65535;
+  robot.run(2);
+  EXPECT_EQ(robot.next<message::Power>().battery, 65535);
+}
+
+// ---- calibration
+
+TEST(RobotDownlink, OffsetsOfTheImuAreTakenOffBeforeTheEstimate) {
+  Parameters parameters;
+  parameters.accel_offset_x = 300;
+  parameters.accel_offset_y = -200;
+  parameters.accel_offset_z = 100;
+  parameters.mag_offset_x = 150;
+  parameters.mag_offset_y = -120;
+  parameters.mag_offset_z = 90;
+  parameters.gyro_offset_x = 25;
+  parameters.gyro_offset_y = -20;
+  parameters.gyro_offset_z = 15;
+  TestRobot plain;
+  TestRobot shifted(parameters);
+  for (TestRobot* robot : {&plain, &shifted}) {
+    robot->sample.accel[0] = 500;
+    robot->sample.accel[1] = 400;
+    robot->sample.mag[0] = 300;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int16_t accel[] = {300, -200, 100};
+    const int16_t mag[] = {150, -120, 90};
+    const int16_t gyro[] = {25, -20, 15};
+    shifted.sample.accel[i] = static_cast<int16_t>(shifted.sample.accel[i] + accel[i]);
+    shifted.sample.mag[i] = static_cast<int16_t>(shifted.sample.mag[i] + mag[i]);
+    shifted.sample.gyro[i] = static_cast<int16_t>(shifted.sample.gyro[i] + gyro[i]);
+  }
+  // The gyro's first axis has a last digit that moves: the same one in both.
+  for (int tick = 0; tick < 800; ++tick) {
+    plain.sample.gyro[0] = static_cast<int16_t>(tick % 2);
+    plain.sample.gyro[1] = static_cast<int16_t>(tick % 5);
+    plain.sample.gyro[2] = static_cast<int16_t>(tick % 3);
+    for (int i = 0; i < 3; ++i) {
+      const int16_t gyro[] = {25, -20, 15};
+      shifted.sample.gyro[i] = static_cast<int16_t>(plain.sample.gyro[i] + gyro[i]);
+    }
+    for (TestRobot* robot : {&plain, &shifted}) {
+      robot->sample.fresh = kFreshGyro | kFreshAccel | kFreshMag;
+      robot->sample.time_us += kTickPeriod_us;
+      robot->robot.tick(robot->sample, robot->output);
+    }
+    const AttitudeAngles a = plain.robot.attitude().angles();
+    const AttitudeAngles b = shifted.robot.attitude().angles();
+    ASSERT_EQ(a.roll, b.roll) << tick;
+    ASSERT_EQ(a.pitch, b.pitch) << tick;
+    ASSERT_EQ(a.heading, b.heading) << tick;
+  }
+  EXPECT_GT(std::abs(plain.robot.attitude().angles().pitch), 500);
+}
+
+TEST(RobotDownlink, ACountThatTheOffsetWouldWrapStaysAsItIs) {
+  Parameters parameters;
+  parameters.accel_offset_x = 1000;
+  TestRobot corrected(parameters);
+  TestRobot plain;
+  for (TestRobot* robot : {&corrected, &plain}) {
+    robot->sample.accel[0] = INT16_MIN + 10;  // less 1000 would be a large positive number
+    robot->run(300);
+  }
+  EXPECT_EQ(corrected.robot.attitude().angles().pitch, plain.robot.attitude().angles().pitch);
+}
+
+TEST(RobotDownlink, OnlyANewMagnetometersSampleTurnsTheHeading) {
+  TestRobot robot;
+  robot.run(700);
+  ASSERT_TRUE(robot.robot.attitude().ready());
+  const Angle before = robot.robot.attitude().angles().heading;
+  robot.sample.mag[0] = 1217;  // a quarter turn
+  robot.sample.mag[1] = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    robot.sample.time_us += kTickPeriod_us;
+    robot.sample.fresh = kFreshGyro | kFreshAccel;
+    robot.sample.gyro[0] = robot.sample.gyro[0] == 0 ? 1 : 0;
+    robot.sample.radio_in_count = 0;
+    robot.robot.tick(robot.sample, robot.output);
+  }
+  const auto turned = static_cast<Angle>(robot.robot.attitude().angles().heading - before);
+  EXPECT_LT(std::abs(turned), 300);
+  robot.run(2000);
+  const auto now = static_cast<Angle>(robot.robot.attitude().angles().heading - before);
+  EXPECT_GT(std::abs(now), 3000) << "it is believed again";
+}
+
+// ---- events and lamps
+
+TEST(RobotDownlink, ItsStartIsToldOnceWithItsCause) {
+  HeardRobot robot;
+  robot.sample.reset_cause = static_cast<uint8_t>(message::HealthResetCause::kWatchdog);
+  const auto events = robot.events(300);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kStarted));
+  EXPECT_EQ(events[0].argument, static_cast<int>(message::HealthResetCause::kWatchdog));
+}
+
+TEST(RobotDownlink, EachChangeOfStateIsToldWithTheFaults) {
+  HeardRobot robot;
+  robot.events(600);
+  robot.send(robot.command(CommandOp::kArm));
+  auto events = robot.events(20);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kState));
+  EXPECT_EQ(events[0].argument, static_cast<int>(RobotState::kArmed));
+  EXPECT_TRUE(robot.events(200).empty()) << "nothing changed";
+  robot.sample.accel[1] = 4098;
+  robot.sample.accel[2] = 0;
+  events = robot.events(100);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].argument, Fault::kTilt * 256 + static_cast<int>(RobotState::kFault));
+}
+
+TEST(RobotDownlink, ALockOutIsToldWithItsTime) {
+  HeardRobot robot;
+  robot.events(600);
+  std::vector<message::Event> events;
+  for (int i = 0; i < 12; ++i) {
+    CanFrame wrong = robot.command(CommandOp::kArm);
+    wrong.data[7] ^= 0x55U;
+    robot.send(wrong);
+    for (const message::Event& event : robot.events(8)) events.push_back(event);
+  }
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kLockedOut));
+  EXPECT_NEAR(events[0].argument, CommandGate::kLockoutTicks, 1);
+}
+
+TEST(RobotDownlink, LampsSayMotorsFaultAndLink) {
+  TestRobot robot(driven());
+  robot.run(600);
+  EXPECT_EQ(robot.output.leds, kLedGreen);
+  robot.send(robot.command(CommandOp::kArm));
+  robot.run(4);
+  EXPECT_EQ(robot.output.leds, kLedGreen);
+  robot.send(robot.command(CommandOp::kRun));
+  robot.run(4);
+  EXPECT_EQ(robot.output.leds, kLedGreen | kLedYellow);
+  robot.heartbeats = false;
+  robot.run(80);
+  EXPECT_EQ(robot.output.leds, kLedYellow) << "ramps down without the link";
+  robot.send(robot.emergency_stop());
+  robot.run(2);
+  EXPECT_EQ(robot.output.leds, kLedRed);
+}
+
+// ---- the uplink's counts
+
+TEST(RobotDownlink, LinkCountsWhatArrivedAndWhatWasRefused) {
+  HeardRobot robot;
+  robot.heartbeats = false;
+  robot.run(300);
+  const auto before = robot.next<message::Link>();
+  EXPECT_EQ(before.quality, 0);
+  EXPECT_EQ(before.frames_received, 0);
+  for (int i = 0; i < 3; ++i) {
+    robot.send(robot.heartbeat());
+    robot.run(4);
+  }
+  CanFrame damaged = robot.heartbeat();
+  damaged.data[4] ^= 1U;
+  robot.send(damaged);
+  robot.run(2);
+  CanFrame cut = robot.command(CommandOp::kArm);
+  cut.size = 7;
+  robot.send(cut);
+  robot.run(2);
+  CanFrame wrong = robot.command(CommandOp::kArm);
+  wrong.data[6] ^= 1U;
+  robot.send(wrong);
+  robot.run(4);
+  for (const char letter : {'t', '1', '2', '\r'}) robot.queue.push_back(static_cast<uint8_t>(letter));
+  robot.run(2);
+  const auto after = robot.next<message::Link>();
+  EXPECT_EQ(after.frames_received, 4) << "three heartbeats, and a command of whatever MAC";
+  EXPECT_EQ(after.frames_rejected, 2);
+  EXPECT_EQ(after.commands_rejected, 1);
+  EXPECT_EQ(after.lines_rejected, 1);
+  EXPECT_EQ(after.quality, 60) << "of five a second";
+}
+
+TEST(RobotDownlink, ACommandWhileAnotherWaitsIsLostAndCounted) {
+  HeardRobot robot;
+  robot.run(600);
+  const auto before = robot.next<message::Link>();
+  // Both arrive in a tick: there is room for one.
+  const CanFrame arm = robot.command(CommandOp::kArm);
+  robot.send(arm);
+  robot.send(robot.command(CommandOp::kRun));
+  std::vector<message::CommandAck> answers;
+  for (int i = 0; i < 20; ++i) {
+    for (const CanFrame& frame : robot.hear()) {
+      if (frame.id == kIdCommandAck) answers.push_back(message::CommandAck::unpack(frame.data));
+    }
+  }
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].op, static_cast<int>(CommandOp::kArm));
+  EXPECT_EQ(robot.state(), RobotState::kArmed);
+  EXPECT_EQ(robot.next<message::Link>().frames_rejected, before.frames_rejected + 1);
+}
+
+TEST(RobotDownlink, TimeEchoesTheLastHeartbeats) {
+  HeardRobot robot;
+  robot.heartbeats = false;
+  robot.run(100);
+  uint8_t counter = 5;
+  robot.send(TestRobot::protect(frame_of(message::GroundHeartbeat{70000}), counter));
+  robot.run(2);
+  const auto time = robot.next<message::Time>();
+  EXPECT_EQ(time.echo, 70000 - 65536);
+  EXPECT_EQ(time.time, robot.sample.time_us / 1000);
+}
+
+// ---- answers
+
+TEST(RobotDownlink, RefusalsSayWhatHelps) {
+  HeardRobot robot;
+  robot.run(600);
+  const auto answer_to = [&](const CanFrame& command) {
+    robot.send(command);
+    const auto answer = robot.answer();
+    EXPECT_TRUE(answer.has_value());
+    return answer.value_or(message::CommandAck{});
+  };
+  EXPECT_EQ(answer_to(robot.command(CommandOp::kArm)).detail, 0) << "done";
+  EXPECT_EQ(answer_to(robot.command(CommandOp::kArm)).detail, 0) << "wrong state";
+  CanFrame wrong = robot.command(CommandOp::kRun);
+  wrong.data[7] ^= 1U;
+  auto answer = answer_to(wrong);
+  EXPECT_EQ(answer.result, static_cast<int>(RequestResult::kBadMac));
+  EXPECT_EQ(answer.detail, robot.robot.gate().counter());
+  EXPECT_GT(answer.detail, 0);
+  for (int i = 0; i < 12 && answer.result != static_cast<int>(RequestResult::kLockedOut); ++i) {
+    wrong.data[7] = static_cast<uint8_t>(wrong.data[7] + 1);
+    answer = answer_to(wrong);
+  }
+  ASSERT_EQ(answer.result, static_cast<int>(RequestResult::kLockedOut));
+  EXPECT_GT(answer.detail, CommandGate::kLockoutTicks - 30);
+  EXPECT_LE(answer.detail, CommandGate::kLockoutTicks);
+
+  TestRobot tilted;
+  tilted.sample.accel[1] = 4098;
+  tilted.sample.accel[2] = 0;
+  tilted.run(600);
+  tilted.send(tilted.command(CommandOp::kArm));
+  const auto refused = tilted.answer();
+  ASSERT_TRUE(refused.has_value());
+  EXPECT_EQ(refused->result, static_cast<int>(RequestResult::kFaultPresent));
+  EXPECT_EQ(refused->detail, Fault::kTilt);
+}
+
+TEST(RobotDownlink, ARepeatedCommandsAnswerIsThatOfTheCommandAccepted) {
+  HeardRobot robot;
+  robot.run(600);
+  const CanFrame arm = robot.command(CommandOp::kArm);
+  robot.send(arm);
+  ASSERT_TRUE(robot.answer().has_value());
+  CanFrame wrong = robot.command(CommandOp::kRun);
+  wrong.data[7] ^= 1U;
+  robot.send(wrong);
+  const auto refused = robot.answer();
+  ASSERT_TRUE(refused.has_value());
+  EXPECT_EQ(refused->result, static_cast<int>(RequestResult::kBadMac));
+  robot.send(arm);
+  const auto again = robot.answer();
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->op, static_cast<int>(CommandOp::kArm));
+  EXPECT_EQ(again->result, static_cast<int>(RequestResult::kDone));
+}
+
+// ---- what a committed parameter changes
+
+TEST(RobotDownlink, ACommittedSpeedLoopDrivesOtherwise) {
+  constexpr uint8_t kSpeedKi = offsetof(Parameters, speed_ki) / sizeof(int16_t);
+  TestRobot robot(driven());
+  robot.run(600);
+  uint8_t counter = 1;
+  robot.send(TestRobot::protect(frame_of(message::ParamStage{kSpeedKi, 0}), counter));
+  uint8_t bytes[4];
+  put_u16(bytes, kSpeedKi);
+  put_u16(bytes + 2, 0);
+  robot.send(
+      robot.signer.sign(CommandOp::kParameterCommit,
+                        kSpeedKi | static_cast<uint32_t>(crc16_ccitt(bytes, sizeof bytes)) << 8));
+  const auto answer = robot.answer();
+  ASSERT_TRUE(answer.has_value());
+  ASSERT_EQ(answer->result, static_cast<int>(RequestResult::kDone));
+  TestRobot other(driven());
+  for (TestRobot* one : {&robot, &other}) {
+    one->run(200);
+    one->send(one->command(CommandOp::kArm));
+    one->run(4);
+    one->send(one->command(CommandOp::kRun));
+    one->run(4);
+    one->send(one->command(CommandOp::kDrive, {150, 0}));
+    one->run(100);
+  }
+  EXPECT_NE(robot.output.duty_left, other.output.duty_left);
+}
+
+}  // namespace
+}  // namespace screed
