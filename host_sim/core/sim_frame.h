@@ -51,8 +51,8 @@
   X(int32_t,  state,          "",       "supervisor state (firmware/robot/supervisor.h)") \
   X(int32_t,  leveling_state, "",       "state of the leveling algorithm (firmware/leveling/leveling.h)") \
   X(int32_t,  faults,         "",       "latched fault bits (firmware/robot/supervisor.h)") \
-  X(int32_t,  beds_x,         "",       "teleports eastwards so far: the way made is x plus this times the bed's width") \
-  X(int32_t,  beds_y,         "",       "teleports northwards so far")
+  X(int32_t,  beds_x,         "",       "beds that the robot has crossed eastwards: unwrapped x is x plus this times the bed's width") \
+  X(int32_t,  beds_y,         "",       "beds that the robot has crossed northwards")
 // clang-format on
 
 namespace screed {

@@ -210,7 +210,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& be
 DigResult dig_soil(const DigTest& test) {
   check(test);
   SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
-  bed.settle();
+  bed.relax_slopes();
   DiggingRobot robot(start_x(test), 0.0);
   DigResult result = drive(test, robot, test.step_s, bed);
   measure(result);

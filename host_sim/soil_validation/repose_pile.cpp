@@ -65,7 +65,7 @@ ReposeResult collapse(const ReposeTest& test) {
   SoilBed bed(HeightField::from_function(nodes, nodes, test.cell_m, test.wrap, tower), test.soil);
   const int64_t before = bed.surface().height_sum();
   if (test.tap_m > 0.0) tap(bed, test);
-  const int64_t moves = bed.settle();
+  const int64_t moves = bed.relax_slopes();
   return {moves,
           before - bed.surface().height_sum() - bed.balance().compacted - bed.balance().in_transit,
           repose_excess_units(bed.surface(), test.soil.repose_deg),

@@ -95,14 +95,16 @@ TrackSoilModel::TrackSoilModel(const HeightField& ground, const SoilParameters& 
 TrackSoilModel::TrackSoilModel(const HeightField& ground, const HeightField& sinkage,
                                const SoilParameters& soil, const TrackGeometry& tracks)
     : TrackSoilModel(sum_of(ground, sinkage), soil, tracks) {
+  const std::size_t earlier = flow_.begin_footprint(0.0, 0.0);
   for (int iy = 0; iy < sinkage.ny(); ++iy) {
     for (int ix = 0; ix < sinkage.nx(); ++ix) {
       const Height units = sinkage.node(ix, iy);
       if (units == 0) continue;
-      flow_.sink(flow_.index(ix, iy), ix, iy, units);
+      flow_.sink(earlier, flow_.index(ix, iy), ix, iy, units);
       flow_.compact(units);
     }
   }
+  flow_.uncover();
 }
 
 HeightField TrackSoilModel::sinkage() const {
@@ -345,7 +347,6 @@ void TrackSoilModel::compact_cells(const Stride& stride, double unloading_pa_per
     const double left = kPerSecond * stride.sideways_m;
     const std::size_t footprint =
         flow_.begin_footprint(forward * c - left * s, forward * s + left * c);
-    std::int64_t pressed = 0;
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       const TrackCell& cell = cells_[i];
       CellHistory& history = histories_[cell.node];
@@ -360,10 +361,8 @@ void TrackSoilModel::compact_cells(const Stride& stride, double unloading_pa_per
       const auto units =
           static_cast<Height>(std::lround(cell.share * (now - cell.prior) / kHeightUnit_m));
       if (units <= 0) continue;
-      flow_.sink(cell.node, cell.ix, cell.iy, units);
-      pressed += units;
+      flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
     }
-    flow_.push(footprint, pressed);
   }
   flow_.deposit();
   flow_.slide(kSlides);

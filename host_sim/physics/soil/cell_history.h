@@ -1,5 +1,6 @@
 // What a cell of soil remembers of the body on it: how its plastic sinkage is divided between the
-// part below the body and the rest. The heights of the grid know the sum alone.
+// part below the body and the rest. The heights of the grid know the sum alone. One history a cell:
+// when two bodies cover it in one step, the second replaces the share of the first.
 //
 // A body covers a share of a cell, and that share changes while it moves. With
 //   sunk      S    plastic sinkage of the cell, a mean over it, m (from its two integer heights)
@@ -14,8 +15,7 @@
 //   c < b:  u' = (S - B) / b,          B' = S - c u',        o' = o                    (2)
 //   c > b:  B' = B - (c - b) r,        o' = (b o + (c - b) r) / c                      (3)
 // In (3) c o' + B' = b o + B: what was there before the contact is kept as well. A new contact
-// knows no parts. What an earlier body pressed, over the share b that it covered, lies below this
-// one as far as this one reaches:
+// knows no parts: assume that the old sinkage lies below this body, over the larger of both shares.
 //   new:    o' = S / max(c, b),        B' = S - c o'                                   (4)
 #pragma once
 

@@ -14,7 +14,7 @@ struct Step {
   int dy;
 };
 constexpr int kTriesPerStep = 48;           // places tried for what a footprint dug in one step
-constexpr double kStanding_m_per_s = 1e-3;  // below it a body goes nowhere
+constexpr double kStanding_m_per_s = 1e-3;  // below it a footprint has no direction
 constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                  {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
 
@@ -30,24 +30,24 @@ MaterialFlow::MaterialFlow(HeightField surface, double repose_deg) : surface_(st
   for (size_t node = 0; node < count; ++node) reference_[node] = height(node);
   covered_.assign(count, 0);
   in_ring_.assign(count, 0);
-  awake_.assign(count, 0);
+  in_queue_.assign(count, 0);
   queue_.resize(count);
 }
 
-void MaterialFlow::wake_all() {
-  for (size_t node = 0; node < nodes(); ++node) wake(node);
+void MaterialFlow::enqueue_all() {
+  for (size_t node = 0; node < nodes(); ++node) enqueue(node);
 }
 
 void MaterialFlow::change(size_t node, Height units) {
   set_height(node, height(node) + units);
   reference_[node] += units;
-  wake(node);
+  enqueue(node);
 }
 
-size_t MaterialFlow::begin_footprint(double direction_x, double direction_y) {
-  const double length = std::hypot(direction_x, direction_y);
-  const double scale = length > kStanding_m_per_s ? 1.0 / length : 0.0;
-  footprints_.push_back({covered_list_.size(), direction_x * scale, direction_y * scale, 0});
+size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
+  const double speed = std::hypot(velocity_x, velocity_y);
+  const double scale = speed > kStanding_m_per_s ? 1.0 / speed : 0.0;
+  footprints_.push_back({covered_list_.size(), velocity_x * scale, velocity_y * scale, 0});
   return footprints_.size() - 1;
 }
 
@@ -69,13 +69,13 @@ void MaterialFlow::move(size_t from, size_t to, Height units) {
 }
 
 int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacted) {
-  double all = 0.0;
-  for (const Sheared& here : sheared_) all += here.weight;
-  if (!(all > 0.0) || units <= 0) {
+  double total = 0.0;
+  for (const Sheared& here : sheared_) total += here.weight;
+  if (!(total > 0.0) || units <= 0) {
     sheared_.clear();
     return 0;
   }
-  const double per_weight = static_cast<double>(units) / all;
+  const double per_weight = static_cast<double>(units) / total;
   double passed = 0.0;
   int64_t taken = 0;
   for (size_t i = 0; i < sheared_.size(); ++i) {
@@ -91,6 +91,7 @@ int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacte
   return compacted;
 }
 
+// What one footprint cannot deposit goes to the next; what the last cannot waits for the next step.
 void MaterialFlow::deposit() {
   for (const Dug& dug : dug_) left_over_ += dug.units - spread_dug(dug);
   dug_.clear();
@@ -105,11 +106,11 @@ void MaterialFlow::deposit() {
   }
 }
 
-/// On some places around the footprint, other ones each time, so that in a few steps all have got
+/// On some nodes around the footprint, other ones each time, so that in a few steps all have got
 /// the same: a low-discrepancy sequence over the rectangle and its band. Returns the units
 /// deposited: all or none.
 int64_t MaterialFlow::spread_dug(const Dug& dug) {
-  // Of the plastic number: the two-dimensional golden ratio.
+  // R2 sequence (Roberts 2018): 2^32 / p and 2^32 / p^2, p = 1.3247, the plastic number.
   constexpr uint32_t kAlong = 3242174889U;
   constexpr uint32_t kAcross = 2447445414U;
   constexpr double kPerTurn = 1.0 / 4294967296.0;
@@ -117,11 +118,11 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
   const double length = patch.half_length + patch.band;
   const double width = patch.half_width + patch.band;
   const double per_spacing = 1.0 / surface_.spacing_m();
-  heap_.clear();
+  deposit_nodes_.clear();
   for (int i = 0; i < kTriesPerStep; ++i) {
-    ++tries_;
-    const double along = length * (2.0 * (tries_ * kAlong) * kPerTurn - 1.0);
-    const double across = width * (2.0 * (tries_ * kAcross) * kPerTurn - 1.0);
+    ++sequence_index_;
+    const double along = length * (2.0 * (sequence_index_ * kAlong) * kPerTurn - 1.0);
+    const double across = width * (2.0 * (sequence_index_ * kAcross) * kPerTurn - 1.0);
     if (std::abs(along) < patch.half_length && std::abs(across) < patch.half_width) continue;
     const double x = patch.centre.x() + along * patch.forward.x() - across * patch.forward.y();
     const double y = patch.centre.y() + along * patch.forward.y() + across * patch.forward.x();
@@ -129,13 +130,13 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
         node_at(static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
                 static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5)));
     if (node < 0 || covered_[static_cast<size_t>(node)] != 0) continue;
-    heap_.push_back(static_cast<size_t>(node));
+    deposit_nodes_.push_back(static_cast<size_t>(node));
   }
-  if (heap_.empty()) return 0;
-  const auto count = static_cast<int64_t>(heap_.size());
+  if (deposit_nodes_.empty()) return 0;
+  const auto count = static_cast<int64_t>(deposit_nodes_.size());
   for (int64_t i = 0; i < count; ++i) {
     const int64_t units = dug.units * (i + 1) / count - dug.units * i / count;
-    if (units != 0) change(heap_[static_cast<size_t>(i)], static_cast<Height>(units));
+    if (units != 0) change(deposit_nodes_[static_cast<size_t>(i)], static_cast<Height>(units));
   }
   in_transit_ -= dug.units;
   return dug.units;
@@ -175,13 +176,13 @@ int64_t MaterialFlow::spread(const ActiveFootprint& footprint, size_t end) {
   }
   const auto count = static_cast<int64_t>(ring_.size());
   const int64_t each = footprint.units / count;
-  const int64_t rest = footprint.units % count;
-  // What does not divide goes to a few places, each step to others.
+  const int64_t remainder = footprint.units % count;
+  // The remainder goes to a few nodes, each step to others.
   const auto first = static_cast<int64_t>(turn_ % ring_.size());
-  turn_ += static_cast<uint64_t>(rest);
+  turn_ += static_cast<uint64_t>(remainder);
   for (int64_t i = 0; i < count; ++i) {
     const int64_t after = i >= first ? i - first : i - first + count;
-    const int64_t units = each + (after < rest ? 1 : 0);
+    const int64_t units = each + (after < remainder ? 1 : 0);
     if (units != 0) change(ring_[static_cast<size_t>(i)].node, static_cast<Height>(units));
   }
   in_transit_ -= footprint.units;
@@ -194,7 +195,7 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
     const size_t node = queue_[queue_begin_];
     queue_begin_ = queue_begin_ + 1 == queue_.size() ? 0 : queue_begin_ + 1;
     --queue_size_;
-    awake_[node] = 0;
+    in_queue_[node] = 0;
     if (covered_[node] != 0) continue;
     const int x = column(node);
     const int y = row(node);
@@ -205,7 +206,7 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
       const Height limit = k < 4 ? limit_straight_ : limit_diagonal_;
       const Height difference = height(node) - height(other);
       const Height excess = (difference < 0 ? -difference : difference) - limit;
-      if (excess <= 1) continue;
+      if (excess <= 1) continue;  // half of 1 is 0 units: nothing to move
       const Height units = excess / 2;
       if (difference > 0) {
         move(node, other, units);
@@ -222,7 +223,7 @@ void MaterialFlow::uncover() {
   // What a body stood on may slide now.
   for (const GridNode& neighbour : covered_list_) {
     covered_[neighbour.node] = 0;
-    wake(neighbour.node);
+    enqueue(neighbour.node);
   }
   covered_list_.clear();
   // What could not be deposited waits.

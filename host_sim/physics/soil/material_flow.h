@@ -45,49 +45,50 @@ class MaterialFlow {
   /// Level from which sinkage counts.
   Height reference(size_t node) const { return reference_[node]; }
 
-  /// A body's footprint that moves in the direction (x, y), any length, in the current step; what
-  /// follows until the next one is its. Returns its number.
-  size_t begin_footprint(double direction_x, double direction_y);
-  /// It stands on this node: nothing slides onto or off it. `ix` and `iy` without wrap-around.
+  /// Begins a footprint that moves at this velocity, m/s (below 1 mm/s it stands and leaves no rut
+  /// behind it). Nodes passed to cover() until the next call belong to it. Returns its number, for
+  /// sink().
+  size_t begin_footprint(double velocity_x, double velocity_y);
+  /// The footprint stands on this node: nothing slides onto or off it. `ix` and `iy` without
+  /// wrap-around.
   void cover(size_t node, int ix, int iy) {
     if (covered_[node] != 0) return;
     covered_[node] = 1;
     covered_list_.push_back({node, ix, iy});
   }
-  /// Pushes a node's surface down by `units`: they are in transit until deposited. The reference
-  /// stays: it is sinkage. `ix` and `iy` without wrap-around.
-  void sink(size_t node, int ix, int iy, Height units) {
+  /// A footprint pushes a node's surface down by `units`: they are in transit until deposited
+  /// beside it. The reference stays: it is sinkage. `ix` and `iy` without wrap-around.
+  void sink(size_t footprint, size_t node, int ix, int iy, Height units) {
     const Height lower = height(node) - units;
-    if (on_field(ix, iy)) {  // quicker than telling column and row by division
+    if (on_field(ix, iy)) {  // quicker than finding column and row by division
       surface_.set_node(ix, iy, lower);
     } else {
       set_height(node, lower);
     }
     in_transit_ += units;
-    wake(node);
+    footprints_[footprint].units += units;
+    enqueue(node);
   }
-  /// Tells how much a footprint has sunk in this step.
-  void push(size_t footprint, int64_t units) { footprints_[footprint].units += units; }
   int64_t in_transit() const { return in_transit_; }
-  /// Takes `units` of sunk material out of hand, at most all: it stays where it is, denser.
+  /// Takes `units` of sunk material out of transit, at most all: it stays where it is, denser.
   void compact(int64_t units);
   /// Deposits what is in transit, in equal parts, on the free neighbours of each footprint's nodes,
   /// those behind it left out: there lies the rut. Keeps it in transit when there are none.
   void deposit();
 
-  /// The current footprint slips over the soil of this node, that much in comparison with others.
+  /// The footprint whose dig() comes next slips over this node; weights are relative.
   void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
-  /// Takes `units` from below the current footprint, from where it slips most the most; the
-  /// reference goes down with the surface. So many of them are `compacted` and gone, the others in
-  /// transit until they are deposited around it. Returns the units that are gone: 0 when it slips
-  /// nowhere, and then none were taken.
+  /// Takes `units` from the nodes given to shear() since the last call, in proportion to their
+  /// weights; the reference goes down with the surface. `compacted` of them vanish, the others are
+  /// in transit until they are deposited around the patch. Returns the units that vanished: 0
+  /// without sheared nodes, and then nothing was taken.
   int64_t dig(const DugPatch& patch, int64_t units, int64_t compacted);
-  /// Looks at every slope again, as on a bed that nobody has touched yet.
-  void wake_all();
+  /// Queues every node: slide() then checks the whole bed. A new bed starts with an empty queue.
+  void enqueue_all();
   /// Slides slopes above the angle of repose, at most `max_moves` moves; returns the moves made.
   int64_t slide(int64_t max_moves);
   /// Whether the slopes round a node wait in the queue.
-  bool is_queued(size_t node) const { return awake_[node] != 0; }
+  bool is_queued(size_t node) const { return in_queue_[node] != 0; }
   size_t queued() const { return queue_size_; }
   /// Forgets which nodes are covered: the step is over.
   void uncover();
@@ -108,9 +109,9 @@ class MaterialFlow {
   void change(size_t node, Height units);
   /// Moves `units` from one node to another; the reference moves with the material.
   void move(size_t from, size_t to, Height units);
-  void wake(size_t node) {
-    if (awake_[node] != 0) return;
-    awake_[node] = 1;
+  void enqueue(size_t node) {
+    if (in_queue_[node] != 0) return;
+    in_queue_[node] = 1;
     size_t end = queue_begin_ + queue_size_;
     if (end >= queue_.size()) end -= queue_.size();
     queue_[end] = node;
@@ -124,7 +125,7 @@ class MaterialFlow {
   };
   struct ActiveFootprint {  // a footprint in this step
     size_t begin;           // of its nodes among covered_list_
-    double direction_x;     // unit length, or 0
+    double direction_x;     // unit length; 0 when standing
     double direction_y;
     int64_t units;  // in transit
   };
@@ -151,12 +152,12 @@ class MaterialFlow {
   };
   std::vector<Sheared> sheared_;  // by the current footprint
   std::vector<Dug> dug_;
-  uint32_t tries_ = 0;  // places tried so far for what was dug
-  std::vector<size_t> heap_;
+  uint32_t sequence_index_ = 0;  // of the next point to try for what was dug, minus 1
+  std::vector<size_t> deposit_nodes_;
   std::vector<GridNode> ring_;
   std::vector<uint8_t> in_ring_;
-  std::vector<uint8_t> awake_;
   std::vector<size_t> queue_;  // ring buffer of nodes whose slopes may be too steep
+  std::vector<uint8_t> in_queue_;
   size_t queue_begin_ = 0;
   size_t queue_size_ = 0;
 };

@@ -48,7 +48,7 @@ class PowerTable {
     double offset;
     double slope;
   };
-  static constexpr int kDropped = 52 - 5;
+  static constexpr int kDropped = 52 - 5;  // keeps 5 of 52 mantissa bits: 32 points an octave
   static constexpr int64_t kFirst = std::bit_cast<int64_t>(0x1p-24) >> kDropped;
   static constexpr int64_t kLines = (std::bit_cast<int64_t>(1.0) >> kDropped) - kFirst + 1;
 

@@ -10,17 +10,21 @@ namespace screed {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Elastic stiffness of a long footprint that does not tilt by itself, times its area, at most,
-// times dt^2 / mass: an explicit spring is stable up to 4.
+// Greatest E A dt^2 / mass, A the touched area, of a long footprint that the solver does not tilt:
+// its pitch feels E as an explicit spring, which is stable up to 4.
 constexpr double kStableStiffness = 0.3;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
-// Greatest rise over run of a path: what drops has not driven there.
+// Greatest gradient of a path: what drops has not driven there.
 constexpr double kMaxPathGradient = 1.0;
-constexpr double kUpright = 1e-3;  // the vertical part of a body's own vertical that counts
+// Least vertical part of a body's z axis at which a level path has a gradient in the body's axes.
+constexpr double kUpright = 1e-3;
 
-/// Extends a footprint's path by this displacement, world frame, m. The rise is a mean over the
-/// footprint's own length that favours the recent path, or that of a level path.
+/// Extends a footprint's path by this step's displacement, world frame, m. With s and dz its parts
+/// along local x and z, |dz| <= |s|, and L half the length of a track, wheel or box:
+///   travel   += s
+///   gradient += |s| / L (dz / s - gradient)    a mean that favours the recent path; 0 if |s| >= L
+/// Without follow_slopes the gradient is that of a level path.
 void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement,
                  bool follow_slopes, PathHistory& path) {
   const Eigen::Matrix3d& axes = footprint.pose().linear();
@@ -94,8 +98,7 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     extend_path(footprint, velocity * dt, options_.follow_slopes, kept.path);
     double elastic = soil_.elastic_pa_per_m;
     if (footprint.extended() && !tilts && !imposed) {
-      // Nobody sees this one pitch and roll: there unloading is as stiff as an explicit step
-      // allows.
+      // The solver does not tilt this long footprint, so its pitch feels E explicitly.
       const double area = std::max(kept.patch_area_m2, cell_area_);
       elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
     }
@@ -144,8 +147,8 @@ void SoilBed::end_step() {
   ++step_;
 }
 
-int64_t SoilBed::settle(int64_t max_moves) {
-  flow_.wake_all();
+int64_t SoilBed::relax_slopes(int64_t max_moves) {
+  flow_.enqueue_all();
   return flow_.slide(max_moves);
 }
 

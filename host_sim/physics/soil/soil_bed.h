@@ -62,7 +62,7 @@ class SoilBed final : public Terrain {
   void end_step();
   void end_step(double /*dt*/) override { end_step(); }
   /// Lets slopes slide until none is too steep, or `max_moves` moves were made; returns the moves.
-  int64_t settle(int64_t max_moves = INT64_MAX);
+  int64_t relax_slopes(int64_t max_moves = INT64_MAX);
 
   const HeightField& surface() const override { return flow_.surface(); }
   bool is_deformable() const override { return true; }
@@ -107,14 +107,14 @@ class SoilBed final : public Terrain {
     int ix;
     int iy;
     double share;     // of the cell that carries load
-    double pressed;   // plastic sinkage that virgin soil would have by this contact, m
-    double pressure;  // mean pressure of virgin soil, Pa
+    double pressed;   // plastic sinkage that this contact requires, earlier contacts included, m
+    double pressure;  // mean pressure at that sinkage, before the body moves in this step, Pa
     double rate;      // of that pressure with further sinking, Pa/m
     double slope_x;   // horizontal force of the normal stress, over its vertical force
     double slope_y;
     double tilt_x;  // the same of the surface alone, mean over the touching part
     double tilt_y;
-    Eigen::Vector3d moment;  // of mean pressure, about the footprint's centre
+    Eigen::Vector3d moment;  // about the footprint's centre, per newton of vertical load, m
     Eigen::Vector3d arm;     // centre of pressure, from the footprint's centre
     double lead;             // centre of pressure ahead of the centre of the contact area, along
                              // local x, m
@@ -128,18 +128,18 @@ class SoilBed final : public Terrain {
   };
 
   /// How a footprint slips over what it touches: sums over its cells, each times its share.
-  struct Digging {
-    Digging(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
+  struct SlipSums {
+    SlipSums(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
         : forward(along), side(across) {}
     void add(const SoilCell& cell, double sliding, double mobilised);
     Eigen::Vector3d forward;  // level, unit length
     Eigen::Vector3d side;
     double share = 0.0;
-    double first_along = 0.0;  // of the cells' positions
-    double first_across = 0.0;
-    double second_along = 0.0;
-    double second_across = 0.0;
-    double swept = 0.0;  // of their mobilised slip
+    double sum_along = 0.0;  // of the cells' positions from the footprint's centre, m
+    double sum_across = 0.0;
+    double sum_along_squared = 0.0;  // m^2
+    double sum_across_squared = 0.0;
+    double slip_sum = 0.0;  // of their slip times the mobilised share, m/s
   };
 
   Range find_cells(const FootprintContact& contact, double elastic);
@@ -154,14 +154,13 @@ class SoilBed final : public Terrain {
   struct FootprintState;  // these three in soil_reaction.cpp
   struct SurfaceSlip;
   struct Mobilised;
-  double yield(const SoilCell& cell, double sinking, const FootprintState& state,
-               int64_t& sunk_units);
+  double yield(const SoilCell& cell, double sinking, const FootprintState& state, size_t footprint);
   Mobilised mobilise(const SoilCell& cell, const SurfaceSlip& slip, const FootprintState& state,
                      double dt, SoilCellHistory& history) const;
   FootprintState footprint_state(const FootprintContact& contact, double elastic,
-                                 const Eigen::Vector3d& middle) const;
+                                 const Eigen::Vector3d& centre_velocity) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
-  void dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt);
+  void dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, double dt);
   size_t sample_count(Lattice lattice) const;
 
   SoilParameters soil_;

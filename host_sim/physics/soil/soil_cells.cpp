@@ -11,7 +11,7 @@
 //   loaded  = max(0, min(virgin, stiff))                      p at its deepest
 //   depths  : plastic sinkage, max(before, deepest - loaded / E)
 //   now     = loaded - E (height - passed)                    unloading: it carries when > 0
-//   rates   : d now / d height, n virgin / deepest where it yields, else E
+//   rates   : d loaded / d sinking of the whole body: n virgin / deepest where it yields, else E
 // A cell has the means of these, each point weighed with its `part` of the body above it; a centre
 // of pressure, from points weighed with their pressure; and, for radial stress, the moment of the
 // normal's horizontal parts (slope_x, slope_y) about the footprint's centre.
@@ -28,6 +28,7 @@ namespace {
 // How much deeper a body may go in one step than in the last, for the bound on what unloaded soil
 // rises, m.
 constexpr double kStepSinkage_m = 0.001;
+constexpr double kMinPatch_m = 1e-3;  // a narrower patch is rounding at first touch
 
 }  // namespace
 
@@ -41,7 +42,8 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
       std::clamp(contact.motion.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
   const PowerTable& table = tables_[static_cast<size_t>(std::lround(more))];
   // The patch of the last step decides this step's b; at the first touch the body itself does.
-  const double b = memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, 1e-3) : footprint.narrow();
+  const double b =
+      memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();
   const Law law{soil_.k_phi + soil_.k_c / b, elastic, &table};
 
   // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
@@ -52,6 +54,8 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   for (const Candidate& candidate : candidates_) needed += sample_count(candidate.lattice);
   sample_points_.clear(needed);
   for (const Candidate& candidate : candidates_) add_sample_points(candidate);
+  // One cell of margin: contact is noticed by cells, so the body may have come from up to one cell
+  // further.
   PathHistory path = memory.path;
   if (path.along_m != 0.0) path.along_m += std::copysign(spacing, path.along_m);
   footprint.surface(spacing / samples_per_side_, path, sample_points_);
@@ -98,7 +102,7 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
     for (int ix = ix0; ix <= ix1; ++ix) sample_points_.add(field.node_x(ix), field.node_y(iy));
   }
   // A cell turned against the body reaches further across it.
-  const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.across(spacing);
+  const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.projected_side(spacing);
   footprint.surface(edge, sample_points_);
   const double rim = footprint.lowest_at_rim(spacing);
   size_t i = 0;
@@ -117,6 +121,7 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
         if (sample_points_.share[i] < 1.0) {
           lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kRook;
         } else if (sample_points_.flat_within[i] > 0.75 * spacing) {
+          // Half a cell's diagonal is 0.71: the surface is plane over the whole cell.
           lattice = Lattice::kMiddle;
         }
       } else if (rim > ground) {

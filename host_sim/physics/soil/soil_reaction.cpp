@@ -23,7 +23,8 @@
 // The force acts at the centre of pressure, which has sheared for `ahead` longer than the centre of
 // the contact area, and stress answers `shear_damping` early:
 //   ahead   = shear_damping - lead / speed
-//   further = 1 - exp(-sliding ahead / K)    no less than leads back to where shear began
+//   begun   = max(0, mean . to)
+//   further = max(1 - exp(-sliding ahead / K), -begun / (1 - begun))   back to zero shear at most
 //   m       = mean + (to - mean) further     no longer than 1
 //   strength = c share + damped tan phi      Mohr and Coulomb (Wong, ch. 2)
 //
@@ -31,6 +32,12 @@
 // `steep`; vertical stress is straight up and shears in the horizontal.
 //   force    = damped A (slope_x, slope_y, 1)
 //   traction = -strength A steep (m_along lengthwise + m_across sideways)
+//
+// Digging. A layer of `drag_depth` moves with the slipping surface. `share` is a cell's touching
+// part; variances are of the cells' positions, weighed with it:
+//   slip    = sum(share |m| sliding) / sum(share)                     mean speed, m/s
+//   sides   = sqrt(12 variance + edge^2)                              of the touched rectangle
+//   volume  = drag_depth slip dt width
 #include <algorithm>
 #include <cmath>
 
@@ -41,7 +48,7 @@ namespace {
 
 // Below this speed a body does not roll into new soil, m/s.
 constexpr double kRolling = 1e-3;
-// Of strength: what is mobilised more than all but this has no beginning to be looked for.
+// Share of the strength, not yet mobilised: keeps a division defined when all is mobilised.
 constexpr double kMinRemainder = 1e-9;
 
 /// 1 - exp(-x): x is mostly small, and there Pade's fraction of second order is within 2e-8.
@@ -85,37 +92,37 @@ struct SoilBed::Mobilised {
   double squared;  // of both, before it is limited to 1
 };
 
-void SoilBed::Digging::add(const SoilCell& cell, double sliding, double mobilised) {
+void SoilBed::SlipSums::add(const SoilCell& cell, double sliding, double mobilised) {
   const double along = cell.arm.dot(forward);
   const double across = cell.arm.dot(side);
   share += cell.share;
-  first_along += cell.share * along;
-  first_across += cell.share * across;
-  second_along += cell.share * along * along;
-  second_across += cell.share * across * across;
-  swept += cell.share * mobilised * sliding;
+  sum_along += cell.share * along;
+  sum_across += cell.share * across;
+  sum_along_squared += cell.share * along * along;
+  sum_across_squared += cell.share * across * across;
+  slip_sum += cell.share * mobilised * sliding;
 }
 
 // A layer of the soil goes along with a slipping surface: slip times depth times the footprint's
 // width a second. It comes from under the whole of the footprint and heaves the ground around it,
 // as far as the footprint is wide.
-void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double dt) {
-  if (digging.share <= 0.0) return;
+void SoilBed::dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, double dt) {
+  if (slip.share <= 0.0) return;
   const double edge = flow_.surface().spacing_m();
-  const double per_share = 1.0 / digging.share;
-  const double along = digging.first_along * per_share;
-  const double across = digging.first_across * per_share;
+  const double per_share = 1.0 / slip.share;
+  const double along = slip.sum_along * per_share;
+  const double across = slip.sum_across * per_share;
   const auto half_side = [&](double second, double mean) {
     return 0.5 * std::sqrt(12.0 * std::max(0.0, second * per_share - mean * mean) + edge * edge);
   };
   DugPatch patch;
-  patch.forward = digging.forward.head<2>();
-  patch.centre = (pose.translation() + along * digging.forward + across * digging.side).head<2>();
-  patch.half_length = half_side(digging.second_along, along);
-  patch.half_width = half_side(digging.second_across, across);
+  patch.forward = slip.forward.head<2>();
+  patch.centre = (pose.translation() + along * slip.forward + across * slip.side).head<2>();
+  patch.half_length = half_side(slip.sum_along_squared, along);
+  patch.half_width = half_side(slip.sum_across_squared, across);
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
   const double volume =
-      soil_.drag_depth_m * dt * per_share * 2.0 * digging.swept * patch.half_width;
+      soil_.drag_depth_m * dt * per_share * 2.0 * slip.slip_sum * patch.half_width;
   dig_rest_ += volume / (cell_area_ * kHeightUnit_m);
   const auto units = static_cast<int64_t>(dig_rest_);
   dig_rest_ -= static_cast<double>(units);
@@ -129,7 +136,7 @@ void SoilBed::dig(const Digging& digging, const Eigen::Isometry3d& pose, double 
 
 /// Plastic sinkage and pressure of a cell; books what sinks. 0: not touching.
 inline double SoilBed::yield(const SoilCell& cell, double sinking, const FootprintState& state,
-                             int64_t& sunk_units) {
+                             size_t footprint) {
   const double along_elastic =
       cell.pressure + state.elastic * (cell.pressed - cell.sunk + sinking * cell.share);
   const double pressure =
@@ -137,8 +144,7 @@ inline double SoilBed::yield(const SoilCell& cell, double sinking, const Footpri
   const auto units =
       static_cast<Height>(std::lrint((along_elastic - pressure) * state.units_per_pressure));
   if (pressure > 0.0 && units > 0) {
-    flow_.sink(cell.node, cell.ix, cell.iy, units);
-    sunk_units += units;
+    flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
   }
   return pressure;
 }
@@ -187,7 +193,7 @@ inline SoilBed::Mobilised SoilBed::mobilise(const SoilCell& cell, const SurfaceS
   history.across = static_cast<float>(mean_across);
 
   const double ahead = soil_.shear_damping_s - cell.lead * state.per_speed;
-  // Nowhere does that lie before shear in this direction began.
+  // Not further back than to zero shear in this direction.
   const double begun = std::max(0.0, mean_along * slip.to_along + mean_across * slip.to_across);
   const double further = std::max(fading(slip.sliding * ahead * state.per_shear_modulus),
                                   -begun / std::max(1.0 - begun, kMinRemainder));
@@ -203,9 +209,8 @@ inline SoilBed::Mobilised SoilBed::mobilise(const SoilCell& cell, const SurfaceS
   return m;
 }
 
-inline SoilBed::FootprintState SoilBed::footprint_state(const FootprintContact& contact,
-                                                        double elastic,
-                                                        const Eigen::Vector3d& middle) const {
+inline SoilBed::FootprintState SoilBed::footprint_state(
+    const FootprintContact& contact, double elastic, const Eigen::Vector3d& centre_velocity) const {
   const Eigen::Isometry3d& pose = contact.footprint->pose();
   FootprintState state;
   state.radial = options_.normal_stress == NormalStress::kRadial;
@@ -215,7 +220,7 @@ inline SoilBed::FootprintState SoilBed::footprint_state(const FootprintContact& 
   state.level_side = Eigen::Vector3d::UnitZ().cross(state.level_forward);
   state.surface_speed = contact.motion.surface_speed;
   const Eigen::Vector3d forward = pose.linear().col(0);
-  const double speed = middle.dot(forward);
+  const double speed = centre_velocity.dot(forward);
   state.per_speed = std::abs(speed) > kRolling ? 1.0 / speed : 0.0;
   state.elastic = elastic;
   state.units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
@@ -230,20 +235,20 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   if (range.begin == range.end) return;
   TerrainReaction reaction;  // by itself, so that the sums stay in registers
   const Eigen::Isometry3d& pose = contact.footprint->pose();
-  const Eigen::Vector3d middle = body.velocity + body.omega.cross(pose.translation() - body.centre);
-  const FootprintState state = footprint_state(contact, range.law.elastic, middle);
-  int64_t sunk_units = 0;
-  Digging digging(state.level_forward, state.level_side);
+  const Eigen::Vector3d centre_velocity =
+      body.velocity + body.omega.cross(pose.translation() - body.centre);
+  const FootprintState state = footprint_state(contact, range.law.elastic, centre_velocity);
+  SlipSums slip_sums(state.level_forward, state.level_side);
 
   for (size_t i = range.begin; i < range.end; ++i) {
     const SoilCell& cell = cells_[i];
     SoilCellHistory& history = histories_[cell.node];
-    const double pressure = yield(cell, springs_[i].sinking, state, sunk_units);
+    const double pressure = yield(cell, springs_[i].sinking, state, range.footprint);
     if (pressure <= 0.0) {
       history.release();
       continue;
     }
-    const Eigen::Vector3d velocity = middle + body.omega.cross(cell.arm);
+    const Eigen::Vector3d velocity = centre_velocity + body.omega.cross(cell.arm);
     const double damped =
         pressure + soil_.damping_pa_s_per_m * std::max(0.0, -velocity.z()) * cell.share;
     const SurfaceSlip slip = state.slip_over(cell, velocity);
@@ -262,7 +267,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
     reaction.along_surface -= traction.dot(slip.along);
     if (soil_.drag_depth_m > 0.0) {
       const double mobilised = std::sqrt(std::min(m.squared, 1.0));
-      digging.add(cell, slip.sliding, mobilised);
+      slip_sums.add(cell, slip.sliding, mobilised);
       flow_.shear(cell.node, cell.share * mobilised * slip.sliding);
     }
     reaction.force += force;
@@ -271,8 +276,7 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
     reaction.sinkage = std::max(reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m -
                                                       (state.centre.z() + cell.arm.z()));
   }
-  flow_.push(range.footprint, sunk_units);
-  if (soil_.drag_depth_m > 0.0) dig(digging, pose, dt);
+  if (soil_.drag_depth_m > 0.0) dig_below(slip_sums, pose, dt);
   contact.memory->sinkage = reaction.sinkage;
   contact.reaction = reaction;
 }

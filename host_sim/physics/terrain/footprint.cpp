@@ -114,6 +114,8 @@ double Footprint::narrow() const {
 
 double Footprint::lowest_at_rim(double edge) const {
   if (has_corners()) return pose_.translation().z() - reach_down();
+  // Such a square overlaps the outline by less than 1.5 edge. There the wheel's surface is
+  // sqrt(b (2 r - b)) below its axle, b = `beyond`.
   const double beyond = 1.5 * edge;
   const double below = std::sqrt(beyond * std::max(0.0, 2.0 * radius_ - beyond));
   return pose_.translation().z() - half_.x() * std::abs(up_.x()) - half_.y() * std::abs(up_.y()) -

@@ -70,8 +70,8 @@ class Footprint {
   Eigen::Vector2d reach_below(double level) const;
   /// Of a circle round pose().translation() that holds the body seen from above, m.
   double radius_from_above() const;
-  /// Width across a track of a square of this side, along the world's axes, m.
-  double across(double edge) const {
+  /// Extent, along the body's y, of a world-aligned square of this side, m.
+  double projected_side(double edge) const {
     return edge * (std::abs(pose_.linear()(0, 1)) + std::abs(pose_.linear()(1, 1)));
   }
   /// How far the body reaches down from pose().translation(), at most, m.
@@ -92,8 +92,8 @@ class Footprint {
   void surface(double edge, const PathHistory& path, FootprintSamples& samples) const;
   /// The same without `passed`, which then means nothing.
   void surface(double edge, FootprintSamples& samples) const;
-  /// No point that a square of this side can share with the body reaches lower than this where its
-  /// middle lies outside, m.
+  /// Lower bound of the body's lower surface, m, world z, inside a square of side `edge` whose
+  /// centre the body does not cover.
   double lowest_at_rim(double edge) const;
 
  private:
@@ -110,7 +110,7 @@ class Footprint {
   Eigen::Vector3d world_reach() const;
 
   Kind kind_;
-  Eigen::Vector3d half_;  ///< half extents: run, radius-free width, height
+  Eigen::Vector3d half_;  ///< as half() gives it
   double radius_;
   Eigen::Isometry3d pose_;
   Eigen::Matrix3d to_local_;
@@ -118,7 +118,7 @@ class Footprint {
 
   // Of a track, once a pose instead of once a sample point.
   double square_ = 1.0;  ///< of the vertical's part in the x-z plane
-  double root_ = 1.0;    ///< of square_
+  double root_ = 1.0;    ///< square root of square_
 };
 
 }  // namespace screed

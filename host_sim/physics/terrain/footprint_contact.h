@@ -8,18 +8,23 @@
 
 namespace screed {
 
-/// Motion of the pressing surface: that of the body plus the speed of its belt or rim. Of a body
-/// with several footprints soil takes the motion from the body, and from here what the belt adds.
+/// Motion of the pressing surface: that of the body plus the speed of its belt or rim. Particles
+/// use all but `slip` and `mass_kg`. Soil takes the body's motion from PressingBody, and from here
+/// `surface_speed` and `slip`; only SoilBed::press() of a single footprint uses the rest.
 struct FootprintMotion {
-  Eigen::Vector3d velocity =
-      Eigen::Vector3d::Zero();                      ///< of the footprint's centre, world frame, m/s
-  Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< of the body without the wheel's spin, rad/s
-  double surface_speed =
-      0.0;  ///< of the belt over its wheels, forward drive positive: below it goes backward, m/s
-  double slip = 0.0;      ///< for slip-sinkage, 0..1
-  double friction = 0.8;  ///< Coulomb's, against solid elements; soil has its own
-  double mass_kg =
-      1.0;  ///< that the footprint carries; infinite: the motion is imposed, whatever the force
+  /// Of the footprint's centre, world frame, m/s.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  /// Of the body without the wheel's spin, rad/s.
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();
+  /// Of the belt over its wheels, forward drive positive: then the lower run goes backward, m/s.
+  double surface_speed = 0.0;
+  /// |surface_speed - ground speed| / the larger of both magnitudes, 0..1; for slip-sinkage. The
+  /// slip in recorded frames is signed.
+  double slip = 0.0;
+  /// Coulomb's, against solid elements; soil has its own.
+  double friction = 0.8;
+  /// That the footprint carries; infinite: the motion is imposed, whatever the force.
+  double mass_kg = 1.0;
 };
 
 /// Force and torque on the footprint, world frame, torque about its centre; what drives it; what it
@@ -27,10 +32,12 @@ struct FootprintMotion {
 struct TerrainReaction {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  double along_surface = 0.0;  ///< force of the ground along the belt's direction of motion, N
-  double normal_load = 0.0;    ///< vertical part of the normal forces, N
-  double sinkage = 0.0;        ///< greatest depth below the reference level, m
-  double area = 0.0;           ///< touched, projected to the horizontal, m^2
+  /// Force along the motion that the belt's surface has when driving ahead (backward on its lower
+  /// run), N: negative while the terrain holds the belt back.
+  double along_surface = 0.0;
+  double normal_load = 0.0;  ///< vertical part of the normal forces, N
+  double sinkage = 0.0;      ///< greatest depth below the reference level, m
+  double area = 0.0;         ///< touched, projected to the horizontal, m^2
 };
 
 /// What a body remembers from step to step. Three components: up, roll about the world's x, pitch
@@ -38,8 +45,8 @@ struct TerrainReaction {
 struct BodyMemory {
   bool touching = false;
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< m/s, rad/s
-  Eigen::Vector3d push =
-      Eigen::Vector3d::Zero();  ///< that the soil's pressure gave, m/s^2, rad/s^2
+  /// What the soil's pressure added to the rate, m/s^2, rad/s^2.
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
 };
 
 /// What a footprint remembers from step to step.
@@ -47,15 +54,15 @@ struct ContactMemory {
   double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
   double patch_area_m2 = 0.0;
   double sinkage = 0.0;  ///< greatest depth in the last step, m
-  PathHistory path;      ///< since contact began or the body turned back; its rise is recent
+  PathHistory path;      ///< since contact began or the body turned back; its gradient is recent
   BodyMemory alone;      ///< of a footprint that is pressed by itself
 };
 
 /// A rigid body that stands on terrain with one footprint or several, in one step.
 struct PressingBody {
   double mass_kg = 1.0;  ///< infinite: the motion is imposed
-  Eigen::Matrix3d inverse_inertia =
-      Eigen::Matrix3d::Zero();  ///< about `centre`, world axes; zero: the soil does not tilt it
+  /// About `centre`, world axes; zero: the soil does not tilt the body.
+  Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();    ///< of mass, world frame, m
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of it, m/s
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();     ///< rad/s
@@ -66,8 +73,9 @@ struct FootprintContact {
   const Footprint* footprint = nullptr;  ///< known by its address, which must not change
   ContactMemory* memory = nullptr;       ///< null where the terrain keeps nothing by footprint
   FootprintMotion motion = {};
-  /// From the body's centre to the footprint's, world frame, m. Soil, which counts in the world's
-  /// places, replaces it by their difference (equal but for rounding).
+  /// In and out: from the body's centre to the footprint's, world frame, m. SoilBed::press()
+  /// replaces it by the difference of the two positions, which differs by rounding: sums of torque
+  /// use it after press() only.
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();
   TerrainReaction reaction = {};
 };

@@ -44,8 +44,8 @@ inline BedBounds bounds_of(const HeightField& field) {
           field.wrap() ? BedEdge::kWrapped : BedEdge::kOpen};
 }
 
-/// Volumes in units of height times cells. Always: heights_now = heights_before - compacted -
-/// in_transit. All zero on terrain that does not book its material in heights.
+/// Volumes in height units of one cell (kHeightUnit_m spacing^2). Always: now = before - compacted
+/// - in_transit. All zero for rigid terrain and particles.
 struct VolumeBalance {
   int64_t before = 0;
   int64_t now = 0;
@@ -58,8 +58,8 @@ struct VolumeBalance {
 /// zero on terrain that is not made of discrete elements.
 struct TerrainWork {
   size_t elements = 0;
-  size_t awake = 0;            ///< elements that moved in the last step
-  size_t contacts = 0;         ///< pairs near enough to be looked at in the last step
+  size_t awake = 0;     ///< elements that moved in the last step
+  size_t contacts = 0;  ///< pairs near enough to be looked at in the last step
   uint64_t steps = 0;
   uint64_t element_steps = 0;  ///< sum of `awake` over all steps
 };
@@ -85,7 +85,7 @@ class Terrain {
   virtual const HeightField* hard_surface() const { return nullptr; }
   /// What press() wants to be given.
   virtual FootprintShape footprint_shape() const = 0;
-  /// A height that press() can do nothing above, within `radius` of (x, y), m.
+  /// No press() force acts above this height within `radius` of (x, y), m.
   virtual double max_height_within(double /*x*/, double /*y*/, double /*radius*/) const {
     return std::numeric_limits<double>::infinity();
   }

@@ -7,9 +7,9 @@
 namespace screed {
 namespace {
 
-// How much easier terrain has to think a body tilts whose chains follow it a step late (measured:
-// calm from 1.5 on, chatter at 1).
-constexpr double kChainYields = 2.0;
+// Factor on the inverse inertia that the terrain sees of a body with chains: they follow it one
+// step late. 1 chatters, from 1.5 on it is calm (measured).
+constexpr double kChainMobilityFactor = 2.0;
 
 }  // namespace
 
@@ -84,9 +84,9 @@ PressingBody Vehicle::pressing_body(size_t carrier, const CarrierMotion& motion)
   // What hangs on it by hinges rests on it, too: never less than its units' share of the robot.
   body.mass_kg = std::max(pressing.mass, mass_ * static_cast<double>(gears) /
                                              static_cast<double>(units_.size() + chains_.size()));
-  const double yields = chains_.empty() ? 1.0 : kChainYields;
+  const double mobility_factor = chains_.empty() ? 1.0 : kChainMobilityFactor;
   body.inverse_inertia =
-      yields * motion.rotation * pressing.inverse_inertia * motion.rotation.transpose();
+      mobility_factor * motion.rotation * pressing.inverse_inertia * motion.rotation.transpose();
   body.centre = motion.origin;
   body.velocity = motion.velocity;
   body.omega = motion.omega;

@@ -1,4 +1,4 @@
-// What a robot is driven in, as the rest of the program sees it: the ground, the robot's true
+// What a robot is driven in, as the rest of the program sees it: the terrain, the robot's true
 // state, the battery, advanced a step at a time. Behind it stands physics (plant.h), or a network
 // that has learned from physics (surrogate_plant.h).
 #pragma once
@@ -22,8 +22,8 @@ class Environment {
   /// positive drives forward.
   virtual void step(const std::array<double, 2>& share) = 0;
 
-  /// True motion over the last control tick, whenever it is asked for. Throws RunError when the
-  /// physics has diverged.
+  /// True motion: means over the last kTickPeriod_us, ending now, not at the last tick (the
+  /// simulated microcontroller asks between ticks). Throws RunError when the physics has diverged.
   virtual ImuTruth motion() const = 0;
 
   /// Picks the robot up and lays it on its left side where it is.
@@ -32,7 +32,7 @@ class Environment {
   virtual int steps_per_tick() const = 0;
   virtual uint64_t steps() const = 0;
   virtual double time_s() const = 0;
-  /// The ground's surface as it is now.
+  /// The terrain's surface as it is now.
   virtual const HeightField& terrain() const = 0;
   /// Whether the terrain is deformable and, without wrap-around, ends at the edges of its bed.
   virtual bool is_deformable() const = 0;
@@ -42,7 +42,7 @@ class Environment {
   virtual const VehicleState& vehicle() const = 0;
   /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
   /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,
-  /// so that the way it made is its place plus these times the bed's size.
+  /// so that unwrapped position = position + wrap_counts x size of the bed.
   virtual const std::array<int64_t, 2>& wrap_counts() const = 0;
   /// The chassis' place as if there had been no teleport, m.
   virtual Eigen::Vector3d unwrapped_position() const = 0;

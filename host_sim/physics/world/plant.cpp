@@ -123,6 +123,7 @@ void Plant::reset_motion_history(const Eigen::Vector3d& velocity) {
 }
 
 void Plant::step(const std::array<double, 2>& share) {
+  // Terminal voltage and motor currents are those of the step before: the battery is one step late.
   std::array<double, 2> voltage{};
   double current = 0.0;
   for (const Side side : {kLeft, kRight}) {

@@ -90,7 +90,7 @@ int run_robot(const RobotArguments& a) {
   };
   const std::string hash = surface_hash(bed.surface());
   if (a.common.avalanches) {
-    bed.settle();
+    bed.relax_slopes();
     lines.push_back({"settled", "excess_units", repose_excess_units(bed.surface(), soil.repose_deg),
                      "%.3f", 1.0});
     lines.push_back(

@@ -23,13 +23,12 @@ int64_t volume(const MaterialFlow& flow) {
 }
 
 /// A footprint of one node, pressed down by so many units.
-void press(MaterialFlow& flow, int ix, int iy, Height units, double way_x = 0.0,
-           double way_y = 0.0) {
-  const size_t footprint = flow.begin_footprint(way_x, way_y);
+void press(MaterialFlow& flow, int ix, int iy, Height units, double velocity_x = 0.0,
+           double velocity_y = 0.0) {
+  const size_t footprint = flow.begin_footprint(velocity_x, velocity_y);
   const size_t node = flow.index(ix, iy);
   flow.cover(node, ix, iy);
-  flow.sink(node, ix, iy, units);
-  flow.push(footprint, units);
+  flow.sink(footprint, node, ix, iy, units);
 }
 
 TEST(MaterialFlow, WhatSinksIsInHandUntilItIsSetDownRoundTheFootprint) {
@@ -114,8 +113,7 @@ TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
   for (int iy = 0; iy < 2; ++iy) {
     for (int ix = 0; ix < 2; ++ix) flow.cover(flow.index(ix, iy), ix, iy);
   }
-  flow.sink(0, 0, 0, 30);
-  flow.push(footprint, 30);
+  flow.sink(footprint, 0, 0, 0, 30);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 30);
   EXPECT_EQ(volume(flow), -30);
@@ -170,7 +168,7 @@ MaterialFlow with_peak(Height units, bool all = true) {
   surface.set_node(10, 10, units);
   MaterialFlow flow(std::move(surface), kRepose_deg);
   if (all) {
-    flow.wake_all();
+    flow.enqueue_all();
   } else {
     flow.cover(flow.index(10, 10), 10, 10);
     flow.uncover();
@@ -303,7 +301,8 @@ TEST(MaterialFlow, WhatIsDugIsHeapedUpInABandRoundTheFootprintAndNotInsideIt) {
     flow.uncover();
   }
   ASSERT_EQ(volume(flow), 0);
-  flow.sink(flow.index(20, 20), 20, 20, -480 * 400);  // the hole
+  // Fills the hole.
+  flow.sink(flow.begin_footprint(0.0, 0.0), flow.index(20, 20), 20, 20, -480 * 400);
   double along_sum = 0.0;
   double across_sum = 0.0;
   Height least = INT32_MAX;

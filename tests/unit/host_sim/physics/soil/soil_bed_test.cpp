@@ -52,7 +52,7 @@ TEST(SoilBedTest, VolumeIsExactWhileDriving) {
         ASSERT_EQ(bed.balance().before, before);
         ASSERT_EQ(bed.surface().height_sum(), bed.balance().now);
       }
-      bed.settle();
+      bed.relax_slopes();
       const VolumeBalance end = bed.balance();
       EXPECT_EQ(end.error(), 0);
       if (compaction == 0.0) {
@@ -130,7 +130,7 @@ double forgotten_excess_units(const SoilBed& bed) {
 TEST(SoilBedTest, SlopesStayBelowTheAngleOfReposeWhileDriving) {
   for (const char* name : {"viper", "gravel"}) {
     SoilBed bed(waves(1.0, 0.01, 0.04, true), soil_preset(name));
-    bed.settle();
+    bed.relax_slopes();
     SoilRobot robot(bed, {}, 0.2, 0.1);
     for (int i = 0; i < 2000; ++i) {
       robot.step(i % 1000 < 700 ? 0.2 : -0.2, 0.2, kStep_s);
@@ -156,7 +156,7 @@ TEST(SoilBedTest, SteepTerrainSlidesUntouched) {
 
 TEST(SoilBedTest, ASlopeBelowTheAngleOfReposeStays) {
   SoilBed bed(HeightField::ramp(0.5, 0.01, 29.0), soil_preset("viper"));
-  EXPECT_EQ(bed.settle(), 0);
+  EXPECT_EQ(bed.relax_slopes(), 0);
 }
 
 /// Way of a robot in a fixed run, and what it did to the bed.
