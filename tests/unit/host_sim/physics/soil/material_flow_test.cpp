@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace screed {
 namespace {
@@ -88,10 +90,48 @@ TEST(MaterialFlow, NothingIsSetDownInTheRutBehindAMovingFootprint) {
 }
 
 TEST(MaterialFlow, AFootprintThatHardlyMovesHasNoRutBehindIt) {
+  for (const double speed : {0.0009, 0.001}) {
+    MaterialFlow flow = level();
+    press(flow, 10, 10, 800, speed, 0.0);
+    flow.deposit();
+    EXPECT_EQ(flow.height(flow.index(9, 10)), 100) << speed;
+  }
   MaterialFlow flow = level();
-  press(flow, 10, 10, 800, 0.0009, 0.0);
+  press(flow, 10, 10, 500, 0.0011, 0.0);
   flow.deposit();
-  EXPECT_EQ(flow.height(flow.index(9, 10)), 100);
+  EXPECT_EQ(flow.height(flow.index(9, 10)), 0);
+}
+
+TEST(MaterialFlow, WhereAllIsBehindItTheRutIsFilled) {
+  // A footprint as wide as the field drives off it.
+  MaterialFlow flow = level(5);
+  const size_t footprint = flow.begin_footprint(0.1, 0.0);
+  for (int iy = 0; iy < 5; ++iy) flow.cover(flow.index(4, iy), 4, iy);
+  flow.sink(footprint, flow.index(4, 2), 4, 2, 50);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  for (int iy = 0; iy < 5; ++iy) EXPECT_EQ(flow.height(flow.index(3, iy)), 10) << iy;
+}
+
+TEST(MaterialFlow, ASingleUnitIsDepositedAtOnceAndSoIsOneAtTheFieldsCorner) {
+  MaterialFlow flow = level();
+  press(flow, 10, 10, 1);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  flow.uncover();
+  press(flow, 1, 1, 800);
+  flow.deposit();
+  EXPECT_EQ(flow.height(flow.index(0, 0)), 100) << "the first node is one, too";
+}
+
+TEST(MaterialFlow, TheReferenceBeginsAtTheSurface) {
+  const HeightField surface = HeightField::from_function(
+      4, 3, kSpacing_m, false, [](double x, double y) { return 0.3 + x + 2.0 * y; });
+  const MaterialFlow flow(surface, kRepose_deg);
+  for (size_t node = 0; node < flow.nodes(); ++node) {
+    EXPECT_EQ(flow.reference(node), flow.height(node)) << node;
+    EXPECT_GT(flow.reference(node), 0) << node;
+  }
 }
 
 TEST(MaterialFlow, WhatIsCompactedIsNotSetDownAnyMore) {
@@ -105,6 +145,22 @@ TEST(MaterialFlow, WhatIsCompactedIsNotSetDownAnyMore) {
   EXPECT_EQ(volume(flow), -1600);
   EXPECT_EQ(flow.height(flow.index(5, 4)), 0);
   EXPECT_EQ(flow.height(flow.index(15, 14)), 100);
+}
+
+TEST(MaterialFlow, WhatWaitsFromEarlierStepsIsCompactedFirst) {
+  MaterialFlow flow(HeightField(2, 2, kSpacing_m, false), kRepose_deg);
+  const size_t wide = flow.begin_footprint(0.0, 0.0);
+  for (int iy = 0; iy < 2; ++iy) {
+    for (int ix = 0; ix < 2; ++ix) flow.cover(flow.index(ix, iy), ix, iy);
+  }
+  flow.sink(wide, 0, 0, 0, 30);
+  flow.deposit();
+  flow.uncover();
+  press(flow, 0, 0, 6);
+  flow.compact(6);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0) << "24 that waited and the footprint's 6";
+  EXPECT_EQ(volume(flow), -6);
 }
 
 TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
@@ -223,6 +279,16 @@ TEST(MaterialFlow, AllSlopesSettleBelowTheAngleOfReposeAlsoDiagonally) {
   EXPECT_GT(steepest_diagonal, straight + 1) << "a diagonal neighbour is farther away";
 }
 
+TEST(MaterialFlow, TheFirstNodeTakesWhatSlidesAsAnyOther) {
+  HeightField surface(5, 5, kSpacing_m, false);
+  surface.set_node(1, 1, 10 * stable(kSpacing_m));
+  MaterialFlow flow(std::move(surface), kRepose_deg);
+  flow.cover(flow.index(1, 1), 1, 1);
+  flow.uncover();
+  EXPECT_EQ(flow.slide(1), 8) << "a node has eight neighbours";
+  EXPECT_GT(flow.height(flow.index(0, 0)), 0);
+}
+
 TEST(MaterialFlow, NothingSlidesOntoOrOffANodeThatABodyStandsOnUntilItIsGone) {
   const Height limit = stable(kSpacing_m);
   MaterialFlow flow = with_peak(limit + 1000);
@@ -242,6 +308,11 @@ TEST(MaterialFlow, SlidesNoMoreOftenThanItMay) {
   }
   EXPECT_GT(all, 20);
   EXPECT_EQ(flow.queued(), 0U);
+  // Exactly as often as it may: no other node is begun.
+  MaterialFlow once = with_peak(20 * stable(kSpacing_m), false);
+  const int64_t first = once.slide(1);
+  MaterialFlow same = with_peak(20 * stable(kSpacing_m), false);
+  EXPECT_EQ(same.slide(first), first);
 }
 
 // ---- digging
@@ -269,6 +340,116 @@ TEST(MaterialFlow, DigsToTheLastUnitWhereItDoesNotDivide) {
   EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 100, 0), 0);
   EXPECT_EQ(volume(flow), -100);
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(flow.height(flow.index(7 + i, 10)), -14, 1) << i;
+}
+
+TEST(MaterialFlow, DigsToTheLastUnitWhateverTheWeightsAddUpTo) {
+  for (int count = 1; count < 60; ++count) {
+    for (const int units : {1, 2, 999, 1000, 12345}) {
+      MaterialFlow flow = level();
+      flow.begin_footprint(0.0, 0.0);
+      for (int i = 0; i < count; ++i) {
+        flow.shear(static_cast<size_t>(i), 0.1 * (1 + i % 7) / 3.0);
+      }
+      flow.dig(patch_at(0.0, 0.0), units, 0);
+      ASSERT_EQ(volume(flow), -units) << count;
+    }
+  }
+}
+
+TEST(MaterialFlow, WhatIsCompactedWhileDiggingIsNotHeapedUp) {
+  MaterialFlow flow = level();
+  flow.begin_footprint(0.0, 0.0);
+  flow.shear(flow.index(10, 10), 1.0);
+  flow.dig(patch_at(0.0, 0.0), 400, 100);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(volume(flow), -100);
+}
+
+TEST(MaterialFlow, WhatIsDugWithoutABandIsSetDownRoundTheFootprint) {
+  MaterialFlow flow = level();
+  DugPatch patch = patch_at(0.0, 0.0);
+  patch.band = 0.0;
+  press(flow, 10, 10, 80);
+  flow.shear(flow.index(10, 10), 1.0);
+  flow.dig(patch, 720, 0);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(volume(flow), 0);
+  for (const int ix : {9, 11}) EXPECT_EQ(flow.height(flow.index(ix, 10)), 100);
+  // Without a footprint to set it down at, it waits.
+  flow.uncover();
+  flow.shear(flow.index(10, 10), 1.0);
+  flow.dig(patch, 8, 0);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 8);
+  flow.uncover();
+  press(flow, 3, 3, 8);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(flow.height(flow.index(4, 4)), 2);
+}
+
+TEST(MaterialFlow, WhatIsDugIsNotHeapedUpUnderABodyNorBesideTheField) {
+  // The patch lies on the field's corner, a quarter of its band on the field.
+  MaterialFlow flow = level();
+  const DugPatch patch = patch_at(flow.surface().x_min(), flow.surface().y_min());
+  for (int step = 0; step < 50; ++step) {
+    flow.begin_footprint(0.0, 0.0);
+    for (int iy = 0; iy < 3; ++iy) flow.cover(flow.index(4, iy), 4, iy);
+    flow.shear(flow.index(10, 10), 1.0);
+    flow.dig(patch, 480, 0);
+    flow.deposit();
+    flow.uncover();
+  }
+  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(volume(flow), 0);
+  for (int iy = 0; iy < 3; ++iy) {
+    EXPECT_EQ(flow.height(flow.index(4, iy)), 0) << "a body stands there";
+    EXPECT_GT(flow.height(flow.index(3, iy)), 0);
+  }
+  EXPECT_EQ(flow.height(flow.index(20, 0)), 0) << "what lies beyond the edge does not wrap round";
+  EXPECT_EQ(flow.height(flow.index(0, 20)), 0);
+}
+
+TEST(MaterialFlow, TheFirstNodeIsHeapedUponAsAnyOther) {
+  MaterialFlow flow = level();
+  DugPatch patch = patch_at(flow.surface().x_min(), flow.surface().y_min());
+  patch.half_length = 0.0;
+  patch.half_width = 0.0;
+  flow.shear(flow.index(10, 10), 1.0);
+  flow.dig(patch, 4800, 0);
+  flow.deposit();
+  EXPECT_GT(flow.height(flow.index(0, 0)), 0);
+}
+
+TEST(MaterialFlow, WhatIsDugInAStepGoesToFortyEightPlacesFarApart) {
+  MaterialFlow flow(HeightField(401, 401, 0.001, false), kRepose_deg);
+  const DugPatch patch = {{0.0, 0.0}, {1.0, 0.0}, 0.0, 0.0, 0.15};
+  for (int step = 0; step < 3; ++step) {
+    std::vector<Eigen::Vector2d> places;
+    flow.shear(0, 1.0);
+    const MaterialFlow before = flow;
+    flow.dig(patch, 48 * 7, 0);
+    flow.deposit();
+    for (int iy = 0; iy < 401; ++iy) {
+      for (int ix = 0; ix < 401; ++ix) {
+        const size_t node = flow.index(ix, iy);
+        if (node == 0 || flow.height(node) == before.height(node)) continue;
+        EXPECT_EQ(flow.height(node) - before.height(node), 7);
+        places.emplace_back(flow.surface().node_x(ix), flow.surface().node_y(iy));
+      }
+    }
+    ASSERT_EQ(places.size(), 48U);
+    double nearest_m = 1.0;
+    for (size_t i = 0; i < places.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        nearest_m = std::min(nearest_m, (places[i] - places[j]).norm());
+      }
+    }
+    // A square grid of 48 places would lie 0.3 m / sqrt(48) = 43 mm apart.
+    EXPECT_GT(nearest_m, 0.5 * 0.3 / std::sqrt(48.0)) << "evenly spread, not at random";
+  }
 }
 
 TEST(MaterialFlow, WithoutSlipOrWithNothingToTakeNothingIsDug) {
