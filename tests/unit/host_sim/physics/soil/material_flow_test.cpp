@@ -426,17 +426,17 @@ TEST(MaterialFlow, TheFirstNodeIsHeapedUponAsAnyOther) {
 TEST(MaterialFlow, WhatIsDugInAStepGoesToFortyEightPlacesFarApart) {
   MaterialFlow flow(HeightField(401, 401, 0.001, false), kRepose_deg);
   const DugPatch patch = {{0.0, 0.0}, {1.0, 0.0}, 0.0, 0.0, 0.15};
-  for (int step = 0; step < 3; ++step) {
+  for (const int units : {1, 7, 3}) {
     std::vector<Eigen::Vector2d> places;
     flow.shear(0, 1.0);
     const MaterialFlow before = flow;
-    flow.dig(patch, 48 * 7, 0);
+    flow.dig(patch, 48 * units, 0);
     flow.deposit();
     for (int iy = 0; iy < 401; ++iy) {
       for (int ix = 0; ix < 401; ++ix) {
         const size_t node = flow.index(ix, iy);
         if (node == 0 || flow.height(node) == before.height(node)) continue;
-        EXPECT_EQ(flow.height(node) - before.height(node), 7);
+        EXPECT_EQ(flow.height(node) - before.height(node), units);
         places.emplace_back(flow.surface().node_x(ix), flow.surface().node_y(iy));
       }
     }
