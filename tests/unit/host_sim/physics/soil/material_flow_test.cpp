@@ -53,20 +53,42 @@ TEST(MaterialFlow, WhatSinksIsInHandUntilItIsSetDownRoundTheFootprint) {
 }
 
 TEST(MaterialFlow, WhatDoesNotDivideGoesToOtherNeighboursEachTime) {
-  MaterialFlow flow = level();
-  for (int step = 0; step < 8; ++step) {
-    press(flow, 10, 10, 9);
-    flow.deposit();
-    ASSERT_EQ(flow.in_transit(), 0);
-    ASSERT_EQ(volume(flow), 0);
-    flow.uncover();
-  }
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      if (dx == 0 && dy == 0) continue;
-      EXPECT_EQ(flow.height(flow.index(10 + dx, 10 + dy)), 9) << dx << " " << dy;
+  for (const Height units : {9, 11, 15}) {
+    MaterialFlow flow = level();
+    for (int step = 0; step < 8; ++step) {
+      press(flow, 10, 10, units);
+      flow.deposit();
+      ASSERT_EQ(flow.in_transit(), 0);
+      ASSERT_EQ(volume(flow), 0);
+      flow.uncover();
+    }
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx == 0 && dy == 0) continue;
+        EXPECT_EQ(flow.height(flow.index(10 + dx, 10 + dy)), units) << dx << " " << dy;
+      }
     }
   }
+}
+
+TEST(MaterialFlow, AStepForgetsTheFootprintsOfTheOneBeforeButNotTheirMaterial) {
+  MaterialFlow flow = level();
+  press(flow, 10, 10, 80);
+  EXPECT_EQ(flow.begin_footprint(0.0, 0.0), 1U);
+  flow.uncover();
+  EXPECT_EQ(flow.begin_footprint(0.0, 0.0), 0U);
+  EXPECT_EQ(flow.in_transit(), 80) << "nobody has deposited it";
+  press(flow, 4, 4, 8);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(flow.height(flow.index(5, 4)), 11);
+  EXPECT_EQ(flow.height(flow.index(11, 10)), 0);
+  flow.uncover();
+  while (flow.slide(1000) > 0) {
+  }
+  press(flow, 15, 15, 0);
+  flow.uncover();
+  EXPECT_FALSE(flow.is_queued(flow.index(4, 4))) << "its body was there in another step";
 }
 
 TEST(MaterialFlow, NothingIsSetDownInTheRutBehindAMovingFootprint) {
@@ -111,6 +133,17 @@ TEST(MaterialFlow, WhereAllIsBehindItTheRutIsFilled) {
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   for (int iy = 0; iy < 5; ++iy) EXPECT_EQ(flow.height(flow.index(3, iy)), 10) << iy;
+}
+
+TEST(MaterialFlow, TheOnlyNeighbourThatIsNotBehindTakesAll) {
+  MaterialFlow flow = level(5);
+  const size_t footprint = flow.begin_footprint(0.1, 0.0);
+  for (int iy = 0; iy < 5; ++iy) flow.cover(flow.index(3, iy), 3, iy);
+  for (int iy = 0; iy < 4; ++iy) flow.cover(flow.index(4, iy), 4, iy);
+  flow.sink(footprint, flow.index(3, 2), 3, 2, 50);
+  flow.deposit();
+  EXPECT_EQ(flow.height(flow.index(4, 4)), 50);
+  EXPECT_EQ(flow.height(flow.index(2, 2)), 0);
 }
 
 TEST(MaterialFlow, ASingleUnitIsDepositedAtOnceAndSoIsOneAtTheFieldsCorner) {
@@ -279,6 +312,20 @@ TEST(MaterialFlow, AllSlopesSettleBelowTheAngleOfReposeAlsoDiagonally) {
   EXPECT_GT(steepest_diagonal, straight + 1) << "a diagonal neighbour is farther away";
 }
 
+TEST(MaterialFlow, AHoleFillsAlsoWhenItAloneIsLookedAt) {
+  MaterialFlow flow = with_peak(-stable(kSpacing_m) - 1000, false);
+  EXPECT_EQ(flow.slide(1), 4);
+  EXPECT_EQ(flow.height(flow.index(11, 10)), -500);
+}
+
+TEST(MaterialFlow, WhenNothingSlidesAnyMoreNoNodeWaits) {
+  MaterialFlow flow = with_peak(40 * stable(kSpacing_m));
+  while (flow.slide(1000) > 0) {
+  }
+  EXPECT_EQ(flow.queued(), 0U);
+  for (size_t node = 0; node < flow.nodes(); ++node) EXPECT_FALSE(flow.is_queued(node)) << node;
+}
+
 TEST(MaterialFlow, TheFirstNodeTakesWhatSlidesAsAnyOther) {
   HeightField surface(5, 5, kSpacing_m, false);
   surface.set_node(1, 1, 10 * stable(kSpacing_m));
@@ -330,6 +377,8 @@ TEST(MaterialFlow, DigsWhereTheFootprintSlipsInProportionToIt) {
   EXPECT_EQ(flow.height(flow.index(10, 10)), -100);
   EXPECT_EQ(flow.height(flow.index(11, 10)), -300);
   EXPECT_EQ(flow.reference(flow.index(11, 10)), -300) << "a hole, and no sinkage";
+  EXPECT_EQ(flow.in_transit(), 300);
+  EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 400, 100), 0) << "where it slipped is forgotten";
   EXPECT_EQ(flow.in_transit(), 300);
 }
 
