@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "nn/model/model_file.h"
@@ -18,9 +18,13 @@ struct SlipTrainingOptions {
   std::function<void(std::size_t epoch, double error)> progress;  ///< may be empty
 };
 
-/// The model "slip": output held, half the log of the odds that the chassis makes less than three
-/// tenths of the tracks' travel (over 0.3 s around that moment), from the watch's inputs as they
-/// are on the robot.
+/// Mean cross entropy of outputs (log of the odds) with what was wanted (0 or 1), nats an example;
+/// ln 2 for a guess.
+double mean_cross_entropy(std::span<const float> logits, std::span<const float> wanted);
+
+/// The model "slip": output held, half the log of the odds that the robot hardly moves
+/// (slip_examples.h), from the watch's inputs as they are on the robot. Throws RunError with fewer
+/// than 1000 examples.
 Model train_slip(const std::vector<SlipRun>& runs, const SlipTrainingOptions& options);
 
 }  // namespace screed::nn

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "nn/slip/slip_examples.h"
 
 namespace screed::nn {
 namespace {
@@ -63,6 +65,43 @@ TEST(SlipTraining, TheErrorFalls) {
   EXPECT_LT(errors.back(), 0.2);
   EXPECT_LT(errors.back(), errors.front());
   EXPECT_GT(errors.back(), 0.0);
+}
+
+TEST(SlipTraining, TheErrorIsTheMeanCrossEntropy) {
+  const std::vector<float> logits = {0.0F, 2.0F, -3.0F, 50.0F, -80.0F};
+  const std::vector<float> wanted = {1.0F, 1.0F, 1.0F, 0.0F, 0.0F};
+  // -ln p of what was wanted, p = 1 / (1 + exp(-logit)) the odds' probability.
+  const double expected =
+      (std::log(2.0) + std::log1p(std::exp(-2.0)) + std::log1p(std::exp(3.0)) + 50.0 + 0.0) / 5.0;
+  EXPECT_NEAR(mean_cross_entropy(logits, wanted), expected, 1e-6);
+}
+
+TEST(SlipTraining, TheModelGivesHalfTheLogOfTheOddsThatItWasTrainedFor) {
+  SlipTrainingOptions options;
+  options.epochs = 1;
+  options.seed = 7;
+  double error = 0.0;
+  options.progress = [&](std::size_t /*epoch*/, double of_epoch) { error = of_epoch; };
+  const std::vector<SlipRun> runs = {drive_in_turn(5000)};
+  const Model model = train_slip(runs, options);
+  EXPECT_EQ(model.name, "slip");
+  EXPECT_EQ(model.seed, 7U);
+  ASSERT_EQ(model.networks.size(), 1U);
+  const ModelNetwork& network = model.networks[0];
+  ASSERT_EQ(network.inputs.size(), kSlipInputs);
+  ASSERT_EQ(network.outputs.size(), 1U);
+  const Examples examples = slip_examples(runs);
+  std::vector<float> logits;
+  for (std::size_t row = 0; row < examples.rows(); ++row) {
+    std::vector<double> in;
+    for (std::size_t i = 0; i < kSlipInputs; ++i) {
+      in.push_back(static_cast<double>(examples.in[row * kSlipInputs + i]));
+    }
+    // The float network before its rounding to integers.
+    logits.push_back(static_cast<float>(2.0 * screed::nn::run(network.trained, in).at(0)));
+  }
+  EXPECT_NEAR(mean_cross_entropy(logits, examples.out), error, 1e-3);
+  EXPECT_GT(error, 1e-3);
 }
 
 TEST(SlipTraining, TicksAtRestOrTooSlowToBeLookedAtTeachNothing) {
