@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "host_sim/core/gravity.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {
@@ -130,7 +131,7 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
   check(test);
   std::array<double, kBins> along{};
   std::array<double, kBins> load{};
-  const double mass = test.load_pa * test.length_m * test.width_m / 9.80665;
+  const double mass = test.load_pa * test.length_m * test.width_m / kGravity_m_per_s2;
   for (int number = 0; number < test.beds; ++number) {
     ParticleBed bed = bed_of(test, number);
     const double dt = bed.longest_step_s();
@@ -144,8 +145,8 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
       block.set_pose(pose);
       const TerrainReaction reaction = bed.press(block, motion, dt);
       bed.step(dt);
-      motion.velocity.z() +=
-          dt * (reaction.force.z() / mass - 9.80665 - kDamping_per_s * motion.velocity.z());
+      motion.velocity.z() += dt * (reaction.force.z() / mass - kGravity_m_per_s2 -
+                                   kDamping_per_s * motion.velocity.z());
       return reaction.force;
     };
     const auto settling = static_cast<int>(0.5 / dt);

@@ -6,6 +6,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 

@@ -9,12 +9,12 @@
 #include <variant>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 #include "nn/data/motion_signals.h"
 
 namespace screed::nn {
 namespace {
 
-constexpr double kGravity = 9.80665;
 constexpr double kMinShare = 0.02;
 constexpr int kMaxIterations = 200;    // of Newton's method; ten are typical
 constexpr double kMaxImbalance = 0.1;  // of the weight, else the last plane is kept
@@ -267,7 +267,7 @@ TrackPlane TrackSoilModel::find_equilibrium(const BearingCapacity& bearing) {
     for (const TrackCell& cell : cells_)
       at.height_m = std::max(at.height_m, cell.level - cell.over);
   }
-  const double weight = bearing.load * tracks_.mass_kg * kGravity;
+  const double weight = bearing.load * tracks_.mass_kg * kGravity_m_per_s2;
   const double mass_x = tracks_.mass_ahead_m - tracks_.mass_height_m * at.forward +
                         bearing.mass_offset_m * 0.5 * (directions_[0] + directions_[1]);
   const double mass_y = -tracks_.mass_height_m * at.left;
@@ -402,7 +402,7 @@ void TrackSoilModel::step_evenly(const Stride& stride) {
   find_cells(stride, TrackPlane{});
   if (cells_.empty()) return;
   const double area = 4.0 * tracks_.half_length_m * tracks_.width_m;
-  const double pressure = tracks_.mass_kg * kGravity / area;
+  const double pressure = tracks_.mass_kg * kGravity_m_per_s2 / area;
   const double depth = std::pow(pressure / bekker_, 1.0 / soil_.exponent);
   for (TrackCell& cell : cells_) {
     cell.depth = depth - cell.over;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/gravity.h"
 #include "host_sim/soil_validation/wheel_limit.h"
 #include "tests/sitl/test_drive.h"
 

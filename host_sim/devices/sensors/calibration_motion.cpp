@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "hal/sample.h"
-#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {

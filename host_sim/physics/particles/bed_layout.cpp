@@ -116,8 +116,8 @@ class Deposit {
             const Eigen::Vector3d& other = centres_[static_cast<size_t>(i)];
             const double ax = nearest(x - other.x(), extent_.width_m);
             const double ay = nearest(y - other.y(), extent_.depth_m);
-            const double rest = reach2 - ax * ax - ay * ay;
-            if (rest > 0.0) height = std::max(height, other.z() + std::sqrt(rest));
+            const double discriminant = reach2 - ax * ax - ay * ay;
+            if (discriminant > 0.0) height = std::max(height, other.z() + std::sqrt(discriminant));
           }
         }
       }

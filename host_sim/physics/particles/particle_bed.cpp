@@ -531,8 +531,8 @@ void ParticleBed::cast_rays(int column_x, int column_y) const {
             for (int32_t particle = grid_.first(grid_.cell(ix, iy, layer));
                  particle != SphereGrid::kNone; particle = grid_.next(particle)) {
               const Eigen::Vector3d to = between(ray, position_[static_cast<size_t>(particle)]);
-              const double rest = radius * radius - to.x() * to.x() - to.y() * to.y();
-              if (rest > 0.0) height = std::max(height, to.z() + std::sqrt(rest));
+              const double discriminant = radius * radius - to.x() * to.x() - to.y() * to.y();
+              if (discriminant > 0.0) height = std::max(height, to.z() + std::sqrt(discriminant));
             }
           }
         }

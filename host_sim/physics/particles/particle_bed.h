@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host_sim/core/gravity.h"
 #include "host_sim/physics/particles/bed_layout.h"
 #include "host_sim/physics/particles/sphere_grid.h"
 #include "host_sim/physics/particles/sphere_law.h"
@@ -30,7 +31,7 @@ struct ParticleOptions {
   double ray_spacing_m = 0.005;  ///< of the rays that read the height map
   uint64_t seed = 1;             ///< of the layout
   bool fixed = false;            ///< particles never move: ground of spheres, as rigid as rock
-  Eigen::Vector3d gravity = {0.0, 0.0, -9.80665};
+  Eigen::Vector3d gravity = {0.0, 0.0, -kGravity_m_per_s2};
 };
 
 class ParticleBed final : public Terrain {

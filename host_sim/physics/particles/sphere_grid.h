@@ -119,8 +119,8 @@ class SphereGrid {
 
   static int modulo(int i, int count) {
     if (i >= 0 && i < count) return i;
-    const int rest = i % count;
-    return rest < 0 ? rest + count : rest;
+    const int remainder = i % count;
+    return remainder < 0 ? remainder + count : remainder;
   }
   static int inside(double at, int count) {
     // The comparisons also catch what is no number, or too large for an int.

@@ -3,15 +3,16 @@
 // when two bodies cover it in one step, the second replaces the share of the first.
 //
 // A body covers a share of a cell, and that share changes while it moves. With
-//   sunk      S    plastic sinkage of the cell, a mean over it, m (from its two integer heights)
-//   covered   c    share of the cell below the body now, before b a step ago, 0..1
-//   beside    B    plastic sinkage of the rest, times its share, m
-//   under     u    plastic sinkage of the part below the body
-//   old       o    what of u was there before this contact began: reloading starts there
+//   sunk             S   plastic sinkage of the cell, a mean over it, m (from its integer heights)
+//   covered          c   share of the cell below the body now, 0..1
+//   covered_before   b   the same a step ago
+//   beside           B   plastic sinkage of the part beside the body, times its share, m
+//   under            u   plastic sinkage of the part below the body, m
+//   old_sinkage      o   what of u was there before this contact began: reloading starts there, m
 // the sum stays, whatever the body covers:
 //   S = c u + B                                                                        (1)
 // so u needs no memory. What the body leaves takes u along, what it reaches has the mean of the
-// rest, r = B / (1 - b):
+// part beside it, r = mean_beside = B / (1 - b):
 //   c < b:  u' = (S - B) / b,          B' = S - c u',        o' = o                    (2)
 //   c > b:  B' = B - (c - b) r,        o' = (b o + (c - b) r) / c                      (3)
 // In (3) c o' + B' = b o + B: what was there before the contact is kept as well. A new contact
@@ -26,8 +27,8 @@ namespace screed {
 
 /// A cell's plastic sinkage before this contact and beside the body, as (2) to (4) give it.
 struct SinkageDivision {
-  double old;     ///< of the part below the body, before this contact, m
-  double beside;  ///< of the rest, times its share, m
+  double old_sinkage;  ///< of the part below the body, before this contact, m
+  double beside;       ///< of the part beside it, times its share, m
   /// Of the part below the body now, m; by (1). covered > 0.
   double under(double covered, double sunk) const { return (sunk - beside) / covered; }
 };
@@ -40,27 +41,28 @@ class CellHistory {
   /// The division once the body covers `covered`, 0..1, in step `now`, of a cell that has sunk by
   /// `sunk`, m. Changes nothing.
   SinkageDivision divide(double covered, double sunk, uint32_t now) const {
-    const auto before = static_cast<double>(covered_);
-    SinkageDivision part{static_cast<double>(old_), static_cast<double>(beside_)};
+    const auto covered_before = static_cast<double>(covered_);
+    SinkageDivision part{static_cast<double>(old_sinkage_), static_cast<double>(beside_)};
     if (is_contact_new(now)) {
-      part.old = sunk / std::max({covered, before, kMinShare});
-      part.beside = sunk - covered * part.old;
-    } else if (covered < before) {
-      part.beside = sunk - covered * (sunk - part.beside) / before;
-    } else if (covered > before) {
-      const double rest = before < 1.0 ? part.beside / (1.0 - before) : 0.0;
-      part.old = (before * part.old + (covered - before) * rest) / covered;
-      part.beside -= (covered - before) * rest;
+      part.old_sinkage = sunk / std::max({covered, covered_before, kMinShare});
+      part.beside = sunk - covered * part.old_sinkage;
+    } else if (covered < covered_before) {
+      part.beside = sunk - covered * (sunk - part.beside) / covered_before;
+    } else if (covered > covered_before) {
+      const double mean_beside = covered_before < 1.0 ? part.beside / (1.0 - covered_before) : 0.0;
+      part.old_sinkage =
+          (covered_before * part.old_sinkage + (covered - covered_before) * mean_beside) / covered;
+      part.beside -= (covered - covered_before) * mean_beside;
     }
     return part;
   }
   /// As kept last.
-  double old() const { return static_cast<double>(old_); }
+  double old_sinkage() const { return static_cast<double>(old_sinkage_); }
   double beside() const { return static_cast<double>(beside_); }
   /// Keeps a division and the share that it is of.
   void keep(double covered, const SinkageDivision& part) {
     covered_ = static_cast<float>(covered);
-    old_ = static_cast<float>(part.old);
+    old_sinkage_ = static_cast<float>(part.old_sinkage);
     beside_ = static_cast<float>(part.beside);
   }
   /// The body presses on the cell in step `now`, counted from 1.
@@ -73,7 +75,7 @@ class CellHistory {
 
   uint32_t step_ = 0;  // of the last contact; 0: there is none to go on with
   float covered_ = 0.0F;
-  float old_ = 0.0F;
+  float old_sinkage_ = 0.0F;
   float beside_ = 0.0F;
 };
 

@@ -53,9 +53,9 @@ size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
 
 void MaterialFlow::compact(int64_t units) {
   in_transit_ -= units;
-  const int64_t old = std::min(units, left_over_);
-  left_over_ -= old;
-  units -= old;
+  const int64_t earlier = std::min(units, left_over_);
+  left_over_ -= earlier;
+  units -= earlier;
   for (ActiveFootprint& footprint : footprints_) {
     const int64_t here = std::min(units, footprint.units);
     footprint.units -= here;
@@ -226,9 +226,9 @@ void MaterialFlow::uncover() {
     enqueue(neighbour.node);
   }
   covered_list_.clear();
-  // What could not be deposited waits.
-  for (const ActiveFootprint& footprint : footprints_) left_over_ += footprint.units;
+  // Nothing of theirs is left: deposit() passed it on, or all was compacted.
   footprints_.clear();
+  dug_.clear();
 }
 
 }  // namespace screed

@@ -13,13 +13,7 @@ namespace screed {
 /// 1.1). Below 60 nm a straight line to 0, above 1 m the last one goes on.
 class PowerTable {
  public:
-  PowerTable() = default;
-  explicit PowerTable(double exponent) { set_exponent(exponent); }
-
-  /// Tabulates another exponent. Allocates only the first time.
-  void set_exponent(double exponent) {
-    exponent_ = exponent;
-    lines_.resize(kLines);
+  explicit PowerTable(double exponent) : exponent_(exponent), lines_(kLines) {
     double low = 0.0;
     double low_power = 0.0;
     for (int64_t i = 0; i < kLines; ++i) {
@@ -52,7 +46,7 @@ class PowerTable {
   static constexpr int64_t kFirst = std::bit_cast<int64_t>(0x1p-24) >> kDropped;
   static constexpr int64_t kLines = (std::bit_cast<int64_t>(1.0) >> kDropped) - kFirst + 1;
 
-  double exponent_ = 1.0;
+  double exponent_;
   std::vector<Line> lines_;
 };
 

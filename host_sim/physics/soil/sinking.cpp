@@ -1,22 +1,34 @@
-// Newton's method on three unknowns.
+// Newton's method on three unknowns: how far a body sinks and tilts on its soil springs in one
+// step.
+//
+//   q        = (up, roll, pitch), displacement in this step, m, rad, about the world's x and y
+//   d_i      = -(q0 + q1 y_i - q2 x_i)                downward displacement at spring i, m
+//   f_i      = max(0, min(elastic + elastic_slope d_i, virgin + virgin_slope d_i))
+//   external = gravity at first contact, then (rate - memory.rate) / dt - memory.soil_acceleration
+//   q_free   = dt rate + dt^2 external                where the body goes without soil
+// Wanted: M / dt^2 (q - q_free) = sum of f_i (1, y_i, -x_i), the minimum of a convex energy. Yaw is
+// free, so M's block of roll and pitch is the inverse of that block of the inverse inertia.
+// Line search: a full Newton step, shortened by the secant while the energy's slope along it
+// exceeds 0.3 of the magnitude of its initial (negative) slope.
 #include "host_sim/physics/soil/sinking.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/gravity.h"
+
 namespace screed {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s^2
 // What else pushes a body is a guess from the last step, kept sane.
 constexpr double kMaxAcceleration = 500.0;         // m/s^2
 constexpr double kMaxAngularAcceleration = 1.0e4;  // rad/s^2
 // Stands for a body that the soil does not tilt: its inertia, over its mass, m^2.
 constexpr double kNoTilt_m2 = 1e6;
-// Of the body's place: E times this is some hundredths of a pascal.
+// Of the displacement: E times this is some hundredths of a pascal.
 constexpr double kConverged_m = 1e-10;
 constexpr double kTiltArm_m = 0.1;  // at which a tilt is felt
-constexpr int kMaxIterations = 60;
+constexpr int kMaxEvaluations = 60;
 
 /// Sum of forces and their slope.
 struct Support {
@@ -39,10 +51,10 @@ Support support(const std::vector<SoilSpring>& springs, const Eigen::Vector3d& q
     const double down = -(q.x() + q.y() * spring.y - q.z() * spring.x);
     const double elastic = spring.elastic + spring.elastic_slope * down;
     const double virgin = spring.virgin + spring.virgin_slope * down;
-    const bool first = elastic < virgin;
-    const double lower = first ? elastic : virgin;
+    const bool elastic_is_lower = elastic < virgin;
+    const double lower = elastic_is_lower ? elastic : virgin;
     const double force = lower > 0.0 ? lower : 0.0;
-    const double steep = first ? spring.elastic_slope : spring.virgin_slope;
+    const double steep = elastic_is_lower ? spring.elastic_slope : spring.virgin_slope;
     const double slope = lower > 0.0 ? steep : 0.0;
     f += force;
     fx += force * spring.x;
@@ -71,48 +83,48 @@ void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>&
   mobility.bottomRightCorner<2, 2>() =
       tilts ? Eigen::Matrix2d(body.inverse_inertia.topLeftCorner<2, 2>())
             : Eigen::Matrix2d(Eigen::Matrix2d::Identity() / (body.mass_kg * kNoTilt_m2));
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  inertia(0, 0) = body.mass_kg;
-  inertia.bottomRightCorner<2, 2>() = mobility.bottomRightCorner<2, 2>().inverse();
-  inertia /= dt * dt;
+  Eigen::Matrix3d mass_per_dt2 = Eigen::Matrix3d::Zero();
+  mass_per_dt2(0, 0) = body.mass_kg;
+  mass_per_dt2.bottomRightCorner<2, 2>() = mobility.bottomRightCorner<2, 2>().inverse();
+  mass_per_dt2 /= dt * dt;
 
   const Eigen::Vector3d rate(body.velocity.z(), tilts ? body.omega.x() : 0.0,
                              tilts ? body.omega.y() : 0.0);
-  Eigen::Vector3d external(-kGravity, 0.0, 0.0);
-  if (memory.touching) external = (rate - memory.rate) / dt - memory.push;
+  Eigen::Vector3d external(-kGravity_m_per_s2, 0.0, 0.0);
+  if (memory.touching) external = (rate - memory.rate) / dt - memory.soil_acceleration;
   external.x() = std::clamp(external.x(), -kMaxAcceleration, kMaxAcceleration);
   for (const int i : {1, 2}) {
     external[i] = std::clamp(external[i], -kMaxAngularAcceleration, kMaxAngularAcceleration);
   }
-  const Eigen::Vector3d free = rate * dt + external * (dt * dt);
+  const Eigen::Vector3d q_free = rate * dt + external * (dt * dt);
 
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   Support at = support(springs, q);
-  Eigen::Vector3d gradient = inertia * (q - free) - at.force;
-  for (int turn = 0; turn < kMaxIterations;) {
-    const Eigen::Matrix3d hessian = inertia + at.stiffness;
+  Eigen::Vector3d gradient = mass_per_dt2 * (q - q_free) - at.force;
+  for (int evaluations = 0; evaluations < kMaxEvaluations;) {
+    const Eigen::Matrix3d hessian = mass_per_dt2 + at.stiffness;
     const Eigen::Vector3d direction = -hessian.llt().solve(gradient);
-    const double begin = gradient.dot(direction);
-    if (!(begin < 0.0)) break;
+    const double initial_slope = gradient.dot(direction);
+    if (!(initial_slope < 0.0)) break;
     // Along the direction the energy's slope rises; a full step that overshoots is taken back to
     // near its lowest place.
     double step = 1.0;
     Eigen::Vector3d next;
     for (;;) {
-      ++turn;
+      ++evaluations;
       next = q + step * direction;
       at = support(springs, next);
-      gradient = inertia * (next - free) - at.force;
+      gradient = mass_per_dt2 * (next - q_free) - at.force;
       const double slope = gradient.dot(direction);
-      if (slope <= -0.3 * begin || turn >= kMaxIterations) break;
-      step *= std::clamp(begin / (begin - slope), 0.1, 0.9);  // secant
+      if (slope <= -0.3 * initial_slope || evaluations >= kMaxEvaluations) break;
+      step *= std::clamp(initial_slope / (initial_slope - slope), 0.1, 0.9);  // secant
     }
     const Eigen::Vector3d moved = next - q;
     q = next;
     // The remaining displacement is at most what the inertia alone would leave.
-    const double remaining = std::abs(gradient.x()) / inertia(0, 0) +
-                             kTiltArm_m * (std::abs(gradient.y()) / inertia(1, 1) +
-                                           std::abs(gradient.z()) / inertia(2, 2));
+    const double remaining = std::abs(gradient.x()) / mass_per_dt2(0, 0) +
+                             kTiltArm_m * (std::abs(gradient.y()) / mass_per_dt2(1, 1) +
+                                           std::abs(gradient.z()) / mass_per_dt2(2, 2));
     const double moved_by =
         std::abs(moved.x()) + kTiltArm_m * (std::abs(moved.y()) + std::abs(moved.z()));
     if (std::min(remaining, moved_by) < kConverged_m) break;
@@ -122,7 +134,7 @@ void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>&
   }
   memory.touching = true;
   memory.rate = rate;
-  memory.push = mobility * at.force;
+  memory.soil_acceleration = mobility * at.force;
 }
 
 }  // namespace screed

@@ -13,12 +13,12 @@ namespace screed {
 struct SoilSpring {
   double elastic;        ///< N, now
   double elastic_slope;  ///< N/m
-  double virgin;
-  double virgin_slope;
-  double x;  ///< position from the body's centre of mass, m
+  double virgin;         ///< N, now
+  double virgin_slope;   ///< N/m
+  double x;              ///< position from the body's centre of mass, m
   double y;
-  double sinking =
-      0.0;  ///< the answer: the body's downward displacement at this cell in this step, m
+  /// The answer: the body's downward displacement at this cell in this step, m.
+  double sinking = 0.0;
 };
 
 /// End-of-step implicit: the body moves by q (up, roll, pitch) so that M (q - q_free) / dt^2 is the

@@ -29,17 +29,18 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
                  bool follow_slopes, PathHistory& path) {
   const Eigen::Matrix3d& axes = footprint.pose().linear();
   const double along = displacement.dot(axes.col(0));
-  if (along * path.along_m < 0.0) path = {};
-  path.along_m += along;
+  if (along * path.travel_m < 0.0) path = {};
+  path.travel_m += along;
   if (!follow_slopes) {
-    path.rise = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
+    path.gradient = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
     return;
   }
   const double length = footprint.half().x() + footprint.radius();
   const double share = std::abs(along) / length;
   const double max_rise = kMaxPathGradient * std::abs(along);
   const double up = std::clamp(displacement.dot(axes.col(2)), -max_rise, max_rise) / length;
-  path.rise = share < 1.0 ? path.rise + (along < 0.0 ? -up : up) - share * path.rise : 0.0;
+  path.gradient =
+      share < 1.0 ? path.gradient + (along < 0.0 ? -up : up) - share * path.gradient : 0.0;
 }
 
 }  // namespace
@@ -52,19 +53,21 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
   check_soil(soil);
   const double spacing = flow_.surface().spacing_m();
   cell_area_ = spacing * spacing;
-  // Even, so that one sample point in each row and column can be spread evenly.
+  // Even, as the permutation below needs it.
   samples_per_side_ =
       2 * std::max(1, static_cast<int>(std::ceil(0.5 * spacing / options.sample_spacing_m - 1e-9)));
+  // One sample point in each row and column, N-rooks sampling (Shirley 1991): in row j it is at
+  // (2 j + 1) mod (n + 1), a permutation of 0..n-1 for even n.
   for (int j = 0; j < samples_per_side_; ++j) {
     const double edge = spacing / samples_per_side_;
     const double first = 0.5 * (edge - spacing);
-    rook_x_.push_back(first + (2 * j + 1) % (samples_per_side_ + 1) * edge);
-    rook_y_.push_back(first + j * edge);
+    permuted_.push_back(first + (2 * j + 1) % (samples_per_side_ + 1) * edge);
+    lattice_.push_back(first + j * edge);
   }
   volume_before_ = flow_.surface().height_sum();
   histories_.resize(flow_.nodes());
-  const auto more = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
-  for (int i = 0; i <= more; ++i) tables_.emplace_back(soil.exponent + i * kExponentStep);
+  const auto last_table = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
+  for (int i = 0; i <= last_table; ++i) tables_.emplace_back(soil.exponent + i * kExponentStep);
 }
 
 VolumeBalance SoilBed::balance() const {
@@ -133,9 +136,9 @@ void SoilBed::end_step() {
     flow_.compact(sunk);
   } else {
     if (soil_.compaction > 0.0 && sunk > 0) {
-      compaction_rest_ += soil_.compaction * static_cast<double>(sunk);
-      const auto units = std::min(sunk, static_cast<int64_t>(compaction_rest_));
-      compaction_rest_ -= static_cast<double>(units);
+      compaction_remainder_ += soil_.compaction * static_cast<double>(sunk);
+      const auto units = std::min(sunk, static_cast<int64_t>(compaction_remainder_));
+      compaction_remainder_ -= static_cast<double>(units);
       compacted_ += units;
       flow_.compact(units);
     }

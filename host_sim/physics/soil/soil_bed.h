@@ -81,9 +81,9 @@ class SoilBed final : public Terrain {
 
  private:
   enum class Lattice : uint8_t {  // the sample points of a cell
-    kMiddle,                      // one: below a plane
-    kRook,  // one in each row and column: sees what varies along or across as finely as all
-    kFull,  // all: at the rim of a body with corners
+    kCentre,                      // one: below a plane
+    kOnePerRowAndColumn,          // sees what varies along or across as finely as all
+    kFull,                        // all: at the rim of a body with corners
   };
   struct Law {       // of the soil under one footprint in one step
     double bekker;   // k_c / b + k_phi
@@ -143,7 +143,7 @@ class SoilBed final : public Terrain {
   };
 
   Range find_cells(const FootprintContact& contact, double elastic);
-  void find_candidates(const Footprint& footprint, double rise);
+  void find_candidates(const Footprint& footprint, double rebound_m);
   void add_sample_points(const Candidate& candidate);
   bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
               SoilCell& cell);
@@ -171,20 +171,20 @@ class SoilBed final : public Terrain {
   std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
   double cell_area_;
-  int samples_per_side_;  // along one side of a cell
-  std::vector<double>
-      rook_x_;  // sample points in a cell, one in each row and column, from its middle, m
-  std::vector<double> rook_y_;
+  int samples_per_side_;          // along one side of a cell
+  std::vector<double> lattice_;   // rows, and columns, of sample points, from a cell's centre, m
+  std::vector<double> permuted_;  // the column of one sample point in each row
   int64_t volume_before_;
   int64_t compacted_ = 0;
-  double compaction_rest_ = 0.0;
-  double dig_rest_ = 0.0;
+  double compaction_remainder_ = 0.0;  // parts of a unit, for the next step
+  double dig_remainder_ = 0.0;
   size_t slopes_left_ = 0;
   uint32_t step_ = 1;
   std::vector<SoilCellHistory> histories_;
 
   // Of the body being pressed; kept for their room.
-  FootprintSamples sample_points_;
+  FootprintSamples candidate_points_;  // one a cell, its centre
+  FootprintSamples sample_points_;     // of all candidates, inside the cells
   std::vector<Candidate> candidates_;
   std::vector<SoilCell> cells_;  // the first cell_count_ of them
   size_t cell_count_ = 0;

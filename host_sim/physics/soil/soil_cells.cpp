@@ -3,13 +3,13 @@
 //
 // The equations of sample(), in the order of the code. n is Bekker's exponent, b the shorter side
 // of the touched area (measure_patch()), E the stiffness of unloading. At a sample point whose cell
-// has its undisturbed surface at `level` and was pressed to `before` in earlier contacts
-// (cell_history.h), below a body at `height` now that was as low as `passed` on its way:
+// has its undisturbed surface at `level` and had sunk by `old_sinkage` in earlier contacts
+// (cell_history.h), below a body at `height` now that was as low as `passed` on its path:
 //   deepest = max(0, level - passed)
 //   virgin  = (k_c / b + k_phi) deepest^n                     Bekker 1969
-//   stiff   = E (deepest - before)                            reloading along E
+//   stiff   = E (deepest - old_sinkage)                       reloading along E
 //   loaded  = max(0, min(virgin, stiff))                      p at its deepest
-//   depths  : plastic sinkage, max(before, deepest - loaded / E)
+//   depths  : plastic sinkage, max(old_sinkage, deepest - loaded / E)
 //   now     = loaded - E (height - passed)                    unloading: it carries when > 0
 //   rates   : d loaded / d sinking of the whole body: n virgin / deepest where it yields, else E
 // A cell has the means of these, each point weighed with its `part` of the body above it; a centre
@@ -38,9 +38,9 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   const ContactMemory& memory = *contact.memory;
   const double spacing = flow_.surface().spacing_m();
   // Slip-sinkage raises the exponent with the slip of the moment.
-  const double more =
+  const double exponent_index =
       std::clamp(contact.motion.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
-  const PowerTable& table = tables_[static_cast<size_t>(std::lround(more))];
+  const PowerTable& table = tables_[static_cast<size_t>(std::lround(exponent_index))];
   // The patch of the last step decides this step's b; at the first touch the body itself does.
   const double b =
       memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();
@@ -48,16 +48,16 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
 
   // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
   // there is no contact.
-  const double rise = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
-  find_candidates(footprint, rise);
-  size_t needed = 0;
-  for (const Candidate& candidate : candidates_) needed += sample_count(candidate.lattice);
-  sample_points_.clear(needed);
+  const double rebound_m = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
+  find_candidates(footprint, rebound_m);
+  size_t point_count = 0;
+  for (const Candidate& candidate : candidates_) point_count += sample_count(candidate.lattice);
+  sample_points_.clear(point_count);
   for (const Candidate& candidate : candidates_) add_sample_points(candidate);
-  // One cell of margin: contact is noticed by cells, so the body may have come from up to one cell
-  // further.
+  // One cell of margin: contact is found cell by cell, so the path may have begun up to a cell
+  // earlier.
   PathHistory path = memory.path;
-  if (path.along_m != 0.0) path.along_m += std::copysign(spacing, path.along_m);
+  if (path.travel_m != 0.0) path.travel_m += std::copysign(spacing, path.travel_m);
   footprint.surface(spacing / samples_per_side_, path, sample_points_);
   Range range{cell_count_, cell_count_, law, 0};
   if (cells_.size() < cell_count_ + candidates_.size()) {
@@ -73,13 +73,13 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
 }
 
 /// The cells that a footprint may touch.
-void SoilBed::find_candidates(const Footprint& footprint, double rise) {
+void SoilBed::find_candidates(const Footprint& footprint, double rebound_m) {
   const HeightField& field = flow_.surface();
   const double spacing = field.spacing_m();
   const Eigen::Vector3d centre = footprint.pose().translation();
   // The bound by tiles of the field covers this circle.
   const double radius = footprint.radius_from_above();
-  const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rise;
+  const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rebound_m;
   candidates_.clear();
   const Eigen::Vector2d reach = footprint.reach_below(highest);
   if (reach.x() < 0.0) return;
@@ -97,34 +97,34 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
     iy1 = std::min(iy1, field.ny() - 1);
   }
   if (ix1 < ix0 || iy1 < iy0) return;
-  sample_points_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
+  candidate_points_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
   for (int iy = iy0; iy <= iy1; ++iy) {
-    for (int ix = ix0; ix <= ix1; ++ix) sample_points_.add(field.node_x(ix), field.node_y(iy));
+    for (int ix = ix0; ix <= ix1; ++ix) candidate_points_.add(field.node_x(ix), field.node_y(iy));
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.projected_side(spacing);
-  footprint.surface(edge, sample_points_);
+  footprint.surface(edge, candidate_points_);
   const double rim = footprint.lowest_at_rim(spacing);
   size_t i = 0;
   for (int iy = iy0; iy <= iy1; ++iy) {
     for (int ix = ix0; ix <= ix1; ++ix, ++i) {
       const size_t node = flow_.node_on(ix, iy);
-      const double ground = flow_.height(node) * kHeightUnit_m + rise;
-      Lattice lattice = Lattice::kRook;
-      if (sample_points_.share[i] > 0.0) {
+      const double highest_surface = flow_.height(node) * kHeightUnit_m + rebound_m;
+      Lattice lattice = Lattice::kOnePerRowAndColumn;
+      if (candidate_points_.share[i] > 0.0) {
         // The lower surface of a convex body is a convex function: it lies above its tangent plane
-        // at the middle of the cell.
+        // at the centre of the cell.
         const double fall =
-            (std::abs(sample_points_.slope_x[i]) + std::abs(sample_points_.slope_y[i])) * 0.5 *
-            spacing;
-        if (sample_points_.height[i] - fall > ground) continue;
-        if (sample_points_.share[i] < 1.0) {
-          lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kRook;
-        } else if (sample_points_.flat_within[i] > 0.75 * spacing) {
+            (std::abs(candidate_points_.slope_x[i]) + std::abs(candidate_points_.slope_y[i])) *
+            0.5 * spacing;
+        if (candidate_points_.height[i] - fall > highest_surface) continue;
+        if (candidate_points_.share[i] < 1.0) {
+          lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kOnePerRowAndColumn;
+        } else if (candidate_points_.flat_within[i] > 0.75 * spacing) {
           // Half a cell's diagonal is 0.71: the surface is plane over the whole cell.
-          lattice = Lattice::kMiddle;
+          lattice = Lattice::kCentre;
         }
-      } else if (rim > ground) {
+      } else if (rim > highest_surface) {
         continue;
       }
       candidates_.push_back({node, ix, iy, lattice});
@@ -134,29 +134,29 @@ void SoilBed::find_candidates(const Footprint& footprint, double rise) {
 
 size_t SoilBed::sample_count(Lattice lattice) const {
   const auto samples = static_cast<size_t>(samples_per_side_);
-  if (lattice == Lattice::kMiddle) return 2;  // the same place twice: they are taken in pairs
-  return lattice == Lattice::kRook ? samples : samples * samples;
+  if (lattice == Lattice::kCentre) return 2;  // the same point twice: they are taken in pairs
+  return lattice == Lattice::kOnePerRowAndColumn ? samples : samples * samples;
 }
 
 void SoilBed::add_sample_points(const Candidate& candidate) {
   const HeightField& field = flow_.surface();
   const double x = field.node_x(candidate.ix);
   const double y = field.node_y(candidate.iy);
-  if (candidate.lattice == Lattice::kMiddle) {
+  if (candidate.lattice == Lattice::kCentre) {
     sample_points_.add(x, y);
     sample_points_.add(x, y);
     return;
   }
   if (candidate.lattice == Lattice::kFull) {
-    for (const double dy : rook_y_) {
-      for (const double dx : rook_y_) sample_points_.add(x + dx, y + dy);
+    for (const double dy : lattice_) {
+      for (const double dx : lattice_) sample_points_.add(x + dx, y + dy);
     }
     return;
   }
   const bool mirror = ((candidate.ix + candidate.iy) & 1) != 0;  // every other cell mirrors them
   const double sense = mirror ? -1.0 : 1.0;
-  for (size_t i = 0; i < rook_x_.size(); ++i)
-    sample_points_.add(x + sense * rook_x_[i], y + rook_y_[i]);
+  for (size_t i = 0; i < permuted_.size(); ++i)
+    sample_points_.add(x + sense * permuted_[i], y + lattice_[i]);
 }
 
 /// Means over a cell of what Bekker's law gives at a lattice of sample points in it, as if nothing
@@ -174,7 +174,7 @@ template <size_t static_count>
 bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
                      size_t number, const Law& law, SoilCell& cell) {
   const size_t count = static_count != 0 ? static_count : number;
-  const double mean = 1.0 / static_cast<double>(count);
+  const double per_count = 1.0 / static_cast<double>(count);
   const Eigen::Vector3d& centre = footprint.pose().translation();
   const double forward_x = footprint.pose().linear()(0, 0);
   const double forward_y = footprint.pose().linear()(1, 0);
@@ -188,10 +188,9 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   }
   if (lowest >= reference) return false;
   SoilCellHistory& history = histories_[candidate.node];
-  const double covered_share = covered * mean;
+  const double covered_share = covered * per_count;
   if (history.is_contact_new(step_)) history.share = history.along = history.across = 0.0F;
   history.keep(covered_share, history.divide(covered_share, cell.sunk, step_));
-  const double old = history.old();
   const double elastic = law.elastic;
   const double compliance = 1.0 / elastic;
   const double exponent = law.table->exponent();
@@ -200,7 +199,7 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   const Double2 level = broadcast(reference);
   const Double2 bekker = broadcast(law.bekker);
   const Double2 stiffness = broadcast(elastic);
-  const Double2 before = broadcast(old);
+  const Double2 old_sinkage = broadcast(history.old_sinkage());
   const Double2 cx = broadcast(centre.x());
   const Double2 cy = broadcast(centre.y());
   const Double2 cz = broadcast(centre.z());
@@ -230,10 +229,10 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
     // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
     const Double2 virgin =
         bekker * Double2{law.table->power(deepest[0]), law.table->power(deepest[1])};
-    const Double2 stiff = stiffness * (deepest - before);
+    const Double2 stiff = stiffness * (deepest - old_sinkage);
     const auto yields = virgin < stiff;
     const Double2 loaded = maximum(zero, yields ? virgin : stiff);
-    depths += part * maximum(before, deepest - loaded * broadcast(compliance));
+    depths += part * maximum(old_sinkage, deepest - loaded * broadcast(compliance));
     const Double2 now = loaded - stiffness * (height - passed);
     const Double2 in_contact = over & (now > zero) ? part : zero;
     const Double2 weight = in_contact > zero ? part * now : zero;
@@ -269,10 +268,10 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   cell.node = candidate.node;
   cell.ix = candidate.ix;
   cell.iy = candidate.iy;
-  cell.share = share * mean;
-  cell.pressed = sum(depths) * mean + history.beside();
-  cell.pressure = pressure * mean;
-  cell.rate = sum(rates) * mean;
+  cell.share = share * per_count;
+  cell.pressed = sum(depths) * per_count + history.beside();
+  cell.pressure = pressure * per_count;
+  cell.rate = sum(rates) * per_count;
   cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;
   cell.lead = cell.arm.x() * forward_x + cell.arm.y() * forward_y -
               (sum(x_shares) * forward_x + sum(y_shares) * forward_y) / share;

@@ -123,14 +123,14 @@ void SoilBed::dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, dou
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
   const double volume =
       soil_.drag_depth_m * dt * per_share * 2.0 * slip.slip_sum * patch.half_width;
-  dig_rest_ += volume / (cell_area_ * kHeightUnit_m);
-  const auto units = static_cast<int64_t>(dig_rest_);
-  dig_rest_ -= static_cast<double>(units);
+  dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
+  const auto units = static_cast<int64_t>(dig_remainder_);
+  dig_remainder_ -= static_cast<double>(units);
   // Sheared soil settles too; nothing is deposited where nothing is pushed aside.
   const double lost = options_.bulldozing ? soil_.compaction : 1.0;
-  compaction_rest_ += lost * static_cast<double>(units);
-  const auto compacted = std::min(units, static_cast<int64_t>(compaction_rest_));
-  compaction_rest_ -= static_cast<double>(compacted);
+  compaction_remainder_ += lost * static_cast<double>(units);
+  const auto compacted = std::min(units, static_cast<int64_t>(compaction_remainder_));
+  compaction_remainder_ -= static_cast<double>(compacted);
   compacted_ += flow_.dig(patch, units, compacted);
 }
 

@@ -8,15 +8,15 @@
 //   lower run  l_z + t u_z = run_z = -+r               t = run_t, where |l_x + t u_x| <= half
 //   wheel      |(p_x, l_z) + t (u_x, u_z)|^2 = r^2,    p_x = l_x - hub
 //              square = u_x^2 + u_z^2,  along = p_x u_x + l_z u_z
-//              rest = along^2 + square (r^2 - p_x^2 - l_z^2)
-//              t = (-along - sqrt(rest)) / square,     none where rest <= 0
+//              discriminant = along^2 + square (r^2 - p_x^2 - l_z^2)
+//              t = (-along - sqrt(discriminant)) / square,   none where discriminant <= 0
 //   normal     r times, into the body: n = -(p_x + t u_x, 0, l_z + t u_z); slopes are its parts
 //              along the world's x and y over that along z
 //   share      1/2 + (width - |l_y + t u_y|) / edge, within 0..1: of a square of this side, across
 //              the track's side
-//   passed     each wheel swept the ground down to the plane z = rise x - deep that touches it from
-//              below in x = touch; where that point is ahead, the line meets the plane at
-//              t = (rise l_x - deep - l_z) / (u_z - rise u_x)
+//   passed     each wheel swept the ground down to the plane z = gradient x - deep that touches it
+//              from below in x = touch; where that point is ahead, the line meets the plane at
+//              t = (gradient l_x - deep - l_z) / (u_z - gradient u_x)
 // Box: t between the planes of each pair of faces, the largest of the lower ones (slabs; Kay and
 // Kajiya, Ray tracing complex scenes, 1986). Disc: t where the line meets the plane of its end.
 #include "host_sim/physics/terrain/footprint.h"
@@ -200,21 +200,22 @@ void Footprint::track_surface(double edge, const PathHistory* path,
   const Double2 run_z = broadcast(side * radius_);
   // Along the path each wheel swept down to a plane along the path that touches it from below, and
   // has passed where the touching point is ahead, in the sense in which the body came. In local
-  // axes the plane is z = rise * x - deep.
+  // axes the plane is z = gradient * x - deep.
   const PathHistory travelled = path != nullptr ? *path : PathHistory{};
-  const Double2 sense = broadcast(travelled.along_m > 0.0 ? 1.0 : -1.0);
-  const Double2 rise = broadcast(travelled.rise);
-  const double slant = std::sqrt(1.0 + travelled.rise * travelled.rise);
-  const double climb = up_.z() - travelled.rise * up_.x();  // of a vertical line against that plane
+  const Double2 sense = broadcast(travelled.travel_m > 0.0 ? 1.0 : -1.0);
+  const Double2 gradient = broadcast(travelled.gradient);
+  const double slant = std::sqrt(1.0 + travelled.gradient * travelled.gradient);
+  const double climb =
+      up_.z() - travelled.gradient * up_.x();  // of a vertical line against that plane
   const bool crosses_swept_plane = std::abs(climb) > kSteep;
-  const Double2 reach = broadcast(crosses_swept_plane ? std::abs(travelled.along_m) : -1.0);
+  const Double2 reach = broadcast(crosses_swept_plane ? std::abs(travelled.travel_m) : -1.0);
   const Double2 per_climb = broadcast(crosses_swept_plane ? 1.0 / climb : 0.0);
   Double2 deep[2];
   Double2 touch[2];
   for (const int wheel : {0, 1}) {
     const double axle = wheel == 0 ? -half_.x() : half_.x();
-    deep[wheel] = broadcast(travelled.rise * axle - side * radius_ * slant);
-    touch[wheel] = broadcast(axle - side * radius_ * travelled.rise / slant);
+    deep[wheel] = broadcast(travelled.gradient * axle - side * radius_ * slant);
+    touch[wheel] = broadcast(axle - side * radius_ * travelled.gradient / slant);
   }
   // Normals over their vertical part, of local (nx, 0, nz): nx and nz times these, world x, y, z.
   const Double2 x0 = broadcast(axes(0, 0));
@@ -243,13 +244,13 @@ void Footprint::track_surface(double edge, const PathHistory* path,
     }
     const Double2 px = lx - hub;
     const Double2 along = px * ux + lz * uz;
-    const Double2 rest = along * along + square * (radius_square - px * px - lz * lz);
-    const Double2 wheel_t = (-along - square_root(maximum(rest, zero))) * per_square;
+    const Double2 discriminant = along * along + square * (radius_square - px * px - lz * lz);
+    const Double2 wheel_t = (-along - square_root(maximum(discriminant, zero))) * per_square;
     // Times the radius, into the body.
     Double2 nx = -(px + wheel_t * ux);
     Double2 nz = -(lz + wheel_t * uz);
     Double2 t = wheel_t;
-    auto hit = rest > zero;
+    auto hit = discriminant > zero;
     if constexpr (kBelt) {
       const auto on_run = flat >= zero;
       t = on_run ? run_t : wheel_t;
@@ -274,7 +275,7 @@ void Footprint::track_surface(double edge, const PathHistory* path,
     for (const int wheel : {0, 1}) {
       if (!kBelt && wheel == 1) break;
       const auto ahead = sense * (touch[wheel] - here) > zero;
-      low = minimum(low, ahead ? cz + (rise * lx - deep[wheel] - lz) * per_climb : height);
+      low = minimum(low, ahead ? cz + (gradient * lx - deep[wheel] - lz) * per_climb : height);
     }
     store(magnitude(lx) <= reach ? low : height, &samples.passed[i]);
   }

@@ -38,8 +38,8 @@ struct FootprintSamples {
 
 /// The path that a body came along, in its own axes.
 struct PathHistory {
-  double along_m = 0.0;  ///< along local x, signed: it passed over no point that is further away
-  double rise = 0.0;     ///< along local z, over the displacement along local x
+  double travel_m = 0.0;  ///< along local x, signed: it passed over no point that is further away
+  double gradient = 0.0;  ///< displacement along local z over that along local x
 };
 
 class Footprint {

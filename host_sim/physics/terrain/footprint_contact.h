@@ -46,7 +46,7 @@ struct BodyMemory {
   bool touching = false;
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< m/s, rad/s
   /// What the soil's pressure added to the rate, m/s^2, rad/s^2.
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  Eigen::Vector3d soil_acceleration = Eigen::Vector3d::Zero();
 };
 
 /// What a footprint remembers from step to step.

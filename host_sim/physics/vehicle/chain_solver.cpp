@@ -31,9 +31,9 @@ const std::vector<Eigen::Vector2d>& ChainSolver::solve() {
   // Backwards.
   x_[last] = diagonal[last].inverse() * right[last];
   for (size_t i = last; i-- > 0;) {
-    Eigen::Vector2d rest = right[i] - to_last_[i] * x_[last];
-    if (i + 1 < last) rest -= next[i] * x_[i + 1];
-    x_[i] = diagonal[i] * rest;
+    Eigen::Vector2d residual = right[i] - to_last_[i] * x_[last];
+    if (i + 1 < last) residual -= next[i] * x_[i + 1];
+    x_[i] = diagonal[i] * residual;
   }
   return x_;
 }

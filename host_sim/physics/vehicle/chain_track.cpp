@@ -7,6 +7,7 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 
 namespace screed {

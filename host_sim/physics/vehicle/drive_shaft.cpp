@@ -14,8 +14,8 @@ DriveShaft::DriveShaft(const GearMotor& motor, int motors, double inertia_kg_m2)
     : motor_(motor), motors_(motors), inertia_(inertia_kg_m2 + motors * motor.inertia_kg_m2) {}
 
 void DriveShaft::step(double voltage, double torque_n_m, double dt) {
-  // I dw/dt = motors torque_per_ampere (V - k w) / R + ground - friction; back-EMF implicit,
-  // friction never past rest.
+  // I dw/dt = motors torque_per_ampere (V - k w) / R + terrain - friction; back-EMF implicit,
+  // friction never past standstill.
   const double gain = motors_ * motor_.torque_per_ampere() / motor_.resistance_ohm;
   const double resist = gain * motor_.back_emf_v_s;
   const double friction = driven() ? motors_ * motor_.friction_torque() : kBearingTorque_n_m;

@@ -14,7 +14,7 @@ class DriveShaft {
   /// inertia_kg_m2: of the wheels about their axles; the motors' own comes on top.
   DriveShaft(const GearMotor& motor, int motors, double inertia_kg_m2);
 
-  /// Advances the shaft over dt seconds under `torque_n_m` of the ground, with its motors at
+  /// Advances the shaft over dt seconds under `torque_n_m` of the terrain, with its motors at
   /// `voltage` (their terminals shorted at 0: the driver brakes).
   void step(double voltage, double torque_n_m, double dt);
   /// Stops it at once.

@@ -9,11 +9,11 @@ namespace screed {
 /// efficiency: stall torque / (k I_stall) = 0.49.
 struct GearMotor {
   double resistance_ohm = 2.88;
-  double back_emf_v_s =
-      0.81;  ///< V per rad/s of the output shaft; also N m per A before gearbox losses
+  /// V per rad/s of the output shaft; also N m per A before gearbox losses.
+  double back_emf_v_s = 0.81;
   double efficiency = 0.485;  ///< of the gearbox, on the motor's torque
-  double no_load_current_a =
-      0.16;  ///< estimate; its torque is the Coulomb friction of motor, gearbox and track
+  /// Estimate; its torque is the Coulomb friction of motor, gearbox and track.
+  double no_load_current_a = 0.16;
   double inertia_kg_m2 = 7.5e-4;  ///< rotor (1e-7 kg m^2, estimate) times 86.8 squared
 
   /// Current at a terminal voltage and shaft speed (rad/s).

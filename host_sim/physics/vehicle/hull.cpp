@@ -7,6 +7,7 @@
 #include <optional>
 #include <variant>
 
+#include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 
 namespace screed {

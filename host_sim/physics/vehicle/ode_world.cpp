@@ -3,6 +3,8 @@
 
 #include <mutex>
 
+#include "host_sim/core/gravity.h"
+
 namespace screed {
 namespace {
 

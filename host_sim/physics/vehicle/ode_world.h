@@ -25,9 +25,6 @@ class OdeWorld {
   dThreadingImplementationID threading_;
 };
 
-/// Standard gravity, m/s^2.
-inline constexpr double kGravity_m_per_s2 = 9.80665;
-
 inline Eigen::Vector3d to_eigen(const dReal* v) {
   return {v[0], v[1], v[2]};
 }

@@ -25,7 +25,6 @@ void RunningGear::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& ou
 
 RunningGear::RunningGear(const RunningGearGeometry& geometry, double friction, const GearLoad& load)
     : geometry_(geometry),
-      load_(load),
       centre_(0.5 * (geometry.front + geometry.rear)),
       footprint_(Footprint::track(0.5 * (geometry.front - geometry.rear).norm(), geometry.radius,
                                   geometry.width)),
@@ -148,8 +147,8 @@ double RunningGear::stand_on(const HeightField& hard, const CarrierMotion& carri
   return along_surface;
 }
 
-FootprintContact RunningGear::footprint_contact(FootprintShape shape, const CarrierMotion& carrier,
-                                                double speed) {
+FootprintContact RunningGear::make_footprint_contact(FootprintShape shape,
+                                                     const CarrierMotion& carrier, double speed) {
   FootprintContact contact;
   contact.arm = carrier.rotation * centre_;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -168,15 +167,15 @@ FootprintContact RunningGear::footprint_contact(FootprintShape shape, const Carr
   motion.omega = carrier.omega;
   motion.surface_speed = on_its_side ? 0.0 : speed;
   motion.friction = law_.friction;
-  motion.mass_kg = load_.mass_kg;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
   const double faster = std::max(std::abs(ground_speed), std::abs(speed));
   motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed - ground_speed) / faster) : 0.0;
   return contact;
 }
 
-double RunningGear::contact(const HeightField* hard, const FootprintContact* pressed,
-                            const CarrierMotion& carrier, double speed, double dt, Wrench& wrench) {
+double RunningGear::apply_contact(const HeightField* hard, const FootprintContact* pressed,
+                                  const CarrierMotion& carrier, double speed, double dt,
+                                  Wrench& wrench) {
   double along_surface = 0.0;
   normal_load_ = 0.0;
   if (hard != nullptr) along_surface = stand_on(*hard, carrier, speed, dt, wrench);

@@ -47,8 +47,8 @@ struct Wrench {
 };
 
 struct RunningGearGeometry {
-  Eigen::Vector3d
-      front;  ///< centre of the front wheel, in the frame of the carrier's centre of mass
+  /// Centre of the front wheel, in the frame of the carrier's centre of mass.
+  Eigen::Vector3d front;
   Eigen::Vector3d rear;  ///< of the rear wheel; equal to `front` for a single wheel
   double radius = 0.03;  ///< m, belt included
   double width = 0.03;   ///< m
@@ -66,13 +66,13 @@ class RunningGear {
 
   /// The unit as a footprint of the carrier, while its surface moves at `speed` over the wheels
   /// (m/s, driving forward positive); valid until the next call.
-  FootprintContact footprint_contact(FootprintShape shape, const CarrierMotion& carrier,
-                                     double speed);
+  FootprintContact make_footprint_contact(FootprintShape shape, const CarrierMotion& carrier,
+                                          double speed);
   /// What this step does to the unit, added to `wrench`: the forces of its points on a hard surface
   /// and the terrain's reaction to its footprint, either null where there is none. Returns the
-  /// ground's force along the surface's motion, N.
-  double contact(const HeightField* hard, const FootprintContact* pressed,
-                 const CarrierMotion& carrier, double speed, double dt, Wrench& wrench);
+  /// terrain's force along the surface's motion, N.
+  double apply_contact(const HeightField* hard, const FootprintContact* pressed,
+                       const CarrierMotion& carrier, double speed, double dt, Wrench& wrench);
 
   /// Clears the state of all contacts.
   void reset_contacts();
@@ -94,7 +94,6 @@ class RunningGear {
   void reset_contacts(size_t point);
 
   RunningGearGeometry geometry_;
-  GearLoad load_;
   ContactLaw law_;
   double spacing_;  ///< between neighbours along the contour, m
   int rows_ = 2;    ///< contours side by side, at both edges of the belt

@@ -1,11 +1,11 @@
 // The force between one point of a surface that may move (a belt, a wheel's rim, the chassis) and
-// rigid ground.
+// rigid terrain.
 //
 // Normal: a spring and damper that never pull. Tangential: elastic bristles with Coulomb's limit:
-// the bristle is the distance that the surface has moved over the ground while it stuck, so a robot
-// stands still on a slope instead of creeping. Along a moving belt the bristles travel with its
-// material (brush model; Pacejka, Tire and Vehicle Dynamics, ch. 3): the owner of the points does
-// that.
+// the bristle is the distance that the surface has moved over the terrain while it stuck, so a
+// robot stands still on a slope instead of creeping. Along a moving belt the bristles travel with
+// its material (brush model; Pacejka, Tire and Vehicle Dynamics, ch. 3): the owner of the points
+// does that.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,16 +21,16 @@ struct ContactLaw {
   double friction = 0.8;   ///< Coulomb coefficient
 };
 
-/// How the ground lies under a point that is in it.
+/// How the terrain lies under a point that is in it.
 struct TerrainContact {
-  Eigen::Vector3d normal;  ///< of the ground, unit length
+  Eigen::Vector3d normal;  ///< of the terrain, unit length
   double depth;            ///< m, along the normal, positive
 };
 
-/// Whether `position` is below the ground's surface.
-inline bool find_contact(const HeightField& ground, const Eigen::Vector3d& position,
+/// Whether `position` is below the terrain's surface.
+inline bool find_contact(const HeightField& terrain, const Eigen::Vector3d& position,
                          TerrainContact& contact) {
-  const SurfacePoint surface = ground.at(position.x(), position.y());
+  const SurfacePoint surface = terrain.at(position.x(), position.y());
   const double gap = position.z() - surface.height;
   if (gap >= 0.0) return false;
   const double scale = 1.0 / std::sqrt(1.0 + surface.gradient_x * surface.gradient_x +
@@ -40,7 +40,7 @@ inline bool find_contact(const HeightField& ground, const Eigen::Vector3d& posit
   return true;
 }
 
-/// Force on a surface point that touches the ground. The surface moves at `velocity` over it, belt
+/// Force on a surface point that touches the terrain. The surface moves at `velocity` over it, belt
 /// motion included; the contact point sinks in at `body_velocity`, without it: a wheel that
 /// rolls does not press deeper where its rim goes down. `bristle` is the state of the point, world
 /// frame, m; it becomes zero when the point is being pulled out and carries no load.

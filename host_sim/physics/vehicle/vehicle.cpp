@@ -17,7 +17,7 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
   dMatrix3 rotation;
   to_ode(pose.linear(), rotation);
   for (Carrier& carrier : carriers_) {
-    const Eigen::Vector3d at = pose * carrier.rest.translation();
+    const Eigen::Vector3d at = pose * carrier.rest_pose.translation();
     dBodySetPosition(carrier.body, at.x(), at.y(), at.z());
     dBodySetRotation(carrier.body, rotation);
     dBodySetLinearVel(carrier.body, 0, 0, 0);
@@ -37,12 +37,12 @@ void Vehicle::shift(double dx_m, double dy_m) {
   }
 }
 
-double Vehicle::resting_height(const HeightField& ground, double x, double y,
+double Vehicle::resting_height(const HeightField& terrain, double x, double y,
                                const Eigen::Matrix3d& rotation) const {
   double height = -std::numeric_limits<double>::infinity();
   const auto rest_on = [&](const Carrier& carrier, const Eigen::Vector3d& point) {
-    const Eigen::Vector3d at = rotation * (carrier.rest * point);
-    height = std::max(height, ground.at(x + at.x(), y + at.y()).height - at.z());
+    const Eigen::Vector3d at = rotation * (carrier.rest_pose * point);
+    height = std::max(height, terrain.at(x + at.x(), y + at.y()).height - at.z());
   };
   for (const Carrier& carrier : carriers_) {
     for (const Eigen::Vector3d& point : carrier.hull.points()) rest_on(carrier, point);
@@ -58,21 +58,25 @@ double Vehicle::resting_height(const HeightField& ground, double x, double y,
   return height;
 }
 
-void Vehicle::collect_contacts(const Terrain& terrain, size_t carrier, const CarrierMotion& motion,
-                               double dt) {
+Vehicle::ContactRanges Vehicle::collect_contacts(const Terrain& terrain, size_t carrier,
+                                                 const CarrierMotion& motion, double dt) {
   const FootprintShape shape = terrain.footprint_shape();
   contacts_.clear();
   for (Unit& unit : units_) {
     if (unit.carrier != carrier || shape == FootprintShape::kNone) continue;
-    contacts_.push_back(unit.gear.footprint_contact(shape, motion, surface_speed(unit)));
+    contacts_.push_back(unit.gear.make_footprint_contact(shape, motion, surface_speed(unit)));
   }
+  ContactRanges begin{};
+  begin.chains = contacts_.size();
   for (Chain& chain : chains_) {
     if (chain.carrier != carrier) continue;
     chain.track.begin_step(shape, motion, wheel_rates(chain), dt, contacts_);
   }
+  begin.hull = contacts_.size();
   if (shape != FootprintShape::kNone) {
     carriers_[carrier].hull.add_footprint_contacts(terrain, motion, contacts_);
   }
+  return begin;
 }
 
 PressingBody Vehicle::pressing_body(size_t carrier, const CarrierMotion& motion) const {
@@ -95,12 +99,12 @@ PressingBody Vehicle::pressing_body(size_t carrier, const CarrierMotion& motion)
 
 void Vehicle::end_chains(const Terrain& terrain, size_t carrier, size_t first,
                          const CarrierMotion& motion, double dt, Wrench& wrench) {
-  const std::span<const FootprintContact> all = contacts_;
+  const std::span<const FootprintContact> contacts = contacts_;
   for (Chain& chain : chains_) {
     if (chain.carrier != carrier) continue;
     const size_t count = chain.track.footprint_count(terrain.footprint_shape());
     const std::array<double, 2> torque =
-        chain.track.end_step(terrain, all.subspan(first, count), motion, dt, wrench);
+        chain.track.end_step(terrain, contacts.subspan(first, count), motion, dt, wrench);
     for (const size_t wheel : {0U, 1U}) shafts_[chain.shafts[wheel]].torque += torque[wheel];
     first += count;
   }
@@ -110,33 +114,31 @@ void Vehicle::terrain_contact(Terrain& terrain, size_t carrier, const CarrierMot
                               double dt, Wrench& wrench) {
   const HeightField* hard = terrain.hard_surface();
   const FootprintShape shape = terrain.footprint_shape();
-  collect_contacts(terrain, carrier, motion, dt);
+  const ContactRanges begin = collect_contacts(terrain, carrier, motion, dt);
   if (shape != FootprintShape::kNone) {
     terrain.press(pressing_body(carrier, motion), contacts_, dt, carriers_[carrier].memory);
   }
 
-  // The contacts in the order of collect_contacts().
-  const FootprintContact* contact = contacts_.data();
+  size_t next = 0;
   for (Unit& unit : units_) {
     if (unit.carrier != carrier) continue;
-    const FootprintContact* pressed = shape == FootprintShape::kNone ? nullptr : contact++;
+    const FootprintContact* pressed = shape == FootprintShape::kNone ? nullptr : &contacts_[next++];
     shafts_[unit.shaft].torque +=
         unit.gear.radius_m() *
-        unit.gear.contact(hard, pressed, motion, surface_speed(unit), dt, wrench);
+        unit.gear.apply_contact(hard, pressed, motion, surface_speed(unit), dt, wrench);
   }
-  const auto chains_begin = static_cast<size_t>(contact - contacts_.data());
-  // A band is the carrier's own footprint: its pins follow once the carrier has got all of its own.
+  // A band's force acts on the carrier as a whole; its pins are solved after the carrier has
+  // received all forces.
   const bool bands = shape == FootprintShape::kLowerSurface;
-  if (!bands) end_chains(terrain, carrier, chains_begin, motion, dt, wrench);
-  for (const Chain& chain : chains_) {
-    if (chain.carrier != carrier) continue;
-    if (bands) wrench.add(*contact);
-    contact += chain.track.footprint_count(shape);
+  if (bands) {
+    for (size_t i = begin.chains; i < begin.hull; ++i) wrench.add(contacts_[i]);
+  } else {
+    end_chains(terrain, carrier, begin.chains, motion, dt, wrench);
   }
   Hull& hull = carriers_[carrier].hull;
   if (hard != nullptr) hull.stand_on(*hard, motion, dt, wrench);
-  for (; contact != contacts_.data() + contacts_.size(); ++contact) wrench.add(*contact);
-  if (bands) end_chains(terrain, carrier, chains_begin, motion, dt, wrench);
+  for (size_t i = begin.hull; i < contacts_.size(); ++i) wrench.add(contacts_[i]);
+  if (bands) end_chains(terrain, carrier, begin.chains, motion, dt, wrench);
 }
 
 ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
@@ -170,7 +172,7 @@ ChassisState Vehicle::chassis() const {
   ChassisState state;
   const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
   const Eigen::Vector3d omega = to_eigen(dBodyGetAngularVel(carrier.body));
-  const Eigen::Vector3d offset = rotation * carrier.rest.translation();
+  const Eigen::Vector3d offset = rotation * carrier.rest_pose.translation();
   state.pose.linear() = rotation;
   state.pose.translation() = to_eigen(dBodyGetPosition(carrier.body)) - offset;
   state.velocity = to_eigen(dBodyGetLinearVel(carrier.body)) - omega.cross(offset);

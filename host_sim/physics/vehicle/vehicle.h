@@ -50,9 +50,9 @@ class Vehicle : public VehicleState {
   void place(const Eigen::Isometry3d& pose);
   /// Moves the whole robot sideways as it is: motion, joints and grip stay.
   void shift(double dx_m, double dy_m);
-  /// Height of Body's origin at which the lowest contact point just touches the ground, for this
+  /// Height of Body's origin at which the lowest contact point just touches the terrain, for this
   /// attitude at (x, y).
-  double resting_height(const HeightField& ground, double x, double y,
+  double resting_height(const HeightField& terrain, double x, double y,
                         const Eigen::Matrix3d& rotation) const;
 
   /// Adds the forces of this step to the bodies and advances the motors. The terrain's end_step()
@@ -77,7 +77,7 @@ class Vehicle : public VehicleState {
  private:
   struct Carrier {  // one ODE body
     dBodyID body;
-    Eigen::Isometry3d rest;  // its centre of mass in the frame of Body, joints at zero
+    Eigen::Isometry3d rest_pose;  // its centre of mass in the frame of Body, joints at zero
     Hull hull;
     BodyMemory memory;
     double mass;
@@ -86,7 +86,7 @@ class Vehicle : public VehicleState {
   struct Shaft {
     Side side;
     DriveShaft shaft;
-    double torque = 0.0;  // of the ground in this step, N m
+    double torque = 0.0;  // of the terrain in this step, N m
   };
   struct Unit {
     size_t carrier;
@@ -97,6 +97,10 @@ class Vehicle : public VehicleState {
     size_t carrier;
     std::array<size_t, 2> shafts;  // of front and rear wheel
     ChainTrack track;
+  };
+  struct ContactRanges {  // where they begin among contacts_
+    size_t chains;
+    size_t hull;
   };
   struct SideGear {  // where a side's motion is measured
     size_t carrier;
@@ -112,8 +116,8 @@ class Vehicle : public VehicleState {
   void terrain_contact(Terrain& terrain, size_t carrier, const CarrierMotion& motion, double dt,
                        Wrench& wrench);
   /// Fills contacts_ with the footprints of a carrier: running gear, chains, hull.
-  void collect_contacts(const Terrain& terrain, size_t carrier, const CarrierMotion& motion,
-                        double dt);
+  ContactRanges collect_contacts(const Terrain& terrain, size_t carrier,
+                                 const CarrierMotion& motion, double dt);
   PressingBody pressing_body(size_t carrier, const CarrierMotion& motion) const;
   /// Ends the step of a carrier's chains; theirs begin at `first` among contacts_.
   void end_chains(const Terrain& terrain, size_t carrier, size_t first, const CarrierMotion& motion,

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 
 namespace screed {
@@ -113,8 +114,8 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
                        assembly.bodies[static_cast<size_t>(group.front())].name + "' has no mass");
     }
     Carrier carrier{};
-    carrier.rest = Eigen::Isometry3d::Identity();
-    carrier.rest.translation() = inertia.pose.translation();
+    carrier.rest_pose = Eigen::Isometry3d::Identity();
+    carrier.rest_pose.translation() = inertia.pose.translation();
     const Eigen::Matrix3d axes = inertia.pose.linear();
     const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
     carrier.body = dBodyCreate(world_.id());
@@ -126,7 +127,7 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
       const AssemblyBody& body = assembly.bodies[static_cast<size_t>(member)];
       if (is_wheel[static_cast<size_t>(member)]) continue;
       for (const Shape& shape : body.collision) {
-        const Eigen::Isometry3d at = carrier.rest.inverse() * body.pose;
+        const Eigen::Isometry3d at = carrier.rest_pose.inverse() * body.pose;
         carrier.hull.add(shape, at);
       }
     }
@@ -169,7 +170,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
     const AssemblyBody& body = assembly.bodies[static_cast<size_t>(index)];
     const AssemblyJoint* joint = joint_to(assembly, index);
     const size_t carrier = carrier_of_body_[static_cast<size_t>(index)];
-    const Eigen::Vector3d centre = carriers_[carrier].rest.inverse() * body.pose.translation();
+    const Eigen::Vector3d centre = carriers_[carrier].rest_pose.inverse() * body.pose.translation();
     const Eigen::Matrix3d axes = body.pose.linear() * body.inertia.pose.linear();
     const double spin =
         joint->axis.dot(axes * body.inertia.tensor * axes.transpose() * joint->axis);
@@ -183,7 +184,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
   for (const Side side : {kLeft, kRight}) {
     const Wheel front = wheel_named(kWheels[side][0]);
     const Wheel rear = wheel_named(kWheels[side][1]);
-    side_y[side] = (carriers_[front.carrier].rest * front.centre).y();
+    side_y[side] = (carriers_[front.carrier].rest_pose * front.centre).y();
     const int motors = (front.driven ? 1 : 0) + (rear.driven ? 1 : 0);
     if (motors == 0) {
       throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] +

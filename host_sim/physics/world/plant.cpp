@@ -8,6 +8,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {
@@ -45,7 +46,7 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
       vehicle_(ode_, model, options.vehicle),
       battery_(options.battery),
       imu_position_(imu_position(model)),
-      moments_(static_cast<size_t>(steps_per_tick_) + 1) {
+      imu_history_(static_cast<size_t>(steps_per_tick_) + 1) {
   if (vehicle_.chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
     throw InputError("[physics] step = " + std::to_string(step_s_) +
                      " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
@@ -119,7 +120,7 @@ Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {
 }
 
 void Plant::reset_motion_history(const Eigen::Vector3d& velocity) {
-  std::fill(moments_.begin(), moments_.end(), Moment{velocity, Eigen::Vector3d::Zero()});
+  std::fill(imu_history_.begin(), imu_history_.end(), ImuState{velocity, Eigen::Vector3d::Zero()});
 }
 
 void Plant::step(const std::array<double, 2>& share) {
@@ -136,9 +137,9 @@ void Plant::step(const std::array<double, 2>& share) {
   step_bodies(voltage);
   battery_.step(current, step_s_);
   ++steps_;
-  newest_ = (newest_ + 1) % moments_.size();
+  newest_ = (newest_ + 1) % imu_history_.size();
   const ChassisState chassis = vehicle_.chassis();
-  moments_[newest_] = {imu_velocity(chassis), chassis.omega_body};
+  imu_history_[newest_] = {imu_velocity(chassis), chassis.omega_body};
 }
 
 double Plant::time_s() const {
@@ -147,22 +148,22 @@ double Plant::time_s() const {
 
 ImuTruth Plant::motion() const {
   const ChassisState chassis = vehicle_.chassis();
-  const Moment& now = moments_[newest_];
+  const ImuState& now = imu_history_[newest_];
   const Eigen::Matrix3d rotation = chassis.pose.linear();
   if (!now.velocity.allFinite() || !chassis.pose.translation().allFinite() ||
       now.velocity.norm() > 1000.0) {
     throw RunError("the physics diverged at " + std::to_string(time_s()) +
                    " s; a smaller [physics] step may help");
   }
-  const size_t oldest = (newest_ + 1) % moments_.size();
+  const size_t oldest = (newest_ + 1) % imu_history_.size();
   Eigen::Vector3d rate_sum = Eigen::Vector3d::Zero();
-  for (size_t i = 1; i < moments_.size(); ++i) {
-    rate_sum += moments_[(oldest + i) % moments_.size()].rate_body;
+  for (size_t i = 1; i < imu_history_.size(); ++i) {
+    rate_sum += imu_history_[(oldest + i) % imu_history_.size()].rate_body;
   }
   ImuTruth truth;
   truth.mean_rate_rad_per_s = rate_sum / steps_per_tick_;
   truth.mean_specific_force =
-      rotation.transpose() * ((now.velocity - moments_[oldest].velocity) / kTick_s +
+      rotation.transpose() * ((now.velocity - imu_history_[oldest].velocity) / kTick_s +
                               kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
   truth.body_to_world = rotation;
   truth.altitude_m = chassis.pose.translation().z();

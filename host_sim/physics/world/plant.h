@@ -23,8 +23,8 @@ namespace screed {
 struct StartPose {
   double x_m = 0.0;
   double y_m = 0.0;
-  std::optional<double>
-      z_m;  ///< of Body's origin; without it the robot is placed on the terrain and settles
+  /// Of Body's origin; without it the robot is placed on the terrain and settles.
+  std::optional<double> z_m;
   Attitude attitude = {0.0, 0.0, 0.0};
 };
 
@@ -60,7 +60,7 @@ class Plant : public Environment {
   const Battery& battery() const override { return battery_; }
 
  private:
-  struct Moment {
+  struct ImuState {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of the IMU, world frame, m/s
     Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< rad/s
   };
@@ -86,8 +86,8 @@ class Plant : public Environment {
   Eigen::Vector3d imu_position_;  ///< in the frame of Body
   uint64_t steps_ = 0;
   std::array<int64_t, 2> wrap_counts_ = {0, 0};
-  /// The last tick's moments and the one before; the newest stands at newest_.
-  std::vector<Moment> moments_;
+  /// A ring buffer of the last tick's steps and the one before; the newest stands at newest_.
+  std::vector<ImuState> imu_history_;
   size_t newest_ = 0;
 };
 

@@ -7,9 +7,9 @@
 #include "firmware/protocol/messages.h"
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
 #include "host_sim/devices/sensors/calibration_motion.h"
 #include "host_sim/devices/sensors/imu_model.h"
-#include "host_sim/physics/vehicle/ode_world.h"
 
 namespace screed {
 namespace {

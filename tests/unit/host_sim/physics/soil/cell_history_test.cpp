@@ -21,7 +21,7 @@ CellHistory pressed(double covered, double sunk) {
 
 TEST(CellHistory, ABodyOnFreshSoilFindsNothingPressed) {
   const SinkageDivision part = CellHistory{}.divide(0.4, 0.0, 1);
-  EXPECT_EQ(part.old, 0.0);
+  EXPECT_EQ(part.old_sinkage, 0.0);
   EXPECT_EQ(part.beside, 0.0);
   EXPECT_EQ(part.under(0.4, 0.0), 0.0);
 }
@@ -30,7 +30,7 @@ TEST(CellHistory, WhatIsPressedInAContactIsUnderTheBody) {
   const CellHistory history = pressed(0.25, 0.0);
   // It has sunk since, the coverage is the same.
   const SinkageDivision part = history.divide(0.25, kSunk_m, 2);
-  EXPECT_EQ(part.old, 0.0);
+  EXPECT_EQ(part.old_sinkage, 0.0);
   EXPECT_EQ(part.beside, 0.0);
   EXPECT_DOUBLE_EQ(part.under(0.25, kSunk_m), 4.0 * kSunk_m);
 }
@@ -41,7 +41,7 @@ TEST(CellHistory, WhatABodyLeavesKeepsItsSinkage) {
   const double under = kSunk_m / 0.8;
   EXPECT_NEAR(part.under(0.2, kSunk_m), under, kTolerance_m);
   EXPECT_NEAR(part.beside, 0.6 * under, kTolerance_m);
-  EXPECT_EQ(part.old, 0.0);
+  EXPECT_EQ(part.old_sinkage, 0.0);
 }
 
 TEST(CellHistory, WhatABodyReachesHasTheMeanOfTheRest) {
@@ -51,7 +51,8 @@ TEST(CellHistory, WhatABodyReachesHasTheMeanOfTheRest) {
   const double rest = 0.6 * kSunk_m / 0.8 / 0.8;  // 0.6 of the cell was left, in 0.8 of it
   const SinkageDivision part = history.divide(0.7, kSunk_m, 3);
   EXPECT_NEAR(part.beside, 0.3 * rest, kTolerance_m);
-  EXPECT_NEAR(part.old, 0.5 * rest / 0.7, kTolerance_m);  // of the part it had, nothing was old
+  EXPECT_NEAR(part.old_sinkage, 0.5 * rest / 0.7,
+              kTolerance_m);  // of the part it had, nothing was old
   const SinkageDivision all = history.divide(1.0, kSunk_m, 3);
   EXPECT_NEAR(all.beside, 0.0, kTolerance_m);
   EXPECT_NEAR(all.under(1.0, kSunk_m), kSunk_m, kTolerance_m);
@@ -64,11 +65,11 @@ TEST(CellHistory, ANewContactFindsTheOldRutBelowIt) {
   // Step 3 was without a body.
   for (const double covered : {0.5, 0.9}) {
     const SinkageDivision part = history.divide(covered, kSunk_m, 4);
-    EXPECT_NEAR(part.old, kSunk_m / covered, kTolerance_m) << covered;
+    EXPECT_NEAR(part.old_sinkage, kSunk_m / covered, kTolerance_m) << covered;
     EXPECT_NEAR(part.beside, 0.0, kTolerance_m) << covered;
   }
   const SinkageDivision part = history.divide(0.1, kSunk_m, 4);
-  EXPECT_NEAR(part.old, kSunk_m / 0.5, kTolerance_m);
+  EXPECT_NEAR(part.old_sinkage, kSunk_m / 0.5, kTolerance_m);
   EXPECT_NEAR(part.beside, 0.8 * kSunk_m, kTolerance_m);
 }
 
@@ -93,8 +94,8 @@ TEST(CellHistory, DividingNeitherMakesNorLosesSinkage) {
     for (uint32_t step = 3; step < 40; ++step) {
       const double covered = random.uniform(0.05, 1.0);
       const SinkageDivision part = history.divide(covered, kSunk_m, step);
-      ASSERT_NEAR(covered * part.old + part.beside, kSunk_m, kTolerance_m) << step;
-      ASSERT_NEAR(part.old, part.under(covered, kSunk_m), kTolerance_m / 0.05) << step;
+      ASSERT_NEAR(covered * part.old_sinkage + part.beside, kSunk_m, kTolerance_m) << step;
+      ASSERT_NEAR(part.old_sinkage, part.under(covered, kSunk_m), kTolerance_m / 0.05) << step;
       ASSERT_GE(part.beside, -kTolerance_m) << step;
       ASSERT_LE(part.beside, kSunk_m + kTolerance_m) << step;
       history.keep(covered, part);

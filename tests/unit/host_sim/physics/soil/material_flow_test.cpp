@@ -517,6 +517,27 @@ TEST(MaterialFlow, WithoutSlipOrWithNothingToTakeNothingIsDug) {
   EXPECT_EQ(flow.height(flow.index(3, 3)), -10);
 }
 
+// As on a bed that moves no material: nothing is deposited, steps end all the same.
+TEST(MaterialFlow, WhatIsDugAndCompactedLeavesNothingToLaterSteps) {
+  MaterialFlow flow = level(41);
+  MaterialFlow fresh = level(41);
+  const size_t dug = flow.index(20, 20);
+  flow.begin_footprint(0.0, 0.0);
+  flow.shear(dug, 1.0);
+  EXPECT_EQ(flow.dig(patch_at(0.02, -0.03), 480, 480), 480);
+  flow.uncover();
+  for (MaterialFlow* either : {&flow, &fresh}) {
+    either->begin_footprint(0.0, 0.0);
+    either->shear(dug, 1.0);
+    either->dig(patch_at(0.02, -0.03), 480, 0);
+    either->deposit();
+    either->uncover();
+  }
+  for (size_t node = 0; node < flow.nodes(); ++node) {
+    EXPECT_EQ(flow.height(node), fresh.height(node) - (node == dug ? 480 : 0)) << node;
+  }
+}
+
 TEST(MaterialFlow, WhatIsDugIsHeapedUpInABandRoundTheFootprintAndNotInsideIt) {
   MaterialFlow flow = level(41);
   DugPatch patch = patch_at(0.02, -0.03);
