@@ -226,7 +226,8 @@ void MaterialFlow::uncover() {
     enqueue(neighbour.node);
   }
   covered_list_.clear();
-  // Nothing of theirs is left: deposit() passed it on, or all was compacted.
+  // What was neither deposited nor compacted waits for the next step.
+  for (const ActiveFootprint& footprint : footprints_) left_over_ += footprint.units;
   footprints_.clear();
   dug_.clear();
 }
