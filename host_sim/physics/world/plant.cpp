@@ -122,11 +122,11 @@ void Plant::reset_motion_history(const Eigen::Vector3d& velocity) {
   std::fill(moments_.begin(), moments_.end(), Moment{velocity, Eigen::Vector3d::Zero()});
 }
 
-void Plant::step(const std::array<double, 2>& share) {
+void Plant::step(const std::array<double, 2>& duty_ratio) {
   std::array<double, 2> voltage{};
   double current = 0.0;
   for (const Side side : {kLeft, kRight}) {
-    const double of_side = share[static_cast<size_t>(side)];
+    const double of_side = duty_ratio[static_cast<size_t>(side)];
     voltage[static_cast<size_t>(side)] = of_side * battery_.terminal_v;
     // The driver's off phase brakes: current then circulates in the motor, and never flows back
     // into the battery.
