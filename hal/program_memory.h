@@ -6,13 +6,12 @@
 
 #ifdef __AVR__
 #include <avr/pgmspace.h>
-#define SCREED_NN_PROGRAM_MEMORY PROGMEM
+#define SCREED_PROGRAM_MEMORY PROGMEM
 #else
-#define SCREED_NN_PROGRAM_MEMORY
+#define SCREED_PROGRAM_MEMORY
 #endif
 
 namespace screed {
-namespace nn {
 
 inline uint8_t read_program_u8(const uint8_t* address) {
 #ifdef __AVR__
@@ -41,5 +40,4 @@ inline uint32_t read_program_u32(const uint8_t* address) {
          static_cast<uint32_t>(read_program_u16(address + 2)) << 16;
 }
 
-}  // namespace nn
 }  // namespace screed

@@ -31,6 +31,9 @@ enum FreshBit : uint8_t {
   kFreshBaro = 1 << 3,
 };
 
+/// Most that SensorSample::battery can be: eight conversions at the end of their range.
+constexpr uint16_t kBatteryMax = 8 * 1023;
+
 /// Bits of SensorSample::chips_failing: the chip does not answer, or does not hold its settings.
 using ChipBit = message::HealthChipsFailing;
 

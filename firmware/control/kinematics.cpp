@@ -13,12 +13,4 @@ TrackSpeeds SkidSteer::tracks(int16_t speed_mm_per_s, int32_t yaw_rate,
   return {static_cast<int16_t>(speed - turn), static_cast<int16_t>(speed + turn)};
 }
 
-int32_t SkidSteer::yaw_rate(const TrackSpeeds& tracks) const {
-  const int32_t difference = static_cast<int32_t>(tracks.right) - tracks.left;
-  // difference / 2 / half_arc, with the numerator scaled so that it fits 32 bits: |difference| <=
-  // 1023 mm/s.
-  return (limit_i16(difference, 1023) * (static_cast<int32_t>(1) << 21)) /
-         static_cast<int32_t>(half_arc_q22_);
-}
-
 }  // namespace screed

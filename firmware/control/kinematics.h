@@ -1,4 +1,4 @@
-// Kinematics of a skid-steer robot (thesis 5.1.2): body motion to track speeds and back. Knows
+// Kinematics of a skid-steer robot (thesis 5.1.2): body motion to track speeds. Knows
 // nothing of slip.
 #pragma once
 
@@ -30,9 +30,6 @@ class SkidSteer {
   /// / 2. When a track would pass `limit_mm_per_s`, the forward speed is reduced first, so that the
   /// turn stays as commanded whenever it can be made at all.
   TrackSpeeds tracks(int16_t speed_mm_per_s, int32_t yaw_rate, int16_t limit_mm_per_s) const;
-
-  /// The turn rate that a difference of track speeds makes without slip, angle units/s.
-  int32_t yaw_rate(const TrackSpeeds& tracks) const;
 
  private:
   uint32_t half_arc_q22_;  ///< B/2 * 2 pi / 65536 in Q22: mm/s at the track per unit of yaw rate

@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#include "firmware/estimation/slip_watch.h"
+#include "firmware/control/track_motion.h"
 #include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/parameters.h"
 

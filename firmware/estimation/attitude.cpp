@@ -50,8 +50,9 @@ constexpr int16_t kSquaredFrequency =
     373;  // wn^2 * 2^8 in Q16: 2^8 between the digits of gravity_ and slope_
 constexpr int16_t kDamping = 437;  // sqrt(2) wn in Q16
 
-// Heading: time constant 9 s; at first the mean of all samples (gain 1/k); after 3 s at most 2
-// degrees/s, so a piece of steel that passes by does little.
+// Heading: time constant 9 s; at first the mean of all samples (gain 1/k); then at most 2
+// degrees/s, so a piece of steel that passes by does little. Counted in magnetometer samples: at
+// 100 samples/s, 300 are 3 s and 900 are 9 s.
 constexpr uint16_t kHeadingStartSamples = 900;
 constexpr uint16_t kHeadingLimitedFrom = 300;
 constexpr uint16_t kHalfAnglePerAngle = 51472;  // pi / 65536 in Q30

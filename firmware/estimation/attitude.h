@@ -18,20 +18,20 @@ namespace screed {
 
 /// One sample of the inertial sensors: raw counts in robot axes (x forward, y left, z up).
 struct ImuSample {
-  int16_t gyro[3];   ///< 70 mdps a count
-  int16_t accel[3];  ///< specific force, 0.244 mg a count: +z at rest when level; clipped values
-                     ///< are taken as they are
-  int16_t
-      mag[3];  ///< 0.160 mG a count, hard iron removed; any scale does, only the direction is used
+  int16_t gyro[3];  ///< 70 mdps a count
+  /// specific force, 0.244 mg a count: +z at rest when level; clipped values are taken as they are
+  int16_t accel[3];
+  /// 0.160 mG a count, hard iron removed; any scale does, only the direction is used
+  int16_t mag[3];
   bool mag_fresh;  ///< mag is new since the last call; when false it is not looked at
 };
 
 /// The orientation as three angles.
 struct AttitudeAngles {
-  Angle roll;     ///< > 0: left side up
-  Angle pitch;    ///< > 0: nose up, -16384..16384
-  Angle heading;  ///< counter-clockwise from east, seen from above; from the start pose without
-                  ///< magnetometer
+  Angle roll;   ///< > 0: left side up
+  Angle pitch;  ///< > 0: nose up, -16384..16384
+  /// counter-clockwise from east, seen from above; from the start pose without magnetometer
+  Angle heading;
   int16_t sin_pitch_q14;
 };
 

@@ -2,13 +2,10 @@
 #include "firmware/estimation/odometry.h"
 
 #include "firmware/math/fixed.h"
+#include "firmware/parameters/board_constants.h"
 
 namespace screed {
 namespace {
-
-// What a tick can hold (22 mm at full speed are 40 counts): more is encoder noise, and would keep
-// path_mm_ busy for long.
-constexpr int16_t kMaxCounts = 100;
 
 /// length * factor (Q15), rounded; |length| below 2^30.
 int32_t times_q15(int32_t length, int16_t factor) {
@@ -26,23 +23,17 @@ SCREED_OUT_OF_LINE int32_t mm_from_um(int32_t um) {
 void Odometry::reset() {
   x_um_ = 0;
   y_um_ = 0;
-  path_mm_ = 0;
-  path_rest_um_ = 0;
 }
 
 void Odometry::update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch) {
-  const int32_t counts = static_cast<int32_t>(clamp_i16(counts_left, -kMaxCounts, kMaxCounts)) +
-                         clamp_i16(counts_right, -kMaxCounts, kMaxCounts);
+  const int32_t counts =
+      static_cast<int32_t>(clamp_i16(counts_left, -kMaxTrackCounts, kMaxTrackCounts)) +
+      clamp_i16(counts_right, -kMaxTrackCounts, kMaxTrackCounts);
   // Mean of both tracks: half the sum; Q4 and the half together are a shift by 5.
   const int32_t travel_um = asr_round(counts * static_cast<int32_t>(count_um_q4_), 5);
   const int32_t horizontal_um = times_q15(travel_um, cos_q15(pitch));
   x_um_ = add_sat_i32(x_um_, times_q15(horizontal_um, cos_q15(heading)));
   y_um_ = add_sat_i32(y_um_, times_q15(horizontal_um, sin_q15(heading)));
-  path_rest_um_ += travel_um < 0 ? -travel_um : travel_um;
-  while (path_rest_um_ >= 1000) {
-    path_rest_um_ -= 1000;
-    ++path_mm_;
-  }
 }
 
 int32_t Odometry::x_mm() const {

@@ -19,7 +19,7 @@ class Odometry {
   /// Back to the origin.
   void reset();
 
-  /// One tick: counts of both tracks since the last tick (taken as +-100 when beyond), heading and
+  /// One tick: counts of both tracks since the last tick (limited to kMaxTrackCounts), heading and
   /// pitch now.
   void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch);
 
@@ -27,15 +27,11 @@ class Odometry {
   /// +-2147 m.
   int32_t x_mm() const;
   int32_t y_mm() const;
-  /// Path length driven, forward and backward alike, mm; wraps after 4000 km.
-  uint32_t path_mm() const { return path_mm_; }
 
  private:
   uint16_t count_um_q4_;
   int32_t x_um_ = 0;
   int32_t y_um_ = 0;
-  uint32_t path_mm_ = 0;
-  int32_t path_rest_um_ = 0;
 };
 
 }  // namespace screed

@@ -10,7 +10,7 @@ namespace screed {
 namespace nn {
 namespace model_slip {
 
-const uint8_t held_parameters[] SCREED_NN_PROGRAM_MEMORY = {
+const uint8_t held_parameters[] SCREED_PROGRAM_MEMORY = {
     113, 65, 2, 26, 227, 127, 217, 127, 10, 122, 133, 128, 222, 113, 245, 124,
     219, 102, 94, 129, 156, 127, 182, 124, 172, 127, 138, 162, 77, 19, 227, 127,
     7, 128, 171, 139, 164, 125, 116, 104, 111, 133, 250, 97, 195, 128, 135, 127,
@@ -63,7 +63,7 @@ inline void run_held(const int16_t* in, int16_t* out) {
 constexpr uint8_t k_held_inputs = 11;
 constexpr uint8_t k_held_outputs = 1;
 constexpr uint8_t k_held_golden_vectors = 12;
-const int16_t held_golden_in[] SCREED_NN_PROGRAM_MEMORY = {
+const int16_t held_golden_in[] SCREED_PROGRAM_MEMORY = {
     -32768, -32768, -32768, -32768, -32768, -32768, -32768, -32768, -32768, -32768, -32768, -1, -1, -1, -1, -1,
     -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
     0, 32767, 32767, 32767, 32767, 32767, 32767, 32767, 32767, 32767, 32767, 32767, -26037, -21161, -2689, 16049,
@@ -74,7 +74,7 @@ const int16_t held_golden_in[] SCREED_NN_PROGRAM_MEMORY = {
     -433, -31254, 14642, 32401, 12549, 20989, -15009, 9602, -20934, -3418, -6468, -14156, -1447, -14945, 19029, 24189,
     25367, 6639, 27921, -6291,
 };
-const int16_t held_golden_out[] SCREED_NN_PROGRAM_MEMORY = {
+const int16_t held_golden_out[] SCREED_PROGRAM_MEMORY = {
     -32768, -32768, -32768, 32767, -32768, -32768, 32767, 32767, -32768, 32767, 32767, 32767,
 };
 

@@ -1,4 +1,13 @@
 // Slip and stuck, from belts, inertia and a network.
+//
+// A tick in real numbers. v: mean speed of the belts, a: specific force ahead, T = 0.01 s. Sums are
+// in u = 0.048 mm/s, what two accelerometer counts gain in a tick.
+//   residual   = dv - T (a - g sin pitch) - mean
+//   mean      += residual / 64 while the tracks stand (0.64 s), / 512 while they turn (5 s)
+//   loss_k    += residual - loss_k / 2^8, 2^10     leaky sums of 2.6 and 10 s; 0 at rest
+//   vibration: x - its mean (0.64 s), clipped, low pass of 4 ticks, mean magnitude (0.64 s)
+//   yaw rate, effort: low pass of 16 ticks
+//   evidence  += ((held + 1) / 2 - evidence) / 16  every second tick: 0.32 s
 #include "firmware/estimation/slip_watch.h"
 
 #include "firmware/estimation/slip_model.h"
@@ -6,7 +15,7 @@
 namespace screed {
 namespace {
 
-// Means of the network's output, of 65535: from where on it slips, is stuck, is no longer stuck.
+// Of evidence_, 65535 = 1: slips from 0.35 on; stuck from 0.73 on, until below 0.15.
 constexpr uint16_t kSlipEvidence = 22938;
 constexpr uint16_t kStuckEvidence = 47841;
 constexpr uint16_t kFreeEvidence = 9830;
@@ -37,12 +46,12 @@ int16_t SlipWatch::velocity_loss_share(uint8_t which, bool backwards) const {
 }
 
 void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
-  const int32_t rest = counts - asr(vibration.mean, 6);
-  vibration.mean += rest;
-  const int16_t limited = limit_i16(rest, kMaxVibration);
-  vibration.high_pass =
-      static_cast<int16_t>(vibration.high_pass + limited - asr_i16(vibration.high_pass, 2));
-  vibration.magnitude = static_cast<uint16_t>(vibration.magnitude + abs_i16(vibration.high_pass) -
+  const int32_t residual = counts - asr(vibration.mean, 6);
+  vibration.mean += residual;
+  const int16_t limited = limit_i16(residual, kMaxVibration);
+  vibration.band_pass =
+      static_cast<int16_t>(vibration.band_pass + limited - asr_i16(vibration.band_pass, 2));
+  vibration.magnitude = static_cast<uint16_t>(vibration.magnitude + abs_i16(vibration.band_pass) -
                                               (vibration.magnitude >> 6));
 }
 
@@ -60,18 +69,18 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   const auto change = static_cast<int16_t>(half_speed - half_speed_);
   half_speed_ = half_speed;
   const auto gained = static_cast<uint16_t>(4U * static_cast<uint16_t>(change));
-  const int32_t rest = static_cast<int16_t>(gained + asr_i16(change, 2) - asr_i16(accel[0], 1) +
-                                            asr_i16(sin_pitch_q14, 3)) -
-                       asr_i16(saturate_i16(asr(mean_, 8)), 1);
+  const int32_t residual = static_cast<int16_t>(gained + asr_i16(change, 2) - asr_i16(accel[0], 1) +
+                                                asr_i16(sin_pitch_q14, 3)) -
+                           asr_i16(saturate_i16(asr(mean_, 8)), 1);
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
   if (faster_track_ < kStanding_dmm_per_s) {
-    mean_ += rest * 8;
+    mean_ += residual * 8;
     velocity_loss_[0] = 0;
     velocity_loss_[1] = 0;
   } else {
-    mean_ += rest;
-    velocity_loss_[0] += rest - asr(velocity_loss_[0], 8);
-    velocity_loss_[1] += rest - asr(velocity_loss_[1], 10);
+    mean_ += residual;
+    velocity_loss_[0] += residual - asr(velocity_loss_[0], 8);
+    velocity_loss_[1] += residual - asr(velocity_loss_[1], 10);
   }
   update_vibration(vibration_[0], gyro[1]);
   update_vibration(vibration_[1], accel[0]);

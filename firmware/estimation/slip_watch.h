@@ -12,24 +12,19 @@
 
 #include <stdint.h>
 
+#include "firmware/control/track_motion.h"
 #include "firmware/math/fixed.h"
 
 namespace screed {
 
 constexpr uint8_t kSlipInputs = 11;
 
-/// A track as its control knows it.
-struct TrackMotion {
-  int16_t speed_dmm_per_s;  ///< observed, 0.1 mm/s
-  int16_t effort;           ///< duty beyond what drives the unloaded track
-};
-
 /// What the watch remembers, zero at the start.
 struct SlipMemory {
   /// Vibration of an axis, its mean removed.
   struct Vibration {
     int32_t mean;        // 64 times the mean over 0.64 s
-    int16_t high_pass;   // 4 times the rest, smoothed over 4 ticks
+    int16_t band_pass;   // 4 times what differs from the mean, smoothed over 4 ticks
     uint16_t magnitude;  // 64 times the mean of its absolute value
   };
 
@@ -41,12 +36,19 @@ struct SlipMemory {
   int16_t half_speed_;        // of the belts in the tick before, half of 0.1 mm/s
   uint16_t evidence_;         // mean of held_, 0..65535
   bool stuck_;
-  // What the network sees; shares of the faster track's speed are Q14, signs are for driving ahead.
-  //   0, 1  belts' speed minus speed by inertia, share    5  sine of the pitch, Q14
-  //   2  the turn, as speed of a track, share             6  effort of both tracks, 2^-4 duty
-  //   3  half the difference of the tracks, share         7, 8, 9  vibration: pitch rate, ahead,
-  //   up; 4  faster track, 0.2 mm/s                              2^-7 counts
-  //                                                       10  mean pitch rate, 2^-6 counts
+  // clang-format off
+  // Inputs of the network. Signs are for driving ahead; "share" is over the faster track's speed,
+  // Q14.
+  //   0    belts' speed minus inertial speed, over 2.6 s, share
+  //   1    the same over 10 s
+  //   2    |yaw rate| as speed of a track, share
+  //   3    half the difference of the tracks, share
+  //   4    faster track, 0.2 mm/s
+  //   5    sine of the pitch, Q14
+  //   6    effort of both tracks, 1/16 duty
+  //   7-9  vibration of pitch rate, force ahead, force up, 1/128 count
+  //   10   mean pitch rate, 1/64 count
+  // clang-format on
   int16_t inputs_[kSlipInputs];
   int16_t held_;            // the network's output, Q15: -1 it moves, 1 it hardly does
   Vibration vibration_[3];  // pitch rate, specific force ahead, up
@@ -54,8 +56,9 @@ struct SlipMemory {
 
 class SlipWatch : private SlipMemory {
  public:
+  // 126 = 40 pi = 10 (0.1 mm) x 4 (quartered rate) x pi (B/2 x 2 pi / 65536, Q16)
   explicit SlipWatch(uint16_t tread_mm)
-      : SlipMemory(), arc_q16_(static_cast<uint16_t>(tread_mm * 126U)) {}  // 126 = pi / 2 * 10 * 8
+      : SlipMemory(), arc_q16_(static_cast<uint16_t>(tread_mm * 126U)) {}
 
   /// One tick. gyro, accel: the three counts (70 mdps, 0.244 mg) as they come; sin_pitch_q14 > 0:
   /// nose up; yaw_rate: angle units/s. The network is asked when `classify_now` is set, in every

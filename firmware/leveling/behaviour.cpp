@@ -15,7 +15,7 @@ void Behaviour::start() {
   ticks_in_state_ = 0;
 }
 
-void Behaviour::enter(LevelingState next) {
+void Behaviour::enter_or_stay(LevelingState next) {
   if (next == state_) {
     if (ticks_in_state_ < UINT16_MAX) ++ticks_in_state_;
     return;
@@ -26,8 +26,8 @@ void Behaviour::enter(LevelingState next) {
   ticks_in_state_ = 1;
 }
 
-MotionCommand Behaviour::enter(LevelingState state, MotionCommand motion) {
-  enter(state);
+MotionCommand Behaviour::enter_or_stay(LevelingState state, MotionCommand motion) {
+  enter_or_stay(state);
   return motion;
 }
 
@@ -38,21 +38,21 @@ bool Behaviour::uphill(Angle pitch) const {
 }
 
 MotionCommand Behaviour::walk() {
-  enter(LevelingState::kWalk);
+  enter_or_stay(LevelingState::kWalk);
   return walk_.tick();
 }
 
 MotionCommand Behaviour::climb() {
-  return enter(LevelingState::kClimb, {climb_speed_, 0});
+  return enter_or_stay(LevelingState::kClimb, {climb_speed_, 0});
 }
 
-bool Behaviour::leaves_site(const LevelingInput& input) {
+bool Behaviour::update_return(const LevelingInput& input) {
   // A spin stays where it is.
-  return state_ != LevelingState::kSpin && fence_.outside(input.x_mm, input.y_mm);
+  return state_ != LevelingState::kSpin && fence_.update(input.x_mm, input.y_mm);
 }
 
 MotionCommand Behaviour::return_to_site(const LevelingInput& input) {
-  return enter(LevelingState::kReturn, fence_.steer(input.x_mm, input.y_mm, input.heading));
+  return enter_or_stay(LevelingState::kReturn, fence_.steer(input.x_mm, input.y_mm, input.heading));
 }
 
 }  // namespace screed

@@ -16,8 +16,9 @@
 // The constructor runs at power-up and whenever a parameter was changed, on a robot at rest; what
 // the object holds then begins anew. One object of every algorithm of the image lies in Leveling
 // for good: no heap, no virtual functions. tick() runs 100 times a second while the robot runs, and
-// ends with one of the motions of Behaviour or with enter(): the state it enters is what the robot
-// reports and records. Its time counts against the tick's (make size), and it waits for nothing.
+// ends with one of the motions of Behaviour or with enter_or_stay(): the state it enters is what
+// the robot reports and records. Its time counts against the tick's (make size), and it waits for
+// nothing.
 #pragma once
 
 #include <stdint.h>
@@ -54,10 +55,11 @@ class Behaviour {
   explicit Behaviour(const Parameters& parameters);
 
   LevelingState state() const { return state_; }
-  /// Ticks in this state, the next one not included; since the last restart_time().
+  /// Ticks spent in this state, before the current one, since it was entered or restart_time().
   uint16_t ticks_in_state() const { return ticks_in_state_; }
   void restart_time() { ticks_in_state_ = 0; }
-  /// Peaks met since power-up: climbs that ended in another way than at the site's fence.
+  /// Climbs that ended in another motion than the return to the site. Starts at 0 again after a
+  /// parameter change; a climb cut off by a stop does not count.
   uint16_t peaks() const { return peaks_; }
 
   /// The pitch is that of an incline worth climbing. A climb goes on until the pitch has fallen
@@ -71,17 +73,19 @@ class Behaviour {
   /// Straight on.
   MotionCommand climb();
   /// Any other motion, in a state of its own.
-  MotionCommand enter(LevelingState state, MotionCommand motion);
+  MotionCommand enter_or_stay(LevelingState state, MotionCommand motion);
 
   // For Leveling.
   /// The state begins anew: a run starts.
   void start();
   /// The robot has to drive back to the site.
-  bool leaves_site(const LevelingInput& input);
+  bool update_return(const LevelingInput& input);
   MotionCommand return_to_site(const LevelingInput& input);
 
  private:
-  void enter(LevelingState next);
+  /// Counts the tick in its state, and begins the state where it is another than in the tick
+  /// before.
+  void enter_or_stay(LevelingState next);
 
   Angle threshold_;
   Angle hysteresis_;

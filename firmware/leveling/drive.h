@@ -12,7 +12,7 @@ class Drive : public AlgorithmDefaults {
   explicit Drive(const Parameters& /*parameters*/) {}
 
   MotionCommand tick(const LevelingInput& input, Behaviour& behaviour) {
-    return behaviour.enter(LevelingState::kDrive, input.drive);
+    return behaviour.enter_or_stay(LevelingState::kDrive, input.drive);
   }
 };
 

@@ -24,7 +24,7 @@ Leveling::Leveling(const Parameters& parameters)
 }
 
 MotionCommand Leveling::tick(const LevelingInput& input) {
-  if (keeps_to_site(algorithm_) && behaviour_.leaves_site(input)) {
+  if (keeps_to_site(algorithm_) && behaviour_.update_return(input)) {
     return behaviour_.return_to_site(input);
   }
   switch (algorithm_) {

@@ -42,7 +42,8 @@ class Leveling {
 
   LevelingAlgorithm algorithm() const { return algorithm_; }
   LevelingState state() const { return behaviour_.state(); }
-  /// Peaks met since power-up: climbs that ended.
+  /// Climbs that ended in another motion than the return to the site. Starts at 0 again after a
+  /// parameter change; a climb cut off by a stop does not count.
   uint16_t peaks() const { return behaviour_.peaks(); }
 
  private:

@@ -18,7 +18,7 @@ class SiteFence {
   /// Looks at the position (dead reckoning from the start). Returns true while the robot has to
   /// drive back: from the moment it leaves the circle until it is well inside (three quarters of
   /// the radius) again.
-  bool outside(int32_t x_mm, int32_t y_mm);
+  bool update(int32_t x_mm, int32_t y_mm);
 
   /// The motion that leads back: turns on the spot while the start lies behind, drives as soon as
   /// it lies ahead.

@@ -15,7 +15,7 @@ SpinOnPeak::SpinOnPeak(const Parameters& parameters)
 
 MotionCommand SpinOnPeak::spin(Behaviour& behaviour) const {
   const YawRate rate = spin_left_ ? spin_rate_ : static_cast<YawRate>(-spin_rate_);
-  return behaviour.enter(LevelingState::kSpin, {0, rate});
+  return behaviour.enter_or_stay(LevelingState::kSpin, {0, rate});
 }
 
 MotionCommand SpinOnPeak::tick(const LevelingInput& input, Behaviour& behaviour) {

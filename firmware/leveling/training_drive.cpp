@@ -34,7 +34,8 @@ uint16_t TrainingDrive::length_of(uint8_t block) const {
 
 MotionCommand TrainingDrive::tick(const LevelingInput& /*input*/, Behaviour& behaviour) {
   const MotionCommand motion = tick();
-  return behaviour.enter(finished() ? LevelingState::kDone : LevelingState::kTrainingDrive, motion);
+  return behaviour.enter_or_stay(finished() ? LevelingState::kDone : LevelingState::kTrainingDrive,
+                                 motion);
 }
 
 MotionCommand TrainingDrive::tick() {

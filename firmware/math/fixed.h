@@ -185,11 +185,6 @@ constexpr uint16_t low_half(int32_t value) {
 
 }  // namespace detail
 
-/// a * b in Q15, rounded to nearest, halves up; -1 * -1 saturates to 32767.
-SCREED_CONSTEXPR_OFF_AVR int16_t mul_q15(int16_t a, int16_t b) {
-  return saturate_i16(asr_round(mul_i16(a, b), 15));
-}
-
 /// floor((a * k + 2^15) / 2^16): a wide number times a Q16 factor within +-1/2 (or half of a Q15
 /// factor), the exact product rounded to nearest, halves up. All of int32 x int16 is allowed.
 SCREED_OUT_OF_LINE inline int32_t scale_q16(int32_t a, int16_t k) {
@@ -267,26 +262,26 @@ SCREED_OUT_OF_LINE inline uint16_t quotient_u16(uint32_t a, uint16_t b) {
 #ifdef __AVR__
   // gcc-avr's 32-bit division takes 650 cycles, this one 240: the remainder has 16 bits (and a
   // carry), and only 16 bits of quotient are to be found.
-  uint16_t rest = static_cast<uint16_t>(a >> 16);
+  uint16_t remainder = static_cast<uint16_t>(a >> 16);
   uint16_t quotient = static_cast<uint16_t>(a & 0xFFFFU);  // moves out above as the result moves in
   uint8_t bits = 16;
   asm("1:\n\t"
       "lsl %A[quotient]\n\t"
       "rol %B[quotient]\n\t"
-      "rol %A[rest]\n\t"
-      "rol %B[rest]\n\t"
+      "rol %A[remainder]\n\t"
+      "rol %B[remainder]\n\t"
       "brcs 2f\n\t"
-      "cp %A[rest], %A[b]\n\t"
-      "cpc %B[rest], %B[b]\n\t"
+      "cp %A[remainder], %A[b]\n\t"
+      "cpc %B[remainder], %B[b]\n\t"
       "brcs 3f\n"
       "2:\n\t"
-      "sub %A[rest], %A[b]\n\t"
-      "sbc %B[rest], %B[b]\n\t"
+      "sub %A[remainder], %A[b]\n\t"
+      "sbc %B[remainder], %B[b]\n\t"
       "inc %A[quotient]\n"
       "3:\n\t"
       "dec %[bits]\n\t"
       "brne 1b\n\t"
-      : [quotient] "+r"(quotient), [rest] "+r"(rest), [bits] "+r"(bits)
+      : [quotient] "+r"(quotient), [remainder] "+r"(remainder), [bits] "+r"(bits)
       : [b] "r"(b));
   return quotient;
 #else
@@ -297,8 +292,9 @@ SCREED_OUT_OF_LINE inline uint16_t quotient_u16(uint32_t a, uint16_t b) {
 /// floor(a / b), b > 0.
 SCREED_OUT_OF_LINE inline uint32_t quotient_u32(uint32_t a, uint16_t b) {
   const auto high = static_cast<uint16_t>(a >> 16);
-  const uint32_t rest = (static_cast<uint32_t>(high % b) << 16) | (a & 0xFFFFU);
-  return (static_cast<uint32_t>(static_cast<uint16_t>(high / b)) << 16) | quotient_u16(rest, b);
+  const uint32_t remainder = (static_cast<uint32_t>(high % b) << 16) | (a & 0xFFFFU);
+  return (static_cast<uint32_t>(static_cast<uint16_t>(high / b)) << 16) |
+         quotient_u16(remainder, b);
 }
 
 /// floor((a * b + 2^29) / 2^30): the product of two Q30 numbers, the exact 64-bit product rounded

@@ -15,7 +15,7 @@ namespace screed {
 using YawRate = int16_t;
 
 /// 0.01 degree -> angle units; error below 0.01 %. Any int16_t up to +-17999 (less than half a
-/// turn).
+/// turn). 59652 / 2^15 = 65536 / 36000.
 SCREED_OUT_OF_LINE constexpr Angle angle_from_centidegrees(int16_t centidegrees) {
   return static_cast<Angle>(asr(static_cast<int32_t>(centidegrees) * 59652, 15));
 }
@@ -25,7 +25,7 @@ constexpr int16_t centidegrees_from_angle(Angle angle) {
   return static_cast<int16_t>(asr(static_cast<int32_t>(angle) * 36000, 16));
 }
 
-/// degrees/s -> angle units/s; +-179 degrees/s.
+/// degrees/s -> angle units/s; +-179 degrees/s. 46603 / 2^8 = 65536 / 360.
 SCREED_OUT_OF_LINE constexpr YawRate yaw_rate_from_degrees(int16_t degrees_per_s) {
   return static_cast<YawRate>(asr(static_cast<int32_t>(degrees_per_s) * 46603, 8));
 }

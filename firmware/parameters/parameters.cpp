@@ -1,4 +1,4 @@
-// The range check of the parameters, over a table: 23 comparisons written out are three times as
+// The range check of the parameters, over a table: comparisons written out are three times as
 // long.
 #include "firmware/parameters/parameters.h"
 
@@ -7,7 +7,7 @@
 namespace screed {
 namespace {
 
-const int16_t kRanges[][2] SCREED_NN_PROGRAM_MEMORY = {
+const int16_t kRanges[][2] SCREED_PROGRAM_MEMORY = {
 #define SCREED_RANGE(name, unit, min, max, value, meaning) {min, max},
     SCREED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
@@ -20,8 +20,7 @@ static_assert(sizeof(Parameters) == kCount * sizeof(int16_t), "parameters are nu
 bool Parameters::valid() const {
   const auto* value = reinterpret_cast<const int16_t*>(this);
   for (uint8_t i = 0; i < kCount; ++i, ++value) {
-    if (*value < nn::read_program_i16(&kRanges[i][0]) ||
-        *value > nn::read_program_i16(&kRanges[i][1]))
+    if (*value < read_program_i16(&kRanges[i][0]) || *value > read_program_i16(&kRanges[i][1]))
       return false;
   }
   // Their numbers follow each other, or the range has let one pass that there is not.

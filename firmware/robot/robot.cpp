@@ -57,13 +57,14 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
       slip_watch_(board.tread_mm),
       gate_(credentials) {}
 
+void Robot::begin_first_tick(const SensorSample& sample) {
+  event(message::EventCode::kStarted, sample.reset_cause);
+  last_left_ = sample.encoder_left;
+  last_right_ = sample.encoder_right;
+  started_ = true;
+}
+
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
-  if (!started_) {
-    event(message::EventCode::kStarted, sample.reset_cause);
-    last_left_ = sample.encoder_left;
-    last_right_ = sample.encoder_right;
-    started_ = true;
-  }
   // Modulo 2^16: a wrap of the counters has no effect.
   const Deltas deltas = {
       static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - last_left_)),
@@ -111,7 +112,8 @@ void Robot::receive(const SensorSample& sample) {
 void Robot::handle(const CanFrame& frame) {
   switch (frame.id) {
     case kIdCommand:
-      // Its MAC protects it. Looked at when there is time for that; a second one meanwhile is lost.
+      // Authenticated by its MAC, which a later tick checks. While one command waits, others are
+      // dropped.
       if (frame.size != kCommandSize || command_pending_) break;
       memcpy(command_, frame.data, kCommandSize);
       command_pending_ = true;
@@ -143,11 +145,9 @@ void Robot::handle(const CanFrame& frame) {
   ++uplink_.rejected_frames;
 }
 
-// A MAC and a packet of telemetry in one tick would be the longest tick of all.
+// Not in a tick with a telemetry packet: both together would exceed the longest tick.
 void Robot::process_command() {
-  gate_.tick();
-  if (store_ticks_ != 0) --store_ticks_;
-  if (!command_pending_ || telemetry_.packet_due()) return;
+  if (!command_pending_ || telemetry_.is_packet_tick()) return;
   command_pending_ = false;
   const GateResult checked = gate_.check(kIdCommand, command_);
   if (checked == GateResult::kRepeated) {
@@ -199,7 +199,7 @@ RequestResult Robot::execute(const uint8_t* data) {
         return RequestResult::kWrongState;
       }
       const DriveArgument drive = get_drive_argument(argument);
-      // 0.1 degree/s -> angle units/s
+      // 0.1 degree/s -> angle units/s: 9321 / 2^9 = 65536 / 3600
       const int32_t rate = asr(static_cast<int32_t>(drive.turn_ddeg_per_s) * 9321, 9);
       drive_command_ = {drive.speed_mm_per_s, limit_i16(rate, INT16_MAX)};
       return RequestResult::kDone;
@@ -222,15 +222,16 @@ RequestResult Robot::send_parameter(uint16_t index) {
   return RequestResult::kDone;
 }
 
-// What was staged is not signed, but the command that names it is: with the index given there is
-// one value of 16 bits to a CRC of 16.
+// The staged frame is not authenticated; the commit command is. It carries the index and a CRC-16
+// of index and value. For one index, a CRC-16 maps each 16-bit value to its own CRC: only the
+// intended value passes.
 RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
   if (supervisor_.state() != RobotState::kDisarmed) return RequestResult::kWrongState;
   if (store_ticks_ != 0) return RequestResult::kBusy;
   const int32_t value = get_s32(staged_ + 2);
   const auto value_16 = static_cast<int16_t>(value);
   if (get_u16(staged_) != index || index >= kParameterCount || value_16 != value ||
-      crc16_ccitt(staged_, kSignedOfStaged) != crc) {
+      crc16_ccitt(staged_, kStagedCrcBytes) != crc) {
     return RequestResult::kBadArgument;
   }
   int16_t& parameter = this->parameter(index);
@@ -290,13 +291,14 @@ void Robot::select_motion() {
 
 void Robot::watch_slip(const SensorSample& sample) {
   slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel,
-                   status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.packet_due());
+                   status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
 
 void Robot::announce_state() {
   const RobotState state = supervisor_.state();
   if (state == status_.state) return;
   status_.state = state;
+  // faults << 8 | state, as EVENT.argument in screed.dbc
   event(message::EventCode::kState,
         static_cast<int32_t>(supervisor_.faults()) * 256 + static_cast<uint8_t>(state));
 }
@@ -320,7 +322,7 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
   telemetry_.tick(view, output);
 }
 
-void Robot::act(RobotOutput& output) {
+void Robot::write_actuators(RobotOutput& output) {
   output.store_parameter = store_parameter_;
   output.store_value = store_value_;
   store_parameter_ = 0;
@@ -332,16 +334,22 @@ void Robot::act(RobotOutput& output) {
                                      (supervisor_.link_alive() ? kLedGreen : 0));
 }
 
+// The order matters. Of the tick before are: duty (rest detection, stall), slip_watch_.stuck()
+// (supervisor), status_.state (start of a run). is_packet_tick() is constant until report(): ticks
+// with a packet run the slip network, the others check a command's MAC.
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   // At most 65,535 mV: what the sensor can say (8184 LSB) is far below.
   const uint32_t battery_uv = static_cast<uint32_t>(sample.battery) * board_.battery_uv_per_lsb;
   status_.battery_mv = battery_uv < static_cast<uint32_t>(1000) << 16
                            ? quotient_u16(battery_uv, 1000)
                            : static_cast<uint16_t>(0xFFFFU);
+  if (!started_) begin_first_tick(sample);
   const Deltas deltas = count_deltas(sample);
 
   estimate_pose(sample, deltas);
   receive(sample);
+  gate_.tick();
+  if (store_ticks_ != 0) --store_ticks_;
   process_command();
   supervise(sample, deltas);
   select_motion();
@@ -357,7 +365,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   watch_slip(sample);
   announce_state();
   report(sample, output);
-  act(output);
+  write_actuators(output);
 }
 
 }  // namespace screed

@@ -69,8 +69,9 @@ class Robot : private RobotMemory {
     int16_t right;
   };
 
-  static constexpr uint8_t kSignedOfStaged = 4;  ///< index and lower half of the value
+  static constexpr uint8_t kStagedCrcBytes = 4;  ///< index and lower half of the value
 
+  void begin_first_tick(const SensorSample& sample);
   Deltas count_deltas(const SensorSample& sample);
   void estimate_pose(const SensorSample& sample, const Deltas& deltas);
   void receive(const SensorSample& sample);
@@ -87,7 +88,7 @@ class Robot : private RobotMemory {
   void watch_slip(const SensorSample& sample);
   void announce_state();
   void report(const SensorSample& sample, RobotOutput& output);
-  void act(RobotOutput& output);
+  void write_actuators(RobotOutput& output);
 
   BoardConstants board_;
   Parameters parameters_;

@@ -1,5 +1,5 @@
-// What the robot knows of itself and does: its own state from tick to tick, that supervisor,
-// leveling and motors work on. The downlink reports of it and does not own it.
+// State that the robot keeps from tick to tick and that supervisor, leveling and drive share.
+// Telemetry only reads it.
 #pragma once
 
 #include <stdint.h>
@@ -18,7 +18,7 @@ struct RobotStatus {
   int32_t y_mm;  ///< north
   uint16_t battery_mv;
   MotionCommand motion;  ///< commanded
-  DriveOutput duty;      ///< of the motors; until a tick sets it that of the tick before
+  DriveOutput duty;      ///< motor duty; the last tick's until drive control has run
   RobotState state;      ///< of the supervisor at the end of a tick
 };
 
@@ -26,8 +26,9 @@ struct RobotStatus {
 struct UplinkCounts {
   uint8_t ground_heartbeats;  ///< valid ones since start
   uint16_t ground_time_ms;    ///< lower 16 bits of the last one's time
-  uint16_t frames_received;   ///< accepted
-  uint8_t rejected_frames;    ///< wrong CRC or size
+  /// well-formed frames for this robot; a COMMAND counts before its MAC is checked
+  uint16_t frames_received;
+  uint8_t rejected_frames;  ///< wrong CRC or size, or a COMMAND while another waits
 };
 
 }  // namespace screed

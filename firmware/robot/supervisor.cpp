@@ -8,9 +8,9 @@ namespace screed {
 namespace {
 
 // Deadlines from cause to reaction, in ticks of 10 ms.
-constexpr uint8_t kTiltTicks = 6;       // stop within 100 ms
-constexpr uint8_t kSilentTicks = 8;     // stop within 100 ms
-constexpr uint8_t kFrozenTicks = 18;    // stop within 200 ms
+constexpr uint8_t kTiltTicks = 6;       // 60 ms; the reaction must come within 100 ms
+constexpr uint8_t kSilentTicks = 8;     // 80 ms; the reaction must come within 100 ms
+constexpr uint8_t kFrozenTicks = 18;    // 180 ms; the reaction must come within 200 ms
 constexpr uint8_t kChipTicks = 5;       // after the 40 ms until the barometer is read again
 constexpr uint8_t kBatteryTicks = 100;  // a start-up dip is not an empty battery
 constexpr uint16_t kLinkStopTicks = 50;
@@ -24,6 +24,7 @@ constexpr int32_t kMaxRestAccel = 1229;
 constexpr int16_t kStallDuty = 240;
 // From this duty on a track is meant to move.
 constexpr int16_t kPushDuty = 60;
+// Alternations without progress that prove a broken wire.
 constexpr uint8_t kReversals = 4;
 
 uint8_t count_up(uint8_t value) {
@@ -43,17 +44,18 @@ SCREED_OUT_OF_LINE bool lasts(bool now, uint8_t& ticks, uint8_t enough) {
 
 void TrackWatch::tick(int16_t duty, int16_t counts) {
   const int16_t push = duty < 0 ? static_cast<int16_t>(-duty) : duty;
-  const int16_t back = duty < 0 ? counts : static_cast<int16_t>(-counts);
-  const bool near = back >= -1 && back <= 1;
-  const int8_t behind = near ? static_cast<int8_t>(behind_ + back) : static_cast<int8_t>(-1);
+  const int16_t backward = duty < 0 ? counts : static_cast<int16_t>(-counts);
+  const bool near = backward >= -1 && backward <= 1;
+  const int8_t behind =
+      near ? static_cast<int8_t>(counts_behind_farthest_ + backward) : static_cast<int8_t>(-1);
   if (push < kPushDuty || behind < 0 || behind > 1) {
-    behind_ = 0;
+    counts_behind_farthest_ = 0;
     reversals_ = 0;
     still_ticks_ = 0;
     return;
   }
-  behind_ = behind;
-  if (back != 0) reversals_ = count_up(reversals_);
+  counts_behind_farthest_ = behind;
+  if (backward != 0) reversals_ = count_up(reversals_);
   still_ticks_ = push < kStallDuty ? static_cast<uint16_t>(0) : count_up(still_ticks_);
 }
 
@@ -156,7 +158,7 @@ void Supervisor::watch_link() {
 }
 
 // Arms and runs once, after the delay: a stand-alone robot that was stopped, even before that,
-// stays stopped.
+// stays stopped. ticks_since_start_ == UINT16_MAX: the start has happened or was cancelled.
 void Supervisor::run_standalone() {
   if (!standalone_ || ticks_since_start_ == UINT16_MAX) return;
   if (ticks_since_start_ < standalone_ticks_) {

@@ -1,8 +1,11 @@
 // The robot's safe state machine: who may drive, and what stops it.
 //
-//   disarmed --arm--> armed --run--> running --stop or link lost--> stopped --run--> running
-//   any state --disarm or link lost for long--> disarmed;  any state --fault--> fault --clear,
-//   cause gone--> disarmed
+//   disarmed --arm--> armed --run--> running --stop, or link lost 0.5 s--> stopped --run--> running
+//   armed, running, stopped --disarm, or link lost 1.5 s--> disarmed
+//   armed, running, stopped --fault--> fault;  any state --emergency stop--> fault
+//   fault --clear, once no cause is present--> disarmed
+//
+// A stand-alone robot ignores the link. While disarmed, a present fault only prevents arming.
 //
 // Motors get power in `running`, and in `stopped` while they ramp down; never elsewhere. A fault is
 // latched with its cause.
@@ -55,9 +58,10 @@ struct SupervisorInput {
 
 /// Watches one driven track for progress.
 ///
-/// A track that is stuck makes no counts. One with a broken encoder wire makes counts that
-/// alternate, since the other channel alone tells no direction. Both look still; a track that
-/// moves, either way, leaves the place where it was last seen by two counts.
+/// It keeps the farthest position reached in the direction of the duty. A track that gets farther,
+/// or falls back by two counts, moves. A stalled track makes no counts; with a broken encoder wire
+/// it alternates by one count, since one channel gives no direction. Both stay within one count of
+/// the farthest position.
 class TrackWatch {
  public:
   void tick(int16_t duty, int16_t counts);
@@ -67,8 +71,8 @@ class TrackWatch {
 
  private:
   uint16_t still_ticks_ = 0;
-  int8_t behind_ = 0;      ///< counts behind the farthest place reached in the direction pushed
-  uint8_t reversals_ = 0;  ///< alternations since the last progress
+  int8_t counts_behind_farthest_ = 0;  ///< 0 or 1
+  uint8_t reversals_ = 0;              ///< alternations since the last progress
 };
 
 /// What the supervisor remembers, zero at the start but the time without a heartbeat: zeroed at

@@ -51,7 +51,7 @@ struct TelemetryMemory {
   uint8_t countdown_[kTelemetryMessages];
   uint8_t counter_[kTelemetryMessages + kUrgentMessages];
   bool started_;
-  uint8_t heartbeats_before_;  ///< TelemetryView::ground_heartbeats at the last LINK
+  uint8_t heartbeats_before_;  ///< UplinkCounts::ground_heartbeats at the last LINK
   uint16_t longest_tick_us_;   ///< since the last HEALTH
 };
 
@@ -68,7 +68,7 @@ class Telemetry : private TelemetryMemory {
   void queue(const CanFrame& frame);
 
   /// tick() will hand over a packet: there is more to compute than in other ticks.
-  bool packet_due() const { return next_packet_ == 0; }
+  bool is_packet_tick() const { return next_packet_ == 0; }
 
   /// One tick: writes the lines of a packet into output.radio_out, when it is time for one, whole
   /// lines only. What does not fit waits for the next one.
@@ -77,6 +77,7 @@ class Telemetry : private TelemetryMemory {
  private:
   void emit(CanFrame& frame, uint8_t message, RobotOutput& output);
   bool room(const RobotOutput& output) const;
+  /// Call once per sent frame: HEALTH and LINK start new intervals here.
   void fill(CanFrame& frame, const TelemetryView& view);
 };
 

@@ -40,7 +40,7 @@ class CommandGate {
   /// Looks at the kCommandSize bytes of a COMMAND. Costs 10,000 cycles on the AVR: once a tick.
   GateResult check(uint16_t can_id, const uint8_t* data);
 
-  /// One tick: time heals.
+  /// One tick. Counts down lock-out and wrong MACs.
   void tick();
 
   /// Of the command that was accepted last; 0: none yet.

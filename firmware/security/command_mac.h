@@ -17,6 +17,7 @@
 namespace screed {
 
 constexpr uint8_t kCommandSize = 8;             ///< bytes of a COMMAND frame
+constexpr uint8_t kCommandBodySize = 4;         ///< op and argument
 constexpr uint8_t kCommandFreshnessOffset = 4;  ///< lower 8 bits of the counter
 constexpr uint8_t kCommandMacOffset = 5;
 constexpr uint8_t kCommandMacSize = 3;

@@ -16,7 +16,7 @@ constexpr uint8_t kWord = 8;
 constexpr uint8_t kState = 4 * kWord;
 
 /// "somepseudorandomlygeneratedbytes", each word from its end.
-const uint8_t kInitial[kState] SCREED_NN_PROGRAM_MEMORY = {
+const uint8_t kInitial[kState] SCREED_PROGRAM_MEMORY = {
     'u', 'e', 's', 'p', 'e', 'm', 'o', 's', 'm', 'o', 'd', 'n', 'a', 'r', 'o', 'd',
     'a', 'r', 'e', 'n', 'e', 'g', 'y', 'l', 's', 'e', 't', 'y', 'b', 'd', 'e', 't'};
 
@@ -170,7 +170,7 @@ SCREED_OUT_OF_LINE void rounds(uint8_t* v, uint8_t count) {
 void siphash_2_4(const uint8_t* key, const uint8_t* message, uint8_t size, uint8_t* hash) {
   uint8_t v[kState];
   for (uint8_t i = 0; i < kState; ++i) {
-    v[i] = static_cast<uint8_t>(nn::read_program_u8(kInitial + i) ^ key[i % kSipHashKeySize]);
+    v[i] = static_cast<uint8_t>(read_program_u8(kInitial + i) ^ key[i % kSipHashKeySize]);
   }
   // The last block ends with the size of the message.
   const uint8_t last = static_cast<uint8_t>(size | (kWord - 1U));

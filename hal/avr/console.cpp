@@ -56,18 +56,18 @@ void print_text(const char* text) {
 }
 
 void print_number(int16_t value) {
-  uint16_t rest = static_cast<uint16_t>(value);
+  uint16_t remainder = static_cast<uint16_t>(value);
   print(' ');
   if (value < 0) {
     print('-');
-    rest = static_cast<uint16_t>(0U - rest);
+    remainder = static_cast<uint16_t>(0U - remainder);
   }
   uint8_t digits[5];
   uint8_t count = 0;
   do {
-    digits[count++] = static_cast<uint8_t>('0' + rest % 10U);
-    rest /= 10U;
-  } while (rest != 0);
+    digits[count++] = static_cast<uint8_t>('0' + remainder % 10U);
+    remainder /= 10U;
+  } while (remainder != 0);
   while (count > 0) print(digits[--count]);
 }
 

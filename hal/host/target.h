@@ -16,7 +16,7 @@ namespace hal {
 class Target {
  public:
   virtual ~Target() = default;
-  /// The calls of hal.h, one by one.
+  /// The calls of hal.h except parameters_intact(), which is true on a host.
   virtual void init() = 0;
   virtual const BoardConstants& board_constants() = 0;
   virtual const Parameters& parameters() = 0;

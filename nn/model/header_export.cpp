@@ -20,7 +20,7 @@ std::string identifier(const std::string& name) {
 template <class T>
 void put_array(std::string& text, const char* type, const std::string& name,
                const std::vector<T>& values) {
-  text += std::string("const ") + type + " " + name + "[] SCREED_NN_PROGRAM_MEMORY = {";
+  text += std::string("const ") + type + " " + name + "[] SCREED_PROGRAM_MEMORY = {";
   constexpr std::size_t kInALine = 16;
   for (std::size_t i = 0; i < values.size(); ++i) {
     text += i % kInALine == 0 ? "\n    " : " ";

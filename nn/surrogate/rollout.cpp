@@ -184,17 +184,17 @@ Rollout by_firmware(const Recording& recording, std::uint64_t start, std::uint64
   const double volt_per_lsb = recording.session.info().board.battery_uv_per_lsb * 1e-6;
   Checker checker(recording, start);
   for (std::uint64_t row = start + 1; row < end; ++row) {
-    const std::array<double, 2> share = {static_cast<double>(output.duty_left) / kDutyMax,
-                                         static_cast<double>(output.duty_right) / kDutyMax};
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(share);
+    const std::array<double, 2> duty_ratio = {static_cast<double>(output.duty_left) / kDutyMax,
+                                              static_cast<double>(output.duty_right) / kDutyMax};
+    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(duty_ratio);
     if (!checker.add_row(row, plant.pose())) break;
     // Time and radio as they were.
     SensorSample sample = recording.samples[row];
     imu.measure(plant.motion(), sample);
     sample.encoder_left = counts(kLeft);
     sample.encoder_right = counts(kRight);
-    sample.battery = static_cast<std::uint16_t>(
-        std::clamp(std::round(plant.battery().terminal_v / volt_per_lsb), 0.0, 8.0 * 1023.0));
+    sample.battery = static_cast<std::uint16_t>(std::clamp(
+        std::round(plant.battery().terminal_v / volt_per_lsb), 0.0, double{kBatteryMax}));
     firmware.tick(sample, output);
   }
   return checker.take();

@@ -158,17 +158,17 @@ double SurrogatePlant::resistance(Side side) const {
   return force * geometry_.wheel_radius_m;
 }
 
-void SurrogatePlant::step(const std::array<double, 2>& share) {
+void SurrogatePlant::step(const std::array<double, 2>& duty_ratio) {
   constexpr double kStep_s = kFrame_s / kStepsPerTick;
   double current = 0.0;
   for (const Side side : {kLeft, kRight}) {
     const auto i = static_cast<size_t>(side);
-    current += std::max(0.0, share[i] * shafts_[i].current_a());
+    current += std::max(0.0, duty_ratio[i] * shafts_[i].current_a());
   }
   const std::array<double, 2> torque = {-resistance(kLeft), -resistance(kRight)};
   for (size_t i = 0; i < shafts_.size(); ++i) {
     // On a slope a braked track stands: what the ground takes is friction as well.
-    shafts_[i].step(share[i] * battery_.terminal_v, on_side_ ? 0.0 : torque[i], kStep_s);
+    shafts_[i].step(duty_ratio[i] * battery_.terminal_v, on_side_ ? 0.0 : torque[i], kStep_s);
   }
   battery_.step(current, kStep_s);
   ++steps_;

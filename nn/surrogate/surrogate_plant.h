@@ -49,7 +49,7 @@ class SurrogatePlant : public Environment {
   /// Goes on from there.
   void set_state(const DrivingState& state);
 
-  void step(const std::array<double, 2>& share) override;
+  void step(const std::array<double, 2>& duty_ratio) override;
   ImuTruth motion() const override;
   void lay_on_side() override;
 

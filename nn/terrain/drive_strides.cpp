@@ -47,7 +47,7 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
   robot_ = robot_model(setup, session_.info().board_name);
   wheels_ = wheel_positions(robot_);
   tracks_ = setup.experiment.vehicle.tracks;
-  on_soil_ = setup.ground == "scm";
+  on_soil_ = setup.experiment.map.is_soil();
   if (on_soil_) soil_ = make_soil(read_experiment(run / "experiment.ini"));
   const double tick_s = 1.0 / session_.info().tick_rate_hz;
   std::vector<SimFrame> frames(session_.frames());

@@ -45,11 +45,11 @@ void Bench::measure() {
 }
 
 int Bench::left_duty() const {
-  return static_cast<int>(std::lround(400.0 * board.motor_share(kLeft)));
+  return static_cast<int>(std::lround(400.0 * board.motor_duty_ratio(kLeft)));
 }
 
 int Bench::right_duty() const {
-  return static_cast<int>(std::lround(400.0 * board.motor_share(kRight)));
+  return static_cast<int>(std::lround(400.0 * board.motor_duty_ratio(kRight)));
 }
 
 void Bench::turn_tracks() {

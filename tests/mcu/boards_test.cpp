@@ -56,8 +56,8 @@ TEST_P(EachBoard, BootsAndTicks) {
   EXPECT_TRUE(board_.mcu.alive());
   EXPECT_EQ(board_.mcu.starts(), 1);
   EXPECT_NEAR(static_cast<double>(board_.mcu.ticks()), 199, 2);
-  EXPECT_EQ(board_.motor_share(kLeft), 0.0);
-  EXPECT_EQ(board_.motor_share(kRight), 0.0);
+  EXPECT_EQ(board_.motor_duty_ratio(kLeft), 0.0);
+  EXPECT_EQ(board_.motor_duty_ratio(kRight), 0.0);
   EXPECT_NEAR(get_s16(last(kIdAccelRaw).data + 6), 4096, 5);
   EXPECT_NEAR(get_u16(last(kIdPower).data + 2), 7200, 40);
 }
@@ -112,8 +112,8 @@ TEST_P(EachBoard, TurnsLeftWithTheRightTrackForward) {
   run_ms(50);
   board_.mcu.receive(ground_.command(CommandOp::kDrive, {0, 600}));
   run_ms(100);
-  EXPECT_LT(board_.motor_share(kLeft), 0.0);
-  EXPECT_GT(board_.motor_share(kRight), 0.0);
+  EXPECT_LT(board_.motor_duty_ratio(kLeft), 0.0);
+  EXPECT_GT(board_.motor_duty_ratio(kRight), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, EachBoard, testing::ValuesIn(board_names()),

@@ -67,8 +67,8 @@ TEST(CoSimulation, WhatTheProgramShowsIsWhatItsPinsDo) {
   for (int i = 0; i < 100; ++i) {
     drive.tick();
     const Board& board = drive.world.board();
-    EXPECT_EQ(std::lround(board.motor_share(kLeft) * kDutyMax), drive.output.duty_left);
-    EXPECT_EQ(std::lround(board.motor_share(kRight) * kDutyMax), drive.output.duty_right);
+    EXPECT_EQ(std::lround(board.motor_duty_ratio(kLeft) * kDutyMax), drive.output.duty_left);
+    EXPECT_EQ(std::lround(board.motor_duty_ratio(kRight) * kDutyMax), drive.output.duty_right);
     EXPECT_EQ(board.leds(), drive.output.leds);
   }
 }

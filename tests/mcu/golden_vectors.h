@@ -111,8 +111,6 @@ void golden_shifts(Link& link) {
     put_word(link, abs_u16(static_cast<int16_t>(a)));
     put_signed(link, add_sat_i32(a, b));
     put_signed(link, mul_i16(static_cast<int16_t>(a), static_cast<int16_t>(b)));
-    put_word(link,
-             static_cast<uint16_t>(mul_q15(static_cast<int16_t>(a), static_cast<int16_t>(b))));
   }
 }
 
@@ -219,7 +217,6 @@ void golden_kinematics(Link& link) {
     const TrackSpeeds tracks = (i % 2U == 0 ? kinematics : widest).tracks(speed, rate, 250);
     put_word(link, static_cast<uint16_t>(tracks.left));
     put_word(link, static_cast<uint16_t>(tracks.right));
-    put_signed(link, kinematics.yaw_rate({speed, static_cast<int16_t>(rate)}));
   }
 }
 
@@ -263,7 +260,6 @@ void golden_odometry(Link& link) {
     odometry.update(left, right, heading, numbers.within(8000));
     put_signed(link, odometry.x_mm());
     put_signed(link, odometry.y_mm());
-    put_long(link, odometry.path_mm());
   }
 }
 

@@ -46,7 +46,8 @@ class ImageDrive {
     return std::nullopt;
   }
   bool powered() {
-    return world.board().motor_share(kLeft) != 0.0 || world.board().motor_share(kRight) != 0.0;
+    return world.board().motor_duty_ratio(kLeft) != 0.0 ||
+           world.board().motor_duty_ratio(kRight) != 0.0;
   }
   /// Armed, running and at speed.
   void set_off() {

@@ -4,7 +4,7 @@
 
 namespace screed {
 
-extern const uint8_t kParameters[kParameterBytes] SCREED_NN_PROGRAM_MEMORY = {
+extern const uint8_t kParameters[kParameterBytes] SCREED_PROGRAM_MEMORY = {
     99,  77,  31,  43,  122, 203, 218, 148, 160, 89,  8,   123, 126, 86,  176, 119, 225, 176, 138,
     210, 234, 135, 76,  22,  242, 18,  129, 80,  61,  24,  50,  41,  199, 41,  132, 44,  57,  62,
     47,  158, 109, 123, 236, 68,  13,  107, 182, 187, 166, 252, 41,  172, 120, 218, 19,  228, 22,

@@ -16,7 +16,7 @@ constexpr uint16_t kVectorsPerBlock = 100;
 
 /// Bytes that serve as parameters from any offset: an xorshift sequence, and runs of the edges.
 constexpr uint16_t kParameterBytes = 2048;
-extern const uint8_t kParameters[kParameterBytes] SCREED_NN_PROGRAM_MEMORY;
+extern const uint8_t kParameters[kParameterBytes] SCREED_PROGRAM_MEMORY;
 
 class VectorNumbers {
  public:

@@ -75,6 +75,7 @@ TEST_F(McuProgram, ARunOfTheImageIsASessionThatReplays) {
   ASSERT_EQ(sim.exit_code, 0) << sim.err;
   const auto json = nlohmann::json::parse(sim.out);
   const auto& mcu = json["microcontroller"];
+  EXPECT_EQ(json["stopped_early"], false);
   EXPECT_EQ(mcu["missed_ticks"], 0);
   EXPECT_LE(mcu["longest_tick_cycles"], 80'000);
   EXPECT_EQ(mcu["encoder_edges_missed"], 0);

@@ -87,7 +87,7 @@ TEST_F(Simulation, AStoppedRunKeepsWhatItHas) {
     if (progress.time_s >= 3.0) stop = true;
   };
   const SimulationSummary summary = run_simulation(experiment_, options);
-  EXPECT_TRUE(summary.stopped_early);
+  EXPECT_TRUE(summary.stopped_early());
   EXPECT_NEAR(summary.time_s, 3.0, 0.011);
   EXPECT_EQ(SessionReader(root_ / "run" / "session.h5").frames(), 300u);
   EXPECT_TRUE(std::filesystem::exists(root_ / "run" / "terrain_after.png"));

@@ -123,19 +123,19 @@ void Board::set_angular_rate(const Eigen::Vector3d& dps) {
   gyro.measure(in_chip_axes(dps));
 }
 
-double Board::motor_share(Side side) const {
+double Board::motor_duty_ratio(Side side) const {
   const Wiring::Motor& motor = wiring_.motors.at(side);
   const bool is_a = motor.pwm.bit == 5;
   const std::uint8_t compare_mode = mcu.memory(kTccr1a) & (is_a ? 0xC0 : 0x30);
-  double share = mcu.drives_high(motor.pwm) ? 1.0 : 0.0;  // the pin as plain output
+  double ratio = mcu.drives_high(motor.pwm) ? 1.0 : 0.0;  // the pin as plain output
   if (compare_mode == (is_a ? kPwmOfA : kPwmOfB)) {
     const std::uint16_t top = mcu.word(kIcr1);
     const std::uint16_t compare = mcu.word(is_a ? kOcr1a : kOcr1b);
-    share = top == 0 ? 0.0 : std::min(1.0, static_cast<double>(compare) / top);
+    ratio = top == 0 ? 0.0 : std::min(1.0, static_cast<double>(compare) / top);
     // A pin that is no output drives nothing: the driver's pull-down holds.
-    if (!mcu.drives_high(motor.pwm) && !mcu.drives_low(motor.pwm)) share = 0.0;
+    if (!mcu.drives_high(motor.pwm) && !mcu.drives_low(motor.pwm)) ratio = 0.0;
   }
-  return mcu.drives_high(motor.direction) ? -share : share;
+  return mcu.drives_high(motor.direction) ? -ratio : ratio;
 }
 
 std::uint8_t Board::leds() const {

@@ -44,9 +44,9 @@ class Board {
 
   // ---- what it does to the world
 
-  /// Share of the battery voltage at a motor, -1..1: the PWM of Timer1 with the sign of the
-  /// direction pin.
-  double motor_share(Side side) const;
+  /// Mean output of a driver over the battery voltage, -1..1: the PWM of Timer1 with the sign of
+  /// the direction pin.
+  double motor_duty_ratio(Side side) const;
   /// Lit LEDs, LedBit set.
   std::uint8_t leds() const;
 

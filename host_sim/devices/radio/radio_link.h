@@ -20,13 +20,14 @@
 namespace screed {
 
 struct RadioOptions {
-  double delay_s =
-      0.012;          ///< from a packet's end in the sending module to its first byte's way out
+  /// from a packet's end in the sending module to its first byte's way out
+  double delay_s = 0.012;
   double loss = 0.0;  ///< probability that a packet is lost, 0..1
-  double bytes_per_s = 5882.35;  ///< of the serial lines: 10 bits a byte; 57,600 baud of an XBee is
-                                 ///< 58,824 (16 MHz / 272, as the microcontroller's)
-  double bit_errors = 0.0;       ///< probability that a bit of a delivered byte is wrong, 0..1
-  double duplication = 0.0;      ///< probability that a delivered packet comes twice, 0..1
+  /// of the serial lines: 10 bits a byte; 57,600 baud of an XBee is 58,824 (16 MHz / 272, as the
+  /// microcontroller's)
+  double bytes_per_s = 5882.35;
+  double bit_errors = 0.0;   ///< probability that a bit of a delivered byte is wrong, 0..1
+  double duplication = 0.0;  ///< probability that a delivered packet comes twice, 0..1
   /// Distance at which half of the full packets are lost, m; nothing: no distance is too far.
   std::optional<double> range_m = {};
   double pause_characters = 3.0;  ///< silence that ends a packet (parameter RO)

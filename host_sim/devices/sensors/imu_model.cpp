@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kGyroLsb_dps = 0.070;
 constexpr double kAccelLsb_mg = 0.244;
-constexpr double kMagLsb_mg = 0.160;
+constexpr double kMagLsb_mgauss = 0.160;
+// 50 Hz. The chip is set to 100 Hz (hal/avr/imu_registers.h), and --hal mcu has that rate.
 constexpr uint32_t kMagTicks = 2;
 constexpr uint32_t kBaroTicks = 4;
 
@@ -53,14 +54,14 @@ ImuModel::ImuModel(uint64_t seed, const ImuErrors& errors)
       gyro_scale_(Eigen::Vector3d::Ones() + normals(gyro_random_, errors.gyro_scale)),
       accel_bias_mg_(normals(accel_random_, errors.accel_bias_mg)),
       accel_scale_(Eigen::Vector3d::Ones() + normals(accel_random_, errors.accel_scale)),
-      mag_bias_mg_(normals(mag_random_, errors.mag_bias_mg)),
+      mag_bias_mgauss_(normals(mag_random_, errors.mag_bias_mgauss)),
       mag_soft_iron_(soft_iron(seed, errors.mag_soft_iron)),
       pressure_bias_hpa_(errors.pressure_bias_hpa * baro_random_.normal()) {}
 
 Eigen::Vector3d ImuModel::earth_field_gauss() {
-  constexpr double kField_g = 0.52;
+  constexpr double kField_gauss = 0.52;
   constexpr double kInclination = 68.0 * std::numbers::pi / 180.0;
-  return {0.0, kField_g * std::cos(kInclination), -kField_g * std::sin(kInclination)};
+  return {0.0, kField_gauss * std::cos(kInclination), -kField_gauss * std::sin(kInclination)};
 }
 
 Eigen::Vector3d ImuModel::gyro_dps(const ImuTruth& truth) {
@@ -76,7 +77,7 @@ Eigen::Vector3d ImuModel::accel_mg(const ImuTruth& truth) {
 
 Eigen::Vector3d ImuModel::mag_mgauss(const ImuTruth& truth) {
   const Eigen::Vector3d field = truth.body_to_world.transpose() * (earth_field_gauss() * 1000.0);
-  return mag_soft_iron_ * field + mag_bias_mg_ + normals(mag_random_, errors_.mag_noise_mg);
+  return mag_soft_iron_ * field + mag_bias_mgauss_ + normals(mag_random_, errors_.mag_noise_mgauss);
 }
 
 double ImuModel::pressure_hpa(const ImuTruth& truth) {
@@ -96,7 +97,7 @@ void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
 
   if (ticks_ % kMagTicks == 0) {
     const Eigen::Vector3d mag = mag_mgauss(truth);
-    for (int i = 0; i < 3; ++i) sample.mag[i] = quantise(mag[i], kMagLsb_mg);
+    for (int i = 0; i < 3; ++i) sample.mag[i] = quantise(mag[i], kMagLsb_mgauss);
     sample.fresh |= kFreshMag;
   }
   if (ticks_ % kBaroTicks == 0) {

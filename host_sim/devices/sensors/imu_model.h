@@ -1,9 +1,11 @@
 // The AltIMU-10 v4 as its data sheets describe it: true motion in, raw counts out.
 //
 // Noise, bias, scale error, full scale and quantisation are those of LSM303D (accelerometer,
-// magnetometer), L3GD20H (gyro) and LPS25H (pressure) in the configuration the firmware uses: +-8
-// g, +-4 G, +-2000 degrees/s. Biases and scale errors are drawn once per world; what a calibration
-// leaves behind, not what the chip leaves the factory with, where the firmware relies on one.
+// magnetometer), L3GD20H (gyro) and LPS25H (pressure) at the ranges the firmware configures: +-8
+// g, +-4 G, +-2000 degrees/s. The rates are those of measure(): its magnetometer is half as fast as
+// the configured 100 Hz, which --hal mcu has. Biases and scale errors are drawn once per world;
+// what a calibration leaves behind, not what the chip leaves the factory with, where the firmware
+// relies on one.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,17 +23,17 @@ struct ImuErrors {
   // L3GD20H: noise density 0.011 degree/s/sqrt(Hz); over the 50 Hz band of 100 Hz output 0.078
   // degree/s.
   double gyro_noise_dps = 0.078;
-  double gyro_bias_dps = 0.5;  // left after the zero-rate level (+-25 degrees/s) was stored by a
-                               // calibration at power-up
+  // left after the zero-rate level (+-25 degrees/s) was stored by a calibration at power-up
+  double gyro_bias_dps = 0.5;
   double gyro_scale = 0.01;
   // LSM303D: acceleration noise density 150 ug/sqrt(Hz), 50 Hz band: 1.1 mg.
   double accel_noise_mg = 1.1;
   double accel_bias_mg = 8.0;  // +-60 mg typical before the six-position calibration
   double accel_scale = 0.005;
   // LSM303D: 5 mG RMS.
-  double mag_noise_mg = 5.0;
-  double mag_bias_mg = 10.0;   // hard iron left after calibration
-  double mag_soft_iron = 0.0;  // of each element of the matrix that the field goes through
+  double mag_noise_mgauss = 5.0;
+  double mag_bias_mgauss = 10.0;  // hard iron left after calibration
+  double mag_soft_iron = 0.0;     // of each element of the matrix that the field goes through
   // LPS25H: 0.01 hPa RMS with its internal average.
   double pressure_noise_hpa = 0.01;
   double pressure_bias_hpa = 0.2;
@@ -45,7 +47,7 @@ struct ImuErrors {
     errors.gyro_bias_dps = 8.0;
     errors.accel_bias_mg = 40.0;
     errors.accel_scale = 0.01;
-    errors.mag_bias_mg = 120.0;
+    errors.mag_bias_mgauss = 120.0;
     errors.mag_soft_iron = 0.03;
     return errors;
   }
@@ -62,8 +64,8 @@ class ImuModel {
  public:
   ImuModel(uint64_t seed, const ImuErrors& errors);
 
-  /// Counts of gyro, accelerometer (every tick), magnetometer (50 Hz) and pressure (25 Hz), with
-  /// the FreshBits that go with them.
+  /// Counts of gyro, accelerometer (every tick), magnetometer (50 Hz, see above) and pressure
+  /// (25 Hz), with the FreshBits that go with them.
   void measure(const ImuTruth& truth, SensorSample& sample);
 
   // What each sensor feels, in the robot frame, before its chip makes counts of it; a call is a
@@ -91,7 +93,7 @@ class ImuModel {
   Eigen::Vector3d gyro_scale_;
   Eigen::Vector3d accel_bias_mg_;
   Eigen::Vector3d accel_scale_;
-  Eigen::Vector3d mag_bias_mg_;
+  Eigen::Vector3d mag_bias_mgauss_;
   Eigen::Matrix3d mag_soft_iron_;
   double pressure_bias_hpa_;
   uint32_t ticks_ = 0;

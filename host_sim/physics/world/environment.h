@@ -18,9 +18,9 @@ class Environment {
  public:
   virtual ~Environment() = default;
 
-  /// One step with the motor drivers at these shares of the battery voltage, -1..1, left and right;
+  /// One physics step. Mean output of each driver over the battery voltage, -1..1, left and right;
   /// positive drives forward.
-  virtual void step(const std::array<double, 2>& share) = 0;
+  virtual void step(const std::array<double, 2>& duty_ratio) = 0;
 
   /// True motion: means over the last kTickPeriod_us, ending now, not at the last tick (the
   /// simulated microcontroller asks between ticks). Throws RunError when the physics has diverged.

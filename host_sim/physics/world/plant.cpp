@@ -123,12 +123,12 @@ void Plant::reset_motion_history(const Eigen::Vector3d& velocity) {
   std::fill(imu_history_.begin(), imu_history_.end(), ImuState{velocity, Eigen::Vector3d::Zero()});
 }
 
-void Plant::step(const std::array<double, 2>& share) {
+void Plant::step(const std::array<double, 2>& duty_ratio) {
   // Terminal voltage and motor currents are those of the step before: the battery is one step late.
   std::array<double, 2> voltage{};
   double current = 0.0;
   for (const Side side : {kLeft, kRight}) {
-    const double of_side = share[static_cast<size_t>(side)];
+    const double of_side = duty_ratio[static_cast<size_t>(side)];
     voltage[static_cast<size_t>(side)] = of_side * battery_.terminal_v;
     // The driver's off phase brakes: current then circulates in the motor, and never flows back
     // into the battery.

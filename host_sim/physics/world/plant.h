@@ -42,7 +42,7 @@ class Plant : public Environment {
   /// The same on terrain of the kind that the options name, with this surface.
   Plant(HeightField surface, const Assembly& model, const PlantOptions& options);
 
-  void step(const std::array<double, 2>& share) override;
+  void step(const std::array<double, 2>& duty_ratio) override;
   ImuTruth motion() const override;
   void lay_on_side() override;
 

@@ -16,9 +16,9 @@ namespace screed {
 namespace {
 
 /// Keys of a kind of ground that the experiment does not have.
-bool decides_nothing(const ExperimentKey& key, const std::string& model, bool of_particles) {
-  if (key.section == "soil") return model != "scm";
-  return !of_particles &&
+bool decides_nothing(const ExperimentKey& key, const MapSection& map) {
+  if (key.section == "soil") return !map.is_soil();
+  return !map.of_particles() &&
          (key.section == "particles" || key.section == "raygrid" || key.name == "particle_radius");
 }
 
@@ -145,7 +145,7 @@ std::string Experiment::text() const {
   for (const ExperimentKey& key : experiment_keys()) {
     const std::optional<std::string> value = key.get(*this);
     if (!value.has_value()) continue;
-    if (decides_nothing(key, map.model, map.of_particles())) continue;
+    if (decides_nothing(key, map)) continue;
     if (key.section != section) text += "\n[" + key.section + "]\n";
     section = key.section;
     text += key.name + " = " + *value + "\n";

@@ -25,7 +25,7 @@ RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder) 
     if (name == "experiment.flatness" && !entry.value.empty()) {
       setup.experiment.experiment.flatness_deg = std::stod(entry.value);
     }
-    if (name == "map.model") setup.ground = entry.value;
+    if (name == "map.model") setup.experiment.map.model = entry.value;
     if (name == "soil.preset") setup.soil = entry.value;
   }
   return setup;

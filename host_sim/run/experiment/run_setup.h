@@ -1,4 +1,4 @@
-// What is shown of a recorded run beside its numbers: robot, ground, algorithm, out of the
+// What is shown of a recorded run beside its numbers: robot, terrain, algorithm, out of the
 // experiment that was in force. Reads sessions of older programs too.
 #pragma once
 
@@ -13,11 +13,10 @@
 namespace screed {
 
 struct RunSetup {
-  /// Only the vehicle's keys that find and shape the model, the algorithm, what is flat, and the
-  /// folder.
+  /// Only the vehicle's keys that find and shape the model, the model of the map, the algorithm,
+  /// what is flat, and the folder.
   Experiment experiment;
-  std::string ground = "rigid";  ///< [map] model
-  std::string soil;              ///< [soil] preset
+  std::string soil;  ///< [soil] preset
 };
 
 /// `folder`: where the run lies; files of its own are looked for there first.

@@ -33,8 +33,9 @@ std::filesystem::path session_of(const std::filesystem::path& run) {
 
 /// For soil_appearance().
 std::string soil_name(const RunSetup& setup) {
-  if (setup.ground == "scm") return setup.soil;
-  return setup.ground == "particles" || setup.ground == "static_particles" ? "gravel" : "";
+  const MapSection& map = setup.experiment.map;
+  if (map.is_soil()) return setup.soil;
+  return map.of_particles() ? "gravel" : "";
 }
 
 /// The robot's way to a frame.
@@ -131,7 +132,8 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
                      " has no pose of the robot");
   }
 
-  const RecordedTerrain ground = ground_at(session, result.frame, setup.ground != "rigid", run);
+  const RecordedTerrain ground =
+      ground_at(session, result.frame, setup.experiment.map.model != "rigid", run);
   result.terrain_is_later = ground.is_later;
   const TerrainSurface surface(ground.now);
   CameraOrbit orbit = options.camera;

@@ -24,9 +24,9 @@ struct RunSceneOptions {
 struct RunSceneResult {
   std::uint64_t frame = 0;
   std::filesystem::path scene;
-  bool rendered = false;          ///< false with pov_only, and when there is no povray
-  bool terrain_is_later = false;  ///< the height map of this frame is not in the session: that of
-                                  ///< the run's end was drawn
+  bool rendered = false;  ///< false with pov_only, and when there is no povray
+  /// the height map of this frame is not in the session: that of the run's end was drawn
+  bool terrain_is_later = false;
 };
 
 /// Draws frame of `run` (a run folder, or a session.h5) to `picture`, .png or .jpg; beside it stand

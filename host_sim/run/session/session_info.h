@@ -15,8 +15,8 @@ namespace screed {
 struct SessionInfo {
   std::string program_version;  ///< not part of the content hash
   std::string experiment_name;  ///< not part of the content hash
-  std::string experiment_text;  ///< the whole INI text that was in force, overrides applied; any
-                                ///< size, no NUL byte
+  /// the whole INI text that was in force, overrides applied; any size, no NUL byte
+  std::string experiment_text;
   std::uint64_t seed = 0;
   std::uint32_t tick_rate_hz = kTickRate_hz;
   std::string board_name;

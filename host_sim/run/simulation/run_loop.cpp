@@ -82,9 +82,9 @@ class RunLoop::NativeTarget : public hal::Target {
   }
 
   void init() override {}
-  const BoardConstants& board_constants() override { return loop_.world_.robot().board; }
-  const Parameters& parameters() override { return loop_.world_.robot().parameters; }
-  const Credentials& credentials() override { return loop_.world_.robot().credentials; }
+  const BoardConstants& board_constants() override { return loop_.world_.robot_settings().board; }
+  const Parameters& parameters() override { return loop_.world_.robot_settings().parameters; }
+  const Credentials& credentials() override { return loop_.world_.robot_settings().credentials; }
 
   /// After the last tick.
   RunEnd end() const { return end_.value(); }

@@ -29,7 +29,9 @@ struct WatchedRobot {
   FrameRecorder frames;
   TelemetryMeter telemetry;
   SensorSample sample{};  ///< of this tick
-  SimFrame frame;         ///< of this tick
+  /// World at the sample, robot after the shadow's answer: made in on_sample(), written in
+  /// on_output().
+  SimFrame frame;
 };
 
 /// What takes part in every tick. The observer may be null.

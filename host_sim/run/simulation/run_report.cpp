@@ -48,7 +48,7 @@ nlohmann::ordered_json json_of(const CycleReport& cycles) {
 std::string summary_json(const SimulationSummary& summary) {
   nlohmann::ordered_json json = {
       {"content_hash", summary.content_hash},
-      {"stopped_early", summary.stopped_early},
+      {"stopped_early", summary.stopped_early()},
       {"left_bed", summary.left_bed},
       {"time_s", summary.time_s},
       {"distance_m", summary.distance_m},

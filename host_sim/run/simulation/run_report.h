@@ -17,15 +17,14 @@ struct SimulationSummary {
   std::filesystem::path folder;
   std::string content_hash;
   RunEnd end = RunEnd::kDone;
-  /// The run has not lasted as many ticks as it was to.
-  bool stopped_early = false;
   /// Frames that Algorithm 5 drove; 0 under another algorithm.
   uint64_t training_frames = 0;
   /// Changes of single heights, when they were recorded.
   uint64_t height_changes = 0;
   bool left_bed = false;  ///< the robot stands beyond the edge of the soil
   double time_s = 0.0;
-  double wall_s = 0.0;  ///< of the loop alone: building the world and writing pictures do not count
+  /// of the loop alone: building the world and writing pictures do not count
+  double wall_s = 0.0;
   double distance_m = 0.0;  ///< length of the chassis' true path, in space
   double energy_j = 0.0;
   double outside_s = 0.0;  ///< time off the bed
@@ -41,10 +40,12 @@ struct SimulationSummary {
   TerrainStatistics after;
   double flatness_before = 0.0;  ///< share of flat cells, 0..1
   double flatness_after = 0.0;
-  std::vector<std::filesystem::path>
-      leftovers;                      ///< folders of interrupted runs that were passed over
+  /// folders of interrupted runs that were passed over
+  std::vector<std::filesystem::path> leftovers;
   std::optional<CycleReport> cycles;  ///< of a run with an image
 
+  /// The run ended for another reason than its duration or number of frames.
+  bool stopped_early() const { return end != RunEnd::kDone; }
   double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
 };
 

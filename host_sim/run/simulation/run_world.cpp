@@ -8,7 +8,8 @@ namespace screed {
 
 RunWorld::RunWorld(const Experiment& experiment, const SimulationOptions& options,
                    std::ostream* telemetry_log)
-    : robot_{board_constants_of(options.board), experiment.parameters, credentials_of(experiment)} {
+    : robot_settings_{board_constants_of(options.board), experiment.parameters,
+                      credentials_of(experiment)} {
   if (!options.image.has_value()) {
     native_ = make_world(experiment, telemetry_log, options.board, options.ground_port,
                          options.environment);

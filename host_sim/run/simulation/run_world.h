@@ -28,8 +28,8 @@ class RunWorld {
   RunWorld(const Experiment& experiment, const SimulationOptions& options,
            std::ostream* telemetry_log);
   /// With an image that is there already.
-  RunWorld(const RobotSettings& robot, std::unique_ptr<CoSimulation> image)
-      : robot_(robot), image_(std::move(image)) {}
+  RunWorld(const RobotSettings& robot_settings, std::unique_ptr<CoSimulation> image)
+      : robot_settings_(robot_settings), image_(std::move(image)) {}
 
   /// Exactly one of the two is there.
   World* native() { return native_.get(); }
@@ -37,12 +37,12 @@ class RunWorld {
 
   const Environment& plant() const { return image_ ? image_->plant() : native_->plant(); }
   const GroundStation& ground_station() const;
-  const RobotSettings& robot() const { return robot_; }
+  const RobotSettings& robot_settings() const { return robot_settings_; }
   /// What the microcontroller's time went into; nothing when there is none.
   std::optional<CycleReport> cycles() const;
 
  private:
-  RobotSettings robot_;
+  RobotSettings robot_settings_;
   std::unique_ptr<World> native_;
   std::unique_ptr<CoSimulation> image_;
 };

@@ -27,14 +27,15 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
   return info;
 }
 
-/// As the experiment lays it out; the robot has settled into plant.terrain() already. Particles lie
-/// as they fell.
+/// As the experiment lays it out: the session begins with it, and the statistics before the run are
+/// its. The robot has settled into plant.terrain() already; flatness_before is that terrain's, so
+/// that progress compares with what the drive alone changes. Particles lie as they fell.
 HeightField terrain_before(const Experiment& experiment, const Environment& plant) {
   return experiment.map.of_particles() ? plant.terrain() : make_terrain(experiment);
 }
 
 std::optional<SoilParameters> soil_of(const Experiment& experiment) {
-  if (experiment.map.model != "scm") return std::nullopt;
+  if (!experiment.map.is_soil()) return std::nullopt;
   return make_soil(experiment);
 }
 
@@ -79,8 +80,9 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   RunFiles files(experiment, options);
   telemetry.open(files.telemetry_log());
   const HeightField before = terrain_before(experiment, plant);
-  SessionRecorder recorder(files.session(), session_info(experiment, options, world.robot()),
-                           before, soil_of(experiment));
+  SessionRecorder recorder(files.session(),
+                           session_info(experiment, options, world.robot_settings()), before,
+                           soil_of(experiment));
   if (options.heights) recorder.record_heights(plant.terrain());
 
   SimulationSummary summary;
@@ -88,7 +90,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.before = terrain_statistics(before);
   summary.flatness_before = flatness(plant.terrain(), flatness_deg);
 
-  WatchedRobot robot(world.robot());
+  WatchedRobot robot(world.robot_settings());
   StopCondition stop(experiment, options.stop);
   Progress progress(options.progress, flatness_deg, summary.flatness_before);
   WallClock clock;
@@ -102,7 +104,6 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
 
   summary.folder = files.final_folder();
   summary.leftovers = files.leftovers();
-  summary.stopped_early = !stop.done();
   summary.training_frames = stop.training_frames();
   summary.height_changes = recorder.height_changes();
   report_world(world, flatness_deg, summary);

@@ -13,11 +13,11 @@ class SimulationObserver {
   SimulationObserver& operator=(const SimulationObserver&) = delete;
   virtual ~SimulationObserver() = default;
 
-  /// Before the first tick, with the ground as the robot stands on it.
-  virtual void on_begin(const HeightField& ground) = 0;
-  /// After each tick, with the frame as it was recorded and the ground of that moment. May take its
-  /// time: the run waits.
-  virtual void on_tick(const SimFrame& frame, const HeightField& ground) = 0;
+  /// Before the first tick, with the terrain as the robot stands on it.
+  virtual void on_begin(const HeightField& terrain) = 0;
+  /// After each tick, with the frame as it was recorded and the terrain after the answer (natively
+  /// that of the sample). May take its time: the run waits.
+  virtual void on_tick(const SimFrame& frame, const HeightField& terrain) = 0;
   /// After the last tick; the run is not saved yet.
   virtual void on_end() = 0;
 };

@@ -10,7 +10,8 @@ namespace screed {
 
 class TelemetryMeter {
  public:
-  static constexpr double kLineBytesPerS = 5760.0;  ///< of the radio's serial line: 57,600 baud
+  /// of the radio's serial line: nominal 57,600 baud, whatever [radio] baud says
+  static constexpr double kLineBytesPerS = 5760.0;
 
   /// One tick's answer.
   void add(const RobotOutput& output) {

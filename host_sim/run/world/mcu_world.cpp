@@ -34,7 +34,7 @@ McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulatio
       devices_(options.world, plant_, telemetry_log),
       board_(options.elf, wiring_of(options.board)),
       chip_clock_(options.world.seed, "chip clocks"),
-      noise_(options.world.seed, "flood") {
+      flood_bytes_(options.world.seed, "flood") {
   ParameterCopy copy{};
   encode_parameters(options.parameters, 1, copy);
   for (std::uint8_t i = 0; i < kParameterCopies; ++i) {
@@ -65,7 +65,7 @@ void McuWorld::begin_tick() {
 void McuWorld::begin_step() {
   if (plant_.steps() % static_cast<std::uint64_t>(plant_.steps_per_tick()) == 0) begin_tick();
   const std::uint64_t begin_us = us_at(plant_.steps());
-  plant_.step({board_.motor_share(kLeft), board_.motor_share(kRight)});
+  plant_.step({board_.motor_duty_ratio(kLeft), board_.motor_duty_ratio(kRight)});
   const std::uint64_t end_us = us_at(plant_.steps());
   step_begin_ = begin_us * kCyclesPerUs;
   step_end_ = end_us * kCyclesPerUs;
@@ -103,7 +103,7 @@ void McuWorld::add_edges(Side side) {
     count += forward ? 1 : -1;
     const double share = (boundary - from) / (to - from);
     std::uint64_t cycle = step_begin_ + static_cast<std::uint64_t>(share * length);
-    // Forward and back over the same edge take some time.
+    // Two crossings of one edge are at least 1 us apart.
     cycle = std::max(cycle, last_edge_.at(side) + kCyclesPerUs);
     last_edge_.at(side) = cycle;
     events_.push_back({cycle, EventKind::kEdge, side, count});
@@ -135,7 +135,7 @@ void McuWorld::add_radio(std::uint64_t begin_us, std::uint64_t end_us) {
     flood_us_ = std::max(flood_us_, static_cast<double>(begin_us));
     for (; flood_us_ < static_cast<double>(end_us); flood_us_ += character_us) {
       events_.push_back({static_cast<std::uint64_t>(flood_us_ * static_cast<double>(kCyclesPerUs)),
-                         EventKind::kRadioByte, kLeft, noise_.next() & 0xFFU});
+                         EventKind::kRadioByte, kLeft, flood_bytes_.next() & 0xFFU});
     }
   }
   while (const std::optional<RadioLink::Byte> byte = devices_.uplink().receive_byte(end_us - 1)) {

@@ -60,8 +60,8 @@ class McuWorld : public CoSimulation {
   Plant plant_;
   RobotDevices devices_;
   Board board_;
-  WorldRandom chip_clock_;
-  WorldRandom noise_;
+  WorldRandom chip_clock_;  ///< draws each chip's phase
+  WorldRandom flood_bytes_;
 
   std::array<Sampler, 4> samplers_{};
   std::array<double, 2> position_{};  ///< of the encoders, counts

@@ -15,19 +15,21 @@ World::World(HeightField terrain, const Assembly& model, const BoardConstants& b
 
 World::World(std::unique_ptr<Environment> plant, const BoardConstants& board,
              const WorldOptions& options, std::ostream* telemetry_log)
-    : handled_(options.handled),
+    : calibration_motion_(options.calibration_motion),
       board_(board),
       plant_(std::move(plant)),
       devices_(options, *plant_, telemetry_log) {}
 
 void World::step_physics() {
-  const std::array<double, 2> share = {static_cast<double>(duty_[kLeft]) / kDutyMax,
-                                       static_cast<double>(duty_[kRight]) / kDutyMax};
-  for (int i = 0; i < plant_->steps_per_tick(); ++i) plant_->step(share);
+  const std::array<double, 2> duty_ratio = {static_cast<double>(duty_[kLeft]) / kDutyMax,
+                                            static_cast<double>(duty_[kRight]) / kDutyMax};
+  for (int i = 0; i < plant_->steps_per_tick(); ++i) plant_->step(duty_ratio);
 }
 
+// Fields that only a microcontroller has (last_tick_us, errors, chips_failing, reset_cause) stay 0.
 void World::measure() {
-  devices_.imu().measure(handled_ ? calibration_motion(time_s()) : plant_->motion(), sample_);
+  devices_.imu().measure(calibration_motion_ ? calibration_motion(time_s()) : plant_->motion(),
+                         sample_);
 
   const auto counts = [this](Side side) {
     return static_cast<uint16_t>(
@@ -35,8 +37,9 @@ void World::measure() {
   };
   sample_.encoder_left = counts(kLeft);
   sample_.encoder_right = counts(kRight);
-  sample_.battery = static_cast<uint16_t>(std::clamp(
-      std::round(battery().terminal_v * 1e6 / board_.battery_uv_per_lsb), 0.0, 8.0 * 1023.0));
+  sample_.battery = static_cast<uint16_t>(
+      std::clamp(std::round(battery().terminal_v * 1e6 / board_.battery_uv_per_lsb), 0.0,
+                 double{kBatteryMax}));
   sample_.time_us = static_cast<uint32_t>(now_us());
 }
 
@@ -47,6 +50,8 @@ void World::receive_radio() {
             sample_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));
 }
 
+// The order matters: events before the physics of their tick; the ground station sends before the
+// robot receives; the answer of the last tick (duty_) drives these physics steps.
 void World::advance() {
   ++ticks_;
   devices_.execute_events(ticks_, *plant_);

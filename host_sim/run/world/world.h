@@ -55,7 +55,7 @@ class World {
   void receive_radio();
   uint64_t now_us() const { return ticks_ * kTickPeriod_us; }
 
-  bool handled_;
+  bool calibration_motion_;
   BoardConstants board_;
   std::unique_ptr<Environment> plant_;
   RobotDevices devices_;

@@ -25,7 +25,7 @@ struct WorldOptions : PlantOptions {
   GroundPort* ground_port = nullptr;
   /// The IMU feels a person turning the robot over (calibration_motion.h) instead of its own
   /// motion.
-  bool handled = false;
+  bool calibration_motion = false;
   double encoder_counts_per_turn = 1000.0 / 3.0;
   /// The robot is laid on its left side at this time, s: a fault to inject.
   std::optional<double> lay_on_side_at_s;

@@ -13,7 +13,7 @@ namespace screed {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr int kLevelBedNodes = 65;  // a side, of a bed of particles without an image
+constexpr int kLevelCells = 64;  // a side, of rigid ground or a bed of particles without an image
 
 /// The same surface on another grid. With wrap-around the cells still divide the bed.
 HeightField resampled(const HeightField& field, double cell_m) {
@@ -44,10 +44,10 @@ double size_of_bed(const Experiment& experiment, int pixels) {
 
 HeightField untrapped_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
-  const bool soft = map.model == "scm";
+  const bool soft = map.is_soil();
   if (map.filename.empty() && map.of_particles()) {
     const double rise = std::tan(map.ramp_deg * kRadPerDeg);
-    const int nodes = kLevelBedNodes;
+    const int nodes = kLevelCells + 1;
     return HeightField::from_function(nodes, nodes, map.size_m / (nodes - (map.wrap ? 0 : 1)),
                                       map.wrap, [&](double x, double /*y*/) {
                                         return std::max(0.0,
@@ -55,7 +55,7 @@ HeightField untrapped_terrain(const Experiment& experiment) {
                                       });
   }
   if (map.filename.empty()) {
-    const double spacing = soft ? experiment.soil.cell_m : map.size_m / 64.0;
+    const double spacing = soft ? experiment.soil.cell_m : map.size_m / kLevelCells;
     return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing)
                                : HeightField::ramp(map.size_m, spacing, map.ramp_deg);
   }
@@ -95,8 +95,9 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
   options.vehicle.track_friction = experiment.vehicle.track_friction;
   options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
   if (!experiment.sensors.calibrated) options.imu = ImuErrors::uncalibrated();
+  // noise = false wins: an ideal IMU needs no calibration.
   if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
-  options.handled = experiment.sensors.handled;
+  options.calibration_motion = experiment.sensors.calibration_motion;
   options.radio.delay_s = experiment.radio.delay_s;
   options.radio.loss = experiment.radio.loss;
   options.radio.bit_errors = experiment.radio.bit_errors;
@@ -111,7 +112,7 @@ WorldOptions world_options(const Experiment& experiment, const std::string& boar
         DriveCommand{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
   }
   options.lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
-  if (experiment.map.model == "scm") {
+  if (experiment.map.is_soil()) {
     options.soil = make_soil(experiment);
     options.soil_options.bulldozing = experiment.soil.bulldozing;
     options.soil_options.avalanches = experiment.soil.avalanches;

@@ -14,11 +14,11 @@ void check(SerialLink& link, uint8_t vectors, const int16_t* golden_in, const in
   for (uint8_t vector = 0; vector < vectors; ++vector) {
     int16_t in[kInputs];
     int16_t out[kOutputs];
-    for (uint8_t i = 0; i < kInputs; ++i) in[i] = nn::read_program_i16(golden_in++);
+    for (uint8_t i = 0; i < kInputs; ++i) in[i] = read_program_i16(golden_in++);
     run(in, out);
     bool equal = true;
     for (uint8_t i = 0; i < kOutputs; ++i) {
-      equal = nn::read_program_i16(golden_out++) == out[i] && equal;
+      equal = read_program_i16(golden_out++) == out[i] && equal;
     }
     if (!equal) ++wrong;
   }

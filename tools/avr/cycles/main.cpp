@@ -70,7 +70,7 @@ int run(const Options& options) {
     board.set_magnetic_field(0.160 * Eigen::Vector3d(noise, 1250, -2500 + noise));
     board.set_angular_rate(0.070 * Eigen::Vector3d(noise, 2 - noise, ms % 5 - 2));
     for (const Side side : {kLeft, kRight}) {
-      const double counts = kCountsPerMs * board.motor_share(side);
+      const double counts = kCountsPerMs * board.motor_duty_ratio(side);
       travel[side] += counts;
       if (ms >= kStandStill_ms + kDrive_ms - 1000) late_travel += std::abs(counts);
       board.set_encoder(side, static_cast<std::int64_t>(travel[side]));

@@ -95,7 +95,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12s\n", "simulated time", format("%.1f s", s.time_s).c_str());
   std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
   std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());
-  std::printf("  %-26s %12d\n", "climbs", s.peaks);
+  std::printf("  %-26s %12d\n", "peaks", s.peaks);
   std::printf("  %-26s %12s\n", "robot", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
   if (s.outside_s > 0.0)
@@ -178,7 +178,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   Watching watching;
   const Prepare prepare = [&](const Experiment& experiment, SimulationOptions& of_run) {
     if (!view.has_value()) return;
-    watching.viewer.reset();
+    watching.viewer.reset();  // refers to the driver: destroyed first
     watching.driver = std::make_unique<viewer::KeyboardDriver>(
         ground_key_of(experiment), algorithm_number(experiment.experiment.algorithm),
         of_run.ground_port);

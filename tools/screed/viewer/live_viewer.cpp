@@ -43,8 +43,8 @@ LiveViewer::LiveViewer(const Experiment& experiment, const std::string& board,
                                 experiment.soil.preset, experiment.experiment.seed);
   setup_.duration_s = experiment.experiment.duration_s;
   setup_.flat_deg = experiment.experiment.flatness_deg;
-  setup_.loose = experiment.map.model == "scm" || experiment.map.model == "particles";
-  setup_.soft = experiment.map.model == "scm";
+  setup_.loose = experiment.map.is_soil() || experiment.map.model == "particles";
+  setup_.soft = experiment.map.is_soil();
   setup_.shape = shape_of(make_robot_model(experiment, board), experiment.vehicle.tracks);
 }
 

@@ -35,12 +35,12 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   duration_s_ = static_cast<double>(session_.frames()) * tick_s_;
   DisplaySetup stage;
   stage.title = session_.info().experiment_name;
-  stage.subtitle = subtitle_of(setup.experiment.experiment.algorithm, setup.ground, setup.soil,
-                               session_.info().seed);
+  stage.subtitle = subtitle_of(setup.experiment.experiment.algorithm, setup.experiment.map.model,
+                               setup.soil, session_.info().seed);
   stage.duration_s = duration_s_;
   stage.flat_deg = setup.experiment.experiment.flatness_deg;
-  stage.loose = setup.ground == "scm" || setup.ground == "particles";
-  stage.soft = setup.ground == "scm";
+  stage.loose = setup.experiment.map.is_soil() || setup.experiment.map.model == "particles";
+  stage.soft = setup.experiment.map.is_soil();
   stage.recorded = true;
   stage.shape =
       shape_of(robot_model(setup, session_.info().board_name), setup.experiment.vehicle.tracks);

@@ -18,6 +18,7 @@ struct MapSection {
   std::string model = "rigid";
   double particle_radius_m = 0.0125;
 
+  bool is_soil() const { return model == "scm"; }
   bool of_particles() const { return model == "particles" || model == "static_particles"; }
 
   template <class Keys>

@@ -81,17 +81,5 @@ TEST(Kinematics, ExtremesDoNotOverflow) {
   }
 }
 
-TEST(Kinematics, YawRateOfTracksIsTheInverse) {
-  const SkidSteer kinematics(kTread_mm);
-  for (int16_t difference = -500; difference <= 500; ++difference) {
-    const auto right = static_cast<int16_t>(difference / 2);
-    const auto left = static_cast<int16_t>(right - difference);
-    const double omega = difference / 195.0 * 65536.0 / (2.0 * std::numbers::pi);
-    ASSERT_NEAR(kinematics.yaw_rate({left, right}), omega, 1.0 + std::abs(omega) * 1e-4);
-  }
-  EXPECT_GT(kinematics.yaw_rate({INT16_MIN, INT16_MAX}), 50000);
-  EXPECT_LT(kinematics.yaw_rate({INT16_MAX, INT16_MIN}), -50000);
-}
-
 }  // namespace
 }  // namespace screed

@@ -22,17 +22,15 @@ TEST(Odometry, StraightOnInEveryDirection) {
     const double length = 3000 * kCount_mm;
     EXPECT_NEAR(odometry.x_mm(), length * std::cos(degrees * std::numbers::pi / 180.0), 1.5);
     EXPECT_NEAR(odometry.y_mm(), length * std::sin(degrees * std::numbers::pi / 180.0), 1.5);
-    EXPECT_NEAR(odometry.path_mm(), length, 1.0);
   }
 }
 
-TEST(Odometry, BackwardsIsTheOppositeWayAndStillPath) {
+TEST(Odometry, BackwardsIsTheOppositeDistance) {
   Odometry odometry(kCount_um_q4);
   for (int tick = 0; tick < 500; ++tick) odometry.update(2, 2, 0, 0);
   for (int tick = 0; tick < 500; ++tick) odometry.update(-2, -2, 0, 0);
   EXPECT_EQ(odometry.x_mm(), 0);
   EXPECT_EQ(odometry.y_mm(), 0);
-  EXPECT_NEAR(odometry.path_mm(), 2000 * kCount_mm, 1.0);
 }
 
 TEST(Odometry, ASquareCloses) {
@@ -45,7 +43,6 @@ TEST(Odometry, ASquareCloses) {
   }
   EXPECT_NEAR(odometry.x_mm(), 0, 1);
   EXPECT_NEAR(odometry.y_mm(), 0, 1);
-  EXPECT_NEAR(odometry.path_mm(), 4 * 1600 * kCount_mm, 2.0);
 }
 
 TEST(Odometry, ACircleHasItsDiameterAndCloses) {
@@ -70,7 +67,6 @@ TEST(Odometry, OnASlopeOnlyTheHorizontalPartCounts) {
       odometry.update(2, 2, 0, wrap_angle(pitch_deg * 65536 / 360));
     EXPECT_NEAR(odometry.x_mm(), 2000 * kCount_mm * std::cos(pitch_deg * std::numbers::pi / 180.0),
                 1.0);
-    EXPECT_NEAR(odometry.path_mm(), 2000 * kCount_mm, 1.0);
   }
 }
 
@@ -85,7 +81,6 @@ TEST(Odometry, NoiseOfAnEncoderMovesNoFurtherThanOneTickCan) {
   Odometry odometry(kCount_um_q4);
   odometry.update(INT16_MAX, INT16_MAX, 0, 0);
   EXPECT_LE(odometry.x_mm(), 57);
-  EXPECT_LE(odometry.path_mm(), 57U);
   odometry.update(INT16_MIN, INT16_MIN, 0, 0);
   EXPECT_NEAR(odometry.x_mm(), 0, 1);
 }
@@ -96,44 +91,39 @@ TEST(Odometry, StopsAtTheEndOfItsRange) {
   EXPECT_EQ(odometry.x_mm(), -2147483);
   odometry.reset();
   EXPECT_EQ(odometry.x_mm(), 0);
-  EXPECT_EQ(odometry.path_mm(), 0U);
 }
 
-TEST(Odometry, APathOfAMillimetreIsCountedWhenItIsFull) {
-  // 16 counts of a sixteenth of a millimetre.
+TEST(Odometry, TravelOfATickIsRoundedToAMicrometre) {
+  // 16 counts of a sixteenth of a millimetre: each is 62.5 um, rounded to 63.
   Odometry odometry(1000);
   for (int count = 1; count <= 64; ++count) {
-    odometry.update(1, 1, 0, 0);
-    // Each is 62.5 um, rounded to 63.
-    EXPECT_EQ(odometry.path_mm(), static_cast<uint32_t>(count * 63 / 1000)) << count;
+    odometry.update(1, 1, 16384, 0);
+    // The sine of a quarter turn is 32767 / 32768: 62.998 um, rounded to 63.
+    EXPECT_EQ(odometry.y_mm(), count * 63 / 1000) << count;
   }
-  Odometry exact(16000);
-  exact.update(1, 1, 0, 0);
-  EXPECT_EQ(exact.path_mm(), 1U);
-  exact.update(-1, -1, 0, 0);
-  EXPECT_EQ(exact.path_mm(), 2U);
-  EXPECT_EQ(exact.x_mm(), 0);
 }
 
 TEST(Odometry, TakesAsManyCountsAsATickCanHold) {
   Odometry odometry(16000);  // a count is a millimetre
   odometry.update(100, 100, 0, 0);
-  EXPECT_EQ(odometry.path_mm(), 100U);
+  // The cosine of 0 is 32767 / 32768, twice: 6 um are missing.
+  EXPECT_EQ(odometry.x_mm(), 99);
   odometry.update(101, 2000, 0, 0);
-  EXPECT_EQ(odometry.path_mm(), 200U);
+  EXPECT_EQ(odometry.x_mm(), 199);
+  odometry.update(-100, -101, 0, 0);
+  EXPECT_EQ(odometry.x_mm(), 99);
 }
 
-TEST(Odometry, AResetForgetsPlaceAndPathToTheLastPart) {
+TEST(Odometry, AResetForgetsThePositionToTheLastPart) {
   Odometry odometry(1000);
   for (int count = 0; count < 47; ++count) odometry.update(1, 1, 8192, 0);  // 2.961 mm
   odometry.reset();
   EXPECT_EQ(odometry.x_mm(), 0);
   EXPECT_EQ(odometry.y_mm(), 0);
   for (int count = 0; count < 15; ++count) odometry.update(1, 1, 0, 0);  // 0.945 mm
-  EXPECT_EQ(odometry.path_mm(), 0U);
   EXPECT_EQ(odometry.x_mm(), 0);
-  odometry.update(1, 1, 16384, 0);
-  EXPECT_EQ(odometry.path_mm(), 1U);
+  odometry.update(1, 1, 0, 0);
+  EXPECT_EQ(odometry.x_mm(), 1);
   EXPECT_EQ(odometry.y_mm(), 0);
 }
 

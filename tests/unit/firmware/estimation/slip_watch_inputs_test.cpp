@@ -30,14 +30,14 @@ struct Tick {
 /// Mean and mean magnitude of an axis: both over 64 ticks.
 struct ReferenceVibration {
   double sum = 0.0;        // 64 times the mean
-  double high_pass = 0.0;  // a decay of 3/4 a tick
+  double band_pass = 0.0;  // a decay of 3/4 a tick
   double magnitude = 0.0;  // 64 times the mean
 
   void add(double counts) {
-    const double rest = counts - std::floor(sum / 64.0);
-    sum += rest;
-    high_pass += limited(rest, 250.0) - std::floor(high_pass / 4.0);
-    magnitude += std::abs(high_pass) - std::floor(magnitude / 64.0);
+    const double residual = counts - std::floor(sum / 64.0);
+    sum += residual;
+    band_pass += limited(residual, 250.0) - std::floor(band_pass / 4.0);
+    magnitude += std::abs(band_pass) - std::floor(magnitude / 64.0);
   }
 };
 

@@ -12,29 +12,29 @@ namespace {
 
 TEST(SiteFence, CallsBackAtTheRadiusAndLetsGoAtThreeQuarters) {
   SiteFence fence(1000, 100);
-  EXPECT_FALSE(fence.outside(0, 0));
-  EXPECT_FALSE(fence.outside(600, -800));  // exactly on the circle
-  EXPECT_TRUE(fence.outside(601, -800));
-  EXPECT_TRUE(fence.outside(600, -790));
-  EXPECT_TRUE(fence.outside(0, 751));
-  EXPECT_FALSE(fence.outside(0, 750));
-  EXPECT_FALSE(fence.outside(0, 999));
-  EXPECT_TRUE(fence.outside(-1001, 0));
+  EXPECT_FALSE(fence.update(0, 0));
+  EXPECT_FALSE(fence.update(600, -800));  // exactly on the circle
+  EXPECT_TRUE(fence.update(601, -800));
+  EXPECT_TRUE(fence.update(600, -790));
+  EXPECT_TRUE(fence.update(0, 751));
+  EXPECT_FALSE(fence.update(0, 750));
+  EXPECT_FALSE(fence.update(0, 999));
+  EXPECT_TRUE(fence.update(-1001, 0));
 }
 
 TEST(SiteFence, RadiusZeroSwitchesItOff) {
   SiteFence fence(0, 100);
-  EXPECT_FALSE(fence.outside(INT32_MAX, INT32_MIN));
+  EXPECT_FALSE(fence.update(INT32_MAX, INT32_MIN));
 }
 
 TEST(SiteFence, SeesTheFarthestPlaces) {
   for (const int16_t radius_mm : std::initializer_list<int16_t>{1, 1000, 30000}) {
     SiteFence fence(radius_mm, 100);
-    EXPECT_FALSE(fence.outside(0, 0));
+    EXPECT_FALSE(fence.update(0, 0));
     for (const int32_t far : {30001, 100000, 2147483}) {
-      EXPECT_TRUE(fence.outside(far, 0)) << radius_mm << " " << far;
-      EXPECT_TRUE(fence.outside(0, -far)) << radius_mm << " " << far;
-      EXPECT_TRUE(fence.outside(-far, far)) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.update(far, 0)) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.update(0, -far)) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.update(-far, far)) << radius_mm << " " << far;
     }
   }
 }
@@ -64,7 +64,7 @@ TEST(SiteFence, LeadsHomeFromEverywhere) {
       double heading = heading_degrees * 65536.0 / 360.0;
       int ticks = 0;
       const auto mm = [](double value) { return static_cast<int32_t>(std::lround(value)); };
-      while (fence.outside(mm(x), mm(y)) && ticks < 3000) {
+      while (fence.update(mm(x), mm(y)) && ticks < 3000) {
         const MotionCommand motion = fence.steer(mm(x), mm(y), wrap_angle(mm(heading)));
         heading += motion.yaw_rate * 0.01;
         x += motion.speed_mm_per_s * 0.01 * std::cos(heading * 2.0 * std::numbers::pi / 65536.0);

@@ -70,18 +70,6 @@ TEST(Fixed, Saturation) {
   EXPECT_EQ(abs_u16(-32768), 32768U);
 }
 
-TEST(Fixed, MulQ15MatchesWideProduct) {
-  for (std::int32_t a = -32768; a <= 32767; a += 37) {
-    for (std::int32_t b = -32768; b <= 32767; b += 41) {
-      const std::int64_t exact =
-          std::min<std::int64_t>(floor_shift(std::int64_t{a} * b + 16384, 15), 32767);
-      ASSERT_EQ(mul_q15(static_cast<std::int16_t>(a), static_cast<std::int16_t>(b)), exact)
-          << a << " * " << b;
-    }
-  }
-  EXPECT_EQ(mul_q15(-32768, -32768), 32767);
-}
-
 TEST(Fixed, MulQ30MatchesWideProductBitForBit) {
   Numbers numbers;
   int compared = 0;

@@ -121,7 +121,7 @@ TEST_F(TelemetryTest, PacketsAreWholeLinesAtMostFourAndThenTheLineIsIdle) {
   int most = 0;
   for (int tick = 0; tick < 2000; ++tick) {
     if (tick % 5 == 0) acknowledge(RequestResult::kDone);
-    const bool due = telemetry_.packet_due();
+    const bool due = telemetry_.is_packet_tick();
     RobotOutput output{};
     telemetry_.tick(view_, output);
     const auto lines =

@@ -23,7 +23,7 @@ TEST(HeaderExport, NamesLayersAndHoldsTheParameters) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   };
   has("namespace model_v_1 {");
-  has("const uint8_t v_parameters[] SCREED_NN_PROGRAM_MEMORY = {");
+  has("const uint8_t v_parameters[] SCREED_PROGRAM_MEMORY = {");
   has("/// in:  v_left@2 = 0 + 8 (q + 1/2) / 2^15\n");
   has("/// out: v = 0 + 0.2 (q + 1/2) / 2^15 + linear\n");
   has("  dense<2, 3, 1>(v_parameters + 0, in, a);\n");

@@ -163,7 +163,7 @@ TEST(ImuModel, NoiseIsThatOfTheDataSheets) {
   ImuErrors errors = ImuErrors::none();
   errors.gyro_noise_dps = ImuErrors{}.gyro_noise_dps;
   errors.accel_noise_mg = ImuErrors{}.accel_noise_mg;
-  errors.mag_noise_mg = ImuErrors{}.mag_noise_mg;
+  errors.mag_noise_mgauss = ImuErrors{}.mag_noise_mgauss;
   for (int axis = 0; axis < 3; ++axis) {
     const Moments gyro =
         moments(errors, [axis](const SensorSample& s) { return s.gyro[axis] * 0.070 + 1e-12; });

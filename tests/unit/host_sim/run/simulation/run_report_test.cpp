@@ -16,7 +16,6 @@ SimulationSummary summary() {
   s.folder = "out/hill-0001";
   s.content_hash = "0123456789abcdef";
   s.end = RunEnd::kLeftBed;
-  s.stopped_early = true;
   s.left_bed = true;
   s.training_frames = 11;
   s.height_changes = 12;
@@ -47,6 +46,14 @@ SimulationSummary summary() {
   s.flatness_before = 0.5;
   s.flatness_after = 0.75;
   return s;
+}
+
+TEST(Summary, OnlyARunThatIsDoneWasNotStoppedEarly) {
+  SimulationSummary s;
+  for (const RunEnd end : {RunEnd::kDone, RunEnd::kFault, RunEnd::kLeftBed, RunEnd::kStopped}) {
+    s.end = end;
+    EXPECT_EQ(Json::parse(summary_json(s))["stopped_early"], end != RunEnd::kDone);
+  }
 }
 
 TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
