@@ -1,0 +1,30 @@
+// A level field of loose material and what tests of it need.
+#pragma once
+
+#include "host_sim/physics/soil/material_flow.h"
+
+namespace screed {
+
+inline constexpr double kSpacing_m = 0.01;
+inline constexpr double kRepose_deg = 30.0;
+
+inline MaterialFlow level(int nodes = 21, bool wrap = false) {
+  return {HeightField(nodes, nodes, kSpacing_m, wrap), kRepose_deg};
+}
+
+inline int64_t volume(const MaterialFlow& flow) {
+  int64_t sum = 0;
+  for (size_t node = 0; node < flow.nodes(); ++node) sum += flow.height(node);
+  return sum;
+}
+
+/// A footprint of one node, pressed down by so many units.
+inline void press(MaterialFlow& flow, int ix, int iy, Height units, double velocity_x = 0.0,
+                  double velocity_y = 0.0) {
+  const size_t footprint = flow.begin_footprint(velocity_x, velocity_y);
+  const size_t node = flow.index(ix, iy);
+  flow.cover(node, ix, iy);
+  flow.sink(footprint, node, ix, iy, units);
+}
+
+}  // namespace screed
