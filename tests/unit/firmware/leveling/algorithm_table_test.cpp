@@ -53,10 +53,12 @@ TEST(AlgorithmTable, WhatIsNoAlgorithmIsAnInvalidParameterAndStands) {
   EXPECT_FALSE(parameters.valid());
   Leveling leveling(parameters);
   leveling.start();
-  const MotionCommand motion = leveling.tick({8192, 0, 0, 0, {100, 100}});
-  EXPECT_EQ(motion.speed_mm_per_s, 0);
-  EXPECT_EQ(motion.yaw_rate, 0);
-  EXPECT_EQ(leveling.state(), LevelingState::kIdle);
+  for (const int32_t x_mm : {0, 1100}) {  // on its site and off it
+    const MotionCommand motion = leveling.tick({8192, 0, x_mm, 0, {100, 100}});
+    EXPECT_EQ(motion.speed_mm_per_s, 0);
+    EXPECT_EQ(motion.yaw_rate, 0);
+    EXPECT_EQ(leveling.state(), LevelingState::kIdle);
+  }
 }
 
 TEST(AlgorithmTable, TheFenceHoldsThoseThatKeepToTheSite) {

@@ -55,6 +55,23 @@ TEST(SiteFence, TurnsOnTheSpotUntilHomeLiesAhead) {
   }
 }
 
+TEST(SiteFence, TurnsTwiceTheErrorASecondAndDrivesWithinFortyFiveDegrees) {
+  const SiteFence fence(1000, 100);
+  // West of home, home lies in the east: the error is minus the heading.
+  for (const int error : {1, 100, 2000, 5000, -5000}) {
+    EXPECT_EQ(fence.steer(-1100, 0, static_cast<Angle>(-error)).yaw_rate, 2 * error) << error;
+  }
+  // 60 degrees/s are 10922.7 units.
+  EXPECT_NEAR(fence.steer(-1100, 0, -20000).yaw_rate, 10922.7, 1.0);
+  EXPECT_NEAR(fence.steer(-1100, 0, 20000).yaw_rate, -10922.7, 1.0);
+  constexpr Angle kFortyFive = 8192;
+  for (const int side : {1, -1}) {
+    const auto heading = [&](int angle) { return static_cast<Angle>(side * angle); };
+    EXPECT_EQ(fence.steer(-1100, 0, heading(kFortyFive - 1)).speed_mm_per_s, 100) << side;
+    EXPECT_EQ(fence.steer(-1100, 0, heading(kFortyFive)).speed_mm_per_s, 0) << side;
+  }
+}
+
 TEST(SiteFence, LeadsHomeFromEverywhere) {
   for (int degrees = 0; degrees < 360; degrees += 15) {
     for (int heading_degrees = 0; heading_degrees < 360; heading_degrees += 45) {

@@ -1,6 +1,7 @@
 // What the robot says of itself over the radio, against what it was given and what it knows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -116,8 +117,14 @@ void compare(const HeardRobot& robot, const CanFrame& frame) {
   }
 }
 
-TEST(RobotDownlink, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
+class RobotDownlinkTo : public ::testing::TestWithParam<bool> {};
+
+TEST_P(RobotDownlinkTo, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
   HeardRobot robot(driven());
+  if (GetParam()) {  // a quarter turn from where it looks else
+    robot.sample.mag[0] = 1217;
+    robot.sample.mag[1] = 0;
+  }
   std::set<uint16_t> seen;
   std::set<int> states;
   const auto hear = [&](int ticks) {
@@ -138,7 +145,10 @@ TEST(RobotDownlink, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
   hear(4);
   robot.send(robot.command(CommandOp::kDrive, {150, 100}));
   hear(300);
-  EXPECT_GT(robot.robot.odometry().x_mm() + robot.robot.odometry().y_mm(), 100);
+  const int32_t x_mm = std::abs(robot.robot.odometry().x_mm());
+  const int32_t y_mm = std::abs(robot.robot.odometry().y_mm());
+  EXPECT_GT(std::max(x_mm, y_mm), 100);
+  EXPECT_EQ(x_mm > y_mm, !GetParam()) << x_mm << " " << y_mm;
   robot.sample.accel[1] = 700;  // rolls
   robot.sample.encoder_errors = 9;
   hear(100);
@@ -152,6 +162,8 @@ TEST(RobotDownlink, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
   EXPECT_EQ(states, (std::set<int>{0, 1, 2, 3, 4}));
   EXPECT_GE(seen.size(), 14U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Directions, RobotDownlinkTo, ::testing::Bool());
 
 TEST(RobotDownlink, AnIncliningRobotSaysItsAngles) {
   HeardRobot robot;
@@ -294,6 +306,45 @@ TEST(RobotDownlink, ACommandWhileAnotherWaitsIsLostAndCounted) {
   EXPECT_EQ(robot.next<message::Link>().frames_rejected, before.frames_rejected + 1);
 }
 
+TEST(RobotDownlink, FramesForOthersAreNotCountedAtAll) {
+  HeardRobot robot;
+  robot.heartbeats = false;
+  robot.run(100);
+  for (const uint16_t id : {kIdBaro, kIdHeartbeat}) {
+    robot.send(CanFrame{id, 8, {}});
+    robot.run(2);
+  }
+  const auto link = robot.next<message::Link>();
+  EXPECT_EQ(link.frames_rejected, 0);
+  EXPECT_EQ(link.frames_received, 0);
+}
+
+TEST(RobotDownlink, TheFirstHeartbeatIsASignOfLifeWhateverItsCounter) {
+  for (uint8_t counter = 0; counter < 16; ++counter) {
+    TestRobot robot;
+    robot.heartbeats = false;
+    robot.heartbeat_counter = counter;
+    robot.run(10);
+    EXPECT_FALSE(robot.robot.supervisor().link_alive());
+    robot.send(robot.heartbeat());
+    robot.run(2);
+    EXPECT_TRUE(robot.robot.supervisor().link_alive()) << static_cast<int>(counter);
+  }
+}
+
+TEST(RobotDownlink, AHeartbeatWhoseCounterStandsStillIsNoneHoweverItsTimeGoesOn) {
+  TestRobot robot;
+  robot.heartbeats = false;
+  robot.run(10);
+  for (int i = 0; i < 30; ++i) {
+    uint8_t counter = 5;
+    robot.send(TestRobot::protect(
+        frame_of(message::GroundHeartbeat{robot.sample.time_us / 1000 + 3U * i}), counter));
+    robot.run(20);
+  }
+  EXPECT_FALSE(robot.robot.supervisor().link_alive());
+}
+
 TEST(RobotDownlink, TimeEchoesTheLastHeartbeats) {
   HeardRobot robot;
   robot.heartbeats = false;
@@ -357,40 +408,59 @@ TEST(RobotDownlink, ARepeatedCommandsAnswerIsThatOfTheCommandAccepted) {
   ASSERT_TRUE(refused.has_value());
   EXPECT_EQ(refused->result, static_cast<int>(RequestResult::kBadMac));
   robot.send(arm);
-  const auto again = robot.answer();
-  ASSERT_TRUE(again.has_value());
-  EXPECT_EQ(again->op, static_cast<int>(CommandOp::kArm));
-  EXPECT_EQ(again->result, static_cast<int>(RequestResult::kDone));
+  std::vector<message::CommandAck> answers;
+  for (int i = 0; i < 20; ++i) {
+    for (const CanFrame& frame : robot.hear()) {
+      if (frame.id == kIdCommandAck) answers.push_back(message::CommandAck::unpack(frame.data));
+    }
+  }
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].op, static_cast<int>(CommandOp::kArm));
+  EXPECT_EQ(answers[0].result, static_cast<int>(RequestResult::kDone));
 }
 
 // ---- what a committed parameter changes
 
-TEST(RobotDownlink, ACommittedSpeedLoopDrivesOtherwise) {
-  constexpr uint8_t kSpeedKi = offsetof(Parameters, speed_ki) / sizeof(int16_t);
-  TestRobot robot(driven());
+TestRobot with_parameter(uint8_t index, int16_t value, const Parameters& parameters) {
+  TestRobot robot(parameters);
   robot.run(600);
   uint8_t counter = 1;
-  robot.send(TestRobot::protect(frame_of(message::ParamStage{kSpeedKi, 0}), counter));
+  robot.send(TestRobot::protect(frame_of(message::ParamStage{index, value}), counter));
   uint8_t bytes[4];
-  put_u16(bytes, kSpeedKi);
-  put_u16(bytes + 2, 0);
+  put_u16(bytes, index);
+  put_u16(bytes + 2, static_cast<uint16_t>(value));
   robot.send(
       robot.signer.sign(CommandOp::kParameterCommit,
-                        kSpeedKi | static_cast<uint32_t>(crc16_ccitt(bytes, sizeof bytes)) << 8));
-  const auto answer = robot.answer();
-  ASSERT_TRUE(answer.has_value());
-  ASSERT_EQ(answer->result, static_cast<int>(RequestResult::kDone));
-  TestRobot other(driven());
-  for (TestRobot* one : {&robot, &other}) {
-    one->run(200);
-    one->send(one->command(CommandOp::kArm));
-    one->run(4);
-    one->send(one->command(CommandOp::kRun));
-    one->run(4);
-    one->send(one->command(CommandOp::kDrive, {150, 0}));
-    one->run(100);
+                        index | static_cast<uint32_t>(crc16_ccitt(bytes, sizeof bytes)) << 8));
+  int16_t stored = 0;
+  while (robot.ticks < 620) {
+    robot.tick();
+    if (robot.output.store_parameter == index + 1) stored = robot.output.store_value;
   }
-  EXPECT_NE(robot.output.duty_left, other.output.duty_left);
+  EXPECT_EQ(stored, value);
+  return robot;
+}
+
+TEST(RobotDownlink, ACommittedParameterDrivesAsIfItHadBeenThereFromTheStart) {
+  constexpr uint8_t kSpeedKp = offsetof(Parameters, speed_kp) / sizeof(int16_t);
+  Parameters other = driven();
+  other.speed_kp = 5;
+  ASSERT_NE(other.speed_kp, Parameters{}.speed_kp);
+  TestRobot committed = with_parameter(kSpeedKp, other.speed_kp, driven());
+  TestRobot born(other);
+  TestRobot plain(driven());
+  for (TestRobot* robot : {&committed, &born, &plain}) {
+    while (robot->ticks < 700) robot->tick();
+    for (const CommandOp op : {CommandOp::kArm, CommandOp::kRun}) {
+      robot->send(robot->command(op));
+      robot->run(4);
+    }
+    robot->send(robot->command(CommandOp::kDrive, {150, 0}));
+    robot->run(20);
+  }
+  EXPECT_EQ(committed.output.duty_left, born.output.duty_left);
+  EXPECT_EQ(committed.output.duty_right, born.output.duty_right);
+  EXPECT_NE(committed.output.duty_left, plain.output.duty_left);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // How a robot takes the counts of its IMU: calibrated, and only new ones.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "tests/unit/test_robot.h"
@@ -13,8 +14,8 @@ TEST(RobotImu, OffsetsOfTheImuAreTakenOffBeforeTheEstimate) {
   parameters.accel_offset_x = 300;
   parameters.accel_offset_y = -200;
   parameters.accel_offset_z = 100;
-  parameters.mag_offset_x = 150;
-  parameters.mag_offset_y = -120;
+  parameters.mag_offset_x = 4150;
+  parameters.mag_offset_y = -4120;
   parameters.mag_offset_z = 90;
   parameters.gyro_offset_x = 25;
   parameters.gyro_offset_y = -20;
@@ -28,7 +29,7 @@ TEST(RobotImu, OffsetsOfTheImuAreTakenOffBeforeTheEstimate) {
   }
   for (int i = 0; i < 3; ++i) {
     const int16_t accel[] = {300, -200, 100};
-    const int16_t mag[] = {150, -120, 90};
+    const int16_t mag[] = {4150, -4120, 90};
     const int16_t gyro[] = {25, -20, 15};
     shifted.sample.accel[i] = static_cast<int16_t>(shifted.sample.accel[i] + accel[i]);
     shifted.sample.mag[i] = static_cast<int16_t>(shifted.sample.mag[i] + mag[i]);
@@ -88,6 +89,61 @@ TEST(RobotImu, OnlyANewMagnetometersSampleTurnsTheHeading) {
   robot.run(2000);
   const auto now = static_cast<Angle>(robot.robot.attitude().angles().heading - before);
   EXPECT_GT(std::abs(now), 3000) << "it is believed again";
+}
+
+TEST(RobotImu, ARollOrPitchThatTheGyroFollowsIsSeenWhileItGoesOn) {
+  // Faster than what the accelerometer is a witness in: the estimator alone tells.
+  for (const int axis : {0, 1}) {
+    TestRobot robot;
+    robot.run(600);
+    robot.send(robot.command(CommandOp::kArm));
+    robot.run(4);
+    ASSERT_EQ(robot.state(), RobotState::kArmed);
+    constexpr double kRate_deg_per_s = 70.0;
+    double angle = 0.0;
+    while (angle < 90.0 && robot.state() == RobotState::kArmed) {
+      angle += kRate_deg_per_s * 0.01;
+      const double radians = angle * 3.14159265358979 / 180.0;
+      robot.sample.time_us += kTickPeriod_us;
+      robot.sample.radio_in_count = 0;
+      const int noise = ++robot.ticks % 2;  // else it is a frozen gyro
+      robot.sample.gyro[axis] = static_cast<int16_t>(kRate_deg_per_s / 0.07 + noise);
+      robot.sample.accel[axis == 0 ? 1 : 0] =
+          static_cast<int16_t>((axis == 0 ? 1.0 : -1.0) * 4098.0 * std::sin(radians));
+      robot.sample.accel[2] = static_cast<int16_t>(4098.0 * std::cos(radians));
+      robot.robot.tick(robot.sample, robot.output);
+    }
+    EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kTilt) << axis;
+    EXPECT_LT(angle, 70.0) << axis;
+    EXPECT_GT(angle, 40.0) << axis;
+  }
+}
+
+TEST(RobotImu, ARateThatStaysIsBiasOnlyWhileBothTracksRest) {
+  // 7 counts are 0.49 degrees/s; which of the tracks moves does not matter.
+  const auto turned = [](int left, int right) {
+    TestRobot robot;
+    robot.run(700);
+    const Angle before = robot.robot.attitude().angles().heading;
+    for (int tick = 0; tick < 2000; ++tick) {
+      robot.sample.time_us += kTickPeriod_us;
+      robot.sample.fresh = kFreshGyro | kFreshAccel;
+      robot.sample.gyro[0] = robot.sample.gyro[0] == 0 ? 1 : 0;
+      robot.sample.gyro[2] = 7;
+      robot.sample.radio_in_count = 0;
+      if (tick % 2 == 0) {
+        robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + left);
+        robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + right);
+      }
+      robot.robot.tick(robot.sample, robot.output);
+    }
+    const auto change = static_cast<Angle>(robot.robot.attitude().angles().heading - before);
+    return change * 360.0 / 65536.0;
+  };
+  EXPECT_LT(std::abs(turned(0, 0)), 5.0);
+  EXPECT_GT(turned(1, 0), 8.0);
+  EXPECT_GT(turned(0, 1), 8.0);
+  EXPECT_GT(turned(1, 1), 8.0);
 }
 
 }  // namespace
