@@ -104,6 +104,34 @@ TEST(SlipTraining, TheModelGivesHalfTheLogOfTheOddsThatItWasTrainedFor) {
   EXPECT_GT(error, 1e-3);
 }
 
+TEST(SlipTraining, RangesAreThoseOfTheWatchsUnits) {
+  // What a unit of each input is worth (slip_watch.h): 16 bits hold 32768 of them.
+  struct Unit {
+    const char* name;
+    double worth;
+  };
+  constexpr double kShare = 1.0 / 16384.0;
+  constexpr double kShaking = 1.0 / 128.0;
+  const Unit units[] = {
+      {"inertial_slip_3s", kShare}, {"inertial_slip_10s", kShare}, {"turn", kShare},
+      {"track_difference", kShare}, {"faster_track", 0.2e-3},  // 0.2 mm/s
+      {"sin_pitch", kShare},        {"effort", 1.0 / 16.0},        {"shaking_pitch_rate", kShaking},
+      {"shaking_ahead", kShaking},  {"shaking_up", kShaking},      {"pitch_rate", 1.0 / 64.0}};
+  SlipTrainingOptions options;
+  options.epochs = 1;
+  const ModelNetwork network = train_slip({drive_in_turn(5000)}, options).networks.at(0);
+  ASSERT_EQ(network.inputs.size(), std::size(units));
+  for (std::size_t i = 0; i < std::size(units); ++i) {
+    EXPECT_EQ(network.inputs[i].feature, units[i].name);
+    EXPECT_DOUBLE_EQ(network.inputs[i].half_range, 32768.0 * units[i].worth) << units[i].name;
+    EXPECT_EQ(network.inputs[i].middle, 0.0) << units[i].name;
+  }
+  ASSERT_EQ(network.outputs.size(), 1U);
+  EXPECT_EQ(network.outputs[0].feature, "held");
+  EXPECT_EQ(network.outputs[0].half_range, 2.0);
+  EXPECT_EQ(network.outputs[0].middle, 0.0);
+}
+
 TEST(SlipTraining, TicksAtRestOrTooSlowToBeLookedAtTeachNothing) {
   for (const bool running : {false, true}) {
     SlipRun run = drive_in_turn(8000);
