@@ -24,7 +24,7 @@ struct Options {
   bool list = false;
   std::string tests = "*";  ///< only these tests, as GoogleTest filters them; without exclusions
   bool unit_only = false;   ///< without the tests of whole runs
-  double longest_s = 1.0;   ///< without the tests that take longer, processor time; 0: all
+  double longest_s = 1.5;   ///< without the tests that take longer, processor time; 0: all
 };
 
 enum class Fate { kUnknown, kKilled, kSurvived, kInvalid, kEquivalent };

@@ -117,15 +117,19 @@ TEST(Footprint, ItsSurfaceIsWhereAVerticalLineEntersTheBody) {
       for (int i = 0; i < 24; ++i) {
         const double x = centre.x() + poses.between(-0.05, 0.05);
         const double y = centre.y() + poses.between(-0.05, 0.05);
-        const FootprintSamples samples = surface_at(body.footprint, {{x, y}});
+        // Not at the outline, where a line leaves the body as soon as it has entered.
+        constexpr double kAround = 0.002;
+        const FootprintSamples samples = surface_at(
+            body.footprint,
+            {{x, y}, {x + kAround, y}, {x - kAround, y}, {x, y + kAround}, {x, y - kAround}});
+        if (*std::min_element(samples.share.begin(), samples.share.begin() + 5) < 1.0) continue;
         const auto expected = entry(body, x, y);
-        if (samples.share[0] < 1.0) continue;
         ASSERT_TRUE(expected.has_value()) << body.name;
         EXPECT_NEAR(samples.height[0], *expected, 1e-6) << body.name;
         ++hits;
       }
     }
-    EXPECT_GT(hits, 40) << body.name;
+    EXPECT_GT(hits, 30) << body.name;
   }
 }
 
