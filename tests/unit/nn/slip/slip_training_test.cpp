@@ -82,9 +82,14 @@ TEST(SlipTraining, TheModelGivesHalfTheLogOfTheOddsThatItWasTrainedFor) {
   options.seed = 7;
   double error = 0.0;
   options.progress = [&](std::size_t /*epoch*/, double of_epoch) { error = of_epoch; };
-  const std::vector<SlipRun> runs = {drive_in_turn(5000)};
+  // Mostly free: what does not depend on the inputs is no longer nothing.
+  SlipRun free = drive_in_turn(6000);
+  for (SlipTick& tick : free.ticks) tick.speed = 0.19F;
+  const std::vector<SlipRun> runs = {drive_in_turn(3000), free};
   const Model model = train_slip(runs, options);
   EXPECT_EQ(model.name, "slip");
+  EXPECT_NE(model.description.find("hardly moves"), std::string::npos);
+  EXPECT_EQ(model.networks.at(0).golden.size(), 12U) << "four of the ends, and eight";
   EXPECT_EQ(model.seed, 7U);
   ASSERT_EQ(model.networks.size(), 1U);
   const ModelNetwork& network = model.networks[0];
@@ -100,7 +105,7 @@ TEST(SlipTraining, TheModelGivesHalfTheLogOfTheOddsThatItWasTrainedFor) {
     // The float network before its rounding to integers.
     logits.push_back(static_cast<float>(2.0 * screed::nn::run(network.trained, in).at(0)));
   }
-  EXPECT_NEAR(mean_cross_entropy(logits, examples.out), error, 1e-3);
+  EXPECT_NEAR(mean_cross_entropy(logits, examples.out), error, 1e-5);
   EXPECT_GT(error, 1e-3);
 }
 
@@ -143,6 +148,25 @@ TEST(SlipTraining, TicksAtRestOrTooSlowToBeLookedAtTeachNothing) {
   }
   EXPECT_THROW(train_slip({drive_in_turn(3900)}, {}), RunError)
       << "every fourth tick is an example";
+  SlipTrainingOptions options;
+  options.epochs = 1;
+  SlipRun free = drive_in_turn(4027);
+  for (SlipTick& tick : free.ticks) tick.speed = 0.19F;
+  ASSERT_EQ(slip_examples({free}).rows(), 1000U);
+  EXPECT_NO_THROW(train_slip({free}, options));
+}
+
+TEST(SlipTraining, TheDataIsKnownByItsInputsAndByItsLabels) {
+  SlipTrainingOptions options;
+  options.epochs = 1;
+  const SlipRun run = drive_in_turn(5000);
+  const std::string data = train_slip({run}, options).training_data;
+  SlipRun other = run;
+  other.ticks[19].inputs[5] += 100;
+  EXPECT_NE(train_slip({other}, options).training_data, data);
+  SlipRun relabelled = run;
+  for (size_t i = 0; i < 300; ++i) relabelled.ticks[i].speed = 0.01F;
+  EXPECT_NE(train_slip({relabelled}, options).training_data, data);
 }
 
 TEST(SlipTraining, TheSameDrivesGiveTheSameModel) {
