@@ -261,6 +261,10 @@ std::vector<const TestCase*> Campaign::tests_for(const Subject& subject,
   } else {
     if (site.function != 0) take(same_function);
     if (found.empty()) take([](const Site&) { return true; });
+    // Where nothing has a switch, nothing tells which tests reach it.
+    if (subject.alone.size() == sites.size()) {
+      for (const TestCase& test : tests_) found.insert(&test);
+    }
   }
   std::vector<const TestCase*> tests;
   for (const TestCase* test : found) {
