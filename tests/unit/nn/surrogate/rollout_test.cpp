@@ -3,58 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "firmware/leveling/leveling.h"
-#include "tests/unit/host_sim/run/session/session_fixture.h"
+#include "tests/unit/nn/surrogate/made_up_drive.h"
 
 namespace screed::nn {
 namespace {
-
-/// A drive straight on from a place, with every frame the same way and change of heading.
-struct MadeUpDrive {
-  double x = 0.0;
-  double y = 0.0;
-  double heading_rad = 0.0;
-  double distance_m = 0.005;  ///< a frame
-  double turn_rad = 0.0;      ///< a frame
-  double angular = 0.0;       ///< rate of turn that was wanted
-  std::size_t frames = 1200;
-  std::size_t before = 5;  ///< frames at rest before Algorithm 5 begins
-};
-
-void record(const fs::path& folder, const MadeUpDrive& drive) {
-  fs::create_directories(folder);
-  write_text(folder / "experiment.ini",
-             "[map]\nmodel = scm\n[soil]\npreset = viper\n[experiment]\nname = made_up\n");
-  screed::Recording run = random_run(0);
-  run.info.parameters = {};
-  SessionWriter writer(folder / "session.h5", run.info);
-  writer.record_heights(run.before.view());
-  double x = drive.x;
-  double y = drive.y;
-  double heading = drive.heading_rad;
-  for (std::size_t i = 0; i < drive.before + drive.frames; ++i) {
-    const bool drives = i >= drive.before;
-    SimFrame frame{};
-    frame.x = x;
-    frame.y = y;
-    frame.yaw = heading;
-    if (drives) {
-      const double middle = heading + 0.5 * drive.turn_rad;
-      frame.delta_x = drive.distance_m * std::cos(middle);
-      frame.delta_y = drive.distance_m * std::sin(middle);
-      frame.delta_theta = drive.turn_rad;
-      frame.angular = drive.angular;
-      frame.leveling_state = static_cast<std::int32_t>(LevelingState::kTrainingDrive);
-    }
-    writer.append(frame, SensorSample{}, RobotOutput{});
-    x += frame.delta_x;
-    y += frame.delta_y;
-    heading += frame.delta_theta;
-  }
-  writer.finish();
-}
 
 struct Pair {
   TempFolder folder;
