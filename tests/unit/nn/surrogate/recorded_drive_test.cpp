@@ -96,6 +96,7 @@ TEST(RolloutRecording, ARolloutEndsBehindTheRowThatHasTheDistance) {
   const RecordedDrive read = recorded(drive);
   constexpr std::uint64_t kMany = 40000;
   EXPECT_EQ(read.end_of_rollout(100, 1.0, kMany), 100U + 128U + 1U);
+  EXPECT_EQ(read.end_of_rollout(0, 1.0, kMany), 4U + 128U + 1U) << "five frames at rest";
   EXPECT_EQ(read.end_of_rollout(100, 2.0, kMany), 100U + 256U + 1U);
   EXPECT_EQ(read.end_of_rollout(100, 1.0, 128), 100U + 128U + 1U);
   EXPECT_EQ(read.end_of_rollout(100, 1.0, 127), 100U + 127U + 1U) << "no more frames";

@@ -83,6 +83,19 @@ void alter(const fs::path& from, const fs::path& to,
   writer.finish();
 }
 
+TEST(RolloutFirmware, EndsWithTheLastFrameItMayHave) {
+  const TempFolder folder;
+  record_surrogate(folder.path() / "run", skidding(kNominalSkid).robot(), kRows);
+  RolloutOptions options = one_start();
+  for (const std::size_t frames : {2200U, 2199U}) {
+    options.max_frames = frames;
+    const SessionRollouts result =
+        roll_out(folder.path() / "run", {skidding(kNominalSkid)}, options);
+    EXPECT_EQ(result.by_surrogate[0].at(0).path.size(), frames / 10);
+    EXPECT_EQ(result.real.at(0).size(), frames / 10);
+  }
+}
+
 TEST(RolloutFirmware, MeasuresByItselfFromTheStartOn) {
   const TempFolder folder;
   const fs::path run = folder.path() / "run";
@@ -120,7 +133,7 @@ TEST(RolloutFirmware, MeasuresByItselfFromTheStartOn) {
 // ---- deformable terrain ------------------------------------------------------------------------
 
 struct OnRuts {
-  OnRuts() { record_surrogate(run, robot.robot(), 2600, "", bearing); }
+  OnRuts() { record_surrogate(run, robot.robot(), 1900, "", bearing); }
   SessionRollouts rollouts(std::size_t starts,
                            const std::shared_ptr<const BearingCapacityNetwork>& by) const {
     RolloutOptions options;
@@ -163,7 +176,9 @@ TEST(RolloutFirmware, TheTerrainAtAStartIsPressedByTheStridesThatHaveEnded) {
   PlantOptions options;
   options.soil = recording.soil;
   options.vehicle.motor = board_motor(info.board_name).motor;
-  const SessionRollouts result = ruts.rollouts(40, ruts.bearing);
+  // Every 17 rows: strides of five frames end at some of them.
+  const std::uint64_t rows = recording.frames.size() - recording.first - 2;
+  const SessionRollouts result = ruts.rollouts(rows / 17, ruts.bearing);
   ASSERT_GT(result.by_surrogate[0].size(), 5U);
   for (const Rollout& rollout : result.by_surrogate[0]) {
     const std::size_t ended = strides.ended_before(rollout.start + 1);

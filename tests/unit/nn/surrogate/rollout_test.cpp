@@ -80,6 +80,44 @@ TEST(Apart, AnEvenTurnHasNoWagsAndAnUnevenOneHas) {
               1e-3);
 }
 
+TEST(Apart, TheHeadingAtTheBeginningIsNoError) {
+  MadeUpDrive other;
+  other.heading_rad = 0.3;
+  const Rollout result = Pair().divergence({}, other);
+  EXPECT_NEAR(result.checks[0].heading_error_rad, 0.0, 1e-9);
+  // Paths are compared as they lie.
+  EXPECT_NEAR(result.checks[0].position_error, 2.0 * std::sin(0.15), 2e-3);
+}
+
+TEST(Apart, TheComparisonEndsWithTheShorterRecording) {
+  MadeUpDrive other;
+  other.before = 9;
+  for (const bool first_is_shorter : {false, true}) {
+    MadeUpDrive one;
+    MadeUpDrive& shorter = first_is_shorter ? one : other;
+    shorter.frames = 101;
+    EXPECT_EQ(Pair().divergence(one, other).path.size(), 10U);
+    shorter.frames = 100;
+    EXPECT_EQ(Pair().divergence(one, other).path.size(), 9U);
+    shorter.frames = 1200;
+  }
+}
+
+TEST(Apart, TheComparisonBeginsBehindTheFirstFrame) {
+  MadeUpDrive one;
+  one.frames = 101;
+  const auto deviation_with_turn_in = [&](std::size_t turning) {
+    one.alter = [=](std::size_t row, SimFrame& frame, SensorSample&) {
+      if (row == turning) frame.delta_theta = 0.2;
+    };
+    return Pair().divergence(one, one).recorded_yaw_rate_deviation_rad_per_s;
+  };
+  EXPECT_EQ(deviation_with_turn_in(4), 0.0);
+  EXPECT_EQ(deviation_with_turn_in(5), 0.0);
+  // One of a hundred frames turns, with 20 rad/s.
+  EXPECT_NEAR(deviation_with_turn_in(6), 20.0 * std::sqrt(0.01 - 0.0001), 1e-9);
+}
+
 TEST(Apart, ARecordingWithoutSoilOrWithoutADriveIsRefused) {
   const TempFolder folder;
   MadeUpDrive still;

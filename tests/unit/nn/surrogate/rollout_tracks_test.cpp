@@ -146,6 +146,9 @@ TEST(RolloutTracks, NoRolloutHasMoreFramesThanItMayHave) {
     EXPECT_EQ(rollout.path.size(), 20U);
   }
   EXPECT_EQ(result.real[0].size(), 20U);
+  const SessionRollouts shorter = rollouts(exact(622), {skidding()}, 0, 199);
+  EXPECT_EQ(shorter.by_surrogate[0][0].path.size(), 19U);
+  EXPECT_EQ(shorter.real[0].size(), 19U);
   EXPECT_TRUE(starts_of(rollouts(exact(622), {skidding()}, 0, 127)).empty());
   EXPECT_FALSE(starts_of(rollouts(exact(622), {skidding()}, 0, 128)).empty());
 }
