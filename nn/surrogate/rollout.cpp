@@ -34,7 +34,7 @@ Rollout by_firmware(const RecordedDrive& recording, std::uint64_t start, std::ui
   plant.set_state(recording.state(start, robot.counts_per_turn()));
   RolloutChecker checker(recording, start);
   for (std::uint64_t row = start + 1; row < end; ++row) {
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.motor_share());
+    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.duty_ratio());
     checker.add_row(row, plant.pose());
     robot.tick(plant, recording.samples[row]);
   }

@@ -49,7 +49,7 @@ void RolloutRobot::tick(const SurrogatePlant& plant, const SensorSample& recorde
   firmware_.tick(measure(plant, recorded), output_);
 }
 
-std::array<double, 2> RolloutRobot::motor_share() const {
+std::array<double, 2> RolloutRobot::duty_ratio() const {
   return {static_cast<double>(output_.duty_left) / kDutyMax,
           static_cast<double>(output_.duty_right) / kDutyMax};
 }

@@ -27,8 +27,8 @@ class RolloutRobot {
   /// The sample of such a tick: of the recorded one time and radio remain.
   SensorSample measure(const SurrogatePlant& plant, const SensorSample& recorded);
 
-  /// The firmware's last answer: the share of full voltage at the motors.
-  std::array<double, 2> motor_share() const;
+  /// The last answer of the firmware: what the motors receive of the battery voltage, -1..1.
+  std::array<double, 2> duty_ratio() const;
   double counts_per_turn() const { return counts_per_turn_; }
 
  private:

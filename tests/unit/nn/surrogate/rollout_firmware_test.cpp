@@ -190,7 +190,7 @@ TEST(RolloutFirmware, TheTerrainAtAStartIsPressedByTheStridesThatHaveEnded) {
     for (std::uint64_t row = 0; row <= rollout.start; ++row) robot.follow(recording.samples[row]);
     plant.set_state(recording.state(rollout.start, robot.counts_per_turn()));
     for (std::uint64_t row = rollout.start + 1; row <= rollout.start + 200; ++row) {
-      for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.motor_share());
+      for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.duty_ratio());
       robot.tick(plant, recording.samples[row]);
     }
     EXPECT_EQ(rollout.path.at(19).x_m, plant.pose().x_m) << rollout.start;

@@ -43,7 +43,7 @@ struct Session {
   std::vector<RobotOutput> outputs;
 };
 
-std::array<double, 2> share_of(const RobotOutput& output) {
+std::array<double, 2> duty_ratio_of(const RobotOutput& output) {
   return {output.duty_left / static_cast<double>(kDutyMax),
           output.duty_right / static_cast<double>(kDutyMax)};
 }
@@ -55,7 +55,7 @@ void expect_same_drive(const Session& session) {
   RolloutRobot robot(session.info, session.experiment);
   std::size_t driving = 0;
   for (std::size_t row = 0; row < session.samples.size(); ++row) {
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.motor_share());
+    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.duty_ratio());
     SensorSample given = session.samples[row];
     for (int axis = 0; axis < 3; ++axis) given.gyro[axis] = given.accel[axis] = 0;
     given.encoder_left = given.encoder_right = given.battery = 0;
@@ -64,7 +64,7 @@ void expect_same_drive(const Session& session) {
               packed<kSampleBytes>(session.samples[row]))
         << "row " << row;
     robot.tick(plant, given);
-    ASSERT_EQ(robot.motor_share(), share_of(session.outputs[row])) << "row " << row;
+    ASSERT_EQ(robot.duty_ratio(), duty_ratio_of(session.outputs[row])) << "row " << row;
     if (session.outputs[row].duty_left != 0) ++driving;
   }
   EXPECT_GT(driving, 100U);
@@ -93,14 +93,14 @@ TEST(RolloutRobot, FollowsARecordingAndThenGoesOnByItself) {
   RolloutRobot driver(session.info, session.experiment);
   const std::size_t last = session.samples.size() - 50;
   for (std::size_t row = 0; row < session.samples.size(); ++row) {
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(driver.motor_share());
+    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(driver.duty_ratio());
     driver.tick(plant, session.samples[row]);
     if (row < last) {
       follower.follow(session.samples[row]);
     } else {
       follower.tick(plant, session.samples[row]);  // with the noise of this row
     }
-    ASSERT_EQ(follower.motor_share(), share_of(session.outputs[row])) << "row " << row;
+    ASSERT_EQ(follower.duty_ratio(), duty_ratio_of(session.outputs[row])) << "row " << row;
   }
 }
 
