@@ -55,7 +55,7 @@ class MapHeights {
 MotionSeries read_motion_series(const std::filesystem::path& session_folder) {
   const SessionReader session(session_folder / "session.h5");
   const Experiment experiment = read_experiment(session_folder / "experiment.ini");
-  if (experiment.map.model != "scm") {
+  if (!experiment.map.is_soil()) {
     throw InputError(session_folder.string() + ": [map] model = " + experiment.map.model +
                      "; a network of motion learns from scm alone");
   }

@@ -2,7 +2,6 @@
 // after some distance its robot is compared with the recorded one.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "nn/surrogate/rollout_checker.h"
 #include "nn/surrogate/surrogate_plant.h"
 
 namespace screed::nn {
@@ -20,29 +20,10 @@ enum class RolloutDrive : std::uint8_t {
   kTracks,    ///< the tracks turn as they were recorded; no controller corrects an error
 };
 
-/// Distances after which robots are compared, m.
-inline constexpr std::array<double, 3> kRolloutDistances_m = {1.0, 5.0, 10.0};
-
 /// A surrogate by its name. A rollout makes a new robot of it at each start.
 struct SurrogateFactory {
   std::string name;
   std::function<Surrogate()> robot;
-};
-
-struct RolloutCheck {
-  bool reached = false;         ///< the recording went on so far
-  bool straight = false;        ///< no turn was commanded along all of the distance
-  double position_error = 0.0;  ///< share of the distance
-  double heading_error_rad = 0.0;
-};
-
-struct Rollout {
-  std::uint64_t start = 0;  ///< row of the session
-  std::array<RolloutCheck, kRolloutDistances_m.size()> checks;
-  std::vector<PlanarPose> path;  ///< ten a second, places as travelled
-  /// Standard deviations of the rate of turn until the last of the distances, or the end.
-  double yaw_rate_deviation_rad_per_s = 0.0;
-  double recorded_yaw_rate_deviation_rad_per_s = 0.0;
 };
 
 struct SessionRollouts {

@@ -3,58 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "firmware/leveling/leveling.h"
-#include "tests/unit/host_sim/run/session/session_fixture.h"
+#include "tests/unit/nn/surrogate/made_up_drive.h"
 
 namespace screed::nn {
 namespace {
-
-/// A drive straight on from a place, with every frame the same way and change of heading.
-struct MadeUpDrive {
-  double x = 0.0;
-  double y = 0.0;
-  double heading_rad = 0.0;
-  double distance_m = 0.005;  ///< a frame
-  double turn_rad = 0.0;      ///< a frame
-  double angular = 0.0;       ///< rate of turn that was wanted
-  std::size_t frames = 1200;
-  std::size_t before = 5;  ///< frames at rest before Algorithm 5 begins
-};
-
-void record(const fs::path& folder, const MadeUpDrive& drive) {
-  fs::create_directories(folder);
-  write_text(folder / "experiment.ini",
-             "[map]\nmodel = scm\n[soil]\npreset = viper\n[experiment]\nname = made_up\n");
-  screed::Recording run = random_run(0);
-  run.info.parameters = {};
-  SessionWriter writer(folder / "session.h5", run.info);
-  writer.record_heights(run.before.view());
-  double x = drive.x;
-  double y = drive.y;
-  double heading = drive.heading_rad;
-  for (std::size_t i = 0; i < drive.before + drive.frames; ++i) {
-    const bool drives = i >= drive.before;
-    SimFrame frame{};
-    frame.x = x;
-    frame.y = y;
-    frame.yaw = heading;
-    if (drives) {
-      const double middle = heading + 0.5 * drive.turn_rad;
-      frame.delta_x = drive.distance_m * std::cos(middle);
-      frame.delta_y = drive.distance_m * std::sin(middle);
-      frame.delta_theta = drive.turn_rad;
-      frame.angular = drive.angular;
-      frame.leveling_state = static_cast<std::int32_t>(LevelingState::kTrainingDrive);
-    }
-    writer.append(frame, SensorSample{}, RobotOutput{});
-    x += frame.delta_x;
-    y += frame.delta_y;
-    heading += frame.delta_theta;
-  }
-  writer.finish();
-}
 
 struct Pair {
   TempFolder folder;
@@ -126,6 +78,44 @@ TEST(Apart, AnEvenTurnHasNoWagsAndAnUnevenOneHas) {
   EXPECT_NEAR(result.recorded_yaw_rate_deviation_rad_per_s, 0.0, 1e-3);
   EXPECT_NEAR(result.yaw_rate_deviation_rad_per_s, result.recorded_yaw_rate_deviation_rad_per_s,
               1e-3);
+}
+
+TEST(Apart, TheHeadingAtTheBeginningIsNoError) {
+  MadeUpDrive other;
+  other.heading_rad = 0.3;
+  const Rollout result = Pair().divergence({}, other);
+  EXPECT_NEAR(result.checks[0].heading_error_rad, 0.0, 1e-9);
+  // Paths are compared as they lie.
+  EXPECT_NEAR(result.checks[0].position_error, 2.0 * std::sin(0.15), 2e-3);
+}
+
+TEST(Apart, TheComparisonEndsWithTheShorterRecording) {
+  MadeUpDrive other;
+  other.before = 9;
+  for (const bool first_is_shorter : {false, true}) {
+    MadeUpDrive one;
+    MadeUpDrive& shorter = first_is_shorter ? one : other;
+    shorter.frames = 101;
+    EXPECT_EQ(Pair().divergence(one, other).path.size(), 10U);
+    shorter.frames = 100;
+    EXPECT_EQ(Pair().divergence(one, other).path.size(), 9U);
+    shorter.frames = 1200;
+  }
+}
+
+TEST(Apart, TheComparisonBeginsBehindTheFirstFrame) {
+  MadeUpDrive one;
+  one.frames = 101;
+  const auto deviation_with_turn_in = [&](std::size_t turning) {
+    one.alter = [=](std::size_t row, SimFrame& frame, SensorSample&) {
+      if (row == turning) frame.delta_theta = 0.2;
+    };
+    return Pair().divergence(one, one).recorded_yaw_rate_deviation_rad_per_s;
+  };
+  EXPECT_EQ(deviation_with_turn_in(4), 0.0);
+  EXPECT_EQ(deviation_with_turn_in(5), 0.0);
+  // One of a hundred frames turns, with 20 rad/s.
+  EXPECT_NEAR(deviation_with_turn_in(6), 20.0 * std::sqrt(0.01 - 0.0001), 1e-9);
 }
 
 TEST(Apart, ARecordingWithoutSoilOrWithoutADriveIsRefused) {

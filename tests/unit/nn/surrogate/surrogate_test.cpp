@@ -11,6 +11,7 @@
 #include "host_sim/core/random.h"
 #include "nn/data/features.h"
 #include "nn/data/motion_signals.h"
+#include "tests/unit/nn/surrogate/linear_model.h"
 
 namespace screed::nn {
 namespace {
@@ -22,21 +23,6 @@ HeightField hills() {
     return 0.02 * std::sin(x * 2.0 * std::numbers::pi / 2.56) *
            std::cos(y * 4.0 * std::numbers::pi / 2.56);
   });
-}
-
-ModelChannel channel(const char* feature, double half_range, const char* baseline = "") {
-  return {feature, 0.0, half_range, baseline};
-}
-
-/// y = W x + b.
-Model linear_model(std::vector<ModelChannel> inputs, std::vector<ModelChannel> outputs,
-                   std::vector<double> weights, std::vector<double> bias) {
-  const std::vector<FloatLayer> layers = {
-      {inputs.size(), outputs.size(), true, std::move(weights), std::move(bias)}};
-  Model model;
-  model.name = "linear";
-  model.networks.push_back({std::move(inputs), std::move(outputs), quantise(layers), layers, {}});
-  return model;
 }
 
 Model random_model() {

@@ -1,0 +1,77 @@
+#include "nn/surrogate/recorded_drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware/leveling/leveling.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/run/world/world_setup.h"
+
+namespace screed::nn {
+namespace {
+
+constexpr double kMeanVoltage = 7.5;  // from energy to charge
+
+}  // namespace
+
+RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
+    : session(folder / "session.h5"), experiment(read_experiment(folder / "experiment.ini")) {
+  if (!experiment.map.is_soil() || !session.has_heights()) {
+    throw InputError(folder.string() +
+                     ": rollouts need a session on soil (scm) with its heights, as screed "
+                     "record makes it");
+  }
+  soil = make_soil(experiment);
+  frames.resize(session.frames());
+  samples.resize(session.frames());
+  session.read(0, std::span(frames));
+  session.read(0, std::span(samples));
+  while (first < frames.size() &&
+         frames[first].leveling_state != static_cast<std::int32_t>(LevelingState::kTrainingDrive)) {
+    ++first;
+  }
+  if (first + 3 >= frames.size()) {
+    throw InputError(folder.string() + ": Algorithm 5 drove no frame of it");
+  }
+  PlanarPose pose{frames[0].x, frames[0].y, frames[0].yaw};
+  double distance_m = 0.0;
+  for (const SimFrame& frame : frames) {
+    const double middle = pose.heading_rad + 0.5 * frame.delta_theta;
+    const double c = std::cos(middle);
+    const double s = std::sin(middle);
+    motions.push_back({frame.delta_x * c + frame.delta_y * s, frame.delta_y * c - frame.delta_x * s,
+                       frame.delta_theta});
+    pose.move(motions.back());
+    poses.push_back(pose);
+    distance_m += std::hypot(frame.delta_x, frame.delta_y);
+    distances.push_back(distance_m);
+  }
+}
+
+std::uint64_t RecordedDrive::end_of_rollout(std::uint64_t row, double distance_m,
+                                            std::uint64_t max_frames) const {
+  const std::uint64_t last = std::min<std::uint64_t>(frames.size(), row + 1 + max_frames);
+  std::uint64_t end = row + 1;
+  while (end < last && distances[end - 1] - distances[row] < distance_m) ++end;
+  return end;
+}
+
+DrivingState RecordedDrive::state(std::uint64_t row, double counts_per_turn) const {
+  const SimFrame& frame = frames[row];
+  DrivingState state;
+  state.pose = poses[row];
+  state.last = motions[row];
+  state.before_last = motions[row - 1];
+  state.track_speed_m_per_s = {frame.track_left, frame.track_right};
+  const auto angle = [&](std::uint16_t count) {
+    return (count + 0.5) / counts_per_turn * 2.0 * std::numbers::pi;
+  };
+  state.shaft_angle_rad = {angle(samples[row].encoder_left), angle(samples[row].encoder_right)};
+  state.battery.terminal_v = frame.battery;
+  state.battery.drawn_c = frame.energy / kMeanVoltage;
+  state.battery.energy_j = frame.energy;
+  return state;
+}
+
+}  // namespace screed::nn

@@ -1,0 +1,60 @@
+// Sessions in which a surrogate stands in for the physics: what a rollout of the same surrogate has
+// to follow.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host_sim/run/simulation/frame_recorder.h"
+#include "host_sim/run/simulation/height_watch.h"
+#include "host_sim/run/world/world_setup.h"
+#include "nn/surrogate/surrogate_plant.h"
+#include "tests/unit/nn/surrogate/made_up_drive.h"
+
+namespace screed::nn {
+
+/// What `screed sim` records of a surrogate: Algorithm 5 on a level bed without end, five seconds
+/// until it begins included. `more` are further lines of the experiment.
+inline void record_surrogate(const fs::path& folder, const Surrogate& driven, std::size_t rows,
+                             const std::string& more = "",
+                             const std::shared_ptr<const BearingCapacityNetwork>& bearing = {},
+                             const std::string& board = kDefaultBoard) {
+  fs::create_directories(folder);
+  write_text(folder / "experiment.ini",
+             "[map]\nmodel = scm\nsize = 2\nwrap = true\n[soil]\npreset = soft\ncell = 0.02\n"
+             "[experiment]\nname = made_up\nalgorithm = training_drive\nframes = 3200\n" +
+                 more);
+  const Experiment experiment = read_experiment(folder / "experiment.ini");
+  const auto environment = [&](HeightField terrain, const Assembly& model,
+                               const PlantOptions& options) {
+    auto plant = std::make_unique<SurrogatePlant>(std::move(terrain), model, options, driven);
+    if (bearing) plant->enable_deformation(bearing);
+    return plant;
+  };
+  const auto world = make_world(experiment, nullptr, board, nullptr, environment);
+  SessionInfo info;
+  info.experiment_name = experiment.experiment.name;
+  info.experiment_text = experiment.text();
+  info.seed = experiment.experiment.seed;
+  info.board_name = board;
+  info.board = board_constants_of(board);
+  info.parameters = experiment.parameters;
+  info.credentials = credentials_of(experiment);
+  SessionWriter writer(folder / "session.h5", info);
+  writer.record_heights(map_of(world->terrain()).view());
+  HeightWatch watch(world->terrain());
+  Robot robot(info.board, info.parameters, info.credentials);
+  RobotOutput output{};
+  FrameRecorder frames;
+  for (std::size_t row = 0; row < rows; ++row) {
+    world->advance();
+    robot.tick(world->sample(), output);
+    const SimFrame frame = frames.record(world->plant(), robot);
+    writer.append(frame, world->sample(), output, watch.changes(world->terrain()));
+    world->apply(output);
+  }
+  writer.finish();
+}
+
+}  // namespace screed::nn
