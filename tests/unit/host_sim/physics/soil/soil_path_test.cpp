@@ -1,0 +1,194 @@
+// The path that a soil bed remembers of a footprint: how far it came and how steeply, in closed
+// form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "host_sim/physics/soil/soil_bed.h"
+
+namespace screed {
+namespace {
+
+constexpr double kRadius_m = 0.06;  // of a wheel: its L
+constexpr double kStep_s = 0.001;
+
+/// A wheel in the soil that is moved as the test wants.
+class MovedWheel {
+ public:
+  explicit MovedWheel(const SoilOptions& options = {})
+      : bed_(HeightField(61, 61, 0.005, true), soil_preset("lete_sand"), options) {
+    pose.translation().z() = kRadius_m - 0.02;
+  }
+  void move(const Eigen::Vector3d& velocity, int steps = 1) {
+    FootprintMotion motion;
+    motion.mass_kg = std::numeric_limits<double>::infinity();
+    motion.velocity = velocity;
+    for (int i = 0; i < steps; ++i) {
+      wheel_.set_pose(pose);
+      reaction = bed_.press(wheel_, motion, kStep_s, memory);
+      bed_.end_step();
+    }
+  }
+  const PathHistory& path() const { return memory.path; }
+
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  ContactMemory memory;
+  TerrainReaction reaction;
+
+ private:
+  SoilBed bed_;
+  Footprint wheel_ = Footprint::wheel(kRadius_m, 0.05);
+};
+
+/// The mean gradient after so many steps of one gradient, each of this length.
+double mean_gradient(double gradient, double step_m, int steps) {
+  return gradient * (1.0 - std::pow(1.0 - std::abs(step_m) / kRadius_m, steps));
+}
+
+TEST(SoilPath, GrowsWithTheWayAndItsGradientFollowsOverTheBodysLength) {
+  for (const double speed : {0.5, -0.5}) {
+    for (const double rise : {0.1, -0.15}) {
+      MovedWheel wheel;
+      wheel.move({speed, 0.0, rise}, 30);
+      EXPECT_NEAR(wheel.path().travel_m, speed * 30 * kStep_s, 1e-12);
+      EXPECT_NEAR(wheel.path().gradient, mean_gradient(rise / speed, speed * kStep_s, 30), 1e-9)
+          << speed << " " << rise;
+    }
+  }
+}
+
+TEST(SoilPath, WhatMovesSidewaysComesAlongNothing) {
+  MovedWheel wheel;
+  wheel.move({0.0, 0.4, -0.1}, 10);
+  EXPECT_EQ(wheel.path().travel_m, 0.0);
+  EXPECT_EQ(wheel.path().gradient, 0.0);
+}
+
+TEST(SoilPath, IsInTheBodysAxes) {
+  MovedWheel wheel;
+  wheel.pose.linear() = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                         Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
+                         Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()))
+                            .toRotationMatrix();
+  const Eigen::Vector3d local(0.5, 0.2, 0.1);
+  wheel.move(wheel.pose.linear() * local, 20);
+  EXPECT_NEAR(wheel.path().travel_m, 0.5 * 20 * kStep_s, 1e-12);
+  EXPECT_NEAR(wheel.path().gradient, mean_gradient(0.2, 0.5 * kStep_s, 20), 1e-9);
+}
+
+TEST(SoilPath, BeginsAnewWhereTheBodyTurnsBack) {
+  MovedWheel wheel;
+  wheel.move({0.5, 0.0, 0.1}, 30);
+  wheel.move({-0.5, 0.0, 0.1});
+  EXPECT_NEAR(wheel.path().travel_m, -0.5 * kStep_s, 1e-12);
+  EXPECT_NEAR(wheel.path().gradient, mean_gradient(-0.2, 0.5 * kStep_s, 1), 1e-9);
+  // Standing still does not end it.
+  wheel.move({0.0, 0.0, 0.0}, 5);
+  EXPECT_NEAR(wheel.path().travel_m, -0.5 * kStep_s, 1e-12);
+}
+
+TEST(SoilPath, WhatDropsHasNotDrivenThere) {
+  for (const double rise : {3.0, -3.0}) {
+    MovedWheel wheel;
+    wheel.move({0.2, 0.0, rise}, 4);
+    EXPECT_NEAR(wheel.path().gradient, mean_gradient(rise > 0.0 ? 1.0 : -1.0, 0.2 * kStep_s, 4),
+                1e-9);
+  }
+  MovedWheel wheel;
+  wheel.move({0.5, 0.0, 0.1}, 30);
+  wheel.move({70.0, 0.0, 7.0});  // farther than it is long
+  EXPECT_EQ(wheel.path().gradient, 0.0);
+}
+
+TEST(SoilPath, WithoutFollowingSlopesItIsLevel) {
+  SoilOptions options;
+  options.follow_slopes = false;
+  MovedWheel wheel(options);
+  wheel.pose.linear() = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                         Eigen::AngleAxisd(-0.3, Eigen::Vector3d::UnitY()) *
+                         Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()))
+                            .toRotationMatrix();
+  wheel.move({0.3, 0.1, 0.2}, 3);
+  // A displacement of (1, 0, gradient) in the body's axes does not rise.
+  const Eigen::Vector3d along =
+      wheel.pose.linear() * Eigen::Vector3d(1.0, 0.0, wheel.path().gradient);
+  EXPECT_NEAR(along.z(), 0.0, 1e-12);
+  EXPECT_GT(std::abs(wheel.path().gradient), 0.1);
+}
+
+TEST(SoilPath, IsForgottenWhereTheBodyLeavesTheGround) {
+  MovedWheel wheel;
+  wheel.move({0.5, 0.0, 0.1}, 30);
+  wheel.pose.translation().z() = 1.0;
+  wheel.move({0.5, 0.0, 0.1});
+  EXPECT_EQ(wheel.path().travel_m, 0.0);
+  EXPECT_EQ(wheel.memory.patch_b_m, 0.0);
+  EXPECT_EQ(wheel.reaction.force, Eigen::Vector3d::Zero());
+}
+
+// ---- a bed's options
+
+TEST(SoilBedOptions, CompactionTakesItsShareOfWhatSinks) {
+  for (const double compaction : {0.0, 0.25, 1.0}) {
+    SoilParameters soil = soil_preset("lete_sand");
+    soil.compaction = compaction;
+    soil.drag_depth_m = 0.0;
+    SoilBed bed(HeightField(61, 61, 0.005, true), soil, {});
+    Footprint plate = Footprint::box({0.1, 0.1, 0.02});
+    FootprintMotion motion;
+    motion.mass_kg = std::numeric_limits<double>::infinity();
+    ContactMemory memory;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (int i = 0; i <= 20; ++i) {
+      pose.translation().z() = 0.01 - 0.0002 * i;
+      plate.set_pose(pose);
+      motion.velocity.z() = -0.2;
+      bed.press(plate, motion, kStep_s, memory);
+      bed.end_step();
+    }
+    int64_t sunk = 0;
+    for (int iy = 0; iy < 61; ++iy) {
+      for (int ix = 0; ix < 61; ++ix) sunk += std::max<int64_t>(0, -bed.surface().node(ix, iy));
+    }
+    ASSERT_GT(sunk, 1000);
+    const VolumeBalance balance = bed.balance();
+    EXPECT_EQ(balance.error(), 0);
+    EXPECT_EQ(balance.in_transit, 0);
+    EXPECT_NEAR(static_cast<double>(balance.compacted), compaction * static_cast<double>(sunk),
+                2.0 + 0.001 * static_cast<double>(sunk));
+  }
+}
+
+TEST(SoilBedOptions, WithoutAvalanchesASlopeStays) {
+  HeightField steep(61, 61, 0.005, true);
+  steep.set_node(30, 30, static_cast<Height>(std::lround(0.05 / kHeightUnit_m)));
+  for (const bool avalanches : {true, false}) {
+    SoilOptions options;
+    options.avalanches = avalanches;
+    SoilBed bed(steep, soil_preset("lete_sand"), options);
+    Footprint plate = Footprint::box({0.02, 0.02, 0.02});
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() << bed.surface().node_x(30), bed.surface().node_y(30), 0.05 + 0.01 - 0.001;
+    plate.set_pose(pose);
+    FootprintMotion motion;
+    motion.mass_kg = std::numeric_limits<double>::infinity();
+    ContactMemory memory;
+    bed.press(plate, motion, kStep_s, memory);
+    bed.end_step();
+    pose.translation().z() += 1.0;  // it lifts: what it stood on may slide
+    plate.set_pose(pose);
+    for (int i = 0; i < 5; ++i) {
+      bed.press(plate, motion, kStep_s, memory);
+      bed.end_step();
+    }
+    const bool slid = bed.surface().node(30, 30) * kHeightUnit_m < 0.04;
+    EXPECT_EQ(slid, avalanches);
+    if (!avalanches) {
+      EXPECT_EQ(bed.slopes_left(), 0U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace screed
