@@ -7,11 +7,11 @@
 namespace screed {
 namespace {
 
-/// One end of a range. Whole numbers up to those of uint64_t are written out.
-std::string end_text(long double value, bool whole) {
-  if (whole && value >= 0) return std::to_string(static_cast<std::uint64_t>(value));
-  if (whole) return std::to_string(static_cast<std::int64_t>(value));
-  return plain_text(static_cast<double>(value));
+/// One end of a range. Whole numbers are written out.
+std::string end_text(double value, bool whole) {
+  if (!whole) return plain_text(value);
+  if (value >= kSeedRange.high) return std::to_string(UINT64_MAX);
+  return std::to_string(static_cast<std::int64_t>(value));
 }
 
 std::string range_text(const number_option::Description& number, const char* between) {
@@ -60,10 +60,10 @@ std::vector<std::string> split(const std::string& text) {
 
 }  // namespace
 
-bool NumberRange::contains(long double value) const {
+bool NumberRange::contains(double value) const {
   if (or_zero && value == 0) return true;
   if (!(value >= low && value <= high)) return false;
-  return multiple_of == 1 || std::fmod(value, static_cast<long double>(multiple_of)) == 0;
+  return multiple_of == 1 || std::fmod(value, static_cast<double>(multiple_of)) == 0;
 }
 
 namespace number_option {

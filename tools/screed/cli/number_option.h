@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -15,18 +14,18 @@
 
 namespace screed {
 
-/// What a number may be; both ends are allowed. Of long double, which holds a whole uint64_t.
+/// What a number may be; both ends are allowed.
 struct NumberRange {
-  long double low;
-  long double high;
+  double low;
+  double high;
   bool or_zero = false;  ///< 0 is allowed beside low..high, where it stands for "none", "no limit"
   int multiple_of = 1;   ///< of whole numbers
 
-  bool contains(long double value) const;
+  bool contains(double value) const;
 };
 
-/// Every seed: all of uint64_t.
-inline constexpr NumberRange kSeedRange{0, std::numeric_limits<std::uint64_t>::max()};
+/// Every seed: all of uint64_t, whose own limit is no double.
+inline constexpr NumberRange kSeedRange{0.0, 0x1p64};
 /// Counts of drives, epochs and the like, which take time but no memory.
 inline constexpr NumberRange kCountRange{1, 1e9};
 /// A share or a probability.
@@ -89,12 +88,11 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value,
   using Kind = number_option::Element<Value>;
   using T = typename Kind::Type;
   static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
-  const auto begin = [&value] {
-    if constexpr (Kind::kSeveral) value.clear();
-  };
+  std::function<void()> begin = [] {};
+  if constexpr (Kind::kSeveral) begin = [&value] { value.clear(); };
   const auto take = [&value, range](const std::string& text) {
     const std::optional<T> number = finite_number<T>(text);
-    if (!number.has_value() || !range.contains(static_cast<long double>(*number))) return false;
+    if (!number.has_value() || !range.contains(static_cast<double>(*number))) return false;
     if constexpr (Kind::kSeveral) {
       value.push_back(*number);
     } else {

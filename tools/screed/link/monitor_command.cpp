@@ -259,7 +259,8 @@ void register_monitor_command(CLI::App& root, Program& program) {
                     "Print one text report per second instead of a full-screen page (default "
                     "without a terminal)");
   command->add_flag("--once", arguments->once, "Print one report and exit");
-  add_number(*command, "--duration", arguments->duration_s, "Exit after this time [s]", {0.0, 1e9});
+  add_number(*command, "--duration", arguments->duration_s, "Exit after this time [s]; 0: never",
+             {0.0, 1e9});
   command->callback([arguments, &program] {
     program.action = [arguments] {
       catch_interrupts();

@@ -236,6 +236,10 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
       std::min(drive.size(), static_cast<std::size_t>(options.from * nn::kStrideRate_hz));
   const std::size_t end = std::min(
       drive.size(), begin + static_cast<std::size_t>(options.seconds * nn::kStrideRate_hz));
+  if (begin == end) {
+    throw InputError("--from " + plain_text(options.from) + ": " + run + " has only " +
+                     plain_text(static_cast<double>(drive.size()) / nn::kStrideRate_hz) + " s");
+  }
   const HeightField before = drive.terrain_after(begin);
   const HeightField real = drive.terrain_after(end);
 
@@ -392,7 +396,7 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
              "Time to skip at the start of each run [s]", {0.0, 1e6})
       ->capture_default_str();
   add_number(*compare_command, "--seconds", compared->seconds,
-             "Duration to compare of each run [s]", {0.01, 1e6})
+             "Duration to compare of each run [s]", {0.1, 1e6})
       ->capture_default_str();
   compare_command->add_option("--pictures", compared->pictures,
                               "Output folder for pictures of the height change");

@@ -12,7 +12,7 @@
 
 #include "commands.h"
 #include "tests/temp_folder.h"
-#include "tools/screed/cli/number_text.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/program.h"
 
 namespace screed {
@@ -88,6 +88,7 @@ Ending ending_of(CommandLine& line, const std::vector<std::string>& arguments) {
   std::vector<std::string> texts = arguments;
   texts.insert(texts.begin(), "screed");
   std::vector<char*> pointers;
+  pointers.reserve(texts.size());
   for (std::string& text : texts) pointers.push_back(text.data());
   bool ran = false;
   testing::internal::CaptureStderr();
@@ -159,13 +160,34 @@ TEST(CommandNumbers, EveryOneTakesTheEndsOfItsRange) {
   }
 }
 
+/// Whether CLI11 reads it as a number by itself, with any check or none.
+bool is_unchecked_number(const CLI::Option& option) {
+  static const std::regex numeric("INT|FLOAT|BOOLEAN|COMPLEX|NUMBER");
+  return !is_flag(option) && !limits_of(option) &&
+         std::regex_search(option.get_type_name(), numeric);
+}
+
+TEST(CommandNumbers, AnOptionWithoutARangeIsNoticed) {
+  CLI::App app;
+  double real = 0.0;
+  std::optional<std::uint64_t> count;
+  std::vector<int> several;
+  std::string text;
+  bool flag = false;
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--a", real)));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--b", real)->check(CLI::Range(0.0, 1.0))));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--c", count)->check(CLI::PositiveNumber)));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--d", several)->delimiter(',')));
+  EXPECT_FALSE(is_unchecked_number(*app.add_option("--e", text)));
+  EXPECT_FALSE(is_unchecked_number(*app.add_flag("--f", flag)));
+  EXPECT_FALSE(is_unchecked_number(*add_number(app, "--g", several, "", {1, 2})));
+  EXPECT_FALSE(is_unchecked_number(*add_number(app, "--h", real, "", {.low = 1.0, .high = 2.0})));
+}
+
 TEST(CommandNumbers, NoneIsWithoutARange) {
-  // CLI11's names of numeric types.
-  static const std::regex numeric("INT|UINT|FLOAT|BOOLEAN|COMPLEX|NUMBER");
   CommandLine line;
   for (const OptionPlace& place : every_option(line.app)) {
-    if (is_flag(*place.option) || limits_of(*place.option)) continue;
-    EXPECT_FALSE(std::regex_search(place.option->get_type_name(), numeric))
+    EXPECT_FALSE(is_unchecked_number(*place.option))
         << place.text() << " is a " << place.option->get_type_name()
         << ": use add_number() of tools/screed/cli/number_option.h";
   }

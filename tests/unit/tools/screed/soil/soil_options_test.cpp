@@ -46,8 +46,7 @@ TEST(SoilOptions, HelpSaysSymbolUnitAndRange) {
   EXPECT_EQ(command.get_option("--repose")->get_type_name(), "NUMBER 1..60");
   EXPECT_EQ(command.get_option("--elastic")->get_type_name(), "NUMBER 10000..1e+12");
   EXPECT_EQ(command.get_option("--repose")->get_description(), "Angle of repose [deg]");
-  EXPECT_EQ(command.get_option("--elastic")->get_description(),
-            "Stiffness of unloading E [Pa/m]");
+  EXPECT_EQ(command.get_option("--elastic")->get_description(), "Stiffness of unloading E [Pa/m]");
   EXPECT_EQ(command.get_option("--k-phi")->get_description(),
             "Bekker's frictional modulus [N/m^(n+2)]; left out: the preset's");
   EXPECT_EQ(command.get_option("--slip-sinkage")->get_description(), "Growth of n with slip");
