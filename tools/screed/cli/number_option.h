@@ -70,7 +70,7 @@ CLI::Option* add(CLI::App& app, const Description& description, const std::funct
 template <class T>
 std::string shown_number(const T& value) {
   if constexpr (std::is_floating_point_v<T>) {
-    return plain_text(value);
+    return plain_text(static_cast<double>(value));
   } else {
     return std::to_string(value);
   }
