@@ -153,13 +153,13 @@ TEST_F(RecordProgram, NothingIsRunWhenOneFileOfSeveralIsWrong) {
 
 TEST_F(RecordProgram, WrongInputIsOneLine) {
   expect_refused(run("record"), 2, {"FILE"});
-  expect_refused(run("record hard.ini --frames 12"), 2, {"frames = '12'", "a multiple of 8"});
-  expect_refused(run("record hard.ini --seed x"), 2, {"--seed = 'x'"});
+  expect_refused(run("record hard.ini --frames 12"), 2, {"--frames 12", "a multiple of 8"});
+  expect_refused(run("record hard.ini --seed x"), 2, {"--seed x", "whole numbers"});
   expect_refused(run("session info nowhere"), 2, {"nowhere", "no such file"});
   expect_refused(run("session info soft.ini"), 2, {"not a session"});
   expect_refused(run("session export hills.png --csv"), 2, {"not a session"});
   expect_refused(run("terrain generate hills.jpg"), 2, {"hills.jpg", ".png", ".bmp"});
-  expect_refused(run("terrain generate a.png --size 5"), 2, {"size = 5"});
+  expect_refused(run("terrain generate a.png --size 5"), 2, {"--size 5", "16 to 4096"});
   ASSERT_EQ(run("record hard.ini --out run").exit_code, 0);
   expect_refused(run("session export run"), 2, {"--csv, --heights, --pictures"});
   expect_refused(run("session export run --csv --first 100000"), 2, {"--first = 100000"});

@@ -119,6 +119,13 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
                  {"the viewer", "--screenshot"});
   expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
   expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "640x420"});
+  for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500"}) {
+    expect_refused(run(std::string("sim e.ini --view --size ") + size), 2, {"--size", "640x420"});
+  }
+  for (const char* time : {"", "nan", "inf", "nan-3", "1-inf", "1e999", "2000000", "-1", "1x"}) {
+    expect_refused(run(std::string("sim e.ini --key-script Up@") + time), 2,
+                   {"--key-script", "Up@3-5.5"});
+  }
   expect_refused(run("sim e.ini --at 3"), 2, {"--at", "--screenshot"});
   expect_refused(run("sim e.ini e.ini --screenshot p.png"), 2, {"one experiment"});
   expect_refused(run("view nowhere --screenshot p.png"), 2, {"nowhere"});

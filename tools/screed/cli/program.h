@@ -6,10 +6,21 @@
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <string>
 
 #include "host_sim/core/errors.h"
 
 namespace screed {
+
+/// The program and the subcommand that its command line has come to: "screed session export".
+inline std::string command_name(const CLI::App& app) {
+  std::string name = app.get_name();
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().back();
+    name += " " + at->get_name();
+  }
+  return name;
+}
 
 /// Parses the command line into `app`, then runs `body`, which returns the exit code. `app` must
 /// carry the program's name.
@@ -27,7 +38,7 @@ int run_program(CLI::App& app, int argc, char** argv, Body body) {
     return body();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(kWrongInput, std::string(error.what()) + " (see " + app.get_name() + " --help)");
+    return fail(kWrongInput, std::string(error.what()) + " (see " + command_name(app) + " --help)");
   } catch (const InputError& error) {
     return fail(kWrongInput, error.what());
   } catch (const std::exception& error) {

@@ -18,6 +18,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/file_descriptor.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -147,8 +148,8 @@ void register_key_command(CLI::App& root, Program& program) {
       ->required();
   command->add_option("--port", arguments->port,
                       "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)");
-  command->add_option("--robot-id", arguments->robot_id, "Robot id of a new key (default: 1)")
-      ->check(CLI::Range(0, 255));
+  add_number(*command, "--robot-id", arguments->robot_id, "Robot id of a new key (default: 1)",
+             {0, 255});
   command->callback([arguments, &program] {
     program.action = [arguments] { return run_key_command(*arguments); };
   });

@@ -4,6 +4,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/can_link.h"
 #include "host_sim/ground_station/link/serial_link.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 
@@ -12,11 +13,11 @@ void add_link_options(CLI::App& command, LinkArguments& arguments) {
                      "Serial port of the radio module, e.g. /dev/ttyUSB0");
   command.add_option("--can", arguments.can, "CAN interface, e.g. slcan0 or vcan0");
   command.add_option("--pty", arguments.pty, "Virtual serial port offered by screed sim --pty");
-  command.add_option("--baud", arguments.baud, "Baud rate of the serial port (default: 57600)");
-  command
-      .add_option("--api", arguments.api,
-                  "API mode of the radio module (parameter AP): 1 plain, 2 escaped; 0: transparent")
-      ->check(CLI::IsMember({0, 1, 2}));
+  add_number(command, "--baud", arguments.baud, "Baud rate of the serial port (default: 57600)",
+             {9600, 230400});
+  add_number(command, "--api", arguments.api,
+             "API mode of the radio module (parameter AP): 1 plain, 2 escaped; 0: transparent",
+             {0, 2});
 }
 
 void add_key_option(CLI::App& command, LinkArguments& arguments) {

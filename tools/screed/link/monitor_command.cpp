@@ -15,6 +15,7 @@
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/link/link_options.h"
 
@@ -258,8 +259,8 @@ void register_monitor_command(CLI::App& root, Program& program) {
                     "Print one text report per second instead of a full-screen page (default "
                     "without a terminal)");
   command->add_flag("--once", arguments->once, "Print one report and exit");
-  command->add_option("--duration", arguments->duration_s, "Exit after this time [s]")
-      ->check(CLI::NonNegativeNumber);
+  add_number(*command, "--duration", arguments->duration_s, "Exit after this time [s]; 0: never",
+             {0.0, 1e9});
   command->callback([arguments, &program] {
     program.action = [arguments] {
       catch_interrupts();

@@ -12,6 +12,7 @@
 #include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "host_sim/render/picture/svg_png.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -120,16 +121,16 @@ void register_plot_command(CLI::App& root, Program& program) {
                    "Signals to plot, e.g. attitude.pitch (docs/telemetry.md)")
       ->required();
   command->add_option("--out", options->out, "Output picture, .svg or .png")->required();
-  command->add_option("--robot", options->robot, "Plot one robot only, 1 to 15");
-  command->add_option("--from", options->from_s, "Start, after the log's first message [s]")
+  add_number(*command, "--robot", options->robot, "Plot one robot only", {1, 15});
+  add_number(*command, "--from", options->from_s, "Start, after the log's first message [s]",
+             {0.0, 1e9})
       ->capture_default_str();
-  command->add_option("--to", options->to_s, "End, after the log's first message [s]");
-  command
-      ->add_option("--width", options->width_px, "Width of the SVG [px]; a PNG has twice as many")
+  add_number(*command, "--to", options->to_s, "End, after the log's first message [s]", {0.0, 1e9});
+  add_number(*command, "--width", options->width_px,
+             "Width of the SVG [px]; a PNG has twice as many", {320, 4000})
       ->capture_default_str();
-  command
-      ->add_option("--height", options->height_px,
-                   "Height of the SVG [px]; a PNG has twice as many")
+  add_number(*command, "--height", options->height_px,
+             "Height of the SVG [px]; a PNG has twice as many", {240, 4000})
       ->capture_default_str();
   command->callback([options, &program] {
     program.action = [options] { return run_plot(*options, std::cerr); };

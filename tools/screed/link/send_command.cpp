@@ -11,6 +11,7 @@
 #include "host_sim/ground_station/link/robot_view.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/link/link_options.h"
 
@@ -171,12 +172,9 @@ void register_send_command(CLI::App& root, Program& program) {
      [](Sender& sender) { return sender.emergency_stop(); });
 
   CLI::App* drive = command->add_subcommand("drive", "Drive, with the algorithm \"drive\" running");
-  drive->add_option("SPEED", arguments->speed_m_per_s, "Speed [m/s]")
-      ->required()
-      ->check(CLI::Range(-2.0, 2.0));
-  drive
-      ->add_option("YAW_RATE", arguments->yaw_rate_deg_per_s, "Yaw rate, counter-clockwise [deg/s]")
-      ->check(CLI::Range(-200.0, 200.0));
+  add_number(*drive, "SPEED", arguments->speed_m_per_s, "Speed [m/s]", {-2.0, 2.0})->required();
+  add_number(*drive, "YAW_RATE", arguments->yaw_rate_deg_per_s,
+             "Yaw rate, counter-clockwise [deg/s]", {-200.0, 200.0});
   on(drive, [arguments](Sender& sender) {
     const DriveArgument argument = {
         static_cast<int16_t>(std::lround(arguments->speed_m_per_s * 1000.0)),

@@ -16,6 +16,7 @@
 #include "nn/training/evaluation.h"
 #include "nn/training/training_run.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/nn/nn_tables.h"
 
@@ -49,7 +50,6 @@ nn::TrainingConfiguration configuration_of(const NnArguments& arguments) {
       nn::read_training_configuration(arguments.configuration);
   if (arguments.seed) configuration.seed = *arguments.seed;
   if (arguments.epochs) {
-    if (*arguments.epochs == 0) throw InputError("--epochs 0; allowed is 1 or more");
     for (nn::NetworkConfiguration& network : configuration.networks) {
       network.epochs = *arguments.epochs;
     }
@@ -309,8 +309,9 @@ void register_nn_command(CLI::App& root, Program& program) {
   CLI::App* train = add("train", "Train the networks of a configuration", run_train);
   configuration(train);
   folder(train);
-  train->add_option("--epochs", arguments->epochs, "Number of epochs; overrides the configuration");
-  train->add_option("--seed", arguments->seed, "Seed; overrides the configuration");
+  add_number(*train, "--epochs", arguments->epochs, "Number of epochs; overrides the configuration",
+             {1, 1e6});
+  add_number(*train, "--seed", arguments->seed, "Seed; overrides the configuration", kSeedRange);
   train->add_flag("--resume", arguments->resume,
                   "Resume from the checkpoints in the output folder");
   json(train);
@@ -337,8 +338,9 @@ void register_nn_command(CLI::App& root, Program& program) {
   CLI::App* check =
       add("check", "Compare scalar and SIMD inference on random and edge-case vectors", run_check);
   model(check);
-  check->add_option("--vectors", arguments->vectors, "Number of vectors")->capture_default_str();
-  check->add_option("--seed", arguments->seed, "Seed of the vectors");
+  add_number(*check, "--vectors", arguments->vectors, "Number of vectors", kCountRange)
+      ->capture_default_str();
+  add_number(*check, "--seed", arguments->seed, "Seed of the vectors", kSeedRange);
 
   CLI::App* features = nn->add_subcommand("features", "List all features and preprocessing stages");
   features->callback([&program] { program.action = [] { return run_features(); }; });

@@ -19,6 +19,7 @@
 #include "nn/surrogate/motion_configuration.h"
 #include "nn/surrogate/rollout.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -344,8 +345,8 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
       ->required();
   motion_command->add_option("--sessions", motion->sessions, "Folder with the recorded sessions")
       ->capture_default_str();
-  motion_command->add_option("--steps", motion->steps,
-                             "Number of training steps; overrides the configuration");
+  add_number(*motion_command, "--steps", motion->steps,
+             "Number of training steps; overrides the configuration", {1, 1e7});
   motion_command->add_option("--out", motion->out, "Model file to write")->required();
   motion_command->callback(
       [motion, &program] { program.action = [motion] { return run_motion(*motion); }; });
@@ -358,9 +359,10 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
   rollout_command->add_option("--model", rollout->models,
                               "Model files (default: the model of screed sim --hal surrogate)");
   rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to");
-  rollout_command->add_option("--starts", rollout->starts,
-                              "Number of rollouts per session, spread evenly (default: each begins "
-                              "where the previous one ends)");
+  add_number(*rollout_command, "--starts", rollout->starts,
+             "Number of rollouts per session, spread evenly (0 and default: each begins "
+             "where the previous one ends)",
+             {0, 100000});
   rollout_command->add_flag("--ruts", rollout->ruts,
                             "Deform the terrain below the surrogates' tracks, as screed sim --hal "
                             "surrogate does; otherwise it stays as at the start");

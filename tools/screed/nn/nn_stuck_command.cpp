@@ -13,6 +13,7 @@
 #include "nn/slip/stuck_run.h"
 #include "nn/slip/stuck_scenario.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -197,24 +198,23 @@ void register_nn_stuck_command(CLI::App& nn, Program& program) {
   CLI::App* command = nn.add_subcommand(
       "stuck",
       "Evaluate the robot's slip and stuck detection in seeded drives with and without traps");
-  command
-      ->add_option("--seed", arguments->seed, "Seed of the first drive; each further drive adds 1")
+  add_number(*command, "--seed", arguments->seed,
+             "Seed of the first drive; each further drive adds 1", kSeedRange)
       ->capture_default_str();
-  command
-      ->add_option("--runs", arguments->runs,
-                   "Number of drives with a trap, and of drives without one")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--free", arguments->free_s, "Duration of a drive without a trap [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(5.0, 36000.0));
-  command->add_option("--threads", arguments->threads, "Number of drives run in parallel")
-      ->check(CLI::Range(1, 256));
+  add_number(*command, "--runs", arguments->runs,
+             "Number of drives with a trap, and of drives without one", {1, 100000})
+      ->capture_default_str();
+  add_number(*command, "--free", arguments->free_s, "Duration of a drive without a trap [s]",
+             {5.0, 36000.0})
+      ->capture_default_str();
+  add_number(*command, "--threads", arguments->threads, "Number of drives run in parallel",
+             {1, 256});
   command->add_option("--train", arguments->train,
                       "Train the network on these drives and write this model file");
-  command->add_option("--epochs", arguments->epochs, "Number of training epochs")
+  add_number(*command, "--epochs", arguments->epochs, "Number of training epochs", {1, 1e6})
       ->capture_default_str();
-  command->add_option("--hidden", arguments->hidden, "Number of nodes of the hidden layer")
+  add_number(*command, "--hidden", arguments->hidden, "Number of nodes of the hidden layer",
+             {1, 255})
       ->capture_default_str();
   command
       ->add_option("--experiment", arguments->experiment,

@@ -20,6 +20,7 @@
 #include "nn/terrain/terrain_comparison.h"
 #include "nn/terrain/window_network.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/viewer/camera.h"
 #include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/terrain_image.h"
@@ -235,6 +236,10 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
       std::min(drive.size(), static_cast<std::size_t>(options.from * nn::kStrideRate_hz));
   const std::size_t end = std::min(
       drive.size(), begin + static_cast<std::size_t>(options.seconds * nn::kStrideRate_hz));
+  if (begin == end) {
+    throw InputError("--from " + plain_text(options.from) + ": " + run + " has only " +
+                     plain_text(static_cast<double>(drive.size()) / nn::kStrideRate_hz) + " s");
+  }
   const HeightField before = drive.terrain_after(begin);
   const HeightField real = drive.terrain_after(end);
 
@@ -332,14 +337,16 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       command->add_subcommand("train", "Train a flux network on recorded runs with wheels");
   train_command->add_option("RUN", train->runs, "Runs with recorded heights")->required();
   train_command->add_option("--out", train->out, "Network file to write")->capture_default_str();
-  train_command->add_option("--hidden", train->hidden, "Number of nodes of the hidden layer")
-      ->check(CLI::Range(1, 512))
+  add_number(*train_command, "--hidden", train->hidden, "Number of nodes of the hidden layer",
+             {1, 512})
       ->capture_default_str();
-  train_command->add_option("--every", train->every, "Use every n-th stride as an example")
-      ->check(CLI::Range(1, 1000))
+  add_number(*train_command, "--every", train->every, "Use every n-th stride as an example",
+             {1, 1000})
       ->capture_default_str();
-  train_command->add_option("--epochs", train->epochs, "Number of epochs")->capture_default_str();
-  train_command->add_option("--seed", train->seed, "Seed of the training")->capture_default_str();
+  add_number(*train_command, "--epochs", train->epochs, "Number of epochs", {1, 1e6})
+      ->capture_default_str();
+  add_number(*train_command, "--seed", train->seed, "Seed of the training", kSeedRange)
+      ->capture_default_str();
   train_command->callback(
       [train, &program] { program.action = [train] { return run_train(*train); }; });
 
@@ -351,18 +358,20 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       ->type_size(1)
       ->allow_extra_args(false);
   tracks_command->add_option("--out", tracks->out, "Network file to write")->capture_default_str();
-  tracks_command->add_option("--hidden", tracks->hidden, "Number of nodes of the hidden layer")
-      ->check(CLI::Range(1, 256))
+  add_number(*tracks_command, "--hidden", tracks->hidden, "Number of nodes of the hidden layer",
+             {1, 256})
       ->capture_default_str();
-  tracks_command->add_option("--segments", tracks->segments, "Number of segments of each run")
-      ->check(CLI::Range(1, 1000))
+  add_number(*tracks_command, "--segments", tracks->segments, "Number of segments of each run",
+             {1, 1000})
       ->capture_default_str();
-  tracks_command->add_option("--seconds", tracks->seconds, "Duration of each segment [s]")
-      ->check(CLI::Range(0.5, 1000.0))
+  add_number(*tracks_command, "--seconds", tracks->seconds, "Duration of each segment [s]",
+             {0.5, 1000.0})
       ->capture_default_str();
-  tracks_command->add_option("--generations", tracks->generations, "Number of generations")
+  add_number(*tracks_command, "--generations", tracks->generations, "Number of generations",
+             {1, 1e6})
       ->capture_default_str();
-  tracks_command->add_option("--seed", tracks->seed, "Seed of the training")->capture_default_str();
+  add_number(*tracks_command, "--seed", tracks->seed, "Seed of the training", kSeedRange)
+      ->capture_default_str();
   tracks_command->callback(
       [tracks, &program] { program.action = [tracks] { return run_train_tracks(*tracks); }; });
 
@@ -380,13 +389,14 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
                    "Also train the thesis' network on this run and compare it; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
-  compare_command->add_option("--epochs", compared->epochs, "Number of epochs of that training")
+  add_number(*compare_command, "--epochs", compared->epochs, "Number of epochs of that training",
+             {1, 1e6})
       ->capture_default_str();
-  compare_command->add_option("--from", compared->from, "Time to skip at the start of each run [s]")
-      ->check(CLI::NonNegativeNumber)
+  add_number(*compare_command, "--from", compared->from,
+             "Time to skip at the start of each run [s]", {0.0, 1e6})
       ->capture_default_str();
-  compare_command->add_option("--seconds", compared->seconds, "Duration to compare of each run [s]")
-      ->check(CLI::PositiveNumber)
+  add_number(*compare_command, "--seconds", compared->seconds,
+             "Duration to compare of each run [s]", {0.1, 1e6})
       ->capture_default_str();
   compare_command->add_option("--pictures", compared->pictures,
                               "Output folder for pictures of the height change");

@@ -14,6 +14,7 @@
 #include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
@@ -106,8 +107,8 @@ void register_parity_command(CLI::App& root, Program& program) {
   command->add_option("--board", arguments->board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
   command->add_option("--elf", arguments->elf, "ELF image (default: the one of make firmware)");
-  command->add_option("--minutes", arguments->minutes, "Simulated time [min] (default: 1)")
-      ->check(CLI::Range(0.001, 1e5));
+  add_number(*command, "--minutes", arguments->minutes, "Simulated time [min] (default: 1)",
+             {0.01, 10000.0});
   command
       ->add_option("--set", arguments->sets, "Override a key: section.key=value; may be repeated")
       ->type_size(1)

@@ -1,13 +1,13 @@
 // `screed record FILE...`: training sessions.
-#include <charconv>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
 
-#include "host_sim/core/errors.h"
+#include "host_sim/run/experiment/sections/experiment_section.h"
 #include "host_sim/run/simulation/names.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/run_batch.h"
 
 namespace screed {
@@ -15,20 +15,14 @@ namespace {
 
 struct RecordArguments {
   BatchArguments runs;
-  std::optional<std::string> seed;
-  std::optional<std::string> frames;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::uint32_t> frames;
   bool csv = false;
 };
 
 /// The seed of the world, and that of the drive: a parameter of the robot, of 15 bits.
-void add_seed(const std::string& text, std::vector<std::string>& overrides) {
-  uint64_t seed = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) {
-    throw InputError("--seed = '" + text + "' is not allowed; expected an integer 0.." +
-                     std::to_string(UINT64_MAX));
-  }
-  overrides.push_back("experiment.seed=" + text);
+void add_seed(std::uint64_t seed, std::vector<std::string>& overrides) {
+  overrides.push_back("experiment.seed=" + std::to_string(seed));
   overrides.push_back("parameters.random_seed=" + std::to_string(seed % 32768U));
 }
 
@@ -52,7 +46,8 @@ void print_session(const SimulationSummary& s) {
 int run_record(const RecordArguments& arguments, const std::string& version) {
   std::vector<std::string> overrides = {std::string("experiment.algorithm=") + kTrainingDriveName};
   if (arguments.seed.has_value()) add_seed(*arguments.seed, overrides);
-  if (arguments.frames.has_value()) overrides.push_back("experiment.frames=" + *arguments.frames);
+  if (arguments.frames.has_value())
+    overrides.push_back("experiment.frames=" + std::to_string(*arguments.frames));
 
   SimulationOptions options;
   options.program_version = version;
@@ -93,11 +88,13 @@ void register_record_command(CLI::App& root, Program& program) {
                                           "Record training sessions: run the training drive "
                                           "(Algorithm 5) and record the height map of every frame");
   add_batch_options(*command, arguments->runs);
-  command->add_option(
-      "--seed", arguments->seed,
-      "Seed of world and training drive; overrides [experiment] seed and [parameters] random_seed");
-  command->add_option("--frames", arguments->frames,
-                      "Number of frames of the training drive; overrides [experiment] frames");
+  add_number(
+      *command, "--seed", arguments->seed,
+      "Seed of world and training drive; overrides [experiment] seed and [parameters] random_seed",
+      kSeedRange);
+  add_number(*command, "--frames", arguments->frames,
+             "Number of frames of the training drive; overrides [experiment] frames",
+             {.low = 8, .high = kMaxFrames, .multiple_of = 8});
   command->add_flag("--csv", arguments->csv, "Also write frames.csv");
   command->callback([arguments, &program] {
     if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");

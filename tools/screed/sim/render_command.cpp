@@ -7,6 +7,7 @@
 
 #include "host_sim/run/scene/run_scene.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -60,14 +61,16 @@ void register_render_command(CLI::App& root, Program& program) {
       "render", "Render one frame of a recorded run as a ray-traced picture (needs povray)");
   const auto options = std::make_shared<Options>();
   command->add_option("RUN", options->run, "Run folder or session.h5")->required();
-  command->add_option("--frame", options->scene.frame,
-                      "Frame to render, from 0; negative counts from the end (default: the last)");
+  add_number(*command, "--frame", options->scene.frame,
+             "Frame to render, from 0; negative counts from the end (default: the last)",
+             {-1e9, 1e9});
   command->add_option("--out", options->out,
                       "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
                       "and its images are written beside it");
-  command->add_option("--width", options->scene.width_px, "Width of the picture [px]")
+  add_number(*command, "--width", options->scene.width_px, "Width of the picture [px]", {16, 8000})
       ->capture_default_str();
-  command->add_option("--height", options->scene.height_px, "Height of the picture [px]")
+  add_number(*command, "--height", options->scene.height_px, "Height of the picture [px]",
+             {16, 8000})
       ->capture_default_str();
   command
       ->add_option("--camera", options->camera,

@@ -15,6 +15,7 @@
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -215,13 +216,13 @@ void register_session_command(CLI::App& root, Program& program) {
                     "Export height maps as 16-bit PNGs, with their scale in scale.json");
   command->add_flag("--pictures", exported->pictures,
                     "Export shaded height maps with the driven path");
-  command
-      ->add_option(
-          "--every", exported->every,
-          "Frames between two images (default: 100 for --heights, a tenth of all for --pictures)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--first", exported->first, "First frame, counted from 0 in the session");
-  command->add_option("--count", exported->count, "Number of frames")->check(CLI::PositiveNumber);
+  add_number(
+      *command, "--every", exported->every,
+      "Frames between two images (default: 100 for --heights, a tenth of all for --pictures)",
+      kCountRange);
+  add_number(*command, "--first", exported->first, "First frame, counted from 0 in the session",
+             {0, 1e9});
+  add_number(*command, "--count", exported->count, "Number of frames", kCountRange);
   command->add_option("--out", exported->out, "Output folder (default: RUN/export)");
   command->callback(
       [exported, &program] { program.action = [exported] { return run_export(*exported); }; });

@@ -17,6 +17,7 @@
 #include "nn/surrogate/surrogate_plant.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/run_batch.h"
 #include "tools/screed/viewer/keyboard_driver.h"
 #include "tools/screed/viewer/live_viewer.h"
@@ -27,8 +28,8 @@ namespace {
 
 struct SimArguments {
   BatchArguments runs;
-  std::optional<std::string> seed;
-  std::optional<std::string> duration;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> duration_s;
   std::string hal = "native";
   std::optional<std::string> board;
   std::optional<std::string> elf;
@@ -125,9 +126,10 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
 
 int run_sim(const SimArguments& arguments, const std::string& version) {
   std::vector<std::string> overrides;
-  if (arguments.seed.has_value()) overrides.push_back("experiment.seed=" + *arguments.seed);
-  if (arguments.duration.has_value())
-    overrides.push_back("experiment.duration=" + *arguments.duration);
+  if (arguments.seed.has_value())
+    overrides.push_back("experiment.seed=" + std::to_string(*arguments.seed));
+  if (arguments.duration_s.has_value())
+    overrides.push_back("experiment.duration=" + plain_text(*arguments.duration_s));
 
   SimulationOptions options;
   PortGroup ports;
@@ -219,9 +221,10 @@ void register_sim_command(CLI::App& root, Program& program) {
   CLI::App* command =
       root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
   add_batch_options(*command, arguments->runs);
-  command->add_option("--seed", arguments->seed, "Seed of the world; overrides [experiment] seed");
-  command->add_option("--duration", arguments->duration,
-                      "Simulated time [s]; overrides [experiment] duration");
+  add_number(*command, "--seed", arguments->seed, "Seed of the world; overrides [experiment] seed",
+             kSeedRange);
+  add_number(*command, "--duration", arguments->duration_s,
+             "Simulated time [s]; overrides [experiment] duration", {0.01, 1e6});
   command
       ->add_option("--hal", arguments->hal,
                    "How the firmware runs: native: compiled for this machine; mcu: the flash image "

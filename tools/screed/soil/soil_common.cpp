@@ -9,6 +9,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/soil_validation/check_range.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -20,7 +21,7 @@ std::string error_of(const SoilLine& line) {
 }
 
 /// The meaning as a sentence; before what it adds behind a semicolon the symbol, where the option's
-/// name does not say it, unit and range.
+/// name does not say it, and the unit.
 std::string option_help(const SoilParameterInfo& parameter) {
   std::string help = parameter.meaning;
   help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
@@ -28,8 +29,7 @@ std::string option_help(const SoilParameterInfo& parameter) {
   std::replace(named.begin(), named.end(), '-', '_');
   const std::string symbol = named == parameter.key ? "" : std::string(" ") + parameter.key;
   const std::string unit = *parameter.unit != '\0' ? std::string(" [") + parameter.unit + "]" : "";
-  const std::string range = text(", %g", parameter.min) + text("..%g", parameter.max);
-  return help.insert(std::min(help.find(';'), help.size()), symbol + unit + range);
+  return help.insert(std::min(help.find(';'), help.size()), symbol + unit);
 }
 
 }  // namespace
@@ -116,11 +116,11 @@ bool SoilArguments::as_peer() const {
   return preset == "viper" && step_s == 1e-3 && overrides.empty();
 }
 
-void add_soil_options(CLI::App& command, SoilArguments& common) {
+void add_soil_options(CLI::App& command, SoilArguments& common, const SoilGridRanges& ranges) {
   command.add_option("--soil", common.preset, "Soil preset: " + name_list(soil_preset_names()));
   for (const SoilParameterInfo& parameter : kSoilParameters) {
-    command.add_option(parameter.option, common.overrides.*parameter.override_member,
-                       option_help(parameter));
+    add_number(command, parameter.option, common.overrides.*parameter.override_member,
+               option_help(parameter), {parameter.min, parameter.max});
   }
   command.add_option("--normal-stress", common.normal_stress,
                      "Direction of the normal stress: radial or vertical");
@@ -130,10 +130,10 @@ void add_soil_options(CLI::App& command, SoilArguments& common) {
                    "Let slopes above the angle of repose slide");
   command.add_flag("--follow-slopes,!--no-follow-slopes", common.follow_slopes,
                    "Assume that bodies follow the slope of their path; otherwise a level path");
-  command.add_option("--sample-spacing", common.sample_spacing_m,
-                     "Spacing of sample points inside a cell [m]");
-  command.add_option("--cell", common.cell_m, "Cell size of the grid [m]");
-  command.add_option("--step", common.step_s, "Time step [s]");
+  add_number(command, "--sample-spacing", common.sample_spacing_m,
+             "Spacing of sample points inside a cell [m]", {1e-4, 0.1});
+  add_number(command, "--cell", common.cell_m, "Cell size of the grid [m]", ranges.cell_m);
+  add_number(command, "--step", common.step_s, "Time step [s]", ranges.step_s);
   command.add_flag("--json", common.json, "Print JSON");
 }
 

@@ -11,6 +11,7 @@
 
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/soil/soil_parameters.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 
@@ -53,7 +54,14 @@ struct SoilArguments {
   bool as_peer() const;
 };
 
-void add_soil_options(CLI::App& command, SoilArguments& arguments);
+/// Of --cell and --step; a test may need others.
+struct SoilGridRanges {
+  NumberRange cell_m = {0.0005, 0.1};
+  NumberRange step_s = {1e-5, 0.02};
+};
+
+void add_soil_options(CLI::App& command, SoilArguments& arguments,
+                      const SoilGridRanges& ranges = {});
 
 void print_table(const std::string& heading, const char* limit_name,
                  const std::vector<SoilLine>& lines);

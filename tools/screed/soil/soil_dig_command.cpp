@@ -7,6 +7,7 @@
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/soil_validation/dig_test.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -109,22 +110,24 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
       "dig", "Let a tracked robot dig: moved volume, depth, distribution of the material");
   a->common.bulldozing = a->common.avalanches = true;
   a->common.preset = "gravel";
-  add_soil_options(*command, a->common);
+  add_soil_options(*command, a->common, {.cell_m = {0.001, 0.02}, .step_s = {1e-5, 0.01}});
   a->test.particle.radius_m = 0.0075;
   command->add_option("--manoeuvre", a->manoeuvre,
                       "Manoeuvre: spin, charge (a mound of 20 degrees) or slip");
   command->add_option("--ground", a->ground, "Terrain model: scm or particles");
-  command->add_option("--particle-radius", a->test.particle.radius_m, "Particle radius [m]");
-  command->add_option("--particle-friction", a->test.particle.friction,
-                      "Friction coefficient of the particles");
-  command->add_option("--depth", a->test.depth_m, "Depth of the particle bed [m]");
-  command->add_option("--size", a->test.size_m, "Side length of the bed [m]");
-  command->add_option("--track-speed", a->test.track_m_per_s, "Belt speed [m/s]");
-  command->add_option("--duration", a->test.duration_s, "Duration [s]");
-  command->add_option("--seed", a->test.seed, "Seed of the particle layout");
-  command->add_option("--beds", a->test.beds, "Number of particle beds whose heights are averaged");
-  command->add_option("--fit-raised", a->fit_cm3,
-                      "Fit --drag-depth to this raised volume [cm^3] (scm)");
+  add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
+             {0.002, 0.1});
+  add_number(*command, "--particle-friction", a->test.particle.friction,
+             "Friction coefficient of the particles", {0.0, 2.0});
+  add_number(*command, "--depth", a->test.depth_m, "Depth of the particle bed [m]", {0.02, 1.0});
+  add_number(*command, "--size", a->test.size_m, "Side length of the bed [m]", {0.5, 5.0});
+  add_number(*command, "--track-speed", a->test.track_m_per_s, "Belt speed [m/s]", {0.01, 1.0});
+  add_number(*command, "--duration", a->test.duration_s, "Duration [s]", {0.1, 600.0});
+  add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
+  add_number(*command, "--beds", a->test.beds, "Number of particle beds whose heights are averaged",
+             {1, 64});
+  add_number(*command, "--fit-raised", a->fit_cm3,
+             "Fit --drag-depth to this raised volume [cm^3] (scm)", {0.0, 1e6});
   command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change");
   command->callback([a, &program] { program.action = [a] { return run_dig(*a); }; });
 }

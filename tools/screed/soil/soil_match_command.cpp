@@ -4,6 +4,7 @@
 
 #include "host_sim/soil_validation/particle_plate.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -52,15 +53,16 @@ void register_soil_match_command(CLI::App& soil, Program& program) {
   a->common.preset = "gravel";
   add_soil_options(*command, a->common);
   a->test.particle.radius_m = 0.0075;
-  command->add_option("--particle-radius", a->test.particle.radius_m, "Particle radius [m]");
-  command->add_option("--particle-friction", a->test.particle.friction,
-                      "Friction coefficient of the particles");
-  command->add_option("--depth", a->test.depth_m, "Depth of the particle bed [m]");
-  command->add_option("--length", a->test.length_m, "Length of plate and block [m]");
-  command->add_option("--width", a->test.width_m, "Width of plate and block [m]");
-  command->add_option("--load", a->test.load_pa, "Pressure below the block [Pa]");
-  command->add_option("--seed", a->test.seed, "Seed of the particle layout");
-  command->add_option("--beds", a->test.beds, "Number of particle beds to average over");
+  add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
+             {0.002, 0.1});
+  add_number(*command, "--particle-friction", a->test.particle.friction,
+             "Friction coefficient of the particles", {0.0, 2.0});
+  add_number(*command, "--depth", a->test.depth_m, "Depth of the particle bed [m]", {0.02, 1.0});
+  add_number(*command, "--length", a->test.length_m, "Length of plate and block [m]", {0.02, 0.3});
+  add_number(*command, "--width", a->test.width_m, "Width of plate and block [m]", {0.02, 0.3});
+  add_number(*command, "--load", a->test.load_pa, "Pressure below the block [Pa]", {100.0, 1e5});
+  add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
+  add_number(*command, "--beds", a->test.beds, "Number of particle beds to average over", {1, 64});
   command->callback([a, &program] { program.action = [a] { return run_match(*a); }; });
 }
 

@@ -9,6 +9,7 @@
 #include "host_sim/soil_validation/check_range.h"
 #include "host_sim/soil_validation/plate_press.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -138,21 +139,22 @@ void register_soil_plate_command(CLI::App& soil, Program& program) {
   const auto a = std::make_shared<PlateArguments>();
   CLI::App* command =
       soil.add_subcommand("plate", "Press a plate into soil and compare with Bekker's law");
-  add_soil_options(*command, a->common);
+  add_soil_options(*command, a->common, {.step_s = {1e-5, 0.1}});
   command->add_flag("--round", a->test.round, "Press a disc; --length is its diameter");
-  command->add_option("--length", a->test.length_m, "Length of the plate [m]");
-  command->add_option("--width", a->test.width_m, "Width of the plate [m]");
-  command->add_option("--depth", a->depth_m, "Depth to press to [m]");
-  command->add_option("--lift", a->lift_m, "Distance to lift the plate afterwards [m]");
-  command->add_option("--speed", a->test.speed_m_per_s, "Pressing speed [m/s]");
-  command->add_option("--offset-x", a->test.offset_x_m,
-                      "Offset of the plate against the grid in x [m]");
-  command->add_option("--offset-y", a->test.offset_y_m,
-                      "Offset of the plate against the grid in y [m]");
-  command->add_option("--yaw", a->yaw_deg, "Yaw of the plate [deg]");
-  command->add_option("--offsets", a->offsets,
-                      "Number of random positions and yaws to find the worst error over");
-  command->add_option("--seed", a->seed, "Seed of the random positions");
+  add_number(*command, "--length", a->test.length_m, "Length of the plate [m]", {0.005, 1.0});
+  add_number(*command, "--width", a->test.width_m, "Width of the plate [m]", {0.005, 1.0});
+  add_number(*command, "--depth", a->depth_m, "Depth to press to [m]", {0.0001, 0.25});
+  add_number(*command, "--lift", a->lift_m, "Distance to lift the plate afterwards [m]",
+             {0.0, 0.35});
+  add_number(*command, "--speed", a->test.speed_m_per_s, "Pressing speed [m/s]", {0.001, 10.0});
+  add_number(*command, "--offset-x", a->test.offset_x_m,
+             "Offset of the plate against the grid in x [m]", {-1.0, 1.0});
+  add_number(*command, "--offset-y", a->test.offset_y_m,
+             "Offset of the plate against the grid in y [m]", {-1.0, 1.0});
+  add_number(*command, "--yaw", a->yaw_deg, "Yaw of the plate [deg]", {-360.0, 360.0});
+  add_number(*command, "--offsets", a->offsets,
+             "Number of random positions and yaws to find the worst error over", {0, 10000});
+  add_number(*command, "--seed", a->seed, "Seed of the random positions", kSeedRange);
   command->add_option("--charts", a->common.charts, "Output folder for soil_plate.svg");
   command->callback([a, &program] { program.action = [a] { return run_plate(*a); }; });
 }

@@ -3,6 +3,7 @@
 
 #include "host_sim/soil_validation/repose_pile.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -38,13 +39,13 @@ void register_soil_repose_command(CLI::App& soil, Program& program) {
   CLI::App* command =
       soil.add_subcommand("repose", "Let a column of soil collapse to its angle of repose");
   add_soil_options(*command, a->common);
-  command->add_option("--size", a->test.size_m, "Side length of the bed [m]");
-  command->add_option("--radius", a->test.radius_m, "Radius of the column [m]");
-  command->add_option("--height", a->test.height_m, "Height of the column [m]");
-  command->add_option("--tap", a->test.tap_m,
-                      "Depth by which a plate first taps the column [m]; 0: untouched");
-  command->add_option("--x", a->test.centre_x_m, "Centre position in x [m]");
-  command->add_option("--y", a->test.centre_y_m, "Centre position in y [m]");
+  add_number(*command, "--size", a->test.size_m, "Side length of the bed [m]", {0.1, 10.0});
+  add_number(*command, "--radius", a->test.radius_m, "Radius of the column [m]", {0.0005, 10.0});
+  add_number(*command, "--height", a->test.height_m, "Height of the column [m]", {1e-4, 10.0});
+  add_number(*command, "--tap", a->test.tap_m,
+             "Depth by which a plate first taps the column [m]; 0: untouched", {0.0, 1.0});
+  add_number(*command, "--x", a->test.centre_x_m, "Centre position in x [m]", {-10.0, 10.0});
+  add_number(*command, "--y", a->test.centre_y_m, "Centre position in y [m]", {-10.0, 10.0});
   command->add_flag("--wrap", a->test.wrap, "Wrap the bed around at its edges");
   command->callback([a, &program] { program.action = [a] { return run_repose(*a); }; });
 }

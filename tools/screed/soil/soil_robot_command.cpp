@@ -9,6 +9,7 @@
 #include "host_sim/soil_validation/repose_pile.h"
 #include "host_sim/soil_validation/soil_robot.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -120,14 +121,18 @@ void register_soil_robot_command(CLI::App& soil, Program& program) {
   CLI::App* command =
       soil.add_subcommand("robot", "Drive a four-wheeled body: CPU time per step, volume balance");
   add_soil_options(*command, a->common);
-  command->add_option("--size", a->size_m, "Side length of the bed [m]");
+  add_number(*command, "--size", a->size_m, "Side length of the bed [m]", {0.5, 20.0});
   command->add_flag("--wrap", a->wrap, "Wrap the bed around at its edges");
-  command->add_option("--relief", a->relief_m, "Amplitude of the waves on the bed [m]");
-  command->add_option("--duration", a->duration_s, "Duration [s]; the first fifth is not timed");
-  command->add_option("--left", a->left_m_per_s, "Rim speed of the left wheels [m/s]");
-  command->add_option("--right", a->right_m_per_s, "Rim speed of the right wheels [m/s]");
-  command->add_option("--x", a->x_m, "Start position in x [m]");
-  command->add_option("--y", a->y_m, "Start position in y [m]");
+  add_number(*command, "--relief", a->relief_m, "Amplitude of the waves on the bed [m]",
+             {0.0, 0.1});
+  add_number(*command, "--duration", a->duration_s, "Duration [s]; the first fifth is not timed",
+             {0.01, 1e5});
+  add_number(*command, "--left", a->left_m_per_s, "Rim speed of the left wheels [m/s]",
+             {-10.0, 10.0});
+  add_number(*command, "--right", a->right_m_per_s, "Rim speed of the right wheels [m/s]",
+             {-10.0, 10.0});
+  add_number(*command, "--x", a->x_m, "Start position in x [m]", {-10.0, 10.0});
+  add_number(*command, "--y", a->y_m, "Start position in y [m]", {-10.0, 10.0});
   command->callback([a, &program] { program.action = [a] { return run_robot(*a); }; });
 }
 

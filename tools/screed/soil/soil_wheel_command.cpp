@@ -7,6 +7,7 @@
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "paths.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -157,17 +158,19 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
       "wheel",
       "Roll a wheel at imposed slip and compare with the limit of an infinitely fine grid");
   add_soil_options(*command, a->common);
-  command->add_option("--slip", a->slips, "Slip, one or several values, -1..0.99")->delimiter(',');
-  command->add_option("--load", a->test.wheel.load_n, "Load on the wheel [N]");
-  command->add_option("--radius", a->test.wheel.radius_m, "Radius of the wheel [m]");
-  command->add_option("--width", a->test.wheel.width_m, "Width of the wheel [m]");
-  command->add_option("--mass", a->test.mass_kg, "Mass that moves vertically [kg]");
-  command->add_option("--speed", a->test.speed_m_per_s, "Travel speed [m/s]");
-  command->add_option("--duration", a->test.duration_s, "Duration of a pass [s]");
-  command->add_option("--offset", a->test.offset_m,
-                      "Offset of the wheel's track across the grid [m]");
-  command->add_option("--yaw", a->yaw_deg, "Yaw of the wheel's track against the grid [deg]");
-  command->add_option("--passes", a->test.passes, "Number of passes over the same track");
+  add_number(*command, "--slip", a->slips, "Slip; several with commas between them", {-1.0, 0.99});
+  add_number(*command, "--load", a->test.wheel.load_n, "Load on the wheel [N]", {1e-3, 1e6});
+  add_number(*command, "--radius", a->test.wheel.radius_m, "Radius of the wheel [m]", {1e-3, 10.0});
+  add_number(*command, "--width", a->test.wheel.width_m, "Width of the wheel [m]", {1e-3, 10.0});
+  add_number(*command, "--mass", a->test.mass_kg, "Mass that moves vertically [kg]", {1e-4, 1e4});
+  add_number(*command, "--speed", a->test.speed_m_per_s, "Travel speed [m/s]", {1e-4, 10.0});
+  add_number(*command, "--duration", a->test.duration_s, "Duration of a pass [s]", {0.1, 3600.0});
+  add_number(*command, "--offset", a->test.offset_m,
+             "Offset of the wheel's track across the grid [m]", {-1.0, 1.0});
+  add_number(*command, "--yaw", a->yaw_deg, "Yaw of the wheel's track against the grid [deg]",
+             {-360.0, 360.0});
+  add_number(*command, "--passes", a->test.passes, "Number of passes over the same track",
+             {1, 100});
   CLI::Option* measured =
       command->add_option("--measured", a->measured,
                           "Compare with measurements: a CSV file (default: Ding et al. 2011)");

@@ -24,6 +24,7 @@
 #include "host_sim/render/scene/povray.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
@@ -31,9 +32,7 @@ namespace {
 struct GridOptions {
   GridConfig config;
   std::string algorithm = "probabilistic";
-  int64_t seed = 1;
-  int64_t max_cycles = 1'000'000;
-  std::string size;
+  std::optional<std::string> size;
   std::optional<double> mean;
   std::optional<double> probability;
   std::string stop = "level";
@@ -59,14 +58,8 @@ struct GridOptions {
 
 /// "32" or "40x30" as width and height.
 std::pair<int, int> parse_size(const std::string& text) {
-  int width = 0;
-  int height = 0;
-  int end = 0;
-  const auto whole = [&] { return static_cast<size_t>(end) == text.size(); };
-  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &end) == 2 && whole()) {
-    return {width, height};
-  }
-  if (std::sscanf(text.c_str(), "%d%n", &width, &end) == 1 && whole()) return {width, width};
+  if (const auto sides = whole_pair(text)) return *sides;
+  if (const auto side = finite_number<int>(text)) return {*side, *side};
   throw InputError("grid: size = " + text + "; allowed is cells a side, or WIDTHxHEIGHT");
 }
 
@@ -84,15 +77,6 @@ Value choice(const char* name, const std::string& text,
 GridConfig config_of(const GridOptions& options) {
   GridConfig config = options.config;
   config.algorithm = grid_algorithm(options.algorithm);
-  if (options.seed < 0) {
-    throw InputError("grid: seed = " + std::to_string(options.seed) + "; allowed is 0 or more");
-  }
-  config.seed = static_cast<uint64_t>(options.seed);
-  if (options.max_cycles < 1) {
-    throw InputError("grid: max-cycles = " + std::to_string(options.max_cycles) +
-                     "; allowed is at least 1");
-  }
-  config.max_cycles = static_cast<uint64_t>(options.max_cycles);
   config.stop.measure = choice<GridStop>("stop", options.stop,
                                          {{"level", GridStop::kLevel},
                                           {"gradient", GridStop::kGradient},
@@ -113,8 +97,8 @@ GridConfig config_of(const GridOptions& options) {
     config.follows_slope = yes_or_no("follow-slope", options.follow_slope);
   }
   if (!options.turn_back.empty()) config.turns_back = yes_or_no("turn-back", options.turn_back);
-  if (!options.size.empty()) {
-    const auto [width, height] = parse_size(options.size);
+  if (options.size.has_value()) {
+    const auto [width, height] = parse_size(*options.size);
     config.noise.width = config.image_width = width;
     config.noise.height = config.image_height = height;
     // Zero means "as the image" in the configuration only.
@@ -457,12 +441,7 @@ int run_many(const GridOptions& options) {
 }
 
 int run_command(GridOptions options, bool runs_given, const std::string& version) {
-  if (!(options.speed > 0.0)) throw InputError("grid: speed must be more than 0 cycles a second");
   if (!options.render.empty()) check_picture_name(options.render);
-  if (options.render_width < 100 || options.render_width > 8000) {
-    throw InputError("grid: render-width = " + std::to_string(options.render_width) +
-                     "; allowed is 100 to 8000 px");
-  }
   const bool one_run = options.figure.empty() && !runs_given;
   if (!one_run && !(options.record + options.replay + options.render + options.curve).empty()) {
     throw InputError("grid: --record, --replay, --render and --curve go with a single run");
@@ -489,59 +468,68 @@ void register_grid_command(CLI::App& root, Program& program) {
   command->add_option(
       "--algorithm", options->algorithm,
       "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager");
-  command->add_option("--seed", options->seed, "Seed of the first run; each further run adds 1");
-  command->add_option("--agents", config.agents, "Number of agents");
+  add_number(*command, "--seed", config.seed, "Seed of the first run; each further run adds 1",
+             kSeedRange);
+  add_number(*command, "--agents", config.agents, "Number of agents",
+             {1, kLargestGridSide * kLargestGridSide});
   command->add_option("--size", options->size,
                       "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
   command->add_option("--border", options->border, "Border of the grid: walls or torus");
   command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)");
-  command->add_option("--white", config.white, "Height of a white pixel [units]");
-  command->add_option("--mean", options->mean, "Mean height [units] (noise: 6.5)");
-  command->add_option("--amplitude", config.noise.amplitude, "Amplitude of the noise [units]");
-  command->add_option("--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]");
+  add_number(*command, "--white", config.white, "Height of a white pixel [units]",
+             {0.001, 10000.0});
+  add_number(*command, "--mean", options->mean, "Mean height [units] (noise: 6.5)", {0.0, 10000.0});
+  add_number(*command, "--amplitude", config.noise.amplitude, "Amplitude of the noise [units]",
+             {0.0, 10000.0});
+  add_number(*command, "--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]",
+             {0.5, 1e6});
   command->add_option("--stop", options->stop, "Stop criterion: level, gradient or deviation");
-  command->add_option(
-      "--epsilon", options->epsilon,
-      "Threshold of the stop criterion [units] (level 1, gradient 1.5, deviation 0.5)");
-  command->add_option("--max-cycles", options->max_cycles,
-                      "Maximum number of cycles; a longer run counts as failed");
+  add_number(*command, "--epsilon", options->epsilon,
+             "Threshold of the stop criterion [units] (level 1, gradient 1.5, deviation 0.5)",
+             {0.0, kMaxStackHeight});
+  add_number(*command, "--max-cycles", config.max_cycles,
+             "Maximum number of cycles; a longer run counts as failed", kCountRange);
 
-  command->add_option("-p,--probability", options->probability,
-                      "Probability of picking up and of depositing");
-  command->add_option("--p-pick-up", config.p_pick_up, "Probability of picking up");
-  command->add_option("--p-deposit", config.p_deposit, "Probability of depositing");
-  command->add_option("--p-sense", config.p_sense,
-                      "Probability of sampling the height on arrival in a cell");
-  command->add_option("--p-turn", config.p_turn, "Probability of a step in a random direction");
-  command->add_option("-k", config.k, "Parameter k of the response curves (threshold)");
-  command->add_option("--memory", config.memory, "Length of the height memory [samples], 1 to 8");
-  command->add_option("--fitness-threshold", config.fitness_threshold,
-                      "Fitness below which chromosomes are replaced (memetic-2)");
+  add_number(*command, "-p,--probability", options->probability,
+             "Probability of picking up and of depositing", kShareRange);
+  add_number(*command, "--p-pick-up", config.p_pick_up, "Probability of picking up", kShareRange);
+  add_number(*command, "--p-deposit", config.p_deposit, "Probability of depositing", kShareRange);
+  add_number(*command, "--p-sense", config.p_sense,
+             "Probability of sampling the height on arrival in a cell", kShareRange);
+  add_number(*command, "--p-turn", config.p_turn, "Probability of a step in a random direction",
+             kShareRange);
+  add_number(*command, "-k", config.k, "Parameter k of the response curves (threshold)",
+             {1.0 / 256.0, 255.0});
+  add_number(*command, "--memory", config.memory, "Length of the height memory [samples]",
+             {1, HeightMemory::kMaxLength});
+  add_number(*command, "--fitness-threshold", config.fitness_threshold,
+             "Fitness below which chromosomes are replaced (memetic-2)", kShareRange);
   command->add_option("--fitness-base", options->fitness_base,
                       "Operations counted by the fitness: executed or attempted (memetic)");
-  command->add_option("--chromosomes", config.chromosomes,
-                      "Chromosomes per agent, 1 to 5 (memetic-2)");
-  command->add_option("--repetitions", config.repetitions,
-                      "Repetitions of a chromosome (memetic-1)");
-  command->add_option("--averaging", config.averaging,
-                      "Window of the running average [samples] (patient, forager)");
-  command->add_option(
-      "--dead-band", config.dead_band,
-      "Dead band around the average in which nothing is moved [units] (patient, forager)");
-  command->add_option("--patience", config.patience,
-                      "Idle cycles before the dead band shrinks; 0: never (patient, forager)");
-  command->add_option("--hold-out", config.hold_out,
-                      "Cycles over which the hold-out decays; 0: none (patient 0, forager 200)");
+  add_number(*command, "--chromosomes", config.chromosomes, "Chromosomes per agent (memetic-2)",
+             {1, MemeticAgent::kMaxChromosomes});
+  add_number(*command, "--repetitions", config.repetitions,
+             "Repetitions of a chromosome (memetic-1)", {1, 100});
+  add_number(*command, "--averaging", config.averaging,
+             "Window of the running average [samples] (patient, forager)", {1, 32767});
+  add_number(*command, "--dead-band", config.dead_band,
+             "Dead band around the average in which nothing is moved [units] (patient, forager)",
+             {0.0, 255.0});
+  add_number(*command, "--patience", config.patience,
+             "Idle cycles before the dead band shrinks; 0: never (patient, forager)", {0, 65535});
+  add_number(*command, "--hold-out", config.hold_out,
+             "Cycles over which the hold-out decays; 0: none (patient 0, forager 200)", {0, 65535});
   command->add_option(
       "--follow-slope", options->follow_slope,
       "Walk uphill when empty and downhill when loaded: yes or no (patient no, forager yes)");
   command->add_option("--turn-back", options->turn_back,
                       "Turn back after an operation: yes or no (patient no, forager yes)");
 
-  CLI::Option* runs = command->add_option("--runs", options->runs,
-                                          "Number of runs, on all cores; with --figure: per point");
-  command->add_option("--threads", options->threads,
-                      "Number of threads; 0: one per core; results do not depend on it");
+  CLI::Option* runs =
+      add_number(*command, "--runs", options->runs,
+                 "Number of runs, on all cores; with --figure: per point", {1, 1e7});
+  add_number(*command, "--threads", options->threads,
+             "Number of threads; 0: one per core; results do not depend on it", {0, 1024});
   command->add_option("--figure", options->figure,
                       "Reproduce a figure: 4.2, 4.3, 4.4, 4.5, better or better-units");
   command->add_option("--out", options->out,
@@ -551,10 +539,10 @@ void register_grid_command(CLI::App& root, Program& program) {
   command->add_option("--replay", options->replay, "Play a recording instead of a run");
   command->add_option("--render", options->render,
                       "Render a ray-traced picture (PNG) of the stacks before and after");
-  command->add_option("--render-width", options->render_width,
-                      "Width of the rendered picture [px]");
+  add_number(*command, "--render-width", options->render_width,
+             "Width of the rendered picture [px]", {100, 8000});
   command->add_option("--curve", options->curve, "Write the progress curve to this CSV file");
-  command->add_option("--speed", options->speed, "Speed of the live view [cycles/s]");
+  add_number(*command, "--speed", options->speed, "Speed of the live view [cycles/s]", {0.01, 1e9});
   command->add_flag("--headless", options->headless, "Run at full speed without live view");
   command->add_flag("--quiet", options->quiet, "Show neither live view nor progress");
   command->add_flag("--json", options->json, "Print results as JSON");

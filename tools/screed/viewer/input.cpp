@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 
 #include "host_sim/core/errors.h"
+#include "tools/screed/cli/number_text.h"
 
 namespace screed::viewer {
 namespace {
@@ -85,18 +85,20 @@ ScriptedKey parse_scripted_key(const std::string& text) {
   } else {
     throw fail();
   }
-  const char* const end = text.data() + text.size();
-  auto read = std::from_chars(text.data() + at + 1, end, scripted.from_s);
-  if (read.ec != std::errc()) throw fail();
+  // Behind a first digit, which is no sign and no exponent's: "3-5", "1e-3", "1e-3-5".
+  const std::string times = text.substr(at + 1);
+  size_t minus = times.find('-', 1);
+  if (minus != std::string::npos && (times[minus - 1] == 'e' || times[minus - 1] == 'E')) {
+    minus = times.find('-', minus + 1);
+  }
   constexpr double kTap_s = 0.05;
-  scripted.to_s = scripted.from_s + kTap_s;
-  if (read.ptr != end && *read.ptr == '-') {
-    read = std::from_chars(read.ptr + 1, end, scripted.to_s);
-    if (read.ec != std::errc()) throw fail();
-  }
-  if (read.ptr != end || !(scripted.from_s >= 0.0) || !(scripted.to_s >= scripted.from_s)) {
-    throw fail();
-  }
+  constexpr double kMax_s = 1e6;
+  const auto from_s = finite_number<double>(times.substr(0, minus));
+  const auto to_s = minus == std::string::npos ? from_s.value_or(0.0) + kTap_s
+                                               : finite_number<double>(times.substr(minus + 1));
+  if (!from_s || !to_s || *from_s < 0.0 || *to_s < *from_s || *to_s > kMax_s + kTap_s) throw fail();
+  scripted.from_s = *from_s;
+  scripted.to_s = *to_s;
   return scripted;
 }
 

@@ -1,20 +1,18 @@
 // Options of the viewer.
 #include "tools/screed/viewer/view_options.h"
 
-#include <cstdio>
+#include <utility>
 
 #include "host_sim/core/errors.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
 
 void read_size(const std::string& text, viewer::ViewerOptions& options) {
   constexpr int kMax = 8000;
-  int width = 0;
-  int height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 ||
-      width < viewer::Drawing::kMinWidth || height < viewer::Drawing::kMinHeight || width > kMax ||
+  const auto [width, height] = whole_pair(text).value_or(std::pair(0, 0));
+  if (width < viewer::Drawing::kMinWidth || height < viewer::Drawing::kMinHeight || width > kMax ||
       height > kMax) {
     throw InputError("--size = '" + text + "' is not allowed; expected WIDTHxHEIGHT, 640x420 to " +
                      "8000x8000 pixels");
@@ -27,19 +25,17 @@ void read_size(const std::string& text, viewer::ViewerOptions& options) {
 
 void add_view_options(CLI::App& command, ViewArguments& arguments) {
   const char* const kGroup = "Viewer";
-  command
-      .add_option("--speed", arguments.speed,
-                  "Speed [simulated s / s], 0.01 to 1000; 0: as fast as possible (default: 1)")
-      ->group(kGroup)
-      ->check(CLI::Range(0.0, 1000.0));
+  add_number(command, "--speed", arguments.speed,
+             "Speed [simulated s / s]; 0: as fast as possible (default: 1)",
+             {.low = 0.01, .high = 1000.0, .or_zero = true})
+      ->group(kGroup);
   command
       .add_option("--screenshot", arguments.screenshot,
                   "Write a screenshot of the viewer to this PNG file")
       ->group(kGroup);
-  command
-      .add_option("--at", arguments.at, "Time of the screenshot [simulated s] (default: the end)")
-      ->group(kGroup)
-      ->check(CLI::NonNegativeNumber);
+  add_number(command, "--at", arguments.at,
+             "Time of the screenshot [simulated s] (default: the end)", {0.0, 1e6})
+      ->group(kGroup);
   command
       .add_option("--frames-dir", arguments.frames_dir,
                   "Write PNG frames of the whole run to this folder, 25 frames/s at --speed")
@@ -48,20 +44,18 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
       ->group(kGroup)
       ->check(CLI::IsMember({"height", "slope", "change"}))
       ->capture_default_str();
-  command.add_option("--span", arguments.span_m, "Initial width of the view [m]")
-      ->group(kGroup)
-      ->check(CLI::Range(0.05, 1000.0));
+  add_number(command, "--span", arguments.span_m, "Initial width of the view [m]", {0.05, 1000.0})
+      ->group(kGroup);
   command.add_flag("--follow", arguments.follow, "Keep the robot in the centre")->group(kGroup);
   command
       .add_option("--size", arguments.size,
                   "Size of the window or picture [px] (default: 1280x800)")
       ->group(kGroup);
-  command
-      .add_option("--frames", arguments.frames,
-                  "Show this number of frames, 1/60 s apart, as fast as possible, then exit and "
-                  "print the timing")
-      ->group(kGroup)
-      ->check(CLI::PositiveNumber);
+  add_number(command, "--frames", arguments.frames,
+             "Show this number of frames, 1/60 s apart, as fast as possible, then exit and "
+             "print the timing",
+             kCountRange)
+      ->group(kGroup);
   command
       .add_option("--key-script", arguments.key_script,
                   "Scripted key press, KEY@SECONDS or KEY@FROM-TO [simulated s], e.g. Up@3-5; may "
@@ -84,7 +78,7 @@ std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& argumen
   options.frames_dir = arguments.frames_dir;
   options.follow = arguments.follow;
   options.span_m = arguments.span_m;
-  if (!arguments.size.empty()) read_size(arguments.size, options);
+  if (arguments.size.has_value()) read_size(*arguments.size, options);
   if (arguments.shading == "slope") options.shading = viewer::Shading::kSlope;
   if (arguments.shading == "change") options.shading = viewer::Shading::kChange;
   for (const std::string& press : arguments.key_script) {

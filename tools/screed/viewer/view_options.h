@@ -17,7 +17,7 @@ struct ViewArguments {
   std::optional<double> at;
   std::string frames_dir;
   std::string shading = "height";
-  std::string size;
+  std::optional<std::string> size;
   std::optional<double> span_m;
   bool follow = false;
   std::vector<std::string> key_script;

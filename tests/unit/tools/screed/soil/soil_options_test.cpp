@@ -43,12 +43,13 @@ TEST(SoilOptions, HelpSaysSymbolUnitAndRange) {
   CLI::App command;
   SoilArguments soil;
   add_soil_options(command, soil);
-  EXPECT_EQ(command.get_option("--repose")->get_description(), "Angle of repose [deg], 1..60");
-  EXPECT_EQ(command.get_option("--elastic")->get_description(),
-            "Stiffness of unloading E [Pa/m], 10000..1e+12");
+  EXPECT_EQ(command.get_option("--repose")->get_type_name(), "NUMBER 1..60");
+  EXPECT_EQ(command.get_option("--elastic")->get_type_name(), "NUMBER 10000..1e+12");
+  EXPECT_EQ(command.get_option("--repose")->get_description(), "Angle of repose [deg]");
+  EXPECT_EQ(command.get_option("--elastic")->get_description(), "Stiffness of unloading E [Pa/m]");
   EXPECT_EQ(command.get_option("--k-phi")->get_description(),
-            "Bekker's frictional modulus [N/m^(n+2)], 0..1e+12; left out: the preset's");
-  EXPECT_EQ(command.get_option("--slip-sinkage")->get_description(), "Growth of n with slip, 0..2");
+            "Bekker's frictional modulus [N/m^(n+2)]; left out: the preset's");
+  EXPECT_EQ(command.get_option("--slip-sinkage")->get_description(), "Growth of n with slip");
 }
 
 }  // namespace

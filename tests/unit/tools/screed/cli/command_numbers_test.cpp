@@ -1,0 +1,217 @@
+// Every numeric option of every subcommand, against texts that are no number of its range. A new
+// option that is a number, but was not added by add_number(), fails here as well.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "tests/temp_folder.h"
+#include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/program.h"
+
+namespace screed {
+namespace {
+
+/// The command line as the program has it, every subcommand in it.
+struct CommandLine {
+  CLI::App app{"", "screed"};
+  Program program{"test", {}};
+
+  CommandLine() {
+    app.require_subcommand(1);
+    register_screed_subcommands(app, program);
+  }
+};
+
+struct OptionPlace {
+  std::vector<std::string> path;  ///< of subcommands
+  const CLI::Option* option;
+
+  std::string text() const {
+    std::string all = "screed";
+    for (const std::string& name : path) all += " " + name;
+    return all + " " + option->get_name();
+  }
+};
+
+/// In the order of their registration.
+std::vector<OptionPlace> every_option(CLI::App& app) {
+  std::vector<OptionPlace> places;
+  const std::function<void(CLI::App*, const std::vector<std::string>&)> walk =
+      [&](CLI::App* at, const std::vector<std::string>& path) {
+        for (const CLI::Option* option : at->get_options()) places.push_back({path, option});
+        for (CLI::App* below : at->get_subcommands({})) {
+          std::vector<std::string> longer = path;
+          longer.push_back(below->get_name());
+          walk(below, longer);
+        }
+      };
+  walk(&app, {});
+  return places;
+}
+
+bool is_flag(const CLI::Option& option) {
+  return option.get_items_expected_max() == 0;
+}
+
+struct Limits {
+  bool whole;
+  double low;
+  double high;
+};
+
+/// From the help, "NUMBER 0.01..1000" or "INTEGER=3 1..10": what a user sees is what is tested.
+std::optional<Limits> limits_of(const CLI::Option& option) {
+  static const std::regex form("(NUMBER|INTEGER)[^ ]* (?:0 or )?([^ ]+?)\\.\\.([^ ]+)");
+  const std::string shown = option.get_type_name() + "=" + option.get_default_str();
+  const std::string text = option.get_default_str().empty() ? option.get_type_name() : shown;
+  std::smatch match;
+  if (!std::regex_match(text, match, form)) return std::nullopt;
+  return Limits{match[1] == "INTEGER", finite_number<double>(match.str(2)).value(),
+                finite_number<double>(match.str(3)).value()};
+}
+
+/// How the program ends on a command line, and what it says. Nothing is run.
+struct Ending {
+  int exit_code;
+  bool ran;
+  std::string err;
+};
+
+Ending ending_of(CommandLine& line, const std::vector<std::string>& arguments) {
+  std::vector<std::string> texts = arguments;
+  texts.insert(texts.begin(), "screed");
+  std::vector<char*> pointers;
+  pointers.reserve(texts.size());
+  for (std::string& text : texts) pointers.push_back(text.data());
+  bool ran = false;
+  testing::internal::CaptureStderr();
+  const int code =
+      run_program(line.app, static_cast<int>(pointers.size()), pointers.data(), [&ran] {
+        ran = true;
+        return 0;
+      });
+  return {code, ran, testing::internal::GetCapturedStderr()};
+}
+
+std::vector<std::string> with_value(const OptionPlace& place, const std::string& value) {
+  std::vector<std::string> arguments = place.path;
+  arguments.push_back(place.option->get_positional() ? "--" : place.option->get_name());
+  // A positional of numbers alone may stand behind others.
+  const std::string first = "0";
+  if (place.option->get_name() == "YAW_RATE") arguments.push_back(first);
+  arguments.push_back(value);
+  return arguments;
+}
+
+std::vector<std::string> wrong_values(const Limits& limits) {
+  std::vector<std::string> values = {"nan", "-nan",  "inf", "-inf", "1e999", "-1e999",
+                                     "",    "12abc", "abc", " ",    "0x10",  "1;2"};
+  if (limits.whole) values.insert(values.end(), {"1.5", "1e2", "99999999999999999999"});
+  if (limits.low >= 0.0) values.insert(values.end(), {"-1", "-1e-9"});
+  if (limits.high < 1e18) values.push_back(plain_text(limits.high * 1.01 + 1.0));
+  return values;
+}
+
+TEST(CommandNumbers, EveryOneRefusesWhatIsNoNumberOfItsRange) {
+  const TempFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  CommandLine line;
+  int numbers = 0;
+  for (const OptionPlace& place : every_option(line.app)) {
+    const std::optional<Limits> limits = limits_of(*place.option);
+    if (!limits) continue;
+    ++numbers;
+    EXPECT_LT(limits->low, limits->high) << place.text();
+    for (const std::string& value : wrong_values(*limits)) {
+      SCOPED_TRACE(place.text() + " '" + value + "'");
+      const Ending ending = ending_of(line, with_value(place, value));
+      EXPECT_EQ(ending.exit_code, 2);
+      EXPECT_FALSE(ending.ran);
+      EXPECT_EQ(std::count(ending.err.begin(), ending.err.end(), '\n'), 1) << ending.err;
+      EXPECT_LT(ending.err.size(), 200U) << ending.err;
+      EXPECT_EQ(ending.err.rfind("screed: " + place.option->get_name() + " ", 0), 0U) << ending.err;
+      EXPECT_NE(ending.err.find(": allowed are "), std::string::npos) << ending.err;
+    }
+  }
+  EXPECT_GT(numbers, 130);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  std::filesystem::current_path(before);
+}
+
+TEST(CommandNumbers, EveryOneTakesTheEndsOfItsRange) {
+  CommandLine line;
+  for (const OptionPlace& place : every_option(line.app)) {
+    const std::optional<Limits> limits = limits_of(*place.option);
+    if (!limits || limits->high > 1e18) continue;
+    for (const double end : {limits->low, limits->high}) {
+      const std::string value = plain_text(end);
+      const Ending ending = ending_of(line, with_value(place, value));
+      EXPECT_EQ(ending.err.find(": allowed are "), std::string::npos)
+          << place.text() << " " << value << ": " << ending.err;
+    }
+  }
+}
+
+/// Whether CLI11 reads it as a number by itself, with any check or none.
+bool is_unchecked_number(const CLI::Option& option) {
+  static const std::regex numeric("INT|FLOAT|BOOLEAN|COMPLEX|NUMBER");
+  return !is_flag(option) && !limits_of(option) &&
+         std::regex_search(option.get_type_name(), numeric);
+}
+
+TEST(CommandNumbers, AnOptionWithoutARangeIsNoticed) {
+  CLI::App app;
+  double real = 0.0;
+  std::optional<std::uint64_t> count;
+  std::vector<int> several;
+  std::string text;
+  bool flag = false;
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--a", real)));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--b", real)->check(CLI::Range(0.0, 1.0))));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--c", count)->check(CLI::PositiveNumber)));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--d", several)->delimiter(',')));
+  EXPECT_FALSE(is_unchecked_number(*app.add_option("--e", text)));
+  EXPECT_FALSE(is_unchecked_number(*app.add_flag("--f", flag)));
+  EXPECT_FALSE(is_unchecked_number(*add_number(app, "--g", several, "", {1, 2})));
+  EXPECT_FALSE(is_unchecked_number(*add_number(app, "--h", real, "", {.low = 1.0, .high = 2.0})));
+}
+
+TEST(CommandNumbers, NoneIsWithoutARange) {
+  CommandLine line;
+  for (const OptionPlace& place : every_option(line.app)) {
+    EXPECT_FALSE(is_unchecked_number(*place.option))
+        << place.text() << " is a " << place.option->get_type_name()
+        << ": use add_number() of tools/screed/cli/number_option.h";
+  }
+}
+
+TEST(CommandNumbers, NoneIsHiddenInAText) {
+  // Texts of a form of their own; their commands' tests refuse what is wrong with them.
+  const std::set<std::string> own_form = {"screed sim --size",        "screed view --size",
+                                          "screed grid --size",       "screed sim --key-script",
+                                          "screed view --key-script", "screed render --camera"};
+  static const std::regex sounds_numeric("\\[[^\\]]+\\]|[Nn]umber of|^Seed|^Time|^Duration",
+                                         std::regex::ECMAScript);
+  // Names in brackets that are no units: "[map]", "[experiment]".
+  static const std::regex section("\\[(map|experiment|parameters)\\]");
+  CommandLine line;
+  for (const OptionPlace& place : every_option(line.app)) {
+    if (is_flag(*place.option) || limits_of(*place.option)) continue;
+    if (own_form.count(place.text()) > 0) continue;
+    const std::string help = std::regex_replace(place.option->get_description(), section, "");
+    EXPECT_FALSE(std::regex_search(help, sounds_numeric))
+        << place.text() << ": \"" << place.option->get_description()
+        << "\": is it a number? then add_number(), else say so here";
+  }
+}
+
+}  // namespace
+}  // namespace screed

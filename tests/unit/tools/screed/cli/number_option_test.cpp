@@ -1,0 +1,143 @@
+// Options that are numbers: what is taken, what is refused and how, what the help shows.
+#include "tools/screed/cli/number_option.h"
+
+#include <gtest/gtest.h>
+
+namespace screed {
+namespace {
+
+/// What the parser says about these arguments; "" when it takes them.
+std::string refusal(CLI::App& app, std::vector<std::string> arguments) {
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+  try {
+    app.parse(std::move(arguments));
+    return "";
+  } catch (const CLI::ParseError& error) {
+    return error.what();
+  }
+}
+
+template <class Value>
+std::string refusal(const std::string& text, const NumberRange& range) {
+  CLI::App app;
+  Value value{};
+  add_number(app, "--x", value, "", range);
+  return refusal(app, {"--x", text});
+}
+
+template <class Value>
+Value taken(const std::string& text, const NumberRange& range) {
+  CLI::App app;
+  Value value{};
+  add_number(app, "--x", value, "", range);
+  EXPECT_EQ(refusal(app, {"--x", text}), "") << text;
+  return value;
+}
+
+/// The option in the help, without the blanks that fill its column.
+std::string shown(const CLI::App& app) {
+  const std::string help = app.help();
+  const std::size_t begin = help.find("--x");
+  const std::string line = help.substr(begin, help.find('\n', begin) - begin);
+  return line.substr(0, line.find_last_not_of(' ') + 1);
+}
+
+TEST(NumberOption, TakesBothEndsOfItsRange) {
+  EXPECT_EQ(taken<double>("0.01", {0.01, 1000.0}), 0.01);
+  EXPECT_EQ(taken<double>("1e3", {0.01, 1000.0}), 1000.0);
+  EXPECT_EQ(taken<float>("-2.5", {-2.5, 0.0}), -2.5F);
+  EXPECT_EQ(taken<int>("-3", {-3, 3}), -3);
+  EXPECT_EQ(taken<int>("+3", {-3, 3}), 3);
+  EXPECT_EQ(taken<int>("010", {0, 10}), 10);  // not octal
+  EXPECT_EQ(taken<std::uint64_t>("18446744073709551615", kSeedRange), UINT64_MAX);
+  EXPECT_EQ(taken<std::optional<double>>("0.5", kShareRange), 0.5);
+}
+
+TEST(NumberOption, RefusesWhatIsNoNumberOfItsRange) {
+  for (const char* text :
+       {"nan", "-nan", "NAN", "inf", "-inf", "infinity", "1e999", "",  " ",      "1 ",
+        " 1",  "1x",   "0x1", "1,2", "one",  "--1",      "+-1",   "+", "1000.1", "0.009"}) {
+    EXPECT_NE(refusal<double>(text, {0.01, 1000.0}), "") << text;
+    EXPECT_NE(refusal<std::optional<double>>(text, {0.01, 1000.0}), "") << text;
+  }
+  for (const char* text :
+       {"nan", "inf", "1.5", "1e2", "", "1x", "0", "1001", "99999999999999999999", "4294967297"}) {
+    EXPECT_NE(refusal<int>(text, {1, 1000}), "") << text;
+    EXPECT_NE(refusal<std::size_t>(text, {1, 1000}), "") << text;
+  }
+  EXPECT_NE(refusal<std::uint64_t>("-1", kSeedRange), "");
+  EXPECT_NE(refusal<std::uint64_t>("18446744073709551616", kSeedRange), "");
+}
+
+TEST(NumberOption, SaysInOneLineWhatIsAllowed) {
+  EXPECT_EQ(refusal<double>("nan", {0.01, 10000.0}), "--x nan: allowed are 0.01 to 10000");
+  EXPECT_EQ(refusal<int>("-3", {1, 1000000000}),
+            "--x -3: allowed are whole numbers 1 to 1000000000");
+  EXPECT_EQ(refusal<double>("", {1e-5, 1e12}), "--x '': allowed are 0.00001 to 1e+12");
+  EXPECT_EQ(refusal<std::uint64_t>("-1", kSeedRange),
+            "--x -1: allowed are whole numbers 0 to 18446744073709551615");
+  EXPECT_EQ(refusal<int>("1\n2 3", {0, 1}), "--x '1?2 3': allowed are whole numbers 0 to 1");
+  EXPECT_EQ(refusal<int>(std::string(500, '9'), {0, 1}),
+            "--x " + std::string(40, '9') + "...: allowed are whole numbers 0 to 1");
+}
+
+TEST(NumberOption, ZeroCanStandForNone) {
+  const NumberRange range = {.low = 0.5, .high = 2.0, .or_zero = true};
+  EXPECT_EQ(taken<double>("0", range), 0.0);
+  EXPECT_EQ(refusal<double>("0.1", range), "--x 0.1: allowed are 0.5 to 2, and 0");
+}
+
+TEST(NumberOption, WholeNumbersCanGoInSteps) {
+  const NumberRange range = {.low = 8, .high = 80, .multiple_of = 8};
+  EXPECT_EQ(taken<int>("16", range), 16);
+  EXPECT_EQ(refusal<int>("12", range),
+            "--x 12: allowed are whole numbers 8 to 80, each a multiple of 8");
+}
+
+TEST(NumberOption, SeveralReplaceTheDefaults) {
+  CLI::App app;
+  std::vector<double> values = {7.0, 8.0};
+  add_number(app, "--x", values, "", {-1.0, 10.0})->capture_default_str();
+  EXPECT_EQ(shown(app), "--x NUMBER=7,8 -1..10 ...");
+  EXPECT_EQ(refusal(app, {"--x", "1,-0.5", "--x", "3"}), "");
+  EXPECT_EQ(values, (std::vector<double>{1.0, -0.5, 3.0}));
+  EXPECT_EQ(refusal(app, {"--x", "1,,3"}), "--x '': allowed are -1 to 10");
+  EXPECT_EQ(refusal(app, {"--x", "1,nan"}), "--x nan: allowed are -1 to 10");
+  EXPECT_NE(refusal(app, {"--x", "[]"}), "");
+}
+
+TEST(NumberOption, HelpShowsRangeAndDefault) {
+  CLI::App app;
+  double value = 0.25;
+  add_number(app, "--x", value, "", {0.0001, 1e6});
+  EXPECT_EQ(shown(app), "--x NUMBER 0.0001..1000000");
+  app.get_option("--x")->capture_default_str();
+  EXPECT_EQ(shown(app), "--x NUMBER=0.25 0.0001..1000000");
+
+  CLI::App other;
+  std::optional<int> count;
+  add_number(other, "--x", count, "", {.low = 1, .high = 9, .or_zero = true})
+      ->capture_default_str();
+  EXPECT_EQ(shown(other), "--x INTEGER 0 or 1..9");
+}
+
+TEST(NumberOption, NamesPositionalsAndShortOptions) {
+  CLI::App app;
+  int value = 0;
+  double other = 0.0;
+  add_number(app, "COUNT", value, "", {1, 2});
+  add_number(app, "-k", other, "", {1, 2});
+  EXPECT_EQ(refusal(app, {"7"}), "COUNT 7: allowed are whole numbers 1 to 2");
+  EXPECT_EQ(refusal(app, {"-k", "7"}), "-k 7: allowed are 1 to 2");
+}
+
+TEST(NumberText, ReadsAPairOfSides) {
+  EXPECT_EQ(whole_pair("40x30"), std::pair(40, 30));
+  for (const char* text :
+       {"", "x", "40", "40x", "x30", "40x30x", "40x30 ", "4.5x3", "nanxnan", "99999999999x30"}) {
+    EXPECT_FALSE(whole_pair(text).has_value()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace screed

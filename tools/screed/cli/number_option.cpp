@@ -1,0 +1,106 @@
+// Options that are numbers: ranges as text, and what is said about a number that is refused.
+#include "tools/screed/cli/number_option.h"
+
+#include <cmath>
+#include <memory>
+
+namespace screed {
+namespace {
+
+/// One end of a range. Whole numbers are written out.
+std::string end_text(double value, bool whole) {
+  if (!whole) return plain_text(value);
+  if (value >= kSeedRange.high) return std::to_string(UINT64_MAX);
+  return std::to_string(static_cast<std::int64_t>(value));
+}
+
+std::string range_text(const number_option::Description& number, const char* between) {
+  return end_text(number.range.low, number.whole) + between +
+         end_text(number.range.high, number.whole);
+}
+
+/// For the help: "0.01..1000".
+std::string short_text(const number_option::Description& number) {
+  return (number.range.or_zero ? "0 or " : "") + range_text(number, "..");
+}
+
+/// For a message: "allowed are 0.01 to 1000".
+std::string allowed_text(const number_option::Description& number) {
+  std::string text = number.whole ? "allowed are whole numbers " : "allowed are ";
+  text += range_text(number, " to ");
+  if (number.range.multiple_of != 1) {
+    text += ", each a multiple of " + std::to_string(number.range.multiple_of);
+  }
+  return text + (number.range.or_zero ? ", and 0" : "");
+}
+
+/// As it was typed, but on one line, of bounded length, and seen where it is empty.
+std::string quoted(const std::string& text) {
+  constexpr std::size_t kMax = 40;
+  std::string shown = text.substr(0, kMax);
+  bool plain = !shown.empty();
+  for (char& c : shown) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+    plain = plain && c != ' ';
+  }
+  if (text.size() > kMax) shown += "...";
+  return plain ? shown : "'" + shown + "'";
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (;;) {
+    const std::size_t comma = text.find(',', begin);
+    parts.push_back(text.substr(begin, comma - begin));
+    if (comma == std::string::npos) return parts;
+    begin = comma + 1;
+  }
+}
+
+}  // namespace
+
+bool NumberRange::contains(double value) const {
+  if (or_zero && value == 0) return true;
+  if (!(value >= low && value <= high)) return false;
+  return multiple_of == 1 || std::fmod(value, static_cast<double>(multiple_of)) == 0;
+}
+
+namespace number_option {
+
+void refuse(const CLI::Option& option, const std::string& text, const Description& description) {
+  throw CLI::ValidationError(option.get_name() + " " + quoted(text), allowed_text(description));
+}
+
+CLI::Option* add(CLI::App& app, const Description& description, const std::function<void()>& begin,
+                 const Take& take, const std::function<std::string()>& shown) {
+  // Known only when it has been added.
+  const auto option = std::make_shared<CLI::Option*>(nullptr);
+  const auto read = [=](const CLI::results_t& texts) {
+    begin();
+    for (const std::string& text : texts) {
+      for (const std::string& one : description.several ? split(text) : std::vector{text}) {
+        if (!take(one)) refuse(**option, one, description);
+      }
+    }
+    return true;
+  };
+  // The help shows TYPE=DEFAULT: the range goes behind whichever comes last.
+  const auto shown_with_range = [=]() -> std::string {
+    const std::string value = shown();
+    return value.empty() ? "" : value + " " + short_text(description);
+  };
+  *option = app.add_option(description.name, read, description.help, false, shown_with_range);
+  CLI::Option* const added = *option;
+  added->type_name_fn([=] {
+    const std::string kind = description.whole ? "INTEGER" : "NUMBER";
+    return added->get_default_str().empty() ? kind + " " + short_text(description) : kind;
+  });
+  if (description.several) {
+    added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
+  }
+  return added;
+}
+
+}  // namespace number_option
+}  // namespace screed

@@ -1,0 +1,29 @@
+// Numbers as texts and messages show them.
+#include "tools/screed/cli/number_text.h"
+
+#include <array>
+
+namespace screed {
+
+std::optional<std::pair<int, int>> whole_pair(std::string_view text) {
+  const std::size_t between = text.find('x');
+  if (between == std::string_view::npos) return std::nullopt;
+  const auto first = finite_number<int>(text.substr(0, between));
+  const auto second = finite_number<int>(text.substr(between + 1));
+  if (!first.has_value() || !second.has_value()) return std::nullopt;
+  return std::pair(*first, *second);
+}
+
+std::string plain_text(double value) {
+  constexpr double kPlainFrom = 1e-5;
+  constexpr double kPlainTo = 1e10;
+  const double size = std::abs(value);
+  const bool plain = size == 0.0 || (size >= kPlainFrom && size < kPlainTo);
+  std::array<char, 64> text{};
+  const auto result =
+      std::to_chars(text.data(), text.data() + text.size(), value,
+                    plain ? std::chars_format::fixed : std::chars_format::scientific);
+  return {text.data(), result.ptr};
+}
+
+}  // namespace screed
