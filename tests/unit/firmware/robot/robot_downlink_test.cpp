@@ -336,7 +336,7 @@ TEST(RobotDownlink, AHeartbeatWhoseCounterStandsStillIsNoneHoweverItsTimeGoesOn)
   TestRobot robot;
   robot.heartbeats = false;
   robot.run(10);
-  for (int i = 0; i < 30; ++i) {
+  for (uint32_t i = 0; i < 30; ++i) {
     uint8_t counter = 5;
     robot.send(TestRobot::protect(
         frame_of(message::GroundHeartbeat{robot.sample.time_us / 1000 + 3U * i}), counter));
