@@ -34,7 +34,7 @@ endif
 
 # The library without what none of these tests links: training, the surrogate, calibration, most subcommands, windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
-  sim/replay_command.cpp cli/interrupt.cpp)
+  sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp)
 ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/% host_sim/ground_station/calibration/%,$(LIBRARY_SOURCES))
 $(B)/libasan_tested.a: $(call objects,$(ASAN_LIBRARY_SOURCES))
 	@rm -f $@
