@@ -99,6 +99,9 @@ TEST(SoilPath, WhatDropsHasNotDrivenThere) {
   wheel.move({0.5, 0.0, 0.1}, 30);
   wheel.move({70.0, 0.0, 7.0});  // farther than it is long
   EXPECT_EQ(wheel.path().gradient, 0.0);
+  MovedWheel quick;
+  quick.move({42.0, 0.0, 4.2});  // seven tenths of its length
+  EXPECT_NEAR(quick.path().gradient, 0.07, 1e-9);
 }
 
 TEST(SoilPath, WithoutFollowingSlopesItIsLevel) {
@@ -110,6 +113,10 @@ TEST(SoilPath, WithoutFollowingSlopesItIsLevel) {
                          Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()))
                             .toRotationMatrix();
   wheel.move({0.3, 0.1, 0.2}, 3);
+  MovedWheel pitched(options);
+  pitched.pose.linear() = Eigen::AngleAxisd(-0.3, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  pitched.move({0.3, 0.1, 0.2}, 3);
+  EXPECT_NEAR(pitched.path().gradient, -std::tan(0.3), 1e-12);
   // A displacement of (1, 0, gradient) in the body's axes does not rise.
   const Eigen::Vector3d along =
       wheel.pose.linear() * Eigen::Vector3d(1.0, 0.0, wheel.path().gradient);
