@@ -47,14 +47,6 @@ ASAN_TESTS := $(B)/tests/asan_unit_tests $(if $(filter yes,$(MCU)),$(B)/tests/as
 $(ASAN_TESTS):
 	$(call link,$(TEST_LIBRARIES))
 
-# Half of a test's compilation goes into these headers.
-ASAN_PREFIX := $(B)/tests/prefix.h.pch
-$(ASAN_PREFIX): tests/asan_prefix.h $(B)/host.flags
-	@mkdir -p $(@D)
-	@$(CXX) @$(B)/host.flags -fpch-instantiate-templates -x c++-header $< -o $@
-$(call objects,$(UNIT_SOURCES)): EXTRA_FLAGS = -include-pch $(ASAN_PREFIX)
-$(call objects,$(UNIT_SOURCES)): $(ASAN_PREFIX)
-
 # Figures of whole runs, half of the time of all: they go through the code that the others of their files go through.
 ASAN_LONG := GridFigures.*:SoilDigTest.MovesAsMuchAsAmongParticles
 ASAN_IMAGES := $(addprefix $(FIRMWARE_BUILD)/,screed.elf screed.lst screed.size golden.elf)

@@ -12,6 +12,8 @@ ifeq ($(MCU),yes)
 include tests/mcu/mcu_tests.mk
 endif
 
+$(eval $(call with_headers,test,$(UNIT_SOURCES) $(SITL_SOURCES) $(MCU_TEST_SOURCES)))
+
 TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
 UNIT_TESTS_PARTS := $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/libmutants.a
 $(B)/tests/unit_tests: $(UNIT_TESTS_PARTS) $(B)/link.flags

@@ -61,9 +61,8 @@ void TrackSpeedControl::observe(int16_t counts) {
   // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the
   // shift in two parts.
   speed_q12_ += asr(asr(error, 2) * kBeta_q12, 10);
-  // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16
-  // counted in two parts, of the speed's upper and lower 16 bits: noise at the limit is 5.7 m/s on
-  // the Rover 5, and that product passes 32 bits.
+  // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16, from the speed's upper and lower 16 bits:
+  // noise at the limit is 5.7 m/s on the Rover 5, and that product passes 32 bits.
   const int32_t whole = detail::mul_su(detail::high_half(speed_q12_), count_um_q4_);
   const uint32_t part = mul_u16(detail::low_half(speed_q12_), count_um_q4_) >> 16;
   motion_.speed_dmm_per_s = saturate_i16(whole + static_cast<int32_t>(part));

@@ -30,7 +30,7 @@ $(B)/tests/mcu.flags: FORCE
 $(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
-	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags -MMD -MP -c $< -o $@
+	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags $(HEADERS_FLAGS) $(SET_FLAGS) -MMD -MP -c $< -o $@
 
 $(MCU_TESTS): $(MCU_TEST_OBJECTS) $(LIBRARY) $(B)/libavr_stack.a $(B)/link.flags
 	$(call link,$(TEST_LIBRARIES))

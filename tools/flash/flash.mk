@@ -44,6 +44,7 @@ monitor: $(SCREED_FLASH)  ## serial monitor on the board (PORT=/dev/ttyACM0)
 FLASH_TESTS := $(B)/tests/flash_tests
 FLASH_TEST_SOURCES := $(call sources,tests/flash)
 TESTS += $(FLASH_TESTS)
+$(eval $(call with_headers,test,$(FLASH_TEST_SOURCES)))
 TEST_IMAGES += $(SCREED_FLASH) $(FIRMWARE_BUILD)/screed.hex
 test: export SCREED_FLASH_PROGRAM := $(abspath $(SCREED_FLASH))
 test: export SCREED_FLASH_IMAGE := $(abspath $(FIRMWARE_BUILD))/screed.hex

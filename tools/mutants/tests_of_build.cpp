@@ -33,15 +33,6 @@ std::string word_behind(const std::string& said, const std::string& mark, std::s
   return said.substr(at, said.find_first_of("\n, ", at) - at);
 }
 
-/// The test that failed. With --gtest_fail_fast those behind it are begun, too, as skipped ones;
-/// one that crashed or was ended has no result and is the last.
-std::string failed_test(const std::string& said) {
-  static const std::string kFailed = "[  FAILED  ] ";
-  static const std::string kRun = "[ RUN      ] ";
-  const std::string failed = word_behind(said, kFailed, said.find(kFailed));
-  return failed.empty() ? word_behind(said, kRun, said.rfind(kRun)) : failed;
-}
-
 std::map<std::string, std::string> test_environment(const fs::path& programs,
                                                     const fs::path& scratch) {
   fs::create_directories(scratch / "tmp");
@@ -85,6 +76,13 @@ std::map<std::string, TestCase> read_log(const fs::path& log, const std::string&
 }
 
 }  // namespace
+
+std::string failed_test(const std::string& said) {
+  static const std::string kFailed = "[  FAILED  ] ";
+  static const std::string kRun = "[ RUN      ] ";
+  const std::string failed = word_behind(said, kFailed, said.find(kFailed));
+  return failed.empty() ? word_behind(said, kRun, said.rfind(kRun)) : failed;
+}
 
 bool is_wanted(const std::string& name, const std::string& filter) {
   std::istringstream patterns(filter);

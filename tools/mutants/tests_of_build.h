@@ -24,6 +24,11 @@ std::map<std::string, std::string> hashes_of_tests(const std::filesystem::path& 
 /// "Prefix/Suite.Name/0" -> "Suite.Name".
 std::string plain_name(const std::string& name);
 
+/// "Suite.Name" of the test that failed, of what a program run with --gtest_fail_fast said: tests
+/// behind it are begun, too, as skipped ones; one that crashed or was ended has no result and is
+/// the last. Empty where no test was begun.
+std::string failed_test(const std::string& said);
+
 struct Verdict {
   bool killed;
   std::string by;  ///< the test

@@ -44,14 +44,16 @@ class HeardRobot : public TestRobot {
     ADD_FAILURE() << "no such message in 2 s";
     return {};
   }
-  std::vector<message::Event> events(int duration) {
-    std::vector<message::Event> all;
+  /// All messages of a type within so many ticks.
+  template <class Message>
+  std::vector<Message> all(int duration) {
+    std::vector<Message> messages;
     for (int i = 0; i < duration; ++i) {
       for (const CanFrame& frame : hear()) {
-        if (frame.id == message::Event::kId) all.push_back(message::Event::unpack(frame.data));
+        if (frame.id == Message::kId) messages.push_back(Message::unpack(frame.data));
       }
     }
-    return all;
+    return messages;
   }
 
  private:
@@ -195,7 +197,7 @@ TEST(RobotDownlink, TheBatteryIsTheSumOfEightConversionsInTheBoardsUnit) {
 TEST(RobotDownlink, ItsStartIsToldOnceWithItsCause) {
   HeardRobot robot;
   robot.sample.reset_cause = static_cast<uint8_t>(message::HealthResetCause::kWatchdog);
-  const auto events = robot.events(300);
+  const auto events = robot.all<message::Event>(300);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kStarted));
   EXPECT_EQ(events[0].argument, static_cast<int>(message::HealthResetCause::kWatchdog));
@@ -203,29 +205,29 @@ TEST(RobotDownlink, ItsStartIsToldOnceWithItsCause) {
 
 TEST(RobotDownlink, EachChangeOfStateIsToldWithTheFaults) {
   HeardRobot robot;
-  robot.events(600);
+  robot.all<message::Event>(600);
   robot.send(robot.command(CommandOp::kArm));
-  auto events = robot.events(20);
+  auto events = robot.all<message::Event>(20);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kState));
   EXPECT_EQ(events[0].argument, static_cast<int>(RobotState::kArmed));
-  EXPECT_TRUE(robot.events(200).empty()) << "nothing changed";
+  EXPECT_TRUE(robot.all<message::Event>(200).empty()) << "nothing changed";
   robot.sample.accel[1] = 4098;
   robot.sample.accel[2] = 0;
-  events = robot.events(100);
+  events = robot.all<message::Event>(100);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].argument, Fault::kTilt * 256 + static_cast<int>(RobotState::kFault));
 }
 
 TEST(RobotDownlink, ALockOutIsToldWithItsTime) {
   HeardRobot robot;
-  robot.events(600);
+  robot.all<message::Event>(600);
   std::vector<message::Event> events;
   for (int i = 0; i < 12; ++i) {
     CanFrame wrong = robot.command(CommandOp::kArm);
     wrong.data[7] ^= 0x55U;
     robot.send(wrong);
-    for (const message::Event& event : robot.events(8)) events.push_back(event);
+    for (const message::Event& event : robot.all<message::Event>(8)) events.push_back(event);
   }
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kLockedOut));
@@ -294,12 +296,7 @@ TEST(RobotDownlink, ACommandWhileAnotherWaitsIsLostAndCounted) {
   const CanFrame arm = robot.command(CommandOp::kArm);
   robot.send(arm);
   robot.send(robot.command(CommandOp::kRun));
-  std::vector<message::CommandAck> answers;
-  for (int i = 0; i < 20; ++i) {
-    for (const CanFrame& frame : robot.hear()) {
-      if (frame.id == kIdCommandAck) answers.push_back(message::CommandAck::unpack(frame.data));
-    }
-  }
+  const auto answers = robot.all<message::CommandAck>(20);
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].op, static_cast<int>(CommandOp::kArm));
   EXPECT_EQ(robot.state(), RobotState::kArmed);
@@ -408,12 +405,7 @@ TEST(RobotDownlink, ARepeatedCommandsAnswerIsThatOfTheCommandAccepted) {
   ASSERT_TRUE(refused.has_value());
   EXPECT_EQ(refused->result, static_cast<int>(RequestResult::kBadMac));
   robot.send(arm);
-  std::vector<message::CommandAck> answers;
-  for (int i = 0; i < 20; ++i) {
-    for (const CanFrame& frame : robot.hear()) {
-      if (frame.id == kIdCommandAck) answers.push_back(message::CommandAck::unpack(frame.data));
-    }
-  }
+  const auto answers = robot.all<message::CommandAck>(20);
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].op, static_cast<int>(CommandOp::kArm));
   EXPECT_EQ(answers[0].result, static_cast<int>(RequestResult::kDone));

@@ -154,6 +154,23 @@ TEST(MutantTables, ATargetsPatternStandsForAllItsFiles) {
   EXPECT_THROW(read_targets(table, folder.path()), std::runtime_error);
 }
 
+TEST(MutantTests, TheTestThatFailedIsNotTheSkippedOneBehindIt) {
+  EXPECT_EQ(failed_test("[ RUN      ] A.First\n"
+                        "[       OK ] A.First (0 ms)\n"
+                        "[ RUN      ] A.Second\n"
+                        "a.cpp:3: Failure\n"
+                        "[  FAILED  ] A.Second (1 ms)\n"
+                        "[ RUN      ] A.Third\n"
+                        "[  SKIPPED ] A.Third (0 ms)\n"),
+            "A.Second");
+  EXPECT_EQ(failed_test("[ RUN      ] A.First\n"
+                        "[       OK ] A.First (0 ms)\n"
+                        "[ RUN      ] A.Second\n"),
+            "A.Second")
+      << "crashed";
+  EXPECT_EQ(failed_test("no such program"), "");
+}
+
 TEST(MutantTests, ATestWithParametersIsKnownByItsPlainName) {
   EXPECT_EQ(plain_name("Suite.Name"), "Suite.Name");
   EXPECT_EQ(plain_name("All/Suite.Name/3"), "Suite.Name");

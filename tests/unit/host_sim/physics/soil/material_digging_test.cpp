@@ -51,6 +51,16 @@ TEST(MaterialDigging, DigsToTheLastUnitWhateverTheWeightsAddUpTo) {
   }
 }
 
+TEST(MaterialDigging, OnlyWhatGivesOrGetsMaterialIsLookedAtAgain) {
+  MaterialFlow flow = level();
+  flow.begin_footprint(0.0, 0.0);
+  for (int i = 0; i < 4; ++i) flow.shear(flow.index(8 + i, 10), 1.0);
+  flow.dig(patch_at(0.0, 0.0), 1, 0);
+  EXPECT_EQ(flow.queued(), 1U) << "one unit comes from one node";
+  flow.deposit();
+  EXPECT_EQ(flow.queued(), 2U) << "and goes to one";
+}
+
 TEST(MaterialDigging, WhatIsCompactedWhileDiggingIsNotHeapedUp) {
   MaterialFlow flow = level();
   flow.begin_footprint(0.0, 0.0);

@@ -88,6 +88,30 @@ TEST(MaterialFlow, NothingIsSetDownInTheRutBehindAMovingFootprint) {
   EXPECT_EQ(flow.height(flow.index(10, 9)), 100);
 }
 
+TEST(MaterialFlow, TheRutOfADiagonalWayLiesBehindItAtAnySpeed) {
+  // Ahead of or beside the line through the node at right angles to the way is not behind.
+  for (const double speed : {0.002, 0.5}) {
+    MaterialFlow flow = level();
+    press(flow, 10, 10, 400, 0.8 * speed, 0.6 * speed);
+    flow.deposit();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx == 0 && dy == 0) continue;
+        const bool behind = 0.8 * dx + 0.6 * dy < 0.0;
+        EXPECT_EQ(flow.height(flow.index(10 + dx, 10 + dy)), behind ? 0 : 100)
+            << speed << ": " << dx << " " << dy;
+      }
+    }
+  }
+}
+
+TEST(MaterialFlow, OnlyWhatGetsMaterialIsLookedAtAgain) {
+  MaterialFlow flow = level();
+  press(flow, 10, 10, 3);
+  flow.deposit();
+  EXPECT_EQ(flow.queued(), 1U + 3U) << "the footprint's node and three neighbours";
+}
+
 TEST(MaterialFlow, AFootprintThatHardlyMovesHasNoRutBehindIt) {
   for (const double speed : {0.0009, 0.001}) {
     MaterialFlow flow = level();
@@ -293,6 +317,14 @@ TEST(MaterialFlow, AHoleFillsAlsoWhenItAloneIsLookedAt) {
   MaterialFlow flow = with_peak(-stable(kSpacing_m) - 1000, false);
   EXPECT_EQ(flow.slide(1), 4);
   EXPECT_EQ(flow.height(flow.index(11, 10)), -500);
+}
+
+TEST(MaterialFlow, ANewBedIsLookedAtWholeOnlyWhenAsked) {
+  MaterialFlow flow = level(5);
+  EXPECT_EQ(flow.queued(), 0U);
+  flow.enqueue_all();
+  EXPECT_EQ(flow.queued(), 25U);
+  for (size_t node = 0; node < flow.nodes(); ++node) EXPECT_TRUE(flow.is_queued(node)) << node;
 }
 
 TEST(MaterialFlow, WhenNothingSlidesAnyMoreNoNodeWaits) {

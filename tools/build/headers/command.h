@@ -1,9 +1,6 @@
-// What most unit tests include, compiled once for the build with sanitizers (tests/asan.mk). No
-// source includes it: each test names what it uses.
-#pragma once
-
-#include <gtest/gtest.h>
-
+// What most subcommands include, compiled once (tools/build/host.mk). No source includes it: each
+// names what it uses.
+#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
