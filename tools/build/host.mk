@@ -81,7 +81,7 @@ $(B)/generated/version.h: FORCE
 	@echo '#define SCREED_VERSION "$(VERSION)"' | $(WRITE_CHANGED)
 $(B)/generated/paths.h: FORCE
 	@mkdir -p $(@D)
-	@{ echo '// Where the data of this build lies.' ; echo 'namespace screed {' ; \
+	@{ echo '// Where the data of this build lies.' ; echo '#pragma once' ; echo 'namespace screed {' ; \
 	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
 	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; \
 	   echo 'inline constexpr const char* kModelsFolder = "$(MODELS_DIR)";' ; \
