@@ -152,22 +152,28 @@ $(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
 $(SCREED): $(B)/tools/screed/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
 
-.PHONY: build sim install install-files
+.PHONY: build sim install uninstall
 build: $(SCREED)  ## build/<BUILD>/screed, the host program (BUILD=release|debug|asan)
 sim: $(SCREED)  ## drive the robot over a real terrain (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')
 	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
 
-# The installed program looks for its data below PREFIX, so it is a build of its own.
-install:  ## install the host program (PREFIX=/usr/local)
-	+@$(MAKE) --no-print-directory BUILD=release BUILD_ROOT=$(BUILD_ROOT)/installed DATA_DIR=$(PREFIX)/share/screed \
-	  BOARDS_DIR=$(PREFIX)/share/screed/boards MODELS_DIR=$(PREFIX)/share/screed/models \
-	  FIRMWARE_DIR=$(PREFIX)/share/screed/firmware install-files
+# What `make install` makes below PREFIX. The program finds its data from where it lies itself (host_sim/core/data_folders.h), so the
+# tree may be moved.
+INSTALLED_DATA := share/screed
+INSTALLED_DOC := share/doc/screed
+INSTALLED_RULES := lib/udev/rules.d/60-screed.rules
+# One word, since make takes blanks for the ends of names.
+INTO = $(if $(word 2,$(DESTDIR)$(PREFIX)),$(error PREFIX and DESTDIR: no blanks),$(DESTDIR)$(PREFIX))
+install: $(SCREED) $(B)/screed_flash $(SCHEMA_HEADERS)  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+	install -D -m 755 -t $(INTO)/bin $(SCREED) $(B)/screed_flash
+	install -D -m 644 tools/flash/60-screed.rules $(INTO)/$(INSTALLED_RULES)
+	@mkdir -p $(INTO)/$(INSTALLED_DATA) $(INTO)/$(INSTALLED_DOC)
+	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(INTO)/$(INSTALLED_DATA)/
+	cp -r README.md LICENSE docs $(INTO)/$(INSTALLED_DOC)/
 	@for image in $(wildcard $(BUILD_ROOT)/firmware/*/screed.elf) ; do \
-	   install -v -D -m 644 $$image $(DESTDIR)$(PREFIX)/share/screed/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
-install-files: $(SCREED)
-	install -D -m 755 $(SCREED) $(DESTDIR)$(PREFIX)/bin/screed
-	mkdir -p $(DESTDIR)$(PREFIX)/share/screed
-	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(DESTDIR)$(PREFIX)/share/screed/
+	   install -v -D -m 644 $$image $(INTO)/$(INSTALLED_DATA)/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
+uninstall:  ## remove what `make install` made (PREFIX=/usr/local)
+	rm -rf $(addprefix $(INTO)/,bin/screed bin/screed_flash $(INSTALLED_RULES) $(INSTALLED_DATA) $(INSTALLED_DOC))
 
 # ---- clangd --------------------------------------------------------------------------------------------------------------------
 

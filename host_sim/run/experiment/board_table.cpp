@@ -7,16 +7,16 @@
 #include <system_error>
 
 #include "boards.h"
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
 #include "host_sim/core/name_list.h"
-#include "paths.h"
 
 namespace screed {
 namespace {
 
 std::filesystem::path folder_of(const std::string& board) {
-  return std::filesystem::path(kBoardsFolder) / board;
+  return data_folders().boards / board;
 }
 
 const std::map<std::string, const BoardConstants*>& boards() {

@@ -6,11 +6,12 @@
 #include <system_error>
 
 #include "hal/sample.h"
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
+#include "host_sim/core/name_list.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "host_sim/run/experiment/experiment_table.h"
-#include "paths.h"
 
 namespace screed {
 namespace {
@@ -153,13 +154,31 @@ std::string Experiment::text() const {
   return text;
 }
 
+std::filesystem::path find_experiment(const std::filesystem::path& name) {
+  std::error_code error;
+  if (name.has_parent_path() || name.has_extension() || std::filesystem::exists(name, error))
+    return name;
+  std::vector<std::string> names;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(data_folders().data / "experiments")) {
+    if (entry.path().extension() != ".ini") continue;
+    if (entry.path().stem() == name) return entry.path();
+    names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  throw InputError(
+      name.string() +
+      ": no such file, and no experiment of that name comes with Screed: " + name_list(names));
+}
+
 Experiment read_experiment(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides) {
   return read_experiment_row(path, {}, overrides);
 }
 
-Experiment read_experiment_row(const std::filesystem::path& path, const ExperimentRow& row,
+Experiment read_experiment_row(const std::filesystem::path& file, const ExperimentRow& row,
                                const std::vector<std::string>& overrides) {
+  const std::filesystem::path path = find_experiment(file);
   Experiment experiment;
   experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
   const std::string source = path.string();
@@ -193,7 +212,7 @@ std::filesystem::path find_data_file(const Experiment& experiment, const std::st
   if (file.is_absolute()) {
     places = {file};
   } else {
-    places = {experiment.folder / file, std::filesystem::path(kDataFolder) / "terrain" / file};
+    places = {experiment.folder / file, data_folders().data / "terrain" / file};
   }
   std::string looked;
   for (const std::filesystem::path& place : places) {

@@ -62,7 +62,13 @@ struct Experiment {
   std::string text() const;
 };
 
-/// Reads `path` and applies `overrides` ("section.key=value") on top. Throws InputError.
+/// The file of an experiment that a user names: "first_drive" is the one that comes with the
+/// program, unless a file is called that; a name with a folder or an extension is returned as it is.
+/// Throws InputError.
+std::filesystem::path find_experiment(const std::filesystem::path& name);
+
+/// Reads `path` (see find_experiment) and applies `overrides` ("section.key=value") on top. Throws
+/// InputError.
 Experiment read_experiment(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides = {});
 

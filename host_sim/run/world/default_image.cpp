@@ -1,11 +1,11 @@
 // Where the image of a board is looked for.
+#include "host_sim/core/data_folders.h"
 #include "host_sim/run/world/co_simulation.h"
-#include "paths.h"
 
 namespace screed {
 
 std::string default_image(const std::string& board) {
-  return std::string(kFirmwareFolder) + "/" + board + "/screed.elf";
+  return (data_folders().firmware / board / "screed.elf").string();
 }
 
 }  // namespace screed

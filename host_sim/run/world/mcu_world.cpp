@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "firmware/parameters/parameter_store.h"
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
-#include "paths.h"
 
 namespace screed::mcu {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t kAnswerTimeout_us = 2'000'000;
 
 Wiring wiring_of(const std::string& board) {
-  const std::filesystem::path folder = std::filesystem::path(kBoardsFolder) / board;
+  const std::filesystem::path folder = data_folders().boards / board;
   std::error_code error;
   if (board.empty() || !std::filesystem::is_directory(folder, error)) {
     throw InputError("board '" + board + "': no folder " + folder.string());

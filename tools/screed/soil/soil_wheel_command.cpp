@@ -3,9 +3,9 @@
 #include <memory>
 #include <numbers>
 
+#include "host_sim/core/data_folders.h"
 #include "host_sim/render/picture/line_chart.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
-#include "paths.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/soil/soil_common.h"
@@ -174,15 +174,14 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
   CLI::Option* measured =
       command->add_option("--measured", a->measured,
                           "Compare with measurements: a CSV file (default: Ding et al. 2011)");
-  measured->expected(0, 1)->default_str(std::string(kDataFolder) +
-                                        "/soil/single_wheel_ding2011.csv");
+  measured->expected(0, 1);
   command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text");
   command->add_flag("--fit", a->fit, "Fit --slip-sinkage to the measured sinkage first");
   command->add_option("--charts", a->common.charts, "Output folder for SVG charts");
   command->callback([a, measured, &program] {
     program.action = [a, measured] {
       if (measured->count() > 0 && a->measured.empty()) {
-        a->measured = std::string(kDataFolder) + "/soil/single_wheel_ding2011.csv";
+        a->measured = (data_folders().data / "soil" / "single_wheel_ding2011.csv").string();
       }
       return run_wheel_command(*a);
     };
