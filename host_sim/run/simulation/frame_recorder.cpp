@@ -45,7 +45,6 @@ SimFrame FrameRecorder::record(const Environment& plant, const Robot& robot) {
     frame.delta_theta = wrap_rad(attitude.heading - last_heading_);
     distance_m_ += (travelled - last_travelled_).norm();
   }
-  if (!plant.terrain().inside(position.x(), position.y())) outside_s_ += 1.0 / kTickRate_hz;
   first_ = false;
   last_travelled_ = travelled;
   last_heading_ = attitude.heading;

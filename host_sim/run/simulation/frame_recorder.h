@@ -12,16 +12,14 @@ class FrameRecorder {
   /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
   SimFrame record(const Environment& plant, const Robot& robot);
 
-  /// Length of the chassis' path so far, m, and the time it was not on the bed, s.
+  /// Length of the chassis' path so far, m.
   double distance_m() const { return distance_m_; }
-  double outside_s() const { return outside_s_; }
 
  private:
   bool first_ = true;
   Eigen::Vector3d last_travelled_ = Eigen::Vector3d::Zero();
   double last_heading_ = 0.0;
   double distance_m_ = 0.0;
-  double outside_s_ = 0.0;
 };
 
 }  // namespace screed

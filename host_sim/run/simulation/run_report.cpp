@@ -53,7 +53,6 @@ std::string summary_json(const SimulationSummary& summary) {
       {"time_s", summary.time_s},
       {"distance_m", summary.distance_m},
       {"energy_j", summary.energy_j},
-      {"outside_bed_s", summary.outside_s},
       {"battery_v", summary.battery_v},
       {"peaks", summary.peaks},
       {"training_frames", summary.training_frames},

@@ -21,13 +21,12 @@ struct SimulationSummary {
   uint64_t training_frames = 0;
   /// Changes of single heights, when they were recorded.
   uint64_t height_changes = 0;
-  bool left_bed = false;  ///< the robot stands beyond the edge of the soil
+  bool left_bed = false;  ///< the robot stands beyond the edge of the bed
   double time_s = 0.0;
   /// of the loop alone: building the world and writing pictures do not count
   double wall_s = 0.0;
   double distance_m = 0.0;  ///< length of the chassis' true path, in space
   double energy_j = 0.0;
-  double outside_s = 0.0;  ///< time off the bed
   double battery_v = 0.0;
   int peaks = 0;
   std::string state;  ///< of the supervisor at the end

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/run_files.h"
 #include "host_sim/run/simulation/run_loop.h"
@@ -57,7 +58,6 @@ void report_world(const RunWorld& world, double flatness_deg, SimulationSummary&
 void report_robot(const WatchedRobot& robot, SimulationSummary& summary) {
   const Robot& shadow = robot.parity.shadow();
   summary.distance_m = robot.frames.distance_m();
-  summary.outside_s = robot.frames.outside_s();
   summary.peaks = shadow.leveling().peaks();
   summary.state = state_name(shadow.supervisor().state());
   summary.faults = shadow.supervisor().faults();
@@ -109,9 +109,15 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   report_world(world, flatness_deg, summary);
   report_robot(robot, summary);
 
-  if (options.table) files.write_table();
-  write_run_pictures(files.folder(), experiment, before, plant, recorder.path());
-  files.write_summary(summary_json(summary));
+  try {
+    files.write_summary(summary_json(summary));
+    if (options.table) files.write_table();
+    write_run_pictures(files.folder(), experiment, before, plant, recorder.path());
+  } catch (const RunError& error) {
+    // What took the time is saved, and can be exported again where there is room.
+    files.commit();
+    throw RunError(error.what() + ("; the session is whole, in " + summary.folder.string()));
+  }
   files.commit();
   return summary;
 }

@@ -38,8 +38,7 @@ uint64_t frames_to_drive(const Experiment& experiment) {
 
 bool left_bed(const Environment& plant) {
   const Eigen::Vector3d place = plant.vehicle().chassis().pose.translation();
-  return plant.is_deformable() && !plant.terrain().wrap() &&
-         !plant.terrain().inside(place.x(), place.y());
+  return !plant.terrain().wrap() && !plant.terrain().inside(place.x(), place.y());
 }
 
 StopCondition::StopCondition(const Experiment& experiment, const std::atomic<bool>* stop)

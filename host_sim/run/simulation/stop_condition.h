@@ -26,7 +26,8 @@ const char* end_text(RunEnd end);
 /// Frames of Algorithm 5 that a whole run of it drives; 0 under another algorithm.
 uint64_t frames_to_drive(const Experiment& experiment);
 
-/// A bed of soil or particles ends at its edges: a robot that drives over them falls.
+/// A bed ends at its edges, unless it wraps around: a robot that drives over them has left its
+/// site.
 bool left_bed(const Environment& plant);
 
 class StopCondition {

@@ -7,6 +7,7 @@
 #include "host_sim/run/experiment/sections/experiment_section.h"
 #include "host_sim/run/simulation/names.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/run_batch.h"
 
@@ -77,6 +78,7 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
               }
             });
   if (arguments.runs.json) std::cout << json_of(summaries, arguments.runs.several());
+  if (const int code = interrupted_exit_code(); code != 0) return code;
   return short_of_frames ? 1 : 0;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/csv_export.h"
@@ -146,12 +147,39 @@ FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& s
   return range;
 }
 
-fs::path make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw RunError(folder.string() + ": cannot create the folder: " + error.message());
-  return folder;
-}
+/// Folders that an export makes; those that stay empty go again.
+class ExportFolders {
+ public:
+  ExportFolders() = default;
+  ExportFolders(const ExportFolders&) = delete;
+  ExportFolders& operator=(const ExportFolders&) = delete;
+  ~ExportFolders() {
+    std::error_code not_empty;
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
+      fs::remove(*folder, not_empty);
+    }
+  }
+
+  /// With the missing ones above it. Throws RunError.
+  fs::path make(const fs::path& folder) {
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (fs::path it = folder; !it.empty() && !fs::exists(it, error); it = it.parent_path()) {
+      missing.push_back(it);
+    }
+    for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
+      if (fs::create_directory(*it, error)) made_.push_back(*it);
+    }
+    if (!fs::is_directory(folder)) {
+      throw RunError(folder.string() + ": cannot create the folder" +
+                     (error ? ": " + error.message() : ""));
+    }
+    return folder;
+  }
+
+ private:
+  std::vector<fs::path> made_;
+};
 
 int run_export(const ExportArguments& arguments) {
   if (!arguments.csv && !arguments.heights && !arguments.pictures) {
@@ -163,9 +191,10 @@ int run_export(const ExportArguments& arguments) {
     throw InputError(file.string() + ": has no recorded heights; screed record keeps them");
   }
   const FrameRange range = chosen_range(arguments, session);
+  ExportFolders folders;
   const fs::path out =
-      make_folder(arguments.out.has_value() ? fs::path(*arguments.out)
-                                            : fs::absolute(file).parent_path() / "export");
+      folders.make(arguments.out.has_value() ? fs::path(*arguments.out)
+                                             : fs::absolute(file).parent_path() / "export");
   if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
 
   if (arguments.csv) {
@@ -178,7 +207,7 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.heights) {
     constexpr std::uint64_t kEverySecond = 100;
     const HeightExport done = export_heights_png(
-        session, range, arguments.every.value_or(kEverySecond), make_folder(out / "heights"));
+        session, range, arguments.every.value_or(kEverySecond), folders.make(out / "heights"));
     std::printf("%s: %zu height maps, black %.6f m, white %.6f m (scale.json)\n",
                 (out / "heights").c_str(), done.files.size(), done.scale.black_m,
                 done.scale.white_m);
@@ -186,7 +215,7 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.pictures) {
     const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
     const auto files = export_pictures(session, range, arguments.every.value_or(tenth),
-                                       make_folder(out / "pictures"));
+                                       folders.make(out / "pictures"));
     std::printf("%s: %zu pictures\n", (out / "pictures").c_str(), files.size());
   }
   return 0;

@@ -99,8 +99,6 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12d\n", "peaks", s.peaks);
   std::printf("  %-26s %12s\n", "robot", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
-  if (s.outside_s > 0.0)
-    std::printf("  %-26s %12s\n", "time off the bed", format("%.1f s", s.outside_s).c_str());
   std::printf("  %-26s %12llu\n", "telemetry frames",
               static_cast<unsigned long long>(s.telemetry_frames));
   std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());
@@ -122,6 +120,15 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   if (s.cycles.has_value()) print_cycles(*s.cycles);
   std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
               s.content_hash.c_str());
+}
+
+/// Whether something in the world ended the run before its time; says so. One that the user ended
+/// has done what it was told.
+bool did_not_reach_its_end(const Experiment& experiment, const SimulationSummary& summary) {
+  if (!summary.stopped_early() || summary.end == RunEnd::kStopped) return false;
+  std::cerr << "note: " << experiment.experiment.name << " ended after "
+            << format("%.1f s", summary.time_s) << ": " << end_text(summary.end) << "\n";
+  return true;
 }
 
 int run_sim(const SimArguments& arguments, const std::string& version) {
@@ -193,10 +200,12 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   };
 
   std::vector<SimulationSummary> summaries;
+  bool failed = false;
   run_batch(
       arguments.runs, overrides, options,
       [&](const Experiment& experiment, const SimulationSummary& summary) {
         summaries.push_back(summary);
+        failed = failed || did_not_reach_its_end(experiment, summary);
         if (arguments.runs.json) return;
         if (!arguments.runs.quiet) {
           print_table(experiment, summary);
@@ -211,7 +220,8 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
     if (!several) watching.viewer->hold("The run has ended and is saved. Q closes the window.");
     if (view->frames.has_value()) std::cerr << watching.viewer->times().text() << "\n";
   }
-  return 0;
+  if (const int code = interrupted_exit_code(); code != 0) return code;
+  return failed ? 1 : 0;
 }
 
 }  // namespace

@@ -23,7 +23,6 @@ SimulationSummary summary() {
   s.wall_s = 14.5;
   s.distance_m = 15.5;
   s.energy_j = 16.5;
-  s.outside_s = 17.5;
   s.battery_v = 18.5;
   s.peaks = 19;
   s.state = "fault";
@@ -65,7 +64,7 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
   const Json expected =
       Json::parse(R"({"content_hash": "0123456789abcdef", "stopped_early": true,
       "left_bed": true, "time_s": 13.5, "distance_m": 15.5, "energy_j": 16.5,
-      "outside_bed_s": 17.5, "battery_v": 18.5, "peaks": 19, "training_frames": 11,
+      "battery_v": 18.5, "peaks": 19, "training_frames": 11,
       "height_changes": 12, "state": "fault", "faults": "tilt, emergency_stop",
       "telemetry_frames": 20, "telemetry_frames_sent": 21, "telemetry_frames_damaged": 22,
       "telemetry_share": 0.25,

@@ -108,12 +108,13 @@ TEST(FramesToDrive, AreThoseOfTheTrainingDriveUpToItsEarlyEnd) {
   EXPECT_EQ(frames_to_drive(experiment), 500U);
 }
 
-TEST(LeftBed, OnlySoilWithoutWrapAroundHasAnEdge) {
+TEST(LeftBed, AnyGroundEndsAtItsEdges) {
   const auto flat = [] { return HeightField::flat(2.0, 0.05); };
   EXPECT_FALSE(left_bed(Plant(flat(), rover5(), on_soil(held_at(0.9, 0.0)))));
   EXPECT_TRUE(left_bed(Plant(flat(), rover5(), on_soil(held_at(1.1, 0.0)))));
   EXPECT_TRUE(left_bed(Plant(flat(), rover5(), on_soil(held_at(0.0, -1.1)))));
-  EXPECT_FALSE(left_bed(Plant(flat(), rover5(), held_at(1.1, 0.0))));
+  EXPECT_FALSE(left_bed(Plant(flat(), rover5(), held_at(0.9, 0.0))));
+  EXPECT_TRUE(left_bed(Plant(flat(), rover5(), held_at(1.1, 0.0))));
 }
 
 }  // namespace

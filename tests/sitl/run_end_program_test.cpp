@@ -1,0 +1,86 @@
+// How a run that ends before its time, or on a full disk, leaves its folder, and what the program
+// then ends with.
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+class RunEnds : public Program {
+ protected:
+  /// Of the first robot that drives straight on, 0.2 m/s.
+  void write_drive(double size_m, double duration_s) const {
+    write("e.ini",
+          "[experiment]\nname = e\nalgorithm = drive\nduration = " + std::to_string(duration_s) +
+              "\n[drive]\nspeed = 0.2\n[map]\nsize = " + std::to_string(size_m) + "\n");
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(root_ / name); }
+};
+
+TEST_F(RunEnds, OneThatASignalEndsIsWholeAndTheProgramNamesTheSignal) {
+  write_drive(500.0, 1e6);
+  struct Case {
+    const char* signal;
+    int exit_code;
+  };
+  for (const Case& it : {Case{"HUP", 129}, Case{"INT", 130}, Case{"TERM", 143}}) {
+    const std::string out = it.signal;
+    // Until the session has its first block of frames. A program that has ended has no open files.
+    const Result result =
+        run("sim e.ini --quiet --out " + out + " & pid=$!; until [ \"$(find " + out +
+            ".partial -name session.h5 -size +100k)\" ] || ! [ -e /proc/$pid/fd/1 ]; do :; done 2> "
+            "/dev/null; kill -" +
+            it.signal + " $pid; wait $pid");
+    EXPECT_EQ(result.exit_code, it.exit_code) << it.signal << ": " << result.err;
+    EXPECT_FALSE(exists(out + ".partial")) << it.signal;
+    EXPECT_TRUE(exists(out + "/session.h5")) << it.signal;
+    EXPECT_NE(read(root_ / out / "summary.json").find("\"stopped_early\": true"), std::string::npos)
+        << it.signal;
+    EXPECT_EQ(run("replay " + out).exit_code, 0) << it.signal;
+  }
+}
+
+TEST_F(RunEnds, OnRigidGroundToWhereTheRobotLeavesTheBed) {
+  write_drive(1.0, 60.0);
+  const Result result = run("sim e.ini --quiet --out r");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("note: e ended after "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(" s: the robot left the bed\n"), std::string::npos) << result.err;
+  const std::string summary = read(root_ / "r" / "summary.json");
+  EXPECT_NE(summary.find("\"left_bed\": true"), std::string::npos) << summary;
+  EXPECT_EQ(run("replay r").exit_code, 0);
+}
+
+TEST_F(RunEnds, WithItsSessionWhereTheDiskIsFullForTheTable) {
+  write_drive(5.0, 10.0);
+  // A limit on the size of files, 480 blocks of 512 or 1024 bytes, stands for a full disk: the
+  // session of 1000 frames stays below it (195 kB), the table of their columns does not (590 kB).
+  const Result result = run("sim e.ini --quiet --out r", "trap '' XFSZ; ulimit -f 480;");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_NE(result.err.find("frames.csv: "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("the session is whole, in r\n"), std::string::npos) << result.err;
+  EXPECT_FALSE(exists("r.partial"));
+  EXPECT_FALSE(exists("r/frames.csv"));
+  EXPECT_EQ(run("replay r").exit_code, 0);
+  EXPECT_NE(read(root_ / "r" / "summary.json").find("content_hash"), std::string::npos);
+}
+
+TEST_F(RunEnds, ARefusedExportLeavesNoFolder) {
+  write_drive(1.0, 0.1);
+  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  const Result result = run("session export r --csv --all --out a/b", "trap '' XFSZ; ulimit -f 0;");
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_FALSE(exists("a"));
+  ASSERT_EQ(run("session export r --csv --all --out a/b").exit_code, 0);
+  EXPECT_TRUE(exists("a/b/frames.csv"));
+}
+
+TEST_F(RunEnds, AtItsTimeWithNothingToSay) {
+  write_drive(1.0, 0.5);
+  const Result result = run("sim e.ini --quiet --out r");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+}
+
+}  // namespace
+}  // namespace screed::testing
