@@ -25,11 +25,12 @@ TEST_F(RunEnds, OneThatASignalEndsIsWholeAndTheProgramNamesTheSignal) {
   for (const Case& it : {Case{"HUP", 129}, Case{"INT", 130}, Case{"TERM", 143}}) {
     const std::string out = it.signal;
     // Until the session has its first block of frames. A program that has ended has no open files.
-    const Result result =
-        run("sim e.ini --quiet --out " + out + " & pid=$!; until [ \"$(find " + out +
-            ".partial -name session.h5 -size +100k)\" ] || ! [ -e /proc/$pid/fd/1 ]; do :; done 2> "
-            "/dev/null; kill -" +
-            it.signal + " $pid; wait $pid");
+    write("begun",
+          "until [ \"$(find " + out +
+              ".partial -name session.h5 -size +100k)\" ] || ! [ -e /proc/$1/fd/1 ]; do :; "
+              "done 2> /dev/null\n");
+    const Result result = run(std::string("sim e.ini --quiet --out ") + it.signal +
+                              " & pid=$!; sh begun $pid; kill -" + it.signal + " $pid; wait $pid");
     EXPECT_EQ(result.exit_code, it.exit_code) << it.signal << ": " << result.err;
     EXPECT_FALSE(exists(out + ".partial")) << it.signal;
     EXPECT_TRUE(exists(out + "/session.h5")) << it.signal;

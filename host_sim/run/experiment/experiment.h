@@ -63,8 +63,8 @@ struct Experiment {
 };
 
 /// The file of an experiment that a user names: "first_drive" is the one that comes with the
-/// program, unless a file is called that; a name with a folder or an extension is returned as it is.
-/// Throws InputError.
+/// program, unless a file is called that; a name with a folder or an extension is returned as it
+/// is. Throws InputError.
 std::filesystem::path find_experiment(const std::filesystem::path& name);
 
 /// Reads `path` (see find_experiment) and applies `overrides` ("section.key=value") on top. Throws

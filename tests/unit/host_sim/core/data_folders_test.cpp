@@ -16,7 +16,7 @@ class DataFoldersTest : public ::testing::Test {
  protected:
   /// An installed tree.
   fs::path installed(const char* name) const {
-    const fs::path tree = folder_.path() / name;
+    fs::path tree = folder_.path() / name;
     fs::create_directories(tree / "share" / "screed" / "experiments");
     fs::create_directories(tree / "share" / "screed" / "boards");
     return tree;

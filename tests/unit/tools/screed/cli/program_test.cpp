@@ -23,6 +23,7 @@ Said call(std::vector<std::string> words) {
   session->add_subcommand("export", "Write it");
   words.insert(words.begin(), "prog");
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
