@@ -74,9 +74,9 @@ Support support(const std::vector<SoilSpring>& springs, const Eigen::Vector3d& q
 
 }  // namespace
 
-void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
-                   BodyMemory& memory) {
-  if (!std::isfinite(body.mass_kg)) return;
+int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
+                  BodyMemory& memory) {
+  if (!std::isfinite(body.mass_kg)) return 0;
   const bool tilts = !body.inverse_inertia.isZero(0.0);
   Eigen::Matrix3d mobility = Eigen::Matrix3d::Zero();  // acceleration by force
   mobility(0, 0) = 1.0 / body.mass_kg;
@@ -101,7 +101,8 @@ void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>&
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
   Support at = support(springs, q);
   Eigen::Vector3d gradient = mass_per_dt2 * (q - q_free) - at.force;
-  for (int evaluations = 0; evaluations < kMaxEvaluations;) {
+  int evaluations = 0;
+  while (evaluations < kMaxEvaluations) {
     const Eigen::Matrix3d hessian = mass_per_dt2 + at.stiffness;
     const Eigen::Vector3d direction = -hessian.llt().solve(gradient);
     const double initial_slope = gradient.dot(direction);
@@ -135,6 +136,7 @@ void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>&
   memory.touching = true;
   memory.rate = rate;
   memory.soil_acceleration = mobility * at.force;
+  return evaluations;
 }
 
 }  // namespace screed

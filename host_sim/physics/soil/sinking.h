@@ -27,8 +27,9 @@ struct SoilSpring {
 /// search finds it. Without it unloading, some hundred times stiffer than loading, would chatter or
 /// would have to be softened; footprint by footprint, a robot's other wheels would be felt one step
 /// late. Fills in each spring's `sinking`; leaves 0 where the motion is imposed. Remembers for the
-/// next step.
-void solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
-                   BodyMemory& memory);
+/// next step. Returns how often the springs' forces were evaluated beyond the first time: one a
+/// Newton step and one a shortening of it; 0 where the motion is imposed.
+int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
+                  BodyMemory& memory);
 
 }  // namespace screed

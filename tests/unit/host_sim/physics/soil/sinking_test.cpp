@@ -70,6 +70,33 @@ TEST(Sinking, ABodyThatRisesUnloadsAlongTheElasticLineAndThenLetsGo) {
   }
 }
 
+TEST(Sinking, OnOneLineANewtonStepIsEnough) {
+  std::vector<SoilSpring> springs = {{1.0, 1e9, 1.0, 2e5, 0.0, 0.0}};
+  BodyMemory memory;
+  EXPECT_EQ(solve_sinking(body_of(5.0), kStep_s, springs, memory), 1);
+  EXPECT_EQ(
+      solve_sinking(body_of(std::numeric_limits<double>::infinity()), kStep_s, springs, memory), 0);
+}
+
+TEST(Sinking, AStepThatOvershootsIsTakenBackByTheSecant) {
+  // A body in the air that would come down by d = 0.1 mm: the spring begins at 0.4 d, and at d it
+  // pushes with m d / dt^2. So the energy's slope there is what it was at the start with the other
+  // sign, and the secant goes to half the way (second evaluation), which touches. From there it is
+  // one line, and one step (third).
+  const double d = 1e-4;
+  const double mass = 1.0;
+  const double push = mass * d / (kStep_s * kStep_s);
+  const double stiffness = push / (0.6 * d);
+  std::vector<SoilSpring> springs = {{-stiffness * 0.4 * d, stiffness, 1e6, stiffness, 0.0, 0.0}};
+  PressingBody body = body_of(mass);
+  body.velocity.z() = -d / kStep_s + kGravity_m_per_s2 * kStep_s;
+  BodyMemory memory;
+  EXPECT_EQ(solve_sinking(body, kStep_s, springs, memory), 3);
+  const double inertia = mass / (kStep_s * kStep_s);
+  EXPECT_NEAR(springs[0].sinking, (inertia * d + stiffness * 0.4 * d) / (inertia + stiffness),
+              1e-15);
+}
+
 TEST(Sinking, WhatElsePushesIsWhatTheLastStepShowed) {
   const double mass = 2.0;
   const double slope = 1e4;
