@@ -30,7 +30,6 @@ ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools
 test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)  ## build and run every test (BUILD=asan: under the sanitizers)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(TESTS)
 
-
 .PHONY: test-install
 test-install: $(SCREED) $(B)/screed_flash  ## install, move the tree, run it from elsewhere
 	@tests/install/run.sh

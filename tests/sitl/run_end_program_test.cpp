@@ -51,6 +51,22 @@ TEST_F(RunEnds, OnRigidGroundToWhereTheRobotLeavesTheBed) {
   EXPECT_EQ(run("replay r").exit_code, 0);
 }
 
+TEST_F(RunEnds, EachOfSeveralThatLeftTheBedIsNamed) {
+  write_drive(1.0, 60.0);
+  const std::string text = read(root_ / "e.ini");
+  write("f.ini", "[experiment]\nname = f\n" + text.substr(text.find("algorithm")));
+  const Result result = run("sim e.ini f.ini --quiet --out both");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("note: e ended after "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("note: f ended after "), std::string::npos) << result.err;
+}
+
+TEST_F(RunEnds, AFolderOfTheNameDoesNotHideAnExperimentThatComesAlong) {
+  std::filesystem::create_directories(root_ / "first_drive");
+  const Result result = run("sim first_drive --quiet --duration 0.1 --out r");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
 TEST_F(RunEnds, WithItsSessionWhereTheDiskIsFullForTheTable) {
   write_drive(5.0, 10.0);
   // A limit on the size of files, 480 blocks of 512 or 1024 bytes, stands for a full disk: the

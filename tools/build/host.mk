@@ -2,10 +2,10 @@
 #
 # Needs options.mk and schema.mk. Gives LIBRARY, SCREED, LIBRARY_SOURCES, GENERATED, the rules that make objects, and $(link).
 
-DATA_DIR ?= $(CURDIR)/host_sim/data
-BOARDS_DIR ?= $(CURDIR)/boards
-MODELS_DIR ?= $(CURDIR)/nn/models
-FIRMWARE_DIR ?= $(abspath $(BUILD_ROOT))/firmware
+DATA_DIR := $(CURDIR)/host_sim/data
+BOARDS_DIR := $(CURDIR)/boards
+MODELS_DIR := $(CURDIR)/nn/models
+FIRMWARE_DIR := $(abspath $(BUILD_ROOT))/firmware
 EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
 # MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
 MCU ?= yes
@@ -103,11 +103,11 @@ GENERATED := $(B)/generated/version.h $(B)/generated/paths.h $(B)/generated/boar
 # ---- headers of libraries, compiled once: a third to a half of a source's time goes into them ----------------------------------
 
 # tools/build/headers/SET.h stands before the sources that $(call with_headers,SET,SOURCES) names. HEADERS=no does without, which shows
-# whether each source includes what it uses.
+# in a clean build whether each source includes what it uses.
 HEADERS ?= yes
 ifeq ($(HEADERS),yes)
-# Behind them GCC 12 takes `std::string(kText) + "more"` for a write out of bounds.
-HEADERS_FLAGS = $(if $(HEADER_SET),-include $(B)/headers/$(HEADER_SET).h -Wno-array-bounds -Wno-stringop-overflow)
+# Behind them GCC 12 takes `std::string(kText) + "more"` for a write out of bounds; clang does not know the second of the flags.
+HEADERS_FLAGS = $(if $(HEADER_SET),-include $(B)/headers/$(HEADER_SET).h $(if $(findstring clang,$(CXX)),,-Wno-array-bounds -Wno-stringop-overflow))
 define with_headers
 $(call objects,$(2)): HEADER_SET = $(1)
 $(call objects,$(2)): $(B)/headers/$(1).h.gch

@@ -156,8 +156,9 @@ std::string Experiment::text() const {
 
 std::filesystem::path find_experiment(const std::filesystem::path& name) {
   std::error_code error;
-  if (name.has_parent_path() || name.has_extension() || std::filesystem::exists(name, error))
-    return name;
+  const bool is_file =
+      std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error);
+  if (name.has_parent_path() || name.has_extension() || is_file) return name;
   std::vector<std::string> names;
   for (const auto& entry :
        std::filesystem::directory_iterator(data_folders().data / "experiments")) {

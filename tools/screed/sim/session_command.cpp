@@ -170,7 +170,7 @@ class ExportFolders {
     for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
       if (fs::create_directory(*it, error)) made_.push_back(*it);
     }
-    if (!fs::is_directory(folder)) {
+    if (std::error_code unreadable; !fs::is_directory(folder, unreadable)) {
       throw RunError(folder.string() + ": cannot create the folder" +
                      (error ? ": " + error.message() : ""));
     }

@@ -205,7 +205,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
       arguments.runs, overrides, options,
       [&](const Experiment& experiment, const SimulationSummary& summary) {
         summaries.push_back(summary);
-        failed = failed || did_not_reach_its_end(experiment, summary);
+        if (did_not_reach_its_end(experiment, summary)) failed = true;
         if (arguments.runs.json) return;
         if (!arguments.runs.quiet) {
           print_table(experiment, summary);
