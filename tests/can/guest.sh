@@ -31,7 +31,7 @@ frames() { sed -n 's/^([0-9.]*) [^ ]* //p' "$1"; }
 candump -r 4194304 -d -L vcan0 > sim.candump &
 dump=$!
 sleep 1
-screed sim /screed/experiments/first_drive.ini --can vcan0 --duration 5 --out /tmp/run --quiet || fail "screed sim --can"
+screed sim first_drive --can vcan0 --duration 5 --out /tmp/run --quiet || fail "screed sim --can"
 sleep 1
 kill $dump
 frames run/telemetry.log > expected
@@ -82,7 +82,7 @@ wait $monitor
 pass "screed monitor tells of bus off, of the restart, and of an interface that was set up anew by hand"
 
 # --- the interface goes down and up under simulator and monitor ------------------------------------------------------------------
-screed sim /screed/experiments/first_drive.ini --can vcan0 --duration 90 --out /tmp/run2 --quiet > /dev/null &
+screed sim first_drive --can vcan0 --duration 90 --out /tmp/run2 --quiet > /dev/null &
 sim=$!
 screed monitor --can vcan0 --plain --listen --duration 35 > monitor.txt &
 monitor=$!
@@ -126,7 +126,7 @@ kill -INT $monitor $sim
 wait $monitor $sim
 
 # --- slcand makes the virtual serial port a CAN interface -------------------------------------------------------------------------
-screed sim /screed/experiments/first_drive.ini --pty /dev/radio --duration 20 --out /tmp/run3 --quiet > /dev/null &
+screed sim first_drive --pty /dev/radio --duration 20 --out /tmp/run3 --quiet > /dev/null &
 sim=$!
 while [ ! -e /dev/radio ]; do sleep 0.2; done
 slcand -o -c -s6 radio slcan0 || fail "slcand: $?"

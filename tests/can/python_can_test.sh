@@ -14,7 +14,10 @@ trap 'if kill -0 $sim 2> /dev/null; then kill $sim; fi; rm -rf "$work"' EXIT
 for _ in $(seq 100); do [ -e "$work/radio" ] && break; sleep 0.1; done
 $python tests/can/python_can_test.py "$work/radio"
 kill -INT $sim
-wait $sim
+status=0
+wait $sim || status=$?
+# 128 + SIGINT: interrupted, and everything up to then is kept.
+[ $status -eq 130 ] || { cat "$work/sim.log"; echo "screed sim ended with $status after SIGINT, not with 130"; exit 1; }
 # What came from outside is in the recording: it replays to the same bytes.
 "$SCREED_PROGRAM" replay "$work/run/session.h5" | grep -q "outputs identical"
 $python -c 'import can; print("python-can", can.__version__, "hears the robot at its rates and stops it; the run replays")'

@@ -26,7 +26,7 @@ fi
 
 # The guest's whole file system: busybox, the modules, the programs under test and their libraries.
 root=$work/root
-rm -rf "$root" && mkdir -p "$root"/{bin,dev,proc,sys,tmp,etc,modules,screed}
+rm -rf "$root" && mkdir -p "$root"/{bin,dev,proc,sys,tmp,etc,modules}
 cp "$(command -v busybox)" "$root/bin/"
 programs=("$SCREED_PROGRAM" "$(command -v candump)" "$(command -v cansend)" "$(command -v slcand)" "$(command -v canplayer)")
 cp "${programs[@]}" "$root/bin/"
@@ -36,11 +36,10 @@ done
 for module in can can-raw can-dev vcan slcan; do
   find "$kernel/lib/modules" -name "$module.ko" -exec cp {} "$root/modules/" \;
 done
-cp -r host_sim/data/experiments "$root/screed/"
-# Where the program was built to look for its data.
-mkdir -p "$root$PWD/host_sim/data" "$root$PWD/boards"
-cp -r host_sim/data/terrain "$root$PWD/host_sim/data/"
-cp -r boards/. "$root$PWD/boards/"
+# The data as an installed program finds it: ../share/screed beside its folder.
+data=$root/share/screed
+mkdir -p "$data"
+cp -r host_sim/data/experiments host_sim/data/terrain boards "$data/"
 install -m 755 tests/can/guest.sh "$root/init"
 (cd "$root" && find . | LC_ALL=C sort | cpio --quiet -o -H newc) > "$work/initramfs"
 
