@@ -1,6 +1,6 @@
 // What a rigid wheel on soil does when the grid is infinitely fine and the step infinitely short:
-// the equations of the contact, integrated along it. Knows no grid; docs/soil.md states the
-// equations.
+// the equations of the contact, integrated along it. Knows no grid; docs/measurements/soil.md
+// states the equations.
 #pragma once
 
 #include "host_sim/physics/soil/soil_bed.h"

@@ -7,8 +7,8 @@ HOST_TIDY_SOURCES := $(sort $(ALL_HOST_SOURCES) $(MCU_TEST_SOURCES))
 
 # Checks of a moment come first; then clang-tidy over sources whose object, flags or checks changed since they were last found clean,
 # as many at a time as go together.
-.PHONY: lint check-format check-includes check-words check-root check-one-source format
-lint: check-root check-format check-includes check-words check-one-source check-telemetry-page $(call objects,$(HOST_TIDY_SOURCES)) $(B)/lint.flags $(B)/mcu_tests.flags $(B)/avr.flags \
+.PHONY: lint check-format check-includes check-words check-root check-one-source check-links format
+lint: check-root check-format check-includes check-words check-one-source check-links check-telemetry-page $(call objects,$(HOST_TIDY_SOURCES)) $(B)/lint.flags $(B)/mcu_tests.flags $(B)/avr.flags \
       $(FIRMWARE_BUILD)/generated/build_info.h  ## formatting, layers, words, static analysis
 	@tools/lint/run.sh $(B) $(HOST_TIDY_SOURCES) $(AVR_TIDY_SOURCES)
 	@echo "lint: $(words $(HOST_TIDY_SOURCES) $(AVR_TIDY_SOURCES)) sources clean"
@@ -22,6 +22,8 @@ check-words:
 	@tools/lint/glossary.sh
 check-one-source:
 	@tools/lint/one_source.sh
+check-links:
+	@tools/lint/check_links.sh
 format:  ## clang-format over the tree
 	clang-format -i $(CPP_FILES)
 # Without -Werror: compilers' warnings are the build's, by its compiler. (With the analyser among its checks clang-tidy takes no

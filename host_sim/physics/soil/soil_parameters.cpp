@@ -47,7 +47,7 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
   return s;
 }
 
-/// What a bed of particles of 15 mm is like (docs/soil.md, Digging).
+/// What a bed of particles of 15 mm is like (docs/measurements/soil.md, Digging).
 SoilParameters gravel() {
   SoilParameters s = soil("gravel", 867e3, 0.0, 0.9, 0.0, 25.0, 0.0023, 2e6);
   s.repose_deg = 34.4;

@@ -25,7 +25,8 @@ struct WheelArguments {
   bool fit = false;
 };
 
-/// Chrono's SCM (exact rays) for Ding's wheel: slip, drawbar pull N, sinkage m (docs/soil.md).
+/// Chrono's SCM (exact rays) for Ding's wheel: slip, drawbar pull N, sinkage m
+/// (docs/measurements/soil.md).
 struct PeerWheel {
   double slip;
   double drawbar_pull_n;

@@ -130,7 +130,7 @@ TEST(SoilWheelTest, PlaceAndYawOnTheGridDoNotMatter) {
 // Along its own rut the wheel meets soil that gives only at E until it is as deep as before: it
 // sinks on, but by a third of the first pass. The limit of that, too, is known; the engine's second
 // pass stays within 2 % of its depth (drawbar pull: 0.014 of the load off with radial stress, see
-// docs/soil.md).
+// docs/measurements/soil.md).
 TEST(SoilWheelTest, ASecondPassSinksMuchLess) {
   for (const NormalStress stress : kBoth) {
     WheelTest test = wheel_on("viper", 0.2, stress, 0.005);
@@ -159,7 +159,7 @@ TEST(SoilWheelTest, StepSizeDoesNotMatterOnStiffSoil) {
 }
 
 // Required: sinkage within 35 % at slip 0.2 to 0.6 after fitting slip_sinkage alone. The drawbar
-// pull is not asserted: it is 36 to 149 % too high (docs/soil.md says so).
+// pull is not asserted: it is 36 to 149 % too high (docs/measurements/soil.md says so).
 TEST(SoilWheelTest, DingsWheelSinksAsMeasured) {
   const std::vector<MeasuredWheel> rows = read_measured_wheels(
       std::string(kDataFolder) + "/soil/single_wheel_ding2011.csv", "ding2011_smooth");
