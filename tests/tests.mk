@@ -30,6 +30,16 @@ ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools
 test: $(SCREED) $$(TESTS) $$(TEST_IMAGES)  ## build and run every test (BUILD=asan: under the sanitizers)
 	@SCREED_PROGRAM=$(abspath $(SCREED)) tests/run.sh $(TESTS)
 
+# The tests of single sources: quick to build, for whoever works on them. Which ones, no date of a file says: linked each time.
+.PHONY: test-file test-tutorial
+test-file: $(SCREED) $(B)/tests/test_file  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
+	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)
+$(B)/tests/test_file: $(call objects,$(wildcard $(TEST))) $(filter-out $(call objects,$(UNIT_SOURCES)),$(UNIT_TESTS_PARTS)) $(B)/link.flags FORCE
+	$(if $(wildcard $(TEST)),,$(error TEST='FILE...' names sources of tests; there is none of the name '$(TEST)'))
+	$(call link,$(TEST_LIBRARIES))
+test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md, from top to bottom, in a copy of the tree
+	@tests/docs/tutorial.sh docs/tutorial.md
+
 .PHONY: test-install
 test-install: $(SCREED) $(B)/screed_flash  ## install, move the tree, run it from elsewhere
 	@tests/install/run.sh
