@@ -29,7 +29,7 @@ struct SimulationSummary {
   double energy_j = 0.0;
   double battery_v = 0.0;
   int peaks = 0;
-  std::string state;  ///< of the supervisor at the end
+  std::string state;    ///< of the supervisor at the end
   uint16_t faults = 0;  ///< latched
   /// Why the robot could not be armed at the end, in words; empty in other states than disarmed and
   /// fault, and when nothing prevented it.

@@ -9,6 +9,7 @@ namespace screed {
 namespace {
 
 using State = message::HeartbeatState;
+using Fault = message::HeartbeatFaults;
 using Result = message::CommandAckResult;
 
 class AnswerText : public ::testing::Test {
