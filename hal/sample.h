@@ -35,7 +35,7 @@ enum FreshBit : uint8_t {
 constexpr uint16_t kBatteryMax = 8 * 1023;
 
 /// Bits of SensorSample::chips_failing: the chip does not answer, or does not hold its settings.
-using ChipBit = message::HealthChipsFailing;
+using ChipBit = message::HealthConditions;
 
 /// What the robot knows of the world at one tick.
 struct SensorSample {

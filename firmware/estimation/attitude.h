@@ -86,6 +86,9 @@ class AttitudeEstimator : private AttitudeState {
   /// it is true after 4.5 s.
   bool ready() const { return ticks_ == kStartTicks; }
 
+  static constexpr uint16_t kStartTicks = 300;  ///< 3 s, the time constant of the gravity filter
+  static constexpr uint8_t kRestTicks = 150;    ///< 1.5 s, until a standstill is found
+
   /// The magnetometer has set the heading.
   bool heading_ready() const { return mag_samples_ != 0; }
 
@@ -96,9 +99,6 @@ class AttitudeEstimator : private AttitudeState {
   int32_t gyro_bias_mdps(uint8_t axis) const;
 
  private:
-  static constexpr uint16_t kStartTicks = 300;  // 3 s, the time constant of the gravity filter
-  static constexpr uint8_t kRestTicks = 150;    // 1.5 s
-
   bool align(const int16_t (&accel)[3]);
   void detect_rest(const ImuSample& sample, bool may_be_at_rest);
   void learn_bias_at_rest();

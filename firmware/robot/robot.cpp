@@ -310,7 +310,8 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
   view.uplink = &uplink_;
   view.slip = slip_watch_.slips() ? 1 : 0;
   view.stuck = slip_watch_.stuck() ? 1 : 0;
-  view.faults = supervisor_.faults();
+  view.faults = supervisor_.reported_faults();
+  view.starting = !attitude_.ready();
   view.link_alive = supervisor_.link_alive();
   view.boot_epoch = gate_.boot_epoch();
   view.freshness = gate_.counter();

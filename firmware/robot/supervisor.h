@@ -117,6 +117,9 @@ class Supervisor : private SupervisorMemory {
   uint16_t faults() const { return latched_; }
   /// Causes that are there now, latched or not.
   uint16_t present_faults() const { return present_; }
+  /// What the heartbeat says: the latched causes in kFault, else those present, which would prevent
+  /// arming. Present causes latch at once in the states between, so there are none.
+  uint16_t reported_faults() const { return state_ == RobotState::kFault ? latched_ : present_; }
   /// The ground station was heard within the last 0.5 s.
   bool link_alive() const;
 

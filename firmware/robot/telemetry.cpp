@@ -125,7 +125,8 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
     case kIdHealth: {
       message::Health it{};
       it.reset_cause = sample.reset_cause;
-      it.chips_failing = sample.chips_failing;
+      it.conditions = static_cast<uint8_t>(
+          sample.chips_failing | (view.starting ? message::HealthConditions::kStarting : 0));
       it.i2c_errors = sample.bus_errors;
       it.uart_errors = sample.radio_errors;
       it.longest_tick = longest_tick_us_;

@@ -16,6 +16,10 @@ constexpr double kStillGyro_counts = 1.5 / 0.070;  // peak to peak; noise at res
 constexpr double kStillAccel_counts = 25.0 / 0.244;
 constexpr double kStillDeviation_counts = 0.5 / 0.070;
 constexpr size_t kRecent = 8;  // 0.8 s
+// What the samples of a whole turn reach on each axis at least: 350 mG of the 440 that the weakest
+// field of the earth, 220 mG, gives. The middle of samples that reach less lies among them, and they
+// would seem to be all round it.
+constexpr double kMinMagExtent_counts = 350.0 / 0.160;
 constexpr size_t kMaxSamples = 5000;
 
 template <class Message>
@@ -40,16 +44,6 @@ void keep_recent(std::deque<Eigen::Vector3d>& samples, const Eigen::Vector3d& sa
   if (samples.size() > kRecent) samples.pop_front();
 }
 
-Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& samples) {
-  Eigen::Vector3d least = samples.front();
-  Eigen::Vector3d most = samples.front();
-  for (const Eigen::Vector3d& sample : samples) {
-    least = least.cwiseMin(sample);
-    most = most.cwiseMax(sample);
-  }
-  return 0.5 * (least + most);
-}
-
 int16_t counts(double value) {
   return static_cast<int16_t>(std::clamp(std::lround(value), -32767L, 32767L));
 }
@@ -69,7 +63,7 @@ std::vector<CalibrationParameter> calibration_parameters(const ImuCalibration& c
 
 void ImuCollector::add_frame(const CanFrame& frame) {
   if (frame.id == kIdMagRaw) {
-    if (mag_.size() < kMaxSamples) mag_.push_back(vector_of<message::MagRaw>(frame));
+    add_mag(vector_of<message::MagRaw>(frame));
   } else if (frame.id == kIdGyroRaw) {
     keep_recent(recent_gyro_, vector_of<message::GyroRaw>(frame));
     // The oldest of the window: what came after it was still as well.
@@ -99,12 +93,21 @@ bool ImuCollector::positions_done() const {
                      [](const Rest& rest) { return rest.count >= kRestSamples; });
 }
 
-double ImuCollector::mag_coverage() const {
-  return mag_.empty() ? 0.0 : coverage(mag_, middle_of(mag_));
+void ImuCollector::add_mag(const Eigen::Vector3d& sample) {
+  if (mag_.size() >= kMaxSamples) return;
+  mag_.push_back(sample);
+  least_mag_ = mag_.size() == 1 ? sample : Eigen::Vector3d(least_mag_.cwiseMin(sample));
+  most_mag_ = mag_.size() == 1 ? sample : Eigen::Vector3d(most_mag_.cwiseMax(sample));
+  const Eigen::Vector3d extent = most_mag_ - least_mag_;
+  const double reached = std::min(extent.minCoeff() / kMinMagExtent_counts, 1.0);
+  const double seen = coverage(mag_, 0.5 * (least_mag_ + most_mag_));
+  const bool enough = reached == 1.0 && seen >= kEnoughCoverage && mag_.size() >= kEnoughMagSamples;
+  const double now = enough ? seen : std::min(reached * seen, kEnoughCoverage - 0.01);
+  mag_coverage_ = std::max(mag_coverage_, now);
 }
 
 bool ImuCollector::complete() const {
-  return positions_done() && mag_.size() >= kEnoughMagSamples && mag_coverage() >= kEnoughCoverage;
+  return positions_done() && mag_coverage() >= kEnoughCoverage;
 }
 
 ImuCalibration ImuCollector::fit() const {

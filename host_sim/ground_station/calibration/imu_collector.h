@@ -48,8 +48,10 @@ class ImuCollector {
   }
   bool positions_done() const;
   const std::vector<Eigen::Vector3d>& mag_samples() const { return mag_; }
-  /// Of the directions that the magnetometer has seen, 0..1.
-  double mag_coverage() const;
+  /// Of the directions that the magnetometer has seen, 0..1. Never falls, although the middle from
+  /// which directions are seen moves with the samples; reaches kEnoughCoverage when the samples are
+  /// enough, and not before.
+  double mag_coverage() const { return mag_coverage_; }
   bool complete() const;
 
   /// The fits. Throws RunError as they do, and when a position is missing.
@@ -59,6 +61,8 @@ class ImuCollector {
   std::string advice() const;
 
  private:
+  void add_mag(const Eigen::Vector3d& sample);
+
   struct Rest {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     size_t count = 0;
@@ -70,6 +74,9 @@ class ImuCollector {
   std::vector<Eigen::Vector3d> rest_gyro_;
   std::array<Rest, kPositions> rests_;
   std::vector<Eigen::Vector3d> mag_;
+  Eigen::Vector3d least_mag_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d most_mag_ = Eigen::Vector3d::Zero();
+  double mag_coverage_ = 0.0;
 };
 
 }  // namespace screed

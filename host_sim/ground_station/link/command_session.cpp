@@ -25,37 +25,6 @@ uint64_t steady_us() {
 
 }  // namespace
 
-std::string CommandAnswer::description() const {
-  struct Words {
-    Result result;
-    const char* text;
-  };
-  constexpr Words kWords[] = {
-      {Result::kWrongState, "not possible in the robot's present state"},
-      {Result::kFaultPresent, "a fault is present"},
-      {Result::kNotReady, "the attitude estimator has not settled yet"},
-      {Result::kNoLink, "the robot hears no ground station (screed monitor, or --hold)"},
-      {Result::kNoKey, "the robot has no command key; one is set over USB"},
-      {Result::kBadMac, "signed with another key than the robot's (--key)"},
-      {Result::kLockedOut, "too many wrong signatures; locked"},
-      {Result::kUsedUp, "the robot has taken all commands of this start; restart it"},
-      {Result::kBadArgument, "no such parameter, or the value is not allowed"},
-      {Result::kBusy, "the robot is still storing the last parameter"},
-  };
-  if (done()) return "done";
-  for (const Words& known : kWords) {
-    if (static_cast<uint8_t>(known.result) != result) continue;
-    std::string text = "refused: " + std::string(known.text);
-    if (known.result == Result::kFaultPresent) {
-      text += " (" + flag_names("heartbeat", "faults", detail) + ")";
-    }
-    if (known.result == Result::kLockedOut)
-      text += " for " + std::to_string(detail / 100 + 1) + " s";
-    return text;
-  }
-  return "refused: reason " + std::to_string(result);
-}
-
 CommandSession::CommandSession(Link& link, SessionOptions options)
     : link_(link), options_(std::move(options)), signer_(options_.key) {
   if (!options_.clock) options_.clock = steady_us;

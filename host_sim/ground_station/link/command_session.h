@@ -12,20 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/ground_station/link/answer_text.h"
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/station/command_signer.h"
 
 namespace screed {
-
-struct CommandAnswer {
-  uint8_t op = 0;
-  uint8_t result = 0;  ///< 0: done
-  uint16_t detail = 0;
-
-  bool done() const { return result == 0; }
-  /// "done", "refused: a fault is present (tilt, imu silent)".
-  std::string description() const;
-};
 
 struct SessionOptions {
   CommandKey key = test_key();

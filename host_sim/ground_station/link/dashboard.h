@@ -1,5 +1,6 @@
 // The page that `screed monitor` shows of a robot: attitude, odometry, motors, algorithm, link,
-// faults in words, curves of chosen signals. A pure drawing: the same input gives the same page.
+// faults or what prevents arming in words, curves of chosen signals. A pure drawing: the same input
+// gives the same page.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +21,14 @@ struct DashboardInput {
   RobotKey robot;                   ///< which one to show
   std::vector<std::string> curves;  ///< "attitude.pitch"
   double window_s = 30.0;           ///< of the curves
-  std::string footer;               ///< keys, or the log's name
+  int battery_cells = 0;            ///< NiMH, in series; 0: not known, no charge is shown
+  /// Parts of the last line, the most important first: as many are shown as fit.
+  std::vector<std::string> footer;
 };
 
-/// Fills the page; what has no room is left out, from the bottom.
+/// Fills the page. Values that are old are pale, with their age; when the link is lost all frames
+/// are red. Below 80 x 21 there are no frames, but one value a line, the most important first. A
+/// line says what was left out.
 void draw_dashboard(TextCanvas& page, const DashboardInput& input);
 
 /// Everything that is known, line by line, for a pipe: no page, no width.

@@ -5,6 +5,8 @@
 #include <cstdio>
 
 #include "firmware/protocol/messages.h"
+#include "host_sim/ground_station/link/answer_text.h"
+#include "host_sim/ground_station/telemetry/arming.h"
 
 namespace screed {
 namespace {
@@ -14,30 +16,13 @@ constexpr size_t kMaxEvents = 100;
 constexpr size_t kMaxRobots = 64;
 constexpr int kCounterModulus = 16;
 
-std::array<uint8_t, 8> data_of(const CanFrame& frame) {
-  std::array<uint8_t, 8> data{};
-  std::copy_n(frame.data, std::min<size_t>(frame.size, data.size()), data.begin());
-  return data;
-}
-
 const SignalInfo* with_role(const MessageInfo& message, SignalRole role) {
   const auto signal = std::find_if(message.signals.begin(), message.signals.end(),
                                    [role](const SignalInfo& s) { return s.role == role; });
   return signal == message.signals.end() ? nullptr : &*signal;
 }
 
-std::string fault_words(const SignalInfo& flag) {
-  const std::string name = display_name(flag.name);
-  return flag.comment[0] == '\0' ? name : name + ": " + flag.comment;
-}
-
 }  // namespace
-
-std::string display_name(std::string_view name) {
-  std::string words(name);
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
-}
 
 std::string RobotKey::text() const {
   std::string words = "robot " + std::to_string(node);
@@ -55,8 +40,9 @@ void RobotView::add_frame(const LinkFrame& frame, const MessageInfo& message) {
   if (frame.source.has_value() && frame.source->rssi_dbm.has_value())
     rssi_dbm_ = frame.source->rssi_dbm;
 
+  latest_.add_frame(frame.time_us, frame.frame, message);
   std::deque<Sample>& samples = samples_[message.id];
-  Sample sample{frame.time_us, data_of(frame.frame), 0};
+  Sample sample{frame.time_us, frame_bytes(frame.frame), 0};
   const Sample* const before = samples.empty() ? nullptr : &samples.front();
   const SignalInfo* const counter = with_role(message, SignalRole::kCounter);
   if (before != nullptr && counter != nullptr) {
@@ -77,6 +63,22 @@ void RobotView::note(uint64_t time_us, CellStyle style, std::string words) {
   if (events_.size() > kMaxEvents) events_.pop_back();
 }
 
+void RobotView::note_flags(const MessageInfo& heartbeat, const Sample* before, const Sample& now) {
+  const auto said = message::Heartbeat::unpack(now.data.data());
+  const bool disarmed =
+      static_cast<message::HeartbeatState>(said.state) == message::HeartbeatState::kDisarmed;
+  for (const FlagInfo& flag : flags_of(heartbeat.title, "faults")) {
+    const bool is = (said.faults & flag.bit) != 0;
+    const bool was = before != nullptr && flag.signal->raw(before->data.data()) != 0;
+    if (is && !was) {
+      const auto sentences = fault_sentences(static_cast<uint16_t>(flag.bit), latest_);
+      note(now.time_us, disarmed ? CellStyle::kWarning : CellStyle::kAlarm,
+           (disarmed ? "prevents arming: " : "fault: ") + sentences.front());
+    }
+    if (!is && was) note(now.time_us, CellStyle::kGood, "gone: " + display_name(flag.signal->name));
+  }
+}
+
 void RobotView::look_for_changes(const MessageInfo& message, const Sample* before,
                                  const Sample& now) {
   const uint8_t* const data = now.data.data();
@@ -85,24 +87,20 @@ void RobotView::look_for_changes(const MessageInfo& message, const Sample* befor
     const int64_t state_now = state.raw(data);
     if (before == nullptr || state.raw(before->data.data()) != state_now)
       note(now.time_us, CellStyle::kTitle, "state: " + display_name(state.text(state_now)));
-    for (const SignalInfo& flag : message.signals) {
-      if (flag.flags[0] == '\0') continue;
-      const bool is = flag.raw(data) != 0;
-      const bool was = before != nullptr && flag.raw(before->data.data()) != 0;
-      if (is && !was) note(now.time_us, CellStyle::kAlarm, "fault: " + fault_words(flag));
-      if (!is && was) note(now.time_us, CellStyle::kGood, "fault gone: " + display_name(flag.name));
-    }
+    note_flags(message, before, now);
     const SignalInfo* const epoch = message.signal("boot_epoch");
     if (before != nullptr && epoch != nullptr &&
         epoch->raw(before->data.data()) != epoch->raw(data))
       note(now.time_us, CellStyle::kWarning,
            "the robot restarted, start " + epoch->text(epoch->raw(data)));
   } else if (message.id == find_message("COMMAND_ACK")->id) {
-    const SignalInfo& result = *message.signal("result");
-    const SignalInfo& op = *message.signal("op");
-    const bool done = result.raw(data) == 0;
-    note(now.time_us, done ? CellStyle::kGood : CellStyle::kWarning,
-         display_name(op.text(op.raw(data))) + ": " + display_name(result.text(result.raw(data))));
+    const auto ack = message::CommandAck::unpack(data);
+    const CommandAnswer answer = {ack.op, ack.result, ack.detail};
+    // Reading changes nothing, and programs do it by themselves.
+    if (answer.done() && static_cast<CommandOp>(ack.op) == CommandOp::kParameterRead) return;
+    note(now.time_us, answer.done() ? CellStyle::kGood : CellStyle::kWarning,
+         display_name(message.signal("op")->text(ack.op)) + ": " +
+             answer_text(answer, latest_, now.time_us, CommandStyle::kKeys));
   } else if (message.id == find_message("EVENT")->id) {
     const SignalInfo& code = *message.signal("code");
     // The heartbeat reports every change of state, in full.
@@ -121,21 +119,15 @@ const std::deque<RobotView::Sample>& RobotView::history(const MessageInfo& messa
 }
 
 std::optional<int64_t> RobotView::raw(std::string_view path) const {
-  const SignalRef place = find_signal(path);
-  const std::deque<Sample>& samples = history(*place.message);
-  if (samples.empty()) return std::nullopt;
-  return place.signal->raw(samples.front().data.data());
+  return latest_.raw(path);
 }
 
 std::optional<double> RobotView::value(std::string_view path) const {
-  const std::optional<int64_t> bits = raw(path);
-  if (!bits.has_value()) return std::nullopt;
-  return find_signal(path).signal->value(*bits);
+  return latest_.value(path);
 }
 
 std::string RobotView::text(std::string_view path) const {
-  const std::optional<int64_t> bits = raw(path);
-  return bits.has_value() ? display_name(find_signal(path).signal->text(*bits)) : "-";
+  return latest_.text(path);
 }
 
 std::vector<CurvePoint> RobotView::curve(const SignalRef& place, uint64_t now_us,
@@ -151,15 +143,13 @@ std::vector<CurvePoint> RobotView::curve(const SignalRef& place, uint64_t now_us
 }
 
 std::vector<std::string> RobotView::faults() const {
-  std::vector<std::string> words;
-  const MessageInfo& heartbeat = *find_message("HEARTBEAT");
-  const std::deque<Sample>& samples = history(heartbeat);
-  if (samples.empty()) return words;
-  for (const SignalInfo& flag : heartbeat.signals) {
-    if (flag.flags[0] != '\0' && flag.raw(samples.front().data.data()) != 0)
-      words.push_back(fault_words(flag));
-  }
-  return words;
+  const LatestTelemetry::Frame* const last = latest_.frame(*find_message("HEARTBEAT"));
+  if (last == nullptr) return {};
+  return fault_sentences(message::Heartbeat::unpack(last->data.data()).faults, latest_);
+}
+
+std::vector<std::string> RobotView::obstacles(uint64_t now_us) const {
+  return arming_obstacles(latest_, now_us);
 }
 
 double RobotView::rate_hz(const MessageInfo& message, uint64_t now_us) const {

@@ -14,6 +14,7 @@
 
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/link/text_canvas.h"
+#include "host_sim/ground_station/telemetry/latest_telemetry.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 
 namespace screed {
@@ -54,8 +55,12 @@ class RobotView {
   /// Oldest first, x in seconds before now (negative), those of the last `window_s`.
   std::vector<CurvePoint> curve(const SignalRef& place, uint64_t now_us, double window_s) const;
 
-  /// The faults of the heartbeat in words, "high duty, no motion" behind their names.
+  /// The faults of the heartbeat in words; of a disarmed robot those that would prevent arming.
   std::vector<std::string> faults() const;
+  /// Why it cannot be armed now, in words; as arming_obstacles().
+  std::vector<std::string> obstacles(uint64_t now_us) const;
+  /// The newest frame of each message, and the parameters that were reported.
+  const LatestTelemetry& latest() const { return latest_; }
 
   double rate_hz(const MessageInfo& message, uint64_t now_us) const;
   double frames_per_s(uint64_t now_us) const;
@@ -69,8 +74,10 @@ class RobotView {
   const std::deque<Event>& events() const { return events_; }  ///< newest first
 
  private:
+  void note_flags(const MessageInfo& heartbeat, const Sample* before, const Sample& now);
   void look_for_changes(const MessageInfo& message, const Sample* before, const Sample& now);
 
+  LatestTelemetry latest_;
   std::map<uint16_t, std::deque<Sample>> samples_;
   std::deque<Event> events_;
   uint64_t frames_ = 0;
@@ -110,8 +117,5 @@ class FleetView {
   uint64_t unknown_ = 0;
   uint64_t uplink_ = 0;
 };
-
-/// "stall_left" as people write it: "stall left".
-std::string display_name(std::string_view name);
 
 }  // namespace screed

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 namespace screed {
 namespace {
@@ -17,6 +18,25 @@ constexpr std::array<std::array<uint8_t, kDotsX>, kDotsY> kDotBits = {
     {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}}};
 
 }  // namespace
+
+std::vector<std::string> break_lines(std::string_view text, int width) {
+  std::vector<std::string> lines(1);
+  size_t column = 0;  // characters in the last line
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string_view word = text.substr(begin, end - begin);
+    const size_t length = from_utf8(word).size();
+    if (column > 0 && column + 1 + length > static_cast<size_t>(std::max(width, 1))) {
+      lines.emplace_back();
+      column = 0;
+    }
+    if (column > 0) lines.back() += ' ';
+    lines.back() += word;
+    column += length + (column > 0 ? 1 : 0);
+    begin = end + 1;
+  }
+  return lines;
+}
 
 std::string utf8(char32_t c) {
   const auto byte = [](char32_t bits) { return static_cast<char>(bits); };
@@ -62,20 +82,32 @@ int TextCanvas::text(int x, int y, std::string_view words, CellStyle style) {
   return x;
 }
 
-void TextCanvas::box(int x, int y, int width, int height, std::string_view title) {
+int TextCanvas::text_within(int x, int y, int width, std::string_view words, CellStyle style) {
+  std::u32string characters = from_utf8(words);
+  if (width <= 0) return x;
+  if (characters.size() > static_cast<size_t>(width)) {
+    characters.resize(static_cast<size_t>(width));
+    characters.back() = U'…';
+  }
+  for (const char32_t character : characters) put(x++, y, character, style);
+  return x;
+}
+
+void TextCanvas::box(int x, int y, int width, int height, std::string_view title, CellStyle edge) {
   for (int i = 1; i < width - 1; ++i) {
-    put(x + i, y, U'─', CellStyle::kDim);
-    put(x + i, y + height - 1, U'─', CellStyle::kDim);
+    put(x + i, y, U'─', edge);
+    put(x + i, y + height - 1, U'─', edge);
   }
   for (int i = 1; i < height - 1; ++i) {
-    put(x, y + i, U'│', CellStyle::kDim);
-    put(x + width - 1, y + i, U'│', CellStyle::kDim);
+    put(x, y + i, U'│', edge);
+    put(x + width - 1, y + i, U'│', edge);
   }
-  put(x, y, U'┌', CellStyle::kDim);
-  put(x + width - 1, y, U'┐', CellStyle::kDim);
-  put(x, y + height - 1, U'└', CellStyle::kDim);
-  put(x + width - 1, y + height - 1, U'┘', CellStyle::kDim);
-  text(x + 2, y, " " + std::string(title) + " ", CellStyle::kTitle);
+  put(x, y, U'┌', edge);
+  put(x + width - 1, y, U'┐', edge);
+  put(x, y + height - 1, U'└', edge);
+  put(x + width - 1, y + height - 1, U'┘', edge);
+  text_within(x + 2, y, width - 4, " " + std::string(title) + " ",
+              edge == CellStyle::kAlarm ? edge : CellStyle::kTitle);
 }
 
 void TextCanvas::centred_bar(int x, int y, int width, double value, CellStyle style) {

@@ -39,8 +39,13 @@ class TextCanvas {
 
   /// Writes UTF-8; what lies outside of the page is cut. Returns the column behind the text.
   int text(int x, int y, std::string_view words, CellStyle style = CellStyle::kNormal);
-  /// A frame round width x height cells, its title in the upper edge.
-  void box(int x, int y, int width, int height, std::string_view title);
+  /// The same within `width` characters: what is longer ends with an ellipsis.
+  int text_within(int x, int y, int width, std::string_view words,
+                  CellStyle style = CellStyle::kNormal);
+  /// A frame round width x height cells, its title in the upper edge. edge: kAlarm: in the title's
+  /// style as well.
+  void box(int x, int y, int width, int height, std::string_view title,
+           CellStyle edge = CellStyle::kDim);
   /// A bar from the middle of `width` cells towards value, -1..1 (beyond: full).
   void centred_bar(int x, int y, int width, double value, CellStyle style);
   /// A curve in width x height cells, 2 x 4 dots each; neighbouring points are joined. A point
@@ -61,6 +66,10 @@ class TextCanvas {
   int height_;
   std::vector<TextCell> cells_;
 };
+
+/// Lines of at most `width` characters, broken between words; only a longer word exceeds it. At
+/// least one line.
+std::vector<std::string> break_lines(std::string_view text, int width);
 
 /// UTF-8 of one character.
 std::string utf8(char32_t character);

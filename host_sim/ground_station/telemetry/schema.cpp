@@ -124,16 +124,33 @@ std::vector<std::string> value_names(std::string_view path) {
   return names;
 }
 
-std::string flag_names(std::string_view message, std::string_view field, uint32_t bits) {
-  std::vector<const SignalInfo*> flags;
+std::vector<FlagInfo> flags_of(std::string_view message, std::string_view field) {
+  std::vector<FlagInfo> flags;
   for (const SignalInfo& it : message_of(message, message).signals) {
-    if (it.flags == field) flags.push_back(&it);
+    if (it.flags == field) flags.push_back({&it, 0});
   }
-  std::sort(flags.begin(), flags.end(),
-            [](const SignalInfo* a, const SignalInfo* b) { return a->start < b->start; });
+  std::sort(flags.begin(), flags.end(), [](const FlagInfo& a, const FlagInfo& b) {
+    return a.signal->start < b.signal->start;
+  });
+  for (FlagInfo& it : flags) it.bit = 1U << (it.signal->start - flags.front().signal->start);
+  return flags;
+}
+
+std::string display_name(std::string_view name) {
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string flag_text(const SignalInfo& flag) {
+  const std::string name = display_name(flag.name);
+  return flag.comment[0] == '\0' ? name : name + ": " + flag.comment;
+}
+
+std::string flag_names(std::string_view message, std::string_view field, uint32_t bits) {
   std::vector<const char*> names;
-  for (const SignalInfo* it : flags) {
-    if ((bits >> (it->start - flags.front()->start) & 1U) != 0) names.push_back(it->name);
+  for (const FlagInfo& it : flags_of(message, field)) {
+    if ((bits & it.bit) != 0) names.push_back(it.signal->name);
   }
   return list_of(names);
 }

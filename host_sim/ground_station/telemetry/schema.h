@@ -83,6 +83,20 @@ SignalRef find_signal(std::string_view path);
 /// Throws as find_signal.
 std::vector<std::string> value_names(std::string_view path);
 
+/// A flag and its bit in the field that it belongs to.
+struct FlagInfo {
+  const SignalInfo* signal;
+  uint32_t bit;
+};
+/// The flags of a field, lowest bit first: flags_of("heartbeat", "faults"). Throws InputError when
+/// there is no such message; empty when it has no such field.
+std::vector<FlagInfo> flags_of(std::string_view message, std::string_view field);
+
+/// A name of the schema as people write it: "stall left" for "stall_left".
+std::string display_name(std::string_view name);
+/// A flag's display name and meaning: "stall left: high duty, no motion".
+std::string flag_text(const SignalInfo& flag);
+
 /// The names of the set bits of a field of flags, in their order, with ", " between them:
 /// flag_names("heartbeat", "faults", 5) is "tilt, gyro_frozen"; empty: none. Bits without a name
 /// are passed over. Throws InputError when there is no such message.

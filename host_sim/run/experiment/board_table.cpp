@@ -105,4 +105,21 @@ BoardMotor board_motor(const std::string& name) {
   return board;
 }
 
+int board_battery_cells(const std::string& name) {
+  const std::filesystem::path path = folder_of(name) / "battery.ini";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return 0;
+  int cells = 0;
+  for (const IniEntry& entry : read_ini_file(path)) {
+    const char* const end = entry.value.data() + entry.value.size();
+    const auto [rest, failure] = std::from_chars(entry.value.data(), end, cells);
+    if (!entry.section.empty() || entry.key != "cells" || failure != std::errc() || rest != end ||
+        cells < 1 || cells > 20) {
+      throw InputError(path.string() + ":" + std::to_string(entry.line) + ": " + entry.key +
+                       " = '" + entry.value + "'; allowed is cells = 1..20");
+    }
+  }
+  return cells;
+}
+
 }  // namespace screed

@@ -34,4 +34,8 @@ struct BoardMotor {
 /// Throws InputError.
 BoardMotor board_motor(const std::string& name);
 
+/// NiMH cells in series of the board's robot, from battery.ini in its folder; 0 without one, or
+/// without the folder. Throws InputError when the file says something else.
+int board_battery_cells(const std::string& name);
+
 }  // namespace screed

@@ -41,7 +41,7 @@ void RunLoop::on_sample(const SensorSample& sample) {
 /// The robot has answered the sample; a native world has not taken the answer yet.
 void RunLoop::on_output(const RobotOutput& output) {
   robot_.parity.require_equal(output);
-  robot_.telemetry.add(output);
+  robot_.telemetry.add(static_cast<uint64_t>(plant_.time_s() * 1e6), output);
   recorder_.append(robot_.frame, robot_.sample, output);
   const Robot& shadow = robot_.parity.shadow();
   stop_.count_tick(shadow.supervisor().state(), shadow.leveling().state());

@@ -59,6 +59,7 @@ std::string summary_json(const SimulationSummary& summary) {
       {"height_changes", summary.height_changes},
       {"state", summary.state},
       {"faults", fault_names(summary.faults)},
+      {"cannot_be_armed", summary.cannot_be_armed},
       {"telemetry_frames", summary.telemetry_frames},
       {"telemetry_frames_sent", summary.telemetry_frames_sent},
       {"telemetry_frames_damaged", summary.telemetry_frames_damaged},

@@ -30,7 +30,10 @@ struct SimulationSummary {
   double battery_v = 0.0;
   int peaks = 0;
   std::string state;  ///< of the supervisor at the end
-  uint16_t faults = 0;
+  uint16_t faults = 0;  ///< latched
+  /// Why the robot could not be armed at the end, in words; empty in other states than disarmed and
+  /// fault, and when nothing prevented it.
+  std::vector<std::string> cannot_be_armed;
   uint64_t telemetry_frames = 0;          ///< that reached the ground whole
   uint64_t telemetry_frames_sent = 0;     ///< lines the robot handed to its radio
   uint64_t telemetry_frames_damaged = 0;  ///< that reached the ground with a wrong check

@@ -3,7 +3,9 @@
 
 #include <optional>
 
+#include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/run_files.h"
 #include "host_sim/run/simulation/run_loop.h"
@@ -54,6 +56,18 @@ void report_world(const RunWorld& world, double flatness_deg, SimulationSummary&
   summary.cycles = world.cycles();
 }
 
+/// Why the robot could not be armed at the end of the run, from its own telemetry; its limits are
+/// known here.
+std::vector<std::string> obstacles_of(const WatchedRobot& robot, double time_s) {
+  const Robot& shadow = robot.parity.shadow();
+  const RobotState state = shadow.supervisor().state();
+  if (state != RobotState::kDisarmed && state != RobotState::kFault) return {};
+  LatestTelemetry said = robot.telemetry.latest();
+  for (const ParameterInfo& info : kParameterTable)
+    said.set_parameter(info.name, shadow.parameters().*(info.field));
+  return arming_obstacles(said, static_cast<uint64_t>(time_s * 1e6));
+}
+
 /// What the robot did and says at the end of the run.
 void report_robot(const WatchedRobot& robot, SimulationSummary& summary) {
   const Robot& shadow = robot.parity.shadow();
@@ -61,6 +75,7 @@ void report_robot(const WatchedRobot& robot, SimulationSummary& summary) {
   summary.peaks = shadow.leveling().peaks();
   summary.state = state_name(shadow.supervisor().state());
   summary.faults = shadow.supervisor().faults();
+  summary.cannot_be_armed = obstacles_of(robot, summary.time_s);
   summary.telemetry_frames_sent = robot.telemetry.frames();
   summary.telemetry_share = robot.telemetry.line_share(summary.time_s);
 }

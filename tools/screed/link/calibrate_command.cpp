@@ -10,6 +10,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/calibration/imu_collector.h"
+#include "host_sim/ground_station/link/calibration_page.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_view.h"
 #include "tools/screed/cli/command.h"
@@ -69,6 +70,7 @@ class Calibration {
 
   void on_frame(const LinkFrame& frame) {
     if (fleet_.add_frame(frame) == nullptr) return;
+    heard_us_ = wall_clock_us();
     collector_.add_frame(frame.frame);
     if (frame.frame.id != find_message("MAG_RAW")->id) return;
     const double field = collector_.mag_samples().back().norm() * kMag_mg;
@@ -112,36 +114,14 @@ class Calibration {
   }
 
   void draw(TextCanvas& page) const {
-    page.text(0, 0, "screed calibrate   " + link_->name() + " " + link_->status().text,
-              CellStyle::kTitle);
-    page.text(0, 2, collector_.advice(), CellStyle::kGood);
-    const std::optional<Position> held = collector_.position();
-    int y = 4;
-    for (size_t i = 0; i < kPositions; ++i, ++y) {
-      const auto position = static_cast<Position>(i);
-      const bool done = collector_.position_done(position);
-      page.text(2, y, done ? "[x]" : "[ ]", done ? CellStyle::kGood : CellStyle::kNormal);
-      const int x = page.text(6, y, position_name(position));
-      if (held == position)
-        page.text(x + 2, y, collector_.at_rest() ? "<- still" : "<- moving", CellStyle::kWarning);
-    }
-    char text[96];
-    std::snprintf(text, sizeof text, "magnetometer: %zu samples, %.0f %% of all directions",
-                  collector_.mag_samples().size(), collector_.mag_coverage() * 100.0);
-    page.text(2, ++y, text);
-    draw_field(page, y + 1);
-    page.text(0, page.height() - 1, "q give up", CellStyle::kDim);
-  }
-
-  /// Length of the field as read: a straight line once it is calibrated.
-  void draw_field(TextCanvas& page, int y) const {
-    constexpr int kHeight = 9;
-    page.box(0, y, page.width(), kHeight + 2,
-             "length of the magnetic field as read, mG, 0 to 1000");
-    if (field_.empty()) return;
-    const std::vector<CurvePoint> points(field_.begin(), field_.end());
-    page.curve(2, y + 1, page.width() - 4, kHeight, points,
-               {points.back().x - 60.0, points.back().x, 0.0, 1000.0});
+    const std::vector<CurvePoint> field(field_.begin(), field_.end());
+    CalibrationPageInput input;
+    input.link_name = link_->name();
+    input.link = link_->status();
+    input.silent_s = static_cast<double>(wall_clock_us() - heard_us_) * 1e-6;
+    input.collector = &collector_;
+    input.field = field;
+    draw_calibration(page, input);
   }
 
   static bool asked(const char* question) {
@@ -178,9 +158,12 @@ class Calibration {
     std::fflush(stdout);
   }
 
-  std::string state() const {
-    return fleet_.robots().empty() ? "-" : fleet_.robots().begin()->second.text("heartbeat.state");
+  const LatestTelemetry& robot_said() const {
+    static const LatestTelemetry kNothing;
+    return fleet_.robots().empty() ? kNothing : fleet_.robots().begin()->second.latest();
   }
+
+  std::string state() const { return robot_said().text("heartbeat.state"); }
 
   /// A robot takes parameters when it is disarmed; one that was turned over has a fault, which can
   /// be cleared when it stands level again.
@@ -210,7 +193,9 @@ class Calibration {
       wait_until_disarmed();
       const std::optional<CommandAnswer> answer = session_.write_parameter(index, parameter.value);
       std::cout << parameter.name << " = " << parameter.value << ": "
-                << (answer.has_value() ? answer->description() : "no answer") << std::endl;
+                << (answer.has_value() ? answer_text(*answer, robot_said(), wall_clock_us())
+                                       : "no answer")
+                << std::endl;
       if (!answer.has_value() || !answer->done())
         throw RunError("not all parameters were stored; calibrate again");
     }
@@ -223,6 +208,7 @@ class Calibration {
   FleetView fleet_;
   ImuCollector collector_;
   std::deque<CurvePoint> field_;
+  uint64_t heard_us_ = wall_clock_us();  ///< the robot, last
   bool given_up_ = false;
   CommandSession session_;
 };

@@ -12,10 +12,13 @@
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/dashboard.h"
 #include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
+#include "host_sim/run/experiment/board_table.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/link/link_options.h"
 
@@ -33,6 +36,7 @@ struct MonitorArguments {
   LinkArguments link;
   std::optional<std::string> log;
   std::vector<std::string> curves;
+  std::optional<int> cells;
   double duration_s = 0.0;
   bool listen = false;
   bool plain = false;
@@ -49,6 +53,8 @@ class Monitor {
                           [this](const LinkFrame& frame) { on_frame(frame); },
                           {}}),
         curves_(arguments.curves),
+        cells_(arguments.cells.has_value() ? *arguments.cells
+                                           : board_battery_cells(kDefaultBoard)),
         begin_us_(wall_clock_us()) {
     for (const std::string& path : curves_) find_signal(path);
     if (arguments.log.has_value()) {
@@ -105,9 +111,10 @@ class Monitor {
     input.robot = robot_;
     input.curves = curves_;
     input.window_s = window_s_;
-    input.footer =
-        "a arm  r run  s stop  d disarm  c clear  SPACE emergency stop   p curve  +/- time  q quit";
-    if (arguments_.log.has_value()) input.footer += "   log: " + *arguments_.log;
+    input.battery_cells = cells_;
+    input.footer = {"SPACE emergency stop", "a arm",   "r run",    "s stop", "d disarm",
+                    "c clear",              "p curve", "+/- time", "q quit"};
+    if (arguments_.log.has_value()) input.footer.push_back("log: " + *arguments_.log);
     return input;
   }
 
@@ -150,13 +157,23 @@ class Monitor {
     if (robot != fleet_.robots().end()) robot->second.note(wall_clock_us(), style, words);
   }
 
-  /// The robot's own answers are in its list; here is what it cannot say.
+  /// The robot's own answers are in its list; here is what it cannot say. One that names a fault
+  /// shows that the key is right: the limits that the fault is about are read.
   void follow_command() {
-    if (!commanded_ || session_.waiting()) return;
-    commanded_ = false;
+    if (session_.waiting()) return;
     const std::optional<CommandAnswer> answer = session_.take_answer();
-    if (!answer.has_value()) note(CellStyle::kAlarm, "no answer to the command");
-    if (answer.has_value() && !answer->done()) note(CellStyle::kWarning, answer->description());
+    if (commanded_ && !answer.has_value()) note(CellStyle::kAlarm, "no answer to the command");
+    commanded_ = false;
+    const auto robot = fleet_.robots().find(robot_);
+    if (!answer.has_value() || robot == fleet_.robots().end()) return;
+    if (answer->result == static_cast<uint8_t>(message::CommandAckResult::kFaultPresent))
+      asked_faults_ = answer->detail;
+    const auto limits = limits_to_read(asked_faults_, robot->second.latest());
+    if (limits.empty()) {
+      asked_faults_ = 0;
+    } else {
+      session_.start(CommandOp::kParameterRead, parameter_index(std::string(limits.front())));
+    }
   }
 
   void command(CommandOp op) {
@@ -233,10 +250,12 @@ class Monitor {
   RobotKey robot_;
   CommandSession session_;
   std::vector<std::string> curves_;
+  int cells_;
   double window_s_ = 30.0;
   uint64_t begin_us_;
   uint64_t heard_us_ = 0;  ///< when the first robot was heard; 0: none yet
   bool commanded_ = false;
+  uint16_t asked_faults_ = 0;  ///< whose limits are being read
 };
 
 }  // namespace
@@ -253,6 +272,11 @@ void register_monitor_command(CLI::App& root, Program& program) {
       ->add_option("--curves", arguments->curves,
                    "Signals to draw, e.g. attitude.pitch,motors.duty_left")
       ->delimiter(',');
+  add_number(*command, "--cells", arguments->cells,
+             "NiMH cells of the robot's battery in series, for its charge in per cent; 0: not shown "
+             "(default: the battery of the robot of the board " +
+                 std::string(kDefaultBoard) + ")",
+             {0, 20});
   command->add_flag("--listen", arguments->listen,
                     "Send no heartbeats: another ground station is in charge");
   command->add_flag("--plain", arguments->plain,

@@ -9,6 +9,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/telemetry/arming.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
@@ -123,9 +124,20 @@ class Sender {
   }
 
   int say(const std::string& what, const std::optional<CommandAnswer>& answer) {
-    std::cout << what << ": " << (answer.has_value() ? answer->description() : "no answer")
-              << std::endl;
+    std::cout << what << ": " << words(answer) << std::endl;
     return answer.has_value() && answer->done() ? 0 : 1;
+  }
+
+  std::string words(const std::optional<CommandAnswer>& answer) {
+    if (!answer.has_value() || fleet_.robots().empty()) return "no answer";
+    const LatestTelemetry& robot = fleet_.robots().begin()->second.latest();
+    if (answer->result == static_cast<uint8_t>(message::CommandAckResult::kFaultPresent)) {
+      // The sentences name the robot's own limits.
+      std::optional<CommandAnswer> read;
+      for (const std::string_view limit : limits_to_read(answer->detail, robot))
+        session_.read_parameter(parameter_index(std::string(limit)), read);
+    }
+    return answer_text(*answer, robot, wall_clock_us());
   }
 
   /// With --hold this stays the robot's ground station until interrupted.

@@ -99,6 +99,11 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12d\n", "peaks", s.peaks);
   std::printf("  %-26s %12s\n", "robot", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
+  const char* label = "cannot be armed:";
+  for (const std::string& obstacle : s.cannot_be_armed) {
+    std::printf("  %-26s %s\n", label, obstacle.c_str());
+    label = "";
+  }
   std::printf("  %-26s %12llu\n", "telemetry frames",
               static_cast<unsigned long long>(s.telemetry_frames));
   std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());

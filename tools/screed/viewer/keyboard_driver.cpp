@@ -37,6 +37,8 @@ void KeyboardDriver::begin() {
   options.key = key_;
   options.clock = [this] { return ticks_ * kTickPeriod_us; };
   options.on_frame = [this](const LinkFrame& frame) {
+    if (check_received(frame.frame, false) == FrameFault::kNone)
+      said_.add_frame(frame.time_us, frame.frame, *find_message(frame.frame.id));
     if (frame.frame.id != kIdHeartbeat || frame.frame.size != message::Heartbeat::kSize) return;
     state_ = static_cast<RobotState>(message::Heartbeat::unpack(frame.frame.data).state);
   };
@@ -152,7 +154,9 @@ void KeyboardDriver::next_command() {
 void KeyboardDriver::finish_command(const std::optional<CommandAnswer>& answer) {
   const Step step = std::exchange(step_, Step::kNone);
   const bool done = answer.has_value() && answer->done();
-  refusal_ = done ? "" : (answer.has_value() ? answer->description() : "the robot does not answer");
+  refusal_ = done                 ? ""
+             : answer.has_value() ? answer_text(*answer, said_, ticks_ * kTickPeriod_us)
+                                  : "the robot does not answer";
   if (!done) {
     if (step == Step::kDrive) command_is_sent_ = false;
     return;

@@ -14,6 +14,7 @@
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/station/ground_port.h"
 #include "host_sim/ground_station/station/ground_station.h"
+#include "host_sim/ground_station/telemetry/latest_telemetry.h"
 
 namespace screed::viewer {
 
@@ -69,6 +70,7 @@ class KeyboardDriver : public GroundPort, private Link {
   uint64_t ticks_ = 0;
   uint64_t next_command_tick_ = 0;
   std::string refusal_;
+  LatestTelemetry said_;  ///< by the robot
 
   SlcanParser parser_;
   std::vector<LinkFrame> arrived_;

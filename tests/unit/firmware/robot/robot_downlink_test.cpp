@@ -75,7 +75,7 @@ void compare(const HeardRobot& robot, const CanFrame& frame) {
     case message::Heartbeat::kId: {
       const auto it = message::Heartbeat::unpack(frame.data);
       EXPECT_EQ(it.state, static_cast<int>(core.supervisor().state()));
-      EXPECT_EQ(it.faults, core.supervisor().faults());
+      EXPECT_EQ(it.faults, core.supervisor().reported_faults());
       EXPECT_EQ(it.link_alive, core.supervisor().link_alive() ? 1 : 0);
       EXPECT_EQ(it.boot_epoch, kFirstBootEpoch);
       EXPECT_EQ(it.freshness, core.gate().counter());
@@ -453,6 +453,32 @@ TEST(RobotDownlink, ACommittedParameterDrivesAsIfItHadBeenThereFromTheStart) {
   EXPECT_EQ(committed.output.duty_left, born.output.duty_left);
   EXPECT_EQ(committed.output.duty_right, born.output.duty_right);
   EXPECT_NE(committed.output.duty_left, plain.output.duty_left);
+}
+
+TEST(RobotDownlink, StartUpIsToldUntilItIsOver) {
+  HeardRobot robot;
+  const auto starting = [&robot] {
+    return (robot.next<message::Health>().conditions & message::HealthConditions::kStarting) != 0;
+  };
+  EXPECT_TRUE(starting());
+  robot.run(AttitudeEstimator::kStartTicks);
+  EXPECT_TRUE(starting()) << "the standstill began it anew";
+  robot.run(AttitudeEstimator::kRestTicks);
+  EXPECT_FALSE(starting());
+  // The chips' flags beside it are their own.
+  robot.sample.chips_failing = ChipBit::kBaroChip;
+  EXPECT_EQ(robot.next<message::Health>().conditions, ChipBit::kBaroChip);
+}
+
+TEST(RobotDownlink, ADisarmedRobotTellsWhatWouldPreventArming) {
+  HeardRobot robot;
+  robot.run(600);
+  EXPECT_EQ(robot.next<message::Heartbeat>().faults, 0);
+  robot.sample.battery = 2730;  // 5 V
+  robot.run(200);
+  const auto low = robot.next<message::Heartbeat>();
+  EXPECT_EQ(low.state, static_cast<int>(RobotState::kDisarmed));
+  EXPECT_EQ(low.faults, Fault::kBattery);
 }
 
 }  // namespace

@@ -10,6 +10,29 @@
 namespace screed {
 namespace {
 
+// ---- what is reported
+
+TEST(Supervisor, PresentCausesAreReportedUntilAFaultIsLatched) {
+  SupervisedRobot watch;
+  watch.battery_mv = 5000;
+  for (int i = 0; i < 200; ++i) watch.tick();
+  EXPECT_EQ(watch.supervisor.state(), RobotState::kDisarmed);
+  EXPECT_EQ(watch.supervisor.reported_faults(), Fault::kBattery);
+  watch.battery_mv = 7200;
+  watch.tick();
+  EXPECT_EQ(watch.supervisor.reported_faults(), 0) << "gone with its cause";
+
+  watch.bring_to(RobotState::kRunning);
+  EXPECT_EQ(watch.supervisor.reported_faults(), 0);
+  watch.battery_mv = 5000;
+  for (int i = 0; i < 200; ++i) watch.tick();
+  ASSERT_EQ(watch.supervisor.state(), RobotState::kFault);
+  watch.battery_mv = 7200;
+  watch.tick();
+  EXPECT_EQ(watch.supervisor.present_faults(), 0);
+  EXPECT_EQ(watch.supervisor.reported_faults(), Fault::kBattery) << "latched";
+}
+
 // ---- faults with deadlines. Each is latched, stops a running robot, and cannot be cleared while
 // its cause is there.
 

@@ -130,6 +130,7 @@ TEST(SupervisorChips, ARobotWithAFailingChipIsNotArmed) {
   for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kBaroChip, i);
   EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kFaultPresent);
   EXPECT_EQ(supervisor.faults(), 0) << "nothing latched in a robot that nobody armed";
+  EXPECT_EQ(supervisor.reported_faults(), Fault::kBaroChip) << "but the ground is told why";
 }
 
 }  // namespace

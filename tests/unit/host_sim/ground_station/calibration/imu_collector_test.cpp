@@ -112,5 +112,28 @@ TEST(ImuCollector, ARobotThatIsNeverStillIsNotCalibrated) {
   EXPECT_THROW(static_cast<void>(collector.fit()), RunError);
 }
 
+TEST(ImuCollector, ProgressNeverFallsAndIsEnoughOnlyAtTheEnd) {
+  for (const uint64_t seed : {1ULL, 2ULL, 3ULL}) {
+    ImuModel imu(seed, ImuErrors::uncalibrated());
+    ImuCollector collector;
+    double before = 0.0;
+    for (double t = 0.0; t < kCalibrationMotionPeriod_s; t += 0.5) {
+      hold(imu, t, t + 0.5, collector);
+      const double now = collector.mag_coverage();
+      EXPECT_GE(now, before) << "seed " << seed << ", " << t << " s";
+      // A robot that stands where it stood has been turned nowhere.
+      if (t < 4.0) {
+        EXPECT_LT(now, 0.05) << t;
+      }
+      if (t < 56.0) {
+        EXPECT_LT(now, ImuCollector::kEnoughCoverage) << t;
+      }
+      before = now;
+    }
+    EXPECT_TRUE(collector.complete());
+    EXPECT_GE(before, ImuCollector::kEnoughCoverage);
+  }
+}
+
 }  // namespace
 }  // namespace screed

@@ -1,88 +1,13 @@
-// What the dashboard knows and draws: pages of characters, values, losses, faults in words.
+// What a robot has said: values, losses, what happened in words.
 #include "host_sim/ground_station/link/robot_view.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
-#include "firmware/protocol/e2e.h"
-#include "firmware/protocol/messages.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/ground_station/link/dashboard.h"
-#include "host_sim/ground_station/link/text_canvas.h"
+#include "tests/unit/host_sim/ground_station/said_frames.h"
 
 namespace screed {
 namespace {
-
-// ---- pages
-
-TEST(TextCanvas, TextIsCutAtTheEdgesAndCountedInCharacters) {
-  TextCanvas page(6, 2);
-  EXPECT_EQ(page.text(0, 0, "0.5 °"), 5);
-  page.text(4, 1, "abcdef");
-  page.text(-1, 1, "xy");
-  page.text(0, 7, "below");
-  EXPECT_EQ(page.str(), "0.5 °\ny   ab\n");
-}
-
-TEST(TextCanvas, WhatIsNoUtf8IsAQuestionMark) {
-  EXPECT_EQ(from_utf8("a\xFF"
-                      "b\xC3"),
-            U"a?b?");
-  EXPECT_EQ(utf8(U'é') + utf8(U'█') + utf8(U'\U0001F916'), "é█🤖");
-  EXPECT_EQ(from_utf8("é█🤖"), U"é█🤖");
-}
-
-TEST(TextCanvas, ABarGrowsFromItsMiddle) {
-  TextCanvas page(9, 3);
-  page.centred_bar(0, 0, 9, 0.5, CellStyle::kGood);
-  page.centred_bar(0, 1, 9, -7.0, CellStyle::kGood);
-  page.centred_bar(0, 2, 9, 0.0, CellStyle::kGood);
-  EXPECT_EQ(page.str(), "····│██··\n████│····\n····│····\n");
-}
-
-TEST(TextCanvas, ACurveIsDrawnInDots) {
-  TextCanvas page(2, 1);
-  // From the lower left dot to the upper right one.
-  const std::vector<CurvePoint> line = {{0.0, 0.0}, {3.0, 3.0}};
-  page.curve(0, 0, 2, 1, line, {0.0, 3.0, 0.0, 3.0});
-  EXPECT_EQ(page.str(), "⡠⠊\n");
-  TextCanvas gap(2, 1);
-  const std::vector<CurvePoint> broken = {
-      {0.0, 0.0}, {1.0, std::numeric_limits<double>::quiet_NaN()}, {3.0, 9.0}};
-  gap.curve(0, 0, 2, 1, broken, {0.0, 3.0, 0.0, 3.0});
-  EXPECT_EQ(gap.str(), "⡀⠈\n");
-}
-
-// ---- what a robot says
-
-constexpr uint64_t kStart_us = 1'700'000'000'000'000;
-
-template <class Message>
-LinkFrame frame_with(const Message& message, uint8_t counter, uint64_t time_us) {
-  LinkFrame frame;
-  frame.time_us = time_us;
-  frame.frame = frame_of(message);
-  e2e_protect(frame.frame.id, counter, frame.frame.data, frame.frame.size);
-  return frame;
-}
-
-message::Attitude attitude(int16_t roll_cdeg, int16_t pitch_cdeg) {
-  message::Attitude attitude{};
-  attitude.roll = roll_cdeg;
-  attitude.pitch = pitch_cdeg;
-  attitude.heading = 9000;
-  return attitude;
-}
-
-message::Heartbeat heartbeat(message::HeartbeatState state, uint16_t faults) {
-  message::Heartbeat heartbeat{};
-  heartbeat.state = static_cast<uint8_t>(state);
-  heartbeat.faults = faults;
-  heartbeat.boot_epoch = 7;
-  return heartbeat;
-}
 
 TEST(RobotView, ValuesAreTheNewestInTheirUnits) {
   FleetView fleet;
@@ -156,6 +81,7 @@ TEST(RobotView, WhatHappensIsSaidInWords) {
   message::CommandAck ack{};
   ack.op = static_cast<uint8_t>(CommandOp::kArm);
   ack.result = static_cast<uint8_t>(message::CommandAckResult::kFaultPresent);
+  ack.detail = stall;
   fleet.add_frame(frame_with(ack, 0, kStart_us + 300'000));
   message::Heartbeat restarted = heartbeat(message::HeartbeatState::kDisarmed, 0);
   restarted.boot_epoch = 8;
@@ -164,74 +90,33 @@ TEST(RobotView, WhatHappensIsSaidInWords) {
   std::vector<std::string> words;
   for (const RobotView::Event& event : robot->events()) words.push_back(event.words);
   EXPECT_EQ(words, (std::vector<std::string>{
-                       "the robot restarted, start 8", "fault gone: stall left", "state: disarmed",
-                       "arm: fault present", "fault: stall left: high duty, no motion",
-                       "state: fault", "state: disarmed"}));
+                       "the robot restarted, start 8", "gone: stall left", "state: disarmed",
+                       "arm: refused: stall left: high duty, no motion",
+                       "fault: stall left: high duty, no motion", "state: fault",
+                       "state: disarmed"}));
 }
 
-// ---- the dashboard
-
-class DashboardTest : public ::testing::Test {
- protected:
-  DashboardTest() {
-    const auto tilt = static_cast<uint16_t>(message::HeartbeatFaults::kTilt);
-    fleet_.add_frame(frame_with(heartbeat(message::HeartbeatState::kFault, tilt), 0, kStart_us));
-    for (int i = 0; i < 100; ++i) {
-      fleet_.add_frame(frame_with(attitude(static_cast<int16_t>(i * 10), -700), i & 0xF,
-                                  kStart_us + static_cast<uint64_t>(i) * 40'000));
-    }
-    input_.now_us = kStart_us + 4'000'000;
-    input_.link_name = "vcan0";
-    input_.link.up = true;
-    input_.link.text = "up";
-    input_.fleet = &fleet_;
-    input_.curves = {"attitude.roll"};
-    input_.footer = "keys";
-  }
-
-  std::string draw(int width, int height) {
-    TextCanvas page(width, height);
-    draw_dashboard(page, input_);
-    return page.str();
-  }
-
-  FleetView fleet_;
-  DashboardInput input_;
-};
-
-TEST_F(DashboardTest, ShowsLinkStateValuesAndFaultsInWords) {
-  const std::string page = draw(120, 40);
-  for (const char* words : {"vcan0 up", "robot 1 fault", "9.90 deg", "-7.00 deg",
-                            "tilt: inclination beyond the limit", "attitude.roll deg", "keys"}) {
-    EXPECT_NE(page.find(words), std::string::npos) << words << "\n" << page;
-  }
+TEST(RobotView, WhatPreventsArmingIsNoFaultYet) {
+  FleetView fleet;
+  const auto battery = static_cast<uint16_t>(message::HeartbeatFaults::kBattery);
+  RobotView* const robot = fleet.add_frame(
+      frame_with(heartbeat(message::HeartbeatState::kDisarmed, battery), 0, kStart_us));
+  ASSERT_NE(robot, nullptr);
+  EXPECT_EQ(robot->events().front().words,
+            "prevents arming: battery below battery_low 6.00 V (the default)");
+  EXPECT_EQ(robot->obstacles(kStart_us).size(), 1U);
 }
 
-TEST_F(DashboardTest, FitsEveryTerminal) {
-  for (const int width : {1, 20, 80, 300}) {
-    for (const int height : {1, 2, 24, 100}) {
-      const std::string page = draw(width, height);
-      EXPECT_EQ(std::count(page.begin(), page.end(), '\n'), height);
-    }
-  }
-}
-
-TEST_F(DashboardTest, ASilentRobotIsCalledSilent) {
-  EXPECT_EQ(draw(120, 40).find("SILENT"), std::string::npos);
-  input_.now_us += 5'000'000;
-  EXPECT_NE(draw(120, 40).find("SILENT for 5"), std::string::npos);
-  const FleetView nobody;
-  input_.fleet = &nobody;
-  EXPECT_NE(draw(120, 40).find("no robot heard yet"), std::string::npos);
-}
-
-TEST_F(DashboardTest, APlainReportHasEveryValueOnce) {
-  const std::string report = plain_report(input_);
-  for (const char* words :
-       {"link vcan0: up", "robot 1: fault, 101 frames, 0 lost", "  fault: tilt: inclination",
-        "  attitude: roll 9.90 deg pitch -7.00 "}) {
-    EXPECT_NE(report.find(words), std::string::npos) << words << "\n" << report;
-  }
+TEST(RobotView, AParameterThatIsReadIsNoEvent) {
+  FleetView fleet;
+  message::CommandAck ack{};
+  ack.op = static_cast<uint8_t>(CommandOp::kParameterRead);
+  RobotView* const robot = fleet.add_frame(frame_with(ack, 0, kStart_us));
+  ASSERT_NE(robot, nullptr);
+  EXPECT_TRUE(robot->events().empty());
+  ack.result = static_cast<uint8_t>(message::CommandAckResult::kBadArgument);
+  fleet.add_frame(frame_with(ack, 1, kStart_us));
+  EXPECT_EQ(robot->events().size(), 1U);
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ SimulationSummary summary() {
   s.peaks = 19;
   s.state = "fault";
   s.faults = 0x0081;
+  s.cannot_be_armed = {"one reason", "another"};
   s.telemetry_frames = 20;
   s.telemetry_frames_sent = 21;
   s.telemetry_frames_damaged = 22;
@@ -66,6 +67,7 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
       "left_bed": true, "time_s": 13.5, "distance_m": 15.5, "energy_j": 16.5,
       "battery_v": 18.5, "peaks": 19, "training_frames": 11,
       "height_changes": 12, "state": "fault", "faults": "tilt, emergency_stop",
+      "cannot_be_armed": ["one reason", "another"],
       "telemetry_frames": 20, "telemetry_frames_sent": 21, "telemetry_frames_damaged": 22,
       "telemetry_share": 0.25,
       "terrain_before": {)" +

@@ -1,0 +1,181 @@
+// What the dashboard says of a robot.
+#include "host_sim/ground_station/link/dashboard_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "firmware/protocol/messages.h"
+#include "host_sim/ground_station/telemetry/arming.h"
+#include "host_sim/ground_station/telemetry/battery_charge.h"
+
+namespace screed {
+namespace {
+
+constexpr uint64_t kOld_us = 1'000'000;
+
+std::string number(const char* pattern, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+/// Makes rows of one robot at one time. A row belongs to the message that carries its value.
+class RowMaker {
+ public:
+  RowMaker(const DashboardInput& input, const RobotView& robot) : input_(input), robot_(robot) {}
+
+  DashboardRow row(int importance, const char* label, const char* message, std::string value,
+                   CellStyle style = CellStyle::kNormal) const {
+    const MessageInfo& carrier = *find_message(message);
+    const std::optional<double> age_s = robot_.latest().age_s(carrier, input_.now_us);
+    if (!age_s.has_value()) return {importance, label, "-", CellStyle::kDim};
+    if (!is_old(robot_, carrier, input_.now_us)) return {importance, label, std::move(value), style};
+    value += ", " + age_text(*age_s) + " ago";
+    return {importance, label, std::move(value), CellStyle::kDim};
+  }
+
+  /// A signal in its unit.
+  DashboardRow signal(int importance, const char* label, const char* path) const {
+    const SignalRef place = find_signal(path);
+    const std::string unit = place.signal->unit;
+    return row(importance, label, place.message->name,
+               robot_.text(path) + (unit.empty() ? "" : " " + unit));
+  }
+
+  /// A signal with a bar that is full at `full` and warns from `warn` on.
+  DashboardRow bar(int importance, const char* label, const char* path, double full,
+                   double warn) const {
+    DashboardRow made = signal(importance, label, path);
+    const double value = robot_.value(path).value_or(0.0);
+    if (made.style != CellStyle::kDim) made.bar = {value / full, std::abs(value) >= warn};
+    return made;
+  }
+
+  bool flag(const char* path) const { return robot_.value(path).value_or(0.0) != 0.0; }
+
+ private:
+  const DashboardInput& input_;
+  const RobotView& robot_;
+};
+
+DashboardRow battery_row(const DashboardInput& input, const RobotView& robot,
+                         const RowMaker& make) {
+  const double battery_v = robot.value("power.battery").value_or(0.0) * 1e-3;
+  const std::optional<double> charge = battery_charge(battery_v, input.battery_cells);
+  std::string text = battery_text(battery_v, input.battery_cells);
+  // The robot knows its limit; the charge warns before.
+  const bool below_limit = make.flag("heartbeat.battery");
+  const bool low = charge.has_value() && *charge < kLowCharge;
+  if (below_limit) text += "  TOO LOW";
+  if (low && !below_limit) text += "  LOW";
+  return make.row(1, "battery", "POWER", std::move(text),
+                  below_limit ? CellStyle::kAlarm
+                  : low       ? CellStyle::kWarning
+                              : CellStyle::kNormal);
+}
+
+DashboardGroup algorithm_group(const RobotView& robot, const RowMaker& make) {
+  const bool stuck = make.flag("motors.stuck");
+  const bool slips = make.flag("motors.slip");
+  return {"algorithm",
+          {make.row(11, "algorithm", "LEVELING", robot.text("leveling.algorithm")),
+           make.row(2, "doing", "LEVELING",
+                    robot.text("leveling.state") + (stuck   ? ", STUCK"
+                                                    : slips ? ", tracks slip"
+                                                            : ""),
+                    stuck   ? CellStyle::kAlarm
+                    : slips ? CellStyle::kWarning
+                            : CellStyle::kTitle),
+           make.row(5, "speed, turn", "LEVELING",
+                    robot.text("leveling.speed") + " mm/s, " + robot.text("leveling.turn_rate") +
+                        " deg/s"),
+           make.row(16, "peaks", "LEVELING", robot.text("leveling.peaks"))}};
+}
+
+DashboardGroup link_group(const DashboardInput& input, const RobotView& robot,
+                          const RowMaker& make) {
+  const std::optional<double> loss = robot.loss_percent(input.now_us);
+  const bool silent = link_lost(input, robot);
+  const bool alive = make.flag("heartbeat.link_alive");
+  const std::optional<double> quality = robot.value("link.quality");
+  const std::optional<int> rssi_dbm = robot.rssi_dbm();
+  return {"link",
+          {{8, "down",
+            number("%.0f frames/s, lost ", robot.frames_per_s(input.now_us)) +
+                (loss.has_value() ? number("%.1f %%", *loss) : "-"),
+            silent ? CellStyle::kAlarm : CellStyle::kNormal},
+           make.row(3, "up", "HEARTBEAT",
+                    !alive                  ? "no ground station heard"
+                    : !quality.has_value() ? "alive"
+                                           : number("alive, hears %.0f %%", *quality),
+                    alive ? CellStyle::kGood : CellStyle::kAlarm),
+           {14, "refused", refused_text(input)},
+           {15, "strength", rssi_dbm.has_value() ? std::to_string(*rssi_dbm) + " dBm" : "-"}}};
+}
+
+/// Latched faults, or what keeps a disarmed robot from being armed.
+DashboardGroup fault_group(const DashboardInput& input, const RobotView& robot) {
+  const bool disarmed = robot.raw("heartbeat.state") ==
+                        static_cast<int64_t>(message::HeartbeatState::kDisarmed);
+  const std::vector<std::string> sentences =
+      disarmed ? robot.obstacles(input.now_us) : robot.faults();
+  DashboardGroup group{disarmed && !sentences.empty() ? "cannot be armed" : "faults", {}};
+  const bool old = is_old(robot, *find_message("HEARTBEAT"), input.now_us);
+  const CellStyle style = old ? CellStyle::kDim : disarmed ? CellStyle::kWarning : CellStyle::kAlarm;
+  for (const std::string& sentence : sentences) group.rows.push_back({0, "", sentence, style});
+  if (sentences.empty()) {
+    const CellStyle calm = old ? CellStyle::kDim : CellStyle::kGood;
+    group.rows.push_back({10, "", disarmed ? "none; can be armed" : "none", calm});
+  }
+  return group;
+}
+
+}  // namespace
+
+bool link_lost(const DashboardInput& input, const RobotView& robot) {
+  return !input.link.up || input.now_us > robot.last_us() + kOld_us;
+}
+
+bool is_old(const RobotView& robot, const MessageInfo& message, uint64_t now_us) {
+  const LatestTelemetry::Frame* const last = robot.latest().frame(message);
+  if (last == nullptr) return false;
+  const uint64_t period_us = uint64_t{message.period_ms} * 1000U;
+  return now_us > last->time_us + std::max(kOld_us, period_us + period_us / 2);
+}
+
+std::string age_text(double age_s) {
+  if (age_s < 60.0) return number("%.0f s", std::floor(age_s));
+  if (age_s < 3600.0) return number("%.0f min", std::floor(age_s / 60.0));
+  return number("%.0f h", std::floor(age_s / 3600.0));
+}
+
+std::string refused_text(const DashboardInput& input) {
+  return std::to_string(input.link.refused + input.fleet->damaged()) + " damaged, " +
+         std::to_string(input.fleet->unknown()) + " unknown";
+}
+
+std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input, const RobotView& robot) {
+  const RowMaker make(input, robot);
+  const double distance_m = std::hypot(robot.value("odometry.x").value_or(0.0),
+                                       robot.value("odometry.y").value_or(0.0)) *
+                            1e-3;
+  return {{"attitude",
+           {make.bar(4, "roll", "attitude.roll", 45.0, 30.0),
+            make.bar(4, "pitch", "attitude.pitch", 45.0, 30.0),
+            make.signal(7, "heading", "attitude.heading")}},
+          {"odometry",
+           {make.signal(10, "x (east)", "odometry.x"), make.signal(10, "y (north)", "odometry.y"),
+            make.row(9, "from start", "ODOMETRY", number("%.2f m", distance_m)),
+            make.row(13, "encoders", "ENCODERS",
+                     robot.text("encoders.left") + "  " + robot.text("encoders.right"))}},
+          {"motors",
+           {make.bar(6, "left", "motors.duty_left", 100.0, 90.0),
+            make.bar(6, "right", "motors.duty_right", 100.0, 90.0), battery_row(input, robot, make),
+            make.signal(12, "CPU load", "power.cpu_load")}},
+          algorithm_group(robot, make),
+          link_group(input, robot, make),
+          fault_group(input, robot)};
+}
+
+}  // namespace screed
