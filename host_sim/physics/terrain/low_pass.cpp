@@ -14,7 +14,7 @@ MeanPlane mean_plane(const HeightField& field) {
   MeanPlane plane;
   plane.height_m = static_cast<double>(field.height_sum()) / count * kHeightUnit_m;
   if (field.wrap()) return plane;
-  // The nodes lie symmetrically about (0, 0), so that the three equations come apart.
+  // The nodes lie symmetrically about (0, 0), so that the three equations separate.
   double moment_x = 0.0;
   double moment_y = 0.0;
   double squares_x = 0.0;
