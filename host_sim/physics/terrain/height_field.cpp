@@ -9,6 +9,7 @@
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/gaussian_filter.h"
 
 namespace screed {
 namespace {
@@ -63,45 +64,6 @@ void fill_from_samples(HeightField& field, const std::vector<double>& samples,
   }
 }
 
-/// One pass of a Gaussian along lines of `count` values that lie `stride` apart; beyond the ends
-/// the line repeats (wrap) or keeps its last value.
-void smooth_lines(std::vector<double>& samples, int lines, size_t line_stride, int count,
-                  size_t stride, bool wrap, const std::vector<double>& weights) {
-  const int reach = static_cast<int>(weights.size()) - 1;
-  std::vector<double> line(static_cast<size_t>(count));
-  for (int l = 0; l < lines; ++l) {
-    double* const begin = samples.data() + static_cast<size_t>(l) * line_stride;
-    for (int i = 0; i < count; ++i) {
-      line[static_cast<size_t>(i)] = begin[static_cast<size_t>(i) * stride];
-    }
-    const auto at = [&](int i) {
-      const int inside = wrap ? ((i % count) + count) % count : std::clamp(i, 0, count - 1);
-      return line[static_cast<size_t>(inside)];
-    };
-    for (int i = 0; i < count; ++i) {
-      double sum = weights[0] * at(i);
-      for (int k = 1; k <= reach; ++k) {
-        sum += weights[static_cast<size_t>(k)] * (at(i - k) + at(i + k));
-      }
-      begin[static_cast<size_t>(i) * stride] = sum;
-    }
-  }
-}
-
-/// Gaussian low-pass, sigma in samples; weights end at 4 sigma and add up to 1.
-void smooth(std::vector<double>& samples, int width, int height, double sigma, bool wrap) {
-  std::vector<double> weights;
-  double sum = 0.0;
-  for (int k = 0; k <= static_cast<int>(std::ceil(4.0 * sigma)); ++k) {
-    weights.push_back(std::exp(-0.5 * (k / sigma) * (k / sigma)));
-    sum += k == 0 ? weights.back() : 2.0 * weights.back();
-  }
-  for (double& weight : weights) weight /= sum;
-  const auto row_stride = static_cast<size_t>(width);
-  smooth_lines(samples, height, row_stride, width, 1, wrap, weights);
-  smooth_lines(samples, width, 1, height, row_stride, wrap, weights);
-}
-
 }  // namespace
 
 HeightField::HeightField(int nx, int ny, double spacing_m, bool wrap)
@@ -131,7 +93,8 @@ HeightField HeightField::from_image(const GreyImage& image, const HeightFieldOpt
   HeightField field(image.width, image.height, spacing_m, options.wrap);
   std::vector<double> samples(image.samples.begin(), image.samples.end());
   if (options.smoothing_m > 0.0) {
-    smooth(samples, image.width, image.height, options.smoothing_m / spacing_m, options.wrap);
+    gaussian_filter(samples, image.width, image.height, options.smoothing_m / spacing_m,
+                    options.wrap ? FilterEdge::kWrapped : FilterEdge::kRepeated);
   }
   double units_per_sample = options.scale_m / kHeightUnit_m / image.max_value;
   fill_from_samples(field, samples, units_per_sample);

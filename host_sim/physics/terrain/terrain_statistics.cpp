@@ -22,16 +22,8 @@ double slope_deg(double gradient) {
 std::vector<double> centre_gradients(const HeightField& field) {
   std::vector<double> gradients;
   gradients.reserve(static_cast<size_t>(field.cells_x()) * static_cast<size_t>(field.cells_y()));
-  const double scale = kHeightUnit_m / field.spacing_m();
   for (int iy = 0; iy < field.cells_y(); ++iy) {
-    for (int ix = 0; ix < field.cells_x(); ++ix) {
-      const CellHeights c = field.cell(ix, iy);
-      const double diagonal = static_cast<double>(c.north_east) - c.south_west;
-      const double other = static_cast<double>(c.north_west) - c.south_east;
-      const double along_x = 0.5 * (diagonal - other);
-      const double along_y = 0.5 * (diagonal + other);
-      gradients.push_back(std::sqrt(along_x * along_x + along_y * along_y) * scale);
-    }
+    for (int ix = 0; ix < field.cells_x(); ++ix) gradients.push_back(cell_gradient(field, ix, iy));
   }
   return gradients;
 }
@@ -73,8 +65,7 @@ void add_slopes(const HeightField& field, TerrainStatistics& statistics) {
   const auto p95 = slopes.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
   std::nth_element(slopes.begin(), p95, slopes.end());
   statistics.p95_slope_deg = *p95;
-  statistics.max_slope_deg = *std::max_element(p95, slopes.end());
-  statistics.steepest_slope_deg = slope_deg(field.steepest_gradient());
+  statistics.steepest_slope_deg = *std::max_element(p95, slopes.end());
 }
 
 }  // namespace
@@ -92,7 +83,7 @@ double flatness(const HeightField& field, double epsilon_deg) {
     message << "flatness: epsilon_deg = " << epsilon_deg << "; allowed: 0 to 89";
     throw InputError(message.str());
   }
-  const double epsilon = std::tan(epsilon_deg / kDegreesPerRadian);
+  const double epsilon = std::tan(epsilon_deg / kDegreesPerRadian) + gradient_rounding(field);
   const std::vector<double> gradients = centre_gradients(field);
   const auto level = std::count_if(gradients.begin(), gradients.end(),
                                    [epsilon](double gradient) { return gradient <= epsilon; });

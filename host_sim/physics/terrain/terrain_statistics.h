@@ -1,6 +1,8 @@
 // How rough a terrain is, in numbers: heights, slopes, and the thesis' measure of flatness.
 #pragma once
 
+#include <cmath>
+
 #include "host_sim/physics/terrain/height_field.h"
 
 namespace screed {
@@ -15,14 +17,31 @@ struct TerrainStatistics {
   double mean_slope_deg;
   double rms_slope_deg;
   double p95_slope_deg;       ///< the smallest slope that at least 95 % of the cells do not exceed
-  double max_slope_deg;       ///< at cell centres
-  double steepest_slope_deg;  ///< anywhere: HeightField::steepest_gradient(), at a cell corner
+  double steepest_slope_deg;  ///< that of the steepest cell
 };
+
+/// The slope of a cell at its centre, as rise over run. 0 <= ix < cells_x, 0 <= iy < cells_y: not
+/// checked.
+inline double cell_gradient(const HeightField& field, int ix, int iy) {
+  const CellHeights c = field.cell(ix, iy);
+  const double diagonal = static_cast<double>(c.north_east) - c.south_west;
+  const double other = static_cast<double>(c.north_west) - c.south_east;
+  const double along_x = 0.5 * (diagonal - other);
+  const double along_y = 0.5 * (diagonal + other);
+  return std::sqrt(along_x * along_x + along_y * along_y) * (kHeightUnit_m / field.spacing_m());
+}
+
+/// By how much cell_gradient() can be off because heights are rounded to the unit: half a unit at
+/// each corner adds up to one unit over the cell at most.
+inline double gradient_rounding(const HeightField& field) {
+  return kHeightUnit_m / field.spacing_m();
+}
 
 TerrainStatistics terrain_statistics(const HeightField& field);
 
 /// The share (0..1) of cells that are level within epsilon: |grad f| <= tan(epsilon_deg), the
-/// definition of flatness in section 4.1 of the thesis; 1 = leveled.
+/// definition of flatness in section 4.1 of the thesis; 1 = leveled. A slope that exceeds epsilon
+/// by no more than gradient_rounding() counts as level, so that a ramp of epsilon does.
 /// Throws InputError unless epsilon_deg is 0..89.
 double flatness(const HeightField& field, double epsilon_deg);
 

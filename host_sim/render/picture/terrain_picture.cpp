@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/terrain_change.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"
@@ -45,6 +46,13 @@ void check(const PictureOptions& options) {
                        std::to_string(options.state_names.size()) + " states are named");
     }
     require_finite("path point", {point.x_m, point.y_m});
+  }
+  if (options.heights) {
+    const HeightRange& heights = *options.heights;
+    require_finite("range of heights", {heights.low_m, heights.high_m});
+    if (heights.low_m > heights.high_m)
+      throw InputError("picture: heights from " + std::to_string(heights.low_m) + " to " +
+                       std::to_string(heights.high_m) + " m; allowed: the lower one first");
   }
   if (options.robot) {
     const RobotOutline& robot = *options.robot;
@@ -107,32 +115,55 @@ std::string millimetres(double metres) {
   return number_text(metres * kMillimetres, 0);
 }
 
-std::string figures(const HeightField& field) {
-  const TerrainStatistics s = terrain_statistics(field);
+std::string figures(const HeightField& field, const TerrainStatistics& s) {
   return number_text(field.x_max() - field.x_min(), 2) + " \u00d7 " +
-         number_text(field.y_max() - field.y_min(), 2) + " m,  relief " +
+         number_text(field.y_max() - field.y_min(), 2) + " m,  height range " +
          millimetres(s.highest_m - s.lowest_m) + " mm,  slope: mean " +
          number_text(s.mean_slope_deg, 1) + "\u00b0, 95 % below " +
          number_text(s.p95_slope_deg, 1) + "\u00b0, steepest " +
          number_text(s.steepest_slope_deg, 1) + "\u00b0";
 }
 
-/// Cut and fill in litres; every node stands for one cell.
-std::string moved(const HeightField& before, const HeightField& after) {
-  int64_t cut = 0;
-  int64_t fill = 0;
-  for (int iy = 0; iy < before.ny(); ++iy) {
-    for (int ix = 0; ix < before.nx(); ++ix) {
-      const int64_t change = int64_t{after.node(ix, iy)} - before.node(ix, iy);
-      (change < 0 ? cut : fill) += std::abs(change);
-    }
-  }
+/// Volumes in litres.
+std::string figures(const TerrainChange& change) {
   constexpr double kLitresPerCubicMetre = 1000.0;
-  const double litres_per_unit =
-      kHeightUnit_m * before.spacing_m() * before.spacing_m() * kLitresPerCubicMetre;
-  return "cut " + number_text(static_cast<double>(cut) * litres_per_unit, 2) + " L,  fill " +
-         number_text(static_cast<double>(fill) * litres_per_unit, 2) + " L,  net " +
-         number_text(static_cast<double>(fill - cut) * litres_per_unit, 2) + " L";
+  const auto litres = [](double m3) { return number_text(m3 * kLitresPerCubicMetre, 3) + " L"; };
+  const auto depth = [](double m) { return number_text(m * kMillimetres, 1) + " mm"; };
+  return "moved " + litres(change.moved_m3()) + ",  cut " + litres(change.cut_m3) + ", up to " +
+         depth(change.deepest_cut_m) + " deep,  fill " + litres(change.fill_m3) + ", up to " +
+         depth(change.deepest_fill_m) + " high";
+}
+
+/// The colours and contour lines of a height map.
+struct HeightScale {
+  double low_m;
+  double high_m;
+  Ticks contours;
+
+  [[nodiscard]] Color color(double height_m) const {
+    return height_color((height_m - low_m) / (high_m - low_m));
+  }
+};
+
+HeightScale height_scale(const TerrainStatistics& s, const PictureOptions& options) {
+  constexpr double kMinRange_m = 0.001;  // level ground still gets a colour bar
+  constexpr int kMaxContours = 14;
+  const HeightRange range = options.heights.value_or(HeightRange{s.lowest_m, s.highest_m});
+  const double high = std::max(range.high_m, range.low_m + kMinRange_m);
+  return {range.low_m, high, round_ticks(range.low_m, high, kMaxContours)};
+}
+
+std::string subtitle_of(const HeightField& field, const TerrainStatistics& s,
+                        const HeightScale& scale, const PictureOptions& options) {
+  const std::string line = options.subtitle.empty() ? figures(field, s) : options.subtitle;
+  const Ticks& contours = scale.contours;
+  const double first_line = std::ceil(s.lowest_m / contours.step) * contours.step;
+  if (first_line >= s.highest_m) return line;
+  constexpr int kDecimalsOfMillimetres = 3;
+  return line + ",  contours every " +
+         number_text(contours.step * kMillimetres,
+                     std::max(0, contours.decimals - kDecimalsOfMillimetres)) +
+         " mm";
 }
 
 MapRectangle ground_of(const HeightField& field) {
@@ -142,7 +173,7 @@ MapRectangle ground_of(const HeightField& field) {
 void finish(Canvas& canvas, MapFrame& frame, const ColorScale& scale, bool wrap,
             const std::string& subtitle, const PictureOptions& options) {
   draw_path_overlay(canvas, frame, wrap, options);
-  frame.draw_title(options.title, options.subtitle.empty() ? subtitle : options.subtitle);
+  frame.draw_title(options.title, subtitle);
   frame.draw_axes();
   frame.draw_color_bar(scale);
   frame.draw_scale_bar();
@@ -151,68 +182,77 @@ void finish(Canvas& canvas, MapFrame& frame, const ColorScale& scale, bool wrap,
 
 }  // namespace
 
-void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
-                              const PictureOptions& options) {
+HeightRange common_range(const HeightField& one, const HeightField& other) {
+  const TerrainStatistics first = terrain_statistics(one);
+  const TerrainStatistics second = terrain_statistics(other);
+  return {std::min(first.lowest_m, second.lowest_m), std::max(first.highest_m, second.highest_m)};
+}
+
+std::string height_map_subtitle(const HeightField& field, const PictureOptions& options) {
+  check(options);
+  const TerrainStatistics statistics = terrain_statistics(field);
+  return subtitle_of(field, statistics, height_scale(statistics, options), options);
+}
+
+Canvas draw_height_map(const HeightField& field, const PictureOptions& options) {
   check(options);
   Canvas canvas(options.width_px, options.height_px, kPaper);
   MapFrame frame(canvas, ground_of(field), legend_height_px(options));
 
   const TerrainStatistics statistics = terrain_statistics(field);
-  constexpr double kMinRange_m = 0.001;  // level ground still gets a colour bar
-  const double low = statistics.lowest_m;
-  const double high = std::max(statistics.highest_m, low + kMinRange_m);
-  const auto color = [low, high](double height) {
-    return height_color((height - low) / (high - low));
-  };
-  const double interval = round_ticks(low, high, 14).step;
+  const HeightScale heights = height_scale(statistics, options);
   const double metres_per_pixel = 1.0 / frame.pixels_per_metre();
-
   paint_map(canvas, frame, [&](double x, double y) {
     constexpr double kExaggeration = 1.6;
     constexpr double kShadeStrength = 0.75;
     constexpr double kContourStrength = 0.22;
     const double height = field.at(x, y).height;
     const Relief slope = smooth_gradient(field, x, y);
-    const double ink = kContourStrength * contour_cover(height, slope, interval, metres_per_pixel);
-    return shaded(color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
+    const double ink =
+        kContourStrength * contour_cover(height, slope, heights.contours.step, metres_per_pixel);
+    return shaded(heights.color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
   });
-  const ColorScale scale{low * kMillimetres, high * kMillimetres, "height (mm)",
-                         [&](double mm) { return color(mm / kMillimetres); }};
-  finish(canvas, frame, scale, field.wrap(), figures(field), options);
-  canvas.write_png(path);
+  const ColorScale scale{heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height (mm)",
+                         [&](double mm) { return heights.color(mm / kMillimetres); }};
+  finish(canvas, frame, scale, field.wrap(), subtitle_of(field, statistics, heights, options),
+         options);
+  return canvas;
 }
 
-void write_difference_picture(const std::filesystem::path& path, const HeightField& before,
-                              const HeightField& after, const PictureOptions& options) {
+Canvas draw_difference(const HeightField& before, const HeightField& after,
+                       const PictureOptions& options) {
   check(options);
-  if (before.nx() != after.nx() || before.ny() != after.ny() ||
-      before.spacing_m() != after.spacing_m() || before.wrap() != after.wrap()) {
-    throw InputError("difference picture: the terrains before and after differ in their grid");
-  }
+  const TerrainChange change = terrain_change(before, after);
   Canvas canvas(options.width_px, options.height_px, kPaper);
   MapFrame frame(canvas, ground_of(after), legend_height_px(options));
 
-  double largest = 0.0005;  // metres: no change still gets a colour bar
-  for (int iy = 0; iy < after.ny(); ++iy) {
-    for (int ix = 0; ix < after.nx(); ++ix) {
-      const double change = static_cast<double>(after.node(ix, iy)) - before.node(ix, iy);
-      largest = std::max(largest, std::abs(change) * kHeightUnit_m);
-    }
-  }
+  constexpr double kMinChange_m = 0.0005;  // no change still gets a colour bar
+  double largest = std::max({kMinChange_m, change.deepest_cut_m, change.deepest_fill_m});
   const double step = round_ticks(0.0, largest, 5).step;
   largest = std::ceil(largest / step) * step;  // the colour bar ends on a round number
 
   paint_map(canvas, frame, [&](double x, double y) {
     constexpr double kExaggeration = 1.2;
     constexpr double kShadeStrength = 0.3;
-    const double change = after.at(x, y).height - before.at(x, y).height;
-    return shaded(difference_color(change / largest),
+    const double rise = after.at(x, y).height - before.at(x, y).height;
+    return shaded(difference_color(rise / largest),
                   light(smooth_gradient(after, x, y), kExaggeration), kShadeStrength);
   });
   const ColorScale scale{-largest * kMillimetres, largest * kMillimetres, "change of height (mm)",
                          [&](double mm) { return difference_color(mm / kMillimetres / largest); }};
-  finish(canvas, frame, scale, after.wrap(), moved(before, after), options);
-  canvas.write_png(path);
+  finish(canvas, frame, scale, after.wrap(),
+         options.subtitle.empty() ? figures(change) : options.subtitle, options);
+  return canvas;
+}
+
+void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
+                              const PictureOptions& options) {
+  draw_height_map(field, options).write_png(path);
+}
+
+void write_difference_picture(const std::filesystem::path& path, const HeightField& before,
+                              const HeightField& after, const PictureOptions& options) {
+  draw_difference(before, after, options).write_png(path);
 }
 
 }  // namespace screed

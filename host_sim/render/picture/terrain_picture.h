@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/render/picture/canvas.h"
 
 namespace screed {
 
@@ -27,25 +28,46 @@ struct RobotOutline {
   double width_m = 0.225;
 };
 
+/// Heights that the colours of a map span, m.
+struct HeightRange {
+  double low_m;
+  double high_m;
+};
+
 struct PictureOptions {
   int width_px = 1200;   ///< 800..8000
   int height_px = 1000;  ///< 700..8000
   std::string title;
   std::string subtitle;  ///< empty: a line of figures about the terrain
+  /// Of a height map. Without it the map's own: pictures that are to be compared need the same.
+  std::optional<HeightRange> heights;
   std::vector<PathPoint> path;
   std::vector<std::string> state_names;  ///< the legend; at most kCategoryColors
   std::optional<RobotOutline> robot;
 };
 
+/// The heights of both.
+HeightRange common_range(const HeightField& one, const HeightField& other);
+
+/// The line under the title of a height map: options.subtitle or the figures of the field, and how
+/// many mm the contour lines are apart, where there are any. Throws as draw_height_map().
+std::string height_map_subtitle(const HeightField& field, const PictureOptions& options);
+
 /// Draws heights in colour under light from the north-west, contour lines, axes in metres, a colour
 /// bar in mm, and path, robot and legend where given. On wrapped terrain a path may jump by a bed.
-/// Throws InputError for options out of range (a path's state without a name, a place that is no
-/// number), RunError when the file cannot be written. Same input, same bytes.
-void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
-                              const PictureOptions& options);
+/// Throws InputError for options out of range (a path's state without a name, a place or a height
+/// that is no number, heights upside down).
+Canvas draw_height_map(const HeightField& field, const PictureOptions& options);
 
 /// Draws after - before in diverging colours around 0, with the relief of `after` as a faint shade.
 /// Both fields must have the same grid, else InputError. Otherwise as above.
+Canvas draw_difference(const HeightField& before, const HeightField& after,
+                       const PictureOptions& options);
+
+/// The same as PNG files. Throw RunError as well, when the file cannot be written. Same input, same
+/// bytes.
+void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
+                              const PictureOptions& options);
 void write_difference_picture(const std::filesystem::path& path, const HeightField& before,
                               const HeightField& after, const PictureOptions& options);
 

@@ -106,6 +106,8 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
   constexpr std::uint64_t kPathFrames = 10;
   std::vector<fs::path> files;
   PictureOptions options;
+  const HeightExtremes extremes = session.height_extremes();
+  options.heights = HeightRange{extremes.lowest * kHeightUnit_m, extremes.highest * kHeightUnit_m};
   options.state_names = {"driven"};
   std::uint64_t next = range.first;
   std::vector<SimFrame> frames;

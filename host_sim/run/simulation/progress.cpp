@@ -2,7 +2,6 @@
 #include "host_sim/run/simulation/progress.h"
 
 #include "hal/sample.h"
-#include "host_sim/physics/terrain/terrain_statistics.h"
 
 namespace screed {
 namespace {
@@ -16,7 +15,7 @@ constexpr uint64_t kFlatnessTicks =
 void Progress::on_tick(const StopCondition& stop, double time_s, const Environment& plant) {
   if (!callback_) return;
   if (plant.is_deformable() && stop.ticks() % kFlatnessTicks == 0) {
-    flatness_ = flatness(plant.terrain(), flatness_deg_);
+    flatness_ = measure_.flatness(plant.terrain());
   }
   if (stop.ticks() % kProgressTicks == 0 || stop.done()) {
     callback_({stop.counted_s(time_s), stop.duration_s(), flatness_});

@@ -5,6 +5,7 @@
 
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/run/simulation/stop_condition.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
 
 namespace screed {
 
@@ -20,17 +21,18 @@ using ProgressCallback = std::function<void(const SimulationProgress&)>;
 
 class Progress {
  public:
-  /// The callback may be empty. flatness_deg: slope below which a cell is flat; `flatness`: share
-  /// of flat cells before the run.
-  Progress(ProgressCallback callback, double flatness_deg, double flatness)
-      : callback_(std::move(callback)), flatness_deg_(flatness_deg), flatness_(flatness) {}
+  /// The callback may be empty. `before`: the terrain before the run.
+  Progress(ProgressCallback callback, const TerrainMeasure& measure, const HeightField& before)
+      : callback_(std::move(callback)),
+        measure_(measure),
+        flatness_(callback_ ? measure.flatness(before) : 0.0) {}
 
   /// After each control tick, which ended at `time_s`.
   void on_tick(const StopCondition& stop, double time_s, const Environment& plant);
 
  private:
   ProgressCallback callback_;
-  double flatness_deg_;
+  TerrainMeasure measure_;
   double flatness_;
 };
 

@@ -1,4 +1,4 @@
-// The pictures of a run: the terrain before, and after it with the driven path.
+// The pictures of a run: the terrain before, after it with the driven path, and what has changed.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,17 @@
 
 namespace screed {
 
-/// Writes terrain_before.png and terrain_after.png into the folder. `path`: its states are those of
-/// the leveling algorithm (LevelingState). Throws RunError when a file cannot be written.
+/// The terrain before and after a run, as TerrainMeasure::surface() gives it.
+struct RunSurfaces {
+  HeightField before;
+  HeightField after;
+};
+
+/// Writes terrain_before.png and terrain_after.png into the folder, both in the same colours for
+/// the same height, and terrain_change.png where the terrain is deformable. `path`: its states are
+/// those of the leveling algorithm (LevelingState). Throws RunError when a file cannot be written.
 void write_run_pictures(const std::filesystem::path& folder, const Experiment& experiment,
-                        const HeightField& before, const Environment& plant,
+                        const RunSurfaces& terrain, const Environment& plant,
                         std::vector<PathPoint> path);
 
 }  // namespace screed

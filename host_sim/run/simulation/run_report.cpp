@@ -8,17 +8,37 @@
 namespace screed {
 namespace {
 
-nlohmann::ordered_json terrain_json(const TerrainStatistics& statistics, double flatness) {
-  return {{"lowest_m", statistics.lowest_m},
-          {"highest_m", statistics.highest_m},
-          {"mean_height_m", statistics.mean_height_m},
-          {"height_deviation_m", statistics.height_deviation_m},
-          {"mean_slope_deg", statistics.mean_slope_deg},
-          {"rms_slope_deg", statistics.rms_slope_deg},
-          {"p95_slope_deg", statistics.p95_slope_deg},
-          {"max_slope_deg", statistics.max_slope_deg},
-          {"steepest_slope_deg", statistics.steepest_slope_deg},
-          {"flatness", flatness}};
+nlohmann::ordered_json json_of(const RunIdentity& run) {
+  nlohmann::ordered_json json = {
+      {"name", run.experiment}, {"algorithm", run.algorithm}, {"seed", run.seed}};
+  nlohmann::ordered_json& world = json["world"];
+  world = {{"hal", run.hal}, {"board", run.board}, {"terrain", run.terrain}, {"soil", nullptr}};
+  if (run.soil.has_value()) world["soil"] = *run.soil;
+  json["version"] = run.version;
+  return json;
+}
+
+nlohmann::ordered_json json_of(const TerrainFigures& terrain) {
+  const TerrainStatistics& heights = terrain.heights;
+  return {{"lowest_m", heights.lowest_m},
+          {"highest_m", heights.highest_m},
+          {"mean_height_m", heights.mean_height_m},
+          {"height_deviation_m", heights.height_deviation_m},
+          {"mean_slope_deg", heights.mean_slope_deg},
+          {"rms_slope_deg", heights.rms_slope_deg},
+          {"p95_slope_deg", heights.p95_slope_deg},
+          {"steepest_slope_deg", heights.steepest_slope_deg},
+          {"flatness", terrain.flatness},
+          {"relief_m", terrain.robot_scale.relief_m},
+          {"roughness_m", terrain.robot_scale.roughness_m}};
+}
+
+nlohmann::ordered_json json_of(const TerrainChange& change) {
+  return {{"moved_m3", change.moved_m3()},
+          {"cut_m3", change.cut_m3},
+          {"fill_m3", change.fill_m3},
+          {"deepest_cut_m", change.deepest_cut_m},
+          {"deepest_fill_m", change.deepest_fill_m}};
 }
 
 nlohmann::ordered_json json_of(const CycleReport& cycles) {
@@ -43,10 +63,9 @@ nlohmann::ordered_json json_of(const CycleReport& cycles) {
           {"interrupts", interrupts}};
 }
 
-}  // namespace
-
-std::string summary_json(const SimulationSummary& summary) {
-  nlohmann::ordered_json json = {
+nlohmann::ordered_json json_of(const SimulationSummary& summary) {
+  nlohmann::ordered_json json = json_of(summary.identity);
+  json.update({
       {"content_hash", summary.content_hash},
       {"stopped_early", summary.stopped_early()},
       {"left_bed", summary.left_bed},
@@ -64,10 +83,23 @@ std::string summary_json(const SimulationSummary& summary) {
       {"telemetry_frames_sent", summary.telemetry_frames_sent},
       {"telemetry_frames_damaged", summary.telemetry_frames_damaged},
       {"telemetry_share", summary.telemetry_share},
-      {"terrain_before", terrain_json(summary.before, summary.flatness_before)},
-      {"terrain_after", terrain_json(summary.after, summary.flatness_after)},
-  };
+      {"terrain_before", json_of(summary.terrain.before)},
+      {"terrain_after", json_of(summary.terrain.after)},
+      {"terrain_change", json_of(summary.terrain.change)},
+  });
   if (summary.cycles.has_value()) json["microcontroller"] = json_of(*summary.cycles);
+  return json;
+}
+
+}  // namespace
+
+std::string summary_json(const SimulationSummary& summary) {
+  return json_of(summary).dump(2) + "\n";
+}
+
+std::string summary_json_with_folder(const SimulationSummary& summary) {
+  nlohmann::ordered_json json = {{"run_folder", summary.folder.string()}};
+  json.update(json_of(summary));
   return json.dump(2) + "\n";
 }
 

@@ -8,12 +8,25 @@
 #include <vector>
 
 #include "host_sim/devices/mcu/cycle_report.h"
-#include "host_sim/physics/terrain/terrain_statistics.h"
 #include "host_sim/run/simulation/stop_condition.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
 
 namespace screed {
 
+/// Which run it was.
+struct RunIdentity {
+  std::string experiment;  ///< its name
+  std::string algorithm;
+  uint64_t seed = 0;
+  std::string hal;  ///< native, mcu or surrogate
+  std::string board;
+  std::string terrain;              ///< [map] model
+  std::optional<std::string> soil;  ///< the named soil; nothing on terrain that is no soil
+  std::string version;              ///< of the program
+};
+
 struct SimulationSummary {
+  RunIdentity identity;
   std::filesystem::path folder;
   std::string content_hash;
   RunEnd end = RunEnd::kDone;
@@ -38,10 +51,7 @@ struct SimulationSummary {
   uint64_t telemetry_frames_sent = 0;     ///< lines the robot handed to its radio
   uint64_t telemetry_frames_damaged = 0;  ///< that reached the ground with a wrong check
   double telemetry_share = 0.0;           ///< of what the radio's line carries, 0..1
-  TerrainStatistics before;
-  TerrainStatistics after;
-  double flatness_before = 0.0;  ///< share of flat cells, 0..1
-  double flatness_after = 0.0;
+  TerrainOutcome terrain;
   /// folders of interrupted runs that were passed over
   std::vector<std::filesystem::path> leftovers;
   std::optional<CycleReport> cycles;  ///< of a run with an image
@@ -52,7 +62,10 @@ struct SimulationSummary {
 };
 
 /// The summary as JSON, as written to summary.json: what is part of the result, so neither wall
-/// time nor folders. Same run, same bytes.
+/// time nor folders. Same run, same bytes, in whatever folder.
 std::string summary_json(const SimulationSummary& summary);
+
+/// The same, with the run folder as well: for a program that has started the run.
+std::string summary_json_with_folder(const SimulationSummary& summary);
 
 }  // namespace screed

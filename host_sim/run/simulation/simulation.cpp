@@ -30,9 +30,27 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
   return info;
 }
 
-/// As the experiment lays it out: the session begins with it, and the statistics before the run are
-/// its. The robot has settled into plant.terrain() already; flatness_before is that terrain's, so
-/// that progress compares with what the drive alone changes. Particles lie as they fell.
+const char* hal_name(const SimulationOptions& options) {
+  if (options.image.has_value()) return "mcu";
+  return options.environment ? "surrogate" : "native";
+}
+
+RunIdentity identity_of(const Experiment& experiment, const SimulationOptions& options,
+                        const std::optional<SoilParameters>& soil) {
+  RunIdentity run;
+  run.experiment = experiment.experiment.name;
+  run.algorithm = experiment.experiment.algorithm;
+  run.seed = experiment.experiment.seed;
+  run.hal = hal_name(options);
+  run.board = options.board;
+  run.terrain = experiment.map.model;
+  if (soil.has_value()) run.soil = soil->name;
+  run.version = options.program_version;
+  return run;
+}
+
+/// As the experiment lays it out: the session begins with it, and the figures before the run are
+/// its. The robot has settled into plant.terrain() already. Particles lie as they fell.
 HeightField terrain_before(const Experiment& experiment, const Environment& plant) {
   return experiment.map.of_particles() ? plant.terrain() : make_terrain(experiment);
 }
@@ -43,14 +61,12 @@ std::optional<SoilParameters> soil_of(const Experiment& experiment) {
 }
 
 /// What the world says at the end of the run.
-void report_world(const RunWorld& world, double flatness_deg, SimulationSummary& summary) {
+void report_world(const RunWorld& world, SimulationSummary& summary) {
   const Environment& plant = world.plant();
   summary.time_s = plant.time_s();
   summary.left_bed = left_bed(plant);
   summary.energy_j = plant.battery().energy_j;
   summary.battery_v = plant.battery().terminal_v;
-  summary.after = terrain_statistics(plant.terrain());
-  summary.flatness_after = flatness(plant.terrain(), flatness_deg);
   summary.telemetry_frames = world.ground_station().frames();
   summary.telemetry_frames_damaged = world.ground_station().rejected_frames();
   summary.cycles = world.cycles();
@@ -95,19 +111,18 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   RunFiles files(experiment, options);
   telemetry.open(files.telemetry_log());
   const HeightField before = terrain_before(experiment, plant);
+  const std::optional<SoilParameters> soil = soil_of(experiment);
   SessionRecorder recorder(files.session(),
-                           session_info(experiment, options, world.robot_settings()), before,
-                           soil_of(experiment));
+                           session_info(experiment, options, world.robot_settings()), before, soil);
   if (options.heights) recorder.record_heights(plant.terrain());
 
   SimulationSummary summary;
-  const double flatness_deg = experiment.experiment.flatness_deg;
-  summary.before = terrain_statistics(before);
-  summary.flatness_before = flatness(plant.terrain(), flatness_deg);
+  summary.identity = identity_of(experiment, options, soil);
+  const TerrainMeasure measure(experiment);
 
   WatchedRobot robot(world.robot_settings());
   StopCondition stop(experiment, options.stop);
-  Progress progress(options.progress, flatness_deg, summary.flatness_before);
+  Progress progress(options.progress, measure, before);
   WallClock clock;
   Pacer pacer(clock, options.realtime);
   RunLoop loop(world, {robot, recorder, stop, progress, pacer, options.observer});
@@ -121,13 +136,15 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.leftovers = files.leftovers();
   summary.training_frames = stop.training_frames();
   summary.height_changes = recorder.height_changes();
-  report_world(world, flatness_deg, summary);
+  const RunSurfaces surfaces{measure.surface(before), measure.surface(plant.terrain())};
+  summary.terrain = measure.outcome(surfaces.before, surfaces.after);
+  report_world(world, summary);
   report_robot(robot, summary);
 
   try {
     files.write_summary(summary_json(summary));
     if (options.table) files.write_table();
-    write_run_pictures(files.folder(), experiment, before, plant, recorder.path());
+    write_run_pictures(files.folder(), experiment, surfaces, plant, recorder.path());
   } catch (const RunError& error) {
     // What took the time is saved, and can be exported again where there is room.
     files.commit();

@@ -132,11 +132,11 @@ void run_batch(const BatchArguments& arguments, const std::vector<std::string>& 
 }
 
 std::string json_of(const std::vector<SimulationSummary>& summaries, bool several) {
-  if (!several) return summaries.empty() ? "" : summary_json(summaries.front());
+  if (!several) return summaries.empty() ? "" : summary_json_with_folder(summaries.front());
   std::string text = "[\n";
   for (const SimulationSummary& summary : summaries) {
     if (text.size() > 2) text += ",\n";
-    std::string one = summary_json(summary);
+    std::string one = summary_json_with_folder(summary);
     while (!one.empty() && one.back() == '\n') one.pop_back();
     text += one;
   }

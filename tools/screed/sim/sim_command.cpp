@@ -87,6 +87,38 @@ void print_cycles(const CycleReport& c) {
   }
 }
 
+void print_terrain(const TerrainOutcome& terrain, double flatness_deg) {
+  const TerrainFigures& before = terrain.before;
+  const TerrainFigures& after = terrain.after;
+  const auto degrees = [](double value) { return format("%.2f deg", value); };
+  const auto millimetres = [](double metres) { return format("%.1f mm", metres * 1e3); };
+  const auto percent = [](double share) { return format("%.1f %%", share * 100.0); };
+  const auto litres = [](double m3) { return format("%.3f L", m3 * 1e3); };
+  print_row("terrain", "before", "after");
+  print_row("mean slope", degrees(before.heights.mean_slope_deg),
+            degrees(after.heights.mean_slope_deg));
+  print_row("RMS slope", degrees(before.heights.rms_slope_deg),
+            degrees(after.heights.rms_slope_deg));
+  print_row("95 % of slopes below", degrees(before.heights.p95_slope_deg),
+            degrees(after.heights.p95_slope_deg));
+  print_row("steepest slope", degrees(before.heights.steepest_slope_deg),
+            degrees(after.heights.steepest_slope_deg));
+  print_row(("flat (up to " + format("%g", flatness_deg) + " deg)").c_str(),
+            percent(before.flatness), percent(after.flatness));
+  print_row("height deviation", millimetres(before.heights.height_deviation_m),
+            millimetres(after.heights.height_deviation_m));
+  print_row("relief at robot scale", millimetres(before.robot_scale.relief_m),
+            millimetres(after.robot_scale.relief_m));
+  print_row("roughness", millimetres(before.robot_scale.roughness_m),
+            millimetres(after.robot_scale.roughness_m));
+  const TerrainChange& change = terrain.change;
+  if (change.cut_m3 == 0.0 && change.fill_m3 == 0.0) return;  // rigid ground
+  std::printf("\n  %-26s %12s %12s\n", "change of terrain", "volume", "deepest");
+  print_row("cut", litres(change.cut_m3), millimetres(change.deepest_cut_m));
+  print_row("fill", litres(change.fill_m3), millimetres(change.deepest_fill_m));
+  std::printf("  %-26s %12s\n", "moved", litres(change.moved_m3()).c_str());
+}
+
 void print_table(const Experiment& experiment, const SimulationSummary& s) {
   const std::string ended =
       s.end == RunEnd::kDone ? "" : std::string(" (ended: ") + end_text(s.end) + ")";
@@ -108,20 +140,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
               static_cast<unsigned long long>(s.telemetry_frames));
   std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());
   std::printf("\n");
-  print_row("terrain", "before", "after");
-  const auto degrees = [](double value) { return format("%.2f deg", value); };
-  print_row("mean slope", degrees(s.before.mean_slope_deg), degrees(s.after.mean_slope_deg));
-  print_row("RMS slope", degrees(s.before.rms_slope_deg), degrees(s.after.rms_slope_deg));
-  print_row("95 % of slopes below", degrees(s.before.p95_slope_deg),
-            degrees(s.after.p95_slope_deg));
-  print_row("steepest slope", degrees(s.before.steepest_slope_deg),
-            degrees(s.after.steepest_slope_deg));
-  print_row("height deviation", format("%.1f mm", s.before.height_deviation_m * 1e3),
-            format("%.1f mm", s.after.height_deviation_m * 1e3));
-  const std::string flat =
-      "flat (below " + format("%g", experiment.experiment.flatness_deg) + " deg)";
-  print_row(flat.c_str(), format("%.1f %%", s.flatness_before * 100.0),
-            format("%.1f %%", s.flatness_after * 100.0));
+  print_terrain(s.terrain, experiment.experiment.flatness_deg);
   if (s.cycles.has_value()) print_cycles(*s.cycles);
   std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
               s.content_hash.c_str());

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/physics/terrain/terrain_statistics.h"
+
 namespace screed::viewer {
 namespace {
 
@@ -29,15 +31,11 @@ SlopeStatistics::SlopeStatistics(const HeightField& field, double flat_deg)
   }
 }
 
-/// Rounded up, so that a cell within the limit is one of a bin within it.
+/// Rounded up, so that a cell within the limit is one of a bin within it, also but for the rounding
+/// of heights, as in flatness().
 uint16_t SlopeStatistics::bin_of(const HeightField& field, int cell_x, int cell_y) const {
-  const CellHeights c = field.cell(cell_x, cell_y);
-  const double south = static_cast<double>(c.south_east) - c.south_west;
-  const double north = static_cast<double>(c.north_east) - c.north_west;
-  const double west = static_cast<double>(c.north_west) - c.south_west;
-  const double east = static_cast<double>(c.north_east) - c.south_east;
-  const double rise = 0.5 * std::hypot(south + north, west + east);
-  const double slope_deg = std::atan(rise * kHeightUnit_m / field.spacing_m()) * kDegPerRad;
+  const double gradient = cell_gradient(field, cell_x, cell_y) - gradient_rounding(field);
+  const double slope_deg = std::atan(std::max(0.0, gradient)) * kDegPerRad;
   constexpr double kRounding = 1e-9;
   return static_cast<uint16_t>(std::min<size_t>(
       kBins - 1, static_cast<size_t>(std::ceil(slope_deg * kBinsPerDegree - kRounding))));

@@ -25,7 +25,6 @@ TEST(TerrainStatisticsTest, RampHasOneSlope) {
   EXPECT_NEAR(s.mean_slope_deg, 12.0, kRounding_deg);
   EXPECT_NEAR(s.rms_slope_deg, 12.0, kRounding_deg);
   EXPECT_NEAR(s.p95_slope_deg, 12.0, kRounding_deg);
-  EXPECT_NEAR(s.max_slope_deg, 12.0, kRounding_deg);
   EXPECT_NEAR(s.steepest_slope_deg, 12.0, kRounding_deg);
   const double rise = std::tan(12.0 * pi / 180.0);
   EXPECT_NEAR(s.lowest_m, -rise, kHeightUnit_m);
@@ -35,6 +34,33 @@ TEST(TerrainStatisticsTest, RampHasOneSlope) {
   EXPECT_NEAR(s.height_deviation_m, 2.0 * rise * std::sqrt(102.0 / (12.0 * 100.0)), 1e-7);
   EXPECT_EQ(flatness(ramp, 11.99), 0.0);
   EXPECT_EQ(flatness(ramp, 12.01), 1.0);
+}
+
+TEST(TerrainStatisticsTest, TheSteepestSlopeIsThatOfACellsCentre) {
+  // One corner raised: sqrt 2 at that corner, half of it in the middle of the cell.
+  HeightField field(2, 2, 0.01, false);
+  field.set_node(1, 1, 1 << 16);
+  EXPECT_NEAR(terrain_statistics(field).steepest_slope_deg,
+              degrees(std::sqrt(0.5) * (1 << 16) * kHeightUnit_m / 0.01), 1e-12);
+}
+
+TEST(TerrainStatisticsTest, ARampOfTheLimitIsFlat) {
+  // Heights are rounded to the unit, so that half of such a ramp's cells are a hair steeper.
+  for (const double limit : {0.5, 5.0, 12.0, 30.0, 60.0}) {
+    for (const double spacing : {0.002, 0.005, 0.02}) {
+      const auto flat = [&](double slope) {
+        return flatness(HeightField::ramp(1.0, spacing, slope), limit);
+      };
+      EXPECT_EQ(flat(limit - 0.01), 1.0) << limit << ", " << spacing;
+      EXPECT_EQ(flat(limit), 1.0) << limit << ", " << spacing;
+      EXPECT_EQ(flat(limit + 0.01), 0.0) << limit << ", " << spacing;
+    }
+  }
+  const double rise = std::tan(5.0 * pi / 180.0);
+  const HeightField aslant = HeightField::from_function(
+      101, 101, 0.01, false, [&](double x, double y) { return rise * (0.6 * x - 0.8 * y); });
+  EXPECT_EQ(flatness(aslant, 5.0), 1.0);
+  EXPECT_EQ(flatness(aslant, 4.99), 0.0);
 }
 
 TEST(TerrainStatisticsTest, LevelGroundIsFlat) {
@@ -64,7 +90,6 @@ TEST(TerrainStatisticsTest, CosineWave) {
   const double steepest = kAmplitude_m * 2.0 * std::sin(pi / kNodes) / kSpacing_m;
   constexpr double kRounding_deg = 1e-3;
   EXPECT_NEAR(s.steepest_slope_deg, degrees(steepest), kRounding_deg);
-  EXPECT_NEAR(s.max_slope_deg, degrees(steepest), kRounding_deg);
   // At small angles the slope in degrees is |sin| of the phase: mean 2 / pi, RMS 1 / sqrt 2, and
   // 95 % of the phases lie below sin(0.95 pi / 2). atan(g) = g (1 - g^2 / 3 ...), g <= 0.094.
   EXPECT_NEAR(s.mean_slope_deg / degrees(steepest), 2.0 / pi, 1e-3);
@@ -85,7 +110,7 @@ TEST(TerrainStatisticsTest, P95IsANearestRank) {
   }
   const TerrainStatistics s = terrain_statistics(field);
   EXPECT_NEAR(s.p95_slope_deg, degrees(19 * kHeightUnit_m / 0.001), 1e-12);
-  EXPECT_NEAR(s.max_slope_deg, degrees(20 * kHeightUnit_m / 0.001), 1e-12);
+  EXPECT_NEAR(s.steepest_slope_deg, degrees(20 * kHeightUnit_m / 0.001), 1e-12);
 }
 
 TEST(TerrainStatisticsTest, CellCentresSeeBothDirections) {

@@ -180,6 +180,9 @@ TEST_F(PictureTest, EveryPartChangesThePicture) {
   options = small_picture();
   options.title = "Other";
   EXPECT_NE(drawn(options), whole);
+  options = small_picture();
+  options.heights = HeightRange{-0.2, 0.2};
+  EXPECT_NE(drawn(options), whole);
 }
 
 TEST_F(PictureTest, DrawsLevelGround) {
@@ -231,6 +234,11 @@ TEST_F(PictureTest, RefusesWrongOptions) {
   refused(options);
   options = small_picture();
   options.robot->heading_rad = std::nan("");
+  refused(options);
+  options = small_picture();
+  options.heights = HeightRange{0.2, 0.1};
+  refused(options);
+  options.heights = HeightRange{0.0, std::nan("")};
   refused(options);
   options = small_picture();
   options.width_px = 799;

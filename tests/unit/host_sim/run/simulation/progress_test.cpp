@@ -16,7 +16,13 @@ struct Told {
     Experiment experiment;
     experiment.experiment.duration_s = duration_s;
     StopCondition stop(experiment, nullptr);
-    Progress progress([this](const SimulationProgress& one) { all.push_back(one); }, 5.0, 0.5);
+    HeightField half(5, 2, 0.1, false);
+    for (int iy : {0, 1}) {
+      half.set_node(3, iy, 1 << 20);
+      half.set_node(4, iy, 1 << 21);
+    }
+    Progress progress([this](const SimulationProgress& one) { all.push_back(one); },
+                      TerrainMeasure(experiment), half);
     for (int tick = 1; tick <= ticks; ++tick) {
       stop.count_tick(RobotState::kRunning, LevelingState::kWalk);
       progress.on_tick(stop, tick * 0.01, plant);

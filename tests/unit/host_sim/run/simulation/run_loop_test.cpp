@@ -73,7 +73,7 @@ class RunLoopTest : public ::testing::Test {
     recorder_ = std::make_unique<SessionRecorder>(session_, SessionInfo{},
                                                   world_->plant().terrain(), std::nullopt);
     StopCondition stop(experiment, &stop_);
-    Progress progress({}, 5.0, 1.0);
+    Progress progress({}, TerrainMeasure(experiment), world_->plant().terrain());
     Pacer pacer(clock_, true);
     RunLoop loop(*world_, {robot_, *recorder_, stop, progress, pacer, &observer_});
     return loop.run();

@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 /// Every number another one, so that none can stand in another's place.
 SimulationSummary summary() {
   SimulationSummary s;
+  s.identity = {"hill", "spin_on_peak", 7, "native", "a_star_32u4", "scm", "viper", "1.2.3"};
   s.folder = "out/hill-0001";
   s.content_hash = "0123456789abcdef";
   s.end = RunEnd::kLeftBed;
@@ -32,19 +33,20 @@ SimulationSummary summary() {
   s.telemetry_frames_sent = 21;
   s.telemetry_frames_damaged = 22;
   s.telemetry_share = 0.25;
-  s.before.lowest_m = 31.5;
-  s.before.highest_m = 32.5;
-  s.before.mean_height_m = 33.5;
-  s.before.height_deviation_m = 34.5;
-  s.before.mean_slope_deg = 35.5;
-  s.before.rms_slope_deg = 36.5;
-  s.before.p95_slope_deg = 37.5;
-  s.before.max_slope_deg = 38.5;
-  s.before.steepest_slope_deg = 39.5;
-  s.after = s.before;
-  s.after.mean_slope_deg = 45.5;
-  s.flatness_before = 0.5;
-  s.flatness_after = 0.75;
+  s.terrain.before.heights.lowest_m = 31.5;
+  s.terrain.before.heights.highest_m = 32.5;
+  s.terrain.before.heights.mean_height_m = 33.5;
+  s.terrain.before.heights.height_deviation_m = 34.5;
+  s.terrain.before.heights.mean_slope_deg = 35.5;
+  s.terrain.before.heights.rms_slope_deg = 36.5;
+  s.terrain.before.heights.p95_slope_deg = 37.5;
+  s.terrain.before.heights.steepest_slope_deg = 38.5;
+  s.terrain.before.flatness = 0.5;
+  s.terrain.before.robot_scale = {39.5, 40.5};
+  s.terrain.after = s.terrain.before;
+  s.terrain.after.heights.mean_slope_deg = 45.5;
+  s.terrain.after.flatness = 0.75;
+  s.terrain.change = {46.5, 47.5, 48.5, 49.5};
   return s;
 }
 
@@ -60,10 +62,12 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
   const std::string terrain =
       R"("lowest_m": 31.5, "highest_m": 32.5, "mean_height_m": 33.5, "height_deviation_m": 34.5,)";
   const std::string slopes =
-      R"("rms_slope_deg": 36.5, "p95_slope_deg": 37.5, "max_slope_deg": 38.5,
-         "steepest_slope_deg": 39.5,)";
+      R"("rms_slope_deg": 36.5, "p95_slope_deg": 37.5, "steepest_slope_deg": 38.5,)";
+  const std::string robot_scale = R"("relief_m": 39.5, "roughness_m": 40.5})";
   const Json expected =
-      Json::parse(R"({"content_hash": "0123456789abcdef", "stopped_early": true,
+      Json::parse(R"({"name": "hill", "algorithm": "spin_on_peak", "seed": 7,
+      "world": {"hal": "native", "board": "a_star_32u4", "terrain": "scm", "soil": "viper"},
+      "version": "1.2.3", "content_hash": "0123456789abcdef", "stopped_early": true,
       "left_bed": true, "time_s": 13.5, "distance_m": 15.5, "energy_j": 16.5,
       "battery_v": 18.5, "peaks": 19, "training_frames": 11,
       "height_changes": 12, "state": "fault", "faults": "tilt, emergency_stop",
@@ -71,10 +75,26 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
       "telemetry_frames": 20, "telemetry_frames_sent": 21, "telemetry_frames_damaged": 22,
       "telemetry_share": 0.25,
       "terrain_before": {)" +
-                  terrain + R"("mean_slope_deg": 35.5,)" + slopes + R"("flatness": 0.5},
-      "terrain_after": {)" +
-                  terrain + R"("mean_slope_deg": 45.5,)" + slopes + R"("flatness": 0.75}})");
+                  terrain + R"("mean_slope_deg": 35.5,)" + slopes + R"("flatness": 0.5,)" +
+                  robot_scale + R"(, "terrain_after": {)" + terrain + R"("mean_slope_deg": 45.5,)" +
+                  slopes + R"("flatness": 0.75,)" + robot_scale +
+                  R"(, "terrain_change": {"moved_m3": 46.5, "cut_m3": 46.5, "fill_m3": 47.5,
+                  "deepest_cut_m": 48.5, "deepest_fill_m": 49.5}})");
   EXPECT_EQ(summary_json(summary()), expected.dump(2) + "\n");
+}
+
+TEST(RunReport, TerrainThatIsNoSoilNamesNone) {
+  SimulationSummary s = summary();
+  s.identity.soil.reset();
+  EXPECT_TRUE(Json::parse(summary_json(s)).at("world").at("soil").is_null());
+}
+
+TEST(RunReport, NamesTheFolderOnlyToWhomStartedTheRun) {
+  Json with_folder = Json::parse(summary_json_with_folder(summary()));
+  EXPECT_EQ(with_folder.begin().key(), "run_folder");
+  EXPECT_EQ(with_folder["run_folder"], "out/hill-0001");
+  with_folder.erase("run_folder");
+  EXPECT_EQ(with_folder.dump(2) + "\n", summary_json(summary()));
 }
 
 TEST(RunReport, ARunWithAnImageSaysWhatTheMicrocontrollersTimeWentInto) {

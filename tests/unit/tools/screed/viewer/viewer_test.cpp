@@ -97,7 +97,7 @@ TEST(ViewerSlopeLedger, AgreesWithTheStatisticsOfTheTerrain) {
       const SlopeFigures figures = ledger.figures();
       EXPECT_NEAR(figures.mean_deg, expected.mean_slope_deg, 0.005);
       EXPECT_NEAR(figures.p95_deg, expected.p95_slope_deg, 0.02);
-      EXPECT_NEAR(figures.steepest_deg, expected.max_slope_deg, 0.02);
+      EXPECT_NEAR(figures.steepest_deg, expected.steepest_slope_deg, 0.02);
       EXPECT_DOUBLE_EQ(figures.flat, flatness(field, 5.0));
     };
     expect_same();

@@ -1,0 +1,33 @@
+// One way to measure, whoever asks.
+#include "host_sim/run/simulation/terrain_outcome.h"
+
+#include "host_sim/physics/terrain/low_pass.h"
+
+namespace screed {
+namespace {
+
+TerrainFigures figures_of(const HeightField& surface, double flat_deg) {
+  return {terrain_statistics(surface), flatness(surface, flat_deg), robot_scale_relief(surface)};
+}
+
+}  // namespace
+
+TerrainMeasure::TerrainMeasure(const Experiment& experiment)
+    : grain_m_(experiment.map.of_particles() ? experiment.map.particle_radius_m : 0.0),
+      flat_deg_(experiment.experiment.flatness_deg) {}
+
+HeightField TerrainMeasure::surface(const HeightField& terrain) const {
+  return grain_m_ > 0.0 ? low_passed(terrain, grain_m_) : terrain;
+}
+
+double TerrainMeasure::flatness(const HeightField& terrain) const {
+  return grain_m_ > 0.0 ? screed::flatness(low_passed(terrain, grain_m_), flat_deg_)
+                        : screed::flatness(terrain, flat_deg_);
+}
+
+TerrainOutcome TerrainMeasure::outcome(const HeightField& before, const HeightField& after) const {
+  return {figures_of(before, flat_deg_), figures_of(after, flat_deg_),
+          terrain_change(before, after)};
+}
+
+}  // namespace screed

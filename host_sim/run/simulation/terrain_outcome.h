@@ -1,0 +1,44 @@
+// What a run did to its terrain: how the surface is measured, and what comes of it.
+#pragma once
+
+#include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/physics/terrain/terrain_statistics.h"
+#include "host_sim/run/experiment/experiment.h"
+
+namespace screed {
+
+/// A terrain in figures.
+struct TerrainFigures {
+  TerrainStatistics heights;
+  double flatness = 0.0;  ///< share of flat cells, 0..1
+  RobotScaleRelief robot_scale;
+};
+
+/// The terrain before and after a run. Heights of particle beds are those of TerrainMeasure.
+struct TerrainOutcome {
+  TerrainFigures before;
+  TerrainFigures after;
+  TerrainChange change;
+};
+
+/// How the terrain of an experiment is measured, for its summary, its pictures and its progress.
+class TerrainMeasure {
+ public:
+  explicit TerrainMeasure(const Experiment& experiment);
+
+  /// The surface that counts. On a bed of particles a Gaussian low-pass, with the radius of a
+  /// particle as its standard deviation, takes away single stones: their flanks are steep whatever
+  /// the bed is like. Any other terrain is taken as it is.
+  HeightField surface(const HeightField& terrain) const;
+  /// The share of flat cells of surface(terrain).
+  double flatness(const HeightField& terrain) const;
+  /// The figures of two surfaces, each from surface().
+  TerrainOutcome outcome(const HeightField& before, const HeightField& after) const;
+
+ private:
+  double grain_m_;  ///< 0: no particles
+  double flat_deg_;
+};
+
+}  // namespace screed
