@@ -146,11 +146,12 @@ std::string scene_text(const std::vector<GridFrame>& frames) {
 }
 
 bool render_scene(const std::filesystem::path& picture, const std::vector<GridFrame>& frames,
-                  int width_px) {
+                  int width_px, const TaskProgress& progress) {
   const double aspect = frames.size() == 1 ? 0.75 : kAspect;
   PovrayJob job(picture);
   job.write_scene(scene_text(frames));
-  const bool rendered = job.render(width_px, static_cast<int>(std::lround(width_px * aspect)));
+  const bool rendered =
+      job.render(width_px, static_cast<int>(std::lround(width_px * aspect)), progress);
   job.publish();
   return rendered;
 }

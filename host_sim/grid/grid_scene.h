@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/grid/grid_frame.h"
 
 namespace screed {
@@ -19,8 +20,8 @@ std::string scene_text(const std::vector<GridFrame>& frames);
 
 /// Writes `picture` with the extension .pov and renders it to `picture` (.png or .jpg), `width_px`
 /// wide. Returns false when there is no povray on the path: then only the scene is written. Throws
-/// as PovrayJob.
+/// and reports as PovrayJob.
 bool render_scene(const std::filesystem::path& picture, const std::vector<GridFrame>& frames,
-                  int width_px);
+                  int width_px, const TaskProgress& progress = {});
 
 }  // namespace screed

@@ -21,6 +21,7 @@ constexpr double kTread_m = 0.18;
 constexpr double kBodyAboveAxles_m = 0.01;
 const Eigen::Vector3d kBody_m(0.20, 0.14, 0.06);
 
+constexpr int64_t kReportSteps = 32;
 constexpr double kSettle_s = 0.5;
 constexpr double kSlip = 0.6;
 constexpr double kWinch_s = 0.05;  // in which the winch makes good an error of speed
@@ -174,8 +175,19 @@ void measure(DigResult& result) {
   if (result.sunk_m3 > 0.0) result.sunk_radius_m /= result.sunk_m3;
 }
 
+/// Receives the share that is done of a drive, 0..1.
+using OfDrive = std::function<void(double)>;
+
+/// That of drive `number` of so many, as the share of all.
+OfDrive of_drive(const TaskProgress& progress, int number, int drives) {
+  return [&progress, number, drives](double share) {
+    report_progress(progress, "digging", (number + share) / drives);
+  };
+}
+
 /// Drives the manoeuvre, with the robot standing at its start.
-DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& bed) {
+DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& bed,
+                const OfDrive& progress) {
   DigResult result{averaged(bed.surface()), HeightField::flat(1.0, 0.1)};
   const auto settling = static_cast<int>(std::lround(kSettle_s / dt));
   for (int i = 0; i < settling; ++i) robot.step(bed, {0.0, 0.0}, 0.0, dt);
@@ -187,6 +199,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& be
   const double edge = 0.5 * test.size_m - 0.17;
   const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
   for (int64_t i = 0; i < steps; ++i) {
+    if (i % kReportSteps == 0) progress(static_cast<double>(i) / static_cast<double>(steps));
     robot.step(bed, belts, hold, dt);
     result.time_s += dt;
     const Eigen::Vector3d place = robot.position();
@@ -207,26 +220,28 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& be
 
 }  // namespace
 
-DigResult dig_soil(const DigTest& test) {
+DigResult dig_soil(const DigTest& test, const TaskProgress& progress) {
   check(test);
   SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
   bed.relax_slopes();
   DiggingRobot robot(start_x(test), 0.0);
-  DigResult result = drive(test, robot, test.step_s, bed);
+  DigResult result = drive(test, robot, test.step_s, bed, of_drive(progress, 0, 1));
   measure(result);
   return result;
 }
 
 namespace {
 
-DigResult dig_one_bed(const DigTest& test, uint64_t seed) {
+DigResult dig_one_bed(const DigTest& test, int number, const TaskProgress& progress) {
   ParticleOptions options;
   options.material = test.particle;
   options.ray_spacing_m = test.cell_m;
-  options.seed = seed;
-  ParticleBed bed(ground_before(test, test.depth_m), options);
+  options.seed = test.seed + static_cast<uint64_t>(number);
+  const OfDrive of_bed = of_drive(progress, number, test.beds);
+  ParticleBed bed(ground_before(test, test.depth_m), options,
+                  [&](std::string_view /*laying*/, double /*share*/) { of_bed(0.0); });
   DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
-  return drive(test, robot, bed.longest_step_s(), bed);
+  return drive(test, robot, bed.longest_step_s(), bed, of_bed);
 }
 
 constexpr double DigResult::*kMeans[] = {
@@ -242,11 +257,11 @@ void change_nodes(HeightField& field, const Change& change) {
 
 }  // namespace
 
-DigResult dig_particles(const DigTest& test) {
+DigResult dig_particles(const DigTest& test, const TaskProgress& progress) {
   check(test);
-  DigResult mean = dig_one_bed(test, test.seed);
+  DigResult mean = dig_one_bed(test, 0, progress);
   for (int i = 1; i < test.beds; ++i) {
-    const DigResult one = dig_one_bed(test, test.seed + static_cast<uint64_t>(i));
+    const DigResult one = dig_one_bed(test, i, progress);
     for (double DigResult::*figure : kMeans) mean.*figure += one.*figure;
     for (HeightField DigResult::*map : {&DigResult::before, &DigResult::after}) {
       change_nodes(mean.*map, [&](int x, int y) {

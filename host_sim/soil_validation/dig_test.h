@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
@@ -56,8 +57,8 @@ struct DigResult {
   double pitch_rad = 0.0;   ///< greatest nose-up pitch
 };
 
-/// Throws InputError for figures out of range.
-DigResult dig_soil(const DigTest& test);
-DigResult dig_particles(const DigTest& test);
+/// Throws InputError for figures out of range. Both report the task "digging".
+DigResult dig_soil(const DigTest& test, const TaskProgress& progress = {});
+DigResult dig_particles(const DigTest& test, const TaskProgress& progress = {});
 
 }  // namespace screed

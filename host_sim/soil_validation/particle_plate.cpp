@@ -34,7 +34,7 @@ void check(const ParticlePlateTest& test) {
   check_range("match", "beds", test.beds, 1, 64);
 }
 
-ParticleBed bed_of(const ParticlePlateTest& test, int number) {
+ParticleBed bed_of(const ParticlePlateTest& test, int number, const TaskProgress& progress) {
   ParticleOptions options;
   options.material = test.particle;
   options.ray_spacing_m = kRay_m;
@@ -43,7 +43,7 @@ ParticleBed bed_of(const ParticlePlateTest& test, int number) {
   const int nodes = 2 * static_cast<int>(std::ceil(0.5 * size / kRay_m)) + 1;
   return {HeightField::from_function(nodes, nodes, kRay_m, false,
                                      [&](double, double) { return test.depth_m; }),
-          options};
+          options, progress};
 }
 
 /// Whether a node lies below a plate in the middle.
@@ -84,14 +84,21 @@ void measure(const HeightField& before, const HeightField& after, const Particle
 
 }  // namespace
 
-std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test) {
+std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test,
+                                                const TaskProgress& progress) {
   check(test);
   std::vector<ParticlePlatePoint> points;
   points.reserve(kPressures_pa.size());
   for (const double pressure : kPressures_pa) points.push_back({pressure, 0.0, 0.0, 0.0});
   const double per_area = 1.0 / (test.length_m * test.width_m);
   for (int number = 0; number < test.beds; ++number) {
-    ParticleBed bed = bed_of(test, number);
+    size_t pressed = points.size() * static_cast<size_t>(number);
+    const auto report = [&] {
+      report_progress(progress, "pressing a plate", pressed,
+                      points.size() * static_cast<size_t>(test.beds));
+    };
+    ParticleBed bed =
+        bed_of(test, number, [&](std::string_view /*laying*/, double /*share*/) { report(); });
     const HeightField before = bed.surface();
     const double top = highest_below(before, test) + 0.5 * test.particle.radius_m;
     const double dt = bed.longest_step_s();
@@ -107,6 +114,7 @@ std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test) {
       motion.velocity.z() = speed;
       const TerrainReaction reaction = bed.press(plate, motion, dt);
       bed.step(dt);
+      report();
       pressure += kAverage * (reaction.force.z() * per_area - pressure);
     };
     for (ParticlePlatePoint& point : points) {
@@ -116,6 +124,7 @@ std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test) {
       point.stiffness_pa_per_m += 0.5 * point.pressure_pa / (height - deepest);
       while (height < top) step(kAway_m_per_s);
       for (int i = 0; i < kRestSteps; ++i) bed.step(dt);
+      ++pressed;
       measure(before, bed.surface(), test, point);
     }
   }
@@ -127,13 +136,18 @@ std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test) {
   return points;
 }
 
-ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
+ParticleDrag drag_over_particles(const ParticlePlateTest& test, const TaskProgress& progress) {
   check(test);
   std::array<double, kBins> along{};
   std::array<double, kBins> load{};
   const double mass = test.load_pa * test.length_m * test.width_m / kGravity_m_per_s2;
   for (int number = 0; number < test.beds; ++number) {
-    ParticleBed bed = bed_of(test, number);
+    double share = 0.0;  // of this bed
+    const auto report = [&] {
+      report_progress(progress, "dragging a block", (number + share) / test.beds);
+    };
+    ParticleBed bed =
+        bed_of(test, number, [&](std::string_view /*laying*/, double /*share*/) { report(); });
     const double dt = bed.longest_step_s();
     Footprint block = Footprint::track(0.5 * test.length_m, kWheel_m, test.width_m);
     Eigen::Vector3d place(0.0, 0.0, highest_below(bed.surface(), test) + kWheel_m);
@@ -145,6 +159,7 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
       block.set_pose(pose);
       const TerrainReaction reaction = bed.press(block, motion, dt);
       bed.step(dt);
+      report();
       motion.velocity.z() += dt * (reaction.force.z() / mass - kGravity_m_per_s2 -
                                    kDamping_per_s * motion.velocity.z());
       return reaction.force;
@@ -153,6 +168,7 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test) {
     for (int i = 0; i < settling; ++i) step();
     motion.velocity.x() = test.speed_m_per_s;
     while (place.x() < kBins * kBin_m) {
+      share = std::clamp(place.x() / (kBins * kBin_m), share, 1.0);
       const auto bin = std::min(kBins - 1, static_cast<size_t>(place.x() / kBin_m));
       const Eigen::Vector3d force = step();
       along.at(bin) -= force.x();

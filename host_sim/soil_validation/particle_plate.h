@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/particle_bed.h"
 
 namespace screed {
@@ -34,9 +35,12 @@ struct ParticleDrag {
   double shear_displacement_m;  ///< after which it is 1 - 1/e of that
 };
 
-/// One point for each pressure, 1 to 20 kPa. Throws InputError for figures out of range.
-std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test);
-/// A block with the outline of a belt, not driven, over the first 20 mm.
-ParticleDrag drag_over_particles(const ParticlePlateTest& test);
+/// One point for each pressure, 1 to 20 kPa. Throws InputError for figures out of range. Reports
+/// the task "pressing a plate".
+std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test,
+                                                const TaskProgress& progress = {});
+/// A block with the outline of a belt, not driven, over the first 20 mm. Reports the task "dragging
+/// a block".
+ParticleDrag drag_over_particles(const ParticlePlateTest& test, const TaskProgress& progress = {});
 
 }  // namespace screed

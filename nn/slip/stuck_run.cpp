@@ -20,6 +20,29 @@ constexpr std::size_t kSecond = kTickRate_hz;
 constexpr double kSmoothing = 1.0 / 8.0;
 constexpr float kMinDrivenSpeed = 0.03F;  ///< of tracks that count as driven, m/s
 constexpr double kHalfTread_m = 0.0975;
+constexpr const char* kTask = "driving";
+
+/// What all threads have driven.
+class SharedProgress {
+ public:
+  SharedProgress(const TaskProgress& progress, double all_s) : progress_(progress), all_s_(all_s) {}
+
+  /// Of one drive of that duration, by the thread that drives it.
+  TaskProgress of_drive(double duration_s) {
+    return [this, duration_s, counted_s = 0.0](std::string_view task, double share) mutable {
+      const std::scoped_lock lock(mutex_);
+      done_s_ += share * duration_s - counted_s;
+      counted_s = share * duration_s;
+      report_progress(progress_, task, std::min(1.0, done_s_ / all_s_));
+    };
+  }
+
+ private:
+  const TaskProgress& progress_;
+  double all_s_;
+  std::mutex mutex_;
+  double done_s_ = 0.0;
+};
 
 SlipTick tick_of(const World& world, const Robot& robot) {
   const VehicleState& vehicle = world.vehicle();
@@ -47,7 +70,7 @@ SlipTick tick_of(const World& world, const Robot& robot) {
 
 }  // namespace
 
-SlipRun drive(const StuckScenario& scenario) {
+SlipRun drive(const StuckScenario& scenario, const TaskProgress& progress) {
   SlipRun run{scenario, {}, {}};
   const Experiment& e = scenario.experiment;
   try {
@@ -58,6 +81,7 @@ SlipRun drive(const StuckScenario& scenario) {
         static_cast<std::size_t>(std::lround(e.experiment.duration_s * kTickRate_hz));
     run.ticks.reserve(ticks);
     for (std::size_t i = 0; i < ticks; ++i) {
+      if (i % kSecond == 0) report_progress(progress, kTask, i, ticks);
       world->advance();
       robot.tick(world->sample(), output);
       run.ticks.push_back(tick_of(*world, robot));
@@ -126,14 +150,24 @@ FreeResult alarms_of(const SlipRun& run) {
   return result;
 }
 
-std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads) {
+std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads,
+                               const TaskProgress& progress) {
   std::vector<SlipRun> runs(scenarios.size());
+  double all_s = 0.0;
+  for (const StuckScenario& scenario : scenarios)
+    all_s += scenario.experiment.experiment.duration_s;
+  SharedProgress shared(progress, all_s);
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      for (std::size_t i = next++; i < scenarios.size(); i = next++) runs[i] = drive(scenarios[i]);
+      for (std::size_t i = next++; i < scenarios.size(); i = next++) {
+        const TaskProgress of_drive =
+            shared.of_drive(scenarios[i].experiment.experiment.duration_s);
+        runs[i] = drive(scenarios[i], of_drive);
+        of_drive(kTask, 1.0);  // of one that ended early
+      }
     } catch (...) {
       const std::scoped_lock lock(mutex);
       failure = std::current_exception();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/estimation/slip_watch.h"
+#include "host_sim/core/task_progress.h"
 #include "nn/slip/stuck_scenario.h"
 
 namespace screed::nn {
@@ -26,13 +27,14 @@ struct SlipTick {
   bool stalled;        ///< the supervisor's stall faults: the tracks do not turn either
 };
 
-/// Drives until its end, a fault, or the physics' failure (described in `failure`).
+/// Drives until its end, a fault, or the physics' failure (described in `failure`). `progress` gets
+/// the share of the duration every simulated second, and may stop it.
 struct SlipRun {
   StuckScenario scenario;
   std::vector<SlipTick> ticks;
   std::string failure;
 };
-SlipRun drive(const StuckScenario& scenario);
+SlipRun drive(const StuckScenario& scenario, const TaskProgress& progress = {});
 
 /// Dug in: over the next second the chassis travels less than this share of what the faster track
 /// travels, and it has begun: at this moment it moves so as well.
@@ -62,7 +64,9 @@ struct FreeResult {
 };
 FreeResult alarms_of(const SlipRun& run);
 
-/// As many runs as scenarios, on as many threads; results in the scenarios' order.
-std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads);
+/// As many runs as scenarios, on as many threads; results in the scenarios' order. `progress` is
+/// called from any of the threads, never from two at once, with the share of all durations.
+std::vector<SlipRun> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads,
+                               const TaskProgress& progress = {});
 
 }  // namespace screed::nn

@@ -83,6 +83,8 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
     std::optional<HeightField> sinkage;
     if (pressed.has_value()) sinkage = pressed->after(strides->ended_before(row + 1)).sinkage();
     for (std::size_t i = 0; i < surrogates.size(); ++i) {
+      report_progress(options.progress, "rolling out", row * surrogates.size() + (end - row) * i,
+                      rows * surrogates.size());
       if (options.drive == RolloutDrive::kTracks) {
         result.by_surrogate[i].push_back(
             by_tracks(recording, row, end, ground, surrogates[i].robot()));

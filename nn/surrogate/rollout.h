@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/task_progress.h"
 #include "nn/surrogate/rollout_checker.h"
 #include "nn/surrogate/surrogate_plant.h"
 
@@ -41,6 +42,8 @@ struct RolloutOptions {
   /// The tracks deform the terrain, by this network; null: it stays as it was at the start.
   /// Of RolloutDrive::kFirmware alone.
   std::shared_ptr<const BearingCapacityNetwork> bearing;
+  /// Of the task "rolling out" over a session, after every rollout; may be empty.
+  TaskProgress progress;
 };
 
 /// Throws InputError for a session that cannot be followed (nn/surrogate/motion_series.h), and when

@@ -2,11 +2,14 @@
 // where a test needs it to be missing or to fail.
 #include <sys/stat.h>
 
+#include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "host_sim/physics/terrain/grey_image.h"
 #include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
 
 namespace screed::testing {
 namespace {
@@ -31,6 +34,19 @@ class Render : public Program {
   /// With nothing but bin/ on the path.
   Result render(const std::string& arguments) const {
     return run("render " + arguments, "PATH='" + (root_ / "bin").string() + "'");
+  }
+  /// Whether such a process still computes; one that has been killed may wait for its parent.
+  static bool runs(int pid) {
+    const std::string status = read("/proc/" + std::to_string(pid) + "/status");
+    return !status.empty() && status.find("State:\tZ") == std::string::npos;
+  }
+  /// One that has been killed still needs the processor once.
+  static bool ends(int pid) {
+    constexpr int kLooks = 100'000;
+    for (int i = 0; i < kLooks; ++i) {
+      if (!runs(pid)) return true;
+    }
+    return false;
   }
   /// Files and folders in the folder of the test, beside those of SetUp().
   std::vector<std::string> files(const std::string& folder = ".") const {
@@ -78,6 +94,51 @@ TEST_F(Render, PovrayThatFailsLeavesNothing) {
   const Result result = render("run --out p.png");
   expect_refused(result, 1, {"povray", "p.pov", "Parse Error: no such thing"});
   EXPECT_EQ(files(), Names{});
+}
+
+TEST_F(Render, ShowsTheProgressOfPovrayUnlessQuiet) {
+  // Ends when the test has seen the progress.
+  put_povray(
+      "printf 'Rendered 1 of 4 pixels (25%%)\\rRendered 2 of 4 pixels (50%%)\\r' >&2\n"
+      "until [ -e seen ]; do sleep 0.01; done\n"
+      "for word; do case $word in +O*) echo > \"${word#+O}\"; esac; done\n");
+  const std::string path = (root_ / "bin").string() + ":/usr/bin:/bin";
+  Terminal terminal({program_, "render", "run", "--out", "p.png"}, root_, path);
+  ASSERT_TRUE(terminal.wait_for(" 50 %")) << terminal.screen();
+  ASSERT_TRUE(terminal.wait_for("rendering p.png")) << terminal.screen();
+  for (const std::string& folder : files()) write(folder + "/seen", "");
+  EXPECT_EQ(terminal.exit_code(), 0) << terminal.screen();
+  EXPECT_NE(terminal.screen().find("frame 199: p.png\r\n"), std::string::npos) << terminal.screen();
+
+  put_povray("sleep 0.3\nfor word; do case $word in +O*) echo > \"${word#+O}\"; esac; done\n");
+  Terminal quiet({program_, "render", "run", "--out", "q.png", "--quiet"}, root_, path);
+  EXPECT_EQ(quiet.exit_code(), 0);
+  EXPECT_EQ(quiet.screen(), "frame 199: q.png\r\n");
+}
+
+TEST_F(Render, ASignalEndsPovrayAndWhatItStartedAndLeavesNothing) {
+  // The child and its own child would go on for minutes.
+  put_povray("sleep 300 &\necho $$ $! > \"$PIDS\"\necho 'Rendered 1 of 4 pixels' >&2\nwait\n");
+  const std::filesystem::path pids = root_ / "bin" / "pids";
+  setenv("PIDS", pids.c_str(), 1);
+  struct Case {
+    int signal;
+    int exit_code;
+  };
+  for (const Case& it : {Case{SIGHUP, 129}, Case{SIGINT, 130}, Case{SIGTERM, 143}}) {
+    Terminal terminal({program_, "render", "run", "--out", "p.png"}, root_,
+                      (root_ / "bin").string() + ":/usr/bin:/bin");
+    ASSERT_TRUE(terminal.wait_for(" 25 %")) << terminal.screen();
+    terminal.signal(it.signal);
+    EXPECT_EQ(terminal.exit_code(), it.exit_code) << terminal.screen();
+    EXPECT_NE(terminal.screen().find("screed: stopped while rendering p.png\r\n"),
+              std::string::npos)
+        << terminal.screen();
+    EXPECT_EQ(files(), Names{});
+    std::ifstream file(pids);
+    for (int pid = 0; file >> pid;) EXPECT_TRUE(ends(pid)) << pid;
+  }
+  unsetenv("PIDS");
 }
 
 TEST_F(Render, SceneOnly) {

@@ -4,6 +4,7 @@
 
 #include "host_sim/run/session/session_reader.h"
 #include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
 
 namespace screed::testing {
 namespace {
@@ -108,15 +109,15 @@ TEST_F(View, ARecordedRunIsPlayedAndFilmed) {
       "view r --frames 90 --key-script Right@0.5 --key-script 3@1 --key-script Space@2 "
       "--key-script Home@1.7");
   ASSERT_EQ(played.exit_code, 0) << played.err;
-  EXPECT_EQ(played.err.rfind("90 frames, ", 0), 0U) << played.err;
+  EXPECT_NE(played.err.find("\n90 frames, "), std::string::npos) << played.err;
   ASSERT_EQ(run("view r --frames-dir film --speed 8").exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(root_ / "film" / "frame_000009.png"));
   EXPECT_LE(std::distance(std::filesystem::directory_iterator(root_ / "film"), {}), 12);
 }
 
 TEST_F(View, WhatIsWrongIsSaidInOneLine) {
-  expect_refused(run("sim e.ini --view", "SDL_VIDEODRIVER=none"), 1,
-                 {"the viewer", "--screenshot"});
+  expect_refused(run("sim e.ini --view", "SDL_VIDEODRIVER=none"), 2,
+                 {"the viewer has no screen", "SDL_VIDEODRIVER=none", "--screenshot"});
   expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
   expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "640x420"});
   for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500"}) {
@@ -129,6 +130,44 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
   expect_refused(run("sim e.ini --at 3"), 2, {"--at", "--screenshot"});
   expect_refused(run("sim e.ini e.ini --screenshot p.png"), 2, {"one experiment"});
   expect_refused(run("view nowhere --screenshot p.png"), 2, {"nowhere"});
+}
+
+TEST_F(View, WithoutAScreenThereIsNoWindowAndPicturesAreDrawn) {
+  const std::string none = "env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER";
+  ASSERT_EQ(run("sim e.ini --quiet --out ../r", none).exit_code, 0);
+  expect_refused(run("view ../r", none), 2,
+                 {"no screen", "DISPLAY is not set, WAYLAND_DISPLAY is not set", "--frames-dir"});
+  expect_refused(run("view ../r", none + " DISPLAY=:7654"), 2, {"DISPLAY=:7654 leads to none"});
+  // Before anything is set up: so many particles take many minutes to lay.
+  write("big.ini", "[map]\nmodel = particles\nsize = 20\n[particles]\ndepth = 0.15\n");
+  expect_refused(run("sim big.ini --view", none), 2, {"no screen"});
+  EXPECT_EQ(run("view ../r --screenshot p.png", none).err, "");
+  EXPECT_EQ(png_size(root_ / "p.png"), (std::pair<int, int>(1280, 800)));
+  EXPECT_EQ(run("view ../r --frames-dir film --speed 8", none).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(root_ / "film" / "frame_000009.png"));
+  EXPECT_EQ(run("sim e.ini --quiet --screenshot q.png --out s", none).exit_code, 0);
+  EXPECT_EQ(png_size(root_ / "q.png"), (std::pair<int, int>(1280, 800)));
+}
+
+TEST_F(View, AnInvisibleWindowIsSaid) {
+  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  const Result played = on_dummy("view r --frames 3");
+  EXPECT_EQ(played.exit_code, 0);
+  EXPECT_EQ(played.err.rfind("note: SDL_VIDEODRIVER=dummy: the window is invisible\n", 0), 0U)
+      << played.err;
+}
+
+TEST_F(View, CtrlCEndsAFilmAndKeepsItsFrames) {
+  write("long.ini", "[experiment]\nduration = 60\nalgorithm = drive\n[map]\nsize = 9\n");
+  ASSERT_EQ(run("sim long.ini --quiet --out r").exit_code, 0);
+  Terminal terminal({program_, "view", "r", "--frames-dir", "film", "--size", "2000x1500"}, root_);
+  ASSERT_TRUE(terminal.wait_for("drawing frames")) << terminal.screen();
+  terminal.signal(SIGINT);
+  EXPECT_EQ(terminal.exit_code(), 130);
+  EXPECT_NE(terminal.screen().find("screed: stopped while drawing frames\r\n"), std::string::npos)
+      << terminal.screen();
+  EXPECT_GT(png_size(root_ / "film" / "frame_000001.png").first, 0);
+  EXPECT_LT(std::distance(std::filesystem::directory_iterator(root_ / "film"), {}), 1500);
 }
 
 TEST_F(View, OnARealScreenTheWindowClosesAtAKey) {

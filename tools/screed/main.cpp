@@ -1,5 +1,6 @@
 // `screed`, the one host program.
 #include "commands.h"
+#include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/program.h"
 #include "version.h"
 
@@ -9,5 +10,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   screed::Program program{SCREED_VERSION, {}};
   screed::register_screed_subcommands(app, program);
-  return screed::run_program(app, argc, argv, [&] { return program.action(); });
+  return screed::run_program(app, argc, argv,
+                             [&] { return screed::run_interruptible(program.action); });
 }

@@ -17,6 +17,7 @@ constexpr int64_t kMaxParticles = 4'000'000;
 constexpr double kScatter = 0.4;      // of the place a particle is let down, in radii
 constexpr double kFirstStride = 0.5;  // of the way into the hollow, in radii
 constexpr double kLastStride = 0.01;
+constexpr size_t kReportParticles = 256;  // laid between two reports: some milliseconds
 
 /// Finds where spheres let down on those that lie already come to rest.
 class Deposit {
@@ -185,11 +186,13 @@ std::vector<int> stack_counts(const HeightField& top, const BedExtent& extent, d
 }
 
 std::vector<Eigen::Vector3d> lay_spheres(const std::vector<int>& counts, const BedExtent& extent,
-                                         double radius_m, uint64_t seed) {
+                                         double radius_m, uint64_t seed,
+                                         const TaskProgress& progress) {
   WorldRandom random(seed, "particles");
   const int highest = *std::max_element(counts.begin(), counts.end());
-  Deposit deposit(extent, radius_m, highest,
-                  static_cast<size_t>(std::accumulate(counts.begin(), counts.end(), int64_t{0})));
+  const auto all = static_cast<size_t>(std::accumulate(counts.begin(), counts.end(), int64_t{0}));
+  Deposit deposit(extent, radius_m, highest, all);
+  size_t laid = 0;
   std::vector<int> order(counts.size());
   std::iota(order.begin(), order.end(), 0);
   for (int layer = 0; layer < highest; ++layer) {
@@ -206,6 +209,7 @@ std::vector<Eigen::Vector3d> lay_spheres(const std::vector<int>& counts, const B
       const double off_x = random.uniform(-kScatter, kScatter) * radius_m;
       const double off_y = random.uniform(-kScatter, kScatter) * radius_m;
       deposit.let_down(x + off_x, y + off_y);
+      if (++laid % kReportParticles == 0) report_progress(progress, "laying particles", laid, all);
     }
   }
   return deposit.take();

@@ -69,21 +69,24 @@ double highest_of(const std::vector<Eigen::Vector3d>& centres) {
   return highest;
 }
 
-std::vector<Eigen::Vector3d> laid(const HeightField& top, const ParticleOptions& options) {
+std::vector<Eigen::Vector3d> laid(const HeightField& top, const ParticleOptions& options,
+                                  const TaskProgress& progress) {
   const double radius = checked(options).material.radius_m;
   const BedExtent extent = checked(bed_extent(top, radius), radius);
-  return lay_spheres(stack_counts(top, extent, radius), extent, radius, options.seed);
+  return lay_spheres(stack_counts(top, extent, radius), extent, radius, options.seed, progress);
 }
 
 }  // namespace
 
-ParticleBed::ParticleBed(const HeightField& top, const ParticleOptions& options)
-    : ParticleBed(laid(top, options), bed_extent(top, options.material.radius_m), 0.0, options) {
+ParticleBed::ParticleBed(const HeightField& top, const ParticleOptions& options,
+                         const TaskProgress& progress)
+    : ParticleBed(laid(top, options, progress), bed_extent(top, options.material.radius_m), 0.0,
+                  options) {
   if (options_.fixed) {
     std::fill(state_.begin(), state_.end(), kAsleep);
     awake_.clear();
   } else {
-    settle(kSettling_s);
+    settle(kSettling_s, progress);
   }
 }
 
@@ -379,12 +382,19 @@ void ParticleBed::step(double dt) {
   ++steps_;
 }
 
-double ParticleBed::settle(double max_s) {
+double ParticleBed::settle(double max_s, const TaskProgress& progress) {
   const double dt = longest_step_s();
   drag_ = kSettlingDrag;
   window_s_ = kSettlingWindow_s;
   double time = 0.0;
-  for (; time < max_s && !awake_.empty(); time += dt) step(dt);
+  double share = 0.0;  // of the time, or of the particles that sleep: it ends with either
+  for (; time < max_s && !awake_.empty(); time += dt) {
+    const double asleep =
+        1.0 - static_cast<double>(awake_.size()) / static_cast<double>(position_.size());
+    share = std::max({share, time / max_s, asleep});
+    report_progress(progress, "settling particles", share);
+    step(dt);
+  }
   drag_ = 0.0;
   window_s_ = kWindow_s;
   work_.awake = awake_.size();

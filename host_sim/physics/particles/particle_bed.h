@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "host_sim/core/gravity.h"
+#include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/bed_layout.h"
 #include "host_sim/physics/particles/sphere_grid.h"
 #include "host_sim/physics/particles/sphere_law.h"
@@ -37,8 +38,10 @@ struct ParticleOptions {
 class ParticleBed final : public Terrain {
  public:
   /// Fills the space below `top` and lets it come to rest (unless fixed). Throws InputError as
-  /// stack_counts, and for material out of range.
-  ParticleBed(const HeightField& top, const ParticleOptions& options);
+  /// stack_counts, and for material out of range. Reports the tasks "laying particles" and
+  /// "settling particles".
+  ParticleBed(const HeightField& top, const ParticleOptions& options,
+              const TaskProgress& progress = {});
   /// Particles at these positions, all awake, in a container of this extent and height.
   ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedExtent& extent, double height_m,
               const ParticleOptions& options);
@@ -53,7 +56,7 @@ class ParticleBed final : public Terrain {
   void end_step(double dt) override { step(dt); }
   double longest_step_s() const override { return SphereLaw::longest_step_s(options_.material); }
   /// Steps until every particle sleeps, for at most this time; returns the time it took, s.
-  double settle(double max_s);
+  double settle(double max_s, const TaskProgress& progress = {});
 
   /// The height map as it is now: under each ray the highest surface of a particle, or the floor.
   const HeightField& surface() const override;

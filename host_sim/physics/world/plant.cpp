@@ -65,13 +65,14 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
   vehicle_.place(pose);
   wrap_around();
   wrap_counts_ = {0, 0};
-  if (!start.z_m.has_value()) settle();
+  if (!start.z_m.has_value()) settle(options.progress);
 }
 
-void Plant::settle() {
+void Plant::settle(const TaskProgress& progress) {
   constexpr double kSettle_s = 1.5;
   const auto steps = static_cast<int>(std::lround(kSettle_s / step_s_));
   for (int i = 0; i < steps; ++i) {
+    report_progress(progress, "settling the robot", static_cast<double>(i) / steps);
     step_bodies({0.0, 0.0});
   }
   reset_motion_history(imu_velocity(vehicle_.chassis()));

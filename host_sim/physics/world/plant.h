@@ -37,7 +37,8 @@ struct PlantOptions : TerrainOptions {
 
 class Plant : public Environment {
  public:
-  /// A robot on this terrain. Throws InputError when the options do not fit together.
+  /// A robot on this terrain. Throws InputError when the options do not fit together. Reports the
+  /// task "settling the robot" to options.progress.
   Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const PlantOptions& options);
   /// The same on terrain of the kind that the options name, with this surface.
   Plant(HeightField surface, const Assembly& model, const PlantOptions& options);
@@ -67,7 +68,7 @@ class Plant : public Environment {
 
   /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
   /// when it was switched on.
-  void settle();
+  void settle(const TaskProgress& progress);
   /// Teleports the robot when it has left the bed.
   void wrap_around();
   /// Forces, integration and terrain of one physics step.

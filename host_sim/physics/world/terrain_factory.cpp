@@ -9,7 +9,7 @@ namespace screed {
 
 std::unique_ptr<Terrain> build_terrain(HeightField surface, const TerrainOptions& options) {
   if (options.particles.has_value()) {
-    return std::make_unique<ParticleBed>(surface, *options.particles);
+    return std::make_unique<ParticleBed>(surface, *options.particles, options.progress);
   }
   if (options.soil.has_value()) {
     return std::make_unique<SoilBed>(std::move(surface), *options.soil, options.soil_options);

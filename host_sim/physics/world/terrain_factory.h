@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/terrain.h"
@@ -15,6 +16,7 @@ struct TerrainOptions {
   std::optional<SoilParameters> soil;  ///< deformable soil
   SoilOptions soil_options;
   std::optional<ParticleOptions> particles;  ///< spheres, as high as the surface; not with soil
+  TaskProgress progress;                     ///< of building; may be empty
 };
 
 /// Terrain of the kind that the options name, with this surface. Throws InputError as SoilBed and

@@ -1,21 +1,17 @@
 // POV-Ray as a child process.
 #include "host_sim/render/scene/povray.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <system_error>
-#include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/render/scene/child_process.h"
 
 namespace screed {
 namespace {
@@ -25,66 +21,38 @@ namespace fs = std::filesystem;
 constexpr int kSmallest_px = 16;
 constexpr int kLargest_px = 8000;
 
-/// Ctrl-C reaches the child as well: it ends, and this program lives to clear up after it.
-class IgnoreInterrupts {
+/// What POV-Ray says while it runs.
+class PovrayMessages {
  public:
-  IgnoreInterrupts() {
-    struct sigaction ignore {};
-    ignore.sa_handler = SIG_IGN;
-    sigaction(SIGINT, &ignore, &before_);
+  /// Lines end with a line feed, those of progress with a carriage return.
+  void add(const std::string& text) {
+    for (const char c : text) {
+      if (c != '\n' && c != '\r') {
+        line_ += c;
+        continue;
+      }
+      end_line();
+      line_.clear();
+    }
   }
-  IgnoreInterrupts(const IgnoreInterrupts&) = delete;
-  IgnoreInterrupts& operator=(const IgnoreInterrupts&) = delete;
-  ~IgnoreInterrupts() { sigaction(SIGINT, &before_, nullptr); }
+  /// Share of the pixels that are done.
+  double share() const { return share_; }
+  /// The first line that speaks of an error; empty when there is none.
+  const std::string& complaint() const { return complaint_; }
 
  private:
-  struct sigaction before_ {};
+  void end_line() {
+    unsigned long long done = 0;
+    unsigned long long all = 0;
+    if (complaint_.empty() && line_.find("rror:") != std::string::npos) complaint_ = line_;
+    if (std::sscanf(line_.c_str(), "Rendered %llu of %llu pixels", &done, &all) == 2 && all > 0)
+      share_ = std::max(share_, static_cast<double>(done) / static_cast<double>(all));
+  }
+
+  std::string line_;
+  std::string complaint_;
+  double share_ = 0.0;
 };
-
-/// Runs a program of the path in `folder` with its messages in `log`. Its exit status, 127 when
-/// there is none of that name.
-int run_quietly(std::vector<std::string> words, const fs::path& folder, const fs::path& log) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t interrupt;
-  sigemptyset(&interrupt);
-  sigaddset(&interrupt, SIGINT);
-  posix_spawnattr_setsigdefault(&attributes, &interrupt);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-
-  const IgnoreInterrupts while_it_runs;
-  pid_t child = 0;
-  const int error =
-      posix_spawnp(&child, arguments.front(), &actions, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error == ENOENT) return 127;
-  if (error != 0) throw RunError(words.front() + ": " + std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// The first line of POV-Ray's messages that speaks of an error; empty when there is none.
-std::string complaint(const fs::path& log) {
-  std::ifstream file(log);
-  for (std::string line; std::getline(file, line);) {
-    if (line.find("rror:") != std::string::npos) return line;
-  }
-  return "";
-}
 
 }  // namespace
 
@@ -128,7 +96,7 @@ void PovrayJob::write_scene(const std::string& text) {
   }
 }
 
-bool PovrayJob::render(int width_px, int height_px) {
+bool PovrayJob::render(int width_px, int height_px, const TaskProgress& progress) {
   for (const int side : {width_px, height_px}) {
     if (side >= kSmallest_px && side <= kLargest_px) continue;
     throw InputError("a picture of " + std::to_string(width_px) + " x " +
@@ -136,20 +104,27 @@ bool PovrayJob::render(int width_px, int height_px) {
                      std::to_string(kSmallest_px) + " to " + std::to_string(kLargest_px) +
                      " a side");
   }
-  const fs::path log = in_the_making("povray.log");
-  // In the scene's own folder: POV-Ray may be set up to touch no files elsewhere.
-  const int status = run_quietly(
-      {"povray", "+I" + name_with(".pov"), "+O" + picture_.filename().string(),
-       "+W" + std::to_string(width_px), "+H" + std::to_string(height_px),
-       picture_.extension() == ".jpg" ? "+FJ" : "+FN", "+A0.1", "+AM2", "+R3", "-D", "-GA", "+GF"},
-      folder_, log);
-  const std::string said = complaint(log);
-  std::error_code ignored;
-  fs::remove(log, ignored);
-  if (status == 127) return false;
-  if (status != 0) {
+  constexpr int kWait_ms = 20;
+  // In the scene's own folder: POV-Ray may be set up to touch no files elsewhere. +V: it tells the
+  // pixels that are done.
+  ChildProcess povray({"povray", "+I" + name_with(".pov"), "+O" + picture_.filename().string(),
+                       "+W" + std::to_string(width_px), "+H" + std::to_string(height_px),
+                       picture_.extension() == ".jpg" ? "+FJ" : "+FN", "+A0.1", "+AM2", "+R3", "-D",
+                       "-GA", "+GF", "+V"},
+                      folder_);
+  if (!povray.found()) return false;
+  PovrayMessages messages;
+  const std::string task = "rendering " + picture_.filename().string();
+  std::optional<int> status;
+  while (!status.has_value()) {
+    report_progress(progress, task, messages.share());
+    messages.add(povray.messages(kWait_ms));
+    status = povray.ended();
+  }
+  messages.add(povray.messages(0) + "\n");
+  if (*status != 0) {
     throw RunError("povray could not render " + scene().string() +
-                   (said.empty() ? "" : ": " + said));
+                   (messages.complaint().empty() ? "" : ": " + messages.complaint()));
   }
   return true;
 }

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "host_sim/core/task_progress.h"
+
 namespace screed {
 
 /// Throws InputError unless the name ends in .png or .jpg.
@@ -32,8 +34,9 @@ class PovrayJob {
   /// Throws RunError when it cannot be written completely.
   void write_scene(const std::string& text);
   /// False when there is no povray on the path. Throws RunError when it fails, InputError unless
-  /// both sides are 16..8000 pixels.
-  bool render(int width_px, int height_px);
+  /// both sides are 16..8000 pixels. Reports the task "rendering PICTURE" several times a second;
+  /// POV-Ray ends with what `progress` throws.
+  bool render(int width_px, int height_px, const TaskProgress& progress = {});
   /// Moves everything to its place, over files of the same name. Throws RunError.
   void publish();
 

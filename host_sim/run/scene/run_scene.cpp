@@ -165,7 +165,8 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
       terrain_text(surface, files, soil_appearance(soil_name(setup))) +
       (options.path ? path_text(driven.path, surface, kPathRadius * orbit.distance_m) : "") +
       robot_text(robot, setup.experiment.vehicle.tracks, pose));
-  if (!options.pov_only) result.rendered = job.render(options.width_px, options.height_px);
+  if (!options.pov_only)
+    result.rendered = job.render(options.width_px, options.height_px, options.progress);
   job.publish();
   return result;
 }

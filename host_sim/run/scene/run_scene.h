@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/render/scene/scene_camera.h"
 
 namespace screed {
@@ -19,6 +20,7 @@ struct RunSceneOptions {
   bool pov_only = false;                       ///< only the scene
   int width_px = 1280;                         ///< 16..8000
   int height_px = 800;                         ///< 16..8000
+  TaskProgress progress;                       ///< of POV-Ray; may be empty, may end it
 };
 
 struct RunSceneResult {

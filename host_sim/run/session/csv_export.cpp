@@ -57,11 +57,13 @@ char* put_line(char* cursor, std::span<const Column> columns, const SimFrame& fr
 }
 
 void write_rows(const SessionReader& session, std::span<const Column> columns,
-                const FrameRange& range, bool numbered, AtomicFile& file) {
+                const FrameRange& range, bool numbered, AtomicFile& file,
+                const TaskProgress& progress) {
   file.write(header(columns, numbered));
   std::vector<SimFrame> frames;
   std::vector<char> text(kBlockRows * (columns.size() + 1) * (kNumberChars + 1));
   for (std::uint64_t done = 0; done < range.count; done += kBlockRows) {
+    report_progress(progress, "exporting a table", done, range.count);
     frames.resize(std::min(kBlockRows, range.count - done));
     session.read(range.first + done, std::span(frames));
     char* cursor = text.data();
@@ -98,14 +100,15 @@ std::span<const Column> table_5_1_columns() {
 
 void export_frames_csv(const SessionReader& session, const std::filesystem::path& csv) {
   AtomicFile file(csv);
-  write_rows(session, kFrameColumns, {0, session.frames()}, false, file);
+  write_rows(session, kFrameColumns, {0, session.frames()}, false, file, {});
   file.commit();
 }
 
 void export_columns_csv(const SessionReader& session, std::span<const Column> columns,
-                        const FrameRange& range, const std::filesystem::path& csv) {
+                        const FrameRange& range, const std::filesystem::path& csv,
+                        const TaskProgress& progress) {
   AtomicFile file(csv);
-  write_rows(session, columns, range, true, file);
+  write_rows(session, columns, range, true, file, progress);
   file.commit();
 }
 

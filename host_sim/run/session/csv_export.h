@@ -6,6 +6,7 @@
 #include <span>
 
 #include "host_sim/core/record.h"
+#include "host_sim/core/task_progress.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {
@@ -26,9 +27,11 @@ void export_frames_csv(const SessionReader& session, const std::filesystem::path
 std::span<const Column> table_5_1_columns();
 
 /// The same for these columns and rows, behind a first column "frame": the row's number in the
-/// session. Throws std::out_of_range for rows that the session does not have.
+/// session. Throws std::out_of_range for rows that the session does not have. Reports the task
+/// "exporting a table".
 void export_columns_csv(const SessionReader& session, std::span<const Column> columns,
-                        const FrameRange& range, const std::filesystem::path& csv);
+                        const FrameRange& range, const std::filesystem::path& csv,
+                        const TaskProgress& progress = {});
 
 /// The frames that the training drive drove, from the first to the last; nothing (count 0) when it
 /// never ran.

@@ -32,11 +32,18 @@ void check(const SessionReader& session, const FrameRange& range, std::uint64_t 
   if (range.count == 0 || every == 0) throw InputError("no frame to export");
 }
 
+/// Who is told how many of the chosen frames are done, and as what.
+struct ExportProgress {
+  const TaskProgress& listener;
+  const char* task;
+};
+
 /// Calls action(frame, map after it) for the chosen frames.
 template <class Action>
 void for_each_frame(const SessionReader& session, const FrameRange& range, std::uint64_t every,
-                    Action&& action) {
+                    const ExportProgress& progress, Action&& action) {
   for (std::uint64_t i = 0; i < range.count; i += every) {
+    report_progress(progress.listener, progress.task, i, range.count);
     action(range.first + i, session.heights_after(range.first + i + 1));
   }
 }
@@ -59,7 +66,8 @@ HeightField field_of(const HeightMap& map) {
 }
 
 HeightExport export_heights_png(const SessionReader& session, const FrameRange& range,
-                                std::uint64_t every, const fs::path& folder) {
+                                std::uint64_t every, const fs::path& folder,
+                                const TaskProgress& progress) {
   check(session, range, every);
   const HeightExtremes extremes = session.height_extremes();
   const HeightMapGeometry geometry = session.heights_after(0).geometry;
@@ -71,7 +79,8 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
   done.scale = {black * geometry.unit_m, (black + span) * geometry.unit_m};
   nlohmann::ordered_json frames = nlohmann::ordered_json::array();
   std::vector<std::uint16_t> samples(std::size_t{geometry.nx} * geometry.ny);
-  for_each_frame(session, range, every, [&](std::uint64_t frame, const HeightMap& map) {
+  const ExportProgress told{progress, "exporting heights"};
+  for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
     for (std::size_t row = 0; row < geometry.ny; ++row) {
       const std::int32_t* heights = &map.heights[(geometry.ny - 1 - row) * geometry.nx];
       for (std::size_t x = 0; x < geometry.nx; ++x) {
@@ -101,7 +110,8 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
 }
 
 std::vector<fs::path> export_pictures(const SessionReader& session, const FrameRange& range,
-                                      std::uint64_t every, const fs::path& folder) {
+                                      std::uint64_t every, const fs::path& folder,
+                                      const TaskProgress& progress) {
   check(session, range, every);
   constexpr std::uint64_t kPathFrames = 10;
   std::vector<fs::path> files;
@@ -111,7 +121,8 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
   options.state_names = {"driven"};
   std::uint64_t next = range.first;
   std::vector<SimFrame> frames;
-  for_each_frame(session, range, every, [&](std::uint64_t frame, const HeightMap& map) {
+  const ExportProgress told{progress, "exporting pictures"};
+  for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
     frames.resize(frame + 1 - next);
     session.read(next, std::span(frames));
     for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/run/session/csv_export.h"
 #include "host_sim/run/session/session_reader.h"
@@ -29,11 +30,14 @@ struct HeightExport {
 /// Writes frames first, first + every, ... of `range` as folder/height_NNNNNN.png (NNNNNN: the row
 /// of the frame in the session; top row north), and folder/scale.json, which says what a sample is
 /// in metres and where it lies. The folder must exist. Throws InputError when the session has no
-/// recorded heights or the range is empty, RunError when a file cannot be written.
+/// recorded heights or the range is empty, RunError when a file cannot be written. Reports the task
+/// "exporting heights".
 HeightExport export_heights_png(const SessionReader& session, const FrameRange& range,
-                                std::uint64_t every, const std::filesystem::path& folder);
+                                std::uint64_t every, const std::filesystem::path& folder,
+                                const TaskProgress& progress = {});
 
 /// Writes the same frames as shaded pictures with path and robot, folder/picture_NNNNNN.png.
+/// Reports the task "exporting pictures".
 std::vector<std::filesystem::path> export_pictures(const SessionReader& session,
                                                    const FrameRange& range, std::uint64_t every,
                                                    const std::filesystem::path& folder);

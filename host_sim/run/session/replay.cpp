@@ -14,7 +14,8 @@
 
 namespace screed {
 
-ReplayResult replay_session(const std::filesystem::path& session_file) {
+ReplayResult replay_session(const std::filesystem::path& session_file,
+                            const TaskProgress& progress) {
   constexpr std::uint64_t kBlockRows = 1024;
   const SessionReader session(session_file);
   if (session.frames() == 0) throw InputError(session_file.string() + ": no tick was recorded");
@@ -44,6 +45,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file) {
   std::vector<SensorSample> samples;
   std::vector<RobotOutput> outputs;
   while (result.ticks < session.frames()) {
+    report_progress(progress, "replaying", result.ticks, session.frames());
     const std::uint64_t count = std::min(kBlockRows, session.frames() - result.ticks);
     samples.resize(count);
     outputs.resize(count);

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "host_sim/core/task_progress.h"
+
 namespace screed {
 
 struct ReplayResult {
@@ -24,7 +26,8 @@ struct ReplayResult {
 /// Builds a Robot from the recorded parameters and board constants, feeds it the recorded samples
 /// and compares its outputs byte for byte, of the radio only the valid bytes. Throws InputError
 /// when the file is no session, has no tick or a board constant of 0, or was recorded at another
-/// tick rate.
-ReplayResult replay_session(const std::filesystem::path& session_file);
+/// tick rate. Reports the task "replaying".
+ReplayResult replay_session(const std::filesystem::path& session_file,
+                            const TaskProgress& progress = {});
 
 }  // namespace screed

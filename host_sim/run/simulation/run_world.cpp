@@ -10,9 +10,10 @@ RunWorld::RunWorld(const Experiment& experiment, const SimulationOptions& option
                    std::ostream* telemetry_log)
     : robot_settings_{board_constants_of(options.board), experiment.parameters,
                       credentials_of(experiment)} {
+  const WorldSetup setup{options.board, options.ground_port, options.environment,
+                         options.setup_progress};
   if (!options.image.has_value()) {
-    native_ = make_world(experiment, telemetry_log, options.board, options.ground_port,
-                         options.environment);
+    native_ = make_world(experiment, telemetry_log, setup);
     return;
   }
   if (experiment.experiment.algorithm == kTrainingDriveName) {
@@ -20,8 +21,7 @@ RunWorld::RunWorld(const Experiment& experiment, const SimulationOptions& option
         "[experiment] algorithm = training_drive is not part of the microcontroller's image; it "
         "runs without --hal mcu");
   }
-  image_ = make_co_simulation(experiment, telemetry_log, options.board, *options.image,
-                              options.ground_port);
+  image_ = make_co_simulation(experiment, telemetry_log, *options.image, setup);
 }
 
 const GroundStation& RunWorld::ground_station() const {

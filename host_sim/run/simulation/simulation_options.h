@@ -23,6 +23,9 @@ struct SimulationOptions {
   const std::atomic<bool>* stop =
       nullptr;                ///< becomes true when the run is to end early, with everything saved
   ProgressCallback progress;  ///< may be empty
+  /// Of laying and settling, before the run begins; may be empty. What it throws ends
+  /// run_simulation() and check_simulation() before the first file is made.
+  TaskProgress setup_progress;
   /// Programs outside at the ground end of the radio; may be null. What they send is in the
   /// recorded samples, so that the run replays; running it again is another run.
   GroundPort* ground_port = nullptr;

@@ -30,9 +30,9 @@ Wiring wiring_of(const std::string& board) {
 McuWorld::McuWorld(HeightField terrain, const Assembly& model, const CoSimulationOptions& options,
                    std::ostream* telemetry_log)
     : options_(options),
+      board_(options.elf, wiring_of(options.board)),
       plant_(std::move(terrain), model, options.world),
       devices_(options.world, plant_, telemetry_log),
-      board_(options.elf, wiring_of(options.board)),
       chip_clock_(options.world.seed, "chip clocks"),
       flood_bytes_(options.world.seed, "flood") {
   ParameterCopy copy{};

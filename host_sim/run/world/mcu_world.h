@@ -57,9 +57,9 @@ class McuWorld : public CoSimulation {
   std::uint64_t now_us() const;
 
   CoSimulationOptions options_;
+  Board board_;  ///< before the plant: a wrong image shows before particles are laid
   Plant plant_;
   RobotDevices devices_;
-  Board board_;
   WorldRandom chip_clock_;  ///< draws each chip's phase
   WorldRandom flood_bytes_;
 

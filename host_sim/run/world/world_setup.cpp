@@ -72,13 +72,13 @@ HeightField untrapped_terrain(const Experiment& experiment) {
   return soft ? resampled(field, experiment.soil.cell_m) : field;
 }
 
-WorldOptions world_options(const Experiment& experiment, const std::string& board,
-                           GroundPort* ground_port) {
+WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup) {
   WorldOptions options;
-  const BoardMotor motor = board_motor(board);
+  options.progress = setup.progress;
+  const BoardMotor motor = board_motor(setup.board);
   options.vehicle.motor = motor.motor;
   options.encoder_counts_per_turn = motor.counts_per_turn;
-  options.ground_port = ground_port;
+  options.ground_port = setup.ground_port;
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
   options.start.x_m = experiment.vehicle.x_m;
@@ -157,30 +157,29 @@ Assembly make_robot_model(const Experiment& experiment, const std::string& board
 }
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const std::string& board, GroundPort* ground_port,
-                                  const EnvironmentFactory& environment) {
-  const WorldOptions options = world_options(experiment, board, ground_port);
-  if (environment) {
-    return std::make_unique<World>(
-        environment(make_terrain(experiment), make_robot_model(experiment, board), options),
-        board_constants_of(board), options, telemetry_log);
+                                  const WorldSetup& setup) {
+  const WorldOptions options = world_options(experiment, setup);
+  const BoardConstants& board = board_constants_of(setup.board);
+  const Assembly model = make_robot_model(experiment, setup.board);
+  if (setup.environment) {
+    return std::make_unique<World>(setup.environment(make_terrain(experiment), model, options),
+                                   board, options, telemetry_log);
   }
-  return std::make_unique<World>(make_terrain(experiment), make_robot_model(experiment, board),
-                                 board_constants_of(board), options, telemetry_log);
+  return std::make_unique<World>(make_terrain(experiment), model, board, options, telemetry_log);
 }
 
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,
-                                                 const std::string& board, const std::string& image,
-                                                 GroundPort* ground_port) {
+                                                 const std::string& image,
+                                                 const WorldSetup& setup) {
   CoSimulationOptions options;
   options.elf = image;
-  options.board = board;
+  options.board = setup.board;
   options.parameters = experiment.parameters;
   options.credentials = credentials_of(experiment);
-  options.world = world_options(experiment, board, ground_port);
-  return make_co_simulation(make_terrain(experiment), make_robot_model(experiment, board), options,
-                            telemetry_log);
+  options.world = world_options(experiment, setup);
+  return make_co_simulation(make_terrain(experiment), make_robot_model(experiment, setup.board),
+                            options, telemetry_log);
 }
 
 }  // namespace screed

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 
+#include "host_sim/core/task_progress.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/vehicle/assembly.h"
@@ -21,6 +22,15 @@ namespace screed {
 using EnvironmentFactory = std::function<std::unique_ptr<Environment>(
     HeightField terrain, const Assembly& model, const PlantOptions& options)>;
 
+/// What a world is made with beside the experiment.
+struct WorldSetup {
+  std::string board = kDefaultBoard;  ///< a folder of boards/
+  /// Programs outside at the ground end of the radio; may be null, must outlive the world.
+  GroundPort* ground_port = nullptr;
+  EnvironmentFactory environment = nullptr;  ///< in place of physics; may be empty
+  TaskProgress progress = nullptr;           ///< of laying and settling; may be empty, may end it
+};
+
 /// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
 SoilParameters make_soil(const Experiment& experiment);
 /// The particles of an experiment on such a bed.
@@ -29,15 +39,14 @@ ParticleOptions make_particles(const Experiment& experiment);
 HeightField make_terrain(const Experiment& experiment);
 /// The robot of an experiment, on a board of boards/. Throws InputError.
 Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard);
-/// A world as the experiment describes it, for a board of boards/. telemetry_log may be null.
+/// A world as the experiment describes it. telemetry_log may be null. Throws InputError, and what
+/// setup.progress throws.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const std::string& board = kDefaultBoard,
-                                  GroundPort* ground_port = nullptr,
-                                  const EnvironmentFactory& environment = {});
-/// The same world with the image running in it (co_simulation.h).
+                                  const WorldSetup& setup = {});
+/// The same world with the image running in it (co_simulation.h), always of physics.
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,
-                                                 const std::string& board, const std::string& image,
-                                                 GroundPort* ground_port = nullptr);
+                                                 const std::string& image,
+                                                 const WorldSetup& setup = {});
 
 }  // namespace screed

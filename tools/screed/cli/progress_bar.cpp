@@ -74,12 +74,18 @@ void ProgressBar::draw() {
                   time_s_, duration_s_, speed, left.c_str(), note_.c_str());
   }
   out_ << (terminal_ ? "\r" : "") << bar << text << (terminal_ ? "\033[K" : "\n") << std::flush;
+  visible_ = true;
 }
 
 void ProgressBar::finish() {
   if (!begun_) return;
   draw();
   if (terminal_) out_ << "\n";
+}
+
+void ProgressBar::clear() {
+  if (terminal_ && visible_) out_ << "\r\033[K" << std::flush;
+  visible_ = false;
 }
 
 }  // namespace screed

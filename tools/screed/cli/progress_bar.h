@@ -20,6 +20,8 @@ class ProgressBar {
   void show_share(double share, const std::string& note);
   /// Draws the last state and ends the line.
   void finish();
+  /// Removes the bar from a terminal; lines elsewhere stay.
+  void clear();
 
  private:
   void draw();
@@ -27,6 +29,7 @@ class ProgressBar {
   std::ostream& out_;
   bool terminal_;
   bool begun_ = false;
+  bool visible_ = false;
   bool is_share_ = false;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;

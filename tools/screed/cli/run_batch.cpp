@@ -10,6 +10,7 @@
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/cli/recorded_runs.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -38,28 +39,36 @@ std::vector<Experiment> read_all(const BatchArguments& arguments,
 
 /// Checks several experiments; what is wrong with one begins with its name. Building a world on
 /// soil takes a quarter of a second, so many of them show how far they are.
-void check_all(const std::vector<Experiment>& experiments, const SimulationOptions& options,
-               bool quiet) {
+void check_all(const std::vector<Experiment>& experiments, SimulationOptions options, bool quiet) {
   ProgressBar bar(std::cerr);
   for (size_t i = 0; i < experiments.size(); ++i) {
     const std::string& name = experiments[i].experiment.name;
+    options.setup_progress = [&](std::string_view task, double of_task) {
+      stop_if_interrupted("checking " + name + "; no experiment was begun");
+      char percent[16];
+      std::snprintf(percent, sizeof percent, " %.0f %%", of_task * 100.0);
+      const double share = static_cast<double>(i) / static_cast<double>(experiments.size());
+      if (!quiet) bar.show_share(share, "checking " + name + ": " + std::string(task) + percent);
+    };
     try {
       check_simulation(experiments[i], options);
     } catch (const InputError& error) {
+      bar.clear();
       throw InputError("experiment " + name + ": " + error.what());
     }
-    const double share = static_cast<double>(i + 1) / static_cast<double>(experiments.size());
-    if (!quiet) bar.show_share(share, "checked " + name);
   }
-  bar.finish();
+  bar.clear();
 }
 
 SimulationSummary run_one(const Experiment& experiment, SimulationOptions options, bool quiet,
                           const std::string& label) {
+  TaskBar setup_bar(quiet, label);
+  options.setup_progress = setup_bar.progress();
   std::optional<ProgressBar> bar;
   if (!quiet) {
     bar.emplace(std::cerr);
-    options.progress = [&bar, &label](const SimulationProgress& progress) {
+    options.progress = [&](const SimulationProgress& progress) {
+      setup_bar.clear();
       char flat[32];
       std::snprintf(flat, sizeof flat, "flat %.1f %%", progress.flatness * 100.0);
       bar->show(progress.time_s, progress.duration_s, label + flat);
@@ -107,14 +116,14 @@ void run_batch(const BatchArguments& arguments, const std::vector<std::string>& 
   all.insert(all.end(), overrides.begin(), overrides.end());
   const std::vector<Experiment> experiments = read_all(arguments, all);
   const bool several = arguments.several();
+  options.stop = &interrupted();
+  catch_interrupts();
   if (several) {
     check_all(experiments, options, arguments.quiet);
     if (arguments.out.has_value()) options.root = *arguments.out;
   } else if (arguments.out.has_value()) {
     options.out = *arguments.out;
   }
-  options.stop = &interrupted();
-  catch_interrupts();
   for (std::size_t i = 0; i < experiments.size(); ++i) {
     if (interrupted()) {
       std::cerr << "note: " << experiments.size() - i << " of " << experiments.size()
@@ -127,7 +136,12 @@ void run_batch(const BatchArguments& arguments, const std::vector<std::string>& 
                                       : "";
     SimulationOptions of_run = options;
     if (prepare) prepare(experiments[i], of_run);
-    report(experiments[i], run_one(experiments[i], of_run, arguments.quiet, label));
+    try {
+      report(experiments[i], run_one(experiments[i], of_run, arguments.quiet, label));
+    } catch (const TaskStopped& stopped) {
+      std::cerr << "note: " << experiments[i].experiment.name << " was stopped while "
+                << stopped.what() << "; there is no run of it\n";
+    }
   }
 }
 

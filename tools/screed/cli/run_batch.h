@@ -39,8 +39,9 @@ using Prepare = std::function<void(const Experiment&, SimulationOptions&)>;
 /// Reads and checks all files or rows, then runs them one after the other, each in a world of its
 /// own; tells on stderr what the user should know. `overrides` hold for all. Of one file --out is
 /// the run folder, of several() the folder in which each makes one of its own. Ctrl-C ends the run
-/// that goes on, saved as it is, and the batch. Throws InputError before the first run when
-/// anything is wrong with one of the files or rows.
+/// that goes on, saved as it is, and the batch; a run that is still being set up leaves nothing.
+/// Throws InputError before the first run when anything is wrong with one of the files or rows,
+/// TaskStopped when a signal comes while they are checked.
 void run_batch(const BatchArguments& arguments, const std::vector<std::string>& overrides,
                SimulationOptions options, const Report& report, const Prepare& prepare = {});
 

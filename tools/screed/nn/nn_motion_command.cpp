@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@
 #include "nn/surrogate/rollout.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
 namespace {
@@ -54,14 +56,19 @@ int run_motion(const MotionArguments& arguments) {
 
   nn::MotionTrainer trainer(configuration.training);
   double loss = 0.0;
+  ProgressBar bar(std::cerr);
   for (std::size_t step = 1; step <= configuration.training.steps; ++step) {
     loss += trainer.step(train) / kProgressSteps;
+    bar.show_share(static_cast<double>(step) / static_cast<double>(configuration.training.steps),
+                   "training");
     if (step % kProgressSteps == 0) {
+      bar.clear();
       std::printf("  step %6zu   mean loss %.5f\n", step, loss);
       std::fflush(stdout);
       loss = 0.0;
     }
   }
+  bar.clear();
   const nn::Model model = nn::motion_model(configuration, trainer, train);
   nn::write_model(arguments.out, model);
   std::printf("\n  %-34s %10s %10s %10s\n", "R2 of one frame, unsmoothed", "forward", "sideways",
@@ -288,8 +295,15 @@ int run_rollout(const RolloutArguments& arguments) {
     }
   }
   std::vector<nn::SessionRollouts> all;
-  for (const std::string& folder : arguments.sessions) {
-    all.push_back(nn::roll_out(folder, surrogates, options));
+  for (std::size_t i = 0; i < arguments.sessions.size(); ++i) {
+    ProgressBar bar(std::cerr);
+    options.progress = [&](std::string_view task, double share) {
+      bar.show_share(share, std::to_string(i + 1) + "/" +
+                                std::to_string(arguments.sessions.size()) + " " +
+                                std::string(task));
+    };
+    all.push_back(nn::roll_out(arguments.sessions[i], surrogates, options));
+    bar.clear();
     std::printf("\n%s, %s drive\n", all.back().source.c_str(), arguments.drive.c_str());
     for (const bool straight : {true, false}) print_table({all.back()}, surrogates, straight);
     std::fflush(stdout);

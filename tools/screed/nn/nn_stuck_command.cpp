@@ -14,6 +14,7 @@
 #include "nn/slip/stuck_scenario.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -29,6 +30,7 @@ struct StuckArguments {
   std::size_t epochs = nn::SlipTrainingOptions{}.epochs;
   std::size_t hidden = nn::SlipTrainingOptions{}.hidden;
   std::string experiment;
+  bool quiet = false;
   bool json = false;
 };
 
@@ -153,6 +155,11 @@ void print_json(const StuckArguments& arguments, const Figures& figures) {
   std::cout << json.dump(2) << "\n";
 }
 
+std::vector<nn::SlipRun> drive_all(const StuckArguments& arguments, bool trapped) {
+  TaskBar bar(arguments.quiet, trapped ? "with a trap: " : "without a trap: ");
+  return nn::drive_all(scenarios(arguments, trapped), arguments.threads, bar.progress());
+}
+
 int run_stuck(const StuckArguments& arguments) {
   if (!arguments.experiment.empty()) {
     const bool trapped = arguments.experiment == "trapped";
@@ -165,10 +172,8 @@ int run_stuck(const StuckArguments& arguments) {
   if (!arguments.train.empty()) {
     const AtomicFile place(arguments.train);
   }
-  const std::vector<nn::SlipRun> trapped =
-      nn::drive_all(scenarios(arguments, true), arguments.threads);
-  const std::vector<nn::SlipRun> free =
-      nn::drive_all(scenarios(arguments, false), arguments.threads);
+  const std::vector<nn::SlipRun> trapped = drive_all(arguments, true);
+  const std::vector<nn::SlipRun> free = drive_all(arguments, false);
   if (!arguments.train.empty()) {
     std::vector<nn::SlipRun> all = trapped;
     all.insert(all.end(), free.begin(), free.end());
@@ -220,6 +225,7 @@ void register_nn_stuck_command(CLI::App& nn, Program& program) {
       ->add_option("--experiment", arguments->experiment,
                    "Print the experiment of the first seed: trapped or free")
       ->check(CLI::IsMember({"trapped", "free"}));
+  command->add_flag("--quiet", arguments->quiet, "Show no progress");
   command->add_flag("--json", arguments->json, "Print results as JSON");
   command->callback(
       [arguments, &program] { program.action = [arguments] { return run_stuck(*arguments); }; });

@@ -14,8 +14,10 @@
 #include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -68,10 +70,14 @@ void print_text(const Arguments& arguments, const ParityResult& result, double f
 int run_parity_command(const Arguments& arguments) {
   const Experiment experiment = read_experiment(arguments.file, arguments.sets);
   const BoardConstants& board = board_constants_of(arguments.board);
+  const bool quiet = arguments.quiet || arguments.json;
+  TaskBar setup_bar(quiet);
   const std::unique_ptr<CoSimulation> image = make_co_simulation(
-      experiment, nullptr, arguments.board, arguments.elf.value_or(default_image(arguments.board)));
+      experiment, nullptr, arguments.elf.value_or(default_image(arguments.board)),
+      {.board = arguments.board, .progress = setup_bar.progress()});
+  setup_bar.clear();
   std::optional<ProgressBar> bar;
-  if (!arguments.quiet && !arguments.json) bar.emplace(std::cerr);
+  if (!quiet) bar.emplace(std::cerr);
   const double seconds = arguments.minutes * 60.0;
   const auto begin = std::chrono::steady_clock::now();
   const ParityResult result =
@@ -81,7 +87,7 @@ int run_parity_command(const Arguments& arguments) {
                      bar->show(so_far.simulated_s, seconds,
                                std::to_string(so_far.differing_bytes) + " bytes differ");
                    }
-                   return true;
+                   return !interrupted();
                  });
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -92,7 +98,10 @@ int run_parity_command(const Arguments& arguments) {
   } else {
     print_text(arguments, result, factor);
   }
-  return result.differing_bytes == 0 ? 0 : 1;
+  if (interrupted()) {
+    std::cerr << "note: stopped after " << result.simulated_s << " s of " << seconds << " s\n";
+  }
+  return result.differing_bytes == 0 ? interrupted_exit_code() : 1;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "host_sim/run/scene/run_scene.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -18,6 +19,7 @@ struct Options {
   std::string out;
   std::string model;
   bool no_path = false;
+  bool quiet = false;
   RunSceneOptions scene;
 };
 
@@ -38,7 +40,10 @@ int run_render(Options options) {
   if (!options.model.empty()) options.scene.model = options.model;
   const std::filesystem::path picture =
       options.out.empty() ? default_picture(options) : std::filesystem::path(options.out);
+  TaskBar bar(options.quiet);
+  options.scene.progress = bar.progress();
   const RunSceneResult result = render_run(options.run, picture, options.scene);
+  bar.clear();
   if (result.terrain_is_later) {
     std::cerr << "note: the session holds no height map of frame " << result.frame
               << "; the ground is drawn as the run left it\n";
@@ -80,6 +85,7 @@ void register_render_command(CLI::App& root, Program& program) {
   command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)");
   command->add_flag("--no-path", options->no_path, "Do not draw the driven path");
   command->add_flag("--pov-only", options->scene.pov_only, "Write the scene without rendering it");
+  command->add_flag("--quiet", options->quiet, "Show no progress");
   command->callback(
       [options, &program] { program.action = [options] { return run_render(*options); }; });
 }

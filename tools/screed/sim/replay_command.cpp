@@ -9,6 +9,7 @@
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -47,7 +48,9 @@ void print_text(const ReplayResult& result) {
 }
 
 int run_replay(const Options& options) {
-  const ReplayResult result = replay_session(session_file(options.run));
+  TaskBar bar(options.json);
+  const ReplayResult result = replay_session(session_file(options.run), bar.progress());
+  bar.clear();
   if (!result.complete) {
     std::cerr << "note: the recorded run did not end; only its saved ticks were replayed\n";
   }

@@ -17,6 +17,7 @@
 #include "host_sim/run/session/session_reader.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -197,17 +198,21 @@ int run_export(const ExportArguments& arguments) {
                                              : fs::absolute(file).parent_path() / "export");
   if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
 
+  TaskBar bar(false);
   if (arguments.csv) {
     const fs::path csv = out / (arguments.all ? "frames.csv" : "table_5_1.csv");
     export_columns_csv(session,
                        arguments.all ? std::span<const Column>(kFrameColumns) : table_5_1_columns(),
-                       range, csv);
+                       range, csv, bar.progress());
+    bar.clear();
     std::printf("%s: %llu frames\n", csv.c_str(), static_cast<unsigned long long>(range.count));
   }
   if (arguments.heights) {
     constexpr std::uint64_t kEverySecond = 100;
-    const HeightExport done = export_heights_png(
-        session, range, arguments.every.value_or(kEverySecond), folders.make(out / "heights"));
+    const HeightExport done =
+        export_heights_png(session, range, arguments.every.value_or(kEverySecond),
+                           folders.make(out / "heights"), bar.progress());
+    bar.clear();
     std::printf("%s: %zu height maps, black %.6f m, white %.6f m (scale.json)\n",
                 (out / "heights").c_str(), done.files.size(), done.scale.black_m,
                 done.scale.white_m);
@@ -215,7 +220,8 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.pictures) {
     const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
     const auto files = export_pictures(session, range, arguments.every.value_or(tenth),
-                                       folders.make(out / "pictures"));
+                                       folders.make(out / "pictures"), bar.progress());
+    bar.clear();
     std::printf("%s: %zu pictures\n", (out / "pictures").c_str(), files.size());
   }
   return 0;

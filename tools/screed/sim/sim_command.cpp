@@ -205,6 +205,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
 
   const std::optional<viewer::ViewerOptions> view =
       viewer_options(arguments.viewer, arguments.view);
+  if (view.has_value() && view->window) viewer::require_screen();
   const bool several = arguments.runs.several();
   if (several && view.has_value() && !view->window)
     throw InputError("--screenshot and --frames-dir are for one experiment at a time");

@@ -8,6 +8,7 @@
 #include "host_sim/soil_validation/dig_test.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -33,10 +34,17 @@ Manoeuvre manoeuvre_named(const std::string& name) {
 
 /// The drag depth with which the robot raises so much, to 0.1 mm: the nearest of a row, then
 /// between its neighbours.
-double fit_drag_depth(DigTest test, double raised_m3) {
+double fit_drag_depth(DigTest test, double raised_m3, const TaskProgress& progress) {
+  constexpr double kMaxDrives = 34.0;
+  int drives = 0;
   const auto miss = [&](double drag_depth_m) {
     test.soil.drag_depth_m = drag_depth_m;
-    return std::abs(dig_soil(test).raised_m3 - raised_m3);
+    const TaskProgress of_drive = [&](std::string_view /*digging*/, double share) {
+      report_progress(progress, "fitting the drag depth", (drives + share) / kMaxDrives);
+    };
+    const double error = std::abs(dig_soil(test, of_drive).raised_m3 - raised_m3);
+    ++drives;
+    return error;
   };
   double best = 0.0;
   double least = miss(best);
@@ -64,12 +72,15 @@ int run_dig(DigArguments a) {
   a.test.cell_m = a.common.cell_m;
   a.test.step_s = a.common.step_s;
   std::vector<SoilLine> lines;
+  TaskBar bar(false);
   if (a.fit_cm3 > 0.0) {
-    a.test.soil.drag_depth_m = fit_drag_depth(a.test, a.fit_cm3 * 1e-6);
+    a.test.soil.drag_depth_m = fit_drag_depth(a.test, a.fit_cm3 * 1e-6, bar.progress());
     lines.push_back({"fitted", "drag_depth_mm", a.test.soil.drag_depth_m * kMilli, "%.1f"});
   }
   const bool particles = a.ground == "particles";
-  const DigResult result = particles ? dig_particles(a.test) : dig_soil(a.test);
+  const DigResult result =
+      particles ? dig_particles(a.test, bar.progress()) : dig_soil(a.test, bar.progress());
+  bar.clear();
   constexpr double kDegrees = 57.29577951308232;
   const auto add = [&](const char* name, double value, const char* format) {
     lines.push_back({a.manoeuvre, name, value, format});

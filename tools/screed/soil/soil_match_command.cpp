@@ -5,6 +5,7 @@
 #include "host_sim/soil_validation/particle_plate.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -18,7 +19,8 @@ struct MatchArguments {
 int run_match(const MatchArguments& a) {
   const SoilParameters soil = a.common.soil();
   std::vector<SoilLine> lines;
-  for (const ParticlePlatePoint& point : press_particles(a.test)) {
+  TaskBar bar(false);
+  for (const ParticlePlatePoint& point : press_particles(a.test, bar.progress())) {
     const std::string where = text("plate, %g kPa", point.pressure_pa / kMilli);
     const double bekker = soil.k_c / std::min(a.test.length_m, a.test.width_m) + soil.k_phi;
     const double depth = std::pow(point.pressure_pa / bekker, 1.0 / soil.exponent);
@@ -32,7 +34,8 @@ int run_match(const MatchArguments& a) {
     lines.push_back({where, "stiffness_pa_per_m", point.stiffness_pa_per_m, "%.3g",
                      soil.elastic_pa_per_m, SoilLine::Error::kNone});
   }
-  const ParticleDrag drag = drag_over_particles(a.test);
+  const ParticleDrag drag = drag_over_particles(a.test, bar.progress());
+  bar.clear();
   constexpr double kDegrees = 57.29577951308232;
   lines.push_back({"block", "friction_deg", std::atan(drag.friction) * kDegrees, "%.1f",
                    soil.friction_deg, SoilLine::Error::kNone});

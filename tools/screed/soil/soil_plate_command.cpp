@@ -1,6 +1,7 @@
 // `screed soil plate`: pressure of a plate beside Bekker's law.
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <memory>
 #include <numbers>
 
@@ -10,6 +11,7 @@
 #include "host_sim/soil_validation/plate_press.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -104,10 +106,12 @@ int run_plate(PlateArguments a) {
   if (a.offsets > 0) {
     // Greatest error over places between the nodes, and over these and any yaw.
     WorldRandom random(a.seed, "plate");
+    ProgressBar bar(std::cerr);
     for (const bool turned : {false, true}) {
       double worst = 0.0;
       double worst_b = 0.0;
       for (int i = 0; i < a.offsets; ++i) {
+        bar.show_share((turned ? 0.5 : 0.0) + 0.5 * i / a.offsets, "pressing a plate");
         PlateTest test = a.test;
         test.offset_x_m = a.common.cell_m * random.uniform();
         test.offset_y_m = a.common.cell_m * random.uniform();
@@ -124,6 +128,7 @@ int run_plate(PlateArguments a) {
       lines.push_back({where, "worst_pressure_percent", 100.0 * worst, "%.3f"});
       lines.push_back({where, "worst_b_percent", 100.0 * worst_b, "%.3f"});
     }
+    bar.clear();
   }
   if (!a.common.charts.empty()) chart_plate(a, run);
   const std::string shape = a.test.round ? text("disc of %g mm", a.test.length_m * kMilli)

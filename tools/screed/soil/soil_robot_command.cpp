@@ -10,6 +10,7 @@
 #include "host_sim/soil_validation/soil_robot.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -66,12 +67,18 @@ int run_robot(const RobotArguments& a) {
   const double level = robot.position().z();
   double load = 0.0;
   double distance = 0.0;
+  TaskBar bar(false);
+  const TaskProgress progress = bar.progress();
   for (int64_t i = 0; i < steps; ++i) {
+    constexpr int64_t kReportSteps = 100;
+    if (i % kReportSteps == 0)
+      report_progress(progress, "driving", static_cast<double>(i) / static_cast<double>(steps));
     if (i == untimed) begin = std::clock();
     robot.step(a.left_m_per_s, a.right_m_per_s, dt);
     if (i >= untimed) load += robot.load_n();
     distance += dt * robot.velocity().head<2>().norm();
   }
+  bar.clear();
   const auto timed = static_cast<double>(steps - untimed);
   const double us = static_cast<double>(std::clock() - begin) * 1e6 / CLOCKS_PER_SEC / timed;
   const Eigen::Vector3d place = robot.position();

@@ -1,5 +1,6 @@
 // `screed soil wheel`: a wheel beside its limit and beside measurements.
 #include <cmath>
+#include <iostream>
 #include <memory>
 #include <numbers>
 
@@ -8,6 +9,7 @@
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
@@ -63,7 +65,10 @@ int run_measured(WheelArguments a) {
   if (a.fit) {
     lines.push_back({"fitted", "slip_sinkage", a.test.soil.slip_sinkage, "%.2f"});
   }
+  ProgressBar bar(std::cerr);
   for (const MeasuredWheel& row : rows) {
+    bar.show_share(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()),
+                   "rolling a wheel");
     a.test.wheel = row.wheel;
     const WheelPass pass = run_wheel(a.test).passes[0];
     const WheelReaction limit = wheel_limit(row.wheel, a.test.soil, stress);
@@ -88,6 +93,7 @@ int run_measured(WheelArguments a) {
     pull[1].points.push_back({row.wheel.slip, limit.drawbar_pull_n});
     pull[2].points.push_back({row.wheel.slip, row.drawbar_pull_n});
   }
+  bar.clear();
   if (!a.common.charts.empty()) {
     chart_wheel(a, "soil_measured_sinkage.svg", "Sinkage of a wheel, measured and simulated",
                 "sinkage, mm", {sinkage[0], sinkage[1], sinkage[2]});
@@ -109,7 +115,11 @@ int run_wheel_command(WheelArguments a) {
   std::vector<SoilLine> lines;
   ChartSeries sinkage[2] = {{"Screed", {}, true}, {"limit", {}, false}};
   ChartSeries pull[2] = {{"Screed", {}, true}, {"limit", {}, false}};
-  for (const double slip : a.slips) {
+  ProgressBar bar(std::cerr);
+  for (const double& slip : a.slips) {
+    bar.show_share(
+        static_cast<double>(&slip - a.slips.data()) / static_cast<double>(a.slips.size()),
+        "rolling a wheel");
     a.test.wheel.slip = slip;
     const WheelTestResult result = run_wheel(a.test);
     RollingWheel rolling = a.test.wheel;
@@ -141,6 +151,7 @@ int run_wheel_command(WheelArguments a) {
     lines.push_back({text("slip %g", slip), "volume_error",
                      static_cast<double>(result.balance.error()), "%.0f", 0.0});
   }
+  bar.clear();
   if (!a.common.charts.empty()) {
     const std::string how = a.common.soil().name + ", normal stress " + a.common.normal_stress;
     chart_wheel(a, "soil_wheel_sinkage.svg", "Sinkage of a wheel: " + how, "sinkage, mm",

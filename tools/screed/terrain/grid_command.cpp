@@ -25,6 +25,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 
 namespace screed {
 namespace {
@@ -237,7 +238,10 @@ class CurveFile {
 };
 
 void render(const GridOptions& options, const std::vector<GridFrame>& frames) {
-  if (!render_scene(options.render, frames, options.render_width)) {
+  TaskBar bar(options.quiet);
+  const bool rendered = render_scene(options.render, frames, options.render_width, bar.progress());
+  bar.clear();
+  if (!rendered) {
     std::cerr << "note: povray is not installed; only the scene was written, beside "
               << options.render << " (apt install povray)\n";
   }
@@ -281,6 +285,7 @@ int run_one(const GridOptions& options, const std::string& version) {
     curve->finish();
   }
   print_run(run, options.json);
+  if (!run.finished() && interrupted()) return interrupted_exit_code();
   if (!options.render.empty()) {
     frames.push_back(frame_of(run));
     render(options, frames);
@@ -310,7 +315,7 @@ int run_replay(const GridOptions& options) {
       if (view && (replay.finished() || replay.frame().cycle % view->cycles_a_frame() == 0)) show();
     }
   }
-  if (!replay.finished()) return 1;
+  if (!replay.finished()) return interrupted_exit_code();
   const bool matches = replay.matches();
   if (options.json) {
     print_json({{"cycles", replay.cycles()},
@@ -352,7 +357,7 @@ void note_resumed(const SweepResult& sweep) {
 int stopped_early(const SweepOptions& sweep) {
   std::cerr << "\nstopped"
             << (sweep.results.empty() ? "" : "; the same command goes on where it stopped") << "\n";
-  return 1;
+  return interrupted_exit_code();
 }
 
 void print_points(const std::vector<SweepPoint>& points,

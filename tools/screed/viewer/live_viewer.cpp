@@ -144,7 +144,7 @@ void LiveViewer::on_end() {
 }
 
 void LiveViewer::hold(const std::string& notice) {
-  if (!options_.window || options_.frames.has_value()) return;
+  if (!display_.has_value() || !options_.window || options_.frames.has_value()) return;
   display_->set_notice(notice);
   while (!display_->controls().closed && !interrupted()) {
     display_->show();

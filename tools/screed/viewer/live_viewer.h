@@ -25,7 +25,8 @@ class LiveViewer : public SimulationObserver {
 
   /// After the run: shows how it ended until the user closes the window.
   void hold(const std::string& notice);
-  const FrameTimes& times() const { return display_->times(); }
+  /// None when the run ended before its first tick.
+  FrameTimes times() const { return display_.has_value() ? display_->times() : FrameTimes(); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -60,6 +60,7 @@ void RecordedViewer::read_trail() {
   double right_m = 0.0;
   std::vector<SimFrame> rows;
   for (uint64_t first = 0; first < session_.frames(); first += rows.size()) {
+    report_progress(options_.progress, "reading the run", first, session_.frames());
     rows.resize(std::min(kBlockRows, session_.frames() - first));
     session_.read(first, std::span(rows));
     for (size_t i = 0; i < rows.size(); ++i) {
@@ -131,7 +132,8 @@ void RecordedViewer::take_jumps() {
 void RecordedViewer::capture_frames() {
   constexpr double kCaptureFramesPerSecond = 25.0;
   const double pace = options_.pace > 0.0 ? options_.pace : 1.0;
-  while (!interrupted()) {
+  for (;;) {
+    report_progress(options_.progress, "drawing frames", time_s_ / duration_s_);
     display_->handle_input(time_s_, 0);
     take_jumps();
     display_->show();

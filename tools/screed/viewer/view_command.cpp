@@ -5,6 +5,7 @@
 
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/viewer/recorded_viewer.h"
 #include "tools/screed/viewer/view_options.h"
 
@@ -19,12 +20,15 @@ struct Options {
 int run_view(const Options& options) {
   // A picture or frames are made without a window.
   const bool window = options.view.screenshot.empty() && options.view.frames_dir.empty();
-  const auto viewer_options_of_run = viewer_options(options.view, window);
-  catch_interrupts();
-  viewer::RecordedViewer viewer(options.run, viewer_options_of_run.value());
+  viewer::ViewerOptions shown = viewer_options(options.view, window).value();
+  if (shown.window) viewer::require_screen();
+  TaskBar bar(false);
+  shown.progress = bar.progress();
+  viewer::RecordedViewer viewer(options.run, shown);
   viewer.run();
+  bar.clear();
   if (options.view.frames.has_value()) std::cerr << viewer.times().text() << "\n";
-  return 0;
+  return interrupted_exit_code();
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/core/task_progress.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
 #include "tools/screed/viewer/window.h"
@@ -28,6 +29,7 @@ struct ViewerOptions {
   bool follow = false;
   std::optional<double> span_m;  ///< width of the ground that is seen at first; without it all
   std::vector<ScriptedKey> script;
+  TaskProgress progress;  ///< of reading a run and drawing its frames; may be empty, may end it
 };
 
 /// What does not change while something is shown.

@@ -2,6 +2,9 @@
 // seen is what a screenshot holds.
 #include "tools/screed/viewer/window.h"
 
+#include <cstdlib>
+#include <iostream>
+
 #define SDL_MAIN_HANDLED
 #include <SDL.h>
 
@@ -11,9 +14,46 @@ namespace screed::viewer {
 namespace {
 
 RunError failure(const std::string& what) {
-  return RunError(what + ": " + SDL_GetError() +
-                  " (without a screen: --screenshot FILE draws without a window, "
-                  "SDL_VIDEODRIVER=dummy opens an invisible one)");
+  return RunError(what + ": " + SDL_GetError());
+}
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::string video_driver() {
+  const char* name = SDL_GetCurrentVideoDriver();
+  return name == nullptr ? "" : name;
+}
+
+/// Drivers that draw where nobody looks. SDL falls back to them by itself.
+bool is_invisible(const std::string& driver) {
+  return driver == "offscreen" || driver == "dummy" || driver == "evdev";
+}
+
+InputError no_screen(const std::string& reason) {
+  return InputError("the viewer has no screen: " + reason +
+                    "; --screenshot FILE and --frames-dir FOLDER draw without a window, "
+                    "SDL_VIDEODRIVER=dummy opens an invisible one");
+}
+
+/// Balanced by SDL_QuitSubSystem() when it returns.
+void start_video() {
+  const std::string wanted = variable("SDL_VIDEODRIVER");
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) {
+    throw no_screen(wanted.empty() ? SDL_GetError()
+                                   : "SDL_VIDEODRIVER=" + wanted + ": " + SDL_GetError());
+  }
+  if (!wanted.empty() || !is_invisible(video_driver())) return;
+  SDL_QuitSubSystem(SDL_INIT_VIDEO);
+  std::string reason;
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const std::string value = variable(name);
+    if (!reason.empty()) reason += ", ";
+    reason += std::string(name) + (value.empty() ? " is not set" : "=" + value + " leads to none");
+  }
+  throw no_screen(reason);
 }
 
 Key key_of(SDL_Keycode code) {
@@ -57,8 +97,8 @@ class Window::Impl {
     // graphics card and no faster with one.
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
-    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw failure("the viewer has no screen");
-    if (driver() == "wayland") SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "1");
+    start_video();
+    if (video_driver() == "wayland") SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "1");
     window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
                                width_px, height_px, SDL_WINDOW_RESIZABLE);
     if (window_ == nullptr) {
@@ -73,11 +113,6 @@ class Window::Impl {
     SDL_DestroyWindow(window_);
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
     SDL_Quit();
-  }
-
-  static std::string driver() {
-    const char* name = SDL_GetCurrentVideoDriver();
-    return name == nullptr ? "" : name;
   }
 
   std::vector<InputEvent> events(int wait_ms) const {
@@ -156,6 +191,16 @@ class Window::Impl {
   SDL_Window* window_ = nullptr;
 };
 
+void require_screen() {
+  SDL_SetMainReady();
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+  start_video();
+  const std::string driver = video_driver();
+  SDL_QuitSubSystem(SDL_INIT_VIDEO);
+  if (is_invisible(driver))
+    std::cerr << "note: SDL_VIDEODRIVER=" << driver << ": the window is invisible\n";
+}
+
 Window::Window(const std::string& title, int width_px, int height_px)
     : impl_(std::make_unique<Impl>(title, width_px, height_px)) {}
 Window::Window(Window&&) noexcept = default;
@@ -171,7 +216,7 @@ void Window::show(Canvas& canvas) {
 }
 
 std::string Window::driver() const {
-  return Impl::driver();
+  return video_driver();
 }
 
 }  // namespace screed::viewer

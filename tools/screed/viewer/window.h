@@ -11,9 +11,13 @@
 
 namespace screed::viewer {
 
+/// Throws InputError when a window would open where nobody sees it: no screen can be reached, and
+/// SDL_VIDEODRIVER does not ask for a driver without one. Where it does, prints a note.
+void require_screen();
+
 class Window {
  public:
-  /// Throws RunError when there is no screen to open one on.
+  /// Throws InputError as require_screen(), RunError when the window cannot be opened.
   Window(const std::string& title, int width_px, int height_px);
   Window(Window&&) noexcept;
   Window& operator=(Window&&) noexcept;

@@ -32,7 +32,7 @@ inline void record_surrogate(const fs::path& folder, const Surrogate& driven, st
     if (bearing) plant->enable_deformation(bearing);
     return plant;
   };
-  const auto world = make_world(experiment, nullptr, board, nullptr, environment);
+  const auto world = make_world(experiment, nullptr, {.board = board, .environment = environment});
   SessionInfo info;
   info.experiment_name = experiment.experiment.name;
   info.experiment_text = experiment.text();

@@ -1,0 +1,104 @@
+// Ctrl-C, SIGTERM and SIGHUP in the midst of what takes long before and beside a run: the program
+// ends at once, names what it was at, and leaves nothing.
+#include <sys/stat.h>
+
+#include <fstream>
+#include <string>
+
+#include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
+
+namespace screed::testing {
+namespace {
+
+struct Signal {
+  int number;
+  int exit_code;
+};
+constexpr Signal kSignals[] = {{SIGHUP, 129}, {SIGINT, 130}, {SIGTERM, 143}};
+
+class Interrupt : public Program {
+ protected:
+  /// An experiment on particles: so many take a minute to lay, and longer to settle.
+  void write_bed(const std::string& name, double size_m) const {
+    write(name + ".ini", "[experiment]\nname = " + name +
+                             "\nduration = 0.1\n[map]\nmodel = particles\nsize = " +
+                             std::to_string(size_m) + "\n[particles]\ndepth = 0.15\n");
+  }
+  void expect_nothing_left() const {
+    for (const auto& entry : std::filesystem::directory_iterator(root_))
+      EXPECT_EQ(entry.path().extension(), ".ini") << entry.path();
+  }
+  /// Runs the program until the text appears, sends the signal, and expects its exit code and that
+  /// text at the end.
+  void expect_stopped(const std::vector<std::string>& arguments, const std::string& text,
+                      const Signal& signal, const std::string& last_words) const {
+    std::vector<std::string> words = arguments;
+    words.insert(words.begin(), program_);
+    Terminal terminal(words, root_);
+    ASSERT_TRUE(terminal.wait_for(text)) << terminal.screen();
+    terminal.signal(signal.number);
+    EXPECT_EQ(terminal.exit_code(), signal.exit_code) << terminal.screen();
+    EXPECT_NE(terminal.screen().find(last_words), std::string::npos) << terminal.screen();
+  }
+};
+
+TEST_F(Interrupt, LayingParticles) {
+  write_bed("big", 12.0);
+  for (const Signal& signal : kSignals) {
+    expect_stopped({"sim", "big.ini"}, "laying particles", signal,
+                   "note: big was stopped while laying particles; there is no run of it\r\n");
+    expect_nothing_left();
+  }
+}
+
+TEST_F(Interrupt, SettlingParticles) {
+  write_bed("wide", 1.5);
+  expect_stopped({"record", "wide.ini"}, "settling particles", {SIGINT, 130},
+                 "note: wide was stopped while settling particles; there is no run of it\r\n");
+  expect_nothing_left();
+}
+
+TEST_F(Interrupt, CheckingSeveralExperiments) {
+  write_bed("one", 12.0);
+  write_bed("two", 12.0);
+  expect_stopped({"sim", "one.ini", "two.ini"}, "checking one: laying particles", {SIGINT, 130},
+                 "screed: stopped while checking one; no experiment was begun\r\n");
+  expect_nothing_left();
+}
+
+TEST_F(Interrupt, TheImageOfTheMicrocontrollerOnParticles) {
+  write_bed("big", 12.0);
+  expect_stopped({"sim", "big.ini", "--hal", "mcu"}, "laying particles", {SIGTERM, 143},
+                 "note: big was stopped while laying particles; there is no run of it\r\n");
+  expect_stopped({"parity", "big.ini"}, "laying particles", {SIGINT, 130},
+                 "screed: stopped while laying particles\r\n");
+  expect_nothing_left();
+}
+
+// An image that is missing is found before particles are laid: those would take many minutes.
+TEST_F(Interrupt, AMissingImageShowsBeforeParticlesAreLaid) {
+  write_bed("big", 20.0);
+  expect_refused(run("sim big.ini --hal mcu --elf none.elf"), 2, {"none.elf"});
+}
+
+TEST_F(Interrupt, DrivesIntoATrap) {
+  expect_stopped({"nn", "stuck", "--runs", "1000"}, "with a trap: driving", {SIGINT, 130},
+                 "screed: stopped while driving\r\n");
+}
+
+TEST_F(Interrupt, QuietRunsAreStoppedAsWell) {
+  write_bed("big", 12.0);
+  // No text appears: the signal comes once it is caught, before or while particles are laid.
+  const Result result =
+      run("sim big.ini --quiet & pid=$!; until grep -q SigCgt:.*4003$ /proc/$pid/status || ! [ -e "
+          "/proc/$pid/fd/1 ]; "
+          "do :; done; "
+          "kill -INT $pid; wait $pid");
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.out, "");
+  expect_nothing_left();
+}
+
+}  // namespace
+}  // namespace screed::testing
