@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
 #include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/height_export.h"
 #include "nn/surrogate/recorded_drive.h"
 #include "nn/surrogate/rollout_robot.h"
@@ -48,8 +48,7 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
                          const RolloutOptions& options) {
   const RecordedDrive recording(session_folder);
   const SessionInfo& info = recording.session.info();
-  const Assembly model =
-      import_urdf(find_model_file(recording.experiment, info.board_name), UrdfOptions{});
+  const Assembly model = make_robot_model(recording.experiment, info.board_name);
   PlantOptions plant_options;
   plant_options.soil = recording.soil;
   plant_options.vehicle.motor = board_motor(info.board_name).motor;

@@ -13,27 +13,11 @@
 #include "host_sim/run/simulation/simulation.h"
 
 namespace screed::nn {
-namespace {
-
-constexpr const char* kWheels[4] = {"fl_Wheel", "fr_Wheel", "bl_Wheel", "br_Wheel"};
-
-}  // namespace
-
 std::array<WheelPosition, 4> wheel_positions(const Assembly& robot) {
   std::array<WheelPosition, 4> positions;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const int index = robot.body_index(kWheels[i]);
-    if (index < 0) throw InputError(std::string("robot model: no wheel '") + kWheels[i] + "'");
-    const AssemblyBody& body = robot.bodies[static_cast<std::size_t>(index)];
-    const Eigen::Vector3d at = body.pose.translation();
-    positions[i] = {at.x(), at.y(), 0.0, i < 2};
-    for (const Shape& shape : body.collision) {
-      const auto* cylinder = std::get_if<Cylinder>(&shape.geometry);
-      if (cylinder != nullptr) positions[i].radius_m = cylinder->radius;
-    }
-    if (positions[i].radius_m <= 0.0) {
-      throw InputError(std::string("robot model: '") + kWheels[i] + "' has no collision cylinder");
-    }
+    const AssemblyWheel& wheel = robot.wheels[i % 2][i / 2];
+    positions[i] = {wheel.centre.x(), wheel.centre.y(), wheel.radius_m, i < 2};
   }
   return positions;
 }

@@ -26,7 +26,7 @@ struct WheelPosition {
   double radius_m = 0.0;
   bool front = false;
 };
-/// Front left, front right, rear left, rear right. Throws InputError when the model lacks one.
+/// Front left, front right, rear left, rear right.
 std::array<WheelPosition, 4> wheel_positions(const Assembly& robot);
 
 struct Stride {

@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <variant>
 
-#include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
 #include "nn/data/motion_signals.h"
 
@@ -43,21 +40,12 @@ HeightField sum_of(const HeightField& a, const HeightField& b) {
 
 TrackGeometry track_geometry(const Assembly& robot) {
   TrackGeometry tracks;
-  const auto wheel = [&](const char* name) -> const AssemblyBody& {
-    const int index = robot.body_index(name);
-    if (index < 0) throw InputError(std::string("robot model: no wheel '") + name + "'");
-    return robot.bodies[static_cast<std::size_t>(index)];
-  };
-  const AssemblyBody& front = wheel("fl_Wheel");
-  const Eigen::Vector3d at = front.pose.translation();
-  tracks.half_length_m = 0.5 * (at.x() - wheel("bl_Wheel").pose.translation().x());
+  const auto& [front, rear] = robot.wheels[0];
+  const Eigen::Vector3d& at = front.centre;
+  tracks.half_length_m = 0.5 * (at.x() - rear.centre.x());
   tracks.half_tread_m = at.y();
-  for (const Shape& shape : front.collision) {
-    const auto* cylinder = std::get_if<Cylinder>(&shape.geometry);
-    if (cylinder == nullptr) continue;
-    tracks.radius_m = cylinder->radius;
-    tracks.width_m = cylinder->length;
-  }
+  tracks.radius_m = front.radius_m;
+  tracks.width_m = front.width_m;
   tracks.below_m = tracks.radius_m - at.z();
   double mass = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();

@@ -37,7 +37,7 @@ struct TrackGeometry {
   double mass_ahead_m = 0.0;      ///< its centre, ahead of the origin
   double mass_height_m = 0.0534;  ///< and over the lower run
 };
-/// Throws InputError when the model lacks one of rover5.urdf's wheels.
+/// Of the left side's wheels.
 TrackGeometry track_geometry(const Assembly& robot);
 
 /// The plane of the tracks' lower runs: its height where the robot's vertical axis meets it, and

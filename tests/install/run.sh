@@ -30,6 +30,7 @@ cd "$tree/elsewhere" || exit 1
 
 check 'an experiment of its own' "$screed" sim moved_drive --duration 1 --quiet --out native
 check 'a model of its own' "$screed" sim soft_bed --hal surrogate --duration 1 --quiet --out surrogate
+check 'a robot of its own' "$screed" sim four_wheels --duration 1 --quiet --out wheeled
 check 'a session' "$screed" replay native
 check 'the flash tool' test -x "$tree/moved/bin/screed_flash"
 check 'the docs and the licence' test -s "$tree/moved/share/doc/screed/docs/architecture.md" -a -s "$tree/moved/share/doc/screed/LICENSE"

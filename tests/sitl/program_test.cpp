@@ -173,10 +173,10 @@ TEST_F(Program, ColourImage) {
   expect_refused(run("sim e.ini"), 2, {"rgb.png", "grey"});
 }
 
-TEST_F(Program, ModelWithoutBody) {
-  write("m.urdf", urdf("Chassis", "0.01"));
+TEST_F(Program, ModelWithoutWheels) {
+  write("m.urdf", "<robot name=\"r\"><link name=\"Body\"/></robot>");
   write("e.ini", "[vehicle]\nmodel = m.urdf\n");
-  expect_refused(run("sim e.ini"), 2, {"m.urdf", "'Body'"});
+  expect_refused(run("sim e.ini"), 2, {"m.urdf", "four wheels", "wheel_links"});
 }
 
 TEST_F(Program, ModelWithNaNInertia) {

@@ -1,6 +1,7 @@
 // Names, rigid groups and composed inertias of an assembly.
 #include "host_sim/physics/vehicle/assembly.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace screed {
@@ -15,6 +16,19 @@ int index_of(const std::vector<Named>& items, std::string_view name) {
 }
 
 }  // namespace
+
+bool Assembly::is_wheel(int body) const {
+  return std::any_of(wheels.begin(), wheels.end(), [body](const auto& side) {
+    return side[0].body == body || side[1].body == body;
+  });
+}
+
+const AssemblyJoint* Assembly::joint_to(int body) const {
+  for (const AssemblyJoint& joint : joints) {
+    if (joint.child == body) return &joint;
+  }
+  return nullptr;
+}
 
 int Assembly::body_index(std::string_view body_name) const {
   return index_of(bodies, body_name);

@@ -2,8 +2,8 @@
 // importer fills it, the physics and the picture read it. It knows neither URDF nor ODE.
 //
 // Units: metres, kilograms, radians. Frames: x forward, y left, z up, right-handed. The ROOT frame
-// is the frame of the body named `Body` (the chassis), with every joint at zero unless the importer
-// was told to hold it elsewhere.
+// is the frame of the chassis, with every joint at zero unless the importer was told to hold it
+// elsewhere.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,6 +24,10 @@ struct Cylinder {
   double length;  // m, along z of its frame, centred on it
 };
 
+struct Sphere {
+  double radius;  // m, centred on its frame
+};
+
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;      // m, no two alike
   std::vector<std::array<int, 3>> triangles;  // indices of vertices, counter-clockwise from outside
@@ -31,7 +35,7 @@ struct TriangleMesh {
 
 struct Shape {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // in the frame of its body
-  std::variant<Box, Cylinder, TriangleMesh> geometry;
+  std::variant<Box, Cylinder, Sphere, TriangleMesh> geometry;
 };
 
 struct Inertia {
@@ -64,11 +68,30 @@ struct AssemblyJoint {
   double effort_n_m = 0.0;  // greatest torque, N m; 0 = not given
 };
 
+/// What the robot rolls on: a cylinder about an axle along y of the chassis (wheel_rim.h).
+struct AssemblyWheel {
+  int body = -1;                                     // index into Assembly::bodies
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the cylinder, in the root frame
+  double radius_m = 0.0;
+  double width_m = 0.0;
+  const char* source = "";  // what the numbers were taken from, for people: "collision cylinder"
+};
+
 /// A tree of bodies. Bodies and joints keep the order of the file they came from.
 struct Assembly {
   std::string name;
   std::vector<AssemblyBody> bodies;
   std::vector<AssemblyJoint> joints;
+
+  // Roles, as indices of bodies.
+  int chassis = -1;
+  int imu = -1;  // -1: the IMU is at the origin of the chassis
+  /// [left, right][front, rear]
+  std::array<std::array<AssemblyWheel, 2>, 2> wheels;
+
+  bool is_wheel(int body) const;
+  /// The joint whose child is `body`; null for the root.
+  const AssemblyJoint* joint_to(int body) const;
 
   /// Index of the body or joint of that name, -1 when there is none.
   int body_index(std::string_view body_name) const;

@@ -49,6 +49,19 @@ void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose,
                                                  end * cylinder->length));
       }
     }
+  } else if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+    constexpr int kAround = 12;
+    constexpr int kRings = 6;  // between the poles
+    for (int ring = 0; ring <= kRings; ++ring) {
+      const double polar = std::numbers::pi * ring / kRings;
+      const int count = ring == 0 || ring == kRings ? 1 : kAround;
+      for (int i = 0; i < count; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kAround;
+        const Eigen::Vector3d direction(std::sin(polar) * std::cos(angle),
+                                        std::sin(polar) * std::sin(angle), -std::cos(polar));
+        points.emplace_back(at * (sphere->radius * direction));
+      }
+    }
   } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
     for (const Eigen::Vector3d& vertex : mesh->vertices) points.emplace_back(at * vertex);
   }
@@ -59,7 +72,7 @@ struct HullBox {
   Eigen::Vector3d size;
 };
 
-// The box that stands for a shape as a footprint: itself, or the box round a cylinder or a mesh.
+// The box that stands for a shape as a footprint: itself, or the box round another shape.
 std::optional<HullBox> box_of(const Shape& shape, const Eigen::Isometry3d& pose) {
   Eigen::Isometry3d at = pose * shape.pose;
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
@@ -67,6 +80,8 @@ std::optional<HullBox> box_of(const Shape& shape, const Eigen::Isometry3d& pose)
     size = box->size;
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
     size = {2.0 * cylinder->radius, 2.0 * cylinder->radius, cylinder->length};
+  } else if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+    size.setConstant(2.0 * sphere->radius);
   } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
     Eigen::AlignedBox3d bounds;
     for (const Eigen::Vector3d& vertex : mesh->vertices) bounds.extend(vertex);

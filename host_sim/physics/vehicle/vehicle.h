@@ -43,15 +43,15 @@ struct VehicleOptions {
 class Vehicle : public VehicleState {
  public:
   /// Throws InputError when the model cannot be driven: no motor wheel on a side, motor joints on
-  /// other bodies, a wheel without a cylinder to roll on.
+  /// other bodies, a wheel that no body carries.
   Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options);
 
   /// Puts the robot somewhere, at rest. Passive joints go back to zero.
   void place(const Eigen::Isometry3d& pose);
   /// Moves the whole robot sideways as it is: motion, joints and grip stay.
   void shift(double dx_m, double dy_m);
-  /// Height of Body's origin at which the lowest contact point just touches the terrain, for this
-  /// attitude at (x, y).
+  /// Height of the chassis' origin at which the lowest contact point just touches the terrain, for
+  /// this attitude at (x, y).
   double resting_height(const HeightField& terrain, double x, double y,
                         const Eigen::Matrix3d& rotation) const;
 
@@ -77,7 +77,7 @@ class Vehicle : public VehicleState {
  private:
   struct Carrier {  // one ODE body
     dBodyID body;
-    Eigen::Isometry3d rest_pose;  // its centre of mass in the frame of Body, joints at zero
+    Eigen::Isometry3d rest_pose;  // its centre of mass in the frame of the chassis, joints at zero
     Hull hull;
     BodyMemory memory;
     double mass;

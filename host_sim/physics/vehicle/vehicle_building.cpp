@@ -10,41 +10,16 @@
 namespace screed {
 namespace {
 
-const char* const kWheels[2][2] = {{"fl_Wheel", "bl_Wheel"}, {"fr_Wheel", "br_Wheel"}};
-
-bool is_wheel_name(const std::string& name) {
-  for (const auto& side : kWheels) {
-    for (const char* wheel : side) {
-      if (name == wheel) return true;
-    }
-  }
-  return false;
-}
-
-// The cylinder a wheel rolls on: its radius and length.
-const Cylinder& wheel_cylinder(const AssemblyBody& wheel) {
-  for (const Shape& shape : wheel.collision) {
-    if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) return *cylinder;
-  }
-  throw InputError("robot model: wheel '" + wheel.name + "' has no collision cylinder to roll on");
-}
-
-const AssemblyJoint* joint_to(const Assembly& assembly, int child) {
-  for (const AssemblyJoint& joint : assembly.joints) {
-    if (joint.child == child) return &joint;
-  }
-  return nullptr;
-}
-
 // The wheels carry the mass of the tracks in the model: a chain has its own.
 Assembly without_chains(Assembly assembly, double chain_kg) {
-  for (const auto& side : kWheels) {
-    for (const char* wheel : side) {
-      Inertia& inertia = assembly.bodies[static_cast<size_t>(assembly.body_index(wheel))].inertia;
+  for (const auto& side : assembly.wheels) {
+    for (const AssemblyWheel& wheel : side) {
+      AssemblyBody& body = assembly.bodies[static_cast<size_t>(wheel.body)];
+      Inertia& inertia = body.inertia;
       const double left = inertia.mass - 0.5 * chain_kg;
       if (left <= 0.0) {
         throw InputError(std::string("robot model: a chain of ") + std::to_string(chain_kg) +
-                         " kg is heavier than its two wheels; '" + wheel + "' has " +
+                         " kg is heavier than its two wheels; '" + body.name + "' has " +
                          std::to_string(inertia.mass) + " kg");
       }
       inertia.tensor *= left / inertia.mass;
@@ -60,12 +35,13 @@ Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions
     : world_(world) {
   std::vector<bool> is_wheel(assembly.bodies.size());
   for (size_t i = 0; i < assembly.bodies.size(); ++i)
-    is_wheel[i] = is_wheel_name(assembly.bodies[i].name);
+    is_wheel[i] = assembly.is_wheel(static_cast<int>(i));
   for (const AssemblyJoint& joint : assembly.joints) {
     if (joint.kind == AssemblyJoint::Kind::Motor && !is_wheel[static_cast<size_t>(joint.child)]) {
       throw InputError("robot model: motor joint '" + joint.name + "' drives '" +
                        assembly.bodies[static_cast<size_t>(joint.child)].name +
-                       "'; only fl_Wheel, fr_Wheel, bl_Wheel and br_Wheel can be driven");
+                       "'; only the four wheels can be driven: another limit velocity than 1.0 "
+                       "makes it a joint that swings freely");
     }
   }
   if (options.tracks && options.track_model == TrackModel::kChain) {
@@ -96,7 +72,7 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
   }
   for (size_t i = 0; i < assembly.bodies.size(); ++i) {
     if (carrier_of_body_[i] != kNone) continue;
-    const AssemblyJoint* joint = joint_to(assembly, static_cast<int>(i));
+    const AssemblyJoint* joint = assembly.joint_to(static_cast<int>(i));
     if (joint == nullptr || is_wheel[static_cast<size_t>(joint->parent)]) {
       throw InputError("robot model: wheel '" + assembly.bodies[i].name +
                        "' has no body that carries it");
@@ -136,7 +112,7 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
     carrier.inverse_inertia = tensor.inverse();
     carriers_.push_back(std::move(carrier));
   }
-  chassis_carrier_ = carrier_of_body_[static_cast<size_t>(assembly.body_index("Body"))];
+  chassis_carrier_ = carrier_of_body_[static_cast<size_t>(assembly.chassis)];
   place(Eigen::Isometry3d::Identity());
 }
 
@@ -161,52 +137,55 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
   struct Wheel {
     size_t carrier;
     Eigen::Vector3d centre;  // from the carrier's centre of mass
-    Cylinder cylinder;
+    double radius;
+    double width;
     double spin_inertia;
     bool driven;
   };
-  const auto wheel_named = [&](const char* name) {
-    const int index = assembly.body_index(name);
-    const AssemblyBody& body = assembly.bodies[static_cast<size_t>(index)];
-    const AssemblyJoint* joint = joint_to(assembly, index);
-    const size_t carrier = carrier_of_body_[static_cast<size_t>(index)];
-    const Eigen::Vector3d centre = carriers_[carrier].rest_pose.inverse() * body.pose.translation();
+  const auto in_carrier = [&](const AssemblyWheel& wheel) {
+    const AssemblyBody& body = assembly.bodies[static_cast<size_t>(wheel.body)];
+    const AssemblyJoint* joint = assembly.joint_to(wheel.body);
+    const size_t carrier = carrier_of_body_[static_cast<size_t>(wheel.body)];
+    const Eigen::Vector3d centre = carriers_[carrier].rest_pose.inverse() * wheel.centre;
     const Eigen::Matrix3d axes = body.pose.linear() * body.inertia.pose.linear();
     const double spin =
         joint->axis.dot(axes * body.inertia.tensor * axes.transpose() * joint->axis);
-    return Wheel{carrier, centre, wheel_cylinder(body), spin,
-                 joint->kind == AssemblyJoint::Kind::Motor};
+    return Wheel{carrier,       centre, wheel.radius_m,
+                 wheel.width_m, spin,   joint->kind == AssemblyJoint::Kind::Motor};
   };
 
   double side_y[2] = {0.0, 0.0};
   const double units = options.tracks ? 2.0 : 4.0;
   const GearLoad load{mass_ * kGravity_m_per_s2 / units, mass_ / units};
+  const auto names = [&](Side side, const char* between) {
+    const auto& wheels = assembly.wheels.at(static_cast<size_t>(side));
+    return "'" + assembly.bodies[static_cast<size_t>(wheels[0].body)].name + "' " + between + " '" +
+           assembly.bodies[static_cast<size_t>(wheels[1].body)].name + "'";
+  };
   for (const Side side : {kLeft, kRight}) {
-    const Wheel front = wheel_named(kWheels[side][0]);
-    const Wheel rear = wheel_named(kWheels[side][1]);
+    const Wheel front = in_carrier(assembly.wheels.at(static_cast<size_t>(side))[0]);
+    const Wheel rear = in_carrier(assembly.wheels.at(static_cast<size_t>(side))[1]);
     side_y[side] = (carriers_[front.carrier].rest_pose * front.centre).y();
     const int motors = (front.driven ? 1 : 0) + (rear.driven ? 1 : 0);
     if (motors == 0) {
-      throw InputError(std::string("robot model: no motor joint at '") + kWheels[side][0] +
-                       "' or '" + kWheels[side][1] +
-                       "'; a revolute joint with <limit velocity=\"1.0\"> is one");
+      throw InputError("robot model: no motor joint at " + names(side, "or") +
+                       "; a revolute joint with <limit velocity=\"1.0\"> is one");
     }
     const auto add_shaft = [&](int of_it, double spin_inertia) {
       shafts_.push_back({side, DriveShaft(options.motor, of_it, spin_inertia)});
       return shafts_.size() - 1;
     };
     const auto add_unit = [&](const Wheel& a, const Wheel& b, size_t shaft) {
-      const RunningGearGeometry geometry{a.centre, b.centre, a.cylinder.radius, a.cylinder.length};
+      const RunningGearGeometry geometry{a.centre, b.centre, a.radius, a.width};
       units_.push_back({a.carrier, shaft, RunningGear(geometry, options.track_friction, load)});
     };
     // The encoder is on the first motor's shaft, front before rear.
     const Wheel& motored = front.driven ? front : rear;
     sides_[static_cast<size_t>(side)] = {motored.carrier, shafts_.size(), motored.centre,
-                                         motored.cylinder.radius};
+                                         motored.radius};
     if (options.tracks && front.carrier != rear.carrier) {
-      throw InputError(std::string("robot model: a track needs '") + kWheels[side][0] + "' and '" +
-                       kWheels[side][1] +
-                       "' on the same rigid body; with joints between them set tracks = false");
+      throw InputError("robot model: a track needs " + names(side, "and") +
+                       " on the same rigid body; with joints between them set tracks = false");
     }
     if (options.tracks)
       sides_[static_cast<size_t>(side)].centre = 0.5 * (front.centre + rear.centre);
@@ -214,8 +193,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
       const size_t of_front = add_shaft(front.driven ? 1 : 0, front.spin_inertia);
       const size_t of_rear = add_shaft(rear.driven ? 1 : 0, rear.spin_inertia);
       if (!front.driven) sides_[static_cast<size_t>(side)].shaft = of_rear;
-      const RunningGearGeometry geometry{front.centre, rear.centre, front.cylinder.radius,
-                                         front.cylinder.length};
+      const RunningGearGeometry geometry{front.centre, rear.centre, front.radius, front.width};
       chains_.push_back({front.carrier,
                          {of_front, of_rear},
                          ChainTrack(geometry, options.chain, options.track_friction, load)});

@@ -8,11 +8,11 @@ namespace screed {
 
 enum Side : int { kLeft = 0, kRight = 1 };
 
-/// Pose and motion of the frame of `Body` (x forward, y left, z up).
+/// Pose and motion of the frame of the chassis (x forward, y left, z up).
 struct ChassisState {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< Body to world
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< chassis to world
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the frame's origin, world frame, m/s
-  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, Body frame
+  Eigen::Vector3d omega_body = Eigen::Vector3d::Zero();  ///< rad/s, chassis frame
 };
 
 /// Roll (left side up), pitch (nose up), heading (counter-clockwise from east), rad.
@@ -39,7 +39,7 @@ class VehicleState {
   /// What the side's running gear carries, vertically, and how deep it sinks in (its deepest unit).
   virtual double load_n(Side side) const = 0;
   virtual double sinkage_m(Side side) const = 0;
-  /// Speed over the ground at the middle of the side's running gear, along Body's x, m/s.
+  /// Speed over the ground at the middle of the side's running gear, along its x, m/s.
   virtual double ground_speed_m_per_s(Side side) const = 0;
 
  protected:

@@ -28,7 +28,7 @@ int steps_in_tick(double physics_step_s) {
 }
 
 Eigen::Vector3d imu_position(const Assembly& model) {
-  const int imu = model.body_index("Imu");
+  const int imu = model.imu;
   return imu < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
                  : Eigen::Vector3d(model.bodies[static_cast<size_t>(imu)].pose.translation());
 }

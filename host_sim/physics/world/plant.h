@@ -23,7 +23,7 @@ namespace screed {
 struct StartPose {
   double x_m = 0.0;
   double y_m = 0.0;
-  /// Of Body's origin; without it the robot is placed on the terrain and settles.
+  /// Of the chassis' origin; without it the robot is placed on the terrain and settles.
   std::optional<double> z_m;
   Attitude attitude = {0.0, 0.0, 0.0};
 };
@@ -84,7 +84,7 @@ class Plant : public Environment {
   OdeWorld ode_;
   Vehicle vehicle_;
   Battery battery_;
-  Eigen::Vector3d imu_position_;  ///< in the frame of Body
+  Eigen::Vector3d imu_position_;  ///< in the frame of the chassis
   uint64_t steps_ = 0;
   std::array<int64_t, 2> wrap_counts_ = {0, 0};
   /// A ring buffer of the last tick's steps and the one before; the newest stands at newest_.

@@ -83,25 +83,34 @@ void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, const PictureOp
 }
 
 void draw_robot(Canvas& canvas, const MapFrame& frame, const RobotOutline& robot) {
+  constexpr double kRim_px = 2.5;
   const double cosine = std::cos(robot.heading_rad);
   const double sine = std::sin(robot.heading_rad);
-  // Robot frame, x forward and y left, as parts of half length and half width.
-  const auto corner = [&](double forward, double left) {
-    const double x = forward * 0.5 * robot.length_m;
-    const double y = left * 0.5 * robot.width_m;
+  const double rim_m = kRim_px / frame.pixels_per_metre();
+  // Robot frame: x forward, y left.
+  const auto pixel = [&](double x, double y) {
     return frame.to_pixel(robot.x_m + cosine * x - sine * y, robot.y_m + sine * x + cosine * y);
   };
-  const auto box = [&](double back, double front, double right, double left) {
+  const auto corners = [&](const RobotPlate& plate, double by) {
     return std::array<Pixel, 4>{
-        {corner(back, right), corner(front, right), corner(front, left), corner(back, left)}};
+        {pixel(plate.back - by, plate.right - by), pixel(plate.front + by, plate.right - by),
+         pixel(plate.front + by, plate.left + by), pixel(plate.back - by, plate.left + by)}};
   };
-  canvas.polygon_outline(box(-1.0, 1.0, -1.0, 1.0), 5.0, kCasing);
-  canvas.polygon(box(-0.88, 0.88, -0.62, 0.62), {0.95, 0.96, 0.97});
-  canvas.polygon_outline(box(-0.88, 0.88, -0.62, 0.62), 1.5, kInk);
-  canvas.polygon(box(-1.0, 1.0, -1.0, -0.58), kInk);
-  canvas.polygon(box(-1.0, 1.0, 0.58, 1.0), kInk);
+  const RobotPlate& hull = robot.shape.hull;
+  canvas.polygon(corners(hull, rim_m), kCasing);
+  for (const RobotPlate& gear : robot.shape.running_gear) {
+    canvas.polygon(corners(gear, rim_m), kCasing);
+  }
+  canvas.polygon(corners(hull, 0.0), {0.95, 0.96, 0.97});
+  canvas.polygon_outline(corners(hull, 0.0), 1.5, kInk);
+  for (const RobotPlate& gear : robot.shape.running_gear) canvas.polygon(corners(gear, 0.0), kInk);
+  // As parts of half the hull's length and width.
+  const auto on_hull = [&](double forward, double left) {
+    return pixel(0.5 * ((hull.front + hull.back) + forward * (hull.front - hull.back)),
+                 0.5 * ((hull.left + hull.right) + left * (hull.left - hull.right)));
+  };
   const std::array<Pixel, 4> arrow = {
-      {corner(0.66, 0.0), corner(-0.52, 0.46), corner(-0.26, 0.0), corner(-0.52, -0.46)}};
+      {on_hull(0.74, 0.0), on_hull(-0.58, 0.74), on_hull(-0.28, 0.0), on_hull(-0.58, -0.74)}};
   canvas.polygon(arrow, category_color(0));
 }
 

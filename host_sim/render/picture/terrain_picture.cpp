@@ -56,8 +56,7 @@ void check(const PictureOptions& options) {
   }
   if (options.robot) {
     const RobotOutline& robot = *options.robot;
-    require_finite("robot outline",
-                   {robot.x_m, robot.y_m, robot.heading_rad, robot.length_m, robot.width_m});
+    require_finite("robot outline", {robot.x_m, robot.y_m, robot.heading_rad});
   }
 }
 

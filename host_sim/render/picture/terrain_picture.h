@@ -8,6 +8,7 @@
 
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/canvas.h"
+#include "host_sim/render/picture/robot_shape.h"
 
 namespace screed {
 
@@ -19,13 +20,12 @@ struct PathPoint {
   size_t state;
 };
 
-/// The robot from above: centre, heading counter-clockwise from east, footprint.
+/// The robot from above: its origin, heading counter-clockwise from east, shape.
 struct RobotOutline {
   double x_m;
   double y_m;
   double heading_rad;
-  double length_m = 0.245;
-  double width_m = 0.225;
+  RobotShape shape;
 };
 
 /// Heights that the colours of a map span, m.

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_sim/core/errors.h"
 #include "host_sim/render/scene/pov_text.h"
 
 namespace screed {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr const char* kWheels[2][2] = {{"fl_Wheel", "bl_Wheel"}, {"fr_Wheel", "br_Wheel"}};
 
 // The tread of a track or a tyre, within the radius that the physics rolls on.
 constexpr double kLugPitch_m = 0.0115;
@@ -63,9 +61,9 @@ constexpr const char* kMacros = R"(
 #end
 )";
 
-const char* texture_of(const std::string& body) {
+const char* texture_of(const std::string& body, bool is_chassis) {
   const auto contains = [&](const char* part) { return body.find(part) != std::string::npos; };
-  if (body == "Body") return "Paint";
+  if (is_chassis) return "Paint";
   if (contains("Leg")) return "Dark";
   if (contains("Board")) return "Circuit";
   if (contains("Imu")) return "Chip";
@@ -82,6 +80,9 @@ std::string shape_text(const Shape& shape) {
     return pov_line("cylinder { <0,0,%.5f>, <0,0,%.5f>, %.5f }", -cylinder->length / 2,
                     cylinder->length / 2, cylinder->radius);
   }
+  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+    return pov_line("sphere { <0,0,0>, %.5f }", sphere->radius);
+  }
   const auto& mesh = std::get<TriangleMesh>(shape.geometry);
   std::string text = pov_line("mesh2 { vertex_vectors { %zu", mesh.vertices.size());
   for (const Eigen::Vector3d& vertex : mesh.vertices) text += ", " + pov_vector(vertex);
@@ -90,33 +91,13 @@ std::string shape_text(const Shape& shape) {
   return text + " } }";
 }
 
-std::string body_text(const AssemblyBody& body) {
+std::string body_text(const AssemblyBody& body, const char* texture) {
   std::string text;
   for (const Shape& shape : body.visual) {
-    text += "  object { " + shape_text(shape) + " texture { " + texture_of(body.name) + " }" +
+    text += "  object { " + shape_text(shape) + " texture { " + texture + " }" +
             pov_matrix(body.pose * shape.pose) + " }\n";
   }
   return text;
-}
-
-/// A wheel that can be rolled on: where it is and how large.
-struct RollingWheel {
-  Eigen::Vector3d centre;
-  Cylinder cylinder;
-};
-
-RollingWheel rolling_wheel(const Assembly& assembly, const char* name) {
-  const int index = assembly.body_index(name);
-  if (index >= 0) {
-    const AssemblyBody& body = assembly.bodies[static_cast<size_t>(index)];
-    for (const Shape& shape : body.collision) {
-      if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
-        return {body.pose.translation(), *cylinder};
-      }
-    }
-  }
-  throw InputError(std::string("robot model: no wheel '") + name +
-                   "' with a collision cylinder to draw");
 }
 
 /// A place on the contour round two axles: x forward, z up from between them; the angle of the
@@ -167,11 +148,11 @@ std::string tread_text(double length, double radius, double width, double travel
 }
 
 /// The wheels at both ends and the tread round them, in a frame between the axles.
-std::string gear_text(const RollingWheel& front, const RollingWheel& rear, double travel_m) {
+std::string gear_text(const AssemblyWheel& front, const AssemblyWheel& rear, double travel_m) {
   const Eigen::Vector3d run = front.centre - rear.centre;
   const double length = run.norm();
-  const double radius = front.cylinder.radius;
-  const double width = front.cylinder.length;
+  const double radius = front.radius_m;
+  const double width = front.width_m;
   Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
   if (length > 0.0) {
     const Eigen::Vector3d forward = run / length;
@@ -193,23 +174,18 @@ std::string gear_text(const RollingWheel& front, const RollingWheel& rear, doubl
   return text + "   " + pov_matrix(place) + "\n  }\n";
 }
 
-bool is_wheel(const std::string& name) {
-  for (const auto& side : kWheels) {
-    if (name == side[0] || name == side[1]) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string robot_text(const Assembly& assembly, bool tracks, const RobotPose& pose) {
   std::string text = std::string(kMacros) + "union {\n";
-  for (const AssemblyBody& body : assembly.bodies) {
-    if (!is_wheel(body.name)) text += body_text(body);
+  for (size_t i = 0; i < assembly.bodies.size(); ++i) {
+    const AssemblyBody& body = assembly.bodies[i];
+    const int index = static_cast<int>(i);
+    if (assembly.is_wheel(index)) continue;
+    text += body_text(body, texture_of(body.name, index == assembly.chassis));
   }
   for (size_t side = 0; side < 2; ++side) {
-    const RollingWheel front = rolling_wheel(assembly, kWheels[side][0]);
-    const RollingWheel rear = rolling_wheel(assembly, kWheels[side][1]);
+    const auto& [front, rear] = assembly.wheels.at(side);
     const double travel = pose.travel_m.at(side);
     if (tracks) {
       text += gear_text(front, rear, travel);

@@ -11,13 +11,13 @@
 namespace screed {
 
 struct RobotPose {
-  Eigen::Isometry3d body = Eigen::Isometry3d::Identity();  ///< `Body` to world
+  Eigen::Isometry3d body = Eigen::Isometry3d::Identity();  ///< chassis to world
   std::array<double, 2>
       travel_m{};  ///< of the left and right running gear's surface since the start
 };
 
 /// Joints stand as in the model. The shapes are the model's `visual` ones; treads, spokes and
-/// colours are the drawer's. Throws InputError for a model without the four wheels.
+/// colours are the drawer's.
 std::string robot_text(const Assembly& assembly, bool tracks, const RobotPose& pose);
 
 }  // namespace screed

@@ -207,13 +207,13 @@ Experiment read_experiment_row(const std::filesystem::path& file, const Experime
 }
 
 std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
-                                     const char* key) {
+                                     const char* key, const char* kind) {
   const std::filesystem::path file(name);
   std::vector<std::filesystem::path> places;
   if (file.is_absolute()) {
     places = {file};
   } else {
-    places = {experiment.folder / file, data_folders().data / "terrain" / file};
+    places = {experiment.folder / file, data_folders().data / kind / file};
   }
   std::string looked;
   for (const std::filesystem::path& place : places) {
@@ -230,7 +230,9 @@ std::filesystem::path find_model_file(const Experiment& experiment, const std::s
   if (experiment.vehicle.model == "rover5" || experiment.vehicle.model == "Dagu5") {
     if (const auto rover = file_of_a_board("rover5.urdf")) return *rover;
   }
-  return find_data_file(experiment, experiment.vehicle.model, "[vehicle] model");
+  std::string name = experiment.vehicle.model;
+  if (!std::filesystem::path(name).has_extension()) name += ".urdf";
+  return find_data_file(experiment, name, "[vehicle] model", "robots");
 }
 
 std::string experiment_key_table() {

@@ -81,10 +81,11 @@ CommandKey ground_key_of(const Experiment& experiment);
 int16_t algorithm_number(const std::string& name);
 
 /// Finds a file named in an experiment: as given when absolute, else beside the experiment file,
-/// else in the project's data folders. Throws InputError that lists where it looked.
+/// else in the folder `kind` of the project's data. Throws InputError that lists where it looked.
 std::filesystem::path find_data_file(const Experiment& experiment, const std::string& name,
-                                     const char* key);
-/// The URDF of [vehicle] model, on a robot with this board.
+                                     const char* key, const char* kind = "terrain");
+/// The URDF of [vehicle] model, on a robot with this board; a name without extension is one of the
+/// project's robots.
 std::filesystem::path find_model_file(const Experiment& experiment,
                                       const std::string& board = kDefaultBoard);
 

@@ -1,10 +1,10 @@
 // Out of an experiment's text.
 #include "host_sim/run/experiment/run_setup.h"
 
-#include <numbers>
+#include <system_error>
 
 #include "host_sim/core/ini_file.h"
-#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/robot_model.h"
 
 namespace screed {
 
@@ -17,6 +17,9 @@ RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder) 
   for (const IniEntry& entry : read_ini_text(info.experiment_text, "the session's experiment")) {
     const std::string name = entry.section + "." + entry.key;
     if (name == "vehicle.model") setup.experiment.vehicle.model = entry.value;
+    if (name == "vehicle.chassis_link") setup.experiment.vehicle.chassis_link = entry.value;
+    if (name == "vehicle.wheel_links") setup.experiment.vehicle.wheel_links = entry.value;
+    if (name == "vehicle.imu_link") setup.experiment.vehicle.imu_link = entry.value;
     if (name == "vehicle.tracks") setup.experiment.vehicle.tracks = entry.value == "true";
     if (name == "vehicle.leg_angle" && !entry.value.empty()) {
       setup.experiment.vehicle.leg_angle_deg = std::stod(entry.value);
@@ -33,11 +36,22 @@ RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder) 
 
 Assembly robot_model(const RunSetup& setup, const std::string& board,
                      const std::optional<std::filesystem::path>& file) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-  UrdfOptions urdf;
-  const auto& leg_angle_deg = setup.experiment.vehicle.leg_angle_deg;
-  if (leg_angle_deg) urdf.leg_angle_rad = *leg_angle_deg * kRadPerDeg;
-  return import_urdf(file ? *file : find_model_file(setup.experiment, board), urdf);
+  if (file) return make_robot_model(setup.experiment, board, file);
+  // Where the experiment's file lay is not recorded: most runs lie below that folder, or are looked
+  // at from it.
+  constexpr int kFoldersUp = 3;
+  std::error_code error;
+  Experiment experiment = setup.experiment;
+  std::filesystem::path folder = std::filesystem::absolute(experiment.folder, error);
+  for (int up = 0; up <= kFoldersUp + 1; ++up) {
+    if (up > kFoldersUp) folder = std::filesystem::current_path(error);
+    if (std::filesystem::is_regular_file(folder / experiment.vehicle.model, error)) {
+      experiment.folder = folder;
+      break;
+    }
+    folder = folder.parent_path();
+  }
+  return make_robot_model(experiment, board);
 }
 
 }  // namespace screed

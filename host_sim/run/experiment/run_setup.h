@@ -22,7 +22,8 @@ struct RunSetup {
 /// `folder`: where the run lies; files of its own are looked for there first.
 RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder);
 
-/// The run's robot, or the one of the file. Throws InputError.
+/// The run's robot, or the one of the file. A model that the experiment named by a file is looked
+/// for in the run's folder, in those above it and in the current one. Throws InputError.
 Assembly robot_model(const RunSetup& setup, const std::string& board,
                      const std::optional<std::filesystem::path>& file = std::nullopt);
 

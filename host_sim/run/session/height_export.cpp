@@ -111,6 +111,7 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
 
 std::vector<fs::path> export_pictures(const SessionReader& session, const FrameRange& range,
                                       std::uint64_t every, const fs::path& folder,
+                                      const std::optional<RobotShape>& shape,
                                       const TaskProgress& progress) {
   check(session, range, every);
   constexpr std::uint64_t kPathFrames = 10;
@@ -131,7 +132,7 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
     }
     const SimFrame& now = frames.back();
     next = frame + 1;
-    options.robot = RobotOutline{now.x, now.y, now.yaw};
+    if (shape) options.robot = RobotOutline{now.x, now.y, now.yaw, *shape};
     options.title = session.info().experiment_name + ": frame " + std::to_string(frame);
     files.push_back(numbered(folder, "picture", frame));
     write_height_map_picture(files.back(), field_of(map), options);

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "host_sim/core/task_progress.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/run/session/csv_export.h"
 #include "host_sim/run/session/session_reader.h"
 
@@ -36,10 +38,12 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
                                 std::uint64_t every, const std::filesystem::path& folder,
                                 const TaskProgress& progress = {});
 
-/// Writes the same frames as shaded pictures with path and robot, folder/picture_NNNNNN.png.
-/// Reports the task "exporting pictures".
+/// Writes the same frames as shaded pictures with path and robot (without a shape the path's end
+/// stands for it), folder/picture_NNNNNN.png. Reports the task "exporting pictures".
 std::vector<std::filesystem::path> export_pictures(const SessionReader& session,
                                                    const FrameRange& range, std::uint64_t every,
-                                                   const std::filesystem::path& folder);
+                                                   const std::filesystem::path& folder,
+                                                   const std::optional<RobotShape>& shape,
+                                                   const TaskProgress& progress = {});
 
 }  // namespace screed

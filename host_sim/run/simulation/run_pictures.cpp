@@ -32,7 +32,7 @@ std::vector<std::string> make_legend(std::vector<PathPoint>& path) {
 
 void write_run_pictures(const std::filesystem::path& folder, const Experiment& experiment,
                         const RunSurfaces& terrain, const Environment& plant,
-                        std::vector<PathPoint> path) {
+                        std::vector<PathPoint> path, const RobotShape& shape) {
   const std::string& name = experiment.experiment.name;
   const std::string run =
       std::to_string(std::lround(plant.time_s())) + " s of " + experiment.experiment.algorithm;
@@ -51,7 +51,7 @@ void write_run_pictures(const std::filesystem::path& folder, const Experiment& e
   options.path = std::move(path);
   const ChassisState chassis = plant.vehicle().chassis();
   options.robot = RobotOutline{chassis.pose.translation().x(), chassis.pose.translation().y(),
-                               attitude_of(chassis.pose.linear()).heading};
+                               attitude_of(chassis.pose.linear()).heading, shape};
   write_height_map_picture(folder / "terrain_after.png", terrain.after, options);
 }
 

@@ -6,6 +6,8 @@
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/arming.h"
+#include "host_sim/render/picture/robot_shape.h"
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/run_files.h"
 #include "host_sim/run/simulation/run_loop.h"
@@ -107,6 +109,8 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   TelemetryLog telemetry;
   RunWorld world(experiment, options, &telemetry.stream());
   const Environment& plant = world.plant();
+  const RobotShape shape =
+      shape_of(make_robot_model(experiment, options.board), experiment.vehicle.tracks);
 
   RunFiles files(experiment, options);
   telemetry.open(files.telemetry_log());
@@ -144,7 +148,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   try {
     files.write_summary(summary_json(summary));
     if (options.table) files.write_table();
-    write_run_pictures(files.folder(), experiment, surfaces, plant, recorder.path());
+    write_run_pictures(files.folder(), experiment, surfaces, plant, recorder.path(), shape);
   } catch (const RunError& error) {
     // What took the time is saved, and can be exported again where there is room.
     files.commit();

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "host_sim/physics/terrain/grey_image.h"
-#include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/experiment/trap.h"
 
 namespace screed {
@@ -147,13 +147,6 @@ HeightField make_terrain(const Experiment& experiment) {
   HeightField field = untrapped_terrain(experiment);
   set_trap(experiment, field);
   return field;
-}
-
-Assembly make_robot_model(const Experiment& experiment, const std::string& board) {
-  UrdfOptions urdf;
-  if (experiment.vehicle.leg_angle_deg.has_value())
-    urdf.leg_angle_rad = *experiment.vehicle.leg_angle_deg * kRadPerDeg;
-  return import_urdf(find_model_file(experiment, board), urdf);
 }
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,

@@ -1,4 +1,4 @@
-// What an experiment drives in: its soil, terrain and robot, and the world made of them.
+// What an experiment drives in: its soil and terrain, and the world made of them.
 #pragma once
 
 #include <functional>
@@ -37,8 +37,6 @@ SoilParameters make_soil(const Experiment& experiment);
 ParticleOptions make_particles(const Experiment& experiment);
 /// The terrain an experiment asks for; the surface that particles are laid up to.
 HeightField make_terrain(const Experiment& experiment);
-/// The robot of an experiment, on a board of boards/. Throws InputError.
-Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard);
 /// A world as the experiment describes it. telemetry_log may be null. Throws InputError, and what
 /// setup.progress throws.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,

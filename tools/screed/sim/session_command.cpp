@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/csv_export.h"
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/run_folder.h"
@@ -182,6 +183,17 @@ class ExportFolders {
   std::vector<fs::path> made_;
 };
 
+/// The robot of a recorded run; none, and a note, when its model is gone by now.
+std::optional<RobotShape> shape_of_run(const SessionReader& session, const fs::path& file) {
+  const RunSetup setup = setup_of(session.info(), fs::absolute(file).parent_path());
+  try {
+    return shape_of(robot_model(setup, session.info().board_name), setup.experiment.vehicle.tracks);
+  } catch (const InputError& error) {
+    std::cerr << "note: the pictures are without the robot: " << error.what() << "\n";
+    return std::nullopt;
+  }
+}
+
 int run_export(const ExportArguments& arguments) {
   if (!arguments.csv && !arguments.heights && !arguments.pictures) {
     throw InputError("session export: say what: --csv, --heights, --pictures or several of them");
@@ -220,7 +232,8 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.pictures) {
     const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
     const auto files = export_pictures(session, range, arguments.every.value_or(tenth),
-                                       folders.make(out / "pictures"), bar.progress());
+                                       folders.make(out / "pictures"), shape_of_run(session, file),
+                                       bar.progress());
     bar.clear();
     std::printf("%s: %zu pictures\n", (out / "pictures").c_str(), files.size());
   }

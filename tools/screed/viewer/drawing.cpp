@@ -125,7 +125,7 @@ void Drawing::draw_robot(const Scene& scene) {
     return scene.camera.to_pixel(scene.robot.x_m + cosine * x - sine * y,
                                  scene.robot.y_m + sine * x + cosine * y);
   };
-  const auto corners = [&](const Plate& p, double by) {
+  const auto corners = [&](const RobotPlate& p, double by) {
     return std::array<Pixel, 4>{
         {pixel(p.back - by, p.right - by), pixel(p.front + by, p.right - by),
          pixel(p.front + by, p.left + by), pixel(p.back - by, p.left + by)}};
@@ -134,14 +134,14 @@ void Drawing::draw_robot(const Scene& scene) {
   const double line_m = 1.0 / scene.camera.scale();
   // A light rim, so that the robot stands out from dark ground.
   canvas_.polygon(corners(shape.hull, 2.5 * line_m), kCasing);
-  for (const Plate& gear : shape.running_gear) {
+  for (const RobotPlate& gear : shape.running_gear) {
     canvas_.polygon(corners(gear, 2.5 * line_m), kCasing);
   }
   canvas_.polygon(corners(shape.hull, 0.0), kHull);
   canvas_.polygon_outline(corners(shape.hull, 0.0), 1.5, kInk);
   const bool lugs_are_seen = kLugPitch_m * scene.camera.scale() > 3.0;
   for (size_t i = 0; i < shape.running_gear.size(); ++i) {
-    const Plate& gear = shape.running_gear[i];
+    const RobotPlate& gear = shape.running_gear[i];
     canvas_.polygon(corners(gear, 0.0), kRubber);
     if (!lugs_are_seen) continue;
     const double travel =
@@ -156,7 +156,7 @@ void Drawing::draw_robot(const Scene& scene) {
       canvas_.line(lug, std::max(1.0, 0.0028 * scene.camera.scale()), kLug);
     }
   }
-  const Plate& h = shape.hull;
+  const RobotPlate& h = shape.hull;
   const double middle = 0.5 * (h.left + h.right);
   const double half = 0.34 * (h.left - h.right);
   const double nose = h.front - 0.12 * (h.front - h.back);

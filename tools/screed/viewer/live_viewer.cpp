@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "hal/sample.h"
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/simulation/simulation.h"
 #include "tools/screed/cli/interrupt.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/render/picture/robot_shape.h"
 #include "tools/screed/viewer/camera.h"
 #include "tools/screed/viewer/pixel_drawing.h"
-#include "tools/screed/viewer/robot_shape.h"
 #include "tools/screed/viewer/slope_statistics.h"
 #include "tools/screed/viewer/terrain_image.h"
 

@@ -1,7 +1,8 @@
-// Triangle meshes from OBJ and STL files: Assimp reads, this file welds vertices and refuses what
-// is no mesh.
+// Triangle meshes from OBJ, STL and Collada files: Assimp reads, this file welds vertices and
+// refuses what is no mesh.
 #include "host_sim/physics/vehicle/urdf/mesh_loader.h"
 
+#include <assimp/config.h>
 #include <assimp/mesh.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -49,19 +50,53 @@ bool has_area(const TriangleMesh& mesh, const std::array<int, 3>& corners) {
   return (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).squaredNorm() > 0.0;
 }
 
+void add_part(const aiMesh& part, const aiMatrix4x4& frame, const Eigen::Vector3d& scale,
+              const std::string& where, TriangleMesh& mesh, Welder& welder) {
+  for (unsigned int f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
+    if (face.mNumIndices != 3) continue;  // a loose point or line
+    std::array<int, 3> corners{};
+    for (unsigned int k = 0; k < 3; ++k) {
+      const aiVector3D v = frame * part.mVertices[face.mIndices[k]];
+      const Eigen::Vector3d vertex =
+          Eigen::Vector3f(v.x, v.y, v.z).cast<double>().cwiseProduct(scale);
+      if (!vertex.allFinite()) {
+        throw InputError(where + ": a vertex is not finite");
+      }
+      corners[k] = welder.index_of(vertex);
+    }
+    if (has_area(mesh, corners)) mesh.triangles.push_back(corners);
+  }
+}
+
+/// The parts of a node and those below it, which have their frames in it.
+void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent,
+              const Eigen::Vector3d& scale, const std::string& where, TriangleMesh& mesh,
+              Welder& welder) {
+  const aiMatrix4x4 frame = parent * node.mTransformation;
+  for (unsigned int m = 0; m < node.mNumMeshes; ++m) {
+    add_part(*scene.mMeshes[node.mMeshes[m]], frame, scale, where, mesh, welder);
+  }
+  for (unsigned int c = 0; c < node.mNumChildren; ++c) {
+    add_node(scene, *node.mChildren[c], frame, scale, where, mesh, welder);
+  }
+}
+
 }  // namespace
 
 TriangleMesh load_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale) {
   const std::string where = "mesh file '" + file.string() + "'";
   const std::string extension = lower_case_extension(file);
-  if (extension != ".obj" && extension != ".stl") {
-    throw InputError(where + ": this format is not supported; allowed: .obj, .stl");
+  if (extension != ".obj" && extension != ".stl" && extension != ".dae") {
+    throw InputError(where + ": this format is not supported; allowed: .obj, .stl, .dae");
   }
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError(where + " does not exist or is not a file");
   }
   Assimp::Importer importer;
+  // The axes of a mesh are those of its link, whatever a Collada file calls up: ROS's rule.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   if (scene == nullptr) {
     throw InputError(where + " cannot be read: " + importer.GetErrorString());
@@ -69,24 +104,7 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const Eigen::Vector3d&
 
   TriangleMesh mesh;
   Welder welder(mesh);
-  for (unsigned int m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& part = *scene->mMeshes[m];
-    for (unsigned int f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // a loose point or line
-      std::array<int, 3> corners{};
-      for (unsigned int k = 0; k < 3; ++k) {
-        const aiVector3D& v = part.mVertices[face.mIndices[k]];
-        const Eigen::Vector3d vertex =
-            Eigen::Vector3f(v.x, v.y, v.z).cast<double>().cwiseProduct(scale);
-        if (!vertex.allFinite()) {
-          throw InputError(where + ": a vertex is not finite");
-        }
-        corners[k] = welder.index_of(vertex);
-      }
-      if (has_area(mesh, corners)) mesh.triangles.push_back(corners);
-    }
-  }
+  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), scale, where, mesh, welder);
   if (mesh.triangles.empty()) throw InputError(where + " contains no triangle");
   return mesh;
 }

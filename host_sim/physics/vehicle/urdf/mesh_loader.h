@@ -1,4 +1,4 @@
-// Triangle meshes from OBJ and STL files, read by Assimp. Knows nothing of robots.
+// Triangle meshes from OBJ, STL and Collada files, read by Assimp. Knows nothing of robots.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,8 @@
 
 namespace screed {
 
-/// Reads a Wavefront OBJ or an STL file (ASCII or binary) and multiplies every vertex by `scale`,
+/// Reads a Wavefront OBJ, an STL (ASCII or binary) or a Collada file (.dae, in the unit that it
+/// states; its "up" does not count) and multiplies every vertex by `scale`,
 /// axis by axis (each > 0). Polygons become triangles, equal vertices become one, triangles without
 /// area, loose points and lines are dropped. Coordinates pass through Assimp as 32-bit floats.
 /// Throws InputError: no such file, another format, unreadable, no triangle in it, a coordinate

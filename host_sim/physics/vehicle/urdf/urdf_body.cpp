@@ -14,13 +14,24 @@ namespace {
 // A thin plate has I1 + I2 = I3 but for the last digits.
 constexpr double kRelativeInertiaTolerance = 1e-6;
 
-// "package://robot/meshes/a.obj" means meshes/a.obj beside the URDF file, like a plain
-// "meshes/a.obj".
+// Where a mesh of this name lies. "package://robot/meshes/a.obj" is meshes/a.obj beside the URDF
+// file or in a folder above it, since a ROS package has its models in a folder of their own.
 std::filesystem::path mesh_path(const std::filesystem::path& urdf_file, std::string name) {
   constexpr std::string_view kPackage = "package://";
-  if (name.starts_with(kPackage)) {
-    const std::size_t slash = name.find('/', kPackage.size());
-    name.erase(0, slash == std::string::npos ? kPackage.size() : slash + 1);
+  constexpr std::string_view kFile = "file://";
+  constexpr int kFoldersUp = 4;
+  if (name.starts_with(kFile)) return name.substr(kFile.size());
+  if (!name.starts_with(kPackage)) return urdf_file.parent_path() / name;
+  const std::size_t slash = name.find('/', kPackage.size());
+  const std::string package = name.substr(kPackage.size(), slash - kPackage.size());
+  name.erase(0, slash == std::string::npos ? kPackage.size() : slash + 1);
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::absolute(urdf_file, error).parent_path();
+  for (int up = 0; up <= kFoldersUp; ++up) {
+    for (const std::filesystem::path& place : {folder / name, folder / package / name}) {
+      if (std::filesystem::is_regular_file(place, error)) return place;
+    }
+    folder = folder.parent_path();
   }
   return urdf_file.parent_path() / name;
 }
@@ -35,6 +46,8 @@ Shape to_shape(const urdf::Pose& origin, const urdf::Geometry& geometry,
   } else if (geometry.type == urdf::Geometry::CYLINDER) {
     const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(geometry);
     shape.geometry = Cylinder{cylinder.radius, cylinder.length};
+  } else if (geometry.type == urdf::Geometry::SPHERE) {
+    shape.geometry = Sphere{dynamic_cast<const urdf::Sphere&>(geometry).radius};
   } else {
     const auto& mesh = dynamic_cast<const urdf::Mesh&>(geometry);
     try {

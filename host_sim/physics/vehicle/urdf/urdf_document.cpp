@@ -14,9 +14,6 @@
 namespace screed::urdf_parts {
 namespace {
 
-constexpr std::array<const char*, 5> kRequiredLinks = {"Body", "fl_Wheel", "fr_Wheel", "bl_Wheel",
-                                                       "br_Wheel"};
-
 // TinyXML recurses; URDF itself nests six deep.
 constexpr int kDeepestNesting = 100;
 
@@ -95,6 +92,22 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
+// A macro file (xacro) is XML too, and its expressions would only be seen as wrong numbers.
+const TiXmlElement* find_macro(const TiXmlElement& element) {
+  if (element.ValueStr().starts_with("xacro:")) return &element;
+  for (const TiXmlAttribute* one = element.FirstAttribute(); one != nullptr; one = one->Next()) {
+    const std::string& value = one->ValueStr();
+    if (value.find("${") != std::string::npos || value.find("$(") != std::string::npos) {
+      return &element;
+    }
+  }
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    if (const TiXmlElement* macro = find_macro(*child)) return macro;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 void parse_xml(const std::filesystem::path& file, const Diagnostic& diagnostic,
@@ -118,6 +131,12 @@ void parse_xml(const std::filesystem::path& file, const Diagnostic& diagnostic,
   const TiXmlElement* root = xml.RootElement();
   if (root == nullptr || root->ValueStr() != "robot") {
     diagnostic.about_file("not a URDF file: the outermost element must be <robot>");
+  }
+  if (const TiXmlElement* macro = find_macro(*root)) {
+    diagnostic.at_row(
+        macro->Row(),
+        "<" + macro->ValueStr() + "> is xacro, which has to be expanded to URDF first: xacro " +
+            file.filename().string() + " > expanded.urdf (ROS, or pip install xacro)");
   }
   if (root->NextSiblingElement() != nullptr) {
     diagnostic.at_row(root->NextSiblingElement()->Row(), "nothing may follow </robot>");
@@ -157,6 +176,7 @@ constexpr NumberRule kNumberRules[] = {
     {"origin", "rpy", 3, Sign::Any, false},
     {"axis", "xyz", 3, Sign::Any, true},
     {"box", "size", 3, Sign::Positive, true},
+    {"sphere", "radius", 1, Sign::Positive, true},
     {"cylinder", "radius", 1, Sign::Positive, true},
     {"cylinder", "length", 1, Sign::Positive, true},
     {"mesh", "scale", 3, Sign::Positive, false},
@@ -204,13 +224,13 @@ void check_shape(const TiXmlElement& element, const Diagnostic& diagnostic) {
   const TiXmlElement* geometry = element.FirstChildElement("geometry");
   const TiXmlElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
   if (shape == nullptr) {
-    diagnostic.at_element(
-        element, "<" + element.ValueStr() + "> needs a <geometry> with a box, cylinder or mesh");
+    diagnostic.at_element(element, "<" + element.ValueStr() +
+                                       "> needs a <geometry> with a box, cylinder, sphere or mesh");
   }
   const std::string& kind = shape->ValueStr();
-  if (kind != "box" && kind != "cylinder" && kind != "mesh") {
-    diagnostic.at_element(*shape,
-                          "geometry <" + kind + "> is not supported; allowed: box, cylinder, mesh");
+  if (kind != "box" && kind != "cylinder" && kind != "sphere" && kind != "mesh") {
+    diagnostic.at_element(
+        *shape, "geometry <" + kind + "> is not supported; allowed: box, cylinder, sphere, mesh");
   }
   if (kind == "mesh" && attribute(*shape, "filename").empty()) {
     diagnostic.at_element(*shape, "<mesh> needs 'filename'");
@@ -287,15 +307,7 @@ Outline read_outline(const TiXmlElement& robot, const Diagnostic& diagnostic) {
   read_items(robot, "link", diagnostic, outline.links);
   read_items(robot, "joint", diagnostic, outline.joints);
 
-  for (const char* name : kRequiredLinks) {
-    if (index_of(outline.links, name) >= 0) continue;
-    std::string all;
-    for (const char* required : kRequiredLinks) {
-      all += (all.empty() ? "" : ", ") + std::string(required);
-    }
-    diagnostic.about_file("there is no link named " + in_quotes(name) +
-                          "; a robot needs exactly one link each named " + all);
-  }
+  if (outline.links.empty()) diagnostic.about_file("there is no <link>: a robot has some");
   for (std::size_t j = 0; j < outline.joints.size(); ++j) {
     JointElement& joint = outline.joints[j];
     joint.type = attribute(*joint.xml, "type");

@@ -66,11 +66,11 @@ class Diagnostic {
   std::filesystem::path file_;
 };
 
-/// Reads the file and refuses what is no URDF text.
+/// Reads the file and refuses what is no URDF text, and xacro.
 void parse_xml(const std::filesystem::path& file, const Diagnostic& diagnostic, TiXmlDocument& xml);
 /// Checks every number and shape below a link or a joint.
 void check_values(const TiXmlElement& parent, const Diagnostic& diagnostic);
-/// Links and joints of the robot, with the names that a robot needs.
+/// Links and joints of the robot, at least one link.
 Outline read_outline(const TiXmlElement& robot, const Diagnostic& diagnostic);
 /// Refuses cycles and a second root.
 void check_tree(const Outline& outline, const Diagnostic& diagnostic);

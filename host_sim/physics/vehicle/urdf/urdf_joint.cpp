@@ -76,7 +76,7 @@ void hold(JointData& joint, const JointElement& element, double angle_rad,
   joint.held_at_rad = angle_rad;
 }
 
-std::vector<Eigen::Isometry3d> link_poses(const Outline& outline,
+std::vector<Eigen::Isometry3d> link_poses(const Outline& outline, int chassis,
                                           const std::vector<JointData>& joints) {
   const auto pose_in_urdf_root = [&](int link) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -89,18 +89,18 @@ std::vector<Eigen::Isometry3d> link_poses(const Outline& outline,
     }
     return pose;
   };
-  const Eigen::Isometry3d to_body = pose_in_urdf_root(index_of(outline.links, "Body")).inverse();
+  const Eigen::Isometry3d to_chassis = pose_in_urdf_root(chassis).inverse();
   std::vector<Eigen::Isometry3d> poses;
   for (std::size_t i = 0; i < outline.links.size(); ++i) {
-    poses.push_back(to_body * pose_in_urdf_root(static_cast<int>(i)));
+    poses.push_back(to_chassis * pose_in_urdf_root(static_cast<int>(i)));
   }
   return poses;
 }
 
-void set_leg_angle(double angle_rad, const Outline& outline, std::vector<JointData>& joints,
-                   const Diagnostic& diagnostic) {
+void set_leg_angle(double angle_rad, const Outline& outline, int chassis,
+                   std::vector<JointData>& joints, const Diagnostic& diagnostic) {
   if (!std::isfinite(angle_rad)) diagnostic.about_file("the leg angle is not finite");
-  const std::vector<Eigen::Isometry3d> poses = link_poses(outline, joints);
+  const std::vector<Eigen::Isometry3d> poses = link_poses(outline, chassis, joints);
   for (const std::string_view corner : {"fl_", "fr_", "bl_", "br_"}) {
     const std::string name = std::string(corner) + "Leg_joint";
     const int index = index_of(outline.joints, name);
@@ -113,13 +113,18 @@ void set_leg_angle(double angle_rad, const Outline& outline, std::vector<JointDa
     const Eigen::Isometry3d& leg = poses[at(element.child)];
     const double axis_y = joint.axis ? (leg.linear() * *joint.axis).y() : 0.0;
     if (element.type != "fixed" || std::abs(axis_y) < 1.0 - 1e-9) {
-      diagnostic.at_element(*element.xml,
-                            "the leg angle needs a fixed joint with an <axis> along y of 'Body'");
+      diagnostic.at_element(
+          *element.xml, "the leg angle needs a fixed joint with an <axis> along y of the chassis");
     }
     if (joint.held_at_rad) {
       diagnostic.at_element(*element.xml, "is set both by the leg angle and by its own angle");
     }
-    const int wheel = index_of(outline.links, std::string(corner) + "Wheel");
+    const std::string wheel_name = std::string(corner) + "Wheel";
+    const int wheel = index_of(outline.links, wheel_name);
+    if (wheel < 0) {
+      diagnostic.about_file("the leg angle cannot be set: there is no link named " +
+                            in_quotes(wheel_name));
+    }
     const Eigen::Vector3d reach = poses[at(wheel)].translation() - leg.translation();
     // A turn about +y moves +x towards -z: it lowers the end of a leg that points forward and lifts
     // one that points back.

@@ -31,10 +31,10 @@ JointData to_joint(const JointElement& element, const urdf::Joint& joint,
 void hold(JointData& joint, const JointElement& element, double angle_rad,
           const Diagnostic& diagnostic);
 /// As UrdfOptions::leg_angle_rad says.
-void set_leg_angle(double angle_rad, const Outline& outline, std::vector<JointData>& joints,
-                   const Diagnostic& diagnostic);
-/// Poses of all links in the frame of `Body`.
-std::vector<Eigen::Isometry3d> link_poses(const Outline& outline,
+void set_leg_angle(double angle_rad, const Outline& outline, int chassis,
+                   std::vector<JointData>& joints, const Diagnostic& diagnostic);
+/// Poses of all links in the frame of the chassis.
+std::vector<Eigen::Isometry3d> link_poses(const Outline& outline, int chassis,
                                           const std::vector<JointData>& joints);
 
 }  // namespace screed::urdf_parts

@@ -1,10 +1,21 @@
 // [vehicle] of an experiment file: the robot, and where it starts.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace screed {
+
+/// Names separated by blanks or commas.
+inline std::vector<std::string> names_in(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
 
 struct VehicleSection {
   bool tracks = true;
@@ -12,6 +23,9 @@ struct VehicleSection {
   int track_links = 0;
   double track_tension_n = 10.0;
   std::string model = "board";
+  std::string chassis_link;
+  std::string wheel_links;  ///< four names, separated by blanks or commas
+  std::string imu_link;
   double x_m = 0.0;
   double y_m = 0.0;
   std::optional<double> z_m;
@@ -33,9 +47,18 @@ struct VehicleSection {
                  &V::track_links);
     keys.real("track_tension", "N", 1, 50, "track_model chain: tension of the chain at rest",
               &V::track_tension_n);
-    keys.text("model", "a URDF file, rover5 or board",
-              "the robot; board: the one the board is built into", &V::model,
-              [](const std::string& text) { return !text.empty(); });
+    const auto named = [](const std::string& text) { return !text.empty(); };
+    keys.text("model", "a URDF file, rover5, four_wheels or board",
+              "the robot; board: the one the board is built into", &V::model, named);
+    keys.text("chassis_link", "a link of the model",
+              "the chassis; left out: Body, base_link or the root", &V::chassis_link, named);
+    keys.text("wheel_links",
+              "four links of the model: front left, front right, rear left, rear right",
+              "the wheels; left out: found by their names and places", &V::wheel_links,
+              [](const std::string& text) { return names_in(text).size() == 4; });
+    keys.text("imu_link", "a link of the model fixed to the chassis",
+              "where the IMU is; left out: Imu, imu_link or the origin of the chassis",
+              &V::imu_link, named);
     keys.real("x", "m", -500, 500, "start position, east", &V::x_m);
     keys.real("y", "m", -500, 500, "start position, north", &V::y_m);
     keys.real("z", "m", -200, 200, "start height of the chassis; left out: resting on the terrain",

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/height_export.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/rollout.h"

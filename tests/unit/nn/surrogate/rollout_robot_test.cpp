@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/world/world_setup.h"
 #include "tests/unit/host_sim/run/rover5_plant.h"
 #include "tests/unit/nn/surrogate/surrogate_session.h"

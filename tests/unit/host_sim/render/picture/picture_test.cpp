@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string>
 
 #include "host_sim/core/errors.h"
@@ -28,6 +29,14 @@ class PictureTest : public ::testing::Test {
   fs::path folder_ = temporary_.path();
 };
 
+RobotShape tracked_robot() {
+  RobotShape shape;
+  shape.hull = {-0.11, 0.11, -0.09, 0.09};
+  shape.running_gear = {{-0.12, 0.12, 0.08, 0.11}, {-0.12, 0.12, -0.11, -0.08}};
+  shape.left_gear = 1;
+  return shape;
+}
+
 PictureOptions small_picture() {
   PictureOptions options;
   options.width_px = 800;
@@ -35,7 +44,7 @@ PictureOptions small_picture() {
   options.title = "Test";
   options.state_names = {"drive", "turn"};
   options.path = {{-0.5, -0.5, 0}, {0.0, 0.0, 1}, {0.5, 0.2, 1}};
-  options.robot = RobotOutline{0.5, 0.2, 0.3};
+  options.robot = RobotOutline{0.5, 0.2, 0.3, tracked_robot()};
   return options;
 }
 
@@ -200,6 +209,34 @@ TEST(PathOverlayTest, AJumpOverTheSeamIsDrawnOnlyWithoutWrap) {
     draw_path_overlay(canvas, frame, wrap, options);
     EXPECT_EQ(pixel(canvas, frame.to_pixel(0.0, 0.0)).blue < 0.5, !wrap);
     EXPECT_LT(pixel(canvas, frame.to_pixel(-0.82, 0.0)).blue, 0.5);
+  }
+}
+
+// Between the wheels of a side is ground, between the axles of a track is the track.
+TEST(PathOverlayTest, AWheeledRobotHasWheelsAndATrackedOneTracks) {
+  Assembly model;
+  for (const std::size_t side : {0U, 1U}) {
+    const double y = side == 0 ? 0.3 : -0.3;
+    model.wheels[side][0] = {0, {0.25, y, 0.0}, 0.1, 0.08, ""};
+    model.wheels[side][1] = {0, {-0.25, y, 0.0}, 0.1, 0.08, ""};
+  }
+  for (const bool tracks : {false, true}) {
+    PictureOptions options;
+    options.robot = RobotOutline{0.1, 0.2, std::numbers::pi / 2.0, shape_of(model, tracks)};
+    Canvas canvas(800, 700, {0.0, 1.0, 0.0});
+    const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, 0.0);
+    draw_path_overlay(canvas, frame, false, options);
+    // The robot looks north: its left is west.
+    for (const double west : {-0.3, 0.3}) {
+      for (const double north : {-0.25, 0.25}) {
+        EXPECT_LT(pixel(canvas, frame.to_pixel(0.1 + west, 0.2 + north)).green, 0.3);
+      }
+      const Color between = pixel(canvas, frame.to_pixel(0.1 + west, 0.2));
+      EXPECT_EQ(between.green < 0.3, tracks);
+      EXPECT_EQ(between.red < 0.01 && between.green > 0.99, !tracks) << "the ground";
+    }
+    EXPECT_LT(pixel(canvas, frame.to_pixel(0.1 + 0.3, 0.2 + 0.34)).green, 0.3) << "radius";
+    EXPECT_GT(pixel(canvas, frame.to_pixel(0.1 + 0.3, 0.2 + 0.37)).green, 0.9);
   }
 }
 

@@ -183,12 +183,6 @@ TEST_F(RobotScene, TurnsItsWheelsAsFarAsTheyHaveRolled) {
   EXPECT_EQ(count(text, "rotate y*0.000 translate x*"), 2u);
 }
 
-TEST_F(RobotScene, RefusesAModelWithoutWheels) {
-  Assembly robot = robot_;
-  robot.bodies[static_cast<size_t>(robot.body_index("fl_Wheel"))].name = "Ornament";
-  EXPECT_THROW(robot_text(robot, true, {}), InputError);
-}
-
 TEST(Povray, WritesPngAndJpgOnly) {
   EXPECT_NO_THROW(check_picture_name("a.png"));
   EXPECT_NO_THROW(check_picture_name("a.b/c.jpg"));

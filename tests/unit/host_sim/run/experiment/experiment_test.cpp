@@ -115,6 +115,7 @@ std::vector<std::string> good_values(const Row& row) {
     return {"drive", "spin_on_peak"};  // training_drive needs frames: below
   if (row.key == "model" && row.section == "map") return {"rigid", "scm"};
   if (row.key == "track_model") return {"chain"};
+  if (row.key == "wheel_links") return {"a b c d", "a, b, c, d"};
   if (row.section == "radio" && row.key == "key") {
     return {"none", "0123456789abcdef0123456789ABCDEF 200"};
   }
@@ -179,6 +180,7 @@ TEST_F(ExperimentFile, ValuesBeyondTheirEndsAreRefused) {
     if (row.allowed.rfind("an integer", 0) == 0) bad.insert(bad.end(), {"1.5", "99999"});
     if (row.key == "seed") bad.erase(std::find(bad.begin(), bad.end(), "99999"));
     if (row.key == "algorithm") bad.insert(bad.end(), {"1", "Random", "Drive"});
+    if (row.key == "wheel_links") bad.insert(bad.end(), {"a b c", "a b c d e", ",,,"});
     if (row.key == "name") bad.insert(bad.end(), {"a/b", "..", "a b", std::string(65, 'a')});
     for (const std::string& value : bad) {
       const std::string message = error_message(file_with(row, value));

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "tests/ros_robot.h"
+#include "tests/temp_folder.h"
 
 namespace screed {
 namespace {
@@ -56,14 +59,28 @@ INSTANTIATE_TEST_SUITE_P(Formats, UnitCube,
                          ::testing::Values("unit_cube.obj", "unit_cube.stl",
                                            "unit_cube_binary.stl"));
 
+// In the file's unit and with its nodes' frames; "up" is that of the link.
+TEST(Mesh, ColladaIsInMetresAndKeepsItsAxes) {
+  const TempFolder folder;
+  write_text(folder.path() / "square.dae", testing::square_dae());
+  const TriangleMesh mesh = load_mesh(folder.path() / "square.dae", Eigen::Vector3d::Ones());
+  ASSERT_EQ(mesh.vertices.size(), 4U);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    EXPECT_NEAR(std::abs(vertex.x()), 0.001, 1e-9);
+    EXPECT_NEAR(std::abs(vertex.y()), 0.001, 1e-9);
+    EXPECT_NEAR(vertex.z(), 0.005, 1e-9);
+  }
+}
+
 TEST(Mesh, MissingFileIsNamed) {
   EXPECT_EQ(error_of("tests/data/urdf/gone.stl"),
             "mesh file 'tests/data/urdf/gone.stl' does not exist or is not a file");
 }
 
 TEST(Mesh, OtherFormatIsRefusedWithTheAllowedOnes) {
-  EXPECT_EQ(error_of("robot.dae"),
-            "mesh file 'robot.dae': this format is not supported; allowed: .obj, .stl");
+  EXPECT_EQ(error_of("robot.ply"),
+            "mesh file 'robot.ply': this format is not supported; allowed: .obj, .stl, .dae");
 }
 
 TEST(Mesh, EmptyFileIsRefused) {

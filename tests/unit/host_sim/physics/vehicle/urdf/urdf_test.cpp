@@ -145,15 +145,18 @@ TEST(Urdf, VelocityLimitOfOneMakesAMotor) {
 }
 
 TEST(Urdf, AxisBecomesUnitLengthInTheFrameOfBody) {
-  const Assembly robot =
-      import_urdf(write(small_with("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 3 -4\"/>")));
-  EXPECT_TRUE(joint(robot, "fl_Wheel_joint").axis.isApprox(Eigen::Vector3d(0.0, 0.6, -0.8), 1e-12));
-  const Assembly turned =
-      import_urdf(write(small_with("<origin xyz=\"0.2 0.15 0\"/>",
-                                   "<origin xyz=\"0.2 0.15 0\" rpy=\"0 0 1.5707963267948966\"/>")));
-  EXPECT_TRUE(joint(turned, "fl_Wheel_joint").axis.isApprox(-Eigen::Vector3d::UnitX(), 1e-12));
-  const Assembly without = import_urdf(write(small_with("<axis xyz=\"0 1 0\"/>", "")));
-  EXPECT_EQ(joint(without, "fl_Wheel_joint").axis, Eigen::Vector3d::UnitX());
+  const auto box_joint = [](const std::string& inside) {
+    std::string text = small_with("<joint name=\"Box_joint\" type=\"fixed\">",
+                                  "<joint name=\"Box_joint\" type=\"continuous\">");
+    const std::string origin = "<origin xyz=\"0 0 0.1\"/>";
+    text.replace(text.find(origin), origin.size(), inside);
+    return joint(import_urdf(write(text)), "Box_joint");
+  };
+  EXPECT_TRUE(box_joint("<origin xyz=\"0 0 0.1\"/><axis xyz=\"0 3 -4\"/>")
+                  .axis.isApprox(Eigen::Vector3d(0.0, 0.6, -0.8), 1e-12));
+  EXPECT_TRUE(box_joint("<origin rpy=\"0 0 1.5707963267948966\"/><axis xyz=\"0 1 0\"/>")
+                  .axis.isApprox(-Eigen::Vector3d::UnitX(), 1e-12));
+  EXPECT_EQ(box_joint("").axis, Eigen::Vector3d::UnitX());
 }
 
 TEST(Urdf, RigidGroupsFollowFixedJointsBothWays) {

@@ -1,0 +1,19 @@
+// The robot of an experiment: its model file, and how that is read.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/experiment.h"
+
+namespace screed {
+
+/// The robot of [vehicle], on a board of boards/; or that of `file`, with the same roles and leg
+/// angle. Throws InputError.
+Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard,
+                          const std::optional<std::filesystem::path>& file = std::nullopt);
+
+}  // namespace screed

@@ -1,0 +1,246 @@
+// `screed model check`: what Screed finds in a robot model, and what is doubtful about it.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/core/gravity.h"
+#include "host_sim/physics/vehicle/model_report.h"
+#include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/experiment/robot_model.h"
+#include "tools/screed/cli/command.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kMilli = 1e3;
+constexpr const char* kCorners[2][2] = {{"front left", "rear left"}, {"front right", "rear right"}};
+
+struct Arguments {
+  std::string file;
+  std::string board = kDefaultBoard;
+  std::string chassis_link;
+  std::string wheel_links;
+  std::string imu_link;
+  bool json = false;
+};
+
+struct CheckedModel {
+  fs::path file;
+  Experiment experiment;
+  Assembly robot;
+  ModelReport report;
+};
+
+std::string fixed(double value, int decimals) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
+  return buffer;
+}
+
+/// A URDF file, an experiment that names one, or a robot that comes with Screed.
+CheckedModel read_model(const Arguments& arguments) {
+  CheckedModel model;
+  const fs::path given(arguments.file);
+  if (given.extension() == ".ini") {
+    model.experiment = read_experiment(given);
+    model.file = find_model_file(model.experiment, arguments.board);
+  } else if (given.has_extension() || given.has_parent_path()) {
+    model.file = given;
+  } else {
+    model.experiment.vehicle.model = arguments.file;
+    model.file = find_model_file(model.experiment, arguments.board);
+  }
+  VehicleSection& vehicle = model.experiment.vehicle;
+  if (!arguments.chassis_link.empty()) vehicle.chassis_link = arguments.chassis_link;
+  if (!arguments.imu_link.empty()) vehicle.imu_link = arguments.imu_link;
+  if (!arguments.wheel_links.empty()) {
+    if (names_in(arguments.wheel_links).size() != 4) {
+      throw InputError("--wheel-links = '" + arguments.wheel_links +
+                       "' is not allowed; expected four links of the model: front left, front "
+                       "right, rear left, rear right");
+    }
+    vehicle.wheel_links = arguments.wheel_links;
+  }
+  model.robot = make_robot_model(model.experiment, arguments.board, model.file);
+  model.report = report_model(model.robot);
+  return model;
+}
+
+bool is_driven(const Assembly& robot, const AssemblyWheel& wheel) {
+  return robot.joint_to(wheel.body)->kind == AssemblyJoint::Kind::Motor;
+}
+
+/// What the board's firmware and motors do not fit.
+void compare_with_board(const std::string& board, CheckedModel& model) {
+  constexpr double kTolerance = 0.05;
+  constexpr double kMinForceShare = 0.5;  // of the weight; steep slopes take that much
+  const BoardConstants& constants = board_constants_of(board);
+  const BoardMotor motor = board_motor(board);
+  std::vector<std::string>& warnings = model.report.warnings;
+  const double radius = model.robot.wheels[0][0].radius_m;
+  const double radius_of_board =
+      constants.count_um_q4 / 16.0 * 1e-6 * motor.counts_per_turn / (2.0 * std::numbers::pi);
+  if (std::abs(radius / radius_of_board - 1.0) > kTolerance) {
+    warnings.push_back(
+        "board " + board + " counts distance for wheels of " + fixed(kMilli * radius_of_board, 1) +
+        " mm: with " + fixed(kMilli * radius, 1) + " mm the robot drives " +
+        fixed(radius / radius_of_board, 2) + " times as far and as fast as its firmware reckons");
+  }
+  const double tread_of_board = constants.tread_mm / kMilli;
+  if (std::abs(model.report.tread_m / tread_of_board - 1.0) > kTolerance) {
+    warnings.push_back("board " + board + " steers for a tread of " +
+                       fixed(kMilli * tread_of_board, 0) + " mm; this one is " +
+                       fixed(kMilli * model.report.tread_m, 0) + " mm");
+  }
+  int motors = 0;
+  for (const auto& side : model.robot.wheels) {
+    for (const AssemblyWheel& wheel : side) motors += is_driven(model.robot, wheel) ? 1 : 0;
+  }
+  const double stall_a = constants.motor_nominal_mv / kMilli / motor.motor.resistance_ohm;
+  const double force = motors * motor.motor.torque_per_ampere() * stall_a / radius;
+  const double weight = model.report.mass_kg * kGravity_m_per_s2;
+  if (force < kMinForceShare * weight) {
+    warnings.push_back("board " + board + "'s motors push with " + fixed(force, 1) +
+                       " N at most, " + fixed(100.0 * force / weight, 0) +
+                       " % of the robot's weight: it stops on slopes");
+  }
+}
+
+Json list_of(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json describe(const CheckedModel& model) {
+  const ModelReport& r = model.report;
+  const auto name = [&](int body) { return model.robot.bodies[static_cast<size_t>(body)].name; };
+  Json json;
+  json["file"] = model.file.string();
+  json["robot"] = model.robot.name;
+  json["links"] = model.robot.bodies.size();
+  json["joints"] = model.robot.joints.size();
+  json["chassis"] = name(model.robot.chassis);
+  json["mass_kg"] = r.mass_kg;
+  json["centre_of_mass_m"] = list_of(r.centre);
+  json["inertia_kg_m2"] = {{"ixx", r.inertia(0, 0)}, {"iyy", r.inertia(1, 1)},
+                           {"izz", r.inertia(2, 2)}, {"ixy", r.inertia(0, 1)},
+                           {"ixz", r.inertia(0, 2)}, {"iyz", r.inertia(1, 2)}};
+  json["imu"] = {{"link", model.robot.imu < 0 ? Json(nullptr) : Json(name(model.robot.imu))},
+                 {"place_m", list_of(r.imu)}};
+  json["wheels"] = Json::array();
+  for (const size_t end : {0U, 1U}) {
+    for (const size_t side : {0U, 1U}) {
+      const AssemblyWheel& wheel = model.robot.wheels[side][end];
+      json["wheels"].push_back({{"corner", kCorners[side][end]},
+                                {"link", name(wheel.body)},
+                                {"joint", model.robot.joint_to(wheel.body)->name},
+                                {"radius_m", wheel.radius_m},
+                                {"width_m", wheel.width_m},
+                                {"centre_m", list_of(wheel.centre)},
+                                {"source", wheel.source},
+                                {"driven", is_driven(model.robot, wheel)}});
+    }
+  }
+  json["wheelbase_m"] = r.wheelbase_m;
+  json["tread_m"] = r.tread_m;
+  json["clearance_m"] = std::isfinite(r.clearance_m) ? Json(r.clearance_m) : Json(nullptr);
+  json["warnings"] = r.warnings;
+  return json;
+}
+
+void print_row(const char* what, const std::string& value) {
+  std::printf("%-16s%s\n", what, value.c_str());
+}
+
+std::string place(const Eigen::Vector3d& at) {
+  // Rounded before it is printed, and + 0.0: no "-0.0".
+  const Eigen::Vector3d mm = ((kMilli * 10.0 * at).array().round() / 10.0 + 0.0).matrix();
+  char buffer[96];
+  std::snprintf(buffer, sizeof buffer, "x %.1f, y %.1f, z %.1f mm", mm.x(), mm.y(), mm.z());
+  return buffer;
+}
+
+void print(const CheckedModel& model) {
+  const ModelReport& r = model.report;
+  const Assembly& robot = model.robot;
+  const auto name = [&](int body) { return robot.bodies[static_cast<size_t>(body)].name; };
+  std::printf("%s: robot '%s', %zu links, %zu joints\n\n", model.file.c_str(), robot.name.c_str(),
+              robot.bodies.size(), robot.joints.size());
+  print_row("chassis", name(robot.chassis));
+  print_row("mass", fixed(r.mass_kg, 3) + " kg, centre " + place(r.centre));
+  char inertia[96];
+  std::snprintf(inertia, sizeof inertia, "Ixx %.3g, Iyy %.3g, Izz %.3g kg m^2", r.inertia(0, 0),
+                r.inertia(1, 1), r.inertia(2, 2));
+  print_row("inertia", inertia);
+  print_row("IMU", (robot.imu < 0 ? std::string("at the origin of the chassis")
+                                  : name(robot.imu) + ", " + place(r.imu)));
+  print_row("wheelbase", fixed(kMilli * r.wheelbase_m, 1) + " mm");
+  print_row("tread", fixed(kMilli * r.tread_m, 1) + " mm");
+  print_row("clearance", std::isfinite(r.clearance_m) ? fixed(kMilli * r.clearance_m, 1) + " mm"
+                                                      : std::string("none"));
+  std::printf("\n%-16s%10s%10s   %-34s%-8s%-20s%s\n", "wheel", "radius", "width", "centre", "motor",
+              "from", "link");
+  for (const size_t end : {0U, 1U}) {
+    for (const size_t side : {0U, 1U}) {
+      const AssemblyWheel& wheel = robot.wheels[side][end];
+      std::printf("%-16s%7s mm%7s mm   %-34s%-8s%-20s%s\n", kCorners[side][end],
+                  fixed(kMilli * wheel.radius_m, 1).c_str(),
+                  fixed(kMilli * wheel.width_m, 1).c_str(), place(wheel.centre).c_str(),
+                  is_driven(robot, wheel) ? "yes" : "no", wheel.source, name(wheel.body).c_str());
+    }
+  }
+  std::printf("\n");
+  for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("%s\n", r.warnings.empty()
+                          ? "no warnings"
+                          : (std::to_string(r.warnings.size()) + " warnings").c_str());
+}
+
+int run_check(const Arguments& arguments) {
+  CheckedModel model = read_model(arguments);
+  compare_with_board(arguments.board, model);
+  if (arguments.json) {
+    std::cout << describe(model).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  } else {
+    print(model);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void register_model_command(CLI::App& root, Program& program) {
+  CLI::App* model = root.add_subcommand("model", "Check a robot model (URDF)");
+  model->require_subcommand(1);
+  CLI::App* command = model->add_subcommand(
+      "check", "Print what is found in a robot model: chassis, mass, wheels, what is doubtful");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("FILE", arguments->file,
+                   "URDF file, experiment that names one, or robot that comes with Screed")
+      ->required();
+  command->add_option("--board", arguments->board, "Board that drives the robot")
+      ->capture_default_str();
+  command->add_option("--chassis-link", arguments->chassis_link,
+                      "Link of the chassis (default: Body, base_link or the root)");
+  command->add_option("--wheel-links", arguments->wheel_links,
+                      "Links of the wheels: \"FRONT_LEFT FRONT_RIGHT REAR_LEFT REAR_RIGHT\" "
+                      "(default: by their names and places)");
+  command->add_option("--imu-link", arguments->imu_link,
+                      "Link of the IMU (default: Imu, imu_link or the origin of the chassis)");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback(
+      [arguments, &program] { program.action = [arguments] { return run_check(*arguments); }; });
+}
+
+}  // namespace screed
