@@ -91,7 +91,7 @@ $(FIRMWARE_BUILD)/avr.flags: FORCE
 
 $(FIRMWARE_BUILD)/generated/build_info.h: FORCE
 	@mkdir -p $(@D)
-	@{ echo '#define SCREED_VERSION "$(VERSION)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; } > $@.new
+	@{ echo '#define SCREED_VERSION "$(COMMIT)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
 $(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/generated/build_info.h $(SCHEMA_HEADERS)

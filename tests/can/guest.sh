@@ -108,12 +108,12 @@ again=$(sed -n 's/.*, \([0-9]*\) frames, [0-9]* lost/\1/p' monitor.txt | tail -n
 [ "$again" -gt "$after" ] || { cat monitor.txt; fail "no frames after the interface was made anew ($after, $again)"; }
 pass "and after it was taken away and made anew ($again)"
 
-# --- screed send, and the robot's answer -----------------------------------------------------------------------------------------
-screed send --can vcan0 param get climb_speed > sent.txt || { cat sent.txt; fail "screed send param get: $?"; }
+# --- screed param and send, and the robot's answer --------------------------------------------------------------------------------
+screed param get --can vcan0 climb_speed > sent.txt || { cat sent.txt; fail "screed param get: $?"; }
 grep -q 'climb_speed = 200 mm/s' sent.txt || { cat sent.txt; fail "wrong parameter"; }
 screed send --can vcan0 disarm > sent.txt || { cat sent.txt; fail "screed send disarm failed"; }
-screed send --can vcan0 param set climb_speed 150 > sent.txt || { cat sent.txt; fail "screed send param set failed"; }
-screed send --can vcan0 param get climb_speed > sent.txt || { cat sent.txt; fail "screed send param get: $?"; }
+screed param set --can vcan0 climb_speed 150 > sent.txt || { cat sent.txt; fail "screed param set failed"; }
+screed param get --can vcan0 climb_speed > sent.txt || { cat sent.txt; fail "screed param get: $?"; }
 grep -q 'climb_speed = 150 mm/s' sent.txt || { cat sent.txt; fail "the parameter was not written"; }
 screed send --can vcan0 estop > sent.txt || { cat sent.txt; fail "screed send estop: $?"; }
 grep -q 'robot 1 has stopped' sent.txt || { cat sent.txt; fail "no word of the stop"; }
@@ -121,7 +121,7 @@ status=0
 screed send --can vcan0 run > sent.txt || status=$?
 [ $status -eq 1 ] || fail "a refused command ended with $status"
 grep -q 'run: refused: ' sent.txt || { cat sent.txt; fail "no reason for the refusal"; }
-pass "screed send: a parameter read and written, an emergency stop, and a refusal: $(cat sent.txt)"
+pass "screed param and send: a parameter read and written, an emergency stop, and a refusal: $(cat sent.txt)"
 kill -INT $monitor $sim
 wait $monitor $sim
 

@@ -41,9 +41,11 @@ class Program : public ::testing::Test {
     write_text(root_ / name, text);
   }
 
-  /// Runs in root_; `before` is shell text in front of the program.
+  /// Runs in root_, without what the user's own configuration says; `before` is shell text in front
+  /// of the program.
   Result run(const std::string& arguments, const std::string& before = "") const {
-    const std::string command = "cd '" + root_.string() + "' && { " + before + " '" + program_ +
+    const std::string command = "cd '" + root_.string() + "' && XDG_CONFIG_HOME='" + log("config") +
+                                "' && export XDG_CONFIG_HOME && { " + before + " '" + program_ +
                                 "' " + arguments + "; } > '" + log("out") + "' 2> '" + log("err") +
                                 "' < /dev/null";
     const int status = std::system(command.c_str());

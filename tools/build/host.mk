@@ -78,7 +78,8 @@ $(B)/tools/screed/viewer/window.o: EXTRA_FLAGS = $(SDL_FLAGS)
 
 $(B)/generated/version.h: FORCE
 	@mkdir -p $(@D)
-	@echo '#define SCREED_VERSION "$(VERSION)"' | $(WRITE_CHANGED)
+	@{ echo '#define SCREED_VERSION "$(VERSION)"' ; \
+	   echo '#define SCREED_VERSION_TEXT "screed $(VERSION) ($(word 3,$(VERSION_WORDS)))"' ; } | $(WRITE_CHANGED)
 $(B)/generated/paths.h: FORCE
 	@mkdir -p $(@D)
 	@{ echo '// Where the data of this build lies.' ; echo '#pragma once' ; echo 'namespace screed {' ; \
@@ -162,6 +163,11 @@ sim: $(SCREED)  ## drive the robot over a real terrain (EXPERIMENT=FILE ARGS='--
 INSTALLED_DATA := share/screed
 INSTALLED_DOC := share/doc/screed
 INSTALLED_RULES := lib/udev/rules.d/60-screed.rules
+# Where Debian's shells look; zsh's place depends on who installs.
+INSTALLED_BASH := share/bash-completion/completions/screed
+INSTALLED_ZSH := share/zsh/$(if $(filter /usr,$(PREFIX)),vendor-completions,site-functions)/_screed
+INSTALLED_FISH := share/fish/vendor_completions.d/screed.fish
+INSTALLED_MAN := share/man/man1
 # One word, since make takes blanks for the ends of names.
 INTO = $(if $(word 2,$(DESTDIR)$(PREFIX)),$(error PREFIX and DESTDIR: no blanks),$(DESTDIR)$(PREFIX))
 install: $(SCREED) $(B)/screed_flash $(SCHEMA_HEADERS)  ## install program, data, flash tool and docs (PREFIX=/usr/local)
@@ -169,11 +175,17 @@ install: $(SCREED) $(B)/screed_flash $(SCHEMA_HEADERS)  ## install program, data
 	install -D -m 644 tools/flash/60-screed.rules $(INTO)/$(INSTALLED_RULES)
 	@mkdir -p $(INTO)/$(INSTALLED_DATA) $(INTO)/$(INSTALLED_DOC)
 	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(INTO)/$(INSTALLED_DATA)/
-	cp -r README.md LICENSE docs $(INTO)/$(INSTALLED_DOC)/
+	cp -r README.md CHANGELOG.md LICENSE docs $(INTO)/$(INSTALLED_DOC)/
+	@mkdir -p $(dir $(addprefix $(INTO)/,$(INSTALLED_BASH) $(INSTALLED_ZSH) $(INSTALLED_FISH)))
+	$(SCREED) completion bash > $(INTO)/$(INSTALLED_BASH)
+	$(SCREED) completion zsh > $(INTO)/$(INSTALLED_ZSH)
+	$(SCREED) completion fish > $(INTO)/$(INSTALLED_FISH)
+	$(SCREED) manual --out $(INTO)/$(INSTALLED_MAN)
 	@for image in $(wildcard $(BUILD_ROOT)/firmware/*/screed.elf) ; do \
 	   install -v -D -m 644 $$image $(INTO)/$(INSTALLED_DATA)/firmware/$$(basename $$(dirname $$image))/screed.elf ; done
 uninstall:  ## remove what `make install` made (PREFIX=/usr/local)
-	rm -rf $(addprefix $(INTO)/,bin/screed bin/screed_flash $(INSTALLED_RULES) $(INSTALLED_DATA) $(INSTALLED_DOC))
+	rm -rf $(addprefix $(INTO)/,bin/screed bin/screed_flash $(INSTALLED_RULES) $(INSTALLED_DATA) $(INSTALLED_DOC) \
+	  $(INSTALLED_BASH) $(INSTALLED_ZSH) $(INSTALLED_FISH)) $(wildcard $(INTO)/$(INSTALLED_MAN)/screed*.1)
 
 # ---- clangd --------------------------------------------------------------------------------------------------------------------
 

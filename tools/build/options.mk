@@ -10,7 +10,13 @@ PREFIX ?= /usr/local
 BUILD_ROOT := build
 OUT := out
 B := $(BUILD_ROOT)/$(BUILD)
-VERSION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+# NUMBER COMMIT DATE.
+VERSION_WORDS := $(shell tools/build/version.sh)
+ifneq ($(words $(VERSION_WORDS)),3)
+$(error tools/build/version.sh knows no version)
+endif
+COMMIT := $(word 2,$(VERSION_WORDS))
+VERSION := $(firstword $(VERSION_WORDS))$(if $(filter-out unknown,$(COMMIT)),+$(COMMIT))
 
 OPTIMISE_release := -O2 -DNDEBUG
 OPTIMISE_debug := -O0 -g

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "${1:-.}"
 
-listed='.ci .clang-format .clang-tidy .gitignore LICENSE Makefile README.md boards docs firmware hal host_sim nn tests tools'
+listed='.ci .clang-format .clang-tidy .gitignore CHANGELOG.md LICENSE Makefile README.md boards docs firmware hal host_sim nn tests tools'
 # What is deleted but not yet committed is still in git's list.
 found=$(git ls-files --cached --others --exclude-standard | cut -d/ -f1 | LC_ALL=C sort -u | while read -r name; do
   if [ -e "$name" ]; then echo "$name"; fi

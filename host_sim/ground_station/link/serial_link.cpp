@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/ground_station/link/serial_ports.h"
 
 namespace screed {
 namespace {
@@ -79,7 +80,7 @@ void SerialLink::open_port(const fs::path& device) {
   FileDescriptor port(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!port.is_open()) {
     const int reason = errno;
-    if (reason == ENOENT) throw InputError(text + ": no such port");
+    if (reason == ENOENT) throw InputError(text + ": " + no_such_port(options_.devices));
     if (reason == EACCES || reason == EPERM) {
       throw RunError(text + ": no right to open it: join the group dialout (docs/link.md)");
     }

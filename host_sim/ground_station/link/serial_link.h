@@ -20,6 +20,8 @@ namespace screed {
 struct SerialOptions {
   int baud = 57600;  ///< one the system has a name for: 9600 .. 230400
   std::optional<XbeeApiMode> api;
+  /// Where the device files are.
+  std::filesystem::path devices = "/dev";
   /// Where udev names devices by what they are.
   std::filesystem::path by_id = "/dev/serial/by-id";
 };

@@ -44,10 +44,17 @@ void list_section(std::vector<ExperimentKey>& keys, const char* name, Section Ex
   Section::list(list);
 }
 
+/// The length of the training drive is that of the experiment, and means nothing without the drive.
+bool follows_from_others(const Experiment& experiment, const ParameterInfo& info) {
+  if (info.field != &Parameters::training_block) return false;
+  return experiment.experiment.algorithm == kTrainingDriveName ||
+         experiment.parameters.training_block == info.default_value;
+}
+
 void list_parameters(std::vector<ExperimentKey>& keys) {
   for (const ParameterInfo& info : kParameterTable) {
-    // Said in [experiment]: algorithm by its name, and frames.
-    if (info.field == &Parameters::algorithm || info.field == &Parameters::training_block) continue;
+    // Said in [experiment], by its name.
+    if (info.field == &Parameters::algorithm) continue;
     keys.push_back({"parameters", info.name, info.unit,
                     "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max),
                     info.meaning,
@@ -59,6 +66,7 @@ void list_parameters(std::vector<ExperimentKey>& keys) {
                       return true;
                     },
                     [info](const Experiment& e) -> std::optional<std::string> {
+                      if (follows_from_others(e, info)) return std::nullopt;
                       return std::to_string(e.parameters.*info.field);
                     }});
   }

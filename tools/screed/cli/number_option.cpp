@@ -19,9 +19,12 @@ std::string range_text(const number_option::Description& number, const char* bet
          end_text(number.range.high, number.whole);
 }
 
-/// For the help: "0.01..1000".
+/// For the help: "0.01 to 1000".
 std::string short_text(const number_option::Description& number) {
-  return (number.range.or_zero ? "0 or " : "") + range_text(number, "..");
+  const std::string zero = number.range.or_zero ? "0 or " : "";
+  if (number.range.high >= kSeedRange.high)
+    return zero + end_text(number.range.low, number.whole) + " or more";
+  return zero + range_text(number, " to ");
 }
 
 /// For a message: "allowed are 0.01 to 1000".
@@ -85,17 +88,10 @@ CLI::Option* add(CLI::App& app, const Description& description, const std::funct
     }
     return true;
   };
-  // The help shows TYPE=DEFAULT: the range goes behind whichever comes last.
-  const auto shown_with_range = [=]() -> std::string {
-    const std::string value = shown();
-    return value.empty() ? "" : value + " " + short_text(description);
-  };
-  *option = app.add_option(description.name, read, description.help, false, shown_with_range);
+  *option = app.add_option(description.name, read, description.help, false, shown);
   CLI::Option* const added = *option;
-  added->type_name_fn([=] {
-    const std::string kind = description.whole ? "INTEGER" : "NUMBER";
-    return added->get_default_str().empty() ? kind + " " + short_text(description) : kind;
-  });
+  // As option_words.h takes it apart.
+  added->type_name((description.whole ? "INTEGER:" : "NUMBER:") + short_text(description));
   if (description.several) {
     added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
   }

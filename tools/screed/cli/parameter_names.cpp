@@ -1,35 +1,148 @@
-// Parameters of the firmware by their names.
+// Parameters of the firmware as people name and write them.
 #include "tools/screed/cli/parameter_names.h"
 
-#include <charconv>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <span>
 
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/name_list.h"
+#include "host_sim/ground_station/telemetry/schema.h"
+#include "tools/screed/cli/number_text.h"
+#include "tools/screed/cli/suggestion.h"
 
 namespace screed {
+namespace {
+
+/// A unit of the table, "0.01 deg" or "1/256 per s" or "mm/s", as a number and the unit without it.
+struct Unit {
+  double scale = 1.0;
+  std::string name;
+
+  bool is_scaled() const { return scale != 1.0; }
+};
+
+Unit unit_of(const ParameterInfo& info) {
+  const std::string text = info.unit;
+  const std::size_t blank = text.find(' ');
+  const std::string first = text.substr(0, blank);
+  const std::size_t slash = first.find('/');
+  const std::optional<double> number = finite_number<double>(first.substr(0, slash));
+  if (!number.has_value()) return {1.0, text};
+  const std::optional<double> below =
+      slash == std::string::npos ? 1.0 : finite_number<double>(first.substr(slash + 1));
+  return {*number / below.value_or(1.0), blank == std::string::npos ? "" : text.substr(blank + 1)};
+}
+
+/// Names of the values: of the leveling algorithm alone. Empty: a number.
+std::span<const ValueInfo> value_names_of(const ParameterInfo& info) {
+  if (info.field != &Parameters::algorithm) return {};
+  return find_signal("leveling.algorithm").signal->values;
+}
+
+std::string number_text(double value) {
+  constexpr int kDigits = 10;  // hides what 0.07 * 3 has behind 0.21
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", kDigits, value);
+  return text.data();
+}
+
+[[noreturn]] void refuse(uint16_t index, const std::string& text) {
+  throw InputError(std::string(kParameterTable[index].name) + " = '" + text +
+                   "' is not allowed; allowed are " + parameter_range(index));
+}
+
+/// The unit of a thousand of this one: "V" of "mV", "m/s" of "mm/s"; empty: none.
+std::string thousand_of(const std::string& unit) {
+  return unit.size() > 1 && unit[0] == 'm' ? unit.substr(1) : "";
+}
+
+/// "5 deg", "5deg", "5" in the unit without its scale.
+std::optional<double> number_in(const Unit& unit, const std::string& text) {
+  const std::size_t end = text.find_first_not_of("+-.0123456789");
+  const std::optional<double> number = finite_number<double>(text.substr(0, end));
+  if (!number.has_value() || end == std::string::npos) return number;
+  const std::size_t begin = text.find_first_not_of(' ', end);
+  const std::string said = begin == std::string::npos ? "" : text.substr(begin);
+  if (said.empty()) return std::nullopt;
+  if (said == unit.name) return number;
+  if (said == thousand_of(unit.name)) return *number * 1000.0;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_names() {
+  std::vector<std::string> names;
+  for (const ParameterInfo& info : kParameterTable) names.emplace_back(info.name);
+  return names;
+}
 
 uint16_t parameter_index(const std::string& name) {
-  std::string names;
   uint16_t index = 0;
   for (const ParameterInfo& info : kParameterTable) {
     if (name == info.name) return index;
-    names += (names.empty() ? "" : ", ") + std::string(info.name);
     ++index;
   }
-  throw InputError("unknown parameter '" + name + "'; known are " + names);
+  const std::string nearest = nearest_word(name, parameter_names());
+  throw InputError("unknown parameter '" + name + "'; " +
+                   (nearest.empty() ? "" : "did you mean " + nearest + "? ") +
+                   "screed param list shows all");
+}
+
+std::string parameter_unit(uint16_t index) {
+  return unit_of(kParameterTable[index]).name;
+}
+
+std::string parameter_text(uint16_t index, int32_t value) {
+  const ParameterInfo& info = kParameterTable[index];
+  for (const ValueInfo& named : value_names_of(info)) {
+    if (static_cast<int32_t>(named.value) == value) return named.name;
+  }
+  const Unit unit = unit_of(info);
+  const std::string number =
+      unit.is_scaled() ? number_text(value * unit.scale) : std::to_string(value);
+  return unit.name.empty() ? number : number + " " + unit.name;
+}
+
+std::string parameter_range(uint16_t index) {
+  const ParameterInfo& info = kParameterTable[index];
+  if (!value_names_of(info).empty()) {
+    std::vector<std::string> names;
+    for (const ValueInfo& named : value_names_of(info)) {
+      const auto value = static_cast<int32_t>(named.value);
+      if (value >= info.min && value <= info.max) names.emplace_back(named.name);
+    }
+    return name_list(names, " or ");
+  }
+  const Unit unit = unit_of(info);
+  const std::string low = unit.is_scaled() ? number_text(info.min * unit.scale)
+                                           : "whole numbers " + std::to_string(info.min);
+  return low + " to " + parameter_text(index, info.max);
 }
 
 int16_t parameter_value(uint16_t index, const std::string& text) {
   const ParameterInfo& info = kParameterTable[index];
-  int16_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || value < info.min || value > info.max) {
-    throw InputError(std::string(info.name) + " = '" + text +
-                     "' is not allowed; expected an integer " + std::to_string(info.min) + ".." +
-                     std::to_string(info.max) + (*info.unit == '\0' ? "" : " ") + info.unit);
+  for (const ValueInfo& named : value_names_of(info)) {
+    if (text == named.name) return checked_parameter(index, static_cast<int32_t>(named.value));
   }
-  return value;
+  const Unit unit = unit_of(info);
+  const std::optional<double> number = number_in(unit, text);
+  if (!number.has_value()) refuse(index, text);
+  const double steps = *number / unit.scale;
+  const double value = std::round(steps);
+  const bool is_step = unit.is_scaled() || std::abs(steps - value) < 1e-9;
+  if (!is_step || value < info.min || value > info.max) refuse(index, text);
+  return static_cast<int16_t>(value);
+}
+
+int16_t checked_parameter(uint16_t index, int32_t value) {
+  const ParameterInfo& info = kParameterTable[index];
+  if (value < info.min || value > info.max) refuse(index, parameter_text(index, value));
+  return static_cast<int16_t>(value);
 }
 
 }  // namespace screed

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "tools/screed/cli/help_format.h"
 #include "tools/screed/cli/suggestion.h"
 
 namespace screed {
@@ -61,7 +62,7 @@ inline std::vector<std::string> arguments_of(int argc, char** argv) {
 }
 
 /// Parses the command line into `app`, then runs `body`, which returns the exit code. `app` must
-/// carry the program's name.
+/// carry the program's name. Its --help has the form of help_format.h.
 template <class Body>
 int run_program(CLI::App& app, int argc, char** argv, Body body) {
   constexpr int kFailed = 1;
@@ -70,6 +71,7 @@ int run_program(CLI::App& app, int argc, char** argv, Body body) {
     std::cerr << app.get_name() << ": " << what << "\n";
     return code;
   };
+  use_help_format(app);
   std::signal(SIGXFSZ, SIG_IGN);  // past a limit of file sizes a write fails, as on a full disk
   try {
     app.parse(arguments_of(argc, argv));

@@ -89,22 +89,28 @@ void add_batch_options(CLI::App& command, BatchArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Experiment files (INI), run one after the other, each in its own world");
   CLI::Option* table =
-      command.add_option("--table", arguments.table,
-                         "CSV table with one experiment per row; FILE holds the common keys");
+      command
+          .add_option("--table", arguments.table,
+                      "CSV table with one experiment per row; FILE holds the common keys")
+          ->type_name("FILE");
   command
       .add_option("--rows", arguments.rows,
                   "Run only the rows that match this name pattern, e.g. 'e_*'; may be repeated")
+      ->type_name("PATTERN")
       ->type_size(1)
       ->allow_extra_args(false)
       ->needs(table);
   command.add_flag("--missing", arguments.missing,
                    "Skip experiments whose run folder (NAME-0001) already exists");
   command.add_option("--set", arguments.sets, "Override a key: section.key=value; may be repeated")
+      ->type_name("KEY=VALUE")
       ->type_size(1)
       ->allow_extra_args(false);
-  command.add_option("--out", arguments.out,
-                     "Run folder, must not exist yet; with several files, --table or --missing the "
-                     "parent folder of the run folders");
+  command
+      .add_option("--out", arguments.out,
+                  "Run folder, must not exist yet; with several files, --table or --missing the "
+                  "parent folder of the run folders")
+      ->type_name("FOLDER");
   command.add_flag("--quiet", arguments.quiet,
                    "Show no progress; print only run folder and content hash");
   command.add_flag("--json", arguments.json, "Print the summary as JSON");

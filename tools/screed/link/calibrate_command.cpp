@@ -189,10 +189,10 @@ class Calibration {
   int store(const ImuCalibration& calibration) {
     for (const CalibrationParameter& parameter : calibration_parameters(calibration)) {
       const uint16_t index = parameter_index(parameter.name);
-      parameter_value(index, std::to_string(parameter.value));
+      checked_parameter(index, parameter.value);
       wait_until_disarmed();
       const std::optional<CommandAnswer> answer = session_.write_parameter(index, parameter.value);
-      std::cout << parameter.name << " = " << parameter.value << ": "
+      std::cout << parameter.name << " = " << parameter_text(index, parameter.value) << ": "
                 << (answer.has_value() ? answer_text(*answer, robot_said(), wall_clock_us())
                                        : "no answer")
                 << std::endl;

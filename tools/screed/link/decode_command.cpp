@@ -50,8 +50,10 @@ void register_decode_command(CLI::App& root, Program& program) {
       ->required();
   command->add_flag("--csv", options->csv, "Write a folder of CSV tables, one per message");
   command->add_flag("--mcap", options->mcap, "Write an MCAP file");
-  command->add_option("--out", options->out,
-                      "Output path (default: LOG without its extension, with _csv or .mcap)");
+  command
+      ->add_option("--out", options->out,
+                   "Output path (default: LOG without its extension, with _csv or .mcap)")
+      ->type_name("PATH");
   command->add_flag("--numbers", options->numbers, "Write named values as numbers (CSV)");
   command->callback([options, &program] {
     program.action = [options] { return run_decode(*options, std::cout, std::cerr); };

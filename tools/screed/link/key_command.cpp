@@ -17,6 +17,7 @@
 
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/file_descriptor.h"
+#include "host_sim/ground_station/link/serial_ports.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 
@@ -39,9 +40,8 @@ class UsbConsole {
   explicit UsbConsole(const std::string& port)
       : port_(open(port.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
     if (port_.get() < 0) {
-      const std::string what = port + ": " + std::strerror(errno);
-      if (errno == ENOENT) throw InputError(what);
-      throw RunError(what);
+      if (errno == ENOENT) throw InputError(port + ": " + no_such_port());
+      throw RunError(port + ": " + std::strerror(errno));
     }
     termios settings{};
     if (tcgetattr(port_.get(), &settings) != 0) throw InputError(port + ": is no serial port");
@@ -146,8 +146,10 @@ void register_key_command(CLI::App& root, Program& program) {
       ->add_option("FILE", arguments->file,
                    "Key file; created with mode 0600 when it does not exist")
       ->required();
-  command->add_option("--port", arguments->port,
-                      "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)");
+  command
+      ->add_option("--port", arguments->port,
+                   "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)")
+      ->type_name("DEVICE");
   add_number(*command, "--robot-id", arguments->robot_id, "Robot id of a new key (default: 1)",
              {0, 255});
   command->callback([arguments, &program] {

@@ -15,19 +15,22 @@ struct LinkArguments {
   std::optional<std::string> port;
   std::optional<std::string> can;
   std::optional<std::string> pty;
-  int baud = 57600;
-  int api = 0;
+  std::optional<int> baud;
+  std::optional<int> api;
   std::optional<std::string> key;
+  bool remember = false;
 };
 
 void add_link_options(CLI::App& command, LinkArguments& arguments);
 void add_key_option(CLI::App& command, LinkArguments& arguments);
 
-/// Opens the one link that was asked for. Throws InputError when it is none or several, and what
-/// the link itself throws.
+/// Opens the one link that was asked for, or else the remembered one (remembered_link.h), which it
+/// says on standard error; with --remember it is remembered once it is open. Throws InputError when
+/// it is none or several, and what the link itself throws.
 std::unique_ptr<Link> open_link(const LinkArguments& arguments);
 
-/// The key of --key; without it the test key that simulated robots have.
+/// The key of --key; without it that of the remembered link, where that is used; else the test key
+/// that simulated robots have.
 CommandKey command_key(const LinkArguments& arguments);
 
 }  // namespace screed

@@ -53,8 +53,7 @@ class Monitor {
                           [this](const LinkFrame& frame) { on_frame(frame); },
                           {}}),
         curves_(arguments.curves),
-        cells_(arguments.cells.has_value() ? *arguments.cells
-                                           : board_battery_cells(kDefaultBoard)),
+        cells_(arguments.cells.has_value() ? *arguments.cells : board_battery_cells(kDefaultBoard)),
         begin_us_(wall_clock_us()) {
     for (const std::string& path : curves_) find_signal(path);
     if (arguments.log.has_value()) {
@@ -112,8 +111,15 @@ class Monitor {
     input.curves = curves_;
     input.window_s = window_s_;
     input.battery_cells = cells_;
-    input.footer = {"SPACE emergency stop", "a arm",   "r run",    "s stop", "d disarm",
-                    "c clear",              "p curve", "+/- time", "q quit"};
+    input.footer = {"SPACE emergency stop",
+                    "a arm",
+                    "r run",
+                    "s stop",
+                    "d disarm",
+                    "c clear",
+                    "p curve",
+                    "+/- time",
+                    "q quit"};
     if (arguments_.log.has_value()) input.footer.push_back("log: " + *arguments_.log);
     return input;
   }
@@ -267,16 +273,18 @@ void register_monitor_command(CLI::App& root, Program& program) {
       "monitor", "Show a robot's telemetry live and send it heartbeats as its ground station");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
-  command->add_option("--log", arguments->log, "Append every frame to this candump log");
+  command->add_option("--log", arguments->log, "Append every frame to this candump log")
+      ->type_name("FILE");
   command
       ->add_option("--curves", arguments->curves,
                    "Signals to draw, e.g. attitude.pitch,motors.duty_left")
       ->delimiter(',');
-  add_number(*command, "--cells", arguments->cells,
-             "NiMH cells of the robot's battery in series, for its charge in per cent; 0: not shown "
-             "(default: the battery of the robot of the board " +
-                 std::string(kDefaultBoard) + ")",
-             {0, 20});
+  add_number(
+      *command, "--cells", arguments->cells,
+      "NiMH cells of the robot's battery in series, for its charge in per cent; 0: not shown "
+      "(default: the battery of the robot of the board " +
+          std::string(kDefaultBoard) + ")",
+      {0, 20});
   command->add_flag("--listen", arguments->listen,
                     "Send no heartbeats: another ground station is in charge");
   command->add_flag("--plain", arguments->plain,

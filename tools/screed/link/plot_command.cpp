@@ -120,7 +120,9 @@ void register_plot_command(CLI::App& root, Program& program) {
       ->add_option("SIGNALS", options->signals,
                    "Signals to plot, e.g. attitude.pitch (docs/telemetry.md)")
       ->required();
-  command->add_option("--out", options->out, "Output picture, .svg or .png")->required();
+  command->add_option("--out", options->out, "Output picture, .svg or .png")
+      ->type_name("FILE")
+      ->required();
   add_number(*command, "--robot", options->robot, "Plot one robot only", {1, 15});
   add_number(*command, "--from", options->from_s, "Start, after the log's first message [s]",
              {0.0, 1e9})

@@ -287,13 +287,15 @@ void register_nn_command(CLI::App& root, Program& program) {
                      "Training configuration (nn/configurations/*.json)")
         ->required();
     command->add_option("--sessions", arguments->sessions, "Folder with the recorded sessions")
+        ->type_name("FOLDER")
         ->capture_default_str();
   };
   const auto model = [&](CLI::App* command) {
     command->add_option("MODEL", arguments->model, "Trained model (nn/models/*.json)")->required();
   };
   const auto folder = [&](CLI::App* command) {
-    command->add_option("--out", arguments->out, "Output folder (default: out/nn/NAME)");
+    command->add_option("--out", arguments->out, "Output folder (default: out/nn/NAME)")
+        ->type_name("FOLDER");
   };
   const auto json = [&](CLI::App* command) {
     command->add_flag("--json", arguments->json, "Print results as JSON");
@@ -320,7 +322,8 @@ void register_nn_command(CLI::App& root, Program& program) {
       add("quantise", "Quantise a trained model again, from its training data", run_quantise);
   model(quantise);
   configuration(quantise);
-  quantise->add_option("--out", arguments->out, "Model file to write (default: MODEL)");
+  quantise->add_option("--out", arguments->out, "Model file to write (default: MODEL)")
+      ->type_name("FILE");
 
   CLI::App* eval =
       add("eval", "Evaluate a model: the thesis' tables 6.1 to 6.3, and charts", run_eval);
@@ -331,7 +334,8 @@ void register_nn_command(CLI::App& root, Program& program) {
 
   CLI::App* header = add("export", "Export a model as a C++ header for the robot", run_export);
   model(header);
-  header->add_option("--header", arguments->out, "Header file to write (default: standard output)");
+  header->add_option("--header", arguments->out, "Header file to write (default: standard output)")
+      ->type_name("FILE");
 
   model(add("show", "Describe a model", run_show));
 

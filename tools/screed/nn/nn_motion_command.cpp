@@ -358,10 +358,13 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
       ->add_option("CONFIGURATION", motion->configuration, "Training configuration (JSON)")
       ->required();
   motion_command->add_option("--sessions", motion->sessions, "Folder with the recorded sessions")
+      ->type_name("FOLDER")
       ->capture_default_str();
   add_number(*motion_command, "--steps", motion->steps,
              "Number of training steps; overrides the configuration", {1, 1e7});
-  motion_command->add_option("--out", motion->out, "Model file to write")->required();
+  motion_command->add_option("--out", motion->out, "Model file to write")
+      ->type_name("FILE")
+      ->required();
   motion_command->callback(
       [motion, &program] { program.action = [motion] { return run_motion(*motion); }; });
 
@@ -370,9 +373,12 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
       nn.add_subcommand("rollout", "Compare motion predicted by networks with recorded physics");
   rollout_command->add_option("SESSION", rollout->sessions, "Run folders of screed record")
       ->required();
-  rollout_command->add_option("--model", rollout->models,
-                              "Model files (default: the model of screed sim --hal surrogate)");
-  rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to");
+  rollout_command
+      ->add_option("--model", rollout->models,
+                   "Model files (default: the model of screed sim --hal surrogate)")
+      ->type_name("FILE");
+  rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to")
+      ->type_name("FOLDER");
   add_number(*rollout_command, "--starts", rollout->starts,
              "Number of rollouts per session, spread evenly (0 and default: each begins "
              "where the previous one ends)",
@@ -386,7 +392,8 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
                    "motion; tracks: recorded track motion")
       ->capture_default_str()
       ->check(CLI::IsMember({"firmware", "tracks"}));
-  rollout_command->add_option("--out", rollout->out, "Output folder for pictures of some paths");
+  rollout_command->add_option("--out", rollout->out, "Output folder for pictures of some paths")
+      ->type_name("FOLDER");
   rollout_command->callback(
       [rollout, &program] { program.action = [rollout] { return run_rollout(*rollout); }; });
 

@@ -214,8 +214,10 @@ void register_nn_stuck_command(CLI::App& nn, Program& program) {
       ->capture_default_str();
   add_number(*command, "--threads", arguments->threads, "Number of drives run in parallel",
              {1, 256});
-  command->add_option("--train", arguments->train,
-                      "Train the network on these drives and write this model file");
+  command
+      ->add_option("--train", arguments->train,
+                   "Train the network on these drives and write this model file")
+      ->type_name("FILE");
   add_number(*command, "--epochs", arguments->epochs, "Number of training epochs", {1, 1e6})
       ->capture_default_str();
   add_number(*command, "--hidden", arguments->hidden, "Number of nodes of the hidden layer",

@@ -336,7 +336,9 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
   CLI::App* train_command =
       command->add_subcommand("train", "Train a flux network on recorded runs with wheels");
   train_command->add_option("RUN", train->runs, "Runs with recorded heights")->required();
-  train_command->add_option("--out", train->out, "Network file to write")->capture_default_str();
+  train_command->add_option("--out", train->out, "Network file to write")
+      ->type_name("FILE")
+      ->capture_default_str();
   add_number(*train_command, "--hidden", train->hidden, "Number of nodes of the hidden layer",
              {1, 512})
       ->capture_default_str();
@@ -355,9 +357,12 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       "train-tracks", "Train a bearing-capacity network for tracks on recorded runs on soil");
   tracks_command->add_option("RUN", tracks->runs, "Runs with recorded heights")->required();
   tracks_command->add_option("--test", tracks->test, "Run to test the network on; may be repeated")
+      ->type_name("FOLDER")
       ->type_size(1)
       ->allow_extra_args(false);
-  tracks_command->add_option("--out", tracks->out, "Network file to write")->capture_default_str();
+  tracks_command->add_option("--out", tracks->out, "Network file to write")
+      ->type_name("FILE")
+      ->capture_default_str();
   add_number(*tracks_command, "--hidden", tracks->hidden, "Number of nodes of the hidden layer",
              {1, 256})
       ->capture_default_str();
@@ -387,6 +392,7 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
   compare_command
       ->add_option("--window", compared->window,
                    "Also train the thesis' network on this run and compare it; may be repeated")
+      ->type_name("FOLDER")
       ->type_size(1)
       ->allow_extra_args(false);
   add_number(*compare_command, "--epochs", compared->epochs, "Number of epochs of that training",
@@ -398,8 +404,10 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
   add_number(*compare_command, "--seconds", compared->seconds,
              "Duration to compare of each run [s]", {0.1, 1e6})
       ->capture_default_str();
-  compare_command->add_option("--pictures", compared->pictures,
-                              "Output folder for pictures of the height change");
+  compare_command
+      ->add_option("--pictures", compared->pictures,
+                   "Output folder for pictures of the height change")
+      ->type_name("FOLDER");
   compare_command->callback(
       [compared, &program] { program.action = [compared] { return run_compare(*compared); }; });
 }

@@ -115,11 +115,13 @@ void register_parity_command(CLI::App& root, Program& program) {
   command->add_option("FILE", arguments->file, "Experiment file (INI)")->required();
   command->add_option("--board", arguments->board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
-  command->add_option("--elf", arguments->elf, "ELF image (default: the one of make firmware)");
+  command->add_option("--elf", arguments->elf, "ELF image (default: the one of make firmware)")
+      ->type_name("FILE");
   add_number(*command, "--minutes", arguments->minutes, "Simulated time [min] (default: 1)",
              {0.01, 10000.0});
   command
       ->add_option("--set", arguments->sets, "Override a key: section.key=value; may be repeated")
+      ->type_name("KEY=VALUE")
       ->type_size(1)
       ->allow_extra_args(false);
   command->add_flag("--quiet", arguments->quiet, "Show no progress");

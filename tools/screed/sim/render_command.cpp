@@ -69,9 +69,11 @@ void register_render_command(CLI::App& root, Program& program) {
   add_number(*command, "--frame", options->scene.frame,
              "Frame to render, from 0; negative counts from the end (default: the last)",
              {-1e9, 1e9});
-  command->add_option("--out", options->out,
-                      "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
-                      "and its images are written beside it");
+  command
+      ->add_option("--out", options->out,
+                   "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
+                   "and its images are written beside it")
+      ->type_name("FILE");
   add_number(*command, "--width", options->scene.width_px, "Width of the picture [px]", {16, 8000})
       ->capture_default_str();
   add_number(*command, "--height", options->scene.height_px, "Height of the picture [px]",
@@ -81,8 +83,10 @@ void register_render_command(CLI::App& root, Program& program) {
       ->add_option("--camera", options->camera,
                    "Camera: front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the "
                    "robot [degrees from its nose, degrees above the horizon, m]")
+      ->type_name("VIEW")
       ->capture_default_str();
-  command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)");
+  command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)")
+      ->type_name("FILE");
   command->add_flag("--no-path", options->no_path, "Do not draw the driven path");
   command->add_flag("--pov-only", options->scene.pov_only, "Write the scene without rendering it");
   command->add_flag("--quiet", options->quiet, "Show no progress");

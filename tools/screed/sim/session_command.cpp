@@ -271,7 +271,8 @@ void register_session_command(CLI::App& root, Program& program) {
   add_number(*command, "--first", exported->first, "First frame, counted from 0 in the session",
              {0, 1e9});
   add_number(*command, "--count", exported->count, "Number of frames", kCountRange);
-  command->add_option("--out", exported->out, "Output folder (default: RUN/export)");
+  command->add_option("--out", exported->out, "Output folder (default: RUN/export)")
+      ->type_name("FOLDER");
   command->callback(
       [exported, &program] { program.action = [exported] { return run_export(*exported); }; });
 }

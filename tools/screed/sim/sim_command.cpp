@@ -268,20 +268,28 @@ void register_sim_command(CLI::App& root, Program& program) {
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
   command->add_option("--board", arguments->board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
-  command->add_option("--elf", arguments->elf,
-                      "ELF image for --hal mcu (default: the one of make firmware)");
-  command->add_option("--model", arguments->model,
-                      "Motion network for --hal surrogate (default: the installed model)");
-  command->add_option(
-      "--soil-model", arguments->soil_model,
-      "Network of the soil below the tracks for --hal surrogate (default: the installed model)");
+  command
+      ->add_option("--elf", arguments->elf,
+                   "ELF image for --hal mcu (default: the one of make firmware)")
+      ->type_name("FILE");
+  command
+      ->add_option("--model", arguments->model,
+                   "Motion network for --hal surrogate (default: the installed model)")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--soil-model", arguments->soil_model,
+          "Network of the soil below the tracks for --hal surrogate (default: the installed model)")
+      ->type_name("FILE");
   command
       ->add_flag("--no-ruts", arguments->no_ruts,
                  "Keep the terrain undeformed with --hal surrogate")
       ->excludes("--soil-model");
-  command->add_option("--can", arguments->can,
-                      "Publish the radio's frames on this CAN interface and receive commands from "
-                      "it; implies --realtime");
+  command
+      ->add_option("--can", arguments->can,
+                   "Publish the radio's frames on this CAN interface and receive commands from "
+                   "it; implies --realtime")
+      ->type_name("INTERFACE");
   command
       ->add_option("--pty", arguments->pty,
                    "Offer the radio as a virtual serial port, like that of an XBee, with a "

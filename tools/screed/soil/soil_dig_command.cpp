@@ -139,7 +139,8 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
              {1, 64});
   add_number(*command, "--fit-raised", a->fit_cm3,
              "Fit --drag-depth to this raised volume [cm^3] (scm)", {0.0, 1e6});
-  command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change");
+  command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change")
+      ->type_name("FOLDER");
   command->callback([a, &program] { program.action = [a] { return run_dig(*a); }; });
 }
 

@@ -161,7 +161,8 @@ void register_soil_plate_command(CLI::App& soil, Program& program) {
   add_number(*command, "--offsets", a->offsets,
              "Number of random positions and yaws to find the worst error over", {0, 10000});
   add_number(*command, "--seed", a->seed, "Seed of the random positions", kSeedRange);
-  command->add_option("--charts", a->common.charts, "Output folder for soil_plate.svg");
+  command->add_option("--charts", a->common.charts, "Output folder for soil_plate.svg")
+      ->type_name("FOLDER");
   command->callback([a, &program] { program.action = [a] { return run_plate(*a); }; });
 }
 

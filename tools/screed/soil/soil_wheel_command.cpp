@@ -184,12 +184,16 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
   add_number(*command, "--passes", a->test.passes, "Number of passes over the same track",
              {1, 100});
   CLI::Option* measured =
-      command->add_option("--measured", a->measured,
-                          "Compare with measurements: a CSV file (default: Ding et al. 2011)");
+      command
+          ->add_option("--measured", a->measured,
+                       "Compare with measurements: a CSV file (default: Ding et al. 2011)")
+          ->type_name("FILE");
   measured->expected(0, 1);
-  command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text");
+  command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text")
+      ->type_name("CASE");
   command->add_flag("--fit", a->fit, "Fit --slip-sinkage to the measured sinkage first");
-  command->add_option("--charts", a->common.charts, "Output folder for SVG charts");
+  command->add_option("--charts", a->common.charts, "Output folder for SVG charts")
+      ->type_name("FOLDER");
   command->callback([a, measured, &program] {
     program.action = [a, measured] {
       if (measured->count() > 0 && a->measured.empty()) {

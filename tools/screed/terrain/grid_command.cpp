@@ -480,7 +480,8 @@ void register_grid_command(CLI::App& root, Program& program) {
   command->add_option("--size", options->size,
                       "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
   command->add_option("--border", options->border, "Border of the grid: walls or torus");
-  command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)");
+  command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)")
+      ->type_name("FILE");
   add_number(*command, "--white", config.white, "Height of a white pixel [units]",
              {0.001, 10000.0});
   add_number(*command, "--mean", options->mean, "Mean height [units] (noise: 6.5)", {0.0, 10000.0});
@@ -537,16 +538,23 @@ void register_grid_command(CLI::App& root, Program& program) {
              "Number of threads; 0: one per core; results do not depend on it", {0, 1024});
   command->add_option("--figure", options->figure,
                       "Reproduce a figure: 4.2, 4.3, 4.4, 4.5, better or better-units");
-  command->add_option("--out", options->out,
-                      "Output folder for runs, tables and charts of --figure (default: out/grid) "
-                      "or --runs; resumes an interrupted sweep");
-  command->add_option("--record", options->record, "Record the run to this HDF5 file");
-  command->add_option("--replay", options->replay, "Play a recording instead of a run");
-  command->add_option("--render", options->render,
-                      "Render a ray-traced picture (PNG) of the stacks before and after");
+  command
+      ->add_option("--out", options->out,
+                   "Output folder for runs, tables and charts of --figure (default: out/grid) "
+                   "or --runs; resumes an interrupted sweep")
+      ->type_name("FOLDER");
+  command->add_option("--record", options->record, "Record the run to this HDF5 file")
+      ->type_name("FILE");
+  command->add_option("--replay", options->replay, "Play a recording instead of a run")
+      ->type_name("FILE");
+  command
+      ->add_option("--render", options->render,
+                   "Render a ray-traced picture (PNG) of the stacks before and after")
+      ->type_name("FILE");
   add_number(*command, "--render-width", options->render_width,
              "Width of the rendered picture [px]", {100, 8000});
-  command->add_option("--curve", options->curve, "Write the progress curve to this CSV file");
+  command->add_option("--curve", options->curve, "Write the progress curve to this CSV file")
+      ->type_name("FILE");
   add_number(*command, "--speed", options->speed, "Speed of the live view [cycles/s]", {0.01, 1e9});
   command->add_flag("--headless", options->headless, "Run at full speed without live view");
   command->add_flag("--quiet", options->quiet, "Show neither live view nor progress");

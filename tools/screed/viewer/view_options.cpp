@@ -32,6 +32,7 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
   command
       .add_option("--screenshot", arguments.screenshot,
                   "Write a screenshot of the viewer to this PNG file")
+      ->type_name("FILE")
       ->group(kGroup);
   add_number(command, "--at", arguments.at,
              "Time of the screenshot [simulated s] (default: the end)", {0.0, 1e6})
@@ -39,6 +40,7 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
   command
       .add_option("--frames-dir", arguments.frames_dir,
                   "Write PNG frames of the whole run to this folder, 25 frames/s at --speed")
+      ->type_name("FOLDER")
       ->group(kGroup);
   command.add_option("--shading", arguments.shading, "Initial colouring of the terrain")
       ->group(kGroup)

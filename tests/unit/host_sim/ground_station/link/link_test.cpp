@@ -120,7 +120,14 @@ TEST_F(LinkTest, WrongPortsAreRefusedInOneLine) {
     }
     return std::string();
   };
-  EXPECT_NE(refusal(folder_ / "none").find("no such port"), std::string::npos);
+  SerialOptions here;
+  here.devices = folder_;
+  EXPECT_EQ(refusal(folder_ / "none", here),
+            (folder_ / "none").string() + ": no such port; serial ports here: none");
+  for (const char* name : {"ttyUSB1", "ttyACM0", "ttyS0", "tty1"}) std::ofstream(folder_ / name);
+  EXPECT_EQ(refusal(folder_ / "none", here),
+            (folder_ / "none").string() + ": no such port; serial ports here: " +
+                (folder_ / "ttyACM0").string() + ", " + (folder_ / "ttyUSB1").string());
   std::ofstream(folder_ / "file") << "text";
   EXPECT_NE(refusal(folder_ / "file").find("not a serial port"), std::string::npos);
   PseudoTerminal device(folder_ / "radio");

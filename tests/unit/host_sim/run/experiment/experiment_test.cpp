@@ -336,8 +336,7 @@ TEST_F(ExperimentFile, ThePathOfChronosDataIsNotedAndNotUsed) {
 TEST_F(ExperimentFile, EveryParameterOfTheFirmwareHasAKeyOfItsOwn) {
   for (const ParameterInfo& info : kParameterTable) {
     // Said in [experiment].
-    if (std::string(info.name) == "algorithm" || std::string(info.name) == "training_block")
-      continue;
+    if (std::string(info.name) == "algorithm") continue;
     const std::string name = info.name;
     const int16_t value = name == "walk_speed_min" || name == "walk_leg_min" ? info.min : info.max;
     const Experiment experiment =

@@ -10,24 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "commands.h"
 #include "tests/temp_folder.h"
+#include "tools/screed/cli/command_line.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/option_words.h"
 #include "tools/screed/cli/program.h"
 
 namespace screed {
 namespace {
-
-/// The command line as the program has it, every subcommand in it.
-struct CommandLine {
-  CLI::App app{"", "screed"};
-  Program program{"test", {}};
-
-  CommandLine() {
-    app.require_subcommand(1);
-    register_screed_subcommands(app, program);
-  }
-};
 
 struct OptionPlace {
   std::vector<std::string> path;  ///< of subcommands
@@ -66,15 +56,20 @@ struct Limits {
   double high;
 };
 
-/// From the help, "NUMBER 0.01..1000" or "INTEGER=3 1..10": what a user sees is what is tested.
+/// From the words of the help, "0.01 to 1000" or "0 or 1 to 10" or "1 or more": what a user sees is
+/// what is tested.
 std::optional<Limits> limits_of(const CLI::Option& option) {
-  static const std::regex form("(NUMBER|INTEGER)[^ ]* (?:0 or )?([^ ]+?)\\.\\.([^ ]+)");
-  const std::string shown = option.get_type_name() + "=" + option.get_default_str();
-  const std::string text = option.get_default_str().empty() ? option.get_type_name() : shown;
+  static const std::regex form("(?:0 or )?([^ ]+) to ([^ ]+)");
+  static const std::regex open_form("([^ ]+) or more");
+  const OptionWords words = words_of(option);
+  const bool whole = words.value == "INTEGER";
+  if (!whole && words.value != "NUMBER") return std::nullopt;
   std::smatch match;
-  if (!std::regex_match(text, match, form)) return std::nullopt;
-  return Limits{match[1] == "INTEGER", finite_number<double>(match.str(2)).value(),
-                finite_number<double>(match.str(3)).value()};
+  if (std::regex_match(words.range, match, open_form))
+    return Limits{whole, finite_number<double>(match.str(1)).value(), kSeedRange.high};
+  if (!std::regex_match(words.range, match, form)) return std::nullopt;
+  return Limits{whole, finite_number<double>(match.str(1)).value(),
+                finite_number<double>(match.str(2)).value()};
 }
 
 /// How the program ends on a command line, and what it says. Nothing is run.
@@ -123,7 +118,7 @@ TEST(CommandNumbers, EveryOneRefusesWhatIsNoNumberOfItsRange) {
   const TempFolder folder;
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder.path());
-  CommandLine line;
+  CommandLine line("1.2.3", "screed 1.2.3");
   int numbers = 0;
   for (const OptionPlace& place : every_option(line.app)) {
     const std::optional<Limits> limits = limits_of(*place.option);
@@ -147,7 +142,7 @@ TEST(CommandNumbers, EveryOneRefusesWhatIsNoNumberOfItsRange) {
 }
 
 TEST(CommandNumbers, EveryOneTakesTheEndsOfItsRange) {
-  CommandLine line;
+  CommandLine line("1.2.3", "screed 1.2.3");
   for (const OptionPlace& place : every_option(line.app)) {
     const std::optional<Limits> limits = limits_of(*place.option);
     if (!limits || limits->high > 1e18) continue;
@@ -185,7 +180,7 @@ TEST(CommandNumbers, AnOptionWithoutARangeIsNoticed) {
 }
 
 TEST(CommandNumbers, NoneIsWithoutARange) {
-  CommandLine line;
+  CommandLine line("1.2.3", "screed 1.2.3");
   for (const OptionPlace& place : every_option(line.app)) {
     EXPECT_FALSE(is_unchecked_number(*place.option))
         << place.text() << " is a " << place.option->get_type_name()
@@ -202,7 +197,7 @@ TEST(CommandNumbers, NoneIsHiddenInAText) {
                                          std::regex::ECMAScript);
   // Names in brackets that are no units: "[map]", "[experiment]".
   static const std::regex section("\\[(map|experiment|parameters)\\]");
-  CommandLine line;
+  CommandLine line("1.2.3", "screed 1.2.3");
   for (const OptionPlace& place : every_option(line.app)) {
     if (is_flag(*place.option) || limits_of(*place.option)) continue;
     if (own_form.count(place.text()) > 0) continue;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tools/screed/cli/option_words.h"
+
 namespace screed {
 namespace {
 
@@ -34,12 +36,10 @@ Value taken(const std::string& text, const NumberRange& range) {
   return value;
 }
 
-/// The option in the help, without the blanks that fill its column.
+/// The option in the help: value and details.
 std::string shown(const CLI::App& app) {
-  const std::string help = app.help();
-  const std::size_t begin = help.find("--x");
-  const std::string line = help.substr(begin, help.find('\n', begin) - begin);
-  return line.substr(0, line.find_last_not_of(' ') + 1);
+  const OptionWords words = words_of(*app.get_option("--x"));
+  return words.value + " " + details(words);
 }
 
 TEST(NumberOption, TakesBothEndsOfItsRange) {
@@ -98,7 +98,7 @@ TEST(NumberOption, SeveralReplaceTheDefaults) {
   CLI::App app;
   std::vector<double> values = {7.0, 8.0};
   add_number(app, "--x", values, "", {-1.0, 10.0})->capture_default_str();
-  EXPECT_EQ(shown(app), "--x NUMBER=7,8 -1..10 ...");
+  EXPECT_EQ(shown(app), "NUMBER (-1 to 10; may be repeated; default: 7,8)");
   EXPECT_EQ(refusal(app, {"--x", "1,-0.5", "--x", "3"}), "");
   EXPECT_EQ(values, (std::vector<double>{1.0, -0.5, 3.0}));
   EXPECT_EQ(refusal(app, {"--x", "1,,3"}), "--x '': allowed are -1 to 10");
@@ -110,15 +110,15 @@ TEST(NumberOption, HelpShowsRangeAndDefault) {
   CLI::App app;
   double value = 0.25;
   add_number(app, "--x", value, "", {0.0001, 1e6});
-  EXPECT_EQ(shown(app), "--x NUMBER 0.0001..1000000");
+  EXPECT_EQ(shown(app), "NUMBER (0.0001 to 1000000)");
   app.get_option("--x")->capture_default_str();
-  EXPECT_EQ(shown(app), "--x NUMBER=0.25 0.0001..1000000");
+  EXPECT_EQ(shown(app), "NUMBER (0.0001 to 1000000; default: 0.25)");
 
   CLI::App other;
   std::optional<int> count;
   add_number(other, "--x", count, "", {.low = 1, .high = 9, .or_zero = true})
       ->capture_default_str();
-  EXPECT_EQ(shown(other), "--x INTEGER 0 or 1..9");
+  EXPECT_EQ(shown(other), "INTEGER (0 or 1 to 9)");
 }
 
 TEST(NumberOption, NamesPositionalsAndShortOptions) {

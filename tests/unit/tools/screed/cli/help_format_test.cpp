@@ -1,0 +1,140 @@
+// --help: its form, and that of every subcommand.
+#include "tools/screed/cli/help_format.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <regex>
+
+#include "tools/screed/cli/command_line.h"
+
+namespace screed {
+namespace {
+
+TEST(HelpFormat, SaysTypesRangesAndDefaultsInWords) {
+  CLI::App app("A program that does something", "prog");
+  double share = 0.5;
+  int count = 3;
+  std::string out = "here";
+  std::string text;
+  std::vector<std::string> files;
+  std::string mode;
+  bool quiet = false;
+  bool pictures = true;
+  app.add_option("FILE", files, "Input files")->required();
+  CLI::Option* first = app.add_option("--share", share, "The share")
+                           ->check(CLI::Range(0.0, 1.0))
+                           ->capture_default_str();
+  app.add_option("-n,--count", count, "How many")->check(CLI::PositiveNumber);
+  app.add_option("--out", out, "Output folder")->type_name("FOLDER")->capture_default_str();
+  app.add_option("--colour", text, "The colour")->excludes(first);
+  app.add_option("--mode", mode, "The mode")->check(CLI::IsMember({"fast", "slow"}))->required();
+  app.add_flag("--quiet", quiet, "Say nothing")->needs(first);
+  app.add_flag("!--no-pictures", pictures, "Draw nothing");
+  use_help_format(app);
+  EXPECT_EQ(app.help(),
+            "A program that does something\n"
+            "\n"
+            "Usage: prog [OPTIONS] FILE...\n"
+            "\n"
+            "Arguments:\n"
+            "  FILE...                 Input files\n"
+            "\n"
+            "Options:\n"
+            "  -h, --help              Print this help message and exit\n"
+            "  --share NUMBER          The share (0 to 1; not with --colour; default: 0.5)\n"
+            "  -n, --count INTEGER     How many (more than 0)\n"
+            "  --out FOLDER            Output folder (default: here)\n"
+            "  --colour COLOUR         The colour (not with --share)\n"
+            "  --mode MODE             The mode (fast, slow; required)\n"
+            "  --quiet                 Say nothing (needs --share)\n"
+            "  --no-pictures           Draw nothing\n");
+}
+
+TEST(HelpFormat, WrapsAndListsSubcommands) {
+  CLI::App app("A program", "prog");
+  app.require_subcommand(1);
+  CLI::App* group = app.add_subcommand("group", "A group");
+  bool flag = false;
+  group->add_flag("--a-very-long-name-of-an-option", flag,
+                  "A description of so many words that they do not go into one line of a page");
+  group->require_subcommand(1);
+  CLI::App* below = group->add_subcommand("below", "Belongs to the group");
+  below->fallthrough();
+  use_help_format(app);
+  EXPECT_EQ(group->help(),
+            "A group\n"
+            "\n"
+            "Usage: prog group [OPTIONS] SUBCOMMAND\n"
+            "\n"
+            "Options:\n"
+            "  -h, --help              Print this help message and exit\n"
+            "  --a-very-long-name-of-an-option\n"
+            "                          A description of so many words that they do not go\n"
+            "                          into one line of a page\n"
+            "\n"
+            "Subcommands:\n"
+            "  below                   Belongs to the group\n"
+            "\n"
+            "prog group SUBCOMMAND --help describes each.\n");
+  EXPECT_NE(below->help().find("Options of all subcommands of the group:\n"
+                               "  --a-very-long-name-of-an-option\n"),
+            std::string::npos)
+      << below->help();
+  EXPECT_EQ(app.help().find("--a-very"), std::string::npos);
+}
+
+/// Every page of the program, with its command line.
+void for_each_page(const std::function<void(const std::string& path, const CLI::App&)>& visit) {
+  CommandLine line("1.2.3", "screed 1.2.3");
+  use_help_format(line.app);
+  const std::function<void(const CLI::App&, const std::string&)> walk =
+      [&](const CLI::App& at, const std::string& path) {
+        visit(path, at);
+        for (const CLI::App* below : at.get_subcommands({}))
+          walk(*below, path + " " + below->get_name());
+      };
+  walk(line.app, "screed");
+}
+
+TEST(Help, OfNoSubcommandShowsTheParsersOwnWords) {
+  static const std::regex noise(
+      "\\{|\\}|\\bU?INT\\b|\\bFLOAT\\b|\\bTEXT\\b|BOOLEAN|POSITIVE|Excludes:|Needs:|REQUIRED|=\\[|"
+      "[0-9]\\.\\.[0-9]| \\.\\.\\.|18446744073709551615");
+  int pages = 0;
+  for_each_page([&](const std::string& path, const CLI::App& app) {
+    ++pages;
+    const std::string help = app.help();
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(help, found, noise))
+        << path << " --help shows '" << found.str() << "':\n"
+        << help;
+    EXPECT_NE(help.find("\nUsage: " + path), std::string::npos) << help;
+  });
+  EXPECT_GT(pages, 50);
+}
+
+TEST(Help, FitsIntoEightyColumns) {
+  for_each_page([](const std::string& path, const CLI::App& app) {
+    std::istringstream lines(app.help());
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), 80U) << path << " --help: " << line;
+      EXPECT_TRUE(line.empty() || line.back() != ' ') << path << " --help: '" << line << "'";
+    }
+  });
+}
+
+TEST(Help, DescribesEveryOptionAndSaysNoDefaultTwice) {
+  for_each_page([](const std::string& path, const CLI::App& app) {
+    EXPECT_FALSE(app.get_description().empty()) << path;
+    for (const CLI::Option* option : app.get_options()) {
+      const OptionWords words = words_of(*option);
+      EXPECT_FALSE(words.help.empty()) << path << " " << words.names.front();
+      EXPECT_TRUE(words.fallback.empty() || words.help.find("(default") == std::string::npos)
+          << path << " " << words.names.front() << ": " << words.help << " " << details(words);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace screed

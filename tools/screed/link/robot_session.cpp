@@ -1,0 +1,93 @@
+// One robot at the other end of a link.
+#include "tools/screed/link/robot_session.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "firmware/parameters/parameter_table.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/arming.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/parameter_names.h"
+
+namespace screed {
+namespace {
+
+constexpr std::chrono::milliseconds kPump{20};
+constexpr uint64_t kAnswerTimeout_us = 3'000'000;
+constexpr uint64_t kStopPeriod_us = 200'000;
+
+}  // namespace
+
+RobotSession::RobotSession(const LinkArguments& arguments, const CommandKey& key)
+    : link_(open_link(arguments)),
+      session_(*link_,
+               {key, true, [this](const LinkFrame& frame) { fleet_.add_frame(frame); }, {}}) {
+  catch_interrupts();
+}
+
+void RobotSession::meet() {
+  const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
+  const auto heard = [this] {
+    return std::any_of(fleet_.robots().begin(), fleet_.robots().end(), [](const auto& robot) {
+      return robot.second.value("heartbeat.link_alive").value_or(0.0) != 0.0;
+    });
+  };
+  while (!interrupted() && wall_clock_us() < end_us && !(session_.ready() && heard()))
+    session_.pump(kPump);
+  if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
+  if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
+}
+
+std::string RobotSession::words(const std::optional<CommandAnswer>& answer) {
+  if (!answer.has_value() || fleet_.robots().empty()) return "no answer";
+  const LatestTelemetry& robot = fleet_.robots().begin()->second.latest();
+  if (answer->result == static_cast<uint8_t>(message::CommandAckResult::kFaultPresent)) {
+    // The sentences name the robot's own limits.
+    std::optional<CommandAnswer> read;
+    for (const std::string_view limit : limits_to_read(answer->detail, robot))
+      session_.read_parameter(parameter_index(std::string(limit)), read);
+  }
+  return answer_text(*answer, robot, wall_clock_us());
+}
+
+bool RobotSession::say(const std::string& what, const std::optional<CommandAnswer>& answer) {
+  std::cout << what << ": " << words(answer) << std::endl;
+  return answer.has_value() && answer->done();
+}
+
+int32_t RobotSession::read_parameter(uint16_t index) {
+  std::optional<CommandAnswer> answer;
+  const std::optional<int32_t> value = session_.read_parameter(index, answer);
+  if (interrupted()) throw RunError("interrupted");
+  if (!value.has_value())
+    throw RunError(std::string(kParameterTable[index].name) + ": " + words(answer));
+  return *value;
+}
+
+bool RobotSession::emergency_stop() {
+  // Sent before anything is heard: the robot may be deaf to the ground but not the ground to it.
+  session_.emergency_stop();
+  const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
+  uint64_t again_us = wall_clock_us() + kStopPeriod_us;
+  while (!interrupted() && wall_clock_us() < end_us) {
+    session_.pump(kPump);
+    for (const auto& [key, robot] : fleet_.robots()) {
+      if (robot.value("heartbeat.emergency_stop").value_or(0.0) == 0.0) continue;
+      std::cout << "estop: " << key.text() << " has stopped\n";
+      return true;
+    }
+    if (wall_clock_us() < again_us) continue;
+    session_.emergency_stop();
+    again_us += kStopPeriod_us;
+  }
+  std::cout << "estop: sent, but no robot says that it has stopped\n";
+  return false;
+}
+
+void RobotSession::hold() {
+  std::cerr << "holding the link; end with Ctrl-C, and the robot stops\n";
+  while (!interrupted()) session_.pump(kPump);
+}
+
+}  // namespace screed
