@@ -2,6 +2,7 @@
 // opened on SDL's dummy screen, one on a real X server.
 #include <string>
 
+#include "firmware/robot/supervisor.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tests/sitl/program.h"
 #include "tests/sitl/terminal.h"
@@ -95,6 +96,27 @@ TEST_F(View, TheKeyboardDrivesOverTheRadio) {
   EXPECT_EQ(last_frame("returned").state, 2);           // running
 }
 
+TEST_F(View, TheEmergencyStopNeedsNoTakingOver) {
+  write("hills.ini",
+        "[experiment]\nname = hills\nduration = 12\nalgorithm = hill_sensing\n[map]\nsize = 3\n");
+  ASSERT_EQ(run("sim hills.ini --quiet --out stopped --key-script Space@7").exit_code, 0);
+  EXPECT_EQ(last_frame("stopped").state, 4);  // fault
+  EXPECT_EQ(last_frame("stopped").faults, Fault::kEmergencyStop);
+  EXPECT_NEAR(last_frame("stopped").velocity_x, 0.0, 0.005);
+
+  // Nothing but C starts the robot again.
+  ASSERT_EQ(run("sim hills.ini --quiet --out held --key-script Space@7 --key-script Up@8-30 "
+                "--key-script Backspace@9")
+                .exit_code,
+            0);
+  EXPECT_EQ(last_frame("held").state, 4);
+  ASSERT_EQ(
+      run("sim hills.ini --quiet --out cleared --key-script Space@7 --key-script C@8").exit_code,
+      0);
+  EXPECT_EQ(last_frame("cleared").state, 2);           // running
+  EXPECT_EQ(last_frame("cleared").leveling_state, 1);  // walk
+}
+
 TEST_F(View, ClosingTheWindowEndsTheRunAndSavesIt) {
   const Result result =
       on_dummy("sim e.ini --quiet --out r --view --frames 1000 --key-script q@1 --heights");
@@ -119,9 +141,9 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
   expect_refused(run("sim e.ini --view", "SDL_VIDEODRIVER=none"), 2,
                  {"the viewer has no screen", "SDL_VIDEODRIVER=none", "--screenshot"});
   expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
-  expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "640x420"});
+  expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "480x360"});
   for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500"}) {
-    expect_refused(run(std::string("sim e.ini --view --size ") + size), 2, {"--size", "640x420"});
+    expect_refused(run(std::string("sim e.ini --view --size ") + size), 2, {"--size", "480x360"});
   }
   for (const char* time : {"", "nan", "inf", "nan-3", "1-inf", "1e999", "2000000", "-1", "1x"}) {
     expect_refused(run(std::string("sim e.ini --key-script Up@") + time), 2,
@@ -168,6 +190,38 @@ TEST_F(View, CtrlCEndsAFilmAndKeepsItsFrames) {
       << terminal.screen();
   EXPECT_GT(png_size(root_ / "film" / "frame_000001.png").first, 0);
   EXPECT_LT(std::distance(std::filesystem::directory_iterator(root_ / "film"), {}), 1500);
+}
+
+TEST_F(View, PicturesThatCannotBeAreRefusedBeforeTheRun) {
+  expect_refused(run("sim e.ini --screenshot x.jpg"), 2, {"--screenshot", "x.jpg", ".png"});
+  expect_refused(run("sim e.ini --screenshot no/p.png"), 2, {"--screenshot", "no"});
+  expect_refused(run("sim e.ini --screenshot p.png --at 3.5"), 2, {"--at = 3.5", "3.00 s", "0 to"});
+  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  expect_refused(run("view r --screenshot x.jpg"), 2, {"--screenshot", "x.jpg", ".png"});
+  expect_refused(run("view r --screenshot p.png --at 3.5"), 2, {"--at = 3.5", "r lasts 3.00 s"});
+  EXPECT_FALSE(std::filesystem::exists(root_ / "p.png"));
+  EXPECT_EQ(run("view r --screenshot p.PNG --at 3").exit_code, 0);
+  EXPECT_EQ(png_size(root_ / "p.PNG"), (std::pair<int, int>(1280, 800)));
+}
+
+TEST_F(View, FramesOfTwoFilmsDoNotMix) {
+  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("view r --frames-dir film --speed 8 --size 480x360").exit_code, 0);
+  const std::string first = read(root_ / "film" / "frame_000001.png");
+  expect_refused(run("view r --frames-dir film --speed 32 --size 480x360 --shading slope"), 2,
+                 {"--frames-dir", "film", "another"});
+  EXPECT_EQ(read(root_ / "film" / "frame_000001.png"), first);
+  // An empty folder, or one with other files, is welcome.
+  std::filesystem::create_directory(root_ / "other");
+  write("other/notes.txt", "x");
+  EXPECT_EQ(run("view r --frames-dir other --speed 32 --size 480x360").exit_code, 0);
+  // The R key names no folder: every film gets a new one.
+  const std::string film =
+      "view r --frames 20 --size 480x360 --key-script R@0.1 --key-script R@0.2";
+  ASSERT_EQ(on_dummy(film).exit_code, 0);
+  ASSERT_EQ(on_dummy(film).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(root_ / "frames" / "frame_000001.png"));
+  EXPECT_TRUE(std::filesystem::exists(root_ / "frames-2" / "frame_000001.png"));
 }
 
 TEST_F(View, OnARealScreenTheWindowClosesAtAKey) {

@@ -72,7 +72,8 @@ $(B)/tiny_dnn/third_party/stb:
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 $(B)/host_sim/render/picture/svg_png.o: EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
-$(B)/tools/screed/viewer/window.o: EXTRA_FLAGS = $(SDL_FLAGS)
+$(addprefix $(B)/,tools/screed/viewer/window.o tools/screed/viewer/gamepad_input.o tests/unit/tools/screed/viewer/gamepad_input_test.o): \
+  EXTRA_FLAGS = $(SDL_FLAGS)
 
 # ---- generated headers: what the program knows of its surroundings; only files that include them depend on them ----------------
 

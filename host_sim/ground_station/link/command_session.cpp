@@ -142,6 +142,8 @@ std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int
 }
 
 void CommandSession::emergency_stop() {
+  waiting_ = false;
+  answer_.reset();
   for (int i = 0; i < 3; ++i) send_protected(frame_of(message::EmergencyStop{0}), stop_counter_);
 }
 

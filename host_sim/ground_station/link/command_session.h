@@ -63,7 +63,8 @@ class CommandSession {
   /// Stages the value and commits it: it is in force and stored when the answer is "done".
   std::optional<CommandAnswer> write_parameter(uint16_t index, int32_t value);
 
-  /// Sends EMERGENCY_STOP three times: it needs no key and has no answer of its own.
+  /// Sends EMERGENCY_STOP three times: it needs no key and has no answer of its own. A command that
+  /// still waits is given up: its repetition must not start the robot again.
   void emergency_stop();
 
  private:

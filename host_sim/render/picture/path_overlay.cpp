@@ -1,13 +1,17 @@
 #include "host_sim/render/picture/path_overlay.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "host_sim/render/picture/state_color.h"
 
 namespace screed {
 namespace {
 
 constexpr Color kCasing{1.0, 1.0, 1.0, 0.92};
 constexpr Color kInk{0.13, 0.15, 0.17};
+constexpr Color kArrow{0.62, 0.65, 0.68};
 constexpr double kPathWidth_px = 4.0;
 constexpr double kCasingWidth_px = 7.5;
 constexpr double kMarkerRadius_px = 8.0;
@@ -48,19 +52,6 @@ std::vector<Pixel> pixels_of(const MapFrame& frame, const std::vector<PathPoint>
   return pixels;
 }
 
-void draw_start(Canvas& canvas, Pixel at) {
-  canvas.circle(at, kMarkerRadius_px + 2.0, kInk);
-  canvas.circle(at, kMarkerRadius_px, {1.0, 1.0, 1.0});
-}
-
-void draw_end(Canvas& canvas, Pixel at) {
-  const auto square = [at](double half) {
-    return PixelBox{at.x - half, at.y - half, 2.0 * half, 2.0 * half};
-  };
-  canvas.rectangle(square(kMarkerRadius_px + 0.5), {1.0, 1.0, 1.0});
-  canvas.rectangle(square(kMarkerRadius_px - 1.5), kInk);
-}
-
 void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, const PictureOptions& options) {
   const std::vector<PathPoint>& path = options.path;
   const auto apart = [&](const PathPoint& from, const PathPoint& to) {
@@ -76,8 +67,7 @@ void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, const PictureOp
   }
   for (const Piece& piece : pieces) {
     for (const Piece& run : pieces_of(path, piece, true, differ)) {
-      canvas.line(pixels_of(frame, path, run), kPathWidth_px,
-                  category_color(path[run.first].state));
+      canvas.line(pixels_of(frame, path, run), kPathWidth_px, state_color(path[run.first].state));
     }
   }
 }
@@ -111,29 +101,53 @@ void draw_robot(Canvas& canvas, const MapFrame& frame, const RobotOutline& robot
   };
   const std::array<Pixel, 4> arrow = {
       {on_hull(0.74, 0.0), on_hull(-0.58, 0.74), on_hull(-0.28, 0.0), on_hull(-0.58, -0.74)}};
-  canvas.polygon(arrow, category_color(0));
+  canvas.polygon(arrow, kArrow);  // no state's colour
 }
 
 }  // namespace
 
+void draw_path_start(Canvas& canvas, Pixel at, double radius_px) {
+  canvas.circle(at, radius_px + 2.0, kInk);
+  canvas.circle(at, radius_px, {1.0, 1.0, 1.0});
+}
+
+void draw_path_end(Canvas& canvas, Pixel at, double radius_px) {
+  const auto square = [at](double half) {
+    return PixelBox{at.x - half, at.y - half, 2.0 * half, 2.0 * half};
+  };
+  canvas.rectangle(square(radius_px + 0.5), {1.0, 1.0, 1.0});
+  canvas.rectangle(square(radius_px - 1.5), kInk);
+}
+
 void draw_path_overlay(Canvas& canvas, const MapFrame& frame, bool wrap,
                        const PictureOptions& options) {
   canvas.clip(frame.map());
+  // Below the path, whose end it would hide.
+  if (options.robot) draw_robot(canvas, frame, *options.robot);
   if (!options.path.empty()) {
     draw_path(canvas, frame, wrap, options);
     const PathPoint& start = options.path.front();
     const PathPoint& end = options.path.back();
-    draw_start(canvas, frame.to_pixel(start.x_m, start.y_m));
-    if (!options.robot) draw_end(canvas, frame.to_pixel(end.x_m, end.y_m));
+    draw_path_start(canvas, frame.to_pixel(start.x_m, start.y_m), kMarkerRadius_px);
+    draw_path_end(canvas, frame.to_pixel(end.x_m, end.y_m), kMarkerRadius_px);
   }
-  if (options.robot) draw_robot(canvas, frame, *options.robot);
   canvas.unclip();
+}
+
+std::vector<size_t> states_on_path(const std::vector<PathPoint>& path) {
+  std::vector<size_t> states;
+  for (const PathPoint& point : path) {
+    if (std::find(states.begin(), states.end(), point.state) == states.end())
+      states.push_back(point.state);
+  }
+  std::sort(states.begin(), states.end());
+  return states;
 }
 
 double legend_height_px(const PictureOptions& options) {
   if (options.path.empty()) return 0.0;
-  const size_t markers = options.robot ? 1 : 2;
-  return kLegendRow_px * static_cast<double>(1 + options.state_names.size() + markers);
+  constexpr size_t kMarkers = 2;  // start and end
+  return kLegendRow_px * static_cast<double>(1 + states_on_path(options.path).size() + kMarkers);
 }
 
 void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& options) {
@@ -146,15 +160,14 @@ void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& op
   };
   canvas.text(row, "Driven path", {.color = kInk, .bold = true});
   row.y += kLegendRow_px;
-  for (size_t state = 0; state < options.state_names.size(); ++state) {
+  for (const size_t state : states_on_path(options.path)) {
     canvas.line(std::array<Pixel, 2>{{{row.x + 2.0, row.y}, {row.x + kSample_px - 2.0, row.y}}},
-                kPathWidth_px, category_color(state));
+                kPathWidth_px, state_color(state));
     name(options.state_names[state]);
   }
-  draw_start(canvas, {row.x + 0.5 * kSample_px, row.y});
+  draw_path_start(canvas, {row.x + 0.5 * kSample_px, row.y}, kMarkerRadius_px);
   name("start");
-  if (options.robot) return;
-  draw_end(canvas, {row.x + 0.5 * kSample_px, row.y});
+  draw_path_end(canvas, {row.x + 0.5 * kSample_px, row.y}, kMarkerRadius_px);
   name("end");
 }
 

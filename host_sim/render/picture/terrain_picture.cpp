@@ -11,6 +11,7 @@
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/path_overlay.h"
 #include "host_sim/render/picture/relief.h"
+#include "host_sim/render/picture/state_color.h"
 
 namespace screed {
 namespace {
@@ -36,9 +37,9 @@ void require_finite(const char* what, std::initializer_list<double> values) {
 void check(const PictureOptions& options) {
   require_side("width_px", options.width_px, 800);
   require_side("height_px", options.height_px, 700);
-  if (options.state_names.size() > kCategoryColors) {
+  if (options.state_names.size() > kStateColors) {
     throw InputError("picture: " + std::to_string(options.state_names.size()) +
-                     " state names; allowed: at most " + std::to_string(kCategoryColors));
+                     " state names; allowed: at most " + std::to_string(kStateColors));
   }
   for (const PathPoint& point : options.path) {
     if (point.state >= options.state_names.size()) {

@@ -12,8 +12,8 @@
 
 namespace screed {
 
-/// One place of a driven path; `state` indexes PictureOptions::state_names and colours the path
-/// from here to the next place.
+/// One place of a driven path; `state` colours the path from here to the next place
+/// (state_color.h) and indexes PictureOptions::state_names.
 struct PathPoint {
   double x_m;
   double y_m;
@@ -42,7 +42,7 @@ struct PictureOptions {
   /// Of a height map. Without it the map's own: pictures that are to be compared need the same.
   std::optional<HeightRange> heights;
   std::vector<PathPoint> path;
-  std::vector<std::string> state_names;  ///< the legend; at most kCategoryColors
+  std::vector<std::string> state_names;  ///< of all states; the legend lists those of the path
   std::optional<RobotOutline> robot;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
@@ -111,6 +112,7 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
 
 std::vector<fs::path> export_pictures(const SessionReader& session, const FrameRange& range,
                                       std::uint64_t every, const fs::path& folder,
+                                      std::vector<std::string> state_names,
                                       const std::optional<RobotShape>& shape,
                                       const TaskProgress& progress) {
   check(session, range, every);
@@ -119,7 +121,7 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
   PictureOptions options;
   const HeightExtremes extremes = session.height_extremes();
   options.heights = HeightRange{extremes.lowest * kHeightUnit_m, extremes.highest * kHeightUnit_m};
-  options.state_names = {"driven"};
+  options.state_names = std::move(state_names);
   std::uint64_t next = range.first;
   std::vector<SimFrame> frames;
   const ExportProgress told{progress, "exporting pictures"};
@@ -128,7 +130,8 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
     session.read(next, std::span(frames));
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if ((next + i - range.first) % kPathFrames == 0)
-        options.path.push_back({frames[i].x, frames[i].y, 0});
+        options.path.push_back(
+            {frames[i].x, frames[i].y, static_cast<std::size_t>(frames[i].leveling_state)});
     }
     const SimFrame& now = frames.back();
     next = frame + 1;

@@ -39,10 +39,12 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
                                 const TaskProgress& progress = {});
 
 /// Writes the same frames as shaded pictures with path and robot (without a shape the path's end
-/// stands for it), folder/picture_NNNNNN.png. Reports the task "exporting pictures".
+/// stands for it), folder/picture_NNNNNN.png. state_names: of the leveling algorithm's states, by
+/// number. Reports the task "exporting pictures".
 std::vector<std::filesystem::path> export_pictures(const SessionReader& session,
                                                    const FrameRange& range, std::uint64_t every,
                                                    const std::filesystem::path& folder,
+                                                   std::vector<std::string> state_names,
                                                    const std::optional<RobotShape>& shape,
                                                    const TaskProgress& progress = {});
 

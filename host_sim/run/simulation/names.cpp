@@ -23,6 +23,15 @@ const char* leveling_state_name(LevelingState state) {
   return name_of(signal, static_cast<int64_t>(state));
 }
 
+std::vector<std::string> leveling_state_names() {
+  std::vector<std::string> names;
+  names.reserve(kLevelingStates);
+  for (size_t state = 0; state < kLevelingStates; ++state) {
+    names.emplace_back(leveling_state_name(static_cast<LevelingState>(state)));
+  }
+  return names;
+}
+
 std::string fault_names(uint16_t faults) {
   const std::string names = flag_names("heartbeat", "faults", faults);
   return names.empty() ? "none" : names;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "firmware/leveling/leveling.h"
 #include "firmware/robot/supervisor.h"
@@ -17,6 +18,8 @@ inline constexpr std::size_t kLevelingStates = message::kLevelingStateMax + 1U;
 /// The name of a state; "unknown" for a number that has none.
 const char* state_name(RobotState state);
 const char* leveling_state_name(LevelingState state);
+/// The names of all of them, by number.
+std::vector<std::string> leveling_state_names();
 /// The names of the set fault bits, or "none".
 std::string fault_names(uint16_t faults);
 

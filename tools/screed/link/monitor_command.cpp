@@ -16,6 +16,7 @@
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/emergency_stop_key.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/parameter_names.h"
@@ -111,7 +112,7 @@ class Monitor {
     input.curves = curves_;
     input.window_s = window_s_;
     input.battery_cells = cells_;
-    input.footer = {"SPACE emergency stop",
+    input.footer = {std::string(kEmergencyStopKeyName) + " emergency stop",
                     "a arm",
                     "r run",
                     "s stop",
@@ -207,7 +208,7 @@ class Monitor {
       case 'c':
         command(CommandOp::kClear);
         break;
-      case ' ':
+      case kEmergencyStopKey:
         session_.emergency_stop();
         note(CellStyle::kAlarm, "emergency stop sent");
         break;

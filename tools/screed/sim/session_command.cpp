@@ -16,6 +16,7 @@
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/simulation/names.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/task_bar.h"
@@ -232,8 +233,8 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.pictures) {
     const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
     const auto files = export_pictures(session, range, arguments.every.value_or(tenth),
-                                       folders.make(out / "pictures"), shape_of_run(session, file),
-                                       bar.progress());
+                                       folders.make(out / "pictures"), leveling_state_names(),
+                                       shape_of_run(session, file), bar.progress());
     bar.clear();
     std::printf("%s: %zu pictures\n", (out / "pictures").c_str(), files.size());
   }

@@ -1,50 +1,42 @@
-// The ground with all that lies on it, and the timeline under it; the panel is in panel.cpp.
+// The ground with the robot and its path on it. What lies over them is in drawing_overlay.cpp, the
+// panel in panel.cpp.
 #include "tools/screed/viewer/drawing.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "host_sim/render/picture/path_overlay.h"
+#include "host_sim/render/picture/state_color.h"
 #include "tools/screed/viewer/panel.h"
 #include "tools/screed/viewer/style.h"
 
 namespace screed::viewer {
 namespace {
 
-constexpr double kTimeline_px = 46.0;
-constexpr double kTimelineMargin_px = 22.0;
 constexpr double kTrailWidth_px = 3.2;
 constexpr double kTrailCasing_px = 6.0;
 constexpr double kTrailStep_px = 2.0;
+constexpr double kTrailEnd_px = 5.5;
 constexpr double kLugPitch_m = 0.0115;  // of the tread
-constexpr Color kGlass{0.07, 0.085, 0.10, 0.80};
-
-PixelBox grown(const PixelBox& box, double by) {
-  return {box.left - by, box.top - by, box.width + 2.0 * by, box.height + 2.0 * by};
-}
 
 }  // namespace
 
 Drawing::Drawing(int width_px, int height_px)
-    : canvas_(std::max(width_px, kMinWidth), std::max(height_px, kMinHeight), kBackground) {}
+    : canvas_(std::max(width_px, kMinWindowWidth_px), std::max(height_px, kMinWindowHeight_px),
+              kBackground),
+      layout_(layout_of(canvas_.width(), canvas_.height())) {}
 
 void Drawing::resize(int width_px, int height_px) {
-  canvas_ = Canvas(std::max(width_px, kMinWidth), std::max(height_px, kMinHeight), kBackground);
+  canvas_ = Canvas(std::max(width_px, kMinWindowWidth_px), std::max(height_px, kMinWindowHeight_px),
+                   kBackground);
+  layout_ = layout_of(canvas_.width(), canvas_.height());
   drawn_.reset();
 }
 
-PixelBox Drawing::terrain_box() const {
-  return {0.0, 0.0, canvas_.width() - kPanelWidth_px, canvas_.height() - kTimeline_px};
-}
-
-PixelBox Drawing::timeline_box() const {
-  const PixelBox ground = terrain_box();
-  return {0.0, ground.height, ground.width, kTimeline_px};
-}
-
 double Drawing::share_at(double pixel_x) const {
-  const double width = timeline_box().width - 2.0 * kTimelineMargin_px;
-  return std::clamp((pixel_x - kTimelineMargin_px) / width, 0.0, 1.0);
+  const TimelineBar bar = timeline_bar(layout_);
+  return std::clamp((pixel_x - bar.left) / (bar.right - bar.left), 0.0, 1.0);
 }
 
 void Drawing::draw(const Scene& scene) {
@@ -55,19 +47,22 @@ void Drawing::draw(const Scene& scene) {
   }
   canvas_.clip(terrain_box());
   draw_bed_edge(scene);
+  // Below the path, whose end it would hide.
+  draw_robot(scene);
   canvas_.unclip();
   if (scene.show_trail) draw_trail(scene);
   canvas_.clip(terrain_box());
-  draw_robot(scene);
-  draw_scale_bar(scene);
-  draw_color_bar(scene);
-  draw_badges(scene);
-  if (scene.help != nullptr) draw_help(*scene.help);
+  if (scene.show_trail) draw_trail_ends(scene);
+  draw_overlay(scene);
   canvas_.unclip();
   draw_timeline(scene);
   if (!drawn_.has_value() || *drawn_ != scene.status) {
-    draw_status_panel(canvas_, scene.status);
+    draw_status_panel(canvas_, layout_, scene.status);
     drawn_ = scene.status;
+  }
+  if (scene.help != nullptr) {
+    draw_help(*scene.help);
+    drawn_.reset();  // the help may lie over the panel
   }
 }
 
@@ -112,10 +107,15 @@ void Drawing::draw_trail(const Scene& scene) {
   along([&](Pixel from, Pixel to, uint8_t state) {
     draw_stroke(buffer, box, from, to, kTrailWidth_px, packed(state_color(state)));
   });
-  const Pixel start = place(trail[0]);
-  draw_stroke(buffer, box, start, start, 15.0, packed(kInk));
-  draw_stroke(buffer, box, start, start, 11.0, packed(kCasing));
   canvas_.release_pixels();
+}
+
+void Drawing::draw_trail_ends(const Scene& scene) {
+  if (std::min(scene.trail_points, scene.trail->size()) == 0) return;
+  const double radius = kTrailEnd_px * layout_.scale;
+  const TrailPoint& start = scene.trail->front();
+  draw_path_start(canvas_, scene.camera.to_pixel(start.x_m, start.y_m), radius);
+  draw_path_end(canvas_, scene.camera.to_pixel(scene.robot.x_m, scene.robot.y_m), radius);
 }
 
 void Drawing::draw_robot(const Scene& scene) {
@@ -166,102 +166,6 @@ void Drawing::draw_robot(const Scene& scene) {
                                        pixel(notch, middle), pixel(tail, middle - half)}};
   canvas_.polygon(arrow, state_color(static_cast<uint8_t>(scene.status.leveling_state)));
   canvas_.polygon_outline(arrow, 1.0, kInk);
-}
-
-void Drawing::draw_scale_bar(const Scene& scene) {
-  constexpr double kLongest_px = 180.0;
-  const Ticks ticks = round_ticks(0.0, kLongest_px / scene.camera.scale(), 3);
-  const double length_m = ticks.values.back();
-  const double length = length_m * scene.camera.scale();
-  const PixelBox ground = terrain_box();
-  const double left = 30.0;
-  const double base = ground.height - 30.0;
-  const std::string words = length_m >= 1.0    ? number_text(length_m, 0) + " m"
-                            : length_m >= 0.01 ? number_text(length_m * 100.0, 0) + " cm"
-                                               : number_text(length_m * 1000.0, 0) + " mm";
-  canvas_.rectangle({left - 14.0, base - 30.0, length + 28.0, 44.0}, kGlass);
-  const std::array<Pixel, 4> bar = {
-      {{left, base - 5.0}, {left, base}, {left + length, base}, {left + length, base - 5.0}}};
-  canvas_.line(bar, 2.0, kPaleInk);
-  canvas_.text({left + 0.5 * length, base - 10.0}, words,
-               {.size_px = 13.0, .color = kPaleInk, .align = TextAlign::kCenter});
-}
-
-void Drawing::draw_color_bar(const Scene& scene) {
-  constexpr double kBarHeight_px = 170.0;
-  constexpr double kBarWidth_px = 14.0;
-  const PixelBox ground = terrain_box();
-  const ShadingScale scale = scene.ground->scale(scene.shading);
-  const double left = ground.width - 78.0;
-  const double top = ground.height - kBarHeight_px - 34.0;
-  canvas_.rectangle({left - 14.0, top - 40.0, 78.0, kBarHeight_px + 60.0}, kGlass);
-  canvas_.text({left - 4.0, top - 22.0}, scale.label, {.size_px = 13.0, .color = kPaleInk});
-  canvas_.text({left - 4.0, top - 8.0}, scale.unit, {.size_px = 11.0, .color = kFaintInk});
-  for (int i = 0; i < static_cast<int>(kBarHeight_px); ++i) {
-    canvas_.rectangle({left, top + i, kBarWidth_px, 1.0},
-                      TerrainImage::color(scene.shading, 1.0 - (i + 0.5) / kBarHeight_px));
-  }
-  for (const double value : round_ticks(scale.low, scale.high, 6).values) {
-    const double y = top + kBarHeight_px * (scale.high - value) / (scale.high - scale.low);
-    const std::array<Pixel, 2> tick = {{{left + kBarWidth_px, y}, {left + kBarWidth_px + 4.0, y}}};
-    canvas_.line(tick, 1.0, kPaleInk);
-    canvas_.text({left + kBarWidth_px + 8.0, y + 4.0},
-                 number_text(value, round_ticks(scale.low, scale.high, 6).decimals),
-                 {.size_px = 11.0, .color = kPaleInk});
-  }
-}
-
-void Drawing::draw_badges(const Scene& scene) {
-  double left = 16.0;
-  for (const std::string& badge : scene.badges) {
-    const TextStyle style{.size_px = 13.0, .color = kPaleInk, .bold = true};
-    const double width = canvas_.text_width(badge, style);
-    canvas_.rectangle({left, 16.0, width + 24.0, 28.0}, kGlass);
-    canvas_.text({left + 12.0, 35.0}, badge, style);
-    left += width + 34.0;
-  }
-}
-
-void Drawing::draw_help(const std::vector<HelpLine>& help) {
-  constexpr double kRow_px = 25.0;
-  constexpr double kWidth_px = 560.0;
-  constexpr double kKeys_px = 165.0;
-  const PixelBox ground = terrain_box();
-  const double height = kRow_px * static_cast<double>(help.size()) + 74.0;
-  const PixelBox box{std::max(0.0, 0.5 * (ground.width - kWidth_px)),
-                     std::max(0.0, 0.5 * (ground.height - height)), kWidth_px, height};
-  canvas_.rectangle(grown(box, 1.0), {1.0, 1.0, 1.0, 0.25});
-  canvas_.rectangle(box, {0.07, 0.085, 0.10, 0.95});
-  double y = box.top + 38.0;
-  canvas_.text({box.left + 28.0, y}, "Keys", {.size_px = 18.0, .color = kPaleInk, .bold = true});
-  y += 34.0;
-  for (const HelpLine& line : help) {
-    canvas_.text({box.left + 28.0, y}, line.keys,
-                 {.size_px = 14.0, .color = kAccent, .bold = true});
-    canvas_.text({box.left + 28.0 + kKeys_px, y}, line.what, {.size_px = 14.0, .color = kPaleInk});
-    y += kRow_px;
-  }
-}
-
-void Drawing::draw_timeline(const Scene& scene) {
-  const PixelBox box = timeline_box();
-  canvas_.rectangle(box, kBackground);
-  const double left = kTimelineMargin_px;
-  const double width = box.width - 2.0 * kTimelineMargin_px;
-  const double y = box.top + 16.0;
-  const double duration = scene.status.duration_s;
-  const double share = duration > 0.0 ? std::clamp(scene.status.time_s / duration, 0.0, 1.0) : 0.0;
-  canvas_.line(std::array<Pixel, 2>{{{left, y}, {left + width, y}}}, 5.0, kTrack);
-  if (share > 0.0) {
-    canvas_.line(std::array<Pixel, 2>{{{left, y}, {left + share * width, y}}}, 5.0, kAccent);
-  }
-  if (scene.show_timeline) canvas_.circle({left + share * width, y}, 7.5, kPaleInk);
-  const Ticks ticks = round_ticks(0.0, duration, 9);
-  for (const double value : ticks.values) {
-    canvas_.text({left + width * value / duration, box.top + 37.0},
-                 number_text(value, ticks.decimals) + " s",
-                 {.size_px = 11.0, .color = kFaintInk, .align = TextAlign::kCenter});
-  }
 }
 
 }  // namespace screed::viewer

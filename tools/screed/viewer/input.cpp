@@ -15,15 +15,16 @@ struct NamedKey {
   const char* name;
   Key key;
 };
-constexpr std::array<NamedKey, 9> kNamedKeys = {{{"Left", kKeyLeft},
-                                                 {"Right", kKeyRight},
-                                                 {"Up", kKeyUp},
-                                                 {"Down", kKeyDown},
-                                                 {"Home", kKeyHome},
-                                                 {"End", kKeyEnd},
-                                                 {"Escape", kKeyEscape},
-                                                 {"Backspace", kKeyBackspace},
-                                                 {"Space", ' '}}};
+constexpr std::array<NamedKey, 10> kNamedKeys = {{{"Left", kKeyLeft},
+                                                  {"Right", kKeyRight},
+                                                  {"Up", kKeyUp},
+                                                  {"Down", kKeyDown},
+                                                  {"Home", kKeyHome},
+                                                  {"End", kKeyEnd},
+                                                  {"Escape", kKeyEscape},
+                                                  {"Backspace", kKeyBackspace},
+                                                  {"F12", kKeyF12},
+                                                  {"Space", ' '}}};
 
 constexpr std::array<double, 11> kPaces = {0.1, 0.25, 0.5,  1.0,  2.0, 4.0,
                                            8.0, 16.0, 32.0, 64.0, 0.0};
@@ -32,7 +33,6 @@ constexpr double kJump_s = 1.0;
 constexpr double kFarJump_s = 10.0;
 
 const std::vector<HelpLine> kCommonHelp = {
-    {"Space", "pause, go on"},
     {".", "one control tick (10 ms), then pause"},
     {"+   \u2212", "faster, slower"},
     {"wheel, drag", "zoom, move the ground"},
@@ -40,30 +40,26 @@ const std::vector<HelpLine> kCommonHelp = {
     {"F", "follow the robot"},
     {"M   1 2 3", "shade by height, slope, change of height"},
     {"T", "driven path on, off"},
-    {"P", "save a picture of this window"},
-    {"R", "Start and stop recording PNG frames"},
+    {"F12", "save a picture of this window"},
+    {"R", "start, stop recording PNG frames"},
 };
 
 const std::vector<HelpLine> kLiveHelp = {
+    {kEmergencyStopKeyName, "EMERGENCY STOP of the robot"},
+    {"P", "pause, go on"},
     {"arrows", "drive: the keyboard takes over (Shift: slowly)"},
     {"Backspace", "the algorithm drives again"},
-    {"C", "clear a fault"},
+    {"C", "clear a fault or emergency stop, drive on"},
     {"Q, Esc", "end the run and save it"},
 };
 
 const std::vector<HelpLine> kRecordedHelp = {
+    {"Space, P", "pause, go on"},
     {"\u2190   \u2192", "back, on by 1 s (Shift: 10 s)"},
-    {"Home, End", "to the begin, to the end"},
+    {"Home, End", "to the start, to the end"},
     {"timeline", "click or drag: to that time"},
     {"Q, Esc", "close"},
 };
-
-std::vector<HelpLine> joined(const std::vector<HelpLine>& first,
-                             const std::vector<HelpLine>& second) {
-  std::vector<HelpLine> lines = first;
-  lines.insert(lines.end(), second.begin(), second.end());
-  return lines;
-}
 
 }  // namespace
 
@@ -142,6 +138,7 @@ void Controls::change_pace(bool faster) {
 }
 
 void Controls::drive_key(Key key, bool held) {
+  if (held && key >= kKeyLeft && key <= kKeyDown) driven_by_gamepad_ = false;
   if (key == kKeyUp) up_ = held;
   if (key == kKeyDown) down_ = held;
   if (key == kKeyLeft) left_ = held;
@@ -150,8 +147,14 @@ void Controls::drive_key(Key key, bool held) {
 
 void Controls::key_down(Key key, bool shift) {
   slow_ = shift;
+  // No robot listens in a recording, where this is the key that players pause with.
+  if (key == kKeyEmergencyStop && !recorded_) {
+    emergency_stop = true;
+    return;
+  }
   switch (key) {
     case ' ':
+    case 'p':
       paused = !paused;
       break;
     case '.':
@@ -183,7 +186,7 @@ void Controls::key_down(Key key, bool shift) {
     case 't':
       trail = !trail;
       break;
-    case 'p':
+    case kKeyF12:
       screenshot = true;
       break;
     case 'r':
@@ -230,12 +233,32 @@ void Controls::key_up(Key key) {
   drive_key(key, false);
 }
 
+void Controls::gamepad_event(const InputEvent& event) {
+  switch (event.kind) {
+    case InputEvent::Kind::kGamepadAdded:
+      gamepad_ = event.name;
+      stick_ = {};
+      break;
+    case InputEvent::Kind::kGamepadRemoved:
+      // Whoever pulls the plug does not want the robot to drive on.
+      gamepad_.clear();
+      stick_ = {};
+      break;
+    default:
+      (event.axis == GamepadAxis::kDrive ? stick_.forward : stick_.left) = event.amount;
+      if (stick_.held()) driven_by_gamepad_ = true;
+      break;
+  }
+}
+
 double Controls::forward() const {
-  return (slow_ ? kSlow : 1.0) * ((up_ ? 1.0 : 0.0) - (down_ ? 1.0 : 0.0));
+  const double keys = (slow_ ? kSlow : 1.0) * ((up_ ? 1.0 : 0.0) - (down_ ? 1.0 : 0.0));
+  return std::clamp(keys + stick_.forward, -1.0, 1.0);
 }
 
 double Controls::left() const {
-  return (slow_ ? kSlow : 1.0) * ((left_ ? 1.0 : 0.0) - (right_ ? 1.0 : 0.0));
+  const double keys = (slow_ ? kSlow : 1.0) * ((left_ ? 1.0 : 0.0) - (right_ ? 1.0 : 0.0));
+  return std::clamp(keys + stick_.left, -1.0, 1.0);
 }
 
 std::string Controls::pace_text() const {
@@ -245,10 +268,24 @@ std::string Controls::pace_text() const {
   return text;
 }
 
-const std::vector<HelpLine>& Controls::help_lines() const {
-  static const std::vector<HelpLine> live = joined(kCommonHelp, kLiveHelp);
-  static const std::vector<HelpLine> recorded = joined(kCommonHelp, kRecordedHelp);
-  return recorded_ ? recorded : live;
+std::vector<HelpLine> Controls::help_lines() const {
+  std::vector<HelpLine> lines = recorded_ ? kRecordedHelp : kLiveHelp;
+  lines.insert(lines.end(), kCommonHelp.begin(), kCommonHelp.end());
+  if (recorded_) return lines;
+  if (gamepad_.empty()) {
+    lines.push_back({"gamepad", "drives as well: plug one in"});
+    return lines;
+  }
+  lines.push_back({"left stick", "drive: the gamepad takes over"});
+  for (const GamepadMapping& mapping : kGamepadMapping) {
+    lines.push_back({std::string("button ") + mapping.name, mapping.what});
+  }
+  return lines;
+}
+
+std::string Controls::key_hint() const {
+  if (recorded_) return "H  keys";
+  return std::string("H  keys    ") + kEmergencyStopKeyName + "  emergency stop";
 }
 
 }  // namespace screed::viewer

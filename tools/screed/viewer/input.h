@@ -7,21 +7,12 @@
 #include <vector>
 
 #include "host_sim/render/picture/canvas.h"
+#include "tools/screed/viewer/gamepad.h"
+#include "tools/screed/viewer/keys.h"
 #include "tools/screed/viewer/scene.h"
 #include "tools/screed/viewer/terrain_image.h"
 
 namespace screed::viewer {
-
-/// The character of a key, small; or one of these.
-using Key = int;
-inline constexpr Key kKeyLeft = 256;
-inline constexpr Key kKeyRight = 257;
-inline constexpr Key kKeyUp = 258;
-inline constexpr Key kKeyDown = 259;
-inline constexpr Key kKeyHome = 260;
-inline constexpr Key kKeyEnd = 261;
-inline constexpr Key kKeyEscape = 262;
-inline constexpr Key kKeyBackspace = 263;
 
 struct InputEvent {
   enum class Kind : uint8_t {
@@ -32,6 +23,9 @@ struct InputEvent {
     kMove,
     kRelease,
     kSize,
+    kGamepadAdded,
+    kGamepadRemoved,
+    kGamepadAxis,
     kClose
   };
 
@@ -39,8 +33,10 @@ struct InputEvent {
   Key key = 0;
   bool shift = false;
   Pixel at{0.0, 0.0};   ///< of the mouse
-  double amount = 0.0;  ///< of the wheel, clicks away from the user
-  int width = 0;        ///< of the window, kSize
+  double amount = 0.0;  ///< of the wheel, clicks away from the user; of an axis, -1..1
+  GamepadAxis axis = GamepadAxis::kTurn;
+  std::string name;  ///< of the gamepad
+  int width = 0;     ///< of the window, kSize
   int height = 0;
 };
 
@@ -66,6 +62,8 @@ class Controls {
 
   void key_down(Key key, bool shift);
   void key_up(Key key);
+  /// What a gamepad's event asks for; buttons come as keys.
+  void gamepad_event(const InputEvent& event);
 
   bool recorded() const { return recorded_; }
   bool paused = false;
@@ -84,18 +82,28 @@ class Controls {
   std::optional<double> jump_s;    ///< in a recording: by so much
   std::optional<double> to_share;  ///< in a recording: to there, 0..1
   bool hand_back = false;          ///< the algorithm is to drive again
+  bool emergency_stop = false;
   bool clear_fault = false;
 
-  /// Of the arrow keys held down: forward and left, -1..1; slowly with shift.
+  /// Of the arrow keys held down and the stick: forward and left, -1..1; slowly with shift.
   double forward() const;
   double left() const;
-  bool drive_keys_held() const { return up_ || down_ || left_ || right_; }
+  /// The user drives now: arrow keys are held down, or the stick is out of its dead zone.
+  bool drives() const { return drive_keys_held() || stick_.held(); }
+  /// What the user drove with last.
+  bool driven_by_gamepad() const { return driven_by_gamepad_; }
+  /// The gamepad that is plugged in; empty: none.
+  const std::string& gamepad() const { return gamepad_; }
 
   /// "x 1", "x 0.25", "max".
   std::string pace_text() const;
-  const std::vector<HelpLine>& help_lines() const;
+  /// What the keys do; the gamepad's buttons as well, when there is one.
+  std::vector<HelpLine> help_lines() const;
+  /// The line at the foot of the panel.
+  std::string key_hint() const;
 
  private:
+  bool drive_keys_held() const { return up_ || down_ || left_ || right_; }
   void change_pace(bool faster);
   void drive_key(Key key, bool held);
 
@@ -105,6 +113,9 @@ class Controls {
   bool left_ = false;
   bool right_ = false;
   bool slow_ = false;
+  Stick stick_;
+  std::string gamepad_;
+  bool driven_by_gamepad_ = false;
 };
 
 }  // namespace screed::viewer

@@ -26,32 +26,28 @@ std::chrono::steady_clock::duration seconds(double value) {
 
 }  // namespace
 
-std::string subtitle_of(const std::string& algorithm, const std::string& ground,
-                        const std::string& soil, uint64_t seed) {
-  std::string where = ground;
-  if (ground == "rigid") where = "rigid ground";
-  if (ground == "scm") where = "soft soil" + (soil.empty() ? "" : " (" + soil + ")");
-  if (ground == "static_particles") where = "fixed particles";
-  return algorithm + " on " + where + ", seed " + std::to_string(seed);
-}
-
 LiveViewer::LiveViewer(const Experiment& experiment, const std::string& board,
                        const ViewerOptions& options, KeyboardDriver& driver,
                        std::function<void()> end_run)
     : options_(options), driver_(driver), end_run_(std::move(end_run)) {
   setup_.title = experiment.experiment.name;
-  setup_.subtitle = subtitle_of(experiment.experiment.algorithm, experiment.map.model,
-                                experiment.soil.preset, experiment.experiment.seed);
+  setup_.terrain = terrain_name(experiment.map.model, experiment.soil.preset);
+  setup_.seed = experiment.experiment.seed;
   setup_.duration_s = experiment.experiment.duration_s;
+  // A training drive lasts for its frames, and some seconds before them.
+  if (experiment.experiment.algorithm != kTrainingDriveName)
+    check_screenshot_time(options_, setup_.duration_s, "the run");
   setup_.flat_deg = experiment.experiment.flatness_deg;
   setup_.loose = experiment.map.is_soil() || experiment.map.model == "particles";
   setup_.soft = experiment.map.is_soil();
+  if (experiment.map.of_particles()) setup_.grain_m = experiment.map.particle_radius_m;
   setup_.shape = shape_of(make_robot_model(experiment, board), experiment.vehicle.tracks);
 }
 
 void LiveViewer::on_begin(const HeightField& ground) {
   watch_.emplace(ground);
   display_.emplace(options_, setup_, ground);
+  display_->set_driver(driver_.driver());
 }
 
 void LiveViewer::on_tick(const SimFrame& frame, const HeightField& ground) {
@@ -83,13 +79,16 @@ void LiveViewer::steer() {
   Controls& controls = display_->controls();
   if (controls.hand_back) driver_.hand_back();
   if (controls.clear_fault) driver_.clear_fault();
+  if (controls.emergency_stop) driver_.emergency_stop();
   controls.hand_back = false;
   controls.clear_fault = false;
-  if (controls.drive_keys_held() || driver_.drives()) {
+  controls.emergency_stop = false;
+  if (controls.drives() || driver_.drives()) {
     driver_.drive(
-        {controls.forward() * kDriveSpeed_m_per_s, controls.left() * kDriveTurn_deg_per_s});
+        {controls.forward() * kDriveSpeed_m_per_s, controls.left() * kDriveTurn_deg_per_s},
+        controls.driven_by_gamepad());
   }
-  display_->set_driver(driver_.description());
+  display_->set_driver(driver_.driver(), driver_.description());
 }
 
 void LiveViewer::show_counted(double time_s) {

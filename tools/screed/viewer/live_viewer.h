@@ -53,8 +53,4 @@ class LiveViewer : public SimulationObserver {
   double anchor_pace_ = 0.0;
 };
 
-/// Where and what, in one line: "hill_sensing on rigid ground, seed 1".
-std::string subtitle_of(const std::string& algorithm, const std::string& ground,
-                        const std::string& soil, uint64_t seed);
-
 }  // namespace screed::viewer

@@ -1,12 +1,16 @@
-// Rows of figures.
+// Rows of figures: what they say, then which of them there is room for.
 #include "tools/screed/viewer/panel.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "host_sim/render/picture/map_frame.h"
+#include "host_sim/render/picture/state_color.h"
 #include "host_sim/run/simulation/names.h"
 #include "tools/screed/viewer/style.h"
 
@@ -15,8 +19,9 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMargin_px = 22.0;
-constexpr double kRow_px = 22.0;
 constexpr double kText_px = 14.0;
+constexpr double kLeastText_px = 8.5;
+const char* const kMore = "\u2026 more in a larger window";
 
 Color robot_state_color(int state) {
   switch (static_cast<RobotState>(state)) {
@@ -46,175 +51,281 @@ std::string degrees(double value, int decimals = 1) {
   return number_text(value, decimals) + "\u00b0";
 }
 
-/// Writes from the top to the bottom of the panel.
-class Writer {
- public:
-  explicit Writer(Canvas& canvas)
-      : canvas_(canvas),
-        left_(canvas.width() - kPanelWidth_px + kMargin_px),
-        right_(canvas.width() - kMargin_px) {}
+std::string volume_text(double m3) {
+  constexpr double kLitre = 1e3;
+  constexpr double kMillilitre = 1e6;
+  const bool large = std::abs(m3) * kLitre >= 1.0;
+  return large ? number_text(m3 * kLitre, 2) + " L" : number_text(m3 * kMillilitre, 0) + " mL";
+}
 
-  double y = 40.0;
+/// When the panel is full, rows with larger numbers are left out first.
+enum Importance : int { kAlways, kWho, kMotion, kChangeOrPath, kAttitude, kDetail, kLeast };
 
-  /// Text that is set smaller when it is too long.
-  void line(const std::string& words, TextStyle style) {
-    const double width = canvas_.text_width(words, style);
-    if (width > right_ - left_) style.size_px *= (right_ - left_) / width;
-    canvas_.text({left_, y}, words, style);
-  }
-  void right(const std::string& words, TextStyle style) {
-    style.align = TextAlign::kRight;
-    canvas_.text({right_, y}, words, style);
-  }
-  void heading(const std::string& words) {
-    y += 16.0;
-    const std::array<Pixel, 2> rule = {{{left_, y - 20.0}, {right_, y - 20.0}}};
-    canvas_.line(rule, 1.0, kTrack);
-    y += 4.0;
-    line(words, {.size_px = 12.0, .color = kFaintInk, .bold = true});
-    y += kRow_px;
-  }
-  void row(const std::string& name, const std::string& value, Color color = kPaleInk) {
-    line(name, {.size_px = kText_px, .color = kFaintInk});
-    right(value, {.size_px = kText_px, .color = color});
-    y += kRow_px;
-  }
-  /// Two values, the first one fainter.
-  void row(const std::string& name, const std::string& before, const std::string& now) {
-    canvas_.text({right_ - 72.0, y}, before,
-                 {.size_px = kText_px, .color = kFaintInk, .align = TextAlign::kRight});
-    row(name, now);
-  }
-  void columns(const std::string& before, const std::string& now) {
-    const TextStyle style{.size_px = 12.0, .color = kFaintInk, .align = TextAlign::kRight};
-    canvas_.text({right_ - 72.0, y}, before, style);
-    canvas_.text({right_, y}, now, style);
-  }
-  void dot(Color color) { canvas_.circle({left_ + 6.0, y - 5.0}, 6.0, color); }
-  void beside_dot(const std::string& words, TextStyle style) {
-    canvas_.text({left_ + 22.0, y}, words, style);
-  }
-  void swatch(Color color) {
-    canvas_.line(std::array<Pixel, 2>{{{left_ + 2.0, y - 5.0}, {left_ + 20.0, y - 5.0}}}, 4.0,
-                 color);
-  }
-  void beside_swatch(const std::string& words, TextStyle style) {
-    canvas_.text({left_ + 32.0, y}, words, style);
-  }
-  /// As many lines as the words need.
-  void paragraph(const std::string& words, const TextStyle& style) {
-    std::string rest = words;
-    while (!rest.empty()) {
-      size_t end = rest.size();
-      while (end > 0 && canvas_.text_width(rest.substr(0, end), style) > right_ - left_) {
-        const size_t blank = rest.rfind(' ', end - 1);
-        if (blank == std::string::npos) break;
-        end = blank;
-      }
-      line(rest.substr(0, end), style);
-      rest = end < rest.size() ? rest.substr(end + 1) : "";
-      y += 18.0;
-    }
-  }
-
- private:
-  Canvas& canvas_;
-  double left_;
-  double right_;
+/// A row of the panel: words on the left, in the middle and on the right, each with its style.
+struct Row {
+  struct Words {
+    std::string text;
+    TextStyle style{};
+  };
+  int importance = kAlways;
+  double height_px = 22.0;  ///< to the next base line
+  Words left;
+  Words middle;
+  Words right;
+  std::optional<Color> dot;
+  std::optional<Color> swatch;
+  bool heading = false;  ///< under a rule
 };
 
-void write_robot(Writer& writer, const Status::Motion& s) {
-  writer.heading("ROBOT");
-  const auto speed = [](double value) { return number_text(value * 1e3, 0) + " mm/s"; };
-  writer.row("speed", speed(s.speed_m_per_s));
-  writer.row("turning", degrees(s.turn_rad_per_s * kDegPerRad, 0) + "/s");
-  writer.row("wanted",
-             speed(s.wanted_m_per_s) + ",  " + degrees(s.wanted_rad_per_s * kDegPerRad, 0) + "/s");
-  writer.row("pitch, roll",
-             degrees(s.pitch_rad * kDegPerRad) + ",  " + degrees(s.roll_rad * kDegPerRad));
-  writer.row("heading", degrees(s.heading_rad * kDegPerRad, 0));
-  writer.row("slip left, right", number_text(s.slip_left * 100.0, 0) + ",  " +
-                                     number_text(s.slip_right * 100.0, 0) + " %");
-  if (s.sinkage_m) writer.row("sinkage", number_text(*s.sinkage_m * 1e3, 1) + " mm");
-  writer.row("battery", number_text(s.battery_v, 2) + " V");
-}
+/// Makes rows of a status.
+class Rows {
+ public:
+  Rows(double width_px, double scale, const Measure& measure)
+      : width_(width_px), scale_(scale), measure_(measure) {}
 
-void write_terrain(Writer& writer, const Status& s) {
-  writer.heading("SLOPES");
-  writer.y -= kRow_px;
-  if (s.terrain.loose) writer.columns("start", "now");
-  writer.y += kRow_px;
-  const auto row = [&](const std::string& name, const std::string& before, const std::string& now) {
-    if (s.terrain.loose) {
-      writer.row(name, before, now);
-    } else {
-      writer.row(name, now);
-    }
-  };
-  const SlopeFigures& before = s.terrain.before;
-  const SlopeFigures& now = s.terrain.now;
-  row("mean", degrees(before.mean_deg, 2), degrees(now.mean_deg, 2));
-  row("95 % below", degrees(before.p95_deg), degrees(now.p95_deg));
-  row("steepest", degrees(before.steepest_deg), degrees(now.steepest_deg));
-  row("flat (" + number_text(s.terrain.flat_limit_deg, 0) + "\u00b0)",
-      number_text(before.flat * 100.0, 1) + " %", number_text(now.flat * 100.0, 1) + " %");
-}
-
-void write_path(Writer& writer, const Status& s) {
-  writer.heading("DRIVEN PATH");
-  for (size_t state = 0; state < kLevelingStates; ++state) {
-    if ((s.states_seen >> state & 1U) == 0) continue;
-    writer.swatch(state_color(state));
-    const bool now = static_cast<int>(state) == s.leveling_state;
-    writer.beside_swatch(leveling_state_name(static_cast<LevelingState>(state)),
-                         {.size_px = kText_px, .color = now ? kPaleInk : kFaintInk, .bold = now});
-    writer.y += kRow_px - 2.0;
+  Row& add(int importance, double height_px, const std::string& text, const TextStyle& style) {
+    Row row;
+    row.importance = importance;
+    row.height_px = height_px;
+    row.left = {text, style};
+    rows.push_back(std::move(row));
+    return rows.back();
   }
-}
+  void heading(int importance, const std::string& words, const std::string& middle = "",
+               const std::string& right = "") {
+    const TextStyle style{.size_px = 12.0, .color = kFaintInk, .bold = true};
+    const TextStyle column{.size_px = 12.0, .color = kFaintInk, .align = TextAlign::kRight};
+    Row& row = add(importance, 40.0, words, style);
+    row.heading = true;
+    row.middle = {middle, column};
+    row.right = {right, column};
+  }
+  void figure(int importance, const std::string& name, const std::string& value,
+              const std::string& before = "") {
+    Row& row = add(importance, 22.0, name, {.size_px = kText_px, .color = kFaintInk});
+    row.middle = {before, {.size_px = kText_px, .color = kFaintInk, .align = TextAlign::kRight}};
+    row.right = {value, {.size_px = kText_px, .color = kPaleInk, .align = TextAlign::kRight}};
+  }
+  /// As many rows as the words need.
+  void paragraph(int importance, const std::string& words, TextStyle style) {
+    TextStyle drawn = style;
+    drawn.size_px *= scale_;
+    for (const std::string& line : wrapped(words, drawn, width_, measure_)) {
+      add(importance, style.size_px + 5.0, line, style);
+    }
+  }
 
-}  // namespace
+  std::vector<Row> rows;
 
-void draw_status_panel(Canvas& canvas, const Status& s) {
-  canvas.rectangle(
-      {canvas.width() - kPanelWidth_px, 0.0, kPanelWidth_px, static_cast<double>(canvas.height())},
-      kBackground);
-  Writer writer(canvas);
-  writer.line(s.title, {.size_px = 19.0, .color = kPaleInk, .bold = true});
-  writer.y += 20.0;
-  writer.line(s.subtitle, {.size_px = 12.5, .color = kFaintInk});
-  writer.y += 40.0;
-  writer.line(clock_text(s.time_s), {.size_px = 32.0, .color = kPaleInk, .bold = true});
-  writer.right(s.pace, {.size_px = 16.0, .color = kAccent, .bold = true});
-  writer.y += 19.0;
-  writer.line("of " + clock_text(s.duration_s), {.size_px = 12.5, .color = kFaintInk});
-  writer.y += 30.0;
-  writer.dot(robot_state_color(s.state));
+ private:
+  double width_;
+  double scale_;
+  const Measure& measure_;
+};
+
+void add_head(Rows& rows, const Status& s) {
+  rows.add(kWho, 30.0, s.title, {.size_px = 19.0, .color = kPaleInk, .bold = true});
+  rows.add(kWho, 3.0, "", {});
+  rows.paragraph(kWho, s.subtitle, {.size_px = 12.5, .color = kFaintInk});
+  Row& clock = rows.add(kAlways, 40.0, clock_text(s.time_s),
+                        {.size_px = 32.0, .color = kPaleInk, .bold = true});
+  clock.right = {s.pace,
+                 {.size_px = 16.0, .color = kAccent, .align = TextAlign::kRight, .bold = true}};
+  rows.add(kLeast, 19.0, "of " + clock_text(s.duration_s), {.size_px = 12.5, .color = kFaintInk});
   const auto state = static_cast<RobotState>(s.state);
   std::string words = state_name(state);
   if (state == RobotState::kRunning) {
     words += std::string(": ") + leveling_state_name(static_cast<LevelingState>(s.leveling_state));
   }
-  writer.beside_dot(words, {.size_px = 16.0, .color = kPaleInk, .bold = true});
-  writer.y += 24.0;
+  rows.add(kAlways, 30.0, words, {.size_px = 16.0, .color = kPaleInk, .bold = true}).dot =
+      robot_state_color(s.state);
   if (s.faults != 0) {
-    writer.paragraph("faults: " + fault_names(static_cast<uint16_t>(s.faults)),
-                     {.size_px = kText_px, .color = kAlarm, .bold = true});
+    rows.paragraph(kAlways, "faults: " + fault_names(static_cast<uint16_t>(s.faults)),
+                   {.size_px = kText_px, .color = kAlarm, .bold = true});
   } else {
-    writer.line("no faults", {.size_px = kText_px, .color = kFaintInk});
-    writer.y += kRow_px;
+    rows.add(kDetail, 22.0, "no faults", {.size_px = kText_px, .color = kFaintInk});
   }
   if (!s.driver.empty()) {
-    writer.paragraph(s.driver, {.size_px = kText_px, .color = kAccent, .bold = true});
+    rows.paragraph(kAlways, s.driver, {.size_px = kText_px, .color = kAccent, .bold = true});
   }
-  write_robot(writer, s.motion);
-  write_terrain(writer, s);
-  write_path(writer, s);
+}
+
+void add_robot(Rows& rows, const Status::Motion& s) {
+  rows.heading(kMotion, "ROBOT");
+  const auto speed = [](double value) { return number_text(value * 1e3, 0) + " mm/s"; };
+  rows.figure(kMotion, "speed", speed(s.speed_m_per_s));
+  rows.figure(kAttitude, "turning", degrees(s.turn_rad_per_s * kDegPerRad, 0) + "/s");
+  rows.figure(kMotion, "wanted",
+              speed(s.wanted_m_per_s) + ",  " + degrees(s.wanted_rad_per_s * kDegPerRad, 0) + "/s");
+  rows.figure(kAttitude, "pitch, roll",
+              degrees(s.pitch_rad * kDegPerRad) + ",  " + degrees(s.roll_rad * kDegPerRad));
+  rows.figure(kAttitude, "heading", degrees(s.heading_rad * kDegPerRad, 0));
+  rows.figure(
+      kDetail, "slip left, right",
+      number_text(s.slip_left * 100.0, 0) + " %,  " + number_text(s.slip_right * 100.0, 0) + " %");
+  if (s.sinkage_m) rows.figure(kAttitude, "sinkage", number_text(*s.sinkage_m * 1e3, 1) + " mm");
+  rows.figure(kMotion, "battery", number_text(s.battery_v, 2) + " V");
+}
+
+void add_volume(Rows& rows, const Status::VolumeMoved& volume) {
+  rows.heading(kChangeOrPath, "VOLUME MOVED");
+  rows.figure(kChangeOrPath, "moved", volume_text(volume.moved_m3));
+  rows.figure(kChangeOrPath, "cut, fill",
+              volume_text(volume.cut_m3) + ",  " + volume_text(volume.fill_m3));
+  rows.figure(kAttitude, "deepest cut", number_text(volume.deepest_cut_m * 1e3, 1) + " mm");
+  rows.figure(kAttitude, "deepest fill", number_text(volume.deepest_fill_m * 1e3, 1) + " mm");
+}
+
+void add_slopes(Rows& rows, const Status::Terrain& s) {
+  rows.heading(kDetail, "SLOPES", s.loose ? "start" : "", s.loose ? "now" : "");
+  const auto row = [&](int importance, const std::string& what, const std::string& before,
+                       const std::string& now) {
+    rows.figure(importance, what, now, s.loose ? before : "");
+  };
+  row(kDetail, "mean", degrees(s.before.mean_deg, 2), degrees(s.now.mean_deg, 2));
+  row(kLeast, "95 % below", degrees(s.before.p95_deg), degrees(s.now.p95_deg));
+  row(kLeast, "steepest", degrees(s.before.steepest_deg), degrees(s.now.steepest_deg));
+  row(kDetail, "flat (to " + number_text(s.flat_limit_deg, 0) + "\u00b0)",
+      number_text(s.before.flat * 100.0, 1) + " %", number_text(s.now.flat * 100.0, 1) + " %");
+}
+
+void add_path(Rows& rows, const Status& s) {
+  rows.heading(kChangeOrPath, "DRIVEN PATH");
+  for (size_t state = 0; state < kLevelingStates; ++state) {
+    if ((s.states_seen >> state & 1U) == 0) continue;
+    const bool now = static_cast<int>(state) == s.leveling_state;
+    rows.add(kChangeOrPath, 20.0, leveling_state_name(static_cast<LevelingState>(state)),
+             {.size_px = kText_px, .color = now ? kPaleInk : kFaintInk, .bold = now})
+        .swatch = state_color(state);
+  }
+}
+
+double height_of(const std::vector<Row>& rows) {
+  double height = 0.0;
+  for (const Row& row : rows) height += row.height_px;
+  return height;
+}
+
+/// Leaves out the least important rows until the rest fits. Returns whether any is missing.
+bool drop_rows(std::vector<Row>& rows, double room_px, double more_px) {
+  bool dropped = false;
+  for (int importance = kLeast; importance > kAlways; --importance) {
+    if (height_of(rows) + (dropped ? more_px : 0.0) <= room_px) break;
+    const size_t before = rows.size();
+    std::erase_if(rows, [&](const Row& row) { return row.importance == importance; });
+    dropped = dropped || rows.size() < before;
+  }
+  return dropped;
+}
+
+/// Puts the words of a row side by side: smaller where they are too wide together, the left ones
+/// elided where that is not enough.
+void place_words(PanelLayout& panel, const Row& row, double scale, double y,
+                 const Measure& measure) {
+  constexpr double kGap_px = 8.0;
+  constexpr double kMiddleColumn = 0.68;  // where the middle words end
+  const double left = panel.left + (row.dot || row.swatch ? (row.dot ? 22.0 : 30.0) * scale : 0.0);
+  const double room = panel.right - left;
+  Row::Words words[3] = {row.left, row.middle, row.right};
+  double needed = -kGap_px;
+  for (Row::Words& part : words) {
+    part.style.size_px *= scale;
+    if (!part.text.empty()) needed += measure(part.text, part.style) + kGap_px;
+  }
+  const double smaller = needed > room ? room / needed : 1.0;
+  for (Row::Words& part : words) {
+    part.style.size_px =
+        std::max(part.style.size_px * smaller, std::min(part.style.size_px, kLeastText_px));
+  }
+  double taken = panel.right + kGap_px;
+  const auto add = [&](const std::string& text, const TextStyle& style, double x) {
+    const TextItem item = text_item({x, y}, text, style, measure);
+    taken = std::min(taken, item.box.left);
+    panel.texts.push_back(item);
+  };
+  if (!words[2].text.empty()) {
+    add(elided(words[2].text, words[2].style, room, measure), words[2].style, panel.right);
+  }
+  if (!words[1].text.empty()) {
+    const double column = panel.left + kMiddleColumn * (panel.right - panel.left);
+    add(words[1].text, words[1].style, std::min(column, taken - kGap_px));
+  }
+  const double width = taken - kGap_px - left;
+  if (!words[0].text.empty())
+    add(elided(words[0].text, words[0].style, width, measure), words[0].style, left);
+}
+
+void place_row(PanelLayout& panel, const Row& row, double scale, double y, const Measure& measure) {
+  if (row.dot) {
+    const double size = 12.0 * scale;
+    panel.marks.push_back({{panel.left, y - 11.0 * scale, size, size}, *row.dot, true});
+  }
+  if (row.swatch) {
+    panel.marks.push_back(
+        {{panel.left, y - 7.0 * scale, 20.0 * scale, 4.0 * scale}, *row.swatch, false});
+  }
+  place_words(panel, row, scale, y, measure);
+}
+
+}  // namespace
+
+PanelLayout panel_layout(const Layout& layout, const Status& s, const Measure& measure) {
+  const double scale = layout.scale;
+  const double margin = std::min(kMargin_px * scale, 0.07 * layout.panel.width);
+  PanelLayout panel;
+  panel.left = layout.panel.left + margin;
+  panel.right = layout.panel.left + layout.panel.width - margin;
+  Rows rows(panel.right - panel.left, scale, measure);
+  add_head(rows, s);
+  add_robot(rows, s.motion);
+  if (s.terrain.volume.has_value()) add_volume(rows, *s.terrain.volume);
+  add_slopes(rows, s.terrain);
+  add_path(rows, s);
   if (!s.notice.empty()) {
-    writer.y += 8.0;
-    writer.paragraph(s.notice, {.size_px = 12.5, .color = kAccent});
+    rows.add(kWho, 8.0, "", {});
+    rows.paragraph(kWho, s.notice, {.size_px = 12.5, .color = kAccent});
   }
-  writer.y = canvas.height() - 17.0;
-  writer.line("H  keys", {.size_px = 12.5, .color = kFaintInk});
+
+  constexpr double kTopMargin_px = 10.0;
+  constexpr double kFoot_px = 36.0;
+  constexpr double kMore_px = 20.0;
+  constexpr double kTightRows = 0.82;  // of their full height, before any is left out
+  const double room = layout.panel.height / scale - kTopMargin_px - kFoot_px;
+  const bool dropped = drop_rows(rows.rows, room / kTightRows, kMore_px);
+  if (dropped) rows.add(kAlways, kMore_px, kMore, {.size_px = 12.5, .color = kFaintInk});
+  const double pitch = std::min(1.0, room / height_of(rows.rows)) * scale;
+
+  double y = kTopMargin_px * scale;
+  for (const Row& row : rows.rows) {
+    y += row.height_px * pitch;
+    if (row.heading) panel.rules.push_back(y - 20.0 * pitch);
+    place_row(panel, row, scale, y, measure);
+  }
+  Row foot;
+  foot.left = {s.keys, {.size_px = 12.5, .color = kFaintInk}};
+  place_words(panel, foot, scale, layout.panel.height - 12.0 * scale, measure);
+  return panel;
+}
+
+void draw_status_panel(Canvas& canvas, const Layout& layout, const Status& s) {
+  canvas.rectangle(layout.panel, kBackground);
+  const PanelLayout panel =
+      panel_layout(layout, s, [&](const std::string& words, const TextStyle& style) {
+        return canvas.text_width(words, style);
+      });
+  for (const double y : panel.rules) {
+    canvas.line(std::array<Pixel, 2>{{{panel.left, y}, {panel.right, y}}}, 1.0, kTrack);
+  }
+  for (const PanelLayout::Mark& mark : panel.marks) {
+    const PixelBox& box = mark.box;
+    if (mark.round) {
+      canvas.circle({box.left + 0.5 * box.width, box.top + 0.5 * box.height}, 0.5 * box.width,
+                    mark.color);
+    } else {
+      canvas.rectangle(box, mark.color);
+    }
+  }
+  for (const TextItem& text : panel.texts) canvas.text(text.anchor(), text.words, text.style);
 }
 
 }  // namespace screed::viewer

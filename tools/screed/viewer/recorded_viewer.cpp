@@ -6,12 +6,12 @@
 #include <cmath>
 #include <thread>
 
+#include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/interrupt.h"
-#include "tools/screed/viewer/live_viewer.h"
 
 namespace screed::viewer {
 namespace {
@@ -19,8 +19,8 @@ namespace {
 constexpr uint64_t kBlockRows = 1024;
 constexpr uint64_t kTrailTicks = 10;
 constexpr const char* kNoHeights =
-    "The heights of the ticks were not recorded (sim --heights does): the ground is that of the "
-    "begin, at the end that of the end.";
+    "Heights of the ticks were not recorded (sim --heights does): the terrain is that of the "
+    "start, at the end that of the end.";
 
 }  // namespace
 
@@ -33,14 +33,17 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   const RunSetup setup = setup_of(session_.info(), run);
   tick_s_ = 1.0 / session_.info().tick_rate_hz;
   duration_s_ = static_cast<double>(session_.frames()) * tick_s_;
+  check_screenshot_time(options_, duration_s_, run.string());
   DisplaySetup stage;
   stage.title = session_.info().experiment_name;
-  stage.subtitle = subtitle_of(setup.experiment.experiment.algorithm, setup.experiment.map.model,
-                               setup.soil, session_.info().seed);
+  stage.terrain = terrain_name(setup.experiment.map.model, setup.soil);
+  stage.seed = session_.info().seed;
+  algorithm_ = setup.experiment.experiment.algorithm;
   stage.duration_s = duration_s_;
   stage.flat_deg = setup.experiment.experiment.flatness_deg;
   stage.loose = setup.experiment.map.is_soil() || setup.experiment.map.model == "particles";
   stage.soft = setup.experiment.map.is_soil();
+  if (setup.experiment.map.of_particles()) stage.grain_m = setup.experiment.map.particle_radius_m;
   stage.recorded = true;
   stage.shape =
       shape_of(robot_model(setup, session_.info().board_name), setup.experiment.vehicle.tracks);
@@ -94,6 +97,12 @@ void RecordedViewer::go_to(double time_s) {
   display_->show_trail_points(point + 1);
   display_->set_travel(travel_m_[point].first, travel_m_[point].second);
   display_->set_frame(now);
+  Driver driver;
+  driver.replay = true;
+  driver.algorithm = algorithm_;
+  if (now.leveling_state == static_cast<int32_t>(LevelingState::kDrive))
+    driver.kind = Driver::Kind::kUnknownStation;
+  display_->set_driver(driver);
   show_terrain_after(ticks);
 }
 

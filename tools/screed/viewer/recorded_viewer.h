@@ -33,6 +33,7 @@ class RecordedViewer {
   std::optional<ViewerDisplay> display_;
   std::optional<HeightMap> after_;  ///< when the heights of the ticks were not recorded
   bool at_end_ = false;             ///< the ground is that of the end
+  std::string algorithm_;           ///< of the experiment
   std::vector<HeightChange> changes_;
   std::vector<SimFrame> block_;
   uint64_t block_first_ = 0;

@@ -8,6 +8,7 @@
 
 #include "host_sim/render/picture/robot_shape.h"
 #include "tools/screed/viewer/camera.h"
+#include "tools/screed/viewer/layout.h"
 #include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/slope_statistics.h"
 #include "tools/screed/viewer/terrain_image.h"
@@ -47,11 +48,22 @@ struct Status {
 
     bool operator==(const Motion&) const = default;
   };
+  /// As TerrainChange has it.
+  struct VolumeMoved {
+    double cut_m3 = 0.0;
+    double fill_m3 = 0.0;
+    double moved_m3 = 0.0;
+    double deepest_cut_m = 0.0;
+    double deepest_fill_m = 0.0;
+
+    bool operator==(const VolumeMoved&) const = default;
+  };
   struct Terrain {
     SlopeFigures before;
     SlopeFigures now;
     double flat_limit_deg = 0.0;
-    bool loose = false;  ///< the ground can change
+    bool loose = false;                 ///< the ground can change
+    std::optional<VolumeMoved> volume;  ///< when the colours show the change
 
     bool operator==(const Terrain&) const = default;
   };
@@ -68,15 +80,10 @@ struct Status {
   Motion motion;
   Terrain terrain;
   std::string notice;  ///< one line the user should know
-  std::string driver;  ///< who drives, when it is the keyboard
+  std::string driver;  ///< what the user who drives should know
+  std::string keys;    ///< the line at the foot
 
   bool operator==(const Status&) const = default;
-};
-
-/// A line of the help: keys and what they do.
-struct HelpLine {
-  std::string keys;
-  std::string what;
 };
 
 struct Scene {

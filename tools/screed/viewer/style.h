@@ -1,12 +1,9 @@
 // Colours and sizes that the parts of the viewer share.
 #pragma once
 
-#include "firmware/leveling/leveling.h"
 #include "host_sim/render/picture/color_map.h"
 
 namespace screed::viewer {
-
-inline constexpr double kPanelWidth_px = 300.0;
 
 inline constexpr Color kBackground{0.085, 0.100, 0.118};
 inline constexpr Color kBeyond{0.050, 0.060, 0.072};
@@ -21,11 +18,5 @@ inline constexpr Color kInk{0.10, 0.115, 0.13};
 inline constexpr Color kHull{0.90, 0.91, 0.92};
 inline constexpr Color kRubber{0.13, 0.14, 0.15};
 inline constexpr Color kLug{0.33, 0.35, 0.37};
-
-/// Of the path in a state of the algorithm, a LevelingState.
-inline Color state_color(size_t state) {
-  // Idle is grey: nothing happens. The others in the order of the palette.
-  return state == 0 ? Color{0.55, 0.58, 0.60} : category_color(state - 1);
-}
 
 }  // namespace screed::viewer

@@ -76,7 +76,7 @@ ShadingScale TerrainImage::scale(Shading shading) const {
   constexpr double kMillimetres = 1e3;
   switch (shading) {
     case Shading::kSlope:
-      return {"slope", "\u00b0", 0.0, kSteepest_deg};
+      return {"slope", "degrees", 0.0, kSteepest_deg};
     case Shading::kChange:
       return {"change", "mm", -change_m_ * kMillimetres, change_m_ * kMillimetres};
     case Shading::kHeight:

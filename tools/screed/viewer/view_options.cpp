@@ -1,6 +1,9 @@
 // Options of the viewer.
 #include "tools/screed/viewer/view_options.h"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <utility>
 
 #include "host_sim/core/errors.h"
@@ -12,13 +15,45 @@ namespace {
 void read_size(const std::string& text, viewer::ViewerOptions& options) {
   constexpr int kMax = 8000;
   const auto [width, height] = whole_pair(text).value_or(std::pair(0, 0));
-  if (width < viewer::Drawing::kMinWidth || height < viewer::Drawing::kMinHeight || width > kMax ||
+  if (width < viewer::kMinWindowWidth_px || height < viewer::kMinWindowHeight_px || width > kMax ||
       height > kMax) {
-    throw InputError("--size = '" + text + "' is not allowed; expected WIDTHxHEIGHT, 640x420 to " +
-                     "8000x8000 pixels");
+    throw InputError("--size = '" + text + "' is not allowed; expected WIDTHxHEIGHT, " +
+                     std::to_string(viewer::kMinWindowWidth_px) + "x" +
+                     std::to_string(viewer::kMinWindowHeight_px) + " to 8000x8000 pixels");
   }
   options.width_px = width;
   options.height_px = height;
+}
+
+/// Before the run: a picture that cannot be written at its end would be lost.
+void check_screenshot(const std::string& file) {
+  namespace fs = std::filesystem;
+  const fs::path path(file);
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
+  if (extension != ".png") {
+    throw InputError("--screenshot = '" + file +
+                     "' is not allowed; expected a file that ends in .png, the only format");
+  }
+  if (path.has_parent_path() && !fs::is_directory(path.parent_path())) {
+    throw InputError("--screenshot = '" + file + "': there is no folder '" +
+                     path.parent_path().string() + "'");
+  }
+}
+
+/// Frames of two films must not mix.
+void check_frames_folder(const std::string& folder) {
+  namespace fs = std::filesystem;
+  if (fs::exists(folder) && !fs::is_directory(folder))
+    throw InputError("--frames-dir = '" + folder + "' is no folder");
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("frame_", 0) != 0 || entry.path().extension() != ".png") continue;
+    throw InputError("--frames-dir = '" + folder +
+                     "' holds frames of another film (frame_*.png); " +
+                     "remove them or name another folder");
+  }
 }
 
 }  // namespace
@@ -71,6 +106,8 @@ std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& argumen
   window = window || arguments.frames.has_value();
   if (arguments.at.has_value() && arguments.screenshot.empty())
     throw InputError("--at needs --screenshot FILE");
+  if (!arguments.screenshot.empty()) check_screenshot(arguments.screenshot);
+  if (!arguments.frames_dir.empty()) check_frames_folder(arguments.frames_dir);
   viewer::ViewerOptions options;
   options.window = window;
   options.pace = arguments.speed.value_or(1.0);

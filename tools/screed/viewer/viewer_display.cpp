@@ -6,6 +6,8 @@
 #include <iostream>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/low_pass.h"
+#include "host_sim/physics/terrain/terrain_change.h"
 
 namespace screed::viewer {
 namespace {
@@ -36,6 +38,18 @@ std::string numbered(const char* before, uint64_t number) {
 
 }  // namespace
 
+void check_screenshot_time(const ViewerOptions& options, double duration_s,
+                           const std::string& what) {
+  constexpr double kRounding_s = 1e-6;
+  if (!options.screenshot_at.has_value() || *options.screenshot_at <= duration_s + kRounding_s)
+    return;
+  char text[128];
+  std::snprintf(text, sizeof text, "--at = %g is after the end: ", *options.screenshot_at);
+  std::string message = text + what;
+  std::snprintf(text, sizeof text, " lasts %.2f s; allowed: 0 to %.2f", duration_s, duration_s);
+  throw InputError(message + text);
+}
+
 std::string FrameTimes::text() const {
   if (frames < 2 || total_s <= 0.0) return "no frames";
   const auto count = static_cast<double>(frames);
@@ -54,7 +68,8 @@ ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
       setup_(std::move(setup)),
       ground_(ground),
       image_(ground_),
-      slopes_(ground_, setup_.flat_deg),
+      before_(surface()),
+      slopes_(before_, setup_.flat_deg),
       controls_(setup_.recorded, options.pace),
       drawing_(options.width_px, options.height_px) {
   if (options_.window) {
@@ -69,11 +84,17 @@ ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
     camera_.zoom(camera_.box().width / *options_.span_m / camera_.scale(), camera_.middle());
   }
   status_.title = setup_.title;
-  status_.subtitle = setup_.subtitle;
+  status_.keys = controls_.key_hint();
   status_.duration_s = setup_.duration_s;
   status_.terrain.before = slopes_.figures();
+  status_.terrain.now = status_.terrain.before;
   status_.terrain.flat_limit_deg = setup_.flat_deg;
   status_.terrain.loose = setup_.loose;
+}
+
+void ViewerDisplay::set_driver(const Driver& driver, std::string notice) {
+  status_.subtitle = subtitle_of(driver, setup_.terrain, setup_.seed);
+  status_.driver = std::move(notice);
 }
 
 void ViewerDisplay::change_terrain(std::span<const HeightChange> changes) {
@@ -83,7 +104,32 @@ void ViewerDisplay::change_terrain(std::span<const HeightChange> changes) {
     ground_.set_node(ix, iy, ground_.node(ix, iy) + change.by);
   }
   image_.update(ground_, changes);
-  slopes_.update(ground_, changes);
+  if (setup_.grain_m == 0.0) slopes_.update(ground_, changes);
+  measured_ = measured_ && changes.empty();
+}
+
+HeightField ViewerDisplay::surface() const {
+  return setup_.grain_m > 0.0 ? low_passed(ground_, setup_.grain_m) : ground_;
+}
+
+void ViewerDisplay::measure_terrain(bool exact) {
+  Status::Terrain& shown = status_.terrain;
+  const bool volume = controls_.shading == Shading::kChange;
+  if (!volume) shown.volume.reset();
+  const bool overdue = volume && !shown.volume.has_value();
+  if (setup_.grain_m == 0.0) {
+    shown.now = slopes_.figures();
+    if (!overdue && !(volume && exact)) return;
+  } else if (!overdue && (measured_ || !exact)) {
+    return;
+  }
+  measured_ = true;
+  const HeightField now = surface();
+  if (setup_.grain_m > 0.0) shown.now = SlopeStatistics(now, setup_.flat_deg).figures();
+  if (!volume) return;
+  const TerrainChange change = terrain_change(before_, now);
+  shown.volume = {change.cut_m3, change.fill_m3, change.moved_m3(), change.deepest_cut_m,
+                  change.deepest_fill_m};
 }
 
 void ViewerDisplay::set_frame(const SimFrame& frame) {
@@ -133,6 +179,11 @@ void ViewerDisplay::handle_event(const InputEvent& event) {
     case Kind::kKeyReleased:
       controls_.key_up(event.key);
       break;
+    case Kind::kGamepadAdded:
+    case Kind::kGamepadRemoved:
+    case Kind::kGamepadAxis:
+      controls_.gamepad_event(event);
+      break;
     case Kind::kSize:
       drawing_.resize(event.width, event.height);
       camera_.set_box(drawing_.terrain_box());
@@ -176,7 +227,6 @@ Scene ViewerDisplay::scene() {
   controls_.fit = false;
   if (controls_.follow) camera_.look_at(robot_.x_m, robot_.y_m);
   status_.pace = controls_.paused ? "paused" : controls_.pace_text();
-  status_.terrain.now = slopes_.figures();
   const size_t points = trail_points_.value_or(trail_.size());
   status_.states_seen = 1U << static_cast<unsigned>(status_.leveling_state);
   for (size_t i = 0; i < points; ++i) status_.states_seen |= 1U << trail_[i].state;
@@ -196,13 +246,18 @@ Scene ViewerDisplay::scene() {
   if (controls_.paused) scene.badges.emplace_back("paused");
   if (controls_.follow) scene.badges.emplace_back("follow");
   if (controls_.recording) scene.badges.emplace_back("\u25cf recording");
+  if (!controls_.gamepad().empty()) scene.badges.emplace_back("gamepad");
   scene.show_timeline = controls_.recorded();
-  if (controls_.help) scene.help = &controls_.help_lines();
+  if (controls_.help) {
+    help_ = controls_.help_lines();
+    scene.help = &help_;
+  }
   return scene;
 }
 
 void ViewerDisplay::draw(bool exact) {
   if (exact) status_.motion = motion_;
+  measure_terrain(exact);
   image_.paint(ground_, controls_.shading);
   drawing_.draw(scene());
 }
@@ -242,15 +297,24 @@ void ViewerDisplay::save_on_demand() {
   }
   if (!controls_.recording) captured_until_s_.reset();
   if (!capture_is_due()) return;
-  const std::filesystem::path folder = options_.frames_dir.empty() ? "frames" : options_.frames_dir;
-  if (captured_frames_ == 0) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
-    std::cerr << "frames " << folder.string() << "/frame_000001.png ...\n";
-  }
-  drawing_.canvas().write_png(folder / numbered("frame_", ++captured_frames_));
+  if (captured_frames_ == 0) frames_folder_ = begin_frames();
+  drawing_.canvas().write_png(frames_folder_ / numbered("frame_", ++captured_frames_));
   captured_until_s_ = status_.time_s;
+}
+
+std::filesystem::path ViewerDisplay::begin_frames() const {
+  namespace fs = std::filesystem;
+  fs::path folder = options_.frames_dir;
+  // The R key names no folder: a new one, since frames of two films must not mix.
+  if (folder.empty()) {
+    folder = "frames";
+    for (int next = 2; fs::exists(folder); ++next) folder = "frames-" + std::to_string(next);
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
+  std::cerr << "frames " << folder.string() << "/frame_000001.png ...\n";
+  return folder;
 }
 
 void ViewerDisplay::save(const std::filesystem::path& file) {
@@ -266,6 +330,10 @@ void ViewerDisplay::save_when_due(double time_s, bool end) {
     return;
   }
   screenshot_saved_ = true;
+  if (options_.screenshot_at.has_value() && time_s < *options_.screenshot_at - kRounding_s) {
+    std::cerr << "note: " << options_.screenshot << " shows the end, at " << number_text(time_s, 2)
+              << " s: it came before --at\n";
+  }
   save(options_.screenshot);
 }
 

@@ -12,6 +12,7 @@
 #include "host_sim/core/task_progress.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
+#include "tools/screed/viewer/subtitle.h"
 #include "tools/screed/viewer/window.h"
 
 namespace screed::viewer {
@@ -32,14 +33,20 @@ struct ViewerOptions {
   TaskProgress progress;  ///< of reading a run and drawing its frames; may be empty, may end it
 };
 
+/// Throws InputError when the screenshot is to show a time after the end. `what` lasts duration_s.
+void check_screenshot_time(const ViewerOptions& options, double duration_s,
+                           const std::string& what);
+
 /// What does not change while something is shown.
 struct DisplaySetup {
   std::string title;
-  std::string subtitle;
+  std::string terrain;  ///< as the subtitle says it
+  uint64_t seed = 0;
   double duration_s = 0.0;
   double flat_deg = 5.0;
-  bool loose = false;  ///< the ground can change
-  bool soft = false;   ///< the robot sinks in
+  bool loose = false;    ///< the ground can change
+  bool soft = false;     ///< the robot sinks in
+  double grain_m = 0.0;  ///< radius of particles, whose single slopes do not count; 0: none
   bool recorded = false;
   RobotShape shape;
 };
@@ -74,7 +81,8 @@ class ViewerDisplay {
   /// How many points of it are shown; all without a call.
   void show_trail_points(size_t points) { trail_points_ = points; }
   void set_notice(std::string notice) { status_.notice = std::move(notice); }
-  void set_driver(std::string driver) { status_.driver = std::move(driver); }
+  /// Who drives, and what a user who drives should know.
+  void set_driver(const Driver& driver, std::string notice = "");
   void set_travel(double left_m, double right_m) {
     robot_.travel_left_m = left_m;
     robot_.travel_right_m = right_m;
@@ -106,19 +114,28 @@ class ViewerDisplay {
   Scene scene();
   /// exact: with the figures of this very moment.
   void draw(bool exact);
+  /// The terrain whose figures are shown: as TerrainMeasure, without single particles.
+  HeightField surface() const;
+  /// Slopes, and the volume moved where the colours show it.
+  void measure_terrain(bool exact);
   void save_on_demand();
+  /// The folder of the frames, which must hold none yet.
+  std::filesystem::path begin_frames() const;
 
   ViewerOptions options_;
   DisplaySetup setup_;
   HeightField ground_;
   TerrainImage image_;
-  SlopeStatistics slopes_;
+  HeightField before_;      ///< surface() from which changes count
+  SlopeStatistics slopes_;  ///< of the terrain as it is
+  bool measured_ = false;   ///< the figures on particles are up to date
   Controls controls_;
   Drawing drawing_;
   std::optional<Window> window_;
   Camera camera_;
   Status status_;
   Status::Motion motion_;
+  std::vector<HelpLine> help_;
   RobotMarker robot_;
   std::vector<TrailPoint> trail_;
   std::optional<size_t> trail_points_;
@@ -128,6 +145,7 @@ class ViewerDisplay {
   bool screenshot_saved_ = false;
   uint64_t pictures_ = 0;
   uint64_t captured_frames_ = 0;
+  std::filesystem::path frames_folder_;  ///< once the first frame is written
   std::optional<double> captured_until_s_;
   FrameTimes times_;
   std::chrono::steady_clock::time_point first_shown_;

@@ -8,7 +8,11 @@
 #define SDL_MAIN_HANDLED
 #include <SDL.h>
 
+#include <optional>
+
 #include "host_sim/core/errors.h"
+#include "tools/screed/viewer/gamepad_input.h"
+#include "tools/screed/viewer/layout.h"
 
 namespace screed::viewer {
 namespace {
@@ -74,6 +78,10 @@ Key key_of(SDL_Keycode code) {
       return kKeyEscape;
     case SDLK_BACKSPACE:
       return kKeyBackspace;
+    case SDLK_F12:
+      return kKeyF12;
+    case SDLK_PAUSE:
+      return 'p';
     case SDLK_KP_PLUS:
       return '+';
     case SDLK_KP_MINUS:
@@ -106,22 +114,26 @@ class Window::Impl {
       SDL_QuitSubSystem(SDL_INIT_VIDEO);
       throw error;
     }
+    SDL_SetWindowMinimumSize(window_, kMinWindowWidth_px, kMinWindowHeight_px);
+    gamepads_.emplace();
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
+    gamepads_.reset();
     SDL_DestroyWindow(window_);
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
     SDL_Quit();
   }
 
-  std::vector<InputEvent> events(int wait_ms) const {
+  std::vector<InputEvent> events(int wait_ms) {
     std::vector<InputEvent> events;
     SDL_Event event;
     bool more =
         wait_ms > 0 ? SDL_WaitEventTimeout(&event, wait_ms) != 0 : SDL_PollEvent(&event) != 0;
     while (more) {
       convert_event(event, events);
+      gamepads_->convert(event, events);
       more = SDL_PollEvent(&event) != 0;
     }
     return events;
@@ -189,6 +201,7 @@ class Window::Impl {
   }
 
   SDL_Window* window_ = nullptr;
+  std::optional<GamepadInput> gamepads_;
 };
 
 void require_screen() {

@@ -1,5 +1,5 @@
-// A window on the screen that shows a canvas and tells what the user does to it. The only file of
-// the viewer that knows SDL.
+// A window on the screen that shows a canvas and tells what the user does to it, with keys, mouse
+// or a gamepad. This file and gamepad_input.cpp alone know SDL.
 #pragma once
 
 #include <memory>

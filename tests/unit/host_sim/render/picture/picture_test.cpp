@@ -15,7 +15,9 @@
 #include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/path_overlay.h"
+#include "host_sim/render/picture/state_color.h"
 #include "host_sim/render/picture/terrain_picture.h"
+#include "host_sim/run/simulation/names.h"
 #include "tests/temp_folder.h"
 
 namespace screed {
@@ -237,6 +239,56 @@ TEST(PathOverlayTest, AWheeledRobotHasWheelsAndATrackedOneTracks) {
     }
     EXPECT_LT(pixel(canvas, frame.to_pixel(0.1 + 0.3, 0.2 + 0.34)).green, 0.3) << "radius";
     EXPECT_GT(pixel(canvas, frame.to_pixel(0.1 + 0.3, 0.2 + 0.37)).green, 0.9);
+  }
+}
+
+TEST(PathOverlayTest, ThePathsEndLiesOverTheRobot) {
+  PictureOptions options = small_picture();
+  options.path = {{-0.5, 0.0, 2}, {0.2, 0.0, 2}};
+  options.robot = RobotOutline{0.2, 0.0, 0.0, tracked_robot()};
+  Canvas canvas(800, 700, {1.0, 1.0, 1.0});
+  const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, 0.0);
+  draw_path_overlay(canvas, frame, false, options);
+  const Color path = pixel(canvas, frame.to_pixel(0.12, 0.0));  // over the hull
+  EXPECT_NEAR(path.red, state_color(2).red, 0.01);
+  EXPECT_NEAR(path.blue, state_color(2).blue, 0.01);
+  const Color end = pixel(canvas, frame.to_pixel(0.2, 0.0));
+  EXPECT_LT(end.red + end.green + end.blue, 0.6);  // its dark mark
+}
+
+TEST(PathOverlayTest, TheLegendNamesTheStatesOfThePathInTheirColours) {
+  PictureOptions options = small_picture();
+  options.state_names = {"idle", "walk", "climb", "spin", "return", "drive"};
+  options.path = {{0.0, 0.0, 5}, {0.1, 0.0, 1}, {0.2, 0.0, 5}};
+  EXPECT_EQ(states_on_path(options.path), (std::vector<size_t>{1, 5}));
+  Canvas canvas(800, 700, {1.0, 1.0, 1.0});
+  const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, legend_height_px(options));
+  draw_legend(canvas, frame, options);
+  const auto has = [&](Color color) {
+    const std::vector<uint8_t> rgb = canvas.rgb();
+    const auto near = [](uint8_t byte, double part) {
+      return std::abs(byte / 255.0 - part) < 0.01;
+    };
+    for (size_t i = 0; i < rgb.size(); i += 3) {
+      if (near(rgb[i], color.red) && near(rgb[i + 1], color.green) && near(rgb[i + 2], color.blue))
+        return true;
+    }
+    return false;
+  };
+  for (size_t state = 0; state < options.state_names.size(); ++state) {
+    EXPECT_EQ(has(state_color(state)), state == 1 || state == 5) << state;
+  }
+}
+
+TEST(StateColorTest, EveryStateOfTheSchemaHasAColourOfItsOwn) {
+  ASSERT_EQ(kStateColors, kLevelingStates);
+  for (size_t state = 0; state < kStateColors; ++state) {
+    for (size_t other = 0; other < state; ++other) {
+      const Color a = state_color(state);
+      const Color b = state_color(other);
+      EXPECT_GT(std::hypot(a.red - b.red, a.green - b.green, a.blue - b.blue), 0.15)
+          << state << " and " << other;
+    }
   }
 }
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
+#include "host_sim/render/picture/state_color.h"
 #include "host_sim/run/simulation/height_watch.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
@@ -134,7 +136,7 @@ TEST(ViewerInput, KeysOfAScript) {
 
 TEST(ViewerInput, ArrowKeysDriveARunAndScrubARecording) {
   Controls live(false, 1.0);
-  EXPECT_FALSE(live.drive_keys_held());
+  EXPECT_FALSE(live.drives());
   live.key_down(kKeyUp, false);
   live.key_down(kKeyLeft, false);
   EXPECT_EQ(live.forward(), 1.0);
@@ -148,7 +150,7 @@ TEST(ViewerInput, ArrowKeysDriveARunAndScrubARecording) {
   EXPECT_LT(live.left(), 0.0);
   EXPECT_GT(live.left(), -1.0);  // slowly
   live.key_up(kKeyRight);
-  EXPECT_FALSE(live.drive_keys_held());
+  EXPECT_FALSE(live.drives());
 
   Controls recorded(true, 1.0);
   recorded.key_down(kKeyRight, false);
@@ -173,6 +175,24 @@ TEST(ViewerInput, PaceGoesUpToAsFastAsItGoes) {
   EXPECT_EQ(controls.pace, 0.1);
 }
 
+TEST(ViewerInput, TheEmergencyStopIsTheMonitorsKeyAndIsListed) {
+  Controls live(false, 1.0);
+  live.key_down(kEmergencyStopKey, false);
+  EXPECT_TRUE(live.emergency_stop);
+  EXPECT_FALSE(live.paused);
+  EXPECT_EQ(live.help_lines().front().keys, kEmergencyStopKeyName);
+  EXPECT_NE(live.key_hint().find(std::string(kEmergencyStopKeyName) + "  emergency stop"),
+            std::string::npos);
+  live.key_down('p', false);
+  EXPECT_TRUE(live.paused);
+  // No robot listens in a recording.
+  Controls recorded(true, 1.0);
+  recorded.key_down(kEmergencyStopKey, false);
+  EXPECT_FALSE(recorded.emergency_stop);
+  EXPECT_TRUE(recorded.paused);
+  EXPECT_EQ(recorded.key_hint().find("emergency"), std::string::npos);
+}
+
 TEST(ViewerInput, EscapeLeavesTheHelpFirst) {
   Controls controls(true, 1.0);
   controls.key_down('h', false);
@@ -182,6 +202,28 @@ TEST(ViewerInput, EscapeLeavesTheHelpFirst) {
   EXPECT_FALSE(controls.closed);
   controls.key_down(kKeyEscape, false);
   EXPECT_TRUE(controls.closed);
+}
+
+TEST(ViewerSubtitle, SaysWhoDrives) {
+  const auto said = [](const Driver& driver) { return subtitle_of(driver, "gravel", 7); };
+  Driver driver;
+  driver.algorithm = "hill_sensing";
+  EXPECT_EQ(said(driver), "hill_sensing drives on gravel, seed 7");
+  driver.external_link = true;
+  EXPECT_EQ(said(driver), "hill_sensing (external ground station) drives on gravel, seed 7");
+  driver.external_link = false;
+  driver.replay = true;
+  EXPECT_EQ(said(driver), "replay: hill_sensing drives on gravel, seed 7");
+  driver.kind = Driver::Kind::kUnknownStation;
+  EXPECT_EQ(said(driver), "replay: a ground station drives on gravel, seed 7");
+  driver.replay = false;
+  driver.kind = Driver::Kind::kKeyboard;
+  EXPECT_EQ(said(driver), "the keyboard drives on gravel, seed 7");
+  driver.kind = Driver::Kind::kGamepad;
+  EXPECT_EQ(said(driver), "the gamepad drives on gravel, seed 7");
+  driver.kind = Driver::Kind::kExternalStation;
+  EXPECT_EQ(said(driver), "an external ground station drives on gravel, seed 7");
+  EXPECT_EQ(terrain_name("scm", "dry_sand"), "soft soil (dry_sand)");
 }
 
 // ---- what is drawn ----
@@ -244,11 +286,21 @@ TEST_F(ViewerDrawing, ThePathShowsAsFarAsItHasCome) {
   scene_.trail_points = 10;
   drawing_.draw(scene_);
   const uint32_t ground = at(0.5, 0.5);
-  EXPECT_EQ(at(-0.7, -0.5), packed(category_color(0)));
+  EXPECT_EQ(at(-0.7, -0.5), packed(state_color(1)));
   EXPECT_EQ(at(-0.05, -0.5), ground);
   scene_.show_trail = false;
   drawing_.draw(scene_);
   EXPECT_EQ(at(-0.7, -0.5), ground);
+}
+
+TEST_F(ViewerDrawing, TheRobotDoesNotHideThePathsEnd) {
+  for (int i = 0; i <= 10; ++i) trail_.push_back({static_cast<float>(-0.4 + 0.04 * i), 0.0F, 2});
+  scene_.trail_points = trail_.size();
+  drawing_.draw(scene_);
+  // Over the tail of the hull, which reaches from -0.1 to 0.1; its end at the robot's centre.
+  EXPECT_EQ(at(-0.08, 0.0), packed(state_color(2)));
+  EXPECT_LT(brightness(at(0.0, 0.0)), 150);
+  EXPECT_GT(brightness(at(0.0, 0.0) & 0xFFFFFFU), 0);
 }
 
 TEST_F(ViewerDrawing, WrappedGroundRepeatsDarker) {
@@ -272,9 +324,10 @@ TEST_F(ViewerDrawing, SameSceneSamePixelsAtAnySize) {
   drawing_.draw(scene_);
   EXPECT_EQ(drawing_.canvas().rgb(), first);
   drawing_.resize(10, 10);
-  EXPECT_EQ(drawing_.canvas().width(), Drawing::kMinWidth);
+  EXPECT_EQ(drawing_.canvas().width(), kMinWindowWidth_px);
   scene_.camera.set_box(drawing_.terrain_box());
-  scene_.help = &Controls(false, 1.0).help_lines();
+  const std::vector<HelpLine> help = Controls(false, 1.0).help_lines();
+  scene_.help = &help;
   drawing_.draw(scene_);
   EXPECT_EQ(drawing_.share_at(-5.0), 0.0);
   EXPECT_EQ(drawing_.share_at(1e4), 1.0);
@@ -284,11 +337,18 @@ TEST_F(ViewerDrawing, ScaleBarIsNeverEmpty) {
   for (double scale = Camera::kMinScale; scale < Camera::kMaxScale; scale *= 1.13) {
     scene_.camera.zoom(scale / scene_.camera.scale(), scene_.camera.middle());
     drawing_.draw(scene_);
-    // Left of the bar's middle there is ink: the bar is at least 40 pixels long.
+    // Where the bar's middle is to be, there is ink, and the bar is long enough to compare with.
+    const OverlayLayout overlay = overlay_layout(
+        layout_of(900, 600), {}, scene_.camera.scale(), image_.scale(Shading::kHeight),
+        [&](const std::string& words, const TextStyle& style) {
+          return drawing_.canvas().text_width(words, style);
+        });
+    EXPECT_GT(overlay.scale_bar_width, 40.0) << scale;
     const std::span<uint32_t> pixels = drawing_.canvas().pixels();
-    const auto y = static_cast<size_t>(drawing_.terrain_box().height - 30.0);
+    const auto x = static_cast<size_t>(overlay.scale_bar_left + 0.5 * overlay.scale_bar_width);
+    const auto y = static_cast<size_t>(overlay.scale_bar_base);
     const auto width = static_cast<size_t>(drawing_.canvas().width());
-    EXPECT_GT(brightness(pixels[y * width + 60]), 500) << scale;
+    EXPECT_GT(brightness(pixels[y * width + x]), 500) << scale;
   }
 }
 
