@@ -155,7 +155,7 @@ HeightScale height_scale(const TerrainStatistics& s, const PictureOptions& optio
 
 std::string subtitle_of(const HeightField& field, const TerrainStatistics& s,
                         const HeightScale& scale, const PictureOptions& options) {
-  const std::string line = options.subtitle.empty() ? figures(field, s) : options.subtitle;
+  std::string line = options.subtitle.empty() ? figures(field, s) : options.subtitle;
   const Ticks& contours = scale.contours;
   const double first_line = std::ceil(s.lowest_m / contours.step) * contours.step;
   if (first_line >= s.highest_m) return line;

@@ -106,6 +106,9 @@ TEST(ViewerSlopeLedger, AgreesWithTheStatisticsOfTheTerrain) {
     dig(field, [&](std::span<const HeightChange> changes) { ledger.update(field, changes); });
     expect_same();
   }
+  const HeightField ramp = HeightField::ramp(1.0, 0.01, 5.0);
+  EXPECT_EQ(SlopeStatistics(ramp, 5.0).figures().flat, 1.0);
+  EXPECT_EQ(SlopeStatistics(ramp, 4.98).figures().flat, 0.0);
   const HeightField level = HeightField::flat(1.0, 0.1);
   const SlopeFigures figures = SlopeStatistics(level, 0.0).figures();
   EXPECT_EQ(figures.mean_deg, 0.0);
