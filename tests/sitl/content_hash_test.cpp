@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "d5aa02e932af5b442983274bc1499e22"},
-    {"soft_bed", "--duration 6", "4b5bf2f96a399ee57f5e55d1df60ba79"},
-    {"soft_bed", "--hal surrogate --duration 10", "3b9ec8194156985d7643c355eefa67a0"},
+    {"first_drive", "--duration 60", "e337cd171f292acbda334d346091a1c6"},
+    {"soft_bed", "--duration 6", "f598beaddde6a7c6f4b1fbf192e5de93"},
+    {"soft_bed", "--hal surrogate --duration 10", "419b2a1bffd38c8b98fad7f589fc6bee"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "2a32d04ad09bbb95e8135c7c481cc09e"},
-    {"gravel_bed", "--duration 1", "961aa571b3b460ee8d8a366e5cf4a88f"},
+     "594b39eab943620e7382d3cf6a58be78"},
+    {"gravel_bed", "--duration 1", "d5f68e8195481e44f841bc3773dd2d14"},
 }};
 
 class ContentHash : public Program {};
