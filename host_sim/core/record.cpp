@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <utility>
 
 namespace screed {
 namespace {
@@ -136,21 +137,30 @@ void unpack(std::span<const std::uint8_t, kOutputBytes> row, RobotOutput& output
 #undef SCREED_LOAD
 }
 
-std::optional<std::string> first_difference(std::span<const Column> columns,
-                                            std::span<const std::uint8_t> expected,
-                                            std::span<const std::uint8_t> got) {
+std::vector<ColumnDifference> column_differences(std::span<const Column> columns,
+                                                 std::span<const std::uint8_t> expected,
+                                                 std::span<const std::uint8_t> got) {
+  std::vector<ColumnDifference> differences;
   for (const Column& column : columns) {
     const std::size_t size = element_bytes(column.type);
     for (std::size_t i = 0; i < column.count; ++i) {
       const std::size_t at = column.offset + i * size;
       if (std::memcmp(&expected[at], &got[at], size) == 0) continue;
-      std::string text = column.name;
-      if (column.array) text += "[" + std::to_string(i) + "]";
-      return text + ": expected " + element_text(column.type, &expected[at]) + ", got " +
-             element_text(column.type, &got[at]);
+      std::string name = column.name;
+      if (column.array) name += "[" + std::to_string(i) + "]";
+      differences.push_back({std::move(name), element_text(column.type, &expected[at]),
+                             element_text(column.type, &got[at])});
     }
   }
-  return std::nullopt;
+  return differences;
+}
+
+std::optional<std::string> first_difference(std::span<const Column> columns,
+                                            std::span<const std::uint8_t> expected,
+                                            std::span<const std::uint8_t> got) {
+  const std::vector<ColumnDifference> all = column_differences(columns, expected, got);
+  if (all.empty()) return std::nullopt;
+  return all[0].column + ": expected " + all[0].expected + ", got " + all[0].got;
 }
 
 }  // namespace screed

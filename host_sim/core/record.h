@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
@@ -161,6 +162,18 @@ void pack(const RobotOutput& output, OutputRow row);
 void unpack(std::span<const std::uint8_t, kFrameBytes> row, SimFrame& frame);
 void unpack(std::span<const std::uint8_t, kSampleBytes> row, SensorSample& sample);
 void unpack(std::span<const std::uint8_t, kOutputBytes> row, RobotOutput& output);
+
+/// A place in which two rows differ.
+struct ColumnDifference {
+  std::string column;  ///< "duty_left", or "gyro[2]" in an array
+  std::string expected;
+  std::string got;
+};
+
+/// All of them, in the order of the columns.
+std::vector<ColumnDifference> column_differences(std::span<const Column> columns,
+                                                 std::span<const std::uint8_t> expected,
+                                                 std::span<const std::uint8_t> got);
 
 /// Names the first column in which two rows differ, as "duty_left: expected 12, got 15"; nothing
 /// when they are equal.

@@ -76,7 +76,7 @@ GridFigure better(const GridConfig& base, bool units) {
                                                      : "Cycles: Algorithm 1 and better ones");
   figure.shows_units = units;
   figure.kind = ChartKind::kBars;
-  figure.x_label = "mean height, units";
+  figure.x_label = "mean height [units]";
   figure.series = {"Algorithm 1, p = 0.3", "patient", "forager"};
   figure.results_name = "better";
   int category = 0;

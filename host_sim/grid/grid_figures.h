@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host_sim/grid/grid_sweep.h"
-#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/render/chart/line_chart.h"
 
 namespace screed {
 

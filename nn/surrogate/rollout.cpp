@@ -97,6 +97,7 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
     for (std::uint64_t at = row + kPathFrames; at < end; at += kPathFrames) {
       real.push_back(recording.poses[at]);
     }
+    result.starts.push_back(recording.poses[row]);
     result.real.push_back(std::move(real));
   }
   return result;

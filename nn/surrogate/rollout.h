@@ -30,7 +30,8 @@ struct SurrogateFactory {
 struct SessionRollouts {
   std::string source;
   std::vector<std::vector<Rollout>> by_surrogate;  ///< in their order; the same starts
-  std::vector<std::vector<PlanarPose>> real;       ///< the recorded paths of these starts
+  std::vector<PlanarPose> starts;                  ///< the recorded poses there
+  std::vector<std::vector<PlanarPose>> real;       ///< the recorded paths behind these starts
 };
 
 struct RolloutOptions {

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "host_sim/core/atomic_file.h"
-#include "host_sim/render/picture/line_chart.h"
-#include "host_sim/render/picture/svg_png.h"
+#include "host_sim/render/chart/line_chart.h"
+#include "host_sim/render/chart/svg_png.h"
 #include "nn/training/predict.h"
 
 namespace screed::nn {
@@ -102,7 +102,7 @@ Chart time_series(const TestTable& test, const OutputSeries& series, const std::
   chart.title = series.output + " on test " + test.label + ", " + test.form;
   chart.subtitle = subtitle;
   chart.x_label = "frame of the session";
-  chart.y_label = series.output + ", normalised";
+  chart.y_label = series.output + " [normalised]";
   chart.from_zero = false;
   chart.width_px = 1200;
   const std::size_t rows = std::min(series.real.size(), kFramesDrawn);
@@ -124,8 +124,8 @@ Chart regression(const TestTable& test, const OutputSeries& series, const std::s
   Chart chart;
   chart.title = series.output + " on test " + test.label + ", " + test.form;
   chart.subtitle = subtitle;
-  chart.x_label = "recorded, normalised";
-  chart.y_label = "network";
+  chart.x_label = "recorded [normalised]";
+  chart.y_label = "network [normalised]";
   chart.from_zero = false;
   chart.width_px = 620;
   chart.height_px = 620;
@@ -210,7 +210,7 @@ std::vector<fs::path> draw_losses(const TrainingConfiguration& configuration,
     chart.title = configuration.name + ", " + name;
     chart.subtitle = "epoch " + std::to_string(networks[i].kept_epoch) + " is kept";
     chart.x_label = "epoch";
-    chart.y_label = "mean squared error, normalised";
+    chart.y_label = "mean squared error [normalised]";
     ChartSeries training{"training", {}, false};
     ChartSeries test{"test", {}, false};
     const std::size_t every = std::max<std::size_t>(1, networks[i].losses.size() / kMaxPoints);

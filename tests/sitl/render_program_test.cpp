@@ -149,6 +149,35 @@ TEST_F(Render, SceneOnly) {
   EXPECT_FALSE(std::filesystem::exists(root_ / "run" / "frame_last.png"));
 }
 
+TEST_F(Render, HeightsAreTintedUnlessAskedOtherwise) {
+  const auto scene = [this](const std::string& options) {
+    EXPECT_EQ(render("run --out p.png --pov-only " + options).exit_code, 0);
+    return read(root_ / "p.pov");
+  };
+  for (const char* camera : {"front", "bed"}) {
+    const std::string camera_option = std::string("--camera ") + camera;
+    EXPECT_NE(scene(camera_option).find("\"height [mm]\""), std::string::npos);
+    EXPECT_EQ(scene(camera_option + " --no-tint").find("HeightColors"), std::string::npos);
+  }
+}
+
+TEST_F(Render, ParticlesAreRoundAndWhereTheRunLeftThem) {
+  write("g.ini",
+        "[experiment]\nduration = 0.5\nalgorithm = drive\n[map]\nsize = 0.4\nmodel = "
+        "particles\nparticle_radius = 0.02\n[particles]\ndepth = 0.06\n");
+  ASSERT_EQ(run("sim g.ini --quiet --out gravel").exit_code, 0);
+  const auto spheres = [this](const std::string& options) {
+    const Result result = render("gravel --out g.png --no-path --pov-only " + options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::string scene = read(root_ / "g.pov");
+    EXPECT_EQ(scene.find("height_field"), std::string::npos);
+    return scene.substr(scene.find("  sphere { <"), 4000);
+  };
+  const std::string after = spheres("");
+  EXPECT_NE(after.find(", 0.020000 texture { Stone"), std::string::npos);
+  EXPECT_NE(spheres("--frame 0"), after) << "the robot has moved none";
+}
+
 TEST_F(Render, RefusesInOneLineAndLeavesNothing) {
   write("half.h5", read(root_ / "run" / "session.h5").substr(0, 20000));
   std::filesystem::create_directories(root_ / "run" / "empty");

@@ -70,7 +70,7 @@ $(B)/tiny_dnn/third_party/stb:
 	@mkdir -p $(@D)
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
-$(B)/host_sim/render/picture/svg_png.o: EXTRA_FLAGS = $(RSVG_FLAGS)
+$(B)/host_sim/render/chart/svg_png.o: EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
 $(addprefix $(B)/,tools/screed/viewer/window.o tools/screed/viewer/gamepad_input.o tests/unit/tools/screed/viewer/gamepad_input_test.o): \
   EXTRA_FLAGS = $(SDL_FLAGS)

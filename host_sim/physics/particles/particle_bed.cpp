@@ -158,6 +158,17 @@ Eigen::Vector3d ParticleBed::between(const Eigen::Vector3d& from, const Eigen::V
   return separation;
 }
 
+SphereSet ParticleBed::spheres() const {
+  SphereSet set;
+  set.radius_m = options_.material.radius_m;
+  set.centers_m.reserve(position_.size());
+  for (const Eigen::Vector3d& at : position_) {
+    set.centers_m.push_back(
+        {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())});
+  }
+  return set;
+}
+
 BedBounds ParticleBed::bounds() const {
   return {extent_.width_m, extent_.depth_m,
           extent_.periodic ? BedEdge::kWrapped : BedEdge::kWalled};

@@ -70,6 +70,7 @@ class ParticleBed final : public Terrain {
   const ParticleOptions& options() const { return options_; }
   const BedExtent& extent() const { return extent_; }
   TerrainWork work() const override { return work_; }
+  SphereSet spheres() const override;
   size_t size() const { return position_.size(); }
   const Eigen::Vector3d& position(size_t particle) const { return position_[particle]; }
   const Eigen::Vector3d& velocity(size_t particle) const { return velocity_[particle]; }

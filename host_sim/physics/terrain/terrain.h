@@ -14,6 +14,7 @@
 
 #include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/sphere_set.h"
 
 namespace screed {
 
@@ -103,6 +104,8 @@ class Terrain {
 
   virtual VolumeBalance balance() const { return {}; }
   virtual TerrainWork work() const { return {}; }
+  /// Where its particles are; none on terrain without.
+  virtual SphereSet spheres() const { return {}; }
 
  protected:
   Terrain() = default;

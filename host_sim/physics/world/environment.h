@@ -39,6 +39,8 @@ class Environment {
   /// As Terrain::balance() and Terrain::work(); all zero where nothing of the kind is booked.
   virtual VolumeBalance volume_balance() const { return {}; }
   virtual TerrainWork terrain_work() const { return {}; }
+  /// As Terrain::spheres().
+  virtual SphereSet spheres() const { return {}; }
   virtual const VehicleState& vehicle() const = 0;
   /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
   /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,

@@ -55,6 +55,7 @@ class Plant : public Environment {
   bool is_deformable() const override { return terrain_->is_deformable(); }
   VolumeBalance volume_balance() const override { return terrain_->balance(); }
   TerrainWork terrain_work() const override { return terrain_->work(); }
+  SphereSet spheres() const override { return terrain_->spheres(); }
   const Vehicle& vehicle() const override { return vehicle_; }
   const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
   Eigen::Vector3d unwrapped_position() const override;

@@ -99,4 +99,15 @@ Color category_color(size_t index) {
   return kCategories[index % kCategories.size()];
 }
 
+Color line_color(size_t index) {
+  constexpr std::array<size_t, 8> kOnWhite = {0, 1, 5, 3, 7, 6, 4, 8};
+  return kCategories[kOnWhite[index % kOnWhite.size()]];
+}
+
+Color ink_on(Color ground) {
+  // Weights of ITU-R BT.601 for gamma-encoded components.
+  const double luma = 0.299 * ground.red + 0.587 * ground.green + 0.114 * ground.blue;
+  return luma > 0.55 ? Color{0.1, 0.1, 0.1} : Color{1.0, 1.0, 1.0};
+}
+
 }  // namespace screed

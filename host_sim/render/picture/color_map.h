@@ -31,4 +31,10 @@ Color difference_color(double t);
 inline constexpr size_t kCategoryColors = 10;
 Color category_color(size_t index);
 
+/// The same colours for lines on white ground, without those that are too light for it.
+Color line_color(size_t index);
+
+/// Black or white, whichever reads better on this colour.
+Color ink_on(Color ground);
+
 }  // namespace screed

@@ -1,7 +1,9 @@
 // Camera and light.
 #include "host_sim/render/scene/scene_camera.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "host_sim/core/errors.h"
@@ -26,6 +28,21 @@ constexpr NamedOrbit kOrbits[] = {
 Eigen::Vector3d direction(double azimuth_rad, double elevation_rad) {
   return {std::cos(elevation_rad) * std::cos(azimuth_rad),
           std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
+}
+
+/// Axes of a picture taken against `back`, the unit vector towards the camera.
+Eigen::Matrix3d picture_axes(const Eigen::Vector3d& back) {
+  Eigen::Matrix3d axes;
+  axes.col(0) = Eigen::Vector3d::UnitZ().cross(back).normalized();
+  axes.col(1) = back.cross(axes.col(0));
+  axes.col(2) = back;
+  return axes;
+}
+
+/// Tangents of half the field of view, right and up.
+Eigen::Vector2d half_tangents(const PictureFormat& format) {
+  const double right = std::tan(0.5 * format.field_of_view_deg * kRadPerDeg);
+  return {right, right / format.aspect};
 }
 
 bool is_clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
@@ -77,6 +94,52 @@ SceneCamera camera_at(const CameraOrbit& orbit, const Eigen::Vector3d& target, d
       return {location, target};
     }
   }
+}
+
+SceneCamera camera_around(const CameraOrbit& orbit, std::span<const Eigen::Vector3d> points,
+                          const PictureFormat& format, double margin) {
+  const Eigen::Matrix3d axes =
+      picture_axes(direction(orbit.azimuth_deg * kRadPerDeg, orbit.elevation_deg * kRadPerDeg));
+  const Eigen::Vector2d tangents = (1.0 - margin) * half_tangents(format);
+  // In the picture's axes the camera is at (x, y, d), and a point p lies within the right edge when
+  // p.x - x <= (d - p.z) t, within the left one when x - p.x <= (d - p.z) t. The points that are
+  // outermost on both sides give the least d and the x in their middle; y likewise.
+  Eigen::Vector3d place(0.0, 0.0, -std::numeric_limits<double>::infinity());
+  double nearest = place.z();
+  for (int axis = 0; axis < 2; ++axis) {
+    const double tangent = tangents[axis];
+    double plus = -std::numeric_limits<double>::infinity();
+    double minus = plus;
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3d p = axes.transpose() * point;
+      plus = std::max(plus, p.z() * tangent + p[axis]);
+      minus = std::max(minus, p.z() * tangent - p[axis]);
+      nearest = std::max(nearest, p.z());
+    }
+    place[axis] = 0.5 * (plus - minus);
+    place.z() = std::max(place.z(), 0.5 * (plus + minus) / tangent);
+  }
+  // A single point would have the camera in it. What belongs to the picture itself stands nearer.
+  constexpr double kLeastDistance_m = 0.12;
+  place.z() = std::max(place.z(), nearest + kLeastDistance_m);
+  const Eigen::Vector3d target = axes * Eigen::Vector3d(place.x(), place.y(), nearest);
+  return {axes * place, target};
+}
+
+Eigen::Vector3d project(const SceneCamera& camera, const PictureFormat& format,
+                        const Eigen::Vector3d& point) {
+  const Eigen::Isometry3d pose = picture_pose(camera, 0.0);
+  const Eigen::Vector3d p = pose.inverse() * point;
+  const Eigen::Vector2d tangents = half_tangents(format);
+  return {p.x() / (-p.z() * tangents.x()), p.y() / (-p.z() * tangents.y()), -p.z()};
+}
+
+Eigen::Isometry3d picture_pose(const SceneCamera& camera, double depth_m) {
+  const Eigen::Vector3d back = (camera.location - camera.target).normalized();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = picture_axes(back);
+  pose.translation() = camera.location - depth_m * back;
+  return pose;
 }
 
 std::string camera_text(const SceneCamera& camera, double field_of_view_deg) {

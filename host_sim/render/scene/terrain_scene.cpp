@@ -22,7 +22,7 @@ int64_t wrapped(int64_t index, int64_t count) {
 
 /// Grains, lumps and two tones; `turned` names the image of what the robot has turned over.
 std::string soil_texture(const TerrainSurface& ground, const TerrainFiles& files,
-                         const SoilAppearance& look) {
+                         const SoilAppearance& look, const std::optional<HeightTint>& tint) {
   const auto tones = [&](double share) {
     const auto mix = [&](double tone) {
       const auto one = [&](double light, double dark) {
@@ -32,11 +32,13 @@ std::string soil_texture(const TerrainSurface& ground, const TerrainFiles& files
                         one(look.light.blue, look.dark.blue), 1.0});
     };
     // Grains of a millimetre in patches of a hand.
-    return "pigment { bozo scale 0.09 turbulence 0.6 pigment_map { "
-           "[0.25 granite scale 0.011 color_map { [0.2 " +
-           mix(0.75) + "] [0.6 " + mix(1.0) + "] [0.9 " + mix(0.45) +
-           "] }] [0.8 granite scale 0.008 color_map { [0.2 " + mix(0.35) + "] [0.6 " + mix(0.7) +
-           "] [0.9 " + mix(0.1) + "] }] } }";
+    const std::string grains =
+        "bozo scale 0.09 turbulence 0.6 pigment_map { "
+        "[0.25 granite scale 0.011 color_map { [0.2 " +
+        mix(0.75) + "] [0.6 " + mix(1.0) + "] [0.9 " + mix(0.45) +
+        "] }] [0.8 granite scale 0.008 color_map { [0.2 " + mix(0.35) + "] [0.6 " + mix(0.7) +
+        "] [0.9 " + mix(0.1) + "] }] }";
+    return "pigment { " + tinted(grains, tint) + " }";
   };
   const std::string finish = " finish { ambient 0 diffuse 0.9 }";
   const auto grain = [](double strength) {
@@ -156,9 +158,9 @@ GreyRaster change_raster(const TerrainSurface& ground, const HeightMap& before) 
 }
 
 std::string terrain_text(const TerrainSurface& ground, const TerrainFiles& files,
-                         const SoilAppearance& look) {
+                         const SoilAppearance& look, const std::optional<HeightTint>& tint) {
   const double rise = std::max(ground.highest_m() - ground.lowest_m(), 1e-6);
-  std::string text = soil_texture(ground, files, look);
+  std::string text = soil_texture(ground, files, look, tint);
   // POV-Ray's height field fills the unit cube, y up: swapped to z up while it is scaled.
   text += "#declare Bed = height_field { png \"" + files.heights + "\" gamma 1.0 smooth" +
           pov_line(" matrix <%.6f,0,0, 0,0,%.8f, 0,%.6f,0, %.6f,%.6f,%.8f> }\n", ground.width_m(),

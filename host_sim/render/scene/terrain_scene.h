@@ -4,12 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "host_sim/physics/terrain/height_map.h"
 #include "host_sim/render/picture/color_map.h"
+#include "host_sim/render/scene/height_tint.h"
 
 namespace screed {
 
@@ -67,7 +69,8 @@ struct TerrainFiles {
 /// The height field. With wrap-around it is repeated on all sides; otherwise the bed ends in a cut
 /// through the soil, on a plane table.
 std::string terrain_text(const TerrainSurface& ground, const TerrainFiles& files,
-                         const SoilAppearance& look);
+                         const SoilAppearance& look,
+                         const std::optional<HeightTint>& tint = std::nullopt);
 
 /// A thin line over the ground along these places; it breaks where two of them are further apart
 /// than the robot can drive between them.

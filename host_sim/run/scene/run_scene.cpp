@@ -10,6 +10,7 @@
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/render/scene/povray.h"
 #include "host_sim/render/scene/robot_scene.h"
+#include "host_sim/render/scene/sphere_scene.h"
 #include "host_sim/render/scene/terrain_scene.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/session_reader.h"
@@ -18,6 +19,7 @@ namespace screed {
 namespace {
 
 constexpr double kFieldOfView_deg = 40.0;
+constexpr double kMargin = 0.03;  // of the picture, round the bed
 constexpr double kPathRadius =
     0.0022;  // of the line that shows the way, to the distance it is seen from
 
@@ -83,6 +85,8 @@ std::uint64_t frame_number(const SessionReader& session, const RunSceneOptions& 
 struct RecordedTerrain {
   HeightMap now;
   std::optional<HeightMap> before;
+  /// Where they were recorded at this frame, or no heights were; they are drawn then.
+  std::optional<SphereSet> particles;
   bool is_later = false;
 };
 
@@ -91,18 +95,57 @@ RecordedTerrain ground_at(const SessionReader& session, std::uint64_t frame, boo
   RecordedTerrain ground;
   ground.before = session.terrain_before();
   if (!ground.before) throw InputError(run.string() + ": the session holds no height map");
+  const bool first = frame == 0;
+  const bool last = frame + 1 == session.frames();
   if (session.has_heights()) {
     ground.now = session.heights_after(frame + 1);
+    if (first || last) {
+      ground.particles = first ? session.particles_before() : session.particles_after();
+    }
     return ground;
   }
   const auto after = session.terrain_after();
   if (frame == 0 || !soft || !after) {
     ground.now = *ground.before;
+    ground.particles = session.particles_before();
   } else {
     ground.now = *after;
+    ground.particles = session.particles_after();
     ground.is_later = frame + 1 < session.frames();
   }
   return ground;
+}
+
+/// What the camera for the whole bed has to see: the bed's corners from the table to the highest
+/// place, and the robot.
+std::vector<Eigen::Vector3d> bed_points(const TerrainSurface& surface, const RobotPose& pose) {
+  constexpr double kBelow_m = 0.06;
+  constexpr double kRobot_m = 0.2;  // about its reach
+  std::vector<Eigen::Vector3d> points;
+  for (const double x : {surface.x_min(), surface.x_min() + surface.width_m()}) {
+    for (const double y : {surface.y_min(), surface.y_min() + surface.depth_m()}) {
+      points.emplace_back(x, y, surface.lowest_m() - kBelow_m);
+      points.emplace_back(x, y, surface.highest_m());
+    }
+  }
+  points.push_back(pose.body.translation() + Eigen::Vector3d(0.0, 0.0, kRobot_m));
+  return points;
+}
+
+/// One scale for all frames of a run, as far as the session knows it. The lowest places, gaps
+/// between stones and the pit of a track, have the colour of those just above.
+HeightTint tint_of(const TerrainSurface& now, const HeightMap& before) {
+  constexpr double kLowShare = 0.02;
+  const auto low_m = [](const HeightMap& map) {
+    std::vector<std::int32_t> heights = map.heights;
+    const auto low = heights.begin() +
+                     static_cast<std::ptrdiff_t>(kLowShare * static_cast<double>(heights.size()));
+    std::nth_element(heights.begin(), low, heights.end());
+    return *low * map.geometry.unit_m;
+  };
+  const TerrainSurface first(before);
+  return height_tint(std::min(low_m(now.map()), low_m(before)),
+                     std::max(now.highest_m(), first.highest_m()));
 }
 
 void write_raster(const std::filesystem::path& file, const GreyRaster& raster) {
@@ -136,17 +179,15 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
       ground_at(session, result.frame, setup.experiment.map.model != "rigid", run);
   result.terrain_is_later = ground.is_later;
   const TerrainSurface surface(ground.now);
-  CameraOrbit orbit = options.camera;
-  Eigen::Vector3d target = pose.body.translation() - Eigen::Vector3d(0.0, 0.0, 0.02);
-  double heading = driven.frame.yaw;
-  if (orbit.whole_bed) {
-    target << surface.x_min() + surface.width_m() / 2, surface.y_min() + surface.depth_m() / 2,
-        0.5 * (surface.lowest_m() + surface.highest_m());
-    heading = 0.0;
-    orbit.distance_m = 1.75 * std::max(surface.width_m(), surface.depth_m());
-  }
+  const PictureFormat format{kFieldOfView_deg,
+                             static_cast<double>(options.width_px) / options.height_px};
+  const CameraOrbit& orbit = options.camera;
+  const Eigen::Vector3d target = pose.body.translation() - Eigen::Vector3d(0.0, 0.0, 0.02);
   const SceneCamera camera =
-      camera_at(orbit, target, heading, [&](double x, double y) { return surface.height_m(x, y); });
+      orbit.whole_bed ? camera_around(orbit, bed_points(surface, pose), format, kMargin)
+                      : camera_at(orbit, target, driven.frame.yaw,
+                                  [&](double x, double y) { return surface.height_m(x, y); });
+  const double distance_m = (camera.location - camera.target).norm();
 
   PovrayJob job(picture);
   result.scene = job.scene();
@@ -158,13 +199,18 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
     files.change = job.name_with("_turned.png");
     write_raster(job.in_the_making(files.change), change);
   }
+  const SoilAppearance look = soil_appearance(soil_name(setup));
+  std::optional<HeightTint> tint;
+  if (options.tint) tint = tint_of(surface, *ground.before);
   job.write_scene(
       "// Made by `screed render`. Metres; x east, y north, z up.\n#version 3.7;\n"
       "global_settings { assumed_gamma 1.0 }\n" +
-      camera_text(camera, kFieldOfView_deg) +
-      terrain_text(surface, files, soil_appearance(soil_name(setup))) +
-      (options.path ? path_text(driven.path, surface, kPathRadius * orbit.distance_m) : "") +
-      robot_text(robot, setup.experiment.vehicle.tracks, pose));
+      camera_text(camera, format.field_of_view_deg) + (tint ? tint_text(*tint) : "") +
+      (ground.particles ? spheres_text(*ground.particles, look, tint)
+                        : terrain_text(surface, files, look, tint)) +
+      (options.path ? path_text(driven.path, surface, kPathRadius * distance_m) : "") +
+      robot_text(robot, setup.experiment.vehicle.tracks, pose) +
+      (tint ? tint_legend_text(*tint, camera, format) : ""));
   if (!options.pov_only)
     result.rendered = job.render(options.width_px, options.height_px, options.progress);
   job.publish();

@@ -17,6 +17,7 @@ struct RunSceneOptions {
   CameraOrbit camera;
   std::optional<std::filesystem::path> model;  ///< the robot's URDF instead of the experiment's
   bool path = true;                            ///< draw the driven path
+  bool tint = true;                            ///< heights in colour, with a colour bar
   bool pov_only = false;                       ///< only the scene
   int width_px = 1280;                         ///< 16..8000
   int height_px = 800;                         ///< 16..8000
@@ -27,7 +28,7 @@ struct RunSceneResult {
   std::uint64_t frame = 0;
   std::filesystem::path scene;
   bool rendered = false;  ///< false with pov_only, and when there is no povray
-  /// the height map of this frame is not in the session: that of the run's end was drawn
+  /// the terrain of this frame is not in the session: that of the run's end was drawn
   bool terrain_is_later = false;
 };
 

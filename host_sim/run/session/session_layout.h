@@ -45,6 +45,10 @@ inline constexpr char kHeightNodes[] = "change_nodes";
 inline constexpr char kHeightChanges[] = "changes";
 inline constexpr char kHeightEnds[] = "change_ends";
 inline constexpr char kSoilGroup[] = "soil";
+inline constexpr char kParticlesGroup[] = "particles";
+inline constexpr char kParticlesBefore[] = "before";
+inline constexpr char kParticlesAfter[] = "after";
+inline constexpr char kParticleRadius[] = "radius_m";
 
 struct TableLayout {
   const char* dataset;

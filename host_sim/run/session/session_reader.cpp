@@ -226,6 +226,26 @@ HeightMap read_map(hid_t group, const char* name) {
   return map;
 }
 
+SphereSet read_spheres(hid_t group, const char* name) {
+  const h5::Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, name);
+  const h5::Handle space(H5Dget_space(dataset.get()), H5Sclose, name);
+  const h5::Handle type(H5Dget_type(dataset.get()), H5Tclose, name);
+  std::array<hsize_t, 2> size{};
+  if (H5Sget_simple_extent_ndims(space.get()) == 2) {
+    H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
+  }
+  if (size[1] != 3 || H5Tget_class(type.get()) != H5T_FLOAT) {
+    throw Hdf5Failure(std::string("particles '") + name + "' are no rows of x, y, z");
+  }
+  SphereSet set;
+  set.radius_m = h5::read_double(dataset.get(), layout::kParticleRadius);
+  set.centers_m.resize(size[0]);
+  h5::check(
+      H5Dread(dataset.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, set.centers_m.data()),
+      (std::string("particles '") + name + "' are damaged").c_str());
+  return set;
+}
+
 }  // namespace
 
 class SessionReader::Impl {
@@ -285,6 +305,14 @@ class SessionReader::Impl {
                            "cannot read group 'terrain'");
     if (!h5::has_link(group.get(), name)) return std::nullopt;
     return read_map(group.get(), name);
+  }
+
+  std::optional<SphereSet> particles(const char* name) const {
+    if (!h5::has_link(file_.get(), layout::kParticlesGroup)) return std::nullopt;
+    const h5::Handle group(H5Gopen2(file_.get(), layout::kParticlesGroup, H5P_DEFAULT), H5Gclose,
+                           "cannot read group 'particles'");
+    if (!h5::has_link(group.get(), name)) return std::nullopt;
+    return read_spheres(group.get(), name);
   }
 
   HeightSeriesReader* heights() { return heights_ ? &*heights_ : nullptr; }
@@ -387,6 +415,14 @@ std::optional<HeightMap> SessionReader::terrain_before() const {
 
 std::optional<HeightMap> SessionReader::terrain_after() const {
   return or_input_error(impl_->path(), [&] { return impl_->terrain(layout::kTerrainAfter); });
+}
+
+std::optional<SphereSet> SessionReader::particles_before() const {
+  return or_input_error(impl_->path(), [&] { return impl_->particles(layout::kParticlesBefore); });
+}
+
+std::optional<SphereSet> SessionReader::particles_after() const {
+  return or_input_error(impl_->path(), [&] { return impl_->particles(layout::kParticlesAfter); });
 }
 
 bool SessionReader::has_heights() const {

@@ -12,6 +12,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed {
@@ -46,6 +47,9 @@ class SessionReader {
 
   std::optional<HeightMap> terrain_before() const;
   std::optional<HeightMap> terrain_after() const;
+  /// Nothing on terrain without particles, and in sessions of programs that did not record them.
+  std::optional<SphereSet> particles_before() const;
+  std::optional<SphereSet> particles_after() const;
 
   /// Whether the height map was recorded tick by tick. The rest of this block may only be called
   /// when it was.

@@ -204,6 +204,29 @@ class SessionWriter::Impl {
     flush();
   }
 
+  void write_particles(const char* name, const SphereSet& particles) {
+    const h5::Handle group =
+        h5::has_link(file_.get(), layout::kParticlesGroup)
+            ? h5::Handle(H5Gopen2(file_.get(), layout::kParticlesGroup, H5P_DEFAULT), H5Gclose,
+                         layout::kParticlesGroup)
+            : layout::create_group(file_.get(), layout::kParticlesGroup);
+    constexpr hsize_t kRows = 4096;
+    const std::array<hsize_t, 2> size{particles.centers_m.size(), 3};
+    const std::array<hsize_t, 2> chunk{std::clamp<hsize_t>(size[0], 1, kRows), 3};
+    const h5::Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose, name);
+    const h5::Handle options = layout::compressed(chunk);
+    h5::Handle dataset(H5Dcreate2(group.get(), name, H5T_IEEE_F32LE, space.get(), H5P_DEFAULT,
+                                  options.get(), H5P_DEFAULT),
+                       H5Dclose, name);
+    h5::check(H5Dwrite(dataset.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                       particles.centers_m.data()),
+              name);
+    h5::write_attribute(dataset.get(), "unit", std::string("m"));
+    h5::write_attribute(dataset.get(), layout::kParticleRadius, particles.radius_m);
+    dataset.close(name);
+    flush();
+  }
+
   SessionHash& hash() { return hash_; }
 
   std::string finish() {
@@ -296,6 +319,14 @@ void SessionWriter::write_terrain_after(const HeightMapView& map) {
   check_map(map);
   impl_->hash().set_terrain_after(map);
   or_run_error(impl_->path(), [&] { impl_->write_terrain(layout::kTerrainAfter, map); });
+}
+
+void SessionWriter::write_particles_before(const SphereSet& particles) {
+  or_run_error(impl_->path(), [&] { impl_->write_particles(layout::kParticlesBefore, particles); });
+}
+
+void SessionWriter::write_particles_after(const SphereSet& particles) {
+  or_run_error(impl_->path(), [&] { impl_->write_particles(layout::kParticlesAfter, particles); });
 }
 
 std::string SessionWriter::finish() {

@@ -11,6 +11,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed {
@@ -43,6 +44,10 @@ class SessionWriter {
   /// The terrain as the run found it and left it: each at most once, at any time before finish().
   void write_terrain_before(const HeightMapView& map);
   void write_terrain_after(const HeightMapView& map);
+
+  /// The particles likewise. Not part of the content hash, which has the terrain that they make.
+  void write_particles_before(const SphereSet& particles);
+  void write_particles_after(const SphereSet& particles);
 
   /// Writes what is left and closes the file. Returns the content hash. Nothing may be called
   /// afterwards.

@@ -37,6 +37,14 @@ void SessionRecorder::record_heights(const HeightField& terrain) {
   writer_.record_heights(height_map_of(terrain).view());
 }
 
+void SessionRecorder::record_particles_before(const SphereSet& particles) {
+  if (!particles.centers_m.empty()) writer_.write_particles_before(particles);
+}
+
+void SessionRecorder::record_particles_after(const SphereSet& particles) {
+  if (!particles.centers_m.empty()) writer_.write_particles_after(particles);
+}
+
 void SessionRecorder::observe_terrain(const HeightField& terrain) {
   if (watch_) changes_ = watch_->changes(terrain);
 }

@@ -13,6 +13,7 @@
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/session/session_info.h"
 #include "host_sim/run/session/session_writer.h"
@@ -30,6 +31,11 @@ class SessionRecorder {
   /// Records the changes of single heights as well, from this terrain on. Before the first tick, at
   /// most once.
   void record_heights(const HeightField& terrain);
+
+  /// The particles before the first tick and after the last, each at most once; of terrain without
+  /// any nothing is recorded.
+  void record_particles_before(const SphereSet& particles);
+  void record_particles_after(const SphereSet& particles);
 
   /// Looks for heights that have changed, when the robot has read its sensors: what is recorded of
   /// a tick is the world as its sample saw it.

@@ -119,6 +119,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   SessionRecorder recorder(files.session(),
                            session_info(experiment, options, world.robot_settings()), before, soil);
   if (options.heights) recorder.record_heights(plant.terrain());
+  recorder.record_particles_before(plant.spheres());
 
   SimulationSummary summary;
   summary.identity = identity_of(experiment, options, soil);
@@ -133,6 +134,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.end = loop.run();
   summary.wall_s = pacer.elapsed_s();
 
+  recorder.record_particles_after(plant.spheres());
   summary.content_hash = recorder.finish(plant.terrain());
   telemetry.close();
 

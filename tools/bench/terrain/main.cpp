@@ -14,7 +14,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/render/chart/line_chart.h"
 #include "tools/bench/terrain/terrain_bench.h"
 #include "tools/screed/cli/program.h"
 
@@ -152,8 +152,8 @@ void write_charts(const std::filesystem::path& folder, const std::vector<Row>& r
     return bench.threads == 1 && bench.terrain.find("particles") == std::string::npos;
   };
   const auto particles = [](const Case& bench) { return bench.terrain == "particles"; };
-  const char* time = "processor ms a frame";
-  const char* memory = "MB";
+  const char* time = "processor time of a frame [ms]";
+  const char* memory = "memory [MB]";
   write_bars(folder / "figure_5.6.svg", rows, "Time of a frame, as Figure 5.6", time,
              &Measurement::processor_ms, driven_alone);
   write_bars(folder / "particles_all_awake.svg", rows, "Time of a frame, all particles awake", time,
@@ -163,7 +163,7 @@ void write_charts(const std::filesystem::path& folder, const std::vector<Row>& r
   write_bars(folder / "figure_5.7.svg", rows, "Memory, as Figure 5.7", memory,
              &Measurement::memory_mb, driven_alone);
   write_bars(folder / "figure_5.8.svg", rows, "Time of a frame on particles, as Figure 5.8",
-             "ms a frame by the clock on the wall", &Measurement::wall_ms, particles);
+             "time of a frame by the clock [ms]", &Measurement::wall_ms, particles);
   write_bars(folder / "figure_5.9.svg", rows, "Memory with particles, as Figure 5.9", memory,
              &Measurement::memory_mb, particles);
 }

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/core/random.h"
-#include "host_sim/render/picture/line_chart.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/motion_configuration.h"
@@ -22,6 +22,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
+#include "tools/screed/nn/rollout_picture.h"
 
 namespace screed {
 namespace {
@@ -231,25 +232,23 @@ void draw(const fs::path& folder, const nn::SessionRollouts& session,
   constexpr std::size_t kMaxPictures = 3;
   for (std::size_t i = 0; i < std::min(kMaxPictures, session.real.size()); ++i) {
     const std::size_t which = i * session.real.size() / std::min(kMaxPictures, session.real.size());
-    Chart chart;
-    chart.title = session.source + ", from frame " +
-                  std::to_string(session.by_surrogate[0][which].start) + ", " + drive + " drive";
-    chart.subtitle = "paths from above: the physics, and what stands in for it";
-    chart.x_label = "east, m";
-    chart.y_label = "north, m";
-    chart.from_zero = false;
-    const auto add = [&](const std::string& label, const std::vector<nn::PlanarPose>& path) {
-      ChartSeries series{label, {}, false};
-      for (const nn::PlanarPose& pose : path) series.points.push_back({pose.x_m, pose.y_m});
-      if (!series.points.empty()) chart.series.push_back(std::move(series));
+    RolloutPicture picture;
+    picture.title = session.source + ", from frame " +
+                    std::to_string(session.by_surrogate[0][which].start) + ", " + drive + " drive";
+    // Paths are recorded from the first tenth of a second on.
+    const auto from_start = [&](const std::vector<nn::PlanarPose>& path) {
+      std::vector<nn::PlanarPose> whole = {session.starts[which]};
+      whole.insert(whole.end(), path.begin(), path.end());
+      return whole;
     };
-    add("physics", session.real[which]);
+    picture.physics = from_start(session.real[which]);
     for (std::size_t s = 0; s < surrogates.size(); ++s) {
-      add(surrogates[s].name, session.by_surrogate[s][which].path);
+      picture.predictions.push_back(
+          {surrogates[s].name, from_start(session.by_surrogate[s][which].path)});
     }
     const fs::path file =
         folder / (session.source + "-" + drive + "-" + std::to_string(i + 1) + ".svg");
-    write_chart(file, chart);
+    write_file(file, rollout_svg(picture));
     std::printf("  %s\n", file.c_str());
   }
 }
@@ -392,7 +391,9 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
                    "motion; tracks: recorded track motion")
       ->capture_default_str()
       ->check(CLI::IsMember({"firmware", "tracks"}));
-  rollout_command->add_option("--out", rollout->out, "Output folder for pictures of some paths")
+  rollout_command->add_option("--out", rollout->out,
+                              "Output folder for pictures of some rollouts: paths, and deviation "
+                              "from the physics over the distance")
       ->type_name("FOLDER");
   rollout_command->callback(
       [rollout, &program] { program.action = [rollout] { return run_rollout(*rollout); }; });

@@ -19,6 +19,7 @@ struct Options {
   std::string out;
   std::string model;
   bool no_path = false;
+  bool no_tint = false;
   bool quiet = false;
   RunSceneOptions scene;
 };
@@ -37,6 +38,7 @@ std::filesystem::path default_picture(const Options& options) {
 int run_render(Options options) {
   options.scene.camera = camera_orbit(options.camera);
   options.scene.path = !options.no_path;
+  options.scene.tint = !options.no_tint;
   if (!options.model.empty()) options.scene.model = options.model;
   const std::filesystem::path picture =
       options.out.empty() ? default_picture(options) : std::filesystem::path(options.out);
@@ -45,7 +47,7 @@ int run_render(Options options) {
   const RunSceneResult result = render_run(options.run, picture, options.scene);
   bar.clear();
   if (result.terrain_is_later) {
-    std::cerr << "note: the session holds no height map of frame " << result.frame
+    std::cerr << "note: the session holds no terrain of frame " << result.frame
               << "; the ground is drawn as the run left it\n";
   }
   if (result.rendered) {
@@ -88,6 +90,8 @@ void register_render_command(CLI::App& root, Program& program) {
   command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)")
       ->type_name("FILE");
   command->add_flag("--no-path", options->no_path, "Do not draw the driven path");
+  command->add_flag("--no-tint", options->no_tint,
+                    "Leave the terrain in its own colours, without heights and colour bar");
   command->add_flag("--pov-only", options->scene.pov_only, "Write the scene without rendering it");
   command->add_flag("--quiet", options->quiet, "Show no progress");
   command->callback(

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/csv_export.h"
@@ -244,7 +245,7 @@ int run_export(const ExportArguments& arguments) {
 }  // namespace
 
 void register_session_command(CLI::App& root, Program& program) {
-  CLI::App* session = root.add_subcommand("session", "Inspect or export a recorded run");
+  CLI::App* session = root.add_subcommand("session", "Inspect, export or compare recorded runs");
   session->require_subcommand(1);
 
   auto info = std::make_shared<InfoArguments>();
@@ -276,6 +277,8 @@ void register_session_command(CLI::App& root, Program& program) {
       ->type_name("FOLDER");
   command->callback(
       [exported, &program] { program.action = [exported] { return run_export(*exported); }; });
+
+  register_session_subcommands(*session, program);
 }
 
 }  // namespace screed

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "host_sim/core/random.h"
-#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/check_range.h"
 #include "host_sim/soil_validation/plate_press.h"
 #include "tools/screed/cli/command.h"
@@ -52,8 +52,8 @@ std::optional<double> peer_pressure(const PlateArguments& a, double depth_m) {
 void chart_plate(const PlateArguments& a, const std::vector<PlatePoint>& run) {
   Chart chart;
   chart.title = "A plate in " + a.common.soil().name + ", pressure and depth";
-  chart.x_label = "depth, mm";
-  chart.y_label = "pressure, kPa";
+  chart.x_label = "depth [mm]";
+  chart.y_label = "pressure [kPa]";
   ChartSeries engine{.label = "Screed", .points = {}, .markers = false};
   ChartSeries closed{.label = "Bekker", .points = {}, .markers = true};
   ChartSeries peer{.label = "Chrono, default rays", .points = {}, .markers = true};

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "host_sim/core/data_folders.h"
-#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
@@ -39,7 +39,7 @@ void chart_wheel(const WheelArguments& a, const char* file, const std::string& t
                  const char* y_label, const std::vector<ChartSeries>& series) {
   Chart chart;
   chart.title = title;
-  chart.x_label = "slip";
+  chart.x_label = "slip [1]";
   chart.y_label = y_label;
   chart.series = series;
   write_chart(a.common.chart(file), chart);
@@ -96,11 +96,11 @@ int run_measured(WheelArguments a) {
   bar.clear();
   if (!a.common.charts.empty()) {
     chart_wheel(a, "soil_measured_sinkage.svg", "Sinkage of a wheel, measured and simulated",
-                "sinkage, mm", {sinkage[0], sinkage[1], sinkage[2]});
+                "sinkage [mm]", {sinkage[0], sinkage[1], sinkage[2]});
     std::vector<ChartSeries> pulls = {pull[0], pull[1], pull[2]};
     if (!pull[3].points.empty()) pulls.push_back(pull[3]);
     chart_wheel(a, "soil_measured_pull.svg", "Drawbar pull of a wheel, measured and simulated",
-                "drawbar pull, N", pulls);
+                "drawbar pull [N]", pulls);
   }
   return finish(a.common, "wheel", wheel_words(a), "measured", lines);
 }
@@ -154,9 +154,9 @@ int run_wheel_command(WheelArguments a) {
   bar.clear();
   if (!a.common.charts.empty()) {
     const std::string how = a.common.soil().name + ", normal stress " + a.common.normal_stress;
-    chart_wheel(a, "soil_wheel_sinkage.svg", "Sinkage of a wheel: " + how, "sinkage, mm",
+    chart_wheel(a, "soil_wheel_sinkage.svg", "Sinkage of a wheel: " + how, "sinkage [mm]",
                 {sinkage[0], sinkage[1]});
-    chart_wheel(a, "soil_wheel_pull.svg", "Drawbar pull of a wheel: " + how, "drawbar pull, N",
+    chart_wheel(a, "soil_wheel_pull.svg", "Drawbar pull of a wheel: " + how, "drawbar pull [N]",
                 {pull[0], pull[1]});
   }
   return finish(a.common, "wheel", wheel_words(a), "limit", lines);

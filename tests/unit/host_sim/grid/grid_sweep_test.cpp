@@ -14,7 +14,7 @@
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_sweep.h"
-#include "host_sim/render/picture/line_chart.h"
+#include "host_sim/render/chart/line_chart.h"
 #include "tests/temp_folder.h"
 
 namespace screed::testing {

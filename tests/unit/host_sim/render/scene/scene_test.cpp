@@ -1,15 +1,21 @@
 // Scenes for POV-Ray: what stands where, and what the camera sees.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/render/scene/height_tint.h"
 #include "host_sim/render/scene/povray.h"
 #include "host_sim/render/scene/robot_scene.h"
 #include "host_sim/render/scene/scene_camera.h"
+#include "host_sim/render/scene/sphere_scene.h"
 #include "host_sim/render/scene/terrain_scene.h"
 #include "paths.h"
 
@@ -157,6 +163,116 @@ TEST(Camera, RefusesOtherPlaces) {
   for (const char* name : {"front", "back", "side", "above", "bed"}) {
     EXPECT_NO_THROW(camera_orbit(name)) << name;
   }
+}
+
+/// The corners of a bed round (0, 0) from its floor to its highest place.
+std::vector<Eigen::Vector3d> box(double width, double depth, double low, double high) {
+  std::vector<Eigen::Vector3d> points;
+  for (const double x : {-width / 2.0, width / 2.0}) {
+    for (const double y : {-depth / 2.0, depth / 2.0}) {
+      points.emplace_back(x, y, low);
+      points.emplace_back(x, y, high);
+    }
+  }
+  return points;
+}
+
+TEST(BedCamera, SeesAllOfAnyBedInAnyPictureAndFillsIt) {
+  constexpr double kMargin = 0.03;
+  struct Bed {
+    double width;
+    double depth;
+    double height;
+  };
+  for (const Bed& bed :
+       {Bed{1.5, 1.28, 0.1}, Bed{3.0, 2.56, 0.3}, Bed{6.0, 6.0, 0.5}, Bed{0.5, 12.0, 0.2},
+        Bed{20.0, 0.6, 0.2}, Bed{1.0, 1.0, 3.0}, Bed{100.0, 100.0, 20.0}, Bed{0.1, 0.1, 0.001}}) {
+    for (const double aspect : {1.6, 1.0, 0.5, 16.0 / 9.0, 4.0}) {
+      const PictureFormat format{40.0, aspect};
+      std::vector<Eigen::Vector3d> points = box(bed.width, bed.depth, -0.06, bed.height);
+      points.emplace_back(0.3 * bed.width, -0.2 * bed.depth, 1.2 * bed.height);  // the highest
+      const SceneCamera camera = camera_around(camera_orbit("bed"), points, format, kMargin);
+      double outermost = 0.0;
+      for (const Eigen::Vector3d& point : points) {
+        const Eigen::Vector3d seen = project(camera, format, point);
+        EXPECT_GT(seen.z(), 0.0);
+        EXPECT_LE(std::abs(seen.x()), 1.0 - kMargin + 1e-9) << bed.width << " " << aspect;
+        EXPECT_LE(std::abs(seen.y()), 1.0 - kMargin + 1e-9) << bed.depth << " " << aspect;
+        outermost = std::max({outermost, std::abs(seen.x()), std::abs(seen.y())});
+      }
+      EXPECT_NEAR(outermost, 1.0 - kMargin, 1e-6) << "the camera is no further away than needed";
+    }
+  }
+}
+
+TEST(BedCamera, PointsAppearWhereTheCameraSeesThem) {
+  // From the south, level: east is right, up is up.
+  const SceneCamera camera{{0.0, -2.0, 0.0}, {0.0, 0.0, 0.0}};
+  const PictureFormat format{90.0, 2.0};  // half as wide as deep, half of that high
+  EXPECT_NEAR((project(camera, format, {0.0, 5.0, 0.0}) - Eigen::Vector3d(0, 0, 7)).norm(), 0.0,
+              1e-12);
+  EXPECT_NEAR(project(camera, format, {1.0, 0.0, 0.0}).x(), 0.5, 1e-12);
+  EXPECT_NEAR(project(camera, format, {0.0, 0.0, 0.5}).y(), 0.5, 1e-12);
+  EXPECT_NEAR(project(camera, format, {0.0, -1.0, 0.0}).z(), 1.0, 1e-12);
+}
+
+TEST(HeightTintScale, EndsAtRoundMillimetresRoundTheHeights) {
+  const HeightTint tint = height_tint(-0.0132, 0.1471);
+  EXPECT_LE(tint.low_m, -0.0132);
+  EXPECT_GE(tint.high_m, 0.1471);
+  EXPECT_NEAR(tint.low_m * 1000.0, -50.0, 1e-9);
+  EXPECT_NEAR(tint.high_m * 1000.0, 150.0, 1e-9);
+  const HeightTint level = height_tint(0.25, 0.25);
+  EXPECT_LT(level.low_m, level.high_m);
+}
+
+TEST(HeightTintScale, IsMixedIntoTheTerrainWhereAskedFor) {
+  const HeightMap map = slope(false);
+  const HeightTint tint = height_tint(0.0, 0.1);
+  const std::string plain =
+      terrain_text(TerrainSurface(map), {"h.png", ""}, soil_appearance("clay"));
+  const std::string colored =
+      terrain_text(TerrainSurface(map), {"h.png", ""}, soil_appearance("clay"), tint);
+  EXPECT_EQ(count(plain, "HeightColors"), 0u);
+  EXPECT_EQ(count(colored, "HeightColors"), 1u);
+  EXPECT_EQ(count(tint_text(tint), "#declare HeightColors"), 1u);
+  const SceneCamera camera{{0.0, -2.0, 1.0}, {0.0, 0.0, 0.0}};
+  const std::string legend = tint_legend_text(tint, camera, {40.0, 1.6});
+  for (const char* words : {"\"height [mm]\"", "\"0\"", "\"100\""}) {
+    EXPECT_EQ(count(legend, words), 1u) << words;
+  }
+}
+
+TEST(Spheres, AreRoundAndThoseThatCanBeSeen) {
+  SphereSet bed;
+  bed.radius_m = 0.01;
+  // 9 x 9 columns of 10 stones: those of the edge are seen from the side, of the others the top.
+  for (int x = 0; x < 9; ++x) {
+    for (int y = 0; y < 9; ++y) {
+      for (int z = 0; z < 10; ++z) {
+        bed.centers_m.push_back({0.0205F * static_cast<float>(x), 0.0205F * static_cast<float>(y),
+                                 0.01F + 0.02F * static_cast<float>(z)});
+      }
+    }
+  }
+  const std::vector<size_t> visible = visible_spheres(bed);
+  size_t edge = 0;
+  for (const size_t i : visible) {
+    const size_t x = i / 90;
+    const size_t y = i / 10 % 9;
+    const bool is_edge = x == 0 || y == 0 || x == 8 || y == 8;
+    if (is_edge) {
+      ++edge;
+    } else {
+      EXPECT_GT(i % 10, 6u) << "a stone deep inside";
+    }
+  }
+  EXPECT_EQ(edge, 32u * 10u);
+  EXPECT_EQ(visible.size(), 32u * 10u + 49u * 3u);
+  const std::string text = spheres_text(bed, soil_appearance("gravel"), std::nullopt);
+  EXPECT_EQ(count(text, "sphere { <"), visible.size());
+  EXPECT_EQ(count(text, ">, 0.010000 texture"), visible.size());
+  EXPECT_TRUE(visible_spheres({}).empty());
 }
 
 class RobotScene : public ::testing::Test {

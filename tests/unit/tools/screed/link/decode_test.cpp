@@ -240,23 +240,66 @@ TEST_F(Decode, PlotsSignalsOfEachRobot) {
   options.log = log(attitude_line(10, 100, 0) + attitude_line(11, 200, 1) +
                     attitude_line(11.5, 300, 0, 2) + attitude_line(12, 400, 2));
   options.signals = {"attitude.pitch", "attitude.roll"};
-  Chart chart = plot_chart(options, err_);
-  ASSERT_EQ(chart.series.size(), 4U);
-  EXPECT_EQ(chart.y_label, "deg");
-  EXPECT_EQ(chart.series[0].label, "attitude.pitch, robot 1");
-  ASSERT_EQ(chart.series[0].points.size(), 3U);
-  EXPECT_DOUBLE_EQ(chart.series[0].points[2].x, 2.0);
-  EXPECT_DOUBLE_EQ(chart.series[0].points[2].y, 4.0);
+  StackedChart chart = plot_chart(options, err_);
+  ASSERT_EQ(chart.panels.size(), 1U);
+  ASSERT_EQ(chart.panels[0].series.size(), 4U);
+  EXPECT_EQ(chart.panels[0].title, "[deg]");
+  const ChartSeries& first = chart.panels[0].series[0];
+  EXPECT_EQ(first.label, "attitude.pitch, robot 1");
+  ASSERT_EQ(first.points.size(), 3U);
+  EXPECT_DOUBLE_EQ(first.points[2].x, 2.0);
+  EXPECT_DOUBLE_EQ(first.points[2].y, 4.0);
   options.robot = 1;
   options.from_s = 0.5;
   options.to_s = 1.5;
   chart = plot_chart(options, err_);
-  ASSERT_EQ(chart.series.size(), 2U);
-  EXPECT_EQ(chart.series[0].label, "attitude.pitch");
-  EXPECT_EQ(chart.series[0].points.size(), 1U);
+  ASSERT_EQ(chart.panels[0].series.size(), 2U);
+  EXPECT_EQ(chart.panels[0].series[0].label, "attitude.pitch");
+  EXPECT_EQ(chart.panels[0].series[0].points.size(), 1U);
   EXPECT_EQ(err_.str(), "");
   options.signals = {"power.battery"};
   EXPECT_THROW(plot_chart(options, err_), InputError) << "not in the log";
+}
+
+std::string heartbeat_line(double time_s, uint8_t state, uint16_t faults, uint8_t counter) {
+  message::Heartbeat heartbeat{};
+  heartbeat.state = state;
+  heartbeat.faults = faults;
+  return candump_line(static_cast<uint64_t>(std::llround(time_s * 1e6)), "can0",
+                      protected_frame(heartbeat, counter));
+}
+
+TEST_F(Decode, PlotsStatesAndFlagsAsBands) {
+  PlotOptions options;
+  options.log = log(attitude_line(10, 100, 0) + heartbeat_line(10, 0, 0, 0) +
+                    heartbeat_line(10.2, 2, 0, 1) + heartbeat_line(10.4, 2, 5, 2) +
+                    heartbeat_line(10.6, 4, 5, 3) + attitude_line(11, 200, 1));
+  options.signals = {"heartbeat.state", "attitude.pitch", "heartbeat.faults", "heartbeat.tilt",
+                     "heartbeat.stuck"};
+  const StackedChart chart = plot_chart(options, err_);
+  ASSERT_EQ(chart.panels.size(), 2U);
+  EXPECT_EQ(chart.panels[0].title, "attitude.pitch [deg]");
+  EXPECT_TRUE(chart.panels[0].rows.empty());
+  const std::vector<BandRow>& rows = chart.panels[1].rows;
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].label, "heartbeat.state");
+  ASSERT_EQ(rows[0].bands.size(), 3U);
+  EXPECT_EQ(rows[0].bands[0].name, "disarmed");
+  EXPECT_EQ(rows[0].bands[1].name, "running");
+  EXPECT_DOUBLE_EQ(rows[0].bands[1].begin, 0.2);
+  EXPECT_DOUBLE_EQ(rows[0].bands[1].end, 0.6);
+  EXPECT_EQ(rows[0].bands[2].name, "fault");
+  EXPECT_DOUBLE_EQ(rows[0].bands[2].end, 0.8) << "a period of 5 Hz after the last";
+  // A flag that is clear has no band; a field of flags names those that are set.
+  ASSERT_EQ(rows[1].bands.size(), 1U);
+  EXPECT_EQ(rows[1].bands[0].name, "tilt, gyro_frozen");
+  EXPECT_DOUBLE_EQ(rows[1].bands[0].begin, 0.4);
+  ASSERT_EQ(rows[2].bands.size(), 1U);
+  EXPECT_DOUBLE_EQ(rows[2].bands[0].begin, 0.4);
+  EXPECT_TRUE(rows[3].bands.empty());
+  options.signals = {"heartbeat.stuck"};
+  EXPECT_NE(stacked_chart_svg(plot_chart(options, err_)).find(">heartbeat.stuck<"),
+            std::string::npos);
 }
 
 TEST_F(Decode, PlotsKeepThePeaksOfManyPoints) {
@@ -268,10 +311,11 @@ TEST_F(Decode, PlotsKeepThePeaksOfManyPoints) {
   PlotOptions options;
   options.log = log(text);
   options.signals = {"attitude.pitch"};
-  const Chart chart = plot_chart(options, err_);
-  EXPECT_LE(chart.series[0].points.size(), 2000U);
+  const StackedChart chart = plot_chart(options, err_);
+  const std::vector<ChartPoint>& points = chart.panels[0].series[0].points;
+  EXPECT_LE(points.size(), 2000U);
   double most = 0.0;
-  for (const ChartPoint& point : chart.series[0].points) most = std::max(most, point.y);
+  for (const ChartPoint& point : points) most = std::max(most, point.y);
   EXPECT_DOUBLE_EQ(most, 90.0);
 }
 

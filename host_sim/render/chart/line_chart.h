@@ -2,26 +2,16 @@
 // numbers and words, nothing of what they mean. The same chart gives the same bytes everywhere.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "host_sim/render/chart/chart_series.h"
+
 namespace screed {
 
-struct ChartPoint {
-  double x;
-  double y;
-  double error = 0.0;  ///< the error bar reaches this far up and down; 0: none
-};
-
-struct ChartSeries {
-  std::string label;  ///< in the legend; empty: not there
-  std::vector<ChartPoint> points;
-  bool markers = true;  ///< a dot at every point; for lines
-  bool joined = true;   ///< a line through the points; without, small dots alone: a scatter plot
-};
-
-enum class ChartKind {
+enum class ChartKind : std::uint8_t {
   kLines,
   kBars,  ///< one group a category; x counts the categories from 0
 };

@@ -1,0 +1,107 @@
+#include "host_sim/render/chart/chart_series.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+constexpr double kLegendSize_px = 12.0;
+constexpr double kSample_px = 18.0;  // of a legend: the coloured square and the gap behind it
+
+}  // namespace
+
+void add_to_ranges(const std::vector<ChartSeries>& series, ValueRange& x, ValueRange& y) {
+  for (const ChartSeries& one : series) {
+    for (const ChartPoint& point : one.points) {
+      x.add(point.x);
+      y.add(point.y - point.error);
+      y.add(point.y + point.error);
+    }
+  }
+}
+
+bool check_series(const std::string& chart, const std::vector<ChartSeries>& series) {
+  bool any = false;
+  for (const ChartSeries& one : series) {
+    for (const ChartPoint& point : one.points) {
+      any = true;
+      if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.error)) {
+        throw InputError("chart '" + chart + "': a number of '" + one.label + "' is not finite");
+      }
+    }
+  }
+  return any;
+}
+
+void draw_error_bar(Svg& svg, double x_px, const ChartAxis& y, const ChartPoint& point,
+                    Color color) {
+  if (point.error <= 0.0) return;
+  const double top = y(point.y + point.error);
+  const double bottom = y(point.y - point.error);
+  svg.line({x_px, top}, {x_px, bottom}, color, 1.4);
+  svg.line({x_px - 4.0, top}, {x_px + 4.0, top}, color, 1.4);
+  svg.line({x_px - 4.0, bottom}, {x_px + 4.0, bottom}, color, 1.4);
+}
+
+void draw_series(Svg& svg, const ChartAxis& x, const ChartAxis& y, const ChartSeries& series,
+                 Color color) {
+  std::vector<Pixel> pixels;
+  pixels.reserve(series.points.size());
+  for (const ChartPoint& point : series.points) pixels.push_back({x(point.x), y(point.y)});
+  if (!series.joined) {
+    for (const Pixel& pixel : pixels) svg.small_dot(pixel, color);
+    return;
+  }
+  if (pixels.size() > 1) svg.polyline(pixels, color);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    draw_error_bar(svg, pixels[i].x, y, series.points[i], color);
+    // A single point has no line to be seen by.
+    if (series.markers || pixels.size() == 1) svg.marker(pixels[i], 4.2, color);
+  }
+}
+
+std::vector<LegendPlace> legend_places(const std::vector<LegendEntry>& entries, double width_px) {
+  constexpr double kGap_px = 20.0;
+  std::vector<LegendPlace> places;
+  places.reserve(entries.size());
+  LegendPlace next{0, 0.0};
+  for (const LegendEntry& entry : entries) {
+    const double width = kSample_px + svg_text_width_px(entry.label, kLegendSize_px);
+    if (next.left_px > 0.0 && next.left_px + width > width_px) next = {next.row + 1, 0.0};
+    places.push_back(next);
+    next.left_px += width + kGap_px;
+  }
+  return places;
+}
+
+double legend_height_px(const std::vector<LegendEntry>& entries, double width_px) {
+  if (entries.empty()) return 0.0;
+  const std::size_t rows = legend_places(entries, width_px).back().row + 1;
+  return static_cast<double>(rows) * kLegendRow_px;
+}
+
+void draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left_px, double top_px,
+                 double width_px) {
+  const std::vector<LegendPlace> places = legend_places(entries, width_px);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const double left = left_px + places[i].left_px;
+    const double top = top_px + static_cast<double>(places[i].row) * kLegendRow_px;
+    svg.rectangle({left, top + 2.0, 12.0, 12.0}, entries[i].color, 2.0);
+    svg.text({left + kSample_px, top + 12.0},
+             svg_fitted(entries[i].label, kLegendSize_px, width_px - kSample_px),
+             {.size_px = kLegendSize_px});
+  }
+}
+
+std::vector<LegendEntry> legend_of(const std::vector<ChartSeries>& series) {
+  std::vector<LegendEntry> entries;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (!series[i].label.empty()) entries.push_back({series[i].label, line_color(i)});
+  }
+  return entries;
+}
+
+}  // namespace screed

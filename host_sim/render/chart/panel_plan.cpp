@@ -1,0 +1,34 @@
+#include "host_sim/render/chart/panel_plan.h"
+
+#include <algorithm>
+
+namespace screed {
+
+std::vector<PlannedPanel> plan_panels(std::span<const SeriesKind> series) {
+  std::vector<PlannedPanel> units;
+  PlannedPanel states{"", true, {}};
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (series[i].is_state) {
+      states.series.push_back(i);
+      continue;
+    }
+    auto panel = std::find_if(units.begin(), units.end(),
+                              [&](const PlannedPanel& it) { return it.unit == series[i].unit; });
+    if (panel == units.end()) panel = units.insert(units.end(), {series[i].unit, false, {}});
+    panel->series.push_back(i);
+  }
+  std::vector<PlannedPanel> panels;
+  for (const PlannedPanel& unit : units) {
+    const std::size_t count = unit.series.size();
+    const std::size_t parts = (count + kMaxPanelSeries - 1) / kMaxPanelSeries;
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto begin = unit.series.begin() + static_cast<long>(part * count / parts);
+      const auto end = unit.series.begin() + static_cast<long>((part + 1) * count / parts);
+      panels.push_back({unit.unit, false, {begin, end}});
+    }
+  }
+  if (!states.series.empty()) panels.push_back(std::move(states));
+  return panels;
+}
+
+}  // namespace screed

@@ -1,0 +1,39 @@
+// A map of paths seen from above, true to scale, as part of an SVG: each path with its colour, its
+// start and its end, over an image of the ground where there is one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/render/chart/svg.h"
+#include "host_sim/render/picture/map_frame.h"
+
+namespace screed {
+
+struct MapPath {
+  std::string label;
+  std::vector<Pixel> points;  ///< x east, y north, m
+  double jump_m = 0.0;        ///< the line breaks between points further apart; 0: never
+};
+
+/// The ground as an image of width x height pixels, its rows from the north.
+struct MapImage {
+  MapRectangle ground;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+struct PathMap {
+  std::string title;
+  std::vector<MapPath> paths;
+  std::optional<MapImage> image;
+  std::optional<ColorScale> scale;  ///< of the image; a colour bar below the map
+};
+
+/// Draws map, axes in metres, legend and colour bar into the box: all paths and all of the image.
+/// Throws InputError when there is nothing to draw or a place is no number.
+void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box);
+
+}  // namespace screed

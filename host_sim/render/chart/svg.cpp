@@ -1,0 +1,209 @@
+#include "host_sim/render/chart/svg.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace screed {
+namespace {
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  std::string_view view(text);
+  while (view.back() == '0') view.remove_suffix(1);
+  if (view.back() == '.') view.remove_suffix(1);
+  return view == "-0" ? "0" : std::string(view);
+}
+
+std::string escaped(const std::string& words) {
+  std::string out;
+  for (const char c : words) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string hex(Color color) {
+  const auto byte = [](double part) {
+    return static_cast<unsigned>(std::lround(std::clamp(part, 0.0, 1.0) * 255.0));
+  };
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(color.red), byte(color.green),
+                byte(color.blue));
+  return text;
+}
+
+/// ` name="value"`.
+std::string attribute(const char* name, const std::string& value) {
+  std::string text = " ";
+  text += name;
+  text += "=\"";
+  text += value;
+  text += '"';
+  return text;
+}
+
+std::string attribute(const char* name, double value) {
+  return attribute(name, number(value));
+}
+
+/// Where a box lies.
+std::string placed(const PixelBox& box) {
+  return attribute("x", box.left) + attribute("y", box.top) + attribute("width", box.width) +
+         attribute("height", box.height);
+}
+
+std::string circle(Pixel at, double radius_px) {
+  return "<circle" + attribute("cx", at.x) + attribute("cy", at.y) + attribute("r", radius_px);
+}
+
+bool continues_letter(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8U | (k < count ? bytes[i + k] : std::uint32_t{0});
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? kDigits[group >> (18U - 6U * k) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+double svg_text_width_px(const std::string& words, double size_px) {
+  constexpr double kLetterWidth = 0.56;  // of the font's size
+  const auto letters =
+      std::count_if(words.begin(), words.end(), [](char c) { return !continues_letter(c); });
+  return static_cast<double>(letters) * kLetterWidth * size_px;
+}
+
+std::string svg_fitted(const std::string& words, double size_px, double width_px) {
+  if (svg_text_width_px(words, size_px) <= width_px) return words;
+  std::string cut = words;
+  while (!cut.empty()) {
+    while (!cut.empty() && continues_letter(cut.back())) cut.pop_back();
+    if (!cut.empty()) cut.pop_back();
+    if (!cut.empty() && svg_text_width_px(cut + "\u2026", size_px) <= width_px) {
+      return cut + "\u2026";
+    }
+  }
+  return cut;
+}
+
+Svg::Svg(int width_px, int height_px) {
+  out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", width_px) +
+         attribute("height", height_px) +
+         attribute("viewBox", "0 0 " + number(width_px) + " " + number(height_px)) +
+         attribute("font-family", "'DejaVu Sans', Verdana, Arial, sans-serif") +
+         ">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+}
+
+void Svg::line(Pixel from, Pixel to, Color color, double width_px) {
+  out_ += "<line" + attribute("x1", from.x) + attribute("y1", from.y) + attribute("x2", to.x) +
+          attribute("y2", to.y) + attribute("stroke", hex(color)) +
+          attribute("stroke-width", width_px) + "/>\n";
+}
+
+void Svg::polyline(const std::vector<Pixel>& points, Color color, double width_px, bool dashed) {
+  out_ += "<polyline fill=\"none\"" + attribute("stroke", hex(color)) +
+          attribute("stroke-width", width_px) +
+          " stroke-linejoin=\"round\" stroke-linecap=\"round\"";
+  if (dashed) out_ += attribute("stroke-dasharray", "7 6");
+  out_ += " points=\"";
+  for (const Pixel& point : points) {
+    out_ += number(point.x);
+    out_ += ',';
+    out_ += number(point.y);
+    out_ += ' ';
+  }
+  out_.back() = '"';
+  out_ += "/>\n";
+}
+
+void Svg::marker(Pixel at, double radius_px, Color color) {
+  out_ += circle(at, radius_px) + attribute("fill", hex(color)) +
+          " stroke=\"#ffffff\" stroke-width=\"1.2\"/>\n";
+}
+
+void Svg::small_dot(Pixel at, Color color) {
+  out_ += circle(at, 1.6) + attribute("fill", hex(color)) + " fill-opacity=\"0.45\"/>\n";
+}
+
+void Svg::ring(Pixel at, double radius_px, Color color) {
+  out_ += circle(at, radius_px) + " fill=\"#ffffff\"" + attribute("stroke", hex(color)) +
+          " stroke-width=\"2.4\"/>\n";
+}
+
+void Svg::rectangle(const PixelBox& box, Color fill, double round_px) {
+  out_ += "<rect" + placed(box) + attribute("fill", hex(fill));
+  if (round_px > 0.0) out_ += attribute("rx", round_px);
+  out_ += "/>\n";
+}
+
+void Svg::frame(const PixelBox& box, Color color, double width_px) {
+  out_ += "<rect" + placed(box) + " fill=\"none\"" + attribute("stroke", hex(color)) +
+          attribute("stroke-width", width_px) + "/>\n";
+}
+
+void Svg::text(Pixel at, const std::string& words, const SvgTextStyle& style) {
+  if (words.empty()) return;
+  constexpr const char* kAnchors[] = {"start", "middle", "end"};
+  out_ += "<text" + attribute("x", at.x) + attribute("y", at.y) +
+          attribute("font-size", style.size_px) + attribute("fill", hex(style.color)) +
+          attribute("text-anchor", kAnchors[static_cast<int>(style.anchor)]);
+  if (style.bold) out_ += attribute("font-weight", "bold");
+  if (style.upwards) {
+    out_ += attribute("transform", "rotate(-90 " + number(at.x) + " " + number(at.y) + ")");
+  }
+  out_ += ">" + escaped(words) + "</text>\n";
+}
+
+void Svg::image(const PixelBox& box, std::span<const std::uint8_t> png) {
+  out_ += "<image" + placed(box) + " preserveAspectRatio=\"none\" href=\"data:image/png;base64," +
+          base64(png) + "\"/>\n";
+}
+
+void Svg::begin_clip(const PixelBox& box) {
+  const std::string id = "clip" + std::to_string(++clips_);
+  out_ += "<clipPath" + attribute("id", id) + "><rect" + placed(box) + "/></clipPath>\n<g" +
+          attribute("clip-path", "url(#" + id + ")") + ">\n";
+}
+
+void Svg::end_clip() {
+  out_ += "</g>\n";
+}
+
+std::string Svg::finish() {
+  out_ += "</svg>\n";
+  return std::move(out_);
+}
+
+}  // namespace screed

@@ -1,0 +1,331 @@
+#include "host_sim/run/comparison/session_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "host_sim/core/errors.h"
+#include "host_sim/core/ini_file.h"
+#include "host_sim/core/record.h"
+#include "host_sim/ground_station/telemetry/schema.h"
+
+namespace screed {
+namespace {
+
+constexpr std::uint64_t kBlockRows = 1024;
+constexpr double kLitresPerM3 = 1000.0;
+
+/// Recorded rows of one table, a block at a time.
+template <class Row, std::size_t kBytes>
+class RowBlock {
+ public:
+  void read(const SessionReader& session, std::uint64_t first, std::uint64_t count) {
+    rows_.resize(count);
+    session.read(first, std::span(rows_));
+  }
+  const Row& row(std::size_t i) const { return rows_[i]; }
+  std::array<std::uint8_t, kBytes> bytes(std::size_t i) const {
+    std::array<std::uint8_t, kBytes> packed{};
+    pack(rows_[i], std::span<std::uint8_t, kBytes>(packed));
+    return packed;
+  }
+
+ private:
+  std::vector<Row> rows_;
+};
+
+/// All tables of one session.
+struct SessionBlock {
+  RowBlock<SensorSample, kSampleBytes> samples;
+  RowBlock<RobotOutput, kOutputBytes> outputs;
+  RowBlock<SimFrame, kFrameBytes> frames;
+
+  void read(const SessionReader& session, std::uint64_t first, std::uint64_t count) {
+    samples.read(session, first, count);
+    outputs.read(session, first, count);
+    frames.read(session, first, count);
+  }
+};
+
+struct TickDifference {
+  std::string column;
+  ColumnDifference values;
+};
+
+template <class Block>
+void add_differences(const char* table, std::span<const Column> columns, const Block& a,
+                     const Block& b, std::size_t row, std::vector<TickDifference>& found) {
+  const auto bytes_a = a.bytes(row);
+  const auto bytes_b = b.bytes(row);
+  if (bytes_a == bytes_b) return;
+  for (ColumnDifference& it : column_differences(columns, bytes_a, bytes_b)) {
+    std::string name = table;
+    name += '.';
+    name += it.column;
+    found.push_back({std::move(name), std::move(it)});
+  }
+}
+
+/// In the order of cause and effect: what the robot read, what it answered, what came of it.
+std::vector<TickDifference> differences_of(const SessionBlock& a, const SessionBlock& b,
+                                           std::size_t row) {
+  std::vector<TickDifference> found;
+  add_differences("samples", kSampleColumns, a.samples, b.samples, row, found);
+  add_differences("outputs", kOutputColumns, a.outputs, b.outputs, row, found);
+  add_differences("frames", kFrameColumns, a.frames, b.frames, row, found);
+  return found;
+}
+
+/// The chassis' place as if the bed did not repeat.
+struct Travelled {
+  double x_m;
+  double y_m;
+};
+
+class Bed {
+ public:
+  explicit Bed(const std::optional<HeightMap>& map) {
+    if (!map.has_value() || !map->geometry.wrap) return;
+    width_m_ = map->geometry.nx * map->geometry.spacing_m;
+    depth_m_ = map->geometry.ny * map->geometry.spacing_m;
+  }
+  Travelled travelled(const SimFrame& frame) const {
+    return {frame.x + frame.beds_x * width_m_, frame.y + frame.beds_y * depth_m_};
+  }
+
+ private:
+  double width_m_ = 0.0;
+  double depth_m_ = 0.0;
+};
+
+std::string name_of(const char* signal, std::int64_t value) {
+  return find_signal(signal).signal->text(value);
+}
+
+void add_volumes(const HeightMap& before, const HeightMap& after, RunEnd& end) {
+  const HeightMapGeometry& g = before.geometry;
+  if (g.nx != after.geometry.nx || g.ny != after.geometry.ny) return;
+  double cut = 0.0;
+  double fill = 0.0;
+  for (std::size_t i = 0; i < before.heights.size(); ++i) {
+    const double change = after.heights[i] * after.geometry.unit_m - before.heights[i] * g.unit_m;
+    (change < 0.0 ? cut : fill) += std::abs(change);
+  }
+  const double cell_l = g.spacing_m * g.spacing_m * kLitresPerM3;
+  end.cut_l = cut * cell_l;
+  end.fill_l = fill * cell_l;
+}
+
+/// Ten points a second and the last frame of one run, and its end.
+void read_trace(const SessionReader& session, const Bed& bed, ComparedRun& run) {
+  const std::uint64_t every = std::max<std::uint64_t>(1, session.info().tick_rate_hz / 10);
+  const std::uint64_t count = session.frames();
+  std::vector<SimFrame> frames;
+  for (std::uint64_t first = 0; first < count; first += frames.size()) {
+    frames.resize(std::min(kBlockRows, count - first));
+    session.read(first, std::span(frames));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const SimFrame& frame = frames[i];
+      if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
+        run.end.distance_m += std::hypot(frame.delta_x, frame.delta_y);
+      }
+      if ((first + i) % every != 0 && first + i + 1 != count) continue;
+      run.trace.push_back(
+          {frame.time, frame.x, frame.y, frame.battery, frame.state, frame.leveling_state});
+    }
+  }
+  if (frames.empty()) return;
+  const SimFrame& last = frames.back();
+  const Travelled place = bed.travelled(last);
+  run.end.time_s = last.time;
+  run.end.x_m = place.x_m;
+  run.end.y_m = place.y_m;
+  run.end.heading_rad = last.yaw;
+  run.end.state = name_of("heartbeat.state", last.state);
+  run.end.leveling_state = name_of("leveling.state", last.leveling_state);
+  run.end.faults = flag_names("heartbeat", "faults", static_cast<std::uint32_t>(last.faults));
+  if (run.end.faults.empty()) run.end.faults = "none";
+  run.end.battery_v = last.battery;
+  run.end.energy_j = last.energy;
+}
+
+ComparedRun describe(const SessionReader& session, const Bed& bed,
+                     const std::optional<HeightMap>& before) {
+  ComparedRun run;
+  run.name = session.info().experiment_name;
+  run.program_version = session.info().program_version;
+  run.seed = session.info().seed;
+  run.frames = session.frames();
+  run.complete = session.complete();
+  run.content_hash = session.content_hash();
+  read_trace(session, bed, run);
+  run.terrain = session.terrain_after();
+  if (before.has_value() && run.terrain.has_value()) add_volumes(*before, *run.terrain, run.end);
+  return run;
+}
+
+/// The tick in which two recordings part, and how far the robots are apart until both have ended.
+void compare_ticks(const SessionReader& a, const SessionReader& b, const std::array<Bed, 2>& beds,
+                   SessionComparison& result) {
+  SessionBlock block_a;
+  SessionBlock block_b;
+  const double dt = 1.0 / a.info().tick_rate_hz;
+  const std::uint64_t every = std::max<std::uint64_t>(1, a.info().tick_rate_hz / 10);
+  for (std::uint64_t first = 0; first < result.common_ticks; first += kBlockRows) {
+    const std::uint64_t count = std::min(kBlockRows, result.common_ticks - first);
+    block_a.read(a, first, count);
+    block_b.read(b, first, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t tick = first + i;
+      if (!result.first.has_value()) {
+        const std::vector<TickDifference> found = differences_of(block_a, block_b, i);
+        if (!found.empty()) {
+          result.first = {tick,
+                          static_cast<double>(tick) * dt,
+                          found[0].column,
+                          found[0].values.expected,
+                          found[0].values.got,
+                          {}};
+          for (const TickDifference& it : found) result.first->all_columns.push_back(it.column);
+        }
+      }
+      const SimFrame& frame_a = block_a.frames.row(i);
+      const SimFrame& frame_b = block_b.frames.row(i);
+      const Travelled at_a = beds[0].travelled(frame_a);
+      const Travelled at_b = beds[1].travelled(frame_b);
+      const DeviationPoint point{frame_a.time, std::hypot(at_b.x_m - at_a.x_m, at_b.y_m - at_a.y_m),
+                                 std::remainder(frame_b.yaw - frame_a.yaw, 2.0 * std::numbers::pi)};
+      if (!result.summary.has_value()) result.summary = {point, point, point};
+      DeviationSummary& summary = *result.summary;
+      summary.last = point;
+      if (point.position_m > summary.largest_position.position_m) summary.largest_position = point;
+      if (std::abs(point.heading_rad) > std::abs(summary.largest_heading.heading_rad)) {
+        summary.largest_heading = point;
+      }
+      if (tick % every == 0 || tick + 1 == result.common_ticks) result.deviation.push_back(point);
+    }
+  }
+}
+
+bool same_geometry(const HeightMapGeometry& a, const HeightMapGeometry& b) {
+  return a.nx == b.nx && a.ny == b.ny && a.spacing_m == b.spacing_m &&
+         a.origin_x_m == b.origin_x_m && a.origin_y_m == b.origin_y_m && a.wrap == b.wrap;
+}
+
+bool same_map(const std::optional<HeightMap>& a, const std::optional<HeightMap>& b) {
+  if (!a.has_value() || !b.has_value()) return a.has_value() == b.has_value();
+  return same_geometry(a->geometry, b->geometry) && a->geometry.unit_m == b->geometry.unit_m &&
+         a->heights == b->heights;
+}
+
+std::string grid_text(const HeightMapGeometry& g) {
+  char text[100];
+  std::snprintf(text, sizeof text, "%u x %u heights of %g m%s", g.nx, g.ny, g.spacing_m,
+                g.wrap ? ", wrapped" : "");
+  return text;
+}
+
+TerrainDifference terrain_difference(const std::optional<HeightMap>& a,
+                                     const std::optional<HeightMap>& b) {
+  TerrainDifference result;
+  if (!a.has_value() || !b.has_value()) {
+    result.not_comparable = "not recorded";
+    return result;
+  }
+  if (!same_geometry(a->geometry, b->geometry)) {
+    result.not_comparable =
+        "the grids differ: A " + grid_text(a->geometry) + ", B " + grid_text(b->geometry);
+    return result;
+  }
+  double squares = 0.0;
+  double above = 0.0;
+  double below = 0.0;
+  result.height_m.reserve(a->heights.size());
+  for (std::size_t i = 0; i < a->heights.size(); ++i) {
+    const double height = b->heights[i] * b->geometry.unit_m - a->heights[i] * a->geometry.unit_m;
+    result.height_m.push_back(height);
+    result.highest_m = std::max(result.highest_m, height);
+    result.lowest_m = std::min(result.lowest_m, height);
+    squares += height * height;
+    (height < 0.0 ? below : above) += std::abs(height);
+  }
+  const double cell_l = a->geometry.spacing_m * a->geometry.spacing_m * kLitresPerM3;
+  result.rms_m = std::sqrt(squares / static_cast<double>(a->heights.size()));
+  result.above_l = above * cell_l;
+  result.below_l = below * cell_l;
+  return result;
+}
+
+bool is_secret(const IniEntry& entry) {
+  return entry.section == "radio" && entry.key == "key";
+}
+
+std::string key_of(const IniEntry& entry) {
+  return entry.section.empty() ? entry.key : entry.section + "." + entry.key;
+}
+
+std::string shown(const IniEntry& entry) {
+  return is_secret(entry) ? "(not shown)" : entry.value;
+}
+
+}  // namespace
+
+bool SessionComparison::identical() const {
+  return configuration.empty() && !first.has_value() && runs[0].frames == runs[1].frames &&
+         same_terrain;
+}
+
+std::vector<KeyDifference> configuration_difference(const std::string& a, const std::string& b) {
+  const std::vector<IniEntry> entries_a = read_ini_text(a, "experiment of A");
+  const std::vector<IniEntry> entries_b = read_ini_text(b, "experiment of B");
+  const auto find = [](const std::vector<IniEntry>& entries, const IniEntry& wanted) {
+    return std::find_if(entries.begin(), entries.end(), [&](const IniEntry& it) {
+      return it.section == wanted.section && it.key == wanted.key;
+    });
+  };
+  std::vector<KeyDifference> differences;
+  for (const IniEntry& entry : entries_a) {
+    const auto other = find(entries_b, entry);
+    if (other == entries_b.end()) {
+      differences.push_back({key_of(entry), shown(entry), std::nullopt});
+    } else if (other->value != entry.value) {
+      differences.push_back({key_of(entry), shown(entry), shown(*other)});
+    }
+  }
+  for (const IniEntry& entry : entries_b) {
+    if (find(entries_a, entry) == entries_a.end()) {
+      differences.push_back({key_of(entry), std::nullopt, shown(entry)});
+    }
+  }
+  return differences;
+}
+
+SessionComparison compare_sessions(const SessionReader& a, const SessionReader& b) {
+  if (a.info().tick_rate_hz != b.info().tick_rate_hz) {
+    throw InputError("A has " + std::to_string(a.info().tick_rate_hz) + " ticks a second, B " +
+                     std::to_string(b.info().tick_rate_hz) +
+                     "; only runs of the same rate are compared");
+  }
+  SessionComparison result;
+  result.configuration =
+      configuration_difference(a.info().experiment_text, b.info().experiment_text);
+  if (a.info().board_name != b.info().board_name) {
+    result.configuration.insert(result.configuration.begin(),
+                                {"board", a.info().board_name, b.info().board_name});
+  }
+  const std::optional<HeightMap> before_a = a.terrain_before();
+  const std::optional<HeightMap> before_b = b.terrain_before();
+  const std::array<Bed, 2> beds = {Bed(before_a), Bed(before_b)};
+  result.runs = {describe(a, beds[0], before_a), describe(b, beds[1], before_b)};
+  result.common_ticks = std::min(a.frames(), b.frames());
+  compare_ticks(a, b, beds, result);
+  result.terrain = terrain_difference(result.runs[0].terrain, result.runs[1].terrain);
+  result.same_terrain =
+      same_map(before_a, before_b) && same_map(result.runs[0].terrain, result.runs[1].terrain);
+  return result;
+}
+
+}  // namespace screed

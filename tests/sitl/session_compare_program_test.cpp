@@ -1,0 +1,98 @@
+// `screed session compare` as a user meets it.
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+class SessionCompare : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    write("e.ini",
+          "[experiment]\nduration = 2\nalgorithm = hill_sensing\nseed = 1\n[map]\nsize = 1\n"
+          "model = scm\n[soil]\ncell = 0.02\n");
+    record("one", "");
+  }
+  void record(const std::string& name, const std::string& options) const {
+    const Result result = run("sim e.ini --quiet --out " + name + " " + options);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  nlohmann::json compare(const std::string& arguments) const {
+    const Result result = run("session compare " + arguments + " --json");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  }
+  bool exists(const char* name) const { return std::filesystem::exists(root_ / name); }
+};
+
+TEST_F(SessionCompare, TheSameRunTwiceIsIdentical) {
+  record("again", "");
+  const Result result = run("session compare one again/session.h5 --fail-if-different");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out.substr(0, 10), "identical\n");
+  EXPECT_EQ(read(root_ / "compare.png").substr(1, 3), "PNG");
+  const nlohmann::json json = compare("one again --no-picture");
+  EXPECT_EQ(json["identical"], true);
+  EXPECT_TRUE(json["first_difference"].is_null());
+  EXPECT_TRUE(json["picture"].is_null());
+}
+
+TEST_F(SessionCompare, AnotherSeedDiffersFromItsFirstTick) {
+  record("seed", "--seed 2");
+  const nlohmann::json json = compare("one seed --out p.png");
+  EXPECT_EQ(json["identical"], false);
+  EXPECT_EQ(json["configuration"][0]["key"], "experiment.seed");
+  EXPECT_EQ(json["configuration"][0]["a"], "1");
+  EXPECT_EQ(json["configuration"][0]["b"], "2");
+  EXPECT_LT(json["first_difference"]["tick"], 10);
+  EXPECT_EQ(json["a"]["end"]["time_s"], json["b"]["end"]["time_s"]);
+  EXPECT_GE(json["deviation"]["largest_position"]["position_m"],
+            json["deviation"]["last"]["position_m"]);
+  EXPECT_TRUE(exists("p.png"));
+  const Result text = run("session compare one seed --no-picture");
+  EXPECT_EQ(text.exit_code, 0) << "different, as diff would say with 1";
+  EXPECT_NE(text.out.find("first difference in tick "), std::string::npos) << text.out;
+  EXPECT_EQ(run("session compare one seed --no-picture --fail-if-different").exit_code, 1);
+  EXPECT_FALSE(exists("compare.png"));
+}
+
+TEST_F(SessionCompare, AShorterRunIsTheBeginningOfALongerOne) {
+  record("short", "--duration 1");
+  const nlohmann::json json = compare("one short --no-picture");
+  EXPECT_TRUE(json["first_difference"].is_null()) << json["first_difference"];
+  EXPECT_EQ(json["common_ticks"], 100);
+  EXPECT_EQ(json["identical"], false);
+  EXPECT_NE(run("session compare one short --no-picture").out.find("A has 200 ticks, B 100"),
+            std::string::npos);
+}
+
+TEST_F(SessionCompare, AnotherGridIsSaidAndDrawnWithoutADifferenceOfTerrain) {
+  record("coarse", "--set soil.cell=0.025");
+  const nlohmann::json json = compare("one coarse");
+  const std::string why = json["terrain"]["not_compared"];
+  EXPECT_NE(why.find("0.02 m"), std::string::npos) << why;
+  EXPECT_NE(why.find("0.025 m"), std::string::npos) << why;
+  EXPECT_TRUE(exists("compare.png"));
+}
+
+TEST_F(SessionCompare, RefusesInOneLineAndLeavesNothing) {
+  write("half.h5", read(root_ / "one" / "session.h5").substr(0, 20000));
+  const auto refused = [this](const std::string& arguments, int code,
+                              const std::vector<std::string>& parts) {
+    expect_refused(run("session compare " + arguments), code, parts);
+  };
+  refused("one nowhere", 2, {"nowhere", "no such file"});
+  refused("nowhere one", 2, {"nowhere", "no such file"});
+  refused("one e.ini", 2, {"e.ini"});
+  refused("one half.h5", 2, {"half.h5"});
+  refused("one", 2, {"B is required"});
+  refused("one one --out p.svg", 2, {"p.svg", ".png"});
+  refused("one one --out no_folder/p.png", 1, {"no_folder/p.png"});
+  EXPECT_FALSE(exists("compare.png"));
+}
+
+}  // namespace
+}  // namespace screed::testing
