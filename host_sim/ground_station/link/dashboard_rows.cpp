@@ -31,7 +31,7 @@ class RowMaker {
     const std::optional<double> age_s = robot_.latest().age_s(carrier, input_.now_us);
     if (!age_s.has_value()) return {importance, label, "-", CellStyle::kDim};
     if (!is_old(robot_, carrier, input_.now_us)) return {importance, label, std::move(value), style};
-    value += ", " + age_text(*age_s) + " ago";
+    value += " (" + age_text(*age_s) + ")";
     return {importance, label, std::move(value), CellStyle::kDim};
   }
 

@@ -107,13 +107,13 @@ TEST_F(DashboardTest, ALongListOfFaultsSaysThatThereIsMore) {
 TEST_F(DashboardTest, OldValuesArePaleAndHaveTheirAge) {
   TextCanvas now = page(120, 40);
   EXPECT_EQ(style_of(now, "9.90 deg"), CellStyle::kNormal);
-  EXPECT_EQ(now.str().find(" ago"), std::string::npos) << now.str();
+  EXPECT_EQ(now.str().find(" s)"), std::string::npos) << now.str();
   // The robot goes on, but its attitude does not come any more.
   for (int i = 1; i <= 40; ++i)
     say(message::Power{7100, 30}, 4'000'000U + static_cast<uint64_t>(i) * 100'000U);
   input_.now_us = kStart_us + 8'000'000;
   now = page(120, 40);
-  EXPECT_EQ(style_of(now, "9.90 deg, 4 s ago"), CellStyle::kDim);
+  EXPECT_EQ(style_of(now, "9.90 deg (4 s)"), CellStyle::kDim);
   EXPECT_EQ(style_of(now, "-12"), CellStyle::kDim) << "odometry, not attitude alone";
   EXPECT_EQ(style_of(now, "7.10 V, 15 %"), CellStyle::kWarning) << "is not old";
   EXPECT_EQ(style_of(now, "robot 1"), CellStyle::kTitle);
