@@ -30,8 +30,10 @@ class RowMaker {
     const MessageInfo& carrier = *find_message(message);
     const std::optional<double> age_s = robot_.latest().age_s(carrier, input_.now_us);
     if (!age_s.has_value()) return {importance, label, "-", CellStyle::kDim};
-    if (!is_old(robot_, carrier, input_.now_us)) return {importance, label, std::move(value), style};
-    value += ", " + age_text(*age_s) + " ago";
+    // Without a link a value is history at once.
+    const bool old = !input_.link.up || is_old(robot_, carrier, input_.now_us);
+    if (!old) return {importance, label, std::move(value), style};
+    value += " (" + age_text(*age_s) + ")";
     return {importance, label, std::move(value), CellStyle::kDim};
   }
 
@@ -106,7 +108,7 @@ DashboardGroup link_group(const DashboardInput& input, const RobotView& robot,
                 (loss.has_value() ? number("%.1f %%", *loss) : "-"),
             silent ? CellStyle::kAlarm : CellStyle::kNormal},
            make.row(3, "up", "HEARTBEAT",
-                    !alive                  ? "no ground station heard"
+                    !alive                 ? "no ground station heard"
                     : !quality.has_value() ? "alive"
                                            : number("alive, hears %.0f %%", *quality),
                     alive ? CellStyle::kGood : CellStyle::kAlarm),
@@ -116,13 +118,15 @@ DashboardGroup link_group(const DashboardInput& input, const RobotView& robot,
 
 /// Latched faults, or what keeps a disarmed robot from being armed.
 DashboardGroup fault_group(const DashboardInput& input, const RobotView& robot) {
-  const bool disarmed = robot.raw("heartbeat.state") ==
-                        static_cast<int64_t>(message::HeartbeatState::kDisarmed);
+  const bool disarmed =
+      robot.raw("heartbeat.state") == static_cast<int64_t>(message::HeartbeatState::kDisarmed);
   const std::vector<std::string> sentences =
       disarmed ? robot.obstacles(input.now_us) : robot.faults();
   DashboardGroup group{disarmed && !sentences.empty() ? "cannot be armed" : "faults", {}};
-  const bool old = is_old(robot, *find_message("HEARTBEAT"), input.now_us);
-  const CellStyle style = old ? CellStyle::kDim : disarmed ? CellStyle::kWarning : CellStyle::kAlarm;
+  const bool old = !input.link.up || is_old(robot, *find_message("HEARTBEAT"), input.now_us);
+  const CellStyle style = old        ? CellStyle::kDim
+                          : disarmed ? CellStyle::kWarning
+                                     : CellStyle::kAlarm;
   for (const std::string& sentence : sentences) group.rows.push_back({0, "", sentence, style});
   if (sentences.empty()) {
     const CellStyle calm = old ? CellStyle::kDim : CellStyle::kGood;
@@ -157,9 +161,9 @@ std::string refused_text(const DashboardInput& input) {
 
 std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input, const RobotView& robot) {
   const RowMaker make(input, robot);
-  const double distance_m = std::hypot(robot.value("odometry.x").value_or(0.0),
-                                       robot.value("odometry.y").value_or(0.0)) *
-                            1e-3;
+  const double distance_m =
+      std::hypot(robot.value("odometry.x").value_or(0.0), robot.value("odometry.y").value_or(0.0)) *
+      1e-3;
   return {{"attitude",
            {make.bar(4, "roll", "attitude.roll", 45.0, 30.0),
             make.bar(4, "pitch", "attitude.pitch", 45.0, 30.0),

@@ -44,7 +44,8 @@ std::string battery_text(double battery_v, int cells) {
   char text[48];
   const std::optional<double> charge = battery_charge(battery_v, cells);
   if (charge.has_value()) {
-    std::snprintf(text, sizeof text, "%.2f V, %.0f %%", battery_v, std::round(*charge * 20.0) * 5.0);
+    std::snprintf(text, sizeof text, "%.2f V, %.0f %%", battery_v,
+                  std::floor(*charge * 20.0 + 1e-6) * 5.0);
   } else {
     std::snprintf(text, sizeof text, "%.2f V", battery_v);
   }

@@ -118,9 +118,9 @@ class Monitor {
                     "s stop",
                     "d disarm",
                     "c clear",
+                    "q quit",
                     "p curve",
-                    "+/- time",
-                    "q quit"};
+                    "+/- time"};
     if (arguments_.log.has_value()) input.footer.push_back("log: " + *arguments_.log);
     return input;
   }

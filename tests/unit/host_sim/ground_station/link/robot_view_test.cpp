@@ -89,18 +89,19 @@ TEST(RobotView, WhatHappensIsSaidInWords) {
 
   std::vector<std::string> words;
   for (const RobotView::Event& event : robot->events()) words.push_back(event.words);
-  EXPECT_EQ(words, (std::vector<std::string>{
-                       "the robot restarted, start 8", "gone: stall left", "state: disarmed",
-                       "arm: refused: stall left: high duty, no motion",
-                       "fault: stall left: high duty, no motion", "state: fault",
-                       "state: disarmed"}));
+  EXPECT_EQ(words,
+            (std::vector<std::string>{
+                "the robot restarted, start 8", "gone: stall left", "state: disarmed",
+                "arm: refused: stall left: high duty, no motion",
+                "fault: stall left: high duty, no motion", "state: fault", "state: disarmed"}));
 }
 
 TEST(RobotView, WhatPreventsArmingIsNoFaultYet) {
   FleetView fleet;
   const auto battery = static_cast<uint16_t>(message::HeartbeatFaults::kBattery);
-  RobotView* const robot = fleet.add_frame(
-      frame_with(heartbeat(message::HeartbeatState::kDisarmed, battery), 0, kStart_us));
+  message::Heartbeat low = heartbeat(message::HeartbeatState::kDisarmed, battery);
+  low.link_alive = 1;
+  RobotView* const robot = fleet.add_frame(frame_with(low, 0, kStart_us));
   ASSERT_NE(robot, nullptr);
   EXPECT_EQ(robot->events().front().words,
             "prevents arming: battery below battery_low 6.00 V (the default)");
