@@ -92,7 +92,7 @@ TEST_F(ParamProgram, ARobotThatRefusesEndsTheLoad) {
   write("slow.ini", "[parameters]\nclimb_speed = 150\n");
   // Armed, it takes no parameters.
   const Result result = with_robot(
-      "$screed send --pty radio arm > /dev/null\n"
+      "until $screed send --pty radio arm > /dev/null; do :; done\n"
       "$screed param load --pty radio slow.ini\n");
   EXPECT_EQ(result.exit_code, 1) << result.out << result.err;
   EXPECT_NE(result.out.find("climb_speed = 150 mm/s: refused: "), std::string::npos) << result.out;
@@ -117,21 +117,21 @@ TEST_F(ParamProgram, ALinkIsRememberedWithItsKeyFile) {
   EXPECT_EQ(run("key robot.key").exit_code, 0);
   // As it was before the run, simulated robots have the test key: the other one is refused.
   const Result result = with_robot(
-      "$screed send --pty radio --remember clear\n"
-      "cd ..; $screed send clear; cd run\n"
-      "$screed send --key robot.key clear; echo \"exit $?\"\n"
-      "$screed send --pty radio --key robot.key --remember clear; echo \"exit $?\"\n"
-      "$screed send clear; echo \"exit $?\"\n"
-      "$screed send --pty radio clear; echo \"exit $?\"\n"
+      "$screed send --pty radio --remember disarm\n"
+      "cd ..; $screed send disarm; cd run\n"
+      "$screed send --key robot.key disarm; echo \"exit $?\"\n"
+      "$screed send --pty radio --key robot.key --remember disarm; echo \"exit $?\"\n"
+      "$screed send disarm; echo \"exit $?\"\n"
+      "$screed send --pty radio disarm; echo \"exit $?\"\n"
       "mv robot.key away.key\n"
-      "$screed send clear; echo \"exit $?\"\n"
+      "$screed send disarm; echo \"exit $?\"\n"
       "$screed send estop; echo \"exit $?\"\n");
   const std::string file = log("config") + "/screed/link.ini";
   const std::string port = (std::filesystem::canonical(root_) / "radio").string();
   const std::string key = (std::filesystem::canonical(root_) / "robot.key").string();
-  const std::string wrong = "clear: refused: signed with another key than the robot's (--key)\n";
-  EXPECT_EQ(result.out, "clear: done\nclear: done\n" + wrong + "exit 1\n" + wrong + "exit 1\n" +
-                            wrong + "exit 1\nclear: done\nexit 0\nexit 2\n" +
+  const std::string wrong = "disarm: refused: signed with another key than the robot's (--key)\n";
+  EXPECT_EQ(result.out, "disarm: done\ndisarm: done\n" + wrong + "exit 1\n" + wrong + "exit 1\n" +
+                            wrong + "exit 1\ndisarm: done\nexit 0\nexit 2\n" +
                             "estop: robot 1 has stopped\nexit 0\n");
   EXPECT_EQ(read(file).find("0123"), std::string::npos);
   EXPECT_NE(read(file).find("pty = " + port + "\nkey = " + key + "\n"), std::string::npos)

@@ -46,7 +46,8 @@ inline CommandNode command_tree(const CLI::App& app, const std::string& above = 
   }
   for (const CLI::App* below : app.get_subcommands({})) {
     std::vector<OptionWords> handed_down;
-    if (below->get_fallthrough()) {
+    // What the program itself takes (--version) stands before all subcommands.
+    if (below->get_fallthrough() && !above.empty()) {
       handed_down = inherited;
       for (const OptionWords& option : node.options) {
         if (option.names.back() != "--help") handed_down.push_back(option);

@@ -82,7 +82,7 @@ inline std::string page(const CommandNode& node) {
   text += "Usage: " + wrapped(node.usage(), 7, 7) + "\n";
   text += rows("Arguments", node.arguments);
   text += grouped_rows(node.options);
-  text += rows("Options of all subcommands of the group", node.inherited);
+  text += rows("Options of " + node.path.substr(0, node.path.rfind(' ')), node.inherited);
   if (node.subcommands.empty()) return text;
   text += "\nSubcommands:\n";
   for (const CommandNode& below : node.subcommands) text += row(below.name, below.help);

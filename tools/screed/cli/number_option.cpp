@@ -91,6 +91,7 @@ CLI::Option* add(CLI::App& app, const Description& description, const std::funct
   *option = app.add_option(description.name, read, description.help, false, shown);
   CLI::Option* const added = *option;
   // As option_words.h takes it apart.
+  added->capture_default_str();
   added->type_name((description.whole ? "INTEGER:" : "NUMBER:") + short_text(description));
   if (description.several) {
     added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);

@@ -62,8 +62,8 @@ struct Description {
 /// Takes the text of one number; false when it is none, or out of range.
 using Take = std::function<bool(const std::string& text)>;
 
-/// `begin` is called before the first number of a command line; `shown` gives the present value for
-/// the help, "" for none.
+/// `begin` is called before the first number of a command line; `shown` gives the present value,
+/// which is the default, for the help; "" for none.
 CLI::Option* add(CLI::App& app, const Description& description, const std::function<void()>& begin,
                  const Take& take, const std::function<std::string()>& shown);
 

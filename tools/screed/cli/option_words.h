@@ -16,7 +16,7 @@ struct OptionWords {
   std::string range;  ///< "0.01 to 1000"
   std::string help;
   std::string group;     ///< the heading that it stands below: "Options"
-  std::string fallback;  ///< the default; empty: none, or told in `help`
+  std::string fallback;  ///< the default; empty: none
   std::vector<std::string> needs;
   std::vector<std::string> excludes;
   bool is_positional = false;
@@ -69,6 +69,23 @@ inline void take_type(const std::string& type, OptionWords& words) {
   }
 }
 
+/// Takes a default in words off the end of a help text: "Output folder (default: RUN/export)".
+inline std::string take_default(std::string& help) {
+  constexpr const char* kBegin = " (default: ";
+  const std::size_t begin = help.rfind(kBegin);
+  if (begin == std::string::npos || help.find(')', begin) + 1 != help.size()) return "";
+  const std::size_t text = begin + std::string(kBegin).size();
+  const std::string fallback = help.substr(text, help.size() - 1 - text);
+  help.resize(begin);
+  return fallback;
+}
+
+/// Whether the help text says all of these words itself.
+inline bool says_all(const std::string& help, const std::vector<std::string>& words) {
+  return std::all_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return help.find(word) != std::string::npos; });
+}
+
 /// "[a,b]" of a list is "a,b".
 inline std::string default_word(const std::string& text) {
   if (text.size() < 2 || text.front() != '[' || text.back() != ']') return text;
@@ -103,11 +120,13 @@ inline OptionWords words_of(const CLI::Option& option) {
   // The parser keeps them ordered by where they lie in memory.
   std::sort(words.needs.begin(), words.needs.end());
   std::sort(words.excludes.begin(), words.excludes.end());
+  words.fallback = option_words::take_default(words.help);
   if (option.get_items_expected_max() == 0) return words;
   option_words::take_type(option.get_type_name(), words);
   if (words.value == "TEXT" && !words.is_positional)
     words.value = option_words::word_of_name(option);
-  words.fallback = option_words::default_word(option.get_default_str());
+  if (words.fallback.empty() && !words.required)
+    words.fallback = option_words::default_word(option.get_default_str());
   words.repeated = option.get_items_expected_max() >= CLI::detail::expected_max_vector_size;
   return words;
 }
@@ -118,11 +137,16 @@ inline std::string details(const OptionWords& words) {
   const auto joined = [](const std::vector<std::string>& names) {
     return CLI::detail::join(names, ", ");
   };
+  constexpr std::size_t kMaxChoices = 12;
+  const bool lists_choices =
+      words.choices.size() <= kMaxChoices && !option_words::says_all(words.help, words.choices);
+  const bool says_repeated = words.help.find("may be repeated") != std::string::npos;
   std::vector<std::string> parts;
   if (!words.range.empty()) parts.push_back(words.range);
-  if (!words.choices.empty()) parts.push_back(joined(words.choices));
+  if (lists_choices) parts.push_back(joined(words.choices));
   if (words.required && !words.is_positional) parts.emplace_back("required");
-  if (words.repeated && !words.is_positional) parts.emplace_back("may be repeated");
+  if (words.repeated && !words.is_positional && !says_repeated)
+    parts.emplace_back("may be repeated");
   if (!words.needs.empty()) parts.push_back("needs " + joined(words.needs));
   if (!words.excludes.empty()) parts.push_back("not with " + joined(words.excludes));
   if (!words.fallback.empty()) parts.push_back("default: " + words.fallback);

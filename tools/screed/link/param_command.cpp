@@ -27,7 +27,8 @@ namespace {
 
 struct ParamArguments {
   LinkArguments link;
-  std::vector<std::string> names;
+  std::vector<std::string> names;  ///< of get
+  std::string name;                ///< of set
   std::string value;
   std::string file;
   std::optional<std::string> experiment;
@@ -131,7 +132,7 @@ bool write_to(RobotSession& robot, const ParameterValue& value) {
 }
 
 int set(const ParamArguments& arguments) {
-  const uint16_t index = parameter_index(arguments.names.front());
+  const uint16_t index = parameter_index(arguments.name);
   const int16_t value = parameter_value(index, arguments.value);
   ParamRobot robot(arguments);
   return write_to(robot, {index, value}) ? 0 : 1;
@@ -247,10 +248,7 @@ void register_param_command(CLI::App& root, Program& program) {
   const auto json = [&](CLI::App* sub) {
     sub->add_flag("--json", arguments->json, "Print the result as JSON, values as in the table");
   };
-  const auto name = [&](CLI::App* sub, const char* help) {
-    return sub->add_option("NAME", arguments->names, help)
-        ->check(suggested_words(parameter_names()));
-  };
+  const CLI::Validator names = suggested_words(parameter_names());
   const auto file = [&](CLI::App* sub) {
     sub->add_option("FILE", arguments->file,
                     "Parameter file of screed param dump, or any experiment")
@@ -261,11 +259,16 @@ void register_param_command(CLI::App& root, Program& program) {
   json(add("list", "List all parameters: meaning, range and default; needs no robot", list));
 
   CLI::App* of_get = add("get", "Print parameters of the robot", get);
-  name(of_get, "Names of the parameters (default: all)");
+  of_get
+      ->add_option("NAME", arguments->names,
+                   "Names of the parameters, see screed param list (default: all)")
+      ->check(names);
   json(of_get);
 
   CLI::App* of_set = add("set", "Set a parameter and store it in the robot", set);
-  name(of_set, "Name of the parameter")->required()->expected(1);
+  of_set->add_option("NAME", arguments->name, "Name of the parameter, see screed param list")
+      ->required()
+      ->check(names);
   of_set
       ->add_option("VALUE", arguments->value,
                    "New value, as get prints it: 5, '5 deg', spin_on_peak")

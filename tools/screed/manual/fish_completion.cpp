@@ -45,16 +45,16 @@ std::string value_flags(const OptionWords& words) {
     case ValueKind::kChoices: {
       std::string list;
       for (const std::string& choice : words.choices) list += (list.empty() ? "" : " ") + choice;
-      return " -a " + in_quotes(list);
+      return " -f -a " + in_quotes(list);
     }
     case ValueKind::kFolders:
-      return " -a '(__fish_complete_directories)'";
+      return " -f -a '(__fish_complete_directories)'";
     case ValueKind::kFiles:
       return " -F";
     case ValueKind::kNothing:
       break;
   }
-  return "";
+  return " -f";
 }
 
 std::string lines_of(const CommandNode& node) {

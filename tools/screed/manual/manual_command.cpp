@@ -43,8 +43,8 @@ void write_all(const CommandNode& root, const std::string& version,
 }  // namespace
 
 void register_manual_command(CLI::App& root, Program& program) {
-  CLI::App* command =
-      root.add_subcommand("manual", "Print a man page of screed or of a subcommand, for man -l -");
+  CLI::App* command = root.add_subcommand(
+      "manual", "Print the man page of screed or of a subcommand: screed manual sim | man -l -");
   const auto arguments = std::make_shared<ManualArguments>();
   CLI::Option* of_one =
       command->add_option("SUBCOMMAND", arguments->subcommand, "Its page (default: screed's own)");

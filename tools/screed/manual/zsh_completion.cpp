@@ -1,33 +1,35 @@
 // Completion for zsh: a function for each subcommand.
 #include <algorithm>
+#include <cstring>
 
 #include "tools/screed/manual/shell_completion.h"
 
 namespace screed {
 namespace {
 
-/// A text inside single quotes that stands between the brackets or colons of a specification.
-std::string in_brackets(const std::string& text) {
+/// A text inside single quotes; `special` are the characters that the specification in which it
+/// stands takes for its own.
+std::string in_quotes(const std::string& text, const char* special) {
   std::string safe;
   for (const char c : text) {
     if (c == '\'') {
       safe += "'\\''";
-    } else {
-      if (c == ':' || c == '[' || c == ']' || c == '\\') safe += '\\';
-      safe += c;
+      continue;
     }
+    if (std::strchr(special, c) != nullptr) safe += '\\';
+    safe += c;
   }
   return safe;
 }
 
-/// The same as a description in a list of words, which is split once more.
+/// The description of an option: [...].
+std::string in_brackets(const std::string& text) {
+  return in_quotes(text, ":[]\\");
+}
+
+/// The description of a word in a list, inside double quotes: ((word\:"...")).
 std::string in_word_list(const std::string& text) {
-  std::string safe;
-  for (const char c : in_brackets(text)) {
-    if (c == '"' || c == '$' || c == '`' || c == '\\') safe += '\\';
-    safe += c;
-  }
-  return safe;
+  return in_quotes(text, ":\"$`\\");
 }
 
 std::string function_name(const CommandNode& node) {

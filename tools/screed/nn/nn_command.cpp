@@ -342,8 +342,7 @@ void register_nn_command(CLI::App& root, Program& program) {
   CLI::App* check =
       add("check", "Compare scalar and SIMD inference on random and edge-case vectors", run_check);
   model(check);
-  add_number(*check, "--vectors", arguments->vectors, "Number of vectors", kCountRange)
-      ->capture_default_str();
+  add_number(*check, "--vectors", arguments->vectors, "Number of vectors", kCountRange);
   add_number(*check, "--seed", arguments->seed, "Seed of the vectors", kSeedRange);
 
   CLI::App* features = nn->add_subcommand("features", "List all features and preprocessing stages");

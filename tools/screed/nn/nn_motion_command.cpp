@@ -379,8 +379,8 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
   rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to")
       ->type_name("FOLDER");
   add_number(*rollout_command, "--starts", rollout->starts,
-             "Number of rollouts per session, spread evenly (0 and default: each begins "
-             "where the previous one ends)",
+             "Number of rollouts per session, spread evenly; 0: each begins where the previous one "
+             "ends",
              {0, 100000});
   rollout_command->add_flag("--ruts", rollout->ruts,
                             "Deform the terrain below the surrogates' tracks, as screed sim --hal "

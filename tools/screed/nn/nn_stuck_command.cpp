@@ -204,25 +204,20 @@ void register_nn_stuck_command(CLI::App& nn, Program& program) {
       "stuck",
       "Evaluate the robot's slip and stuck detection in seeded drives with and without traps");
   add_number(*command, "--seed", arguments->seed,
-             "Seed of the first drive; each further drive adds 1", kSeedRange)
-      ->capture_default_str();
+             "Seed of the first drive; each further drive adds 1", kSeedRange);
   add_number(*command, "--runs", arguments->runs,
-             "Number of drives with a trap, and of drives without one", {1, 100000})
-      ->capture_default_str();
+             "Number of drives with a trap, and of drives without one", {1, 100000});
   add_number(*command, "--free", arguments->free_s, "Duration of a drive without a trap [s]",
-             {5.0, 36000.0})
-      ->capture_default_str();
-  add_number(*command, "--threads", arguments->threads, "Number of drives run in parallel",
-             {1, 256});
+             {5.0, 36000.0});
+  add_number(*command, "--threads", arguments->threads,
+             "Number of drives run in parallel (default: one per core)", {1, 256});
   command
       ->add_option("--train", arguments->train,
                    "Train the network on these drives and write this model file")
       ->type_name("FILE");
-  add_number(*command, "--epochs", arguments->epochs, "Number of training epochs", {1, 1e6})
-      ->capture_default_str();
+  add_number(*command, "--epochs", arguments->epochs, "Number of training epochs", {1, 1e6});
   add_number(*command, "--hidden", arguments->hidden, "Number of nodes of the hidden layer",
-             {1, 255})
-      ->capture_default_str();
+             {1, 255});
   command
       ->add_option("--experiment", arguments->experiment,
                    "Print the experiment of the first seed: trapped or free")

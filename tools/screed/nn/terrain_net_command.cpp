@@ -340,15 +340,11 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       ->type_name("FILE")
       ->capture_default_str();
   add_number(*train_command, "--hidden", train->hidden, "Number of nodes of the hidden layer",
-             {1, 512})
-      ->capture_default_str();
+             {1, 512});
   add_number(*train_command, "--every", train->every, "Use every n-th stride as an example",
-             {1, 1000})
-      ->capture_default_str();
-  add_number(*train_command, "--epochs", train->epochs, "Number of epochs", {1, 1e6})
-      ->capture_default_str();
-  add_number(*train_command, "--seed", train->seed, "Seed of the training", kSeedRange)
-      ->capture_default_str();
+             {1, 1000});
+  add_number(*train_command, "--epochs", train->epochs, "Number of epochs", {1, 1e6});
+  add_number(*train_command, "--seed", train->seed, "Seed of the training", kSeedRange);
   train_command->callback(
       [train, &program] { program.action = [train] { return run_train(*train); }; });
 
@@ -364,19 +360,14 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       ->type_name("FILE")
       ->capture_default_str();
   add_number(*tracks_command, "--hidden", tracks->hidden, "Number of nodes of the hidden layer",
-             {1, 256})
-      ->capture_default_str();
+             {1, 256});
   add_number(*tracks_command, "--segments", tracks->segments, "Number of segments of each run",
-             {1, 1000})
-      ->capture_default_str();
+             {1, 1000});
   add_number(*tracks_command, "--seconds", tracks->seconds, "Duration of each segment [s]",
-             {0.5, 1000.0})
-      ->capture_default_str();
+             {0.5, 1000.0});
   add_number(*tracks_command, "--generations", tracks->generations, "Number of generations",
-             {1, 1e6})
-      ->capture_default_str();
-  add_number(*tracks_command, "--seed", tracks->seed, "Seed of the training", kSeedRange)
-      ->capture_default_str();
+             {1, 1e6});
+  add_number(*tracks_command, "--seed", tracks->seed, "Seed of the training", kSeedRange);
   tracks_command->callback(
       [tracks, &program] { program.action = [tracks] { return run_train_tracks(*tracks); }; });
 
@@ -396,14 +387,11 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       ->type_size(1)
       ->allow_extra_args(false);
   add_number(*compare_command, "--epochs", compared->epochs, "Number of epochs of that training",
-             {1, 1e6})
-      ->capture_default_str();
+             {1, 1e6});
   add_number(*compare_command, "--from", compared->from,
-             "Time to skip at the start of each run [s]", {0.0, 1e6})
-      ->capture_default_str();
+             "Time to skip at the start of each run [s]", {0.0, 1e6});
   add_number(*compare_command, "--seconds", compared->seconds,
-             "Duration to compare of each run [s]", {0.1, 1e6})
-      ->capture_default_str();
+             "Duration to compare of each run [s]", {0.1, 1e6});
   compare_command
       ->add_option("--pictures", compared->pictures,
                    "Output folder for pictures of the height change")

@@ -265,6 +265,7 @@ void register_sim_command(CLI::App& root, Program& program) {
                    "How the firmware runs: native: compiled for this machine; mcu: the flash image "
                    "under a cycle-accurate simulation of the microcontroller; surrogate: native, "
                    "with a network in place of the physics")
+      ->capture_default_str()
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
   command->add_option("--board", arguments->board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");

@@ -20,6 +20,11 @@ std::string error_of(const SoilLine& line) {
   return *line.limit == 0.0 ? "" : text("%+.3f %%", 100.0 * (line.value / *line.limit - 1.0));
 }
 
+/// Of a flag that can be switched off.
+std::string by_default(bool on) {
+  return on ? " (default: on)" : " (default: off)";
+}
+
 /// The meaning as a sentence; before what it adds behind a semicolon the symbol, where the option's
 /// name does not say it, and the unit.
 std::string option_help(const SoilParameterInfo& parameter) {
@@ -117,19 +122,24 @@ bool SoilArguments::as_peer() const {
 }
 
 void add_soil_options(CLI::App& command, SoilArguments& common, const SoilGridRanges& ranges) {
-  command.add_option("--soil", common.preset, "Soil preset: " + name_list(soil_preset_names()));
+  command.add_option("--soil", common.preset, "Soil preset: " + name_list(soil_preset_names()))
+      ->capture_default_str();
   for (const SoilParameterInfo& parameter : kSoilParameters) {
     add_number(command, parameter.option, common.overrides.*parameter.override_member,
                option_help(parameter), {parameter.min, parameter.max});
   }
-  command.add_option("--normal-stress", common.normal_stress,
-                     "Direction of the normal stress: radial or vertical");
-  command.add_flag("--bulldozing,!--no-bulldozing", common.bulldozing,
-                   "Push sunk material aside; otherwise compact it");
+  command
+      .add_option("--normal-stress", common.normal_stress,
+                  "Direction of the normal stress: radial or vertical")
+      ->capture_default_str();
+  command.add_flag(
+      "--bulldozing,!--no-bulldozing", common.bulldozing,
+      "Push sunk material aside; otherwise compact it" + by_default(common.bulldozing));
   command.add_flag("--avalanches,!--no-avalanches", common.avalanches,
-                   "Let slopes above the angle of repose slide");
+                   "Let slopes above the angle of repose slide" + by_default(common.avalanches));
   command.add_flag("--follow-slopes,!--no-follow-slopes", common.follow_slopes,
-                   "Assume that bodies follow the slope of their path; otherwise a level path");
+                   "Assume that bodies follow the slope of their path; otherwise a level path" +
+                       by_default(common.follow_slopes));
   add_number(command, "--sample-spacing", common.sample_spacing_m,
              "Spacing of sample points inside a cell [m]", {1e-4, 0.1});
   add_number(command, "--cell", common.cell_m, "Cell size of the grid [m]", ranges.cell_m);

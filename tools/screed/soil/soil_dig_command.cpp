@@ -123,9 +123,12 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
   a->common.preset = "gravel";
   add_soil_options(*command, a->common, {.cell_m = {0.001, 0.02}, .step_s = {1e-5, 0.01}});
   a->test.particle.radius_m = 0.0075;
-  command->add_option("--manoeuvre", a->manoeuvre,
-                      "Manoeuvre: spin, charge (a mound of 20 degrees) or slip");
-  command->add_option("--ground", a->ground, "Terrain model: scm or particles");
+  command
+      ->add_option("--manoeuvre", a->manoeuvre,
+                   "Manoeuvre: spin, charge (a mound of 20 degrees) or slip")
+      ->capture_default_str();
+  command->add_option("--ground", a->ground, "Terrain model: scm or particles")
+      ->capture_default_str();
   add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
              {0.002, 0.1});
   add_number(*command, "--particle-friction", a->test.particle.friction,

@@ -190,6 +190,7 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
           ->type_name("FILE");
   measured->expected(0, 1);
   command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text")
+      ->capture_default_str()
       ->type_name("CASE");
   command->add_flag("--fit", a->fit, "Fit --slip-sinkage to the measured sinkage first");
   command->add_option("--charts", a->common.charts, "Output folder for SVG charts")

@@ -470,16 +470,18 @@ void register_grid_command(CLI::App& root, Program& program) {
   GridConfig& config = options->config;
   CLI::App* command = root.add_subcommand(
       "grid", "Run leveling agents on a grid of stacks (thesis 4.2), once or many times");
-  command->add_option(
-      "--algorithm", options->algorithm,
-      "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager");
+  command
+      ->add_option("--algorithm", options->algorithm,
+                   "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager")
+      ->capture_default_str();
   add_number(*command, "--seed", config.seed, "Seed of the first run; each further run adds 1",
              kSeedRange);
   add_number(*command, "--agents", config.agents, "Number of agents",
              {1, kLargestGridSide * kLargestGridSide});
   command->add_option("--size", options->size,
                       "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
-  command->add_option("--border", options->border, "Border of the grid: walls or torus");
+  command->add_option("--border", options->border, "Border of the grid: walls or torus")
+      ->capture_default_str();
   command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)")
       ->type_name("FILE");
   add_number(*command, "--white", config.white, "Height of a white pixel [units]",
@@ -489,7 +491,8 @@ void register_grid_command(CLI::App& root, Program& program) {
              {0.0, 10000.0});
   add_number(*command, "--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]",
              {0.5, 1e6});
-  command->add_option("--stop", options->stop, "Stop criterion: level, gradient or deviation");
+  command->add_option("--stop", options->stop, "Stop criterion: level, gradient or deviation")
+      ->capture_default_str();
   add_number(*command, "--epsilon", options->epsilon,
              "Threshold of the stop criterion [units] (level 1, gradient 1.5, deviation 0.5)",
              {0.0, kMaxStackHeight});
@@ -510,8 +513,10 @@ void register_grid_command(CLI::App& root, Program& program) {
              {1, HeightMemory::kMaxLength});
   add_number(*command, "--fitness-threshold", config.fitness_threshold,
              "Fitness below which chromosomes are replaced (memetic-2)", kShareRange);
-  command->add_option("--fitness-base", options->fitness_base,
-                      "Operations counted by the fitness: executed or attempted (memetic)");
+  command
+      ->add_option("--fitness-base", options->fitness_base,
+                   "Operations counted by the fitness: executed or attempted (memetic)")
+      ->capture_default_str();
   add_number(*command, "--chromosomes", config.chromosomes, "Chromosomes per agent (memetic-2)",
              {1, MemeticAgent::kMaxChromosomes});
   add_number(*command, "--repetitions", config.repetitions,

@@ -39,17 +39,12 @@ void register_terrain_command(CLI::App& root, Program& program) {
   auto file = std::make_shared<std::string>();
   auto options = std::make_shared<NoiseTerrainOptions>();
   command->add_option("FILE", *file, "Output image: 16-bit PNG or 8-bit BMP")->required();
-  add_number(*command, "--seed", options->seed, "Seed of the noise", kSeedRange)
-      ->capture_default_str();
-  add_number(*command, "--size", options->size, "Side length [samples]", {16, 4096})
-      ->capture_default_str();
-  add_number(*command, "--waves", options->waves, "Number of hills along a side", {1, 64})
-      ->capture_default_str();
-  add_number(*command, "--octaves", options->octaves, "Number of octaves", {1, 10})
-      ->capture_default_str();
+  add_number(*command, "--seed", options->seed, "Seed of the noise", kSeedRange);
+  add_number(*command, "--size", options->size, "Side length [samples]", {16, 4096});
+  add_number(*command, "--waves", options->waves, "Number of hills along a side", {1, 64});
+  add_number(*command, "--octaves", options->octaves, "Number of octaves", {1, 10});
   add_number(*command, "--persistence", options->persistence,
-             "Amplitude ratio of successive octaves", kShareRange)
-      ->capture_default_str();
+             "Amplitude ratio of successive octaves", kShareRange);
   command->callback([file, options, &program] {
     program.action = [file, options] { return generate(*file, *options); };
   });

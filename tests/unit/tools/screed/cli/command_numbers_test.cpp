@@ -62,8 +62,8 @@ std::optional<Limits> limits_of(const CLI::Option& option) {
   static const std::regex form("(?:0 or )?([^ ]+) to ([^ ]+)");
   static const std::regex open_form("([^ ]+) or more");
   const OptionWords words = words_of(option);
-  const bool whole = words.value == "INTEGER";
-  if (!whole && words.value != "NUMBER") return std::nullopt;
+  const bool whole = option.get_type_name().rfind("INTEGER:", 0) == 0;
+  if (!whole && option.get_type_name().rfind("NUMBER:", 0) != 0) return std::nullopt;
   std::smatch match;
   if (std::regex_match(words.range, match, open_form))
     return Limits{whole, finite_number<double>(match.str(1)).value(), kSeedRange.high};
@@ -157,7 +157,7 @@ TEST(CommandNumbers, EveryOneTakesTheEndsOfItsRange) {
 
 /// Whether CLI11 reads it as a number by itself, with any check or none.
 bool is_unchecked_number(const CLI::Option& option) {
-  static const std::regex numeric("INT|FLOAT|BOOLEAN|COMPLEX|NUMBER");
+  static const std::regex numeric("\\bU?INT\\b|FLOAT|BOOLEAN|COMPLEX|NUMBER");
   return !is_flag(option) && !limits_of(option) &&
          std::regex_search(option.get_type_name(), numeric);
 }

@@ -43,8 +43,8 @@ TEST(ParameterNames, ScaledUnitsAreShownAsPeopleReadThem) {
 }
 
 TEST(ParameterNames, ValuesWithNamesHaveThem) {
-  EXPECT_EQ(text_of("algorithm", 1), "spin_on_peak");
-  EXPECT_EQ(value_of("algorithm", "spin_on_peak"), 1);
+  EXPECT_EQ(text_of("algorithm", 2), "spin_on_peak");
+  EXPECT_EQ(value_of("algorithm", "spin_on_peak"), 2);
   EXPECT_EQ(value_of("algorithm", "1"), 1);
   EXPECT_EQ(text_of("algorithm", 77), "77");
   EXPECT_NE(refusal_of("algorithm", "fly").find("hill_sensing, spin_on_peak"), std::string::npos);

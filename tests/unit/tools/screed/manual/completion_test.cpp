@@ -18,6 +18,7 @@ class Completion : public ::testing::Test {
  protected:
   Completion() : root_(command_tree(line_.app)) {
     write_text(folder_.path() / "run.ini", "");
+    write_text(folder_.path() / "mine", "");  // begins as a choice does
     std::filesystem::create_directory(folder_.path() / "runs");
   }
 
@@ -49,8 +50,8 @@ class Completion : public ::testing::Test {
   }
   Words fish(const std::string& typed) const {
     Words words;
-    const std::string script =
-        fish_completion(root_) + "complete -C 'screed " + typed + "' | string split -f1 \\t\n";
+    const std::string script = fish_completion(root_) + "complete -C 'screed " + typed +
+                               "' | string split -f1 \\t; true\n";
     return run("fish --no-config", script);
   }
   /// Presses TAB in a terminal of zsh's own; each match that it would add is a line.

@@ -18,9 +18,10 @@ class RoffPage : public ::testing::Test {
   std::string shown(const std::string& page) const {
     const std::filesystem::path& folder = folder_.path();
     write_text(folder / "page.1", page);
-    const std::string command = "cd '" + folder.string() +
-                                "' && LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -P cat -l page.1 > out "
-                                "2> err";
+    const std::string command =
+        "cd '" + folder.string() +
+        "' && LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -P cat -l page.1 > out "
+        "2> err";
     EXPECT_EQ(std::system(command.c_str()), 0);
     EXPECT_EQ(read_text(folder / "err"), "") << page;
     return read_text(folder / "out");

@@ -43,8 +43,8 @@ TEST(SoilOptions, HelpSaysSymbolUnitAndRange) {
   CLI::App command;
   SoilArguments soil;
   add_soil_options(command, soil);
-  EXPECT_EQ(command.get_option("--repose")->get_type_name(), "NUMBER 1..60");
-  EXPECT_EQ(command.get_option("--elastic")->get_type_name(), "NUMBER 10000..1e+12");
+  EXPECT_EQ(command.get_option("--repose")->get_type_name(), "NUMBER:1 to 60");
+  EXPECT_EQ(command.get_option("--elastic")->get_type_name(), "NUMBER:10000 to 1e+12");
   EXPECT_EQ(command.get_option("--repose")->get_description(), "Angle of repose [deg]");
   EXPECT_EQ(command.get_option("--elastic")->get_description(), "Stiffness of unloading E [Pa/m]");
   EXPECT_EQ(command.get_option("--k-phi")->get_description(),
