@@ -17,6 +17,7 @@ namespace screed::nn {
 namespace {
 
 constexpr std::size_t kSecond = kTickRate_hz;
+constexpr std::size_t kReportTicks = kSecond / 5;
 constexpr double kSmoothing = 1.0 / 8.0;
 constexpr float kMinDrivenSpeed = 0.03F;  ///< of tracks that count as driven, m/s
 constexpr double kHalfTread_m = 0.0975;
@@ -81,7 +82,7 @@ SlipRun drive(const StuckScenario& scenario, const TaskProgress& progress) {
         static_cast<std::size_t>(std::lround(e.experiment.duration_s * kTickRate_hz));
     run.ticks.reserve(ticks);
     for (std::size_t i = 0; i < ticks; ++i) {
-      if (i % kSecond == 0) report_progress(progress, kTask, i, ticks);
+      if (i % kReportTicks == 0) report_progress(progress, kTask, i, ticks);
       world->advance();
       robot.tick(world->sample(), output);
       run.ticks.push_back(tick_of(*world, robot));

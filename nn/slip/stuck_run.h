@@ -28,7 +28,7 @@ struct SlipTick {
 };
 
 /// Drives until its end, a fault, or the physics' failure (described in `failure`). `progress` gets
-/// the share of the duration every simulated second, and may stop it.
+/// the share of the duration, and may stop it.
 struct SlipRun {
   StuckScenario scenario;
   std::vector<SlipTick> ticks;

@@ -3,15 +3,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "host_sim/run/experiment/board_table.h"
 #include "paths.h"
 #include "tests/mcu/images.h"
+#include "tests/sitl/terminal.h"
 
 namespace screed::mcu {
 namespace {
@@ -105,6 +108,35 @@ TEST_F(McuProgram, SaysWhatIsMissing) {
   refused("sim " + first_drive() + " --elf none.elf", "--hal mcu");
   refused("sim " + first_drive() + " --hal cloud", "--hal");
   refused("parity " + first_drive() + " --board unheard_of", kDefaultBoard);
+}
+
+TEST_F(McuProgram, StopsWhileParticlesAreLaid) {
+  std::ofstream(root_ / "big.ini") << "[experiment]\nname = big\n[map]\nmodel = particles\n"
+                                      "size = 12\n[particles]\ndepth = 0.15\n";
+  struct Case {
+    std::vector<std::string> words;
+    int signal;
+    int exit_code;
+    std::string last_words;
+  };
+  const Case cases[] = {
+      {{"sim", "--hal", "mcu"},
+       SIGTERM,
+       143,
+       "note: big was stopped while laying particles; there is no run of it\r\n"},
+      {{"parity"}, SIGINT, 130, "screed: stopped while laying particles\r\n"},
+  };
+  for (const Case& it : cases) {
+    std::vector<std::string> words = it.words;
+    words.insert(words.begin(), program_);
+    words.insert(words.end(), {"big.ini", "--elf", kScreedImage});
+    screed::testing::Terminal terminal(words, root_);
+    ASSERT_TRUE(terminal.wait_for("laying particles")) << terminal.screen();
+    terminal.signal(it.signal);
+    EXPECT_EQ(terminal.exit_code(), it.exit_code) << terminal.screen();
+    EXPECT_NE(terminal.screen().find(it.last_words), std::string::npos) << terminal.screen();
+    EXPECT_FALSE(std::filesystem::exists(root_ / "out"));
+  }
 }
 
 }  // namespace

@@ -67,15 +67,6 @@ TEST_F(Interrupt, CheckingSeveralExperiments) {
   expect_nothing_left();
 }
 
-TEST_F(Interrupt, TheImageOfTheMicrocontrollerOnParticles) {
-  write_bed("big", 12.0);
-  expect_stopped({"sim", "big.ini", "--hal", "mcu"}, "laying particles", {SIGTERM, 143},
-                 "note: big was stopped while laying particles; there is no run of it\r\n");
-  expect_stopped({"parity", "big.ini"}, "laying particles", {SIGINT, 130},
-                 "screed: stopped while laying particles\r\n");
-  expect_nothing_left();
-}
-
 // An image that is missing is found before particles are laid: those would take many minutes.
 TEST_F(Interrupt, AMissingImageShowsBeforeParticlesAreLaid) {
   write_bed("big", 20.0);

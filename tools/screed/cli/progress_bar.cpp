@@ -65,7 +65,9 @@ void ProgressBar::draw() {
   for (int i = 0; i < kWidth; ++i) bar += i < full ? "█" : "░";
   const double speed = wall > 0.0 ? (time_s_ - begin_time_s_) / wall : 0.0;
   char text[200];
-  const std::string left = clock_text(speed > 0.0 ? (duration_s_ - time_s_) / speed : 0.0);
+  const bool known = speed > 0.0 || share >= 1.0;
+  const std::string left =
+      known ? clock_text(share < 1.0 ? (duration_s_ - time_s_) / speed : 0.0) : "-:--";
   if (is_share_) {
     std::snprintf(text, sizeof text, " %3.0f %%  %s left  %s", share * 100.0, left.c_str(),
                   note_.c_str());

@@ -235,7 +235,10 @@ int run_check(const NnArguments& arguments) {
       batches.emplace_back(network.network, kernel);
       kernels += std::string(kernels.empty() ? "" : ", ") + nn::batch_kernel_name(kernel);
     }
+    ProgressBar bar(std::cerr);
     for (std::size_t done = 0; done < arguments.vectors; done += kBlock) {
+      bar.show_share(static_cast<double>(done) / static_cast<double>(arguments.vectors),
+                     "checking " + network.outputs.front().feature);
       for (std::int16_t& value : in) value = random_activation(random);
       for (const nn::BatchNetwork& batch : batches) {
         batch.run(in.data(), out.data(), kBlock, kBlock);
@@ -251,6 +254,7 @@ int run_check(const NnArguments& arguments) {
         }
       }
     }
+    bar.clear();
     std::printf("%s %s: %zu random and edge vectors, no bit differs (%s)\n", model.name.c_str(),
                 network.outputs.front().feature.c_str(), arguments.vectors, kernels.c_str());
   }

@@ -45,12 +45,14 @@ InputError no_screen(const std::string& reason) {
 /// Balanced by SDL_QuitSubSystem() when it returns.
 void start_video() {
   const std::string wanted = variable("SDL_VIDEODRIVER");
-  if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) {
-    throw no_screen(wanted.empty() ? SDL_GetError()
-                                   : "SDL_VIDEODRIVER=" + wanted + ": " + SDL_GetError());
+  // Without that folder Wayland's library finds no screen and prints a line of its own.
+  if (wanted.empty() && variable("XDG_RUNTIME_DIR").empty())
+    SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,KMSDRM,offscreen");
+  if (SDL_InitSubSystem(SDL_INIT_VIDEO) == 0) {
+    if (!wanted.empty() || !is_invisible(video_driver())) return;
+    SDL_QuitSubSystem(SDL_INIT_VIDEO);
   }
-  if (!wanted.empty() || !is_invisible(video_driver())) return;
-  SDL_QuitSubSystem(SDL_INIT_VIDEO);
+  if (!wanted.empty()) throw no_screen("SDL_VIDEODRIVER=" + wanted + ": " + SDL_GetError());
   std::string reason;
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
     const std::string value = variable(name);
