@@ -119,6 +119,17 @@ void print_terrain(const TerrainOutcome& terrain, double flatness_deg) {
   std::printf("  %-26s %12s\n", "moved", litres(change.moved_m3()).c_str());
 }
 
+/// A robot that did not drive: why, or that nothing but a command was missing.
+void print_arming(const SimulationSummary& s) {
+  if (s.state == state_name(RobotState::kDisarmed) && s.cannot_be_armed.empty())
+    std::printf("  %-26s %12s\n", "can be armed", "yes");
+  const char* label = "cannot be armed:";
+  for (const std::string& obstacle : s.cannot_be_armed) {
+    std::printf("  %-26s %s\n", label, obstacle.c_str());
+    label = "";
+  }
+}
+
 void print_table(const Experiment& experiment, const SimulationSummary& s) {
   const std::string ended =
       s.end == RunEnd::kDone ? "" : std::string(" (ended: ") + end_text(s.end) + ")";
@@ -131,11 +142,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12d\n", "peaks", s.peaks);
   std::printf("  %-26s %12s\n", "robot", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
-  const char* label = "cannot be armed:";
-  for (const std::string& obstacle : s.cannot_be_armed) {
-    std::printf("  %-26s %s\n", label, obstacle.c_str());
-    label = "";
-  }
+  print_arming(s);
   std::printf("  %-26s %12llu\n", "telemetry frames",
               static_cast<unsigned long long>(s.telemetry_frames));
   std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());
