@@ -86,7 +86,7 @@ class StackedDrawing {
 
   /// An axis title names a single series; several have a legend, and so have the names that fit
   /// into none of their bands.
-  std::vector<LegendEntry> panel_legend(const ChartPanel& panel) {
+  std::vector<LegendEntry> panel_legend(const ChartPanel& panel) const {
     if (!panel.rows.empty()) return band_legend(panel);
     return panel.series.size() > 1 || panel.title.empty() ? legend_of(panel.series)
                                                           : std::vector<LegendEntry>{};
