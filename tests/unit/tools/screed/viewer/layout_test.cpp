@@ -146,7 +146,7 @@ TEST_F(ViewerLayout, WhatThePanelLeavesOutIsSaid) {
       // What a driver must see is there at any size.
       EXPECT_TRUE(says(panel, "H  keys"));
       EXPECT_TRUE(says(panel, status.pace));
-      if (status.faults != 0) EXPECT_TRUE(says(panel, "EMERGENCY STOP"));
+      EXPECT_EQ(says(panel, "EMERGENCY STOP:"), status.faults != 0);
     }
   }
   const PanelLayout large = panel_layout(layout_of(1280, 900), short_status(), measure_);
