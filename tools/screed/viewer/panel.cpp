@@ -20,7 +20,7 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMargin_px = 22.0;
 constexpr double kText_px = 14.0;
-constexpr double kLeastText_px = 8.5;
+constexpr double kMinText_px = 8.5;
 const char* const kMore = "\u2026 more in a larger window";
 
 Color robot_state_color(int state) {
@@ -59,7 +59,7 @@ std::string volume_text(double m3) {
 }
 
 /// When the panel is full, rows with larger numbers are left out first.
-enum Importance : int { kAlways, kWho, kMotion, kChangeOrPath, kAttitude, kDetail, kLeast };
+enum Importance : int { kAlways, kWho, kMotion, kChangeOrPath, kAttitude, kDetail, kSpare };
 
 /// A row of the panel: words on the left, in the middle and on the right, each with its style.
 struct Row {
@@ -131,7 +131,7 @@ void add_head(Rows& rows, const Status& s) {
                         {.size_px = 32.0, .color = kPaleInk, .bold = true});
   clock.right = {s.pace,
                  {.size_px = 16.0, .color = kAccent, .align = TextAlign::kRight, .bold = true}};
-  rows.add(kLeast, 19.0, "of " + clock_text(s.duration_s), {.size_px = 12.5, .color = kFaintInk});
+  rows.add(kSpare, 19.0, "of " + clock_text(s.duration_s), {.size_px = 12.5, .color = kFaintInk});
   const auto state = static_cast<RobotState>(s.state);
   std::string words = state_name(state);
   if (state == RobotState::kRunning) {
@@ -183,8 +183,8 @@ void add_slopes(Rows& rows, const Status::Terrain& s) {
     rows.figure(importance, what, now, s.loose ? before : "");
   };
   row(kDetail, "mean", degrees(s.before.mean_deg, 2), degrees(s.now.mean_deg, 2));
-  row(kLeast, "95 % below", degrees(s.before.p95_deg), degrees(s.now.p95_deg));
-  row(kLeast, "steepest", degrees(s.before.steepest_deg), degrees(s.now.steepest_deg));
+  row(kSpare, "95 % below", degrees(s.before.p95_deg), degrees(s.now.p95_deg));
+  row(kSpare, "steepest", degrees(s.before.steepest_deg), degrees(s.now.steepest_deg));
   row(kDetail, "flat (to " + number_text(s.flat_limit_deg, 0) + "\u00b0)",
       number_text(s.before.flat * 100.0, 1) + " %", number_text(s.now.flat * 100.0, 1) + " %");
 }
@@ -209,7 +209,7 @@ double height_of(const std::vector<Row>& rows) {
 /// Leaves out the least important rows until the rest fits. Returns whether any is missing.
 bool drop_rows(std::vector<Row>& rows, double room_px, double more_px) {
   bool dropped = false;
-  for (int importance = kLeast; importance > kAlways; --importance) {
+  for (int importance = kSpare; importance > kAlways; --importance) {
     if (height_of(rows) + (dropped ? more_px : 0.0) <= room_px) break;
     const size_t before = rows.size();
     std::erase_if(rows, [&](const Row& row) { return row.importance == importance; });
@@ -235,7 +235,7 @@ void place_words(PanelLayout& panel, const Row& row, double scale, double y,
   const double smaller = needed > room ? room / needed : 1.0;
   for (Row::Words& part : words) {
     part.style.size_px =
-        std::max(part.style.size_px * smaller, std::min(part.style.size_px, kLeastText_px));
+        std::max(part.style.size_px * smaller, std::min(part.style.size_px, kMinText_px));
   }
   double taken = panel.right + kGap_px;
   const auto add = [&](const std::string& text, const TextStyle& style, double x) {
