@@ -22,10 +22,10 @@ struct TelemetryView {
   const SensorSample* sample;
   const RobotStatus* robot;
   const UplinkCounts* uplink;
-  uint8_t slip;   ///< 1: the tracks move much more than the robot
-  uint8_t stuck;  ///< 1: and have done so for long
-  uint16_t faults;   ///< latched ones in kFault, else those present
-  bool starting;     ///< the attitude estimator is not ready
+  uint8_t slip;     ///< 1: the tracks move much more than the robot
+  uint8_t stuck;    ///< 1: and have done so for long
+  uint16_t faults;  ///< latched ones in kFault, else those present
+  bool starting;    ///< the attitude estimator is not ready
   bool link_alive;
   uint16_t boot_epoch;
   uint16_t freshness;  ///< counter of the last command that was accepted

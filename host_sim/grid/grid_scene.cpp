@@ -8,13 +8,19 @@
 #include "host_sim/render/picture/color_map.h"
 #include "host_sim/render/scene/pov_text.h"
 #include "host_sim/render/scene/povray.h"
+#include "host_sim/render/scene/scene_camera.h"
 
 namespace screed {
 namespace {
 
 constexpr double kGap = 0.12;         ///< of the width of all frames, between two
 constexpr double kHeightScale = 0.8;  ///< a voxel is a little flatter than wide
-constexpr double kAspect = 0.42;      ///< height of the picture to its width, for two frames
+constexpr double kFieldOfView_deg = 46.0;
+
+/// Height of the picture to its width.
+double aspect_of(const std::vector<GridFrame>& frames) {
+  return frames.size() == 1 ? 0.75 : 0.42;
+}
 
 /// Stacks and agents of one frame, its west side at x = left. POV-Ray: x east, y up, z north.
 class FrameText {
@@ -63,6 +69,32 @@ class FrameText {
   double left_;
   std::string out_;
 };
+
+/// Looking north and down, a little from the west, as far away as everything needs to be seen: the
+/// grids from their floor to an agent on the tallest stack.
+std::string camera_text(const std::vector<GridFrame>& frames, double width, double depth,
+                        int tallest) {
+  constexpr double kAgent = 1.6;
+  constexpr double kMargin = 0.03;
+  CameraOrbit orbit;
+  orbit.azimuth_deg = -92.0;
+  orbit.elevation_deg = 42.0;
+  // scene_camera.h has z up, this scene y.
+  std::vector<Eigen::Vector3d> corners;
+  for (const double x : {0.0, width}) {
+    for (const double north : {0.0, depth}) {
+      corners.emplace_back(x, north, 0.0);
+      corners.emplace_back(x, north, kHeightScale * tallest + kAgent);
+    }
+  }
+  const SceneCamera camera =
+      camera_around(orbit, corners, {kFieldOfView_deg, 1.0 / aspect_of(frames)}, kMargin);
+  const auto place = [](const Eigen::Vector3d& at) {
+    return pov_line("<%.3f,%.3f,%.3f>", at.x(), at.z(), at.y());
+  };
+  return "camera { location " + place(camera.location) + " look_at " + place(camera.target) +
+         pov_line(" angle %.1f right x*image_width/image_height }\n", kFieldOfView_deg);
+}
 
 /// An icosahedron of that radius around the origin, as a mesh.
 std::string icosahedron(const char* name, const char* pigment, double radius) {
@@ -113,13 +145,7 @@ std::string scene_text(const std::vector<GridFrame>& frames) {
       "global_settings { assumed_gamma 1.0 }\n"
       "#declare Shine = finish { ambient 0 diffuse 0.85 specular 0.25 roughness 0.03 }\n"
       "background { color srgb <0.97,0.975,0.98> }\n";
-  // Looking north and down, a little from the west, as far away as everything needs to be seen.
-  const double distance = all * 1.18;
-  text += pov_line(
-      "camera { location <%.2f,%.2f,%.2f> look_at <%.2f,%.2f,%.2f> angle 46 right "
-      "x*image_width/image_height }\n",
-      all * 0.47, distance * 0.78, -distance * 0.80, all * 0.5, tallest * kHeightScale * 0.3,
-      depth * 0.42);
+  text += camera_text(frames, all, depth, tallest);
   text += pov_line(
       "light_source { <%.2f,%.2f,%.2f> rgb 0.92 area_light <%.2f,0,0>, <0,0,%.2f>, 4, 4 "
       "adaptive 1 }\n",
@@ -147,7 +173,7 @@ std::string scene_text(const std::vector<GridFrame>& frames) {
 
 bool render_scene(const std::filesystem::path& picture, const std::vector<GridFrame>& frames,
                   int width_px, const TaskProgress& progress) {
-  const double aspect = frames.size() == 1 ? 0.75 : kAspect;
+  const double aspect = aspect_of(frames);
   PovrayJob job(picture);
   job.write_scene(scene_text(frames));
   const bool rendered =

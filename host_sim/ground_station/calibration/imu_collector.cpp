@@ -17,8 +17,8 @@ constexpr double kStillAccel_counts = 25.0 / 0.244;
 constexpr double kStillDeviation_counts = 0.5 / 0.070;
 constexpr size_t kRecent = 8;  // 0.8 s
 // What the samples of a whole turn reach on each axis at least: 350 mG of the 440 that the weakest
-// field of the earth, 220 mG, gives. The middle of samples that reach less lies among them, and they
-// would seem to be all round it.
+// field of the earth, 220 mG, gives. The middle of samples that reach less lies among them, and
+// they would seem to be all round it.
 constexpr double kMinMagExtent_counts = 350.0 / 0.160;
 constexpr size_t kMaxSamples = 5000;
 

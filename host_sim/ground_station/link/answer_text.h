@@ -1,4 +1,5 @@
-// A robot's answer to a command, in words: what it refused, in which state, and what to do about it.
+// A robot's answer to a command, in words: what it refused, in which state, and what to do about
+// it.
 #pragma once
 
 #include <cstdint>

@@ -102,8 +102,7 @@ void draw_group(TextCanvas& page, int x, int y, const DashboardGroup& group, Cel
   page.box(x, y, kColumn, kBox, group.title, edge);
   const int inside = kColumn - 4;
   const bool text = !group.rows.empty() && group.rows.front().label.empty();
-  const std::vector<DashboardRow> rows =
-      text ? broken(group.rows, inside, kBox - 2) : group.rows;
+  const std::vector<DashboardRow> rows = text ? broken(group.rows, inside, kBox - 2) : group.rows;
   x += 2;
   for (const DashboardRow& row : rows) {
     ++y;

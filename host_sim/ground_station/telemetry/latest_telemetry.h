@@ -46,7 +46,7 @@ class LatestTelemetry {
   void set_parameter(std::string_view name, int32_t value);
 
  private:
-  std::map<uint16_t, Frame> frames_;          ///< by the id of node 1
+  std::map<uint16_t, Frame> frames_;        ///< by the id of node 1
   std::map<uint16_t, int32_t> parameters_;  ///< by index
 };
 

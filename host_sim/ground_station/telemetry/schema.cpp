@@ -129,9 +129,8 @@ std::vector<FlagInfo> flags_of(std::string_view message, std::string_view field)
   for (const SignalInfo& it : message_of(message, message).signals) {
     if (it.flags == field) flags.push_back({&it, 0});
   }
-  std::sort(flags.begin(), flags.end(), [](const FlagInfo& a, const FlagInfo& b) {
-    return a.signal->start < b.signal->start;
-  });
+  std::sort(flags.begin(), flags.end(),
+            [](const FlagInfo& a, const FlagInfo& b) { return a.signal->start < b.signal->start; });
   for (FlagInfo& it : flags) it.bit = 1U << (it.signal->start - flags.front().signal->start);
   return flags;
 }

@@ -32,7 +32,10 @@ MapRanges ranges_of(const PathMap& map) {
       ranges.y.add(point.y);
     }
   }
-  if (map.image.has_value()) {
+  if (map.view.has_value()) {
+    ranges.x = {map.view->x_min, map.view->x_max};
+    ranges.y = {map.view->y_min, map.view->y_max};
+  } else if (map.image.has_value()) {
     const MapRectangle& ground = map.image->ground;
     ranges.x.add(ground.x_min);
     ranges.x.add(ground.x_max);
@@ -130,13 +133,13 @@ void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box) {
                y(ground.y_min) - y(ground.y_max)},
               rgb_png(map.image->width, map.image->height, map.image->rgb));
   }
-  svg.end_clip();
   // The later paths are dashed: where they cover the first, it shows between the dashes.
   for (std::size_t i = 0; i < map.paths.size(); ++i) {
     draw_path(svg, map.paths[i], x, y, line_color(i), i > 0);
   }
   for (std::size_t i = 0; i < map.paths.size(); ++i)
     draw_ends(svg, map.paths[i], x, y, line_color(i));
+  svg.end_clip();
   svg.frame(plot, kChartInk, 1.2);
   if (map.scale.has_value()) {
     draw_color_bar(svg, *map.scale,

@@ -30,10 +30,12 @@ struct PathMap {
   std::vector<MapPath> paths;
   std::optional<MapImage> image;
   std::optional<ColorScale> scale;  ///< of the image; a colour bar below the map
+  /// What the map shows; none: all paths and all of the image.
+  std::optional<MapRectangle> view;
 };
 
-/// Draws map, axes in metres, legend and colour bar into the box: all paths and all of the image.
-/// Throws InputError when there is nothing to draw or a place is no number.
+/// Draws map, axes in metres, legend and colour bar into the box. Throws InputError when there is
+/// nothing to draw or a place is no number.
 void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box);
 
 }  // namespace screed

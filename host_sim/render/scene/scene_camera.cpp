@@ -120,8 +120,8 @@ SceneCamera camera_around(const CameraOrbit& orbit, std::span<const Eigen::Vecto
     place.z() = std::max(place.z(), 0.5 * (plus + minus) / tangent);
   }
   // A single point would have the camera in it. What belongs to the picture itself stands nearer.
-  constexpr double kLeastDistance_m = 0.12;
-  place.z() = std::max(place.z(), nearest + kLeastDistance_m);
+  constexpr double kMinDistance_m = 0.12;
+  place.z() = std::max(place.z(), nearest + kMinDistance_m);
   const Eigen::Vector3d target = axes * Eigen::Vector3d(place.x(), place.y(), nearest);
   return {axes * place, target};
 }

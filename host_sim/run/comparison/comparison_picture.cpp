@@ -99,14 +99,53 @@ MapPath path_of(const ComparedRun& run, const std::string& label) {
   return path;
 }
 
+/// The part of a bed in which something happened: both paths, and where the terrains differ, with
+/// room for the robots. Nothing when that is most of the bed.
+std::optional<MapRectangle> view_of(const SessionComparison& comparison) {
+  constexpr double kRoom_m = 0.3;
+  constexpr double kMinRatio = 0.7;  // of the sides
+  constexpr double kMaxShareOfBed = 0.6;
+  ValueRange x;
+  ValueRange y;
+  for (const ComparedRun& run : comparison.runs) {
+    for (const TracePoint& point : run.trace) {
+      x.add(point.x_m);
+      y.add(point.y_m);
+    }
+  }
+  const HeightMapGeometry& g = comparison.runs[0].terrain->geometry;
+  const std::vector<double>& height_m = comparison.terrain.height_m;
+  for (std::size_t i = 0; i < height_m.size(); ++i) {
+    if (height_m[i] == 0.0) continue;
+    x.add(g.origin_x_m + static_cast<double>(i % g.nx) * g.spacing_m);
+    y.add(g.origin_y_m + static_cast<double>(i / g.nx) * g.spacing_m);
+  }
+  const double width = x.high - x.low + 2.0 * kRoom_m;
+  const double height = y.high - y.low + 2.0 * kRoom_m;
+  const double half_width = 0.5 * std::max(width, kMinRatio * height);
+  const double half_height = 0.5 * std::max(height, kMinRatio * width);
+  const double middle_x = 0.5 * (x.low + x.high);
+  const double middle_y = 0.5 * (y.low + y.high);
+  const MapRectangle view{
+      std::max(middle_x - half_width, g.origin_x_m),
+      std::min(middle_x + half_width, g.origin_x_m + (g.nx - 1) * g.spacing_m),
+      std::max(middle_y - half_height, g.origin_y_m),
+      std::min(middle_y + half_height, g.origin_y_m + (g.ny - 1) * g.spacing_m)};
+  const double area = (view.x_max - view.x_min) * (view.y_max - view.y_min);
+  const double bed = (g.nx - 1) * g.spacing_m * (g.ny - 1) * g.spacing_m;
+  const bool some = view.x_min < view.x_max && view.y_min < view.y_max;
+  return some && area < kMaxShareOfBed * bed ? std::optional(view) : std::nullopt;
+}
+
 PathMap path_map(const SessionComparison& comparison, const std::array<std::string, 2>& labels) {
   PathMap map;
   map.title = "paths (ring: start, square: end)";
   for (std::size_t i = 0; i < 2; ++i) {
-    map.paths.push_back(path_of(comparison.runs[i], std::string(kRunNames[i]) + "  " + labels[i]));
+    map.paths.push_back(path_of(comparison.runs[i], std::string(kRunNames[i]) + ": " + labels[i]));
   }
   if (comparison.terrain.not_comparable.empty()) {
     map.image = relief_image(*comparison.runs[0].terrain);
+    map.view = view_of(comparison);
   }
   return map;
 }
@@ -115,6 +154,7 @@ PathMap difference_map(const SessionComparison& comparison) {
   const TerrainDifference& terrain = comparison.terrain;
   const double limit = difference_limit_m(terrain.height_m);
   PathMap map;
+  map.view = view_of(comparison);
   map.title = comparison.same_terrain || terrain.rms_m == 0.0 ? "terrain at the end: no difference"
                                                               : "terrain at the end: B above A";
   map.image = difference_image(comparison.runs[0].terrain->geometry, terrain.height_m, limit);
@@ -164,6 +204,7 @@ BandRow state_row(const ComparedRun& run, const std::string& label) {
 StackedChart deviation_chart(const SessionComparison& comparison) {
   StackedChart chart;
   chart.x_label = "time [s]";
+  chart.x.add(0.0);
   if (!comparison.deviation.empty()) {
     chart.panels.push_back(deviation_panel(
         comparison, "position apart [mm]",
@@ -200,11 +241,11 @@ void draw_head(Svg& svg, const SessionComparison& comparison,
     const ComparedRun& run = comparison.runs[i];
     y += 24.0;
     char facts[200];
-    std::snprintf(facts, sizeof facts, ": %s, seed %llu, %.2f s, ends %s", run.name.c_str(),
+    std::snprintf(facts, sizeof facts, ", %s, seed %llu, %.2f s, ends %s", run.name.c_str(),
                   static_cast<unsigned long long>(run.seed), run.end.time_s, run.end.state.c_str());
     svg.rectangle({kLeft_px, y - 11.0, 13.0, 13.0}, line_color(i), 2.0);
     svg.text({kLeft_px + 20.0, y},
-             svg_fitted(std::string(kRunNames[i]) + "  " + labels[i] + facts, 13.0,
+             svg_fitted(std::string(kRunNames[i]) + ": " + labels[i] + facts, 13.0,
                         kWidth_px - 3.0 * kLeft_px),
              {.size_px = 13.0});
   }
@@ -215,9 +256,9 @@ void draw_configuration(Svg& svg, const SessionComparison& comparison, const Pix
   constexpr double kRow_px = 19.0;
   const std::vector<KeyDifference>& keys = comparison.configuration;
   double y = box.top + 20.0;
-  const std::string count = keys.empty()
-                                ? "configuration: the same"
-                                : "configuration: " + std::to_string(keys.size()) + " keys differ";
+  const std::string count = keys.empty() ? "configuration: the same"
+                                         : "configuration: " + std::to_string(keys.size()) +
+                                               (keys.size() == 1 ? " key differs" : " keys differ");
   svg.text({box.left, y}, count, {.size_px = 14.0, .bold = true});
   const double column = box.width * 0.29;
   const double key_width = box.width - 2.0 * column;
@@ -246,14 +287,14 @@ void draw_configuration(Svg& svg, const SessionComparison& comparison, const Pix
 }  // namespace
 
 double difference_limit_m(const std::vector<double>& height_m) {
-  constexpr double kLeast_m = 1e-4;
+  constexpr double kMinScale_m = 1e-4;
   constexpr double kShare = 0.995;
   std::vector<double> sizes;
   for (const double height : height_m) {
     if (height != 0.0) sizes.push_back(std::abs(height));
   }
   if (sizes.empty()) return 1e-3;
-  const double size = std::max(kLeast_m, quantile(sizes, kShare));
+  const double size = std::max(kMinScale_m, quantile(sizes, kShare));
   const double decade = std::pow(10.0, std::floor(std::log10(size)));
   for (const double factor : {1.0, 2.0, 5.0}) {
     if (size <= factor * decade * (1.0 + 1e-9)) return factor * decade;

@@ -11,6 +11,8 @@
 #include "host_sim/core/ini_file.h"
 #include "host_sim/core/record.h"
 #include "host_sim/ground_station/telemetry/schema.h"
+#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/run/session/height_export.h"
 
 namespace screed {
 namespace {
@@ -106,17 +108,9 @@ std::string name_of(const char* signal, std::int64_t value) {
 }
 
 void add_volumes(const HeightMap& before, const HeightMap& after, RunEnd& end) {
-  const HeightMapGeometry& g = before.geometry;
-  if (g.nx != after.geometry.nx || g.ny != after.geometry.ny) return;
-  double cut = 0.0;
-  double fill = 0.0;
-  for (std::size_t i = 0; i < before.heights.size(); ++i) {
-    const double change = after.heights[i] * after.geometry.unit_m - before.heights[i] * g.unit_m;
-    (change < 0.0 ? cut : fill) += std::abs(change);
-  }
-  const double cell_l = g.spacing_m * g.spacing_m * kLitresPerM3;
-  end.cut_l = cut * cell_l;
-  end.fill_l = fill * cell_l;
+  const TerrainChange change = terrain_change(field_of(before), field_of(after));
+  end.cut_l = change.cut_m3 * kLitresPerM3;
+  end.fill_l = change.fill_m3 * kLitresPerM3;
 }
 
 /// Ten points a second and the last frame of one run, and its end.

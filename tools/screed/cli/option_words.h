@@ -75,7 +75,7 @@ inline std::string take_default(std::string& help) {
   const std::size_t begin = help.rfind(kBegin);
   if (begin == std::string::npos || help.find(')', begin) + 1 != help.size()) return "";
   const std::size_t text = begin + std::string(kBegin).size();
-  const std::string fallback = help.substr(text, help.size() - 1 - text);
+  std::string fallback = help.substr(text, help.size() - 1 - text);
   help.resize(begin);
   return fallback;
 }

@@ -391,9 +391,10 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
                    "motion; tracks: recorded track motion")
       ->capture_default_str()
       ->check(CLI::IsMember({"firmware", "tracks"}));
-  rollout_command->add_option("--out", rollout->out,
-                              "Output folder for pictures of some rollouts: paths, and deviation "
-                              "from the physics over the distance")
+  rollout_command
+      ->add_option("--out", rollout->out,
+                   "Output folder for pictures of some rollouts: paths, and deviation "
+                   "from the physics over the distance")
       ->type_name("FOLDER");
   rollout_command->callback(
       [rollout, &program] { program.action = [rollout] { return run_rollout(*rollout); }; });

@@ -179,7 +179,8 @@ void print_text(const SessionComparison& comparison, const CompareArguments& arg
   if (comparison.configuration.empty()) {
     std::printf("configuration  the same\n");
   } else {
-    std::printf("configuration  %zu keys differ\n", comparison.configuration.size());
+    std::printf("configuration  %zu %s\n", comparison.configuration.size(),
+                comparison.configuration.size() == 1 ? "key differs" : "keys differ");
     for (const KeyDifference& it : comparison.configuration) {
       print_row(it.key, it.a.value_or("not set"), it.b.value_or("not set"));
     }
@@ -242,6 +243,7 @@ void register_session_compare_command(CLI::App& session, Program& program) {
   command->add_option("A", arguments->runs[0], "Run folder or session file")->required();
   command->add_option("B", arguments->runs[1], "Run folder or session file")->required();
   command->add_option("--out", arguments->out, "Output picture, .png; replaced where it exists")
+      ->type_name("FILE")
       ->capture_default_str();
   command->add_flag("--no-picture", arguments->no_picture, "Print the comparison alone");
   command->add_flag("--json", arguments->json, "Print JSON");

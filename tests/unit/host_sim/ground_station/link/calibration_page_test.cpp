@@ -41,9 +41,9 @@ TEST_F(CalibrationPage, KeepsWhatMattersInSmallTerminals) {
     EXPECT_NE(text.find("turn the robot level"), std::string::npos) << text;
     EXPECT_NE(text.find("magnetometer: 0 %"), std::string::npos) << text;
     EXPECT_NE(text.find("q give up"), std::string::npos) << text;
-    EXPECT_EQ(text.find("[ ] " + std::string(position_name(Position::kRightUp))) !=
-                  std::string::npos,
-              it.positions)
+    EXPECT_EQ(
+        text.find("[ ] " + std::string(position_name(Position::kRightUp))) != std::string::npos,
+        it.positions)
         << text;
     EXPECT_EQ(text.find("┌") != std::string::npos, it.curve) << text;
     EXPECT_EQ(text.find("└") != std::string::npos, it.curve) << text;

@@ -136,15 +136,20 @@ struct Case {
 TEST(Arming, SentencesAreThereExactlyWhenTheRobotRefuses) {
   const Case cases[] = {
       {"ready", [](TestRobot&) {}, Result::kDone, {}},
-      {"low", [](TestRobot& robot) { robot.sample.battery = 2730; }, Result::kFaultPresent,
+      {"low",
+       [](TestRobot& robot) { robot.sample.battery = 2730; },
+       Result::kFaultPresent,
        {"battery 5.00 V below battery_low 6.00 V (the default)"}},
       {"on its side",
        [](TestRobot& robot) {
          robot.sample.accel[1] = 4098;
          robot.sample.accel[2] = 0;
        },
-       Result::kFaultPresent, {"tilted 90 degrees, tilt_limit 50 degrees (the default)"}},
-      {"unheard", [](TestRobot& robot) { robot.heartbeats = false; }, Result::kNoLink,
+       Result::kFaultPresent,
+       {"tilted 90 degrees, tilt_limit 50 degrees (the default)"}},
+      {"unheard",
+       [](TestRobot& robot) { robot.heartbeats = false; },
+       Result::kNoLink,
        {"the robot hears no ground station"}},
   };
   for (const Case& it : cases) {

@@ -8,11 +8,16 @@
 #include <numbers>
 #include <string>
 
+#include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/run/comparison/comparison_picture.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
 
 namespace screed {
 namespace {
+
+/// Of the heights below: 1/1024 m.
+constexpr int kUnits = 1 << 14;
+constexpr double kMm = 1.0 / 1024.0;
 
 /// A straight drive east at 0.1 m/s on a bed of 4 x 3 heights of 0.25 m.
 Recording straight(std::size_t ticks) {
@@ -35,11 +40,11 @@ Recording straight(std::size_t ticks) {
     run.samples.emplace_back();
     run.outputs.emplace_back();
   }
-  run.before.geometry = {4, 3, 0.001, 0.25, -0.375, -0.25, false};
-  run.before.heights.assign(12, 100);
+  run.before.geometry = {4, 3, kHeightUnit_m, 0.25, -0.375, -0.25, false};
+  run.before.heights.assign(12, 100 * kUnits);
   run.after = run.before;
-  run.after.heights[5] = 90;   // 10 mm lower
-  run.after.heights[6] = 104;  // 4 mm higher
+  run.after.heights[5] = 90 * kUnits;   // about 10 mm lower
+  run.after.heights[6] = 104 * kUnits;  // and 4 mm higher
   return run;
 }
 
@@ -76,8 +81,8 @@ TEST_F(Comparison, ARunIsIdenticalToItself) {
   EXPECT_EQ(end.leveling_state, "walk");
   EXPECT_EQ(end.faults, "none");
   EXPECT_DOUBLE_EQ(end.energy_j, 249.0);
-  EXPECT_NEAR(*end.cut_l, 0.010 * 0.0625 * 1000.0, 1e-9);
-  EXPECT_NEAR(*end.fill_l, 0.004 * 0.0625 * 1000.0, 1e-9);
+  EXPECT_NEAR(*end.cut_l, 10.0 * kMm * 0.0625 * 1000.0, 1e-9);
+  EXPECT_NEAR(*end.fill_l, 4.0 * kMm * 0.0625 * 1000.0, 1e-9);
   // Ten a second, and the last.
   EXPECT_EQ(result.runs[0].trace.size(), 26U);
   EXPECT_EQ(result.deviation.size(), 26U);
@@ -188,20 +193,20 @@ TEST_F(Comparison, OnAWrappedBedPlacesAreThoseTravelled) {
 
 TEST_F(Comparison, TerrainsAreComparedWhereTheGridsMatch) {
   Recording other = straight(10);
-  other.after.heights[5] = 92;
-  other.after.heights[0] = 97;
+  other.after.heights[5] = 92 * kUnits;
+  other.after.heights[0] = 97 * kUnits;
   const SessionComparison result = compare(straight(10), other);
   const TerrainDifference& terrain = result.terrain;
   EXPECT_EQ(terrain.not_comparable, "");
   EXPECT_FALSE(result.same_terrain);
   EXPECT_FALSE(result.identical());
-  EXPECT_NEAR(terrain.highest_m, 0.002, 1e-12);
-  EXPECT_NEAR(terrain.lowest_m, -0.003, 1e-12);
-  EXPECT_NEAR(terrain.rms_m, std::sqrt((4e-6 + 9e-6) / 12.0), 1e-12);
-  EXPECT_NEAR(terrain.above_l, 0.125, 1e-9);
-  EXPECT_NEAR(terrain.below_l, 0.1875, 1e-9);
+  EXPECT_NEAR(terrain.highest_m, 2.0 * kMm, 1e-12);
+  EXPECT_NEAR(terrain.lowest_m, -3.0 * kMm, 1e-12);
+  EXPECT_NEAR(terrain.rms_m, kMm * std::sqrt((4.0 + 9.0) / 12.0), 1e-12);
+  EXPECT_NEAR(terrain.above_l, 2.0 * kMm * 62.5, 1e-9);
+  EXPECT_NEAR(terrain.below_l, 3.0 * kMm * 62.5, 1e-9);
   ASSERT_EQ(terrain.height_m.size(), 12U);
-  EXPECT_NEAR(terrain.height_m[5], 0.002, 1e-12);
+  EXPECT_NEAR(terrain.height_m[5], 2.0 * kMm, 1e-12);
 }
 
 TEST_F(Comparison, OtherGridsAreNotCompared) {
@@ -229,11 +234,11 @@ TEST_F(Comparison, ThePictureSaysWhatIsCompared) {
     other.frames[i].y = 0.001 * static_cast<double>(i - 199);
     other.frames[i].leveling_state = 3;
   }
-  other.after.heights[5] = 92;
+  other.after.heights[5] = 92 * kUnits;
   const SessionComparison result = compare(straight(500), other);
   const std::string svg = comparison_svg(result, {"out/a", "out/b"});
   for (const char* words :
-       {"first difference in tick 200 (2.00 s): frames.y", ">A  out/a<", ">B  out/b<",
+       {"first difference in tick 200 (2.00 s): frames.y", ">A: out/a<", ">B: out/b<",
         ">position apart [mm]<", ">heading, B from A [deg]<", ">spin<", ">walk<",
         ">B higher than A [mm]<", ">experiment.duration<", ">not set<"}) {
     EXPECT_NE(svg.find(words), std::string::npos) << words;

@@ -15,7 +15,7 @@ namespace {
 class ParameterFile : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& text) const {
-    const std::filesystem::path file = folder_.path() / "file.ini";
+    std::filesystem::path file = folder_.path() / "file.ini";
     write_text(file, text);
     return file;
   }
