@@ -97,7 +97,7 @@ TEST_F(Program, ListsEverySubcommandByName) {
   std::string line;
   while (std::getline(help, line) && line != "Subcommands:") {
   }
-  while (std::getline(help, line)) {
+  while (std::getline(help, line) && !line.empty()) {
     if (line.size() > 2 && line[2] != ' ') listed.push_back(line.substr(2, line.find(' ', 2) - 2));
   }
   EXPECT_EQ(listed, expected);

@@ -163,7 +163,7 @@ TEST_F(Render, HeightsAreTintedUnlessAskedOtherwise) {
 
 TEST_F(Render, ParticlesAreRoundAndWhereTheRunLeftThem) {
   write("g.ini",
-        "[experiment]\nduration = 0.5\nalgorithm = drive\n[map]\nsize = 0.4\nmodel = "
+        "[experiment]\nduration = 6.5\nalgorithm = drive\n[map]\nsize = 0.4\nmodel = "
         "particles\nparticle_radius = 0.02\n[particles]\ndepth = 0.06\n");
   ASSERT_EQ(run("sim g.ini --quiet --out gravel").exit_code, 0);
   const auto spheres = [this](const std::string& options) {

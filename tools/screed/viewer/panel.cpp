@@ -131,7 +131,7 @@ void add_head(Rows& rows, const Status& s) {
                         {.size_px = 32.0, .color = kPaleInk, .bold = true});
   clock.right = {s.pace,
                  {.size_px = 16.0, .color = kAccent, .align = TextAlign::kRight, .bold = true}};
-  rows.add(kSpare, 19.0, "of " + clock_text(s.duration_s), {.size_px = 12.5, .color = kFaintInk});
+  rows.add(kSpare, 23.0, "of " + clock_text(s.duration_s), {.size_px = 12.5, .color = kFaintInk});
   const auto state = static_cast<RobotState>(s.state);
   std::string words = state_name(state);
   if (state == RobotState::kRunning) {

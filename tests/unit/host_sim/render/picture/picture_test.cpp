@@ -204,7 +204,8 @@ TEST_F(PictureTest, DrawsLevelGround) {
 TEST(PathOverlayTest, AJumpOverTheSeamIsDrawnOnlyWithoutWrap) {
   PictureOptions options = small_picture();
   options.robot.reset();
-  options.path = {{-0.9, 0.0, 0}, {-0.8, 0.0, 0}, {0.8, 0.0, 0}, {0.9, 0.0, 0}};
+  // State 1 has a colour without blue.
+  options.path = {{-0.9, 0.0, 1}, {-0.8, 0.0, 1}, {0.8, 0.0, 1}, {0.9, 0.0, 1}};
   for (const bool wrap : {false, true}) {
     Canvas canvas(800, 700, {1.0, 1.0, 1.0});
     const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, 0.0);
