@@ -105,11 +105,31 @@ TEST_F(ModelProgram, AMappingNamesWhatNoRuleFinds) {
       driven("model = own.urdf\nchassis_link = hull\nwheel_links = lf rf lr rr");
   EXPECT_GT(distance, 0.4);
   EXPECT_EQ(checked("e.ini")["chassis"], "hull");
-  // What was recorded names them again; the model is found from the run, and without it from here.
+  // What was recorded names them again.
   const Result scene = run("render run --pov-only");
   EXPECT_EQ(scene.exit_code, 0) << scene.err;
-  const Result replay = run("replay run");
-  EXPECT_EQ(replay.exit_code, 0) << replay.err;
+}
+
+TEST_F(ModelProgram, ARecordedRunFindsItsModelAboveItAndHere) {
+  std::filesystem::create_directories(root_ / "mine");
+  write("mine/own.urdf", urdf_of({}));
+  write("mine/e.ini", "[vehicle]\nmodel = own.urdf\ntracks = false\n[experiment]\nduration = 1\n");
+  const Result sim = run("sim mine/e.ini --quiet --heights --out mine/runs/r");
+  ASSERT_EQ(sim.exit_code, 0) << sim.err;
+  const Result above = run("render mine/runs/r --pov-only");
+  EXPECT_EQ(above.exit_code, 0) << above.err;
+
+  std::filesystem::rename(root_ / "mine" / "runs" / "r", root_ / "away");
+  const Result gone = run("render away --pov-only");
+  EXPECT_EQ(gone.exit_code, 2);
+  EXPECT_NE(gone.err.find("'own.urdf': no such file"), std::string::npos) << gone.err;
+  const Result here = run("render ../away --pov-only", "cd mine &&");
+  EXPECT_EQ(here.exit_code, 0) << here.err;
+  // Pictures are worth having without the robot, too.
+  const Result exported = run("session export away --pictures --every 50");
+  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_NE(exported.err.find("note: the pictures are without the robot"), std::string::npos)
+      << exported.err;
 }
 
 TEST_F(ModelProgram, ABoardThatDoesNotFitIsWarnedAbout) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 
 #include "host_sim/core/data_folders.h"
@@ -66,6 +67,10 @@ struct Doubt {
   void (*make)(RosRobot& robot);
   const char* warning;
 };
+
+void PrintTo(const Doubt& doubt, std::ostream* stream) {
+  *stream << doubt.name;
+}
 
 class DoubtfulModel : public ::testing::TestWithParam<Doubt> {};
 
