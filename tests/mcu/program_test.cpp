@@ -25,7 +25,7 @@ struct Result {
   std::string err;
 };
 
-class McuProgram : public testing::Test {
+class McuProgram : public ::testing::Test {
  protected:
   void SetUp() override {
     const char* program = std::getenv("SCREED_PROGRAM");
@@ -34,7 +34,7 @@ class McuProgram : public testing::Test {
     program_ = program;
     root_ = std::filesystem::temp_directory_path() /
             ("screed-mcu-" + std::to_string(getpid()) + "-" +
-             testing::UnitTest::GetInstance()->current_test_info()->name());
+             ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
   }

@@ -180,8 +180,7 @@ TEST_F(View, AnInvisibleWindowIsSaid) {
 }
 
 TEST_F(View, CtrlCEndsAFilmAndKeepsItsFrames) {
-  write("long.ini",
-        "[experiment]\nduration = 40\nalgorithm = drive\n[map]\nsize = 9\n");
+  write("long.ini", "[experiment]\nduration = 40\nalgorithm = drive\n[map]\nsize = 9\n");
   ASSERT_EQ(run("sim long.ini --quiet --out r").exit_code, 0);
   Terminal terminal({program_, "view", "r", "--frames-dir", "film", "--size", "2000x1500"}, root_);
   ASSERT_TRUE(terminal.wait_for("drawing frames")) << terminal.screen();

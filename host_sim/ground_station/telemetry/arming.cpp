@@ -122,7 +122,7 @@ std::string start_up_sentence(const LatestTelemetry& robot, uint64_t now_us) {
   constexpr double kNeeded_s =
       static_cast<double>(AttitudeEstimator::kStartTicks + AttitudeEstimator::kRestTicks) /
       kTickRate_hz;
-  const std::string needed = format("start-up needs %.1f s at rest", kNeeded_s);
+  std::string needed = format("start-up needs %.1f s at rest", kNeeded_s);
   const std::optional<double> said_ms = robot.value("time.time");
   if (!said_ms.has_value()) return needed;
   const double age_s = robot.age_s(*find_message("TIME"), now_us).value_or(0.0);

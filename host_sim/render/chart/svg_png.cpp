@@ -81,8 +81,8 @@ std::vector<std::uint8_t> rgb_png(int width, int height, std::span<const std::ui
       const std::uint8_t* const from = &rgb[3 * (static_cast<std::size_t>(row) * width + column)];
       const std::uint32_t color =
           std::uint32_t{from[0]} << 16U | std::uint32_t{from[1]} << 8U | std::uint32_t{from[2]};
-      std::memcpy(pixels + static_cast<std::ptrdiff_t>(row) * stride + 4 * column, &color,
-                  sizeof color);
+      std::memcpy(pixels + static_cast<std::ptrdiff_t>(row) * stride + std::ptrdiff_t{4} * column,
+                  &color, sizeof color);
     }
   }
   cairo_surface_mark_dirty(surface.get());
