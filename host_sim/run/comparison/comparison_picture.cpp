@@ -117,8 +117,10 @@ std::optional<MapRectangle> view_of(const SessionComparison& comparison) {
   const std::vector<double>& height_m = comparison.terrain.height_m;
   for (std::size_t i = 0; i < height_m.size(); ++i) {
     if (height_m[i] == 0.0) continue;
-    x.add(g.origin_x_m + static_cast<double>(i % g.nx) * g.spacing_m);
-    y.add(g.origin_y_m + static_cast<double>(i / g.nx) * g.spacing_m);
+    const std::size_t column = i % g.nx;
+    const std::size_t row = i / g.nx;
+    x.add(g.origin_x_m + static_cast<double>(column) * g.spacing_m);
+    y.add(g.origin_y_m + static_cast<double>(row) * g.spacing_m);
   }
   const double width = x.high - x.low + 2.0 * kRoom_m;
   const double height = y.high - y.low + 2.0 * kRoom_m;
