@@ -70,12 +70,13 @@ TEST(GaussianFilter, IsTheWeightedSumOfAllNeighbours) {
 
 TEST(GaussianFilter, WidensAGaussianBump) {
   // exp(-r^2 / 2 s^2) after sigma is s^2 / (s^2 + sigma^2) exp(-r^2 / 2 (s^2 + sigma^2)).
-  constexpr int kSide = 121;
+  constexpr int kMiddle = 60;
+  constexpr int kSide = 2 * kMiddle + 1;
   constexpr double kBump = 6.0;
   constexpr double kSigma = 8.0;
   const auto bump = [](int x, int y, double squared) {
-    const double dx = x - kSide / 2;
-    const double dy = y - kSide / 2;
+    const double dx = x - kMiddle;
+    const double dy = y - kMiddle;
     return std::exp(-0.5 * (dx * dx + dy * dy) / squared);
   };
   std::vector<double> samples;
@@ -89,7 +90,7 @@ TEST(GaussianFilter, WidensAGaussianBump) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const double expected = kBump * kBump / kWide * bump(x, y, kWide);
-      const double found = samples[static_cast<size_t>(y * kSide + x)];
+      const double found = samples[static_cast<size_t>(y) * kSide + static_cast<size_t>(x)];
       worst = std::max(worst, std::abs(found - expected));
     }
   }

@@ -143,8 +143,7 @@ TEST(StackedChart, RefusesWhatItCannotDraw) {
 }
 
 TEST(Legend, TakesMoreRowsInsteadOfLeavingThePicture) {
-  std::vector<LegendEntry> entries;
-  for (int i = 0; i < 9; ++i) entries.push_back({"a label of some length", {}});
+  const std::vector<LegendEntry> entries(9, {"a label of some length", {}});
   const std::vector<LegendPlace> places = legend_places(entries, 500.0);
   ASSERT_EQ(places.size(), 9U);
   size_t row = 0;

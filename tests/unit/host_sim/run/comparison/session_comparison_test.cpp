@@ -53,8 +53,8 @@ class Comparison : public ::testing::Test {
   SessionComparison compare(const Recording& a, const Recording& b) {
     write_run(folder_.path() / "a.h5", a);
     write_run(folder_.path() / "b.h5", b);
-    const SessionComparison result = compare_sessions(SessionReader(folder_.path() / "a.h5"),
-                                                      SessionReader(folder_.path() / "b.h5"));
+    SessionComparison result = compare_sessions(SessionReader(folder_.path() / "a.h5"),
+                                                SessionReader(folder_.path() / "b.h5"));
     std::filesystem::remove(folder_.path() / "a.h5");
     std::filesystem::remove(folder_.path() / "b.h5");
     return result;
