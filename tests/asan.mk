@@ -19,7 +19,7 @@ ASAN_UNIT := command command_gate command_key command_session corruption e2e gro
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
 ASAN_UNIT += attitude_command avr_indirect_calls avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
   header_export height_field height_series ini_file mesh model_file network picture run_folder schema schema_compiler session session_csv \
-  session_damage session_failure session_hash session_replay urdf urdf_refusal
+  session_damage session_failure session_hash session_replay urdf urdf_refusal urdf_roles wheel_rim
 # Grids that a position indexes.
 ASAN_UNIT += footprint grid_world material_digging material_flow particle_motion soil_bed soil_cells soil_dig soil_path soil_shear
 # The simulated board: registers, bus and USB, which an image writes as it likes.
@@ -34,7 +34,7 @@ endif
 
 # The library without what none of these tests links: training, the surrogate, calibration, most subcommands, windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
-  sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp)
+  link/plot_signals.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp cli/progress_bar.cpp cli/task_bar.cpp)
 ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/% host_sim/ground_station/calibration/%,$(LIBRARY_SOURCES))
 $(B)/libasan_tested.a: $(call objects,$(ASAN_LIBRARY_SOURCES))
 	@rm -f $@

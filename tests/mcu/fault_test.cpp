@@ -21,7 +21,9 @@ I2cChip& chip_of(ImageDrive& drive, uint8_t bit) {
 /// What the health message says of the chips.
 int failing_chips(const ImageDrive& drive) {
   const std::vector<std::uint8_t> health = drive.last_frame(kIdHealth);
-  return health.size() == 7 ? health[2] : -1;
+  // The other flag of this byte: the robot starts up.
+  constexpr int kChips = ChipBit::kAccelMagChip | ChipBit::kGyroChip | ChipBit::kBaroChip;
+  return health.size() == 7 ? health[2] & kChips : -1;
 }
 
 // 13
