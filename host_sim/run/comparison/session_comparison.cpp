@@ -11,14 +11,14 @@
 #include "host_sim/core/ini_file.h"
 #include "host_sim/core/record.h"
 #include "host_sim/ground_station/telemetry/schema.h"
-#include "host_sim/physics/terrain/terrain_change.h"
+#include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/height_export.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
 
 namespace screed {
 namespace {
 
 constexpr std::uint64_t kBlockRows = 1024;
-constexpr double kLitresPerM3 = 1000.0;
 
 /// Recorded rows of one table, a block at a time.
 template <class Row, std::size_t kBytes>
@@ -107,10 +107,9 @@ std::string name_of(const char* signal, std::int64_t value) {
   return find_signal(signal).signal->text(value);
 }
 
-void add_volumes(const HeightMap& before, const HeightMap& after, RunEnd& end) {
-  const TerrainChange change = terrain_change(field_of(before), field_of(after));
-  end.cut_l = change.cut_m3 * kLitresPerM3;
-  end.fill_l = change.fill_m3 * kLitresPerM3;
+/// The surface that counts, as in the summary of the run.
+HeightField surface_of(const SessionReader& session, const HeightMap& map) {
+  return TerrainMeasure(setup_of(session.info(), {}).experiment).surface(field_of(map));
 }
 
 /// Ten points a second and the last frame of one run, and its end.
@@ -157,7 +156,10 @@ ComparedRun describe(const SessionReader& session, const Bed& bed,
   run.content_hash = session.content_hash();
   read_trace(session, bed, run);
   run.terrain = session.terrain_after();
-  if (before.has_value() && run.terrain.has_value()) add_volumes(*before, *run.terrain, run.end);
+  if (before.has_value() && run.terrain.has_value()) {
+    run.end.change =
+        terrain_change(surface_of(session, *before), surface_of(session, *run.terrain));
+  }
   return run;
 }
 
@@ -222,7 +224,8 @@ std::string grid_text(const HeightMapGeometry& g) {
   return text;
 }
 
-TerrainDifference terrain_difference(const std::optional<HeightMap>& a,
+TerrainDifference terrain_difference(const SessionReader& session_a, const SessionReader& session_b,
+                                     const std::optional<HeightMap>& a,
                                      const std::optional<HeightMap>& b) {
   TerrainDifference result;
   if (!a.has_value() || !b.has_value()) {
@@ -234,22 +237,19 @@ TerrainDifference terrain_difference(const std::optional<HeightMap>& a,
         "the grids differ: A " + grid_text(a->geometry) + ", B " + grid_text(b->geometry);
     return result;
   }
+  const HeightField surface_a = surface_of(session_a, *a);
+  const HeightField surface_b = surface_of(session_b, *b);
+  result.change = terrain_change(surface_a, surface_b);
   double squares = 0.0;
-  double above = 0.0;
-  double below = 0.0;
   result.height_m.reserve(a->heights.size());
-  for (std::size_t i = 0; i < a->heights.size(); ++i) {
-    const double height = b->heights[i] * b->geometry.unit_m - a->heights[i] * a->geometry.unit_m;
-    result.height_m.push_back(height);
-    result.highest_m = std::max(result.highest_m, height);
-    result.lowest_m = std::min(result.lowest_m, height);
-    squares += height * height;
-    (height < 0.0 ? below : above) += std::abs(height);
+  for (int iy = 0; iy < surface_a.ny(); ++iy) {
+    for (int ix = 0; ix < surface_a.nx(); ++ix) {
+      const double height = kHeightUnit_m * (surface_b.node(ix, iy) - surface_a.node(ix, iy));
+      result.height_m.push_back(height);
+      squares += height * height;
+    }
   }
-  const double cell_l = a->geometry.spacing_m * a->geometry.spacing_m * kLitresPerM3;
-  result.rms_m = std::sqrt(squares / static_cast<double>(a->heights.size()));
-  result.above_l = above * cell_l;
-  result.below_l = below * cell_l;
+  result.rms_m = std::sqrt(squares / static_cast<double>(result.height_m.size()));
   return result;
 }
 
@@ -316,7 +316,7 @@ SessionComparison compare_sessions(const SessionReader& a, const SessionReader& 
   result.runs = {describe(a, beds[0], before_a), describe(b, beds[1], before_b)};
   result.common_ticks = std::min(a.frames(), b.frames());
   compare_ticks(a, b, beds, result);
-  result.terrain = terrain_difference(result.runs[0].terrain, result.runs[1].terrain);
+  result.terrain = terrain_difference(a, b, result.runs[0].terrain, result.runs[1].terrain);
   result.same_terrain =
       same_map(before_a, before_b) && same_map(result.runs[0].terrain, result.runs[1].terrain);
   return result;

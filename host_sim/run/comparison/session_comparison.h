@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_map.h"
+#include "host_sim/physics/terrain/terrain_change.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {
@@ -43,7 +44,7 @@ struct TracePoint {
 };
 
 /// How a run ended.
-struct RunEnd {
+struct FinalState {
   double time_s = 0.0;
   double x_m = 0.0;  ///< as travelled: with wrap-around it may lie beyond the bed
   double y_m = 0.0;
@@ -54,10 +55,8 @@ struct RunEnd {
   std::string faults;  ///< "none" without
   double battery_v = 0.0;
   double energy_j = 0.0;
-  /// By which the ground is lower, where it is lower than at the start, and higher, where it is
-  /// higher, l; nothing when the run did not record both.
-  std::optional<double> cut_l;
-  std::optional<double> fill_l;
+  /// Since the start, as in the run's summary; nothing when the run did not record both terrains.
+  std::optional<TerrainChange> change;
 };
 
 struct ComparedRun {
@@ -68,7 +67,7 @@ struct ComparedRun {
   bool complete = false;
   std::string content_hash;
   std::vector<TracePoint> trace;
-  RunEnd end;                        ///< of no use without a frame
+  FinalState end;                    ///< of no use without a frame
   std::optional<HeightMap> terrain;  ///< as the run left it
 };
 
@@ -85,14 +84,11 @@ struct DeviationSummary {
   DeviationPoint largest_heading;
 };
 
-/// Height of B above A at the end of the runs.
+/// Height of B above A at the end of the runs; particles without single stones (TerrainMeasure).
 struct TerrainDifference {
   std::string not_comparable;  ///< why; empty: the rest holds
-  double highest_m = 0.0;      ///< >= 0: where B lies most above A
-  double lowest_m = 0.0;       ///< <= 0
+  TerrainChange change;        ///< from A to B: fill is what B has above A
   double rms_m = 0.0;
-  double above_l = 0.0;  ///< volume of B above A
-  double below_l = 0.0;  ///< volume of B below A, >= 0
   /// All nodes, as in HeightMap; empty when not comparable.
   std::vector<double> height_m;
 };

@@ -29,6 +29,9 @@ RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder) 
       setup.experiment.experiment.flatness_deg = std::stod(entry.value);
     }
     if (name == "map.model") setup.experiment.map.model = entry.value;
+    if (name == "map.particle_radius" && !entry.value.empty()) {
+      setup.experiment.map.particle_radius_m = std::stod(entry.value);
+    }
     if (name == "soil.preset") setup.soil = entry.value;
   }
   return setup;

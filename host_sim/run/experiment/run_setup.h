@@ -13,8 +13,8 @@
 namespace screed {
 
 struct RunSetup {
-  /// Only the vehicle's keys that find and shape the model, the model of the map, the algorithm,
-  /// what is flat, and the folder.
+  /// Only the vehicle's keys that find and shape the model, the model of the map and the radius of
+  /// its particles, the algorithm, what is flat, and the folder.
   Experiment experiment;
   std::string soil;  ///< [soil] preset
 };

@@ -33,14 +33,6 @@ nlohmann::ordered_json json_of(const TerrainFigures& terrain) {
           {"roughness_m", terrain.robot_scale.roughness_m}};
 }
 
-nlohmann::ordered_json json_of(const TerrainChange& change) {
-  return {{"moved_m3", change.moved_m3()},
-          {"cut_m3", change.cut_m3},
-          {"fill_m3", change.fill_m3},
-          {"deepest_cut_m", change.deepest_cut_m},
-          {"deepest_fill_m", change.deepest_fill_m}};
-}
-
 nlohmann::ordered_json json_of(const CycleReport& cycles) {
   nlohmann::ordered_json interrupts;
   for (const CycleReport::Interrupt& it : cycles.interrupts) {
@@ -92,6 +84,14 @@ nlohmann::ordered_json json_of(const SimulationSummary& summary) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json json_of(const TerrainChange& change) {
+  return {{"moved_m3", change.moved_m3()},
+          {"cut_m3", change.cut_m3},
+          {"fill_m3", change.fill_m3},
+          {"deepest_cut_m", change.deepest_cut_m},
+          {"deepest_fill_m", change.deepest_fill_m}};
+}
 
 std::string summary_json(const SimulationSummary& summary) {
   return json_of(summary).dump(2) + "\n";

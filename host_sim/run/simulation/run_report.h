@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,6 +61,9 @@ struct SimulationSummary {
   bool stopped_early() const { return end != RunEnd::kDone; }
   double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
 };
+
+/// moved_m3, cut_m3, fill_m3, deepest_cut_m, deepest_fill_m.
+nlohmann::ordered_json json_of(const TerrainChange& change);
 
 /// The summary as JSON, as written to summary.json: what is part of the result, so neither wall
 /// time nor folders. Same run, same bytes, in whatever folder.

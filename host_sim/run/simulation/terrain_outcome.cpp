@@ -17,12 +17,12 @@ TerrainMeasure::TerrainMeasure(const Experiment& experiment)
       flat_deg_(experiment.experiment.flatness_deg) {}
 
 HeightField TerrainMeasure::surface(const HeightField& terrain) const {
-  return grain_m_ > 0.0 ? low_passed(terrain, grain_m_) : terrain;
+  return is_filtered() ? low_passed(terrain, grain_m_) : terrain;
 }
 
 double TerrainMeasure::flatness(const HeightField& terrain) const {
-  return grain_m_ > 0.0 ? screed::flatness(low_passed(terrain, grain_m_), flat_deg_)
-                        : screed::flatness(terrain, flat_deg_);
+  return is_filtered() ? screed::flatness(surface(terrain), flat_deg_)
+                       : screed::flatness(terrain, flat_deg_);
 }
 
 TerrainOutcome TerrainMeasure::outcome(const HeightField& before, const HeightField& after) const {

@@ -25,20 +25,26 @@ struct TerrainOutcome {
 /// How the terrain of an experiment is measured, for its summary, its pictures and its progress.
 class TerrainMeasure {
  public:
+  /// Of a terrain without particles, flat up to 5 degrees.
+  TerrainMeasure() = default;
   explicit TerrainMeasure(const Experiment& experiment);
 
   /// The surface that counts. On a bed of particles a Gaussian low-pass, with the radius of a
   /// particle as its standard deviation, takes away single stones: their flanks are steep whatever
   /// the bed is like. Any other terrain is taken as it is.
   HeightField surface(const HeightField& terrain) const;
+  /// Whether surface() changes anything.
+  bool is_filtered() const { return grain_m_ > 0.0; }
+  /// Slope up to which a cell is flat.
+  double flat_deg() const { return flat_deg_; }
   /// The share of flat cells of surface(terrain).
   double flatness(const HeightField& terrain) const;
   /// The figures of two surfaces, each from surface().
   TerrainOutcome outcome(const HeightField& before, const HeightField& after) const;
 
  private:
-  double grain_m_;  ///< 0: no particles
-  double flat_deg_;
+  double grain_m_ = 0.0;  ///< 0: no particles
+  double flat_deg_ = 5.0;
 };
 
 }  // namespace screed

@@ -95,14 +95,14 @@ void add_batch_options(CLI::App& command, BatchArguments& arguments) {
           ->type_name("FILE");
   command
       .add_option("--rows", arguments.rows,
-                  "Run only the rows that match this name pattern, e.g. 'e_*'; may be repeated")
+                  "Run only the rows that match this name pattern, e.g. 'e_*'")
       ->type_name("PATTERN")
       ->type_size(1)
       ->allow_extra_args(false)
       ->needs(table);
   command.add_flag("--missing", arguments.missing,
                    "Skip experiments whose run folder (NAME-0001) already exists");
-  command.add_option("--set", arguments.sets, "Override a key: section.key=value; may be repeated")
+  command.add_option("--set", arguments.sets, "Override a key: section.key=value")
       ->type_name("KEY=VALUE")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -352,7 +352,7 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
   CLI::App* tracks_command = command->add_subcommand(
       "train-tracks", "Train a bearing-capacity network for tracks on recorded runs on soil");
   tracks_command->add_option("RUN", tracks->runs, "Runs with recorded heights")->required();
-  tracks_command->add_option("--test", tracks->test, "Run to test the network on; may be repeated")
+  tracks_command->add_option("--test", tracks->test, "Run to test the network on")
       ->type_name("FOLDER")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -382,7 +382,7 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
   compare_command->add_option("RUN", compared->runs, "Runs to compare with")->required();
   compare_command
       ->add_option("--window", compared->window,
-                   "Also train the thesis' network on this run and compare it; may be repeated")
+                   "Also train the thesis' network on this run and compare it")
       ->type_name("FOLDER")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -119,8 +119,7 @@ void register_parity_command(CLI::App& root, Program& program) {
       ->type_name("FILE");
   add_number(*command, "--minutes", arguments->minutes, "Simulated time [min] (default: 1)",
              {0.01, 10000.0});
-  command
-      ->add_option("--set", arguments->sets, "Override a key: section.key=value; may be repeated")
+  command->add_option("--set", arguments->sets, "Override a key: section.key=value")
       ->type_name("KEY=VALUE")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -14,6 +14,7 @@
 #include "host_sim/run/comparison/session_comparison.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/simulation/run_report.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kLitresPerM3 = 1000.0;
 constexpr double kMmPerM = 1000.0;
 
 struct CompareArguments {
@@ -33,7 +35,7 @@ struct CompareArguments {
   bool fail_if_different = false;
 };
 
-Json describe_end(const RunEnd& end) {
+Json describe_end(const FinalState& end) {
   Json json;
   json["time_s"] = end.time_s;
   json["x_m"] = end.x_m;
@@ -45,8 +47,7 @@ Json describe_end(const RunEnd& end) {
   json["faults"] = end.faults;
   json["battery_v"] = end.battery_v;
   json["energy_j"] = end.energy_j;
-  json["cut_l"] = end.cut_l.has_value() ? Json(*end.cut_l) : Json();
-  json["fill_l"] = end.fill_l.has_value() ? Json(*end.fill_l) : Json();
+  json["terrain_change"] = end.change.has_value() ? json_of(*end.change) : Json();
   return json;
 }
 
@@ -58,11 +59,9 @@ Json describe_point(const DeviationPoint& point) {
 
 Json describe_terrain(const TerrainDifference& terrain) {
   if (!terrain.not_comparable.empty()) return {{"not_compared", terrain.not_comparable}};
-  return {{"highest_mm", kMmPerM * terrain.highest_m},
-          {"lowest_mm", kMmPerM * terrain.lowest_m},
-          {"rms_mm", kMmPerM * terrain.rms_m},
-          {"above_l", terrain.above_l},
-          {"below_l", terrain.below_l}};
+  Json json = json_of(terrain.change);
+  json["rms_m"] = terrain.rms_m;
+  return json;
 }
 
 Json to_json(const SessionComparison& comparison, const CompareArguments& arguments) {
@@ -116,10 +115,6 @@ std::string number(double value, int decimals) {
   return text;
 }
 
-std::string litres(const std::optional<double>& value) {
-  return value.has_value() ? number(*value, 3) : "not recorded";
-}
-
 void print_first_difference(const SessionComparison& comparison) {
   constexpr std::size_t kShown = 4;
   const std::array<std::uint64_t, 2> frames = {comparison.runs[0].frames,
@@ -150,7 +145,7 @@ void print_first_difference(const SessionComparison& comparison) {
   }
 }
 
-void print_ends(const RunEnd& a, const RunEnd& b) {
+void print_ends(const FinalState& a, const FinalState& b) {
   print_row("end", "A", "B");
   print_row("time [s]", number(a.time_s, 2), number(b.time_s, 2));
   print_row("x, y [m]", number(a.x_m, 3) + ", " + number(a.y_m, 3),
@@ -163,8 +158,12 @@ void print_ends(const RunEnd& a, const RunEnd& b) {
   print_row("faults", a.faults, b.faults);
   print_row("battery [V]", number(a.battery_v, 2), number(b.battery_v, 2));
   print_row("energy [J]", number(a.energy_j, 1), number(b.energy_j, 1));
-  print_row("volume cut [l]", litres(a.cut_l), litres(b.cut_l));
-  print_row("volume filled [l]", litres(a.fill_l), litres(b.fill_l));
+  const auto litres = [](const FinalState& end, double TerrainChange::*volume_m3) {
+    return end.change.has_value() ? number(kLitresPerM3 * ((*end.change).*volume_m3), 3)
+                                  : std::string("not recorded");
+  };
+  print_row("cut [L]", litres(a, &TerrainChange::cut_m3), litres(b, &TerrainChange::cut_m3));
+  print_row("fill [L]", litres(a, &TerrainChange::fill_m3), litres(b, &TerrainChange::fill_m3));
 }
 
 void print_text(const SessionComparison& comparison, const CompareArguments& arguments) {
@@ -202,10 +201,11 @@ void print_text(const SessionComparison& comparison, const CompareArguments& arg
     std::printf("terrain        the same at the end\n");
   } else {
     std::printf(
-        "terrain        B from A %+.2f to %+.2f mm, rms %.3f mm, %.3f l above and %.3f l "
+        "terrain        B from A %+.2f to %+.2f mm, rms %.3f mm, %.3f L above and %.3f L "
         "below\n",
-        kMmPerM * terrain.lowest_m, kMmPerM * terrain.highest_m, kMmPerM * terrain.rms_m,
-        terrain.above_l, terrain.below_l);
+        -kMmPerM * terrain.change.deepest_cut_m, kMmPerM * terrain.change.deepest_fill_m,
+        kMmPerM * terrain.rms_m, kLitresPerM3 * terrain.change.fill_m3,
+        kLitresPerM3 * terrain.change.cut_m3);
   }
   if (comparison.runs[0].frames > 0 && comparison.runs[1].frames > 0) {
     print_ends(comparison.runs[0].end, comparison.runs[1].end);

@@ -37,10 +37,9 @@ LiveViewer::LiveViewer(const Experiment& experiment, const std::string& board,
   // A training drive lasts for its frames, and some seconds before them.
   if (experiment.experiment.algorithm != kTrainingDriveName)
     check_screenshot_time(options_, setup_.duration_s, "the run");
-  setup_.flat_deg = experiment.experiment.flatness_deg;
   setup_.loose = experiment.map.is_soil() || experiment.map.model == "particles";
   setup_.soft = experiment.map.is_soil();
-  if (experiment.map.of_particles()) setup_.grain_m = experiment.map.particle_radius_m;
+  setup_.measure = TerrainMeasure(experiment);
   setup_.shape = shape_of(make_robot_model(experiment, board), experiment.vehicle.tracks);
 }
 

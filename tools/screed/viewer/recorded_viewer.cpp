@@ -40,10 +40,9 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   stage.seed = session_.info().seed;
   algorithm_ = setup.experiment.experiment.algorithm;
   stage.duration_s = duration_s_;
-  stage.flat_deg = setup.experiment.experiment.flatness_deg;
   stage.loose = setup.experiment.map.is_soil() || setup.experiment.map.model == "particles";
   stage.soft = setup.experiment.map.is_soil();
-  if (setup.experiment.map.of_particles()) stage.grain_m = setup.experiment.map.particle_radius_m;
+  stage.measure = TerrainMeasure(setup.experiment);
   stage.recorded = true;
   stage.shape =
       shape_of(robot_model(setup, session_.info().board_name), setup.experiment.vehicle.tracks);

@@ -6,7 +6,6 @@
 #include <iostream>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/terrain/low_pass.h"
 #include "host_sim/physics/terrain/terrain_change.h"
 
 namespace screed::viewer {
@@ -69,7 +68,7 @@ ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
       ground_(ground),
       image_(ground_),
       before_(surface()),
-      slopes_(before_, setup_.flat_deg),
+      slopes_(before_, setup_.measure.flat_deg()),
       controls_(setup_.recorded, options.pace),
       drawing_(options.width_px, options.height_px) {
   if (options_.window) {
@@ -88,7 +87,7 @@ ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
   status_.duration_s = setup_.duration_s;
   status_.terrain.before = slopes_.figures();
   status_.terrain.now = status_.terrain.before;
-  status_.terrain.flat_limit_deg = setup_.flat_deg;
+  status_.terrain.flat_limit_deg = setup_.measure.flat_deg();
   status_.terrain.loose = setup_.loose;
 }
 
@@ -104,12 +103,12 @@ void ViewerDisplay::change_terrain(std::span<const HeightChange> changes) {
     ground_.set_node(ix, iy, ground_.node(ix, iy) + change.by);
   }
   image_.update(ground_, changes);
-  if (setup_.grain_m == 0.0) slopes_.update(ground_, changes);
+  if (!setup_.measure.is_filtered()) slopes_.update(ground_, changes);
   measured_ = measured_ && changes.empty();
 }
 
 HeightField ViewerDisplay::surface() const {
-  return setup_.grain_m > 0.0 ? low_passed(ground_, setup_.grain_m) : ground_;
+  return setup_.measure.surface(ground_);
 }
 
 void ViewerDisplay::measure_terrain(bool exact) {
@@ -117,7 +116,7 @@ void ViewerDisplay::measure_terrain(bool exact) {
   const bool volume = controls_.shading == Shading::kChange;
   if (!volume) shown.volume.reset();
   const bool overdue = volume && !shown.volume.has_value();
-  if (setup_.grain_m == 0.0) {
+  if (!setup_.measure.is_filtered()) {
     shown.now = slopes_.figures();
     if (!overdue && !(volume && exact)) return;
   } else if (!overdue && (measured_ || !exact)) {
@@ -125,7 +124,8 @@ void ViewerDisplay::measure_terrain(bool exact) {
   }
   measured_ = true;
   const HeightField now = surface();
-  if (setup_.grain_m > 0.0) shown.now = SlopeStatistics(now, setup_.flat_deg).figures();
+  if (setup_.measure.is_filtered())
+    shown.now = SlopeStatistics(now, setup_.measure.flat_deg()).figures();
   if (!volume) return;
   const TerrainChange change = terrain_change(before_, now);
   shown.volume = {change.cut_m3, change.fill_m3, change.moved_m3(), change.deepest_cut_m,

@@ -10,6 +10,7 @@
 
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
 #include "tools/screed/viewer/subtitle.h"
@@ -43,10 +44,9 @@ struct DisplaySetup {
   std::string terrain;  ///< as the subtitle says it
   uint64_t seed = 0;
   double duration_s = 0.0;
-  double flat_deg = 5.0;
-  bool loose = false;    ///< the ground can change
-  bool soft = false;     ///< the robot sinks in
-  double grain_m = 0.0;  ///< radius of particles, whose single slopes do not count; 0: none
+  bool loose = false;      ///< the ground can change
+  bool soft = false;       ///< the robot sinks in
+  TerrainMeasure measure;  ///< what the figures of the terrain are of
   bool recorded = false;
   RobotShape shape;
 };
@@ -114,7 +114,7 @@ class ViewerDisplay {
   Scene scene();
   /// exact: with the figures of this very moment.
   void draw(bool exact);
-  /// The terrain whose figures are shown: as TerrainMeasure, without single particles.
+  /// The terrain whose figures are shown.
   HeightField surface() const;
   /// Slopes, and the volume moved where the colours show it.
   void measure_terrain(bool exact);

@@ -74,15 +74,16 @@ TEST_F(Comparison, ARunIsIdenticalToItself) {
   ASSERT_TRUE(result.summary.has_value());
   EXPECT_EQ(result.summary->largest_position.position_m, 0.0);
   EXPECT_EQ(result.terrain.rms_m, 0.0);
-  const RunEnd& end = result.runs[0].end;
+  const FinalState& end = result.runs[0].end;
   EXPECT_DOUBLE_EQ(end.time_s, 2.5);
   EXPECT_NEAR(end.distance_m, 0.249, 1e-12);
   EXPECT_EQ(end.state, "running");
   EXPECT_EQ(end.leveling_state, "walk");
   EXPECT_EQ(end.faults, "none");
   EXPECT_DOUBLE_EQ(end.energy_j, 249.0);
-  EXPECT_NEAR(*end.cut_l, 10.0 * kMm * 0.0625 * 1000.0, 1e-9);
-  EXPECT_NEAR(*end.fill_l, 4.0 * kMm * 0.0625 * 1000.0, 1e-9);
+  ASSERT_TRUE(end.change.has_value());
+  EXPECT_NEAR(end.change->cut_m3, 10.0 * kMm * 0.0625, 1e-12);
+  EXPECT_NEAR(end.change->fill_m3, 4.0 * kMm * 0.0625, 1e-12);
   // Ten a second, and the last.
   EXPECT_EQ(result.runs[0].trace.size(), 26U);
   EXPECT_EQ(result.deviation.size(), 26U);
@@ -200,13 +201,25 @@ TEST_F(Comparison, TerrainsAreComparedWhereTheGridsMatch) {
   EXPECT_EQ(terrain.not_comparable, "");
   EXPECT_FALSE(result.same_terrain);
   EXPECT_FALSE(result.identical());
-  EXPECT_NEAR(terrain.highest_m, 2.0 * kMm, 1e-12);
-  EXPECT_NEAR(terrain.lowest_m, -3.0 * kMm, 1e-12);
+  EXPECT_NEAR(terrain.change.deepest_fill_m, 2.0 * kMm, 1e-12);
+  EXPECT_NEAR(terrain.change.deepest_cut_m, 3.0 * kMm, 1e-12);
   EXPECT_NEAR(terrain.rms_m, kMm * std::sqrt((4.0 + 9.0) / 12.0), 1e-12);
-  EXPECT_NEAR(terrain.above_l, 2.0 * kMm * 62.5, 1e-9);
-  EXPECT_NEAR(terrain.below_l, 3.0 * kMm * 62.5, 1e-9);
+  EXPECT_NEAR(terrain.change.fill_m3, 2.0 * kMm * 0.0625, 1e-12);
+  EXPECT_NEAR(terrain.change.cut_m3, 3.0 * kMm * 0.0625, 1e-12);
   ASSERT_EQ(terrain.height_m.size(), 12U);
   EXPECT_NEAR(terrain.height_m[5], 2.0 * kMm, 1e-12);
+}
+
+TEST_F(Comparison, OnParticlesSingleStonesDoNotCount) {
+  const auto deepest_m = [this](const std::string& radius) {
+    Recording run = straight(10);
+    run.info.experiment_text = "[map]\nmodel = particles\nparticle_radius = " + radius + "\n";
+    return compare(run, run).runs[0].end.change->deepest_cut_m;
+  };
+  // A low-pass with the radius of the run's particles: heights lie 0.25 m apart.
+  EXPECT_NEAR(deepest_m("0.001"), 10.0 * kMm, 1e-6);
+  EXPECT_LT(deepest_m("0.2"), 7.0 * kMm);
+  EXPECT_LT(deepest_m("0.4"), deepest_m("0.2"));
 }
 
 TEST_F(Comparison, OtherGridsAreNotCompared) {
