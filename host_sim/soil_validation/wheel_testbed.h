@@ -16,7 +16,7 @@ struct WheelTest {
   SoilParameters soil;
   SoilOptions options{.bulldozing = false, .avalanches = false};
   double mass_kg = 0.05;        ///< that moves up and down; the load is a force besides, 1e-4..1e4
-  double speed_m_per_s = 0.05;  ///< of travel, 1e-4..10
+  double speed_m_per_s = 0.05;  ///< ahead in the wheel's plane, 1e-4..10
   double step_s = 1e-3;         ///< 1e-5..0.02
   double duration_s = 6.0;      ///< of one pass; means are over its second half
   double cell_m = 0.005;        ///< 0.0005..0.1
