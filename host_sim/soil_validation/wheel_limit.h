@@ -36,9 +36,15 @@ struct WheelReaction {
   double rut_m = 0.0;            ///< depth of the rut it leaves
 };
 
-/// Throws InputError when the load is more than soil can bear at the wheel's full depth (the
-/// radius), or a figure is out of range.
+/// What wheel_limit() does with a load that is more than soil can bear at the wheel's full depth, its
+/// radius.
+enum class AtAxle {
+  kThrow,       ///< InputError
+  kTakeForces,  ///< gives the forces at that depth, scaled to the load; for fits, on their way
+};
+
+/// Throws InputError for a figure out of range, and as `at_axle` says.
 WheelReaction wheel_limit(const RollingWheel& wheel, const SoilParameters& soil,
-                          NormalStress normal_stress);
+                          NormalStress normal_stress, AtAxle at_axle = AtAxle::kThrow);
 
 }  // namespace screed

@@ -2,9 +2,7 @@
 #include "host_sim/soil_validation/wheel_testbed.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "host_sim/core/errors.h"
@@ -133,24 +131,6 @@ class Testbed {
   Eigen::Matrix3d axes_;
 };
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields;
-  std::string field;
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.push_back(field);
-      field.clear();
-    } else if (c != '\r') {
-      field += c;
-    }
-  }
-  fields.push_back(field);
-  return fields;
-}
-
 }  // namespace
 
 WheelTestResult run_wheel(const WheelTest& test) {
@@ -160,75 +140,6 @@ WheelTestResult run_wheel(const WheelTest& test) {
   passes.reserve(static_cast<size_t>(test.passes));
   for (int i = 0; i < test.passes; ++i) passes.push_back(testbed.pass(test.passes - 1 - i));
   return {passes, testbed.bed().balance(), testbed.bed().surface()};
-}
-
-std::vector<MeasuredWheel> read_measured_wheels(const std::string& file,
-                                                const std::string& prefix) {
-  std::ifstream in(file);
-  if (!in) throw InputError(file + ": cannot be read");
-  std::string line;
-  std::getline(in, line);
-  const std::vector<std::string> names = split(line);
-  std::vector<MeasuredWheel> rows;
-  for (int number = 2; std::getline(in, line); ++number) {
-    const std::vector<std::string> fields = split(line);
-    const auto fail = [&](const std::string& what) {
-      std::string message = file;
-      message.append(":").append(std::to_string(number)).append(": ").append(what);
-      throw InputError(message);
-    };
-    const auto text = [&](const char* name) -> const std::string& {
-      const auto at =
-          static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      if (at >= names.size() || at >= fields.size()) {
-        fail(std::string("column ") + name + " is missing");
-      }
-      return fields[at];
-    };
-    const auto value = [&](const char* name) {
-      const std::string& field = text(name);
-      double result = 0.0;
-      const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), result);
-      if (error != std::errc() || end != field.data() + field.size()) {
-        std::string what = name;
-        what.append(" is '").append(field).append("', a number is needed");
-        fail(what);
-      }
-      return result;
-    };
-    if (!text("case_id").starts_with(prefix)) continue;
-    rows.push_back({text("case_id"),
-                    {.radius_m = value("wheel_radius_m"),
-                     .width_m = value("wheel_width_m"),
-                     .load_n = value("vertical_load_n"),
-                     .slip = value("slip")},
-                    value("meas_drawbar_pull_n"),
-                    value("meas_sinkage_m"),
-                    value("meas_torque_nm")});
-  }
-  if (rows.empty()) throw InputError(file + ": no case_id begins with '" + prefix + "'");
-  return rows;
-}
-
-double fit_slip_sinkage(const std::vector<MeasuredWheel>& measured, const SoilParameters& soil,
-                        NormalStress normal_stress, double low, double high) {
-  const auto worst = [&](double parameter) {
-    SoilParameters tried = soil;
-    tried.slip_sinkage = parameter;
-    double error = 0.0;
-    for (const MeasuredWheel& row : measured) {
-      if (row.wheel.slip < low || row.wheel.slip > high) continue;
-      const double sinkage = wheel_limit(row.wheel, tried, normal_stress).sinkage_m;
-      error = std::max(error, std::abs(sinkage / row.sinkage_m - 1.0));
-    }
-    return error;
-  };
-  double best = 0.0;
-  for (int i = 1; i <= 100; ++i) {
-    const double parameter = 0.01 * i;
-    if (worst(parameter) < worst(best)) best = parameter;
-  }
-  return best;
 }
 
 }  // namespace screed
