@@ -1,5 +1,5 @@
-// Levenberg and Marquardt's method (Eigen's, after MINPACK) over parameters that a sine keeps inside
-// their bounds.
+// Levenberg and Marquardt's method (Eigen's, after MINPACK) over parameters that a sine keeps
+// inside their bounds.
 #include "host_sim/soil_validation/soil_fit.h"
 
 #include <Eigen/Dense>
@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kForceShareOfLoad = 0.03;
 constexpr double kShareOfValue = 0.10;
-constexpr double kDifference = 1e-5;  // of a free variable, for derivatives: above the limit's noise
+constexpr double kDifference =
+    1e-5;  // of a free variable, for derivatives: above the limit's noise
 // Of the distance between the bounds: nearer than that, a parameter lies at its bound.
 constexpr double kAtBound = 1e-3;
 
@@ -76,8 +77,8 @@ class Residuals {
             const std::function<void(int)>& progress)
       : problem_(problem), free_(free), progress_(progress) {
     for (const MeasuredWheel& wheel : problem.measured.wheels) {
-      for (const auto* measured : {&wheel.drawbar_pull_n, &wheel.side_force_n, &wheel.torque_nm,
-                                   &wheel.sinkage_m}) {
+      for (const auto* measured :
+           {&wheel.drawbar_pull_n, &wheel.side_force_n, &wheel.torque_nm, &wheel.sinkage_m}) {
         count_ += measured->has_value() ? 1 : 0;
       }
     }
@@ -100,7 +101,8 @@ class Residuals {
     for (const MeasuredWheel& row : problem_.measured.wheels) {
       const WheelReaction r = predicted_wheel(row.wheel, problem_.soil, problem_.rim);
       const double load = row.wheel.load_n;
-      add(row.drawbar_pull_n, r.drawbar_pull_n, error_of_force(row.drawbar_pull_n.value_or(0), load));
+      add(row.drawbar_pull_n, r.drawbar_pull_n,
+          error_of_force(row.drawbar_pull_n.value_or(0), load));
       add(row.side_force_n, r.side_force_n, error_of_force(row.side_force_n.value_or(0), load));
       add(row.torque_nm, r.torque_nm,
           error_of_force(row.torque_nm.value_or(0), load * row.wheel.radius_m));
@@ -208,16 +210,17 @@ SoilFit fit_soil(const SoilFitProblem& given, const std::function<void(int)>& pr
   fit.spread = std::sqrt(left.squaredNorm() / residuals.values());
   fit.evaluations = residuals.evaluations();
   const Eigen::MatrixXd covariance =
-      variance * (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+      variance *
+      (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
   for (size_t i = 0; i < free.size(); ++i) {
     const auto index = static_cast<Eigen::Index>(i);
     const Free& one = free[i];
     FittedParameter parameter{one.key, one.start, *one.value, 0.0,
                               one.bounded.at_bound(variables[index])};
     parameter.standard_error =
-        parameter.at_bound ? std::numeric_limits<double>::quiet_NaN()
-                           : std::sqrt(covariance(index, index)) *
-                                 std::abs(one.bounded.slope(variables[index]));
+        parameter.at_bound
+            ? std::numeric_limits<double>::quiet_NaN()
+            : std::sqrt(covariance(index, index)) * std::abs(one.bounded.slope(variables[index]));
     fit.parameters.push_back(parameter);
   }
   fit.soil = problem.soil;

@@ -110,7 +110,8 @@ SoilMeasurements read_soil_measurements(const std::string& file, const std::stri
   };
   const bool wheels = has("wheel_radius_m");
   if (!wheels && !has("plate_width_m")) {
-    throw InputError(file + ":1: neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
+    throw InputError(file +
+                     ":1: neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
   }
   SoilMeasurements all;
   for (int number = 2; std::getline(in, line); ++number) {

@@ -9,9 +9,9 @@
 
 namespace screed {
 
-/// A row of a test with a wheel. Columns, in any order: case, wheel_radius_m, wheel_width_m, load_n,
-/// slip (as RollingWheel::slip), and of slip_angle_deg (0 without), drawbar_pull_n, side_force_n,
-/// torque_nm, sinkage_m what was measured; an empty field was not.
+/// A row of a test with a wheel. Columns, in any order: case, wheel_radius_m, wheel_width_m,
+/// load_n, slip (as RollingWheel::slip), and of slip_angle_deg (0 without), drawbar_pull_n,
+/// side_force_n, torque_nm, sinkage_m what was measured; an empty field was not.
 struct MeasuredWheel {
   std::string name;
   RollingWheel wheel;
@@ -25,7 +25,7 @@ struct MeasuredWheel {
 /// diameter, and the column round is 1), depth_m, pressure_pa.
 struct MeasuredPlate {
   std::string name;
-  double width_m;   ///< the shorter side
+  double width_m;  ///< the shorter side
   double length_m;
   bool round;
   double depth_m;

@@ -36,8 +36,8 @@ struct WheelReaction {
   double rut_m = 0.0;            ///< depth of the rut it leaves
 };
 
-/// What wheel_limit() does with a load that is more than soil can bear at the wheel's full depth, its
-/// radius.
+/// What wheel_limit() does with a load that is more than soil can bear at the wheel's full depth,
+/// its radius.
 enum class AtAxle {
   kThrow,       ///< InputError
   kTakeForces,  ///< gives the forces at that depth, scaled to the load; for fits, on their way

@@ -35,10 +35,9 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
   const double along = displacement.dot(axes.col(0));
   if (along * path.travel_m < 0.0) {
     path.back_m += std::abs(along);
-    if (path.back_m > kTurnedBack_m) path = {.travel_m = along};
-    return;
-  }
-  if (path.back_m > 0.0) {  // back to where it had been
+    if (path.back_m <= kTurnedBack_m) return;
+    path = {};
+  } else if (path.back_m > 0.0) {  // back to where it had been
     path.back_m = std::max(0.0, path.back_m - std::abs(along));
     return;
   }

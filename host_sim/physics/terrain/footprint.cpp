@@ -118,9 +118,7 @@ RunFrame Footprint::run_frame() const {
   int ahead = 0;
   if (kind_ == Kind::kBox) {
     up_.cwiseAbs().maxCoeff(&below);
-    const int one = (below + 1) % 3;
-    const int other = (below + 2) % 3;
-    ahead = half_[one] >= half_[other] ? one : other;
+    ahead = below == 0 ? 1 : 0;
   }
   const double sense = up_[below] < 0.0 ? -1.0 : 1.0;
   RunFrame frame;

@@ -14,7 +14,9 @@ namespace screed {
 namespace {
 
 constexpr double kSpacing_m = 0.0025;  // at most, a quarter of the least usual K
-constexpr double kLeastPlaces = 48.0;  // along a contour
+// Along a contour: of one with arcs alone a small part touches.
+constexpr double kLeastPlaces = 48.0;
+constexpr double kLeastPlacesOnAWheel = 192.0;
 
 }  // namespace
 
@@ -33,7 +35,8 @@ void ShearField::advance(const RunContour& contour, const RunMotion& motion, dou
                          double front, double shear_modulus_m, double damping_s, double dt) {
   if (places_.empty()) {
     const double length = contour.length_m();
-    spacing_ = std::min(kSpacing_m, length / kLeastPlaces);
+    const double least = contour.half_m > 0.0 ? kLeastPlaces : kLeastPlacesOnAWheel;
+    spacing_ = std::min(kSpacing_m, length / least);
     ring_ = std::bit_ceil(static_cast<size_t>(length / spacing_) + 4);
     places_.resize(kLanes * ring_);
     lane_offset_ = 0.5 * contour.half_width_m;
@@ -43,8 +46,9 @@ void ShearField::advance(const RunContour& contour, const RunMotion& motion, dou
   const double rear_before = rear_ - moved;
   travelled_ += moved;
   from_front_ = motion.surface_speed >= 0.0;
-  const auto first = static_cast<int64_t>(std::ceil((rear + travelled_) / spacing_));
-  const auto last = static_cast<int64_t>(std::floor((front + travelled_) / spacing_));
+  auto first = static_cast<int64_t>(std::ceil((rear + travelled_) / spacing_));
+  auto last = static_cast<int64_t>(std::floor((front + travelled_) / spacing_));
+  if (last < first) first = last = std::llround((0.5 * (rear + front) + travelled_) / spacing_);
   const double per_k = dt / shear_modulus_m;
   const double damping = damping_s / (ShearState::kElastic * shear_modulus_m);
   const double per_radius = contour.radius_m > 0.0 ? 1.0 / contour.radius_m : 0.0;
@@ -123,7 +127,7 @@ ShearField::Value ShearField::at_lane(int lane, double along) const {
 }
 
 ShearField::Value ShearField::at(double along, double across) const {
-  if (!touching_ || last_ < first_) return {};
+  if (!touching_) return {};
   const Value left = at_lane(0, along);
   const Value right = at_lane(1, along);
   const double part = std::clamp(0.5 - 0.5 * across / lane_offset_, 0.0, 1.0);  // 0 left, 1 right

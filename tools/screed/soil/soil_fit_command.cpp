@@ -50,8 +50,7 @@ MeanErrors mean_errors(const SoilFit& fit, const SoilMeasurements& measured) {
   for (const MeasuredWheel& row : measured.wheels) {
     const WheelReaction r = predicted_wheel(row.wheel, fit.soil, fit.rim);
     const double load = row.wheel.load_n;
-    if (row.drawbar_pull_n)
-      add(mean.pull, pulls, (r.drawbar_pull_n - *row.drawbar_pull_n) / load);
+    if (row.drawbar_pull_n) add(mean.pull, pulls, (r.drawbar_pull_n - *row.drawbar_pull_n) / load);
     if (row.side_force_n) add(mean.side, sides, (r.side_force_n - *row.side_force_n) / load);
     if (row.sinkage_m) add(mean.sinkage, depths, r.sinkage_m / *row.sinkage_m - 1.0);
     ++mean.wheels;
@@ -92,8 +91,8 @@ void print_fit(const SoilFit& fit, const SoilMeasurements& measured, const MeanE
   }
   std::printf("\nspread %.2f of the errors assumed, %d measurements\n", fit.spread, fit.residuals);
   if (mean.wheels == 0) return;
-  std::printf("mean error: pull %.3f W, side force %.3f W, sinkage %.1f %%\n\n", mean.pull, mean.side,
-              100.0 * mean.sinkage);
+  std::printf("mean error: pull %.3f W, side force %.3f W, sinkage %.1f %%\n\n", mean.pull,
+              mean.side, 100.0 * mean.sinkage);
   std::printf("%-34s %8s %8s   %8s %8s   %8s %8s\n", "case", "pull, N", "fitted", "side, N",
               "fitted", "h, mm", "fitted");
   const auto field = [](const std::optional<double>& value, double scale) {
@@ -142,14 +141,16 @@ void register_soil_fit_command(CLI::App& soil, Program& program) {
       ->required()
       ->type_name("");
   command
-      ->add_option("--free", a->free, "Parameters to fit, with commas between them: keys of [soil], "
-                                      "rim_friction (tangent), rim_adhesion")
+      ->add_option("--free", a->free,
+                   "Parameters to fit, with commas between them: keys of [soil], "
+                   "rim_friction (tangent), rim_adhesion")
       ->delimiter(',')
       ->required()
       ->type_name("KEY,...");
   command->add_option("--case", a->cases, "Use the rows whose case begins with this text")
       ->type_name("CASE");
-  command->add_option("--soil", a->preset, "Begin with this soil: " + name_list(soil_preset_names()))
+  command
+      ->add_option("--soil", a->preset, "Begin with this soil: " + name_list(soil_preset_names()))
       ->capture_default_str();
   for (const SoilParameterInfo& parameter : kSoilParameters) {
     add_number(*command, parameter.option, a->overrides.*parameter.override_member,

@@ -1,7 +1,7 @@
 // `screed soil wheel`: a wheel beside its limit and beside measurements.
 #include <cmath>
-#include <limits>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -75,7 +75,8 @@ int run_measured(WheelArguments a) {
     const WheelPass pass = run_wheel(a.test).passes[0];
     const WheelReaction limit = wheel_limit(a.test.wheel, a.test.soil, stress);
     std::string where = text("slip %g", row.wheel.slip);
-    if (row.wheel.slip_angle_rad != 0.0) where += text(", angle %g", row.wheel.slip_angle_rad / kDegree);
+    if (row.wheel.slip_angle_rad != 0.0)
+      where += text(", angle %g", row.wheel.slip_angle_rad / kDegree);
     std::optional<double> peer;
     for (const PeerWheel& known : kPeerDing) {
       if (a.cases == "ding2011_smooth" && std::abs(known.slip - row.wheel.slip) < 1e-9) {

@@ -1,5 +1,5 @@
-// A shear box: a plate stands in the soil at a fixed depth while a belt moves under it, forth and
-// back, against the closed form of Janosi-Hanamoto shear and what follows from it for the way back.
+// A shear box: a plate at a fixed depth slides over the soil, forth and back, against the closed
+// form of Janosi-Hanamoto shear and what follows from it for the way back.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ class ShearBox {
   /// the shear strength the soil answers with in the end, against the motion.
   Eigen::Vector2d shear(const Eigen::Vector2d& displacement, double seconds) {
     const auto steps = static_cast<int>(std::lround(seconds / kStep_s));
-    motion_.surface_speed = -displacement.x() / seconds;
+    motion_.velocity.x() = displacement.x() / seconds;
     motion_.velocity.y() = displacement.y() / seconds;
     Eigen::Vector2d mobilised = Eigen::Vector2d::Zero();
     for (int i = 0; i < steps; ++i) {
@@ -78,8 +78,8 @@ TEST(SoilShearTest, OneWayIsJanosiAndHanamotos) {
   }
 }
 
-// Back it gives up its elastic part, a tenth of K for the whole strength, and from zero shear on the
-// curve begins anew: it does not spring back to where it began.
+// Back it gives up its elastic part, a tenth of K for the whole strength, and from zero shear on
+// the curve begins anew: it does not spring back to where it began.
 TEST(SoilShearTest, WhatTurnsBackMeetsTheSoilAnew) {
   const SoilParameters soil = undamped("viper");
   const double k = soil.shear_modulus_m;
@@ -132,8 +132,8 @@ TEST(SoilShearTest, ALoopTakesEnergy) {
   EXPECT_GT(box.work_j() - before, 0.4 * before);
 }
 
-// The elastic part is damped: at a rate v the stress is that of v times shear_damping further on. On
-// the curve itself damping adds nothing.
+// The elastic part is damped: at a rate v the stress is that of v times shear_damping further on.
+// On the curve itself damping adds nothing.
 TEST(SoilShearTest, TheElasticPartIsDamped) {
   SoilParameters soil = undamped("viper");
   soil.shear_damping_s = 0.01;

@@ -28,8 +28,7 @@ TEST(WheelStressTest, PointsBehindTheGreatestStressBearAsThoseAhead) {
         const double lift = stress.lift(broadcast(std::sin(theta)))[0];
         const double ahead = entry - (theta - exit) * (entry - middle) / (middle - exit);
         const double wanted =
-            theta >= middle ? 0.0
-                            : kRadius * (std::cos(std::max(theta, 0.0)) - std::cos(ahead));
+            theta >= middle ? 0.0 : kRadius * (std::cos(std::max(theta, 0.0)) - std::cos(ahead));
         EXPECT_NEAR(lift, wanted, 3e-5 * kRadius) << slip << " " << entry << " " << theta;
       }
       // Where it leaves the soil it bears as at its entry: nothing.

@@ -19,8 +19,8 @@ RunMotion moving(double ahead, double aside, double surface_speed) {
   return motion;
 }
 
-// Belt: j = s x, x from the front of the contact (Wong, Theory of Ground Vehicles, ch. 2), along the
-// belt and not over the ground, whatever the slip and the sense of travel.
+// Belt: j = s x, x from the front of the contact (Wong, Theory of Ground Vehicles, ch. 2), along
+// the belt and not over the ground, whatever the slip and the sense of travel.
 TEST(ShearFieldTest, BeltHasWongsDisplacement) {
   const RunContour belt{0.1, 0.03, 0.03, 0.02};
   for (const double speed : {0.2, -0.2}) {
@@ -53,8 +53,8 @@ TEST(ShearFieldTest, RimHasWongsDisplacement) {
                   kModulus_m, 0.0, kStep_s);
   }
   for (double theta = -0.2; theta < kEntry; theta += 0.05) {
-    const double j = kRadius * ((kEntry - theta) -
-                                (1.0 - kSlip) * (std::sin(kEntry) - std::sin(theta)));
+    const double j =
+        kRadius * ((kEntry - theta) - (1.0 - kSlip) * (std::sin(kEntry) - std::sin(theta)));
     EXPECT_NEAR(field.at(kRadius * theta, 0.0).along, -(1.0 - std::exp(-j / kModulus_m)), 0.006)
         << theta;
   }
@@ -66,8 +66,7 @@ TEST(ShearFieldTest, ATurnSlidesTheEndsApart) {
   RunMotion turning = moving(0.0, 0.0, 0.0);
   turning.omega = {0.0, 0.0, 0.5};
   ShearField field;
-  for (int i = 0; i < 200; ++i)
-    field.advance(belt, turning, -0.1, 0.1, kModulus_m, 0.0, kStep_s);
+  for (int i = 0; i < 200; ++i) field.advance(belt, turning, -0.1, 0.1, kModulus_m, 0.0, kStep_s);
   const double j = 0.5 * 0.2 * 0.08;  // at 80 mm, in 0.2 s
   EXPECT_NEAR(field.at(0.08, 0.0).across, 1.0 - std::exp(-j / kModulus_m), 0.01);
   EXPECT_NEAR(field.at(-0.08, 0.0).across, -field.at(0.08, 0.0).across, 1e-9);
