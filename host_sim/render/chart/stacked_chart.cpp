@@ -9,7 +9,8 @@ namespace screed {
 namespace {
 
 constexpr double kMargin_px = 24.0;
-constexpr double kTitle_px = 20.0;        // of a line of the title
+constexpr double kTitle_px = 20.0;  // of a line of the title
+constexpr double kBelowTitle_px = 6.0;
 constexpr double kTitleColumn_px = 22.0;  // of the upright title of an axis
 constexpr double kPanelGap_px = 16.0;     // below a panel
 constexpr double kBandRow_px = 26.0;      // of a row of bands, with the gap below it
@@ -80,7 +81,7 @@ class StackedDrawing {
 
  private:
   double head_px() const {
-    return 8.0 + (chart_.title.empty() ? 0.0 : kTitle_px) +
+    return 8.0 + (chart_.title.empty() ? 0.0 : kTitle_px + kBelowTitle_px) +
            (chart_.subtitle.empty() ? 0.0 : kTitle_px);
   }
   /// As wide as the axis, at the left end of which it stands.
