@@ -142,7 +142,7 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
                  {"the viewer has no screen", "SDL_VIDEODRIVER=none", "--screenshot"});
   expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
   expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "480x360"});
-  EXPECT_NE(run("view --help").out.find("480x360 to 8000x8000 [px]"), std::string::npos);
+  EXPECT_NE(run("view --help").out.find("8000x8000"), std::string::npos);
   for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500"}) {
     expect_refused(run(std::string("sim e.ini --view --size ") + size), 2, {"--size", "480x360"});
   }

@@ -106,8 +106,8 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
   command.add_flag("--follow", arguments.follow, "Keep the robot in the centre")->group(kGroup);
   command
       .add_option("--size", arguments.size,
-                  "Size of the window or picture, WIDTHxHEIGHT, " + size_range() +
-                      " [px] (default: 1280x800)")
+                  "Size of the window or picture, WIDTHxHEIGHT [px] (" + size_range() +
+                      "; default: 1280x800)")
       ->group(kGroup);
   add_number(command, "--frames", arguments.frames,
              "Show this number of frames, 1/60 s apart, as fast as possible, then exit and "
