@@ -6,9 +6,15 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/session/session_writer.h"
 #include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
 
 namespace screed::testing {
 namespace {
@@ -110,6 +116,75 @@ TEST_F(RecordProgram, ASessionIsRecordedShownAndExported) {
 
   ASSERT_EQ(run("session export run --csv --all --first 5 --count 7 --out e").exit_code, 0);
   EXPECT_EQ(shell("awk -F, 'NR > 1 { print $1 }' e/frames.csv | tr '\\n' ' '"), "5 6 7 8 9 10 11 ");
+}
+
+TEST_F(RecordProgram, ARunsPicturesAreMadeAgainFromItsSession) {
+  write("bed.ini",
+        "[experiment]\nname = bed\nduration = 0.5\n[map]\nmodel = particles\nsize = 0.8\n"
+        "[particles]\ndepth = 0.05\n");
+  const auto expect_same = [this](const std::string& name) {
+    ASSERT_EQ(run("sim " + name + ".ini --duration 0.5 --quiet --out " + name).exit_code, 0);
+    const Result exported = run("session export " + name + " --pictures");
+    ASSERT_EQ(exported.exit_code, 0) << exported.err;
+    EXPECT_NE(exported.err.find("start and end alone"), std::string::npos) << exported.err;
+    EXPECT_NE(exported.err.find("sim --heights"), std::string::npos) << exported.err;
+    for (const char* file : {"terrain_before.png", "terrain_after.png", "terrain_change.png"}) {
+      const std::string drawn = read(root_ / name / file);
+      EXPECT_EQ(drawn.substr(1, 3), "PNG");
+      EXPECT_TRUE(read(root_ / name / "export" / "pictures" / file) == drawn) << name << file;
+    }
+  };
+  expect_same("soft");
+  expect_same("bed");
+  expect_refused(run("session export soft --heights"), 2, {"sim --heights", "record"});
+}
+
+TEST_F(RecordProgram, ASeriesOfPicturesShowsTheSurfaceThatCounts) {
+  write("bed.ini",
+        "[experiment]\nname = bed\nduration = 0.05\n[map]\nmodel = particles\nsize = 0.8\n"
+        "[particles]\ndepth = 0.05\n");
+  ASSERT_EQ(run("sim bed.ini --heights --quiet --out bed").exit_code, 0);
+  ASSERT_EQ(run("session export bed --pictures --every 5").exit_code, 0);
+  const std::string filtered = read(root_ / "bed/export/pictures/picture_000000.png");
+  // The same heights as terrain that is no bed of particles: stone by stone.
+  const SessionReader bed(root_ / "bed" / "session.h5");
+  SessionInfo info = bed.info();
+  info.experiment_text = "[experiment]\nname = bed\n[map]\nmodel = rigid\n";
+  SessionWriter writer(root_ / "stones.h5", info);
+  writer.write_terrain_before(bed.terrain_before()->view());
+  writer.record_heights(bed.heights_after(0).view());
+  std::vector<SimFrame> frame(1);
+  bed.read(0, std::span(frame));
+  writer.append(frame[0], SensorSample{}, RobotOutput{}, {});
+  writer.write_terrain_after(bed.terrain_after()->view());
+  writer.finish();
+  ASSERT_EQ(run("session export stones.h5 --pictures --every 5 --out e").exit_code, 0);
+  EXPECT_FALSE(filtered == read(root_ / "e/pictures/picture_000000.png"));
+}
+
+TEST_F(RecordProgram, AnExportThatIsStoppedLeavesNothing) {
+  ASSERT_EQ(run("record soft.ini --frames 600 --out run --quiet").exit_code, 0);
+  ASSERT_EQ(run("session export run --heights --every 300").exit_code, 0);
+  const auto files = [this] {
+    std::set<std::filesystem::path> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root_ / "run"))
+      names.insert(entry.path());
+    return names;
+  };
+  const auto before = files();
+  const std::string scale = read(root_ / "run/export/heights/scale.json");
+  for (const std::string what : {"heights", "pictures"}) {
+    Terminal terminal({program_, "session", "export", "run", "--" + what, "--every", "1"}, root_);
+    ASSERT_TRUE(terminal.wait_for("exporting " + what)) << terminal.screen();
+    terminal.signal(SIGINT);
+    EXPECT_EQ(terminal.exit_code(), 130) << terminal.screen();
+  }
+  const auto after = files();
+  for (const auto& file : after) {
+    const bool of_the_run = file.filename().string().starts_with("terrain_");
+    EXPECT_TRUE(before.contains(file) || of_the_run || file.filename() == "pictures") << file;
+  }
+  EXPECT_EQ(read(root_ / "run/export/heights/scale.json"), scale);
 }
 
 TEST_F(RecordProgram, EqualSeedsGiveEqualSessionsAndOthersOthers) {

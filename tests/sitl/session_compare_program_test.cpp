@@ -2,6 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/session/session_writer.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -78,6 +80,19 @@ TEST_F(SessionCompare, AnotherGridIsSaidAndDrawnWithoutADifferenceOfTerrain) {
   EXPECT_TRUE(exists("compare.png"));
 }
 
+TEST_F(SessionCompare, WithoutACommonTickNoneIsEqual) {
+  // As a run that is killed within its first block of ticks leaves its session.
+  {
+    SessionWriter writer(root_ / "killed.h5", SessionReader(root_ / "one" / "session.h5").info());
+    writer.finish();
+  }
+  const Result result = run("session compare one killed.h5");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("ticks          none that both have\n"), std::string::npos)
+      << result.out;
+  EXPECT_EQ(result.out.find("equal"), std::string::npos) << result.out;
+}
+
 TEST_F(SessionCompare, RefusesInOneLineAndLeavesNothing) {
   write("half.h5", read(root_ / "one" / "session.h5").substr(0, 20000));
   const auto refused = [this](const std::string& arguments, int code,
@@ -90,6 +105,7 @@ TEST_F(SessionCompare, RefusesInOneLineAndLeavesNothing) {
   refused("one half.h5", 2, {"half.h5"});
   refused("one", 2, {"B is required"});
   refused("one one --out p.svg", 2, {"p.svg", ".png"});
+  refused("one one --no-picture --out p.png", 2, {"--no-picture", "--out"});
   refused("one one --out no_folder/p.png", 1, {"no_folder/p.png"});
   EXPECT_FALSE(exists("compare.png"));
 }

@@ -142,6 +142,7 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
                  {"the viewer has no screen", "SDL_VIDEODRIVER=none", "--screenshot"});
   expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
   expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "480x360"});
+  EXPECT_NE(run("view --help").out.find("8000x8000"), std::string::npos);
   for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500"}) {
     expect_refused(run(std::string("sim e.ini --view --size ") + size), 2, {"--size", "480x360"});
   }
@@ -179,17 +180,24 @@ TEST_F(View, AnInvisibleWindowIsSaid) {
       << played.err;
 }
 
-TEST_F(View, CtrlCEndsAFilmAndKeepsItsFrames) {
+TEST_F(View, CtrlCEndsAFilmAndRemovesItsFrames) {
   write("long.ini", "[experiment]\nduration = 40\nalgorithm = drive\n[map]\nsize = 9\n");
   ASSERT_EQ(run("sim long.ini --quiet --out r").exit_code, 0);
-  Terminal terminal({program_, "view", "r", "--frames-dir", "film", "--size", "2000x1500"}, root_);
-  ASSERT_TRUE(terminal.wait_for("drawing frames")) << terminal.screen();
-  terminal.signal(SIGINT);
-  EXPECT_EQ(terminal.exit_code(), 130);
-  EXPECT_NE(terminal.screen().find("screed: stopped while drawing frames\r\n"), std::string::npos)
-      << terminal.screen();
-  EXPECT_GT(png_size(root_ / "film" / "frame_000001.png").first, 0);
-  EXPECT_LT(std::distance(std::filesystem::directory_iterator(root_ / "film"), {}), 1500);
+  std::filesystem::create_directory(root_ / "mine");
+  write("mine/notes.txt", "x");
+  for (const std::string folder : {"deep/film", "mine"}) {
+    Terminal terminal({program_, "view", "r", "--frames-dir", folder, "--size", "2000x1500"},
+                      root_);
+    ASSERT_TRUE(terminal.wait_for("drawing frames")) << terminal.screen();
+    terminal.signal(SIGINT);
+    EXPECT_EQ(terminal.exit_code(), 130);
+    EXPECT_NE(terminal.screen().find("screed: stopped while drawing frames\r\n"), std::string::npos)
+        << terminal.screen();
+  }
+  // So the same command may be given again.
+  EXPECT_FALSE(std::filesystem::exists(root_ / "deep"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(root_ / "mine"), {}), 1);
+  EXPECT_EQ(run("view r --frames-dir mine --speed 400 --size 480x360").exit_code, 0);
 }
 
 TEST_F(View, PicturesThatCannotBeAreRefusedBeforeTheRun) {
@@ -200,8 +208,42 @@ TEST_F(View, PicturesThatCannotBeAreRefusedBeforeTheRun) {
   expect_refused(run("view r --screenshot x.jpg"), 2, {"--screenshot", "x.jpg", ".png"});
   expect_refused(run("view r --screenshot p.png --at 3.5"), 2, {"--at = 3.5", "r lasts 3.00 s"});
   EXPECT_FALSE(std::filesystem::exists(root_ / "p.png"));
+  std::filesystem::create_directory(root_ / "d.png");
+  write("file", "x");
+  for (const std::string command : {"sim e.ini", "view r"}) {
+    expect_refused(run(command + " --screenshot d.png"), 2,
+                   {"--screenshot: d.png", "regular file"});
+    expect_refused(run(command + " --screenshot /proc/x.png"), 2, {"--screenshot: /proc/x.png"});
+    expect_refused(run(command + " --frames-dir /proc/frames"), 2, {"--frames-dir: /proc/frames"});
+    expect_refused(run(command + " --frames-dir file/frames"), 2, {"--frames-dir: file/frames"});
+  }
+  // Trying leaves nothing, also where something else is refused afterwards.
+  expect_refused(run("sim nowhere.ini --screenshot new.png --frames-dir a/b"), 2, {"nowhere.ini"});
+  EXPECT_FALSE(std::filesystem::exists(root_ / "new.png"));
+  EXPECT_FALSE(std::filesystem::exists(root_ / "a"));
   EXPECT_EQ(run("view r --screenshot p.PNG --at 3").exit_code, 0);
   EXPECT_EQ(png_size(root_ / "p.PNG"), (std::pair<int, int>(1280, 800)));
+}
+
+TEST_F(View, ARunIsSavedThoughItsPicturesCannotBeWritten) {
+  // Their folder goes away while the run goes on.
+  write("long.ini",
+        "[experiment]\nname = long\nduration = 30\nalgorithm = drive\n[map]\nsize = 9\n");
+  std::filesystem::create_directory(root_ / "gone");
+  Terminal terminal({program_, "sim", "long.ini", "--out", "r", "--screenshot", "gone/p.png",
+                     "--frames-dir", "gone/film", "--size", "480x360"},
+                    root_);
+  ASSERT_TRUE(terminal.wait_for("frame_000001.png ...")) << terminal.screen();
+  std::filesystem::rename(root_ / "gone", root_ / "elsewhere");
+  EXPECT_EQ(terminal.exit_code(), 1);
+  EXPECT_NE(terminal.screen().find("; the run is saved, in r"), std::string::npos)
+      << terminal.screen();
+  EXPECT_TRUE(SessionReader(root_ / "r" / "session.h5").complete());
+  EXPECT_EQ(SessionReader(root_ / "r" / "session.h5").frames(), 3000U);
+}
+
+TEST_F(View, TheRunIsReadBeforeAScreenIsLookedFor) {
+  expect_refused(run("view nowhere", "SDL_VIDEODRIVER=none"), 2, {"nowhere", "no such file"});
 }
 
 TEST_F(View, FramesOfTwoFilmsDoNotMix) {

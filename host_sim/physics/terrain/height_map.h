@@ -18,6 +18,8 @@ struct HeightMapGeometry {
   double origin_x_m = 0;
   double origin_y_m = 0;
   bool wrap = false;  ///< the map repeats in both directions
+
+  bool operator==(const HeightMapGeometry&) const = default;
 };
 
 struct HeightMapView {
@@ -30,6 +32,7 @@ struct HeightMap {
   std::vector<std::int32_t> heights;
 
   HeightMapView view() const { return {geometry, heights}; }
+  bool operator==(const HeightMap&) const = default;
 };
 
 /// What a tick did to one height of a map.

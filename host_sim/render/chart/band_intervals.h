@@ -22,8 +22,9 @@ struct BandInterval {
 
 /// One interval a value, in order; `points` are sorted by time. A value holds until another is
 /// seen. It also ends `hold` after the last point, and after a point that the next one follows only
-/// after more than `longest_gap`: what was between them is not known.
+/// after more than `longest_gap`: what was between them is not known. No interval goes beyond
+/// `data_end`, up to which anything is known; no point lies after it.
 std::vector<BandInterval> band_intervals(std::span<const StatePoint> points, double hold,
-                                         double longest_gap);
+                                         double longest_gap, double data_end);
 
 }  // namespace screed

@@ -17,7 +17,11 @@ void ValueRange::add(double value) {
   high = std::max(high, value);
 }
 
-void ValueRange::open() {
+void ValueRange::open(bool from_zero) {
+  if (from_zero && low >= 0.0) {
+    low = 0.0;
+    if (high <= 0.0) high = 1.0;
+  }
   if (low < high) return;
   if (low > high) {
     low = high = 0.0;

@@ -14,8 +14,9 @@ struct ValueRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   void add(double value);
-  /// Makes it at least a little wide: from -1 to 1 when nothing was added.
-  void open();
+  /// Makes it at least a little wide: from -1 to 1 when nothing was added. from_zero: it begins at
+  /// 0 when no value lies below, and ends at 1 when none lies above either.
+  void open(bool from_zero = false);
 };
 
 /// One axis: values to pixels, and its ticks. end_px lies above or to the right of begin_px.

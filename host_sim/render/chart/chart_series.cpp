@@ -11,7 +11,16 @@ namespace {
 constexpr double kLegendSize_px = 12.0;
 constexpr double kSample_px = 18.0;  // of a legend: the coloured square and the gap behind it
 
+bool breaks_before(const ChartSeries& series, std::size_t point) {
+  return series.jump > 0.0 &&
+         std::abs(series.points[point].y - series.points[point - 1].y) > series.jump;
+}
+
 }  // namespace
+
+Color series_color(const std::vector<ChartSeries>& series, std::size_t index) {
+  return series[index].color.value_or(line_color(index));
+}
 
 void add_to_ranges(const std::vector<ChartSeries>& series, ValueRange& x, ValueRange& y) {
   for (const ChartSeries& one : series) {
@@ -55,7 +64,12 @@ void draw_series(Svg& svg, const ChartAxis& x, const ChartAxis& y, const ChartSe
     for (const Pixel& pixel : pixels) svg.small_dot(pixel, color);
     return;
   }
-  if (pixels.size() > 1) svg.polyline(pixels, color);
+  for (std::size_t begin = 0, end = 0; begin < pixels.size(); begin = end) {
+    end = begin + 1;
+    while (end < pixels.size() && !breaks_before(series, end)) ++end;
+    const auto at = [&](std::size_t i) { return pixels.begin() + static_cast<std::ptrdiff_t>(i); };
+    if (end - begin > 1) svg.polyline({at(begin), at(end)}, color, 2.0, series.dashed);
+  }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     draw_error_bar(svg, pixels[i].x, y, series.points[i], color);
     // A single point has no line to be seen by.
@@ -99,7 +113,7 @@ void draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left_
 std::vector<LegendEntry> legend_of(const std::vector<ChartSeries>& series) {
   std::vector<LegendEntry> entries;
   for (std::size_t i = 0; i < series.size(); ++i) {
-    if (!series[i].label.empty()) entries.push_back({series[i].label, line_color(i)});
+    if (!series[i].label.empty()) entries.push_back({series[i].label, series_color(series, i)});
   }
   return entries;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,13 @@ struct ChartSeries {
   std::vector<ChartPoint> points;
   bool markers = true;  ///< a dot at every point; for lines
   bool joined = true;   ///< a line through the points; without, small dots alone: a scatter plot
+  bool dashed = false;  ///< a line that shows one below it
+  double jump = 0.0;    ///< the line breaks where y changes by more; 0: never
+  std::optional<Color> color{};  ///< none: line_color() of its place among the series
 };
+
+/// In a chart of these series.
+Color series_color(const std::vector<ChartSeries>& series, std::size_t index);
 
 /// Adds all points, with their error bars, to the ranges.
 void add_to_ranges(const std::vector<ChartSeries>& series, ValueRange& x, ValueRange& y);

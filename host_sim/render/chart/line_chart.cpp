@@ -11,10 +11,13 @@ namespace screed {
 namespace {
 
 void check(const Chart& chart) {
-  if (chart.width_px < 320 || chart.width_px > 4000 || chart.height_px < 240 ||
-      chart.height_px > 4000) {
+  if (chart.width_px < kMinChartWidth_px || chart.width_px > kMaxChartSide_px ||
+      chart.height_px < kMinChartHeight_px || chart.height_px > kMaxChartSide_px) {
+    const std::string most = std::to_string(kMaxChartSide_px);
     throw InputError("chart: " + std::to_string(chart.width_px) + "x" +
-                     std::to_string(chart.height_px) + " px; allowed is 320x240 to 4000x4000");
+                     std::to_string(chart.height_px) + " px; allowed is " +
+                     std::to_string(kMinChartWidth_px) + "x" + std::to_string(kMinChartHeight_px) +
+                     " to " + most + "x" + most);
   }
   if (!check_series(chart.title, chart.series)) {
     throw InputError("chart '" + chart.title + "': nothing to draw");
@@ -47,17 +50,15 @@ class Drawing {
   bool has_categories() const { return !chart_.categories.empty(); }
   /// Bars are large enough for light colours; lines are not.
   Color color(size_t series) const {
-    return chart_.kind == ChartKind::kBars ? category_color(series) : line_color(series);
+    if (chart_.kind != ChartKind::kBars) return series_color(chart_.series, series);
+    return chart_.series[series].color.value_or(category_color(series));
   }
 
   void lay_out() {
     ValueRange x_range;
     ValueRange y_range;
     add_to_ranges(chart_.series, x_range, y_range);
-    if ((chart_.from_zero || chart_.kind == ChartKind::kBars) && y_range.low >= 0.0) {
-      y_range.low = 0.0;
-    }
-    y_range.open();
+    y_range.open(chart_.from_zero || chart_.kind == ChartKind::kBars);
     x_range.open();
 
     legend_ = legend_of(chart_.series);
@@ -67,12 +68,12 @@ class Drawing {
     constexpr double kMargin_px = 24.0;
     legend_top_ =
         18.0 + (chart_.title.empty() ? 0.0 : 20.0) + (chart_.subtitle.empty() ? 0.0 : 20.0);
-    const double legend_height =
-        legend_height_px(legend_, chart_.width_px - 2.0 * kMargin_px - 40.0);
-    const double top = legend_top_ + legend_height + (legend_.empty() ? 14.0 : 10.0);
     const double bottom = chart_.height_px - 6.0 - level_axis_height_px(chart_.x_label);
-    y_ = enclosing_axis(y_range, chart_.height_px / 65, bottom, top);
+    // The ticks do not depend on where the axis ends, only on its height in the picture.
+    y_ = enclosing_axis(y_range, chart_.height_px / 65, bottom, 0.0);
     const double left = kMargin_px + (chart_.y_label.empty() ? 0.0 : 22.0) + tick_width_px(y_);
+    y_.end_px = legend_top_ + legend_height_px(legend_, chart_.width_px - kMargin_px - left) +
+                (legend_.empty() ? 14.0 : 10.0);
     // Only as wide as the points, with a little air.
     x_ = tight_axis(x_range, 0.03, left, chart_.width_px - kMargin_px);
     if (has_categories()) {

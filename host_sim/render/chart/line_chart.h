@@ -26,8 +26,8 @@ struct Chart {
   std::vector<std::string> categories;  ///< names for x = 0, 1, 2, ... in place of numbers
   bool from_zero = true;                ///< the y axis begins at 0, when no value lies below
   bool value_labels = false;            ///< write each bar's value above it, where it fits
-  int width_px = 760;                   ///< 320..4000
-  int height_px = 460;                  ///< 240..4000
+  int width_px = 760;                   ///< kMinChartWidth_px..kMaxChartSide_px
+  int height_px = 460;                  ///< kMinChartHeight_px..kMaxChartSide_px
 };
 
 /// The text of an SVG file. Throws InputError when there is no point at all, a number is not

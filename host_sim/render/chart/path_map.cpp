@@ -52,6 +52,10 @@ MapRanges ranges_of(const PathMap& map) {
   return ranges;
 }
 
+Color color_of(const PathMap& map, std::size_t path) {
+  return map.paths[path].color.value_or(line_color(path));
+}
+
 void draw_path(Svg& svg, const MapPath& path, const ChartAxis& x, const ChartAxis& y, Color color,
                bool dashed) {
   std::vector<Pixel> piece;
@@ -59,13 +63,13 @@ void draw_path(Svg& svg, const MapPath& path, const ChartAxis& x, const ChartAxi
     if (piece.size() > 1) svg.polyline(piece, color, 2.4, dashed);
     piece.clear();
   };
+  auto next_break = path.breaks.begin();
   for (std::size_t i = 0; i < path.points.size(); ++i) {
-    const Pixel& point = path.points[i];
-    if (i > 0 && path.jump_m > 0.0) {
-      const Pixel& last = path.points[i - 1];
-      if (std::hypot(point.x - last.x, point.y - last.y) > path.jump_m) end_piece();
+    if (next_break != path.breaks.end() && *next_break == i) {
+      end_piece();
+      ++next_break;
     }
-    piece.push_back({x(point.x), y(point.y)});
+    piece.push_back({x(path.points[i].x), y(path.points[i].y)});
   }
   end_piece();
 }
@@ -102,7 +106,7 @@ void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box) {
   std::vector<LegendEntry> legend;
   legend.reserve(map.paths.size());
   for (std::size_t i = 0; i < map.paths.size(); ++i) {
-    legend.push_back({map.paths[i].label, line_color(i)});
+    legend.push_back({map.paths[i].label, color_of(map, i)});
   }
   const double legend_width = box.width - kLeft_px - kRight_px;
   const double legend_px = legend_height_px(legend, legend_width);
@@ -135,10 +139,10 @@ void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box) {
   }
   // The later paths are dashed: where they cover the first, it shows between the dashes.
   for (std::size_t i = 0; i < map.paths.size(); ++i) {
-    draw_path(svg, map.paths[i], x, y, line_color(i), i > 0);
+    draw_path(svg, map.paths[i], x, y, color_of(map, i), i > 0);
   }
   for (std::size_t i = 0; i < map.paths.size(); ++i)
-    draw_ends(svg, map.paths[i], x, y, line_color(i));
+    draw_ends(svg, map.paths[i], x, y, color_of(map, i));
   svg.end_clip();
   svg.frame(plot, kChartInk, 1.2);
   if (map.scale.has_value()) {

@@ -2,6 +2,8 @@
 // start and its end, over an image of the ground where there is one.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +15,9 @@ namespace screed {
 
 struct MapPath {
   std::string label;
-  std::vector<Pixel> points;  ///< x east, y north, m
-  double jump_m = 0.0;        ///< the line breaks between points further apart; 0: never
+  std::vector<Pixel> points;          ///< x east, y north, m
+  std::vector<std::size_t> breaks{};  ///< points before which the line breaks, in order
+  std::optional<Color> color{};       ///< none: line_color() of its place among the paths
 };
 
 /// The ground as an image of width x height pixels, its rows from the north.

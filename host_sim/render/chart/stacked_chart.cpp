@@ -9,17 +9,18 @@ namespace screed {
 namespace {
 
 constexpr double kMargin_px = 24.0;
-constexpr double kTitle_px = 20.0;     // of a line of the title
-constexpr double kPanelGap_px = 16.0;  // below a panel
-constexpr double kBandRow_px = 26.0;   // of a row of bands, with the gap below it
-constexpr double kBand_px = 20.0;      // of the band itself
+constexpr double kTitle_px = 20.0;  // of a line of the title
+constexpr double kBelowTitle_px = 6.0;
+constexpr double kTitleColumn_px = 22.0;  // of the upright title of an axis
+constexpr double kPanelGap_px = 16.0;     // below a panel
+constexpr double kBandRow_px = 26.0;      // of a row of bands, with the gap below it
+constexpr double kBand_px = 20.0;         // of the band itself
 constexpr double kBandTextSize_px = 11.5;
 constexpr double kRowLabelSize_px = 12.0;
 constexpr double kMaxLabel_px = 200.0;
 constexpr double kGoodPanel_px = 180.0;  // of the axis of a panel of lines
 constexpr double kOnlyPanel_px = 340.0;
 constexpr double kMinPanel_px = 70.0;
-constexpr double kMaxSide_px = 4000.0;
 
 void check_band(const StackedChart& chart, const BandRow& row, const ChartBand& band) {
   if (!std::isfinite(band.begin) || !std::isfinite(band.end) || band.end < band.begin) {
@@ -55,6 +56,7 @@ class StackedDrawing {
  public:
   StackedDrawing(const StackedChart& chart, const PixelBox& box) : chart_(chart), box_(box) {
     find_x_range();
+    margin_px_ = margin_px(flexible_panels() > 1.0 ? kGoodPanel_px : kOnlyPanel_px);
   }
 
   /// What the panels need, their axes with this length.
@@ -79,10 +81,27 @@ class StackedDrawing {
 
  private:
   double head_px() const {
-    return 8.0 + (chart_.title.empty() ? 0.0 : kTitle_px) +
+    return 8.0 + (chart_.title.empty() ? 0.0 : kTitle_px + kBelowTitle_px) +
            (chart_.subtitle.empty() ? 0.0 : kTitle_px);
   }
-  double legend_width_px() const { return box_.width - 2.0 * kMargin_px - 60.0; }
+  /// As wide as the axis, at the left end of which it stands.
+  double legend_width_px() const { return box_.width - 2.0 * kMargin_px - margin_px_; }
+
+  /// Left of the axes, for labels, ticks and titles, when upright axes have that length.
+  double margin_px(double axis_px) const {
+    double margin = 0.0;
+    for (const ChartPanel& panel : chart_.panels) {
+      if (panel.rows.empty()) {
+        const double ticks = tick_width_px(axis_of(panel, axis_px, 0.0));
+        margin = std::max(margin, ticks + (panel.title.empty() ? 0.0 : kTitleColumn_px));
+      }
+      for (const BandRow& row : panel.rows) {
+        const double label = svg_text_width_px(row.label, kRowLabelSize_px);
+        margin = std::max(margin, std::min(kMaxLabel_px, label));
+      }
+    }
+    return margin;
+  }
 
   /// An axis title names a single series; several have a legend, and so have the names that fit
   /// into none of their bands.
@@ -139,9 +158,11 @@ class StackedDrawing {
   }
 
   void lay_out() {
-    const double fixed = height_px(0.0);
-    const double axis_px =
-        flexible_panels() > 0.0 ? (box_.height - fixed) / flexible_panels() : 0.0;
+    double axis_px = shared_axis_px();
+    // Ticks of the length that the axes come to may be wider than those of a good length, and then
+    // a legend may take one more row.
+    margin_px_ = std::max(margin_px_, margin_px(axis_px));
+    axis_px = shared_axis_px();
     if (axis_px < kMinPanel_px && flexible_panels() > 0.0) {
       throw InputError("chart '" + chart_.title + "': " + std::to_string(std::lround(box_.height)) +
                        " px are too few for " + std::to_string(chart_.panels.size()) +
@@ -149,7 +170,6 @@ class StackedDrawing {
                        std::to_string(std::lround(std::ceil(height_px(kMinPanel_px)))));
     }
     double top = box_.top + head_px();
-    double margin = 0.0;
     double ticks = 0.0;
     for (const ChartPanel& panel : chart_.panels) {
       PanelPlace place;
@@ -159,32 +179,30 @@ class StackedDrawing {
       place.top = top + legend_height_px(place.legend, legend_width_px());
       place.bottom = top + height;
       if (panel.rows.empty()) {
-        place.y = axis_of(panel, place);
+        place.y = axis_of(panel, place.bottom, place.top);
         ticks = std::max(ticks, tick_width_px(place.y));
-        margin = std::max(margin, ticks + (panel.title.empty() ? 0.0 : 22.0));
-      } else {
-        for (const BandRow& row : panel.rows) {
-          margin = std::max(margin,
-                            std::min(kMaxLabel_px, svg_text_width_px(row.label, kRowLabelSize_px)));
-        }
       }
       top += height + kPanelGap_px;
       places_.push_back(std::move(place));
     }
-    x_ = tight_axis(x_range_, 0.01, box_.left + kMargin_px + margin,
+    x_ = tight_axis(x_range_, 0.01, box_.left + kMargin_px + margin_px_,
                     box_.left + box_.width - kMargin_px);
     title_x_px_ = x_.begin_px - 8.0 - ticks - 16.0;
   }
 
-  static ChartAxis axis_of(const ChartPanel& panel, const PanelPlace& place) {
+  /// Of each of the panels whose height is free.
+  double shared_axis_px() const {
+    return flexible_panels() > 0.0 ? (box_.height - height_px(0.0)) / flexible_panels() : 0.0;
+  }
+
+  static ChartAxis axis_of(const ChartPanel& panel, double bottom_px, double top_px) {
     ValueRange ignored;
     ValueRange range;
     add_to_ranges(panel.series, ignored, range);
-    if (panel.from_zero && range.low >= 0.0) range.low = 0.0;
-    range.open();
+    range.open(panel.from_zero);
     constexpr double kTickDistance_px = 42.0;
-    return enclosing_axis(range, static_cast<int>((place.bottom - place.top) / kTickDistance_px),
-                          place.bottom, place.top);
+    return enclosing_axis(range, static_cast<int>((bottom_px - top_px) / kTickDistance_px),
+                          bottom_px, top_px);
   }
 
   void draw_words(Svg& svg) const {
@@ -209,7 +227,7 @@ class StackedDrawing {
     }
     draw_upright_axis(svg, place.y, x_.begin_px, x_.end_px, panel.title, title_x_px_);
     for (size_t i = 0; i < panel.series.size(); ++i) {
-      draw_series(svg, x_, place.y, panel.series[i], line_color(i));
+      draw_series(svg, x_, place.y, panel.series[i], series_color(panel.series, i));
     }
   }
 
@@ -219,6 +237,10 @@ class StackedDrawing {
     svg.text({x_.begin_px - 8.0, middle + 4.0},
              svg_fitted(row.label, kRowLabelSize_px, kMaxLabel_px),
              {.size_px = kRowLabelSize_px, .anchor = SvgAnchor::kEnd});
+    if (row.bands.empty()) {
+      svg.text({x_.begin_px + 6.0, middle + 4.0}, "none",
+               {.size_px = kBandTextSize_px, .color = kChartFaintInk});
+    }
     for (const ChartBand& band : row.bands) {
       const double left = x_(band.begin);
       const double width = std::max(1.5, x_(band.end) - left);
@@ -234,6 +256,7 @@ class StackedDrawing {
   PixelBox box_;
   ValueRange x_range_;
   ChartAxis x_;
+  double margin_px_ = 0.0;
   double title_x_px_ = 0.0;
   std::vector<PanelPlace> places_;
 };
@@ -247,17 +270,18 @@ void draw_stacked_chart(Svg& svg, const StackedChart& chart, const PixelBox& box
 
 std::string stacked_chart_svg(const StackedChart& chart) {
   check(chart);
-  if (chart.width_px < 320 || chart.width_px > kMaxSide_px) {
-    throw InputError("chart: " + std::to_string(chart.width_px) +
-                     " px wide; allowed is 320 to 4000");
+  if (chart.width_px < kMinChartWidth_px || chart.width_px > kMaxChartSide_px) {
+    throw InputError("chart: " + std::to_string(chart.width_px) + " px wide; allowed is " +
+                     std::to_string(kMinChartWidth_px) + " to " + std::to_string(kMaxChartSide_px));
   }
   PixelBox box{0.0, 0.0, static_cast<double>(chart.width_px), 0.0};
   const StackedDrawing trial(chart, box);
   const double good = trial.flexible_panels() > 1.0 ? kGoodPanel_px : kOnlyPanel_px;
   const double height = chart.height_px.has_value() ? *chart.height_px : trial.height_px(good);
-  if (height > kMaxSide_px) {
+  if (height > kMaxChartSide_px) {
     throw InputError("chart '" + chart.title + "': " + std::to_string(chart.panels.size()) +
-                     " panels are too many for one picture of 4000 px; draw fewer signals");
+                     " panels are too many for one picture of " + std::to_string(kMaxChartSide_px) +
+                     " px; draw fewer signals");
   }
   box.height = std::ceil(height);
   Svg svg(chart.width_px, static_cast<int>(box.height));

@@ -21,8 +21,8 @@ struct ChartBand {
 };
 
 struct BandRow {
-  std::string label;  ///< left of the bands
-  std::vector<ChartBand> bands;
+  std::string label;             ///< left of the bands
+  std::vector<ChartBand> bands;  ///< without any the row says "none"
 };
 
 /// Either lines over an axis of their own, or rows of bands.
@@ -39,8 +39,9 @@ struct StackedChart {
   std::string x_label;
   std::vector<ChartPanel> panels;
   ValueRange x;        ///< shown at least; empty: what the panels hold
-  int width_px = 960;  ///< 320..4000
-  /// 240..4000, and enough for the panels; none: as much as they need to be read well.
+  int width_px = 960;  ///< kMinChartWidth_px..kMaxChartSide_px
+  /// kMinChartHeight_px..kMaxChartSide_px, and enough for the panels; none: as much as they need to
+  /// be read well.
   std::optional<int> height_px;
 };
 

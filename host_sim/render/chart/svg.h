@@ -17,6 +17,11 @@ inline constexpr Color kChartInk{0.133, 0.149, 0.169};
 inline constexpr Color kChartFaintInk{0.357, 0.388, 0.420};
 inline constexpr Color kChartGrid{0.890, 0.902, 0.914};
 
+/// Sizes that a chart may have.
+inline constexpr int kMinChartWidth_px = 320;
+inline constexpr int kMinChartHeight_px = 240;
+inline constexpr int kMaxChartSide_px = 4000;
+
 enum class SvgAnchor : std::uint8_t { kStart, kMiddle, kEnd };
 
 struct SvgTextStyle {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
+#include "host_sim/core/display_units.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/ground_station/telemetry/schema.h"
@@ -23,10 +23,10 @@ constexpr int kWidth_px = 1240;
 constexpr int kHeight_px = 1080;
 constexpr double kHead_px = 96.0;
 constexpr double kMap_px = 590.0;  // width of the left column
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kMmPerM = 1000.0;
 
 constexpr std::array<const char*, 2> kRunNames = {"A", "B"};
+/// Wine and teal: none of them the colour of a state, nor easily taken for one.
+constexpr std::array<Color, 2> kRunColors = {{{0.56, 0.05, 0.20}, {0.05, 0.58, 0.62}}};
 
 /// Every pixel of the ground as this colour of its node.
 template <class ColorOfNode>
@@ -86,16 +86,19 @@ MapImage difference_image(const HeightMapGeometry& g, const std::vector<double>&
   });
 }
 
-MapPath path_of(const ComparedRun& run, const std::string& label) {
-  MapPath path{label, {}};
+/// The line breaks where the robot goes over the edge of a wrapped bed.
+MapPath path_of(const ComparedRun& run, const std::string& label, Color color) {
+  MapPath path{label, {}, {}, color};
   path.points.reserve(run.trace.size());
+  const TracePoint* last = nullptr;
   for (const TracePoint& point : run.trace) {
-    if (std::isfinite(point.x_m) && std::isfinite(point.y_m)) {
-      path.points.push_back({point.x_m, point.y_m});
+    if (!std::isfinite(point.x_m) || !std::isfinite(point.y_m)) continue;
+    if (last != nullptr && (point.beds_x != last->beds_x || point.beds_y != last->beds_y)) {
+      path.breaks.push_back(path.points.size());
     }
+    path.points.push_back({point.x_m, point.y_m});
+    last = &point;
   }
-  // More than a robot drives in a tenth of a second: it went over the edge of a wrapped bed.
-  path.jump_m = 0.2;
   return path;
 }
 
@@ -141,14 +144,20 @@ std::optional<MapRectangle> view_of(const SessionComparison& comparison) {
 
 PathMap path_map(const SessionComparison& comparison, const std::array<std::string, 2>& labels) {
   PathMap map;
-  map.title = "paths (ring: start, square: end)";
+  map.title = "paths";
   for (std::size_t i = 0; i < 2; ++i) {
-    map.paths.push_back(path_of(comparison.runs[i], std::string(kRunNames[i]) + ": " + labels[i]));
+    map.paths.push_back(
+        path_of(comparison.runs[i], std::string(kRunNames[i]) + ": " + labels[i], kRunColors[i]));
   }
   if (comparison.terrain.not_comparable.empty()) {
-    map.image = relief_image(*comparison.runs[0].terrain);
     map.view = view_of(comparison);
+    if (comparison.runs[0].before.has_value()) {
+      map.image = relief_image(*comparison.runs[0].before);
+      map.title += comparison.same_start ? " over the terrain at the start"
+                                         : " over A's terrain at the start";
+    }
   }
+  map.title += " (ring: start, square: end)";
   return map;
 }
 
@@ -168,7 +177,8 @@ PathMap difference_map(const SessionComparison& comparison) {
 
 ChartPanel deviation_panel(const SessionComparison& comparison, const char* title,
                            double (*value)(const DeviationPoint&), bool from_zero) {
-  ChartPanel panel{title, {{"B from A", {}, false}}, {}, from_zero};
+  // In the ink of neither run: it is of both.
+  ChartPanel panel{title, {{"B from A", {}, false, true, false, 0.0, kChartInk}}, {}, from_zero};
   for (const DeviationPoint& point : comparison.deviation) {
     const double y = value(point);
     if (std::isfinite(y)) panel.series[0].points.push_back({point.time_s, y});
@@ -179,7 +189,8 @@ ChartPanel deviation_panel(const SessionComparison& comparison, const char* titl
 ChartPanel battery_panel(const SessionComparison& comparison) {
   ChartPanel panel{"battery [V]", {}, {}, false};
   for (std::size_t i = 0; i < 2; ++i) {
-    ChartSeries series{kRunNames[i], {}, false};
+    // B is dashed, as on the map: where it covers A, A shows between the dashes.
+    ChartSeries series{kRunNames[i], {}, false, true, i > 0, 0.0, kRunColors[i]};
     for (const TracePoint& point : comparison.runs[i].trace) {
       if (std::isfinite(point.battery_v)) series.points.push_back({point.time_s, point.battery_v});
     }
@@ -195,7 +206,8 @@ BandRow state_row(const ComparedRun& run, const std::string& label) {
   points.reserve(run.trace.size());
   for (const TracePoint& point : run.trace) points.push_back({point.time_s, point.leveling_state});
   BandRow row{label, {}};
-  for (const BandInterval& it : band_intervals(points, kPeriod_s, 2.0 * kPeriod_s)) {
+  const double end_s = run.trace.empty() ? 0.0 : run.trace.back().time_s;
+  for (const BandInterval& it : band_intervals(points, kPeriod_s, 2.0 * kPeriod_s, end_s)) {
     row.bands.push_back(
         {it.begin, it.end, signal.text(it.value),
          state_color(static_cast<std::size_t>(std::max<std::int64_t>(0, it.value)))});
@@ -213,11 +225,15 @@ StackedChart deviation_chart(const SessionComparison& comparison) {
         [](const DeviationPoint& point) { return kMmPerM * point.position_m; }, true));
     chart.panels.push_back(deviation_panel(
         comparison, "heading, B from A [deg]",
-        [](const DeviationPoint& point) { return kDegrees * point.heading_rad; }, false));
+        [](const DeviationPoint& point) { return kDegPerRad * point.heading_rad; }, false));
+    // From 180 to -180 degrees the line has no way.
+    chart.panels.back().series[0].jump = 180.0;
   }
   chart.panels.push_back(battery_panel(comparison));
-  chart.panels.push_back(
-      {"", {}, {state_row(comparison.runs[0], "A"), state_row(comparison.runs[1], "B")}});
+  chart.panels.push_back({"",
+                          {},
+                          {state_row(comparison.runs[0], "states of A"),
+                           state_row(comparison.runs[1], "states of B")}});
   return chart;
 }
 
@@ -230,6 +246,7 @@ std::string verdict(const SessionComparison& comparison) {
                   comparison.first->column.c_str());
     return text;
   }
+  if (comparison.common_ticks == 0) return "no tick that both runs have";
   return "equal in all " + std::to_string(comparison.common_ticks) + " common ticks";
 }
 
@@ -244,8 +261,9 @@ void draw_head(Svg& svg, const SessionComparison& comparison,
     y += 24.0;
     char facts[200];
     std::snprintf(facts, sizeof facts, ", %s, seed %llu, %.2f s, ends %s", run.name.c_str(),
-                  static_cast<unsigned long long>(run.seed), run.end.time_s, run.end.state.c_str());
-    svg.rectangle({kLeft_px, y - 11.0, 13.0, 13.0}, line_color(i), 2.0);
+                  static_cast<unsigned long long>(run.seed), run.end.time_s,
+                  run.frames > 0 ? run.end.state.c_str() : "before the first tick");
+    svg.rectangle({kLeft_px, y - 11.0, 13.0, 13.0}, kRunColors[i], 2.0);
     svg.text({kLeft_px + 20.0, y},
              svg_fitted(std::string(kRunNames[i]) + ": " + labels[i] + facts, 13.0,
                         kWidth_px - 3.0 * kLeft_px),

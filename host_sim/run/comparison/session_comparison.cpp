@@ -126,8 +126,8 @@ void read_trace(const SessionReader& session, const Bed& bed, ComparedRun& run) 
         run.end.distance_m += std::hypot(frame.delta_x, frame.delta_y);
       }
       if ((first + i) % every != 0 && first + i + 1 != count) continue;
-      run.trace.push_back(
-          {frame.time, frame.x, frame.y, frame.battery, frame.state, frame.leveling_state});
+      run.trace.push_back({frame.time, frame.x, frame.y, frame.battery, frame.leveling_state,
+                           frame.beds_x, frame.beds_y});
     }
   }
   if (frames.empty()) return;
@@ -145,8 +145,13 @@ void read_trace(const SessionReader& session, const Bed& bed, ComparedRun& run) 
   run.end.energy_j = last.energy;
 }
 
-ComparedRun describe(const SessionReader& session, const Bed& bed,
-                     const std::optional<HeightMap>& before) {
+/// A run, and its surface at the end where it was recorded.
+struct MeasuredRun {
+  ComparedRun run;
+  std::optional<HeightField> surface;
+};
+
+MeasuredRun describe(const SessionReader& session) {
   ComparedRun run;
   run.name = session.info().experiment_name;
   run.program_version = session.info().program_version;
@@ -154,13 +159,15 @@ ComparedRun describe(const SessionReader& session, const Bed& bed,
   run.frames = session.frames();
   run.complete = session.complete();
   run.content_hash = session.content_hash();
-  read_trace(session, bed, run);
+  run.before = session.terrain_before();
   run.terrain = session.terrain_after();
-  if (before.has_value() && run.terrain.has_value()) {
-    run.end.change =
-        terrain_change(surface_of(session, *before), surface_of(session, *run.terrain));
+  read_trace(session, Bed(run.before), run);
+  std::optional<HeightField> surface;
+  if (run.terrain.has_value()) surface = surface_of(session, *run.terrain);
+  if (run.before.has_value() && surface.has_value()) {
+    run.end.change = terrain_change(surface_of(session, *run.before), *surface);
   }
-  return run;
+  return {std::move(run), std::move(surface)};
 }
 
 /// The tick in which two recordings part, and how far the robots are apart until both have ended.
@@ -206,17 +213,6 @@ void compare_ticks(const SessionReader& a, const SessionReader& b, const std::ar
   }
 }
 
-bool same_geometry(const HeightMapGeometry& a, const HeightMapGeometry& b) {
-  return a.nx == b.nx && a.ny == b.ny && a.spacing_m == b.spacing_m &&
-         a.origin_x_m == b.origin_x_m && a.origin_y_m == b.origin_y_m && a.wrap == b.wrap;
-}
-
-bool same_map(const std::optional<HeightMap>& a, const std::optional<HeightMap>& b) {
-  if (!a.has_value() || !b.has_value()) return a.has_value() == b.has_value();
-  return same_geometry(a->geometry, b->geometry) && a->geometry.unit_m == b->geometry.unit_m &&
-         a->heights == b->heights;
-}
-
 std::string grid_text(const HeightMapGeometry& g) {
   char text[100];
   std::snprintf(text, sizeof text, "%u x %u heights of %g m%s", g.nx, g.ny, g.spacing_m,
@@ -224,24 +220,23 @@ std::string grid_text(const HeightMapGeometry& g) {
   return text;
 }
 
-TerrainDifference terrain_difference(const SessionReader& session_a, const SessionReader& session_b,
-                                     const std::optional<HeightMap>& a,
-                                     const std::optional<HeightMap>& b) {
+TerrainDifference terrain_difference(const MeasuredRun& a, const MeasuredRun& b) {
   TerrainDifference result;
-  if (!a.has_value() || !b.has_value()) {
+  if (!a.surface.has_value() || !b.surface.has_value()) {
     result.not_comparable = "not recorded";
     return result;
   }
-  if (!same_geometry(a->geometry, b->geometry)) {
-    result.not_comparable =
-        "the grids differ: A " + grid_text(a->geometry) + ", B " + grid_text(b->geometry);
+  const HeightMapGeometry& grid_a = a.run.terrain->geometry;
+  const HeightMapGeometry& grid_b = b.run.terrain->geometry;
+  if (grid_a != grid_b) {
+    result.not_comparable = "the grids differ: A " + grid_text(grid_a) + ", B " + grid_text(grid_b);
     return result;
   }
-  const HeightField surface_a = surface_of(session_a, *a);
-  const HeightField surface_b = surface_of(session_b, *b);
+  const HeightField& surface_a = *a.surface;
+  const HeightField& surface_b = *b.surface;
   result.change = terrain_change(surface_a, surface_b);
   double squares = 0.0;
-  result.height_m.reserve(a->heights.size());
+  result.height_m.reserve(a.run.terrain->heights.size());
   for (int iy = 0; iy < surface_a.ny(); ++iy) {
     for (int ix = 0; ix < surface_a.nx(); ++ix) {
       const double height = kHeightUnit_m * (surface_b.node(ix, iy) - surface_a.node(ix, iy));
@@ -310,15 +305,14 @@ SessionComparison compare_sessions(const SessionReader& a, const SessionReader& 
     result.configuration.insert(result.configuration.begin(),
                                 {"board", a.info().board_name, b.info().board_name});
   }
-  const std::optional<HeightMap> before_a = a.terrain_before();
-  const std::optional<HeightMap> before_b = b.terrain_before();
-  const std::array<Bed, 2> beds = {Bed(before_a), Bed(before_b)};
-  result.runs = {describe(a, beds[0], before_a), describe(b, beds[1], before_b)};
+  MeasuredRun run_a = describe(a);
+  MeasuredRun run_b = describe(b);
+  result.terrain = terrain_difference(run_a, run_b);
+  result.runs = {std::move(run_a.run), std::move(run_b.run)};
+  result.same_start = result.runs[0].before == result.runs[1].before;
+  result.same_terrain = result.same_start && result.runs[0].terrain == result.runs[1].terrain;
   result.common_ticks = std::min(a.frames(), b.frames());
-  compare_ticks(a, b, beds, result);
-  result.terrain = terrain_difference(a, b, result.runs[0].terrain, result.runs[1].terrain);
-  result.same_terrain =
-      same_map(before_a, before_b) && same_map(result.runs[0].terrain, result.runs[1].terrain);
+  compare_ticks(a, b, {Bed(result.runs[0].before), Bed(result.runs[1].before)}, result);
   return result;
 }
 

@@ -39,8 +39,9 @@ struct TracePoint {
   double x_m;  ///< on the bed
   double y_m;
   double battery_v;
-  int state;
   int leveling_state;
+  int beds_x;  ///< times that it went over the eastern edge of a wrapped bed, less the western
+  int beds_y;
 };
 
 /// How a run ended.
@@ -68,6 +69,7 @@ struct ComparedRun {
   std::string content_hash;
   std::vector<TracePoint> trace;
   FinalState end;                    ///< of no use without a frame
+  std::optional<HeightMap> before;   ///< the terrain as it was laid out
   std::optional<HeightMap> terrain;  ///< as the run left it
 };
 
@@ -101,7 +103,9 @@ struct SessionComparison {
   std::vector<DeviationPoint> deviation;    ///< ten a second
   std::optional<DeviationSummary> summary;  ///< nothing without a common tick
   TerrainDifference terrain;
-  /// The terrains before and after agree, height by height.
+  /// The terrains before agree, height by height.
+  bool same_start = false;
+  /// And those after.
   bool same_terrain = false;
 
   /// Same configuration, ticks and terrain. The program's version may differ.

@@ -10,6 +10,7 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/partial_folder.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/render/picture/terrain_picture.h"
 
@@ -20,15 +21,15 @@ namespace fs = std::filesystem;
 
 constexpr double kWhite = 65535.0;
 
-fs::path numbered(const fs::path& folder, const char* name, std::uint64_t frame) {
+std::string numbered(const char* name, std::uint64_t frame) {
   char number[32];
   std::snprintf(number, sizeof number, "_%06llu.png", static_cast<unsigned long long>(frame));
-  return folder / (name + std::string(number));
+  return name + std::string(number);
 }
 
 void check(const SessionReader& session, const FrameRange& range, std::uint64_t every) {
   if (!session.has_heights()) {
-    throw InputError("the session has no recorded heights; screed record keeps them");
+    throw InputError("the session has no recorded heights; sim --heights and record keep them");
   }
   if (range.count == 0 || every == 0) throw InputError("no frame to export");
 }
@@ -81,6 +82,7 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
   nlohmann::ordered_json frames = nlohmann::ordered_json::array();
   std::vector<std::uint16_t> samples(std::size_t{geometry.nx} * geometry.ny);
   const ExportProgress told{progress, "exporting heights"};
+  PartialFolder partial(folder);
   for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
     for (std::size_t row = 0; row < geometry.ny; ++row) {
       const std::int32_t* heights = &map.heights[(geometry.ny - 1 - row) * geometry.nx];
@@ -89,10 +91,11 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
             static_cast<std::uint16_t>(std::floor((heights[x] - black) / span * kWhite + 0.5));
       }
     }
-    done.files.push_back(numbered(folder, "height", frame));
-    write_grey16_png(done.files.back(), static_cast<int>(geometry.nx),
+    const std::string name = numbered("height", frame);
+    write_grey16_png(partial.partial() / name, static_cast<int>(geometry.nx),
                      static_cast<int>(geometry.ny), samples);
-    frames.push_back({{"frame", frame}, {"file", done.files.back().filename().string()}});
+    done.files.push_back(folder / name);
+    frames.push_back({{"frame", frame}, {"file", name}});
   });
 
   const nlohmann::ordered_json json = {
@@ -106,25 +109,25 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
       {"top_row", "north"},
       {"wrap", geometry.wrap},
       {"frames", frames}};
-  write_file(folder / "scale.json", json.dump(1) + "\n");
+  write_file(partial.partial() / "scale.json", json.dump(1) + "\n");
+  partial.commit();
   return done;
 }
 
 std::vector<fs::path> export_pictures(const SessionReader& session, const FrameRange& range,
                                       std::uint64_t every, const fs::path& folder,
-                                      std::vector<std::string> state_names,
-                                      const std::optional<RobotShape>& shape,
-                                      const TaskProgress& progress) {
+                                      const PictureSeries& series, const TaskProgress& progress) {
   check(session, range, every);
   constexpr std::uint64_t kPathFrames = 10;
   std::vector<fs::path> files;
   PictureOptions options;
   const HeightExtremes extremes = session.height_extremes();
   options.heights = HeightRange{extremes.lowest * kHeightUnit_m, extremes.highest * kHeightUnit_m};
-  options.state_names = std::move(state_names);
+  options.state_names = series.state_names;
   std::uint64_t next = range.first;
   std::vector<SimFrame> frames;
   const ExportProgress told{progress, "exporting pictures"};
+  PartialFolder partial(folder);
   for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
     frames.resize(frame + 1 - next);
     session.read(next, std::span(frames));
@@ -135,11 +138,15 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
     }
     const SimFrame& now = frames.back();
     next = frame + 1;
-    if (shape) options.robot = RobotOutline{now.x, now.y, now.yaw, *shape};
+    if (series.shape) options.robot = RobotOutline{now.x, now.y, now.yaw, *series.shape};
     options.title = session.info().experiment_name + ": frame " + std::to_string(frame);
-    files.push_back(numbered(folder, "picture", frame));
-    write_height_map_picture(files.back(), field_of(map), options);
+    const std::string name = numbered("picture", frame);
+    const HeightField terrain = field_of(map);
+    write_height_map_picture(partial.partial() / name,
+                             series.surface ? series.surface(terrain) : terrain, options);
+    files.push_back(folder / name);
   });
+  partial.commit();
   return files;
 }
 

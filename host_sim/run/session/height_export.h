@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "host_sim/core/task_progress.h"
@@ -29,23 +31,29 @@ struct HeightExport {
   std::vector<std::filesystem::path> files;  ///< the images, one a frame
 };
 
+/// How pictures of a session are drawn.
+struct PictureSeries {
+  std::vector<std::string> state_names;  ///< of the leveling algorithm's states, by number
+  std::optional<RobotShape> shape;       ///< without one the path's end stands for the robot
+  /// The surface that is drawn of a terrain; empty: the terrain.
+  std::function<HeightField(const HeightField&)> surface;
+};
+
 /// Writes frames first, first + every, ... of `range` as folder/height_NNNNNN.png (NNNNNN: the row
 /// of the frame in the session; top row north), and folder/scale.json, which says what a sample is
 /// in metres and where it lies. The folder must exist. Throws InputError when the session has no
 /// recorded heights or the range is empty, RunError when a file cannot be written. Reports the task
-/// "exporting heights".
+/// "exporting heights". The files appear together, at the end, or not at all.
 HeightExport export_heights_png(const SessionReader& session, const FrameRange& range,
                                 std::uint64_t every, const std::filesystem::path& folder,
                                 const TaskProgress& progress = {});
 
-/// Writes the same frames as shaded pictures with path and robot (without a shape the path's end
-/// stands for it), folder/picture_NNNNNN.png. state_names: of the leveling algorithm's states, by
-/// number. Reports the task "exporting pictures".
+/// Writes the same frames as shaded pictures with path and robot, folder/picture_NNNNNN.png, in the
+/// same way. Reports the task "exporting pictures".
 std::vector<std::filesystem::path> export_pictures(const SessionReader& session,
                                                    const FrameRange& range, std::uint64_t every,
                                                    const std::filesystem::path& folder,
-                                                   std::vector<std::string> state_names,
-                                                   const std::optional<RobotShape>& shape,
+                                                   const PictureSeries& series,
                                                    const TaskProgress& progress = {});
 
 }  // namespace screed

@@ -13,10 +13,11 @@ RunLoop::RunLoop(RunWorld& world, const RunParts& parts)
       stop_(parts.stop),
       progress_(parts.progress),
       pacer_(parts.pacer),
-      observer_(parts.observer) {}
+      observer_(parts.observer),
+      before_(parts.before) {}
 
 RunEnd RunLoop::run() {
-  if (observer_ != nullptr) observer_->on_begin(plant_.terrain());
+  if (observer_ != nullptr) observer_->on_begin(before_, plant_.terrain());
   World* native = world_.native();
   const RunEnd end = native != nullptr ? run_native(*native) : run_image(*world_.image());
   if (observer_ != nullptr) observer_->on_end();

@@ -34,7 +34,8 @@ struct WatchedRobot {
   SimFrame frame;
 };
 
-/// What takes part in every tick. The observer may be null.
+/// What takes part in every tick. The observer may be null; `before` is what it is shown as the
+/// terrain before the run.
 struct RunParts {
   WatchedRobot& robot;
   SessionRecorder& recorder;
@@ -42,6 +43,7 @@ struct RunParts {
   Progress& progress;
   Pacer& pacer;
   SimulationObserver* observer;
+  const HeightField& before;
 };
 
 class RunLoop {
@@ -71,6 +73,7 @@ class RunLoop {
   Progress& progress_;
   Pacer& pacer_;
   SimulationObserver* observer_;
+  const HeightField& before_;
 };
 
 }  // namespace screed

@@ -1,37 +1,95 @@
 // Titles, legend and outline of a run's pictures.
 #include "host_sim/run/simulation/run_pictures.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "host_sim/core/errors.h"
+#include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/session/height_export.h"
 #include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/session_recorder.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
 
 namespace screed {
+namespace {
 
-void write_run_pictures(const std::filesystem::path& folder, const Experiment& experiment,
-                        const RunSurfaces& terrain, const Environment& plant,
-                        std::vector<PathPoint> path, const RobotShape& shape) {
+namespace fs = std::filesystem;
+
+bool has_changed(const RunSurfaces& terrain) {
+  const TerrainChange change = terrain_change(terrain.before, terrain.after);
+  return change.cut_m3 != 0.0 || change.fill_m3 != 0.0;
+}
+
+DrivenRun driven_run(const SessionReader& session, const std::optional<RobotShape>& shape) {
+  constexpr std::uint64_t kBlockRows = 1024;
+  std::vector<PathPoint> path;
+  std::vector<SimFrame> frames;
+  for (std::uint64_t first = 0; first < session.frames(); first += frames.size()) {
+    frames.resize(std::min(kBlockRows, session.frames() - first));
+    session.read(first, std::span(frames));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if ((first + i) % kPathTicks == 0) path.push_back(path_point(frames[i]));
+    }
+  }
+  return driven_run(std::move(path), frames.empty() ? SimFrame() : frames.back(), shape);
+}
+
+}  // namespace
+
+DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
+                     const std::optional<RobotShape>& shape) {
+  DrivenRun run;
+  run.path = std::move(path);
+  if (run.path.empty()) return run;
+  run.time_s = last.time;
+  if (shape) run.robot = RobotOutline{last.x, last.y, last.yaw, *shape};
+  return run;
+}
+
+std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experiment& experiment,
+                                         const RunSurfaces& terrain, const DrivenRun& run) {
   const std::string& name = experiment.experiment.name;
-  const std::string run =
-      std::to_string(std::lround(plant.time_s())) + " s of " + experiment.experiment.algorithm;
+  const std::string what =
+      std::to_string(std::lround(run.time_s)) + " s of " + experiment.experiment.algorithm;
+  std::vector<fs::path> files;
   PictureOptions options;
-  if (plant.is_deformable()) {
+  if (experiment.map.is_soil() || experiment.map.of_particles() || has_changed(terrain)) {
     // Without the path, which would hide the tracks below it.
-    options.title = name + ": change by " + run;
-    write_difference_picture(folder / "terrain_change.png", terrain.before, terrain.after, options);
+    options.title = name + ": change by " + what;
+    files.push_back(folder / "terrain_change.png");
+    write_difference_picture(files.back(), terrain.before, terrain.after, options);
   }
   options.heights = common_range(terrain.before, terrain.after);
   options.title = name + ": before";
-  write_height_map_picture(folder / "terrain_before.png", terrain.before, options);
+  files.push_back(folder / "terrain_before.png");
+  write_height_map_picture(files.back(), terrain.before, options);
 
-  options.title = name + ": after " + run;
+  options.title = name + ": after " + what;
   options.state_names = leveling_state_names();
-  options.path = std::move(path);
-  const ChassisState chassis = plant.vehicle().chassis();
-  options.robot = RobotOutline{chassis.pose.translation().x(), chassis.pose.translation().y(),
-                               attitude_of(chassis.pose.linear()).heading, shape};
-  write_height_map_picture(folder / "terrain_after.png", terrain.after, options);
+  options.path = run.path;
+  options.robot = run.robot;
+  files.push_back(folder / "terrain_after.png");
+  write_height_map_picture(files.back(), terrain.after, options);
+  return files;
+}
+
+std::vector<fs::path> export_run_pictures(const fs::path& folder, const SessionReader& session,
+                                          const std::optional<RobotShape>& shape) {
+  const std::optional<HeightMap> before = session.terrain_before();
+  const std::optional<HeightMap> after = session.terrain_after();
+  if (!before || !after) return {};
+  if (before->geometry != after->geometry) {
+    throw InputError("the session's terrains before and after have different grids");
+  }
+  const Experiment experiment = setup_of(session.info(), {}).experiment;
+  const TerrainMeasure measure(experiment);
+  return write_run_pictures(folder, experiment,
+                            {measure.surface(field_of(*before)), measure.surface(field_of(*after))},
+                            driven_run(session, shape));
 }
 
 }  // namespace screed

@@ -1,14 +1,17 @@
 // The pictures of a run: the terrain before, after it with the driven path, and what has changed.
+// Made at its end, and again from its session.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "host_sim/core/sim_frame.h"
 #include "host_sim/physics/terrain/height_field.h"
-#include "host_sim/physics/world/environment.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/render/picture/terrain_picture.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/session/session_reader.h"
 
 namespace screed {
 
@@ -18,12 +21,30 @@ struct RunSurfaces {
   HeightField after;
 };
 
+/// What the robot did between them.
+struct DrivenRun {
+  double time_s = 0.0;
+  std::vector<PathPoint> path;  ///< its states are those of the leveling algorithm (LevelingState)
+  std::optional<RobotOutline> robot;  ///< at the end
+};
+
+/// `last`: the frame of the last tick; of no use for a path without a point.
+DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
+                     const std::optional<RobotShape>& shape);
+
 /// Writes terrain_before.png and terrain_after.png into the folder, both in the same colours for
-/// the same height, and terrain_change.png where the terrain is deformable. `path`: its states are
-/// those of the leveling algorithm (LevelingState). `shape`: the robot's. Throws RunError when a
-/// file cannot be written.
-void write_run_pictures(const std::filesystem::path& folder, const Experiment& experiment,
-                        const RunSurfaces& terrain, const Environment& plant,
-                        std::vector<PathPoint> path, const RobotShape& shape);
+/// the same height, and terrain_change.png where the terrain is deformable or has changed. Returns
+/// the files. Throws RunError when one cannot be written.
+std::vector<std::filesystem::path> write_run_pictures(const std::filesystem::path& folder,
+                                                      const Experiment& experiment,
+                                                      const RunSurfaces& terrain,
+                                                      const DrivenRun& run);
+
+/// The same pictures from a recorded run, byte by byte; without a shape the path's end stands for
+/// the robot. No file when the session lacks one of the terrains. Throws as above, InputError when
+/// the session is damaged.
+std::vector<std::filesystem::path> export_run_pictures(const std::filesystem::path& folder,
+                                                       const SessionReader& session,
+                                                       const std::optional<RobotShape>& shape);
 
 }  // namespace screed

@@ -4,8 +4,6 @@
 namespace screed {
 namespace {
 
-constexpr uint64_t kPathTicks = kTickRate_hz / 10;
-
 HeightMap height_map_of(const HeightField& field) {
   HeightMap map;
   map.geometry = {static_cast<uint32_t>(field.nx()),
@@ -23,6 +21,10 @@ HeightMap height_map_of(const HeightField& field) {
 }
 
 }  // namespace
+
+PathPoint path_point(const SimFrame& frame) {
+  return {frame.x, frame.y, static_cast<std::size_t>(frame.leveling_state)};
+}
 
 SessionRecorder::SessionRecorder(const std::filesystem::path& file, const SessionInfo& info,
                                  const HeightField& before,
@@ -53,8 +55,7 @@ void SessionRecorder::append(const SimFrame& frame, const SensorSample& sample,
                              const RobotOutput& output) {
   writer_.append(frame, sample, output, changes_);
   height_changes_ += changes_.size();
-  if (ticks_++ % kPathTicks == 0)
-    path_.push_back({frame.x, frame.y, static_cast<size_t>(frame.leveling_state)});
+  if (ticks_++ % kPathTicks == 0) path_.push_back(path_point(frame));
 }
 
 std::string SessionRecorder::finish(const HeightField& after) {

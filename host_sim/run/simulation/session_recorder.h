@@ -21,6 +21,12 @@
 
 namespace screed {
 
+/// Ticks from one point of a recorded path to the next.
+inline constexpr std::uint64_t kPathTicks = kTickRate_hz / 10;
+
+/// Where the robot is, coloured by the leveling algorithm's state.
+PathPoint path_point(const SimFrame& frame);
+
 class SessionRecorder {
  public:
   /// Creates the file. `before`: the terrain as the experiment lays it out. `soil`: none on
@@ -49,7 +55,7 @@ class SessionRecorder {
 
   /// Changes of single heights so far; 0 when they are not recorded.
   uint64_t height_changes() const { return height_changes_; }
-  /// A point ten times a simulated second, coloured by the leveling algorithm's state.
+  /// Every kPathTicks a point.
   const std::vector<PathPoint>& path() const { return path_; }
 
  private:

@@ -130,7 +130,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   Progress progress(options.progress, measure, before);
   WallClock clock;
   Pacer pacer(clock, options.realtime);
-  RunLoop loop(world, {robot, recorder, stop, progress, pacer, options.observer});
+  RunLoop loop(world, {robot, recorder, stop, progress, pacer, options.observer, before});
   summary.end = loop.run();
   summary.wall_s = pacer.elapsed_s();
 
@@ -150,9 +150,11 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   try {
     files.write_summary(summary_json(summary));
     if (options.table) files.write_table();
-    write_run_pictures(files.folder(), experiment, surfaces, plant, recorder.path(), shape);
+    write_run_pictures(files.folder(), experiment, surfaces,
+                       driven_run(recorder.path(), robot.frame, shape));
   } catch (const RunError& error) {
-    // What took the time is saved, and can be exported again where there is room.
+    // What took the time is saved; where there is room, `session export` makes table and pictures
+    // again.
     files.commit();
     throw RunError(error.what() + ("; the session is whole, in " + summary.folder.string()));
   }

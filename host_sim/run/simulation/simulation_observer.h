@@ -13,8 +13,9 @@ class SimulationObserver {
   SimulationObserver& operator=(const SimulationObserver&) = delete;
   virtual ~SimulationObserver() = default;
 
-  /// Before the first tick, with the terrain as the robot stands on it.
-  virtual void on_begin(const HeightField& terrain) = 0;
+  /// Before the first tick. `before`: the terrain from which the summary of the run counts changes,
+  /// on soil as it was laid out. `terrain`: as the robot stands on it, settled in.
+  virtual void on_begin(const HeightField& before, const HeightField& terrain) = 0;
   /// After each tick, with the frame as it was recorded and the terrain after the answer (natively
   /// that of the sample). May take its time: the run waits.
   virtual void on_tick(const SimFrame& frame, const HeightField& terrain) = 0;

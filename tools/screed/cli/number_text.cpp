@@ -1,7 +1,12 @@
 // Numbers as texts and messages show them.
 #include "tools/screed/cli/number_text.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace screed {
 
@@ -24,6 +29,19 @@ std::string plain_text(double value) {
       std::to_chars(text.data(), text.data() + text.size(), value,
                     plain ? std::chars_format::fixed : std::chars_format::scientific);
   return {text.data(), result.ptr};
+}
+
+std::string factor_text(double value) {
+  constexpr int kMaxDecimals = 9;
+  std::array<char, 330> text{};
+  // 9.96 is 10 with two digits.
+  std::snprintf(text.data(), text.size(), "%.1e", value);
+  const double size = std::abs(std::strtod(text.data(), nullptr));
+  const bool whole = size == 0.0 || size >= 10.0;
+  const int decimals =
+      whole ? 0 : std::min(kMaxDecimals, 1 - static_cast<int>(std::floor(std::log10(size))));
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
 }
 
 }  // namespace screed

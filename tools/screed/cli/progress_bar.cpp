@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "tools/screed/cli/number_text.h"
+
 namespace screed {
 namespace {
 
@@ -72,8 +74,8 @@ void ProgressBar::draw() {
     std::snprintf(text, sizeof text, " %3.0f %%  %s left  %s", share * 100.0, left.c_str(),
                   note_.c_str());
   } else {
-    std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%.0f  %s left  %s", share * 100.0,
-                  time_s_, duration_s_, speed, left.c_str(), note_.c_str());
+    std::snprintf(text, sizeof text, " %3.0f %%  %.1f / %.1f s  x%s  %s left  %s", share * 100.0,
+                  time_s_, duration_s_, factor_text(speed).c_str(), left.c_str(), note_.c_str());
   }
   out_ << (terminal_ ? "\r" : "") << bar << text << (terminal_ ? "\033[K" : "\n") << std::flush;
   visible_ = true;

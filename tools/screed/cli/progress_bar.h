@@ -13,8 +13,7 @@ class ProgressBar {
   explicit ProgressBar(std::ostream& out);
 
   /// Shows simulated time, real-time factor since the first call, the time that is left at this
-  /// speed, and `note`. Cheap when called
-  /// often: draws ten times a second at most.
+  /// speed, and `note`. Cheap when called often: draws ten times a second at most.
   void show(double time_s, double duration_s, const std::string& note);
   /// The same for work that is not simulated time: the share that is done, 0 to 1.
   void show_share(double share, const std::string& note);

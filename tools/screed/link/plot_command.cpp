@@ -81,10 +81,12 @@ ChartPanel make_panel(const PlotData& data, const PlannedPanel& plan,
     std::string label = signal.path();
     if (data.robots.size() > 1) label += ", robot " + std::to_string(series[which].robot);
     if (plan.of_states) {
-      panel.rows.push_back(band_row(signal, label, points.states));
+      panel.rows.push_back(band_row(signal, label, points.states, data.time_s.high));
     } else {
       const bool occasional = signal.message().period_ms == 0;
       panel.series.push_back({label, thinned(points.numbers, groups), occasional});
+      constexpr double kHalfTurn_deg = 180.0;
+      if (signal.is_full_turn()) panel.series.back().jump = kHalfTurn_deg;
     }
   }
   if (plan.of_states) return panel;
@@ -99,7 +101,9 @@ StackedChart plot_chart(const PlotOptions& options, std::ostream& err) {
   const PlotData data = read_log(options, err);
   std::vector<PlotSeries> series;
   std::vector<SeriesKind> kinds;
+  std::string missing;
   for (size_t i = 0; i < data.signals.size(); ++i) {
+    if (data.by_robot[i].empty()) missing += (missing.empty() ? "" : ", ") + data.signals[i].path();
     for (const auto& [robot, points] : data.by_robot[i]) {
       series.push_back({i, robot});
       kinds.push_back({data.signals[i].unit(), data.signals[i].is_state()});
@@ -108,6 +112,9 @@ StackedChart plot_chart(const PlotOptions& options, std::ostream& err) {
   if (series.empty()) {
     throw InputError(options.log + ": holds none of these signals in this time; " +
                      data.statistics);
+  }
+  if (!missing.empty()) {
+    err << "note: " << options.log << " holds no message with " << missing << " in this time\n";
   }
   StackedChart chart;
   chart.title = std::filesystem::path(options.log).filename().string();
@@ -156,11 +163,12 @@ void register_plot_command(CLI::App& root, Program& program) {
       ->capture_default_str();
   add_number(*command, "--to", options->to_s, "End, after the log's first message [s]", {0.0, 1e9});
   add_number(*command, "--width", options->width_px,
-             "Width of the SVG [px]; a PNG has twice as many", {320, 4000})
+             "Width of the SVG [px]; a PNG has twice as many",
+             {kMinChartWidth_px, kMaxChartSide_px})
       ->capture_default_str();
   add_number(*command, "--height", options->height_px,
              "Height of the SVG [px]; a PNG has twice as many (default: what the panels need)",
-             {240, 4000});
+             {kMinChartHeight_px, kMaxChartSide_px});
   command->callback([options, &program] {
     program.action = [options] { return run_plot(*options, std::cerr); };
   });

@@ -73,14 +73,14 @@ ChartBand PlotSignal::band(const BandInterval& interval) const {
 }
 
 BandRow band_row(const PlotSignal& signal, const std::string& label,
-                 const std::vector<StatePoint>& states) {
+                 const std::vector<StatePoint>& states, double log_end_s) {
   constexpr double kMissedPeriods = 5.0;
   constexpr double kMinGap_s = 1.0;
   // Of an event that is sent once the log says when, not for how long.
   const double period_s = signal.message().period_ms / 1000.0;
   const double gap_s = period_s > 0.0 ? std::max(kMinGap_s, kMissedPeriods * period_s) : 0.0;
   BandRow row{label, {}};
-  for (const BandInterval& interval : band_intervals(states, period_s, gap_s)) {
+  for (const BandInterval& interval : band_intervals(states, period_s, gap_s, log_end_s)) {
     ChartBand band = signal.band(interval);
     if (band.color.alpha > 0.0) row.bands.push_back(std::move(band));
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host_sim/ground_station/telemetry/log_decoder.h"
@@ -25,6 +26,10 @@ class PlotSignal {
   const char* unit() const { return signal_ == nullptr ? "" : signal_->unit; }
   /// Values with names, and flags.
   bool is_state() const;
+  /// An angle from 0 to a full turn: it jumps where it goes on beyond either end.
+  bool is_full_turn() const {
+    return signal_ != nullptr && !signal_->is_signed && std::string_view(unit()) == "deg";
+  }
   /// Of the 8 bytes of a message as one number: the raw value, or all flags of the field.
   std::int64_t raw(std::uint64_t bits) const;
   /// In its unit; of a number.
@@ -48,9 +53,9 @@ struct SignalPoints {
   std::vector<StatePoint> states;
 };
 
-/// A row of bands of a state.
+/// A row of bands of a state, none of which goes beyond the end of the log.
 BandRow band_row(const PlotSignal& signal, const std::string& label,
-                 const std::vector<StatePoint>& states);
+                 const std::vector<StatePoint>& states, double log_end_s);
 
 /// The same line with about two points for each of `groups` parts of it, the lowest and the highest
 /// of each, so that no peak is lost.

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/display_units.h"
 #include "host_sim/render/chart/path_map.h"
 #include "host_sim/render/chart/stacked_chart.h"
 
 namespace screed {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 MapPath map_path(const std::string& label, const std::vector<nn::PlanarPose>& poses) {
   MapPath path{label, {}};
@@ -33,7 +32,7 @@ std::vector<RolloutDeviation> rollout_deviation(const std::vector<nn::PlanarPose
     if (i > 0) distance += std::hypot(real.x_m - physics[i - 1].x_m, real.y_m - physics[i - 1].y_m);
     deviation.push_back(
         {distance, std::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m),
-         kDegrees * std::remainder(pose.heading_rad - real.heading_rad, 2.0 * std::numbers::pi)});
+         kDegPerRad * std::remainder(pose.heading_rad - real.heading_rad, 2.0 * std::numbers::pi)});
   }
   return deviation;
 }

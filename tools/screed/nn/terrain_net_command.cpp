@@ -169,7 +169,7 @@ void draw_changes(const fs::path& file, const HeightField& before,
   Canvas canvas(static_cast<int>(kWidth_px),
                 static_cast<int>(grounds.size()) * static_cast<int>(height + kTitle_px),
                 {1.0, 1.0, 1.0});
-  viewer::TerrainImage image(before);
+  viewer::TerrainImage image(before, before);
   const HeightField* shown = &before;
   double top = 0.0;
   for (const auto& [name, ground] : grounds) {

@@ -12,12 +12,15 @@
 
 #include "commands.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/made_folders.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/csv_export.h"
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/names.h"
+#include "host_sim/run/simulation/run_pictures.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/task_bar.h"
@@ -151,40 +154,6 @@ FrameRange chosen_range(const ExportArguments& arguments, const SessionReader& s
   return range;
 }
 
-/// Folders that an export makes; those that stay empty go again.
-class ExportFolders {
- public:
-  ExportFolders() = default;
-  ExportFolders(const ExportFolders&) = delete;
-  ExportFolders& operator=(const ExportFolders&) = delete;
-  ~ExportFolders() {
-    std::error_code not_empty;
-    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
-      fs::remove(*folder, not_empty);
-    }
-  }
-
-  /// With the missing ones above it. Throws RunError.
-  fs::path make(const fs::path& folder) {
-    std::error_code error;
-    std::vector<fs::path> missing;
-    for (fs::path it = folder; !it.empty() && !fs::exists(it, error); it = it.parent_path()) {
-      missing.push_back(it);
-    }
-    for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
-      if (fs::create_directory(*it, error)) made_.push_back(*it);
-    }
-    if (std::error_code unreadable; !fs::is_directory(folder, unreadable)) {
-      throw RunError(folder.string() + ": cannot create the folder" +
-                     (error ? ": " + error.message() : ""));
-    }
-    return folder;
-  }
-
- private:
-  std::vector<fs::path> made_;
-};
-
 /// The robot of a recorded run; none, and a note, when its model is gone by now.
 std::optional<RobotShape> shape_of_run(const SessionReader& session, const fs::path& file) {
   const RunSetup setup = setup_of(session.info(), fs::absolute(file).parent_path());
@@ -196,17 +165,49 @@ std::optional<RobotShape> shape_of_run(const SessionReader& session, const fs::p
   }
 }
 
+/// From the session file to the folder of its pictures.
+struct PicturePaths {
+  fs::path file;
+  fs::path folder;
+};
+
+/// The run's own pictures, and where heights were recorded a series.
+void export_all_pictures(const ExportArguments& arguments, const SessionReader& session,
+                         const FrameRange& range, const PicturePaths& paths, TaskBar& bar) {
+  PictureSeries series;
+  series.state_names = leveling_state_names();
+  series.shape = shape_of_run(session, paths.file);
+  std::size_t count = export_run_pictures(paths.folder, session, series.shape).size();
+  if (session.has_heights()) {
+    const TerrainMeasure measure(setup_of(session.info(), {}).experiment);
+    series.surface = [&](const HeightField& terrain) { return measure.surface(terrain); };
+    const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
+    count += export_pictures(session, range, arguments.every.value_or(tenth), paths.folder, series,
+                             bar.progress())
+                 .size();
+    bar.clear();
+  } else if (count > 0) {
+    std::cerr << "note: pictures of start and end alone: the run has no recorded heights; sim "
+                 "--heights and record keep them\n";
+  } else {
+    throw InputError(paths.file.string() +
+                     ": nothing to draw: the run did not end, and has no recorded heights");
+  }
+  std::printf("%s: %zu pictures\n", paths.folder.c_str(), count);
+}
+
 int run_export(const ExportArguments& arguments) {
   if (!arguments.csv && !arguments.heights && !arguments.pictures) {
     throw InputError("session export: say what: --csv, --heights, --pictures or several of them");
   }
   const fs::path file = session_file(arguments.run);
   const SessionReader session(file);
-  if ((arguments.heights || arguments.pictures) && !session.has_heights()) {
-    throw InputError(file.string() + ": has no recorded heights; screed record keeps them");
+  if (arguments.heights && !session.has_heights()) {
+    throw InputError(file.string() +
+                     ": has no recorded heights; sim --heights and record keep them");
   }
   const FrameRange range = chosen_range(arguments, session);
-  ExportFolders folders;
+  MadeFolders folders;
   const fs::path out =
       folders.make(arguments.out.has_value() ? fs::path(*arguments.out)
                                              : fs::absolute(file).parent_path() / "export");
@@ -232,12 +233,7 @@ int run_export(const ExportArguments& arguments) {
                 done.scale.white_m);
   }
   if (arguments.pictures) {
-    const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
-    const auto files = export_pictures(session, range, arguments.every.value_or(tenth),
-                                       folders.make(out / "pictures"), leveling_state_names(),
-                                       shape_of_run(session, file), bar.progress());
-    bar.clear();
-    std::printf("%s: %zu pictures\n", (out / "pictures").c_str(), files.size());
+    export_all_pictures(arguments, session, range, {file, folders.make(out / "pictures")}, bar);
   }
   return 0;
 }
@@ -264,8 +260,10 @@ void register_session_command(CLI::App& root, Program& program) {
       "Export all frames, and with --csv all columns (default: the training drive's)");
   command->add_flag("--heights", exported->heights,
                     "Export height maps as 16-bit PNGs, with their scale in scale.json");
-  command->add_flag("--pictures", exported->pictures,
-                    "Export shaded height maps with the driven path");
+  command->add_flag(
+      "--pictures", exported->pictures,
+      "Export shaded height maps with the driven path: of the start, the end and what "
+      "changed, and of frames between where heights were recorded");
   add_number(
       *command, "--every", exported->every,
       "Frames between two images (default: 100 for --heights, a tenth of all for --pictures)",

@@ -6,9 +6,9 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 
+#include "host_sim/core/display_units.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/comparison/comparison_picture.h"
 #include "host_sim/run/comparison/session_comparison.h"
@@ -23,10 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kLitresPerM3 = 1000.0;
-constexpr double kMmPerM = 1000.0;
-
 struct CompareArguments {
   std::array<std::string, 2> runs;
   std::string out = "compare.png";
@@ -40,7 +36,7 @@ Json describe_end(const FinalState& end) {
   json["time_s"] = end.time_s;
   json["x_m"] = end.x_m;
   json["y_m"] = end.y_m;
-  json["heading_deg"] = kDegrees * end.heading_rad;
+  json["heading_deg"] = kDegPerRad * end.heading_rad;
   json["distance_m"] = end.distance_m;
   json["state"] = end.state;
   json["leveling_state"] = end.leveling_state;
@@ -54,7 +50,7 @@ Json describe_end(const FinalState& end) {
 Json describe_point(const DeviationPoint& point) {
   return {{"time_s", point.time_s},
           {"position_m", point.position_m},
-          {"heading_deg", kDegrees * point.heading_rad}};
+          {"heading_deg", kDegPerRad * point.heading_rad}};
 }
 
 Json describe_terrain(const TerrainDifference& terrain) {
@@ -119,7 +115,9 @@ void print_first_difference(const SessionComparison& comparison) {
   constexpr std::size_t kShown = 4;
   const std::array<std::uint64_t, 2> frames = {comparison.runs[0].frames,
                                                comparison.runs[1].frames};
-  if (!comparison.first.has_value()) {
+  if (comparison.common_ticks == 0) {
+    std::printf("ticks          none that both have\n");
+  } else if (!comparison.first.has_value()) {
     std::printf("ticks          equal in all %llu that both have\n",
                 static_cast<unsigned long long>(comparison.common_ticks));
   } else {
@@ -150,8 +148,8 @@ void print_ends(const FinalState& a, const FinalState& b) {
   print_row("time [s]", number(a.time_s, 2), number(b.time_s, 2));
   print_row("x, y [m]", number(a.x_m, 3) + ", " + number(a.y_m, 3),
             number(b.x_m, 3) + ", " + number(b.y_m, 3));
-  print_row("heading [deg]", number(kDegrees * a.heading_rad, 1),
-            number(kDegrees * b.heading_rad, 1));
+  print_row("heading [deg]", number(kDegPerRad * a.heading_rad, 1),
+            number(kDegPerRad * b.heading_rad, 1));
   print_row("driven [m]", number(a.distance_m, 2), number(b.distance_m, 2));
   print_row("state", a.state, b.state);
   print_row("leveling state", a.leveling_state, b.leveling_state);
@@ -190,9 +188,9 @@ void print_text(const SessionComparison& comparison, const CompareArguments& arg
     std::printf(
         "apart          %.4f m and %.2f degrees at %.2f s; most %.4f m at %.2f s, %.2f "
         "degrees at %.2f s\n",
-        it.last.position_m, kDegrees * it.last.heading_rad, it.last.time_s,
+        it.last.position_m, kDegPerRad * it.last.heading_rad, it.last.time_s,
         it.largest_position.position_m, it.largest_position.time_s,
-        kDegrees * it.largest_heading.heading_rad, it.largest_heading.time_s);
+        kDegPerRad * it.largest_heading.heading_rad, it.largest_heading.time_s);
   }
   const TerrainDifference& terrain = comparison.terrain;
   if (!terrain.not_comparable.empty()) {
@@ -242,10 +240,12 @@ void register_session_compare_command(CLI::App& session, Program& program) {
       "compare", "Compare two runs: configuration, ticks, paths, terrain and ends");
   command->add_option("A", arguments->runs[0], "Run folder or session file")->required();
   command->add_option("B", arguments->runs[1], "Run folder or session file")->required();
-  command->add_option("--out", arguments->out, "Output picture, .png; replaced where it exists")
-      ->type_name("FILE")
-      ->capture_default_str();
-  command->add_flag("--no-picture", arguments->no_picture, "Print the comparison alone");
+  CLI::Option* out =
+      command->add_option("--out", arguments->out, "Output picture, .png; replaced where it exists")
+          ->type_name("FILE")
+          ->capture_default_str();
+  command->add_flag("--no-picture", arguments->no_picture, "Print the comparison alone")
+      ->excludes(out);
   command->add_flag("--json", arguments->json, "Print JSON");
   command->add_flag("--fail-if-different", arguments->fail_if_different,
                     "Exit with 1 unless the runs are identical (default: 0 either way)");

@@ -18,6 +18,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/number_text.h"
 #include "tools/screed/cli/run_batch.h"
 #include "tools/screed/viewer/keyboard_driver.h"
 #include "tools/screed/viewer/live_viewer.h"
@@ -145,7 +146,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   print_arming(s);
   std::printf("  %-26s %12llu\n", "telemetry frames",
               static_cast<unsigned long long>(s.telemetry_frames));
-  std::printf("  %-26s %12s\n", "real-time factor", format("%.0f", s.real_time_factor()).c_str());
+  std::printf("  %-26s %12s\n", "real-time factor", factor_text(s.real_time_factor()).c_str());
   std::printf("\n");
   print_terrain(s.terrain, experiment.experiment.flatness_deg);
   if (s.cycles.has_value()) print_cycles(*s.cycles);
@@ -238,6 +239,11 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
       [&](const Experiment& experiment, const SimulationSummary& summary) {
         summaries.push_back(summary);
         if (did_not_reach_its_end(experiment, summary)) failed = true;
+        if (watching.viewer && !watching.viewer->failure().empty()) {
+          std::cerr << "screed: " << watching.viewer->failure() << "; the run is saved, in "
+                    << summary.folder.string() << "\n";
+          failed = true;
+        }
         if (arguments.runs.json) return;
         if (!arguments.runs.quiet) {
           print_table(experiment, summary);

@@ -14,6 +14,8 @@ namespace screed::viewer {
 /// The smallest window that shows everything readably. Smaller ones are drawn in this size.
 inline constexpr int kMinWindowWidth_px = 480;
 inline constexpr int kMinWindowHeight_px = 360;
+/// Of either side.
+inline constexpr int kMaxWindowSide_px = 8000;
 
 /// The width of words in a style, pixels.
 using Measure = std::function<double(const std::string&, const TextStyle&)>;

@@ -12,7 +12,6 @@
 namespace screed::viewer {
 namespace {
 
-constexpr uint64_t kTrailTicks = kTickRate_hz / 10;
 constexpr double kDriveSpeed_m_per_s = 0.18;
 constexpr double kDriveTurn_deg_per_s = 60.0;
 constexpr double kFullPaceFramesPerSecond = 20.0;  // most of the time is for the simulation
@@ -29,23 +28,19 @@ std::chrono::steady_clock::duration seconds(double value) {
 LiveViewer::LiveViewer(const Experiment& experiment, const std::string& board,
                        const ViewerOptions& options, KeyboardDriver& driver,
                        std::function<void()> end_run)
-    : options_(options), driver_(driver), end_run_(std::move(end_run)) {
-  setup_.title = experiment.experiment.name;
-  setup_.terrain = terrain_name(experiment.map.model, experiment.soil.preset);
-  setup_.seed = experiment.experiment.seed;
-  setup_.duration_s = experiment.experiment.duration_s;
+    : options_(options),
+      setup_(
+          display_setup(experiment, experiment.soil.preset, make_robot_model(experiment, board))),
+      driver_(driver),
+      end_run_(std::move(end_run)) {
   // A training drive lasts for its frames, and some seconds before them.
   if (experiment.experiment.algorithm != kTrainingDriveName)
     check_screenshot_time(options_, setup_.duration_s, "the run");
-  setup_.loose = experiment.map.is_soil() || experiment.map.model == "particles";
-  setup_.soft = experiment.map.is_soil();
-  setup_.measure = TerrainMeasure(experiment);
-  setup_.shape = shape_of(make_robot_model(experiment, board), experiment.vehicle.tracks);
 }
 
-void LiveViewer::on_begin(const HeightField& ground) {
+void LiveViewer::on_begin(const HeightField& before, const HeightField& ground) {
   watch_.emplace(ground);
-  display_.emplace(options_, setup_, ground);
+  display_.emplace(options_, setup_, before, ground);
   display_->set_driver(driver_.driver());
 }
 

@@ -19,7 +19,7 @@ class LiveViewer : public SimulationObserver {
   LiveViewer(const Experiment& experiment, const std::string& board, const ViewerOptions& options,
              KeyboardDriver& driver, std::function<void()> end_run);
 
-  void on_begin(const HeightField& ground) override;
+  void on_begin(const HeightField& before, const HeightField& ground) override;
   void on_tick(const SimFrame& frame, const HeightField& ground) override;
   void on_end() override;
 
@@ -27,6 +27,10 @@ class LiveViewer : public SimulationObserver {
   void hold(const std::string& notice);
   /// None when the run ended before its first tick.
   FrameTimes times() const { return display_.has_value() ? display_->times() : FrameTimes(); }
+  /// Why a picture could not be written; empty: all were.
+  std::string failure() const { return display_.has_value() ? display_->failure() : ""; }
+  /// What the window showed last beside the ground; after on_begin().
+  const Status& status() const { return display_.value().status(); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "host_sim/core/display_units.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/state_color.h"
 #include "host_sim/run/simulation/names.h"
@@ -17,7 +17,6 @@
 namespace screed::viewer {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMargin_px = 22.0;
 constexpr double kText_px = 14.0;
 constexpr double kMinText_px = 8.5;

@@ -17,41 +17,46 @@ namespace screed::viewer {
 namespace {
 
 constexpr uint64_t kBlockRows = 1024;
-constexpr uint64_t kTrailTicks = 10;
 constexpr const char* kNoHeights =
     "Heights of the ticks were not recorded (sim --heights does): the terrain is that of the "
     "start, at the end that of the end.";
+
+/// The terrain from which changes count, as in the summary of the run. Throws InputError.
+HeightMap terrain_before(const SessionReader& session, const std::filesystem::path& run) {
+  std::optional<HeightMap> before = session.terrain_before();
+  if (!before && session.has_heights()) before = session.heights_after(0);
+  if (!before) throw InputError(run.string() + ": the session holds no height map");
+  const std::optional<HeightMap> after = session.terrain_after();
+  if ((session.has_heights() && session.heights_after(0).geometry != before->geometry) ||
+      (after && after->geometry != before->geometry)) {
+    throw InputError(run.string() + ": the recorded terrains have different grids");
+  }
+  return std::move(*before);
+}
 
 }  // namespace
 
 RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOptions& options)
     : session_(session_file(run)), options_(options) {
   if (session_.frames() == 0) throw InputError(run.string() + ": no frame was recorded");
-  const auto before = session_.has_heights() ? std::optional<HeightMap>(session_.heights_after(0))
-                                             : session_.terrain_before();
-  if (!before) throw InputError(run.string() + ": the session holds no height map");
+  const HeightMap before = terrain_before(session_, run);
   const RunSetup setup = setup_of(session_.info(), run);
   tick_s_ = 1.0 / session_.info().tick_rate_hz;
   duration_s_ = static_cast<double>(session_.frames()) * tick_s_;
   check_screenshot_time(options_, duration_s_, run.string());
-  DisplaySetup stage;
-  stage.title = session_.info().experiment_name;
-  stage.terrain = terrain_name(setup.experiment.map.model, setup.soil);
-  stage.seed = session_.info().seed;
+  if (options_.window) require_screen();
   algorithm_ = setup.experiment.experiment.algorithm;
-  stage.duration_s = duration_s_;
-  stage.loose = setup.experiment.map.is_soil() || setup.experiment.map.model == "particles";
-  stage.soft = setup.experiment.map.is_soil();
-  stage.measure = TerrainMeasure(setup.experiment);
-  stage.recorded = true;
-  stage.shape =
-      shape_of(robot_model(setup, session_.info().board_name), setup.experiment.vehicle.tracks);
+  DisplaySetup shown =
+      display_setup(setup.experiment, setup.soil, robot_model(setup, session_.info().board_name));
+  shown.duration_s = duration_s_;
+  shown.recorded = true;
   read_trail();
-  display_.emplace(options_, std::move(stage), field_of(*before));
+  display_.emplace(options_, std::move(shown), field_of(before),
+                   field_of(session_.has_heights() ? session_.heights_after(0) : before));
   display_->set_trail(trail_);
   if (!session_.has_heights()) {
     after_ = session_.terrain_after();
-    if (after_ && after_->heights == before->heights) after_.reset();
+    if (after_ && after_->heights == before.heights) after_.reset();
     if (after_) display_->set_notice(kNoHeights);
   }
   go_to(tick_s_);
@@ -146,6 +151,10 @@ void RecordedViewer::capture_frames() {
     take_jumps();
     display_->show();
     display_->save_when_due(time_s_, false);
+    if (!display_->failure().empty()) {
+      display_->discard_film();
+      return;
+    }
     if (time_s_ >= duration_s_ || display_->controls().closed) break;
     go_to(time_s_ + pace / kCaptureFramesPerSecond);
   }
@@ -153,19 +162,27 @@ void RecordedViewer::capture_frames() {
 }
 
 void RecordedViewer::run() {
-  if (!options_.window && options_.frames_dir.empty()) {
+  if (options_.window) {
+    play();
+  } else if (!options_.frames_dir.empty()) {
+    try {
+      capture_frames();
+    } catch (const TaskStopped&) {
+      display_->discard_film();
+      throw;
+    }
+  } else {
     // Keys before that time are pressed: a picture of help, or of slopes.
     const double at = options_.screenshot_at.value_or(duration_s_);
     go_to(at);
     display_->handle_input(at, 0);
     take_jumps();
     display_->save_when_due(time_s_, true);
-    return;
   }
-  if (!options_.window) {
-    capture_frames();
-    return;
-  }
+  if (!display_->failure().empty()) throw RunError(display_->failure());
+}
+
+void RecordedViewer::play() {
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
   Clock::time_point next_show = last;

@@ -13,12 +13,17 @@ namespace screed::viewer {
 
 class RecordedViewer {
  public:
-  /// Throws InputError when the run cannot be read, RunError when no window can be opened.
+  /// Throws InputError when the run cannot be read, or, then, when there is no screen for the
+  /// window (require_screen()); RunError when the window cannot be opened.
   RecordedViewer(const std::filesystem::path& run, const ViewerOptions& options);
 
   /// Until the user closes the window, the frames asked for are shown, or the picture is saved.
+  /// Throws RunError when a picture could not be written. A film that does not come to its end is
+  /// removed.
   void run();
   const FrameTimes& times() const { return display_->times(); }
+  /// What was last shown beside the ground.
+  const Status& status() const { return display_->status(); }
 
  private:
   void read_trail();
@@ -27,6 +32,7 @@ class RecordedViewer {
   void show_terrain_after(uint64_t ticks);
   void take_jumps();
   void capture_frames();
+  void play();
 
   SessionReader session_;
   ViewerOptions options_;

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "host_sim/core/display_units.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
 
 namespace screed::viewer {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr size_t kBins = 90 * SlopeStatistics::kBinsPerDegree + 1;
 
 }  // namespace

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "host_sim/core/display_units.h"
 #include "host_sim/render/picture/relief.h"
 
 namespace screed::viewer {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kSteepest_deg = 30.0;  // end of the scale of slopes
 constexpr double kMinRelief_m = 0.02;   // level ground has a scale as well
 // Ends of the scale of changes: the first one that holds them all.
@@ -32,11 +31,11 @@ uint32_t packed(const Color& color, double brightness) {
 
 }  // namespace
 
-TerrainImage::TerrainImage(const HeightField& field)
+TerrainImage::TerrainImage(const HeightField& field, const HeightField& before)
     : nx_(field.nx()), ny_(field.ny()), wrap_(field.wrap()), change_m_(kChangeScales_m.front()) {
   const size_t nodes = static_cast<size_t>(nx_) * static_cast<size_t>(ny_);
   before_.reserve(nodes);
-  for (size_t i = 0; i < nodes; ++i) before_.push_back(field.node(i));
+  for (size_t i = 0; i < nodes; ++i) before_.push_back(before.node(i));
   pixels_.resize(nodes);
   waits_.resize(nodes);
   const auto [low, high] = std::minmax_element(before_.begin(), before_.end());
@@ -58,6 +57,15 @@ TerrainImage::TerrainImage(const HeightField& field)
           color(static_cast<Shading>(shading), static_cast<double>(i) / (kColors - 1));
     }
   }
+  for (size_t i = 0; i < nodes; ++i) grow_scale(field, i);
+}
+
+bool TerrainImage::grow_scale(const HeightField& field, size_t node) {
+  const double by_m =
+      std::abs(static_cast<double>(field.node(node)) - before_[node]) * kHeightUnit_m;
+  if (by_m <= change_m_) return false;
+  change_m_ = *std::lower_bound(kChangeScales_m.begin(), kChangeScales_m.end() - 1, by_m);
+  return true;
 }
 
 Color TerrainImage::color(Shading shading, double share) {
@@ -100,13 +108,7 @@ void TerrainImage::mark(int ix, int iy) {
 
 void TerrainImage::update(const HeightField& field, std::span<const HeightChange> changes) {
   for (const HeightChange& change : changes) {
-    const double by_m =
-        std::abs(static_cast<double>(field.node(change.node)) - before_[change.node]) *
-        kHeightUnit_m;
-    if (by_m > change_m_) {
-      change_m_ = *std::lower_bound(kChangeScales_m.begin(), kChangeScales_m.end() - 1, by_m);
-      all_waits_ = all_waits_ || shading_ == Shading::kChange;
-    }
+    if (grow_scale(field, change.node)) all_waits_ = all_waits_ || shading_ == Shading::kChange;
     // Its own colour, and the light on its neighbours.
     const int ix = static_cast<int>(change.node % static_cast<uint32_t>(nx_));
     const int iy = static_cast<int>(change.node / static_cast<uint32_t>(nx_));

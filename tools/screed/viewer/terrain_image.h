@@ -27,8 +27,9 @@ struct ShadingScale {
 
 class TerrainImage {
  public:
-  /// With the ground as it is; changes count from here.
-  explicit TerrainImage(const HeightField& field);
+  /// With the ground as it is; changes count from `before`, of the same grid, which also gives the
+  /// scale of heights.
+  TerrainImage(const HeightField& field, const HeightField& before);
 
   /// These heights of the field have changed.
   void update(const HeightField& field, std::span<const HeightChange> changes);
@@ -47,6 +48,8 @@ class TerrainImage {
   static constexpr size_t kColors = 1024;
 
   uint32_t pixel_at(const HeightField& field, int ix, int iy, Shading shading) const;
+  /// Whether the scale of changes had to grow for this height.
+  bool grow_scale(const HeightField& field, size_t node);
   void mark(int ix, int iy);
 
   int nx_;

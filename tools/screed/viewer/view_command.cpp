@@ -21,7 +21,6 @@ int run_view(const Options& options) {
   // A picture or frames are made without a window.
   const bool window = options.view.screenshot.empty() && options.view.frames_dir.empty();
   viewer::ViewerOptions shown = viewer_options(options.view, window).value();
-  if (shown.window) viewer::require_screen();
   TaskBar bar(false);
   shown.progress = bar.progress();
   viewer::RecordedViewer viewer(options.run, shown);

@@ -6,26 +6,44 @@
 #include <filesystem>
 #include <utility>
 
+#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/made_folders.h"
 #include "tools/screed/cli/number_option.h"
 
 namespace screed {
 namespace {
 
+std::string size_range() {
+  const std::string most = std::to_string(viewer::kMaxWindowSide_px);
+  return std::to_string(viewer::kMinWindowWidth_px) + "x" +
+         std::to_string(viewer::kMinWindowHeight_px) + " to " + most + "x" + most;
+}
+
 void read_size(const std::string& text, viewer::ViewerOptions& options) {
-  constexpr int kMax = 8000;
   const auto [width, height] = whole_pair(text).value_or(std::pair(0, 0));
-  if (width < viewer::kMinWindowWidth_px || height < viewer::kMinWindowHeight_px || width > kMax ||
-      height > kMax) {
+  if (width < viewer::kMinWindowWidth_px || height < viewer::kMinWindowHeight_px ||
+      width > viewer::kMaxWindowSide_px || height > viewer::kMaxWindowSide_px) {
     throw InputError("--size = '" + text + "' is not allowed; expected WIDTHxHEIGHT, " +
-                     std::to_string(viewer::kMinWindowWidth_px) + "x" +
-                     std::to_string(viewer::kMinWindowHeight_px) + " to 8000x8000 pixels");
+                     size_range() + " pixels");
   }
   options.width_px = width;
   options.height_px = height;
 }
 
-/// Before the run: a picture that cannot be written at its end would be lost.
+/// Makes the file, and missing folders above it, and removes them again, before the run: a picture
+/// that cannot be written at its end would be lost.
+void check_writable(const std::string& option, const std::filesystem::path& file,
+                    bool make_folder) {
+  try {
+    MadeFolders folders;
+    if (make_folder) folders.make(file.parent_path());
+    const AtomicFile probe(file);
+  } catch (const RunError& error) {
+    throw InputError(option + ": " + error.what());
+  }
+}
+
 void check_screenshot(const std::string& file) {
   namespace fs = std::filesystem;
   const fs::path path(file);
@@ -39,6 +57,7 @@ void check_screenshot(const std::string& file) {
     throw InputError("--screenshot = '" + file + "': there is no folder '" +
                      path.parent_path().string() + "'");
   }
+  check_writable("--screenshot", path, false);
 }
 
 /// Frames of two films must not mix.
@@ -54,6 +73,7 @@ void check_frames_folder(const std::string& folder) {
                      "' holds frames of another film (frame_*.png); " +
                      "remove them or name another folder");
   }
+  check_writable("--frames-dir", fs::path(folder) / "frame_000001.png", true);
 }
 
 }  // namespace
@@ -86,7 +106,8 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
   command.add_flag("--follow", arguments.follow, "Keep the robot in the centre")->group(kGroup);
   command
       .add_option("--size", arguments.size,
-                  "Size of the window or picture [px] (default: 1280x800)")
+                  "Size of the window or picture, WIDTHxHEIGHT [px] (" + size_range() +
+                      "; default: 1280x800)")
       ->group(kGroup);
   add_number(command, "--frames", arguments.frames,
              "Show this number of frames, 1/60 s apart, as fast as possible, then exit and "

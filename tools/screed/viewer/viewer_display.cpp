@@ -35,6 +35,10 @@ std::string numbered(const char* before, uint64_t number) {
   return text;
 }
 
+std::string frame_name(uint64_t frame) {
+  return numbered("frame_", frame);
+}
+
 }  // namespace
 
 void check_screenshot_time(const ViewerOptions& options, double duration_s,
@@ -47,6 +51,20 @@ void check_screenshot_time(const ViewerOptions& options, double duration_s,
   std::string message = text + what;
   std::snprintf(text, sizeof text, " lasts %.2f s; allowed: 0 to %.2f", duration_s, duration_s);
   throw InputError(message + text);
+}
+
+DisplaySetup display_setup(const Experiment& experiment, const std::string& soil,
+                           const Assembly& robot) {
+  DisplaySetup setup;
+  setup.title = experiment.experiment.name;
+  setup.terrain = terrain_name(experiment.map.model, soil);
+  setup.seed = experiment.experiment.seed;
+  setup.duration_s = experiment.experiment.duration_s;
+  setup.loose = experiment.map.is_soil() || experiment.map.of_particles();
+  setup.soft = experiment.map.is_soil();
+  setup.measure = TerrainMeasure(experiment);
+  setup.shape = shape_of(robot, experiment.vehicle.tracks);
+  return setup;
 }
 
 std::string FrameTimes::text() const {
@@ -62,13 +80,13 @@ std::string FrameTimes::text() const {
 }
 
 ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
-                             const HeightField& ground)
+                             const HeightField& before, const HeightField& ground)
     : options_(options),
       setup_(std::move(setup)),
       ground_(ground),
-      image_(ground_),
-      before_(surface()),
-      slopes_(before_, setup_.measure.flat_deg()),
+      image_(ground_, before),
+      before_(setup_.measure.surface(before)),
+      slopes_(surface(), setup_.measure.flat_deg()),
       controls_(setup_.recorded, options.pace),
       drawing_(options.width_px, options.height_px) {
   if (options_.window) {
@@ -85,8 +103,8 @@ ViewerDisplay::ViewerDisplay(const ViewerOptions& options, DisplaySetup setup,
   status_.title = setup_.title;
   status_.keys = controls_.key_hint();
   status_.duration_s = setup_.duration_s;
-  status_.terrain.before = slopes_.figures();
-  status_.terrain.now = status_.terrain.before;
+  status_.terrain.before = SlopeStatistics(before_, setup_.measure.flat_deg()).figures();
+  status_.terrain.now = slopes_.figures();
   status_.terrain.flat_limit_deg = setup_.measure.flat_deg();
   status_.terrain.loose = setup_.loose;
 }
@@ -285,41 +303,62 @@ bool ViewerDisplay::capture_is_due() const {
   return status_.time_s >= *captured_until_s_ + pace / kCaptureFramesPerSecond - kRounding_s;
 }
 
+bool ViewerDisplay::attempt(const std::function<void()>& write) {
+  try {
+    write();
+    return true;
+  } catch (const RunError& error) {
+    if (failure_.empty()) failure_ = error.what();
+    status_.notice = error.what();
+    return false;
+  }
+}
+
 void ViewerDisplay::save_on_demand() {
   if (controls_.screenshot) {
     controls_.screenshot = false;
     std::string name;
+    std::error_code ignored;
     do {
       name = numbered("screed-", ++pictures_);
-    } while (std::filesystem::exists(name));
-    drawing_.canvas().write_png(name);
-    std::cerr << "picture " << name << "\n";
+    } while (std::filesystem::exists(name, ignored));
+    attempt([&] {
+      drawing_.canvas().write_png(name);
+      std::cerr << "picture " << name << "\n";
+    });
   }
   if (!controls_.recording) captured_until_s_.reset();
   if (!capture_is_due()) return;
-  if (captured_frames_ == 0) frames_folder_ = begin_frames();
-  drawing_.canvas().write_png(frames_folder_ / numbered("frame_", ++captured_frames_));
+  if (attempt([this] { write_frame(); })) return;
+  controls_.recording = false;
+  discard_film();
+}
+
+void ViewerDisplay::write_frame() {
+  if (captured_frames_ == 0) begin_frames();
+  drawing_.canvas().write_png(frames_folder_ / frame_name(captured_frames_ + 1));
+  ++captured_frames_;
   captured_until_s_ = status_.time_s;
 }
 
-std::filesystem::path ViewerDisplay::begin_frames() const {
-  namespace fs = std::filesystem;
-  fs::path folder = options_.frames_dir;
+void ViewerDisplay::begin_frames() {
+  frames_folder_ = options_.frames_dir;
   // The R key names no folder: a new one, since frames of two films must not mix.
-  if (folder.empty()) {
-    folder = "frames";
-    for (int next = 2; fs::exists(folder); ++next) folder = "frames-" + std::to_string(next);
+  if (frames_folder_.empty()) {
+    frames_folder_ = "frames";
+    std::error_code ignored;
+    for (int next = 2; std::filesystem::exists(frames_folder_, ignored); ++next)
+      frames_folder_ = "frames-" + std::to_string(next);
   }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
-  std::cerr << "frames " << folder.string() << "/frame_000001.png ...\n";
-  return folder;
+  folders_.make(frames_folder_);
+  std::cerr << "frames " << (frames_folder_ / frame_name(1)).string() << " ...\n";
 }
 
-void ViewerDisplay::save(const std::filesystem::path& file) {
-  draw(true);
-  drawing_.canvas().write_png(file);
+void ViewerDisplay::discard_film() {
+  if (options_.frames_dir.empty()) return;
+  std::error_code ignored;
+  for (; captured_frames_ > 0; --captured_frames_)
+    std::filesystem::remove(frames_folder_ / frame_name(captured_frames_), ignored);
 }
 
 void ViewerDisplay::save_when_due(double time_s, bool end) {
@@ -334,7 +373,8 @@ void ViewerDisplay::save_when_due(double time_s, bool end) {
     std::cerr << "note: " << options_.screenshot << " shows the end, at " << number_text(time_s, 2)
               << " s: it came before --at\n";
   }
-  save(options_.screenshot);
+  draw(true);
+  attempt([this] { drawing_.canvas().write_png(options_.screenshot); });
 }
 
 }  // namespace screed::viewer

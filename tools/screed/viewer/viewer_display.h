@@ -4,12 +4,17 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "hal/sample.h"
+#include "host_sim/core/made_folders.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/terrain_outcome.h"
 #include "tools/screed/viewer/drawing.h"
 #include "tools/screed/viewer/input.h"
@@ -51,6 +56,13 @@ struct DisplaySetup {
   RobotShape shape;
 };
 
+/// What the experiment says of it; `soil`: its preset, `robot`: its model. Not recorded.
+DisplaySetup display_setup(const Experiment& experiment, const std::string& soil,
+                           const Assembly& robot);
+
+/// Ticks from one point of the path to the next.
+inline constexpr uint64_t kTrailTicks = kTickRate_hz / 10;
+
 /// How long frames took, for those who count them.
 struct FrameTimes {
   uint64_t frames = 0;
@@ -65,13 +77,18 @@ class ViewerDisplay {
  public:
   static constexpr double kFramesPerSecond = 60.0;
 
-  /// Opens the window, if there is to be one. Throws RunError when that fails.
-  ViewerDisplay(const ViewerOptions& options, DisplaySetup setup, const HeightField& ground);
+  /// Opens the window, if there is to be one. Changes and the figures of the start are those of
+  /// `before`, which on soil is not yet the ground that the robot stands on; both of the same grid.
+  /// Throws RunError when that fails.
+  ViewerDisplay(const ViewerOptions& options, DisplaySetup setup, const HeightField& before,
+                const HeightField& ground);
 
   const ViewerOptions& options() const { return options_; }
   Controls& controls() { return controls_; }
   /// The ground as it is shown.
   const HeightField& ground() const { return ground_; }
+  /// What is written beside it, as it was last drawn.
+  const Status& status() const { return status_; }
 
   /// The ground has changed: by that much, since the last call.
   void change_terrain(std::span<const HeightChange> changes);
@@ -95,16 +112,20 @@ class ViewerDisplay {
   void handle_input(double time_s, int wait_ms);
   /// Frames are recorded and the next one is due: 25 a second at the pace that is set.
   bool capture_is_due() const;
-  /// Draws, shows, records.
+  /// Draws, shows, records. A picture that cannot be written throws nothing: what is shown goes on,
+  /// a film ends, and failure() says why.
   void show();
   /// All frames that were asked for have been shown.
   bool all_shown() const {
     return options_.frames.has_value() && times_.frames >= *options_.frames;
   }
-  /// Draws what is to be seen into a file.
-  void save(const std::filesystem::path& file);
   /// The screenshot of the options, when it is due or when this is the end; once.
   void save_when_due(double time_s, bool end);
+  /// Why the first picture that could not be written was not; empty: all were.
+  const std::string& failure() const { return failure_; }
+  /// Removes the frames written to ViewerOptions::frames_dir, of a film that will not be whole. A
+  /// folder that was made for them goes with this object.
+  void discard_film();
 
   const FrameTimes& times() const { return times_; }
 
@@ -119,14 +140,17 @@ class ViewerDisplay {
   /// Slopes, and the volume moved where the colours show it.
   void measure_terrain(bool exact);
   void save_on_demand();
-  /// The folder of the frames, which must hold none yet.
-  std::filesystem::path begin_frames() const;
+  /// Whether `write` did not throw RunError, which is a notice and failure().
+  bool attempt(const std::function<void()>& write);
+  void write_frame();
+  /// Makes the folder of the frames, which must hold none yet.
+  void begin_frames();
 
   ViewerOptions options_;
   DisplaySetup setup_;
   HeightField ground_;
   TerrainImage image_;
-  HeightField before_;      ///< surface() from which changes count
+  HeightField before_;      ///< the surface from which changes count
   SlopeStatistics slopes_;  ///< of the terrain as it is
   bool measured_ = false;   ///< the figures on particles are up to date
   Controls controls_;
@@ -146,6 +170,8 @@ class ViewerDisplay {
   uint64_t pictures_ = 0;
   uint64_t captured_frames_ = 0;
   std::filesystem::path frames_folder_;  ///< once the first frame is written
+  MadeFolders folders_;
+  std::string failure_;
   std::optional<double> captured_until_s_;
   FrameTimes times_;
   std::chrono::steady_clock::time_point first_shown_;

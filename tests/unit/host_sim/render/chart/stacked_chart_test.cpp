@@ -119,13 +119,71 @@ TEST(StackedChart, TheHeightIsThatAskedForOrWhatThePanelsNeed) {
   EXPECT_THROW(stacked_chart_svg(chart), InputError);
 }
 
-TEST(StackedChart, AStateThatNeverHeldIsAnEmptyRow) {
+TEST(StackedChart, ALineBreaksWhereItJumps) {
+  StackedChart chart;
+  ChartSeries heading{"heading", {{0.0, 178.0}, {1.0, 179.0}, {2.0, -179.0}, {3.0, -178.0}}, false};
+  heading.jump = 180.0;
+  chart.panels.push_back({"heading [deg]", {heading}, {}, false});
+  const auto lines = lines_of(stacked_chart_svg(chart));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].size(), 2U);
+  EXPECT_EQ(lines[1].size(), 2U);
+  chart.panels[0].series[0].jump = 0.0;
+  EXPECT_EQ(lines_of(stacked_chart_svg(chart)).size(), 1U);
+}
+
+TEST(StackedChart, ALineDrawnOverAnotherMayShowIt) {
+  StackedChart chart = two_units();
+  EXPECT_EQ(stacked_chart_svg(chart).find("stroke-dasharray"), std::string::npos);
+  chart.panels[0].series[0].dashed = true;
+  chart.panels[0].series[0].color = Color{0.0, 1.0, 0.0};
+  const std::string svg = stacked_chart_svg(chart);
+  EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
+  EXPECT_NE(svg.find("stroke=\"#00ff00\""), std::string::npos);
+}
+
+TEST(StackedChart, AnAxisOfDistancesBeginsAtZeroAlsoWhenAllAreZero) {
+  StackedChart chart;
+  chart.panels.push_back({"apart [mm]", {{"B", {{0.0, 0.0}, {4.0, 0.0}}, false}}, {}, true});
+  const std::string svg = stacked_chart_svg(chart);
+  EXPECT_EQ(svg.find("\u2212"), std::string::npos) << "no negative tick";
+  EXPECT_NE(svg.find(">1.0<"), std::string::npos);
+  chart.panels[0].from_zero = false;
+  EXPECT_NE(stacked_chart_svg(chart).find("\u2212"), std::string::npos);
+}
+
+TEST(StackedChart, LegendsEndInThePicture) {
+  StackedChart chart;
+  chart.width_px = 420;
+  ChartPanel lines{"[deg]", {}, {}, false};
+  for (const char* name : {"attitude.heading", "odometry.heading"}) {
+    lines.series.push_back({name, {{0.0, -123.45}, {1.0, 9.0}}, false});
+  }
+  chart.panels = {lines, {"", {}, {{"heartbeat.emergency_stop", {{0.0, 1.0, "", {}}}}}, false}};
+  const std::string svg = stacked_chart_svg(chart);
+  size_t labels = 0;
+  for (const char* name : {">attitude.", ">odometry."}) {
+    const size_t at = svg.find(name);
+    ASSERT_NE(at, std::string::npos);
+    double left = 0.0;
+    ASSERT_EQ(std::sscanf(svg.c_str() + svg.rfind("<text", at), "<text x=\"%lf\"", &left), 1);
+    const std::string words = svg.substr(at + 1, svg.find('<', at) - at - 1);
+    EXPECT_LE(left + svg_text_width_px(words, 12.0), 420.0) << words;
+    ++labels;
+  }
+  EXPECT_EQ(labels, 2U);
+}
+
+TEST(StackedChart, AStateThatNeverHeldIsARowThatSaysSo) {
   StackedChart chart;
   chart.panels.push_back({"", {}, {{"stall_left", {}}}, false});
   EXPECT_THROW(stacked_chart_svg(chart), InputError);
   chart.x.add(0.0);
   chart.x.add(10.0);
   EXPECT_NE(stacked_chart_svg(chart).find(">stall_left<"), std::string::npos);
+  EXPECT_NE(stacked_chart_svg(chart).find(">none<"), std::string::npos);
+  chart.panels[0].rows[0].bands.push_back({1.0, 2.0, "", {}});
+  EXPECT_EQ(stacked_chart_svg(chart).find(">none<"), std::string::npos);
 }
 
 TEST(StackedChart, RefusesWhatItCannotDraw) {
@@ -210,11 +268,11 @@ TEST(PathMap, IsTrueToScaleWhateverTheBox) {
 
 TEST(PathMap, BreaksWhereAPathLeavesTheBed) {
   PathMap map;
-  map.paths = {{"a", {{0.9, 0.0}, {0.95, 0.0}, {-0.95, 0.0}, {-0.9, 0.0}}, 0.2}};
+  map.paths = {{"a", {{0.9, 0.0}, {0.95, 0.0}, {-0.95, 0.0}, {-0.9, 0.0}}, {2}}};
   Svg svg(600, 600);
   draw_path_map(svg, map, {0, 0, 600, 600});
   EXPECT_EQ(lines_of(svg.finish()).size(), 2U);
-  map.paths[0].jump_m = 0.0;
+  map.paths[0].breaks.clear();
   Svg joined(600, 600);
   draw_path_map(joined, map, {0, 0, 600, 600});
   EXPECT_EQ(lines_of(joined.finish()).size(), 1U);

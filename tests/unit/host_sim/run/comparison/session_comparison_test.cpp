@@ -250,10 +250,10 @@ TEST_F(Comparison, ThePictureSaysWhatIsCompared) {
   other.after.heights[5] = 92 * kUnits;
   const SessionComparison result = compare(straight(500), other);
   const std::string svg = comparison_svg(result, {"out/a", "out/b"});
-  for (const char* words :
-       {"first difference in tick 200 (2.00 s): frames.y", ">A: out/a<", ">B: out/b<",
-        ">position apart [mm]<", ">heading, B from A [deg]<", ">spin<", ">walk<",
-        ">B higher than A [mm]<", ">experiment.duration<", ">not set<"}) {
+  for (const char* words : {"first difference in tick 200 (2.00 s): frames.y", ">A: out/a<",
+                            ">B: out/b<", ">position apart [mm]<", ">heading, B from A [deg]<",
+                            ">spin<", ">walk<", ">B higher than A [mm]<", ">states of A<",
+                            ">states of B<", ">experiment.duration<", ">not set<"}) {
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   }
   EXPECT_EQ(comparison_svg(result, {"out/a", "out/b"}), svg);
@@ -261,6 +261,97 @@ TEST_F(Comparison, ThePictureSaysWhatIsCompared) {
       comparison_svg(compare(straight(500), straight(500)), {"out/a", "out/a"});
   EXPECT_NE(same.find(">identical<"), std::string::npos);
   EXPECT_THROW(comparison_svg(compare(straight(0), straight(0)), {"a", "b"}), InputError);
+}
+
+/// The points of all dashed and all whole lines.
+std::size_t lines_in(const std::string& svg, const std::string& color, bool dashed) {
+  std::size_t count = 0;
+  for (std::size_t at = svg.find("<polyline"); at != std::string::npos;
+       at = svg.find("<polyline", at + 1)) {
+    const std::string head = svg.substr(at, svg.find(" points=", at) - at);
+    if (head.find(color) == std::string::npos) continue;
+    count += (head.find("dasharray") != std::string::npos) == dashed ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(Comparison, TheLinesOfIdenticalRunsAllShow) {
+  const std::string svg = comparison_svg(compare(straight(500), straight(500)), {"a", "a"});
+  // B, dashed over A: on the map and as its battery.
+  EXPECT_EQ(lines_in(svg, "#8f0d33", false), 2U);
+  EXPECT_EQ(lines_in(svg, "#0d949e", true), 2U);
+  EXPECT_EQ(lines_in(svg, "#0d949e", false), 0U);
+  // Position and heading apart, in the ink of neither.
+  EXPECT_EQ(lines_in(svg, "#22262b", false), 2U);
+}
+
+TEST_F(Comparison, TheHeadingApartBreaksWhereItWraps) {
+  Recording other = straight(500);
+  for (std::size_t i = 0; i < 500; ++i) {
+    other.frames[i].yaw = std::remainder(0.02 * static_cast<double>(i), 2.0 * std::numbers::pi);
+  }
+  const std::string svg = comparison_svg(compare(straight(500), other), {"a", "b"});
+  EXPECT_EQ(lines_in(svg, "#22262b", false), 4U) << "10 rad: past half a turn at 3.1 and 9.4";
+}
+
+TEST_F(Comparison, ThePathBreaksWhereTheRobotLeavesTheBed) {
+  Recording wrapped = straight(100);
+  wrapped.before.geometry.wrap = wrapped.after.geometry.wrap = true;
+  // Ten times a second a point; a fast robot goes on by 0.3 m, and over the edge at 0.5 s.
+  for (std::size_t i = 0; i < 100; ++i) {
+    wrapped.frames[i].x = -0.5 + std::fmod(0.03 * static_cast<double>(i), 1.0);
+    wrapped.frames[i].beds_x = static_cast<int>(0.03 * static_cast<double>(i));
+  }
+  const SessionComparison result = compare(wrapped, wrapped);
+  EXPECT_EQ(lines_in(comparison_svg(result, {"a", "a"}), "#8f0d33", false), 4U)
+      << "three pieces of the path, and the battery";
+}
+
+TEST_F(Comparison, PathsLieOnTheTerrainOfTheStart) {
+  Recording other = straight(100);
+  const std::string same = comparison_svg(compare(straight(100), other), {"a", "b"});
+  EXPECT_NE(same.find(">paths over the terrain at the start (ring: start, square: end)<"),
+            std::string::npos);
+  other.after.heights[5] = 50 * kUnits;
+  const auto first_image = [](const std::string& svg) {
+    const std::size_t at = svg.find("<image");
+    return svg.substr(at, svg.find("/>", at) - at);
+  };
+  const std::string dug = comparison_svg(compare(other, other), {"a", "b"});
+  EXPECT_EQ(first_image(dug), first_image(same)) << "whatever the run left";
+  other.before.heights[0] += kUnits;
+  EXPECT_NE(comparison_svg(compare(straight(100), other), {"a", "b"})
+                .find(">paths over A's terrain at the start ("),
+            std::string::npos);
+}
+
+TEST_F(Comparison, StatesEndWithTheRun) {
+  const std::string svg = comparison_svg(compare(straight(500), straight(500)), {"a", "a"});
+  // The band of the only state and the line of the battery end at the same time.
+  const std::size_t band = svg.rfind("<rect", svg.rfind(">walk<"));
+  double left = 0.0;
+  double width = 0.0;
+  double top = 0.0;
+  ASSERT_EQ(std::sscanf(svg.c_str() + band, "<rect x=\"%lf\" y=\"%lf\" width=\"%lf\"", &left, &top,
+                        &width),
+            3);
+  const std::size_t line = svg.rfind("<polyline", band);
+  const std::string points = svg.substr(line, svg.find("\"/>", line) - line);
+  double end = 0.0;
+  ASSERT_EQ(std::sscanf(points.c_str() + points.rfind(' '), " %lf,", &end), 1);
+  EXPECT_NEAR(left + width, end, 0.02);
+}
+
+TEST_F(Comparison, ASessionWithANumberThatIsNoneIsRefused) {
+  Recording run = straight(10);
+  run.info.experiment_text = "[map]\nmodel = particles\nparticle_radius = wide\n";
+  try {
+    compare(run, run);
+    FAIL() << "was compared";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "the session's experiment, line 3: map.particle_radius = 'wide' is no number");
+  }
 }
 
 TEST(DifferenceLimit, IsRoundAndLeavesOutSingleHeights) {

@@ -41,7 +41,10 @@ class FakeImage : public CoSimulation {
 
 class Observer : public SimulationObserver {
  public:
-  void on_begin(const HeightField& /*ground*/) override { calls += 'b'; }
+  void on_begin(const HeightField& before, const HeightField& /*ground*/) override {
+    calls += 'b';
+    first_height = before.node(0);
+  }
   void on_tick(const SimFrame& frame, const HeightField& /*ground*/) override {
     calls += 't';
     times.push_back(frame.time);
@@ -49,6 +52,7 @@ class Observer : public SimulationObserver {
   void on_end() override { calls += 'e'; }
 
   std::string calls;
+  Height first_height = 0;
   std::vector<double> times;
 };
 
@@ -62,6 +66,7 @@ class StandingClock : public WallClock {
 class RunLoopTest : public ::testing::Test {
  protected:
   RunLoopTest() {
+    laid_out_.set_node(0, 0, 4711);
     auto image = std::make_unique<FakeImage>();
     image_ = image.get();
     world_ = std::make_unique<RunWorld>(settings_, std::move(image));
@@ -75,7 +80,7 @@ class RunLoopTest : public ::testing::Test {
     StopCondition stop(experiment, &stop_);
     Progress progress({}, TerrainMeasure(experiment), world_->plant().terrain());
     Pacer pacer(clock_, true);
-    RunLoop loop(*world_, {robot_, *recorder_, stop, progress, pacer, &observer_});
+    RunLoop loop(*world_, {robot_, *recorder_, stop, progress, pacer, &observer_, laid_out_});
     return loop.run();
   }
 
@@ -88,6 +93,7 @@ class RunLoopTest : public ::testing::Test {
   std::unique_ptr<SessionRecorder> recorder_;
   std::atomic<bool> stop_ = false;
   StandingClock clock_;
+  HeightField laid_out_ = HeightField::flat(4.0, 0.1);
   Observer observer_;
 };
 
@@ -95,6 +101,7 @@ TEST_F(RunLoopTest, EachTickIsCheckedRecordedShownAndPaced) {
   EXPECT_EQ(run(0.03), RunEnd::kDone);
   EXPECT_EQ(robot_.parity.ticks(), 3U);
   EXPECT_EQ(observer_.calls, "bttte");
+  EXPECT_EQ(observer_.first_height, 4711) << "the terrain before the run, not the plant's";
   ASSERT_EQ(observer_.times.size(), 3U);
   EXPECT_DOUBLE_EQ(observer_.times[2], 0.03);
   ASSERT_EQ(clock_.slept_to.size(), 3U);

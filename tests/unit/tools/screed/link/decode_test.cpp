@@ -297,9 +297,41 @@ TEST_F(Decode, PlotsStatesAndFlagsAsBands) {
   ASSERT_EQ(rows[2].bands.size(), 1U);
   EXPECT_DOUBLE_EQ(rows[2].bands[0].begin, 0.4);
   EXPECT_TRUE(rows[3].bands.empty());
+  EXPECT_EQ(err_.str(), "");
   options.signals = {"heartbeat.stuck"};
   EXPECT_NE(stacked_chart_svg(plot_chart(options, err_)).find(">heartbeat.stuck<"),
             std::string::npos);
+}
+
+TEST_F(Decode, PlotsEndWithTheLog) {
+  PlotOptions options;
+  options.log = log(heartbeat_line(10, 2, 5, 0) + heartbeat_line(10.2, 2, 5, 1) +
+                    attitude_line(10.25, 100, 0));
+  options.signals = {"heartbeat.state", "heartbeat.tilt"};
+  const StackedChart chart = plot_chart(options, err_);
+  for (const BandRow& row : chart.panels[0].rows) {
+    ASSERT_EQ(row.bands.size(), 1U);
+    EXPECT_DOUBLE_EQ(row.bands[0].end, 0.25) << "not a period of 0.2 s after the last heartbeat";
+  }
+}
+
+TEST_F(Decode, PlotsOfHeadingsBreakWhereTheyWrap) {
+  PlotOptions options;
+  options.log = log(attitude_line(10, 100, 0) + attitude_line(11, 200, 1));
+  options.signals = {"attitude.heading", "attitude.pitch"};
+  const ChartPanel panel = plot_chart(options, err_).panels.at(0);
+  EXPECT_EQ(panel.series[0].jump, 180.0);
+  EXPECT_EQ(panel.series[1].jump, 0.0);
+}
+
+TEST_F(Decode, PlotsNameWhatTheLogLacks) {
+  PlotOptions options;
+  options.log = log(heartbeat_line(10, 2, 0, 0) + heartbeat_line(10.2, 2, 0, 1));
+  options.signals = {"heartbeat.tilt", "power.battery", "leveling.state"};
+  EXPECT_EQ(plot_chart(options, err_).panels.size(), 1U);
+  EXPECT_NE(err_.str().find("holds no message with power.battery, leveling.state"),
+            std::string::npos)
+      << err_.str();
 }
 
 TEST_F(Decode, PlotsKeepThePeaksOfManyPoints) {

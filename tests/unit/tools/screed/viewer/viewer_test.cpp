@@ -70,8 +70,8 @@ TEST(ViewerGroundImage, ChangedCellsAloneGiveTheWholePicture) {
   for (const bool wrap : {false, true}) {
     for (const Shading shading : {Shading::kHeight, Shading::kSlope, Shading::kChange}) {
       HeightField field = hills(wrap);
-      TerrainImage image(field);
-      TerrainImage fresh(field);
+      TerrainImage image(field, field);
+      TerrainImage fresh(field, field);
       EXPECT_EQ(image.paint(field, shading), 60U * 50U);
       size_t painted = 0;
       dig(field, [&](std::span<const HeightChange> changes) {
@@ -233,7 +233,8 @@ TEST(ViewerSubtitle, SaysWhoDrives) {
 
 class ViewerDrawing : public ::testing::Test {
  protected:
-  ViewerDrawing() : field_(HeightField::flat(2.0, 0.02)), image_(field_), drawing_(900, 600) {
+  ViewerDrawing()
+      : field_(HeightField::flat(2.0, 0.02)), image_(field_, field_), drawing_(900, 600) {
     image_.paint(field_, Shading::kHeight);
     shape_.hull = {-0.1, 0.1, -0.08, 0.08};
     shape_.running_gear = {{-0.12, 0.12, 0.08, 0.12}, {-0.12, 0.12, -0.12, -0.08}};
