@@ -151,8 +151,8 @@ double own_slip(const SoilParameters& soil) {
 
 // On firm sand the wheels slip a little, on loose sand a lot: they sink in by some millimetres, and
 // the robot drives as fast as the limit of an infinitely fine grid says. First it has to come out
-// of the dents in which it stood; when it does is chance. On viper as it is they hold it for ever: a
-// wheel of 30 mm that spins there pulls less than the soil it has pushed aside holds it back.
+// of the dents in which it stood; when it does is chance. On viper as it is they hold it for ever:
+// a wheel of 30 mm that spins there pulls less than the soil it has pushed aside holds it back.
 TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
   SoilParameters quick = soil_preset("viper");
   quick.name = "viper with a small K";
