@@ -35,10 +35,10 @@ class WheelStress {
       : radius_(radius_m), entry_(entry_rad), rolled_(rolled) {
     const double share = slip >= 0.0 ? soil.front_angle + soil.front_angle_driven * slip
                                      : soil.front_angle - soil.front_angle_braked * slip;
-    const double middle = std::clamp(share, 0.0, kMostAhead) * entry_;
+    const double middle = std::clamp(share, 0.0, kMaxAhead) * entry_;
     exit_ = -soil.exit_angle * entry_;
     known_ = true;
-    shaped_ = rolled > 0.0 && middle - exit_ > kLeast_rad;
+    shaped_ = rolled > 0.0 && middle - exit_ > kMinSpread_rad;
     if (!shaped_) return;
     middle_ = middle;
     slope_ = (entry_ - middle) / (middle - exit_);
@@ -65,8 +65,8 @@ class WheelStress {
   }
 
  private:
-  static constexpr double kMostAhead = 0.95;
-  static constexpr double kLeast_rad = 1e-4;
+  static constexpr double kMaxAhead = 0.95;
+  static constexpr double kMinSpread_rad = 1e-4;
 
   /// |t| <= 1, within 1e-5 (form of Abramowitz and Stegun, 4.4.49).
   static Double2 arc_tangent(Double2 t) {

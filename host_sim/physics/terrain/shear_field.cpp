@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSpacing_m = 0.0025;  // at most, a quarter of the least usual K
 // Along a contour: of one with arcs alone a small part touches.
-constexpr double kLeastPlaces = 48.0;
-constexpr double kLeastPlacesOnAWheel = 192.0;
+constexpr double kMinPlaces = 48.0;
+constexpr double kMinPlacesOnAWheel = 192.0;
 
 }  // namespace
 
@@ -35,8 +35,8 @@ void ShearField::advance(const RunContour& contour, const RunMotion& motion, dou
                          double front, double shear_modulus_m, double damping_s, double dt) {
   if (places_.empty()) {
     const double length = contour.length_m();
-    const double least = contour.half_m > 0.0 ? kLeastPlaces : kLeastPlacesOnAWheel;
-    spacing_ = std::min(kSpacing_m, length / least);
+    const double min_places = contour.half_m > 0.0 ? kMinPlaces : kMinPlacesOnAWheel;
+    spacing_ = std::min(kSpacing_m, length / min_places);
     ring_ = std::bit_ceil(static_cast<size_t>(length / spacing_) + 4);
     places_.resize(kLanes * ring_);
     lane_offset_ = 0.5 * contour.half_width_m;
