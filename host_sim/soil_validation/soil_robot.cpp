@@ -7,11 +7,7 @@
 #include "host_sim/core/content_hash.h"
 
 namespace screed {
-namespace {
-
-constexpr double kSlipSpeed = 1e-3;  // below it slip means nothing, m/s
-
-}  // namespace
+namespace {}  // namespace
 
 SoilRobot::SoilRobot(SoilBed& bed, const SoilRobotShape& shape, double x, double y)
     : bed_(bed),
@@ -70,11 +66,7 @@ void SoilRobot::step(double left_m_per_s, double right_m_per_s, double dt) {
     contact.memory = &wheel.memory;
     contact.motion.surface_speed = i % 2 == 0 ? left_m_per_s : right_m_per_s;
     const double ground = (speed + body.omega.cross(arm)).dot(axes.col(0));
-    const double faster = std::max(std::abs(ground), std::abs(contact.motion.surface_speed));
-    contact.motion.slip =
-        faster > kSlipSpeed
-            ? std::min(1.0, std::abs(contact.motion.surface_speed - ground) / faster)
-            : 0.0;
+    contact.motion.slip = signed_slip(contact.motion.surface_speed, ground);
   }
   bed_.press(body, contacts, dt, memory_);
   Eigen::Vector3d force = Eigen::Vector3d::Zero();

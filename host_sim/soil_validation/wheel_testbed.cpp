@@ -2,9 +2,7 @@
 #include "host_sim/soil_validation/wheel_testbed.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "host_sim/core/errors.h"
@@ -30,9 +28,11 @@ void check(const WheelTest& test) {
 
 /// A bed along the track; square to the grid's axes, whatever the track's yaw.
 HeightField bed_under(const WheelTest& test) {
-  const double length =
-      test.speed_m_per_s * test.duration_s + 2.0 * (test.wheel.radius_m + kMargin_m);
-  const double width = test.wheel.width_m + 2.0 * (kMargin_m + std::abs(test.offset_m));
+  const double length = test.speed_m_per_s * test.duration_s +
+                        2.0 * (test.wheel.radius_m + kMargin_m) +
+                        4.0 * test.wheel.radius_m * (test.passes - 1);
+  const double width = test.wheel.width_m + 2.0 * (kMargin_m + std::abs(test.offset_m)) +
+                       std::abs(std::tan(test.wheel.slip_angle_rad)) * length;
   const double cos = std::abs(std::cos(test.yaw_rad));
   const double sin = std::abs(std::sin(test.yaw_rad));
   const auto nodes = [&](double extent) {
@@ -50,15 +50,24 @@ class Testbed {
     axes_ = Eigen::AngleAxisd(test.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   }
 
-  WheelPass pass() {
+  /// `after`: passes that come after it. Each rolls two radii further than the next one, which so
+  /// is in its rut to the end.
+  WheelPass pass(int after) {
     const double radius = test_.wheel.radius_m;
-    const auto steps = static_cast<int>(std::lround(test_.duration_s / test_.step_s));
+    const auto counted_steps = static_cast<int>(std::lround(test_.duration_s / test_.step_s));
+    const int steps =
+        counted_steps +
+        static_cast<int>(std::lround(2.0 * radius * after / (test_.speed_m_per_s * test_.step_s)));
     const double begin = -0.5 * test_.speed_m_per_s * test_.duration_s;
     ContactMemory memory;
     FootprintMotion motion;
     motion.mass_kg = test_.mass_kg;
-    motion.slip = std::max(0.0, test_.wheel.slip);
-    motion.surface_speed = test_.speed_m_per_s / (1.0 - test_.wheel.slip);
+    motion.slip = test_.wheel.slip;
+    motion.surface_speed = test_.wheel.slip >= 0.0 ? test_.speed_m_per_s / (1.0 - test_.wheel.slip)
+                                                   : test_.speed_m_per_s * (1.0 + test_.wheel.slip);
+    motion.soil_friction = test_.wheel.friction;
+    motion.adhesion_pa = test_.wheel.adhesion_pa;
+    const double aside = std::tan(test_.wheel.slip_angle_rad);
     double height =
         bed_.surface().at(begin * axes_(0, 0), begin * axes_(1, 0)).height + radius + 1e-4;
     double rising = 0.0;
@@ -70,16 +79,17 @@ class Testbed {
     pose.linear() = axes_;
     for (int i = 0; i < steps; ++i) {
       const double along = begin + test_.speed_m_per_s * i * test_.step_s;
-      pose.translation() = axes_ * Eigen::Vector3d(along, test_.offset_m, height);
+      pose.translation() = axes_ * Eigen::Vector3d(along, test_.offset_m + aside * along, height);
       wheel_.set_pose(pose);
-      motion.velocity = axes_ * Eigen::Vector3d(test_.speed_m_per_s, 0.0, rising);
+      motion.velocity =
+          axes_ * Eigen::Vector3d(test_.speed_m_per_s, aside * test_.speed_m_per_s, rising);
       const TerrainReaction reaction = bed_.press(wheel_, motion, test_.step_s, memory);
       bed_.end_step();
       const Eigen::Vector3d force = axes_.transpose() * reaction.force;
       const double sinkage = radius - height;
       rising += test_.step_s * (force.z() - test_.wheel.load_n) / test_.mass_kg;
       height += test_.step_s * rising;
-      if (2 * i < steps) continue;
+      if (2 * i < counted_steps || i >= counted_steps) continue;
       ++counted;
       sum.sinkage_m += sinkage;
       sum.drawbar_pull_n += force.x();
@@ -107,7 +117,9 @@ class Testbed {
     double sum = 0.0;
     for (int i = 0; i < kPlaces; ++i) {
       const double along = from + (to - from) * (i + 0.5) / kPlaces;
-      const Eigen::Vector3d place = axes_ * Eigen::Vector3d(along, test_.offset_m, 0.0);
+      const Eigen::Vector3d place =
+          axes_ * Eigen::Vector3d(
+                      along, test_.offset_m + std::tan(test_.wheel.slip_angle_rad) * along, 0.0);
       sum -= bed_.surface().at(place.x(), place.y()).height;
     }
     return sum / kPlaces;
@@ -119,24 +131,6 @@ class Testbed {
   Eigen::Matrix3d axes_;
 };
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields;
-  std::string field;
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.push_back(field);
-      field.clear();
-    } else if (c != '\r') {
-      field += c;
-    }
-  }
-  fields.push_back(field);
-  return fields;
-}
-
 }  // namespace
 
 WheelTestResult run_wheel(const WheelTest& test) {
@@ -144,75 +138,8 @@ WheelTestResult run_wheel(const WheelTest& test) {
   Testbed testbed(test);
   std::vector<WheelPass> passes;
   passes.reserve(static_cast<size_t>(test.passes));
-  for (int i = 0; i < test.passes; ++i) passes.push_back(testbed.pass());
+  for (int i = 0; i < test.passes; ++i) passes.push_back(testbed.pass(test.passes - 1 - i));
   return {passes, testbed.bed().balance(), testbed.bed().surface()};
-}
-
-std::vector<MeasuredWheel> read_measured_wheels(const std::string& file,
-                                                const std::string& prefix) {
-  std::ifstream in(file);
-  if (!in) throw InputError(file + ": cannot be read");
-  std::string line;
-  std::getline(in, line);
-  const std::vector<std::string> names = split(line);
-  std::vector<MeasuredWheel> rows;
-  for (int number = 2; std::getline(in, line); ++number) {
-    const std::vector<std::string> fields = split(line);
-    const auto fail = [&](const std::string& what) {
-      std::string message = file;
-      message.append(":").append(std::to_string(number)).append(": ").append(what);
-      throw InputError(message);
-    };
-    const auto text = [&](const char* name) -> const std::string& {
-      const auto at =
-          static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      if (at >= names.size() || at >= fields.size()) {
-        fail(std::string("column ") + name + " is missing");
-      }
-      return fields[at];
-    };
-    const auto value = [&](const char* name) {
-      const std::string& field = text(name);
-      double result = 0.0;
-      const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), result);
-      if (error != std::errc() || end != field.data() + field.size()) {
-        std::string what = name;
-        what.append(" is '").append(field).append("', a number is needed");
-        fail(what);
-      }
-      return result;
-    };
-    if (!text("case_id").starts_with(prefix)) continue;
-    rows.push_back(
-        {text("case_id"),
-         {value("wheel_radius_m"), value("wheel_width_m"), value("vertical_load_n"), value("slip")},
-         value("meas_drawbar_pull_n"),
-         value("meas_sinkage_m"),
-         value("meas_torque_nm")});
-  }
-  if (rows.empty()) throw InputError(file + ": no case_id begins with '" + prefix + "'");
-  return rows;
-}
-
-double fit_slip_sinkage(const std::vector<MeasuredWheel>& measured, const SoilParameters& soil,
-                        NormalStress normal_stress, double low, double high) {
-  const auto worst = [&](double parameter) {
-    SoilParameters tried = soil;
-    tried.slip_sinkage = parameter;
-    double error = 0.0;
-    for (const MeasuredWheel& row : measured) {
-      if (row.wheel.slip < low || row.wheel.slip > high) continue;
-      const double sinkage = wheel_limit(row.wheel, tried, normal_stress).sinkage_m;
-      error = std::max(error, std::abs(sinkage / row.sinkage_m - 1.0));
-    }
-    return error;
-  };
-  double best = 0.0;
-  for (int i = 1; i <= 100; ++i) {
-    const double parameter = 0.01 * i;
-    if (worst(parameter) < worst(best)) best = parameter;
-  }
-  return best;
 }
 
 }  // namespace screed

@@ -2,7 +2,6 @@
 // single-wheel testbed.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "host_sim/physics/soil/soil_bed.h"
@@ -16,7 +15,7 @@ struct WheelTest {
   SoilParameters soil;
   SoilOptions options{.bulldozing = false, .avalanches = false};
   double mass_kg = 0.05;        ///< that moves up and down; the load is a force besides, 1e-4..1e4
-  double speed_m_per_s = 0.05;  ///< of travel, 1e-4..10
+  double speed_m_per_s = 0.05;  ///< ahead in the wheel's plane, 1e-4..10
   double step_s = 1e-3;         ///< 1e-5..0.02
   double duration_s = 6.0;      ///< of one pass; means are over its second half
   double cell_m = 0.005;        ///< 0.0005..0.1
@@ -44,23 +43,5 @@ struct WheelTestResult {
 
 /// Throws InputError for figures out of range.
 WheelTestResult run_wheel(const WheelTest& test);
-
-/// A row of a table of measurements on a real wheel.
-struct MeasuredWheel {
-  std::string name;
-  RollingWheel wheel;
-  double drawbar_pull_n;
-  double sinkage_m;
-  double torque_nm;
-};
-
-/// Rows whose case_id begins with `prefix`. Throws InputError with file and line when the file
-/// cannot be read, a column is missing or a number is none, and when no row is left.
-std::vector<MeasuredWheel> read_measured_wheels(const std::string& file, const std::string& prefix);
-
-/// The slip_sinkage parameter with which the limit's sinkage fits the rows with slip in
-/// [low, high] best: least greatest relative error. All else stays.
-double fit_slip_sinkage(const std::vector<MeasuredWheel>& measured, const SoilParameters& soil,
-                        NormalStress normal_stress, double low, double high);
 
 }  // namespace screed

@@ -51,15 +51,30 @@ size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
   return footprints_.size() - 1;
 }
 
+int64_t MaterialFlow::sunk_in_step() const {
+  int64_t sum = 0;
+  for (const ActiveFootprint& footprint : footprints_) sum += footprint.units;
+  return sum;
+}
+
 void MaterialFlow::compact(int64_t units) {
-  in_transit_ -= units;
-  const int64_t earlier = std::min(units, left_over_);
-  left_over_ -= earlier;
-  units -= earlier;
+  const auto take = [&](int64_t& from) {
+    const int64_t here = std::min(units, from);
+    from -= here;
+    units -= here;
+    in_transit_ -= here;
+  };
+  take(left_over_);
+  for (Dug& dug : dug_) take(dug.units);
+  for (ActiveFootprint& footprint : footprints_) take(footprint.units);
+}
+
+void MaterialFlow::compact_sunk(int64_t units) {
   for (ActiveFootprint& footprint : footprints_) {
     const int64_t here = std::min(units, footprint.units);
     footprint.units -= here;
     units -= here;
+    in_transit_ -= here;
   }
 }
 

@@ -3,6 +3,7 @@
 #include "host_sim/physics/soil/soil_bed.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -20,6 +21,9 @@ constexpr double kMaxPathGradient = 1.0;
 // Least vertical part of a body's z axis at which a level path has a gradient in the body's axes.
 constexpr double kUpright = 1e-3;
 
+// What a footprint comes back by before its path counts as a new one, m: less is trembling.
+constexpr double kTurnedBack_m = 0.001;
+
 /// Extends a footprint's path by this step's displacement, world frame, m. With s and dz its parts
 /// along local x and z, |dz| <= |s|, and L half the length of a track, wheel or box:
 ///   travel   += s
@@ -29,7 +33,14 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
                  bool follow_slopes, PathHistory& path) {
   const Eigen::Matrix3d& axes = footprint.pose().linear();
   const double along = displacement.dot(axes.col(0));
-  if (along * path.travel_m < 0.0) path = {};
+  if (along * path.travel_m < 0.0) {
+    path.back_m += std::abs(along);
+    if (path.back_m <= kTurnedBack_m) return;
+    path = {};
+  } else if (path.back_m > 0.0) {  // back to where it had been
+    path.back_m = std::max(0.0, path.back_m - std::abs(along));
+    return;
+  }
   path.travel_m += along;
   if (!follow_slopes) {
     path.gradient = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
@@ -43,13 +54,25 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
       share < 1.0 ? path.gradient + (along < 0.0 ? -up : up) - share * path.gradient : 0.0;
 }
 
+/// The slip that soil has felt: slip-sinkage comes with the soil that is sheared, so a footprint
+/// averages its slip over the length of its contact.
+void average_slip(FootprintContact& contact, const Eigen::Vector3d& velocity, double dt) {
+  const Footprint& footprint = *contact.footprint;
+  ContactMemory& kept = *contact.memory;
+  const double over_ground = std::abs(velocity.dot(footprint.pose().linear().col(0)));
+  const double faster = std::max(over_ground, std::abs(contact.motion.surface_speed));
+  const double length = footprint.half().x() + footprint.radius();
+  kept.slip += std::min(1.0, faster * dt / length) * (contact.motion.slip - kept.slip);
+}
+
 }  // namespace
 
 SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options)
     : soil_(soil),
       options_(options),
       flow_(std::move(surface), soil.repose_deg),
-      tan_friction_(std::tan(soil.friction_deg * kDegree)) {
+      tan_friction_(std::tan(soil.friction_deg * kDegree)),
+      passive_(soil) {
   check_soil(soil);
   const double spacing = flow_.surface().spacing_m();
   cell_area_ = spacing * spacing;
@@ -99,6 +122,7 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     const Eigen::Vector3d arm = contact.arm = footprint.pose().translation() - body.centre;
     const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
     extend_path(footprint, velocity * dt, options_.follow_slopes, kept.path);
+    average_slip(contact, velocity, dt);
     double elastic = soil_.elastic_pa_per_m;
     if (footprint.extended() && !tilts && !imposed) {
       // The solver does not tilt this long footprint, so its pitch feels E explicitly.
@@ -108,7 +132,7 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     ranges_.push_back(find_cells(contact, elastic));
     const Range& range = ranges_.back();
     if (range.begin == range.end) {
-      kept = {};
+      kept.leave();
       continue;
     }
     measure_patch(footprint, range.begin, kept);
@@ -117,9 +141,11 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
       const SoilCell& cell = cells_[i];
       flow_.cover(cell.node, cell.ix, cell.iy);
       springs_.push_back({cell_area_ * (cell.pressure + elastic * (cell.pressed - cell.sunk)),
-                          cell_area_ * elastic * cell.share, cell_area_ * cell.pressure,
-                          cell_area_ * cell.rate, cell.arm.x() + arm.x(), cell.arm.y() + arm.y()});
+                          cell_area_ * elastic * (1.0 - range.law.rebound) * cell.share,
+                          cell_area_ * cell.pressure, cell_area_ * cell.rate,
+                          cell.arm.x() + arm.x(), cell.arm.y() + arm.y()});
     }
+    advance_shear(range, body, contact, dt);
   }
   if (springs_.empty()) {
     memory = {};
@@ -130,23 +156,27 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
 }
 
 void SoilBed::end_step() {
-  const int64_t sunk = flow_.in_transit();
   if (!options_.bulldozing) {
-    compacted_ += sunk;
+    const int64_t sunk = flow_.in_transit();
     flow_.compact(sunk);
+    compacted_ += sunk;
   } else {
-    if (soil_.compaction > 0.0 && sunk > 0) {
-      compaction_remainder_ += soil_.compaction * static_cast<double>(sunk);
-      const auto units = std::min(sunk, static_cast<int64_t>(compaction_remainder_));
+    // A share of what was pressed down in this step. What is dug has given its own share already,
+    // and what waits from earlier steps, too.
+    const int64_t pressed = flow_.sunk_in_step();
+    if (soil_.compaction > 0.0 && pressed > 0) {
+      compaction_remainder_ += soil_.compaction * static_cast<double>(pressed);
+      const auto units = std::min(pressed, static_cast<int64_t>(compaction_remainder_));
       compaction_remainder_ -= static_cast<double>(units);
+      flow_.compact_sunk(units);
       compacted_ += units;
-      flow_.compact(units);
     }
     flow_.deposit();
   }
   if (options_.avalanches) flow_.slide(kSlidesPerStep);
   slopes_left_ = options_.avalanches ? flow_.queued() : 0;
   flow_.uncover();
+  assert(flow_.in_transit() >= 0);
   ++step_;
 }
 

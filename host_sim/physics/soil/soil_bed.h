@@ -21,9 +21,11 @@
 
 #include "host_sim/physics/soil/cell_history.h"
 #include "host_sim/physics/soil/material_flow.h"
+#include "host_sim/physics/soil/passive_pressure.h"
 #include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/sinking.h"
 #include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/physics/soil/wheel_stress.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/terrain.h"
@@ -89,18 +91,22 @@ class SoilBed final : public Terrain {
     double bekker;   // k_c / b + k_phi
     double elastic;  // E, Pa/m
     const PowerTable* table;
-  };
-  /// History of a node's last contact. Shear is the mean over the touching part.
-  struct SoilCellHistory : CellHistory {
-    float share = 0.0F;   // of the cell that touched
-    float along = 0.0F;   // mobilised share of the shear strength along the belt, -1..1
-    float across = 0.0F;  // and across it
+    WheelStress stress;
+    Eigen::Vector3d sine;    // times a place from the wheel's centre: sine of its angle
+    double per_upright = 1;  // 1 / cosine of the path's slope
+    double rebound = 0.0;    // share of what a wheel presses down that comes up behind it
   };
   struct Candidate {
     size_t node;
     int ix;
     int iy;
     Lattice lattice;
+    size_t first = 0;  // of its sample points
+    size_t count = 0;
+    double reference = 0.0;  // level of the undisturbed surface, m
+    double sunk = 0.0;       // plastic sinkage, m
+    double covered = 0.0;    // share of it below the body
+    SinkageDivision division{};
   };
   struct SoilCell {  // one cell under a footprint, sampled
     size_t node;
@@ -116,15 +122,18 @@ class SoilBed final : public Terrain {
     double tilt_y;
     Eigen::Vector3d moment;  // about the footprint's centre, per newton of vertical load, m
     Eigen::Vector3d arm;     // centre of pressure, from the footprint's centre
-    double lead;             // centre of pressure ahead of the centre of the contact area, along
-                             // local x, m
     double sunk;             // plastic sinkage, m
+    double depth;            // of the body below the undisturbed surface, mean over the touching
+                             // part, m
   };
   struct Range {  // of one footprint among cells_
     size_t begin;
     size_t end;
     Law law;
     size_t footprint;  // as flow_ numbers them
+    RunFrame frame;
+    double rear;  // of the contact along the contour, m
+    double front;
   };
 
   /// How a footprint slips over what it touches: sums over its cells, each times its share.
@@ -145,20 +154,18 @@ class SoilBed final : public Terrain {
   Range find_cells(const FootprintContact& contact, double elastic);
   void find_candidates(const Footprint& footprint, double rebound_m);
   void add_sample_points(const Candidate& candidate);
-  bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, const Law& law,
+  void divide_sinkage();
+  WheelStress wheel_stress(const FootprintContact& contact, Law& law) const;
+  bool sample(const Footprint& footprint, const Candidate& candidate, const Law& law,
               SoilCell& cell);
   template <size_t static_count>
-  bool sample(const Footprint& footprint, const Candidate& candidate, size_t first, size_t number,
-              const Law& law, SoilCell& cell);
+  bool sample_points(const Footprint& footprint, const Candidate& candidate, const Law& law,
+                     SoilCell& cell);
+  void find_extent(const Footprint& footprint, Range& range) const;
   void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
-  struct FootprintState;  // these three in soil_reaction.cpp
-  struct SurfaceSlip;
-  struct Mobilised;
-  double yield(const SoilCell& cell, double sinking, const FootprintState& state, size_t footprint);
-  Mobilised mobilise(const SoilCell& cell, const SurfaceSlip& slip, const FootprintState& state,
-                     double dt, SoilCellHistory& history) const;
-  FootprintState footprint_state(const FootprintContact& contact, double elastic,
-                                 const Eigen::Vector3d& centre_velocity) const;
+  void advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
+                     double dt) const;
+  double yield(const SoilCell& cell, double sinking, const Law& law, size_t footprint);
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
   void dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, double dt);
   size_t sample_count(Lattice lattice) const;
@@ -180,7 +187,8 @@ class SoilBed final : public Terrain {
   double dig_remainder_ = 0.0;
   size_t slopes_left_ = 0;
   uint32_t step_ = 1;
-  std::vector<SoilCellHistory> histories_;
+  PassivePressure passive_;
+  std::vector<CellHistory> histories_;
 
   // Of the body being pressed; kept for their room.
   FootprintSamples candidate_points_;  // one a cell, its centre

@@ -6,12 +6,17 @@
 // has its undisturbed surface at `level` and had sunk by `old_sinkage` in earlier contacts
 // (cell_history.h), below a body at `height` now that was as low as `passed` on its path:
 //   deepest = max(0, level - passed)
-//   virgin  = (k_c / b + k_phi) deepest^n                     Bekker 1969
-//   stiff   = E (deepest - old_sinkage)                       reloading along E
+//   bearing = max(0, deepest - lift)                          lift of a wheel: wheel_stress.h, else
+//   0 virgin  = (k_c / b + k_phi) bearing^n                     Bekker 1969 stiff   = E (bearing -
+//   old_sinkage)                       reloading along E; a mean over the small
+//             square that a point stands for, which reaches the floor of a rut bit by bit
 //   loaded  = max(0, min(virgin, stiff))                      p at its deepest
-//   depths  : plastic sinkage, max(old_sinkage, deepest - loaded / E)
-//   now     = loaded - E (height - passed)                    unloading: it carries when > 0
-//   rates   : d loaded / d sinking of the whole body: n virgin / deepest where it yields, else E
+//   depths  : plastic sinkage, the larger of old_sinkage and
+//             old_sinkage + (1 - rebound) (deepest - old_sinkage) - loaded / E
+//   now     = loaded - E (height - passed)                    unloading: it carries when > 0; below
+//   a
+//             wheel whose stress is shaped: loaded
+//   rates   : d loaded / d sinking of the whole body: n virgin / bearing where it yields, else E
 // A cell has the means of these, each point weighed with its `part` of the body above it; a centre
 // of pressure, from points weighed with their pressure; and, for radial stress, the moment of the
 // normal's horizontal parts (slope_x, slope_y) about the footprint's centre.
@@ -37,21 +42,34 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   const Footprint& footprint = *contact.footprint;
   const ContactMemory& memory = *contact.memory;
   const double spacing = flow_.surface().spacing_m();
-  // Slip-sinkage raises the exponent with the slip of the moment.
+  // Slip-sinkage raises the exponent.
   const double exponent_index =
-      std::clamp(contact.motion.slip, 0.0, 1.0) * soil_.slip_sinkage / kExponentStep;
+      std::min(std::abs(memory.slip), 1.0) * soil_.slip_sinkage / kExponentStep;
   const PowerTable& table = tables_[static_cast<size_t>(std::lround(exponent_index))];
   // The patch of the last step decides this step's b; at the first touch the body itself does.
   const double b =
       memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();
-  const Law law{soil_.k_phi + soil_.k_c / b, elastic, &table};
+  Range range{cell_count_, cell_count_, {}, 0, footprint.run_frame(), 0.0, 0.0};
+  Law& law = range.law;
+  law.bekker = soil_.k_phi + soil_.k_c / b;
+  law.elastic = elastic;
+  law.table = &table;
 
   // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
-  // there is no contact.
-  const double rebound_m = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
+  // there is no contact. Behind a wheel it rises by more, and the wheel is still touching.
+  double rebound_m = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
+  const bool is_wheel = footprint.is_wheel();
+  if (is_wheel) {
+    law.rebound = soil_.exit_angle * soil_.exit_angle;
+    rebound_m += law.rebound * (memory.sinkage + kStepSinkage_m);
+  }
   find_candidates(footprint, rebound_m);
   size_t point_count = 0;
-  for (const Candidate& candidate : candidates_) point_count += sample_count(candidate.lattice);
+  for (Candidate& candidate : candidates_) {
+    candidate.first = point_count;
+    candidate.count = sample_count(candidate.lattice);
+    point_count += candidate.count;
+  }
   sample_points_.clear(point_count);
   for (const Candidate& candidate : candidates_) add_sample_points(candidate);
   // One cell of margin: contact is found cell by cell, so the path may have begun up to a cell
@@ -59,17 +77,107 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   PathHistory path = memory.path;
   if (path.travel_m != 0.0) path.travel_m += std::copysign(spacing, path.travel_m);
   footprint.surface(spacing / samples_per_side_, path, sample_points_);
-  Range range{cell_count_, cell_count_, law, 0};
+  divide_sinkage();
+  if (is_wheel) law.stress = wheel_stress(contact, law);
   if (cells_.size() < cell_count_ + candidates_.size()) {
     cells_.resize(cell_count_ + candidates_.size());
   }
-  size_t first = 0;
   for (const Candidate& candidate : candidates_) {
-    if (sample(footprint, candidate, first, law, cells_[cell_count_])) ++cell_count_;
-    first += sample_count(candidate.lattice);
+    if (sample(footprint, candidate, law, cells_[cell_count_])) ++cell_count_;
   }
   range.end = cell_count_;
+  if (range.begin < range.end) find_extent(footprint, range);
   return range;
+}
+
+/// Of each candidate: what it has sunk, and how much of that lies below the body. Those that the
+/// body does not reach down to are dropped.
+void SoilBed::divide_sinkage() {
+  size_t kept = 0;
+  for (Candidate& candidate : candidates_) {
+    double covered = 0.0;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (size_t i = candidate.first; i < candidate.first + candidate.count; ++i) {
+      covered += sample_points_.share[i];
+      if (sample_points_.share[i] > 0.0) lowest = std::min(lowest, sample_points_.passed[i]);
+    }
+    candidate.reference = flow_.reference(candidate.node) * kHeightUnit_m;
+    if (lowest >= candidate.reference) continue;
+    candidate.sunk = candidate.reference - flow_.height(candidate.node) * kHeightUnit_m;
+    candidate.covered = covered / static_cast<double>(candidate.count);
+    candidate.division =
+        histories_[candidate.node].divide(candidate.covered, candidate.sunk, step_);
+    candidates_[kept++] = candidate;
+  }
+  candidates_.resize(kept);
+}
+
+/// The wheel's entry angle is the mean of what its sample points give: one at the angle theta whose
+/// depth has grown by d has entered at acos(cos max(theta, 0) - d / r).
+WheelStress SoilBed::wheel_stress(const FootprintContact& contact, Law& law) const {
+  const ContactMemory& memory = *contact.memory;
+  if (memory.path.travel_m == 0.0) return {};
+  const Footprint& footprint = *contact.footprint;
+  const Eigen::Matrix3d& axes = footprint.pose().linear();
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  const double per_radius = 1.0 / footprint.radius();
+  const double slant = 1.0 / std::sqrt(1.0 + memory.path.gradient * memory.path.gradient);
+  const Eigen::Vector3d ahead = slant * std::copysign(1.0, memory.path.travel_m) *
+                                (axes.col(0) + memory.path.gradient * axes.col(2));
+  law.sine = per_radius * ahead;
+  const double upright = std::sqrt(std::max(0.25, 1.0 - ahead.z() * ahead.z()));
+  law.per_upright = 1.0 / upright;
+  double cosine_sum = 0.0;
+  double weight_sum = 0.0;
+  for (const Candidate& candidate : candidates_) {
+    const double floor = candidate.reference - candidate.division.old_sinkage;
+    for (size_t i = candidate.first; i < candidate.first + candidate.count; ++i) {
+      const double grown = floor - sample_points_.passed[i];
+      if (!(sample_points_.share[i] > 0.0) || grown <= 0.0) continue;
+      const double sine = std::max(0.0, (sample_points_.x[i] - centre.x()) * law.sine.x() +
+                                            (sample_points_.y[i] - centre.y()) * law.sine.y() +
+                                            (sample_points_.height[i] - centre.z()) * law.sine.z());
+      const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
+      const double weight = sample_points_.share[i] * grown;
+      cosine_sum += weight * (cosine - grown * upright * per_radius);
+      weight_sum += weight;
+    }
+  }
+  if (weight_sum <= 0.0) return {};
+  const double entry = std::acos(std::clamp(cosine_sum / weight_sum, -1.0, 1.0));
+  const double rolled =
+      std::min(1.0, std::abs(memory.path.travel_m) * per_radius / std::max(std::sin(entry), 0.05));
+  return {soil_, footprint.radius(), entry, memory.slip, rolled};
+}
+
+/// From where to where along its contour a footprint touches.
+void SoilBed::find_extent(const Footprint& footprint, Range& range) const {
+  double rear = std::numeric_limits<double>::infinity();
+  double front = -rear;
+  const double half = 0.5 * flow_.surface().spacing_m();
+  for (size_t i = range.begin; i < range.end; ++i) {
+    const double ahead = cells_[i].arm.dot(range.frame.axes.col(0));
+    rear = std::min(rear, ahead - half * cells_[i].share);
+    front = std::max(front, ahead + half * cells_[i].share);
+  }
+  const RunContour& contour = range.frame.contour;
+  const double end = contour.half_m + contour.radius_m;
+  range.rear = contour.along(std::max(rear, -end));
+  range.front = contour.along(std::min(front, end));
+  const WheelStress& stress = range.law.stress;
+  if (!stress.known()) return;
+  // A wheel's are known more finely than the cells lie.
+  const double radius = footprint.radius();
+  const double to_path = radius * radius;  // of the sines' direction
+  const double ahead = to_path * range.law.sine.dot(footprint.pose().linear().col(0)) / radius;
+  const double up = to_path * range.law.sine.dot(footprint.pose().linear().col(2)) / radius;
+  const double lowest = radius * std::atan2(up, std::abs(ahead)) * (ahead < 0.0 ? -1.0 : 1.0);
+  const double sense = ahead < 0.0 ? -1.0 : 1.0;
+  const double entry = lowest + sense * radius * stress.entry_rad();
+  (sense > 0.0 ? range.front : range.rear) = entry;
+  if (stress.shaped()) {
+    (sense > 0.0 ? range.rear : range.front) = lowest + sense * radius * stress.exit_rad();
+  }
 }
 
 /// The cells that a footprint may touch.
@@ -127,7 +235,7 @@ void SoilBed::find_candidates(const Footprint& footprint, double rebound_m) {
       } else if (rim > highest_surface) {
         continue;
       }
-      candidates_.push_back({node, ix, iy, lattice});
+      candidates_.push_back({.node = node, .ix = ix, .iy = iy, .lattice = lattice});
     }
   }
 }
@@ -161,36 +269,22 @@ void SoilBed::add_sample_points(const Candidate& candidate) {
 
 /// Means over a cell of what Bekker's law gives at a lattice of sample points in it, as if nothing
 /// but earlier contacts had touched it.
-bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
-                     const Law& law, SoilCell& cell) {
+bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, const Law& law,
+                     SoilCell& cell) {
   // A single pair, as on fine grids, needs no loop.
-  const size_t count = sample_count(candidate.lattice);
-  return count == 2 ? sample<2>(footprint, candidate, first, count, law, cell)
-                    : sample<0>(footprint, candidate, first, count, law, cell);
+  return candidate.count == 2 ? sample_points<2>(footprint, candidate, law, cell)
+                              : sample_points<0>(footprint, candidate, law, cell);
 }
 
 /// `static_count`: the number of sample points where the compiler knows it, else 0.
 template <size_t static_count>
-bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, size_t first,
-                     size_t number, const Law& law, SoilCell& cell) {
-  const size_t count = static_count != 0 ? static_count : number;
+bool SoilBed::sample_points(const Footprint& footprint, const Candidate& candidate, const Law& law,
+                            SoilCell& cell) {
+  const size_t first = candidate.first;
+  const size_t count = static_count != 0 ? static_count : candidate.count;
   const double per_count = 1.0 / static_cast<double>(count);
   const Eigen::Vector3d& centre = footprint.pose().translation();
-  const double forward_x = footprint.pose().linear()(0, 0);
-  const double forward_y = footprint.pose().linear()(1, 0);
-  const double reference = flow_.reference(candidate.node) * kHeightUnit_m;
-  cell.sunk = reference - flow_.height(candidate.node) * kHeightUnit_m;
-  double covered = 0.0;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (size_t i = first; i < first + count; ++i) {
-    covered += sample_points_.share[i];
-    if (sample_points_.share[i] > 0.0) lowest = std::min(lowest, sample_points_.passed[i]);
-  }
-  if (lowest >= reference) return false;
-  SoilCellHistory& history = histories_[candidate.node];
-  const double covered_share = covered * per_count;
-  if (history.is_contact_new(step_)) history.share = history.along = history.across = 0.0F;
-  history.keep(covered_share, history.divide(covered_share, cell.sunk, step_));
+  const double reference = candidate.reference;
   const double elastic = law.elastic;
   const double compliance = 1.0 / elastic;
   const double exponent = law.table->exponent();
@@ -199,7 +293,15 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   const Double2 level = broadcast(reference);
   const Double2 bekker = broadcast(law.bekker);
   const Double2 stiffness = broadcast(elastic);
-  const Double2 old_sinkage = broadcast(history.old_sinkage());
+  const Double2 old_sinkage = broadcast(candidate.division.old_sinkage);
+  const bool shaped = law.stress.shaped();
+  const Double2 sine_x = broadcast(law.sine.x());
+  const Double2 sine_y = broadcast(law.sine.y());
+  const Double2 sine_z = broadcast(law.sine.z());
+  const Double2 per_upright = broadcast(law.per_upright);
+  const Double2 half_square = broadcast(0.5 * flow_.surface().spacing_m() / samples_per_side_);
+  const Double2 tiny = broadcast(1e-9);
+  const Double2 stays = broadcast(1.0 - law.rebound);
   const Double2 cx = broadcast(centre.x());
   const Double2 cy = broadcast(centre.y());
   const Double2 cz = broadcast(centre.z());
@@ -207,8 +309,7 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   Double2 depths = zero;
   Double2 pressures = zero;
   Double2 rates = zero;
-  Double2 x_shares = zero;
-  Double2 y_shares = zero;
+  Double2 below = zero;
   Double2 tilts_x = zero;
   Double2 tilts_y = zero;
   Double2 lifts_x = zero;
@@ -226,19 +327,34 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
     // Deepest so far: where the surface rises again, what has passed before.
     const Double2 passed = load(&sample_points_.passed[i]);
     const Double2 deepest = over ? maximum(zero, level - passed) : zero;
-    // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
-    const Double2 virgin =
-        bekker * Double2{law.table->power(deepest[0]), law.table->power(deepest[1])};
-    const Double2 stiff = stiffness * (deepest - old_sinkage);
-    const auto yields = virgin < stiff;
-    const Double2 loaded = maximum(zero, yields ? virgin : stiff);
-    depths += part * maximum(old_sinkage, deepest - loaded * broadcast(compliance));
-    const Double2 now = loaded - stiffness * (height - passed);
-    const Double2 in_contact = over & (now > zero) ? part : zero;
-    const Double2 weight = in_contact > zero ? part * now : zero;
     const Double2 x = load(&sample_points_.x[i]) - cx;
     const Double2 y = load(&sample_points_.y[i]) - cy;
     const Double2 z = height - cz;
+    // Below a wheel a point bears as one less deep.
+    Double2 bearing = deepest;
+    if (shaped) {
+      const Double2 sine = x * sine_x + y * sine_y + z * sine_z;
+      bearing = maximum(zero, deepest - law.stress.lift(sine) * per_upright);
+    }
+    // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
+    const Double2 virgin =
+        bekker * Double2{law.table->power(bearing[0]), law.table->power(bearing[1])};
+    // A sample point stands for a small square, across which the surface falls by 2 fall: from the
+    // floor of a rut it takes load as its parts reach the floor.
+    const Double2 fall = minimum(half_square * (magnitude(load(&sample_points_.slope_x[i])) +
+                                                magnitude(load(&sample_points_.slope_y[i]))),
+                                 old_sinkage);
+    const Double2 softened =
+        stiffness * virgin / maximum(virgin + broadcast(2.0) * fall * stiffness, tiny);
+    const Double2 stiff =
+        (over & (fall > zero) ? softened : stiffness) * (bearing - old_sinkage + fall);
+    const auto yields = virgin < stiff;
+    const Double2 loaded = maximum(zero, yields ? virgin : stiff);
+    depths += part * maximum(old_sinkage, old_sinkage + stays * (deepest - old_sinkage) -
+                                              loaded * broadcast(compliance));
+    const Double2 now = shaped ? loaded : loaded - stiffness * (height - passed);
+    const Double2 in_contact = over & (now > zero) ? part : zero;
+    const Double2 weight = in_contact > zero ? part * now : zero;
     const Double2 slope_x = in_contact > zero ? load(&sample_points_.slope_x[i]) : zero;
     const Double2 slope_y = in_contact > zero ? load(&sample_points_.slope_y[i]) : zero;
     const Double2 wx = weight * slope_x;
@@ -246,10 +362,9 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
     const Double2 arm_z = in_contact > zero ? z : zero;
     shares += in_contact;
     pressures += weight;
-    rates += in_contact * (yields ? broadcast(exponent) * virgin / maximum(deepest, broadcast(1e-9))
-                                  : stiffness);
-    x_shares += in_contact * x;
-    y_shares += in_contact * y;
+    rates += in_contact * (yields ? broadcast(exponent) * virgin / maximum(bearing, broadcast(1e-9))
+                                  : (over & (fall > zero) ? softened : stiffness));
+    below += in_contact * (level - (in_contact > zero ? height : level));
     tilts_x += in_contact * slope_x;
     tilts_y += in_contact * slope_y;
     lifts_x += wx;
@@ -265,16 +380,18 @@ bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, siz
   const double pressure = sum(pressures);
   if (pressure <= 0.0) return false;
   const double per_pressure = 1.0 / pressure;
+  CellHistory& history = histories_[candidate.node];
+  history.keep(candidate.covered, candidate.division);
   cell.node = candidate.node;
+  cell.sunk = candidate.sunk;
+  cell.depth = sum(below) / share;
   cell.ix = candidate.ix;
   cell.iy = candidate.iy;
   cell.share = share * per_count;
-  cell.pressed = sum(depths) * per_count + history.beside();
+  cell.pressed = sum(depths) * per_count + candidate.division.beside;
   cell.pressure = pressure * per_count;
   cell.rate = sum(rates) * per_count;
   cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;
-  cell.lead = cell.arm.x() * forward_x + cell.arm.y() * forward_y -
-              (sum(x_shares) * forward_x + sum(y_shares) * forward_y) / share;
   // Vertical stress has no horizontal part; it shears in the horizontal all the same.
   const bool radial = options_.normal_stress == NormalStress::kRadial;
   cell.tilt_x = sum(tilts_x) / share;

@@ -32,15 +32,22 @@ namespace screed {
   X(repose_deg,         "repose",        "--repose",        "deg",       1.0,  60.0, 30.0,  "angle of repose") \
   X(compaction,         "compaction",    "--compaction",    "",          0.0,  1.0,  0.0,   "share of the sunk volume that is compacted") \
   X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0,   "thickness of the layer that a slipping surface digs away") \
-  X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip")
+  X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip") \
+  X(front_angle,        "c1",            "--c1",            "",          0.0,  0.9,  0.0,   "angle of a wheel's greatest stress over its entry angle, at slip 0; 0: below the axle") \
+  X(front_angle_driven, "c2",            "--c2",            "",          -0.9, 0.9,  0.0,   "growth of c1 with slip, driven") \
+  X(front_angle_braked, "c2_braked",     "--c2-braked",     "",          -0.9, 0.9,  0.0,   "growth of c1 with slip, braked") \
+  X(exit_angle,         "c3",            "--c3",            "",          0.0,  0.9,  0.0,   "angle at which a wheel leaves the soil, over its entry angle") \
+  X(density_kg_per_m3,  "density",       "--density",       "kg/m^3",    0.0,  5e3,  0.0,   "density, for the resistance of what is pushed ahead; 0: no such resistance")
 // clang-format on
 
 /// Bekker pressure-sinkage p = (k_c / b + k_phi) z^n with elastic unloading, Janosi-Hanamoto shear
-/// tau = (c + p tan phi) (1 - exp(-j / K)), which on the way back does not come back: in its rate
-/// form d tau = ((c + p tan phi) dj - tau |dj|) / K, in two directions. With slip s the exponent is
-/// n + slip_sinkage s (Ding et al. 2011).
+/// tau = (c + p tan phi) (1 - exp(-j / K)), j along the running surface (shear_law.h). With slip s
+/// the exponent is n + slip_sinkage |s| (Ding et al. 2011). Below a wheel the greatest stress is at
+/// (c1 + c2 s) times the entry angle, and contact ends at -c3 times it (wheel_stress.h). What is
+/// pushed ahead resists by its density (passive_pressure.h).
 /// Sources: M. G. Bekker, Introduction to Terrain-Vehicle Systems, 1969; Z. Janosi, B. Hanamoto,
-/// 1961; P. R. Dahl, A solid friction model, 1968; J. Y. Wong, Theory of Ground Vehicles, ch. 2.
+/// 1961; J. Y. Wong, A. R. Reece, Journal of Terramechanics 4, 1967; J. Y. Wong, Theory of Ground
+/// Vehicles, ch. 2.
 struct SoilParameters {
   std::string name = "custom";
 #define SCREED_FIELD(member, key, option, unit, min, max, value, meaning) double member = (value);

@@ -1,37 +1,34 @@
-// How soil yields under a footprint, and the reaction: plastic sinkage, normal stress, shear,
-// digging.
+// How soil yields under a footprint, and the reaction: plastic sinkage, normal stress, shear, what
+// is pushed ahead and aside, digging.
 //
-// The equations in the order of the code. Values of a cell are means over it; E, c, phi, K, R as in
+// The equations in the order of the code. Values of a cell are means over it; E, c, phi, R as in
 // soil_parameters.h, A the area of a cell, v the body's velocity there.
 //
 // Yielding. A body that goes down by `sinking` meets the lower of two lines, unloading and
 // reloading along E and Bekker's curve (Bekker 1969; soil_cells.cpp), linear over a step. What E
 // does not explain is plastic:
-//   along_elastic = cell.pressure + E (pressed - sunk + sinking share)
+//   along_elastic = cell.pressure + E (pressed - sunk + sinking (1 - rebound) share)
 //   pressure      = max(0, min(along_elastic, cell.pressure + rate sinking))
 //   units         = (along_elastic - pressure) / E                  in units of height
 //   damped        = pressure + R max(0, -v_z) share
 //
-// Shear. Janosi and Hanamoto's curve (1961), tau = strength (1 - exp(-j / K)), in its rate form for
-// slip that turns (Dahl 1968). With m = tau / strength, a vector along and across, and slip in the
-// direction `to` with the speed `sliding`:
-//   dm/dt = sliding (to - m) / K,      over a step m <- m + (to - m) fades,
-//   fades = 1 - exp(-sliding dt / K)
-// Of the touching part only `kept` was there a step ago; the rest came evenly over the step, from
-// m = 0, and so has had half of it:
-//   mean  = kept (1 - fades) m + (1 + kept) / 2 fades to
-// The force acts at the centre of pressure, which has sheared for `ahead` longer than the centre of
-// the contact area, and stress answers `shear_damping` early:
-//   ahead   = shear_damping - lead / speed
-//   begun   = max(0, mean . to)
-//   further = max(1 - exp(-sliding ahead / K), -begun / (1 - begun))   back to zero shear at most
-//   m       = mean + (to - mean) further     no longer than 1
-//   strength = c share + damped tan phi      Mohr and Coulomb (Wong, ch. 2)
+// Shear. m is the mobilised share of the strength, along and across, carried with the material of
+// the running surface (shear_field.h); it acts at the centre of pressure. A surface has a friction
+// and adhesion of its own: where it holds less than the soil, it slips on the soil.
+//   strength = min(c share + damped tan phi, adhesion share + damped friction)
 //
 // Forces. Radial normal stress is along the surface's normal (slope_x, slope_y, 1), whose length is
 // `steep`; vertical stress is straight up and shears in the horizontal.
 //   force    = damped A (slope_x, slope_y, 1)
 //   traction = -strength A steep (m_along lengthwise + m_across sideways)
+//
+// What is pushed (passive_pressure.h). A surface that slides over the soil the way the body travels
+// pushes with what faces that way; a wheel or belt that moves aside pushes with its side wall, as
+// far as the soil beside it has been sheared since the body came (`aside`, a field that lies still
+// on the ground). z is the depth of the surface below the undisturbed level; travelling ahead:
+//   ahead    = -p(z) A share max(0, m_along) max(0, -tilt_along)
+//   sideways = -R(z) A share / width aside
+// Both act on the axle.
 //
 // Digging. A layer of `drag_depth` moves with the slipping surface. `share` is a cell's touching
 // part; variances are of the cells' positions, weighed with it:
@@ -44,54 +41,6 @@
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
-namespace {
-
-// Below this speed a body does not roll into new soil, m/s.
-constexpr double kRolling = 1e-3;
-// Share of the strength, not yet mobilised: keeps a division defined when all is mobilised.
-constexpr double kMinRemainder = 1e-9;
-
-/// 1 - exp(-x): x is mostly small, and there Pade's fraction of second order is within 2e-8.
-double fading(double x) {
-  return std::abs(x) < 0.1 ? 12.0 * x / (12.0 + x * (6.0 + x)) : 1.0 - std::exp(-x);
-}
-
-}  // namespace
-
-/// Of a footprint as a whole.
-struct SoilBed::FootprintState {
-  bool radial;  // normal stress
-  Eigen::Vector3d centre;
-  Eigen::Vector3d axle;
-  Eigen::Vector3d level_forward;
-  Eigen::Vector3d level_side;
-  double surface_speed;
-  double per_speed;  // one over its speed forward, s/m; 0: it does not roll
-  double elastic;    // E, Pa/m
-  double units_per_pressure;
-  double per_shear_modulus;  // 1 / K
-
-  SurfaceSlip slip_over(const SoilCell& cell, const Eigen::Vector3d& velocity) const;
-};
-
-/// How a footprint's surface slips over one cell.
-struct SoilBed::SurfaceSlip {
-  double steep;                // length of (slope_x, slope_y, 1)
-  Eigen::Vector3d along;       // forward along the surface where the pressure is
-  Eigen::Vector3d lengthwise;  // directions in the plane in which the soil shears
-  Eigen::Vector3d sideways;
-  double sliding;   // m/s
-  double to_along;  // its direction
-  double to_across;
-};
-
-/// Mobilised shares of the shear strength.
-struct SoilBed::Mobilised {
-  double along;
-  double across;
-  double squared;  // of both, before it is limited to 1
-};
-
 void SoilBed::SlipSums::add(const SoilCell& cell, double sliding, double mobilised) {
   const double along = cell.arm.dot(forward);
   const double across = cell.arm.dot(side);
@@ -135,97 +84,43 @@ void SoilBed::dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, dou
 }
 
 /// Plastic sinkage and pressure of a cell; books what sinks. 0: not touching.
-inline double SoilBed::yield(const SoilCell& cell, double sinking, const FootprintState& state,
+inline double SoilBed::yield(const SoilCell& cell, double sinking, const Law& law,
                              size_t footprint) {
   const double along_elastic =
-      cell.pressure + state.elastic * (cell.pressed - cell.sunk + sinking * cell.share);
+      cell.pressure +
+      law.elastic * (cell.pressed - cell.sunk + sinking * (1.0 - law.rebound) * cell.share);
   const double pressure =
       std::max(0.0, std::min(along_elastic, cell.pressure + cell.rate * sinking));
   const auto units =
-      static_cast<Height>(std::lrint((along_elastic - pressure) * state.units_per_pressure));
+      static_cast<Height>(std::lrint((along_elastic - pressure) / (law.elastic * kHeightUnit_m)));
   if (pressure > 0.0 && units > 0) {
     flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
   }
   return pressure;
 }
 
-/// Forces act where the pressure is, the surface slides where it touches: two means of its slope.
-inline SoilBed::SurfaceSlip SoilBed::FootprintState::slip_over(
-    const SoilCell& cell, const Eigen::Vector3d& velocity) const {
-  SurfaceSlip slip;
-  slip.steep = std::sqrt(1.0 + cell.slope_x * cell.slope_x + cell.slope_y * cell.slope_y);
-  slip.along = axle.cross(Eigen::Vector3d(cell.slope_x, cell.slope_y, 1.0) / slip.steep);
-  const double per_length =
-      1.0 / std::sqrt(1.0 + cell.tilt_x * cell.tilt_x + cell.tilt_y * cell.tilt_y);
-  const Eigen::Vector3d face(cell.tilt_x * per_length, cell.tilt_y * per_length, per_length);
-  // Forward along the surface, at right angles to the axle.
-  const Eigen::Vector3d tread = axle.cross(face);
-  const Eigen::Vector3d surface = velocity - surface_speed * tread;
-  const double slide_along = surface.dot(radial ? tread : level_forward);
-  const double slide_across = surface.dot(radial ? face.cross(tread) : level_side);
-  slip.lengthwise = level_forward;
-  slip.sideways = level_side;
-  if (radial) {
-    const Eigen::Vector3d normal(cell.slope_x, cell.slope_y, 1.0);
-    slip.lengthwise = slip.along;
-    slip.sideways = normal.cross(slip.along) / slip.steep;
+/// Carries the shear of the running surface, and of the soil beside it, through this step.
+void SoilBed::advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
+                            double dt) const {
+  ContactMemory& kept = *contact.memory;
+  if (kept.face != range.frame.face) {  // it has turned over
+    kept.face = range.frame.face;
+    kept.shear = {};
+    kept.side = {};
   }
-  slip.sliding = std::sqrt(slide_along * slide_along + slide_across * slide_across);
-  const double per_sliding = slip.sliding > 0.0 ? 1.0 / slip.sliding : 0.0;
-  slip.to_along = slide_along * per_sliding;
-  slip.to_across = slide_across * per_sliding;
-  return slip;
-}
-
-/// Mobilised shear of a cell after this step, at its centre of pressure; `history` keeps the mean.
-inline SoilBed::Mobilised SoilBed::mobilise(const SoilCell& cell, const SurfaceSlip& slip,
-                                            const FootprintState& state, double dt,
-                                            SoilCellHistory& history) const {
-  const double kept = std::min(static_cast<double>(history.share), cell.share) / cell.share;
-  const double fades = fading(slip.sliding * dt * state.per_shear_modulus);
-  const double stays = kept * (1.0 - fades);
-  const double comes = 0.5 * (1.0 + kept) * fades;
-  const double mean_along = static_cast<double>(history.along) * stays + slip.to_along * comes;
-  const double mean_across = static_cast<double>(history.across) * stays + slip.to_across * comes;
-  history.touch(step_);
-  history.share = static_cast<float>(cell.share);
-  history.along = static_cast<float>(mean_along);
-  history.across = static_cast<float>(mean_across);
-
-  const double ahead = soil_.shear_damping_s - cell.lead * state.per_speed;
-  // Not further back than to zero shear in this direction.
-  const double begun = std::max(0.0, mean_along * slip.to_along + mean_across * slip.to_across);
-  const double further = std::max(fading(slip.sliding * ahead * state.per_shear_modulus),
-                                  -begun / std::max(1.0 - begun, kMinRemainder));
-  Mobilised m;
-  m.along = mean_along + (slip.to_along - mean_along) * further;
-  m.across = mean_across + (slip.to_across - mean_across) * further;
-  m.squared = m.along * m.along + m.across * m.across;
-  if (m.squared > 1.0) {
-    const double to_strength = 1.0 / std::sqrt(m.squared);
-    m.along *= to_strength;
-    m.across *= to_strength;
-  }
-  return m;
-}
-
-inline SoilBed::FootprintState SoilBed::footprint_state(
-    const FootprintContact& contact, double elastic, const Eigen::Vector3d& centre_velocity) const {
-  const Eigen::Isometry3d& pose = contact.footprint->pose();
-  FootprintState state;
-  state.radial = options_.normal_stress == NormalStress::kRadial;
-  state.centre = pose.translation();
-  state.axle = pose.linear().col(1);
-  state.level_forward = state.axle.cross(Eigen::Vector3d::UnitZ()).normalized();
-  state.level_side = Eigen::Vector3d::UnitZ().cross(state.level_forward);
-  state.surface_speed = contact.motion.surface_speed;
-  const Eigen::Vector3d forward = pose.linear().col(0);
-  const double speed = centre_velocity.dot(forward);
-  state.per_speed = std::abs(speed) > kRolling ? 1.0 / speed : 0.0;
-  state.elastic = elastic;
-  state.units_per_pressure = 1.0 / (elastic * kHeightUnit_m);
-  state.per_shear_modulus = 1.0 / soil_.shear_modulus_m;
-  return state;
+  const Eigen::Matrix3d to_frame = range.frame.axes.transpose();
+  RunMotion motion;
+  motion.velocity = to_frame * (body.velocity + body.omega.cross(contact.arm));
+  motion.omega = to_frame * body.omega;
+  motion.surface_speed = range.frame.sense * contact.motion.surface_speed;
+  motion.level = options_.normal_stress == NormalStress::kVertical;
+  kept.shear.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
+                     soil_.shear_damping_s, dt);
+  if (passive_.none() || contact.footprint->kind() != Footprint::Kind::kTrack) return;
+  motion.surface_speed = motion.velocity.x();  // the soil beside it stays behind
+  motion.sideways_only = true;
+  kept.side.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
+                    0.0, dt);
 }
 
 /// How the soil yields in a footprint's cells, and the forces of the cells.
@@ -237,44 +132,75 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   const Eigen::Isometry3d& pose = contact.footprint->pose();
   const Eigen::Vector3d centre_velocity =
       body.velocity + body.omega.cross(pose.translation() - body.centre);
-  const FootprintState state = footprint_state(contact, range.law.elastic, centre_velocity);
-  SlipSums slip_sums(state.level_forward, state.level_side);
+  const RunFrame& frame = range.frame;
+  const Eigen::Vector3d left = frame.axes.col(1);
+  const Eigen::Vector3d level_ahead = left.cross(Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d level_left = Eigen::Vector3d::UnitZ().cross(level_ahead);
+  const bool radial = options_.normal_stress == NormalStress::kRadial;
+  const ContactMemory& memory = *contact.memory;
+  const bool pushes = !passive_.none() && contact.footprint->kind() == Footprint::Kind::kTrack;
+  const double travel = std::copysign(1.0, memory.path.travel_m);
+  const double per_width = 0.5 / frame.contour.half_width_m;
+  SlipSums slip_sums(level_ahead, level_left);
 
   for (size_t i = range.begin; i < range.end; ++i) {
     const SoilCell& cell = cells_[i];
-    SoilCellHistory& history = histories_[cell.node];
-    const double pressure = yield(cell, springs_[i].sinking, state, range.footprint);
+    const double pressure = yield(cell, springs_[i].sinking, range.law, range.footprint);
     if (pressure <= 0.0) {
-      history.release();
+      histories_[cell.node].release();
       continue;
     }
-    const Eigen::Vector3d velocity = centre_velocity + body.omega.cross(cell.arm);
-    const double damped =
-        pressure + soil_.damping_pa_s_per_m * std::max(0.0, -velocity.z()) * cell.share;
-    const SurfaceSlip slip = state.slip_over(cell, velocity);
-    const Mobilised m = mobilise(cell, slip, state, dt, history);
+    histories_[cell.node].touch(step_);
+    const double v_z =
+        centre_velocity.z() + body.omega.x() * cell.arm.y() - body.omega.y() * cell.arm.x();
+    const double damped = pressure + soil_.damping_pa_s_per_m * std::max(0.0, -v_z) * cell.share;
+    const double along = frame.contour.along(cell.arm.dot(frame.axes.col(0)));
+    const double across = cell.arm.dot(left);
+    const ShearField::Value m = memory.shear.at(along, across);
 
     const double load = damped * cell_area_;
     Eigen::Vector3d force(0.0, 0.0, load);
-    if (state.radial) force << load * cell.slope_x, load * cell.slope_y, load;
+    Eigen::Vector3d lengthwise = level_ahead;
+    Eigen::Vector3d sideways = level_left;
+    double steep = 1.0;
+    if (radial) {
+      const Eigen::Vector3d normal(cell.slope_x, cell.slope_y, 1.0);
+      steep = normal.norm();
+      lengthwise = left.cross(normal) / steep;
+      sideways = normal.cross(lengthwise) / steep;
+      force = load * normal;
+    }
     Eigen::Vector3d torque = load * cell.moment;
     reaction.normal_load += load;
-    const double strength = soil_.cohesion_pa * cell.share + damped * tan_friction_;
-    const Eigen::Vector3d traction = (-strength * cell_area_ * (state.radial ? slip.steep : 1.0)) *
-                                     (m.along * slip.lengthwise + m.across * slip.sideways);
+    const double strength =
+        std::min(soil_.cohesion_pa * cell.share + damped * tan_friction_,
+                 contact.motion.adhesion_pa * cell.share + damped * contact.motion.soil_friction);
+    const Eigen::Vector3d traction =
+        (-strength * cell_area_ * steep) * (m.along * lengthwise + m.across * sideways);
     force += traction;
     torque += cell.arm.cross(traction);
-    reaction.along_surface -= traction.dot(slip.along);
+    reaction.along_surface -= frame.sense * traction.dot(lengthwise);
+    if (pushes) {
+      const double area = cell_area_ * cell.share;
+      const double tilt = cell.tilt_x * level_ahead.x() + cell.tilt_y * level_ahead.y();
+      const double facing = std::max(0.0, travel * m.along) * std::max(0.0, -travel * tilt);
+      const double ahead = -travel * passive_.pressure(cell.depth) * area * facing;
+      const double aside = -passive_.resistance(cell.depth) * area * per_width *
+                           memory.side.at(along, across).across;
+      const Eigen::Vector3d push = ahead * level_ahead + aside * level_left;
+      force += push;
+      torque += Eigen::Vector3d(cell.arm.x(), cell.arm.y(), 0.0).cross(push);
+    }
     if (soil_.drag_depth_m > 0.0) {
-      const double mobilised = std::sqrt(std::min(m.squared, 1.0));
-      slip_sums.add(cell, slip.sliding, mobilised);
-      flow_.shear(cell.node, cell.share * mobilised * slip.sliding);
+      const double mobilised = std::hypot(m.along, m.across);
+      slip_sums.add(cell, m.sliding, mobilised);
+      flow_.shear(cell.node, cell.share * mobilised * m.sliding);
     }
     reaction.force += force;
     reaction.torque += torque;
     reaction.area += cell.share * cell_area_;
     reaction.sinkage = std::max(reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m -
-                                                      (state.centre.z() + cell.arm.z()));
+                                                      (pose.translation().z() + cell.arm.z()));
   }
   if (soil_.drag_depth_m > 0.0) dig_below(slip_sums, pose, dt);
   contact.memory->sinkage = reaction.sinkage;

@@ -112,6 +112,29 @@ double Footprint::narrow() const {
   return radius_;
 }
 
+RunFrame Footprint::run_frame() const {
+  const Eigen::Matrix3d& world = pose_.linear();
+  int below = 2;
+  int ahead = 0;
+  if (kind_ == Kind::kBox) {
+    up_.cwiseAbs().maxCoeff(&below);
+    ahead = below == 0 ? 1 : 0;
+  }
+  const double sense = up_[below] < 0.0 ? -1.0 : 1.0;
+  RunFrame frame;
+  frame.axes.col(0) = world.col(ahead);
+  frame.axes.col(2) = sense * world.col(below);
+  frame.axes.col(1) = frame.axes.col(2).cross(frame.axes.col(0));
+  const bool track = kind_ == Kind::kTrack;
+  frame.contour.half_m = half_[ahead];
+  frame.contour.radius_m = track ? radius_ : 0.0;
+  frame.contour.below_m = track ? radius_ : half_[below];
+  frame.contour.half_width_m = half_[3 - ahead - below];
+  frame.sense = sense;
+  frame.face = 2 * below + (sense < 0.0 ? 1 : 0);
+  return frame;
+}
+
 double Footprint::lowest_at_rim(double edge) const {
   if (has_corners()) return pose_.translation().z() - reach_down();
   // Such a square overlaps the outline by less than 1.5 edge. There the wheel's surface is

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "host_sim/physics/terrain/shear_field.h"
+
 namespace screed {
 
 /// A body's lower surface at many sample points at once, one array a property.
@@ -40,6 +42,16 @@ struct FootprintSamples {
 struct PathHistory {
   double travel_m = 0.0;  ///< along local x, signed: it passed over no point that is further away
   double gradient = 0.0;  ///< displacement along local z over that along local x
+  double back_m = 0.0;    ///< by how much it has come back from its furthest place, 0 or more
+};
+
+/// The face of a footprint that is below: its axes ahead, left and up in the world, and its
+/// contour.
+struct RunFrame {
+  Eigen::Matrix3d axes;
+  RunContour contour;
+  double sense;  ///< 1: the surface of a belt that drives ahead goes backwards here; -1: ahead
+  int face;      ///< which one it is
 };
 
 class Footprint {
@@ -81,8 +93,11 @@ class Footprint {
   bool round() const { return kind_ == Kind::kDisc; }
   /// Whether two edges meet within a cell: boxes and discs.
   bool has_corners() const { return kind_ != Kind::kTrack; }
+  bool is_wheel() const { return kind_ == Kind::kTrack && half_.x() == 0.0; }
   /// Whether the body is long enough that its pitch and roll matter to the pressure below it.
   bool extended() const { return kind_ != Kind::kTrack || half_.x() > 0.0; }
+  /// The face below.
+  RunFrame run_frame() const;
   /// The shorter side (or radius) of the body itself, a first guess at b, m.
   double narrow() const;
 

@@ -4,7 +4,12 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "host_sim/physics/terrain/footprint.h"
+#include "host_sim/physics/terrain/shear_field.h"
 
 namespace screed {
 
@@ -18,14 +23,28 @@ struct FootprintMotion {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();
   /// Of the belt over its wheels, forward drive positive: then the lower run goes backward, m/s.
   double surface_speed = 0.0;
-  /// |surface_speed - ground speed| / the larger of both magnitudes, 0..1; for slip-sinkage. The
-  /// slip in recorded frames is signed.
+  /// (surface_speed - ground speed) / the larger of both magnitudes, in the direction of travel:
+  /// -1..1, positive driven, negative braked.
   double slip = 0.0;
-  /// Coulomb's, against solid elements; soil has its own.
+  /// Coulomb's, against solid elements.
   double friction = 0.8;
+  /// Against soil: tangent of the angle of friction. Infinite: rough, soil shears on soil.
+  double soil_friction = std::numeric_limits<double>::infinity();
+  double adhesion_pa = 0.0;  ///< of soil to the surface
   /// That the footprint carries; infinite: the motion is imposed, whatever the force.
   double mass_kg = 1.0;
 };
+
+/// Slip of a surface that moves at `surface_speed` over its wheels while they go at `ground_speed`:
+/// the difference over the larger of both magnitudes, -1..1, positive when it drives, negative when
+/// it brakes. 0 where both are below 1 mm/s: slip means nothing there.
+inline double signed_slip(double surface_speed, double ground_speed) {
+  constexpr double kSlipSpeed = 1e-3;
+  const double faster = std::max(std::abs(surface_speed), std::abs(ground_speed));
+  if (faster <= kSlipSpeed) return 0.0;
+  if (surface_speed * ground_speed < 0.0) return 1.0;
+  return (std::abs(surface_speed) - std::abs(ground_speed)) / faster;
+}
 
 /// Force and torque on the footprint, world frame, torque about its centre; what drives it; what it
 /// rests on.
@@ -54,8 +73,21 @@ struct ContactMemory {
   double patch_b_m = 0.0;  ///< b of Bekker's formula, from the touched area
   double patch_area_m2 = 0.0;
   double sinkage = 0.0;  ///< greatest depth in the last step, m
+  double slip = 0.0;     ///< mean over the length of the contact
+  ShearField shear;      ///< along the running surface
+  ShearField side;       ///< of the soil beside it, for what is pushed aside
+  int face = -1;         ///< of the footprint that is below
   PathHistory path;      ///< since contact began or the body turned back; its gradient is recent
   BodyMemory alone;      ///< of a footprint that is pressed by itself
+
+  /// The footprint is in the air. Keeps room.
+  void leave() {
+    patch_b_m = patch_area_m2 = sinkage = slip = 0.0;
+    shear.release();
+    side.release();
+    path = {};
+    alone = {};
+  }
 };
 
 /// A rigid body that stands on terrain with one footprint or several, in one step.

@@ -48,11 +48,7 @@ FootprintContact ChainTrack::band_contact(const CarrierMotion& carrier) {
   motion.friction = law_.friction;
   if (on_its_side || at_rest_) return contact;
   motion.surface_speed = surface_speed(frame);
-  const double over_ground = motion.velocity.dot(frame.axes.col(0));
-  const double faster = std::max(std::abs(over_ground), std::abs(motion.surface_speed));
-  if (faster > kSlipSpeed) {
-    motion.slip = std::min(1.0, std::abs(motion.surface_speed - over_ground) / faster);
-  }
+  motion.slip = signed_slip(motion.surface_speed, motion.velocity.dot(frame.axes.col(0)));
   return contact;
 }
 

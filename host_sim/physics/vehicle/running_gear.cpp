@@ -168,8 +168,7 @@ FootprintContact RunningGear::make_footprint_contact(FootprintShape shape,
   motion.surface_speed = on_its_side ? 0.0 : speed;
   motion.friction = law_.friction;
   const double ground_speed = motion.velocity.dot(pose.linear().col(0));
-  const double faster = std::max(std::abs(ground_speed), std::abs(speed));
-  motion.slip = faster > kSlipSpeed ? std::min(1.0, std::abs(speed - ground_speed) / faster) : 0.0;
+  motion.slip = signed_slip(speed, ground_speed);
   return contact;
 }
 

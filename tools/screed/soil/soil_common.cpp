@@ -27,15 +27,6 @@ std::string by_default(bool on) {
 
 /// The meaning as a sentence; before what it adds behind a semicolon the symbol, where the option's
 /// name does not say it, and the unit.
-std::string option_help(const SoilParameterInfo& parameter) {
-  std::string help = parameter.meaning;
-  help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
-  std::string named = parameter.option + 2;
-  std::replace(named.begin(), named.end(), '-', '_');
-  const std::string symbol = named == parameter.key ? "" : std::string(" ") + parameter.key;
-  const std::string unit = *parameter.unit != '\0' ? std::string(" [") + parameter.unit + "]" : "";
-  return help.insert(std::min(help.find(';'), help.size()), symbol + unit);
-}
 
 }  // namespace
 
@@ -85,6 +76,16 @@ nlohmann::json to_json(const std::vector<SoilLine>& lines) {
     all.push_back(one);
   }
   return all;
+}
+
+std::string option_help(const SoilParameterInfo& parameter) {
+  std::string help = parameter.meaning;
+  help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
+  std::string named = parameter.option + 2;
+  std::replace(named.begin(), named.end(), '-', '_');
+  const std::string symbol = named == parameter.key ? "" : std::string(" ") + parameter.key;
+  const std::string unit = *parameter.unit != '\0' ? std::string(" [") + parameter.unit + "]" : "";
+  return help.insert(std::min(help.find(';'), help.size()), symbol + unit);
 }
 
 SoilParameters SoilArguments::soil() const {

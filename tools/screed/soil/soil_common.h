@@ -31,6 +31,9 @@ struct SoilLine {
   std::optional<double> peer = std::nullopt;
 };
 
+/// Help of the option that sets a soil parameter.
+std::string option_help(const SoilParameterInfo& parameter);
+
 /// Options that every test has.
 struct SoilArguments {
   std::string preset = "viper";

@@ -1,11 +1,13 @@
 // `screed soil wheel`: a wheel beside its limit and beside measurements.
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <numbers>
 
 #include "host_sim/core/data_folders.h"
 #include "host_sim/render/chart/line_chart.h"
+#include "host_sim/soil_validation/soil_measurements.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
@@ -24,7 +26,8 @@ struct WheelArguments {
   std::vector<double> slips = {0.0, 0.2, 0.4};
   std::string measured;
   std::string cases = "ding2011_smooth";
-  bool fit = false;
+  double slip_angle_deg = 0.0;
+  double rim_friction_deg = 90.0;
 };
 
 /// Chrono's SCM (exact rays) for Ding's wheel: slip, drawbar pull N, sinkage m
@@ -55,24 +58,25 @@ std::string wheel_words(const WheelArguments& a) {
 }
 
 int run_measured(WheelArguments a) {
-  const std::vector<MeasuredWheel> rows = read_measured_wheels(a.measured, a.cases);
+  const std::vector<MeasuredWheel> rows = read_soil_measurements(a.measured, a.cases).wheels;
   const NormalStress stress = a.test.options.normal_stress;
-  if (a.fit) a.test.soil.slip_sinkage = fit_slip_sinkage(rows, a.test.soil, stress, 0.2, 0.6);
+  const RollingWheel rim = a.test.wheel;
   std::vector<SoilLine> lines;
   ChartSeries sinkage[3] = {{"Screed", {}, true}, {"limit", {}, false}, {"measured", {}, true}};
   ChartSeries pull[4] = {
       {"Screed", {}, true}, {"limit", {}, false}, {"measured", {}, true}, {"Chrono", {}, true}};
-  if (a.fit) {
-    lines.push_back({"fitted", "slip_sinkage", a.test.soil.slip_sinkage, "%.2f"});
-  }
   ProgressBar bar(std::cerr);
   for (const MeasuredWheel& row : rows) {
     bar.show_share(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()),
                    "rolling a wheel");
     a.test.wheel = row.wheel;
+    a.test.wheel.friction = rim.friction;
+    a.test.wheel.adhesion_pa = rim.adhesion_pa;
     const WheelPass pass = run_wheel(a.test).passes[0];
-    const WheelReaction limit = wheel_limit(row.wheel, a.test.soil, stress);
-    const std::string where = text("slip %g", row.wheel.slip);
+    const WheelReaction limit = wheel_limit(a.test.wheel, a.test.soil, stress);
+    std::string where = text("slip %g", row.wheel.slip);
+    if (row.wheel.slip_angle_rad != 0.0)
+      where += text(", angle %g", row.wheel.slip_angle_rad / kDegree);
     std::optional<double> peer;
     for (const PeerWheel& known : kPeerDing) {
       if (a.cases == "ding2011_smooth" && std::abs(known.slip - row.wheel.slip) < 1e-9) {
@@ -80,18 +84,24 @@ int run_measured(WheelArguments a) {
         pull[3].points.push_back({known.slip, *peer});
       }
     }
-    lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.2f", row.sinkage_m * kMilli,
-                     SoilLine::Error::kRelative, peer ? std::optional(8.65) : std::nullopt});
-    lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.1f", row.drawbar_pull_n,
-                     SoilLine::Error::kRelative, peer});
+    const auto measured_mm = [](std::optional<double> m) {
+      return m ? std::optional(*m * kMilli) : std::nullopt;
+    };
+    lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.2f",
+                     measured_mm(row.sinkage_m), SoilLine::Error::kRelative,
+                     peer ? std::optional(8.65) : std::nullopt});
+    lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.2f", row.drawbar_pull_n,
+                     SoilLine::Error::kAbsolute, peer});
+    lines.push_back({where, "side_force_n", pass.side_force_n, "%.2f", row.side_force_n,
+                     SoilLine::Error::kAbsolute});
     lines.push_back(
         {where, "torque_nm", pass.torque_nm, "%.2f", row.torque_nm, SoilLine::Error::kRelative});
     sinkage[0].points.push_back({row.wheel.slip, pass.sinkage_m * kMilli});
     sinkage[1].points.push_back({row.wheel.slip, limit.sinkage_m * kMilli});
-    sinkage[2].points.push_back({row.wheel.slip, row.sinkage_m * kMilli});
+    if (row.sinkage_m) sinkage[2].points.push_back({row.wheel.slip, *row.sinkage_m * kMilli});
     pull[0].points.push_back({row.wheel.slip, pass.drawbar_pull_n});
     pull[1].points.push_back({row.wheel.slip, limit.drawbar_pull_n});
-    pull[2].points.push_back({row.wheel.slip, row.drawbar_pull_n});
+    if (row.drawbar_pull_n) pull[2].points.push_back({row.wheel.slip, *row.drawbar_pull_n});
   }
   bar.clear();
   if (!a.common.charts.empty()) {
@@ -111,6 +121,9 @@ int run_wheel_command(WheelArguments a) {
   a.test.cell_m = a.common.cell_m;
   a.test.step_s = a.common.step_s;
   a.test.yaw_rad = a.yaw_deg * kDegree;
+  a.test.wheel.slip_angle_rad = a.slip_angle_deg * kDegree;
+  a.test.wheel.friction = a.rim_friction_deg >= 90.0 ? std::numeric_limits<double>::infinity()
+                                                     : std::tan(a.rim_friction_deg * kDegree);
   if (!a.measured.empty()) return run_measured(a);
   std::vector<SoilLine> lines;
   ChartSeries sinkage[2] = {{"Screed", {}, true}, {"limit", {}, false}};
@@ -137,6 +150,10 @@ int run_wheel_command(WheelArguments a) {
                        unmoved(limit.sinkage_m * kMilli), SoilLine::Error::kRelative});
       lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.5f",
                        unmoved(limit.drawbar_pull_n), SoilLine::Error::kAbsolute});
+      if (rolling.slip_angle_rad != 0.0) {
+        lines.push_back({where, "side_force_n", pass.side_force_n, "%.5f",
+                         unmoved(limit.side_force_n), SoilLine::Error::kAbsolute});
+      }
       lines.push_back({where, "torque_nm", pass.torque_nm, "%.6f", unmoved(limit.torque_nm),
                        SoilLine::Error::kAbsolute});
       lines.push_back({where, "rut_mm", pass.rut_m * kMilli, "%.4f", unmoved(limit.rut_m * kMilli),
@@ -183,16 +200,22 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
              {-360.0, 360.0});
   add_number(*command, "--passes", a->test.passes, "Number of passes over the same track",
              {1, 100});
+  add_number(*command, "--slip-angle", a->slip_angle_deg,
+             "Angle of travel to the left of the wheel's plane [deg]", {-80.0, 80.0});
+  add_number(*command, "--rim-friction", a->rim_friction_deg,
+             "Angle of friction between rim and soil [deg]; 90: rough, soil shears on soil",
+             {0.0, 90.0});
+  add_number(*command, "--rim-adhesion", a->test.wheel.adhesion_pa,
+             "Adhesion of soil to the rim [Pa]", {0.0, 1e7});
   CLI::Option* measured =
       command
           ->add_option("--measured", a->measured,
                        "Compare with measurements: a CSV file (default: Ding et al. 2011)")
           ->type_name("FILE");
   measured->expected(0, 1);
-  command->add_option("--case", a->cases, "Use the rows whose case_id begins with this text")
+  command->add_option("--case", a->cases, "Use the rows whose case begins with this text")
       ->capture_default_str()
       ->type_name("CASE");
-  command->add_flag("--fit", a->fit, "Fit --slip-sinkage to the measured sinkage first");
   command->add_option("--charts", a->common.charts, "Output folder for SVG charts")
       ->type_name("FOLDER");
   command->callback([a, measured, &program] {

@@ -79,7 +79,8 @@ void expect_alike(const Reaction& a, const Reaction& b, double share, const char
       << what << ": " << a.force.transpose() << " and " << b.force.transpose();
   EXPECT_LT((a.torque - b.torque).norm(), share * (a.torque.norm() + 0.06 * a.force.norm()))
       << what << ": " << a.torque.transpose() << " and " << b.torque.transpose();
-  EXPECT_NEAR(a.area, b.area, share * a.area) << what;
+  // A cell that hardly carries counts with all of its area: which do is a matter of rounding.
+  EXPECT_NEAR(a.area, b.area, 2.0 * share * a.area) << what;
   EXPECT_NEAR(a.along_surface, b.along_surface, share * a.force.norm()) << what;
 }
 

@@ -84,7 +84,7 @@ Dug dig(const Plate& plate, const SoilParameters& soil, double seconds, bool bul
     return reaction.area;
   };
   for (int i = 0; i < 5; ++i) step();  // until the area's b has settled
-  motion.surface_speed = -kSlip_m_per_s;
+  motion.velocity = kSlip_m_per_s * pose.linear().col(0);
   for (int i = 0; i < 100; ++i) step();  // many times K: all is mobilised
   const HeightField before = bed.surface();
   const VolumeBalance earlier = bed.balance();
@@ -187,7 +187,7 @@ TEST(SoilDigging, APlateThatDoesNotSlipDigsNothing) {
   plate.set_pose(pose);
   FootprintMotion motion;
   motion.mass_kg = 1.0;
-  motion.surface_speed = -kSlip_m_per_s;
+  motion.velocity = kSlip_m_per_s * pose.linear().col(0);
   ContactMemory memory;
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(bed.press(plate, motion, kStep_s, memory).area, 0.0);

@@ -80,7 +80,12 @@ TEST(SoilPath, IsInTheBodysAxes) {
 TEST(SoilPath, BeginsAnewWhereTheBodyTurnsBack) {
   MovedWheel wheel;
   wheel.move({0.5, 0.0, 0.1}, 30);
-  wheel.move({-0.5, 0.0, 0.1});
+  // A millimetre back is trembling.
+  wheel.move({-0.5, 0.0, 0.1}, 2);
+  EXPECT_NEAR(wheel.path().travel_m, 30 * 0.5 * kStep_s, 1e-12);
+  wheel.move({0.5, 0.0, 0.1}, 2);
+  EXPECT_NEAR(wheel.path().travel_m, 30 * 0.5 * kStep_s, 1e-12);
+  wheel.move({-0.5, 0.0, 0.1}, 3);
   EXPECT_NEAR(wheel.path().travel_m, -0.5 * kStep_s, 1e-12);
   EXPECT_NEAR(wheel.path().gradient, mean_gradient(-0.2, 0.5 * kStep_s, 1), 1e-9);
   // Standing still does not end it.

@@ -196,7 +196,7 @@ TEST(CommandNumbers, NoneIsHiddenInAText) {
   static const std::regex sounds_numeric("\\[[^\\]]+\\]|[Nn]umber of|^Seed|^Time|^Duration",
                                          std::regex::ECMAScript);
   // Names in brackets that are no units: "[map]", "[experiment]".
-  static const std::regex section("\\[(map|experiment|parameters)\\]");
+  static const std::regex section("\\[(map|experiment|parameters|soil)\\]");
   CommandLine line("1.2.3", "screed 1.2.3");
   for (const OptionPlace& place : every_option(line.app)) {
     if (is_flag(*place.option) || limits_of(*place.option)) continue;

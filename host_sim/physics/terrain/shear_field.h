@@ -1,0 +1,81 @@
+// Mobilised shear along a footprint's running surface: a chain of places that moves with its
+// material (belt, rim), two lanes side by side. Soil gives back to each place what that place has
+// slid over it since it came into contact, as Wong counts shear displacement: along the rim or
+// belt, not over the ground. In steady driving this is his formula, j = s x from the front of a
+// belt; in turns, reversals and at rest it stays right.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "host_sim/physics/terrain/shear_law.h"
+
+namespace screed {
+
+/// The lower run of a footprint: a straight part with an arc at either end (radius 0: none).
+/// `along` is the distance along it from its middle, m, positive ahead.
+struct RunContour {
+  double half_m = 0.0;    ///< half of the straight part
+  double radius_m = 0.0;  ///< of the arcs
+  double below_m = 0.0;   ///< of the straight part below the body's centre
+  double half_width_m = 0.0;
+
+  double length_m() const;
+  /// Of a point `ahead` of the middle in the body's axes, m.
+  double along(double ahead_m) const;
+};
+
+/// How a body moves, in the axes of its contour: ahead, left, up.
+struct RunMotion {
+  Eigen::Vector3d velocity;    ///< of its centre, m/s
+  Eigen::Vector3d omega;       ///< rad/s
+  double surface_speed = 0.0;  ///< of the material over the body, backwards on the contour, m/s
+  bool sideways_only = false;  ///< sliding along counts as none
+  bool level = false;          ///< sliding counts in the plane of the run, not along the arcs
+};
+
+class ShearField {
+ public:
+  struct Value {
+    double along = 0.0;    ///< mobilised share of the strength, positive: the surface slid ahead
+    double across = 0.0;   ///< ... to the left
+    double sliding = 0.0;  ///< speed of the surface over the soil, m/s
+  };
+
+  /// A step in which the contour touches between `rear` and `front` (along it, m).
+  void advance(const RunContour& contour, const RunMotion& motion, double rear, double front,
+               double shear_modulus_m, double damping_s, double dt);
+  /// Contact ends.
+  void release() { touching_ = false; }
+  /// At `along` the contour and `across`, m, of the last step.
+  Value at(double along, double across) const;
+
+ private:
+  static constexpr int kLanes = 2;
+  struct Place {
+    ShearState state;
+    Value value;
+  };
+  Place& place(int lane, int64_t index) {
+    return places_[static_cast<size_t>(lane) * ring_ + (static_cast<size_t>(index) & (ring_ - 1))];
+  }
+  const Place& place(int lane, int64_t index) const {
+    return const_cast<ShearField*>(this)->place(lane, index);
+  }
+  Value at_lane(int lane, double along) const;
+
+  std::vector<Place> places_;
+  size_t ring_ = 0;         // places in a lane, a power of two
+  double spacing_ = 0.0;    // of places, m
+  double travelled_ = 0.0;  // of the material, backwards, m
+  double lane_offset_ = 0.0;
+  bool touching_ = false;
+  bool from_front_ = true;  // where material comes into contact
+  double rear_ = 0.0;       // of the contact, along the contour
+  double front_ = 0.0;
+  int64_t first_ = 0;  // places in contact
+  int64_t last_ = -1;
+};
+
+}  // namespace screed

@@ -1,0 +1,134 @@
+// Tables of measurements.
+#include "host_sim/soil_validation/soil_measurements.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <numbers>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else if (c != '\r') {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+/// A row by the names of its columns.
+class Row {
+ public:
+  Row(const std::string& file, int line, const std::vector<std::string>& names,
+      const std::vector<std::string>& fields)
+      : file_(file), line_(line), names_(names), fields_(fields) {}
+
+  bool has(const char* name) const { return !text(name).empty(); }
+  const std::string& text(const char* name) const {
+    static const std::string kNone;
+    const auto at =
+        static_cast<size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+    return at < names_.size() && at < fields_.size() ? fields_[at] : kNone;
+  }
+  double number(const char* name, double low, double high) const {
+    const std::string& field = text(name);
+    if (field.empty()) fail(std::string("no ") + name);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    const bool read = error == std::errc() && end == field.data() + field.size();
+    if (!read || !(value >= low && value <= high)) {
+      char text[200];
+      std::snprintf(text, sizeof text, "%s is '%s', a number from %g to %g is needed", name,
+                    field.c_str(), low, high);
+      fail(text);
+    }
+    return value;
+  }
+  std::optional<double> measured(const char* name, double low, double high) const {
+    if (!has(name)) return std::nullopt;
+    return number(name, low, high);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(file_ + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  const std::string& file_;
+  int line_;
+  const std::vector<std::string>& names_;
+  const std::vector<std::string>& fields_;
+};
+
+MeasuredWheel wheel_of(const Row& row) {
+  constexpr double kForce_n = 1e6;
+  MeasuredWheel wheel;
+  wheel.name = row.text("case");
+  wheel.wheel.radius_m = row.number("wheel_radius_m", 1e-3, 10.0);
+  wheel.wheel.width_m = row.number("wheel_width_m", 1e-3, 10.0);
+  wheel.wheel.load_n = row.number("load_n", 1e-3, kForce_n);
+  wheel.wheel.slip = row.number("slip", -1.0, 0.99);
+  const double slip_angle_deg = row.measured("slip_angle_deg", -80.0, 80.0).value_or(0.0);
+  wheel.wheel.slip_angle_rad = slip_angle_deg * std::numbers::pi / 180.0;
+  wheel.drawbar_pull_n = row.measured("drawbar_pull_n", -kForce_n, kForce_n);
+  wheel.side_force_n = row.measured("side_force_n", -kForce_n, kForce_n);
+  wheel.torque_nm = row.measured("torque_nm", -kForce_n, kForce_n);
+  wheel.sinkage_m = row.measured("sinkage_m", 1e-6, 10.0);
+  return wheel;
+}
+
+MeasuredPlate plate_of(const Row& row) {
+  const double width = row.number("plate_width_m", 1e-3, 10.0);
+  const double length = row.number("plate_length_m", 1e-3, 10.0);
+  return {row.text("case"),
+          std::min(width, length),
+          std::max(width, length),
+          row.measured("round", 0.0, 1.0).value_or(0.0) != 0.0,
+          row.number("depth_m", 1e-6, 10.0),
+          row.number("pressure_pa", 1e-3, 1e9)};
+}
+
+}  // namespace
+
+SoilMeasurements read_soil_measurements(const std::string& file, const std::string& prefix) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in || !std::getline(in, line)) throw InputError(file + ": cannot be read");
+  const std::vector<std::string> names = split(line);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const bool wheels = has("wheel_radius_m");
+  if (!wheels && !has("plate_width_m")) {
+    throw InputError(file +
+                     ":1: neither a column wheel_radius_m (wheels) nor plate_width_m (plates)");
+  }
+  SoilMeasurements all;
+  for (int number = 2; std::getline(in, line); ++number) {
+    if (line.empty() || line == "\r") continue;
+    const std::vector<std::string> fields = split(line);
+    const Row row(file, number, names, fields);
+    if (!row.text("case").starts_with(prefix)) continue;
+    if (wheels) {
+      all.wheels.push_back(wheel_of(row));
+    } else {
+      all.plates.push_back(plate_of(row));
+    }
+  }
+  if (all.wheels.empty() && all.plates.empty()) {
+    throw InputError(file + ": no case begins with '" + prefix + "'");
+  }
+  return all;
+}
+
+}  // namespace screed
