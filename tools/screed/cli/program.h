@@ -46,11 +46,11 @@ inline std::string no_subcommand(const CLI::App& at, const std::string& word) {
 /// What is wrong with a command line: the parser's words, or a word that is no subcommand or no
 /// option; and the word that was probably meant.
 inline std::string wrong_command_line(const CLI::App& app, const CLI::ParseError& error) {
-  // The parser finds a wrong value before it, and a word that is missing before one too many.
-  const bool names_a_word =
-      error.get_name() != "ExtrasError" && error.get_name() != "RequiredError";
+  // Others name a value. One that misses a word may have come to it by a word that is too many.
+  const bool of_a_word = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                         dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const std::vector<std::string> unknown = app.remaining(true);
-  if (names_a_word || unknown.empty()) return error.what();
+  if (!of_a_word || unknown.empty()) return error.what();
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
   const std::string& word = unknown.front();

@@ -17,6 +17,7 @@
 #include "tests/temp_folder.h"
 #include "tools/screed/link/decode_command.h"
 #include "tools/screed/link/plot_command.h"
+#include "tools/screed/link/plot_signals.h"
 
 namespace screed {
 namespace {
@@ -377,6 +378,12 @@ TEST_F(Decode, PlotsNameWhatTheLogLacks) {
   EXPECT_NE(err_.str().find("holds no message with power.battery, leveling.state"),
             std::string::npos)
       << err_.str();
+}
+
+TEST_F(Decode, ABandBridgesLossesOfASecond) {
+  const PlotSignal signal("leveling.state");  // 10 times a second
+  EXPECT_EQ(band_row(signal, "", {{0.0, 1}, {0.9, 1}}, 5.0).bands.size(), 1U);
+  EXPECT_EQ(band_row(signal, "", {{0.0, 1}, {1.1, 1}}, 5.0).bands.size(), 2U);
 }
 
 TEST_F(Decode, PlotsKeepThePeaksOfManyPoints) {
