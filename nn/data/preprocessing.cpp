@@ -199,12 +199,14 @@ void Preprocessing::learn_stage(const PreprocessingStage& stage,
   }
 }
 
-void Preprocessing::learn(std::vector<FeatureTable>& training) {
+void Preprocessing::learn(std::vector<FeatureTable>& training, const TaskProgress& progress) {
   bounds_.clear();
   scales_.clear();
+  std::size_t done = 0;
   for (const PreprocessingStage& stage : stages_) {
     learn_stage(stage, training);
     for (FeatureTable& table : training) {
+      report_progress(progress, "pre-processing", done++, stages_.size() * training.size());
       if (removes(stage)) {
         remove_outside(table, bounds_.back());
       } else if (stage.stage == kNormalise) {

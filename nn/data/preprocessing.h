@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host_sim/core/json_reader.h"
+#include "host_sim/core/task_progress.h"
 #include "nn/data/feature_table.h"
 
 namespace screed::nn {
@@ -62,7 +63,7 @@ class Preprocessing {
 
   /// Goes through the stages over the training tables, learning on the way, and leaves the tables
   /// processed. Throws InputError when nothing is left or a feature never changes.
-  void learn(std::vector<FeatureTable>& training);
+  void learn(std::vector<FeatureTable>& training, const TaskProgress& progress = {});
 
   /// Which of the stages apply: all; all but rounding; without smoothing either, the raw data of an
   /// evaluation.

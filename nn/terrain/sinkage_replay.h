@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "host_sim/core/task_progress.h"
 #include "nn/terrain/drive_strides.h"
 #include "nn/terrain/track_soil_model.h"
 
@@ -16,7 +17,7 @@ class SinkageReplay {
 
   /// The ground as it was recorded after so many strides, pressed by the tracks as the robot stood
   /// until then; not fewer strides than the last time. Valid until the next call.
-  const TrackSoilModel& after(std::size_t strides);
+  const TrackSoilModel& after(std::size_t strides, const TaskProgress& progress = {});
 
  private:
   const DriveStrides& drive_;

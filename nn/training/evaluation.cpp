@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/render/chart/line_chart.h"
@@ -30,10 +31,13 @@ std::string learned_name(const ModelChannel& channel) {
   return channel.baseline.empty() ? channel.feature : channel.feature + "-" + channel.baseline;
 }
 
-/// All outputs of all networks over a table.
-std::vector<OutputSeries> series_of(const Model& model, const FeatureTable& table) {
+/// All outputs of all networks over a table. `at_network`: called before each network; may be
+/// empty.
+std::vector<OutputSeries> series_of(const Model& model, const FeatureTable& table,
+                                    const std::function<void()>& at_network) {
   std::vector<OutputSeries> result;
   for (const ModelNetwork& network : model.networks) {
+    if (at_network) at_network();
     std::vector<std::string> inputs;
     std::vector<std::string> outputs;
     for (const ModelChannel& channel : network.inputs) inputs.push_back(channel.feature);
@@ -162,10 +166,15 @@ Chart regression(const TestTable& test, const OutputSeries& series, const std::s
 
 }  // namespace
 
-Evaluation evaluate(const Model& model, const std::vector<TestTable>& tests) {
+Evaluation evaluate(const Model& model, const std::vector<TestTable>& tests,
+                    const TaskProgress& progress) {
   Evaluation evaluation;
+  std::size_t done = 0;
+  const auto report = [&] {
+    report_progress(progress, "evaluating", done++, tests.size() * model.networks.size());
+  };
   for (const TestTable& test : tests) {
-    const std::vector<OutputSeries> all = series_of(model, test.table);
+    const std::vector<OutputSeries> all = series_of(model, test.table, report);
     for (const OutputSeries& series : all) {
       Score score{series.output, test.label, test.form, series.real.size(), 0.0, 0.0, 0.0, 0.0};
       score.mse = mean_squared_error(series.real, series.predicted);
@@ -183,10 +192,16 @@ Evaluation evaluate(const Model& model, const std::vector<TestTable>& tests) {
 }
 
 std::vector<fs::path> draw_evaluation(const Model& model, const std::vector<TestTable>& tests,
-                                      const fs::path& folder) {
+                                      const fs::path& folder, const TaskProgress& progress) {
+  constexpr char kTask[] = "drawing charts";
   std::vector<fs::path> files;
-  for (const TestTable& test : tests) {
-    for (const OutputSeries& series : series_of(model, test.table)) {
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const TestTable& test = tests[i];
+    report_progress(progress, kTask, i, tests.size());
+    const std::vector<OutputSeries> all = series_of(model, test.table, {});
+    for (std::size_t output = 0; output < all.size(); ++output) {
+      const OutputSeries& series = all[output];
+      report_progress(progress, kTask, i * all.size() + output, tests.size() * all.size());
       char subtitle[120];
       std::snprintf(subtitle, sizeof subtitle, "model %s, MSE %.4f, R² %.4f", model.name.c_str(),
                     mean_squared_error(series.real, series.predicted),

@@ -37,13 +37,15 @@ struct Evaluation {
 };
 
 /// By the integers of the robot.
-Evaluation evaluate(const Model& model, const std::vector<TestTable>& tests);
+Evaluation evaluate(const Model& model, const std::vector<TestTable>& tests,
+                    const TaskProgress& progress = {});
 
 /// Time series and regression of every output on every test, as SVG and PNG; returns the SVG files.
 /// The folder must exist. Throws RunError when a file cannot be written.
 std::vector<std::filesystem::path> draw_evaluation(const Model& model,
                                                    const std::vector<TestTable>& tests,
-                                                   const std::filesystem::path& folder);
+                                                   const std::filesystem::path& folder,
+                                                   const TaskProgress& progress = {});
 
 /// Losses over the epochs, an SVG and a PNG a network.
 std::vector<std::filesystem::path> draw_losses(const TrainingConfiguration& configuration,

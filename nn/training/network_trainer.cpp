@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <unordered_map>
@@ -176,7 +177,8 @@ class NetworkTrainer::Impl {
     }
   }
 
-  void train_epoch(const Examples& examples) {
+  bool train_epoch(const Examples& examples, const std::function<bool()>& stop) {
+    const std::optional<TrainerState> before = stop ? std::optional(state()) : std::nullopt;
     optimiser_.learning_rate = learning_rate_of(configuration_, epochs_);
     std::vector<std::uint32_t> order(examples.rows());
     std::iota(order.begin(), order.end(), 0U);
@@ -187,9 +189,14 @@ class NetworkTrainer::Impl {
     if (rest == 1 && order.size() > 1) order.pop_back();
     const std::size_t chunk = configuration_.batch == 0 ? order.size() : batch * kChunkBatches;
     for (std::size_t first = 0; first < order.size(); first += chunk) {
+      if (before.has_value() && stop()) {
+        restore(*before);
+        return false;
+      }
       fit(examples, std::span(order).subspan(first, std::min(chunk, order.size() - first)), batch);
     }
     ++epochs_;
+    return true;
   }
 
   std::vector<float> outputs(const Examples& examples) {
@@ -409,8 +416,8 @@ NetworkTrainer::NetworkTrainer(NetworkTrainer&&) noexcept = default;
 NetworkTrainer& NetworkTrainer::operator=(NetworkTrainer&&) noexcept = default;
 NetworkTrainer::~NetworkTrainer() = default;
 
-void NetworkTrainer::train_epoch(const Examples& examples) {
-  impl_->train_epoch(examples);
+bool NetworkTrainer::train_epoch(const Examples& examples, const std::function<bool()>& stop) {
+  return impl_->train_epoch(examples, stop);
 }
 std::size_t NetworkTrainer::epochs() const {
   return impl_->epochs();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -37,8 +38,9 @@ class NetworkTrainer {
   NetworkTrainer& operator=(NetworkTrainer&&) noexcept;
   ~NetworkTrainer();
 
-  /// Goes once through the examples, in an order that follows from seed and epoch.
-  void train_epoch(const Examples& examples);
+  /// Goes once through the examples, in an order that follows from seed and epoch. Where `stop`,
+  /// asked on the way, says so, the state becomes that before the epoch again; false then.
+  bool train_epoch(const Examples& examples, const std::function<bool()>& stop = {});
   std::size_t epochs() const;
 
   /// What it would give now, as layers of the quantiser: batch normalisation (by its running means)

@@ -19,10 +19,10 @@ bool has_stage(const Preprocessing& preprocessing, std::initializer_list<std::st
                      });
 }
 
-/// The session in every form that its stages make different.
-void add_tests(const TestSession& test, const std::vector<std::string>& features,
-               const Preprocessing& preprocessing, const fs::path& sessions,
-               std::vector<TestTable>& tests) {
+/// A session in every form that its stages make different.
+void add_test(const TestSession& test, const std::vector<std::string>& features,
+              const Preprocessing& preprocessing, const fs::path& sessions,
+              std::vector<TestTable>& tests) {
   using Extent = Preprocessing::Extent;
   const FeatureTable recorded = read_features(find_session(sessions, test.session), features);
   const auto add = [&](const char* form, Extent extent) {
@@ -34,6 +34,19 @@ void add_tests(const TestSession& test, const std::vector<std::string>& features
   add("as trained", Extent::kAll);
   if (smooths && rounds) add("smoothed", Extent::kNotRounded);
   if (smooths || rounds) add("raw", Extent::kRaw);
+}
+
+/// All test sessions.
+std::vector<TestTable> tests_of(const TrainingConfiguration& configuration,
+                                const Preprocessing& preprocessing, const fs::path& sessions,
+                                const TaskProgress& progress) {
+  std::vector<TestTable> tests;
+  std::size_t done = 0;
+  for (const TestSession& test : configuration.test) {
+    report_progress(progress, "reading test sessions", done++, configuration.test.size());
+    add_test(test, configuration.features(), preprocessing, sessions, tests);
+  }
+  return tests;
 }
 
 std::string hash_of(const std::vector<FeatureTable>& tables) {
@@ -80,37 +93,33 @@ std::vector<std::string> learned_outputs(const NetworkConfiguration& network) {
   return network.outputs;
 }
 
-PreparedData prepare(const TrainingConfiguration& configuration, const fs::path& sessions) {
+PreparedData prepare(const TrainingConfiguration& configuration, const fs::path& sessions,
+                     const TaskProgress& progress) {
   PreparedData data;
   data.preprocessing = Preprocessing(configuration.stages);
   const std::vector<std::string> features = configuration.features();
   for (const std::string& name : configuration.train) {
+    report_progress(progress, "reading training sessions", data.training.size(),
+                    configuration.train.size());
     data.training.push_back(read_features(find_session(sessions, name), features));
     data.training_frames += data.training.back().rows();
   }
   data.running = data.training;
-  data.preprocessing.learn(data.training);
+  data.preprocessing.learn(data.training, progress);
   const bool rounds = std::find(configuration.run_time.begin(), configuration.run_time.end(),
                                 "quantise") != configuration.run_time.end();
   for (FeatureTable& table : data.running) {
     data.preprocessing.apply(
         table, rounds ? Preprocessing::Extent::kAll : Preprocessing::Extent::kNotRounded);
   }
-  for (const TestSession& test : configuration.test) {
-    add_tests(test, features, data.preprocessing, sessions, data.tests);
-  }
+  data.tests = tests_of(configuration, data.preprocessing, sessions, progress);
   data.hash = hash_of(data.training);
   return data;
 }
 
 std::vector<TestTable> prepare_tests(const TrainingConfiguration& configuration, const Model& model,
-                                     const fs::path& sessions) {
-  const Preprocessing preprocessing = preprocessing_of(model);
-  std::vector<TestTable> tests;
-  for (const TestSession& test : configuration.test) {
-    add_tests(test, configuration.features(), preprocessing, sessions, tests);
-  }
-  return tests;
+                                     const fs::path& sessions, const TaskProgress& progress) {
+  return tests_of(configuration, preprocessing_of(model), sessions, progress);
 }
 
 Examples examples_of(const std::vector<const FeatureTable*>& tables,

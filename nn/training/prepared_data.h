@@ -33,11 +33,12 @@ struct PreparedData {
 /// Reads the sessions of the configuration from a folder (nn/data/feature_table.h). Statistics come
 /// from the training sessions alone. Throws InputError.
 PreparedData prepare(const TrainingConfiguration& configuration,
-                     const std::filesystem::path& sessions);
+                     const std::filesystem::path& sessions, const TaskProgress& progress = {});
 
 /// The tests alone, by the stages and scales that a model carries.
 std::vector<TestTable> prepare_tests(const TrainingConfiguration& configuration, const Model& model,
-                                     const std::filesystem::path& sessions);
+                                     const std::filesystem::path& sessions,
+                                     const TaskProgress& progress = {});
 
 /// All rows of these tables, one table after the other, for one network.
 Examples examples_of(const std::vector<const FeatureTable*>& tables,

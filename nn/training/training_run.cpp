@@ -8,6 +8,7 @@
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/task_progress.h"
 #include "nn/training/checkpoint.h"
 #include "nn/training/predict.h"
 
@@ -75,9 +76,10 @@ class Course {
            (network_.patience > 0 && epochs - std::min(epochs, best_epoch_) >= network_.patience);
   }
 
-  /// One epoch; says what is new.
-  std::string step() {
-    trainer_.train_epoch(training_);
+  /// One epoch; says what is new. Nothing: it was stopped.
+  std::optional<std::string> step() {
+    const auto stop = [this] { return options_.stop != nullptr && options_.stop->load(); };
+    if (!trainer_.train_epoch(training_, stop)) return std::nullopt;
     std::vector<FloatLayer> layers = trainer_.folded();
     result_.losses.push_back({loss_of(layers, training_), loss_of(layers, test_)});
     const std::size_t epoch = result_.losses.size();
@@ -96,7 +98,7 @@ class Course {
     std::snprintf(note, sizeof note, "%s: epoch %zu, error %.5f, on the test %.5f",
                   network_.name().c_str(), epoch, result_.losses.back().training,
                   result_.losses.back().test);
-    return note;
+    return std::string(note);
   }
 
   void save() const {
@@ -156,13 +158,14 @@ std::vector<TrainedNetwork> train(const TrainingConfiguration& configuration,
   const auto work = [&](std::size_t i) {
     try {
       while (!courses[i].done() && !stopped()) {
-        const std::string note = courses[i].step();
+        const std::optional<std::string> note = courses[i].step();
+        if (!note.has_value()) break;
         const std::lock_guard lock(mutex);
         if (failure) return;
         shares[i] = courses[i].share();
         double sum = 0.0;
         for (const double share : shares) sum += share;
-        if (options.progress) options.progress(sum / static_cast<double>(shares.size()), note);
+        if (options.progress) options.progress(sum / static_cast<double>(shares.size()), *note);
       }
       if (stopped()) courses[i].save();
     } catch (...) {
@@ -175,7 +178,7 @@ std::vector<TrainedNetwork> train(const TrainingConfiguration& configuration,
   for (std::size_t i = 0; i < courses.size(); ++i) threads.emplace_back(work, i);
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);
-  if (stopped()) throw RunError("stopped; --resume goes on from the checkpoints");
+  if (stopped()) throw TaskStopped("training; --resume goes on from the checkpoints");
   std::vector<TrainedNetwork> results;
   results.reserve(courses.size());
   for (Course& course : courses) results.push_back(course.take_result());

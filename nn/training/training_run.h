@@ -32,12 +32,13 @@ struct TrainingOptions {
   /// Told after every epoch, from any thread but never from two at once: the share of all epochs
   /// that is done, and what is new.
   std::function<void(double share, const std::string& note)> progress;
-  const std::atomic<bool>* stop = nullptr;  ///< ends the training behind an epoch
+  /// Ends the training in the midst of an epoch; the checkpoints are then those of its beginning.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// In the order of the configuration's networks. The same configuration, seed and data give the
 /// same bits, whatever the threads do, and whether or not it was resumed on the way. Throws
-/// InputError for a checkpoint of another training, RunError when it was stopped.
+/// InputError for a checkpoint of another training, TaskStopped when it was stopped.
 std::vector<TrainedNetwork> train(const TrainingConfiguration& configuration,
                                   const PreparedData& data, const TrainingOptions& options);
 

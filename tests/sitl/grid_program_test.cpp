@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
 
 namespace screed::testing {
 namespace {
@@ -32,6 +33,16 @@ TEST_F(Program, GridShowsATable) {
   for (const char* part : {"probabilistic, seed 3", "cycles", "units moved", "fewest possible"}) {
     EXPECT_NE(table.out.find(part), std::string::npos) << part << " in: " << table.out;
   }
+}
+
+TEST_F(Program, GridShowsHowMuchIsLeveledAndStops) {
+  Terminal terminal({program_, "grid", "--headless", "--size", "300", "--agents", "20",
+                     "--max-cycles", "1000000000"},
+                    root_);
+  ASSERT_TRUE(terminal.wait_for("leveled, cycle ")) << terminal.screen();
+  terminal.signal(SIGINT);
+  EXPECT_EQ(terminal.exit_code(), 130) << terminal.screen();
+  EXPECT_NE(terminal.screen().find("not level"), std::string::npos) << terminal.screen();
 }
 
 TEST_F(Program, GridRefusesBadInputInOneLine) {

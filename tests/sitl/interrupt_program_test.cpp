@@ -1,8 +1,9 @@
 // Ctrl-C, SIGTERM and SIGHUP in the midst of what takes long before and beside a run: the program
 // ends at once, names what it was at, and leaves nothing.
-#include <sys/stat.h>
+#include <pty.h>
+#include <unistd.h>
 
-#include <fstream>
+#include <array>
 #include <string>
 
 #include "tests/sitl/program.h"
@@ -74,21 +75,44 @@ TEST_F(Interrupt, AMissingImageShowsBeforeParticlesAreLaid) {
 }
 
 TEST_F(Interrupt, DrivesIntoATrap) {
-  expect_stopped({"nn", "stuck", "--runs", "1000"}, "with a trap: driving", {SIGINT, 130},
-                 "screed: stopped while driving\r\n");
+  // The bar is gone before the message.
+  for (const Signal& signal : kSignals) {
+    expect_stopped({"nn", "stuck", "--runs", "1000"}, "with a trap: driving", signal,
+                   "\r\033[Kscreed: stopped while driving\r\n");
+  }
 }
 
 TEST_F(Interrupt, QuietRunsAreStoppedAsWell) {
   write_bed("big", 12.0);
-  // No text appears: the signal comes once it is caught, before or while particles are laid.
-  const Result result =
-      run("sim big.ini --quiet & pid=$!; until grep -q SigCgt:.*4003$ /proc/$pid/status || ! [ -e "
-          "/proc/$pid/fd/1 ]; "
-          "do :; done; "
-          "kill -INT $pid; wait $pid");
+  // Before or while particles are laid.
+  const Result result = interrupted("sim big.ini --quiet");
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_EQ(result.out, "");
   expect_nothing_left();
+}
+
+// A serial port from which nothing comes.
+TEST_F(Interrupt, WaitingForARobotIsStoppedAndNoOtherFailure) {
+  write("p.ini", "[parameters]\nclimb_speed = 150\n");
+  int radio = -1;
+  int port = -1;
+  std::array<char, 64> name{};
+  ASSERT_EQ(openpty(&radio, &port, name.data(), nullptr, nullptr), 0);
+  const std::string pty = std::string(" --pty ") + name.data();
+  for (const char* command : {"param get", "param diff p.ini", "param load p.ini", "send arm",
+                              "send arm --json", "calibrate --plain"}) {
+    SCOPED_TRACE(command);
+    const Result result = interrupted(command + pty);
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_EQ(result.err, "screed: stopped while waiting for the robot\n");
+    EXPECT_EQ(result.out, "");
+  }
+  // It was sent, and that is said.
+  const Result stop = interrupted("send estop" + pty);
+  EXPECT_EQ(stop.exit_code, 130);
+  EXPECT_EQ(stop.out, "estop: sent, but no robot says that it has stopped\n");
+  close(port);
+  close(radio);
 }
 
 }  // namespace

@@ -49,6 +49,11 @@ TEST_F(ModelProgram, TheTemplateIsFoundByNameAndHasNoWarnings) {
   EXPECT_EQ(model["wheels"][3]["driven"], true);
 }
 
+TEST_F(ModelProgram, ExperimentsAreFoundByNameAsWell) {
+  EXPECT_EQ(checked("first_drive")["robot"], "Dagu5");
+  EXPECT_EQ(checked("first_drive"), checked("rover5"));
+}
+
 TEST_F(ModelProgram, TheTemplatesExperimentDrives) {
   const Result result = run("sim four_wheels --duration 8 --quiet --json --out run");
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -154,7 +159,8 @@ TEST_F(ModelProgram, ABoardThatDoesNotFitIsWarnedAbout) {
 
 TEST_F(ModelProgram, WrongModelsAreRefusedInOneLine) {
   expect_refused(run("model check none.urdf"), 2, {"none.urdf: no such file"});
-  expect_refused(run("model check no_such_robot"), 2, {"no_such_robot", "looked for"});
+  expect_refused(run("model check no_such_robot"), 2,
+                 {"no_such_robot: no such file", "first_drive", "robots", "four_wheels, rover5"});
   write("robot.urdf.xacro",
         "<robot name=\"r\" xmlns:xacro=\"x\"><xacro:macro name=\"m\"/></robot>");
   expect_refused(run("model check robot.urdf.xacro"), 2,

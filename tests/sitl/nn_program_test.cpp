@@ -4,6 +4,7 @@
 #include "host_sim/run/session/session_reader.h"
 #include "nn/model/model_file.h"
 #include "tests/sitl/program.h"
+#include "tests/sitl/terminal.h"
 
 namespace screed::testing {
 namespace {
@@ -97,6 +98,54 @@ TEST_F(NnProgram, TheSameTrainingGivesTheSameBytesEvenInTwoParts) {
   ASSERT_EQ(run(train + "c --seed 2").exit_code, 0);
   EXPECT_NE(read(root_ / "a/model.json"), read(root_ / "c/model.json"));
   expect_refused(run(train + "b --resume --seed 2"), 2, {"checkpoint.json", "another training"});
+}
+
+TEST_F(NnProgram, ATrainingThatIsStoppedGoesOnToTheSameBytes) {
+  write("long.json", replaced(configuration(), "\"epochs\": 6", "\"epochs\": 100000"));
+  Terminal terminal({program_, "nn", "train", "long.json", "--sessions", "s", "--out", "m"}, root_);
+  ASSERT_TRUE(terminal.wait_for(": epoch ")) << terminal.screen();
+  terminal.signal(SIGINT);
+  EXPECT_EQ(terminal.exit_code(), 130) << terminal.screen();
+  EXPECT_NE(terminal.screen().find("screed: stopped while training; --resume goes on from the "
+                                   "checkpoints\r\n"),
+            std::string::npos)
+      << terminal.screen();
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root_ / "m")) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_TRUE(entry.path().string().ends_with(".checkpoint.json")) << entry.path();
+    ++files;
+  }
+  EXPECT_EQ(files, 3U);
+}
+
+// So many sessions, each read anew, that the signal comes in their midst.
+TEST_F(NnProgram, ReadingSessionsIsStoppedAndLeavesNothing) {
+  std::string many = "\"drive\"";
+  std::string tests = R"({"label": "B", "session": "other"})";
+  const std::string one_test = tests;
+  for (int i = 0; i < 999; ++i) {
+    many += ", \"drive\"";
+    tests += ", " + one_test;
+  }
+  write("many.json", replaced(configuration(), "\"drive\"", many));
+  write("tests.json", replaced(configuration(), one_test, tests));
+  ASSERT_EQ(run("nn train small.json --sessions s --no-pictures --out m").exit_code, 0);
+  struct Case {
+    const char* arguments;
+    const char* task;
+  };
+  for (const Case& it :
+       {Case{"nn preprocess many.json --out t", "reading training sessions"},
+        Case{"nn train many.json --out t", "reading training sessions"},
+        Case{"nn eval m/model.json tests.json --out t", "reading test sessions"}}) {
+    SCOPED_TRACE(it.arguments);
+    const Result result = interrupted(it.arguments + std::string(" --sessions s"));
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_EQ(result.err, std::string("screed: stopped while ") + it.task + "\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(std::filesystem::exists(root_ / "t"));
+  }
 }
 
 TEST_F(NnProgram, QuantisesATrainedModelAnewToTheSameBytes) {

@@ -72,7 +72,8 @@ TEST_F(Numbers, OfAnOverrideAreCheckedToo) {
 
 TEST_F(Numbers, OfTheMessageNameTheSubcommandWhoseHelpSaysMore) {
   expect_refused(run("session export r --count 0"), 2, {"(see screed session export --help)"});
-  expect_refused(run("sim e.ini --frobnicate"), 2, {"--frobnicate (see screed sim --help)"});
+  expect_refused(run("sim e.ini --frobnicate"), 2,
+                 {"'--frobnicate' is no option (see screed sim --help)"});
 }
 
 TEST_F(Numbers, ADurationIsThatOfTheRun) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/sitl/program.h"
 
@@ -141,6 +144,48 @@ TEST_F(ParamProgram, ALinkIsRememberedWithItsKeyFile) {
   EXPECT_NE(result.err.find("using pty " + port + ", key " + key + ", remembered in " + file),
             std::string::npos)
       << result.err;
+}
+
+TEST_F(ParamProgram, CommandsAndAnswersAreJsonForPrograms) {
+  const Result result = with_robot(
+      "$screed send --pty radio disarm --json; echo \"exit $?,\"\n"
+      "$screed send --pty radio drive 0.1 -5 --json; echo \"exit $?,\"\n"
+      "$screed send --pty radio estop --json; echo \"exit $?\"\n");
+  std::vector<nlohmann::json> said;
+  std::istringstream out(result.out);
+  for (std::string line, object; std::getline(out, line);) {
+    if (line.rfind("exit", 0) == 0) {
+      said.push_back(nlohmann::json::parse(object));
+      said.back()["exit"] = std::stoi(line.substr(5));
+      object.clear();
+    } else {
+      object += line;
+    }
+  }
+  ASSERT_EQ(said.size(), 3U) << result.out << result.err;
+  const nlohmann::json null = nullptr;
+  EXPECT_EQ(said[0], (nlohmann::json{{"command", "disarm"},
+                                     {"robot", 1},
+                                     {"done", true},
+                                     {"answer", "done"},
+                                     {"reason", null},
+                                     {"exit", 0}}));
+  EXPECT_EQ(said[1], (nlohmann::json{{"command", "drive"},
+                                     {"speed_m_per_s", 0.1},
+                                     {"yaw_rate_deg_per_s", -5.0},
+                                     {"robot", 1},
+                                     {"done", false},
+                                     {"answer", "wrong_state"},
+                                     {"reason", "disarmed; arm first: screed send arm"},
+                                     {"exit", 1}}));
+  EXPECT_EQ(said[2],
+            (nlohmann::json{{"command", "estop"}, {"robot", 1}, {"done", true}, {"exit", 0}}));
+}
+
+TEST_F(ParamProgram, ANewKeyIsMadeOnceThereIsARobotToTakeIt) {
+  expect_refused(run("key robot.key --port /dev/none"), 2, {"/dev/none: no such port"});
+  expect_refused(run("key robot.key --port /dev/null"), 2, {"/dev/null: is no serial port"});
+  EXPECT_FALSE(std::filesystem::exists(root_ / "robot.key"));
 }
 
 TEST_F(ParamProgram, WithoutALinkItSaysHowToNameOne) {

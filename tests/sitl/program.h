@@ -51,6 +51,13 @@ class Program : public ::testing::Test {
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(log("out")), read(log("err"))};
   }
+  /// The same of what writes nothing that could be waited for: Ctrl-C comes once the program
+  /// catches it.
+  Result interrupted(const std::string& arguments) const {
+    return run(arguments +
+               " & pid=$!; until grep -q SigCgt:.*4003$ /proc/$pid/status || ! [ -e "
+               "/proc/$pid/fd/1 ]; do :; done; kill -INT $pid; wait $pid");
+  }
   /// Beside the folder, where no test looks for what the program left.
   std::string log(const char* which) const { return root_.string() + "." + which; }
 

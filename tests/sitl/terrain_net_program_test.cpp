@@ -34,6 +34,19 @@ TEST_F(TerrainNet, LearnsFromARunAndIsComparedWithIt) {
   EXPECT_EQ(units, 0) << compared.out;
 }
 
+TEST_F(TerrainNet, AComparisonIsStoppedAtOnce) {
+  write("e.ini",
+        "[vehicle]\ntracks = false\n[experiment]\nname = small\nduration = 7\nalgorithm = drive\n"
+        "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n[drive]\nspeed = 0.1\n");
+  ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  ASSERT_EQ(run("terrain-net train run --out n.json --epochs 1 --hidden 4").exit_code, 0);
+  std::string runs;
+  for (int i = 0; i < 1000; ++i) runs += " run";
+  const Result result = interrupted("terrain-net compare n.json" + runs);
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "screed: stopped while predicting\n");
+}
+
 TEST_F(TerrainNet, WhatIsWrongIsSaidInOneLine) {
   write("e.ini", "[experiment]\nduration = 0.1\n[map]\nsize = 1\n");
   ASSERT_EQ(run("sim e.ini --quiet --out run").exit_code, 0);

@@ -143,7 +143,8 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
   expect_refused(run("sim e.ini --key-script Wide@3"), 2, {"--key-script", "Wide@3", "Up@3-5.5"});
   expect_refused(run("sim e.ini --view --size 3x4"), 2, {"--size", "480x360"});
   EXPECT_NE(run("view --help").out.find("8000x8000"), std::string::npos);
-  for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500"}) {
+  for (const char* size : {"''", "nanxnan", "99999999999x500", "700x500x", "1e3x500", "479x800",
+                           "800x359", "8001x800", "800x8001"}) {
     expect_refused(run(std::string("sim e.ini --view --size ") + size), 2, {"--size", "480x360"});
   }
   for (const char* time : {"", "nan", "inf", "nan-3", "1-inf", "1e999", "2000000", "-1", "1x"}) {

@@ -75,9 +75,13 @@ std::string wrong_state_text(CommandOp op, const LatestTelemetry& robot, Command
   }
 }
 
-std::string refusal(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
-                    CommandStyle style) {
+}  // namespace
+
+std::string refusal_text(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
+                         CommandStyle style) {
   switch (static_cast<Result>(answer.result)) {
+    case Result::kDone:
+      return "";
     case Result::kWrongState:
       return wrong_state_text(static_cast<CommandOp>(answer.op), robot, style);
     case Result::kFaultPresent:
@@ -96,11 +100,9 @@ std::string refusal(const CommandAnswer& answer, const LatestTelemetry& robot, u
   }
 }
 
-}  // namespace
-
 std::string answer_text(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
                         CommandStyle style) {
-  return answer.done() ? "done" : "refused: " + refusal(answer, robot, now_us, style);
+  return answer.done() ? "done" : "refused: " + refusal_text(answer, robot, now_us, style);
 }
 
 }  // namespace screed

@@ -24,4 +24,8 @@ enum class CommandStyle : uint8_t { kProgram, kKeys };
 std::string answer_text(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
                         CommandStyle style = CommandStyle::kProgram);
 
+/// What stands behind "refused: "; empty when it is done.
+std::string refusal_text(const CommandAnswer& answer, const LatestTelemetry& robot, uint64_t now_us,
+                         CommandStyle style = CommandStyle::kProgram);
+
 }  // namespace screed

@@ -94,9 +94,14 @@ std::optional<CommandAnswer> CommandSession::take_answer() {
   return std::exchange(answer_, std::nullopt);
 }
 
+void CommandSession::wait() {
+  if (options_.on_wait) options_.on_wait();
+  pump(kPump);
+}
+
 std::optional<CommandAnswer> CommandSession::run(CommandOp op, uint32_t argument) {
   start(op, argument);
-  while (waiting_) pump(kPump);
+  while (waiting_) wait();
   return take_answer();
 }
 
@@ -107,7 +112,7 @@ std::optional<int32_t> CommandSession::read_parameter(uint16_t index,
   // The value is a frame of its own, which may come after the answer, or be lost.
   for (int again = 0; answer.has_value() && answer->done() && again < kMaxStagings; ++again) {
     const uint64_t end_us = options_.clock() + kRepeat_us;
-    while (!parameters_.contains(index) && options_.clock() < end_us) pump(kPump);
+    while (!parameters_.contains(index) && options_.clock() < end_us) wait();
     if (parameters_.contains(index)) return parameters_.at(index);
     answer = run(CommandOp::kParameterRead, index);
   }
@@ -128,7 +133,7 @@ std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int
   int stagings = 0;
   for (int attempt = 0; attempt < kMaxBusyAnswers; ++attempt) {
     start_write(index, value);
-    while (waiting_) pump(kPump);
+    while (waiting_) wait();
     answer = take_answer();
     if (!answer.has_value() || answer->done()) break;
     const auto result = static_cast<Result>(answer->result);
@@ -136,7 +141,7 @@ std::optional<CommandAnswer> CommandSession::write_parameter(uint16_t index, int
     if (result == Result::kBadArgument && ++stagings < kMaxStagings) continue;
     if (result != Result::kBusy) break;
     const uint64_t end_us = options_.clock() + kRepeat_us;
-    while (options_.clock() < end_us) pump(kPump);
+    while (options_.clock() < end_us) wait();
   }
   return answer;
 }

@@ -26,6 +26,9 @@ struct SessionOptions {
   std::function<void(const LinkFrame&)> on_frame;
   /// Microseconds, rising.
   std::function<uint64_t()> clock;
+  /// Called again and again while run(), read_parameter() and write_parameter() wait; ends them by
+  /// throwing.
+  std::function<void()> on_wait = nullptr;
 };
 
 class CommandSession {
@@ -68,6 +71,8 @@ class CommandSession {
   void emergency_stop();
 
  private:
+  /// One step of waiting for an answer.
+  void wait();
   void send_protected(CanFrame frame, uint8_t& counter);
   void send_command();
   void handle_frame(const CanFrame& frame);

@@ -68,13 +68,14 @@ CommandKey read_key_file(const std::filesystem::path& file) {
     throw InputError(file.string() + ": " + std::strerror(errno) +
                      "; screed key makes a key and gives it to the robot");
   }
-  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-    throw InputError(file.string() + ": others may use this key; run chmod 600 " + file.string());
-  }
   std::ifstream stream(file);
   std::string line;
   if (!std::getline(stream, line)) throw InputError(file.string() + ": cannot be read, or empty");
-  return parse_key(line, file.string() + ":1");
+  const CommandKey key = parse_key(line, file.string() + ":1");
+  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    throw InputError(file.string() + ": others may use this key; run chmod 600 " + file.string());
+  }
+  return key;
 }
 
 void write_key_file(const std::filesystem::path& file, const CommandKey& key) {

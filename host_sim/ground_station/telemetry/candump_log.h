@@ -49,6 +49,9 @@ class CandumpReader {
   /// The next line that is not empty; false at the end. Throws InputError when reading fails.
   bool next(LineKind& kind, LoggedFrame& frame);
 
+  /// What messages call it.
+  [[nodiscard]] const std::string& path() const { return path_; }
+
   /// Number of the line that next() read, from 1.
   [[nodiscard]] uint64_t line_number() const { return line_number_; }
 

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "host_sim/core/errors.h"
+
 namespace screed {
 
 static_assert(std::endian::native == std::endian::little, "bits are taken as they stand in memory");
@@ -73,6 +75,16 @@ bool LogDecoder::next(DecodedFrame& decoded) {
     return true;
   }
   return false;
+}
+
+void LogDecoder::expect_messages() const {
+  if (statistics_.messages > 0) return;
+  const std::string& path = reader_.path();
+  if (statistics_.lines == 0) throw InputError(path + ": is empty; expected a log of candump -L");
+  const bool no_log = statistics_.unreadable_lines == statistics_.lines;
+  throw InputError(path +
+                   (no_log ? ": is no candump log: " : ": holds no message that can be read: ") +
+                   statistics_.text());
 }
 
 }  // namespace screed

@@ -47,6 +47,9 @@ class LogDecoder {
 
   [[nodiscard]] const DecodeStatistics& statistics() const { return statistics_; }
 
+  /// Of a log that was read to its end: throws InputError when it held no message.
+  void expect_messages() const;
+
  private:
   void watch_counter(const CanFrame& frame);
 

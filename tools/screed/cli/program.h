@@ -26,38 +26,69 @@ inline std::string command_name(const CLI::App& app) {
   return name;
 }
 
-/// What is wrong with a command line: the parser's words, or a word that is no subcommand; and the
-/// word that was probably meant.
+/// An option, not a negative number.
+inline bool is_option(const std::string& word) {
+  const bool is_number = word.size() > 1 && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+  return word.size() > 1 && word[0] == '-' && word != "--" && !is_number;
+}
+
+inline std::string suggestion(const std::string& mistyped, const std::vector<std::string>& words) {
+  const std::string nearest = nearest_word(mistyped, words);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
+inline std::string no_subcommand(const CLI::App& at, const std::string& word) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : at.get_subcommands({})) known.push_back(command->get_name());
+  return "'" + word + "' is no subcommand" + suggestion(word, known);
+}
+
+/// What is wrong with a command line: the parser's words, or a word that is no subcommand or no
+/// option; and the word that was probably meant.
 inline std::string wrong_command_line(const CLI::App& app, const CLI::ParseError& error) {
+  // Others name a value. One that misses a word may have come to it by a word that is too many.
+  const bool of_a_word = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                         dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const std::vector<std::string> unknown = app.remaining(true);
-  if (unknown.empty()) return error.what();
+  if (!of_a_word || unknown.empty()) return error.what();
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
   const std::string& word = unknown.front();
-  const bool is_option = word.rfind("--", 0) == 0;
-  std::vector<std::string> known;
-  if (is_option) {
+  if (is_option(word)) {
+    std::vector<std::string> known;
     for (const CLI::Option* option : at->get_options()) {
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     }
-  } else {
-    for (const CLI::App* command : at->get_subcommands({})) known.push_back(command->get_name());
+    const std::string name = word.substr(0, word.find('='));
+    return "'" + name + "' is no option" + suggestion(name, known);
   }
-  const bool no_subcommand = !is_option && at->get_require_subcommand_min() > 0;
-  const std::string nearest = nearest_word(word.substr(0, word.find('=')), known);
-  return (no_subcommand ? "'" + word + "' is no subcommand" : std::string(error.what())) +
-         (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+  if (at->get_require_subcommand_min() > 0) return no_subcommand(*at, word);
+  return error.what();
 }
 
-/// `screed help sim` is `screed sim --help`. Arguments without the program's name, last first, as
-/// the parser takes them.
+/// Of a command line whose first words are to lead to a subcommand: what is wrong with the word
+/// that leads to none; empty: nothing. The parser looks at --help first.
+inline std::string wrong_word(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const CLI::App* at = &app;
+  std::string path = app.get_name();
+  for (const std::string& word : arguments) {
+    if (is_option(word) || at->get_require_subcommand_min() == 0) break;
+    const auto below =
+        at->get_subcommands([&](const CLI::App* command) { return command->check_name(word); });
+    if (below.empty()) return no_subcommand(*at, word) + " (see " + path + " --help)";
+    at = below.front();
+    path += " " + word;
+  }
+  return "";
+}
+
+/// `screed help sim` is `screed sim --help`. Arguments without the program's name.
 inline std::vector<std::string> arguments_of(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
   if (!arguments.empty() && arguments.front() == "help") {
     arguments.erase(arguments.begin());
     arguments.emplace_back("--help");
   }
-  std::reverse(arguments.begin(), arguments.end());
   return arguments;
 }
 
@@ -74,7 +105,11 @@ int run_program(CLI::App& app, int argc, char** argv, Body body) {
   use_help_format(app);
   std::signal(SIGXFSZ, SIG_IGN);  // past a limit of file sizes a write fails, as on a full disk
   try {
-    app.parse(arguments_of(argc, argv));
+    std::vector<std::string> arguments = arguments_of(argc, argv);
+    if (const std::string wrong = wrong_word(app, arguments); !wrong.empty())
+      return fail(kWrongInput, wrong);
+    std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
+    app.parse(arguments);
     return body();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version

@@ -1,5 +1,6 @@
 // `screed calibrate`: walks a person through calibrating a robot's IMU over the radio and stores
 // what was found in the robot.
+#include <poll.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -15,9 +16,9 @@
 #include "host_sim/ground_station/link/robot_view.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
-#include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/link/link_options.h"
+#include "tools/screed/link/store_calibration.h"
 
 namespace screed {
 namespace {
@@ -46,7 +47,8 @@ class Calibration {
         session_(*link_, {command_key(arguments.link),
                           true,
                           [this](const LinkFrame& frame) { on_frame(frame); },
-                          {}}) {}
+                          {},
+                          [] { stop_if_interrupted("waiting for the robot's answer"); }}) {}
 
   int run() {
     meet();
@@ -55,14 +57,23 @@ class Calibration {
     } else {
       collect_on_screen();
     }
-    if (over()) throw RunError("calibration given up; nothing was changed");
+    stop_if_interrupted("calibrating; nothing was changed");
+    if (given_up_) throw RunError("calibration given up; nothing was changed");
     const ImuCalibration calibration = collector_.fit();
     print(calibration);
     if (!arguments_.yes && !asked("store this in the robot? [y/n] ")) {
       std::cout << "nothing was changed\n";
       return 0;
     }
-    return store(calibration);
+    store_calibration(
+        calibration,
+        {[this] { wait_until_disarmed(); },
+         [this](uint16_t index, int32_t value) { return session_.write_parameter(index, value); },
+         [this](const CommandAnswer& answer) {
+           return answer_text(answer, robot_said(), wall_clock_us());
+         }},
+        std::cout);
+    return 0;
   }
 
  private:
@@ -80,7 +91,10 @@ class Calibration {
 
   void meet() {
     const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
-    while (!interrupted() && wall_clock_us() < end_us && !session_.ready()) session_.pump(kPump);
+    while (wall_clock_us() < end_us && !session_.ready()) {
+      stop_if_interrupted("waiting for the robot");
+      session_.pump(kPump);
+    }
     if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
     if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
   }
@@ -124,8 +138,14 @@ class Calibration {
     draw_calibration(page, input);
   }
 
-  static bool asked(const char* question) {
+  /// Stays the robot's ground station until there is an answer.
+  bool asked(const char* question) {
     std::cout << question << std::flush;
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    while (poll(&input, 1, 0) <= 0) {
+      stop_if_interrupted("calibrating; nothing was changed");
+      session_.pump(kPump);
+    }
     std::string answer;
     return std::getline(std::cin, answer) && !answer.empty() &&
            (answer[0] == 'y' || answer[0] == 'Y');
@@ -170,8 +190,8 @@ class Calibration {
   void wait_until_disarmed() {
     const uint64_t end_us = wall_clock_us() + kPutDown_us;
     bool said = false;
-    while (!interrupted() && wall_clock_us() < end_us) {
-      session_.pump(kPump);
+    while (wall_clock_us() < end_us) {
+      pump_interruptible();
       if (state() == "disarmed") return;
       if (state() == "fault") {
         if (!said) std::cout << "put the robot down, level" << std::endl;
@@ -181,25 +201,14 @@ class Calibration {
         session_.run(CommandOp::kDisarm);
       }
       const uint64_t pause_us = wall_clock_us() + 500'000;
-      while (wall_clock_us() < pause_us) session_.pump(kPump);
+      while (wall_clock_us() < pause_us) pump_interruptible();
     }
-    throw RunError("the robot is not disarmed but '" + state() + "'; nothing was changed");
+    throw RunError("the robot is not disarmed but '" + state() + "'");
   }
 
-  int store(const ImuCalibration& calibration) {
-    for (const CalibrationParameter& parameter : calibration_parameters(calibration)) {
-      const uint16_t index = parameter_index(parameter.name);
-      checked_parameter(index, parameter.value);
-      wait_until_disarmed();
-      const std::optional<CommandAnswer> answer = session_.write_parameter(index, parameter.value);
-      std::cout << parameter.name << " = " << parameter_text(index, parameter.value) << ": "
-                << (answer.has_value() ? answer_text(*answer, robot_said(), wall_clock_us())
-                                       : "no answer")
-                << std::endl;
-      if (!answer.has_value() || !answer->done())
-        throw RunError("not all parameters were stored; calibrate again");
-    }
-    return 0;
+  void pump_interruptible() {
+    stop_if_interrupted("waiting until the robot is disarmed");
+    session_.pump(kPump);
   }
 
   const CalibrateArguments& arguments_;

@@ -28,13 +28,15 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
   const std::string target = options.out.empty() ? beside_log(options) : options.out;
   LogDecoder decoder(options.log);
   DecodedFrame frame;
+  bool more = decoder.next(frame);
+  if (!more) decoder.expect_messages();  // before anything is made
   if (options.csv) {
     CsvTables tables(target, options.numbers);
-    while (decoder.next(frame)) tables.add(frame);
+    for (; more; more = decoder.next(frame)) tables.add(frame);
     for (const std::string& name : tables.finish()) out << name << "\n";
   } else {
     McapFile file(target);
-    while (decoder.next(frame)) file.add(frame);
+    for (; more; more = decoder.next(frame)) file.add(frame);
     file.finish();
     out << target << "\n";
   }

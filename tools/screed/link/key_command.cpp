@@ -74,16 +74,18 @@ class UsbConsole {
   FileDescriptor port_;
 };
 
-CommandKey key_in(const Arguments& arguments) {
-  const std::filesystem::path file(arguments.file);
+CommandKey new_key_in(const Arguments& arguments) {
+  const CommandKey key = random_key(static_cast<uint8_t>(arguments.robot_id.value_or(1)));
+  write_key_file(arguments.file, key);
+  std::printf("%s: a new key for robot %d\n", arguments.file.c_str(), key.robot_id);
+  return key;
+}
+
+/// Nothing where there is no file.
+std::optional<CommandKey> key_in(const Arguments& arguments) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    const CommandKey key = random_key(static_cast<uint8_t>(arguments.robot_id.value_or(1)));
-    write_key_file(file, key);
-    std::printf("%s: a new key for robot %d\n", arguments.file.c_str(), key.robot_id);
-    return key;
-  }
-  const CommandKey key = read_key_file(file);
+  if (!std::filesystem::exists(arguments.file, error)) return std::nullopt;
+  const CommandKey key = read_key_file(arguments.file);
   if (arguments.robot_id.has_value() && *arguments.robot_id != key.robot_id) {
     throw InputError(arguments.file + ": is the key of robot " + std::to_string(key.robot_id) +
                      "; --robot-id says " + std::to_string(*arguments.robot_id));
@@ -93,9 +95,14 @@ CommandKey key_in(const Arguments& arguments) {
 }
 
 int run_key_command(const Arguments& arguments) {
-  const CommandKey key = key_in(arguments);
-  if (arguments.port.empty()) return 0;
-  const bool restarted = provision_key(arguments.port, key);
+  const std::optional<CommandKey> present = key_in(arguments);
+  const auto get_key = [&] { return present.has_value() ? *present : new_key_in(arguments); };
+  if (arguments.port.empty()) {
+    get_key();
+    return 0;
+  }
+  // A new key is made once there is a robot to take it.
+  const bool restarted = provision_key(arguments.port, get_key);
   std::printf(restarted
                   ? "%s: the robot has the key and restarts\n"
                   : "%s: the robot has the key, but cannot restart now: switch it off and on\n",
@@ -114,12 +121,13 @@ CommandKey random_key(uint8_t robot_id) {
   return key;
 }
 
-bool provision_key(const AskConsole& ask, const std::string& port, const CommandKey& key) {
+bool provision_key(const AskConsole& ask, const std::string& port, const GetKey& get_key) {
   ask("");  // ends what somebody has typed
   const std::string version = ask("v");
   if (version.rfind("screed ", 0) != 0) {
     throw RunError(port + ": no robot's console answers here; the key was not sent");
   }
+  const CommandKey key = get_key();
   char id[3];
   std::snprintf(id, sizeof id, "%02X", static_cast<unsigned>(key.robot_id));
   const std::string digits = key_text(key).substr(0, 2 * key.bytes.size());
@@ -132,10 +140,10 @@ bool provision_key(const AskConsole& ask, const std::string& port, const Command
   return false;
 }
 
-bool provision_key(const std::string& port, const CommandKey& key) {
+bool provision_key(const std::string& port, const GetKey& get_key) {
   UsbConsole console(port);
   return provision_key([&console](const std::string& line) { return console.ask(line); }, port,
-                       key);
+                       get_key);
 }
 
 void register_key_command(CLI::App& root, Program& program) {

@@ -15,12 +15,15 @@ CommandKey random_key(uint8_t robot_id);
 /// not.
 using AskConsole = std::function<std::string(const std::string& line)>;
 
-/// Stores the key on the robot behind `ask` and restarts it. The key is sent only when a robot's
-/// console has answered before: not over a radio module by mistake. Returns false when the robot
-/// has the key but cannot restart now. Throws RunError.
-bool provision_key(const AskConsole& ask, const std::string& port, const CommandKey& key);
+/// Gives the key; called once a robot's console has answered.
+using GetKey = std::function<CommandKey()>;
+
+/// Stores the key on the robot behind `ask` and restarts it. The key is asked for and sent only
+/// when a robot's console has answered before: not over a radio module by mistake. Returns false
+/// when the robot has the key but cannot restart now. Throws RunError.
+bool provision_key(const AskConsole& ask, const std::string& port, const GetKey& get_key);
 
 /// Opens the port and does that. Throws RunError, InputError for a port that does not exist.
-bool provision_key(const std::string& port, const CommandKey& key);
+bool provision_key(const std::string& port, const GetKey& get_key);
 
 }  // namespace screed

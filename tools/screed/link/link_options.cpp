@@ -6,20 +6,15 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/can_link.h"
 #include "host_sim/ground_station/link/serial_link.h"
-#include "tools/screed/cli/number_option.h"
 #include "tools/screed/link/remembered_link.h"
 
 namespace screed {
 namespace {
 
-bool names_a_link(const LinkArguments& arguments) {
-  return arguments.port.has_value() || arguments.can.has_value() || arguments.pty.has_value();
-}
-
 /// As the user meant them: a command line that names a link says all; one that names none has the
 /// rest from what is remembered.
 LinkArguments with_remembered(const LinkArguments& arguments) {
-  if (names_a_link(arguments)) return arguments;
+  if (links_named(arguments) > 0) return arguments;
   LinkArguments all = read_remembered_link(remembered_link_file());
   if (arguments.baud.has_value()) all.baud = arguments.baud;
   if (arguments.api.has_value()) all.api = arguments.api;
@@ -37,6 +32,11 @@ std::unique_ptr<Link> open(const LinkArguments& link) {
 
 }  // namespace
 
+int links_named(const LinkArguments& arguments) {
+  return int{arguments.port.has_value()} + int{arguments.can.has_value()} +
+         int{arguments.pty.has_value()};
+}
+
 void add_link_options(CLI::App& command, LinkArguments& arguments) {
   command
       .add_option("--port", arguments.port, "Serial port of the radio module, e.g. /dev/ttyUSB0")
@@ -46,11 +46,11 @@ void add_link_options(CLI::App& command, LinkArguments& arguments) {
   command.add_option("--pty", arguments.pty, "Virtual serial port offered by screed sim --pty")
       ->type_name("DEVICE");
   add_number(command, "--baud", arguments.baud, "Baud rate of the serial port (default: 57600)",
-             {9600, 230400});
+             kBaudRange);
   add_number(command, "--api", arguments.api,
              "API mode of the radio module (parameter AP): 1 plain, 2 escaped; 0: transparent "
              "(default: 0)",
-             {0, 2});
+             kApiRange);
   command.add_flag("--remember", arguments.remember,
                    "Remember this link and the key file for calls that name no link");
 }
@@ -65,14 +65,12 @@ void add_key_option(CLI::App& command, LinkArguments& arguments) {
 
 std::unique_ptr<Link> open_link(const LinkArguments& arguments) {
   const LinkArguments link = with_remembered(arguments);
-  const int chosen =
-      int{link.port.has_value()} + int{link.can.has_value()} + int{link.pty.has_value()};
-  if (chosen != 1) {
+  if (links_named(link) != 1) {
     throw InputError(
         "name one link: --port DEVICE, --can INTERFACE or --pty DEVICE; --remember keeps it for "
         "later calls");
   }
-  if (!names_a_link(arguments)) {
+  if (links_named(arguments) == 0) {
     std::cerr << "using " << remembered_link_text(link) << ", remembered in "
               << remembered_link_file().string() << "\n";
   }
@@ -88,7 +86,14 @@ std::unique_ptr<Link> open_link(const LinkArguments& arguments) {
 
 CommandKey command_key(const LinkArguments& arguments) {
   const LinkArguments link = with_remembered(arguments);
-  return link.key.has_value() ? read_key_file(*link.key) : test_key();
+  if (!link.key.has_value()) return test_key();
+  try {
+    return read_key_file(*link.key);
+  } catch (const InputError& error) {
+    if (arguments.key.has_value()) throw;
+    throw InputError(std::string(error.what()) + " (key remembered in " +
+                     remembered_link_file().string() + ")");
+  }
 }
 
 }  // namespace screed

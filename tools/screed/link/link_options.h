@@ -8,8 +8,13 @@
 
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/station/command_key.h"
+#include "tools/screed/cli/number_option.h"
 
 namespace screed {
+
+/// Of --baud [Bd] and --api, and of the same keys of the remembered link.
+inline constexpr NumberRange kBaudRange{9600, 230400};
+inline constexpr NumberRange kApiRange{0, 2};
 
 struct LinkArguments {
   std::optional<std::string> port;
@@ -20,6 +25,9 @@ struct LinkArguments {
   std::optional<std::string> key;
   bool remember = false;
 };
+
+/// How many of port, can and pty are there; one is right.
+int links_named(const LinkArguments& arguments);
 
 void add_link_options(CLI::App& command, LinkArguments& arguments);
 void add_key_option(CLI::App& command, LinkArguments& arguments);

@@ -124,10 +124,10 @@ int get(const ParamArguments& arguments) {
   return 0;
 }
 
-/// Writes one, and says so: "climb_speed = 150 mm/s: done".
-bool write_to(RobotSession& robot, const ParameterValue& value) {
+/// Writes one, and says so: "climb_speed = 150 mm/s: done", behind what it was before.
+bool write_to(RobotSession& robot, const ParameterValue& value, const std::string& before = "") {
   const std::string what =
-      std::string(name_of(value.index)) + " = " + parameter_text(value.index, value.value);
+      before + name_of(value.index) + " = " + parameter_text(value.index, value.value);
   return robot.say(what, robot.commands().write_parameter(value.index, value.value));
 }
 
@@ -212,9 +212,9 @@ int load(const ParamArguments& arguments) {
   }
   std::size_t written = 0;
   for (const ParameterValue& value : writes) {
-    std::cout << name_of(value.index) << " was "
-              << parameter_text(value.index, get_parameter(before, value.index)) << "; ";
-    if (!write_to(robot, value)) break;
+    const std::string was = std::string(name_of(value.index)) + " was " +
+                            parameter_text(value.index, get_parameter(before, value.index)) + "; ";
+    if (!write_to(robot, value, was)) break;
     ++written;
   }
   std::vector<ParameterValue> done(writes.begin(),

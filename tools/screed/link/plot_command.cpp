@@ -28,10 +28,13 @@ struct PlotData {
   std::vector<std::map<uint8_t, SignalPoints>> by_robot;  ///< of each signal
   std::set<uint8_t> robots;
   ValueRange time_s;  ///< of all messages
-  std::string statistics;
 };
 
 PlotData read_log(const PlotOptions& options, std::ostream& err) {
+  if (options.to_s.has_value() && *options.to_s < options.from_s) {
+    throw InputError("--to " + plain_text(*options.to_s) + ": is before --from " +
+                     plain_text(options.from_s));
+  }
   PlotData data;
   data.signals.reserve(options.signals.size());
   for (const std::string& path : options.signals) data.signals.emplace_back(path);
@@ -59,10 +62,12 @@ PlotData read_log(const PlotOptions& options, std::ostream& err) {
       data.robots.insert(frame.node);
     }
   }
-  if (decoder.statistics().damaged() > 0) {
-    err << options.log << ": " << decoder.statistics().text() << "\n";
+  decoder.expect_messages();
+  const std::string statistics = decoder.statistics().text();
+  if (data.robots.empty()) {
+    throw InputError(options.log + ": holds none of these signals in this time; " + statistics);
   }
-  data.statistics = decoder.statistics().text();
+  if (decoder.statistics().damaged() > 0) err << options.log << ": " << statistics << "\n";
   return data;
 }
 
@@ -108,10 +113,6 @@ StackedChart plot_chart(const PlotOptions& options, std::ostream& err) {
       series.push_back({i, robot});
       kinds.push_back({data.signals[i].unit(), data.signals[i].is_state()});
     }
-  }
-  if (series.empty()) {
-    throw InputError(options.log + ": holds none of these signals in this time; " +
-                     data.statistics);
   }
   if (!missing.empty()) {
     err << "note: " << options.log << " holds no message with " << missing << " in this time\n";

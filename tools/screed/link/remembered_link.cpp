@@ -30,27 +30,36 @@ constexpr TextKey kTexts[] = {
 struct NumberKey {
   const char* name;
   std::optional<int> LinkArguments::*value;
+  const NumberRange& range;
 };
 constexpr NumberKey kNumbers[] = {
-    {"baud", &LinkArguments::baud},
-    {"api", &LinkArguments::api},
+    {"baud", &LinkArguments::baud, kBaudRange},
+    {"api", &LinkArguments::api, kApiRange},
 };
 
-/// False: there is no such key, or its value is not allowed.
-bool take(LinkArguments& link, const IniEntry& entry) {
-  if (entry.section != "link" || entry.value.empty()) return false;
+constexpr char kAllowedKeys[] = "port, can, pty, baud, api and key in [link]";
+
+/// What is allowed in place of the entry; nothing: it is taken.
+std::optional<std::string> take(LinkArguments& link, const IniEntry& entry) {
+  if (entry.section != "link" || entry.value.empty()) return kAllowedKeys;
   for (const TextKey& key : kTexts) {
     if (entry.key != key.name) continue;
     link.*key.value = entry.value;
-    return true;
+    return std::nullopt;
   }
   for (const NumberKey& key : kNumbers) {
     if (entry.key != key.name) continue;
-    link.*key.value = finite_number<int>(entry.value);
-    return (link.*key.value).has_value();
+    const std::optional<int> number = finite_number<int>(entry.value);
+    if (!number.has_value() || !key.range.contains(*number)) {
+      return "whole numbers " + plain_text(key.range.low) + " to " + plain_text(key.range.high);
+    }
+    link.*key.value = number;
+    return std::nullopt;
   }
-  return false;
+  return kAllowedKeys;
 }
+
+constexpr char kWrittenAnew[] = "; screed writes the file anew with --remember";
 
 }  // namespace
 
@@ -72,12 +81,15 @@ LinkArguments read_remembered_link(const fs::path& file) {
   text << input.rdbuf();
   if (!input) throw InputError(file.string() + ": cannot be read");
   for (const IniEntry& entry : read_ini_text(text.str(), file.string())) {
-    if (take(link, entry)) continue;
+    const std::optional<std::string> allowed = take(link, entry);
+    if (!allowed.has_value()) continue;
     std::string message = file.string();
     message += ":" + std::to_string(entry.line) + ": '" + entry.key + " = " + entry.value;
-    throw InputError(message +
-                     "' is not allowed; allowed are port, can, pty, baud, api and key in [link]; "
-                     "screed writes the file anew with --remember");
+    throw InputError(message + "' is not allowed; allowed are " + *allowed + kWrittenAnew);
+  }
+  if (links_named(link) > 1) {
+    throw InputError(file.string() + ": names several links; allowed is one of port, can and pty" +
+                     kWrittenAnew);
   }
   return link;
 }

@@ -16,13 +16,17 @@ namespace {
 constexpr std::chrono::milliseconds kPump{20};
 constexpr uint64_t kAnswerTimeout_us = 3'000'000;
 constexpr uint64_t kStopPeriod_us = 200'000;
+constexpr char kNoAnswer[] = "no answer";
 
 }  // namespace
 
 RobotSession::RobotSession(const LinkArguments& arguments, const CommandKey& key)
     : link_(open_link(arguments)),
-      session_(*link_,
-               {key, true, [this](const LinkFrame& frame) { fleet_.add_frame(frame); }, {}}) {
+      session_(*link_, {key,
+                        true,
+                        [this](const LinkFrame& frame) { fleet_.add_frame(frame); },
+                        {},
+                        [] { stop_if_interrupted("waiting for the robot's answer"); }}) {
   catch_interrupts();
 }
 
@@ -33,14 +37,21 @@ void RobotSession::meet() {
       return robot.second.value("heartbeat.link_alive").value_or(0.0) != 0.0;
     });
   };
-  while (!interrupted() && wall_clock_us() < end_us && !(session_.ready() && heard()))
+  while (wall_clock_us() < end_us && !(session_.ready() && heard())) {
+    stop_if_interrupted("waiting for the robot");
     session_.pump(kPump);
+  }
   if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
   if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
 }
 
-std::string RobotSession::words(const std::optional<CommandAnswer>& answer) {
-  if (!answer.has_value() || fleet_.robots().empty()) return "no answer";
+std::optional<int> RobotSession::node() const {
+  if (fleet_.robots().empty()) return std::nullopt;
+  return fleet_.robots().begin()->first.node;
+}
+
+std::string RobotSession::reason(const std::optional<CommandAnswer>& answer) {
+  if (!answer.has_value() || fleet_.robots().empty()) return kNoAnswer;
   const LatestTelemetry& robot = fleet_.robots().begin()->second.latest();
   if (answer->result == static_cast<uint8_t>(message::CommandAckResult::kFaultPresent)) {
     // The sentences name the robot's own limits.
@@ -48,24 +59,25 @@ std::string RobotSession::words(const std::optional<CommandAnswer>& answer) {
     for (const std::string_view limit : limits_to_read(answer->detail, robot))
       session_.read_parameter(parameter_index(std::string(limit)), read);
   }
-  return answer_text(*answer, robot, wall_clock_us());
+  return refusal_text(*answer, robot, wall_clock_us());
 }
 
 bool RobotSession::say(const std::string& what, const std::optional<CommandAnswer>& answer) {
-  std::cout << what << ": " << words(answer) << std::endl;
-  return answer.has_value() && answer->done();
+  const std::string why_not = reason(answer);
+  const char* const refused = why_not.empty() ? "done" : why_not == kNoAnswer ? "" : "refused: ";
+  std::cout << what << ": " << refused << why_not << std::endl;
+  return why_not.empty();
 }
 
 int32_t RobotSession::read_parameter(uint16_t index) {
   std::optional<CommandAnswer> answer;
   const std::optional<int32_t> value = session_.read_parameter(index, answer);
-  if (interrupted()) throw RunError("interrupted");
   if (!value.has_value())
-    throw RunError(std::string(kParameterTable[index].name) + ": " + words(answer));
+    throw RunError(std::string(kParameterTable[index].name) + ": " + reason(answer));
   return *value;
 }
 
-bool RobotSession::emergency_stop() {
+std::optional<RobotKey> RobotSession::emergency_stop() {
   // Sent before anything is heard: the robot may be deaf to the ground but not the ground to it.
   session_.emergency_stop();
   const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
@@ -74,15 +86,13 @@ bool RobotSession::emergency_stop() {
     session_.pump(kPump);
     for (const auto& [key, robot] : fleet_.robots()) {
       if (robot.value("heartbeat.emergency_stop").value_or(0.0) == 0.0) continue;
-      std::cout << "estop: " << key.text() << " has stopped\n";
-      return true;
+      return key;
     }
     if (wall_clock_us() < again_us) continue;
     session_.emergency_stop();
     again_us += kStopPeriod_us;
   }
-  std::cout << "estop: sent, but no robot says that it has stopped\n";
-  return false;
+  return std::nullopt;
 }
 
 void RobotSession::hold() {

@@ -19,17 +19,24 @@ class RobotSession {
   RobotSession(const RobotSession&) = delete;
   RobotSession& operator=(const RobotSession&) = delete;
 
+  // Ctrl-C ends all that waits for the robot by TaskStopped.
+
   /// Waits until the robot is heard, and hears this ground station. Throws RunError.
   void meet();
+  /// The robot's node; nothing before it was heard.
+  std::optional<int> node() const;
 
+  /// Why a command was not done: "no answer", or the robot's reason; empty when it was. Asks the
+  /// robot for the limits that it is about.
+  std::string reason(const std::optional<CommandAnswer>& answer);
   /// Prints "WHAT: done", or why not; true when it is done.
   bool say(const std::string& what, const std::optional<CommandAnswer>& answer);
 
   /// The value that the robot has. Throws RunError with its reason when it gives none.
   int32_t read_parameter(uint16_t index);
 
-  /// Sends the emergency stop until a robot says that it has stopped; says so. False: none did.
-  bool emergency_stop();
+  /// Sends the emergency stop until a robot says that it has stopped. Nothing: none did.
+  std::optional<RobotKey> emergency_stop();
 
   /// Stays the robot's ground station until interrupted.
   void hold();
@@ -38,9 +45,6 @@ class RobotSession {
   const std::string& link_name() const { return link_->name(); }
 
  private:
-  /// The answer with its reason; asks the robot for the limits that it is about.
-  std::string words(const std::optional<CommandAnswer>& answer);
-
   std::unique_ptr<Link> link_;
   FleetView fleet_;
   CommandSession session_;

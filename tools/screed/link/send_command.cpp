@@ -1,19 +1,27 @@
 // `screed send`: one command to a robot, and its answer in words. Exit codes: 0 done, 1 refused or
-// no answer, 2 wrong input.
+// no answer, 2 wrong input, 130 interrupted.
 #include <cmath>
+#include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "host_sim/ground_station/telemetry/schema.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/link/robot_session.h"
 
 namespace screed {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct SendArguments {
   LinkArguments link;
   bool hold = false;
+  bool json = false;
   double speed_m_per_s = 0.0;
   double yaw_rate_deg_per_s = 0.0;
 };
@@ -31,13 +39,53 @@ constexpr SimpleCommand kSimpleCommands[] = {
     {"clear", CommandOp::kClear, "Clear a fault whose cause is gone"},
 };
 
+Json or_null(const auto& value) {
+  return value.has_value() ? Json(*value) : Json(nullptr);
+}
+
+/// What programs read of a command and its answer.
+void print_json(Json sent, RobotSession& robot, const std::optional<CommandAnswer>& answer) {
+  const std::string reason = robot.reason(answer);
+  sent["robot"] = or_null(robot.node());
+  sent["done"] = reason.empty();
+  sent["answer"] = answer.has_value()
+                       ? Json(find_signal("command_ack.result").signal->text(answer->result))
+                       : Json(nullptr);
+  sent["reason"] = reason.empty() ? Json(nullptr) : Json(reason);
+  std::cout << sent.dump(2) << std::endl;
+}
+
+/// `sent`: the command's name and what it was given.
 int send_command(const SendArguments& arguments, CommandOp op, uint32_t argument,
-                 const std::string& name) {
+                 const Json& sent) {
   RobotSession robot(arguments.link, command_key(arguments.link));
   robot.meet();
-  if (!robot.say(name, robot.commands().run(op, argument))) return 1;
+  const std::optional<CommandAnswer> answer = robot.commands().run(op, argument);
+  if (arguments.json) {
+    print_json(sent, robot, answer);
+  } else {
+    robot.say(sent["command"], answer);
+  }
+  if (!answer.has_value() || !answer->done()) return 1;
   if (arguments.hold) robot.hold();
   return 0;
+}
+
+int send_emergency_stop(const SendArguments& arguments) {
+  const std::optional<RobotKey> stopped = RobotSession(arguments.link, test_key()).emergency_stop();
+  if (arguments.json) {
+    Json json = {{"command", "estop"}};
+    json["robot"] = stopped.has_value() ? Json(stopped->node) : Json(nullptr);
+    json["done"] = stopped.has_value();
+    std::cout << json.dump(2) << std::endl;
+  } else {
+    std::cout << "estop: "
+              << (stopped.has_value() ? stopped->text() + " has stopped"
+                                      : "sent, but no robot says that it has stopped")
+              << std::endl;
+  }
+  stop_if_interrupted("waiting for a robot that says it has stopped");
+  return stopped.has_value() ? 0 : 1;
 }
 
 }  // namespace
@@ -49,6 +97,7 @@ void register_send_command(CLI::App& root, Program& program) {
   add_key_option(*command, arguments->link);
   command->add_flag("--hold", arguments->hold,
                     "Keep sending heartbeats after the command, until Ctrl-C");
+  command->add_flag("--json", arguments->json, "Print command and answer as JSON");
   command->require_subcommand(1);
   command->fallthrough();
   const auto on = [&program](CLI::App* what, const std::function<int()>& act) {
@@ -56,11 +105,12 @@ void register_send_command(CLI::App& root, Program& program) {
     what->callback([&program, act] { program.action = act; });
   };
   for (const SimpleCommand& simple : kSimpleCommands) {
-    on(command->add_subcommand(simple.name, simple.meaning),
-       [arguments, simple] { return send_command(*arguments, simple.op, 0, simple.name); });
+    on(command->add_subcommand(simple.name, simple.meaning), [arguments, simple] {
+      return send_command(*arguments, simple.op, 0, {{"command", simple.name}});
+    });
   }
   on(command->add_subcommand("estop", "Stop immediately (emergency stop); needs no key"),
-     [arguments] { return RobotSession(arguments->link, test_key()).emergency_stop() ? 0 : 1; });
+     [arguments] { return send_emergency_stop(*arguments); });
 
   CLI::App* drive = command->add_subcommand("drive", "Drive, with the algorithm \"drive\" running");
   add_number(*drive, "SPEED", arguments->speed_m_per_s, "Speed [m/s]", {-2.0, 2.0})->required();
@@ -73,7 +123,10 @@ void register_send_command(CLI::App& root, Program& program) {
     uint8_t bytes[3];
     put_drive_argument(bytes, argument);
     return send_command(*arguments, CommandOp::kDrive,
-                        static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16), "drive");
+                        static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16),
+                        {{"command", "drive"},
+                         {"speed_m_per_s", arguments->speed_m_per_s},
+                         {"yaw_rate_deg_per_s", arguments->yaw_rate_deg_per_s}});
   });
 }
 

@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/made_folders.h"
 #include "host_sim/core/random.h"
 #include "nn/batch/batch_network.h"
 #include "nn/data/features.h"
@@ -18,6 +19,7 @@
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
+#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/nn/nn_tables.h"
 
 namespace screed {
@@ -38,13 +40,6 @@ struct NnArguments {
   bool pictures = true;
 };
 
-fs::path make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
-  return folder;
-}
-
 nn::TrainingConfiguration configuration_of(const NnArguments& arguments) {
   nn::TrainingConfiguration configuration =
       nn::read_training_configuration(arguments.configuration);
@@ -58,13 +53,12 @@ nn::TrainingConfiguration configuration_of(const NnArguments& arguments) {
 }
 
 fs::path out_folder(const NnArguments& arguments, const std::string& name) {
-  return make_folder(arguments.out.empty() ? fs::path("out") / "nn" / name
-                                           : fs::path(arguments.out));
+  return arguments.out.empty() ? fs::path("out") / "nn" / name : fs::path(arguments.out);
 }
 
 // ---- preprocess
 
-void write_table(const fs::path& file, const nn::FeatureTable& table) {
+void write_table(AtomicFile& file, const nn::FeatureTable& table) {
   std::string text = "frame";
   for (const std::string& name : table.names) text += "," + name;
   text += "\n";
@@ -77,22 +71,35 @@ void write_table(const fs::path& file, const nn::FeatureTable& table) {
     }
     text += "\n";
   }
-  write_file(file, text);
+  file.write(text);
 }
 
 int run_preprocess(const NnArguments& arguments) {
   const nn::TrainingConfiguration configuration = configuration_of(arguments);
-  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
-  const fs::path folder = out_folder(arguments, configuration.name);
+  TaskBar bar(false);
+  const TaskProgress progress = bar.progress();
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions, progress);
+  std::vector<std::pair<std::string, const nn::FeatureTable*>> tables;
   std::size_t kept = 0;
   for (const nn::FeatureTable& table : data.training) {
-    write_table(folder / ("train_" + table.source + ".csv"), table);
+    tables.emplace_back("train_" + table.source + ".csv", &table);
     kept += table.rows();
   }
   for (const nn::TestTable& test : data.tests) {
-    if (test.form == "as trained")
-      write_table(folder / ("test_" + test.label + ".csv"), test.table);
+    if (test.form == "as trained") tables.emplace_back("test_" + test.label + ".csv", &test.table);
   }
+  MadeFolders folders;
+  const fs::path folder = folders.make(out_folder(arguments, configuration.name));
+  // All tables or none.
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (const auto& [name, table] : tables) {
+    report_progress(progress, "writing tables", files.size(), tables.size());
+    files.push_back(std::make_unique<AtomicFile>(folder / name));
+    write_table(*files.back(), *table);
+  }
+  stop_if_interrupted("writing tables");
+  for (const std::unique_ptr<AtomicFile>& file : files) file->commit();
+  bar.clear();
   std::printf("%zu of %zu training frames stay\n", kept, data.training_frames);
   std::printf("%-24s %14s %14s\n", "feature", "middle", "half range");
   for (const nn::FeatureScale& scale : data.preprocessing.scales()) {
@@ -121,16 +128,25 @@ void write_losses(const fs::path& file, const nn::TrainedNetwork& network) {
 
 int run_train(const NnArguments& arguments) {
   const nn::TrainingConfiguration configuration = configuration_of(arguments);
-  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
+  TaskBar tasks(false);
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions, tasks.progress());
+  tasks.clear();
+  MadeFolders folders;
   const fs::path folder = out_folder(arguments, configuration.name);
   nn::TrainingOptions options;
-  options.checkpoints = make_folder(folder / "checkpoints");
+  options.checkpoints = folders.make(folder / "checkpoints");
   options.resume = arguments.resume;
-  catch_interrupts();
   options.stop = &interrupted();
   ProgressBar bar(std::cerr);
   options.progress = [&](double share, const std::string& note) { bar.show_share(share, note); };
-  const std::vector<nn::TrainedNetwork> networks = nn::train(configuration, data, options);
+  const std::vector<nn::TrainedNetwork> networks = [&] {
+    try {
+      return nn::train(configuration, data, options);
+    } catch (const TaskStopped&) {
+      bar.clear();
+      throw;
+    }
+  }();
   bar.finish();
 
   const nn::Model model = nn::make_model(configuration, data, networks);
@@ -140,7 +156,8 @@ int run_train(const NnArguments& arguments) {
     write_losses(folder / ("loss_" + configuration.networks[i].name() + ".csv"), networks[i]);
   }
   if (arguments.pictures) nn::draw_losses(configuration, networks, folder);
-  const nn::Evaluation evaluation = nn::evaluate(model, data.tests);
+  const nn::Evaluation evaluation = nn::evaluate(model, data.tests, tasks.progress());
+  tasks.clear();
   std::cout << (arguments.json ? evaluation_json(evaluation)
                                : evaluation_text(evaluation, configuration));
   if (!arguments.json) std::printf("\nmodel in %s\n", file.c_str());
@@ -153,7 +170,9 @@ int run_train(const NnArguments& arguments) {
 int run_quantise(const NnArguments& arguments) {
   const nn::TrainingConfiguration configuration = configuration_of(arguments);
   nn::Model model = nn::read_model(arguments.model);
-  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions);
+  TaskBar bar(false);
+  const nn::PreparedData data = nn::prepare(configuration, arguments.sessions, bar.progress());
+  bar.clear();
   if (model.training_data != data.hash || model.name != configuration.name ||
       model.seed != configuration.seed || model.networks.size() != configuration.networks.size()) {
     throw InputError(
@@ -180,14 +199,18 @@ int run_quantise(const NnArguments& arguments) {
 int run_eval(const NnArguments& arguments) {
   const nn::TrainingConfiguration configuration = configuration_of(arguments);
   const nn::Model model = nn::read_model(arguments.model);
+  TaskBar bar(false);
   const std::vector<nn::TestTable> tests =
-      nn::prepare_tests(configuration, model, arguments.sessions);
-  const nn::Evaluation evaluation = nn::evaluate(model, tests);
+      nn::prepare_tests(configuration, model, arguments.sessions, bar.progress());
+  const nn::Evaluation evaluation = nn::evaluate(model, tests, bar.progress());
+  bar.clear();
   std::cout << (arguments.json ? evaluation_json(evaluation)
                                : evaluation_text(evaluation, configuration));
   if (arguments.pictures) {
-    const fs::path folder = out_folder(arguments, configuration.name);
-    const std::vector<fs::path> files = nn::draw_evaluation(model, tests, folder);
+    MadeFolders folders;
+    const fs::path folder = folders.make(out_folder(arguments, configuration.name));
+    const std::vector<fs::path> files = nn::draw_evaluation(model, tests, folder, bar.progress());
+    bar.clear();
     if (!arguments.json) std::printf("\n%zu charts in %s\n", files.size(), folder.c_str());
   }
   return 0;

@@ -21,6 +21,7 @@
 #include "nn/terrain/window_network.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/task_bar.h"
 #include "tools/screed/viewer/camera.h"
 #include "tools/screed/viewer/pixel_drawing.h"
 #include "tools/screed/viewer/terrain_image.h"
@@ -226,7 +227,8 @@ struct Prediction {
 };
 
 void compare_on(const std::string& run, const CompareOptions& options, const AnyNetwork& any,
-                const nn::WindowNetwork* window) {
+                const nn::WindowNetwork* window, TaskBar& bar) {
+  const TaskProgress progress = bar.progress();
   const nn::DriveStrides drive(run);
   if (drive.tracks() ? any.tracks == nullptr : any.wheels == nullptr) {
     throw InputError(any.file + ": is a network of " + (drive.tracks() ? "wheels; " : "tracks; ") +
@@ -253,7 +255,7 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
   if (drive.tracks()) {
     const auto& network = any.tracks;
     nn::SinkageReplay pressed(drive);
-    const nn::TrackSoilModel& as_it_was = pressed.after(begin);
+    const nn::TrackSoilModel& as_it_was = pressed.after(begin, progress);
     const auto fresh = [&] { return std::make_shared<nn::TrackSoilModel>(as_it_was); };
     add_tracks("even depth", fresh(),
                [&](nn::TrackSoilModel& on, std::size_t i) { on.step_evenly(drive[i]); });
@@ -286,9 +288,11 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
 
   std::vector<nn::Stride> path;
   for (std::size_t i = begin; i < end; ++i) {
+    report_progress(progress, "predicting", i - begin, end - begin);
     path.push_back(drive[i]);
     for (const Prediction& one : all) one.step(i);
   }
+  bar.clear();
   const nn::TerrainComparison c = nn::compare(before, real, real);
   std::printf("%s: %zu strides, touched %.3f m^2, changed there by %.3f mm RMS\n", run.c_str(),
               path.size(), c.touched_m2, c.true_change_mm);
@@ -320,7 +324,11 @@ int run_compare(const CompareOptions& options) {
     constexpr std::uint64_t kSeed = 1;
     window = std::make_unique<nn::WindowNetwork>(pointers, options.epochs, kSeed, print_epoch);
   }
-  for (const std::string& run : options.runs) compare_on(run, options, network, window.get());
+  const CatchInterrupts signals;
+  for (const std::string& run : options.runs) {
+    TaskBar bar(false, fs::path(run).filename().string() + ": ");
+    compare_on(run, options, network, window.get(), bar);
+  }
   return 0;
 }
 

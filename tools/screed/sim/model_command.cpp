@@ -1,4 +1,5 @@
 // `screed model check`: what Screed finds in a robot model, and what is doubtful about it.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -9,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
+#include "host_sim/core/name_list.h"
 #include "host_sim/physics/vehicle/model_report.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
@@ -48,18 +51,46 @@ std::string fixed(double value, int decimals) {
   return buffer;
 }
 
-/// A URDF file, an experiment that names one, or a robot that comes with Screed.
+std::string shipped_robots() {
+  std::vector<std::string> names = {"rover5"};  // of its board
+  for (const auto& entry : fs::directory_iterator(data_folders().data / "robots"))
+    names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return name_list(names);
+}
+
+void read_experiment_of(const fs::path& file, const std::string& board, CheckedModel& model) {
+  model.experiment = read_experiment(file);
+  model.file = find_model_file(model.experiment, board);
+}
+
+/// A robot that comes with Screed, or else an experiment that does.
+void read_named(const std::string& name, const std::string& board, CheckedModel& model) {
+  try {
+    model.experiment.vehicle.model = name;
+    model.file = find_model_file(model.experiment, board);
+    return;
+  } catch (const InputError&) {  // No robot has this name.
+  }
+  fs::path file;
+  try {
+    file = find_experiment(name);
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) + "; robots that come with it: " + shipped_robots());
+  }
+  read_experiment_of(file, board, model);
+}
+
+/// A URDF file, an experiment that names one, or a robot or experiment that comes with Screed.
 CheckedModel read_model(const Arguments& arguments) {
   CheckedModel model;
   const fs::path given(arguments.file);
   if (given.extension() == ".ini") {
-    model.experiment = read_experiment(given);
-    model.file = find_model_file(model.experiment, arguments.board);
+    read_experiment_of(given, arguments.board, model);
   } else if (given.has_extension() || given.has_parent_path()) {
     model.file = given;
   } else {
-    model.experiment.vehicle.model = arguments.file;
-    model.file = find_model_file(model.experiment, arguments.board);
+    read_named(arguments.file, arguments.board, model);
   }
   VehicleSection& vehicle = model.experiment.vehicle;
   if (!arguments.chassis_link.empty()) vehicle.chassis_link = arguments.chassis_link;
@@ -227,7 +258,8 @@ void register_model_command(CLI::App& root, Program& program) {
   const auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("FILE", arguments->file,
-                   "URDF file, experiment that names one, or robot that comes with Screed")
+                   "URDF file, experiment that names one, or robot or experiment that comes with "
+                   "Screed")
       ->required();
   command->add_option("--board", arguments->board, "Board that drives the robot")
       ->capture_default_str();

@@ -25,6 +25,7 @@
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/cli/task_bar.h"
 
 namespace screed {
@@ -237,6 +238,25 @@ class CurveFile {
   uint64_t next_ = 0;
 };
 
+/// How much of a run without a live view is leveled.
+class LeveledBar {
+ public:
+  LeveledBar() : bar_(std::cerr) {}
+  LeveledBar(const LeveledBar&) = delete;
+  LeveledBar& operator=(const LeveledBar&) = delete;
+  ~LeveledBar() { bar_.clear(); }
+
+  void show(const GridRun& run) {
+    constexpr uint64_t kCycles = 1000;  // between looks at all cells
+    if (run.cycles() % kCycles != 0) return;
+    const GridProgress now = run.progress();
+    bar_.show_share(now.progress, "leveled, cycle " + std::to_string(now.cycle));
+  }
+
+ private:
+  ProgressBar bar_;
+};
+
 void render(const GridOptions& options, const std::vector<GridFrame>& frames) {
   TaskBar bar(options.quiet);
   const bool rendered = render_scene(options.render, frames, options.render_width, bar.progress());
@@ -270,8 +290,11 @@ int run_one(const GridOptions& options, const std::string& version) {
                    run.world().lowest(), run.world().highest(), options.speed);
       view->show(frame_of(run), run.progress().progress);
     }
+    std::optional<LeveledBar> bar;
+    if (!view && !options.quiet) bar.emplace();
     while (!run.finished() && !interrupted()) {
       run.cycle();
+      if (bar) bar->show(run);
       if (recorder) recorder->add_cycle(run);
       if (curve) curve->add(run, false);
       if (view && (run.finished() || run.cycles() % view->cycles_a_frame() == 0)) {
@@ -310,10 +333,18 @@ int run_replay(const GridOptions& options) {
       view->show(replay.frame(), static_cast<double>(replay.frame().cycle) / all);
     };
     if (view) show();
+    std::optional<ProgressBar> bar;
+    if (!view && !options.quiet) bar.emplace(std::cerr);
     while (!replay.finished() && !interrupted()) {
       replay.cycle();
+      if (bar) {
+        bar->show_share(
+            static_cast<double>(replay.frame().cycle) / static_cast<double>(replay.cycles()),
+            "replaying");
+      }
       if (view && (replay.finished() || replay.frame().cycle % view->cycles_a_frame() == 0)) show();
     }
+    if (bar) bar->clear();
   }
   if (!replay.finished()) return interrupted_exit_code();
   const bool matches = replay.matches();

@@ -156,15 +156,6 @@ std::string elided(const std::string& words, const TextStyle& style, double widt
   return kEllipsis;
 }
 
-TextStyle shrunk(const std::string& words, TextStyle style, double width, double least_px,
-                 const Measure& measure) {
-  const double needed = measure(words, style);
-  if (needed > width && width > 0.0) {
-    style.size_px = std::max(least_px, style.size_px * width / needed);
-  }
-  return style;
-}
-
 std::vector<std::string> wrapped(const std::string& words, const TextStyle& style, double width,
                                  const Measure& measure) {
   std::vector<std::string> lines;

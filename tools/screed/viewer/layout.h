@@ -36,9 +36,6 @@ TextItem text_item(Pixel at, const std::string& words, const TextStyle& style,
 /// The words, cut off with an ellipsis where they are wider than `width`.
 std::string elided(const std::string& words, const TextStyle& style, double width,
                    const Measure& measure);
-/// The style, set smaller where the words are wider than `width`, down to `least_px`.
-TextStyle shrunk(const std::string& words, TextStyle style, double width, double least_px,
-                 const Measure& measure);
 /// Lines no wider than `width`, broken at blanks; a word that is wider is elided.
 std::vector<std::string> wrapped(const std::string& words, const TextStyle& style, double width,
                                  const Measure& measure);

@@ -50,6 +50,25 @@ double loss(const std::vector<float>& out, const Examples& examples) {
   return sum / static_cast<double>(out.size());
 }
 
+TEST(NetworkTrainer, AnEpochThatIsStoppedLeavesTheStateBeforeIt) {
+  const NetworkConfiguration network = small_network(BatchNormalisation::kScaled, true);
+  const Examples examples = random_examples(2100);  // three chunks of batches
+  int asked = 0;
+  const auto in_the_midst = [&] { return ++asked == 2; };
+  const auto never = [] { return false; };
+  NetworkTrainer stopped(network, 7);
+  NetworkTrainer other(network, 7);
+  EXPECT_TRUE(stopped.train_epoch(examples, never));
+  EXPECT_TRUE(other.train_epoch(examples));
+  EXPECT_FALSE(stopped.train_epoch(examples, in_the_midst));
+  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(stopped.epochs(), 1U);
+  EXPECT_EQ(stopped.state().parameters, other.state().parameters);
+  EXPECT_TRUE(stopped.train_epoch(examples, never));
+  EXPECT_TRUE(other.train_epoch(examples));
+  EXPECT_EQ(stopped.state().parameters, other.state().parameters);
+}
+
 // f = (x - 1)^2 + 10 (y + 2)^2 from (4, 4), worked out step by step from the rule of Igel and
 // Huesken (2000): x: 3.9, 3.78, 3.636, ...; y: likewise while the signs stay.
 TEST(Optimisers, IrpropMinusFollowsThePublishedRule) {

@@ -155,6 +155,22 @@ TEST_F(CommandSessionTest, SilenceEndsAfterAWhile) {
   EXPECT_EQ(robot_.sent_with(kIdCommand), 0U);
 }
 
+TEST_F(CommandSessionTest, WaitingEndsWhenItIsToldTo) {
+  struct Ended {};
+  robot_.silent = true;
+  const auto after_a_second = [this] {
+    if (robot_.now_us >= 1'000'000) throw Ended();
+  };
+  CommandSession session{robot_,
+                         {test_key(), true, {}, [this] { return robot_.now_us; }, after_a_second}};
+  std::optional<CommandAnswer> answer;
+  EXPECT_THROW(session.run(CommandOp::kArm), Ended);
+  EXPECT_EQ(robot_.now_us, 1'000'000U);
+  EXPECT_THROW(session.read_parameter(3, answer), Ended);
+  EXPECT_THROW(session.write_parameter(3, 7), Ended);
+  EXPECT_EQ(robot_.now_us, 1'000'000U);
+}
+
 TEST_F(CommandSessionTest, AnotherKeyIsRefused) {
   CommandKey other = test_key();
   other.bytes[0] ^= 1U;

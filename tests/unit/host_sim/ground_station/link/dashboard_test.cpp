@@ -231,6 +231,24 @@ TEST_F(DashboardTest, CurvesWithoutRoomAreNamed) {
   expect_words(draw(80, 41), {"power.battery mV"});
 }
 
+TEST_F(DashboardTest, TheValueOfACurveThatIsOldIsPale) {
+  // In the curve's upper edge, 14 cells from its right end.
+  const auto style_of_value = [this] {
+    const TextCanvas canvas = page(80, 41);
+    for (int y = 0; y < canvas.height(); ++y) {
+      std::u32string row;
+      for (int x = 0; x < canvas.width(); ++x) row += canvas.at(x, y).character;
+      if (row.find(U"attitude.roll deg") != std::u32string::npos) {
+        return canvas.at(static_cast<int>(row.find_first_of(U"0123456789", 66)), y).style;
+      }
+    }
+    return CellStyle::kAlarm;
+  };
+  EXPECT_EQ(style_of_value(), CellStyle::kTitle);
+  input_.now_us += 3'000'000;
+  EXPECT_EQ(style_of_value(), CellStyle::kDim);
+}
+
 TEST_F(DashboardTest, ALinkOfALongNameHidesNothing) {
   input_.link_name = "/dev/serial/by-id/usb-FTDI_FT231X_USB_UART_DN00ABCD-if00-port0-of-a-hub";
   const std::string text = draw(80, 24);

@@ -74,6 +74,18 @@ TEST_F(KeyFile, OneThatOthersMayReadIsRefused) {
   EXPECT_EQ(read_key_file(file()), test_key());
 }
 
+// Its rights are not the point: whoever is told to change them has named another file.
+TEST_F(KeyFile, OneThatHoldsNoKeyIsCalledSo) {
+  { std::ofstream(file()) << "{\n"; }
+  ASSERT_EQ(chmod(file().c_str(), 0644), 0);
+  try {
+    read_key_file(file());
+    ADD_FAILURE() << "it is taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(":1: not a key"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(KeyFile, MissingOrEmpty) {
   EXPECT_THROW(read_key_file(file()), InputError);
   { const std::ofstream empty(file()); }

@@ -63,6 +63,8 @@ TEST_F(ArmingTest, ATiltHasItsAngleAndItsLimit) {
   say(attitude(8000, 6000));  // cos 80 cos 60: 85 degrees
   robot_.set_parameter("tilt_limit", 4000);
   EXPECT_EQ(obstacles(), Sentences{"tilted 85 degrees, tilt_limit 40 degrees"});
+  say(message::AccelRaw{0, 0, 4098});  // pushed: it seems level
+  EXPECT_EQ(obstacles(), Sentences{"tilted 85 degrees, tilt_limit 40 degrees"});
   // An estimator that has not followed: the accelerometer sees the robot upside down.
   say(attitude(0, 0));
   EXPECT_EQ(obstacles(), Sentences{"tilted beyond tilt_limit, 0 degrees now"});

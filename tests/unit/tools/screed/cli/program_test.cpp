@@ -43,8 +43,16 @@ TEST(RunProgram, NamesTheSubcommandThatWasMeant) {
 TEST(RunProgram, NamesTheOptionThatWasMeant) {
   const Said said = call({"sim", "--druation=3"});
   EXPECT_EQ(said.exit_code, 2);
-  EXPECT_NE(said.text.find("; did you mean --duration? (see prog sim --help)\n"), std::string::npos)
-      << said.text;
+  EXPECT_EQ(said.text,
+            "prog: '--druation' is no option; did you mean --duration? (see prog sim --help)\n");
+}
+
+TEST(RunProgram, NamesAnUnknownOptionWhereASubcommandIsMissing) {
+  EXPECT_EQ(call({"--nosuch"}).text, "prog: '--nosuch' is no option (see prog --help)\n");
+  EXPECT_EQ(call({"-x"}).text, "prog: '-x' is no option (see prog --help)\n");
+  EXPECT_EQ(call({"session", "--nosuch", "info"}).text,
+            "prog: '--nosuch' is no option (see prog session info --help)\n");
+  EXPECT_EQ(call({"--nosuch"}).exit_code, 2);
 }
 
 TEST(RunProgram, SuggestsNothingThatIsFarAway) {
@@ -58,6 +66,14 @@ TEST(RunProgram, HelpIsASubcommandToo) {
   EXPECT_EQ(call({"help"}).text, call({"--help"}).text);
   EXPECT_EQ(call({"help", "session", "export"}).text, call({"session", "export", "--help"}).text);
   EXPECT_NE(call({"help", "sim"}).text.find("How long"), std::string::npos);
+}
+
+TEST(RunProgram, HelpOfAWordThatIsNoSubcommandIsWrongInput) {
+  const std::string meant = "prog: 'simm' is no subcommand; did you mean sim? (see prog --help)\n";
+  EXPECT_EQ(call({"help", "simm"}).text, meant);
+  EXPECT_EQ(call({"simm", "--help"}).text, meant);
+  EXPECT_EQ(call({"simm", "--help"}).exit_code, 2);
+  EXPECT_EQ(call({"help", "session", "exprot"}).text, call({"session", "exprot"}).text);
 }
 
 TEST(EditDistance, CountsLettersPutInLeftOutChangedAndSwapped) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -16,6 +17,7 @@
 #include "tests/temp_folder.h"
 #include "tools/screed/link/decode_command.h"
 #include "tools/screed/link/plot_command.h"
+#include "tools/screed/link/plot_signals.h"
 
 namespace screed {
 namespace {
@@ -155,8 +157,52 @@ TEST_F(Decode, DamageIsSaidAndTheRestIsThere) {
   EXPECT_NE(err_.str().find("2 messages of 4 lines, 2 unreadable (the first is line 2)"),
             std::string::npos)
       << err_.str();
-  EXPECT_EQ(csv("what is this\n"), 1);
-  EXPECT_EQ(csv(""), 0);
+}
+
+/// The message of the InputError.
+std::string refusal_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing is refused";
+}
+
+TEST_F(Decode, WhatIsNoLogIsRefusedAndLeavesNothing) {
+  const std::string others = candump_line(0, "can0", {0x777, 1, {1}});
+  const std::pair<std::string, std::string> wrong[] = {
+      {"what is this\n\x89HDF", ": is no candump log: 0 messages of 2 lines, 2 unreadable"},
+      {others + "nonsense\n", ": holds no message that can be read: 0 messages of 2 lines"},
+      {"", ": is empty"}};
+  for (const auto& [text, said] : wrong) {
+    const std::string path = log(text);
+    for (const bool mcap : {false, true}) {
+      DecodeOptions options;
+      options.log = path;
+      options.csv = !mcap;
+      options.mcap = mcap;
+      const std::string refusal = refusal_of([&] { run_decode(options, out_, err_); });
+      EXPECT_EQ(refusal.rfind(path + said, 0), 0U) << refusal;
+    }
+    PlotOptions plot;
+    plot.log = path;
+    plot.signals = {"attitude.pitch"};
+    const std::string refusal = refusal_of([&] { plot_chart(plot, err_); });
+    EXPECT_EQ(refusal.rfind(path + said, 0), 0U) << refusal;
+  }
+  EXPECT_EQ(out_.str() + err_.str(), "") << "the refusal says all";
+  for (const auto& entry : std::filesystem::directory_iterator(scratch_.path()))
+    EXPECT_EQ(entry.path().filename(), "radio.log");
+}
+
+TEST_F(Decode, APlotThatEndsBeforeItBeginsIsRefused) {
+  PlotOptions options;
+  options.log = log(attitude_line(10, 100, 0));
+  options.signals = {"attitude.pitch"};
+  options.from_s = 10;
+  options.to_s = 5;
+  EXPECT_EQ(refusal_of([&] { plot_chart(options, err_); }), "--to 5: is before --from 10");
 }
 
 TEST_F(Decode, WrongInputIsSaid) {
@@ -332,6 +378,12 @@ TEST_F(Decode, PlotsNameWhatTheLogLacks) {
   EXPECT_NE(err_.str().find("holds no message with power.battery, leveling.state"),
             std::string::npos)
       << err_.str();
+}
+
+TEST_F(Decode, ABandBridgesLossesOfASecond) {
+  const PlotSignal signal("leveling.state");  // 10 times a second
+  EXPECT_EQ(band_row(signal, "", {{0.0, 1}, {0.9, 1}}, 5.0).bands.size(), 1U);
+  EXPECT_EQ(band_row(signal, "", {{0.0, 1}, {1.1, 1}}, 5.0).bands.size(), 2U);
 }
 
 TEST_F(Decode, PlotsKeepThePeaksOfManyPoints) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ CommandKey some_key() {
 TEST(GiveKey, GoesToARobotsConsoleAndRestartsIt) {
   Console console{{{'v', {"screed v1 a_star_32u4 0 0 900 0 0"}}, {'k', {"ok"}}, {'r', {"?", ""}}},
                   {}};
-  EXPECT_TRUE(provision_key(std::ref(console), "port", some_key()));
+  EXPECT_TRUE(provision_key(std::ref(console), "port", some_key));
   const std::vector<std::string> expected = {"", "v", "k000102030405060708090A0B0C0D0E0FAB", "r",
                                              "r"};
   EXPECT_EQ(console.heard, expected);
@@ -46,21 +47,22 @@ TEST(GiveKey, GoesToARobotsConsoleAndRestartsIt) {
 TEST(GiveKey, IsNotSentToWhatIsNoConsole) {
   for (const char* answer : {"", "?", "t0108AC0100000000000"}) {
     Console console{{{'v', {answer}}, {'k', {"ok"}}}, {}};
-    EXPECT_THROW(provision_key(std::ref(console), "port", some_key()), RunError);
+    const auto not_asked = []() -> CommandKey { throw std::logic_error("a key is made"); };
+    EXPECT_THROW(provision_key(std::ref(console), "port", not_asked), RunError);
     EXPECT_EQ(console.heard.size(), 2U) << "no key after " << answer;
   }
 }
 
 TEST(GiveKey, SaysWhenTheRobotRefusesOrCannotRestart) {
   Console refusing{{{'v', {"screed v1"}}, {'k', {"?"}}}, {}};
-  EXPECT_THROW(provision_key(std::ref(refusing), "port", some_key()), RunError);
+  EXPECT_THROW(provision_key(std::ref(refusing), "port", some_key), RunError);
   Console driving{{{'v', {"screed v1"}}, {'k', {"ok"}}, {'r', {"?"}}}, {}};
-  EXPECT_FALSE(provision_key(std::ref(driving), "port", some_key()));
+  EXPECT_FALSE(provision_key(std::ref(driving), "port", some_key));
 }
 
 TEST(GiveKey, APortThatIsNoneIsWrongInput) {
-  EXPECT_THROW(provision_key("/dev/no-such-port", some_key()), InputError);
-  EXPECT_THROW(provision_key("/dev/null", some_key()), InputError);
+  EXPECT_THROW(provision_key("/dev/no-such-port", some_key), InputError);
+  EXPECT_THROW(provision_key("/dev/null", some_key), InputError);
 }
 
 TEST(RandomKey, IsAnotherEveryTime) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <functional>
 
 #include "host_sim/core/errors.h"
 #include "tests/temp_folder.h"
@@ -32,6 +33,16 @@ class Environment {
   const char* name_;
   std::optional<std::string> before_;
 };
+
+/// The message of the InputError.
+std::string refusal_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing is refused";
+}
 
 TEST(RememberedLink, LiesInTheUsersFolderForConfigurations) {
   const Environment home("HOME", "/home/ada");
@@ -80,7 +91,8 @@ TEST(RememberedLink, IsNothingWithoutAFile) {
 TEST(RememberedLink, RefusesWhatItDoesNotKnowWithFileAndLine) {
   const TempFolder folder;
   const fs::path file = folder.path() / "link.ini";
-  for (const char* line : {"baud = fast", "bauds = 9600", "port =", "api = 1.5"}) {
+  for (const char* line : {"baud = fast", "bauds = 9600", "port =", "api = 1.5", "api = 7",
+                           "api = -1", "baud = 9599", "baud = 230401"}) {
     write_text(file, std::string("[link]\n") + line + "\n");
     try {
       read_remembered_link(file);
@@ -89,6 +101,40 @@ TEST(RememberedLink, RefusesWhatItDoesNotKnowWithFileAndLine) {
       EXPECT_EQ(std::string(error.what()).rfind(file.string() + ":2: ", 0), 0U) << error.what();
     }
   }
+}
+
+TEST(RememberedLink, SaysWhichNumbersAreAllowed) {
+  const TempFolder folder;
+  const fs::path file = folder.path() / "link.ini";
+  write_text(file, "[link]\nport = /dev/ttyUSB0\napi = 7\n");
+  EXPECT_EQ(refusal_of([&] { read_remembered_link(file); }),
+            file.string() +
+                ":3: 'api = 7' is not allowed; allowed are whole numbers 0 to 2; screed writes the "
+                "file anew with --remember");
+}
+
+TEST(RememberedLink, OfSeveralLinksIsRefusedWithItsFile) {
+  const TempFolder folder;
+  const fs::path file = folder.path() / "link.ini";
+  write_text(file, "[link]\nport = /dev/ttyUSB0\npty = radio\n");
+  const std::string refusal = refusal_of([&] { read_remembered_link(file); });
+  EXPECT_EQ(refusal.rfind(file.string() + ": names several links", 0), 0U) << refusal;
+}
+
+TEST(RememberedLink, AKeyFileThatIsGoneIsNamedWithTheFileThatRemembersIt) {
+  const TempFolder folder;
+  const Environment config("XDG_CONFIG_HOME", folder.path().c_str());
+  LinkArguments link;
+  link.pty = "radio";
+  link.key = "/nonexistent";
+  write_remembered_link(remembered_link_file(), link);
+  const std::string file = "(key remembered in " + remembered_link_file().string() + ")";
+  const std::string remembered = refusal_of([] { command_key({}); });
+  EXPECT_EQ(remembered.rfind("/nonexistent: No such file", 0), 0U) << remembered;
+  EXPECT_NE(remembered.find(file), std::string::npos) << remembered;
+  LinkArguments given;
+  given.key = "/nonexistent";
+  EXPECT_EQ(refusal_of([&] { command_key(given); }).find(file), std::string::npos);
 }
 
 }  // namespace

@@ -59,6 +59,18 @@ TEST_F(RoffPage, OfASubcommandHasEveryOptionOfItAndThoseBelow) {
   }
 }
 
+TEST_F(RoffPage, HasSectionsForThoseBelowAndDashesThatStayDashes) {
+  for (const CommandNode& below : root_.subcommands) {
+    if (below.name != "session") continue;
+    const std::string page = roff_page(root_, below, "1.2.3");
+    EXPECT_NE(page.find("\n.SS \"screed session export\"\n"), std::string::npos) << page;
+    EXPECT_NE(page.find("\\fB\\-\\-heights\\fR"), std::string::npos) << page;
+    EXPECT_EQ(page.find("--"), std::string::npos) << page;
+    return;
+  }
+  FAIL() << "there is no screed session";
+}
+
 TEST_F(RoffPage, TextIsNoMarkup) {
   if (std::system("command -v man > /dev/null") != 0) GTEST_SKIP() << "man is missing";
   CommandNode odd;

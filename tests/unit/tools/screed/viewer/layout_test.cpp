@@ -186,7 +186,7 @@ TEST_F(ViewerLayout, OverlaysLieApartOnTheTerrain) {
 
 TEST_F(ViewerLayout, TimesLieApartBelowTheTimeline) {
   for (const Size& size : kSizes) {
-    for (const double duration_s : {0.4, 3.0, 60.0, 123456.0, 1e6}) {
+    for (const double duration_s : {0.4, 3.0, 60.0, 123456.0, 8e5, 1e6}) {
       SCOPED_TRACE(::testing::Message() << size.width << "x" << size.height << " " << duration_s);
       const Layout layout = layout_of(size.width, size.height);
       const std::vector<TextItem> texts = timeline_texts(layout, duration_s, measure_);
