@@ -160,9 +160,10 @@ std::vector<Free> free_parameters(SoilFitProblem& problem) {
         std::find_if(std::begin(kSoilParameters), std::end(kSoilParameters),
                      [&](const SoilParameterInfo& info) { return key == info.key; });
     if (row == std::end(kSoilParameters)) {
-      std::string known = "rim_friction, rim_adhesion";
-      for (const SoilParameterInfo& info : kSoilParameters) known.append(", ").append(info.key);
-      throw InputError("fit: unknown parameter '" + key + "'; known are " + known);
+      std::string what = "fit: unknown parameter '";
+      what.append(key).append("'; known are rim_friction, rim_adhesion");
+      for (const SoilParameterInfo& info : kSoilParameters) what.append(", ").append(info.key);
+      throw InputError(what);
     }
     double& value = problem.soil.*(row->member);
     free.push_back({key, &value, {row->min, row->max}, value});
