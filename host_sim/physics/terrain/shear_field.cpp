@@ -5,6 +5,7 @@
 // the first place behind it the share falls to zero, as it began there.
 #include "host_sim/physics/terrain/shear_field.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>

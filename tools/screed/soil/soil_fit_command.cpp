@@ -1,6 +1,8 @@
 // `screed soil fit`: the parameters of a soil from measurements on wheels or plates.
 #include <cmath>
+#include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <numbers>
 
