@@ -68,7 +68,8 @@ BearingCapacityNetwork any_weights(std::uint64_t seed) {
 // A = the lower runs; what the round ends bear makes it a little less deep.
 TEST(TrackSoilModel, AStandingRobotSinksAsBekkerSays) {
   for (const char* name : {"viper", "ding_2011", "soft"}) {
-    const SoilParameters& soil = soil_preset(name);
+    SoilParameters soil = soil_preset(name);
+    soil.exponent = 1.1;  // as published, of plates: the preset's is of a wheel
     const TrackGeometry tracks;
     TrackSoilModel ground(HeightField::flat(0.6, 0.005), soil, tracks);
     for (int i = 0; i < 3; ++i) ground.step_at(Stride{}, TrackPlane{});
@@ -79,7 +80,7 @@ TEST(TrackSoilModel, AStandingRobotSinksAsBekkerSays) {
     const double bekker = soil.k_phi + soil.k_c / tracks.width_m;
     const double depth = std::pow(pressure / bekker, 1.0 / soil.exponent);
     const double stands = -ground.track_plane().height_m / depth;
-    EXPECT_LT(stands, 1.08) << name;
+    EXPECT_LT(stands, 1.05) << name;
     EXPECT_GT(stands, 0.8) << name;
     EXPECT_NEAR(ground.track_plane().forward, 0.0, 1e-5);
     EXPECT_NEAR(ground.track_plane().left, 0.0, 1e-5);
