@@ -23,6 +23,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "host_sim/physics/kernels/kernels.h"
+
 namespace screed {
 
 /// A cell's plastic sinkage before this contact and beside the body, as (2) to (4) give it.
@@ -44,7 +46,7 @@ class CellHistory {
     const auto covered_before = static_cast<double>(covered_);
     SinkageDivision part{static_cast<double>(old_sinkage_), static_cast<double>(beside_)};
     if (is_contact_new(now)) {
-      part.old_sinkage = sunk / std::max({covered, covered_before, kMinShare});
+      part.old_sinkage = sunk / std::max({covered, covered_before, kMinCoveredShare});
       part.beside = sunk - covered * part.old_sinkage;
     } else if (covered < covered_before) {
       part.beside = sunk - covered * (sunk - part.beside) / covered_before;
@@ -57,6 +59,7 @@ class CellHistory {
     return part;
   }
   /// As kept last.
+  double covered() const { return static_cast<double>(covered_); }
   double old_sinkage() const { return static_cast<double>(old_sinkage_); }
   double beside() const { return static_cast<double>(beside_); }
   /// Keeps a division and the share that it is of.
@@ -71,8 +74,6 @@ class CellHistory {
   void release() { step_ = 0; }
 
  private:
-  static constexpr double kMinShare = 1e-3;  // a body that covers less has pressed nothing
-
   uint32_t step_ = 0;  // of the last contact; 0: there is none to go on with
   float covered_ = 0.0F;
   float old_sinkage_ = 0.0F;

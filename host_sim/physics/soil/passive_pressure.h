@@ -36,6 +36,9 @@ class PassivePressure {
   double resistance(double depth_m) const {
     return depth_m * (at_surface_ + 0.5 * per_depth_ * depth_m);
   }
+  /// pressure() at the surface, Pa, and its growth with depth, Pa/m.
+  double at_surface_pa() const { return at_surface_; }
+  double per_depth_pa_per_m() const { return per_depth_; }
   bool none() const { return per_depth_ == 0.0; }
 
  private:

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "host_sim/physics/kernels/kernels.h"
+
 namespace screed {
 
 /// z^n for z >= 0 by linear interpolation between points whose distance grows with z: 32 in each
@@ -28,6 +30,11 @@ class PowerTable {
   }
 
   double exponent() const { return exponent_; }
+  /// For kernels: the same lines; as long as the table lives.
+  PowerLines lines() const {
+    return {&lines_.front().offset, static_cast<double>(kFirst), static_cast<double>(kLines - 1),
+            kDropped};
+  }
   double power(double z) const {
     // A double's leading bits are its octave and place in it.
     int64_t i = (std::bit_cast<int64_t>(z) >> kDropped) - kFirst + 1;

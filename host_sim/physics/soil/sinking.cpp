@@ -12,6 +12,7 @@
 // exceeds 0.3 of the magnitude of its initial (negative) slope.
 #include "host_sim/physics/soil/sinking.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -36,46 +37,20 @@ struct Support {
   Eigen::Matrix3d stiffness;
 };
 
-Support support(const std::vector<SoilSpring>& springs, const Eigen::Vector3d& q) {
-  double f = 0.0;
-  double fx = 0.0;
-  double fy = 0.0;
-  double k = 0.0;
-  double kx = 0.0;
-  double ky = 0.0;
-  double kxx = 0.0;
-  double kxy = 0.0;
-  double kyy = 0.0;
-  for (const SoilSpring& spring : springs) {
-    // (omega x r)_z = omega_x r_y - omega_y r_x
-    const double down = -(q.x() + q.y() * spring.y - q.z() * spring.x);
-    const double elastic = spring.elastic + spring.elastic_slope * down;
-    const double virgin = spring.virgin + spring.virgin_slope * down;
-    const bool elastic_is_lower = elastic < virgin;
-    const double lower = elastic_is_lower ? elastic : virgin;
-    const double force = lower > 0.0 ? lower : 0.0;
-    const double steep = elastic_is_lower ? spring.elastic_slope : spring.virgin_slope;
-    const double slope = lower > 0.0 ? steep : 0.0;
-    f += force;
-    fx += force * spring.x;
-    fy += force * spring.y;
-    k += slope;
-    kx += slope * spring.x;
-    ky += slope * spring.y;
-    kxx += slope * spring.x * spring.x;
-    kxy += slope * spring.x * spring.y;
-    kyy += slope * spring.y * spring.y;
-  }
+Support support(std::span<const SpringBlock> springs, const Eigen::Vector3d& q,
+                const Kernels& kernels) {
+  SpringSums s;
+  kernels.spring_sums(springs.data(), springs.size(), {q.x(), q.y(), q.z()}, s);
   Support sum;
-  sum.force << f, fy, -fx;
-  sum.stiffness << k, ky, -kx, ky, kyy, -kxy, -kx, -kxy, kxx;
+  sum.force << s.f, s.fy, -s.fx;
+  sum.stiffness << s.k, s.ky, -s.kx, s.ky, s.kyy, -s.kxy, -s.kx, -s.kxy, s.kxx;
   return sum;
 }
 
 }  // namespace
 
-int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
-                  BodyMemory& memory) {
+int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> springs,
+                  BodyMemory& memory, const Kernels& kernels) {
   if (!std::isfinite(body.mass_kg)) return 0;
   const bool tilts = !body.inverse_inertia.isZero(0.0);
   Eigen::Matrix3d mobility = Eigen::Matrix3d::Zero();  // acceleration by force
@@ -99,7 +74,7 @@ int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& 
   const Eigen::Vector3d q_free = rate * dt + external * (dt * dt);
 
   Eigen::Vector3d q = Eigen::Vector3d::Zero();
-  Support at = support(springs, q);
+  Support at = support(springs, q, kernels);
   Eigen::Vector3d gradient = mass_per_dt2 * (q - q_free) - at.force;
   int evaluations = 0;
   while (evaluations < kMaxEvaluations) {
@@ -114,7 +89,7 @@ int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& 
     for (;;) {
       ++evaluations;
       next = q + step * direction;
-      at = support(springs, next);
+      at = support(springs, next, kernels);
       gradient = mass_per_dt2 * (next - q_free) - at.force;
       const double slope = gradient.dot(direction);
       if (slope <= -0.3 * initial_slope || evaluations >= kMaxEvaluations) break;
@@ -130,9 +105,7 @@ int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& 
         std::abs(moved.x()) + kTiltArm_m * (std::abs(moved.y()) + std::abs(moved.z()));
     if (std::min(remaining, moved_by) < kConverged_m) break;
   }
-  for (SoilSpring& spring : springs) {
-    spring.sinking = -(q.x() + q.y() * spring.y - q.z() * spring.x);
-  }
+  kernels.spring_sinking(springs.data(), springs.size(), {q.x(), q.y(), q.z()});
   memory.touching = true;
   memory.rate = rate;
   memory.soil_acceleration = mobility * at.force;

@@ -1,25 +1,12 @@
 // How far a rigid body sinks and tilts in one step, together with the soil's springs below it.
 #pragma once
 
-#include <Eigen/Geometry>
-#include <vector>
+#include <span>
 
+#include "host_sim/physics/kernels/kernels.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
 
 namespace screed {
-
-/// The force of one cell over the body's downward displacement there: max(0, min(elastic, virgin)),
-/// each a straight line.
-struct SoilSpring {
-  double elastic;        ///< N, now
-  double elastic_slope;  ///< N/m
-  double virgin;         ///< N, now
-  double virgin_slope;   ///< N/m
-  double x;              ///< position from the body's centre of mass, m
-  double y;
-  /// The answer: the body's downward displacement at this cell in this step, m.
-  double sinking = 0.0;
-};
 
 /// End-of-step implicit: the body moves by q (up, roll, pitch) so that M (q - q_free) / dt^2 is the
 /// springs' force after q. q_free is where it would go without soil: its speed, and what else
@@ -29,7 +16,7 @@ struct SoilSpring {
 /// late. Fills in each spring's `sinking`; leaves 0 where the motion is imposed. Remembers for the
 /// next step. Returns how often the springs' forces were evaluated beyond the first time: one a
 /// Newton step and one a shortening of it; 0 where the motion is imposed.
-int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
-                  BodyMemory& memory);
+int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> springs,
+                  BodyMemory& memory, const Kernels& kernels = best_kernels());
 
 }  // namespace screed

@@ -70,6 +70,7 @@ void average_slip(FootprintContact& contact, const Eigen::Vector3d& velocity, do
 SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOptions& options)
     : soil_(soil),
       options_(options),
+      kernels_(kernels_for(options.instructions)),
       flow_(std::move(surface), soil.repose_deg),
       tan_friction_(std::tan(soil.friction_deg * kDegree)),
       passive_(soil) {
@@ -81,11 +82,16 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
       2 * std::max(1, static_cast<int>(std::ceil(0.5 * spacing / options.sample_spacing_m - 1e-9)));
   // One sample point in each row and column, N-rooks sampling (Shirley 1991): in row j it is at
   // (2 j + 1) mod (n + 1), a permutation of 0..n-1 for even n.
+  const double edge = spacing / samples_per_side_;
+  const auto place = [&](int i) { return 0.5 * (edge - spacing) + i * edge; };
+  lattices_[kCentre] = {{0.0}, {0.0}};
   for (int j = 0; j < samples_per_side_; ++j) {
-    const double edge = spacing / samples_per_side_;
-    const double first = 0.5 * (edge - spacing);
-    permuted_.push_back(first + (2 * j + 1) % (samples_per_side_ + 1) * edge);
-    lattice_.push_back(first + j * edge);
+    lattices_[kOnePerRowAndColumn].x.push_back(place((2 * j + 1) % (samples_per_side_ + 1)));
+    lattices_[kOnePerRowAndColumn].y.push_back(place(j));
+    for (int i = 0; i < samples_per_side_; ++i) {
+      lattices_[kFull].x.push_back(place(i));
+      lattices_[kFull].y.push_back(place(j));
+    }
   }
   volume_before_ = flow_.surface().height_sum();
   histories_.resize(flow_.nodes());
@@ -111,11 +117,11 @@ TerrainReaction SoilBed::press(const Footprint& footprint, const FootprintMotion
 
 void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contacts, double dt,
                     BodyMemory& memory) {
-  cell_count_ = 0;
+  blocks_ = 0;
   ranges_.clear();
-  springs_.clear();
   const bool imposed = !std::isfinite(body.mass_kg);
   const bool tilts = !body.inverse_inertia.isZero(0.0);
+  bool touching = false;
   for (FootprintContact& contact : contacts) {
     const Footprint& footprint = *contact.footprint;
     ContactMemory& kept = *contact.memory;
@@ -130,28 +136,21 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
       elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
     }
     ranges_.push_back(find_cells(contact, elastic));
-    const Range& range = ranges_.back();
-    if (range.begin == range.end) {
+    Range& range = ranges_.back();
+    if (!range.touching) {
       kept.leave();
       continue;
     }
-    measure_patch(footprint, range.begin, kept);
-    ranges_.back().footprint = flow_.begin_footprint(velocity.x(), velocity.y());
-    for (size_t i = range.begin; i < range.end; ++i) {
-      const SoilCell& cell = cells_[i];
-      flow_.cover(cell.node, cell.ix, cell.iy);
-      springs_.push_back({cell_area_ * (cell.pressure + elastic * (cell.pressed - cell.sunk)),
-                          cell_area_ * elastic * (1.0 - range.law.rebound) * cell.share,
-                          cell_area_ * cell.pressure, cell_area_ * cell.rate,
-                          cell.arm.x() + arm.x(), cell.arm.y() + arm.y()});
-    }
+    touching = true;
+    range.footprint = flow_.begin_footprint(velocity.x(), velocity.y());
+    cover(range);
     advance_shear(range, body, contact, dt);
   }
-  if (springs_.empty()) {
+  if (!touching) {
     memory = {};
     return;
   }
-  solve_sinking(body, dt, springs_, memory);
+  solve_sinking(body, dt, {springs_.data(), blocks_}, memory, kernels_);
   for (size_t i = 0; i < contacts.size(); ++i) react(ranges_[i], body, contacts[i], dt);
 }
 

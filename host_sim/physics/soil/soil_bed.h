@@ -15,10 +15,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "host_sim/physics/kernels/kernels.h"
 #include "host_sim/physics/soil/cell_history.h"
 #include "host_sim/physics/soil/material_flow.h"
 #include "host_sim/physics/soil/passive_pressure.h"
@@ -47,6 +49,8 @@ struct SoilOptions {
   /// (the simpler model, for comparisons).
   bool follow_slopes = true;
   double sample_spacing_m = 0.00125;  ///< of the sample points inside a cell, at most
+  /// For tests: all sets of instructions give the same bits.
+  InstructionSet instructions = best_kernels().set;
 };
 
 class SoilBed final : public Terrain {
@@ -82,105 +86,82 @@ class SoilBed final : public Terrain {
   VolumeBalance balance() const override;
 
  private:
-  enum class Lattice : uint8_t {  // the sample points of a cell
-    kCentre,                      // one: below a plane
-    kOnePerRowAndColumn,          // sees what varies along or across as finely as all
-    kFull,                        // all: at the rim of a body with corners
-  };
-  struct Law {       // of the soil under one footprint in one step
-    double bekker;   // k_c / b + k_phi
-    double elastic;  // E, Pa/m
-    const PowerTable* table;
-    WheelStress stress;
-    Eigen::Vector3d sine;    // times a place from the wheel's centre: sine of its angle
-    double per_upright = 1;  // 1 / cosine of the path's slope
-    double rebound = 0.0;    // share of what a wheel presses down that comes up behind it
-  };
-  struct Candidate {
+  struct GridPlace {
     size_t node;
     int ix;
     int iy;
+  };
+  /// The sample points of a cell.
+  enum Lattice : uint8_t {
+    kCentre,              // one: below a plane
+    kOnePerRowAndColumn,  // sees what varies along or across as finely as all
+    kFull,                // all: at the rim of a body with corners
+    kLattices,
+    kNone  // not touched
+  };
+  struct LatticePoints {  // from the cell's centre, m
+    std::vector<double> x;
+    std::vector<double> y;
+  };
+  struct Row {  // candidates of one row of the grid, west to east
+    int iy;
+    int first_ix;
+    int end_ix;
+  };
+  struct Group {  // blocks of cells with the same lattice
     Lattice lattice;
-    size_t first = 0;  // of its sample points
-    size_t count = 0;
-    double reference = 0.0;  // level of the undisturbed surface, m
-    double sunk = 0.0;       // plastic sinkage, m
-    double covered = 0.0;    // share of it below the body
-    SinkageDivision division{};
+    size_t begin;  // among cells_
+    size_t blocks;
+    size_t first_point;
   };
-  struct SoilCell {  // one cell under a footprint, sampled
-    size_t node;
-    int ix;
-    int iy;
-    double share;     // of the cell that carries load
-    double pressed;   // plastic sinkage that this contact requires, earlier contacts included, m
-    double pressure;  // mean pressure at that sinkage, before the body moves in this step, Pa
-    double rate;      // of that pressure with further sinking, Pa/m
-    double slope_x;   // horizontal force of the normal stress, over its vertical force
-    double slope_y;
-    double tilt_x;  // the same of the surface alone, mean over the touching part
-    double tilt_y;
-    Eigen::Vector3d moment;  // about the footprint's centre, per newton of vertical load, m
-    Eigen::Vector3d arm;     // centre of pressure, from the footprint's centre
-    double sunk;             // plastic sinkage, m
-    double depth;            // of the body below the undisturbed surface, mean over the touching
-                             // part, m
+  struct Law {  // of the soil under one footprint in one step
+    CellLaw cell{};
+    const PowerTable* table = nullptr;
+    WheelStress stress;
   };
-  struct Range {  // of one footprint among cells_
-    size_t begin;
-    size_t end;
+  struct Range {  // of one footprint among the blocks of cells_
+    size_t begin = 0;
+    size_t end = 0;
     Law law;
-    size_t footprint;  // as flow_ numbers them
-    RunFrame frame;
-    double rear;  // of the contact along the contour, m
-    double front;
-  };
-
-  /// How a footprint slips over what it touches: sums over its cells, each times its share.
-  struct SlipSums {
-    SlipSums(const Eigen::Vector3d& along, const Eigen::Vector3d& across)
-        : forward(along), side(across) {}
-    void add(const SoilCell& cell, double sliding, double mobilised);
-    Eigen::Vector3d forward;  // level, unit length
-    Eigen::Vector3d side;
-    double share = 0.0;
-    double sum_along = 0.0;  // of the cells' positions from the footprint's centre, m
-    double sum_across = 0.0;
-    double sum_along_squared = 0.0;  // m^2
-    double sum_across_squared = 0.0;
-    double slip_sum = 0.0;  // of their slip times the mobilised share, m/s
+    size_t footprint = 0;  // as flow_ numbers them
+    RunFrame frame{};
+    double rear = 0.0;  // of the contact along the contour, m
+    double front = 0.0;
+    bool touching = false;
   };
 
   Range find_cells(const FootprintContact& contact, double elastic);
+  Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic) const;
   void find_candidates(const Footprint& footprint, double rebound_m);
-  void add_sample_points(const Candidate& candidate);
-  void divide_sinkage();
-  WheelStress wheel_stress(const FootprintContact& contact, Law& law) const;
-  bool sample(const Footprint& footprint, const Candidate& candidate, const Law& law,
-              SoilCell& cell);
-  template <size_t static_count>
-  bool sample_points(const Footprint& footprint, const Candidate& candidate, const Law& law,
-                     SoilCell& cell);
-  void find_extent(const Footprint& footprint, Range& range) const;
-  void measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const;
+  bool find_rows(const Footprint& footprint, double highest);
+  Lattice lattice_of(const Footprint& footprint, size_t candidate, double highest_surface,
+                     double rim) const;
+  void lay_out_cells();
+  void place_points();
+  WheelStress wheel_stress(const FootprintContact& contact, Law& law);
+  void find_extent(const Footprint& footprint, const CellSums& sums, Range& range) const;
+  void measure_patch(const Footprint& footprint, const CellSums& sums, ContactMemory& memory) const;
+  void cover(const Range& range);
   void advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
                      double dt) const;
-  double yield(const SoilCell& cell, double sinking, const Law& law, size_t footprint);
+  ReactionLaw reaction_law(const Range& range, const PressingBody& body,
+                           const FootprintContact& contact) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
-  void dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, double dt);
-  size_t sample_count(Lattice lattice) const;
+  void settle(const Range& range, bool slips);
+  void dig_below(const ReactionSums& sums, const ReactionLaw& law, const Eigen::Isometry3d& pose,
+                 double dt);
 
   SoilParameters soil_;
   SoilOptions options_;
+  const Kernels& kernels_;
   MaterialFlow flow_;
   /// Of Bekker's exponent, finer than anybody knows it.
   static constexpr double kExponentStep = 0.005;
   std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
   double cell_area_;
-  int samples_per_side_;          // along one side of a cell
-  std::vector<double> lattice_;   // rows, and columns, of sample points, from a cell's centre, m
-  std::vector<double> permuted_;  // the column of one sample point in each row
+  int samples_per_side_;  // along one side of a cell
+  std::array<LatticePoints, kLattices> lattices_;
   int64_t volume_before_;
   int64_t compacted_ = 0;
   double compaction_remainder_ = 0.0;  // parts of a unit, for the next step
@@ -190,13 +171,17 @@ class SoilBed final : public Terrain {
   PassivePressure passive_;
   std::vector<CellHistory> histories_;
 
-  // Of the body being pressed; kept for their room.
-  FootprintSamples candidate_points_;  // one a cell, its centre
-  FootprintSamples sample_points_;     // of all candidates, inside the cells
-  std::vector<Candidate> candidates_;
-  std::vector<SoilCell> cells_;  // the first cell_count_ of them
-  size_t cell_count_ = 0;
-  std::vector<SoilSpring> springs_;
+  // Of the footprint being pressed; kept for their room.
+  std::vector<Row> rows_;
+  FootprintSamples candidate_points_;                       // one a cell, its centre
+  std::array<std::vector<GridPlace>, kLattices> candidates_;  // by their lattice
+  std::vector<Group> groups_;
+  FootprintSamples sample_points_;  // inside the cells, a block of lanes after the other
+  // Of the body being pressed.
+  std::vector<CellBlock> cells_;
+  std::vector<GridPlace> places_;  // of the cells' lanes
+  std::vector<SpringBlock> springs_;
+  size_t blocks_ = 0;  // of these in use
   std::vector<Range> ranges_;
 };
 

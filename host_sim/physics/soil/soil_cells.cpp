@@ -25,7 +25,6 @@
 #include <limits>
 
 #include "host_sim/physics/soil/soil_bed.h"
-#include "host_sim/physics/terrain/double2.h"
 
 namespace screed {
 namespace {
@@ -34,14 +33,26 @@ namespace {
 // rises, m.
 constexpr double kStepSinkage_m = 0.001;
 constexpr double kMinPatch_m = 1e-3;  // a narrower patch is rounding at first touch
+// Of a plane around a cell's centre, in cells: half a cell's diagonal is 0.71.
+constexpr double kFlatWithin = 0.75;
+
+Triple triple(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+SurfacePoints points_from(FootprintSamples& samples, size_t first) {
+  return {samples.x.data() + first,           samples.y.data() + first,
+          samples.share.data() + first,       samples.height.data() + first,
+          samples.slope_x.data() + first,     samples.slope_y.data() + first,
+          samples.flat_within.data() + first, samples.passed.data() + first};
+}
 
 }  // namespace
 
-/// The cells that a footprint touches, sampled.
-SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elastic) {
+SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame& frame,
+                                double elastic) const {
   const Footprint& footprint = *contact.footprint;
   const ContactMemory& memory = *contact.memory;
-  const double spacing = flow_.surface().spacing_m();
   // Slip-sinkage raises the exponent.
   const double exponent_index =
       std::min(std::abs(memory.slip), 1.0) * soil_.slip_sinkage / kExponentStep;
@@ -49,130 +60,121 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   // The patch of the last step decides this step's b; at the first touch the body itself does.
   const double b =
       memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();
-  Range range{cell_count_, cell_count_, {}, 0, footprint.run_frame(), 0.0, 0.0};
-  Law& law = range.law;
-  law.bekker = soil_.k_phi + soil_.k_c / b;
-  law.elastic = elastic;
+  Law law;
   law.table = &table;
+  law.cell.bekker = soil_.k_phi + soil_.k_c / b;
+  law.cell.elastic = elastic;
+  law.cell.exponent = table.exponent();
+  law.cell.power = table.lines();
+  law.cell.rebound = footprint.is_wheel() ? soil_.exit_angle * soil_.exit_angle : 0.0;
+  law.cell.half_square = 0.5 * flow_.surface().spacing_m() / samples_per_side_;
+  law.cell.cell_area = cell_area_;
+  law.cell.edge = flow_.surface().spacing_m();
+  law.cell.radial = options_.normal_stress == NormalStress::kRadial;
+  law.cell.centre = triple(footprint.pose().translation());
+  law.cell.axis_x = triple(frame.axes.col(0));
+  law.cell.body_to = triple(contact.arm);
+  return law;
+}
+
+/// The cells that a footprint touches, sampled.
+SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elastic) {
+  const Footprint& footprint = *contact.footprint;
+  ContactMemory& memory = *contact.memory;
+  const double spacing = flow_.surface().spacing_m();
+  Range range;
+  range.begin = range.end = blocks_;
+  range.frame = footprint.run_frame();
+  range.law = law_below(contact, range.frame, elastic);
+  CellLaw& law = range.law.cell;
 
   // Unloaded soil rises by its elastic part: where the body is higher above the ground than that
   // there is no contact. Behind a wheel it rises by more, and the wheel is still touching.
-  double rebound_m = law.bekker * table.power(memory.sinkage + kStepSinkage_m) / elastic;
-  const bool is_wheel = footprint.is_wheel();
-  if (is_wheel) {
-    law.rebound = soil_.exit_angle * soil_.exit_angle;
-    rebound_m += law.rebound * (memory.sinkage + kStepSinkage_m);
-  }
+  const double deepest = memory.sinkage + kStepSinkage_m;
+  const double rebound_m =
+      law.bekker * range.law.table->power(deepest) / elastic + law.rebound * deepest;
   find_candidates(footprint, rebound_m);
-  size_t point_count = 0;
-  for (Candidate& candidate : candidates_) {
-    candidate.first = point_count;
-    candidate.count = sample_count(candidate.lattice);
-    point_count += candidate.count;
-  }
-  sample_points_.clear(point_count);
-  for (const Candidate& candidate : candidates_) add_sample_points(candidate);
+  lay_out_cells();
+  if (groups_.empty()) return range;
+  place_points();
   // One cell of margin: contact is found cell by cell, so the path may have begun up to a cell
   // earlier.
   PathHistory path = memory.path;
   if (path.travel_m != 0.0) path.travel_m += std::copysign(spacing, path.travel_m);
-  footprint.surface(spacing / samples_per_side_, path, sample_points_);
-  divide_sinkage();
-  if (is_wheel) law.stress = wheel_stress(contact, law);
-  if (cells_.size() < cell_count_ + candidates_.size()) {
-    cells_.resize(cell_count_ + candidates_.size());
-  }
-  for (const Candidate& candidate : candidates_) {
-    if (sample(footprint, candidate, law, cells_[cell_count_])) ++cell_count_;
-  }
-  range.end = cell_count_;
-  if (range.begin < range.end) find_extent(footprint, range);
-  return range;
-}
-
-/// Of each candidate: what it has sunk, and how much of that lies below the body. Those that the
-/// body does not reach down to are dropped.
-void SoilBed::divide_sinkage() {
-  size_t kept = 0;
-  for (Candidate& candidate : candidates_) {
-    double covered = 0.0;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (size_t i = candidate.first; i < candidate.first + candidate.count; ++i) {
-      covered += sample_points_.share[i];
-      if (sample_points_.share[i] > 0.0) lowest = std::min(lowest, sample_points_.passed[i]);
+  footprint.surface(spacing / samples_per_side_, path, sample_points_, kernels_);
+  const auto each_group = [&](const auto& kernel) {
+    for (const Group& group : groups_) {
+      kernel(group, points_from(sample_points_, group.first_point),
+             lattices_[group.lattice].x.size());
     }
-    candidate.reference = flow_.reference(candidate.node) * kHeightUnit_m;
-    if (lowest >= candidate.reference) continue;
-    candidate.sunk = candidate.reference - flow_.height(candidate.node) * kHeightUnit_m;
-    candidate.covered = covered / static_cast<double>(candidate.count);
-    candidate.division =
-        histories_[candidate.node].divide(candidate.covered, candidate.sunk, step_);
-    candidates_[kept++] = candidate;
+  };
+  each_group([&](const Group& group, const SurfacePoints& samples, size_t points) {
+    kernels_.divide_cells(&cells_[group.begin], group.blocks, samples, points);
+  });
+  if (footprint.is_wheel()) {
+    range.law.stress = wheel_stress(contact, range.law);
+    law.stress = range.law.stress.shape();
   }
-  candidates_.resize(kept);
+  CellSums sums;
+  sums.rear = std::numeric_limits<double>::infinity();
+  sums.front = -sums.rear;
+  each_group([&](const Group& group, const SurfacePoints& samples, size_t points) {
+    kernels_.sample_cells(&cells_[group.begin], group.blocks, samples, points, law,
+                          &springs_[group.begin], sums);
+  });
+  if (!(sums.area > 0.0)) {
+    blocks_ = range.begin;
+    return range;
+  }
+  range.touching = true;
+  range.end = blocks_;
+  find_extent(footprint, sums, range);
+  measure_patch(footprint, sums, memory);
+  return range;
 }
 
 /// The wheel's entry angle is the mean of what its sample points give: one at the angle theta whose
 /// depth has grown by d has entered at acos(cos max(theta, 0) - d / r).
-WheelStress SoilBed::wheel_stress(const FootprintContact& contact, Law& law) const {
+WheelStress SoilBed::wheel_stress(const FootprintContact& contact, Law& law) {
   const ContactMemory& memory = *contact.memory;
   if (memory.path.travel_m == 0.0) return {};
   const Footprint& footprint = *contact.footprint;
   const Eigen::Matrix3d& axes = footprint.pose().linear();
-  const Eigen::Vector3d& centre = footprint.pose().translation();
   const double per_radius = 1.0 / footprint.radius();
   const double slant = 1.0 / std::sqrt(1.0 + memory.path.gradient * memory.path.gradient);
   const Eigen::Vector3d ahead = slant * std::copysign(1.0, memory.path.travel_m) *
                                 (axes.col(0) + memory.path.gradient * axes.col(2));
-  law.sine = per_radius * ahead;
-  const double upright = std::sqrt(std::max(0.25, 1.0 - ahead.z() * ahead.z()));
-  law.per_upright = 1.0 / upright;
-  double cosine_sum = 0.0;
-  double weight_sum = 0.0;
-  for (const Candidate& candidate : candidates_) {
-    const double floor = candidate.reference - candidate.division.old_sinkage;
-    for (size_t i = candidate.first; i < candidate.first + candidate.count; ++i) {
-      const double grown = floor - sample_points_.passed[i];
-      if (!(sample_points_.share[i] > 0.0) || grown <= 0.0) continue;
-      const double sine = std::max(0.0, (sample_points_.x[i] - centre.x()) * law.sine.x() +
-                                            (sample_points_.y[i] - centre.y()) * law.sine.y() +
-                                            (sample_points_.height[i] - centre.z()) * law.sine.z());
-      const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
-      const double weight = sample_points_.share[i] * grown;
-      cosine_sum += weight * (cosine - grown * upright * per_radius);
-      weight_sum += weight;
-    }
+  law.cell.sine = triple(per_radius * ahead);
+  law.cell.per_upright = 1.0 / std::sqrt(std::max(0.25, 1.0 - ahead.z() * ahead.z()));
+  EntrySums sums;
+  for (const Group& group : groups_) {
+    kernels_.entry_angle(&cells_[group.begin], group.blocks,
+                         points_from(sample_points_, group.first_point),
+                         lattices_[group.lattice].x.size(), law.cell, per_radius, sums);
   }
-  if (weight_sum <= 0.0) return {};
-  const double entry = std::acos(std::clamp(cosine_sum / weight_sum, -1.0, 1.0));
+  if (sums.weight <= 0.0) return {};
+  const double entry = std::acos(std::clamp(sums.cosine / sums.weight, -1.0, 1.0));
   const double rolled =
       std::min(1.0, std::abs(memory.path.travel_m) * per_radius / std::max(std::sin(entry), 0.05));
   return {soil_, footprint.radius(), entry, memory.slip, rolled};
 }
 
 /// From where to where along its contour a footprint touches.
-void SoilBed::find_extent(const Footprint& footprint, Range& range) const {
-  double rear = std::numeric_limits<double>::infinity();
-  double front = -rear;
-  const double half = 0.5 * flow_.surface().spacing_m();
-  for (size_t i = range.begin; i < range.end; ++i) {
-    const double ahead = cells_[i].arm.dot(range.frame.axes.col(0));
-    rear = std::min(rear, ahead - half * cells_[i].share);
-    front = std::max(front, ahead + half * cells_[i].share);
-  }
+void SoilBed::find_extent(const Footprint& footprint, const CellSums& sums, Range& range) const {
   const RunContour& contour = range.frame.contour;
   const double end = contour.half_m + contour.radius_m;
-  range.rear = contour.along(std::max(rear, -end));
-  range.front = contour.along(std::min(front, end));
+  range.rear = contour.along(std::max(sums.rear, -end));
+  range.front = contour.along(std::min(sums.front, end));
   const WheelStress& stress = range.law.stress;
   if (!stress.known()) return;
   // A wheel's are known more finely than the cells lie.
   const double radius = footprint.radius();
-  const double to_path = radius * radius;  // of the sines' direction
-  const double ahead = to_path * range.law.sine.dot(footprint.pose().linear().col(0)) / radius;
-  const double up = to_path * range.law.sine.dot(footprint.pose().linear().col(2)) / radius;
-  const double lowest = radius * std::atan2(up, std::abs(ahead)) * (ahead < 0.0 ? -1.0 : 1.0);
+  const Triple& sine = range.law.cell.sine;
+  const Eigen::Vector3d to_path = radius * Eigen::Vector3d(sine.x, sine.y, sine.z);
+  const double ahead = to_path.dot(footprint.pose().linear().col(0));
+  const double up = to_path.dot(footprint.pose().linear().col(2));
   const double sense = ahead < 0.0 ? -1.0 : 1.0;
+  const double lowest = sense * radius * std::atan2(up, std::abs(ahead));
   const double entry = lowest + sense * radius * stress.entry_rad();
   (sense > 0.0 ? range.front : range.rear) = entry;
   if (stress.shaped()) {
@@ -180,260 +182,184 @@ void SoilBed::find_extent(const Footprint& footprint, Range& range) const {
   }
 }
 
+/// The rows of cells that may lie below a level, from the rectangle that holds the footprint seen
+/// from above. False: there are none.
+bool SoilBed::find_rows(const Footprint& footprint, double highest) {
+  const HeightField& field = flow_.surface();
+  const double spacing = field.spacing_m();
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  rows_.clear();
+  const Eigen::Vector2d forward = footprint.pose().linear().col(0).head<2>();
+  const double level = forward.norm();
+  const Eigen::Vector2d d =
+      level > 0.0 ? Eigen::Vector2d(forward / level) : Eigen::Vector2d::UnitX();
+  const double reach_along = footprint.reach_below(highest, d);
+  if (reach_along < 0.0) return false;
+  const double reach_across = footprint.reach_below(highest, {-d.y(), d.x()});
+  // Cells are squares along the axes: half of their extent along the rectangle's sides.
+  const double half_cell = 0.5 * spacing * (std::abs(d.x()) + std::abs(d.y()));
+  const double along = reach_along + half_cell;
+  const double across = reach_across + half_cell;
+  const double reach_x = footprint.reach_below(highest, Eigen::Vector2d::UnitX());
+  const double reach_y = footprint.reach_below(highest, Eigen::Vector2d::UnitY());
+  const auto cell_of = [&](double coordinate, double begin) {
+    return static_cast<int>(std::floor((coordinate - begin) / spacing + 0.5));
+  };
+  int iy0 = cell_of(centre.y() - reach_y, field.y_min());
+  int iy1 = cell_of(centre.y() + reach_y, field.y_min());
+  if (!field.wrap()) {
+    iy0 = std::max(iy0, 0);
+    iy1 = std::min(iy1, field.ny() - 1);
+  }
+  for (int iy = iy0; iy <= iy1; ++iy) {
+    const double v = field.node_y(iy) - centre.y();
+    double low = -reach_x;
+    double high = reach_x;
+    // |u d_x + v d_y| <= along, |v d_x - u d_y| <= across
+    constexpr double kParallel = 1e-6;
+    const auto limit = [&](double slope, double offset, double reach) {
+      if (std::abs(slope) < kParallel) return;
+      const double a = (-reach - offset) / slope;
+      const double b = (reach - offset) / slope;
+      low = std::max(low, std::min(a, b) - 0.5 * spacing);
+      high = std::min(high, std::max(a, b) + 0.5 * spacing);
+    };
+    limit(d.x(), v * d.y(), along);
+    limit(-d.y(), v * d.x(), across);
+    if (low > high) continue;
+    int ix0 = cell_of(centre.x() + low, field.x_min());
+    int ix1 = cell_of(centre.x() + high, field.x_min());
+    if (!field.wrap()) {
+      ix0 = std::max(ix0, 0);
+      ix1 = std::min(ix1, field.nx() - 1);
+    }
+    if (ix1 >= ix0) rows_.push_back({iy, ix0, ix1 + 1});
+  }
+  return !rows_.empty();
+}
+
+/// With how many sample points a cell is looked at.
+SoilBed::Lattice SoilBed::lattice_of(const Footprint& footprint, size_t candidate,
+                                     double highest_surface, double rim) const {
+  const FootprintSamples& points = candidate_points_;
+  const double spacing = flow_.surface().spacing_m();
+  if (!(points.share[candidate] > 0.0)) return rim > highest_surface ? kNone : kOnePerRowAndColumn;
+  // The lower surface of a convex body is a convex function: it lies above its tangent plane at the
+  // centre of the cell.
+  const double fall =
+      (std::abs(points.slope_x[candidate]) + std::abs(points.slope_y[candidate])) * 0.5 * spacing;
+  if (points.height[candidate] - fall > highest_surface) return kNone;
+  if (points.share[candidate] < 1.0) {
+    return footprint.has_corners() ? kFull : kOnePerRowAndColumn;
+  }
+  return points.flat_within[candidate] > kFlatWithin * spacing ? kCentre : kOnePerRowAndColumn;
+}
+
 /// The cells that a footprint may touch.
 void SoilBed::find_candidates(const Footprint& footprint, double rebound_m) {
   const HeightField& field = flow_.surface();
   const double spacing = field.spacing_m();
-  const Eigen::Vector3d centre = footprint.pose().translation();
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  for (auto& list : candidates_) list.clear();
   // The bound by tiles of the field covers this circle.
   const double radius = footprint.radius_from_above();
   const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rebound_m;
-  candidates_.clear();
-  const Eigen::Vector2d reach = footprint.reach_below(highest);
-  if (reach.x() < 0.0) return;
-  const auto cell_of = [&](double coordinate, double begin) {
-    return static_cast<int>(std::floor((coordinate - begin) / spacing + 0.5));
-  };
-  int ix0 = cell_of(centre.x() - reach.x(), field.x_min());
-  int ix1 = cell_of(centre.x() + reach.x(), field.x_min());
-  int iy0 = cell_of(centre.y() - reach.y(), field.y_min());
-  int iy1 = cell_of(centre.y() + reach.y(), field.y_min());
-  if (!field.wrap()) {
-    ix0 = std::max(ix0, 0);
-    iy0 = std::max(iy0, 0);
-    ix1 = std::min(ix1, field.nx() - 1);
-    iy1 = std::min(iy1, field.ny() - 1);
-  }
-  if (ix1 < ix0 || iy1 < iy0) return;
-  candidate_points_.clear(static_cast<size_t>(ix1 - ix0 + 1) * static_cast<size_t>(iy1 - iy0 + 1));
-  for (int iy = iy0; iy <= iy1; ++iy) {
-    for (int ix = ix0; ix <= ix1; ++ix) candidate_points_.add(field.node_x(ix), field.node_y(iy));
+  if (!find_rows(footprint, highest)) return;
+  size_t count = 0;
+  for (const Row& row : rows_) count += static_cast<size_t>(row.end_ix - row.first_ix);
+  candidate_points_.clear(count);
+  for (const Row& row : rows_) {
+    const double y = field.node_y(row.iy);
+    for (int ix = row.first_ix; ix < row.end_ix; ++ix) candidate_points_.add(field.node_x(ix), y);
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.projected_side(spacing);
-  footprint.surface(edge, candidate_points_);
+  footprint.surface(edge, candidate_points_, kernels_);
   const double rim = footprint.lowest_at_rim(spacing);
   size_t i = 0;
-  for (int iy = iy0; iy <= iy1; ++iy) {
-    for (int ix = ix0; ix <= ix1; ++ix, ++i) {
-      const size_t node = flow_.node_on(ix, iy);
-      const double highest_surface = flow_.height(node) * kHeightUnit_m + rebound_m;
-      Lattice lattice = Lattice::kOnePerRowAndColumn;
-      if (candidate_points_.share[i] > 0.0) {
-        // The lower surface of a convex body is a convex function: it lies above its tangent plane
-        // at the centre of the cell.
-        const double fall =
-            (std::abs(candidate_points_.slope_x[i]) + std::abs(candidate_points_.slope_y[i])) *
-            0.5 * spacing;
-        if (candidate_points_.height[i] - fall > highest_surface) continue;
-        if (candidate_points_.share[i] < 1.0) {
-          lattice = footprint.has_corners() ? Lattice::kFull : Lattice::kOnePerRowAndColumn;
-        } else if (candidate_points_.flat_within[i] > 0.75 * spacing) {
-          // Half a cell's diagonal is 0.71: the surface is plane over the whole cell.
-          lattice = Lattice::kCentre;
-        }
-      } else if (rim > highest_surface) {
-        continue;
-      }
-      candidates_.push_back({.node = node, .ix = ix, .iy = iy, .lattice = lattice});
+  for (const Row& row : rows_) {
+    for (int ix = row.first_ix; ix < row.end_ix; ++ix, ++i) {
+      const size_t node = flow_.node_on(ix, row.iy);
+      const Lattice lattice =
+          lattice_of(footprint, i, flow_.height(node) * kHeightUnit_m + rebound_m, rim);
+      if (lattice != kNone) candidates_[lattice].push_back({node, ix, row.iy});
     }
   }
 }
 
-size_t SoilBed::sample_count(Lattice lattice) const {
-  const auto samples = static_cast<size_t>(samples_per_side_);
-  if (lattice == Lattice::kCentre) return 2;  // the same point twice: they are taken in pairs
-  return lattice == Lattice::kOnePerRowAndColumn ? samples : samples * samples;
-}
-
-void SoilBed::add_sample_points(const Candidate& candidate) {
+/// Candidates become lanes of blocks, those with the same lattice together.
+void SoilBed::lay_out_cells() {
   const HeightField& field = flow_.surface();
-  const double x = field.node_x(candidate.ix);
-  const double y = field.node_y(candidate.iy);
-  if (candidate.lattice == Lattice::kCentre) {
-    sample_points_.add(x, y);
-    sample_points_.add(x, y);
-    return;
-  }
-  if (candidate.lattice == Lattice::kFull) {
-    for (const double dy : lattice_) {
-      for (const double dx : lattice_) sample_points_.add(x + dx, y + dy);
+  groups_.clear();
+  size_t first_point = 0;
+  for (int lattice = 0; lattice < kLattices; ++lattice) {
+    const std::vector<GridPlace>& candidates = candidates_[static_cast<size_t>(lattice)];
+    if (candidates.empty()) continue;
+    const size_t blocks = whole_blocks(candidates.size()) / kLanes;
+    groups_.push_back({static_cast<Lattice>(lattice), blocks_, blocks, first_point});
+    first_point += blocks * kLanes * lattices_[static_cast<size_t>(lattice)].x.size();
+    blocks_ += blocks;
+    if (cells_.size() < blocks_) {
+      cells_.resize(2 * blocks_);
+      springs_.resize(2 * blocks_);
+      places_.resize(2 * blocks_ * kLanes);
     }
-    return;
+    for (size_t i = 0; i < blocks * kLanes; ++i) {
+      const bool is_cell = i < candidates.size();
+      const GridPlace& place = candidates[is_cell ? i : candidates.size() - 1];
+      const size_t lane = i % kLanes;
+      CellBlock& block = cells_[groups_.back().begin + i / kLanes];
+      places_[groups_.back().begin * kLanes + i] = place;
+      const Height reference = flow_.reference(place.node);
+      const CellHistory& history = histories_[place.node];
+      block.x[lane] = field.node_x(place.ix);
+      block.y[lane] = field.node_y(place.iy);
+      // Every other cell mirrors its points.
+      const bool spreads = lattice != kCentre;
+      const bool mirrors = lattice == kOnePerRowAndColumn && ((place.ix + place.iy) & 1) != 0;
+      block.spread_x[lane] = spreads ? (mirrors ? -1.0 : 1.0) : 0.0;
+      block.spread_y[lane] = spreads ? 1.0 : 0.0;
+      block.active[lane] = is_cell ? 1.0 : 0.0;
+      block.reference[lane] = reference * kHeightUnit_m;
+      block.sunk[lane] = (reference - flow_.height(place.node)) * kHeightUnit_m;
+      block.fresh[lane] = history.is_contact_new(step_) ? 1.0 : 0.0;
+      block.covered_before[lane] = history.covered();
+      block.old_sinkage[lane] = history.old_sinkage();
+      block.beside[lane] = history.beside();
+    }
   }
-  const bool mirror = ((candidate.ix + candidate.iy) & 1) != 0;  // every other cell mirrors them
-  const double sense = mirror ? -1.0 : 1.0;
-  for (size_t i = 0; i < permuted_.size(); ++i)
-    sample_points_.add(x + sense * permuted_[i], y + lattice_[i]);
+  sample_points_.clear(first_point);
+  sample_points_.count = first_point;
 }
 
-/// Means over a cell of what Bekker's law gives at a lattice of sample points in it, as if nothing
-/// but earlier contacts had touched it.
-bool SoilBed::sample(const Footprint& footprint, const Candidate& candidate, const Law& law,
-                     SoilCell& cell) {
-  // A single pair, as on fine grids, needs no loop.
-  return candidate.count == 2 ? sample_points<2>(footprint, candidate, law, cell)
-                              : sample_points<0>(footprint, candidate, law, cell);
+void SoilBed::place_points() {
+  for (const Group& group : groups_) {
+    const LatticePoints& lattice = lattices_[group.lattice];
+    kernels_.place_points(&cells_[group.begin], group.blocks, lattice.x.data(), lattice.y.data(),
+                          lattice.x.size(), sample_points_.x.data() + group.first_point,
+                          sample_points_.y.data() + group.first_point);
+  }
 }
 
-/// `static_count`: the number of sample points where the compiler knows it, else 0.
-template <size_t static_count>
-bool SoilBed::sample_points(const Footprint& footprint, const Candidate& candidate, const Law& law,
-                            SoilCell& cell) {
-  const size_t first = candidate.first;
-  const size_t count = static_count != 0 ? static_count : candidate.count;
-  const double per_count = 1.0 / static_cast<double>(count);
-  const Eigen::Vector3d& centre = footprint.pose().translation();
-  const double reference = candidate.reference;
-  const double elastic = law.elastic;
-  const double compliance = 1.0 / elastic;
-  const double exponent = law.table->exponent();
-
-  const Double2 zero = broadcast(0.0);
-  const Double2 level = broadcast(reference);
-  const Double2 bekker = broadcast(law.bekker);
-  const Double2 stiffness = broadcast(elastic);
-  const Double2 old_sinkage = broadcast(candidate.division.old_sinkage);
-  const bool shaped = law.stress.shaped();
-  const Double2 sine_x = broadcast(law.sine.x());
-  const Double2 sine_y = broadcast(law.sine.y());
-  const Double2 sine_z = broadcast(law.sine.z());
-  const Double2 per_upright = broadcast(law.per_upright);
-  const Double2 half_square = broadcast(0.5 * flow_.surface().spacing_m() / samples_per_side_);
-  const Double2 tiny = broadcast(1e-9);
-  const Double2 stays = broadcast(1.0 - law.rebound);
-  const Double2 cx = broadcast(centre.x());
-  const Double2 cy = broadcast(centre.y());
-  const Double2 cz = broadcast(centre.z());
-  Double2 shares = zero;
-  Double2 depths = zero;
-  Double2 pressures = zero;
-  Double2 rates = zero;
-  Double2 below = zero;
-  Double2 tilts_x = zero;
-  Double2 tilts_y = zero;
-  Double2 lifts_x = zero;
-  Double2 lifts_y = zero;
-  Double2 arms_x = zero;
-  Double2 arms_y = zero;
-  Double2 arms_z = zero;
-  Double2 z_lifts_x = zero;
-  Double2 z_lifts_y = zero;
-  Double2 twists = zero;
-  for (size_t i = first; i < first + count; i += 2) {
-    const Double2 part = load(&sample_points_.share[i]);
-    const auto over = part > zero;
-    const Double2 height = load(&sample_points_.height[i]);
-    // Deepest so far: where the surface rises again, what has passed before.
-    const Double2 passed = load(&sample_points_.passed[i]);
-    const Double2 deepest = over ? maximum(zero, level - passed) : zero;
-    const Double2 x = load(&sample_points_.x[i]) - cx;
-    const Double2 y = load(&sample_points_.y[i]) - cy;
-    const Double2 z = height - cz;
-    // Below a wheel a point bears as one less deep.
-    Double2 bearing = deepest;
-    if (shaped) {
-      const Double2 sine = x * sine_x + y * sine_y + z * sine_z;
-      bearing = maximum(zero, deepest - law.stress.lift(sine) * per_upright);
-    }
-    // Bekker's curve starts steeper than the soil's own stiffness when n < 1, and in a rut.
-    const Double2 virgin =
-        bekker * Double2{law.table->power(bearing[0]), law.table->power(bearing[1])};
-    // A sample point stands for a small square, across which the surface falls by 2 fall: from the
-    // floor of a rut it takes load as its parts reach the floor.
-    const Double2 fall = minimum(half_square * (magnitude(load(&sample_points_.slope_x[i])) +
-                                                magnitude(load(&sample_points_.slope_y[i]))),
-                                 old_sinkage);
-    const Double2 softened =
-        stiffness * virgin / maximum(virgin + broadcast(2.0) * fall * stiffness, tiny);
-    const Double2 stiff =
-        (over & (fall > zero) ? softened : stiffness) * (bearing - old_sinkage + fall);
-    const auto yields = virgin < stiff;
-    const Double2 loaded = maximum(zero, yields ? virgin : stiff);
-    depths += part * maximum(old_sinkage, old_sinkage + stays * (deepest - old_sinkage) -
-                                              loaded * broadcast(compliance));
-    const Double2 now = shaped ? loaded : loaded - stiffness * (height - passed);
-    const Double2 in_contact = over & (now > zero) ? part : zero;
-    const Double2 weight = in_contact > zero ? part * now : zero;
-    const Double2 slope_x = in_contact > zero ? load(&sample_points_.slope_x[i]) : zero;
-    const Double2 slope_y = in_contact > zero ? load(&sample_points_.slope_y[i]) : zero;
-    const Double2 wx = weight * slope_x;
-    const Double2 wy = weight * slope_y;
-    const Double2 arm_z = in_contact > zero ? z : zero;
-    shares += in_contact;
-    pressures += weight;
-    rates += in_contact * (yields ? broadcast(exponent) * virgin / maximum(bearing, broadcast(1e-9))
-                                  : (over & (fall > zero) ? softened : stiffness));
-    below += in_contact * (level - (in_contact > zero ? height : level));
-    tilts_x += in_contact * slope_x;
-    tilts_y += in_contact * slope_y;
-    lifts_x += wx;
-    lifts_y += wy;
-    arms_x += weight * x;
-    arms_y += weight * y;
-    arms_z += weight * arm_z;
-    z_lifts_x += arm_z * wx;
-    z_lifts_y += arm_z * wy;
-    twists += x * wy - y * wx;
+/// Nothing slides onto or off what a footprint presses on.
+void SoilBed::cover(const Range& range) {
+  for (size_t i = range.begin * kLanes; i < range.end * kLanes; ++i) {
+    if (!(cells_[i / kLanes].active[i % kLanes] > 0.0)) continue;
+    flow_.cover(places_[i].node, places_[i].ix, places_[i].iy);
   }
-  const double share = sum(shares);
-  const double pressure = sum(pressures);
-  if (pressure <= 0.0) return false;
-  const double per_pressure = 1.0 / pressure;
-  CellHistory& history = histories_[candidate.node];
-  history.keep(candidate.covered, candidate.division);
-  cell.node = candidate.node;
-  cell.sunk = candidate.sunk;
-  cell.depth = sum(below) / share;
-  cell.ix = candidate.ix;
-  cell.iy = candidate.iy;
-  cell.share = share * per_count;
-  cell.pressed = sum(depths) * per_count + candidate.division.beside;
-  cell.pressure = pressure * per_count;
-  cell.rate = sum(rates) * per_count;
-  cell.arm << sum(arms_x) * per_pressure, sum(arms_y) * per_pressure, sum(arms_z) * per_pressure;
-  // Vertical stress has no horizontal part; it shears in the horizontal all the same.
-  const bool radial = options_.normal_stress == NormalStress::kRadial;
-  cell.tilt_x = sum(tilts_x) / share;
-  cell.tilt_y = sum(tilts_y) / share;
-  cell.slope_x = sum(lifts_x) * per_pressure;
-  cell.slope_y = sum(lifts_y) * per_pressure;
-  cell.moment << cell.arm.y(), -cell.arm.x(), 0.0;
-  if (radial) {
-    cell.moment += per_pressure * Eigen::Vector3d(-sum(z_lifts_y), sum(z_lifts_x), sum(twists));
-  }
-  return true;
 }
 
 // Second moments of the touched area: a rectangle of sides a and b has variances a^2/12 and b^2/12,
 // a disc r^2/4.
-void SoilBed::measure_patch(const Footprint& footprint, size_t begin, ContactMemory& memory) const {
+void SoilBed::measure_patch(const Footprint& footprint, const CellSums& sums,
+                            ContactMemory& memory) const {
   const double edge = flow_.surface().spacing_m();
-  double area = 0.0;
-  double x = 0.0;
-  double y = 0.0;
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  double own = 0.0;
-  for (size_t i = begin; i < cell_count_; ++i) {
-    const SoilCell& cell = cells_[i];
-    const double cx = cell.arm.x();
-    const double cy = cell.arm.y();
-    area += cell.share;
-    x += cell.share * cx;
-    y += cell.share * cy;
-    xx += cell.share * cx * cx;
-    xy += cell.share * cx * cy;
-    yy += cell.share * cy * cy;
-    own += cell.share * cell.share;
-  }
-  memory.patch_area_m2 = area * cell_area_;
+  memory.patch_area_m2 = sums.area * cell_area_;
   // A cell spreads its share over itself.
-  own *= edge * edge / 12.0;
-  const double vxx = (xx + own - x * x / area) / area;
-  const double vyy = (yy + own - y * y / area) / area;
-  const double vxy = (xy - x * y / area) / area;
+  const double own = sums.own * edge * edge / 12.0;
+  const double vxx = (sums.xx + own - sums.x * sums.x / sums.area) / sums.area;
+  const double vyy = (sums.yy + own - sums.y * sums.y / sums.area) / sums.area;
+  const double vxy = (sums.xy - sums.x * sums.y / sums.area) / sums.area;
   const double half_trace = 0.5 * (vxx + vyy);
   const double minimum =
       half_trace - std::sqrt(std::max(0.0, 0.25 * (vxx - vyy) * (vxx - vyy) + vxy * vxy));

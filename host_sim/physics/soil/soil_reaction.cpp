@@ -41,37 +41,41 @@
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
-void SoilBed::SlipSums::add(const SoilCell& cell, double sliding, double mobilised) {
-  const double along = cell.arm.dot(forward);
-  const double across = cell.arm.dot(side);
-  share += cell.share;
-  sum_along += cell.share * along;
-  sum_across += cell.share * across;
-  sum_along_squared += cell.share * along * along;
-  sum_across_squared += cell.share * across * across;
-  slip_sum += cell.share * mobilised * sliding;
+namespace {
+
+Triple triple(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
 }
+Eigen::Vector3d vector(const Triple& t) {
+  return {t.x, t.y, t.z};
+}
+
+// A surface's own friction or adhesion that never limits.
+constexpr double kNoLimit = 1e12;
+
+}  // namespace
 
 // A layer of the soil goes along with a slipping surface: slip times depth times the footprint's
 // width a second. It comes from under the whole of the footprint and heaves the ground around it,
 // as far as the footprint is wide.
-void SoilBed::dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, double dt) {
-  if (slip.share <= 0.0) return;
+void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
+                        const Eigen::Isometry3d& pose, double dt) {
+  if (sums.area <= 0.0) return;
   const double edge = flow_.surface().spacing_m();
-  const double per_share = 1.0 / slip.share;
-  const double along = slip.sum_along * per_share;
-  const double across = slip.sum_across * per_share;
+  const double per_share = 1.0 / sums.area;
+  const double along = sums.sum_along * per_share;
+  const double across = sums.sum_across * per_share;
   const auto half_side = [&](double second, double mean) {
     return 0.5 * std::sqrt(12.0 * std::max(0.0, second * per_share - mean * mean) + edge * edge);
   };
+  const Eigen::Vector3d forward = vector(law.level_ahead);
   DugPatch patch;
-  patch.forward = slip.forward.head<2>();
-  patch.centre = (pose.translation() + along * slip.forward + across * slip.side).head<2>();
-  patch.half_length = half_side(slip.sum_along_squared, along);
-  patch.half_width = half_side(slip.sum_across_squared, across);
+  patch.forward = forward.head<2>();
+  patch.centre = (pose.translation() + along * forward + across * vector(law.level_left)).head<2>();
+  patch.half_length = half_side(sums.sum_along_squared, along);
+  patch.half_width = half_side(sums.sum_across_squared, across);
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
-  const double volume =
-      soil_.drag_depth_m * dt * per_share * 2.0 * slip.slip_sum * patch.half_width;
+  const double volume = soil_.drag_depth_m * dt * per_share * 2.0 * sums.slip * patch.half_width;
   dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
   const auto units = static_cast<int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
@@ -81,22 +85,6 @@ void SoilBed::dig_below(const SlipSums& slip, const Eigen::Isometry3d& pose, dou
   const auto compacted = std::min(units, static_cast<int64_t>(compaction_remainder_));
   compaction_remainder_ -= static_cast<double>(compacted);
   compacted_ += flow_.dig(patch, units, compacted);
-}
-
-/// Plastic sinkage and pressure of a cell; books what sinks. 0: not touching.
-inline double SoilBed::yield(const SoilCell& cell, double sinking, const Law& law,
-                             size_t footprint) {
-  const double along_elastic =
-      cell.pressure +
-      law.elastic * (cell.pressed - cell.sunk + sinking * (1.0 - law.rebound) * cell.share);
-  const double pressure =
-      std::max(0.0, std::min(along_elastic, cell.pressure + cell.rate * sinking));
-  const auto units =
-      static_cast<Height>(std::lrint((along_elastic - pressure) / (law.elastic * kHeightUnit_m)));
-  if (pressure > 0.0 && units > 0) {
-    flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
-  }
-  return pressure;
 }
 
 /// Carries the shear of the running surface, and of the soil beside it, through this step.
@@ -115,96 +103,96 @@ void SoilBed::advance_shear(const Range& range, const PressingBody& body, Footpr
   motion.surface_speed = range.frame.sense * contact.motion.surface_speed;
   motion.level = options_.normal_stress == NormalStress::kVertical;
   kept.shear.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
-                     soil_.shear_damping_s, dt);
+                     soil_.shear_damping_s, dt, kernels_);
   if (passive_.none() || contact.footprint->kind() != Footprint::Kind::kTrack) return;
   motion.surface_speed = motion.velocity.x();  // the soil beside it stays behind
   motion.sideways_only = true;
   kept.side.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
-                    0.0, dt);
+                    0.0, dt, kernels_);
+}
+
+ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
+                                  const FootprintContact& contact) const {
+  const RunFrame& frame = range.frame;
+  const Eigen::Vector3d left = frame.axes.col(1);
+  const Eigen::Vector3d level_ahead = left.cross(Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d level_left = Eigen::Vector3d::UnitZ().cross(level_ahead);
+  const Eigen::Vector3d& centre = contact.footprint->pose().translation();
+  const ContactMemory& memory = *contact.memory;
+  ReactionLaw law{};
+  law.elastic = range.law.cell.elastic;
+  law.stays = 1.0 - range.law.cell.rebound;
+  law.cell_area = cell_area_;
+  law.height_unit = kHeightUnit_m;
+  law.damping = soil_.damping_pa_s_per_m;
+  law.cohesion = soil_.cohesion_pa;
+  law.tan_friction = tan_friction_;
+  // Where a surface has none of its own, the soil's strength alone counts.
+  law.adhesion = std::min(contact.motion.adhesion_pa, kNoLimit);
+  law.surface_friction = std::min(contact.motion.soil_friction, kNoLimit);
+  law.axis_x = triple(frame.axes.col(0));
+  law.axis_y = triple(left);
+  law.level_ahead = triple(level_ahead);
+  law.level_left = triple(level_left);
+  law.contour_half = frame.contour.half_m;
+  law.contour_radius = frame.contour.radius_m;
+  law.sinking_speed = (body.velocity + body.omega.cross(centre - body.centre)).z();
+  law.omega_x = body.omega.x();
+  law.omega_y = body.omega.y();
+  law.centre_z = centre.z();
+  law.radial = options_.normal_stress == NormalStress::kRadial;
+  law.digs = soil_.drag_depth_m > 0.0;
+  law.pushes = !passive_.none() && contact.footprint->kind() == Footprint::Kind::kTrack;
+  law.sense = frame.sense;
+  law.travel = std::copysign(1.0, memory.path.travel_m);
+  law.passive_at_surface = passive_.at_surface_pa();
+  law.passive_per_depth = passive_.per_depth_pa_per_m();
+  law.per_width = 0.5 / frame.contour.half_width_m;
+  law.shear = memory.shear.view();
+  law.aside = memory.side.view();
+  return law;
+}
+
+/// Books what the cells of a footprint have sunk, and that it stood there.
+void SoilBed::settle(const Range& range, bool slips) {
+  for (size_t i = range.begin * kLanes; i < range.end * kLanes; ++i) {
+    const size_t lane = i % kLanes;
+    const CellBlock& block = cells_[i / kLanes];
+    if (!(block.active[lane] > 0.0)) continue;
+    const GridPlace& place = places_[i];
+    const bool bears = block.bears[lane] > 0.0;
+    CellHistory& history = histories_[place.node];
+    history.keep(block.covered[lane], {block.old_sinkage[lane], block.beside[lane]});
+    if (!bears) {
+      history.release();
+      continue;
+    }
+    history.touch(step_);
+    const auto units = static_cast<Height>(block.units[lane]);
+    if (units > 0) flow_.sink(range.footprint, place.node, place.ix, place.iy, units);
+    if (slips) flow_.shear(place.node, block.shears[lane]);
+  }
 }
 
 /// How the soil yields in a footprint's cells, and the forces of the cells.
 void SoilBed::react(const Range& range, const PressingBody& body, FootprintContact& contact,
                     double dt) {
   contact.reaction = {};
-  if (range.begin == range.end) return;
-  TerrainReaction reaction;  // by itself, so that the sums stay in registers
-  const Eigen::Isometry3d& pose = contact.footprint->pose();
-  const Eigen::Vector3d centre_velocity =
-      body.velocity + body.omega.cross(pose.translation() - body.centre);
-  const RunFrame& frame = range.frame;
-  const Eigen::Vector3d left = frame.axes.col(1);
-  const Eigen::Vector3d level_ahead = left.cross(Eigen::Vector3d::UnitZ()).normalized();
-  const Eigen::Vector3d level_left = Eigen::Vector3d::UnitZ().cross(level_ahead);
-  const bool radial = options_.normal_stress == NormalStress::kRadial;
-  const ContactMemory& memory = *contact.memory;
-  const bool pushes = !passive_.none() && contact.footprint->kind() == Footprint::Kind::kTrack;
-  const double travel = std::copysign(1.0, memory.path.travel_m);
-  const double per_width = 0.5 / frame.contour.half_width_m;
-  SlipSums slip_sums(level_ahead, level_left);
-
-  for (size_t i = range.begin; i < range.end; ++i) {
-    const SoilCell& cell = cells_[i];
-    const double pressure = yield(cell, springs_[i].sinking, range.law, range.footprint);
-    if (pressure <= 0.0) {
-      histories_[cell.node].release();
-      continue;
-    }
-    histories_[cell.node].touch(step_);
-    const double v_z =
-        centre_velocity.z() + body.omega.x() * cell.arm.y() - body.omega.y() * cell.arm.x();
-    const double damped = pressure + soil_.damping_pa_s_per_m * std::max(0.0, -v_z) * cell.share;
-    const double along = frame.contour.along(cell.arm.dot(frame.axes.col(0)));
-    const double across = cell.arm.dot(left);
-    const ShearField::Value m = memory.shear.at(along, across);
-
-    const double load = damped * cell_area_;
-    Eigen::Vector3d force(0.0, 0.0, load);
-    Eigen::Vector3d lengthwise = level_ahead;
-    Eigen::Vector3d sideways = level_left;
-    double steep = 1.0;
-    if (radial) {
-      const Eigen::Vector3d normal(cell.slope_x, cell.slope_y, 1.0);
-      steep = normal.norm();
-      lengthwise = left.cross(normal) / steep;
-      sideways = normal.cross(lengthwise) / steep;
-      force = load * normal;
-    }
-    Eigen::Vector3d torque = load * cell.moment;
-    reaction.normal_load += load;
-    const double strength =
-        std::min(soil_.cohesion_pa * cell.share + damped * tan_friction_,
-                 contact.motion.adhesion_pa * cell.share + damped * contact.motion.soil_friction);
-    const Eigen::Vector3d traction =
-        (-strength * cell_area_ * steep) * (m.along * lengthwise + m.across * sideways);
-    force += traction;
-    torque += cell.arm.cross(traction);
-    reaction.along_surface -= frame.sense * traction.dot(lengthwise);
-    if (pushes) {
-      const double area = cell_area_ * cell.share;
-      const double tilt = cell.tilt_x * level_ahead.x() + cell.tilt_y * level_ahead.y();
-      const double facing = std::max(0.0, travel * m.along) * std::max(0.0, -travel * tilt);
-      const double ahead = -travel * passive_.pressure(cell.depth) * area * facing;
-      const double aside = -passive_.resistance(cell.depth) * area * per_width *
-                           memory.side.at(along, across).across;
-      const Eigen::Vector3d push = ahead * level_ahead + aside * level_left;
-      force += push;
-      torque += Eigen::Vector3d(cell.arm.x(), cell.arm.y(), 0.0).cross(push);
-    }
-    if (soil_.drag_depth_m > 0.0) {
-      const double mobilised = std::hypot(m.along, m.across);
-      slip_sums.add(cell, m.sliding, mobilised);
-      flow_.shear(cell.node, cell.share * mobilised * m.sliding);
-    }
-    reaction.force += force;
-    reaction.torque += torque;
-    reaction.area += cell.share * cell_area_;
-    reaction.sinkage = std::max(reaction.sinkage, flow_.reference(cell.node) * kHeightUnit_m -
-                                                      (pose.translation().z() + cell.arm.z()));
-  }
-  if (soil_.drag_depth_m > 0.0) dig_below(slip_sums, pose, dt);
-  contact.memory->sinkage = reaction.sinkage;
-  contact.reaction = reaction;
+  if (!range.touching) return;
+  const ReactionLaw law = reaction_law(range, body, contact);
+  ReactionSums sums;
+  kernels_.react(&cells_[range.begin], &springs_[range.begin], range.end - range.begin, law, sums);
+  const bool slips = law.digs && sums.slip > 0.0;
+  settle(range, slips);
+  if (slips) dig_below(sums, law, contact.footprint->pose(), dt);
+  contact.memory->sinkage = sums.sinkage;
+  TerrainReaction& reaction = contact.reaction;
+  reaction.force = vector(sums.force);
+  reaction.torque = vector(sums.torque);
+  reaction.along_surface = sums.along_surface;
+  reaction.normal_load = sums.normal_load;
+  reaction.sinkage = sums.sinkage;
+  reaction.area = sums.area * cell_area_;
 }
 
 }  // namespace screed

@@ -15,11 +15,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "host_sim/physics/kernels/kernels.h"
 #include "host_sim/physics/soil/soil_parameters.h"
-#include "host_sim/physics/terrain/double2.h"
 
 namespace screed {
 
@@ -31,69 +29,37 @@ class WheelStress {
   /// began, over the length of the contact: one that is set down bears evenly round its lowest
   /// point.
   WheelStress(const SoilParameters& soil, double radius_m, double entry_rad, double slip,
-              double rolled)
-      : radius_(radius_m), entry_(entry_rad), rolled_(rolled) {
+              double rolled) {
     const double share = slip >= 0.0 ? soil.front_angle + soil.front_angle_driven * slip
                                      : soil.front_angle - soil.front_angle_braked * slip;
-    const double middle = std::clamp(share, 0.0, kMaxAhead) * entry_;
-    exit_ = -soil.exit_angle * entry_;
+    const double middle = std::clamp(share, 0.0, kMaxAhead) * entry_rad;
     known_ = true;
-    shaped_ = rolled > 0.0 && middle - exit_ > kMinSpread_rad;
-    if (!shaped_) return;
-    middle_ = middle;
-    slope_ = (entry_ - middle) / (middle - exit_);
+    shape_.entry = entry_rad;
+    shape_.exit = -soil.exit_angle * entry_rad;
+    shape_.shaped = rolled > 0.0 && middle - shape_.exit > kMinSpread_rad;
+    if (!shape_.shaped) return;
+    shape_.middle = middle;
+    shape_.slope = (entry_rad - middle) / (middle - shape_.exit);
+    shape_.scale = rolled * radius_m;
   }
 
-  bool shaped() const { return shaped_; }
+  bool shaped() const { return shape_.shaped; }
   /// Whether the entry angle is known.
   bool known() const { return known_; }
-  double entry_rad() const { return entry_; }
-  double exit_rad() const { return exit_; }
+  double entry_rad() const { return shape_.entry; }
+  double exit_rad() const { return shape_.exit; }
+  /// For kernels.
+  const StressShape& shape() const { return shape_; }
 
-  /// By how much the points at these sines of theta bear as if they were higher, m.
-  Double2 lift(Double2 sine) const {
-    const Double2 one = broadcast(1.0);
-    const Double2 cosine = square_root(maximum(one - sine * sine, broadcast(0.0)));
-    // Twice the arc tangent of the half angle's tangent.
-    const Double2 theta = broadcast(2.0) * arc_tangent(sine / (one + cosine));
-    const Double2 mapped =
-        minimum(broadcast(entry_) - (theta - broadcast(exit_)) * broadcast(slope_),
-                broadcast(std::numbers::pi));
-    const Double2 behind = theta < broadcast(middle_) ? one : broadcast(0.0);
-    const Double2 level = theta > broadcast(0.0) ? cosine : one;
-    return behind * broadcast(rolled_ * radius_) * (level - cosine_of(mapped));
-  }
+  /// By how much a point at this sine of theta bears as if it were higher, m.
+  double lift(double sine) const { return best_kernels().stress_lift(shape_, sine); }
 
  private:
   static constexpr double kMaxAhead = 0.95;
   static constexpr double kMinSpread_rad = 1e-4;
 
-  /// |t| <= 1, within 1e-5 (form of Abramowitz and Stegun, 4.4.49).
-  static Double2 arc_tangent(Double2 t) {
-    const Double2 q = t * t;
-    Double2 sum = broadcast(-0.0117212);
-    for (const double a : {0.05265332, -0.11643287, 0.19354346, -0.33262347, 0.99997726})
-      sum = sum * q + broadcast(a);
-    return sum * t;
-  }
-  /// 0 <= x <= pi, Taylor's series about pi/2 of -sin(x - pi/2); within 4e-6.
-  static Double2 cosine_of(Double2 x) {
-    const Double2 y = x - broadcast(0.5 * std::numbers::pi);
-    const Double2 q = y * y;
-    Double2 sum = broadcast(1.0 / 362880.0);
-    for (const double a : {-1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0, 1.0})
-      sum = sum * q + broadcast(a);
-    return -(sum * y);
-  }
-
   bool known_ = false;
-  bool shaped_ = false;
-  double radius_ = 0.0;
-  double entry_ = 0.0;
-  double middle_ = 0.0;
-  double exit_ = 0.0;
-  double slope_ = 0.0;
-  double rolled_ = 0.0;
+  StressShape shape_;
 };
 
 }  // namespace screed

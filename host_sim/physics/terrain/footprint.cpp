@@ -25,7 +25,6 @@
 #include <cmath>
 #include <limits>
 
-#include "host_sim/physics/terrain/double2.h"
 
 namespace screed {
 namespace {
@@ -62,10 +61,12 @@ void Footprint::set_pose(const Eigen::Isometry3d& pose) {
   root_ = std::sqrt(square_);
 }
 
+Eigen::Vector3d Footprint::local_half() const {
+  return kind_ == Kind::kTrack ? Eigen::Vector3d(half_.x() + radius_, half_.y(), radius_) : half_;
+}
+
 Eigen::Vector3d Footprint::world_reach() const {
-  const Eigen::Vector3d half =
-      kind_ == Kind::kTrack ? Eigen::Vector3d(half_.x() + radius_, half_.y(), radius_) : half_;
-  return pose_.linear().cwiseAbs() * half;
+  return pose_.linear().cwiseAbs() * local_half();
 }
 
 Eigen::Vector2d Footprint::reach() const {
@@ -74,21 +75,25 @@ Eigen::Vector2d Footprint::reach() const {
 
 // Of a track's points in its x-z plane only those near the lowest one are as low as `level`: within
 // a segment of the circle round each axle.
-Eigen::Vector2d Footprint::reach_below(double level) const {
-  if (kind_ != Kind::kTrack || square_ < 1e-6) return world_reach().head<2>();
+double Footprint::reach_below(double level, const Eigen::Vector2d& direction) const {
+  const Eigen::Matrix3d& axes = pose_.linear();
+  const auto extent = [&](const Eigen::Vector3d& axis) {
+    return std::abs(axis.head<2>().dot(direction));
+  };
+  if (kind_ != Kind::kTrack || square_ < 1e-6) {
+    const Eigen::Vector3d half = local_half();
+    return half.x() * extent(axes.col(0)) + half.y() * extent(axes.col(1)) +
+           half.z() * extent(axes.col(2));
+  }
   const double tilt = half_.y() * std::abs(up_.y());
   const double deep =
       (pose_.translation().z() - half_.x() * std::abs(up_.x()) - tilt - level) / root_;
-  if (deep >= radius_) return {-1.0, -1.0};
+  if (deep >= radius_) return -1.0;
   const double half_chord =
       std::sqrt(radius_ * radius_ - std::max(0.0, deep) * std::max(0.0, deep));
-  const Eigen::Matrix3d& axes = pose_.linear();
-  const Eigen::Vector2d forward = axes.col(0).head<2>().cwiseAbs();
-  const Eigen::Vector2d axle = axes.col(1).head<2>().cwiseAbs();
-  const Eigen::Vector2d level_forward =
-      ((up_.z() * axes.col(0) - up_.x() * axes.col(2)) / root_).head<2>().cwiseAbs();
-  return half_.x() * forward + half_chord * level_forward +
-         (half_.y() + radius_ * std::abs(up_.y()) / root_) * axle;
+  const Eigen::Vector3d level_forward = (up_.z() * axes.col(0) - up_.x() * axes.col(2)) / root_;
+  return half_.x() * extent(axes.col(0)) + half_chord * extent(level_forward) +
+         (half_.y() + radius_ * std::abs(up_.y()) / root_) * extent(axes.col(1));
 }
 
 double Footprint::reach_down() const {
@@ -147,7 +152,7 @@ double Footprint::lowest_at_rim(double edge) const {
 
 void FootprintSamples::clear(size_t room) {
   count = 0;
-  room += room % 2;  // whole pairs
+  room = whole_blocks(room);
   if (x.size() >= room) return;
   for (std::vector<double>* array :
        {&x, &y, &share, &height, &slope_x, &slope_y, &flat_within, &passed}) {
@@ -155,26 +160,28 @@ void FootprintSamples::clear(size_t room) {
   }
 }
 
-void Footprint::surface(double edge, const PathHistory& path, FootprintSamples& samples) const {
-  surface(edge, &path, samples);
-}
-
-void Footprint::surface(double edge, FootprintSamples& samples) const {
-  surface(edge, nullptr, samples);
-}
-
-void Footprint::surface(double edge, const PathHistory* path, FootprintSamples& samples) const {
-  if (samples.count % 2 != 0) {  // whole pairs
-    samples.x[samples.count] = samples.x[samples.count - 1];
-    samples.y[samples.count] = samples.y[samples.count - 1];
+void FootprintSamples::fill_block() {
+  for (size_t i = count; i < whole_blocks(count); ++i) {
+    x[i] = x[count - 1];
+    y[i] = y[count - 1];
   }
+}
+
+void Footprint::surface(double edge, const PathHistory& path, FootprintSamples& samples,
+                        const Kernels& kernels) const {
+  surface(edge, &path, samples, kernels);
+}
+
+void Footprint::surface(double edge, FootprintSamples& samples, const Kernels& kernels) const {
+  surface(edge, nullptr, samples, kernels);
+}
+
+void Footprint::surface(double edge, const PathHistory* path, FootprintSamples& samples,
+                        const Kernels& kernels) const {
+  samples.fill_block();
   switch (kind_) {
     case Kind::kTrack:
-      if (half_.x() > 0.0) {
-        track_surface<true>(edge, path, samples);
-      } else {
-        track_surface<false>(edge, path, samples);
-      }
+      track_surface(edge, path, samples, kernels);
       return;
     case Kind::kBox:
       box_surface(edge, samples);
@@ -185,123 +192,51 @@ void Footprint::surface(double edge, const PathHistory* path, FootprintSamples& 
   disc_surface(edge, samples);
 }
 
-// Two sample points at a time, without branches.
-template <bool kBelt>
-void Footprint::track_surface(double edge, const PathHistory* path,
-                              FootprintSamples& samples) const {
+// Eight sample points at a time, without branches (kernels/track_surface.inc).
+void Footprint::track_surface(double edge, const PathHistory* path, FootprintSamples& samples,
+                              const Kernels& kernels) const {
   if (square_ < 1e-6) {  // lying on its side: the caller uses a box
     std::fill(samples.share.begin(), samples.share.end(), 0.0);
     return;
   }
-  const Double2 zero = broadcast(0.0);
+  const auto triple = [](const auto& v) { return Triple{v[0], v[1], v[2]}; };
   const Eigen::Matrix3d& axes = pose_.linear();
-  const Double2 cx = broadcast(pose_.translation().x());
-  const Double2 cy = broadcast(pose_.translation().y());
-  const Double2 cz = broadcast(pose_.translation().z());
-  // The vertical line's point at the height of the body's centre, in local axes; moving up along
-  // the line adds `up`.
-  const Double2 xx = broadcast(to_local_(0, 0));
-  const Double2 xy = broadcast(to_local_(0, 1));
-  const Double2 yx = broadcast(to_local_(1, 0));
-  const Double2 yy = broadcast(to_local_(1, 1));
-  const Double2 zx = broadcast(to_local_(2, 0));
-  const Double2 zy = broadcast(to_local_(2, 1));
-  const Double2 ux = broadcast(up_.x());
-  const Double2 uy = broadcast(up_.y());
-  const Double2 uz = broadcast(up_.z());
-  const Double2 square = broadcast(square_);
-  const Double2 per_square = broadcast(1.0 / square_);
-  const Double2 radius_square = broadcast(radius_ * radius_);
-  const Double2 half = broadcast(half_.x());
-  const Double2 width = broadcast(half_.y());
-  const Double2 per_edge = broadcast(1.0 / edge);
+  TrackShape shape{};
+  shape.belt = half_.x() > 0.0;
   // Bottom run (top run when upside down): local z = -+ radius between the axles. None when the
   // belt stands on end.
-  const bool has_run = kBelt && std::abs(up_.z()) > 1e-9;
-  const Double2 per_uz = broadcast(has_run ? 1.0 / up_.z() : 0.0);
+  shape.has_run = shape.belt && std::abs(up_.z()) > 1e-9;
+  shape.has_path = path != nullptr;
+  shape.centre = triple(pose_.translation());
+  shape.axis_x = triple(axes.col(0));
+  shape.axis_y = triple(axes.col(1));
+  shape.axis_z = triple(axes.col(2));
+  shape.up = triple(up_);
+  shape.square = square_;
+  shape.radius = radius_;
+  shape.half = half_.x();
+  shape.width = half_.y();
+  shape.edge = edge;
   const double side = up_.z() > 0.0 ? -1.0 : 1.0;
-  const Double2 run_z = broadcast(side * radius_);
+  shape.run_z = side * radius_;
   // Along the path each wheel swept down to a plane along the path that touches it from below, and
   // has passed where the touching point is ahead, in the sense in which the body came. In local
   // axes the plane is z = gradient * x - deep.
   const PathHistory travelled = path != nullptr ? *path : PathHistory{};
-  const Double2 sense = broadcast(travelled.travel_m > 0.0 ? 1.0 : -1.0);
-  const Double2 gradient = broadcast(travelled.gradient);
+  shape.sense = travelled.travel_m > 0.0 ? 1.0 : -1.0;
+  shape.gradient = travelled.gradient;
   const double slant = std::sqrt(1.0 + travelled.gradient * travelled.gradient);
   const double climb =
       up_.z() - travelled.gradient * up_.x();  // of a vertical line against that plane
   const bool crosses_swept_plane = std::abs(climb) > kSteep;
-  const Double2 reach = broadcast(crosses_swept_plane ? std::abs(travelled.travel_m) : -1.0);
-  const Double2 per_climb = broadcast(crosses_swept_plane ? 1.0 / climb : 0.0);
-  Double2 deep[2];
-  Double2 touch[2];
+  shape.reach = crosses_swept_plane ? std::abs(travelled.travel_m) : -1.0;
+  shape.per_climb = crosses_swept_plane ? 1.0 / climb : 0.0;
   for (const int wheel : {0, 1}) {
     const double axle = wheel == 0 ? -half_.x() : half_.x();
-    deep[wheel] = broadcast(travelled.gradient * axle - side * radius_ * slant);
-    touch[wheel] = broadcast(axle - side * radius_ * travelled.gradient / slant);
+    shape.deep[wheel] = travelled.gradient * axle - side * radius_ * slant;
+    shape.touch[wheel] = axle - side * radius_ * travelled.gradient / slant;
   }
-  // Normals over their vertical part, of local (nx, 0, nz): nx and nz times these, world x, y, z.
-  const Double2 x0 = broadcast(axes(0, 0));
-  const Double2 y0 = broadcast(axes(1, 0));
-  const Double2 z0 = broadcast(axes(2, 0));
-  const Double2 x2 = broadcast(axes(0, 2));
-  const Double2 y2 = broadcast(axes(1, 2));
-  const Double2 z2 = broadcast(axes(2, 2));
-  const Double2 steepest = broadcast(1e-3 * radius_);
-
-  for (size_t i = 0; i < samples.count; i += 2) {
-    const Double2 dx = load(&samples.x[i]) - cx;
-    const Double2 dy = load(&samples.y[i]) - cy;
-    const Double2 lx = dx * xx + dy * xy;
-    const Double2 ly = dx * yx + dy * yy;
-    const Double2 lz = dx * zx + dy * zy;
-    Double2 run_t = zero;
-    Double2 flat = broadcast(-1.0);
-    Double2 hub = zero;
-    if constexpr (kBelt) {
-      run_t = (run_z - lz) * per_uz;
-      const Double2 beyond = has_run ? lx + run_t * ux : -ux;
-      if (has_run) flat = half - magnitude(beyond);
-      // The wheel on the side where the line passes beyond the run.
-      hub = beyond >= zero ? half : -half;
-    }
-    const Double2 px = lx - hub;
-    const Double2 along = px * ux + lz * uz;
-    const Double2 discriminant = along * along + square * (radius_square - px * px - lz * lz);
-    const Double2 wheel_t = (-along - square_root(maximum(discriminant, zero))) * per_square;
-    // Times the radius, into the body.
-    Double2 nx = -(px + wheel_t * ux);
-    Double2 nz = -(lz + wheel_t * uz);
-    Double2 t = wheel_t;
-    auto hit = discriminant > zero;
-    if constexpr (kBelt) {
-      const auto on_run = flat >= zero;
-      t = on_run ? run_t : wheel_t;
-      nx = on_run ? zero : nx;
-      nz = on_run ? -run_z : nz;
-      hit = hit | on_run;
-    }
-    const Double2 wz = nx * z0 + nz * z2;
-    hit = hit & (wz > steepest);
-    const Double2 per_wz = broadcast(1.0) / maximum(wz, steepest);
-    const Double2 across = ly + t * uy;
-    const Double2 share = broadcast(0.5) + (width - magnitude(across)) * per_edge;
-    store(hit ? minimum(maximum(share, zero), broadcast(1.0)) : zero, &samples.share[i]);
-    const Double2 height = cz + t;
-    store(height, &samples.height[i]);
-    store((nx * x0 + nz * x2) * per_wz, &samples.slope_x[i]);
-    store((nx * y0 + nz * y2) * per_wz, &samples.slope_y[i]);
-    store(flat, &samples.flat_within[i]);
-    if (path == nullptr) continue;
-    const Double2 here = lx + t * ux;
-    Double2 low = height;
-    for (const int wheel : {0, 1}) {
-      if (!kBelt && wheel == 1) break;
-      const auto ahead = sense * (touch[wheel] - here) > zero;
-      low = minimum(low, ahead ? cz + (gradient * lx - deep[wheel] - lz) * per_climb : height);
-    }
-    store(magnitude(lx) <= reach ? low : height, &samples.passed[i]);
-  }
+  kernels.track_surface(shape, samples.points(), whole_blocks(samples.count));
 }
 
 void Footprint::box_surface(double edge, FootprintSamples& samples) const {

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "host_sim/physics/kernels/kernels.h"
 #include "host_sim/physics/terrain/shear_field.h"
 
 namespace screed {
@@ -36,6 +37,13 @@ struct FootprintSamples {
     ++count;
   }
   size_t count = 0;
+
+  /// Fills up to whole blocks with the last point.
+  void fill_block();
+  SurfacePoints points() {
+    return {x.data(),       y.data(),       share.data(),       height.data(),
+            slope_x.data(), slope_y.data(), flat_within.data(), passed.data()};
+  }
 };
 
 /// The path that a body came along, in its own axes.
@@ -77,9 +85,9 @@ class Footprint {
 
   /// Half of the extent in x and y of the world around pose().translation().
   Eigen::Vector2d reach() const;
-  /// Half of the extent, in x and y of the world around pose().translation(), of what reaches below
-  /// a level in the world's z, at least; negative when nothing does.
-  Eigen::Vector2d reach_below(double level) const;
+  /// Half of the extent, along a level direction of unit length around pose().translation(), of what
+  /// reaches below a level in the world's z, at least; negative when nothing does.
+  double reach_below(double level, const Eigen::Vector2d& direction) const;
   /// Of a circle round pose().translation() that holds the body seen from above, m.
   double radius_from_above() const;
   /// Extent, along the body's y, of a world-aligned square of this side, m.
@@ -104,9 +112,11 @@ class Footprint {
   /// Answers for all sample points. `edge`: side of the small square, m; the share falls linearly
   /// across the body's side over this length, so that sums over a lattice of such squares are exact
   /// for edges along the lattice.
-  void surface(double edge, const PathHistory& path, FootprintSamples& samples) const;
+  void surface(double edge, const PathHistory& path, FootprintSamples& samples,
+               const Kernels& kernels = best_kernels()) const;
   /// The same without `passed`, which then means nothing.
-  void surface(double edge, FootprintSamples& samples) const;
+  void surface(double edge, FootprintSamples& samples,
+               const Kernels& kernels = best_kernels()) const;
   /// Lower bound of the body's lower surface, m, world z, inside a square of side `edge` whose
   /// centre the body does not cover.
   double lowest_at_rim(double edge) const;
@@ -116,12 +126,14 @@ class Footprint {
       : kind_(kind), half_(half), radius_(radius) {
     set_pose(Eigen::Isometry3d::Identity());
   }
-  template <bool kBelt>
-  void track_surface(double edge, const PathHistory* path, FootprintSamples& samples) const;
-  void surface(double edge, const PathHistory* path, FootprintSamples& samples) const;
+  void surface(double edge, const PathHistory* path, FootprintSamples& samples,
+               const Kernels& kernels) const;
+  void track_surface(double edge, const PathHistory* path, FootprintSamples& samples,
+                     const Kernels& kernels) const;
   void box_surface(double edge, FootprintSamples& samples) const;
   void disc_surface(double edge, FootprintSamples& samples) const;
 
+  Eigen::Vector3d local_half() const;
   Eigen::Vector3d world_reach() const;
 
   Kind kind_;

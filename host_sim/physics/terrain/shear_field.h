@@ -6,10 +6,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
-#include "host_sim/physics/terrain/shear_law.h"
+#include "host_sim/physics/kernels/kernels.h"
 
 namespace screed {
 
@@ -45,28 +46,41 @@ class ShearField {
 
   /// A step in which the contour touches between `rear` and `front` (along it, m).
   void advance(const RunContour& contour, const RunMotion& motion, double rear, double front,
-               double shear_modulus_m, double damping_s, double dt);
+               double shear_modulus_m, double damping_s, double dt,
+               const Kernels& kernels = best_kernels());
   /// Contact ends.
   void release() { touching_ = false; }
   /// At `along` the contour and `across`, m, of the last step.
   Value at(double along, double across) const;
+  /// For kernels that look up many at once; until the next advance().
+  ShearView view() const;
 
  private:
   static constexpr int kLanes = 2;
-  struct Place {
-    ShearState state;
-    Value value;
+  /// Properties of a place, an array each: its state, and what at() gives.
+  enum Property : uint8_t {
+    kAlong,
+    kAcross,
+    kYield,
+    kAheadAlong,
+    kAheadAcross,
+    kValueAlong,
+    kValueAcross,
+    kSliding,
+    kProperties
   };
-  Place& place(int lane, int64_t index) {
-    return places_[static_cast<size_t>(lane) * ring_ + (static_cast<size_t>(index) & (ring_ - 1))];
+  void lay_out(const RunContour& contour);
+  void make_room(int64_t first, int64_t last);
+  double* array(int lane, Property property, int64_t index) const {
+    return const_cast<double*>(arrays_.data()) +
+           static_cast<size_t>(lane * kProperties + property) * room_ +
+           static_cast<size_t>(index - base_);
   }
-  const Place& place(int lane, int64_t index) const {
-    return const_cast<ShearField*>(this)->place(lane, index);
-  }
-  Value at_lane(int lane, double along) const;
+  ShearPlaces places_from(int64_t index) const;
 
-  std::vector<Place> places_;
-  size_t ring_ = 0;         // places in a lane, a power of two
+  std::vector<double> arrays_;
+  size_t room_ = 0;         // places in an array
+  int64_t base_ = 0;        // the place that the arrays begin with
   double spacing_ = 0.0;    // of places, m
   double travelled_ = 0.0;  // of the material, backwards, m
   double lane_offset_ = 0.0;

@@ -1,0 +1,28 @@
+// The kernels for every x86-64 processor.
+#include <immintrin.h>
+#include <math.h>
+
+#include "host_sim/physics/kernels/kernel_sets.h"
+#include "host_sim/physics/kernels/kernels.h"
+
+namespace screed {
+namespace {
+
+#include "host_sim/core/lanes/baseline.inc"
+#include "host_sim/core/lanes/lanes.inc"
+#include "host_sim/physics/kernels/track_surface.inc"
+#include "host_sim/physics/kernels/cell_stress.inc"
+#include "host_sim/physics/kernels/springs.inc"
+#include "host_sim/physics/kernels/shear_places.inc"
+#include "host_sim/physics/kernels/reaction.inc"
+
+}  // namespace
+
+const Kernels& baseline_kernels() {
+  static constexpr Kernels kKernels = {
+      InstructionSet::kBaseline, track_surface, place_points, divide_cells,
+      entry_angle, sample_cells, stress_lift, spring_sums, spring_sinking, advance_shear, look_up_shear, react};
+  return kKernels;
+}
+
+}  // namespace screed
