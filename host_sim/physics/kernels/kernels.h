@@ -294,11 +294,27 @@ struct ReactionSums {
   double slip = 0.0;  ///< speed times mobilised share
 };
 
+/// How a cell that may be touched is looked at.
+struct ClassifyLimits {
+  double unit;         ///< of the heights, m
+  double rise;         ///< by which unloaded soil rises, m
+  double rim;          ///< lowest surface of the body where it covers a cell's edge alone
+  double half_cell;    ///< half the side of a cell
+  double flat_within;  ///< a plane this far around covers the cell
+};
+
 /// One set of them. `points` of a block of cells lie one block of lanes after the other.
 struct Kernels {
   InstructionSet set;
   /// Lower surface at `count` points, whole blocks.
   void (*track_surface)(const TrackShape& shape, const SurfacePoints& points, size_t count);
+  /// Whether one of `count` heights is above the line z + i rise, in m as `unit` makes them.
+  bool (*any_above)(const int32_t* heights, size_t count, double unit, double z, double rise);
+  /// Of cells whose centres are `points`: bit i of `flat` and `curved`, a byte a block, is set
+  /// where the body may touch cell i, and its surface is plane there or not. Whole blocks of
+  /// heights are read.
+  void (*classify)(const SurfacePoints& points, const int32_t* heights, size_t count,
+                   const ClassifyLimits& limits, uint8_t* flat, uint8_t* curved);
   /// Sample points of each block's cells, at these distances from their centres.
   void (*place_points)(const CellBlock* cells, size_t blocks, const double* dx, const double* dy,
                        size_t points, double* x, double* y);

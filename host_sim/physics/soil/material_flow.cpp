@@ -2,7 +2,9 @@
 #include "host_sim/physics/soil/material_flow.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -28,20 +30,32 @@ MaterialFlow::MaterialFlow(HeightField surface, double repose_deg) : surface_(st
   const size_t count = static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny());
   reference_.resize(count);
   for (size_t node = 0; node < count; ++node) reference_[node] = height(node);
-  covered_.assign(count, 0);
-  in_ring_.assign(count, 0);
-  in_queue_.assign(count, 0);
+  flags_.assign(count, 0);
   queue_.resize(count);
+  const int nx = surface_.nx();
+  const int ny = surface_.ny();
+  for (int ix = 0; ix < nx; ++ix) flags_[index(ix, 0)] = flags_[index(ix, ny - 1)] = kBorder;
+  for (int iy = 0; iy < ny; ++iy) flags_[index(0, iy)] = flags_[index(nx - 1, iy)] = kBorder;
 }
 
 void MaterialFlow::enqueue_all() {
-  for (size_t node = 0; node < nodes(); ++node) enqueue(node);
+  for (size_t node = 0; node < nodes(); ++node) {
+    if ((flags_[node] & kQueued) == 0) push(node);
+  }
 }
 
 void MaterialFlow::change(size_t node, Height units) {
-  set_height(node, height(node) + units);
-  reference_[node] += units;
-  enqueue(node);
+  change({node, column(node), row(node)}, units);
+}
+
+void MaterialFlow::change(const GridNode& place, Height units) {
+  if (on_field(place.ix, place.iy)) {  // quicker than finding column and row by division
+    surface_.set_node(place.ix, place.iy, height(place.node) + units);
+  } else {
+    set_height(place.node, height(place.node) + units);
+  }
+  reference_[place.node] += units;
+  enqueue(place.node);
 }
 
 size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
@@ -144,7 +158,7 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
     const int64_t node =
         node_at(static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
                 static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5)));
-    if (node < 0 || covered_[static_cast<size_t>(node)] != 0) continue;
+    if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
     deposit_nodes_.push_back(static_cast<size_t>(node));
   }
   if (deposit_nodes_.empty()) return 0;
@@ -157,28 +171,64 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
   return dug.units;
 }
 
+/// The free neighbours of a footprint's nodes, row by row: its outline seen from above as bits,
+/// grown by one to all sides, less the outline.
+void MaterialFlow::find_ring(const ActiveFootprint& footprint, size_t end) {
+  ring_.clear();
+  if (footprint.begin == end) return;
+  int first_x = covered_list_[footprint.begin].ix;
+  int first_y = covered_list_[footprint.begin].iy;
+  int last_x = first_x;
+  int last_y = first_y;
+  for (size_t i = footprint.begin; i < end; ++i) {
+    const GridNode& here = covered_list_[i];
+    first_x = std::min(first_x, here.ix);
+    last_x = std::max(last_x, here.ix);
+    first_y = std::min(first_y, here.iy);
+    last_y = std::max(last_y, here.iy);
+  }
+  // A margin of one node in bits, and of two rows.
+  constexpr size_t kBits = 64;
+  const size_t words = (static_cast<size_t>(last_x - first_x) + 3 + kBits - 1) / kBits;
+  const size_t rows = static_cast<size_t>(last_y - first_y) + 5;
+  below_bits_.assign(rows * words, 0);
+  for (size_t i = footprint.begin; i < end; ++i) {
+    const auto x = static_cast<size_t>(covered_list_[i].ix - first_x + 1);
+    const auto y = static_cast<size_t>(covered_list_[i].iy - first_y + 2);
+    below_bits_[y * words + x / kBits] |= uint64_t{1} << (x % kBits);
+  }
+  const auto grown = [&](size_t row, size_t word) {  // to the west and east
+    const uint64_t* bits = &below_bits_[row * words];
+    const uint64_t from_west = word > 0 ? bits[word - 1] >> (kBits - 1) : 0;
+    const uint64_t from_east = word + 1 < words ? bits[word + 1] << (kBits - 1) : 0;
+    return bits[word] | bits[word] << 1 | bits[word] >> 1 | from_west | from_east;
+  };
+  for (size_t row = 1; row + 1 < rows; ++row) {
+    for (size_t word = 0; word < words; ++word) {
+      uint64_t ring = (grown(row - 1, word) | grown(row, word) | grown(row + 1, word)) &
+                      ~below_bits_[row * words + word];
+      for (; ring != 0; ring &= ring - 1) {
+        const auto bit = static_cast<size_t>(std::countr_zero(ring));
+        GridNode neighbour{0, first_x - 1 + static_cast<int>(word * kBits + bit),
+                           first_y - 2 + static_cast<int>(row)};
+        const int64_t node = node_at(neighbour.ix, neighbour.iy);
+        if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
+        neighbour.node = static_cast<size_t>(node);
+        ring_.push_back(neighbour);
+      }
+    }
+  }
+}
+
 /// Returns the units deposited: all or none.
 int64_t MaterialFlow::spread(const ActiveFootprint& footprint, size_t end) {
-  ring_.clear();
+  find_ring(footprint, end);
+  if (ring_.empty()) return 0;
   const auto ahead = [&](const GridNode& neighbour) {
     return neighbour.ix * footprint.direction_x + neighbour.iy * footprint.direction_y;
   };
   double rear = std::numeric_limits<double>::infinity();
-  for (size_t i = footprint.begin; i < end; ++i) {
-    const GridNode& here = covered_list_[i];
-    rear = std::min(rear, ahead(here));
-    for (const Step& step : kNeighbours) {
-      GridNode neighbour{0, here.ix + step.dx, here.iy + step.dy};
-      const int64_t node = node_at(neighbour.ix, neighbour.iy);
-      if (node < 0) continue;
-      neighbour.node = static_cast<size_t>(node);
-      if (covered_[neighbour.node] != 0 || in_ring_[neighbour.node] != 0) continue;
-      in_ring_[neighbour.node] = 1;
-      ring_.push_back(neighbour);
-    }
-  }
-  for (const GridNode& neighbour : ring_) in_ring_[neighbour.node] = 0;
-  if (ring_.empty()) return 0;
+  for (size_t i = footprint.begin; i < end; ++i) rear = std::min(rear, ahead(covered_list_[i]));
   // Behind the footprint lies its rut.
   constexpr double kRounding = 1e-6;
   const auto behind = [&](const GridNode& neighbour) {
@@ -198,25 +248,51 @@ int64_t MaterialFlow::spread(const ActiveFootprint& footprint, size_t end) {
   for (int64_t i = 0; i < count; ++i) {
     const int64_t after = i >= first ? i - first : i - first + count;
     const int64_t units = each + (after < remainder ? 1 : 0);
-    if (units != 0) change(ring_[static_cast<size_t>(i)].node, static_cast<Height>(units));
+    if (units != 0) change(ring_[static_cast<size_t>(i)], static_cast<Height>(units));
   }
   in_transit_ -= footprint.units;
   return footprint.units;
 }
 
+/// Nodes that a body has left: their slopes are looked at.
+void MaterialFlow::release_held() {
+  for (const GridNode& here : held_list_) {
+    uint8_t& flags = flags_[here.node];
+    if ((flags & kCovered) != 0) continue;
+    flags &= static_cast<uint8_t>(~kHeld);
+    enqueue(here.node);
+  }
+}
+
+/// Whether a slope beside a node inside the field is too steep.
+bool MaterialFlow::may_slide(size_t node) const {
+  const Height* here = surface_.heights() + node;
+  const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
+  const auto steepness = [&](std::ptrdiff_t offset) { return std::abs(*here - here[offset]); };
+  const Height straight = std::max(std::max(steepness(1), steepness(-1)),
+                                   std::max(steepness(nx), steepness(-nx)));
+  const Height diagonal = std::max(std::max(steepness(nx + 1), steepness(nx - 1)),
+                                   std::max(steepness(-nx + 1), steepness(-nx - 1)));
+  // Half of 1 is 0 units: nothing to move.
+  return straight - limit_straight_ > 1 || diagonal - limit_diagonal_ > 1;
+}
+
 int64_t MaterialFlow::slide(int64_t max_moves) {
+  release_held();
   int64_t moves = 0;
   while (queue_size_ > 0 && moves < max_moves) {
     const size_t node = queue_[queue_begin_];
     queue_begin_ = queue_begin_ + 1 == queue_.size() ? 0 : queue_begin_ + 1;
     --queue_size_;
-    in_queue_[node] = 0;
-    if (covered_[node] != 0) continue;
+    uint8_t& flags = flags_[node];
+    flags &= static_cast<uint8_t>(~kQueued);
+    if ((flags & kCovered) != 0) continue;
+    if ((flags & kBorder) == 0 && !may_slide(node)) continue;
     const int x = column(node);
     const int y = row(node);
     for (int k = 0; k < 8; ++k) {
       const int64_t beside = node_at(x + kNeighbours[k].dx, y + kNeighbours[k].dy);
-      if (beside < 0 || covered_[static_cast<size_t>(beside)] != 0) continue;
+      if (beside < 0 || (flags_[static_cast<size_t>(beside)] & kCovered) != 0) continue;
       const auto other = static_cast<size_t>(beside);
       const Height limit = k < 4 ? limit_straight_ : limit_diagonal_;
       const Height difference = height(node) - height(other);
@@ -235,11 +311,13 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
 }
 
 void MaterialFlow::uncover() {
-  // What a body stood on may slide now.
-  for (const GridNode& neighbour : covered_list_) {
-    covered_[neighbour.node] = 0;
-    enqueue(neighbour.node);
+  for (const GridNode& here : held_list_) flags_[here.node] &= static_cast<uint8_t>(~kHeld);
+  // What a body stood on may slide once it is gone.
+  for (const GridNode& here : covered_list_) {
+    uint8_t& flags = flags_[here.node];
+    flags = static_cast<uint8_t>((flags & ~kCovered) | kHeld);
   }
+  held_list_.swap(covered_list_);
   covered_list_.clear();
   // What was neither deposited nor compacted waits for the next step.
   for (const ActiveFootprint& footprint : footprints_) left_over_ += footprint.units;

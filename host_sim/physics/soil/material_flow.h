@@ -41,6 +41,19 @@ class MaterialFlow {
     return index(((ix % nx) + nx) % nx, ((iy % ny) + ny) % ny);
   }
 
+  /// A part of a row of the grid, [first_ix, end_ix), of places as node_on() takes them, in runs of
+  /// nodes that follow each other: calls run(first node, its ix, length).
+  template <typename Run>
+  void each_run(int iy, int first_ix, int end_ix, const Run& run) const {
+    for (int ix = first_ix; ix < end_ix;) {
+      const size_t node = node_on(ix, iy);
+      const int left_in_row = surface_.nx() - column(node);
+      const int length = end_ix - ix < left_in_row ? end_ix - ix : left_in_row;
+      run(node, ix, static_cast<size_t>(length));
+      ix += length;
+    }
+  }
+
   Height height(size_t node) const { return surface_.node(node); }
   /// Level from which sinkage counts.
   Height reference(size_t node) const { return reference_[node]; }
@@ -52,8 +65,8 @@ class MaterialFlow {
   /// The footprint stands on this node: nothing slides onto or off it. `ix` and `iy` without
   /// wrap-around.
   void cover(size_t node, int ix, int iy) {
-    if (covered_[node] != 0) return;
-    covered_[node] = 1;
+    if ((flags_[node] & kCovered) != 0) return;
+    flags_[node] |= kCovered;
     covered_list_.push_back({node, ix, iy});
   }
   /// A footprint pushes a node's surface down by `units`: they are in transit until deposited
@@ -91,8 +104,9 @@ class MaterialFlow {
   void enqueue_all();
   /// Slides slopes above the angle of repose, at most `max_moves` moves; returns the moves made.
   int64_t slide(int64_t max_moves);
-  /// Whether the slopes round a node wait in the queue.
-  bool is_queued(size_t node) const { return in_queue_[node] != 0; }
+  /// Whether the slopes round a node are still to be looked at: it waits in the queue, or a body
+  /// stood on it in the last step.
+  bool is_queued(size_t node) const { return (flags_[node] & (kQueued | kHeld)) != 0; }
   size_t queued() const { return queue_size_; }
   /// Forgets which nodes are covered: the step is over.
   void uncover();
@@ -110,22 +124,32 @@ class MaterialFlow {
   void set_height(size_t node, Height height) {
     surface_.set_node(column(node), row(node), height);
   }
+  struct GridNode {
+    size_t node;
+    int ix;
+    int iy;
+  };
   void change(size_t node, Height units);
+  void change(const GridNode& place, Height units);
   /// Moves `units` from one node to another; the reference moves with the material.
   void move(size_t from, size_t to, Height units);
+  /// A covered node comes into the queue when the body has left it.
   void enqueue(size_t node) {
-    if (in_queue_[node] != 0) return;
-    in_queue_[node] = 1;
+    if ((flags_[node] & (kQueued | kCovered | kHeld)) == 0) push(node);
+  }
+  void push(size_t node) {
+    flags_[node] |= kQueued;
     size_t end = queue_begin_ + queue_size_;
     if (end >= queue_.size()) end -= queue_.size();
     queue_[end] = node;
     ++queue_size_;
   }
 
-  struct GridNode {
-    size_t node;
-    int ix;
-    int iy;
+  enum Flag : uint8_t {
+    kCovered = 1,  // in this step
+    kHeld = 2,     // in the last step
+    kQueued = 4,
+    kBorder = 8,  // its neighbours are not all beside it in memory
   };
   struct ActiveFootprint {  // a footprint in this step
     size_t begin;           // of its nodes among covered_list_
@@ -137,7 +161,10 @@ class MaterialFlow {
     DugPatch patch;
     int64_t units;
   };
+  void find_ring(const ActiveFootprint& footprint, size_t end);
   int64_t spread(const ActiveFootprint& footprint, size_t end);
+  void release_held();
+  bool may_slide(size_t node) const;
   int64_t spread_dug(const Dug& dug);
 
   HeightField surface_;
@@ -146,8 +173,9 @@ class MaterialFlow {
   Height limit_diagonal_;
   int64_t in_transit_ = 0;
   uint64_t turn_ = 0;  // where the remainder of a division goes first
-  std::vector<uint8_t> covered_;
+  std::vector<uint8_t> flags_;
   std::vector<GridNode> covered_list_;
+  std::vector<GridNode> held_list_;
   std::vector<ActiveFootprint> footprints_;
   int64_t left_over_ = 0;  // in transit from earlier steps
   struct Sheared {
@@ -159,9 +187,8 @@ class MaterialFlow {
   uint32_t sequence_index_ = 0;  // of the next point to try for what was dug, minus 1
   std::vector<size_t> deposit_nodes_;
   std::vector<GridNode> ring_;
-  std::vector<uint8_t> in_ring_;
+  std::vector<uint64_t> below_bits_;  // a footprint's nodes seen from above, a bit each
   std::vector<size_t> queue_;  // ring buffer of nodes whose slopes may be too steep
-  std::vector<uint8_t> in_queue_;
   size_t queue_begin_ = 0;
   size_t queue_size_ = 0;
 };

@@ -97,7 +97,7 @@ class SoilBed final : public Terrain {
     kOnePerRowAndColumn,  // sees what varies along or across as finely as all
     kFull,                // all: at the rim of a body with corners
     kLattices,
-    kNone  // not touched
+    kNone,  // not touched
   };
   struct LatticePoints {  // from the cell's centre, m
     std::vector<double> x;
@@ -134,8 +134,9 @@ class SoilBed final : public Terrain {
   Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic) const;
   void find_candidates(const Footprint& footprint, double rebound_m);
   bool find_rows(const Footprint& footprint, double highest);
-  Lattice lattice_of(const Footprint& footprint, size_t candidate, double highest_surface,
-                     double rim) const;
+  void drop_rows_below(const Footprint& footprint, double rebound_m);
+  void classify(const Footprint& footprint, double rebound_m);
+  Lattice lattice_of_corner(size_t candidate, double highest_surface, double rim) const;
   void lay_out_cells();
   void place_points();
   WheelStress wheel_stress(const FootprintContact& contact, Law& law);
@@ -173,7 +174,10 @@ class SoilBed final : public Terrain {
 
   // Of the footprint being pressed; kept for their room.
   std::vector<Row> rows_;
-  FootprintSamples candidate_points_;                       // one a cell, its centre
+  FootprintSamples candidate_points_;  // one a cell, its centre
+  std::vector<Height> candidate_heights_;
+  std::vector<uint8_t> flat_bits_;  // of candidates, a byte a block of lanes
+  std::vector<uint8_t> curved_bits_;
   std::array<std::vector<GridPlace>, kLattices> candidates_;  // by their lattice
   std::vector<Group> groups_;
   FootprintSamples sample_points_;  // inside the cells, a block of lanes after the other

@@ -238,21 +238,70 @@ bool SoilBed::find_rows(const Footprint& footprint, double highest) {
   return !rows_.empty();
 }
 
-/// With how many sample points a cell is looked at.
-SoilBed::Lattice SoilBed::lattice_of(const Footprint& footprint, size_t candidate,
-                                     double highest_surface, double rim) const {
+/// Rows in which no cell reaches up to the plane below a box or disc: mostly all, below a hull.
+void SoilBed::drop_rows_below(const Footprint& footprint, double rebound_m) {
+  const Eigen::Vector3d plane = footprint.plane_below();
+  if (!std::isfinite(plane.x())) return;
+  const HeightField& field = flow_.surface();
+  const double spacing = field.spacing_m();
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  const double fall = 0.5 * spacing * (std::abs(plane.y()) + std::abs(plane.z()));
+  const auto is_below = [&](const Row& row) {
+    bool above = false;
+    flow_.each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int ix, size_t count) {
+      const double z = centre.z() + plane.x() + plane.y() * (field.node_x(ix) - centre.x()) +
+                       plane.z() * (field.node_y(row.iy) - centre.y()) - fall - rebound_m;
+      above = above || kernels_.any_above(field.heights() + node, count, kHeightUnit_m, z,
+                                          plane.y() * spacing);
+    });
+    return !above;
+  };
+  rows_.erase(std::remove_if(rows_.begin(), rows_.end(), is_below), rows_.end());
+}
+
+/// With how many sample points a cell below a body with corners is looked at.
+SoilBed::Lattice SoilBed::lattice_of_corner(size_t candidate, double highest_surface,
+                                            double rim) const {
   const FootprintSamples& points = candidate_points_;
   const double spacing = flow_.surface().spacing_m();
   if (!(points.share[candidate] > 0.0)) return rim > highest_surface ? kNone : kOnePerRowAndColumn;
-  // The lower surface of a convex body is a convex function: it lies above its tangent plane at the
-  // centre of the cell.
   const double fall =
       (std::abs(points.slope_x[candidate]) + std::abs(points.slope_y[candidate])) * 0.5 * spacing;
   if (points.height[candidate] - fall > highest_surface) return kNone;
-  if (points.share[candidate] < 1.0) {
-    return footprint.has_corners() ? kFull : kOnePerRowAndColumn;
-  }
+  if (points.share[candidate] < 1.0) return kFull;
   return points.flat_within[candidate] > kFlatWithin * spacing ? kCentre : kOnePerRowAndColumn;
+}
+
+/// Sorts the cells of rows_ by the lattice that they are looked at with.
+void SoilBed::classify(const Footprint& footprint, double rebound_m) {
+  const double spacing = flow_.surface().spacing_m();
+  const double rim = footprint.lowest_at_rim(spacing);
+  const size_t count = candidate_points_.count;
+  const bool corners = footprint.has_corners();
+  flat_bits_.resize(whole_blocks(count) / kLanes);
+  curved_bits_.resize(flat_bits_.size());
+  if (!corners) {
+    const ClassifyLimits limits{kHeightUnit_m, rebound_m, rim, 0.5 * spacing,
+                                kFlatWithin * spacing};
+    kernels_.classify(candidate_points_.points(), candidate_heights_.data(), count, limits,
+                      flat_bits_.data(), curved_bits_.data());
+  }
+  size_t i = 0;
+  for (const Row& row : rows_) {
+    for (int ix = row.first_ix; ix < row.end_ix; ++ix, ++i) {
+      Lattice lattice = kNone;
+      if (corners) {
+        lattice = lattice_of_corner(i, candidate_heights_[i] * kHeightUnit_m + rebound_m, rim);
+      } else {
+        const unsigned bit = 1U << (i % kLanes);
+        if ((flat_bits_[i / kLanes] & bit) != 0) lattice = kCentre;
+        if ((curved_bits_[i / kLanes] & bit) != 0) lattice = kOnePerRowAndColumn;
+      }
+      if (lattice != kNone) {
+        candidates_[lattice].push_back({flow_.node_on(ix, row.iy), ix, row.iy});
+      }
+    }
+  }
 }
 
 /// The cells that a footprint may touch.
@@ -264,27 +313,26 @@ void SoilBed::find_candidates(const Footprint& footprint, double rebound_m) {
   // The bound by tiles of the field covers this circle.
   const double radius = footprint.radius_from_above();
   const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rebound_m;
-  if (!find_rows(footprint, highest)) return;
+  if (centre.z() - footprint.reach_down() > highest || !find_rows(footprint, highest)) return;
+  if (footprint.has_corners()) drop_rows_below(footprint, rebound_m);
   size_t count = 0;
   for (const Row& row : rows_) count += static_cast<size_t>(row.end_ix - row.first_ix);
+  if (count == 0) return;
   candidate_points_.clear(count);
+  candidate_heights_.resize(whole_blocks(count));
+  size_t i = 0;
   for (const Row& row : rows_) {
     const double y = field.node_y(row.iy);
     for (int ix = row.first_ix; ix < row.end_ix; ++ix) candidate_points_.add(field.node_x(ix), y);
+    flow_.each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int, size_t length) {
+      std::copy_n(field.heights() + node, length, candidate_heights_.begin() + static_cast<std::ptrdiff_t>(i));
+      i += length;
+    });
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.projected_side(spacing);
   footprint.surface(edge, candidate_points_, kernels_);
-  const double rim = footprint.lowest_at_rim(spacing);
-  size_t i = 0;
-  for (const Row& row : rows_) {
-    for (int ix = row.first_ix; ix < row.end_ix; ++ix, ++i) {
-      const size_t node = flow_.node_on(ix, row.iy);
-      const Lattice lattice =
-          lattice_of(footprint, i, flow_.height(node) * kHeightUnit_m + rebound_m, rim);
-      if (lattice != kNone) candidates_[lattice].push_back({node, ix, row.iy});
-    }
-  }
+  classify(footprint, rebound_m);
 }
 
 /// Candidates become lanes of blocks, those with the same lattice together.

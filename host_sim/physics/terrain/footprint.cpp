@@ -140,6 +140,17 @@ RunFrame Footprint::run_frame() const {
   return frame;
 }
 
+Eigen::Vector3d Footprint::plane_below() const {
+  int axis = 2;
+  if (kind_ == Kind::kBox) up_.cwiseAbs().maxCoeff(&axis);
+  if (kind_ == Kind::kTrack || std::abs(up_[axis]) < 0.5) {
+    return {-std::numeric_limits<double>::infinity(), 0.0, 0.0};
+  }
+  // Outward normal of the face that looks down; the body is where normal . (p - centre) <= half.
+  const Eigen::Vector3d normal = (up_[axis] > 0.0 ? -1.0 : 1.0) * pose_.linear().col(axis);
+  return {half_[axis] / normal.z(), -normal.x() / normal.z(), -normal.y() / normal.z()};
+}
+
 double Footprint::lowest_at_rim(double edge) const {
   if (has_corners()) return pose_.translation().z() - reach_down();
   // Such a square overlaps the outline by less than 1.5 edge. There the wheel's surface is

@@ -104,6 +104,9 @@ class Footprint {
   bool is_wheel() const { return kind_ == Kind::kTrack && half_.x() == 0.0; }
   /// Whether the body is long enough that its pitch and roll matter to the pressure below it.
   bool extended() const { return kind_ != Kind::kTrack || half_.x() > 0.0; }
+  /// A plane that no part of a box or disc is below: its height over pose().translation(), world z,
+  /// and its slopes to the east and north. Of other bodies, and of a disc on its edge, none: -inf.
+  Eigen::Vector3d plane_below() const;
   /// The face below.
   RunFrame run_frame() const;
   /// The shorter side (or radius) of the body itself, a first guess at b, m.

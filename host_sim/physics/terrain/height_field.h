@@ -91,6 +91,8 @@ class HeightField {
 
   /// 0 <= ix < nx, 0 <= iy < ny: not checked.
   [[nodiscard]] Height node(int ix, int iy) const { return heights_[index(ix, iy)]; }
+  /// All of them, row by row from the south: iy nx + ix.
+  [[nodiscard]] const Height* heights() const { return heights_.data(); }
   /// The same by place in the row-by-row order: iy nx + ix, not checked.
   [[nodiscard]] Height node(size_t index) const { return heights_[index]; }
   void set_node(int ix, int iy, Height height) {
