@@ -8,21 +8,15 @@
 namespace screed {
 namespace {
 
+constexpr InstructionSet kInstructions = InstructionSet::kBaseline;
+
 #include "host_sim/core/lanes/baseline.inc"
 #include "host_sim/core/lanes/lanes.inc"
-#include "host_sim/physics/kernels/track_surface.inc"
-#include "host_sim/physics/kernels/candidates.inc"
-#include "host_sim/physics/kernels/cell_stress.inc"
-#include "host_sim/physics/kernels/springs.inc"
-#include "host_sim/physics/kernels/shear_places.inc"
-#include "host_sim/physics/kernels/reaction.inc"
+#include "host_sim/physics/kernels/all.inc"
 
 }  // namespace
 
 const Kernels& baseline_kernels() {
-  static constexpr Kernels kKernels = {
-      InstructionSet::kBaseline, track_surface, any_above, classify, place_points, divide_cells,
-      entry_angle, sample_cells, stress_lift, spring_sums, spring_sinking, advance_shear, look_up_shear, react};
   return kKernels;
 }
 

@@ -98,8 +98,8 @@ struct alignas(64) CellBlock {
   double arm_z[kLanes];
   double depth[kLanes];  ///< of the body below the undisturbed surface, mean over the touching part
   // By react:
-  double units[kLanes];  ///< sunk in this step, whole units of height
-  double bears[kLanes];  ///< 1 where there is still pressure
+  double units[kLanes];   ///< sunk in this step, whole units of height
+  double bears[kLanes];   ///< 1 where there is still pressure
   double shears[kLanes];  ///< how much this cell gives of what the surface drags away, relative
 };
 
@@ -145,11 +145,11 @@ struct CellLaw {
   double rebound = 0.0;    ///< share of what a wheel presses down that comes up behind it
   double half_square;      ///< half the side of the square that a sample point stands for
   double cell_area;
-  double edge;         ///< of a cell
-  bool radial;         ///< the normal stress acts along the surface's normal
-  Triple centre;       ///< of the footprint
-  Triple axis_x;       ///< its contour's direction
-  Triple body_to;      ///< from the body's centre to it
+  double edge;     ///< of a cell
+  bool radial;     ///< the normal stress acts along the surface's normal
+  Triple centre;   ///< of the footprint
+  Triple axis_x;   ///< its contour's direction
+  Triple body_to;  ///< from the body's centre to it
 };
 
 /// Sums over a footprint's cells that carry.
@@ -160,7 +160,7 @@ struct CellSums {
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
-  double own = 0.0;  ///< of squared shares
+  double own = 0.0;   ///< of squared shares
   double rear = 0.0;  ///< from where to where the cells lie along axis_x, m
   double front = 0.0;
 };
@@ -210,10 +210,10 @@ struct ShearPlaces {
 struct ShearStep {
   double first_along;  ///< of the first place, m along the contour
   double spacing;
-  size_t count;        ///< of places in contact
-  double old_first;    ///< index of the first and last that were in contact before
+  size_t count;      ///< of places in contact
+  double old_first;  ///< index of the first and last that were in contact before
   double old_last;
-  bool touching;       ///< there was contact before
+  bool touching;  ///< there was contact before
   double rear;
   double front;
   double rear_before;
@@ -257,8 +257,8 @@ struct ReactionLaw {
   double tan_friction;
   double adhesion;
   double surface_friction;
-  Triple axis_x;       ///< ahead on the contour
-  Triple axis_y;       ///< left
+  Triple axis_x;  ///< ahead on the contour
+  Triple axis_y;  ///< left
   Triple level_ahead;
   Triple level_left;
   double contour_half;
@@ -271,7 +271,7 @@ struct ReactionLaw {
   bool digs;    ///< slip is summed
   bool pushes;  ///< what is ahead and aside resists
   double sense;
-  double travel;        ///< 1 or -1: the way it travels
+  double travel;  ///< 1 or -1: the way it travels
   double passive_at_surface;
   double passive_per_depth;
   double per_width;

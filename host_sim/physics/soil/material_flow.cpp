@@ -191,7 +191,9 @@ void MaterialFlow::find_ring(const ActiveFootprint& footprint, size_t end) {
   constexpr size_t kBits = 64;
   const size_t words = (static_cast<size_t>(last_x - first_x) + 3 + kBits - 1) / kBits;
   const size_t rows = static_cast<size_t>(last_y - first_y) + 5;
-  below_bits_.assign(rows * words, 0);
+  if (below_bits_.size() < rows * words) below_bits_.resize(2 * rows * words);
+  std::fill(below_bits_.begin(), below_bits_.begin() + static_cast<std::ptrdiff_t>(rows * words),
+            uint64_t{0});
   for (size_t i = footprint.begin; i < end; ++i) {
     const auto x = static_cast<size_t>(covered_list_[i].ix - first_x + 1);
     const auto y = static_cast<size_t>(covered_list_[i].iy - first_y + 2);
@@ -269,8 +271,8 @@ bool MaterialFlow::may_slide(size_t node) const {
   const Height* here = surface_.heights() + node;
   const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
   const auto steepness = [&](std::ptrdiff_t offset) { return std::abs(*here - here[offset]); };
-  const Height straight = std::max(std::max(steepness(1), steepness(-1)),
-                                   std::max(steepness(nx), steepness(-nx)));
+  const Height straight =
+      std::max(std::max(steepness(1), steepness(-1)), std::max(steepness(nx), steepness(-nx)));
   const Height diagonal = std::max(std::max(steepness(nx + 1), steepness(nx - 1)),
                                    std::max(steepness(-nx + 1), steepness(-nx - 1)));
   // Half of 1 is 0 units: nothing to move.

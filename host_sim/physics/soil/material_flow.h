@@ -188,7 +188,7 @@ class MaterialFlow {
   std::vector<size_t> deposit_nodes_;
   std::vector<GridNode> ring_;
   std::vector<uint64_t> below_bits_;  // a footprint's nodes seen from above, a bit each
-  std::vector<size_t> queue_;  // ring buffer of nodes whose slopes may be too steep
+  std::vector<size_t> queue_;         // ring buffer of nodes whose slopes may be too steep
   size_t queue_begin_ = 0;
   size_t queue_size_ = 0;
 };

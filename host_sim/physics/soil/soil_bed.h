@@ -90,6 +90,7 @@ class SoilBed final : public Terrain {
     size_t node;
     int ix;
     int iy;
+    uint32_t candidate;  // its number
   };
   /// The sample points of a cell.
   enum Lattice : uint8_t {
@@ -132,13 +133,14 @@ class SoilBed final : public Terrain {
 
   Range find_cells(const FootprintContact& contact, double elastic);
   Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic) const;
-  void find_candidates(const Footprint& footprint, double rebound_m);
+  void find_candidates(const Footprint& footprint, const PathHistory& path, double rebound_m);
   bool find_rows(const Footprint& footprint, double highest);
   void drop_rows_below(const Footprint& footprint, double rebound_m);
   void classify(const Footprint& footprint, double rebound_m);
   Lattice lattice_of_corner(size_t candidate, double highest_surface, double rim) const;
   void lay_out_cells();
-  void place_points();
+  void sample_surface(const Footprint& footprint, const PathHistory& path);
+  void copy_plane_points(const Footprint& footprint, const Group& group);
   WheelStress wheel_stress(const FootprintContact& contact, Law& law);
   void find_extent(const Footprint& footprint, const CellSums& sums, Range& range) const;
   void measure_patch(const Footprint& footprint, const CellSums& sums, ContactMemory& memory) const;

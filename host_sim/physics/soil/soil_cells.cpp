@@ -21,6 +21,7 @@
 // of pressure, from points weighed with their pressure; and, for radial stress, the moment of the
 // normal's horizontal parts (slope_x, slope_y) about the footprint's centre.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -38,13 +39,6 @@ constexpr double kFlatWithin = 0.75;
 
 Triple triple(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
-}
-
-SurfacePoints points_from(FootprintSamples& samples, size_t first) {
-  return {samples.x.data() + first,           samples.y.data() + first,
-          samples.share.data() + first,       samples.height.data() + first,
-          samples.slope_x.data() + first,     samples.slope_y.data() + first,
-          samples.flat_within.data() + first, samples.passed.data() + first};
 }
 
 }  // namespace
@@ -93,19 +87,17 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
   const double deepest = memory.sinkage + kStepSinkage_m;
   const double rebound_m =
       law.bekker * range.law.table->power(deepest) / elastic + law.rebound * deepest;
-  find_candidates(footprint, rebound_m);
-  lay_out_cells();
-  if (groups_.empty()) return range;
-  place_points();
   // One cell of margin: contact is found cell by cell, so the path may have begun up to a cell
   // earlier.
   PathHistory path = memory.path;
   if (path.travel_m != 0.0) path.travel_m += std::copysign(spacing, path.travel_m);
-  footprint.surface(spacing / samples_per_side_, path, sample_points_, kernels_);
+  find_candidates(footprint, path, rebound_m);
+  lay_out_cells();
+  if (groups_.empty()) return range;
+  sample_surface(footprint, path);
   const auto each_group = [&](const auto& kernel) {
     for (const Group& group : groups_) {
-      kernel(group, points_from(sample_points_, group.first_point),
-             lattices_[group.lattice].x.size());
+      kernel(group, sample_points_.points(group.first_point), lattices_[group.lattice].x.size());
     }
   };
   each_group([&](const Group& group, const SurfacePoints& samples, size_t points) {
@@ -149,7 +141,7 @@ WheelStress SoilBed::wheel_stress(const FootprintContact& contact, Law& law) {
   EntrySums sums;
   for (const Group& group : groups_) {
     kernels_.entry_angle(&cells_[group.begin], group.blocks,
-                         points_from(sample_points_, group.first_point),
+                         sample_points_.points(group.first_point),
                          lattices_[group.lattice].x.size(), law.cell, per_radius, sums);
   }
   if (sums.weight <= 0.0) return {};
@@ -277,35 +269,49 @@ void SoilBed::classify(const Footprint& footprint, double rebound_m) {
   const double spacing = flow_.surface().spacing_m();
   const double rim = footprint.lowest_at_rim(spacing);
   const size_t count = candidate_points_.count;
-  const bool corners = footprint.has_corners();
-  flat_bits_.resize(whole_blocks(count) / kLanes);
-  curved_bits_.resize(flat_bits_.size());
-  if (!corners) {
-    const ClassifyLimits limits{kHeightUnit_m, rebound_m, rim, 0.5 * spacing,
-                                kFlatWithin * spacing};
-    kernels_.classify(candidate_points_.points(), candidate_heights_.data(), count, limits,
-                      flat_bits_.data(), curved_bits_.data());
-  }
-  size_t i = 0;
-  for (const Row& row : rows_) {
-    for (int ix = row.first_ix; ix < row.end_ix; ++ix, ++i) {
-      Lattice lattice = kNone;
-      if (corners) {
-        lattice = lattice_of_corner(i, candidate_heights_[i] * kHeightUnit_m + rebound_m, rim);
-      } else {
-        const unsigned bit = 1U << (i % kLanes);
-        if ((flat_bits_[i / kLanes] & bit) != 0) lattice = kCentre;
-        if ((curved_bits_[i / kLanes] & bit) != 0) lattice = kOnePerRowAndColumn;
-      }
-      if (lattice != kNone) {
-        candidates_[lattice].push_back({flow_.node_on(ix, row.iy), ix, row.iy});
+  if (footprint.has_corners()) {
+    size_t i = 0;
+    for (const Row& row : rows_) {
+      for (int ix = row.first_ix; ix < row.end_ix; ++ix, ++i) {
+        const Lattice lattice =
+            lattice_of_corner(i, candidate_heights_[i] * kHeightUnit_m + rebound_m, rim);
+        if (lattice == kNone) continue;
+        candidates_[lattice].push_back(
+            {flow_.node_on(ix, row.iy), ix, row.iy, static_cast<uint32_t>(i)});
       }
     }
+    return;
   }
+  // A cell that both sides of a narrow belt cross is sampled, too.
+  const bool is_wide = 2.0 * footprint.half().y() > footprint.projected_side(spacing);
+  const double flat_within =
+      is_wide ? kFlatWithin * spacing : std::numeric_limits<double>::infinity();
+  const ClassifyLimits limits{kHeightUnit_m, rebound_m, rim, 0.5 * spacing, flat_within};
+  kernels_.classify(candidate_points_.points(), candidate_heights_.data(), count, limits,
+                    flat_bits_.data(), curved_bits_.data());
+  const auto collect = [&](const std::vector<uint8_t>& bits, Lattice lattice) {
+    const Row* row = rows_.data();
+    size_t begin = 0;  // the row's first candidate
+    for (size_t block = 0; block < whole_blocks(count) / kLanes; ++block) {
+      for (unsigned left = bits[block]; left != 0; left &= left - 1) {
+        const size_t i = block * kLanes + static_cast<size_t>(std::countr_zero(left));
+        while (i >= begin + static_cast<size_t>(row->end_ix - row->first_ix)) {
+          begin += static_cast<size_t>(row->end_ix - row->first_ix);
+          ++row;
+        }
+        const int ix = row->first_ix + static_cast<int>(i - begin);
+        candidates_[lattice].push_back(
+            {flow_.node_on(ix, row->iy), ix, row->iy, static_cast<uint32_t>(i)});
+      }
+    }
+  };
+  collect(flat_bits_, kCentre);
+  collect(curved_bits_, kOnePerRowAndColumn);
 }
 
 /// The cells that a footprint may touch.
-void SoilBed::find_candidates(const Footprint& footprint, double rebound_m) {
+void SoilBed::find_candidates(const Footprint& footprint, const PathHistory& path,
+                              double rebound_m) {
   const HeightField& field = flow_.surface();
   const double spacing = field.spacing_m();
   const Eigen::Vector3d& centre = footprint.pose().translation();
@@ -319,19 +325,26 @@ void SoilBed::find_candidates(const Footprint& footprint, double rebound_m) {
   for (const Row& row : rows_) count += static_cast<size_t>(row.end_ix - row.first_ix);
   if (count == 0) return;
   candidate_points_.clear(count);
-  candidate_heights_.resize(whole_blocks(count));
+  if (candidate_heights_.size() < whole_blocks(count)) {
+    candidate_heights_.resize(2 * whole_blocks(count));
+    flat_bits_.resize(candidate_heights_.size() / kLanes);
+    curved_bits_.resize(flat_bits_.size());
+  }
+  for (auto& list : candidates_) {
+    if (list.capacity() < count) list.reserve(2 * count);
+  }
   size_t i = 0;
   for (const Row& row : rows_) {
     const double y = field.node_y(row.iy);
     for (int ix = row.first_ix; ix < row.end_ix; ++ix) candidate_points_.add(field.node_x(ix), y);
     flow_.each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int, size_t length) {
-      std::copy_n(field.heights() + node, length, candidate_heights_.begin() + static_cast<std::ptrdiff_t>(i));
+      std::copy_n(field.heights() + node, length, &candidate_heights_[i]);
       i += length;
     });
   }
   // A cell turned against the body reaches further across it.
   const double edge = footprint.has_corners() ? 2.0 * spacing : footprint.projected_side(spacing);
-  footprint.surface(edge, candidate_points_, kernels_);
+  footprint.surface(edge, path, candidate_points_, kernels_);
   classify(footprint, rebound_m);
 }
 
@@ -380,12 +393,53 @@ void SoilBed::lay_out_cells() {
   sample_points_.count = first_point;
 }
 
-void SoilBed::place_points() {
+/// The body's surface at all sample points of the cells. Of cells below a plane it is known.
+void SoilBed::sample_surface(const Footprint& footprint, const PathHistory& path) {
+  size_t first = 0;  // of the points to be computed
   for (const Group& group : groups_) {
+    if (group.lattice == kCentre) {
+      copy_plane_points(footprint, group);
+      first = group.blocks * kLanes;
+      continue;
+    }
     const LatticePoints& lattice = lattices_[group.lattice];
     kernels_.place_points(&cells_[group.begin], group.blocks, lattice.x.data(), lattice.y.data(),
                           lattice.x.size(), sample_points_.x.data() + group.first_point,
                           sample_points_.y.data() + group.first_point);
+  }
+  const double edge = flow_.surface().spacing_m() / samples_per_side_;
+  footprint.surface(edge, path, sample_points_, kernels_, first);
+}
+
+/// What the body covers of a cell below its plane lower run lies around another place than the
+/// cell's centre: nearer to its middle.
+void SoilBed::copy_plane_points(const Footprint& footprint, const Group& group) {
+  const FootprintSamples& from = candidate_points_;
+  FootprintSamples& to = sample_points_;
+  const Eigen::Vector3d& centre = footprint.pose().translation();
+  const Eigen::Vector2d left = footprint.pose().linear().col(1).head<2>();
+  const double half_side = 0.5 * footprint.projected_side(flow_.surface().spacing_m());
+  for (size_t i = 0; i < group.blocks * kLanes; ++i) {
+    const size_t candidate = places_[group.begin * kLanes + i].candidate;
+    const size_t at = group.first_point + i;
+    const double share = from.share[candidate];
+    double dx = 0.0;
+    double dy = 0.0;
+    if (share < 1.0) {
+      const double across =
+          (from.x[candidate] - centre.x()) * left.x() + (from.y[candidate] - centre.y()) * left.y();
+      const double inwards = -std::copysign((1.0 - share) * half_side, across);
+      dx = inwards * left.x();
+      dy = inwards * left.y();
+    }
+    const double down = from.slope_x[candidate] * dx + from.slope_y[candidate] * dy;
+    to.x[at] = from.x[candidate] + dx;
+    to.y[at] = from.y[candidate] + dy;
+    to.share[at] = share;
+    to.height[at] = from.height[candidate] - down;
+    to.slope_x[at] = from.slope_x[candidate];
+    to.slope_y[at] = from.slope_y[candidate];
+    to.passed[at] = from.passed[candidate] - down;
   }
 }
 

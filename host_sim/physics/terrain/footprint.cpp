@@ -25,7 +25,6 @@
 #include <cmath>
 #include <limits>
 
-
 namespace screed {
 namespace {
 
@@ -167,7 +166,7 @@ void FootprintSamples::clear(size_t room) {
   if (x.size() >= room) return;
   for (std::vector<double>* array :
        {&x, &y, &share, &height, &slope_x, &slope_y, &flat_within, &passed}) {
-    array->resize(room);
+    array->resize(2 * room);
   }
 }
 
@@ -179,33 +178,33 @@ void FootprintSamples::fill_block() {
 }
 
 void Footprint::surface(double edge, const PathHistory& path, FootprintSamples& samples,
-                        const Kernels& kernels) const {
-  surface(edge, &path, samples, kernels);
+                        const Kernels& kernels, size_t first) const {
+  surface(edge, &path, samples, kernels, first);
 }
 
 void Footprint::surface(double edge, FootprintSamples& samples, const Kernels& kernels) const {
-  surface(edge, nullptr, samples, kernels);
+  surface(edge, nullptr, samples, kernels, 0);
 }
 
 void Footprint::surface(double edge, const PathHistory* path, FootprintSamples& samples,
-                        const Kernels& kernels) const {
+                        const Kernels& kernels, size_t first) const {
   samples.fill_block();
   switch (kind_) {
     case Kind::kTrack:
-      track_surface(edge, path, samples, kernels);
+      track_surface(edge, path, samples, kernels, first);
       return;
     case Kind::kBox:
-      box_surface(edge, samples);
+      box_surface(edge, samples, first);
       return;
     case Kind::kDisc:
       break;
   }
-  disc_surface(edge, samples);
+  disc_surface(edge, samples, first);
 }
 
 // Eight sample points at a time, without branches (kernels/track_surface.inc).
 void Footprint::track_surface(double edge, const PathHistory* path, FootprintSamples& samples,
-                              const Kernels& kernels) const {
+                              const Kernels& kernels, size_t first) const {
   if (square_ < 1e-6) {  // lying on its side: the caller uses a box
     std::fill(samples.share.begin(), samples.share.end(), 0.0);
     return;
@@ -247,11 +246,11 @@ void Footprint::track_surface(double edge, const PathHistory* path, FootprintSam
     shape.deep[wheel] = travelled.gradient * axle - side * radius_ * slant;
     shape.touch[wheel] = axle - side * radius_ * travelled.gradient / slant;
   }
-  kernels.track_surface(shape, samples.points(), whole_blocks(samples.count));
+  kernels.track_surface(shape, samples.points(first), whole_blocks(samples.count) - first);
 }
 
-void Footprint::box_surface(double edge, FootprintSamples& samples) const {
-  for (size_t i = 0; i < samples.count; ++i) {
+void Footprint::box_surface(double edge, FootprintSamples& samples, size_t first) const {
+  for (size_t i = first; i < samples.count; ++i) {
     const double dx = samples.x[i] - pose_.translation().x();
     const double dy = samples.y[i] - pose_.translation().y();
     const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);
@@ -284,14 +283,14 @@ void Footprint::box_surface(double edge, FootprintSamples& samples) const {
   }
 }
 
-void Footprint::disc_surface(double edge, FootprintSamples& samples) const {
+void Footprint::disc_surface(double edge, FootprintSamples& samples, size_t first) const {
   if (std::abs(up_.z()) < 0.5) {
     std::fill(samples.share.begin(), samples.share.end(), 0.0);
     return;
   }
   const double side = up_.z() > 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d normal = -side * to_local_.row(2).transpose();
-  for (size_t i = 0; i < samples.count; ++i) {
+  for (size_t i = first; i < samples.count; ++i) {
     const double dx = samples.x[i] - pose_.translation().x();
     const double dy = samples.y[i] - pose_.translation().y();
     const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);

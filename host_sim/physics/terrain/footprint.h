@@ -40,9 +40,11 @@ struct FootprintSamples {
 
   /// Fills up to whole blocks with the last point.
   void fill_block();
-  SurfacePoints points() {
-    return {x.data(),       y.data(),       share.data(),       height.data(),
-            slope_x.data(), slope_y.data(), flat_within.data(), passed.data()};
+  /// For kernels, those from `first` on.
+  SurfacePoints points(size_t first = 0) {
+    return {x.data() + first,           y.data() + first,       share.data() + first,
+            height.data() + first,      slope_x.data() + first, slope_y.data() + first,
+            flat_within.data() + first, passed.data() + first};
   }
 };
 
@@ -85,8 +87,8 @@ class Footprint {
 
   /// Half of the extent in x and y of the world around pose().translation().
   Eigen::Vector2d reach() const;
-  /// Half of the extent, along a level direction of unit length around pose().translation(), of what
-  /// reaches below a level in the world's z, at least; negative when nothing does.
+  /// Half of the extent, along a level direction of unit length around pose().translation(), of
+  /// what reaches below a level in the world's z, at least; negative when nothing does.
   double reach_below(double level, const Eigen::Vector2d& direction) const;
   /// Of a circle round pose().translation() that holds the body seen from above, m.
   double radius_from_above() const;
@@ -112,11 +114,11 @@ class Footprint {
   /// The shorter side (or radius) of the body itself, a first guess at b, m.
   double narrow() const;
 
-  /// Answers for all sample points. `edge`: side of the small square, m; the share falls linearly
-  /// across the body's side over this length, so that sums over a lattice of such squares are exact
-  /// for edges along the lattice.
+  /// Answers for all sample points from `first` on, a whole number of blocks. `edge`: side of the
+  /// small square, m; the share falls linearly across the body's side over this length, so that
+  /// sums over a lattice of such squares are exact for edges along the lattice.
   void surface(double edge, const PathHistory& path, FootprintSamples& samples,
-               const Kernels& kernels = best_kernels()) const;
+               const Kernels& kernels = best_kernels(), size_t first = 0) const;
   /// The same without `passed`, which then means nothing.
   void surface(double edge, FootprintSamples& samples,
                const Kernels& kernels = best_kernels()) const;
@@ -130,11 +132,11 @@ class Footprint {
     set_pose(Eigen::Isometry3d::Identity());
   }
   void surface(double edge, const PathHistory* path, FootprintSamples& samples,
-               const Kernels& kernels) const;
+               const Kernels& kernels, size_t first) const;
   void track_surface(double edge, const PathHistory* path, FootprintSamples& samples,
-                     const Kernels& kernels) const;
-  void box_surface(double edge, FootprintSamples& samples) const;
-  void disc_surface(double edge, FootprintSamples& samples) const;
+                     const Kernels& kernels, size_t first) const;
+  void box_surface(double edge, FootprintSamples& samples, size_t first) const;
+  void disc_surface(double edge, FootprintSamples& samples, size_t first) const;
 
   Eigen::Vector3d local_half() const;
   Eigen::Vector3d world_reach() const;

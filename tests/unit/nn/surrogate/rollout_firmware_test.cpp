@@ -2,7 +2,9 @@
 // itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/height_export.h"
@@ -29,13 +31,14 @@ RolloutOptions one_start() {
 }
 
 /// The greatest distance between a rollout's path and the recorded one.
-double farthest(const SessionRollouts& result, std::size_t surrogate = 0) {
+double farthest(const SessionRollouts& result, std::size_t surrogate = 0,
+                std::size_t strides = std::numeric_limits<std::size_t>::max()) {
   const std::vector<PlanarPose>& path = result.by_surrogate[surrogate].at(0).path;
   const std::vector<PlanarPose>& real = result.real.at(0);
   EXPECT_EQ(path.size(), real.size());
   EXPECT_GT(path.size(), 100U);
   double worst = 0.0;
-  for (std::size_t i = 0; i < std::min(path.size(), real.size()); ++i) {
+  for (std::size_t i = 0; i < std::min({path.size(), real.size(), strides}); ++i) {
     worst = std::max(worst, std::hypot(path[i].x_m - real[i].x_m, path[i].y_m - real[i].y_m));
   }
   return worst;
@@ -162,9 +165,11 @@ struct OnRuts {
 
 TEST(RolloutFirmware, OnTerrainThatItDeformsFollowsASessionThatDidSo) {
   const OnRuts ruts;
-  const double level = farthest(ruts.rollouts(1, nullptr));
+  // As far as the robot's second turn: to which side it turns there hangs on the last bits.
+  constexpr std::size_t kStrides = 80;
+  const double level = farthest(ruts.rollouts(1, nullptr), 0, kStrides);
   EXPECT_GT(level, 0.05) << "the terrain stays as it was";
-  EXPECT_LT(farthest(ruts.rollouts(1, ruts.bearing)), 0.3 * level);
+  EXPECT_LT(farthest(ruts.rollouts(1, ruts.bearing), 0, kStrides), 0.3 * level);
 }
 
 TEST(RolloutFirmware, TheTerrainAtAStartIsPressedByTheStridesThatHaveEnded) {

@@ -109,7 +109,13 @@ TEST(MaterialFlow, OnlyWhatGetsMaterialIsLookedAtAgain) {
   MaterialFlow flow = level();
   press(flow, 10, 10, 3);
   flow.deposit();
-  EXPECT_EQ(flow.queued(), 1U + 3U) << "the footprint's node and three neighbours";
+  EXPECT_EQ(flow.queued(), 3U) << "three neighbours";
+  const size_t below = flow.index(10, 10);
+  EXPECT_FALSE(flow.is_queued(below)) << "it is held as long as the footprint stands there";
+  flow.uncover();
+  EXPECT_TRUE(flow.is_queued(below));
+  flow.slide(1000);
+  EXPECT_FALSE(flow.is_queued(below));
 }
 
 TEST(MaterialFlow, AFootprintThatHardlyMovesHasNoRutBehindIt) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "host_sim/core/gravity.h"
 
@@ -26,6 +27,37 @@ PressingBody body_of(double mass_kg, const Eigen::Vector3d& inertia = Eigen::Vec
   body.velocity.setZero();
   body.omega.setZero();
   return body;
+}
+
+/// One spring; the solver takes them in blocks.
+struct SoilSpring {
+  double elastic;
+  double elastic_slope;
+  double virgin;
+  double virgin_slope;
+  double x;
+  double y;
+  double sinking = 0.0;
+};
+
+int solve_sinking(const PressingBody& body, double dt, std::vector<SoilSpring>& springs,
+                  BodyMemory& memory) {
+  std::vector<SpringBlock> blocks(whole_blocks(springs.size()) / kLanes, SpringBlock{});
+  for (size_t i = 0; i < springs.size(); ++i) {
+    SpringBlock& block = blocks[i / kLanes];
+    const size_t lane = i % kLanes;
+    block.elastic[lane] = springs[i].elastic;
+    block.elastic_slope[lane] = springs[i].elastic_slope;
+    block.virgin[lane] = springs[i].virgin;
+    block.virgin_slope[lane] = springs[i].virgin_slope;
+    block.x[lane] = springs[i].x;
+    block.y[lane] = springs[i].y;
+  }
+  const int evaluations = screed::solve_sinking(body, dt, blocks, memory);
+  for (size_t i = 0; i < springs.size(); ++i) {
+    springs[i].sinking = blocks[i / kLanes].sinking[i % kLanes];
+  }
+  return evaluations;
 }
 
 /// Soil that a body at rest neither loads nor unloads yet.

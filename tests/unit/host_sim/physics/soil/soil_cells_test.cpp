@@ -128,15 +128,18 @@ TEST(SoilCells, TheGridsFourDirectionsAreTheSame) {
   for (const NormalStress stress : {NormalStress::kRadial, NormalStress::kVertical}) {
     SoilOptions options;
     options.normal_stress = stress;
-    // On a node, so that a quarter turn of the grid is one of the body.
+    // Turned about a node, so that a quarter turn of the grid is one of the body, and aside of it,
+    // so that no cell is touched by rounding alone.
     Contact wheel = slipping_wheel();
-    wheel.at.head<2>().setZero();
+    const Eigen::Vector2d aside(0.0013, 0.0006);
+    wheel.at.head<2>() = aside;
     SoilBed first = bed_of(true, options);
     const Reaction east = press(first, wheel);
     ASSERT_GT(std::abs(east.force.y()), 0.02 * east.force.z());
     for (int quarter = 1; quarter < 4; ++quarter) {
       SoilBed bed = bed_of(true, options);
       wheel.yaw = 0.5 * std::numbers::pi * quarter;
+      wheel.at.head<2>() = Eigen::Rotation2Dd(wheel.yaw) * aside;
       expect_alike(east, press(bed, wheel), 0.01, "a quarter turn");
     }
   }

@@ -25,15 +25,14 @@ TEST(WheelStressTest, PointsBehindTheGreatestStressBearAsThoseAhead) {
       ASSERT_TRUE(stress.shaped());
       EXPECT_DOUBLE_EQ(stress.exit_rad(), exit);
       for (double theta = exit; theta <= std::min(entry, 1.5); theta += 0.02) {
-        const double lift = stress.lift(broadcast(std::sin(theta)))[0];
+        const double lift = stress.lift(std::sin(theta));
         const double ahead = entry - (theta - exit) * (entry - middle) / (middle - exit);
         const double wanted =
             theta >= middle ? 0.0 : kRadius * (std::cos(std::max(theta, 0.0)) - std::cos(ahead));
         EXPECT_NEAR(lift, wanted, 3e-5 * kRadius) << slip << " " << entry << " " << theta;
       }
       // Where it leaves the soil it bears as at its entry: nothing.
-      EXPECT_NEAR(stress.lift(broadcast(std::sin(exit)))[0], kRadius * (1.0 - std::cos(entry)),
-                  3e-5 * kRadius);
+      EXPECT_NEAR(stress.lift(std::sin(exit)), kRadius * (1.0 - std::cos(entry)), 3e-5 * kRadius);
     }
   }
 }
@@ -42,9 +41,9 @@ TEST(WheelStressTest, AWheelThatIsSetDownBearsEvenly) {
   SoilParameters soil;
   soil.front_angle = 0.3;
   EXPECT_FALSE(WheelStress(soil, 0.05, 0.5, 0.0, 0.0).shaped());
-  const Double2 sine = broadcast(0.05);
-  EXPECT_NEAR(WheelStress(soil, 0.05, 0.5, 0.0, 0.5).lift(sine)[0],
-              0.5 * WheelStress(soil, 0.05, 0.5, 0.0, 1.0).lift(sine)[0], 1e-12);
+  const double sine = 0.05;
+  EXPECT_NEAR(WheelStress(soil, 0.05, 0.5, 0.0, 0.5).lift(sine),
+              0.5 * WheelStress(soil, 0.05, 0.5, 0.0, 1.0).lift(sine), 1e-12);
 }
 
 // At 30 degrees X = 30, cot X = tan(X + phi) = sqrt(3): D1 = D2 = 2 sqrt(3).

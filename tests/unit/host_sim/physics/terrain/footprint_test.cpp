@@ -308,13 +308,19 @@ TEST(Footprint, ReachBelowHoldsWhatIsBelow) {
       const std::vector<Eigen::Vector3d> points = points_of(body);
       double lowest = 1e9;
       for (const Eigen::Vector3d& p : points) lowest = std::min(lowest, p.z());
-      EXPECT_LT(f.reach_below(lowest - 0.06).x(), 0.0);
+      const Eigen::Vector2d aslant = Eigen::Vector2d(0.6, -0.8);
+      EXPECT_LT(f.reach_below(lowest - 0.06, aslant), 0.0);
       for (const double above : {0.002, 0.01, 0.03}) {
         Eigen::Vector2d most = Eigen::Vector2d::Zero();
+        double most_aslant = 0.0;
         for (const Eigen::Vector3d& p : points) {
-          if (p.z() <= lowest + above) most = most.cwiseMax((p - centre).head<2>().cwiseAbs());
+          if (p.z() > lowest + above) continue;
+          most = most.cwiseMax((p - centre).head<2>().cwiseAbs());
+          most_aslant = std::max(most_aslant, std::abs((p - centre).head<2>().dot(aslant)));
         }
-        const Eigen::Vector2d reach = f.reach_below(lowest + above);
+        const Eigen::Vector2d reach(f.reach_below(lowest + above, Eigen::Vector2d::UnitX()),
+                                    f.reach_below(lowest + above, Eigen::Vector2d::UnitY()));
+        EXPECT_GE(f.reach_below(lowest + above, aslant), most_aslant - 1e-9);
         EXPECT_GE(reach.x(), most.x() - 1e-9) << half << " " << above;
         EXPECT_GE(reach.y(), most.y() - 1e-9) << half << " " << above;
         slack += (reach - most).sum();
@@ -325,10 +331,11 @@ TEST(Footprint, ReachBelowHoldsWhatIsBelow) {
   }
   // Level, in closed form: half a chord of the circle round each axle.
   const Footprint belt = Footprint::track(0.06, 0.05, 0.04);
-  EXPECT_NEAR(belt.reach_below(-0.04).x(), 0.06 + 0.03, 1e-12);
-  EXPECT_NEAR(belt.reach_below(-0.04).y(), 0.02, 1e-12);
-  EXPECT_NEAR(belt.reach_below(0.02).x(), 0.06 + 0.05, 1e-12) << "above the axles: all of it";
-  EXPECT_LT(belt.reach_below(-0.05).x(), 0.0);
+  const Eigen::Vector2d ahead = Eigen::Vector2d::UnitX();
+  EXPECT_NEAR(belt.reach_below(-0.04, ahead), 0.06 + 0.03, 1e-12);
+  EXPECT_NEAR(belt.reach_below(-0.04, Eigen::Vector2d::UnitY()), 0.02, 1e-12);
+  EXPECT_NEAR(belt.reach_below(0.02, ahead), 0.06 + 0.05, 1e-12) << "above the axles: all of it";
+  EXPECT_LT(belt.reach_below(-0.05, ahead), 0.0);
 }
 
 TEST(Footprint, LowestAtRimIsBelowWhateverLiesInASquareAtTheOutline) {
