@@ -22,7 +22,7 @@ inline void record_surrogate(const fs::path& folder, const Surrogate& driven, st
                              const std::string& board = kDefaultBoard) {
   fs::create_directories(folder);
   write_text(folder / "experiment.ini",
-             "[map]\nmodel = scm\nsize = 2\nwrap = true\n[soil]\npreset = soft\ncell = 0.02\n"
+             "[map]\nmodel = scm\nsize = 2\nedges = wrap\n[soil]\npreset = soft\ncell = 0.02\n"
              "[experiment]\nname = made_up\nalgorithm = training_drive\nframes = 3200\n" +
                  more);
   const Experiment experiment = read_experiment(folder / "experiment.ini");

@@ -282,17 +282,17 @@ TEST_F(ExperimentFile, AFileOfSandboxIsReadInItsUnitsAndAxes) {
     EXPECT_NEAR(e.vehicle.z_m.value(), 8.0 / 12.0, 1e-12);
     EXPECT_NEAR(e.map.scale_m, 5.0 / 12.0, 1e-12);
     EXPECT_NEAR(e.map.xy_scale.value(), 0.01, 1e-12);
-    EXPECT_TRUE(e.map.wrap);
+    EXPECT_TRUE(e.map.wrap());
     EXPECT_EQ(e.drive.speed_m_per_s, 0.2);  // a section that Sandbox does not have
     // What is written back is in SI units, and says the same.
     const Experiment again = read(e.text());
     EXPECT_EQ(again.text(), e.text());
     EXPECT_EQ(again.vehicle.x_m, e.vehicle.x_m);
-    EXPECT_TRUE(again.map.wrap);
+    EXPECT_TRUE(again.map.wrap());
   }
   const Experiment si = read("units = si\nchrono_data_path = ../data/\n[vehicle]\nx = -20\n");
   EXPECT_EQ(si.vehicle.x_m, -20.0);
-  EXPECT_FALSE(si.map.wrap);
+  EXPECT_FALSE(si.map.wrap());
   EXPECT_EQ(si.notes.size(), 1U);
   EXPECT_EQ(read("units = sandbox\n[vehicle]\nx = -20\n", {"vehicle.x=1"}).vehicle.x_m, 1.0);
   const std::string wrong = error_message("chrono_data_path = ../data/\n[vehicle]\nx = east\n");
@@ -316,7 +316,7 @@ TEST_F(ExperimentFile, Figure53IsAcceptedAsPrinted) {
   EXPECT_EQ(e.map.xy_scale, 0.4);
   EXPECT_EQ(e.map.model, "particles");
   EXPECT_EQ(e.particles.depth_m, 0.0);
-  EXPECT_TRUE(e.map.wrap);
+  EXPECT_TRUE(e.map.wrap());
   EXPECT_NEAR(e.raygrid.resolution_per_m, 24.0, 1e-12);
   EXPECT_EQ(e.experiment.name, "sparse_random");
   EXPECT_EQ(e.parameters.algorithm, 3);
