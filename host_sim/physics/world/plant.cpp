@@ -2,15 +2,14 @@
 #include "host_sim/physics/world/plant.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
+#include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
 namespace {
@@ -65,42 +64,10 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
   vehicle_.place(pose);
-  check_walls();
+  check_between_walls(terrain_->bounds(), vehicle_.outline(), {start.x_m, start.y_m});
   wrap_around();
   wrap_counts_ = {0, 0};
   if (!start.z_m.has_value()) settle(options.progress);
-}
-
-void Plant::check_walls() const {
-  const BedBounds bed = terrain_->bounds();
-  if (bed.edge != BedEdge::kWalled) return;
-  const Eigen::Vector2d at = vehicle_.chassis().pose.translation().head<2>();
-  const Eigen::AlignedBox2d robot = vehicle_.outline();
-  const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
-  if ((robot.max().array() <= corner.array()).all() &&
-      (robot.min().array() >= -corner.array()).all())
-    return;
-  const Eigen::Vector2d low = at - robot.min() - corner;
-  const Eigen::Vector2d high = corner - (robot.max() - at);
-  const auto number = [](double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3f", value);
-    return std::string(text.data());
-  };
-  const auto pair = [&](double x, double y) { return number(x) + " m x " + number(y) + " m"; };
-  const Eigen::Vector2d size = robot.sizes();
-  if ((low.array() > high.array()).any()) {
-    throw InputError("[map] edges = walls: between walls the bed of " +
-                     pair(bed.width_m, bed.depth_m) + " is too small for a robot that takes " +
-                     pair(size.x(), size.y()) + " at this heading");
-  }
-  const auto range = [&](Eigen::Index axis) {
-    return number(low[axis]) + ".." + number(high[axis]);
-  };
-  throw InputError("[vehicle] x = " + number(at.x()) + ", y = " + number(at.y()) +
-                   " m puts the robot into a wall of the bed; at this heading it reaches " +
-                   pair(0.5 * size.x(), 0.5 * size.y()) + " round its middle: allowed are x " +
-                   range(0) + ", y " + range(1));
 }
 
 void Plant::settle(const TaskProgress& progress) {
@@ -206,15 +173,6 @@ ImuTruth Plant::motion() const {
   return truth;
 }
 
-Eigen::Vector2d Plant::distance_out_of_walls() const {
-  const BedBounds bed = terrain_->bounds();
-  if (bed.edge != BedEdge::kWalled) return Eigen::Vector2d::Zero();
-  const Eigen::AlignedBox2d robot = vehicle_.outline();
-  const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
-  const Eigen::Vector2d zero = Eigen::Vector2d::Zero();
-  return (-corner - robot.min()).cwiseMax(zero) - (robot.max() - corner).cwiseMax(zero);
-}
-
 void Plant::lay_on_side() {
   Eigen::Isometry3d pose = vehicle_.chassis().pose;
   Attitude attitude = attitude_of(pose.linear());
@@ -222,7 +180,7 @@ void Plant::lay_on_side() {
   attitude.pitch = 0.0;
   pose.linear() = rotation_from(attitude);
   vehicle_.place(pose);
-  pose.translation().head<2>() += distance_out_of_walls();
+  pose.translation().head<2>() += out_of_walls(terrain_->bounds(), vehicle_.outline());
   pose.translation().z() = vehicle_.resting_height(Plant::terrain(), pose.translation().x(),
                                                    pose.translation().y(), pose.linear());
   vehicle_.place(pose);

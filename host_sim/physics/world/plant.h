@@ -70,10 +70,6 @@ class Plant : public Environment {
   /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
   /// when it was switched on.
   void settle(const TaskProgress& progress);
-  /// Throws InputError when the robot stands in a wall of the bed.
-  void check_walls() const;
-  /// How far a robot that has been put into a wall of the bed must be moved out of it, m.
-  Eigen::Vector2d distance_out_of_walls() const;
   /// Teleports the robot when it has left the bed.
   void wrap_around();
   /// Forces, integration and terrain of one physics step.
