@@ -184,7 +184,8 @@ void Vehicle::meet_walls(const BedBounds& bed, size_t carrier, const CarrierMoti
   for (const WallContact::Touch& touch : walls.touches()) {
     const size_t drive = walls.drive(touch.point);
     if (drive == WallContact::kNoDrive || drive < shafts_.size()) continue;
-    chains_[drive - shafts_.size()].track.pull(motion, touch.arm, touch.along, touch.impulse / dt);
+    chains_[drive - shafts_.size()].track.pull(motion, touch.arm, touch.along,
+                                              touch.friction() / dt);
   }
 }
 

@@ -9,6 +9,7 @@ namespace {
 
 // Of the whole robot on one point, critically damped: at 1 m/s it goes 1.2 mm into a wall.
 constexpr double kFrequency_rad_per_s = 300.0;
+constexpr double kSliding = 1.0 - 1e-9;  // share of Coulomb's limit
 constexpr int kMaxSweeps = 60;
 constexpr double kTolerance_m_per_s = 1e-7;  // of the whole robot, by one impulse in a sweep
 
@@ -35,9 +36,13 @@ struct WallContact::Motion {
       surface += drives[point.drive].omega_rad_per_s * point.radius * touch.along;
     return surface - surface.dot(touch.normal) * touch.normal;
   }
-  void push(const Touch& touch, const Point& point, const Eigen::Vector3d& impulse) {
+  void push(const Touch& touch, const Eigen::Vector3d& impulse) {
     velocity += impulse / body.mass_kg;
     omega += body.inverse_inertia * touch.arm.cross(impulse);
+  }
+  /// Along the wall: the surface's drive has it too.
+  void rub(const Touch& touch, const Point& point, const Eigen::Vector3d& impulse) {
+    push(touch, impulse);
     if (point.drive == kNoDrive) return;
     SurfaceDrive& drive = drives[point.drive];
     const double twist = point.radius * touch.along.dot(impulse);
@@ -112,7 +117,7 @@ double WallContact::solve(const Touch& touch, const Memory& memory, double dt, M
   const double softened = 1.0 + gain * motion.mobility(touch.arm, touch.normal);
   const double pushed = std::max(0.0, normal_impulse + (wanted - normal_impulse) / softened);
   const Eigen::Vector3d more = (pushed - normal_impulse) * touch.normal;
-  motion.push(touch, point, more);
+  motion.push(touch, more);
   impulse += more;
   normal_impulse = pushed;
 
@@ -137,7 +142,7 @@ double WallContact::solve(const Touch& touch, const Memory& memory, double dt, M
   const double limit = friction_ * normal_impulse;
   const double size = friction.norm();
   if (size > limit) friction *= limit / size;
-  motion.push(touch, point, friction - friction_before);
+  motion.rub(touch, point, friction - friction_before);
   impulse = normal_impulse * touch.normal + friction;
   return (impulse - before).norm();
 }
@@ -150,10 +155,17 @@ void WallContact::press(const BedBounds& bed, const PressingBody& body,
   touched_ = true;
 
   Motion motion{body, body.velocity, body.omega, drives, dt};
+  for (const Touch& touch : touches_) {
+    // As far as it has really slid since the last step, whatever else pushed.
+    Memory& memory = memory_of(touch);
+    if (memory.touching) memory.bristle += dt * motion.sliding(touch, points_[touch.point]);
+    memory.touching = true;
+  }
   // The last step's impulses are near the solution.
   for (Touch& touch : touches_) {
     touch.impulse = memory_of(touch).impulse;
-    motion.push(touch, points_[touch.point], touch.impulse);
+    motion.push(touch, touch.impulse.dot(touch.normal) * touch.normal);
+    motion.rub(touch, points_[touch.point], touch.friction());
   }
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0.0;
@@ -166,11 +178,11 @@ void WallContact::press(const BedBounds& bed, const PressingBody& body,
     wrench.add(touch.impulse / dt, touch.arm);
     Memory& memory = memory_of(touch);
     memory.impulse = touch.impulse;
-    memory.bristle += dt * motion.sliding(touch, points_[touch.point]);
-    // No longer than Coulomb lets it be.
-    const double longest = friction_ * touch.impulse.dot(touch.normal) / (dt * stiffness_);
-    const double length = memory.bristle.norm();
-    if (length > longest) memory.bristle *= longest / length;
+    // One that slides is bent as far as Coulomb lets it. One that holds may be bent further: it
+    // makes up for what the damper takes for sliding, a step of the forces that are not in here.
+    const Eigen::Vector3d friction = touch.friction();
+    if (friction.norm() >= kSliding * friction_ * touch.impulse.dot(touch.normal))
+      memory.bristle = friction / (-dt * stiffness_);
   }
 }
 

@@ -11,8 +11,9 @@
 //
 // p impulse of the step, d depth beyond the wall, n into the bed, t along the wall, b bristle,
 // u' velocity of the body there, s' speed of the running gear's surface along a. A wheel that turns
-// does not press deeper where its rim goes down: the normal part leaves s' out. Projected
-// Gauss-Seidel with soft constraints: E. Catto, Soft constraints, Game Developers Conference 2011.
+// does not press deeper where its rim goes down: the normal part leaves s' out. The
+// bristle is the way that the point has really slid, whatever else pushed. Projected Gauss-Seidel
+// with soft constraints: E. Catto, Soft constraints, Game Developers Conference 2011.
 #pragma once
 
 #include <Eigen/Core>
@@ -64,6 +65,9 @@ class WallContact {
     Eigen::Vector3d arm;      ///< from the body's centre of mass, world axes
     Eigen::Vector3d along;    ///< of the running gear's surface, world axes; zero without a drive
     Eigen::Vector3d impulse;  ///< of the step, N s
+
+    /// The part of the impulse along the wall.
+    Eigen::Vector3d friction() const { return impulse - impulse.dot(normal) * normal; }
   };
   const std::vector<Touch>& touches() const { return touches_; }
   size_t points() const { return points_.size(); }

@@ -31,8 +31,9 @@ Eigen::Vector2d out_of_walls(const BedBounds& bed, const Eigen::AlignedBox2d& ou
 
 void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline,
                          const Eigen::Vector2d& start) {
-  if (out_of_walls(bed, outline).isZero(0.0)) return;
+  if (bed.edge != BedEdge::kWalled) return;
   const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
+  if (Eigen::AlignedBox2d(-corner, corner).contains(outline)) return;
   const Eigen::Vector2d low = start - outline.min() - corner;
   const Eigen::Vector2d high = corner - (outline.max() - start);
   if ((low.array() > high.array()).any()) {

@@ -87,7 +87,10 @@ TEST(WallContact, SlidesAlongAWallAsCoulombSays) {
   EXPECT_NEAR(block.body.centre.x() - begin, 0.5 * 0.5 * stops_after, 0.001);
   const double stands = block.body.centre.x();
   for (int i = 0; i < 2000; ++i) block.step(push);
-  EXPECT_NEAR(block.body.centre.x(), stands, 1e-5) << "it creeps";
+  EXPECT_NEAR(block.body.centre.x(), stands, 3e-5);
+  const double rests = block.body.centre.x();
+  for (int i = 0; i < 2000; ++i) block.step(push);
+  EXPECT_NEAR(block.body.centre.x(), rests, 1e-12) << "it creeps";
 }
 
 TEST(WallContact, FrictionHoldsUpToItsLimitAndNoFurther) {
@@ -110,16 +113,17 @@ TEST(WallContact, StopsAtFullSpeedWithoutReboundAndLessThanAMillimetreDeep) {
     block.body.centre = {0.8, 0.0, 0.0};
     block.body.velocity = {speed, 0.0, 0.0};
     double deepest = 0.0;
-    double energy = block.energy();
+    const double energy = block.energy();
     for (int i = 0; i < 6000; ++i) {
       block.step();
       deepest = std::max(deepest, block.body.centre.x() - 0.9);
-      EXPECT_LE(block.energy(), energy * (1.0 + 1e-12)) << "no energy comes from a wall";
-      energy = std::min(energy, block.energy() + 1e-3 * speed * speed);  // what the spring gives
+      ASSERT_LE(block.energy(), energy) << "no energy comes from a wall";
     }
     EXPECT_GT(deepest, 0.0);
     EXPECT_LT(deepest, 0.001 * std::max(1.0, 2.0 * speed)) << speed;
-    EXPECT_GT(block.body.velocity.x(), -0.1 * speed) << "it bounces";
+    // Critically damped, a spring that does not pull gives exp(-2) of the speed back; two points
+    // are damped more.
+    EXPECT_GT(block.body.velocity.x(), -0.15 * speed) << "it bounces";
     EXPECT_LE(block.body.velocity.x(), 1e-9);
   }
 }
@@ -141,9 +145,11 @@ TEST(WallContact, TurnsARodThatMeetsItWithOneEnd) {
     ASSERT_LE(rod.energy(), before);
   }
   const double impulse = kMass_kg * 0.25 / (1.0 + kMass_kg * kLever_m * kLever_m / kInertia);
-  // A spring that is damped critically for the whole mass gives the lighter end a little back.
-  EXPECT_NEAR(rod.body.velocity.x(), 0.25 - impulse / kMass_kg, 0.02 * 0.25);
-  EXPECT_NEAR(rod.body.omega.z(), impulse * kLever_m / kInertia, 0.02 * 2.5);
+  // The spring gives the end a little of its speed back.
+  const double got = kMass_kg * (0.25 - rod.body.velocity.x());
+  EXPECT_GT(got, impulse);
+  EXPECT_LT(got, 1.15 * impulse);
+  EXPECT_NEAR(rod.body.omega.z(), got * kLever_m / kInertia, 1e-4);
 }
 
 TEST(WallContact, HoldsABodyInACorner) {
@@ -181,7 +187,18 @@ TEST(WallContact, BrakesAWheelThatSpinsOnIt) {
   EXPECT_NEAR(wheel.drives[0].torque_n_m, -kFriction * 6.0 * 0.03, 1e-4);
 }
 
-// A shaft that turns freely is stopped by the wall, and once only: it does not swing.
+// Contours are polygons: what pushes on one of their points pushes across the contour all the same.
+TEST(WallContact, AWallWithoutFrictionBrakesNoWheel) {
+  Block wheel;
+  wheel.walls.add_point({0.03, 0.0, 0.0}, {-0.2, 0.0, -std::sqrt(0.96)}, 0, 0.03);
+  wheel.walls.close(0.0, kMass_kg);
+  wheel.drives = {{8.0, 1.0 / 7.5e-4, 0.0}};
+  wheel.body.centre = {0.97, 0.0, 0.0};
+  for (int i = 0; i < 300; ++i) wheel.step({6.0, 0.0, 0.0});
+  EXPECT_NEAR(wheel.drives[0].torque_n_m, 0.0, 1e-12);
+}
+
+// A shaft that turns freely is stopped by the wall; the bent bristle hardly turns it back.
 TEST(WallContact, StopsAFreeWheel) {
   constexpr double kInverseInertia = 1.0 / 1e-5;
   Block wheel = wheel_at_a_wall(8.0, kInverseInertia);
@@ -191,7 +208,7 @@ TEST(WallContact, StopsAFreeWheel) {
     wheel.step({6.0, 0.0, 0.0});
     wheel.body.velocity.z() = 0.0;
     omega += kInverseInertia * wheel.drives[0].torque_n_m * kStep_s;
-    ASSERT_GT(omega, -0.05);
+    ASSERT_GT(omega, -0.3);
     ASSERT_LE(omega, 8.0);
   }
   EXPECT_NEAR(omega, 0.0, 1e-3);
@@ -203,7 +220,7 @@ TEST(WallContact, HoldsASideOfManyPoints) {
   for (int i = 0; i < 200; ++i) side.walls.add_point({0.05, -0.1 + 0.001 * i, 0.0});
   side.walls.close(kFriction, kMass_kg);
   side.body.inverse_inertia = Eigen::Vector3d::Constant(1.0 / 0.004).asDiagonal();
-  side.body.centre = {0.9, 0.0, 0.0};
+  side.body.centre = {0.9499, 0.0, 0.0};
   side.body.velocity = {0.25, 0.1, 0.0};
   const double before = side.energy();
   Eigen::Vector3d answer;
