@@ -198,9 +198,8 @@ Eigen::AlignedBox2d SurrogatePlant::outline() const {
   const PlanarPose pose = robot_.pose(0);
   const Eigen::Rotation2Dd turned(pose.heading_rad);
   Eigen::AlignedBox2d box;
-  for (const auto corner :
-       {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
-        Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
+  for (const auto corner : {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
+                            Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
     box.extend(Eigen::Vector2d(turned * body_outline_.corner(corner)));
   }
   return box.translate(Eigen::Vector2d(pose.x_m, pose.y_m));

@@ -83,9 +83,7 @@ struct Trial {
     }
   }
   Eigen::Vector3d at() const { return plant.vehicle().chassis().pose.translation(); }
-  double heading() const {
-    return attitude_of(plant.vehicle().chassis().pose.linear()).heading;
-  }
+  double heading() const { return attitude_of(plant.vehicle().chassis().pose.linear()).heading; }
 
   Plant plant;
   BedBounds bounds;
@@ -167,8 +165,8 @@ TEST(WallDrive, ARobotThatScrapesAlongAWallYaws) {
   }
 }
 
-// Straight into a wall the tracks slip at the speed that they had, and the motors carry the ground's
-// friction: mu m g R more torque than the robot needs when it rolls.
+// Straight into a wall the tracks slip at the speed that they had, and the motors carry the
+// ground's friction: mu m g R more torque than the robot needs when it rolls.
 TEST(WallDrive, AStoppedRobotSlipsItsTracks) {
   PlantOptions options = options_on(kBeds[0], kGears[0]);
   options.vehicle.track_friction = 0.4;
@@ -201,8 +199,8 @@ TEST(WallDrive, SoilPilesUpAtTheWalls) {
     const HeightField& surface = trial.plant.terrain();
     Height highest = 0;
     for (int i = 0; i < surface.nx(); ++i) {
-      highest = std::max({highest, surface.node(i, surface.ny() - 1),
-                          surface.node(surface.nx() - 1, i)});
+      highest =
+          std::max({highest, surface.node(i, surface.ny() - 1), surface.node(surface.nx() - 1, i)});
     }
     return highest * kHeightUnit_m;
   };

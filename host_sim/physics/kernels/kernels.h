@@ -294,6 +294,12 @@ struct ReactionSums {
   double slip = 0.0;  ///< speed times mobilised share
 };
 
+/// From the first to behind the last of some heights that are above a line; none: end = 0.
+struct AboveLine {
+  size_t first;
+  size_t end;
+};
+
 /// How a cell that may be touched is looked at.
 struct ClassifyLimits {
   double unit;         ///< of the heights, m
@@ -308,8 +314,8 @@ struct Kernels {
   InstructionSet set;
   /// Lower surface at `count` points, whole blocks.
   void (*track_surface)(const TrackShape& shape, const SurfacePoints& points, size_t count);
-  /// Whether one of `count` heights is above the line z + i rise, in m as `unit` makes them.
-  bool (*any_above)(const int32_t* heights, size_t count, double unit, double z, double rise);
+  /// Which of `count` heights are above the line z + i rise, in m as `unit` makes them.
+  AboveLine (*above_line)(const int32_t* heights, size_t count, double unit, double z, double rise);
   /// Of cells whose centres are `points`: bit i of `flat` and `curved`, a byte a block, is set
   /// where the body may touch cell i, and its surface is plane there or not. Whole blocks of
   /// heights are read.

@@ -321,6 +321,7 @@ void MaterialFlow::uncover() {
   }
   held_list_.swap(covered_list_);
   covered_list_.clear();
+  covered_list_.reserve(held_list_.capacity());
   // What was neither deposited nor compacted waits for the next step.
   for (const ActiveFootprint& footprint : footprints_) left_over_ += footprint.units;
   footprints_.clear();

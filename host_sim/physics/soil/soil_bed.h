@@ -135,7 +135,7 @@ class SoilBed final : public Terrain {
   Law law_below(const FootprintContact& contact, const RunFrame& frame, double elastic) const;
   void find_candidates(const Footprint& footprint, const PathHistory& path, double rebound_m);
   bool find_rows(const Footprint& footprint, double highest);
-  void drop_rows_below(const Footprint& footprint, double rebound_m);
+  void drop_cells_below(const Footprint& footprint, double rebound_m);
   void classify(const Footprint& footprint, double rebound_m);
   Lattice lattice_of_corner(size_t candidate, double highest_surface, double rim) const;
   void lay_out_cells();

@@ -188,39 +188,52 @@ bool SoilBed::find_rows(const Footprint& footprint, double highest) {
   const double reach_along = footprint.reach_below(highest, d);
   if (reach_along < 0.0) return false;
   const double reach_across = footprint.reach_below(highest, {-d.y(), d.x()});
-  // Cells are squares along the axes: half of their extent along the rectangle's sides.
+  // Of the cells' centres. Cells are squares along the axes: half of their extent along the
+  // rectangle's sides comes on top.
   const double half_cell = 0.5 * spacing * (std::abs(d.x()) + std::abs(d.y()));
   const double along = reach_along + half_cell;
   const double across = reach_across + half_cell;
-  const double reach_x = footprint.reach_below(highest, Eigen::Vector2d::UnitX());
-  const double reach_y = footprint.reach_below(highest, Eigen::Vector2d::UnitY());
-  const auto cell_of = [&](double coordinate, double begin) {
-    return static_cast<int>(std::floor((coordinate - begin) / spacing + 0.5));
+  const double reach_x = footprint.reach_below(highest, Eigen::Vector2d::UnitX()) + 0.5 * spacing;
+  const double reach_y = footprint.reach_below(highest, Eigen::Vector2d::UnitY()) + 0.5 * spacing;
+  const double per_spacing = 1.0 / spacing;
+  const auto first_in = [&](double low, double begin) {
+    return static_cast<int>(std::ceil((low - begin) * per_spacing));
   };
-  int iy0 = cell_of(centre.y() - reach_y, field.y_min());
-  int iy1 = cell_of(centre.y() + reach_y, field.y_min());
+  const auto last_in = [&](double high, double begin) {
+    return static_cast<int>(std::floor((high - begin) * per_spacing));
+  };
+  int iy0 = first_in(centre.y() - reach_y, field.y_min());
+  int iy1 = last_in(centre.y() + reach_y, field.y_min());
   if (!field.wrap()) {
     iy0 = std::max(iy0, 0);
     iy1 = std::min(iy1, field.ny() - 1);
   }
+  const auto rows = static_cast<size_t>(std::max(0, iy1 - iy0 + 1));
+  if (rows_.capacity() < rows) rows_.reserve(2 * rows);
+  // |u d_x + v d_y| <= along, |v d_x - u d_y| <= across
+  constexpr double kParallel = 1e-6;
+  const bool limits_along = std::abs(d.x()) > kParallel;
+  const bool limits_across = std::abs(d.y()) > kParallel;
+  const double per_dx = limits_along ? 1.0 / d.x() : 0.0;
+  const double per_dy = limits_across ? 1.0 / d.y() : 0.0;
   for (int iy = iy0; iy <= iy1; ++iy) {
     const double v = field.node_y(iy) - centre.y();
     double low = -reach_x;
     double high = reach_x;
-    // |u d_x + v d_y| <= along, |v d_x - u d_y| <= across
-    constexpr double kParallel = 1e-6;
-    const auto limit = [&](double slope, double offset, double reach) {
-      if (std::abs(slope) < kParallel) return;
-      const double a = (-reach - offset) / slope;
-      const double b = (reach - offset) / slope;
-      low = std::max(low, std::min(a, b) - 0.5 * spacing);
-      high = std::min(high, std::max(a, b) + 0.5 * spacing);
-    };
-    limit(d.x(), v * d.y(), along);
-    limit(-d.y(), v * d.x(), across);
-    if (low > high) continue;
-    int ix0 = cell_of(centre.x() + low, field.x_min());
-    int ix1 = cell_of(centre.x() + high, field.x_min());
+    if (limits_along) {
+      const double middle = -v * d.y() * per_dx;
+      const double half = along * std::abs(per_dx);
+      low = std::max(low, middle - half);
+      high = std::min(high, middle + half);
+    }
+    if (limits_across) {
+      const double middle = v * d.x() * per_dy;
+      const double half = across * std::abs(per_dy);
+      low = std::max(low, middle - half);
+      high = std::min(high, middle + half);
+    }
+    int ix0 = first_in(centre.x() + low, field.x_min());
+    int ix1 = last_in(centre.x() + high, field.x_min());
     if (!field.wrap()) {
       ix0 = std::max(ix0, 0);
       ix1 = std::min(ix1, field.nx() - 1);
@@ -230,25 +243,30 @@ bool SoilBed::find_rows(const Footprint& footprint, double highest) {
   return !rows_.empty();
 }
 
-/// Rows in which no cell reaches up to the plane below a box or disc: mostly all, below a hull.
-void SoilBed::drop_rows_below(const Footprint& footprint, double rebound_m) {
+/// Cuts rows down to what reaches up to the plane below a box or disc: mostly nothing, below a
+/// hull.
+void SoilBed::drop_cells_below(const Footprint& footprint, double rebound_m) {
   const Eigen::Vector3d plane = footprint.plane_below();
   if (!std::isfinite(plane.x())) return;
   const HeightField& field = flow_.surface();
   const double spacing = field.spacing_m();
   const Eigen::Vector3d& centre = footprint.pose().translation();
   const double fall = 0.5 * spacing * (std::abs(plane.y()) + std::abs(plane.z()));
-  const auto is_below = [&](const Row& row) {
-    bool above = false;
+  size_t kept = 0;
+  for (const Row& row : rows_) {
+    Row left{row.iy, row.end_ix, row.first_ix};
     flow_.each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int ix, size_t count) {
       const double z = centre.z() + plane.x() + plane.y() * (field.node_x(ix) - centre.x()) +
                        plane.z() * (field.node_y(row.iy) - centre.y()) - fall - rebound_m;
-      above = above || kernels_.any_above(field.heights() + node, count, kHeightUnit_m, z,
-                                          plane.y() * spacing);
+      const AboveLine above =
+          kernels_.above_line(field.heights() + node, count, kHeightUnit_m, z, plane.y() * spacing);
+      if (above.first >= above.end) return;
+      left.first_ix = std::min(left.first_ix, ix + static_cast<int>(above.first));
+      left.end_ix = std::max(left.end_ix, ix + static_cast<int>(above.end));
     });
-    return !above;
-  };
-  rows_.erase(std::remove_if(rows_.begin(), rows_.end(), is_below), rows_.end());
+    if (left.first_ix < left.end_ix) rows_[kept++] = left;
+  }
+  rows_.resize(kept);
 }
 
 /// With how many sample points a cell below a body with corners is looked at.
@@ -292,16 +310,18 @@ void SoilBed::classify(const Footprint& footprint, double rebound_m) {
   const auto collect = [&](const std::vector<uint8_t>& bits, Lattice lattice) {
     const Row* row = rows_.data();
     size_t begin = 0;  // the row's first candidate
+    size_t end = static_cast<size_t>(row->end_ix - row->first_ix);
+    std::vector<GridPlace>& places = candidates_[lattice];
     for (size_t block = 0; block < whole_blocks(count) / kLanes; ++block) {
       for (unsigned left = bits[block]; left != 0; left &= left - 1) {
         const size_t i = block * kLanes + static_cast<size_t>(std::countr_zero(left));
-        while (i >= begin + static_cast<size_t>(row->end_ix - row->first_ix)) {
-          begin += static_cast<size_t>(row->end_ix - row->first_ix);
+        while (i >= end) {
+          begin = end;
           ++row;
+          end += static_cast<size_t>(row->end_ix - row->first_ix);
         }
         const int ix = row->first_ix + static_cast<int>(i - begin);
-        candidates_[lattice].push_back(
-            {flow_.node_on(ix, row->iy), ix, row->iy, static_cast<uint32_t>(i)});
+        places.push_back({flow_.node_on(ix, row->iy), ix, row->iy, static_cast<uint32_t>(i)});
       }
     }
   };
@@ -320,7 +340,7 @@ void SoilBed::find_candidates(const Footprint& footprint, const PathHistory& pat
   const double radius = footprint.radius_from_above();
   const double highest = field.max_height_within(centre.x(), centre.y(), radius) + rebound_m;
   if (centre.z() - footprint.reach_down() > highest || !find_rows(footprint, highest)) return;
-  if (footprint.has_corners()) drop_rows_below(footprint, rebound_m);
+  if (footprint.has_corners()) drop_cells_below(footprint, rebound_m);
   size_t count = 0;
   for (const Row& row : rows_) count += static_cast<size_t>(row.end_ix - row.first_ix);
   if (count == 0) return;
@@ -350,7 +370,6 @@ void SoilBed::find_candidates(const Footprint& footprint, const PathHistory& pat
 
 /// Candidates become lanes of blocks, those with the same lattice together.
 void SoilBed::lay_out_cells() {
-  const HeightField& field = flow_.surface();
   groups_.clear();
   size_t first_point = 0;
   for (int lattice = 0; lattice < kLattices; ++lattice) {
@@ -365,22 +384,24 @@ void SoilBed::lay_out_cells() {
       springs_.resize(2 * blocks_);
       places_.resize(2 * blocks_ * kLanes);
     }
+    const size_t begin = groups_.back().begin;
+    std::copy(candidates.begin(), candidates.end(), &places_[begin * kLanes]);
+    std::fill(&places_[begin * kLanes] + candidates.size(),
+              &places_[begin * kLanes] + blocks * kLanes, candidates.back());
+    const double spreads = lattice != kCentre ? 1.0 : 0.0;
     for (size_t i = 0; i < blocks * kLanes; ++i) {
-      const bool is_cell = i < candidates.size();
-      const GridPlace& place = candidates[is_cell ? i : candidates.size() - 1];
+      const GridPlace& place = places_[begin * kLanes + i];
       const size_t lane = i % kLanes;
-      CellBlock& block = cells_[groups_.back().begin + i / kLanes];
-      places_[groups_.back().begin * kLanes + i] = place;
+      CellBlock& block = cells_[begin + i / kLanes];
       const Height reference = flow_.reference(place.node);
       const CellHistory& history = histories_[place.node];
-      block.x[lane] = field.node_x(place.ix);
-      block.y[lane] = field.node_y(place.iy);
+      block.x[lane] = candidate_points_.x[place.candidate];
+      block.y[lane] = candidate_points_.y[place.candidate];
       // Every other cell mirrors its points.
-      const bool spreads = lattice != kCentre;
       const bool mirrors = lattice == kOnePerRowAndColumn && ((place.ix + place.iy) & 1) != 0;
-      block.spread_x[lane] = spreads ? (mirrors ? -1.0 : 1.0) : 0.0;
-      block.spread_y[lane] = spreads ? 1.0 : 0.0;
-      block.active[lane] = is_cell ? 1.0 : 0.0;
+      block.spread_x[lane] = mirrors ? -1.0 : spreads;
+      block.spread_y[lane] = spreads;
+      block.active[lane] = i < candidates.size() ? 1.0 : 0.0;
       block.reference[lane] = reference * kHeightUnit_m;
       block.sunk[lane] = (reference - flow_.height(place.node)) * kHeightUnit_m;
       block.fresh[lane] = history.is_contact_new(step_) ? 1.0 : 0.0;

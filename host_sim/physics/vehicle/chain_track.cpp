@@ -129,12 +129,12 @@ void ChainTrack::pull(const CarrierMotion& carrier, const Eigen::Vector3d& arm,
                       const Eigen::Vector3d& along, const Eigen::Vector3d& force) {
   const PlaneFrame frame = frame_of(carrier);
   const Vector2 at = frame.in_plane(carrier.origin + arm - frame.centre);
-  const auto nearest = std::min_element(position_.begin(), position_.end(),
-                                        [&](const Vector2& a, const Vector2& b) {
-                                          return (a - at).squaredNorm() < (b - at).squaredNorm();
-                                        });
-  pulls_.push_back({static_cast<size_t>(nearest - position_.begin()),
-                    frame.in_plane(force.dot(along) * along)});
+  const auto nearest =
+      std::min_element(position_.begin(), position_.end(), [&](const Vector2& a, const Vector2& b) {
+        return (a - at).squaredNorm() < (b - at).squaredNorm();
+      });
+  pulls_.push_back(
+      {static_cast<size_t>(nearest - position_.begin()), frame.in_plane(force.dot(along) * along)});
 }
 
 double ChainTrack::length_m() const {

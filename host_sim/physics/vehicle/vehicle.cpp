@@ -185,7 +185,7 @@ void Vehicle::meet_walls(const BedBounds& bed, size_t carrier, const CarrierMoti
     const size_t drive = walls.drive(touch.point);
     if (drive == WallContact::kNoDrive || drive < shafts_.size()) continue;
     chains_[drive - shafts_.size()].track.pull(motion, touch.arm, touch.along,
-                                              touch.friction() / dt);
+                                               touch.friction() / dt);
   }
 }
 

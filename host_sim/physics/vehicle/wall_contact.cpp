@@ -137,8 +137,7 @@ double WallContact::solve(const Touch& touch, const Memory& memory, double dt, M
   const Eigen::Vector3d friction_before = impulse - normal_impulse * touch.normal;
   const Eigen::Vector3d held =
       -dt * stiffness_ * memory.bristle - gain * motion.sliding(touch, point);
-  Eigen::Vector3d friction =
-      friction_before + (held - friction_before) / (1.0 + gain * mobility);
+  Eigen::Vector3d friction = friction_before + (held - friction_before) / (1.0 + gain * mobility);
   const double limit = friction_ * normal_impulse;
   const double size = friction.norm();
   if (size > limit) friction *= limit / size;

@@ -30,9 +30,9 @@ namespace screed {
 
 /// What turns a surface of running gear: its motion now, and how it answers a wall.
 struct SurfaceDrive {
-  double omega_rad_per_s = 0.0;       ///< driving forward positive
+  double omega_rad_per_s = 0.0;  ///< driving forward positive
   double inverse_inertia_per_kg_m2 = 0.0;
-  double torque_n_m = 0.0;            ///< of the walls in this step: the answer
+  double torque_n_m = 0.0;  ///< of the walls in this step: the answer
 };
 
 class WallContact {

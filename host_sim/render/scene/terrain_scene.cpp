@@ -228,10 +228,8 @@ std::string walls_text(const TerrainSurface& ground) {
            pov_vector({high.x(), high.y(), top}) + " }\n";
   };
   return "union {\n" +
-         board({west - kBoard_m, south - kBoard_m}, {east + kBoard_m, south},
-               top_of(true, south)) +
-         board({west - kBoard_m, north}, {east + kBoard_m, north + kBoard_m},
-               top_of(true, north)) +
+         board({west - kBoard_m, south - kBoard_m}, {east + kBoard_m, south}, top_of(true, south)) +
+         board({west - kBoard_m, north}, {east + kBoard_m, north + kBoard_m}, top_of(true, north)) +
          board({west - kBoard_m, south}, {west, north}, top_of(false, west)) +
          board({east, south}, {east + kBoard_m, north}, top_of(false, east)) +
          "  texture { pigment { " + pov_color(kBoards) +

@@ -73,9 +73,12 @@ HeightMapGeometry read_geometry(hid_t dataset, hsize_t nx, hsize_t ny) {
   constexpr hsize_t kMax = 1U << 16;  // 16 GB of heights: a file that says more is damaged
   if (nx == 0 || ny == 0 || nx > kMax || ny > kMax)
     throw h5::Hdf5Failure("a height map of impossible size");
-  return {static_cast<std::uint32_t>(nx),         static_cast<std::uint32_t>(ny),
-          h5::read_double(dataset, "unit_m"),     h5::read_double(dataset, "spacing_m"),
-          h5::read_double(dataset, "origin_x_m"), h5::read_double(dataset, "origin_y_m"),
+  return {static_cast<std::uint32_t>(nx),
+          static_cast<std::uint32_t>(ny),
+          h5::read_double(dataset, "unit_m"),
+          h5::read_double(dataset, "spacing_m"),
+          h5::read_double(dataset, "origin_x_m"),
+          h5::read_double(dataset, "origin_y_m"),
           h5::read_uint64(dataset, "wrap") != 0,
           h5::has_attribute(dataset, "walls") && h5::read_uint64(dataset, "walls") != 0};
 }

@@ -50,14 +50,14 @@ struct MapSection {
               &M::max_slope_deg);
     keys.real("ramp", "deg", -60, 60, "without a file: slope of the ground, rising to the east",
               &M::ramp_deg);
-    keys.choice("edges", {"open", "walls", "wrap"},
-                "open: the terrain ends, and the run where the robot leaves it; walls: of a sandbox, "
-                "the default of particles; wrap: it repeats, the image must be tileable",
-                [](M& map) -> std::string& {
-                  if (map.edges.empty())
-                    map.edges = map.edge() == BedEdge::kWalled ? "walls" : "open";
-                  return map.edges;
-                });
+    keys.choice(
+        "edges", {"open", "walls", "wrap"},
+        "open: the terrain ends, and the run where the robot leaves it; walls: of a sandbox, "
+        "the default of particles; wrap: it repeats, the image must be tileable",
+        [](M& map) -> std::string& {
+          if (map.edges.empty()) map.edges = map.edge() == BedEdge::kWalled ? "walls" : "open";
+          return map.edges;
+        });
     keys.real("wall_friction", "", 0, 5, "edges = walls: Coulomb friction of robots on the walls",
               &M::wall_friction);
     keys.choice("model", {"rigid", "scm", "particles", "static_particles"},

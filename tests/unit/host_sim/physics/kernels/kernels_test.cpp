@@ -182,14 +182,20 @@ TEST(Kernels, HeightsAboveALineAreFoundWhereverTheyAre) {
     const Kernels& kernels = kernels_for(set);
     for (size_t count = 0; count < 40; ++count) {
       std::vector<int32_t> heights(count + 1, 100);
-      EXPECT_FALSE(kernels.any_above(heights.data(), count, 0.5, 50.0, 0.0)) << count;
       heights[count] = 1000;  // one too far
-      EXPECT_FALSE(kernels.any_above(heights.data(), count, 0.5, 50.0, 0.0)) << count;
+      EXPECT_EQ(kernels.above_line(heights.data(), count, 0.5, 50.0, 0.0).end, 0U) << count;
       for (size_t i = 0; i < count; ++i) {
+        for (size_t j = i; j < count; ++j) {
+          std::vector<int32_t> bumpy(count, 100);
+          bumpy[i] = bumpy[j] = 101;
+          const AboveLine found = kernels.above_line(bumpy.data(), count, 0.5, 50.0, 0.0);
+          EXPECT_EQ(found.first, i);
+          EXPECT_EQ(found.end, j + 1);
+        }
         std::vector<int32_t> bumpy(count, 100);
         bumpy[i] = 101;
-        EXPECT_TRUE(kernels.any_above(bumpy.data(), count, 0.5, 50.0, 0.0)) << i;
-        EXPECT_EQ(kernels.any_above(bumpy.data(), count, 0.5, 50.0, 0.1), i < 5) << i;
+        const AboveLine rising = kernels.above_line(bumpy.data(), count, 0.5, 50.0, 0.1);
+        EXPECT_EQ(rising.end, i < 5 ? i + 1 : 0) << i;
       }
     }
   }

@@ -120,6 +120,7 @@ std::vector<std::string> good_values(const Row& row) {
     return {"none", "0123456789abcdef0123456789ABCDEF 200"};
   }
   if (row.key == "preset") return {"clay", "ding_2011"};
+  if (row.key == "edges") return {"open", "walls", "wrap"};
   if (row.section == "trap") return {"wall", "ruts"};
   return {"Some-name_1"};
 }
