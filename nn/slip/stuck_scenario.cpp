@@ -49,7 +49,7 @@ void choose_terrain(Draw& draw, Experiment& e, bool trapped) {
   e.map.size_m = trapped ? 6.0 : 10.0;
   e.map.smoothing_m = draw.between(0.05, 0.2);
   e.map.max_slope_deg = draw.between(0.5, trapped ? 4.0 : 8.0);
-  e.map.wrap = true;
+  e.map.edges = "wrap";
   e.vehicle.x_m = draw.between(-1.0, 1.0);
   e.vehicle.y_m = draw.between(-1.0, 1.0);
   e.vehicle.heading_deg = draw.between(-180.0, 180.0);

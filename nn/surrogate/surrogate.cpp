@@ -168,6 +168,16 @@ void Surrogate::set_pose(std::size_t robot, const PlanarPose& pose, const FrameM
   }
 }
 
+void Surrogate::displace(std::size_t robot, double x_m, double y_m) {
+  const double middle = heading_[robot] - 0.5 * row(MotionSignal::kTurn1)[robot];
+  const double c = std::cos(middle);
+  const double s = std::sin(middle);
+  x_[robot] += x_m;
+  y_[robot] += y_m;
+  row(MotionSignal::kForward1)[robot] += c * x_m + s * y_m;
+  row(MotionSignal::kSideways1)[robot] += c * y_m - s * x_m;
+}
+
 void Surrogate::set_soil(std::size_t robot, const SoilParameters& soil) {
   const std::array<double, kSoilSignals> values = soil_signals(soil);
   for (std::size_t i = 0; i < kSoilSignals; ++i) {

@@ -87,6 +87,8 @@ class Surrogate {
   /// Puts a robot somewhere with what it has just done: the last frame's motion and the one before.
   void set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last = {},
                 const FrameMotion& before_last = {});
+  /// Something else moves a robot by this in the frame that has just ended.
+  void displace(std::size_t robot, double x_m, double y_m);
   void set_soil(std::size_t robot, const SoilParameters& soil);
   /// The speeds of its tracks before the first frame.
   void set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s);

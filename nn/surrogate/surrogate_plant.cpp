@@ -9,6 +9,7 @@
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
+#include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed::nn {
 namespace {
@@ -66,6 +67,7 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
   standing_height_m_ = bodies.resting_height(level, 0.0, 0.0, Eigen::Matrix3d::Identity());
   tread_m_ = bodies.tread_m();
   mass_kg_ = bodies.mass_kg();
+  body_outline_ = bodies.outline();
   geometry_.wheel_radius_m = bodies.wheel_radius_m(kLeft);
   const int imu = model.body_index("Imu");
   if (imu >= 0) imu_position_ = model.bodies[static_cast<size_t>(imu)].pose.translation();
@@ -76,6 +78,7 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
   start.pose = {options.start.x_m, options.start.y_m, options.start.attitude.heading};
   start.battery = options.battery;
   set_state(start);
+  check_between_walls(bounds_of(ground()), outline(), {options.start.x_m, options.start.y_m});
 }
 
 void SurrogatePlant::enable_deformation(std::shared_ptr<const BearingCapacityNetwork> network,
@@ -191,6 +194,22 @@ void SurrogatePlant::set_at_rest() {
   rate_body_.setZero();
 }
 
+Eigen::AlignedBox2d SurrogatePlant::outline() const {
+  const PlanarPose pose = robot_.pose(0);
+  const Eigen::Rotation2Dd turned(pose.heading_rad);
+  Eigen::AlignedBox2d box;
+  for (const auto corner : {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
+                            Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
+    box.extend(Eigen::Vector2d(turned * body_outline_.corner(corner)));
+  }
+  return box.translate(Eigen::Vector2d(pose.x_m, pose.y_m));
+}
+
+void SurrogatePlant::stop_at_walls() {
+  const Eigen::Vector2d back = out_of_walls(bounds_of(ground()), outline());
+  if (!back.isZero(0.0)) robot_.displace(0, back.x(), back.y());
+}
+
 void SurrogatePlant::end_frame() {
   if (on_side_) {
     set_at_rest();
@@ -199,6 +218,7 @@ void SurrogatePlant::end_frame() {
   const double left = vehicle_.track_speed_m_per_s(kLeft);
   const double right = vehicle_.track_speed_m_per_s(kRight);
   robot_.step(ground(), {&left, 1}, {&right, 1});
+  stop_at_walls();
   if (soil_model_) {
     stride_tracks_m_[kLeft] += left * kFrame_s;
     stride_tracks_m_[kRight] += right * kFrame_s;

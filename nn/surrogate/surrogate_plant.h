@@ -6,6 +6,7 @@
 // tracks deform it, a stride of five frames at a time; without one it stays as it is.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -33,7 +34,7 @@ struct DrivingState {
 class SurrogatePlant : public Environment {
  public:
   /// Of the options those of the physics do not count. Throws InputError when the ground is not
-  /// soil, the robot has no tracks, or the model cannot be used here.
+  /// soil, the robot has no tracks or stands in a wall, or the model cannot be used here.
   SurrogatePlant(HeightField terrain, const Assembly& model, const PlantOptions& options,
                  const Model& network);
   /// The same with another surrogate, of one robot.
@@ -96,6 +97,11 @@ class SurrogatePlant : public Environment {
   /// The ground's push against a track, as a torque on its shaft.
   double resistance(Side side) const;
   void end_frame();
+  /// The rectangle round the robot from above.
+  Eigen::AlignedBox2d outline() const;
+  /// A wall stops what of the frame's motion leads into it, and nothing else: it does not turn the
+  /// robot and has no friction.
+  void stop_at_walls();
   BodyPose pose_on_terrain() const;
   void set_at_rest();
   const HeightField& ground() const { return soil_model_ ? soil_model_->surface() : ground_; }
@@ -114,6 +120,7 @@ class SurrogatePlant : public Environment {
   double standing_height_m_ = 0.0;
   double tread_m_ = 0.0;
   double mass_kg_ = 0.0;
+  Eigen::AlignedBox2d body_outline_;  ///< from above, in the frame of the chassis
   Eigen::Vector3d imu_position_;
   Surrogate robot_;
   std::array<DriveShaft, 2> shafts_;

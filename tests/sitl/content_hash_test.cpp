@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "e337cd171f292acbda334d346091a1c6"},
-    {"soft_bed", "--duration 6", "540af1ffe54bd0eafba079af5c44b9d2"},
-    {"soft_bed", "--hal surrogate --duration 10", "419b2a1bffd38c8b98fad7f589fc6bee"},
+    {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
+    {"soft_bed", "--duration 6", "a0ecfdc50225ac1f4354294d796783ae"},
+    {"soft_bed", "--hal surrogate --duration 10", "868da3127200af35611a1f8d8c1e44d0"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "5748948502c9c8d5bf15496ba34541a0"},
-    {"gravel_bed", "--duration 1", "d5f68e8195481e44f841bc3773dd2d14"},
+     "7e597071c16dc5a4b5e8523e0c41c581"},
+    {"gravel_bed", "--duration 1", "964613af5a86ca308bc6f2de86cb2534"},
 }};
 
 class ContentHash : public Program {};

@@ -33,7 +33,7 @@ class RecordProgram : public Program {
 
   static std::string experiment(const std::string& name, const std::string& model, int frames) {
     return "[vehicle]\nh = 30\nx = 0.3\n[map]\nfilename = hills.png\nsize = 1.28\nscale = 0.03\n"
-           "wrap = true\nmodel = " +
+           "edges = wrap\nmodel = " +
            model + "\n[soil]\ncell = 0.01\n[experiment]\nname = " + name +
            "\nframes = " + std::to_string(frames) + "\n";
   }
@@ -264,7 +264,7 @@ TEST_F(RecordProgram, AnExportedMapIsTheSameTerrainAgain) {
   write("again.ini", "[map]\nfilename = run/export/heights/" +
                          scale["frames"][0]["file"].get<std::string>() +
                          "\nxy_scale = 0.01\nscale = " + std::to_string(height) +
-                         "\nwrap = true\n[experiment]\nframes = 8\n");
+                         "\nedges = wrap\n[experiment]\nframes = 8\n");
   const Result result = run("record again.ini --out again --json");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json again = Json::parse(result.out);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 
 #include "host_sim/core/errors.h"
@@ -89,6 +90,31 @@ TEST(SurrogateDrive, WrapsAroundAndKeepsTheWayMade) {
   EXPECT_GT(drive.place().x(), 1.6);
   EXPECT_GT(drive.world.plant().wrap_counts()[0], 0);
   EXPECT_LT(std::abs(drive.world.vehicle().chassis().pose.translation().x()), 0.81);
+}
+
+// A wall stops what leads into it and nothing else: at 30 degrees the robot goes on along it.
+TEST(SurrogateDrive, StopsAtWalls) {
+  for (const double heading_deg : {0.0, 30.0}) {
+    WorldOptions options = on_soil();
+    options.drive = DriveCommand{0.2, 0.0};
+    options.start.attitude.heading = heading_deg * std::numbers::pi / 180.0;
+    HeightField field = HeightField::flat(1.6, 0.05);
+    field.add_walls();
+    SurrogateDrive drive(std::move(field), options);
+    drive.run(20.0);
+    // The Rover's middle stays half a length and more from the wall.
+    const double along = heading_deg == 0.0 ? 0.0 : 0.04;
+    EXPECT_NEAR(drive.place().x(), 0.8 - 0.1225 - along, 0.03) << heading_deg;
+    const ChassisState chassis = drive.world.vehicle().chassis();
+    EXPECT_LT(std::abs(chassis.velocity.x()), 1e-3);
+    EXPECT_EQ(drive.place().y() > 0.3, heading_deg > 0.0);
+    EXPECT_LT(std::abs(drive.place().y()), 0.8 - 0.1);
+  }
+  WorldOptions beyond = on_soil();
+  beyond.start.x_m = 0.75;
+  HeightField field = HeightField::flat(1.6, 0.05);
+  field.add_walls();
+  EXPECT_THROW(plant_of(std::move(field), beyond), InputError);
 }
 
 TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {

@@ -106,6 +106,7 @@ ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedE
                           extent.width_m / rays_along(extent.width_m, options.ray_spacing_m)),
                extent.width_m / rays_along(extent.width_m, options.ray_spacing_m),
                extent.periodic) {
+  surface_.add_walls();  // unless it repeats
   set_up();
 }
 

@@ -128,9 +128,10 @@ HeightField HeightField::from_function(int nx, int ny, double spacing_m, bool wr
   return field;
 }
 
-HeightField HeightField::flat(double size_m, double spacing_m) {
-  const int nodes = nodes_along(size_m, spacing_m);
-  return {nodes, nodes, size_m / (nodes - 1), false};
+HeightField HeightField::flat(double size_m, double spacing_m, bool wrap) {
+  const int cells = nodes_along(size_m, spacing_m) - 1;
+  const int nodes = wrap ? cells : cells + 1;
+  return {nodes, nodes, size_m / cells, wrap};
 }
 
 HeightField HeightField::ramp(double size_m, double spacing_m, double slope_deg) {

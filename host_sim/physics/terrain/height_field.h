@@ -18,6 +18,13 @@ namespace screed {
 using Height = int32_t;
 inline constexpr double kHeightUnit_m = 0x1p-24;  // a power of two: to metres without rounding
 
+/// What is beyond the edges of a bed.
+enum class BedEdge : uint8_t {
+  kOpen,     ///< the terrain ends; its edge heights go on, level across the edge
+  kWrapped,  ///< the same bed again: what leaves on one side comes back on the other
+  kWalled,   ///< vertical walls without a top, which hold the terrain's material and robots
+};
+
 /// The surface at one place: height in metres, gradient dz/dx and dz/dy (rise over run).
 struct SurfacePoint {
   double height;
@@ -69,7 +76,7 @@ class HeightField {
 
   /// A level square bed at height 0; the spacing is adjusted to divide the size. Throws InputError
   /// unless size_m is 0.1..1000 and spacing_m at most half of it.
-  static HeightField flat(double size_m, double spacing_m);
+  static HeightField flat(double size_m, double spacing_m, bool wrap = false);
 
   /// As flat(), but rising to the east: z = x tan(slope), slope -89..89 degrees.
   static HeightField ramp(double size_m, double spacing_m, double slope_deg);
@@ -80,6 +87,12 @@ class HeightField {
   [[nodiscard]] int cells_y() const { return cells_along(ny()); }
   [[nodiscard]] double spacing_m() const { return spacing_m_; }
   [[nodiscard]] bool wrap() const { return wrap_; }
+  /// Puts walls along the edges of a bed without wrap; its heights stay. One with wrap has none.
+  void add_walls() { walled_ = !wrap_; }
+  [[nodiscard]] BedEdge edge() const {
+    if (wrap_) return BedEdge::kWrapped;
+    return walled_ ? BedEdge::kWalled : BedEdge::kOpen;
+  }
 
   /// The bed's edges and the nodes' places, metres. With wrap x_max is x_min one bed further.
   [[nodiscard]] double x_min() const { return x_axis_.begin_m; }
@@ -177,6 +190,7 @@ class HeightField {
   double nodes_per_m_;
   double gradient_scale_;  // kHeightUnit_m / spacing_m
   bool wrap_;
+  bool walled_ = false;
   int tiles_x_;
   int tiles_y_;
   std::vector<Height> heights_;       // row by row from the south

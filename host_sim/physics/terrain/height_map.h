@@ -17,7 +17,8 @@ struct HeightMapGeometry {
   double spacing_m = 0;  ///< metres between neighbours, both ways
   double origin_x_m = 0;
   double origin_y_m = 0;
-  bool wrap = false;  ///< the map repeats in both directions
+  bool wrap = false;   ///< the map repeats in both directions
+  bool walls = false;  ///< it has walls along its edges
 
   bool operator==(const HeightMapGeometry&) const = default;
 };

@@ -25,13 +25,6 @@ enum class FootprintShape : uint8_t {
   kSolid,         ///< whole solids that are touched from any side, every link of a track its own
 };
 
-/// What is beyond the edge of a bed.
-enum class BedEdge : uint8_t {
-  kOpen,     ///< the terrain ends; its edge heights go on, level across the edge
-  kWrapped,  ///< the same bed again: what leaves on one side comes back on the other
-  kWalled,   ///< walls that hold the terrain's material; robots do not meet them yet
-};
-
 /// A rectangle round (0, 0) of the world.
 struct BedBounds {
   double width_m;  ///< west to east
@@ -39,10 +32,9 @@ struct BedBounds {
   BedEdge edge;
 };
 
-/// A height field's own: wrapped or open.
+/// A height field's own.
 inline BedBounds bounds_of(const HeightField& field) {
-  return {field.x_max() - field.x_min(), field.y_max() - field.y_min(),
-          field.wrap() ? BedEdge::kWrapped : BedEdge::kOpen};
+  return {field.x_max() - field.x_min(), field.y_max() - field.y_min(), field.edge()};
 }
 
 /// Volumes in height units of one cell (kHeightUnit_m spacing^2). Always: now = before - compacted
@@ -77,8 +69,7 @@ class Terrain {
 
   /// The surface as it is now, for those who look at it.
   virtual const HeightField& surface() const = 0;
-  /// Whether the terrain deforms. Such terrain ends at the edges of its bed, unless it is
-  /// wrapped.
+  /// Whether the terrain deforms.
   virtual bool is_deformable() const = 0;
   virtual BedBounds bounds() const = 0;
 

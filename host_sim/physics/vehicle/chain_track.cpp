@@ -102,6 +102,7 @@ void ChainTrack::reset() {
   teeth_.assign(pins(), {0.0, 0.0});
   engaged_.assign(pins(), {0, 0});
   memory_ = {};
+  pulls_.clear();
   at_rest_ = true;
 }
 
@@ -113,6 +114,27 @@ std::vector<Eigen::Vector3d> ChainTrack::points() const {
     }
   }
   return corners;
+}
+
+std::vector<Eigen::Vector3d> ChainTrack::directions() const {
+  std::vector<Eigen::Vector3d> directions;
+  for (size_t i = 0; i < pins(); ++i) {
+    directions.insert(directions.end(), kRows,
+                      on_axes((rest_[after(i)] - rest_[before(i)]).normalized()));
+  }
+  return directions;
+}
+
+void ChainTrack::pull(const CarrierMotion& carrier, const Eigen::Vector3d& arm,
+                      const Eigen::Vector3d& along, const Eigen::Vector3d& force) {
+  const PlaneFrame frame = frame_of(carrier);
+  const Vector2 at = frame.in_plane(carrier.origin + arm - frame.centre);
+  const auto nearest =
+      std::min_element(position_.begin(), position_.end(), [&](const Vector2& a, const Vector2& b) {
+        return (a - at).squaredNorm() < (b - at).squaredNorm();
+      });
+  pulls_.push_back(
+      {static_cast<size_t>(nearest - position_.begin()), frame.in_plane(force.dot(along) * along)});
 }
 
 double ChainTrack::length_m() const {
@@ -273,6 +295,7 @@ void ChainTrack::begin(const PlaneFrame& frame, double dt) {
     solver_.right[i] = dt * weight;
     terrain_force_[i].setZero();
   }
+  for (const Pull& pull : pulls_) solver_.right[pull.pin] += dt * pull.force;
   shoe_contacts_.clear();
   normal_load_ = 0.0;
 }
@@ -313,6 +336,10 @@ std::array<double, 2> ChainTrack::finish(const PlaneFrame& frame, double dt, Wre
         (1.0 - engagement.share) * position_[engagement.link] + engagement.share * position_[next];
     wrench.add(-frame.from_plane(force), frame.to_world(position) - origin);
   }
+
+  for (const Pull& pull : pulls_)
+    wrench.add(-frame.from_plane(pull.force), frame.to_world(position_[pull.pin]) - origin);
+  pulls_.clear();
 
   // The guides make the pins follow the body sideways.
   for (size_t i = 0; i < pins(); ++i) {

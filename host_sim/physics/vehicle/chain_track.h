@@ -62,12 +62,25 @@ class ChainTrack {
   void reset();
 
   double radius_m() const { return geometry_.radius; }
+  double mass_kg() const { return pin_mass_ * static_cast<double>(pins()); }
   const Eigen::Vector3d& centre() const { return centre_; }
   double normal_load_n() const { return normal_load_; }
   /// Greatest depth below the undisturbed terrain, 0 on terrain that remembers none.
   double sinkage_m() const { return sinkage_; }
   /// Corners of the shoes at rest, in the frame of the carrier's centre of mass.
   std::vector<Eigen::Vector3d> points() const;
+  /// Of each of them the direction of the shoes when driving forward, unit length.
+  std::vector<Eigen::Vector3d> directions() const;
+
+  /// Mean speed of the chain over its wheels, driving forward positive, m/s.
+  double surface_speed(const CarrierMotion& carrier) const {
+    return surface_speed(frame_of(carrier));
+  }
+  /// Something holds the chain with `force` (N, world), which the carrier has got as a whole, at
+  /// `arm` from its centre of mass (world axes): what of it lies along `along` pulls on the pin
+  /// that is nearest, in the step that begins next.
+  void pull(const CarrierMotion& carrier, const Eigen::Vector3d& arm, const Eigen::Vector3d& along,
+            const Eigen::Vector3d& force);
 
   size_t pins() const { return position_.size(); }
   /// Of a pin, in the frame of the carrier's centre of mass.
@@ -110,6 +123,10 @@ class ChainTrack {
     Eigen::Vector3d force;  // as if the pin kept its velocity
     double gain;            // N s/m, of the velocity's change
     double grip;            // share of the gain along the ground
+  };
+  struct Pull {  // on a pin, in the plane
+    size_t pin;
+    Vector2 force;
   };
   struct Engagement {  // a link on a wheel
     size_t link;       // from pin `link` to the next one
@@ -165,6 +182,7 @@ class ChainTrack {
   ChainSolver solver_;
   std::vector<ShoeContact> shoe_contacts_;
   std::vector<Engagement> engagements_;
+  std::vector<Pull> pulls_;
   std::vector<Eigen::Vector3d> terrain_force_;  // on each pin, for the guides
   double normal_load_ = 0.0;
   double sinkage_ = 0.0;

@@ -84,6 +84,8 @@ class RunningGear {
   const Eigen::Vector3d& centre() const { return centre_; }
   /// The contour's points in the frame of the carrier's centre of mass.
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  /// Of each of them the direction of the material when driving forward, unit length.
+  const std::vector<Eigen::Vector3d>& directions() const { return along_; }
 
  private:
   double stand_on(const HeightField& hard, const CarrierMotion& carrier, double speed, double dt,

@@ -23,6 +23,7 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
     dBodySetLinearVel(carrier.body, 0, 0, 0);
     dBodySetAngularVel(carrier.body, 0, 0, 0);
     carrier.hull.reset_contacts();
+    carrier.walls.reset_contacts();
     carrier.memory = {};
   }
   for (Shaft& shaft : shafts_) shaft.shaft.halt();
@@ -56,6 +57,19 @@ double Vehicle::resting_height(const HeightField& terrain, double x, double y,
     }
   }
   return height;
+}
+
+Eigen::AlignedBox2d Vehicle::outline() const {
+  Eigen::AlignedBox2d box;
+  for (const Carrier& carrier : carriers_) {
+    const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
+    const Eigen::Vector3d origin = to_eigen(dBodyGetPosition(carrier.body));
+    for (size_t i = 0; i < carrier.walls.points(); ++i) {
+      const Eigen::Vector3d at = origin + rotation * carrier.walls.point(i);
+      box.extend(Eigen::Vector2d(at.head<2>()));
+    }
+  }
+  return box;
 }
 
 Vehicle::ContactRanges Vehicle::collect_contacts(const Terrain& terrain, size_t carrier,
@@ -141,6 +155,40 @@ void Vehicle::terrain_contact(Terrain& terrain, size_t carrier, const CarrierMot
   if (bands) end_chains(terrain, carrier, begin.chains, motion, dt, wrench);
 }
 
+void Vehicle::meet_walls(const BedBounds& bed, size_t carrier, const CarrierMotion& motion,
+                         double dt, Wrench& wrench) {
+  WallContact& walls = carriers_[carrier].walls;
+  if (!walls.within_reach(bed, motion.origin)) {
+    walls.reset_contacts();
+    return;
+  }
+  drives_.clear();
+  for (const Shaft& shaft : shafts_) {
+    drives_.push_back({shaft.shaft.omega_rad_per_s(), 1.0 / shaft.shaft.inertia_kg_m2(), 0.0});
+  }
+  // A chain answers by itself, its wheels a step later (ChainTrack::pull).
+  for (const Chain& chain : chains_) {
+    const double radius = chain.track.radius_m();
+    drives_.push_back({chain.track.surface_speed(motion) / radius,
+                       1.0 / (chain.track.mass_kg() * radius * radius), 0.0});
+  }
+  PressingBody body;
+  body.mass_kg = carriers_[carrier].mass;
+  body.inverse_inertia =
+      motion.rotation * carriers_[carrier].inverse_inertia * motion.rotation.transpose();
+  body.centre = motion.origin;
+  body.velocity = motion.velocity;
+  body.omega = motion.omega;
+  walls.press(bed, body, motion.rotation, dt, drives_, wrench);
+  for (size_t i = 0; i < shafts_.size(); ++i) shafts_[i].torque += drives_[i].torque_n_m;
+  for (const WallContact::Touch& touch : walls.touches()) {
+    const size_t drive = walls.drive(touch.point);
+    if (drive == WallContact::kNoDrive || drive < shafts_.size()) continue;
+    chains_[drive - shafts_.size()].track.pull(motion, touch.arm, touch.along,
+                                               touch.friction() / dt);
+  }
+}
+
 ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
   return {shafts_[chain.shafts[0]].shaft.omega_rad_per_s(),
           shafts_[chain.shafts[1]].shaft.omega_rad_per_s()};
@@ -148,6 +196,7 @@ ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
 
 void Vehicle::apply_forces(Terrain& terrain, const std::array<double, 2>& motor_voltage,
                            double dt) {
+  const BedBounds bed = terrain.bounds();
   for (Shaft& shaft : shafts_) shaft.torque = 0.0;
   for (size_t c = 0; c < carriers_.size(); ++c) {
     Carrier& carrier = carriers_[c];
@@ -159,6 +208,7 @@ void Vehicle::apply_forces(Terrain& terrain, const std::array<double, 2>& motor_
 
     Wrench wrench;
     terrain_contact(terrain, c, motion, dt, wrench);
+    if (bed.edge == BedEdge::kWalled) meet_walls(bed, c, motion, dt, wrench);
     dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
     dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
   }

@@ -4,7 +4,7 @@
 // Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
 // them and turn on shafts (drive_shaft.h) under their running gear (running_gear.h). Other revolute
 // joints are ODE hinges. All forces of the terrain are our own
-// (terrain.h, terrain_contact.h).
+// (terrain.h, terrain_contact.h), and those of the walls round it (wall_contact.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,6 +21,7 @@
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/running_gear.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
+#include "host_sim/physics/vehicle/wall_contact.h"
 
 namespace screed {
 
@@ -37,6 +38,7 @@ struct VehicleOptions {
   ChainOptions chain;
   double track_friction = 0.8;  ///< Coulomb coefficient, rubber on the ground
   double chassis_friction = 0.4;
+  double wall_friction = 0.3;  ///< of anything on the walls of a bed
   GearMotor motor;
 };
 
@@ -54,6 +56,9 @@ class Vehicle : public VehicleState {
   /// this attitude at (x, y).
   double resting_height(const HeightField& terrain, double x, double y,
                         const Eigen::Matrix3d& rotation) const;
+
+  /// From above: the rectangle round all contact points where they are now.
+  Eigen::AlignedBox2d outline() const;
 
   /// Adds the forces of this step to the bodies and advances the motors. The terrain's end_step()
   /// and the world's step() are the caller's, afterwards.
@@ -79,6 +84,7 @@ class Vehicle : public VehicleState {
     dBodyID body;
     Eigen::Isometry3d rest_pose;  // its centre of mass in the frame of the chassis, joints at zero
     Hull hull;
+    WallContact walls;
     BodyMemory memory;
     double mass;
     Eigen::Matrix3d inverse_inertia;  // in its own axes
@@ -118,6 +124,10 @@ class Vehicle : public VehicleState {
   /// Fills contacts_ with the footprints of a carrier: running gear, chains, hull.
   ContactRanges collect_contacts(const Terrain& terrain, size_t carrier,
                                  const CarrierMotion& motion, double dt);
+  /// Lists the points of hull and running gear that meet walls.
+  void add_wall_points(const VehicleOptions& options);
+  void meet_walls(const BedBounds& bed, size_t carrier, const CarrierMotion& motion, double dt,
+                  Wrench& wrench);
   PressingBody pressing_body(size_t carrier, const CarrierMotion& motion) const;
   /// Ends the step of a carrier's chains; theirs begin at `first` among contacts_.
   void end_chains(const Terrain& terrain, size_t carrier, size_t first, const CarrierMotion& motion,
@@ -136,6 +146,7 @@ class Vehicle : public VehicleState {
   std::vector<Unit> units_;
   std::vector<Chain> chains_;               // none, or one a side: left, right
   std::vector<FootprintContact> contacts_;  // of one carrier in one step; kept for its room
+  std::vector<SurfaceDrive> drives_;        // of the shafts, then of the chains; the same
   size_t chassis_carrier_ = 0;
   std::array<SideGear, 2> sides_{};
   double mass_ = 0.0;

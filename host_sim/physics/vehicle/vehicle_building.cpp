@@ -50,11 +50,13 @@ Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions
     add_carriers(without, is_wheel, options);
     add_hinges(without);
     add_running_gear(without, options);
+    add_wall_points(options);
     return;
   }
   add_carriers(assembly, is_wheel, options);
   add_hinges(assembly);
   add_running_gear(assembly, options);
+  add_wall_points(options);
 }
 
 void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
@@ -209,6 +211,28 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
     }
   }
   tread_ = side_y[kLeft] - side_y[kRight];
+}
+
+void Vehicle::add_wall_points(const VehicleOptions& options) {
+  for (Carrier& carrier : carriers_) {
+    for (const Eigen::Vector3d& point : carrier.hull.points()) carrier.walls.add_point(point);
+  }
+  const auto add_gear = [&](size_t carrier, const std::vector<Eigen::Vector3d>& points,
+                            const std::vector<Eigen::Vector3d>& directions, size_t drive,
+                            double radius_m) {
+    for (size_t i = 0; i < points.size(); ++i)
+      carriers_[carrier].walls.add_point(points[i], directions[i], drive, radius_m);
+  };
+  for (const Unit& unit : units_) {
+    const RunningGear& gear = unit.gear;
+    add_gear(unit.carrier, gear.points(), gear.directions(), unit.shaft, gear.radius_m());
+  }
+  for (size_t i = 0; i < chains_.size(); ++i) {
+    const ChainTrack& track = chains_[i].track;
+    add_gear(chains_[i].carrier, track.points(), track.directions(), shafts_.size() + i,
+             track.radius_m());
+  }
+  for (Carrier& carrier : carriers_) carrier.walls.close(options.wall_friction, mass_);
 }
 
 }  // namespace screed

@@ -34,7 +34,7 @@ class Environment {
   virtual double time_s() const = 0;
   /// The terrain's surface as it is now.
   virtual const HeightField& terrain() const = 0;
-  /// Whether the terrain is deformable and, without wrap-around, ends at the edges of its bed.
+  /// As Terrain::is_deformable().
   virtual bool is_deformable() const = 0;
   /// As Terrain::balance() and Terrain::work(); all zero where nothing of the kind is booked.
   virtual VolumeBalance volume_balance() const { return {}; }

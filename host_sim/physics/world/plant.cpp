@@ -9,6 +9,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
+#include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
 namespace {
@@ -63,6 +64,7 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
   vehicle_.place(pose);
+  check_between_walls(terrain_->bounds(), vehicle_.outline(), {start.x_m, start.y_m});
   wrap_around();
   wrap_counts_ = {0, 0};
   if (!start.z_m.has_value()) settle(options.progress);
@@ -177,6 +179,8 @@ void Plant::lay_on_side() {
   attitude.roll = -std::numbers::pi / 2.0;
   attitude.pitch = 0.0;
   pose.linear() = rotation_from(attitude);
+  vehicle_.place(pose);
+  pose.translation().head<2>() += out_of_walls(terrain_->bounds(), vehicle_.outline());
   pose.translation().z() = vehicle_.resting_height(Plant::terrain(), pose.translation().x(),
                                                    pose.translation().y(), pose.linear());
   vehicle_.place(pose);

@@ -14,6 +14,9 @@ struct Color {
   double alpha = 1.0;
 };
 
+/// Of the walls of a bed.
+inline constexpr Color kBoards{0.66, 0.50, 0.32};
+
 /// Heights: dark slate over green and sand to near white as t goes from 0 to 1 (clamped). Lightness
 /// rises evenly, so equal steps of height look equal, also in grey print.
 Color height_color(double t);

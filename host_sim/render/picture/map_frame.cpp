@@ -109,6 +109,13 @@ void MapFrame::draw_title(const std::string& title, const std::string& subtitle)
   draw_fitted({map_.left, map_.top - 19.0}, subtitle, {.color = kFaintInk});
 }
 
+void MapFrame::draw_walls() {
+  constexpr double kBoard_px = 5.0;
+  canvas_.rectangle_outline({map_.left - 0.5 * kBoard_px, map_.top - 0.5 * kBoard_px,
+                             map_.width + kBoard_px, map_.height + kBoard_px},
+                            kBoard_px, kBoards);
+}
+
 void MapFrame::draw_axes() {
   canvas_.rectangle_outline({map_.left - 0.5, map_.top - 0.5, map_.width + 1.0, map_.height + 1.0},
                             1.0, kInk);

@@ -54,6 +54,8 @@ class MapFrame {
 
   /// Both lines are set smaller when they would not fit the canvas.
   void draw_title(const std::string& title, const std::string& subtitle);
+  /// Boards round the map: the walls of the ground. Before the axes.
+  void draw_walls();
   void draw_axes();
   void draw_color_bar(const ColorScale& scale);
   void draw_scale_bar();

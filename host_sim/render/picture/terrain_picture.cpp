@@ -170,10 +170,11 @@ MapRectangle ground_of(const HeightField& field) {
   return {field.x_min(), field.x_max(), field.y_min(), field.y_max()};
 }
 
-void finish(Canvas& canvas, MapFrame& frame, const ColorScale& scale, bool wrap,
+void finish(Canvas& canvas, MapFrame& frame, const ColorScale& scale, BedEdge edge,
             const std::string& subtitle, const PictureOptions& options) {
-  draw_path_overlay(canvas, frame, wrap, options);
+  draw_path_overlay(canvas, frame, edge == BedEdge::kWrapped, options);
   frame.draw_title(options.title, subtitle);
+  if (edge == BedEdge::kWalled) frame.draw_walls();
   frame.draw_axes();
   frame.draw_color_bar(scale);
   frame.draw_scale_bar();
@@ -214,7 +215,7 @@ Canvas draw_height_map(const HeightField& field, const PictureOptions& options) 
   });
   const ColorScale scale{heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height (mm)",
                          [&](double mm) { return heights.color(mm / kMillimetres); }};
-  finish(canvas, frame, scale, field.wrap(), subtitle_of(field, statistics, heights, options),
+  finish(canvas, frame, scale, field.edge(), subtitle_of(field, statistics, heights, options),
          options);
   return canvas;
 }
@@ -240,7 +241,7 @@ Canvas draw_difference(const HeightField& before, const HeightField& after,
   });
   const ColorScale scale{-largest * kMillimetres, largest * kMillimetres, "change of height (mm)",
                          [&](double mm) { return difference_color(mm / kMillimetres / largest); }};
-  finish(canvas, frame, scale, after.wrap(),
+  finish(canvas, frame, scale, after.edge(),
          options.subtitle.empty() ? figures(change) : options.subtitle, options);
   return canvas;
 }

@@ -204,6 +204,38 @@ std::string terrain_text(const TerrainSurface& ground, const TerrainFiles& files
   return text + pov_line(kTable, floor);
 }
 
+std::string walls_text(const TerrainSurface& ground) {
+  const HeightMapGeometry& g = ground.map().geometry;
+  if (!g.walls) return {};
+  constexpr double kBoard_m = 0.018;
+  constexpr double kAbove_m = 0.03;
+  const double west = ground.x_min();
+  const double south = ground.y_min();
+  const double east = west + ground.width_m();
+  const double north = south + ground.depth_m();
+  const double floor = ground.lowest_m() - kBedFloor_m;
+  const auto top_of = [&](bool along_x, double across) {
+    double top = ground.lowest_m();
+    for (size_t i = 0; i < (along_x ? g.nx : g.ny); ++i) {
+      const double along = static_cast<double>(i) * g.spacing_m;
+      top = std::max(top, along_x ? ground.height_m(west + along, across)
+                                  : ground.height_m(across, south + along));
+    }
+    return top + kAbove_m;
+  };
+  const auto board = [&](const Eigen::Vector2d& low, const Eigen::Vector2d& high, double top) {
+    return "  box { " + pov_vector({low.x(), low.y(), floor}) + ", " +
+           pov_vector({high.x(), high.y(), top}) + " }\n";
+  };
+  return "union {\n" +
+         board({west - kBoard_m, south - kBoard_m}, {east + kBoard_m, south}, top_of(true, south)) +
+         board({west - kBoard_m, north}, {east + kBoard_m, north + kBoard_m}, top_of(true, north)) +
+         board({west - kBoard_m, south}, {west, north}, top_of(false, west)) +
+         board({east, south}, {east + kBoard_m, north}, top_of(false, east)) +
+         "  texture { pigment { " + pov_color(kBoards) +
+         " } finish { ambient 0 diffuse 0.85 } }\n}\n";
+}
+
 std::string path_text(std::span<const Eigen::Vector2d> path, const TerrainSurface& ground,
                       double radius_m) {
   constexpr double kJump_m = 0.2;

@@ -72,6 +72,10 @@ std::string terrain_text(const TerrainSurface& ground, const TerrainFiles& files
                          const SoilAppearance& look,
                          const std::optional<HeightTint>& tint = std::nullopt);
 
+/// Boards along the edges of a bed with walls, as high on each side as its ground and a little
+/// more: the walls of the simulation have no top. Empty for a bed without walls.
+std::string walls_text(const TerrainSurface& ground);
+
 /// A thin line over the ground along these places; it breaks where two of them are further apart
 /// than the robot can drive between them.
 std::string path_text(std::span<const Eigen::Vector2d> path, const TerrainSurface& ground,

@@ -16,8 +16,9 @@
 namespace screed {
 namespace {
 
-/// Keys of a kind of ground that the experiment does not have.
+/// Keys of a kind of ground, or of edges, that the experiment does not have.
 bool decides_nothing(const ExperimentKey& key, const MapSection& map) {
+  if (key.name == "wall_friction") return map.edge() != BedEdge::kWalled;
   if (key.section == "soil") return !map.is_soil();
   return !map.of_particles() &&
          (key.section == "particles" || key.section == "raygrid" || key.name == "particle_radius");
@@ -125,6 +126,16 @@ void check(const Experiment& experiment, const std::string& source) {
   if (!experiment.map.filename.empty() && experiment.map.ramp_deg != 0.0) {
     throw InputError(source + ": [map] has both filename and ramp; a ramp needs no image");
   }
+  if (experiment.map.ramp_deg != 0.0 && experiment.map.wrap()) {
+    throw InputError(source +
+                     ": [map] has both ramp and edges = wrap; a slope does not repeat: allowed are "
+                     "edges = open or walls");
+  }
+  if (experiment.map.of_particles() && experiment.map.edge() == BedEdge::kOpen) {
+    throw InputError(source +
+                     ": [map] edges = open: particles would roll off the bed; with model = " +
+                     experiment.map.model + " edges = walls or wrap is allowed");
+  }
 }
 
 }  // namespace
@@ -186,8 +197,10 @@ Experiment read_experiment_row(const std::filesystem::path& file, const Experime
   const std::vector<IniEntry> entries = read_ini_file(path);
   const bool sandbox = is_sandbox(entries, source, experiment);
   // Its terrains have no edges: who leaves on one side comes back on the other (thesis 5.1.4).
-  experiment.map.wrap = sandbox;
-  if (sandbox) experiment.particles.depth_m = 0.0;
+  if (sandbox) {
+    experiment.map.edges = "wrap";
+    experiment.particles.depth_m = 0.0;
+  }
   for (const IniEntry& entry : entries)
     apply(experiment, sandbox ? from_sandbox(entry) : entry,
           source + ":" + std::to_string(entry.line));

@@ -140,6 +140,11 @@ const ExperimentKey& find_experiment_key(const std::string& section, const std::
       experiment_keys().begin(), experiment_keys().end(),
       [&](const ExperimentKey& known) { return known.section == section && known.name == name; });
   if (key != experiment_keys().end()) return *key;
+  if (section == "map" && name == "wrap") {
+    throw InputError(where +
+                     ": [map] wrap is now edges: for wrap = true write edges = wrap, for wrap = "
+                     "false edges = open (or walls)");
+  }
   const std::string names = known_names(section);
   if (names.empty()) {
     throw InputError(where + ": unknown section [" + section + "]; known are " + known_sections());

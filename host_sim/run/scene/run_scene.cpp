@@ -208,6 +208,7 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
       camera_text(camera, format.field_of_view_deg) + (tint ? tint_text(*tint) : "") +
       (ground.particles ? spheres_text(*ground.particles, look, tint)
                         : terrain_text(surface, files, look, tint)) +
+      walls_text(surface) +
       (options.path ? path_text(driven.path, surface, kPathRadius * distance_m) : "") +
       robot_text(robot, setup.experiment.vehicle.tracks, pose) +
       (tint ? tint_legend_text(*tint, camera, format) : ""));

@@ -60,6 +60,7 @@ HeightField field_of(const HeightMap& map) {
   }
   const int nx = static_cast<int>(g.nx);
   HeightField field(nx, static_cast<int>(g.ny), g.spacing_m, g.wrap);
+  if (g.walls) field.add_walls();
   for (std::size_t i = 0; i < map.heights.size(); ++i) {
     const int at = static_cast<int>(i);
     field.set_node(at % nx, at / nx, map.heights[i]);
@@ -108,6 +109,7 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
       {"south_m", geometry.origin_y_m},
       {"top_row", "north"},
       {"wrap", geometry.wrap},
+      {"walls", geometry.walls},
       {"frames", frames}};
   write_file(partial.partial() / "scale.json", json.dump(1) + "\n");
   partial.commit();

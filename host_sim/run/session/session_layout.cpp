@@ -66,16 +66,21 @@ void write_geometry(hid_t dataset, const HeightMapGeometry& geometry) {
   h5::write_attribute(dataset, "origin_x_m", geometry.origin_x_m);
   h5::write_attribute(dataset, "origin_y_m", geometry.origin_y_m);
   h5::write_attribute(dataset, "wrap", std::uint64_t{geometry.wrap ? 1U : 0U});
+  if (geometry.walls) h5::write_attribute(dataset, "walls", std::uint64_t{1});
 }
 
 HeightMapGeometry read_geometry(hid_t dataset, hsize_t nx, hsize_t ny) {
   constexpr hsize_t kMax = 1U << 16;  // 16 GB of heights: a file that says more is damaged
   if (nx == 0 || ny == 0 || nx > kMax || ny > kMax)
     throw h5::Hdf5Failure("a height map of impossible size");
-  return {static_cast<std::uint32_t>(nx),         static_cast<std::uint32_t>(ny),
-          h5::read_double(dataset, "unit_m"),     h5::read_double(dataset, "spacing_m"),
-          h5::read_double(dataset, "origin_x_m"), h5::read_double(dataset, "origin_y_m"),
-          h5::read_uint64(dataset, "wrap") != 0};
+  return {static_cast<std::uint32_t>(nx),
+          static_cast<std::uint32_t>(ny),
+          h5::read_double(dataset, "unit_m"),
+          h5::read_double(dataset, "spacing_m"),
+          h5::read_double(dataset, "origin_x_m"),
+          h5::read_double(dataset, "origin_y_m"),
+          h5::read_uint64(dataset, "wrap") != 0,
+          h5::has_attribute(dataset, "walls") && h5::read_uint64(dataset, "walls") != 0};
 }
 
 std::string map_hash(const HeightMapView& map) {
@@ -88,6 +93,8 @@ std::string map_hash(const HeightMapView& map) {
   hash.add(g.origin_x_m);
   hash.add(g.origin_y_m);
   hash.add(g.wrap);
+  // Not of a bed without: its hash stays what it was.
+  if (g.walls) hash.add(g.walls);
   for (const std::int32_t height : map.heights) hash.add(height);
   return hash.hex();
 }

@@ -12,7 +12,8 @@ HeightMap height_map_of(const HeightField& field) {
                   field.spacing_m(),
                   field.node_x(0),
                   field.node_y(0),
-                  field.wrap()};
+                  field.wrap(),
+                  field.edge() == BedEdge::kWalled};
   map.heights.reserve(static_cast<size_t>(field.nx()) * static_cast<size_t>(field.ny()));
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) map.heights.push_back(field.node(ix, iy));

@@ -39,7 +39,7 @@ double size_of_bed(const Experiment& experiment, int pixels) {
   const auto& map = experiment.map;
   if (!map.xy_scale.has_value()) return map.size_m;
   if (map.of_particles()) return pixels * *map.xy_scale * 2.0 * map.particle_radius_m;
-  return (map.wrap ? pixels : pixels - 1) * *map.xy_scale;
+  return (map.wrap() ? pixels : pixels - 1) * *map.xy_scale;
 }
 
 HeightField untrapped_terrain(const Experiment& experiment) {
@@ -48,15 +48,15 @@ HeightField untrapped_terrain(const Experiment& experiment) {
   if (map.filename.empty() && map.of_particles()) {
     const double rise = std::tan(map.ramp_deg * kRadPerDeg);
     const int nodes = kLevelCells + 1;
-    return HeightField::from_function(nodes, nodes, map.size_m / (nodes - (map.wrap ? 0 : 1)),
-                                      map.wrap, [&](double x, double /*y*/) {
+    return HeightField::from_function(nodes, nodes, map.size_m / (nodes - (map.wrap() ? 0 : 1)),
+                                      map.wrap(), [&](double x, double /*y*/) {
                                         return std::max(0.0,
                                                         experiment.particles.depth_m + x * rise);
                                       });
   }
   if (map.filename.empty()) {
     const double spacing = soft ? experiment.soil.cell_m : map.size_m / kLevelCells;
-    return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing)
+    return map.ramp_deg == 0.0 ? HeightField::flat(map.size_m, spacing, map.wrap())
                                : HeightField::ramp(map.size_m, spacing, map.ramp_deg);
   }
   const GreyImage image =
@@ -66,7 +66,7 @@ HeightField untrapped_terrain(const Experiment& experiment) {
   options.scale_m = map.scale_m;
   options.smoothing_m = map.smoothing_m;
   options.max_slope_deg = map.max_slope_deg;
-  options.wrap = map.wrap;
+  options.wrap = map.wrap();
   HeightField field = HeightField::from_image(image, options);
   if (map.of_particles()) raise(field, experiment.particles.depth_m);
   return soft ? resampled(field, experiment.soil.cell_m) : field;
@@ -94,6 +94,7 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.vehicle.chain.tension_n = experiment.vehicle.track_tension_n;
   options.vehicle.track_friction = experiment.vehicle.track_friction;
   options.vehicle.chassis_friction = experiment.vehicle.chassis_friction;
+  options.vehicle.wall_friction = experiment.map.wall_friction;
   if (!experiment.sensors.calibrated) options.imu = ImuErrors::uncalibrated();
   // noise = false wins: an ideal IMU needs no calibration.
   if (!experiment.sensors.noise) options.imu = ImuErrors::quiet();
@@ -146,6 +147,7 @@ SoilParameters make_soil(const Experiment& experiment) {
 HeightField make_terrain(const Experiment& experiment) {
   HeightField field = untrapped_terrain(experiment);
   set_trap(experiment, field);
+  if (experiment.map.edge() == BedEdge::kWalled) field.add_walls();
   return field;
 }
 

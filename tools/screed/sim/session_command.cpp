@@ -74,11 +74,8 @@ Json describe(const fs::path& file, const SessionReader& session) {
   json["heights"] = nullptr;
   if (session.has_heights()) {
     const HeightMapGeometry g = session.heights_after(0).geometry;
-    json["heights"] = {{"nx", g.nx},
-                       {"ny", g.ny},
-                       {"spacing_m", g.spacing_m},
-                       {"wrap", g.wrap},
-                       {"changes", session.height_changes()}};
+    json["heights"] = {{"nx", g.nx},     {"ny", g.ny},       {"spacing_m", g.spacing_m},
+                       {"wrap", g.wrap}, {"walls", g.walls}, {"changes", session.height_changes()}};
   }
   return json;
 }
@@ -106,7 +103,10 @@ void print_info(const Json& json) {
     const Json& heights = json["heights"];
     row("height map", heights["nx"].dump() + " x " + heights["ny"].dump() + ", " +
                           heights["spacing_m"].dump() + " m, " + heights["changes"].dump() +
-                          " changes" + (heights["wrap"].get<bool>() ? ", wraps around" : ""));
+                          " changes" +
+                          (heights["wrap"].get<bool>()    ? ", wraps around"
+                           : heights["walls"].get<bool>() ? ", walled"
+                                                          : ""));
   } else {
     row("height map", "not recorded frame by frame");
   }

@@ -35,7 +35,7 @@ void register_terrain_command(CLI::App& root, Program& program) {
   CLI::App* terrain = root.add_subcommand("terrain", "Generate height maps");
   terrain->require_subcommand(1);
   CLI::App* command = terrain->add_subcommand(
-      "generate", "Generate a tileable height map of seeded noise, for [map] wrap = true");
+      "generate", "Generate a tileable height map of seeded noise, for [map] edges = wrap");
   auto file = std::make_shared<std::string>();
   auto options = std::make_shared<NoiseTerrainOptions>();
   command->add_option("FILE", *file, "Output image: 16-bit PNG or 8-bit BMP")->required();

@@ -19,6 +19,8 @@ constexpr double kTrailCasing_px = 6.0;
 constexpr double kTrailStep_px = 2.0;
 constexpr double kTrailEnd_px = 5.5;
 constexpr double kLugPitch_m = 0.0115;  // of the tread
+constexpr double kBoard_m = 0.018;      // thickness of a wall
+constexpr double kMinBoard_px = 3.0;
 
 }  // namespace
 
@@ -70,6 +72,10 @@ void Drawing::draw_bed_edge(const Scene& scene) {
   const Pixel a = scene.camera.to_pixel(scene.bed.x_min, scene.bed.y_max);
   const Pixel b = scene.camera.to_pixel(scene.bed.x_max, scene.bed.y_min);
   canvas_.rectangle_outline({a.x, a.y, b.x - a.x, b.y - a.y}, 1.5, {1.0, 1.0, 1.0, 0.35});
+  if (!scene.place.walls) return;
+  const double board = std::max(kMinBoard_px, kBoard_m * scene.camera.scale());
+  canvas_.rectangle_outline(
+      {a.x - 0.5 * board, a.y - 0.5 * board, b.x - a.x + board, b.y - a.y + board}, board, kBoards);
 }
 
 void Drawing::draw_trail(const Scene& scene) {

@@ -25,6 +25,7 @@ struct TerrainPlacement {
   double y_min_m;
   double spacing_m;
   bool wrap;
+  bool walls = false;  ///< along the edges of the bed
 };
 
 /// Fills the camera's box with the ground, bilinear between nodes. Beyond the edges of the bed:

@@ -251,7 +251,8 @@ Scene ViewerDisplay::scene() {
 
   Scene scene;
   scene.ground = &image_;
-  scene.place = {ground_.x_min(), ground_.y_min(), ground_.spacing_m(), ground_.wrap()};
+  scene.place = {ground_.x_min(), ground_.y_min(), ground_.spacing_m(), ground_.wrap(),
+                 ground_.edge() == BedEdge::kWalled};
   scene.bed = bed_of(ground_);
   scene.shading = controls_.shading;
   scene.camera = camera_;

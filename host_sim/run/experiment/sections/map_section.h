@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "host_sim/physics/terrain/height_field.h"
+
 namespace screed {
 
 struct MapSection {
@@ -14,12 +16,21 @@ struct MapSection {
   double smoothing_m = 0.0;
   std::optional<double> max_slope_deg;
   double ramp_deg = 0.0;
-  bool wrap = false;
+  std::string edges;  ///< open, walls or wrap; empty: as edge() says
+  double wall_friction = 0.3;
   std::string model = "rigid";
   double particle_radius_m = 0.0125;
 
   bool is_soil() const { return model == "scm"; }
   bool of_particles() const { return model == "particles" || model == "static_particles"; }
+
+  /// Where nothing is said, the terrain ends at its edges; particles need walls to stay.
+  BedEdge edge() const {
+    if (edges == "wrap") return BedEdge::kWrapped;
+    if (edges == "walls" || (edges.empty() && of_particles())) return BedEdge::kWalled;
+    return BedEdge::kOpen;
+  }
+  bool wrap() const { return edge() == BedEdge::kWrapped; }
 
   template <class Keys>
   static void list(Keys& keys) {
@@ -39,7 +50,16 @@ struct MapSection {
               &M::max_slope_deg);
     keys.real("ramp", "deg", -60, 60, "without a file: slope of the ground, rising to the east",
               &M::ramp_deg);
-    keys.flag("wrap", "the terrain repeats at its edges; the image must be tileable", &M::wrap);
+    keys.choice(
+        "edges", {"open", "walls", "wrap"},
+        "open: the terrain ends, and the run where the robot leaves it; walls: of a sandbox, "
+        "the default of particles; wrap: it repeats, the image must be tileable",
+        [](M& map) -> std::string& {
+          if (map.edges.empty()) map.edges = map.edge() == BedEdge::kWalled ? "walls" : "open";
+          return map.edges;
+        });
+    keys.real("wall_friction", "", 0, 5, "edges = walls: Coulomb friction of robots on the walls",
+              &M::wall_friction);
     keys.choice("model", {"rigid", "scm", "particles", "static_particles"},
                 "terrain model; scm: deformable soil, see [soil]; particles: a bed of spheres",
                 &M::model);

@@ -14,15 +14,15 @@
 
 namespace screed::nn {
 
-/// What `screed sim` records of a surrogate: Algorithm 5 on a level bed without end, five seconds
-/// until it begins included. `more` are further lines of the experiment.
+/// What `screed sim` records of a surrogate: Algorithm 5 on a level bed whose edges nothing stops
+/// at, five seconds until it begins included. `more` are further lines of the experiment.
 inline void record_surrogate(const fs::path& folder, const Surrogate& driven, std::size_t rows,
                              const std::string& more = "",
                              const std::shared_ptr<const BearingCapacityNetwork>& bearing = {},
                              const std::string& board = kDefaultBoard) {
   fs::create_directories(folder);
   write_text(folder / "experiment.ini",
-             "[map]\nmodel = scm\nsize = 2\nwrap = true\n[soil]\npreset = soft\ncell = 0.02\n"
+             "[map]\nmodel = scm\nsize = 2\nedges = open\n[soil]\npreset = soft\ncell = 0.02\n"
              "[experiment]\nname = made_up\nalgorithm = training_drive\nframes = 3200\n" +
                  more);
   const Experiment experiment = read_experiment(folder / "experiment.ini");

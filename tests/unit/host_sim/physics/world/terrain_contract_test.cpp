@@ -57,6 +57,11 @@ TEST(TerrainContract, BoundsAreTheBedAndSayWhatIsBeyond) {
     const BedBounds edged = build_terrain(level(false), options)->bounds();
     EXPECT_EQ(edged.edge, open);
     EXPECT_DOUBLE_EQ(edged.width_m, 0.6);
+    HeightField field = level(false);
+    field.add_walls();
+    const std::unique_ptr<Terrain> walled = build_terrain(std::move(field), options);
+    EXPECT_EQ(walled->bounds().edge, BedEdge::kWalled);
+    EXPECT_EQ(walled->surface().edge(), BedEdge::kWalled) << "who draws it sees them, too";
     const BedBounds wrapped = build_terrain(level(true), options)->bounds();
     EXPECT_EQ(wrapped.edge, BedEdge::kWrapped);
     EXPECT_DOUBLE_EQ(wrapped.depth_m, 0.625);

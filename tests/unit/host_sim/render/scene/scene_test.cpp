@@ -46,6 +46,17 @@ size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
+TEST(Walls, AreABoardAsHighAsTheGroundOnEachSide) {
+  HeightMap map = slope(false);
+  EXPECT_EQ(walls_text(TerrainSurface(map)), "");
+  map.geometry.walls = true;
+  const std::string text = walls_text(TerrainSurface(map));
+  EXPECT_EQ(count(text, "box {"), 4U);
+  // West of the bed, up to 3 cm above its highest place there; the ground rises by 6 cm along it.
+  EXPECT_EQ(count(text, "<-0.21800,-0.15000,-0.06000>, <-0.20000,0.15000,0.09000>"), 1U) << text;
+  EXPECT_EQ(count(text, "<0.20000,-0.15000,-0.06000>, <0.21800,0.15000,0.13000>"), 1U) << text;
+}
+
 TEST(TerrainSurface, IsBilinearAndEndsLevel) {
   const HeightMap map = slope(false);
   const TerrainSurface ground(map);

@@ -120,6 +120,7 @@ std::vector<std::string> good_values(const Row& row) {
     return {"none", "0123456789abcdef0123456789ABCDEF 200"};
   }
   if (row.key == "preset") return {"clay", "ding_2011"};
+  if (row.key == "edges") return {"open", "walls", "wrap"};
   if (row.section == "trap") return {"wall", "ruts"};
   return {"Some-name_1"};
 }
@@ -139,6 +140,7 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
       if (row.section == "soil") room = {"map.model=scm"};
       if (row.section == "particles" || row.section == "raygrid" || row.key == "particle_radius")
         room = {"map.model=particles"};
+      if (row.key == "wall_friction") room = {"map.edges=walls"};
       if (row.section == "trap" && row.key != "kind") room = {"trap.kind=wall"};
       if (row.key == "walk_speed_min") room = {"parameters.walk_speed_max=250"};
       if (row.key == "walk_speed_max") room = {"parameters.walk_speed_min=0"};
@@ -282,21 +284,60 @@ TEST_F(ExperimentFile, AFileOfSandboxIsReadInItsUnitsAndAxes) {
     EXPECT_NEAR(e.vehicle.z_m.value(), 8.0 / 12.0, 1e-12);
     EXPECT_NEAR(e.map.scale_m, 5.0 / 12.0, 1e-12);
     EXPECT_NEAR(e.map.xy_scale.value(), 0.01, 1e-12);
-    EXPECT_TRUE(e.map.wrap);
+    EXPECT_TRUE(e.map.wrap());
     EXPECT_EQ(e.drive.speed_m_per_s, 0.2);  // a section that Sandbox does not have
     // What is written back is in SI units, and says the same.
     const Experiment again = read(e.text());
     EXPECT_EQ(again.text(), e.text());
     EXPECT_EQ(again.vehicle.x_m, e.vehicle.x_m);
-    EXPECT_TRUE(again.map.wrap);
+    EXPECT_TRUE(again.map.wrap());
   }
   const Experiment si = read("units = si\nchrono_data_path = ../data/\n[vehicle]\nx = -20\n");
   EXPECT_EQ(si.vehicle.x_m, -20.0);
-  EXPECT_FALSE(si.map.wrap);
+  EXPECT_FALSE(si.map.wrap());
   EXPECT_EQ(si.notes.size(), 1U);
   EXPECT_EQ(read("units = sandbox\n[vehicle]\nx = -20\n", {"vehicle.x=1"}).vehicle.x_m, 1.0);
   const std::string wrong = error_message("chrono_data_path = ../data/\n[vehicle]\nx = east\n");
   EXPECT_TRUE(contains(wrong, "FILE:3: [vehicle] x = 'east'")) << wrong;
+}
+
+TEST_F(ExperimentFile, EdgesAreOpenWalledOrWrappedOnEveryTerrain) {
+  const std::string small = "[map]\nsize = 1\n[soil]\ncell = 0.05\n";
+  for (const char* model : {"rigid", "scm", "particles"}) {
+    const std::string of = std::string("map.model=") + model;
+    for (const auto& [text, edge] : {std::pair{"walls", BedEdge::kWalled},
+                                     {"wrap", BedEdge::kWrapped},
+                                     {"open", BedEdge::kOpen}}) {
+      const std::string edges = std::string("map.edges=") + text;
+      if (model == std::string("particles") && edge == BedEdge::kOpen) continue;
+      const Experiment e = read(small, {of, edges});
+      const HeightField bed = make_terrain(e);
+      EXPECT_EQ(bed.edge(), edge) << model << " " << text;
+      EXPECT_NEAR(bed.x_max() - bed.x_min(), 1.0, 1e-9) << model << " " << text;
+      EXPECT_EQ(read(e.text()).map.edge(), edge);
+    }
+    const bool particles = model == std::string("particles");
+    const Experiment unsaid = read(small, {of});
+    EXPECT_EQ(make_terrain(unsaid).edge(), particles ? BedEdge::kWalled : BedEdge::kOpen);
+    EXPECT_EQ(contains(unsaid.text(), "wall_friction"), particles) << "it decides nothing";
+  }
+}
+
+TEST_F(ExperimentFile, EdgesThatCannotBeAreRefused) {
+  const std::string particles = error_message("[map]\nmodel = particles\nedges = open\n");
+  EXPECT_TRUE(contains(particles, "[map] edges = open: particles would roll off")) << particles;
+  EXPECT_TRUE(contains(particles, "walls or wrap")) << particles;
+  const std::string ramp = error_message("[map]\nramp = 5\nedges = wrap\n");
+  EXPECT_TRUE(contains(ramp, "both ramp and edges = wrap")) << ramp;
+  const std::string other = error_message("[map]\nedges = fence\n");
+  EXPECT_TRUE(contains(other, "FILE:2: [map] edges = 'fence' is not allowed")) << other;
+  EXPECT_TRUE(contains(other, "open, walls or wrap")) << other;
+}
+
+TEST_F(ExperimentFile, TheKeyWrapSaysWhatStandsInItsPlace) {
+  const std::string old = error_message("[map]\nwrap = true\n");
+  EXPECT_TRUE(contains(old, "FILE:2: [map] wrap is now edges: for wrap = true write edges = wrap"))
+      << old;
 }
 
 // The file as it is printed, spaces at the ends of its lines and all. Its bed is the large one of
@@ -316,7 +357,7 @@ TEST_F(ExperimentFile, Figure53IsAcceptedAsPrinted) {
   EXPECT_EQ(e.map.xy_scale, 0.4);
   EXPECT_EQ(e.map.model, "particles");
   EXPECT_EQ(e.particles.depth_m, 0.0);
-  EXPECT_TRUE(e.map.wrap);
+  EXPECT_TRUE(e.map.wrap());
   EXPECT_NEAR(e.raygrid.resolution_per_m, 24.0, 1e-12);
   EXPECT_EQ(e.experiment.name, "sparse_random");
   EXPECT_EQ(e.parameters.algorithm, 3);

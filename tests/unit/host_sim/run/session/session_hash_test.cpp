@@ -62,6 +62,7 @@ TEST_F(SessionTest, TheHashCoversTheConditionsButNotTheNames) {
   EXPECT_NE(original, hash([](Recording& r) { r.before.geometry.origin_x_m = 0; }));
   EXPECT_NE(original, hash([](Recording& r) { r.before.geometry.origin_y_m = 0; }));
   EXPECT_NE(original, hash([](Recording& r) { r.before.geometry.wrap = false; }));
+  EXPECT_NE(original, hash([](Recording& r) { r.before.geometry.walls = true; }));
   EXPECT_NE(original,
             hash([](Recording& r) { std::swap(r.before.geometry.nx, r.before.geometry.ny); }));
   EXPECT_NE(original, hash([](Recording& r) { std::swap(r.frames[0], r.frames[1]); }));

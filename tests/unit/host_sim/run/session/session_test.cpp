@@ -99,7 +99,19 @@ TEST_F(SessionTest, EverythingComesBack) {
     EXPECT_EQ(map->geometry.origin_x_m, -1.5);
     EXPECT_EQ(map->geometry.origin_y_m, 2.5);
     EXPECT_TRUE(map->geometry.wrap);
+    EXPECT_FALSE(map->geometry.walls);
   }
+}
+
+TEST_F(SessionTest, WallsOfTheBedAreKept) {
+  Recording run = random_run(3);
+  run.before.geometry.wrap = run.after.geometry.wrap = false;
+  run.before.geometry.walls = true;
+  write_run(file_, run);
+  const SessionReader reader(file_);
+  EXPECT_TRUE(reader.terrain_before()->geometry.walls);
+  EXPECT_FALSE(reader.terrain_after()->geometry.walls) << "as before there were any";
+  EXPECT_EQ(reader.compute_content_hash(), reader.content_hash());
 }
 
 TEST_F(SessionTest, AnyRangeOfRowsCanBeRead) {

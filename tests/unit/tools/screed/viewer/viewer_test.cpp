@@ -315,6 +315,18 @@ TEST_F(ViewerDrawing, WrappedGroundRepeatsDarker) {
   EXPECT_GT(brightness(at(1.3, 0.5)), brightness(at(0.5, 0.5)) / 3);
 }
 
+TEST_F(ViewerDrawing, WallsAreBoardsRoundTheBed) {
+  scene_.camera.zoom(0.5, scene_.camera.middle());
+  drawing_.draw(scene_);
+  const uint32_t open = at(1.008, 0.5);
+  const uint32_t inside = at(0.9, 0.5);
+  scene_.place.walls = true;
+  drawing_.draw(scene_);
+  EXPECT_NE(at(1.008, 0.5), open);
+  EXPECT_NEAR(brightness(at(1.008, 0.5)), brightness(packed(kBoards)), 3);
+  EXPECT_EQ(at(0.9, 0.5), inside);
+}
+
 TEST_F(ViewerDrawing, SameSceneSamePixelsAtAnySize) {
   drawing_.draw(scene_);
   const std::vector<uint8_t> first = drawing_.canvas().rgb();

@@ -1,0 +1,51 @@
+// Rectangles within rectangles.
+#include "host_sim/physics/world/wall_clearance.h"
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "host_sim/core/errors.h"
+
+namespace screed {
+namespace {
+
+std::string millimetres(double metres) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3f", metres);
+  return text.data();
+}
+
+std::string area(const Eigen::Vector2d& size) {
+  return millimetres(size.x()) + " m x " + millimetres(size.y()) + " m";
+}
+
+}  // namespace
+
+Eigen::Vector2d out_of_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline) {
+  const Eigen::Vector2d none = Eigen::Vector2d::Zero();
+  if (bed.edge != BedEdge::kWalled) return none;
+  const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
+  return (-corner - outline.min()).cwiseMax(none) - (outline.max() - corner).cwiseMax(none);
+}
+
+void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline,
+                         const Eigen::Vector2d& start) {
+  if (bed.edge != BedEdge::kWalled) return;
+  const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
+  if (Eigen::AlignedBox2d(-corner, corner).contains(outline)) return;
+  const Eigen::Vector2d low = start - outline.min() - corner;
+  const Eigen::Vector2d high = corner - (outline.max() - start);
+  if ((low.array() > high.array()).any()) {
+    throw InputError("[map] edges = walls: a bed of " + area(2.0 * corner) +
+                     " is too small for a robot of " + area(outline.sizes()) + " at this heading");
+  }
+  const auto range = [&](Eigen::Index axis) {
+    return millimetres(low[axis]) + ".." + millimetres(high[axis]) + " m";
+  };
+  throw InputError("[vehicle] x = " + millimetres(start.x()) + ", y = " + millimetres(start.y()) +
+                   " m puts the robot into a wall of the bed; it takes " + area(outline.sizes()) +
+                   " at this heading: allowed are x " + range(0) + " and y " + range(1));
+}
+
+}  // namespace screed
