@@ -24,7 +24,7 @@ constexpr std::array<KnownRun, 5> kKnownRuns = {{
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
      "5748948502c9c8d5bf15496ba34541a0"},
-    {"gravel_bed", "--duration 1", "d5f68e8195481e44f841bc3773dd2d14"},
+    {"gravel_bed", "--duration 1", "8f41a8da0e4628e9056bf241b3cf0ceb"},
 }};
 
 class ContentHash : public Program {};
