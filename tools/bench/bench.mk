@@ -12,5 +12,5 @@ bench: $(B)/bench  ## real-time factor and ns per tick
 	@$(B)/bench --benchmark_counters_tabular=true $(ARGS)
 bench-terrain: $(B)/terrain_bench  ## time and memory of a frame on every terrain, beside the thesis'
 	@$(B)/terrain_bench --out $(OUT)/bench-terrain $(ARGS)
-soil-same-bits: $(SCREED)  ## the soil compiled with -O1 and -O3 leaves the same bytes
+soil-same-bits: $(SCREED)  ## soil and particles compiled with -O1 and -O3 leave the same bytes
 	@tools/bench/soil_same_bits.sh $(B)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <tuple>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
@@ -17,6 +18,7 @@ constexpr int64_t kMaxParticles = 4'000'000;
 constexpr double kScatter = 0.4;      // of the place a particle is let down, in radii
 constexpr double kFirstStride = 0.5;  // of the way into the hollow, in radii
 constexpr double kLastStride = 0.01;
+constexpr size_t kTile = 16;              // columns of the grid along each side of a tile
 constexpr size_t kReportParticles = 256;  // laid between two reports: some milliseconds
 
 /// Finds where spheres let down on those that lie already come to rest.
@@ -64,17 +66,19 @@ class Deposit {
     add_sphere({x, y, height});
   }
 
-  /// The centres, column after column of the grid, each from below.
+  /// The centres, tile after tile of the grid, in a tile column after column, each from below.
   std::vector<Eigen::Vector3d> take() {
     std::vector<int32_t> order(centres_.size());
     std::iota(order.begin(), order.end(), 0);
     const auto place = [this](int32_t i) {
-      return std::pair(grid_.column_of_cell(grid_.cell_of(i)),
-                       centres_[static_cast<size_t>(i)].z());
+      const auto columns_x = static_cast<size_t>(grid_.columns_x());
+      const size_t column = grid_.column_of_cell(grid_.cell_of(i));
+      const size_t tile_x = column % columns_x / kTile;
+      const size_t tile_y = column / columns_x / kTile;
+      return std::tuple(tile_y, tile_x, column, centres_[static_cast<size_t>(i)].z(), i);
     };
-    std::sort(order.begin(), order.end(), [&](int32_t a, int32_t b) {
-      return std::pair(place(a), a) < std::pair(place(b), b);
-    });
+    std::sort(order.begin(), order.end(),
+              [&](int32_t a, int32_t b) { return place(a) < place(b); });
     std::vector<Eigen::Vector3d> sorted;
     sorted.reserve(order.size());
     for (const int32_t i : order) sorted.push_back(centres_[static_cast<size_t>(i)]);

@@ -29,8 +29,9 @@ std::vector<int> stack_counts(const HeightField& top, const BedExtent& extent, d
 
 /// Centres of the particles: layer after layer, in each layer one stack after the other in random
 /// order, each particle is let down near the middle of its stack and rolls into the hollow that it
-/// finds there. None overlap; each rests on others, the floor or a wall. They are numbered stack by
-/// stack: who lies near has a near number. Reports the task "laying particles".
+/// finds there. None overlap; each rests on others, the floor or a wall. They are numbered in
+/// square tiles, 16 stacks wide, and in a tile stack by stack: who lies near has a near number.
+/// Reports the task "laying particles".
 std::vector<Eigen::Vector3d> lay_spheres(const std::vector<int>& counts, const BedExtent& extent,
                                          double radius_m, uint64_t seed,
                                          const TaskProgress& progress = {});

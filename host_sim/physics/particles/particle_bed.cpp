@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/particles/solid_contact.h"
@@ -21,8 +22,9 @@ constexpr double kSettlingWindow_s = 0.05;  // while a new bed settles
 constexpr double kSettlingDrag = 20.0;      // 1/s
 constexpr double kSettling_s = 2.0;         // at most
 constexpr double kGearWakeSpeed_m_per_s =
-    0.002;                           // surface of running gear over a sleeping particle
-constexpr double kHeadroom_m = 0.1;  // of the grid above the bed
+    0.002;                               // surface of running gear over a sleeping particle
+constexpr double kHeadroom_m = 0.1;      // of the grid above the bed
+constexpr double kNearestToWall = 1e-3;  // of a centre, in radii: no force is greater than there
 
 struct Range {
   const char* name;
@@ -47,6 +49,7 @@ const ParticleOptions& checked(const ParticleOptions& options) {
   require({"stiffness_pa", 1e3, 1e9}, m.stiffness_pa);
   require({"damping_ratio", 0.0, 1.0}, m.damping_ratio);
   require({"ray_spacing_m", 1e-4, 1.0}, options.ray_spacing_m);
+  require({"threads", 1, kMaxBedThreads}, options.threads);
   return options;
 }
 
@@ -57,10 +60,6 @@ BedExtent checked(const BedExtent& extent, double radius) {
     require({"depth_m", 10.0 * radius, 1e6}, extent.depth_m);
   }
   return extent;
-}
-
-int rays_along(double size, double spacing) {
-  return std::max(2, static_cast<int>(std::lround(size / spacing)));
 }
 
 double highest_of(const std::vector<Eigen::Vector3d>& centres) {
@@ -76,18 +75,20 @@ std::vector<Eigen::Vector3d> laid(const HeightField& top, const ParticleOptions&
   return lay_spheres(stack_counts(top, extent, radius), extent, radius, options.seed, progress);
 }
 
+void add(const PushRow& push, PushRow& to) {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.force[axis] += push.force[axis];
+    to.moment[axis] += push.moment[axis];
+  }
+}
+
 }  // namespace
 
 ParticleBed::ParticleBed(const HeightField& top, const ParticleOptions& options,
                          const TaskProgress& progress)
     : ParticleBed(laid(top, options, progress), bed_extent(top, options.material.radius_m), 0.0,
                   options) {
-  if (options_.fixed) {
-    std::fill(state_.begin(), state_.end(), kAsleep);
-    awake_.clear();
-  } else {
-    settle(kSettling_s, progress);
-  }
+  if (!options_.fixed) settle(kSettling_s, progress);
 }
 
 ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedExtent& extent,
@@ -95,75 +96,35 @@ ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedE
     : options_(checked(options)),
       extent_(checked(extent, options.material.radius_m)),
       law_(options.material),
-      mass_(options.material.mass_kg()),
-      inertia_(options.material.inertia_kg_m2()),
+      kernel_(bed_functions(options.kernel.value_or(bed_kernels().back()))),
       window_s_(kWindow_s),
       grid_(extent.width_m, extent.depth_m, std::max(height_m, highest_of(centres) + kHeadroom_m),
-            (2.0 + kSkin) * options.material.radius_m, extent.periodic),
-      position_(centres),
-      surface_(rays_along(extent.width_m, options.ray_spacing_m),
-               rays_along(extent.depth_m,
-                          extent.width_m / rays_along(extent.width_m, options.ray_spacing_m)),
-               extent.width_m / rays_along(extent.width_m, options.ray_spacing_m),
-               extent.periodic) {
-  surface_.add_walls();  // unless it repeats
-  set_up();
-}
-
-void ParticleBed::set_up() {
-  const size_t n = position_.size();
-  work_.elements = n;
-  velocity_.assign(n, Eigen::Vector3d::Zero());
-  angular_velocity_ = force_ = moment_ = velocity_;
-  anchor_ = position_;
-  rest_s_.assign(n, 0.0);
-  state_.assign(n, kAwake);
-  gear_step_.assign(n, 0);
-  slots_.assign(n * kSlots, Slot{});
-  grid_.resize(n);
-  awake_.reserve(n);
-  const size_t columns =
-      static_cast<size_t>(grid_.columns_x()) * static_cast<size_t>(grid_.columns_y());
-  stale_.assign(columns, 0);
-  to_cast_.assign(columns, 0);
-  stale_columns_.reserve(columns);
-  cast_columns_.reserve(columns);
-  for (size_t i = 0; i < n; ++i) {
+            (2.0 + kSkin) * options.material.radius_m, extent.periodic,
+            kWakeThreshold * options.material.radius_m),
+      particles_(centres),
+      groups_(extent, (2.0 + kSkin) * options.material.radius_m, particles_.groups,
+              particles_.size),
+      team_(options.threads),
+      pushes_(static_cast<size_t>(options.threads)),
+      surface_(extent, options.ray_spacing_m, options.material.radius_m, grid_) {
+  work_.elements = size();
+  store_.resize(size());
+  gear_step_.assign(size(), 0);
+  grid_.resize(size());
+  for (size_t i = 0; i < size(); ++i) {
     const auto particle = static_cast<int32_t>(i);
-    grid_.insert(particle, grid_.cell_at(position_[i]));
-    mark(grid_.cell_of(particle));
-    awake_.push_back(particle);
+    grid_.insert(particle, grid_.cell_at(particles_.at(particle)));
+    surface_.mark(grid_, grid_.cell_of(particle));
+    wake(particle);
   }
-  // The first ray of each column.
-  const auto rays = [](int count, int nodes, const auto& column_of) {
-    std::vector<int> first(static_cast<size_t>(count) + 1, nodes);
-    for (int i = nodes - 1; i >= 0; --i) first[static_cast<size_t>(column_of(i))] = i;
-    for (int c = count - 1; c >= 0; --c) {
-      first[static_cast<size_t>(c)] =
-          std::min(first[static_cast<size_t>(c)], first[static_cast<size_t>(c) + 1]);
-    }
-    return first;
-  };
-  rays_x_ = rays(grid_.columns_x(), surface_.nx(),
-                 [&](int i) { return grid_.column_x(surface_.node_x(i)); });
-  rays_y_ = rays(grid_.columns_y(), surface_.ny(),
-                 [&](int i) { return grid_.column_y(surface_.node_y(i)); });
-}
-
-Eigen::Vector3d ParticleBed::between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  Eigen::Vector3d separation = to - from;
-  if (extent_.periodic) {
-    separation.x() -= extent_.width_m * std::round(separation.x() / extent_.width_m);
-    separation.y() -= extent_.depth_m * std::round(separation.y() / extent_.depth_m);
-  }
-  return separation;
 }
 
 SphereSet ParticleBed::spheres() const {
   SphereSet set;
   set.radius_m = options_.material.radius_m;
-  set.centers_m.reserve(position_.size());
-  for (const Eigen::Vector3d& at : position_) {
+  set.centers_m.reserve(size());
+  for (size_t i = 0; i < size(); ++i) {
+    const Eigen::Vector3d at = position(i);
     set.centers_m.push_back(
         {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())});
   }
@@ -175,223 +136,215 @@ BedBounds ParticleBed::bounds() const {
           extent_.periodic ? BedEdge::kWrapped : BedEdge::kWalled};
 }
 
+const HeightField& ParticleBed::surface() const {
+  for (const int32_t group : groups_.active()) {
+    for (const int32_t particle : groups_.group(group).awake) {
+      surface_.mark(grid_, grid_.cell_of(particle));
+    }
+  }
+  surface_.cast(grid_, particles_);
+  return surface_.field();
+}
+
 // ---- sleep
 // ---------------------------------------------------------------------------------------
 
 void ParticleBed::wake(int32_t particle) {
-  const auto i = static_cast<size_t>(particle);
-  if (state_[i] == kAwake || options_.fixed) return;
-  state_[i] = kAwake;
-  rest_s_[i] = 0.0;
-  awake_.push_back(particle);
-  pairs_stale_ = true;
+  if (particles_.awake(particle) || options_.fixed) return;
+  particles_.set_awake(particle, true, now_s_);
+  groups_.wake(particle);
 }
 
 void ParticleBed::wake_near(int32_t particle) {
-  const Eigen::Vector3d& here = position_[static_cast<size_t>(particle)];
+  if (groups_.awake() == size()) return;
+  const Eigen::Vector3d here = particles_.at(particle);
   const double near = (2.0 + kTouching) * options_.material.radius_m;
   grid_.visit_near(here, near, [&](int32_t other) {
-    const auto j = static_cast<size_t>(other);
-    if (state_[j] == kAsleep && between(here, position_[j]).squaredNorm() < near * near)
+    if (!particles_.awake(other) &&
+        between(extent_, here, particles_.at(other)).squaredNorm() < near * near) {
       wake(other);
+    }
   });
 }
 
 void ParticleBed::wake_all() {
-  for (size_t i = 0; i < size(); ++i) wake(static_cast<int32_t>(i));
-  std::fill(rest_s_.begin(), rest_s_.end(), 0.0);
+  for (size_t i = 0; i < size(); ++i) {
+    wake(static_cast<int32_t>(i));
+    particles_.motion[i].since_s = now_s_;
+  }
 }
 
 void ParticleBed::set_motion(size_t particle, const Eigen::Vector3d& velocity,
                              const Eigen::Vector3d& angular_velocity) {
   wake(static_cast<int32_t>(particle));
-  velocity_[particle] = velocity;
-  angular_velocity_[particle] = angular_velocity;
-}
-
-// ---- what contacts remember
-// ----------------------------------------------------------------------
-
-ParticleBed::Slot* ParticleBed::slot_of(int32_t particle, int32_t partner) {
-  Slot* const begin = &slots_[static_cast<size_t>(particle) * kSlots];
-  Slot* const found = std::find_if(begin, begin + kSlots,
-                                   [&](const Slot& slot) { return slot.partner == partner; });
-  return found == begin + kSlots ? nullptr : found;
-}
-
-ParticleBed::Slot* ParticleBed::take_slot(int32_t particle, int32_t partner) {
-  Slot* slot = slot_of(particle, partner);
-  if (slot != nullptr) return slot;
-  slot = slot_of(particle, kNoPartner);
-  if (slot != nullptr) *slot = {partner, {}};
-  return slot;
+  for (int axis = 0; axis < 3; ++axis) {
+    particles_.motion[particle].velocity[axis] = velocity[axis];
+    particles_.motion[particle].spin[axis] = angular_velocity[axis];
+  }
 }
 
 // ---- a step
 // --------------------------------------------------------------------------------------
 
-void ParticleBed::find_pairs() {
-  std::sort(awake_.begin(), awake_.end());
-  pairs_.clear();
-  const double near = (2.0 + kSkin) * options_.material.radius_m;
-  for (const int32_t particle : awake_) {
-    const Eigen::Vector3d& here = position_[static_cast<size_t>(particle)];
-    grid_.visit_near(here, near, [&](int32_t other) {
-      const auto j = static_cast<size_t>(other);
-      if (other == particle || (other < particle && state_[j] == kAwake)) return;
-      if (between(here, position_[j]).squaredNorm() >= near * near) return;
-      const int32_t a = std::min(particle, other);
-      const int32_t b = std::max(particle, other);
-      const Slot* slot = slot_of(a, b);
-      pairs_.push_back({a, b,
-                        slot == nullptr ? -1
-                                        : static_cast<int32_t>(
-                                              slot - &slots_[static_cast<size_t>(a) * kSlots])});
-    });
+void ParticleBed::set_constants(double dt) {
+  StepConstants& c = constants_;
+  const ParticleMaterial& material = options_.material;
+  const double extents[3] = {extent_.width_m, extent_.depth_m, 0.0};
+  const double kept = std::max(0.0, 1.0 - drag_ * dt);
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool repeats = extent_.periodic && axis < 2;
+    c.period[axis] = repeats ? extents[axis] : 0.0;
+    c.frequency[axis] = repeats ? 1.0 / extents[axis] : 0.0;
+    c.dt_row[axis] = dt;
+    c.kept[axis] = c.kept[axis + 4] = kept;
+    c.per_push[axis] = dt / material.mass_kg();
+    c.per_push[axis + 4] = dt / material.inertia_kg_m2();
+    c.pull[axis] = dt * options_.gravity[axis];
   }
-  pairs_stale_ = false;
-  travelled_ = 0.0;
-}
-
-void ParticleBed::collide_pairs(double dt) {
-  const double diameter = 2.0 * options_.material.radius_m;
-  for (ContactPair& pair : pairs_) {
-    const auto a = static_cast<size_t>(pair.a);
-    const auto b = static_cast<size_t>(pair.b);
-    Slot* const slots = &slots_[a * kSlots];
-    const Eigen::Vector3d separation = between(position_[b], position_[a]);
-    const double square = separation.squaredNorm();
-    if (square >= diameter * diameter || square == 0.0) {
-      if (pair.slot >= 0) slots[pair.slot] = {};
-      pair.slot = -1;
-      continue;
-    }
-    if (state_[a] == kAsleep && state_[b] == kAsleep) continue;
-    if (pair.slot < 0) {
-      const Slot* slot = take_slot(pair.a, pair.b);
-      pair.slot = slot == nullptr ? -1 : static_cast<int32_t>(slot - slots);
-    }
-    const double distance = std::sqrt(square);
-    SphereContact contact;
-    contact.normal = separation / distance;
-    contact.overlap = diameter - distance;
-    contact.velocity =
-        velocity_[a] - velocity_[b] -
-        0.5 * distance * (angular_velocity_[a] + angular_velocity_[b]).cross(contact.normal);
-    contact.angular_velocity = angular_velocity_[a] - angular_velocity_[b];
-    ContactBristle passing{};
-    const SphereForce push = law_.force(contact, options_.material.friction, dt,
-                                        pair.slot >= 0 ? slots[pair.slot].bristle : passing);
-    const Eigen::Vector3d turning = -0.5 * distance * contact.normal.cross(push.force);
-    if (state_[a] == kAwake) {
-      force_[a] += push.force;
-      moment_[a] += turning + push.moment;
-    }
-    if (state_[b] == kAwake) {
-      force_[b] -= push.force;
-      moment_[b] += turning - push.moment;
-    }
+  c.kept[3] = c.kept[7] = 1.0;
+  for (size_t wall = 0; wall < kWalls; ++wall) {
+    const double normal = wall_distance(extent_, wall, Eigen::Vector3d::Ones()) -
+                          wall_distance(extent_, wall, Eigen::Vector3d::Zero());
+    const size_t axis = wall == 0 ? 2 : (wall - 1) / 2;
+    c.walls[wall] = {};
+    c.walls[wall].normal[axis] = normal > 0.0 ? 1.0 : -1.0;
+    c.walls[wall].point[axis] = axis == 2 ? 0.0 : (normal > 0.0 ? -0.5 : 0.5) * extents[axis];
+    c.walls[wall].nearest[axis] = kNearestToWall * material.radius_m;
   }
-}
-
-void ParticleBed::collide_wall(int32_t particle, int32_t wall, const Eigen::Vector3d& normal,
-                               double distance, double dt) {
-  const auto i = static_cast<size_t>(particle);
-  if (distance >= options_.material.radius_m) {
-    Slot* const slot = slot_of(particle, wall);
-    if (slot != nullptr) *slot = {};
-    return;
-  }
-  SphereContact contact;
-  contact.normal = normal;
-  contact.overlap = options_.material.radius_m - distance;
-  contact.velocity = velocity_[i] - distance * angular_velocity_[i].cross(normal);
-  contact.angular_velocity = angular_velocity_[i];
-  ContactBristle passing{};
-  Slot* const slot = take_slot(particle, wall);
-  const SphereForce push = law_.force(contact, options_.material.friction, dt,
-                                      slot == nullptr ? passing : slot->bristle);
-  force_[i] += push.force;
-  moment_[i] += push.moment - distance * normal.cross(push.force);
-}
-
-void ParticleBed::collide_walls(double dt) {
-  const double near = (1.0 + kSkin) * options_.material.radius_m;
-  const double half_x = 0.5 * extent_.width_m;
-  const double half_y = 0.5 * extent_.depth_m;
-  for (const int32_t particle : awake_) {
-    const Eigen::Vector3d at = position_[static_cast<size_t>(particle)];
-    const auto wall = [&](int number, const Eigen::Vector3d& normal, double distance) {
-      if (distance < near) collide_wall(particle, kFloor - number, normal, distance, dt);
-    };
-    wall(0, Eigen::Vector3d::UnitZ(), at.z());
-    if (extent_.periodic) continue;
-    wall(1, Eigen::Vector3d::UnitX(), at.x() + half_x);
-    wall(2, -Eigen::Vector3d::UnitX(), half_x - at.x());
-    wall(3, Eigen::Vector3d::UnitY(), at.y() + half_y);
-    wall(4, -Eigen::Vector3d::UnitY(), half_y - at.y());
-  }
-}
-
-void ParticleBed::move(double dt) {
-  const double wake_distance = kWakeThreshold * options_.material.radius_m;
-  const double kept_share = std::max(0.0, 1.0 - drag_ * dt);
-  double fastest2 = 0.0;
-  size_t kept = 0;
-  const size_t movers = awake_.size();
-  for (size_t k = 0; k < movers; ++k) {
-    const int32_t particle = awake_[k];
-    const auto i = static_cast<size_t>(particle);
-    velocity_[i] = kept_share * (velocity_[i] + dt * (force_[i] / mass_ + options_.gravity));
-    angular_velocity_[i] = kept_share * (angular_velocity_[i] + dt * (moment_[i] / inertia_));
-    force_[i].setZero();
-    moment_[i].setZero();
-    Eigen::Vector3d& at = position_[i];
-    at += dt * velocity_[i];
-    if (extent_.periodic) {
-      at.x() -= extent_.width_m * std::floor(at.x() / extent_.width_m + 0.5);
-      at.y() -= extent_.depth_m * std::floor(at.y() / extent_.depth_m + 0.5);
-    }
-    fastest2 = std::max(fastest2, velocity_[i].squaredNorm());
-    const int32_t cell = grid_.cell_at(at);
-    mark(grid_.cell_of(particle));
-    if (cell != grid_.cell_of(particle)) {
-      grid_.remove(particle);
-      grid_.insert(particle, cell);
-      mark(cell);
-    }
-    if (between(anchor_[i], at).squaredNorm() > wake_distance * wake_distance) {
-      anchor_[i] = at;
-      rest_s_[i] = 0.0;
-      wake_near(particle);
-    } else if ((rest_s_[i] += dt) >= window_s_) {
-      // A sphere that spins in its place is not at rest.
-      if (angular_velocity_[i].norm() * options_.material.radius_m * window_s_ <= wake_distance) {
-        state_[i] = kAsleep;
-        velocity_[i].setZero();
-        angular_velocity_[i].setZero();
-        continue;
-      }
-      rest_s_[i] = 0.0;
-    }
-    awake_[kept++] = particle;
-  }
-  for (size_t k = movers; k < awake_.size(); ++k) awake_[kept++] = awake_[k];
-  awake_.resize(kept);
-  travelled_ += std::sqrt(fastest2) * dt;
+  c.law = law_.single_precision();
+  c.dt = static_cast<float>(dt);
+  c.diameter = static_cast<float>(2.0 * material.radius_m);
+  c.friction = static_cast<float>(material.friction);
+  c.periodic = extent_.periodic;
+  c.nobody = particles_.nobody();
+  c.noticed_m = kWakeThreshold * material.radius_m;
 }
 
 void ParticleBed::step(double dt) {
   release_gear();
-  if (pairs_stale_ || 2.0 * travelled_ > kSkin * options_.material.radius_m) find_pairs();
-  work_.awake = awake_.size();
-  work_.contacts = pairs_.size();
-  work_.element_steps += awake_.size();
+  if (groups_.stale() || 2.0 * travelled_ > kSkin * options_.material.radius_m) {
+    groups_.find(particles_, grid_, store_, team_);
+    travelled_ = 0.0;
+  }
+  work_.awake = groups_.awake();
+  work_.contacts = groups_.contacts();
+  work_.element_steps += work_.awake;
   ++work_.steps;
-  collide_pairs(dt);
-  collide_walls(dt);
-  move(dt);
+  set_constants(dt);
+  now_s_ += dt;
+  constants_.rested_since_s = now_s_ - window_s_;
+  compute_groups();
+  double fastest2 = 0.0;
+  for (const int32_t number : groups_.active()) {
+    fastest2 = std::max(fastest2, groups_.group(number).report.fastest2);
+  }
+  travelled_ += std::sqrt(fastest2) * dt;
+  settle_rested();
+  follow_moved();
   ++steps_;
+}
+
+/// Contacts and motion. Particles that only their own group pushes on move with it, while they are
+/// in the cache; the others when all groups have pushed.
+void ParticleBed::compute_groups() {
+  for (std::vector<PushRow>& pushes : pushes_) {
+    if (pushes.size() < groups_.push_rows()) pushes.resize(groups_.push_rows());
+  }
+  const std::vector<int32_t>& active = groups_.active();
+  team_.run(active.size(),
+            [&](size_t i, size_t member) { push_group(active[i], pushes_[member]); });
+  team_.run(active.size(), [&](size_t i, size_t member) { move_edge(active[i], pushes_[member]); });
+}
+
+BedRows ParticleBed::rows(int32_t group, std::vector<PushRow>& pushes) {
+  return {particles_.place.data(), particles_.motion.data(), particles_.anchor.data(),
+          pushes.data(), base_of(static_cast<size_t>(group))};
+}
+
+void ParticleBed::push_group(int32_t number, std::vector<PushRow>& pushes) {
+  ParticleGroup& group = groups_.group(number);
+  const BedRows rows = this->rows(number, pushes);
+  const auto push_of = [&](int32_t particle) -> PushRow& {
+    return rows.push[particle - rows.base];
+  };
+  for (const OuterPush& outer : group.outer) add(outer.push, push_of(outer.particle));
+  group.outer.clear();
+  std::vector<ContactPacket>& pairs = group.pairs.packets();
+  std::vector<ContactPacket>& walls = group.walls.packets();
+  kernel_.collide_pairs(rows, constants_, pairs.data(), pairs.size());
+  kernel_.collide_walls(rows, constants_, walls.data(), walls.size());
+  group.report = {group.moved.data(), 0, group.rested.data(), 0, 0.0};
+  kernel_.move(rows, constants_, group.inner.data(), group.inner.size(), group.report);
+  // What is left goes to where it waits for the other groups, or to nobody.
+  for (size_t k = 0; k < group.edge.size(); ++k) {
+    group.edge_push[k] = std::exchange(push_of(group.edge[k]), PushRow{});
+  }
+  for (size_t k = 0; k < group.foreign; ++k) {
+    group.foreign_push[k] = std::exchange(pushes[kFirstForeignPush + k], PushRow{});
+  }
+  for (const int32_t particle : group.slept) push_of(particle) = {};
+  pushes[kNobodysPush] = {};
+}
+
+void ParticleBed::move_edge(int32_t number, std::vector<PushRow>& pushes) {
+  ParticleGroup& group = groups_.group(number);
+  const BedRows rows = this->rows(number, pushes);
+  const auto push_of = [&](int32_t particle) -> PushRow& {
+    return rows.push[particle - rows.base];
+  };
+  for (size_t k = 0; k < group.edge.size(); ++k) push_of(group.edge[k]) = group.edge_push[k];
+  for (const PushAcross& across : group.across) {
+    const ParticleGroup& from = groups_.group(across.group);
+    add(from.foreign_push[static_cast<size_t>(across.row)], push_of(across.particle));
+  }
+  kernel_.move(rows, constants_, group.edge.data(), group.edge.size(), group.report);
+  for (const int32_t particle : group.slept) push_of(particle) = {};
+}
+
+/// Puts to sleep who has rested long enough.
+void ParticleBed::settle_rested() {
+  const double slow = kWakeThreshold / window_s_;  // rad/s
+  bool any = false;
+  for (const int32_t number : groups_.active()) {
+    MotionReport& report = groups_.group(number).report;
+    for (size_t k = 0; k < report.rested_count; ++k) {
+      const auto i = static_cast<size_t>(report.rested[k]);
+      // A sphere that spins in its place is not at rest.
+      if (angular_velocity(i).norm() > slow) {
+        particles_.motion[i].since_s = now_s_;
+        continue;
+      }
+      particles_.set_awake(report.rested[k], false, now_s_);
+      surface_.mark(grid_, grid_.cell_of(report.rested[k]));
+      any = true;
+    }
+  }
+  if (any) groups_.remove_sleepers(particles_);
+}
+
+/// Those who have moved noticeably wake their neighbours, and the grid learns where they are.
+void ParticleBed::follow_moved() {
+  for (const int32_t number : groups_.active()) {
+    const MotionReport& report = groups_.group(number).report;
+    for (size_t k = 0; k < report.moved_count; ++k) {
+      const int32_t particle = report.moved[k];
+      const auto i = static_cast<size_t>(particle);
+      for (int axis = 0; axis < 3; ++axis) {
+        particles_.anchor[i].at[axis] = particles_.place[i].at[axis];
+      }
+      particles_.place[i].strayed = 0.0;
+      particles_.motion[i].since_s = now_s_;
+      const int32_t before = grid_.cell_of(particle);
+      const int32_t cell = grid_.cell_at(particles_.at(particle));
+      if (cell != before) {
+        surface_.mark(grid_, before);
+        grid_.remove(particle);
+        grid_.insert(particle, cell);
+        surface_.mark(grid_, cell);
+      }
+      wake_near(particle);
+    }
+  }
 }
 
 double ParticleBed::settle(double max_s, const TaskProgress& progress) {
@@ -400,26 +353,25 @@ double ParticleBed::settle(double max_s, const TaskProgress& progress) {
   window_s_ = kSettlingWindow_s;
   double time = 0.0;
   double share = 0.0;  // of the time, or of the particles that sleep: it ends with either
-  for (; time < max_s && !awake_.empty(); time += dt) {
-    const double asleep =
-        1.0 - static_cast<double>(awake_.size()) / static_cast<double>(position_.size());
+  for (; time < max_s && groups_.awake() > 0; time += dt) {
+    const double asleep = 1.0 - static_cast<double>(groups_.awake()) / static_cast<double>(size());
     share = std::max({share, time / max_s, asleep});
     report_progress(progress, "settling particles", share);
     step(dt);
   }
   drag_ = 0.0;
   window_s_ = kWindow_s;
-  work_.awake = awake_.size();
+  work_.awake = groups_.awake();
   return time;
 }
 
 // ---- running gear
 // --------------------------------------------------------------------------------
 
-int32_t ParticleBed::gear_number(const Footprint* solid) {
+int32_t ParticleBed::gear_partner(const Footprint* solid) {
   auto at = std::find(gear_.begin(), gear_.end(), solid);
   if (at == gear_.end()) at = gear_.insert(at, solid);
-  return kGear - static_cast<int32_t>(at - gear_.begin());
+  return kGearPartner - static_cast<int32_t>(at - gear_.begin());
 }
 
 void ParticleBed::press(const PressingBody& /*body*/, std::span<FootprintContact> contacts,
@@ -440,19 +392,17 @@ TerrainReaction ParticleBed::press(const Footprint& solid, const FootprintMotion
   const double radius = options_.material.radius_m;
   const Eigen::Vector3d centre = solid.pose().translation();
   const Eigen::Matrix3d& axes = solid.pose().linear();
-  const int32_t gear = gear_number(&solid);
+  const int32_t gear = gear_partner(&solid);
   Eigen::Vector3d reach;
   reach << solid.reach(), solid.reach_down();
   reach.array() += radius;
   TerrainReaction reaction;
   grid_.visit_box(centre - reach, centre + reach, [&](int32_t particle) {
     const auto i = static_cast<size_t>(particle);
-    const SolidContact near = nearest_on(solid, axes.transpose() * between(centre, position_[i]));
+    const SolidContact near =
+        nearest_on(solid, axes.transpose() * between(extent_, centre, particles_.at(particle)));
     if (near.distance >= radius) {
-      if (gear_step_[i] + 1 >= steps_) {
-        Slot* const slot = slot_of(particle, gear);
-        if (slot != nullptr) *slot = {};
-      }
+      if (gear_step_[i] + 1 >= steps_) store_.forget(particle, gear);
       return;
     }
     const Eigen::Vector3d arm = axes * near.surface;
@@ -460,9 +410,9 @@ TerrainReaction ParticleBed::press(const Footprint& solid, const FootprintMotion
     SphereContact contact;
     contact.normal = axes * near.normal;
     contact.overlap = std::min(radius - near.distance, radius);
-    contact.velocity = velocity_[i] - near.distance * angular_velocity_[i].cross(contact.normal) -
+    contact.velocity = velocity(i) - near.distance * angular_velocity(i).cross(contact.normal) -
                        motion.velocity - motion.omega.cross(arm) - motion.surface_speed * belt;
-    contact.angular_velocity = angular_velocity_[i] - motion.omega;
+    contact.angular_velocity = angular_velocity(i) - motion.omega;
     if (contact.velocity.squaredNorm() > kGearWakeSpeed_m_per_s * kGearWakeSpeed_m_per_s)
       wake(particle);
     if (gear_step_[i] != steps_) {
@@ -470,12 +420,18 @@ TerrainReaction ParticleBed::press(const Footprint& solid, const FootprintMotion
       pressed_.push_back(particle);
     }
     ContactBristle passing{};
-    Slot* const slot = take_slot(particle, gear);
+    ContactBristle* const kept = store_.take(particle, gear);
     const SphereForce push =
-        law_.force(contact, motion.friction, dt, slot == nullptr ? passing : slot->bristle);
-    if (state_[i] == kAwake) {
-      force_[i] += push.force;
-      moment_[i] += push.moment - near.distance * contact.normal.cross(push.force);
+        law_.force(contact, motion.friction, dt, kept == nullptr ? passing : *kept);
+    if (particles_.awake(particle)) {
+      const Eigen::Vector3d moment = push.moment - near.distance * contact.normal.cross(push.force);
+      const Eigen::Vector3d& force = push.force;
+      groups_.group(static_cast<int32_t>(group_of(particle)))
+          .outer.push_back({particle,
+                            {{force.x(), force.y(), force.z()},
+                             0.0,
+                             {moment.x(), moment.y(), moment.z()},
+                             0.0}});
     }
     reaction.force -= push.force;
     reaction.torque -= arm.cross(push.force) + push.moment;
@@ -489,79 +445,11 @@ TerrainReaction ParticleBed::press(const Footprint& solid, const FootprintMotion
 void ParticleBed::release_gear() {
   for (const int32_t particle : was_pressed_) {
     if (gear_step_[static_cast<size_t>(particle)] == steps_) continue;
-    for (int k = 0; k < kSlots; ++k) {
-      Slot& slot = slots_[static_cast<size_t>(particle) * kSlots + static_cast<size_t>(k)];
-      if (slot.partner <= kGear) slot = {};
-    }
+    store_.forget_gear(particle);
     wake(particle);
   }
   was_pressed_.swap(pressed_);
   pressed_.clear();
-}
-
-// ---- height map
-// ----------------------------------------------------------------------------------
-
-void ParticleBed::mark(int32_t cell) {
-  const size_t column = grid_.column_of_cell(cell);
-  if (stale_[column] != 0) return;
-  stale_[column] = 1;
-  stale_columns_.push_back(static_cast<int32_t>(column));
-}
-
-const HeightField& ParticleBed::surface() const {
-  // A particle reaches into the columns beside its own.
-  for (const int32_t column : stale_columns_) {
-    stale_[static_cast<size_t>(column)] = 0;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        int ix = column % grid_.columns_x() + dx;
-        int iy = column / grid_.columns_x() + dy;
-        if (!grid_.wrap(ix, iy)) continue;
-        const size_t beside = grid_.column(ix, iy);
-        if (to_cast_[beside] != 0) continue;
-        to_cast_[beside] = 1;
-        cast_columns_.push_back(static_cast<int32_t>(beside));
-      }
-    }
-  }
-  stale_columns_.clear();
-  for (const int32_t column : cast_columns_) {
-    to_cast_[static_cast<size_t>(column)] = 0;
-    cast_rays(column % grid_.columns_x(), column / grid_.columns_x());
-  }
-  cast_columns_.clear();
-  return surface_;
-}
-
-void ParticleBed::cast_rays(int column_x, int column_y) const {
-  const double radius = options_.material.radius_m;
-  for (int ry = rays_y_[static_cast<size_t>(column_y)];
-       ry < rays_y_[static_cast<size_t>(column_y) + 1]; ++ry) {
-    for (int rx = rays_x_[static_cast<size_t>(column_x)];
-         rx < rays_x_[static_cast<size_t>(column_x) + 1]; ++rx) {
-      const Eigen::Vector3d ray(surface_.node_x(rx), surface_.node_y(ry), 0.0);
-      double height = 0.0;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          int ix = column_x + dx;
-          int iy = column_y + dy;
-          if (!grid_.wrap(ix, iy)) continue;
-          for (int layer = grid_.layers() - 1; layer >= 0; --layer) {
-            // The highest layer has no upper side.
-            if (layer + 1 < grid_.layers() && grid_.layer_top(layer) + radius <= height) break;
-            for (int32_t particle = grid_.first(grid_.cell(ix, iy, layer));
-                 particle != SphereGrid::kNone; particle = grid_.next(particle)) {
-              const Eigen::Vector3d to = between(ray, position_[static_cast<size_t>(particle)]);
-              const double discriminant = radius * radius - to.x() * to.x() - to.y() * to.y();
-              if (discriminant > 0.0) height = std::max(height, to.z() + std::sqrt(discriminant));
-            }
-          }
-        }
-      }
-      surface_.set_node(rx, ry, static_cast<Height>(std::lround(height / kHeightUnit_m)));
-    }
-  }
 }
 
 }  // namespace screed

@@ -7,25 +7,41 @@
 // particle hits it. So the cost of a step follows what happens, not the size of the bed.
 //
 // The bed has a floor at height 0 and walls round it, or repeats (periodic). Everything is computed
-// in a fixed order: the same bits on every compiler and any number of worlds side by side. Stepping
-// allocates nothing once its lists have grown.
+// in a fixed order: the same bits on every compiler, with every kernel, in any number of threads
+// and of worlds side by side. Stepping allocates nothing once its lists have grown.
+//
+// The parts: bed_layout.h lays the particles, contact_groups.h keeps lists of who is awake and who
+// touches whom, bed_kernel.h computes contacts and motion, bed_surface.h reads the height map.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "host_sim/core/gravity.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/physics/particles/bed_kernel.h"
+#include "host_sim/physics/particles/bed_kernels.h"
 #include "host_sim/physics/particles/bed_layout.h"
+#include "host_sim/physics/particles/bed_particles.h"
+#include "host_sim/physics/particles/bed_surface.h"
+#include "host_sim/physics/particles/contact_groups.h"
+#include "host_sim/physics/particles/contact_store.h"
 #include "host_sim/physics/particles/sphere_grid.h"
 #include "host_sim/physics/particles/sphere_law.h"
+#include "host_sim/physics/particles/thread_team.h"
 #include "host_sim/physics/terrain/footprint.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/physics/terrain/terrain.h"
 
 namespace screed {
+
+constexpr int kMaxBedThreads = 64;
 
 struct ParticleOptions {
   ParticleMaterial material;
@@ -33,6 +49,9 @@ struct ParticleOptions {
   uint64_t seed = 1;             ///< of the layout
   bool fixed = false;            ///< particles never move: ground of spheres, as rigid as rock
   Eigen::Vector3d gravity = {0.0, 0.0, -kGravity_m_per_s2};
+  // How it is computed; nothing that comes out depends on these.
+  int threads = 1;                  ///< 1 to kMaxBedThreads, that of the caller included
+  std::optional<BedKernel> kernel;  ///< none: the fastest of this processor
 };
 
 class ParticleBed final : public Terrain {
@@ -71,13 +90,17 @@ class ParticleBed final : public Terrain {
   const BedExtent& extent() const { return extent_; }
   TerrainWork work() const override { return work_; }
   SphereSet spheres() const override;
-  size_t size() const { return position_.size(); }
-  const Eigen::Vector3d& position(size_t particle) const { return position_[particle]; }
-  const Eigen::Vector3d& velocity(size_t particle) const { return velocity_[particle]; }
-  const Eigen::Vector3d& angular_velocity(size_t particle) const {
-    return angular_velocity_[particle];
+  size_t size() const { return particles_.size; }
+  Eigen::Vector3d position(size_t particle) const {
+    return Eigen::Vector3d(particles_.place[particle].at);
   }
-  bool awake(size_t particle) const { return state_[particle] != kAsleep; }
+  Eigen::Vector3d velocity(size_t particle) const {
+    return Eigen::Vector3d(particles_.motion[particle].velocity);
+  }
+  Eigen::Vector3d angular_velocity(size_t particle) const {
+    return Eigen::Vector3d(particles_.motion[particle].spin);
+  }
+  bool awake(size_t particle) const { return particles_.awake(static_cast<int32_t>(particle)); }
   /// For experiments: gives a particle a motion and wakes it.
   void set_motion(size_t particle, const Eigen::Vector3d& velocity,
                   const Eigen::Vector3d& angular_velocity);
@@ -85,80 +108,44 @@ class ParticleBed final : public Terrain {
   void wake_all();
 
  private:
-  static constexpr int kSlots = 12;  // the kissing number; a particle keeps about half of its own
-  static constexpr int32_t kNoPartner = -1;
-  static constexpr int32_t kFloor = -2;  // kFloor - 1 .. kFloor - 4: the walls
-  static constexpr int32_t kGear = -8;   // kGear - n: the n-th body that ever pressed
-
-  enum State : uint8_t { kAsleep, kAwake };
-
-  struct Slot {  // a contact that keeps its state
-    int32_t partner = kNoPartner;
-    ContactBristle bristle{};
-  };
-  struct ContactPair {
-    int32_t a;  // the one that keeps the slot
-    int32_t b;
-    int32_t slot;  // or -1
-  };
-
-  void set_up();
   void wake(int32_t particle);
   void wake_near(int32_t particle);
-  Slot* slot_of(int32_t particle, int32_t partner);
-  Slot* take_slot(int32_t particle, int32_t partner);
-  void find_pairs();
-  void collide_pairs(double dt);
-  void collide_walls(double dt);
-  void collide_wall(int32_t particle, int32_t wall, const Eigen::Vector3d& normal, double distance,
-                    double dt);
-  void move(double dt);
+  void set_constants(double dt);
+  void compute_groups();
+  BedRows rows(int32_t group, std::vector<PushRow>& pushes);
+  void push_group(int32_t number, std::vector<PushRow>& pushes);
+  void move_edge(int32_t number, std::vector<PushRow>& pushes);
+  void follow_moved();
+  void settle_rested();
   void release_gear();
-  void mark(int32_t cell);
-  void cast_rays(int column_x, int column_y) const;
-  Eigen::Vector3d between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
-  int32_t gear_number(const Footprint* solid);
+  int32_t gear_partner(const Footprint* solid);
 
   ParticleOptions options_;
   BedExtent extent_;
   SphereLaw law_;
-  double mass_;
-  double inertia_;
-  double drag_ = 0.0;      // share of the speed lost in a second, while settling
-  double window_s_ = 0.0;  // of rest before sleep
+  BedFunctions kernel_;
+  StepConstants constants_{};
+  double drag_ = 0.0;  // share of the speed lost in a second, while settling
+  double window_s_;    // of rest before sleep
+  double now_s_ = 0.0;
   SphereGrid grid_;
   TerrainWork work_;
 
-  // Of each particle.
-  std::vector<Eigen::Vector3d> position_;
-  std::vector<Eigen::Vector3d> velocity_;
-  std::vector<Eigen::Vector3d> angular_velocity_;
-  std::vector<Eigen::Vector3d> force_;
-  std::vector<Eigen::Vector3d> moment_;
-  std::vector<Eigen::Vector3d> anchor_;  // where it was when it last woke its neighbours
-  std::vector<double> rest_s_;           // how long it has been there
-  std::vector<uint8_t> state_;
-  std::vector<uint64_t> gear_step_;  // the last step in which running gear touched it
-  std::vector<Slot> slots_;
+  BedParticles particles_;
+  ContactStore store_;
+  ContactGroups groups_;
+  ThreadTeam team_;
+  std::vector<std::vector<PushRow>> pushes_;  // of each thread; zero between groups
+  double travelled_ = 0.0;  // of the fastest particle since it was found what touches, m
 
-  std::vector<int32_t> awake_;
-  std::vector<ContactPair> pairs_;
-  bool pairs_stale_ = true;
-  double travelled_ = 0.0;            // of the fastest particle since the pairs were found, m
+  std::vector<uint64_t> gear_step_;   // the last step in which running gear touched a particle
   std::vector<int32_t> pressed_;      // particles that gear touches in this step
   std::vector<int32_t> was_pressed_;  // and in the last
   std::vector<const Footprint*> gear_;
   uint64_t steps_ = 1;
 
   HeightField floor_{2, 2, 1.0, false};
-  // The height map, and the columns of the grid in which it may be out of date.
-  mutable HeightField surface_;
-  mutable std::vector<uint8_t> stale_;
-  mutable std::vector<int32_t> stale_columns_;
-  mutable std::vector<uint8_t> to_cast_;
-  mutable std::vector<int32_t> cast_columns_;
-  std::vector<int> rays_x_;  // the first ray in each column of the grid, and one more
-  std::vector<int> rays_y_;
+  mutable BedSurface surface_;
 };
 
 }  // namespace screed

@@ -17,10 +17,12 @@ class SphereGrid {
 
   /// Cubes of at least `edge` over a box of width x depth round (0, 0) and from height 0 to
   /// `height`; beyond the box the outermost cubes go on, or with `periodic` the box repeats in x
-  /// and y.
-  SphereGrid(double width, double depth, double height, double edge, bool periodic)
+  /// and y. A particle is in the cube in which it was put, and at most `slack` away from there.
+  SphereGrid(double width, double depth, double height, double edge, bool periodic,
+             double slack = 0.0)
       : width_(width),
         depth_(depth),
+        slack_(slack),
         columns_x_(std::max(1, static_cast<int>(width / edge))),
         columns_y_(std::max(1, static_cast<int>(depth / edge))),
         layers_(std::max(1, static_cast<int>(height / edge) + 1)),
@@ -37,8 +39,8 @@ class SphereGrid {
   int layers() const { return layers_; }
   double edge_x() const { return edge_x_; }
   double edge_y() const { return edge_y_; }
-  /// The upper side of a layer, m; of the highest one there is none.
-  double layer_top(int layer) const { return (layer + 1) * edge_z_; }
+  /// No particle of a layer is higher, m; of the highest one there is no limit.
+  double layer_top(int layer) const { return (layer + 1) * edge_z_ + slack_; }
 
   int column_x(double x) const { return inside((x + 0.5 * width_) / edge_x_, columns_x_); }
   int column_y(double y) const { return inside((y + 0.5 * depth_) / edge_y_, columns_y_); }
@@ -83,33 +85,44 @@ class SphereGrid {
     *link = next(particle);
   }
 
-  /// Calls visit(particle) for those in the cubes round `position` that reach `radius` at least;
-  /// radius at most an edge. With `periodic` on a very small box a particle can come twice.
+  /// Calls visit(particle) for all nearer to `position` than `radius`, and others. With `periodic`
+  /// on a very small box a particle can come twice.
   template <class Visit>
   void visit_near(const Eigen::Vector3d& position, double radius, const Visit& visit) const {
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
     visit_box(position - reach, position + reach, visit);
   }
 
-  /// Calls visit(particle) for those in the cubes that a box touches.
+  /// Calls visit(particle) for all in a box, and others.
   template <class Visit>
   void visit_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                  const Visit& visit) const {
-    const Span x = span(low.x(), high.x(), width_, edge_x_, columns_x_);
-    const Span y = span(low.y(), high.y(), depth_, edge_y_, columns_y_);
-    const int bottom = layer(low.z());
-    const int top = layer(high.z());
+    visit_cells(low, high, [&](int32_t begin, int32_t end) {
+      for (int32_t c = begin; c < end; ++c) {
+        for (int32_t particle = first(c); particle != kNone; particle = next(particle)) {
+          visit(particle);
+        }
+      }
+    });
+  }
+
+  /// Calls visit(begin, end) for the cubes with all particles in a box: those that lie one above
+  /// the other have numbers that follow each other.
+  template <class Visit>
+  void visit_cells(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                   const Visit& visit) const {
+    const Span x = span(low.x() - slack_, high.x() + slack_, width_, edge_x_, columns_x_);
+    const Span y = span(low.y() - slack_, high.y() + slack_, depth_, edge_y_, columns_y_);
+    const int bottom = layer(low.z() - slack_);
+    const int top = layer(high.z() + slack_);
     for (int iy = y.first; iy <= y.last; ++iy) {
       for (int ix = x.first; ix <= x.last; ++ix) {
         const int32_t begin = cell(modulo(ix, columns_x_), modulo(iy, columns_y_), 0);
-        for (int32_t c = begin + bottom; c <= begin + top; ++c) {
-          for (int32_t particle = first(c); particle != kNone; particle = next(particle)) {
-            visit(particle);
-          }
-        }
+        visit(begin + bottom, begin + top + 1);
       }
     }
   }
+  size_t cells() const { return first_.size(); }
 
  private:
   struct Span {
@@ -140,6 +153,7 @@ class SphereGrid {
 
   double width_;
   double depth_;
+  double slack_;
   int columns_x_;
   int columns_y_;
   int layers_;

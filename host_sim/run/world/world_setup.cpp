@@ -2,9 +2,15 @@
 #include "host_sim/run/world/world_setup.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <numbers>
+#include <string>
+#include <system_error>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/experiment/trap.h"
@@ -123,10 +129,25 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   return options;
 }
 
+/// Threads of a bed of particles. No key of an experiment: nothing in a run depends on it.
+int threads_of_environment() {
+  const char* const text = std::getenv("SCREED_THREADS");
+  if (text == nullptr) return 1;
+  int threads = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stop, error] = std::from_chars(text, end, threads);
+  if (error != std::errc{} || stop != end || threads < 1 || threads > kMaxBedThreads) {
+    throw InputError("SCREED_THREADS = \"" + std::string(text) + "\"; allowed: 1 to " +
+                     std::to_string(kMaxBedThreads));
+  }
+  return threads;
+}
+
 }  // namespace
 
 ParticleOptions make_particles(const Experiment& experiment) {
   ParticleOptions particles;
+  particles.threads = threads_of_environment();
   particles.material.radius_m = experiment.map.particle_radius_m;
   particles.material.density_kg_per_m3 = experiment.particles.density_kg_per_m3;
   particles.material.friction = experiment.particles.friction;

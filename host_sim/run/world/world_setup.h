@@ -33,7 +33,8 @@ struct WorldSetup {
 
 /// The soil an experiment asks for: the preset and what differs from it. Throws InputError.
 SoilParameters make_soil(const Experiment& experiment);
-/// The particles of an experiment on such a bed.
+/// The particles of an experiment on such a bed, computed in as many threads as the environment's
+/// SCREED_THREADS says. Throws InputError when that is no number of threads.
 ParticleOptions make_particles(const Experiment& experiment);
 /// The terrain an experiment asks for; the surface that particles are laid up to.
 HeightField make_terrain(const Experiment& experiment);

@@ -42,14 +42,16 @@ struct Row {
 };
 
 void print_measurement(const Options& options) {
-  const Measurement m = options.all_awake
-                            ? terrain_bench::measure_all_awake(options.bed, options.set,
-                                                               options.frames, options.seconds)
-                            : terrain_bench::measure(options.bed, options.set, options.threads,
-                                                     options.frames, options.seconds);
+  const Measurement m =
+      options.all_awake
+          ? terrain_bench::measure_all_awake(options.bed, options.set, options.threads,
+                                             options.frames, options.seconds)
+          : terrain_bench::measure(options.bed, options.set, options.threads, options.frames,
+                                   options.seconds);
   std::printf("%s\n", nlohmann::json({{"frames", m.frames},
                                       {"wall_ms", m.wall_ms},
                                       {"processor_ms", m.processor_ms},
+                                      {"fastest_ms", m.fastest_ms},
                                       {"memory_mb", m.memory_mb},
                                       {"elements", m.elements},
                                       {"awake", m.awake}})
@@ -73,13 +75,13 @@ Measurement measure_in_child(const Case& bench, const std::string& bed, const Op
   const int status = pclose(child);
   if (status != 0) throw RunError("a case failed: " + command);
   const auto json = nlohmann::json::parse(said);
-  return Measurement{json["frames"],    json["wall_ms"],  json["processor_ms"],
+  return Measurement{json["frames"],    json["wall_ms"],  json["processor_ms"], json["fastest_ms"],
                      json["memory_mb"], json["elements"], json["awake"]};
 }
 
 void print_head() {
   std::printf(
-      "| terrain | bed, m | heights or particles | awake | worlds at once | ms a frame | processor "
+      "| terrain | bed, m | heights or particles | awake | threads | ms a frame | processor "
       "ms | "
       "thesis, ms | times faster | memory, MB |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
@@ -101,14 +103,28 @@ void print_row(const Row& row) {
   std::fflush(stdout);
 }
 
+/// Of the beds whose particles are all awake, a line each.
+void print_all_awake(const std::vector<Row>& rows) {
+  std::printf("\n");
+  for (const Row& row : rows) {
+    if (row.bench.load != Load::kAllAwake) continue;
+    const Measurement& m = row.measured;
+    std::printf(
+        "%.1f m, all awake: %.0f of %llu particles awake, %d thread%s: %.1f ms for 10 ms of "
+        "simulated time, fastest %.1f ms, %.2f us a particle\n",
+        row.bench.size_m, m.awake, static_cast<unsigned long long>(m.elements), row.bench.threads,
+        row.bench.threads == 1 ? "" : "s", m.wall_ms, m.fastest_ms, 1e3 * m.wall_ms / m.awake);
+  }
+}
+
 void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) {
   std::ostringstream file;
-  file << "terrain,bed_m,threads,elements,awake,frames,wall_ms,processor_ms,memory_mb\n";
+  file << "terrain,bed_m,threads,elements,awake,frames,wall_ms,processor_ms,fastest_ms,memory_mb\n";
   for (const Row& row : rows) {
     const Measurement& m = row.measured;
     file << '"' << row.bench.terrain << "\"," << row.bench.size_m << ',' << row.bench.threads << ','
          << m.elements << ',' << m.awake << ',' << m.frames << ',' << m.wall_ms << ','
-         << m.processor_ms << ',' << m.memory_mb << '\n';
+         << m.processor_ms << ',' << m.fastest_ms << ',' << m.memory_mb << '\n';
   }
   write_file(path, file.str());
 }
@@ -130,7 +146,10 @@ void write_bars(const std::filesystem::path& path, const std::vector<Row>& rows,
     const auto group = static_cast<double>(place - chart.categories.begin());
     if (place == chart.categories.end()) chart.categories.emplace_back(bed);
     std::string label = row.bench.terrain;
-    if (row.bench.threads > 1) label += ", " + std::to_string(row.bench.threads) + " worlds";
+    if (row.bench.threads > 1) {
+      label += ", " + std::to_string(row.bench.threads) +
+               (row.bench.load == Load::kRobot ? " worlds" : " threads");
+    }
     auto series = std::find_if(chart.series.begin(), chart.series.end(),
                                [&](const ChartSeries& s) { return s.label == label; });
     if (series == chart.series.end()) {
@@ -156,8 +175,8 @@ void write_charts(const std::filesystem::path& folder, const std::vector<Row>& r
   const char* memory = "memory [MB]";
   write_bars(folder / "figure_5.6.svg", rows, "Time of a frame, as Figure 5.6", time,
              &Measurement::processor_ms, driven_alone);
-  write_bars(folder / "particles_all_awake.svg", rows, "Time of a frame, all particles awake", time,
-             &Measurement::processor_ms, all_awake);
+  write_bars(folder / "particles_all_awake.svg", rows, "Time of a frame, all particles awake",
+             "time of a frame by the clock [ms]", &Measurement::wall_ms, all_awake);
   write_bars(folder / "figure_5.6_soil.svg", rows, "Time of a frame without particles", time,
              &Measurement::processor_ms, soft);
   write_bars(folder / "figure_5.7.svg", rows, "Memory, as Figure 5.7", memory,
@@ -181,6 +200,7 @@ int run(const Options& options) {
     rows.push_back({bench, measure_in_child(bench, bed.string(), options)});
     print_row(rows.back());
   }
+  print_all_awake(rows);
   write_csv(folder / "terrain.csv", rows);
   write_charts(folder, rows);
   std::printf("\ntable and charts: %s\n", folder.c_str());
@@ -207,7 +227,8 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_flag("--all-awake", options.all_awake,
                "Without a robot, all particles of that case awake");
-  app.add_option("--threads", options.threads, "Number of worlds run at once in that case")
+  app.add_option("--threads", options.threads,
+                 "Number of threads in that case: a world each, or of the bed with --all-awake")
       ->check(CLI::Range(1, 64));
   return run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -20,8 +20,8 @@ enum class Load {
 struct Case {
   std::string terrain;  ///< as the table calls it
   double size_m;
-  /// Worlds, a thread each: no terrain shares its work between threads, but worlds share nothing,
-  /// so several run at once.
+  /// Under the robot: worlds, a thread each, that share nothing. With all particles awake: threads
+  /// that share the work of one bed.
   int threads;
   /// What makes the experiment of this case from the common one: "section.key=value".
   std::vector<std::string> overrides;
@@ -36,6 +36,7 @@ struct Measurement {
   std::uint64_t frames = 0;    ///< of 10 ms of simulated time each: firmware, ten physics steps
   double wall_ms = 0.0;        ///< time by the number of frames of all worlds
   double processor_ms = 0.0;   ///< mean of a frame
+  double fastest_ms = 0.0;     ///< shortest time of a frame; with all particles awake alone
   double memory_mb = 0.0;      ///< most that the process ever had resident, 10^6 bytes
   std::uint64_t elements = 0;  ///< heights or particles of a world
   double awake = 0.0;          ///< particles of a world that are computed, mean over the steps
@@ -52,10 +53,10 @@ std::filesystem::path write_bed(const std::filesystem::path& folder);
 /// drives, then frames are timed, at most so many in a world and for so long.
 Measurement measure(const std::filesystem::path& bed, const std::vector<std::string>& overrides,
                     int threads, std::uint64_t max_frames, double longest_s);
-/// The particles of the experiment without a robot, in one thread, woken before any falls asleep.
+/// The particles of the experiment without a robot, woken before any falls asleep.
 /// Throws RunError when more than 1 % of them slept.
 Measurement measure_all_awake(const std::filesystem::path& bed,
-                              const std::vector<std::string>& overrides, std::uint64_t max_frames,
-                              double longest_s);
+                              const std::vector<std::string>& overrides, int threads,
+                              std::uint64_t max_frames, double longest_s);
 
 }  // namespace screed::terrain_bench

@@ -86,6 +86,8 @@ constexpr const char* kExitStatus =
 constexpr const char* kEnvironment =
     ".TP\n\\fBSCREED_DATA\\fR\nfolder with experiments, boards and models, in place of those that "
     "came with the program\n"
+    ".TP\n\\fBSCREED_THREADS\\fR\nthreads that compute a bed of particles; 1 when it is not set. "
+    "Results do not depend on it\n"
     ".TP\n\\fBXDG_CONFIG_HOME\\fR\nfolder of the user's configurations, "
     "\\fI~/.config\\fR when it is not set\n";
 
