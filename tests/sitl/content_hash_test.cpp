@@ -18,12 +18,12 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "a0ecfdc50225ac1f4354294d796783ae"},
+    {"soft_bed", "--duration 6", "d1986b1a9e84a20f6f38915bfd4fc4cb"},
     {"soft_bed", "--hal surrogate --duration 10", "868da3127200af35611a1f8d8c1e44d0"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "7e597071c16dc5a4b5e8523e0c41c581"},
+     "d6c25a7522ea8e4d935c9bf333351f70"},
     {"gravel_bed", "--duration 1", "964613af5a86ca308bc6f2de86cb2534"},
 }};
 
