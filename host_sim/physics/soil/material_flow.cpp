@@ -59,7 +59,7 @@ void MaterialFlow::change(const GridNode& place, Height units) {
 }
 
 size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
-  const double speed = std::hypot(velocity_x, velocity_y);
+  const double speed = std::sqrt(velocity_x * velocity_x + velocity_y * velocity_y);
   const double scale = speed > kStanding_m_per_s ? 1.0 / speed : 0.0;
   footprints_.push_back({covered_list_.size(), velocity_x * scale, velocity_y * scale, 0});
   return footprints_.size() - 1;
@@ -256,11 +256,11 @@ int64_t MaterialFlow::spread(const ActiveFootprint& footprint, size_t end) {
   return footprint.units;
 }
 
-/// Nodes that a body has left: their slopes are looked at.
+/// What a body has left may slide.
 void MaterialFlow::release_held() {
   for (const GridNode& here : held_list_) {
     uint8_t& flags = flags_[here.node];
-    if ((flags & kCovered) != 0) continue;
+    if ((flags & (kHeld | kCovered)) != kHeld) continue;
     flags &= static_cast<uint8_t>(~kHeld);
     enqueue(here.node);
   }
@@ -313,8 +313,7 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
 }
 
 void MaterialFlow::uncover() {
-  for (const GridNode& here : held_list_) flags_[here.node] &= static_cast<uint8_t>(~kHeld);
-  // What a body stood on may slide once it is gone.
+  release_held();
   for (const GridNode& here : covered_list_) {
     uint8_t& flags = flags_[here.node];
     flags = static_cast<uint8_t>((flags & ~kCovered) | kHeld);

@@ -16,6 +16,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStableStiffness = 0.3;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
+// Slopes beside running gear grow by some hundredths of a millimetre in this time.
+constexpr double kSlideInterval_s = 0.004;
 // Greatest gradient of a path: what drops has not driven there.
 constexpr double kMaxPathGradient = 1.0;
 // Least vertical part of a body's z axis at which a level path has a gradient in the body's axes.
@@ -136,14 +138,12 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
       elastic = std::min(elastic, kStableStiffness * body.mass_kg / (dt * dt * area));
     }
     ranges_.push_back(find_cells(contact, elastic));
-    Range& range = ranges_.back();
+    const Range& range = ranges_.back();
     if (!range.touching) {
       kept.leave();
       continue;
     }
     touching = true;
-    range.footprint = flow_.begin_footprint(velocity.x(), velocity.y());
-    cover(range);
     advance_shear(range, body, contact, dt);
   }
   if (!touching) {
@@ -155,25 +155,48 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
 }
 
 void SoilBed::end_step() {
+  deposit();
+  slide_slopes(kSlidesPerStep);
+  finish_step();
+}
+
+void SoilBed::end_step(double dt) {
+  deposit();
+  unslid_s_ += dt;
+  if (unslid_s_ > kSlideInterval_s - 0.5 * dt) {
+    slide_slopes(kSlidesPerStep * std::max<int64_t>(1, std::llround(unslid_s_ / dt)));
+    unslid_s_ = 0.0;
+  }
+  finish_step();
+}
+
+void SoilBed::deposit() {
   if (!options_.bulldozing) {
     const int64_t sunk = flow_.in_transit();
     flow_.compact(sunk);
     compacted_ += sunk;
-  } else {
-    // A share of what was pressed down in this step. What is dug has given its own share already,
-    // and what waits from earlier steps, too.
-    const int64_t pressed = flow_.sunk_in_step();
-    if (soil_.compaction > 0.0 && pressed > 0) {
-      compaction_remainder_ += soil_.compaction * static_cast<double>(pressed);
-      const auto units = std::min(pressed, static_cast<int64_t>(compaction_remainder_));
-      compaction_remainder_ -= static_cast<double>(units);
-      flow_.compact_sunk(units);
-      compacted_ += units;
-    }
-    flow_.deposit();
+    return;
   }
-  if (options_.avalanches) flow_.slide(kSlidesPerStep);
-  slopes_left_ = options_.avalanches ? flow_.queued() : 0;
+  // A share of what was pressed down in this step. What is dug has given its own share already, and
+  // what waits from earlier steps, too.
+  const int64_t pressed = flow_.sunk_in_step();
+  if (soil_.compaction > 0.0 && pressed > 0) {
+    compaction_remainder_ += soil_.compaction * static_cast<double>(pressed);
+    const auto units = std::min(pressed, static_cast<int64_t>(compaction_remainder_));
+    compaction_remainder_ -= static_cast<double>(units);
+    flow_.compact_sunk(units);
+    compacted_ += units;
+  }
+  flow_.deposit();
+}
+
+void SoilBed::slide_slopes(int64_t max_moves) {
+  if (!options_.avalanches) return;
+  flow_.slide(max_moves);
+  slopes_left_ = flow_.queued();
+}
+
+void SoilBed::finish_step() {
   flow_.uncover();
   assert(flow_.in_transit() >= 0);
   ++step_;

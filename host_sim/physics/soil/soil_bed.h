@@ -66,7 +66,8 @@ class SoilBed final : public Terrain {
                         ContactMemory& memory);
   /// Ends a step: what was sunk is deposited beside the footprints, slopes slide.
   void end_step();
-  void end_step(double /*dt*/) override { end_step(); }
+  /// The same; in short steps slopes slide every 4 ms alone.
+  void end_step(double dt) override;
   /// Lets slopes slide until none is too steep, or `max_moves` moves were made; returns the moves.
   int64_t relax_slopes(int64_t max_moves = INT64_MAX);
 
@@ -124,7 +125,6 @@ class SoilBed final : public Terrain {
     size_t begin = 0;
     size_t end = 0;
     Law law;
-    size_t footprint = 0;  // as flow_ numbers them
     RunFrame frame{};
     double rear = 0.0;  // of the contact along the contour, m
     double front = 0.0;
@@ -144,13 +144,15 @@ class SoilBed final : public Terrain {
   WheelStress wheel_stress(const FootprintContact& contact, Law& law);
   void find_extent(const Footprint& footprint, const CellSums& sums, Range& range) const;
   void measure_patch(const Footprint& footprint, const CellSums& sums, ContactMemory& memory) const;
-  void cover(const Range& range);
+  void deposit();
+  void slide_slopes(int64_t max_moves);
+  void finish_step();
   void advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
                      double dt) const;
   ReactionLaw reaction_law(const Range& range, const PressingBody& body,
                            const FootprintContact& contact) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
-  void settle(const Range& range, bool slips);
+  void settle(const Range& range, size_t footprint, bool slips);
   void dig_below(const ReactionSums& sums, const ReactionLaw& law, const Eigen::Isometry3d& pose,
                  double dt);
 
@@ -170,6 +172,7 @@ class SoilBed final : public Terrain {
   double compaction_remainder_ = 0.0;  // parts of a unit, for the next step
   double dig_remainder_ = 0.0;
   size_t slopes_left_ = 0;
+  double unslid_s_ = 0.0;  // since slopes slid last
   uint32_t step_ = 1;
   PassivePressure passive_;
   std::vector<CellHistory> histories_;

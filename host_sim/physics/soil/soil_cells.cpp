@@ -464,14 +464,6 @@ void SoilBed::copy_plane_points(const Footprint& footprint, const Group& group) 
   }
 }
 
-/// Nothing slides onto or off what a footprint presses on.
-void SoilBed::cover(const Range& range) {
-  for (size_t i = range.begin * kLanes; i < range.end * kLanes; ++i) {
-    if (!(cells_[i / kLanes].active[i % kLanes] > 0.0)) continue;
-    flow_.cover(places_[i].node, places_[i].ix, places_[i].iy);
-  }
-}
-
 // Second moments of the touched area: a rectangle of sides a and b has variances a^2/12 and b^2/12,
 // a disc r^2/4.
 void SoilBed::measure_patch(const Footprint& footprint, const CellSums& sums,

@@ -153,13 +153,15 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
   return law;
 }
 
-/// Books what the cells of a footprint have sunk, and that it stood there.
-void SoilBed::settle(const Range& range, bool slips) {
+/// Books what the cells of a footprint have sunk, and that it stands there: nothing slides onto or
+/// off them.
+void SoilBed::settle(const Range& range, size_t footprint, bool slips) {
   for (size_t i = range.begin * kLanes; i < range.end * kLanes; ++i) {
     const size_t lane = i % kLanes;
     const CellBlock& block = cells_[i / kLanes];
     if (!(block.active[lane] > 0.0)) continue;
     const GridPlace& place = places_[i];
+    flow_.cover(place.node, place.ix, place.iy);
     const bool bears = block.bears[lane] > 0.0;
     CellHistory& history = histories_[place.node];
     history.keep(block.covered[lane], {block.old_sinkage[lane], block.beside[lane]});
@@ -169,7 +171,7 @@ void SoilBed::settle(const Range& range, bool slips) {
     }
     history.touch(step_);
     const auto units = static_cast<Height>(block.units[lane]);
-    if (units > 0) flow_.sink(range.footprint, place.node, place.ix, place.iy, units);
+    if (units > 0) flow_.sink(footprint, place.node, place.ix, place.iy, units);
     if (slips) flow_.shear(place.node, block.shears[lane]);
   }
 }
@@ -183,7 +185,9 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   ReactionSums sums;
   kernels_.react(&cells_[range.begin], &springs_[range.begin], range.end - range.begin, law, sums);
   const bool slips = law.digs && sums.slip > 0.0;
-  settle(range, slips);
+  const Eigen::Vector3d velocity =
+      body.velocity + body.omega.cross(contact.footprint->pose().translation() - body.centre);
+  settle(range, flow_.begin_footprint(velocity.x(), velocity.y()), slips);
   if (slips) dig_below(sums, law, contact.footprint->pose(), dt);
   contact.memory->sinkage = sums.sinkage;
   TerrainReaction& reaction = contact.reaction;

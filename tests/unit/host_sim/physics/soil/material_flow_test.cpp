@@ -114,6 +114,8 @@ TEST(MaterialFlow, OnlyWhatGetsMaterialIsLookedAtAgain) {
   EXPECT_FALSE(flow.is_queued(below)) << "it is held as long as the footprint stands there";
   flow.uncover();
   EXPECT_TRUE(flow.is_queued(below));
+  flow.uncover();  // a step without it
+  EXPECT_EQ(flow.queued(), 4U);
   flow.slide(1000);
   EXPECT_FALSE(flow.is_queued(below));
 }
