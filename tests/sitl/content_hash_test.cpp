@@ -18,13 +18,13 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "d1986b1a9e84a20f6f38915bfd4fc4cb"},
+    {"soft_bed", "--duration 6", "8c8d5ba676ea3ed4d4a8b78ce34b034f"},
     {"soft_bed", "--hal surrogate --duration 10", "868da3127200af35611a1f8d8c1e44d0"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "d6c25a7522ea8e4d935c9bf333351f70"},
-    {"gravel_bed", "--duration 1", "964613af5a86ca308bc6f2de86cb2534"},
+     "7ca9640a2d1169b0aeaa2298f0d364d8"},
+    {"gravel_bed", "--duration 1", "758ca4203ab5937e8d563267e21d4b2a"},
 }};
 
 class ContentHash : public Program {};
@@ -47,7 +47,7 @@ TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
       "--left 0.1 --right 0.2 --drag-depth 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["heights_hash"].get<std::string>(),
-            "263547b6662aab6c09e4d6f649261b2d");
+            "370d15f1eb1067bc821d1e3633a69774");
 }
 
 }  // namespace

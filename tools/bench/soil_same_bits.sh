@@ -23,7 +23,7 @@ on_particles() {  # PROGRAM FOLDER: the run's content hash
 
 for level in -O1 -O3; do
   mkdir -p "$work/$level"
-  for source in host_sim/physics/soil/*.cpp host_sim/physics/particles/*.cpp host_sim/soil_validation/*.cpp host_sim/physics/terrain/*.cpp; do
+  for source in host_sim/physics/soil/*.cpp host_sim/physics/kernels/*.cpp host_sim/physics/particles/*.cpp host_sim/soil_validation/*.cpp host_sim/physics/terrain/*.cpp; do
     "${CXX:-g++}" @"$build/host.flags" "$level" -c "$source" -o "$work/$level/$(basename "$source" .cpp).o"
   done
   "${CXX:-g++}" "$build/tools/screed/main.o" "$work/$level"/*.o "$build/libscreed.a" -Wl,--as-needed @"$build/link.flags" -o "$work/$level/screed"

@@ -195,8 +195,8 @@ void MaterialFlow::find_ring(const ActiveFootprint& footprint, size_t end) {
   std::fill(below_bits_.begin(), below_bits_.begin() + static_cast<std::ptrdiff_t>(rows * words),
             uint64_t{0});
   for (size_t i = footprint.begin; i < end; ++i) {
-    const auto x = static_cast<size_t>(covered_list_[i].ix - first_x + 1);
-    const auto y = static_cast<size_t>(covered_list_[i].iy - first_y + 2);
+    const auto x = static_cast<size_t>(covered_list_[i].ix - first_x) + 1;
+    const auto y = static_cast<size_t>(covered_list_[i].iy - first_y) + 2;
     below_bits_[y * words + x / kBits] |= uint64_t{1} << (x % kBits);
   }
   const auto grown = [&](size_t row, size_t word) {  // to the west and east
