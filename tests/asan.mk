@@ -21,7 +21,7 @@ ASAN_UNIT += attitude_command avr_indirect_calls avr_stack board_table candump_l
   header_export height_field height_series ini_file mesh model_file network picture run_folder schema schema_compiler session session_csv \
   session_damage session_failure session_hash session_replay urdf urdf_refusal urdf_roles wheel_rim
 # Grids that a position indexes.
-ASAN_UNIT += footprint grid_world material_digging material_flow particle_motion soil_bed soil_cells shear_field soil_dig \
+ASAN_UNIT += footprint grid_world kernels material_digging material_flow particle_motion soil_bed soil_cells shear_field soil_dig \
   soil_measurements soil_path soil_shear wheel_stress
 # The simulated board: registers, bus and USB, which an image writes as it likes.
 ASAN_MCU := board_parts chips quadrature screed_image

@@ -24,7 +24,7 @@ std::string area(const Eigen::Vector2d& size) {
 
 Eigen::Vector2d out_of_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outline) {
   const Eigen::Vector2d none = Eigen::Vector2d::Zero();
-  if (bed.edge != BedEdge::kWalled) return none;
+  if (bed.edge != BedEdge::kWalled) return Eigen::Vector2d::Zero();
   const Eigen::Vector2d corner(0.5 * bed.width_m, 0.5 * bed.depth_m);
   return (-corner - outline.min()).cwiseMax(none) - (outline.max() - corner).cwiseMax(none);
 }
