@@ -18,12 +18,12 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "8c8d5ba676ea3ed4d4a8b78ce34b034f"},
+    {"soft_bed", "--duration 6", "d1986b1a9e84a20f6f38915bfd4fc4cb"},
     {"soft_bed", "--hal surrogate --duration 10", "868da3127200af35611a1f8d8c1e44d0"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "7ca9640a2d1169b0aeaa2298f0d364d8"},
+     "d6c25a7522ea8e4d935c9bf333351f70"},
     {"gravel_bed", "--duration 1", "758ca4203ab5937e8d563267e21d4b2a"},
 }};
 

@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 
-/// How far a disarmed robot goes in `seconds`, after 10 s to settle, m a minute.
+/// How far a disarmed robot goes in `seconds`, after 5 s to settle, m a minute.
 double creep_m_per_minute(const char* preset, double slope_deg, double heading_deg,
                           double seconds) {
   WorldOptions options = drive_options(0.0, 0.0);
   options.soil = soil_preset(preset);
   options.start.attitude.heading = heading_deg * kDeg;
   TestDrive drive(HeightField::ramp(3.0, 0.01, slope_deg), options);
-  drive.run(10.0);
+  drive.run(5.0);
   const Eigen::Vector3d before = drive.world.vehicle().chassis().pose.translation();
   drive.run(seconds);
   const Eigen::Vector3d after = drive.world.vehicle().chassis().pose.translation();

@@ -13,8 +13,9 @@ struct Row {
   double v[4];
 };
 using Number = float;
-using Mask = bool;
 constexpr size_t kLanes = 1;
+
+#include "host_sim/physics/particles/contact_alone.inc"
 
 inline Row operator+(const Row& a, const Row& b) {
   return {{a.v[0] + b.v[0], a.v[1] + b.v[1], a.v[2] + b.v[2], a.v[3] + b.v[3]}};
@@ -53,29 +54,11 @@ inline Row larger(const Row& a, const Row& b) {
 inline Row turned(const Row& a) {
   return {{a.v[1], a.v[2], a.v[0], a.v[3]}};
 }
-inline Number broadcast(float value) {
-  return value;
-}
 inline Number lanes(const float* from) {
   return *from;
 }
 inline void store_lanes(Number from, float* to) {
   *to = from;
-}
-inline Number root(Number a) {
-  return sqrtf(a);
-}
-inline Mask above(Number a, Number b) {
-  return a > b;
-}
-inline Mask both(Mask a, Mask b) {
-  return a && b;
-}
-inline bool any(Mask a) {
-  return a;
-}
-inline Number choose(Mask mask, Number yes, Number no) {
-  return mask ? yes : no;
 }
 inline void transpose(const float (&rows)[kLanes][4], Number (&columns)[4]) {
   for (int i = 0; i < 4; ++i) columns[i] = rows[0][i];

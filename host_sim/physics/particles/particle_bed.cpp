@@ -96,7 +96,7 @@ ParticleBed::ParticleBed(const std::vector<Eigen::Vector3d>& centres, const BedE
     : options_(checked(options)),
       extent_(checked(extent, options.material.radius_m)),
       law_(options.material),
-      kernel_(bed_functions(options.kernel.value_or(bed_kernels().back()))),
+      kernel_(bed_functions(options.instructions)),
       window_s_(kWindow_s),
       grid_(extent.width_m, extent.depth_m, std::max(height_m, highest_of(centres) + kHeadroom_m),
             (2.0 + kSkin) * options.material.radius_m, extent.periodic,

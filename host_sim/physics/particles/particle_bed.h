@@ -17,11 +17,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "host_sim/core/gravity.h"
+#include "host_sim/core/lanes/instruction_set.h"
 #include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/bed_kernel.h"
 #include "host_sim/physics/particles/bed_kernels.h"
@@ -50,8 +50,8 @@ struct ParticleOptions {
   bool fixed = false;            ///< particles never move: ground of spheres, as rigid as rock
   Eigen::Vector3d gravity = {0.0, 0.0, -kGravity_m_per_s2};
   // How it is computed; nothing that comes out depends on these.
-  int threads = 1;                  ///< 1 to kMaxBedThreads, that of the caller included
-  std::optional<BedKernel> kernel;  ///< none: the fastest of this processor
+  int threads = 1;  ///< 1 to kMaxBedThreads, that of the caller included
+  InstructionSet instructions = instruction_sets().back();
 };
 
 class ParticleBed final : public Terrain {

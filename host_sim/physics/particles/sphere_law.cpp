@@ -2,6 +2,7 @@
 #include "host_sim/physics/particles/sphere_law.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace screed {
 namespace {
@@ -11,27 +12,8 @@ constexpr double kRollDampingRatio = 0.3;
 
 #define SCREED_LAW_TARGET
 using Number = double;
-using Mask = bool;
 
-inline Number broadcast(double value) {
-  return value;
-}
-inline Number root(Number a) {
-  return std::sqrt(a);
-}
-inline Mask above(Number a, Number b) {
-  return a > b;
-}
-inline Mask both(Mask a, Mask b) {
-  return a && b;
-}
-inline bool any(Mask a) {
-  return a;
-}
-inline Number choose(Mask mask, Number yes, Number no) {
-  return mask ? yes : no;
-}
-
+#include "host_sim/physics/particles/contact_alone.inc"
 #include "host_sim/physics/particles/contact_law.inc"
 
 Three three(const Eigen::Vector3d& v) {

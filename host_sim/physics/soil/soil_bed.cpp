@@ -16,8 +16,6 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStableStiffness = 0.3;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
-// Slopes beside running gear grow by some hundredths of a millimetre in this time.
-constexpr double kSlideInterval_s = 0.004;
 // Greatest gradient of a path: what drops has not driven there.
 constexpr double kMaxPathGradient = 1.0;
 // Least vertical part of a body's z axis at which a level path has a gradient in the body's axes.
@@ -156,18 +154,11 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
 
 void SoilBed::end_step() {
   deposit();
-  slide_slopes(kSlidesPerStep);
-  finish_step();
-}
-
-void SoilBed::end_step(double dt) {
-  deposit();
-  unslid_s_ += dt;
-  if (unslid_s_ > kSlideInterval_s - 0.5 * dt) {
-    slide_slopes(kSlidesPerStep * std::max<int64_t>(1, std::llround(unslid_s_ / dt)));
-    unslid_s_ = 0.0;
-  }
-  finish_step();
+  if (options_.avalanches) flow_.slide(kSlidesPerStep);
+  slopes_left_ = options_.avalanches ? flow_.queued() : 0;
+  flow_.uncover();
+  assert(flow_.in_transit() >= 0);
+  ++step_;
 }
 
 void SoilBed::deposit() {
@@ -188,18 +179,6 @@ void SoilBed::deposit() {
     compacted_ += units;
   }
   flow_.deposit();
-}
-
-void SoilBed::slide_slopes(int64_t max_moves) {
-  if (!options_.avalanches) return;
-  flow_.slide(max_moves);
-  slopes_left_ = flow_.queued();
-}
-
-void SoilBed::finish_step() {
-  flow_.uncover();
-  assert(flow_.in_transit() >= 0);
-  ++step_;
 }
 
 int64_t SoilBed::relax_slopes(int64_t max_moves) {

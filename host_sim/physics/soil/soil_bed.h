@@ -66,8 +66,7 @@ class SoilBed final : public Terrain {
                         ContactMemory& memory);
   /// Ends a step: what was sunk is deposited beside the footprints, slopes slide.
   void end_step();
-  /// The same; in short steps slopes slide every 4 ms alone.
-  void end_step(double dt) override;
+  void end_step(double /*dt*/) override { end_step(); }
   /// Lets slopes slide until none is too steep, or `max_moves` moves were made; returns the moves.
   int64_t relax_slopes(int64_t max_moves = INT64_MAX);
 
@@ -145,8 +144,6 @@ class SoilBed final : public Terrain {
   void find_extent(const Footprint& footprint, const CellSums& sums, Range& range) const;
   void measure_patch(const Footprint& footprint, const CellSums& sums, ContactMemory& memory) const;
   void deposit();
-  void slide_slopes(int64_t max_moves);
-  void finish_step();
   void advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
                      double dt) const;
   ReactionLaw reaction_law(const Range& range, const PressingBody& body,
@@ -172,7 +169,6 @@ class SoilBed final : public Terrain {
   double compaction_remainder_ = 0.0;  // parts of a unit, for the next step
   double dig_remainder_ = 0.0;
   size_t slopes_left_ = 0;
-  double unslid_s_ = 0.0;  // since slopes slid last
   uint32_t step_ = 1;
   PassivePressure passive_;
   std::vector<CellHistory> histories_;

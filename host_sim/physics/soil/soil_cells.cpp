@@ -1,22 +1,22 @@
 // The cells of a soil bed under a footprint: which they are, and what Bekker's law gives as a mean
 // over sample points inside each.
 //
-// The equations of sample(), in the order of the code. n is Bekker's exponent, b the shorter side
-// of the touched area (measure_patch()), E the stiffness of unloading. At a sample point whose cell
-// has its undisturbed surface at `level` and had sunk by `old_sinkage` in earlier contacts
-// (cell_history.h), below a body at `height` now that was as low as `passed` on its path:
+// The equations of kernels/cell_stress.inc, in the order of its code. n is Bekker's exponent, b the
+// shorter side of the touched area (measure_patch()), E the stiffness of unloading. At a sample
+// point whose cell has its undisturbed surface at `level` and had sunk by `old_sinkage` in earlier
+// contacts (cell_history.h), below a body at `height` now that was as low as `passed` on its path:
 //   deepest = max(0, level - passed)
-//   bearing = max(0, deepest - lift)                          lift of a wheel: wheel_stress.h, else
-//   0 virgin  = (k_c / b + k_phi) bearing^n                     Bekker 1969 stiff   = E (bearing -
-//   old_sinkage)                       reloading along E; a mean over the small
-//             square that a point stands for, which reaches the floor of a rut bit by bit
-//   loaded  = max(0, min(virgin, stiff))                      p at its deepest
-//   depths  : plastic sinkage, the larger of old_sinkage and
-//             old_sinkage + (1 - rebound) (deepest - old_sinkage) - loaded / E
-//   now     = loaded - E (height - passed)                    unloading: it carries when > 0; below
-//   a
-//             wheel whose stress is shaped: loaded
-//   rates   : d loaded / d sinking of the whole body: n virgin / bearing where it yields, else E
+//   bearing = max(0, deepest - lift)        lift below a wheel: wheel_stress.h; else 0
+//   virgin  = (k_c / b + k_phi) bearing^n   Bekker 1969
+//   stiff   = E (bearing - old_sinkage)     reloading along E; a mean over the small square that a
+//                                           point stands for, which reaches the floor of a rut bit
+//                                           by bit
+//   loaded  = max(0, min(virgin, stiff))    p at its deepest
+//   depths  = max(old_sinkage, old_sinkage + (1 - rebound) (deepest - old_sinkage) - loaded / E)
+//                                           plastic sinkage
+//   now     = loaded - E (height - passed)  unloading: it carries when > 0. Below a wheel whose
+//                                           stress is shaped: loaded
+//   rates   = n virgin / bearing            where it yields, else E: d loaded / d sinking
 // A cell has the means of these, each point weighed with its `part` of the body above it; a centre
 // of pressure, from points weighed with their pressure; and, for radial stress, the moment of the
 // normal's horizontal parts (slope_x, slope_y) about the footprint's centre.
@@ -25,6 +25,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/physics/kernels/triple.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
@@ -36,10 +37,6 @@ constexpr double kStepSinkage_m = 0.001;
 constexpr double kMinPatch_m = 1e-3;  // a narrower patch is rounding at first touch
 // Of a plane around a cell's centre, in cells: half a cell's diagonal is 0.71.
 constexpr double kFlatWithin = 0.75;
-
-Triple triple(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 }  // namespace
 
@@ -161,8 +158,7 @@ void SoilBed::find_extent(const Footprint& footprint, const CellSums& sums, Rang
   if (!stress.known()) return;
   // A wheel's are known more finely than the cells lie.
   const double radius = footprint.radius();
-  const Triple& sine = range.law.cell.sine;
-  const Eigen::Vector3d to_path = radius * Eigen::Vector3d(sine.x, sine.y, sine.z);
+  const Eigen::Vector3d to_path = radius * vector(range.law.cell.sine);
   const double ahead = to_path.dot(footprint.pose().linear().col(0));
   const double up = to_path.dot(footprint.pose().linear().col(2));
   const double sense = ahead < 0.0 ? -1.0 : 1.0;

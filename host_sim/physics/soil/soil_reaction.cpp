@@ -1,8 +1,9 @@
 // How soil yields under a footprint, and the reaction: plastic sinkage, normal stress, shear, what
 // is pushed ahead and aside, digging.
 //
-// The equations in the order of the code. Values of a cell are means over it; E, c, phi, R as in
-// soil_parameters.h, A the area of a cell, v the body's velocity there.
+// The equations in the order of the code, which is kernels/reaction.inc but for digging. Values of
+// a cell are means over it; E, c, phi, R as in soil_parameters.h, A the area of a cell, v the
+// body's velocity there.
 //
 // Yielding. A body that goes down by `sinking` meets the lower of two lines, unloading and
 // reloading along E and Bekker's curve (Bekker 1969; soil_cells.cpp), linear over a step. What E
@@ -38,17 +39,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/physics/kernels/triple.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
 namespace {
-
-Triple triple(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-Eigen::Vector3d vector(const Triple& t) {
-  return {t.x, t.y, t.z};
-}
 
 // A surface's own friction or adhesion that never limits.
 constexpr double kNoLimit = 1e12;

@@ -25,6 +25,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/physics/kernels/triple.h"
+
 namespace screed {
 namespace {
 
@@ -209,7 +211,6 @@ void Footprint::track_surface(double edge, const PathHistory* path, FootprintSam
     std::fill(samples.share.begin(), samples.share.end(), 0.0);
     return;
   }
-  const auto triple = [](const auto& v) { return Triple{v[0], v[1], v[2]}; };
   const Eigen::Matrix3d& axes = pose_.linear();
   TrackShape shape{};
   shape.belt = half_.x() > 0.0;

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "host_sim/physics/kernels/triple.h"
 #include "host_sim/physics/terrain/shear_law.h"
 
 namespace screed {
@@ -83,7 +84,6 @@ void ShearField::advance(const RunContour& contour, const RunMotion& motion, dou
   auto last = static_cast<int64_t>(std::floor((front + travelled_) / spacing_));
   if (last < first) first = last = std::llround((0.5 * (rear + front) + travelled_) / spacing_);
   make_room(first, last);
-  const auto triple = [](const Eigen::Vector3d& v) { return Triple{v.x(), v.y(), v.z()}; };
   ShearStep step{};
   step.first_along = static_cast<double>(first) * spacing_ - travelled_;
   step.spacing = spacing_;

@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/particles/solid_contact.h"
 #include "tests/unit/allocations.h"
+#include "tests/unit/host_sim/physics/particles/fingerprint.h"
 
 namespace screed {
 namespace {
@@ -41,24 +41,6 @@ void run(ParticleBed& bed, double seconds) {
   const double dt = bed.longest_step_s();
   const auto steps = std::lround(seconds / dt);
   for (long i = 0; i < steps; ++i) bed.step(dt);
-}
-
-/// Everything that a bed is, to the last bit.
-std::string fingerprint(const ParticleBed& bed) {
-  ContentHash hash;
-  for (size_t i = 0; i < bed.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      hash.add(bed.position(i)[axis]);
-      hash.add(bed.velocity(i)[axis]);
-      hash.add(bed.angular_velocity(i)[axis]);
-    }
-    hash.add(bed.awake(i));
-  }
-  const HeightField& surface = bed.surface();
-  for (int iy = 0; iy < surface.ny(); ++iy) {
-    for (int ix = 0; ix < surface.nx(); ++ix) hash.add(surface.node(ix, iy));
-  }
-  return hash.hex();
 }
 
 /// A wheel that rolls over the bed at a given height, slipping.

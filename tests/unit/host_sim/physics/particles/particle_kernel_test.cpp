@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/particles/bed_kernels.h"
+#include "host_sim/core/lanes/instruction_set.h"
 #include "host_sim/physics/particles/bed_layout.h"
 #include "host_sim/physics/particles/bed_particles.h"
 #include "host_sim/physics/particles/particle_bed.h"
@@ -19,6 +18,7 @@
 #include "host_sim/physics/terrain/footprint_contact.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "tests/unit/allocations.h"
+#include "tests/unit/host_sim/physics/particles/fingerprint.h"
 
 namespace screed {
 namespace {
@@ -30,23 +30,6 @@ HeightField heap(bool periodic) {
   return HeightField::from_function(31, 31, kSize / 30.0, periodic, [](double x, double y) {
     return 0.13 + 0.1 * std::max(0.0, 1.0 - 8.0 * (x * x + y * y));
   });
-}
-
-std::string hash_of(const ParticleBed& bed) {
-  ContentHash hash;
-  for (size_t i = 0; i < bed.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      hash.add(bed.position(i)[axis]);
-      hash.add(bed.velocity(i)[axis]);
-      hash.add(bed.angular_velocity(i)[axis]);
-    }
-    hash.add(bed.awake(i));
-  }
-  const HeightField& surface = bed.surface();
-  for (int iy = 0; iy < surface.ny(); ++iy) {
-    for (int ix = 0; ix < surface.nx(); ++ix) hash.add(surface.node(ix, iy));
-  }
-  return hash.hex();
 }
 
 /// As laid, all awake.
@@ -83,7 +66,7 @@ std::string eventful(const ParticleOptions& options, bool periodic) {
     bed.step(dt);
   }
   EXPECT_GT(bed.work().awake, 0U);
-  return hash_of(bed);
+  return fingerprint(bed);
 }
 
 // The expected values are of no meaning but that everything gives them.
@@ -91,23 +74,22 @@ TEST(ParticleKernel, AllKernelsAndNumbersOfThreadsGiveTheSameBits) {
   const char* const expected[] = {"9a3287c9eeda1f00dc1109e90e7c4fdd",
                                   "64a58f924885a8e976965a05f2b667c7"};
   for (const bool periodic : {false, true}) {
-    for (const BedKernel kernel : bed_kernels()) {
+    for (const InstructionSet set : instruction_sets()) {
       for (const int threads : {1, 2, 3}) {
         ParticleOptions options;
-        options.kernel = kernel;
+        options.instructions = set;
         options.threads = threads;
         EXPECT_EQ(eventful(options, periodic), expected[periodic ? 1 : 0])
-            << bed_kernel_name(kernel) << ", " << threads << " threads";
+            << name_of(set) << ", " << threads << " threads";
       }
     }
   }
 }
 
 TEST(ParticleKernel, TheFastestOfTheProcessorIsTheDefault) {
-  EXPECT_EQ(bed_kernels().front(), BedKernel::kScalar);
   ParticleOptions options;
   const std::string once = eventful(options, false);
-  options.kernel = bed_kernels().back();
+  options.instructions = instruction_sets().back();
   EXPECT_EQ(eventful(options, false), once);
 }
 

@@ -3,36 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
 
 #include "host_sim/core/errors.h"
 #include "tests/temp_folder.h"
+#include "tests/unit/environment_variable.h"
 
 namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Sets a variable of the environment until the end of the test.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    const char* const before = std::getenv(name);
-    if (before != nullptr) before_ = before;
-    set(value);
-  }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-  ~Environment() { set(before_.has_value() ? before_->c_str() : nullptr); }
-
- private:
-  void set(const char* value) const {
-    value == nullptr ? unsetenv(name_) : setenv(name_, value, 1);
-  }
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 /// The message of the InputError.
 std::string refusal_of(const std::function<void()>& action) {
@@ -45,15 +25,15 @@ std::string refusal_of(const std::function<void()>& action) {
 }
 
 TEST(RememberedLink, LiesInTheUsersFolderForConfigurations) {
-  const Environment home("HOME", "/home/ada");
+  const EnvironmentVariable home("HOME", "/home/ada");
   {
-    const Environment config("XDG_CONFIG_HOME", "/elsewhere");
+    const EnvironmentVariable config("XDG_CONFIG_HOME", "/elsewhere");
     EXPECT_EQ(remembered_link_file(), "/elsewhere/screed/link.ini");
   }
   for (const char* none : {static_cast<const char*>(nullptr), "", "relative"}) {
-    const Environment config("XDG_CONFIG_HOME", none);
+    const EnvironmentVariable config("XDG_CONFIG_HOME", none);
     EXPECT_EQ(remembered_link_file(), "/home/ada/.config/screed/link.ini");
-    const Environment no_home("HOME", nullptr);
+    const EnvironmentVariable no_home("HOME", nullptr);
     EXPECT_EQ(remembered_link_file(), "");
   }
 }
@@ -123,7 +103,7 @@ TEST(RememberedLink, OfSeveralLinksIsRefusedWithItsFile) {
 
 TEST(RememberedLink, AKeyFileThatIsGoneIsNamedWithTheFileThatRemembersIt) {
   const TempFolder folder;
-  const Environment config("XDG_CONFIG_HOME", folder.path().c_str());
+  const EnvironmentVariable config("XDG_CONFIG_HOME", folder.path().c_str());
   LinkArguments link;
   link.pty = "radio";
   link.key = "/nonexistent";
