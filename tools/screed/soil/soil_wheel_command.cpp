@@ -43,10 +43,13 @@ void write_charts(const WheelArguments& a, const std::vector<WheelChart>& charts
   for (const WheelChart& one : charts) write_chart(a.common.chart(one.file.c_str()), one.chart);
 }
 
+std::string wheel_text(const RollingWheel& wheel) {
+  return text("wheel r %g", wheel.radius_m * kMilli) +
+         text(" mm, width %g mm", wheel.width_m * kMilli) + text(", load %g N", wheel.load_n);
+}
+
 std::string wheel_words(const WheelArguments& a) {
-  const RollingWheel& w = a.test.wheel;
-  return a.common.soil().name + text(", wheel r %g", w.radius_m * kMilli) +
-         text(" mm, width %g mm", w.width_m * kMilli) + text(", load %g N", w.load_n) +
+  return a.common.soil().name + ", " + wheel_text(a.test.wheel) +
          (a.limit_only ? ", limit of an infinitely fine grid"
                        : text(", grid %g mm", a.common.cell_m * kMilli) +
                              text(", step %g ms", a.common.step_s * kMilli)) +
@@ -222,8 +225,13 @@ int run_wheel_command(WheelArguments a) {
   }
   bar.clear();
   if (!a.common.charts.empty()) {
-    const std::string how = a.common.soil().name + ", normal stress " + a.common.normal_stress;
-    write_charts(a, wheel_charts(a.limit_only ? "limit" : "wheel", how, curves, sideways));
+    WheelSweep sweep;
+    sweep.prefix = a.limit_only ? "limit" : "wheel";
+    sweep.subject = a.common.soil().name + ", normal stress " + a.common.normal_stress;
+    if (a.limit_only) sweep.subtitle = wheel_text(a.test.wheel);
+    sweep.curves = curves;
+    sweep.with_side_force = sideways;
+    write_charts(a, wheel_charts(sweep));
   }
   return a.limit_only ? finish(a.common, "wheel_limit", wheel_words(a), "", lines)
                       : finish(a.common, "wheel", wheel_words(a), "limit", lines);

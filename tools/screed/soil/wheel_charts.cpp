@@ -5,8 +5,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <numbers>
+#include <optional>
 
 #include "host_sim/soil_validation/wheel_trials.h"
 
@@ -85,10 +85,17 @@ std::string measured_label(const std::vector<TrialMean>& means) {
   return label;
 }
 
-/// The series of one slip angle; none when the quantity was not measured there.
-std::vector<ChartSeries> series_of(const WheelComparison& comparison, const Quantity& quantity,
-                                   const std::vector<WheelTrials>& tests,
-                                   const std::string& suffix) {
+/// Of one slip angle.
+struct AngleSeries {
+  ChartSeries screed;
+  ChartSeries limit;
+  ChartSeries measured;
+};
+
+/// Nothing when the quantity was not measured there.
+std::optional<AngleSeries> series_of(const WheelComparison& comparison, const Quantity& quantity,
+                                     const std::vector<WheelTrials>& tests,
+                                     const std::string& suffix) {
   ChartSeries screed{"Screed" + suffix, {}, false};
   ChartSeries limit{"limit" + suffix, {}, false};
   limit.dashed = true;
@@ -107,21 +114,21 @@ std::vector<ChartSeries> series_of(const WheelComparison& comparison, const Quan
     add(screed, comparison.screed);
     add(limit, comparison.limit);
   }
-  if (means.empty()) return {};
+  if (means.empty()) return std::nullopt;
   measured.label = measured_label(means) + suffix;
-  return {screed, limit, measured};
+  return AngleSeries{screed, limit, measured};
 }
 
 }  // namespace
 
-std::vector<WheelChart> wheel_charts(const std::string& prefix, const std::string& subject,
-                                     const std::vector<WheelCurve>& curves, bool with_side_force) {
+std::vector<WheelChart> wheel_charts(const WheelSweep& sweep) {
   std::vector<WheelChart> charts;
   for (const Quantity& quantity : kQuantities) {
-    if (quantity.computed == &WheelReaction::side_force_n && !with_side_force) continue;
+    if (quantity.computed == &WheelReaction::side_force_n && !sweep.with_side_force) continue;
     Chart chart = chart_over_slip(quantity);
-    chart.title += ": " + subject;
-    for (const WheelCurve& curve : curves) {
+    chart.title += ": " + sweep.subject;
+    chart.subtitle = sweep.subtitle;
+    for (const WheelCurve& curve : sweep.curves) {
       ChartSeries series{curve.label, {}, curve.markers};
       for (std::size_t i = 0; i < curve.slips.size(); ++i) {
         series.points.push_back(
@@ -131,7 +138,7 @@ std::vector<WheelChart> wheel_charts(const std::string& prefix, const std::strin
                        [](const ChartPoint& a, const ChartPoint& b) { return a.x < b.x; });
       chart.series.push_back(series);
     }
-    charts.push_back({"soil_" + prefix + "_" + quantity.file + ".svg", chart});
+    charts.push_back({"soil_" + sweep.prefix + "_" + quantity.file + ".svg", chart});
   }
   return charts;
 }
@@ -151,15 +158,21 @@ std::vector<WheelChart> measured_charts(const WheelComparison& comparison) {
     Chart chart = chart_over_slip(quantity);
     chart.title += ", measured and simulated";
     chart.subtitle = comparison.subtitle;
+    std::vector<ChartSeries> points;
     for (const std::vector<WheelTrials>& tests : angles) {
       const std::string suffix =
           angles.size() > 1 ? ", " + angle_text(tests[0].slip_angle_rad) : "";
-      for (const ChartSeries& series : series_of(comparison, quantity, tests, suffix))
-        chart.series.push_back(series);
+      const std::optional<AngleSeries> series = series_of(comparison, quantity, tests, suffix);
+      if (!series) continue;
+      chart.series.insert(chart.series.end(), {series->screed, series->limit});
+      points.push_back(series->measured);
     }
-    if (chart.series.empty()) continue;
+    if (points.empty()) continue;
     if (quantity.computed == &WheelReaction::drawbar_pull_n && !comparison.chrono_pull.empty())
-      chart.series.push_back({"Chrono", comparison.chrono_pull, true});
+      chart.series.push_back({"Chrono", comparison.chrono_pull, false});
+    // Measured points last: above all lines.
+    if (points.size() == 1) points[0].color = kChartInk;
+    chart.series.insert(chart.series.end(), points.begin(), points.end());
     charts.push_back({"soil_measured_" + cases + quantity.file + ".svg", chart});
   }
   return charts;

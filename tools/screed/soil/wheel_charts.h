@@ -24,10 +24,17 @@ struct WheelCurve {
   std::vector<WheelReaction> reactions;  ///< of each slip
 };
 
+struct WheelSweep {
+  std::string prefix;    ///< of the files: soil_PREFIX_...
+  std::string subject;   ///< follows the title
+  std::string subtitle;  ///< of all charts
+  std::vector<WheelCurve> curves;
+  bool with_side_force;
+};
+
 /// soil_PREFIX_sinkage.svg, _pull.svg and, with_side_force, _side_force.svg. Points are joined in
-/// the order of their slips. `subject` follows the title.
-std::vector<WheelChart> wheel_charts(const std::string& prefix, const std::string& subject,
-                                     const std::vector<WheelCurve>& curves, bool with_side_force);
+/// the order of their slips.
+std::vector<WheelChart> wheel_charts(const WheelSweep& sweep);
 
 /// Measurements, and in the same rows what Screed and the limit give for them.
 struct WheelComparison {
@@ -41,7 +48,8 @@ struct WheelComparison {
 
 /// soil_measured_CASES_sinkage.svg, _pull.svg and _side_force.svg of what was measured. Measured
 /// values are points with error bars (wheel_trials.h), Screed and limit are lines through the means
-/// over the same trials; one set of each a slip angle.
+/// over the same trials; one set of each a slip angle. Measured values of a single slip angle are
+/// black.
 std::vector<WheelChart> measured_charts(const WheelComparison& comparison);
 
 }  // namespace screed

@@ -63,6 +63,9 @@ TEST(MeasuredCharts, TrialsAreOnePointWithABarAmongLines) {
   EXPECT_TRUE(series[1].joined);
   EXPECT_FALSE(series[2].joined);
   EXPECT_TRUE(series[2].markers);
+  ASSERT_TRUE(series[2].color);
+  EXPECT_EQ(series[2].color->red, kChartInk.red);
+  EXPECT_EQ(series[2].color->green, kChartInk.green);
 }
 
 TEST(MeasuredCharts, LegendsSayWhatBarsAre) {
@@ -97,9 +100,12 @@ TEST(MeasuredCharts, EachSlipAngleHasItsOwnLines) {
   EXPECT_EQ(charts[1].file, "soil_measured_pull.svg");
   EXPECT_EQ(charts[2].file, "soil_measured_side_force.svg");
   EXPECT_EQ(labels_of(charts[1].chart),
-            (Names{"Screed, -15 deg", "limit, -15 deg", "measured, -15 deg", "Screed, 0 deg",
-                   "limit, 0 deg", "measured, 0 deg", "Chrono"}));
-  expect_points(charts[1].chart.series[3], {{0.1, 3.0}, {0.4, 5.0}});
+            (Names{"Screed, -15 deg", "limit, -15 deg", "Screed, 0 deg", "limit, 0 deg", "Chrono",
+                   "measured, -15 deg", "measured, 0 deg"}))
+      << "points above all lines";
+  expect_points(charts[1].chart.series[2], {{0.1, 3.0}, {0.4, 5.0}});
+  expect_points(charts[1].chart.series[4], {{0.1, 5.0}});
+  EXPECT_FALSE(charts[1].chart.series[5].color) << "black would be both angles'";
   // In millimetres; only where it was measured.
   EXPECT_EQ(labels_of(charts[0].chart), (Names{"Screed, -15 deg", "limit, -15 deg",
                                                "measured, with the stated error, -15 deg"}));
@@ -115,18 +121,21 @@ TEST(WheelCharts, CurvesAreJoinedInTheOrderOfSlips) {
   at_high.side_force_n = -4.0;
   WheelReaction at_low;
   at_low.drawbar_pull_n = 1.0;
-  const std::vector<WheelCurve> curves = {{"limit, 30 deg", false, {0.5, -0.5}, {at_high, at_low}}};
-  const std::vector<WheelChart> charts = wheel_charts("limit", "sand", curves, true);
+  WheelSweep sweep{
+      "limit", "sand", "a wheel", {{"limit, 30 deg", false, {0.5, -0.5}, {at_high, at_low}}}, true};
+  const std::vector<WheelChart> charts = wheel_charts(sweep);
   ASSERT_EQ(charts.size(), 3U);
   EXPECT_EQ(charts[0].file, "soil_limit_sinkage.svg");
   EXPECT_EQ(charts[1].file, "soil_limit_pull.svg");
   EXPECT_EQ(charts[2].file, "soil_limit_side_force.svg");
   EXPECT_EQ(charts[1].chart.title, "Drawbar pull of a wheel: sand");
+  EXPECT_EQ(charts[1].chart.subtitle, "a wheel");
   EXPECT_EQ(labels_of(charts[1].chart), (Names{"limit, 30 deg"}));
   expect_points(charts[0].chart.series[0], {{-0.5, 0.0}, {0.5, 2.0}});
   expect_points(charts[1].chart.series[0], {{-0.5, 1.0}, {0.5, 3.0}});
   expect_points(charts[2].chart.series[0], {{-0.5, 0.0}, {0.5, -4.0}});
-  EXPECT_EQ(wheel_charts("wheel", "sand", curves, false).size(), 2U);
+  sweep.with_side_force = false;
+  EXPECT_EQ(wheel_charts(sweep).size(), 2U);
 }
 
 }  // namespace
