@@ -83,6 +83,7 @@ TEST(ChartSeries, PointsThatAreNotJoinedHaveDotsAndErrorBarsAndNoLine) {
   EXPECT_EQ(count(chart.svg, "<circle"), 2);
   // An error that is hardly above nothing still shows.
   const std::vector<Line> bar = lines_of(chart.svg, "#ff0000");
+  ASSERT_EQ(bar.size(), 3U);
   double radius = 0.0;
   ASSERT_EQ(std::sscanf(chart.svg.c_str() + chart.svg.find(" r=\""), " r=\"%lf\"", &radius), 1);
   EXPECT_GT(bar[1].to.x - bar[1].from.x, 2.0 * radius);
