@@ -85,6 +85,9 @@ MeasuredWheel wheel_of(const Row& row) {
   wheel.side_force_n = row.measured("side_force_n", -kForce_n, kForce_n);
   wheel.torque_nm = row.measured("torque_nm", -kForce_n, kForce_n);
   wheel.sinkage_m = row.measured("sinkage_m", 1e-6, 10.0);
+  wheel.drawbar_pull_error_n = row.measured("drawbar_pull_error_n", 0.0, kForce_n);
+  wheel.side_force_error_n = row.measured("side_force_error_n", 0.0, kForce_n);
+  wheel.sinkage_error_m = row.measured("sinkage_error_m", 0.0, 10.0);
   return wheel;
 }
 

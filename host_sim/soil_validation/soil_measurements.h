@@ -11,7 +11,9 @@ namespace screed {
 
 /// A row of a test with a wheel. Columns, in any order: case, wheel_radius_m, wheel_width_m,
 /// load_n, slip (as RollingWheel::slip), and of slip_angle_deg (0 without), drawbar_pull_n,
-/// side_force_n, torque_nm, sinkage_m what was measured; an empty field was not.
+/// side_force_n, torque_nm, sinkage_m what was measured; an empty field was not. The columns
+/// drawbar_pull_error_n, side_force_error_n and sinkage_error_m may say how uncertain that is: a
+/// standard or a reading error, 0 or more.
 struct MeasuredWheel {
   std::string name;
   RollingWheel wheel;
@@ -19,6 +21,9 @@ struct MeasuredWheel {
   std::optional<double> side_force_n;
   std::optional<double> torque_nm;
   std::optional<double> sinkage_m;
+  std::optional<double> drawbar_pull_error_n;
+  std::optional<double> side_force_error_n;
+  std::optional<double> sinkage_error_m;
 };
 
 /// A row of a test with a plate. Columns: case, plate_width_m, plate_length_m (a disc: both are its

@@ -61,7 +61,15 @@ void draw_series(Svg& svg, const ChartAxis& x, const ChartAxis& y, const ChartSe
   pixels.reserve(series.points.size());
   for (const ChartPoint& point : series.points) pixels.push_back({x(point.x), y(point.y)});
   if (!series.joined) {
-    for (const Pixel& pixel : pixels) svg.small_dot(pixel, color);
+    constexpr double kDot_px = 3.0;  // smaller than the bar's ends are wide: short bars are seen
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (series.markers) {
+        svg.marker(pixels[i], kDot_px, color);
+      } else {
+        svg.small_dot(pixels[i], color);
+      }
+      draw_error_bar(svg, pixels[i].x, y, series.points[i], color);
+    }
     return;
   }
   for (std::size_t begin = 0, end = 0; begin < pixels.size(); begin = end) {

@@ -21,10 +21,12 @@ struct ChartPoint {
 struct ChartSeries {
   std::string label;  ///< in the legend; empty: not there
   std::vector<ChartPoint> points;
-  bool markers = true;  ///< a dot at every point; for lines
-  bool joined = true;   ///< a line through the points; without, small dots alone: a scatter plot
-  bool dashed = false;  ///< a line that shows one below it
-  double jump = 0.0;    ///< the line breaks where y changes by more; 0: never
+  bool markers = true;  ///< a dot at every point
+  /// A line through the points. Without it dots alone: small ones below error bars, as measurements
+  /// are shown; and without markers, as in a scatter plot of thousands, half transparent ones.
+  bool joined = true;
+  bool dashed = false;           ///< a line that shows one below it
+  double jump = 0.0;             ///< the line breaks where y changes by more; 0: never
   std::optional<Color> color{};  ///< none: line_color() of its place among the series
 };
 

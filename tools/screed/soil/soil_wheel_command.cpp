@@ -1,4 +1,4 @@
-// `screed soil wheel`: a wheel beside its limit and beside measurements.
+// `screed soil wheel`: a wheel beside its limit and beside measurements; the limit alone.
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "host_sim/core/data_folders.h"
-#include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/soil_measurements.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/soil/soil_common.h"
+#include "tools/screed/soil/wheel_charts.h"
 
 namespace screed {
 namespace {
@@ -26,7 +26,8 @@ struct WheelArguments {
   std::vector<double> slips = {0.0, 0.2, 0.4};
   std::string measured;
   std::string cases = "ding2011_smooth";
-  double slip_angle_deg = 0.0;
+  std::vector<double> slip_angles_deg = {0.0};
+  bool limit_only = false;
   double rim_friction_deg = 90.0;
 };
 
@@ -38,23 +39,45 @@ struct PeerWheel {
 };
 constexpr PeerWheel kPeerDing[] = {{0.1, 11.2}, {0.2, 23.9}, {0.3, 33.8}, {0.4, 41.2}, {0.6, 49.2}};
 
-void chart_wheel(const WheelArguments& a, const char* file, const std::string& title,
-                 const char* y_label, const std::vector<ChartSeries>& series) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "slip [1]";
-  chart.y_label = y_label;
-  chart.series = series;
-  write_chart(a.common.chart(file), chart);
+void write_charts(const WheelArguments& a, const std::vector<WheelChart>& charts) {
+  for (const WheelChart& one : charts) write_chart(a.common.chart(one.file.c_str()), one.chart);
+}
+
+std::string wheel_text(const RollingWheel& wheel) {
+  return text("wheel r %g", wheel.radius_m * kMilli) +
+         text(" mm, width %g mm", wheel.width_m * kMilli) + text(", load %g N", wheel.load_n);
 }
 
 std::string wheel_words(const WheelArguments& a) {
-  const RollingWheel& w = a.test.wheel;
-  return a.common.soil().name + text(", wheel r %g", w.radius_m * kMilli) +
-         text(" mm, width %g mm", w.width_m * kMilli) + text(", load %g N", w.load_n) +
-         text(", grid %g mm", a.common.cell_m * kMilli) +
-         text(", step %g ms", a.common.step_s * kMilli) + ", normal stress " +
-         a.common.normal_stress;
+  return a.common.soil().name + ", " + wheel_text(a.test.wheel) +
+         (a.limit_only ? ", limit of an infinitely fine grid"
+                       : text(", grid %g mm", a.common.cell_m * kMilli) +
+                             text(", step %g ms", a.common.step_s * kMilli)) +
+         ", normal stress " + a.common.normal_stress;
+}
+
+std::string where_of(const RollingWheel& wheel, bool with_angle) {
+  return text("slip %g", wheel.slip) +
+         (with_angle ? text(", angle %g", wheel.slip_angle_rad / kDegree) : "");
+}
+
+WheelReaction reaction_of(const WheelPass& pass) {
+  WheelReaction reaction;
+  reaction.sinkage_m = pass.sinkage_m;
+  reaction.drawbar_pull_n = pass.drawbar_pull_n;
+  reaction.side_force_n = pass.side_force_n;
+  return reaction;
+}
+
+/// A row of measurements with what was computed for it in the place of what was measured.
+MeasuredWheel computed_row(const MeasuredWheel& row, const WheelReaction& computed) {
+  MeasuredWheel out;
+  out.name = row.name;
+  out.wheel = row.wheel;
+  out.sinkage_m = computed.sinkage_m;
+  out.drawbar_pull_n = computed.drawbar_pull_n;
+  out.side_force_n = computed.side_force_n;
+  return out;
 }
 
 int run_measured(WheelArguments a) {
@@ -62,9 +85,10 @@ int run_measured(WheelArguments a) {
   const NormalStress stress = a.test.options.normal_stress;
   const RollingWheel rim = a.test.wheel;
   std::vector<SoilLine> lines;
-  ChartSeries sinkage[3] = {{"Screed", {}, true}, {"limit", {}, false}, {"measured", {}, true}};
-  ChartSeries pull[4] = {
-      {"Screed", {}, true}, {"limit", {}, false}, {"measured", {}, true}, {"Chrono", {}, true}};
+  WheelComparison comparison;
+  comparison.cases = a.cases;
+  comparison.subtitle = (a.cases.empty() ? "" : a.cases + " on ") + a.common.soil().name;
+  comparison.measured = rows;
   ProgressBar bar(std::cerr);
   for (const MeasuredWheel& row : rows) {
     bar.show_share(static_cast<double>(&row - rows.data()) / static_cast<double>(rows.size()),
@@ -74,19 +98,17 @@ int run_measured(WheelArguments a) {
     a.test.wheel.adhesion_pa = rim.adhesion_pa;
     const WheelPass pass = run_wheel(a.test).passes[0];
     const WheelReaction limit = wheel_limit(a.test.wheel, a.test.soil, stress);
-    std::string where = text("slip %g", row.wheel.slip);
-    if (row.wheel.slip_angle_rad != 0.0)
-      where += text(", angle %g", row.wheel.slip_angle_rad / kDegree);
     std::optional<double> peer;
     for (const PeerWheel& known : kPeerDing) {
       if (a.cases == "ding2011_smooth" && std::abs(known.slip - row.wheel.slip) < 1e-9) {
         peer = known.drawbar_pull_n;
-        pull[3].points.push_back({known.slip, *peer});
+        comparison.chrono_pull.push_back({known.slip, *peer});
       }
     }
     const auto measured_mm = [](std::optional<double> m) {
       return m ? std::optional(*m * kMilli) : std::nullopt;
     };
+    const std::string where = where_of(row.wheel, row.wheel.slip_angle_rad != 0.0);
     lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.2f",
                      measured_mm(row.sinkage_m), SoilLine::Error::kRelative,
                      peer ? std::optional(8.65) : std::nullopt});
@@ -96,23 +118,77 @@ int run_measured(WheelArguments a) {
                      SoilLine::Error::kAbsolute});
     lines.push_back(
         {where, "torque_nm", pass.torque_nm, "%.2f", row.torque_nm, SoilLine::Error::kRelative});
-    sinkage[0].points.push_back({row.wheel.slip, pass.sinkage_m * kMilli});
-    sinkage[1].points.push_back({row.wheel.slip, limit.sinkage_m * kMilli});
-    if (row.sinkage_m) sinkage[2].points.push_back({row.wheel.slip, *row.sinkage_m * kMilli});
-    pull[0].points.push_back({row.wheel.slip, pass.drawbar_pull_n});
-    pull[1].points.push_back({row.wheel.slip, limit.drawbar_pull_n});
-    if (row.drawbar_pull_n) pull[2].points.push_back({row.wheel.slip, *row.drawbar_pull_n});
+    comparison.screed.push_back(computed_row(row, reaction_of(pass)));
+    comparison.limit.push_back(computed_row(row, limit));
   }
   bar.clear();
-  if (!a.common.charts.empty()) {
-    chart_wheel(a, "soil_measured_sinkage.svg", "Sinkage of a wheel, measured and simulated",
-                "sinkage [mm]", {sinkage[0], sinkage[1], sinkage[2]});
-    std::vector<ChartSeries> pulls = {pull[0], pull[1], pull[2]};
-    if (!pull[3].points.empty()) pulls.push_back(pull[3]);
-    chart_wheel(a, "soil_measured_pull.svg", "Drawbar pull of a wheel, measured and simulated",
-                "drawbar pull [N]", pulls);
-  }
+  if (!a.common.charts.empty()) write_charts(a, measured_charts(comparison));
   return finish(a.common, "wheel", wheel_words(a), "measured", lines);
+}
+
+/// Lines of one pass of a wheel beside its limit.
+void add_lines(std::vector<SoilLine>& lines, const WheelArguments& a, const std::string& where,
+               const WheelPass& pass, const WheelReaction& limit) {
+  // The limit is that of soil that stays where it is.
+  const auto unmoved = [&](double value) {
+    return a.common.bulldozing ? std::nullopt : std::optional(value);
+  };
+  lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.4f",
+                   unmoved(limit.sinkage_m * kMilli), SoilLine::Error::kRelative});
+  lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.5f",
+                   unmoved(limit.drawbar_pull_n), SoilLine::Error::kAbsolute});
+  if (a.test.wheel.slip_angle_rad != 0.0) {
+    lines.push_back({where, "side_force_n", pass.side_force_n, "%.5f", unmoved(limit.side_force_n),
+                     SoilLine::Error::kAbsolute});
+  }
+  lines.push_back({where, "torque_nm", pass.torque_nm, "%.6f", unmoved(limit.torque_nm),
+                   SoilLine::Error::kAbsolute});
+  lines.push_back({where, "rut_mm", pass.rut_m * kMilli, "%.4f", unmoved(limit.rut_m * kMilli),
+                   SoilLine::Error::kRelative});
+  lines.push_back({where, "ripple_mm", pass.ripple_m * kMilli, "%.4f"});
+}
+
+/// Lines of a limit alone.
+void add_lines(std::vector<SoilLine>& lines, const WheelArguments& a, const std::string& where,
+               const WheelReaction& limit) {
+  lines.push_back({where, "sinkage_mm", limit.sinkage_m * kMilli, "%.4f"});
+  lines.push_back({where, "drawbar_pull_n", limit.drawbar_pull_n, "%.5f"});
+  if (a.test.wheel.slip_angle_rad != 0.0)
+    lines.push_back({where, "side_force_n", limit.side_force_n, "%.5f"});
+  lines.push_back({where, "torque_nm", limit.torque_nm, "%.6f"});
+  lines.push_back({where, "rut_mm", limit.rut_m * kMilli, "%.4f"});
+}
+
+/// One slip angle and slip: the first pass beside the limit, as `screed` and `limit`.
+struct FirstPass {
+  WheelReaction screed;
+  WheelReaction limit;
+};
+
+FirstPass roll(const WheelArguments& a, const std::string& place, std::vector<SoilLine>& lines) {
+  FirstPass first;
+  std::optional<WheelTestResult> result;
+  if (!a.limit_only) result = run_wheel(a.test);
+  RollingWheel rolling = a.test.wheel;
+  for (int i = 0; i < a.test.passes; ++i) {
+    std::string where = place;
+    if (a.test.passes > 1) where += ", pass " + std::to_string(i + 1);
+    const WheelReaction limit = wheel_limit(rolling, a.test.soil, a.test.options.normal_stress);
+    rolling.rut_m = limit.rut_m;
+    if (i == 0) first.limit = limit;
+    if (!result) {
+      add_lines(lines, a, where, limit);
+      continue;
+    }
+    const WheelPass& pass = result->passes[static_cast<size_t>(i)];
+    if (i == 0) first.screed = reaction_of(pass);
+    add_lines(lines, a, where, pass, limit);
+  }
+  if (result) {
+    lines.push_back(
+        {place, "volume_error", static_cast<double>(result->balance.error()), "%.0f", 0.0});
+  }
+  return first;
 }
 
 int run_wheel_command(WheelArguments a) {
@@ -121,62 +197,44 @@ int run_wheel_command(WheelArguments a) {
   a.test.cell_m = a.common.cell_m;
   a.test.step_s = a.common.step_s;
   a.test.yaw_rad = a.yaw_deg * kDegree;
-  a.test.wheel.slip_angle_rad = a.slip_angle_deg * kDegree;
   a.test.wheel.friction = a.rim_friction_deg >= 90.0 ? std::numeric_limits<double>::infinity()
                                                      : std::tan(a.rim_friction_deg * kDegree);
   if (!a.measured.empty()) return run_measured(a);
+  const bool several = a.slip_angles_deg.size() > 1;
+  const auto runs = static_cast<double>(a.slip_angles_deg.size() * a.slips.size());
+  int done = 0;
+  bool sideways = false;
   std::vector<SoilLine> lines;
-  ChartSeries sinkage[2] = {{"Screed", {}, true}, {"limit", {}, false}};
-  ChartSeries pull[2] = {{"Screed", {}, true}, {"limit", {}, false}};
+  std::vector<WheelCurve> curves;
   ProgressBar bar(std::cerr);
-  for (const double& slip : a.slips) {
-    bar.show_share(
-        static_cast<double>(&slip - a.slips.data()) / static_cast<double>(a.slips.size()),
-        "rolling a wheel");
-    a.test.wheel.slip = slip;
-    const WheelTestResult result = run_wheel(a.test);
-    RollingWheel rolling = a.test.wheel;
-    for (size_t i = 0; i < result.passes.size(); ++i) {
-      const WheelPass& pass = result.passes[i];
-      std::string where = text("slip %g", slip);
-      if (result.passes.size() > 1) where += ", pass " + std::to_string(i + 1);
-      const WheelReaction limit = wheel_limit(rolling, a.test.soil, a.test.options.normal_stress);
-      rolling.rut_m = limit.rut_m;
-      // The limit is that of soil that stays where it is.
-      const auto unmoved = [&](double value) {
-        return a.common.bulldozing ? std::nullopt : std::optional(value);
-      };
-      lines.push_back({where, "sinkage_mm", pass.sinkage_m * kMilli, "%.4f",
-                       unmoved(limit.sinkage_m * kMilli), SoilLine::Error::kRelative});
-      lines.push_back({where, "drawbar_pull_n", pass.drawbar_pull_n, "%.5f",
-                       unmoved(limit.drawbar_pull_n), SoilLine::Error::kAbsolute});
-      if (rolling.slip_angle_rad != 0.0) {
-        lines.push_back({where, "side_force_n", pass.side_force_n, "%.5f",
-                         unmoved(limit.side_force_n), SoilLine::Error::kAbsolute});
-      }
-      lines.push_back({where, "torque_nm", pass.torque_nm, "%.6f", unmoved(limit.torque_nm),
-                       SoilLine::Error::kAbsolute});
-      lines.push_back({where, "rut_mm", pass.rut_m * kMilli, "%.4f", unmoved(limit.rut_m * kMilli),
-                       SoilLine::Error::kRelative});
-      lines.push_back({where, "ripple_mm", pass.ripple_m * kMilli, "%.4f"});
-      if (i > 0) continue;
-      sinkage[0].points.push_back({slip, pass.sinkage_m * kMilli});
-      pull[0].points.push_back({slip, pass.drawbar_pull_n});
-      sinkage[1].points.push_back({slip, limit.sinkage_m * kMilli});
-      pull[1].points.push_back({slip, limit.drawbar_pull_n});
+  for (const double angle_deg : a.slip_angles_deg) {
+    a.test.wheel.slip_angle_rad = angle_deg * kDegree;
+    sideways = sideways || angle_deg != 0.0;
+    const std::string angle = text("%g deg", angle_deg);
+    WheelCurve screed{several ? "Screed, " + angle : "Screed", true, a.slips, {}};
+    WheelCurve limit{several ? "limit, " + angle : "limit", false, a.slips, {}};
+    for (const double slip : a.slips) {
+      bar.show_share(done++ / runs, "rolling a wheel");
+      a.test.wheel.slip = slip;
+      const FirstPass first = roll(a, where_of(a.test.wheel, several), lines);
+      screed.reactions.push_back(first.screed);
+      limit.reactions.push_back(first.limit);
     }
-    lines.push_back({text("slip %g", slip), "volume_error",
-                     static_cast<double>(result.balance.error()), "%.0f", 0.0});
+    if (!a.limit_only) curves.push_back(screed);
+    curves.push_back(limit);
   }
   bar.clear();
   if (!a.common.charts.empty()) {
-    const std::string how = a.common.soil().name + ", normal stress " + a.common.normal_stress;
-    chart_wheel(a, "soil_wheel_sinkage.svg", "Sinkage of a wheel: " + how, "sinkage [mm]",
-                {sinkage[0], sinkage[1]});
-    chart_wheel(a, "soil_wheel_pull.svg", "Drawbar pull of a wheel: " + how, "drawbar pull [N]",
-                {pull[0], pull[1]});
+    WheelSweep sweep;
+    sweep.prefix = a.limit_only ? "limit" : "wheel";
+    sweep.subject = a.common.soil().name + ", normal stress " + a.common.normal_stress;
+    if (a.limit_only) sweep.subtitle = wheel_text(a.test.wheel);
+    sweep.curves = curves;
+    sweep.with_side_force = sideways;
+    write_charts(a, wheel_charts(sweep));
   }
-  return finish(a.common, "wheel", wheel_words(a), "limit", lines);
+  return a.limit_only ? finish(a.common, "wheel_limit", wheel_words(a), "", lines)
+                      : finish(a.common, "wheel", wheel_words(a), "limit", lines);
 }
 
 }  // namespace
@@ -200,8 +258,12 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
              {-360.0, 360.0});
   add_number(*command, "--passes", a->test.passes, "Number of passes over the same track",
              {1, 100});
-  add_number(*command, "--slip-angle", a->slip_angle_deg,
-             "Angle of travel to the left of the wheel's plane [deg]", {-80.0, 80.0});
+  add_number(*command, "--slip-angle", a->slip_angles_deg,
+             "Angle of travel to the left of the wheel's plane [deg]; several with commas between "
+             "them",
+             {-80.0, 80.0});
+  CLI::Option* limit_only = command->add_flag(
+      "--limit-only", a->limit_only, "Compute the limit alone, in an instant; roll no wheel");
   add_number(*command, "--rim-friction", a->rim_friction_deg,
              "Angle of friction between rim and soil [deg]; 90: rough, soil shears on soil",
              {0.0, 90.0});
@@ -212,7 +274,7 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
           ->add_option("--measured", a->measured,
                        "Compare with measurements: a CSV file (default: Ding et al. 2011)")
           ->type_name("FILE");
-  measured->expected(0, 1);
+  measured->expected(0, 1)->excludes(limit_only);
   command->add_option("--case", a->cases, "Use the rows whose case begins with this text")
       ->capture_default_str()
       ->type_name("CASE");

@@ -41,5 +41,32 @@ TEST(SoilMeasurementsTest, SayWhatIsWrongAndWhere) {
             6U);
 }
 
+TEST(SoilMeasurementsTest, ErrorsAreColumnsThatMayBeThere) {
+  const TempFolder folder;
+  const std::string file = (folder.path() / "rows.csv").string();
+  std::ofstream(file) << "case,wheel_radius_m,wheel_width_m,load_n,slip,drawbar_pull_n,"
+                         "drawbar_pull_error_n,side_force_n,side_force_error_n,sinkage_m,"
+                         "sinkage_error_m\n"
+                         "a,0.1,0.05,20,0.2,3,0.5,2,0.25,0.01,0.001\n"
+                         "b,0.1,0.05,20,0.2,3,,2,,0.01,\n";
+  const std::vector<MeasuredWheel> wheels = read_soil_measurements(file).wheels;
+  ASSERT_EQ(wheels.size(), 2U);
+  EXPECT_EQ(wheels[0].drawbar_pull_error_n, 0.5);
+  EXPECT_EQ(wheels[0].side_force_error_n, 0.25);
+  EXPECT_EQ(wheels[0].sinkage_error_m, 0.001);
+  EXPECT_EQ(wheels[1].drawbar_pull_error_n, std::nullopt);
+  EXPECT_EQ(wheels[1].side_force_error_n, std::nullopt);
+  EXPECT_EQ(wheels[1].sinkage_error_m, std::nullopt);
+  // As readable as the figure that was digitised.
+  const std::string ding = std::string(kDataFolder) + "/soil/single_wheel_ding2011.csv";
+  for (const MeasuredWheel& wheel : read_soil_measurements(ding).wheels) {
+    EXPECT_EQ(wheel.drawbar_pull_error_n, 0.5) << wheel.name;
+    EXPECT_EQ(wheel.sinkage_error_m, 0.0005) << wheel.name;
+  }
+  std::ofstream(file) << "case,wheel_radius_m,wheel_width_m,load_n,slip,sinkage_error_m\n"
+                         "a,0.1,0.05,20,0.2,-0.001\n";
+  EXPECT_THROW(read_soil_measurements(file), InputError);
+}
+
 }  // namespace
 }  // namespace screed

@@ -1,0 +1,71 @@
+// `screed soil wheel` as a user meets it: limits of several slip angles, measurements of one's own.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+nlohmann::json results_of(const std::string& out) {
+  return nlohmann::json::parse(out).at("results");
+}
+
+double value_of(const nlohmann::json& results, const std::string& where, const char* name) {
+  for (const nlohmann::json& line : results) {
+    if (line.at("where") == where && line.at("name") == name) return line.at("value").get<double>();
+  }
+  ADD_FAILURE() << "no " << name << " at " << where;
+  return 0.0;
+}
+
+TEST_F(Program, SoilWheelGivesTheLimitAlone) {
+  const Result run_ =
+      run("soil wheel --limit-only --slip-angle 0,30 --slip -0.5,0.2 --charts out --json");
+  ASSERT_EQ(run_.exit_code, 0) << run_.err;
+  EXPECT_EQ(nlohmann::json::parse(run_.out).at("test"), "wheel_limit");
+  const nlohmann::json limits = results_of(run_.out);
+  for (const char* chart : {"sinkage", "pull", "side_force"}) {
+    const std::string svg = read(root_ / "out" / (std::string("soil_limit_") + chart + ".svg"));
+    EXPECT_NE(svg.find(">limit, 0 deg<"), std::string::npos) << chart;
+    EXPECT_NE(svg.find(">limit, 30 deg<"), std::string::npos) << chart;
+    EXPECT_NE(svg.find(">wheel r 30 mm, width 25 mm, load 3 N<"), std::string::npos) << chart;
+  }
+  // The limit that stands beside the engine.
+  const Result engine = run("soil wheel --slip-angle 30 --slip 0.2 --duration 0.5 --json");
+  ASSERT_EQ(engine.exit_code, 0) << engine.err;
+  int compared = 0;
+  for (const nlohmann::json& line : results_of(engine.out)) {
+    if (!line.contains("limit") || line.at("name") == "volume_error") continue;
+    const std::string name = line.at("name").get<std::string>();
+    EXPECT_EQ(line.at("where"), "slip 0.2") << "one slip angle is not named";
+    EXPECT_EQ(line.at("limit").get<double>(), value_of(limits, "slip 0.2, angle 30", name.c_str()))
+        << name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 5);
+  EXPECT_LT(value_of(limits, "slip -0.5, angle 0", "drawbar_pull_n"), 0.0);
+}
+
+TEST_F(Program, SoilWheelDrawsMeasurementsWithAndWithoutErrors) {
+  const std::string head = "case,wheel_radius_m,wheel_width_m,load_n,slip,drawbar_pull_n";
+  write("plain.csv", head + "\nmine_a,0.03,0.025,3,0.2,-0.2\n");
+  write("errors.csv", head + ",drawbar_pull_error_n\nmine_a,0.03,0.025,3,0.2,-0.2,0.1\n");
+  const auto svg = [&](const std::string& file) {
+    const Result run_ =
+        run("soil wheel --duration 0.5 --case mine --charts out --measured " + file);
+    EXPECT_EQ(run_.exit_code, 0) << run_.err;
+    return read(root_ / "out" / "soil_measured_mine_pull.svg");
+  };
+  EXPECT_NE(svg("plain.csv").find(">measured<"), std::string::npos);
+  EXPECT_NE(svg("errors.csv").find(">measured, with the stated error<"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(root_ / "out" / "soil_measured_mine_sinkage.svg"))
+      << "it was not measured";
+  const Result both = run("soil wheel --limit-only --measured plain.csv --case mine");
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(both.err.find("--limit-only"), std::string::npos) << both.err;
+}
+
+}  // namespace
+}  // namespace screed::testing
