@@ -86,6 +86,7 @@ struct alignas(64) CellBlock {
   double pressed[kLanes];   ///< plastic sinkage that this contact requires, earlier ones included
   double pressure[kLanes];  ///< mean, at that sinkage, before the body moves in this step
   double rate[kLanes];      ///< of that pressure with further sinking, Pa/m
+  double unload[kLanes];    ///< of that pressure when the body rises, Pa/m
   double slope_x[kLanes];   ///< horizontal force of the normal stress, over its vertical force
   double slope_y[kLanes];
   double tilt_x[kLanes];  ///< the same of the surface alone, mean over the touching part
@@ -142,7 +143,7 @@ struct CellLaw {
   StressShape stress;
   Triple sine;             ///< times a place from the wheel's centre: sine of its angle
   double per_upright = 1;  ///< 1 / cosine of the path's slope
-  double rebound = 0.0;    ///< share of what a wheel presses down that comes up behind it
+  double rebound = 0.0;    ///< share of what a wheel presses down that comes up with it
   double half_square;      ///< half the side of the square that a sample point stands for
   double cell_area;
   double edge;     ///< of a cell

@@ -17,6 +17,8 @@
 //   now     = loaded - E (height - passed)  unloading: it carries when > 0. Below a wheel whose
 //                                           stress is shaped: loaded
 //   rates   = n virgin / bearing            where it yields, else E: d loaded / d sinking
+//   unload  = E; below a wheel whose stress is shaped, whose soil comes up with it by
+//             rise = rebound / (1 - rebound) (pressed - old_sinkage):   now / (rise + now / E)
 // A cell has the means of these, each point weighed with its `part` of the body above it; a centre
 // of pressure, from points weighed with their pressure; and, for radial stress, the moment of the
 // normal's horizontal parts (slope_x, slope_y) about the footprint's centre.
@@ -123,7 +125,8 @@ SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elast
 }
 
 /// The wheel's entry angle is the mean of what its sample points give: one at the angle theta whose
-/// depth has grown by d has entered at acos(cos max(theta, 0) - d / r).
+/// depth has grown by d has entered at acos(cos max(theta, 0) - d / r). What lies free behind the
+/// wheel is its rut, come up again, and tells nothing.
 WheelStress SoilBed::wheel_stress(const FootprintContact& contact, Law& law) {
   const ContactMemory& memory = *contact.memory;
   if (memory.path.travel_m == 0.0) return {};

@@ -8,7 +8,8 @@
 // Yielding. A body that goes down by `sinking` meets the lower of two lines, unloading and
 // reloading along E and Bekker's curve (Bekker 1969; soil_cells.cpp), linear over a step. What E
 // does not explain is plastic:
-//   along_elastic = cell.pressure + E (pressed - sunk + sinking (1 - rebound) share)
+//   beyond        = pressed - sunk + sinking (1 - rebound) share
+//   along_elastic = cell.pressure + (beyond < 0 ? unload : E) beyond
 //   pressure      = max(0, min(along_elastic, cell.pressure + rate sinking))
 //   units         = (along_elastic - pressure) / E                  in units of height
 //   damped        = pressure + R max(0, -v_z) share

@@ -149,8 +149,7 @@ TEST(SoilWheelLimitTest, RefusesALoadThatSinksToTheAxle) {
 }
 
 // Required: sinkage 2 % at 5 mm, 1 % at 2.5 mm; drawbar pull 0.005 of the load. With the greatest
-// stress below the axle, ahead of it, and with ground that comes up behind the wheel, where the
-// last misses the finer grid's bounds by a little: 1.3 % and 0.0055 of the load.
+// stress below the axle, ahead of it, and with ground that comes up behind the wheel.
 TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
   const SoilParameters soils[] = {soil_preset("viper"), viper_with(0.18, 0.32, 0.0),
                                   viper_with(0.3, 0.2, 0.5)};
@@ -159,8 +158,7 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
       for (const double slip : kSlips) {
         for (const SoilParameters& soil : soils) {
           if (testing::kSanitized && slip != 0.2) continue;
-          const bool rises = soil.exit_angle > 0.0;
-          const double sinkage_error = cell == 0.005 ? 0.02 : rises ? 0.015 : 0.01;
+          const double sinkage_error = cell == 0.005 ? 0.02 : 0.01;
           WheelTest test = wheel_on("viper", slip, stress, cell);
           test.soil = soil;
           const WheelReaction limit = wheel_limit(test.wheel, test.soil, stress);
@@ -170,17 +168,35 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
                                     ", cell " + std::to_string(cell) + ", c1 " +
                                     std::to_string(soil.front_angle);
           EXPECT_NEAR(pass.sinkage_m / limit.sinkage_m, 1.0, sinkage_error) << where;
-          EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n,
-                      (rises ? 0.006 : 0.005) * test.wheel.load_n)
+          EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n, 0.005 * test.wheel.load_n)
               << where;
           EXPECT_NEAR(pass.torque_nm, limit.torque_nm, 0.01 * test.wheel.load_n * 0.03) << where;
           EXPECT_NEAR(pass.load_n, test.wheel.load_n, 0.01 * test.wheel.load_n) << where;
-          EXPECT_NEAR(pass.rut_m / limit.rut_m, 1.0, rises ? 0.02 : 0.01) << where;
+          EXPECT_NEAR(pass.rut_m / limit.rut_m, 1.0, 0.01) << where;
           EXPECT_EQ(result.balance.error(), 0);
         }
       }
     }
   }
+}
+
+// Required as above. Most of the stress is far ahead of the axle: it hangs on the angle at which the
+// wheel enters, and on soil that follows it up behind. It settles after half a metre.
+TEST(SoilWheelTest, ALockedWheelIsThatOfTheLimit) {
+  WheelTest test;
+  test.soil = soil_preset("cmu_2022");
+  test.wheel.radius_m = 0.058;
+  test.wheel.width_m = 0.05;
+  test.wheel.friction = 0.397;
+  test.wheel.slip = -1.0;
+  test.mass_kg = 2.0;
+  test.speed_m_per_s = 0.05;
+  test.duration_s = 24.0;
+  const WheelReaction limit = wheel_limit(test.wheel, test.soil, NormalStress::kRadial);
+  const WheelPass pass = run_wheel(test).passes[0];
+  EXPECT_NEAR(pass.sinkage_m / limit.sinkage_m, 1.0, 0.02);
+  EXPECT_NEAR(pass.drawbar_pull_n, limit.drawbar_pull_n, 0.01 * test.wheel.load_n);
+  EXPECT_LT(pass.ripple_m, 0.0002);
 }
 
 // Slip angles, a smooth rim, and a soil with a density: side force and pull within 0.01 of the
