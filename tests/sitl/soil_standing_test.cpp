@@ -1,9 +1,11 @@
-// A robot that nobody drives stays where it stands on a slope below the soil's friction angle,
-// whatever its heading.
+// A robot that nobody drives stays where it stands on a slope below the ground's friction angle,
+// whatever its heading: on tracks and on wheels, on soil and on particles.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "host_sim/physics/soil/soil_bed.h"
@@ -14,34 +16,96 @@ namespace screed::testing {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
+constexpr double kMaxCreep_m_per_minute = 0.001;
 
-/// How far a disarmed robot goes in `seconds`, after 5 s to settle, m a minute.
-double creep_m_per_minute(const char* preset, double slope_deg, double heading_deg,
-                          double seconds) {
-  WorldOptions options = drive_options(0.0, 0.0);
-  options.soil = soil_preset(preset);
-  options.start.attitude.heading = heading_deg * kDeg;
-  TestDrive drive(HeightField::ramp(3.0, 0.01, slope_deg), options);
+/// A slope's share of the friction angle, and the robot's heading on it, 0: up.
+constexpr std::array<std::pair<double, double>, 4> kCases = {
+    {{0.35, 60.0}, {0.7, 0.0}, {0.7, 45.0}, {0.7, 90.0}}};
+
+/// Displacement of a robot in `seconds`, after 5 s to settle, m a minute. `settled_m` receives how
+/// far from its start it has come to rest, m.
+double creep_m_per_minute(HeightField slope, const WorldOptions& options, double seconds,
+                          double* settled_m = nullptr) {
+  TestDrive drive(std::move(slope), options);
   drive.run(5.0);
-  const Eigen::Vector3d before = drive.world.vehicle().chassis().pose.translation();
+  const Eigen::Vector3d before = drive.position();
+  if (settled_m != nullptr) *settled_m = before.head<2>().norm();
   drive.run(seconds);
-  const Eigen::Vector3d after = drive.world.vehicle().chassis().pose.translation();
-  return (after - before).norm() * 60.0 / seconds;
+  return (drive.position() - before).norm() * 60.0 / seconds;
 }
 
+/// A robot laid on a slope that rises to the east, with this heading.
+WorldOptions standing_on(double slope_deg, double heading_deg) {
+  WorldOptions options = drive_options(0.0, 0.0);
+  const double slope = slope_deg * kDeg;
+  const double heading = heading_deg * kDeg;
+  options.start.attitude.heading = heading;
+  options.start.attitude.pitch = std::atan(std::cos(heading) * std::tan(slope));
+  options.start.attitude.roll = -std::asin(std::sin(heading) * std::sin(slope));
+  return options;
+}
+
+// Put down level: it falls onto its tracks.
 TEST(SoilStanding, StaysOnSlopesBelowTheFrictionAngle) {
   for (const SoilPreset& preset : soil_presets()) {
-    for (const auto& [share, heading_deg] :
-         {std::pair{0.35, 60.0}, {0.7, 0.0}, {0.7, 45.0}, {0.7, 90.0}}) {
+    for (const auto& [share, heading_deg] : kCases) {
       if (kSanitized && heading_deg != 45.0) continue;
+      WorldOptions options = drive_options(0.0, 0.0);
+      options.soil = preset.soil;
+      options.start.attitude.heading = heading_deg * kDeg;
       const double slope_deg = share * preset.soil.friction_deg;
-      const double creep =
-          creep_m_per_minute(preset.soil.name.c_str(), slope_deg, heading_deg, 5.0);
-      EXPECT_LT(creep, 0.001) << preset.soil.name << ", slope " << slope_deg << ", heading "
-                              << heading_deg;
+      EXPECT_LT(creep_m_per_minute(HeightField::ramp(3.0, 0.01, slope_deg), options, 5.0),
+                kMaxCreep_m_per_minute)
+          << preset.soil.name << ", slope " << slope_deg << ", heading " << heading_deg;
     }
   }
 }
+
+// The dent of a wheel is as long as a cell of 10 mm: wheels need cells of 5 mm.
+TEST(SoilStanding, StaysOnItsWheels) {
+  for (const SoilPreset& preset : soil_presets()) {
+    for (const auto& [share, heading_deg] : kCases) {
+      if (kSanitized && heading_deg != 45.0) continue;
+      const double slope_deg = share * preset.soil.friction_deg;
+      WorldOptions options = standing_on(slope_deg, heading_deg);
+      options.vehicle.tracks = false;
+      options.soil = preset.soil;
+      EXPECT_LT(creep_m_per_minute(HeightField::ramp(2.0, 0.005, slope_deg), options, 10.0),
+                kMaxCreep_m_per_minute)
+          << preset.soil.name << ", slope " << slope_deg << ", heading " << heading_deg;
+    }
+  }
+}
+
+// `screed soil match`: what a block meets on particles is at least this.
+constexpr double kParticleFriction_deg = 21.0;
+
+HeightField particle_slope(double slope_deg) {
+  const double rise = std::tan(slope_deg * kDeg);
+  return HeightField::from_function(
+      11, 11, 0.1, false, [rise](double x, double /*y*/) { return 0.08 + (x + 0.5) * rise; });
+}
+
+class StandingOnParticles : public ::testing::TestWithParam<bool> {};
+
+TEST_P(StandingOnParticles, Stays) {
+  for (const auto& [share, heading_deg] :
+       {std::pair{0.35, 0.0}, {0.35, 90.0}, {0.7, 0.0}, {0.7, 45.0}, {0.7, 90.0}}) {
+    if (kSanitized && heading_deg != 45.0) continue;
+    const double slope_deg = share * kParticleFriction_deg;
+    WorldOptions options = standing_on(slope_deg, heading_deg);
+    options.vehicle.tracks = GetParam();
+    options.particles.emplace();
+    SCOPED_TRACE("slope " + std::to_string(slope_deg) + ", heading " + std::to_string(heading_deg));
+    double settled_m = 0.0;
+    EXPECT_LT(creep_m_per_minute(particle_slope(slope_deg), options, 10.0, &settled_m),
+              kMaxCreep_m_per_minute);
+    EXPECT_LT(settled_m, 0.05);  // not held by the wall at the lower end
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Gear, StandingOnParticles, ::testing::Bool(),
+                         [](const auto& gear) { return gear.param ? "Tracks" : "Wheels"; });
 
 }  // namespace
 }  // namespace screed::testing
