@@ -392,7 +392,7 @@ void SoilBed::lay_out_cells() {
       const GridPlace& place = places_[begin * kLanes + i];
       const size_t lane = i % kLanes;
       CellBlock& block = cells_[begin + i / kLanes];
-      const Height reference = flow_.reference(place.node);
+      const Height sunk = flow_.sunk(place.node);
       const CellHistory& history = histories_[place.node];
       block.x[lane] = candidate_points_.x[place.candidate];
       block.y[lane] = candidate_points_.y[place.candidate];
@@ -401,8 +401,8 @@ void SoilBed::lay_out_cells() {
       block.spread_x[lane] = mirrors ? -1.0 : spreads;
       block.spread_y[lane] = spreads;
       block.active[lane] = i < candidates.size() ? 1.0 : 0.0;
-      block.reference[lane] = reference * kHeightUnit_m;
-      block.sunk[lane] = (reference - flow_.height(place.node)) * kHeightUnit_m;
+      block.reference[lane] = (candidate_heights_[place.candidate] + sunk) * kHeightUnit_m;
+      block.sunk[lane] = sunk * kHeightUnit_m;
       block.fresh[lane] = history.is_contact_new(step_) ? 1.0 : 0.0;
       block.covered_before[lane] = history.covered();
       block.old_sinkage[lane] = history.old_sinkage();
