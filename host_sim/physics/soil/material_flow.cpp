@@ -288,11 +288,16 @@ bool MaterialFlow::may_slide(size_t node) const {
 int64_t MaterialFlow::slide_around(const GridNode& place) {
   int64_t moves = 0;
   Height here = height(place.node);
+  const bool inside = (flags_[place.node] & kBorder) == 0;
+  const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
   for (int k = 0; k < 8; ++k) {
-    GridNode beside{0, place.ix + kNeighbours[k].dx, place.iy + kNeighbours[k].dy};
-    const int64_t node = node_at(beside.ix, beside.iy);
-    if (node < 0) continue;
-    beside.node = static_cast<size_t>(node);
+    const auto [dx, dy] = kNeighbours[k];
+    GridNode beside{place.node + static_cast<size_t>(dy * nx + dx), place.ix + dx, place.iy + dy};
+    if (!inside) {
+      const int64_t node = node_at(beside.ix, beside.iy);
+      if (node < 0) continue;
+      beside.node = static_cast<size_t>(node);
+    }
     const Height difference = here - height(beside.node);
     const Height excess = std::abs(difference) - (k < 4 ? limit_straight_ : limit_diagonal_);
     if (excess <= 1) continue;  // half of 1 is 0 units: nothing to move
