@@ -18,8 +18,8 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "d1986b1a9e84a20f6f38915bfd4fc4cb"},
-    {"soft_bed", "--hal surrogate --duration 10", "868da3127200af35611a1f8d8c1e44d0"},
+    {"soft_bed", "--duration 6", "130d3178b6f994daf55ec5cac43d1012"},
+    {"soft_bed", "--hal surrogate --duration 10", "bc6d79dbafbcea4c30d7b6aceb75b0ea"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
@@ -47,7 +47,7 @@ TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
       "--left 0.1 --right 0.2 --drag-depth 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["heights_hash"].get<std::string>(),
-            "370d15f1eb1067bc821d1e3633a69774");
+            "6d26d57d7a6989a0d8ea6fb127ada2a4");
 }
 
 }  // namespace

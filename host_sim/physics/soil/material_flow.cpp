@@ -2,9 +2,11 @@
 #include "host_sim/physics/soil/material_flow.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -28,14 +30,14 @@ MaterialFlow::MaterialFlow(HeightField surface, double repose_deg) : surface_(st
   limit_straight_ = static_cast<Height>(std::floor(slope));
   limit_diagonal_ = static_cast<Height>(std::floor(slope * std::numbers::sqrt2));
   const size_t count = static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny());
-  reference_.resize(count);
-  for (size_t node = 0; node < count; ++node) reference_[node] = height(node);
+  sunk_.assign(count, 0);
   flags_.assign(count, 0);
   queue_.resize(count);
   const int nx = surface_.nx();
   const int ny = surface_.ny();
   for (int ix = 0; ix < nx; ++ix) flags_[index(ix, 0)] = flags_[index(ix, ny - 1)] = kBorder;
   for (int iy = 0; iy < ny; ++iy) flags_[index(0, iy)] = flags_[index(nx - 1, iy)] = kBorder;
+  flags_[index(nx - 2, ny - 2)] = kBorder;
 }
 
 void MaterialFlow::enqueue_all() {
@@ -44,17 +46,13 @@ void MaterialFlow::enqueue_all() {
   }
 }
 
-void MaterialFlow::change(size_t node, Height units) {
-  change({node, column(node), row(node)}, units);
-}
-
 void MaterialFlow::change(const GridNode& place, Height units) {
+  const Height changed = height(place.node) + units;
   if (on_field(place.ix, place.iy)) {  // quicker than finding column and row by division
-    surface_.set_node(place.ix, place.iy, height(place.node) + units);
+    surface_.set_node(place.ix, place.iy, changed);
   } else {
-    set_height(place.node, height(place.node) + units);
+    set_height(place.node, changed);
   }
-  reference_[place.node] += units;
   enqueue(place.node);
 }
 
@@ -90,11 +88,6 @@ void MaterialFlow::compact_sunk(int64_t units) {
     units -= here;
     in_transit_ -= here;
   }
-}
-
-void MaterialFlow::move(size_t from, size_t to, Height units) {
-  change(from, -units);
-  change(to, units);
 }
 
 int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacted) {
@@ -155,11 +148,12 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
     if (std::abs(along) < patch.half_length && std::abs(across) < patch.half_width) continue;
     const double x = patch.centre.x() + along * patch.forward.x() - across * patch.forward.y();
     const double y = patch.centre.y() + along * patch.forward.y() + across * patch.forward.x();
-    const int64_t node =
-        node_at(static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
-                static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5)));
+    GridNode place{0, static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
+                   static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5))};
+    const int64_t node = node_at(place.ix, place.iy);
     if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
-    deposit_nodes_.push_back(static_cast<size_t>(node));
+    place.node = static_cast<size_t>(node);
+    deposit_nodes_.push_back(place);
   }
   if (deposit_nodes_.empty()) return 0;
   const auto count = static_cast<int64_t>(deposit_nodes_.size());
@@ -266,17 +260,55 @@ void MaterialFlow::release_held() {
   }
 }
 
-/// Whether a slope beside a node inside the field is too steep.
+/// Whether a slope beside a node that is not at the border is too steep.
 bool MaterialFlow::may_slide(size_t node) const {
-  const Height* here = surface_.heights() + node;
+  // Four nodes of a row, of which the last is not looked at.
+  using Four __attribute__((vector_size(16))) = Height;
+  constexpr Height kNever = std::numeric_limits<Height>::max();
+  const Height* const here = surface_.heights() + node;
   const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
-  const auto steepness = [&](std::ptrdiff_t offset) { return std::abs(*here - here[offset]); };
-  const Height straight =
-      std::max(std::max(steepness(1), steepness(-1)), std::max(steepness(nx), steepness(-nx)));
-  const Height diagonal = std::max(std::max(steepness(nx + 1), steepness(nx - 1)),
-                                   std::max(steepness(-nx + 1), steepness(-nx - 1)));
   // Half of 1 is 0 units: nothing to move.
-  return straight - limit_straight_ > 1 || diagonal - limit_diagonal_ > 1;
+  const Height straight = limit_straight_ + 1;
+  const Height diagonal = limit_diagonal_ + 1;
+  const auto is_steep = [&](std::ptrdiff_t row, const Four& limits) {
+    Four beside;
+    std::memcpy(&beside, here + row - 1, sizeof beside);
+    const Four fall = *here - beside;
+    return (fall > limits) | (-fall > limits);
+  };
+  const Four far_rows = {diagonal, straight, diagonal, kNever};
+  const Four steep = is_steep(-nx, far_rows) | is_steep(nx, far_rows) |
+                     is_steep(0, Four{straight, straight, straight, kNever});
+  std::array<uint64_t, 2> halves{};
+  std::memcpy(halves.data(), &steep, sizeof steep);
+  return (halves[0] | halves[1]) != 0;
+}
+
+/// Slides what is too steep beside a node, neighbour by neighbour; returns the moves made.
+int64_t MaterialFlow::slide_around(const GridNode& place) {
+  int64_t moves = 0;
+  Height here = height(place.node);
+  const bool inside = (flags_[place.node] & kBorder) == 0;
+  const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
+  for (int k = 0; k < 8; ++k) {
+    const auto [dx, dy] = kNeighbours[k];
+    GridNode beside{place.node + static_cast<size_t>(dy * nx + dx), place.ix + dx, place.iy + dy};
+    if (!inside) {
+      const int64_t node = node_at(beside.ix, beside.iy);
+      if (node < 0) continue;
+      beside.node = static_cast<size_t>(node);
+    }
+    const Height difference = here - height(beside.node);
+    const Height excess = std::abs(difference) - (k < 4 ? limit_straight_ : limit_diagonal_);
+    if (excess <= 1) continue;  // half of 1 is 0 units: nothing to move
+    if ((flags_[beside.node] & kCovered) != 0) continue;
+    const Height units = difference > 0 ? excess / 2 : -(excess / 2);
+    here -= units;
+    change(beside, units);
+    ++moves;
+  }
+  if (moves > 0) change(place, here - height(place.node));
+  return moves;
 }
 
 int64_t MaterialFlow::slide(int64_t max_moves) {
@@ -290,25 +322,9 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
     flags &= static_cast<uint8_t>(~kQueued);
     if ((flags & kCovered) != 0) continue;
     if ((flags & kBorder) == 0 && !may_slide(node)) continue;
-    const int x = column(node);
-    const int y = row(node);
-    for (int k = 0; k < 8; ++k) {
-      const int64_t beside = node_at(x + kNeighbours[k].dx, y + kNeighbours[k].dy);
-      if (beside < 0 || (flags_[static_cast<size_t>(beside)] & kCovered) != 0) continue;
-      const auto other = static_cast<size_t>(beside);
-      const Height limit = k < 4 ? limit_straight_ : limit_diagonal_;
-      const Height difference = height(node) - height(other);
-      const Height excess = (difference < 0 ? -difference : difference) - limit;
-      if (excess <= 1) continue;  // half of 1 is 0 units: nothing to move
-      const Height units = excess / 2;
-      if (difference > 0) {
-        move(node, other, units);
-      } else {
-        move(other, node, units);
-      }
-      ++moves;
-    }
+    moves += slide_around({node, column(node), row(node)});
   }
+  if (queue_size_ == 0) queue_begin_ = 0;  // in memory that was used lately
   return moves;
 }
 

@@ -25,7 +25,7 @@ class MaterialFlow {
   MaterialFlow(HeightField surface, double repose_deg);
 
   const HeightField& surface() const { return surface_; }
-  size_t nodes() const { return reference_.size(); }
+  size_t nodes() const { return sunk_.size(); }
   size_t index(int ix, int iy) const {
     return static_cast<size_t>(iy) * static_cast<size_t>(surface_.nx()) + static_cast<size_t>(ix);
   }
@@ -55,8 +55,10 @@ class MaterialFlow {
   }
 
   Height height(size_t node) const { return surface_.node(node); }
+  /// How far a node has been pressed down, units: what lies on it moves it up and down as it is.
+  Height sunk(size_t node) const { return sunk_[node]; }
   /// Level from which sinkage counts.
-  Height reference(size_t node) const { return reference_[node]; }
+  Height reference(size_t node) const { return height(node) + sunk_[node]; }
 
   /// Begins a footprint that moves at this velocity, m/s (below 1 mm/s it stands and leaves no rut
   /// behind it). Nodes passed to cover() until the next call belong to it. Returns its number, for
@@ -78,6 +80,7 @@ class MaterialFlow {
     } else {
       set_height(node, lower);
     }
+    sunk_[node] += units;
     in_transit_ += units;
     footprints_[footprint].units += units;
     enqueue(node);
@@ -129,10 +132,9 @@ class MaterialFlow {
     int ix;
     int iy;
   };
-  void change(size_t node, Height units);
+  void change(size_t node, Height units) { change({node, column(node), row(node)}, units); }
+  /// Lays so many units on a node, or takes them: the reference moves with the material.
   void change(const GridNode& place, Height units);
-  /// Moves `units` from one node to another; the reference moves with the material.
-  void move(size_t from, size_t to, Height units);
   /// A covered node comes into the queue when the body has left it.
   void enqueue(size_t node) {
     if ((flags_[node] & (kQueued | kCovered | kHeld)) == 0) push(node);
@@ -141,7 +143,7 @@ class MaterialFlow {
     flags_[node] |= kQueued;
     size_t end = queue_begin_ + queue_size_;
     if (end >= queue_.size()) end -= queue_.size();
-    queue_[end] = node;
+    queue_[end] = static_cast<uint32_t>(node);
     ++queue_size_;
   }
 
@@ -149,7 +151,7 @@ class MaterialFlow {
     kCovered = 1,  // in this step
     kHeld = 2,     // in the last step
     kQueued = 4,
-    kBorder = 8,  // its neighbours are not all beside it in memory
+    kBorder = 8,  // its neighbours are not all beside it in memory, or nothing follows them there
   };
   struct ActiveFootprint {  // a footprint in this step
     size_t begin;           // of its nodes among covered_list_
@@ -165,10 +167,11 @@ class MaterialFlow {
   int64_t spread(const ActiveFootprint& footprint, size_t end);
   void release_held();
   bool may_slide(size_t node) const;
+  int64_t slide_around(const GridNode& place);
   int64_t spread_dug(const Dug& dug);
 
   HeightField surface_;
-  std::vector<Height> reference_;
+  std::vector<Height> sunk_;
   Height limit_straight_;  // greatest stable difference between neighbours
   Height limit_diagonal_;
   int64_t in_transit_ = 0;
@@ -185,10 +188,10 @@ class MaterialFlow {
   std::vector<Sheared> sheared_;  // by the current footprint
   std::vector<Dug> dug_;
   uint32_t sequence_index_ = 0;  // of the next point to try for what was dug, minus 1
-  std::vector<size_t> deposit_nodes_;
+  std::vector<GridNode> deposit_nodes_;
   std::vector<GridNode> ring_;
   std::vector<uint64_t> below_bits_;  // a footprint's nodes seen from above, a bit each
-  std::vector<size_t> queue_;         // ring buffer of nodes whose slopes may be too steep
+  std::vector<uint32_t> queue_;       // ring buffer of nodes whose slopes may be too steep
   size_t queue_begin_ = 0;
   size_t queue_size_ = 0;
 };

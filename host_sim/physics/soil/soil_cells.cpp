@@ -388,25 +388,35 @@ void SoilBed::lay_out_cells() {
     std::fill(&places_[begin * kLanes] + candidates.size(),
               &places_[begin * kLanes] + blocks * kLanes, candidates.back());
     const double spreads = lattice != kCentre ? 1.0 : 0.0;
-    for (size_t i = 0; i < blocks * kLanes; ++i) {
-      const GridPlace& place = places_[begin * kLanes + i];
-      const size_t lane = i % kLanes;
-      CellBlock& block = cells_[begin + i / kLanes];
-      const Height reference = flow_.reference(place.node);
-      const CellHistory& history = histories_[place.node];
-      block.x[lane] = candidate_points_.x[place.candidate];
-      block.y[lane] = candidate_points_.y[place.candidate];
-      // Every other cell mirrors its points.
-      const bool mirrors = lattice == kOnePerRowAndColumn && ((place.ix + place.iy) & 1) != 0;
-      block.spread_x[lane] = mirrors ? -1.0 : spreads;
-      block.spread_y[lane] = spreads;
-      block.active[lane] = i < candidates.size() ? 1.0 : 0.0;
-      block.reference[lane] = reference * kHeightUnit_m;
-      block.sunk[lane] = (reference - flow_.height(place.node)) * kHeightUnit_m;
-      block.fresh[lane] = history.is_contact_new(step_) ? 1.0 : 0.0;
-      block.covered_before[lane] = history.covered();
-      block.old_sinkage[lane] = history.old_sinkage();
-      block.beside[lane] = history.beside();
+    const GridPlace* places = &places_[begin * kLanes];
+    size_t left = candidates.size();
+    for (size_t b = begin; b < blocks_; ++b, places += kLanes) {
+      CellBlock& block = cells_[b];
+      Height level[kLanes];
+      Height sunk[kLanes];
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        const GridPlace& place = places[lane];
+        const CellHistory& history = histories_[place.node];
+        sunk[lane] = flow_.sunk(place.node);
+        level[lane] = candidate_heights_[place.candidate] + sunk[lane];
+        block.x[lane] = candidate_points_.x[place.candidate];
+        block.y[lane] = candidate_points_.y[place.candidate];
+        block.fresh[lane] = history.is_contact_new(step_) ? 1.0 : 0.0;
+        block.covered_before[lane] = history.covered();
+        block.old_sinkage[lane] = history.old_sinkage();
+        block.beside[lane] = history.beside();
+      }
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        block.reference[lane] = level[lane] * kHeightUnit_m;
+        block.sunk[lane] = sunk[lane] * kHeightUnit_m;
+        block.spread_x[lane] = block.spread_y[lane] = spreads;
+        block.active[lane] = lane < left ? 1.0 : 0.0;
+      }
+      left -= std::min(left, kLanes);
+      if (lattice != kOnePerRowAndColumn) continue;
+      for (size_t lane = 0; lane < kLanes; ++lane) {  // every other cell mirrors its points
+        if (((places[lane].ix + places[lane].iy) & 1) != 0) block.spread_x[lane] = -1.0;
+      }
     }
   }
   sample_points_.clear(first_point);

@@ -152,23 +152,24 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
 /// Books what the cells of a footprint have sunk, and that it stands there: nothing slides onto or
 /// off them.
 void SoilBed::settle(const Range& range, size_t footprint, bool slips) {
-  for (size_t i = range.begin * kLanes; i < range.end * kLanes; ++i) {
-    const size_t lane = i % kLanes;
-    const CellBlock& block = cells_[i / kLanes];
-    if (!(block.active[lane] > 0.0)) continue;
-    const GridPlace& place = places_[i];
-    flow_.cover(place.node, place.ix, place.iy);
-    const bool bears = block.bears[lane] > 0.0;
-    CellHistory& history = histories_[place.node];
-    history.keep(block.covered[lane], {block.old_sinkage[lane], block.beside[lane]});
-    if (!bears) {
-      history.release();
-      continue;
+  const GridPlace* places = places_.data() + range.begin * kLanes;
+  for (size_t b = range.begin; b < range.end; ++b, places += kLanes) {
+    const CellBlock& block = cells_[b];
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      if (!(block.active[lane] > 0.0)) continue;
+      const GridPlace& place = places[lane];
+      flow_.cover(place.node, place.ix, place.iy);
+      CellHistory& history = histories_[place.node];
+      history.keep(block.covered[lane], {block.old_sinkage[lane], block.beside[lane]});
+      if (!(block.bears[lane] > 0.0)) {
+        history.release();
+        continue;
+      }
+      history.touch(step_);
+      const auto units = static_cast<Height>(block.units[lane]);
+      if (units > 0) flow_.sink(footprint, place.node, place.ix, place.iy, units);
+      if (slips) flow_.shear(place.node, block.shears[lane]);
     }
-    history.touch(step_);
-    const auto units = static_cast<Height>(block.units[lane]);
-    if (units > 0) flow_.sink(footprint, place.node, place.ix, place.iy, units);
-    if (slips) flow_.shear(place.node, block.shears[lane]);
   }
 }
 

@@ -110,7 +110,9 @@ class HeightField {
   [[nodiscard]] Height node(size_t index) const { return heights_[index]; }
   void set_node(int ix, int iy, Height height) {
     heights_[index(ix, iy)] = height;
-    const size_t tile = tile_index(ix / kTileNodes, iy / kTileNodes);
+    // Divided as unsigned numbers, so by shifts.
+    const size_t tile = static_cast<unsigned>(iy) / kTileNodes * static_cast<size_t>(tiles_x_) +
+                        static_cast<unsigned>(ix) / kTileNodes;
     ++tile_revisions_[tile];
     Height& highest = tile_highest_[tile];
     if (height > highest) highest = height;

@@ -226,7 +226,8 @@ int run_wheel_command(WheelArguments a) {
   bar.clear();
   if (!a.common.charts.empty()) {
     WheelSweep sweep;
-    sweep.prefix = a.limit_only ? "limit" : "wheel";
+    const bool radial = a.test.options.normal_stress == NormalStress::kRadial;
+    sweep.prefix = a.limit_only ? "limit" : radial ? "wheel_radial" : "wheel_vertical";
     sweep.subject = a.common.soil().name + ", normal stress " + a.common.normal_stress;
     if (a.limit_only) sweep.subtitle = wheel_text(a.test.wheel);
     sweep.curves = curves;

@@ -180,8 +180,8 @@ TEST(SoilWheelTest, SinkageAndDrawbarPullAreThoseOfTheLimit) {
   }
 }
 
-// Required as above. Most of the stress is far ahead of the axle: it hangs on the angle at which the
-// wheel enters, and on soil that follows it up behind. It settles after half a metre.
+// Required as above. Most of the stress is far ahead of the axle: it hangs on the angle at which
+// the wheel enters, and on soil that follows it up behind. It settles after half a metre.
 TEST(SoilWheelTest, ALockedWheelIsThatOfTheLimit) {
   WheelTest test;
   test.soil = soil_preset("cmu_2022");
