@@ -82,8 +82,10 @@ void MaterialFlow::compact(int64_t units) {
 }
 
 void MaterialFlow::compact_sunk(int64_t units) {
+  int64_t sunk = sunk_in_step();  // of this footprint and the next ones
   for (ActiveFootprint& footprint : footprints_) {
-    const int64_t here = std::min(units, footprint.units);
+    const int64_t here = sunk > 0 ? units * footprint.units / sunk : 0;
+    sunk -= footprint.units;
     footprint.units -= here;
     units -= here;
     in_transit_ -= here;

@@ -90,7 +90,7 @@ class MaterialFlow {
   int64_t sunk_in_step() const;
   /// Takes `units` out of transit, at most all: they stay where they are, denser.
   void compact(int64_t units);
-  /// The same of what was sunk in this step, at most sunk_in_step().
+  /// The same of what was sunk in this step, at most sunk_in_step(): of each footprint its share.
   void compact_sunk(int64_t units);
   /// Deposits what is in transit, in equal parts, on the free neighbours of each footprint's nodes,
   /// those behind it left out: there lies the rut. Keeps it in transit when there are none.
