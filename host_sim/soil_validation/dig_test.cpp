@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/soil_validation/check_range.h"
 
@@ -22,13 +23,16 @@ constexpr double kBodyAboveAxles_m = 0.01;
 const Eigen::Vector3d kBody_m(0.20, 0.14, 0.06);
 
 constexpr int64_t kReportSteps = 32;
-constexpr double kSettle_s = 0.5;
+// The robot is lowered onto the ground as slowly as the plate of particle_plate.cpp: on particles
+// it would else fall onto them from the highest one.
+constexpr double kLowering_s = 1.0;
+constexpr double kLowering_m_per_s = 0.01;
 constexpr double kSlip = 0.6;
 constexpr double kWinch_s = 0.05;  // in which the winch makes good an error of speed
 // The mound: a cone's flank at 20 degrees, cut off at this height.
 constexpr double kMound_m = 0.08;
 constexpr double kMoundSlope_rad = 20.0 * std::numbers::pi / 180.0;
-constexpr double kAverage_m = 0.025;
+constexpr double kAverage_m = 0.035;
 
 double start_x(const DigTest& test) {
   return test.manoeuvre == Manoeuvre::kSpin ? 0.0 : -0.5 * test.size_m + 0.17;
@@ -52,7 +56,7 @@ void check(const DigTest& test) {
   check_range("dig", "size", test.size_m, 0.5, 5.0);
   check_range("dig", "speed", test.track_m_per_s, 0.01, 1.0);
   check_range("dig", "duration", test.duration_s, 0.1, 600.0);
-  check_range("dig", "beds", test.beds, 1, 64);
+  check_range("dig", "beds", test.beds, 1, 256);
 }
 
 class DiggingRobot {
@@ -112,6 +116,16 @@ class DiggingRobot {
     turned_ += body.omega.z() * dt;
   }
 
+  /// A step in which the robot goes down at no more than the speed of lowering.
+  void lower(Terrain& bed, double dt) {
+    step(bed, {0.0, 0.0}, 0.0, dt);
+    const double kept = 1.0 / (1.0 + dt * kGravity_m_per_s2 / kLowering_m_per_s);
+    const Eigen::Vector3d velocity = kept * to_eigen(dBodyGetLinearVel(body_));
+    const Eigen::Vector3d omega = kept * to_eigen(dBodyGetAngularVel(body_));
+    dBodySetLinearVel(body_, velocity.x(), velocity.y(), velocity.z());
+    dBodySetAngularVel(body_, omega.x(), omega.y(), omega.z());
+  }
+
   Eigen::Vector3d position() const { return to_eigen(dBodyGetPosition(body_)); }
   Eigen::Matrix3d rotation() const { return rotation_to_eigen(dBodyGetRotation(body_)); }
   double turned_rad() const { return turned_; }
@@ -132,7 +146,7 @@ class DiggingRobot {
 
 /// Means over squares, on the same nodes.
 HeightField averaged(const HeightField& field) {
-  const int half = static_cast<int>(std::lround(0.5 * kAverage_m / field.spacing_m()));
+  const int half = static_cast<int>(std::lround(0.5 * (kAverage_m / field.spacing_m() - 1.0)));
   HeightField means = field;
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
@@ -189,8 +203,8 @@ OfDrive of_drive(const TaskProgress& progress, int number, int drives) {
 DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& bed,
                 const OfDrive& progress) {
   DigResult result{averaged(bed.surface()), HeightField::flat(1.0, 0.1)};
-  const auto settling = static_cast<int>(std::lround(kSettle_s / dt));
-  for (int i = 0; i < settling; ++i) robot.step(bed, {0.0, 0.0}, 0.0, dt);
+  const auto lowering = static_cast<int>(std::lround(kLowering_s / dt));
+  for (int i = 0; i < lowering; ++i) robot.lower(bed, dt);
   const Eigen::Vector3d start = robot.position();
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
@@ -248,6 +262,16 @@ constexpr double DigResult::*kMeans[] = {
     &DigResult::end_x_m,    &DigResult::end_y_m,    &DigResult::time_s,     &DigResult::pull_n,
     &DigResult::distance_m, &DigResult::turned_rad, &DigResult::lower_by_m, &DigResult::pitch_rad};
 
+RiseMap rise_of(const DigResult& result) {
+  const HeightField& field = result.before;
+  RiseMap rise;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix)
+      rise.push_back((result.after.node(ix, iy) - field.node(ix, iy)) * kHeightUnit_m);
+  }
+  return rise;
+}
+
 template <typename Change>
 void change_nodes(HeightField& field, const Change& change) {
   for (int iy = 0; iy < field.ny(); ++iy) {
@@ -260,8 +284,10 @@ void change_nodes(HeightField& field, const Change& change) {
 DigResult dig_particles(const DigTest& test, const TaskProgress& progress) {
   check(test);
   DigResult mean = dig_one_bed(test, 0, progress);
+  std::vector<RiseMap> rises = {rise_of(mean)};
   for (int i = 1; i < test.beds; ++i) {
     const DigResult one = dig_one_bed(test, i, progress);
+    rises.push_back(rise_of(one));
     for (double DigResult::*figure : kMeans) mean.*figure += one.*figure;
     for (HeightField DigResult::*map : {&DigResult::before, &DigResult::after}) {
       change_nodes(mean.*map, [&](int x, int y) {
@@ -275,6 +301,11 @@ DigResult dig_particles(const DigTest& test, const TaskProgress& progress) {
     (mean.*map).refresh_bounds();
   }
   measure(mean);
+  const double area = mean.before.spacing_m() * mean.before.spacing_m();
+  mean.error = standard_error(rises, area);
+  mean.at_least = volume_without_noise(rises, area);
+  for (int beds = 1; beds < test.beds; beds *= 4)
+    mean.of_beds.push_back({beds, volume_of_means(rises, area, static_cast<size_t>(beds))});
   return mean;
 }
 

@@ -4,11 +4,13 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "host_sim/core/task_progress.h"
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/soil_validation/moved_volume.h"
 
 namespace screed {
 
@@ -30,24 +32,33 @@ struct DigTest {
   double track_m_per_s = 0.2;  ///< belt speed over the wheels, 0.01..1
   double duration_s = 10.0;    ///< 0.1..600; slip: as far as the bed goes, at most
   uint64_t seed = 1;           ///< of the particles' layout
-  int beds = 16;               ///< of particles, laid with this seed and the next ones; 1..64
+  int beds = 16;               ///< of particles, laid with this seed and the next ones; 1..256
+};
+
+/// Volumes of the mean of so many beds' height maps.
+struct DigOfBeds {
+  int beds;
+  MovedVolume moved;
 };
 
 /// Of the height maps before the robot was put down and after its drive, both averaged over
-/// squares of 25 mm, of particles also over the beds: otherwise single particles that have rolled
+/// squares of 35 mm, of particles also over the beds: otherwise single particles that have rolled
 /// over count for more than all that was dug. The robot starts at the origin (spin), or west of it,
 /// heading east.
 struct DigResult {
   HeightField before;
   HeightField after;
-  double raised_m3 = 0.0;        ///< volume above the ground of before
-  double sunk_m3 = 0.0;          ///< and below it
-  double deepest_m = 0.0;        ///< of the hole or rut
-  double highest_m = 0.0;        ///< of what was thrown up
-  double sunk_radius_m = 0.0;    ///< mean distance of the sunk volume from there
-  double raised_radius_m = 0.0;  ///< and of the raised
-  double behind_share = 0.0;     ///< of the raised volume, west of there
-  double end_x_m = 0.0;          ///< where the robot ended
+  double raised_m3 = 0.0;     ///< volume above the ground of before
+  double sunk_m3 = 0.0;       ///< and below it
+  MovedVolume error = {};     ///< of particles: standard error of these two
+  MovedVolume at_least = {};  ///< of particles: the two without noise are greater than this
+  std::vector<DigOfBeds> of_beds = {};  ///< of particles: of fewer beds; 1, 4, 16, ...
+  double deepest_m = 0.0;               ///< of the hole or rut
+  double highest_m = 0.0;               ///< of what was thrown up
+  double sunk_radius_m = 0.0;           ///< mean distance of the sunk volume from there
+  double raised_radius_m = 0.0;         ///< and of the raised
+  double behind_share = 0.0;            ///< of the raised volume, west of there
+  double end_x_m = 0.0;                 ///< where the robot ended
   double end_y_m = 0.0;
   double time_s = 0.0;      ///< that the drive took
   double pull_n = 0.0;      ///< slip: what held it back, mean

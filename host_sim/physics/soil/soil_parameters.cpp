@@ -75,10 +75,10 @@ SoilParameters cmu_2022() {
 
 /// What a bed of particles of 15 mm is like (docs/measurements/soil.md, Digging).
 SoilParameters gravel() {
-  SoilParameters s = soil("gravel", 867e3, 0.0, 0.9, 0.0, 25.0, 0.0023, 2e6);
+  SoilParameters s = soil("gravel", 827e3, 0.0, 0.9, 0.0, 22.8, 0.0017, 2e6);
   s.repose_deg = 34.4;
-  s.compaction = 0.38;
-  s.drag_depth_m = 0.0026;
+  s.compaction = 0.42;
+  s.drag_depth_m = 0.0022;
   return s;
 }
 

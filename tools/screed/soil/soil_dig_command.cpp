@@ -87,6 +87,17 @@ int run_dig(DigArguments a) {
   };
   add("raised_cm3", result.raised_m3 * 1e6, "%.1f");
   add("sunk_cm3", result.sunk_m3 * 1e6, "%.1f");
+  if (particles && a.test.beds > 1) {
+    add("raised_error_cm3", result.error.raised_m3 * 1e6, "%.1f");
+    add("sunk_error_cm3", result.error.sunk_m3 * 1e6, "%.1f");
+    add("raised_at_least_cm3", result.at_least.raised_m3 * 1e6, "%.1f");
+    add("sunk_at_least_cm3", result.at_least.sunk_m3 * 1e6, "%.1f");
+  }
+  for (const DigOfBeds& few : result.of_beds) {
+    const std::string test = a.manoeuvre + text(", means of %g beds", few.beds);
+    lines.push_back({test, "raised_cm3", few.moved.raised_m3 * 1e6, "%.1f"});
+    lines.push_back({test, "sunk_cm3", few.moved.sunk_m3 * 1e6, "%.1f"});
+  }
   add("deepest_mm", result.deepest_m * kMilli, "%.2f");
   add("highest_mm", result.highest_m * kMilli, "%.2f");
   add("sunk_distance_mm", result.sunk_radius_m * kMilli, "%.1f");
@@ -139,7 +150,7 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
   add_number(*command, "--duration", a->test.duration_s, "Duration [s]", {0.1, 600.0});
   add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
   add_number(*command, "--beds", a->test.beds, "Number of particle beds whose heights are averaged",
-             {1, 64});
+             {1, 256});
   add_number(*command, "--fit-raised", a->fit_cm3,
              "Fit --drag-depth to this raised volume [cm^3] (scm)", {0.0, 1e6});
   command->add_option("--charts", a->common.charts, "Output folder for a PNG of the height change")

@@ -1,6 +1,8 @@
 // A slipping belt digs: how much, and where the material goes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "host_sim/soil_validation/dig_test.h"
 
 namespace screed {
@@ -16,24 +18,65 @@ DigResult dig(Manoeuvre manoeuvre, double cell_m, double spin_s = 10.0, bool dra
   return dig_soil(test);
 }
 
-// On particles of 15 mm (means of 16 beds, `screed soil dig --ground particles`) 33 cm^3 are raised
-// by the spin, to which gravel's drag depth was fitted; 57 at 60 % slip and 15 on the mound. What
-// was not fitted is to be within a factor of 1.5; on the mound it is not: less than half is raised
-// (docs/measurements/soil.md says so).
+/// What particles of 15 mm move, cm^3: `screed soil dig --ground particles --beds 64`, the volume
+/// without noise at least and that of the mean (docs/measurements/soil.md, Digging).
+struct OnParticles {
+  double raised_at_least;
+  double raised;
+  double sunk_at_least;
+  double sunk;
+};
+constexpr OnParticles kSpin = {25.8, 28.2, 87.8, 90.2};
+constexpr OnParticles kSlip = {52.3, 54.7, 125.2, 127.6};
+constexpr OnParticles kCharge = {8.8, 10.1, 31.0, 32.2};  // of 160 beds
+
+void expect_raised(double factor, const OnParticles& particles, const DigResult& soil) {
+  EXPECT_GT(soil.raised_m3 * 1e6, particles.raised_at_least / factor);
+  EXPECT_LT(soil.raised_m3 * 1e6, particles.raised * factor);
+}
+void expect_sunk(double factor, const OnParticles& particles, const DigResult& soil) {
+  EXPECT_GT(soil.sunk_m3 * 1e6, particles.sunk_at_least / factor);
+  EXPECT_LT(soil.sunk_m3 * 1e6, particles.sunk * factor);
+}
+
+// Gravel's drag depth and compaction were fitted to the spin. The other two are to be within a
+// factor of 1.5; what is raised on the mound is not (docs/measurements/soil.md says so).
 TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
-  EXPECT_NEAR(dig(Manoeuvre::kSpin, 0.005).raised_m3, 33e-6, 3e-6);
+  const DigResult spin = dig(Manoeuvre::kSpin, 0.005);
+  expect_raised(1.1, kSpin, spin);
+  expect_sunk(1.1, kSpin, spin);
   const DigResult slip = dig(Manoeuvre::kSlip, 0.005);
-  EXPECT_GT(slip.raised_m3, 57e-6 / 1.5);
-  EXPECT_LT(slip.raised_m3, 57e-6 * 1.5);
+  expect_raised(1.5, kSlip, slip);
+  expect_sunk(1.5, kSlip, slip);
   EXPECT_NEAR(slip.time_s, 0.57 / 0.08, 0.1);  // at 60 % slip indeed
   const DigResult charge = dig(Manoeuvre::kCharge, 0.005);
-  EXPECT_GT(charge.raised_m3, 15e-6 / 2.25);
-  EXPECT_LT(charge.raised_m3, 15e-6 * 1.5);
+  expect_raised(1.6, kCharge, charge);
+  expect_sunk(1.5, kCharge, charge);
   EXPECT_GT(charge.distance_m, 0.5);  // it comes over the mound
 }
 
 TEST(SoilDigTest, WithoutDraggingASpinOnlySinks) {
   EXPECT_LT(dig(Manoeuvre::kSpin, 0.005, 3.0, false).raised_m3, 3e-6);
+}
+
+/// Raised volume north (1) or south (-1) of the robot's line, m^3.
+double raised_beside(const DigResult& result, double side) {
+  const HeightField& before = result.before;
+  double raised = 0.0;
+  for (int iy = 0; iy < before.ny(); ++iy) {
+    if (before.node_y(iy) * side <= 0.0) continue;
+    for (int ix = 0; ix < before.nx(); ++ix)
+      raised += std::max(0, result.after.node(ix, iy) - before.node(ix, iy)) * kHeightUnit_m;
+  }
+  return raised * before.spacing_m() * before.spacing_m();
+}
+
+// Each belt compacts its share of what it sinks, and deposits the rest.
+TEST(SoilDigTest, BothBeltsRaiseTheSame) {
+  const DigResult slip = dig(Manoeuvre::kSlip, 0.005, 0.0, false);
+  const double north = raised_beside(slip, 1.0);
+  EXPECT_GT(north, 0.5e-6);
+  EXPECT_NEAR(north, raised_beside(slip, -1.0), 0.05 * north);
 }
 
 // What a spin digs from below the belts lies around the ring that they swept.
