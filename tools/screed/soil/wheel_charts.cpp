@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 
 #include "host_sim/soil_validation/wheel_trials.h"
+#include "tools/screed/soil/soil_common.h"
 
 namespace screed {
 namespace {
@@ -49,12 +49,6 @@ std::string file_part(std::string text) {
       c = '_';
   }
   while (!text.empty() && text.back() == '_') text.pop_back();
-  return text;
-}
-
-std::string angle_text(double slip_angle_rad) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%g deg", slip_angle_rad / kDegree);
   return text;
 }
 
@@ -161,7 +155,7 @@ std::vector<WheelChart> measured_charts(const WheelComparison& comparison) {
     std::vector<ChartSeries> points;
     for (const std::vector<WheelTrials>& tests : angles) {
       const std::string suffix =
-          angles.size() > 1 ? ", " + angle_text(tests[0].slip_angle_rad) : "";
+          angles.size() > 1 ? text(", %g deg", tests[0].slip_angle_rad / kDegree) : "";
       const std::optional<AngleSeries> series = series_of(comparison, quantity, tests, suffix);
       if (!series) continue;
       chart.series.insert(chart.series.end(), {series->screed, series->limit});

@@ -30,13 +30,14 @@ constexpr OnParticles kSpin = {25.8, 28.2, 87.8, 90.2};
 constexpr OnParticles kSlip = {52.3, 54.7, 125.2, 127.6};
 constexpr OnParticles kCharge = {8.8, 10.1, 31.0, 32.2};  // of 160 beds
 
+// Within the factor of both ends of the measurement.
 void expect_raised(double factor, const OnParticles& particles, const DigResult& soil) {
-  EXPECT_GT(soil.raised_m3 * 1e6, particles.raised_at_least / factor);
-  EXPECT_LT(soil.raised_m3 * 1e6, particles.raised * factor);
+  EXPECT_GT(soil.raised_m3 * 1e6, particles.raised / factor);
+  EXPECT_LT(soil.raised_m3 * 1e6, particles.raised_at_least * factor);
 }
 void expect_sunk(double factor, const OnParticles& particles, const DigResult& soil) {
-  EXPECT_GT(soil.sunk_m3 * 1e6, particles.sunk_at_least / factor);
-  EXPECT_LT(soil.sunk_m3 * 1e6, particles.sunk * factor);
+  EXPECT_GT(soil.sunk_m3 * 1e6, particles.sunk / factor);
+  EXPECT_LT(soil.sunk_m3 * 1e6, particles.sunk_at_least * factor);
 }
 
 // Gravel's drag depth and compaction were fitted to the spin. The other two are to be within a
@@ -50,7 +51,7 @@ TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
   expect_sunk(1.5, kSlip, slip);
   EXPECT_NEAR(slip.time_s, 0.57 / 0.08, 0.1);  // at 60 % slip indeed
   const DigResult charge = dig(Manoeuvre::kCharge, 0.005);
-  expect_raised(1.6, kCharge, charge);
+  expect_raised(1.75, kCharge, charge);
   expect_sunk(1.5, kCharge, charge);
   EXPECT_GT(charge.distance_m, 0.5);  // it comes over the mound
 }

@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "paths.h"
+#include "tests/unit/host_sim/soil_validation/measured_row.h"
 
 namespace screed {
 namespace {
 
 MeasuredWheel row(double slip, double slip_angle_rad, double load_n) {
-  MeasuredWheel out;
-  out.wheel.slip = slip;
-  out.wheel.slip_angle_rad = slip_angle_rad;
+  MeasuredWheel out = measured_row(slip, slip_angle_rad);
   out.wheel.load_n = load_n;
   return out;
 }

@@ -87,7 +87,9 @@ TEST(ParticleKernel, AllKernelsAndNumbersOfThreadsGiveTheSameBits) {
 }
 
 TEST(ParticleKernel, TheFastestOfTheProcessorIsTheDefault) {
+  EXPECT_EQ(instruction_sets().front(), InstructionSet::kBaseline);
   ParticleOptions options;
+  EXPECT_EQ(options.instructions, instruction_sets().back());
   const std::string once = eventful(options, false);
   options.instructions = instruction_sets().back();
   EXPECT_EQ(eventful(options, false), once);

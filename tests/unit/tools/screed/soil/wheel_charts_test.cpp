@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/host_sim/soil_validation/measured_row.h"
+
 namespace screed {
 namespace {
 
 MeasuredWheel row(double slip, double slip_angle_rad, double pull_n) {
-  MeasuredWheel out;
-  out.wheel.slip = slip;
-  out.wheel.slip_angle_rad = slip_angle_rad;
+  MeasuredWheel out = measured_row(slip, slip_angle_rad);
   out.drawbar_pull_n = pull_n;
   return out;
 }
