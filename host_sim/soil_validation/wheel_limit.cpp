@@ -44,7 +44,8 @@ class Contact {
     const double deepest = going_down(shape.bekker, sinkage);
     reaction.rut_m = shape.shaped ? wheel_.rut_m + (sinkage - wheel_.rut_m) *
                                                        (1.0 - soil_.exit_angle * soil_.exit_angle)
-                                  : sinkage - deepest / soil_.elastic_pa_per_m;
+                                  : std::max(wheel_.rut_m,  // soil that only gives at E, rounded
+                                             sinkage - deepest / soil_.elastic_pa_per_m);
     const double slice = (shape.entry - shape.exit) / kSlices;
     const double per_k = r * slice / soil_.shear_modulus_m;
     double vertical = 0.0;

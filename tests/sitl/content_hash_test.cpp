@@ -18,12 +18,12 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "130d3178b6f994daf55ec5cac43d1012"},
-    {"soft_bed", "--hal surrogate --duration 10", "bc6d79dbafbcea4c30d7b6aceb75b0ea"},
+    {"soft_bed", "--duration 6", "3a454a5cf688284a5be1626a5bae754e"},
+    {"soft_bed", "--hal surrogate --duration 10", "c0f80e75ee5265eb3e77d02acd9e1dea"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "d6c25a7522ea8e4d935c9bf333351f70"},
+     "282a16537889e7ec4ad0dda8c127f70e"},
     {"gravel_bed", "--duration 1", "758ca4203ab5937e8d563267e21d4b2a"},
 }};
 
@@ -47,7 +47,7 @@ TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
       "--left 0.1 --right 0.2 --drag-depth 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["heights_hash"].get<std::string>(),
-            "6d26d57d7a6989a0d8ea6fb127ada2a4");
+            "c9580f5961bb5dbbd81e9d3f62ad8927");
 }
 
 }  // namespace

@@ -34,6 +34,21 @@ double creep_m_per_minute(HeightField slope, const WorldOptions& options, double
   return (drive.position() - before).norm() * 60.0 / seconds;
 }
 
+// A robot put down level on the steepest slopes: it tips onto its tracks, hits the ground with 0.4
+// to 0.8 m/s and slides. As a block of constant friction it would stop within 0.2 m.
+TEST(SoilStanding, StopsWhereItFallsOntoItsTracks) {
+  for (const double elastic : {4e7, 1e8, 4e8}) {
+    for (const double cell_m : {0.01, 0.005}) {
+      if (kSanitized && cell_m < 0.01) continue;
+      WorldOptions options = drive_options(0.0, 0.0);
+      options.soil = soil_preset("lete_sand");
+      options.soil->elastic_pa_per_m = elastic;
+      TestDrive drive(HeightField::ramp(3.0, cell_m, 0.7 * options.soil->friction_deg), options);
+      EXPECT_LT(drive.position().head<2>().norm(), 0.4) << elastic << ", cells " << cell_m;
+    }
+  }
+}
+
 /// A robot laid on a slope that rises to the east, with this heading.
 WorldOptions standing_on(double slope_deg, double heading_deg) {
   WorldOptions options = drive_options(0.0, 0.0);

@@ -53,6 +53,7 @@ void MaterialFlow::change(const GridNode& place, Height units) {
   } else {
     set_height(place.node, changed);
   }
+  if (units > 0) sunk_[place.node] -= std::min(units, sunk_[place.node]);
   enqueue(place.node);
 }
 

@@ -133,7 +133,9 @@ class MaterialFlow {
     int iy;
   };
   void change(size_t node, Height units) { change({node, column(node), row(node)}, units); }
-  /// Lays so many units on a node, or takes them: the reference moves with the material.
+  /// Lays so many units on a node, or takes them. What is taken leaves the rest as pressed as it
+  /// was: the reference goes down with the surface. What is laid down is loose: it fills a rut up
+  /// to its reference first, and raises both from there on.
   void change(const GridNode& place, Height units);
   /// A covered node comes into the queue when the body has left it.
   void enqueue(size_t node) {

@@ -137,11 +137,11 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     }
     ranges_.push_back(find_cells(contact, elastic));
     const Range& range = ranges_.back();
-    if (!range.touching) {
+    if (range.touching) {
+      touching = true;
+    } else {
       kept.leave();
-      continue;
     }
-    touching = true;
     advance_shear(range, body, contact, dt);
   }
   if (!touching) {

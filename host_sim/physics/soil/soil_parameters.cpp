@@ -47,11 +47,11 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
   return s;
 }
 
-/// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi, and E assumed as for the
-/// others. c1 and c3 assumed, near the published ones of their wheels. Fitted to the smooth wheel
-/// (docs/measurements/soil.md): n, slip_sinkage, K, c2.
+/// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi. E as for the
+/// other sands. c1 and c3 assumed, near the published ones of their wheels. Fitted to the smooth
+/// wheel (docs/measurements/soil.md): n, slip_sinkage, K, c2.
 SoilParameters ding_2011() {
-  SoilParameters s = soil("ding_2011", 2407.4e3, 15.6e3, 0.94, 250.0, 31.9, 0.0041, 2e8);
+  SoilParameters s = soil("ding_2011", 2407.4e3, 15.6e3, 0.94, 250.0, 31.9, 0.0041, 1e8);
   s.slip_sinkage = 0.54;
   s.front_angle = 0.3;
   s.front_angle_driven = 0.48;
@@ -63,7 +63,7 @@ SoilParameters ding_2011() {
 /// c1 assumed, as above. Fitted to the smooth wheel at slip angle 0 (docs/measurements/soil.md):
 /// slip_sinkage, K, c2, c2_braked, c3.
 SoilParameters cmu_2022() {
-  SoilParameters s = soil("cmu_2022", 8e6, 0.0, 1.46, 0.0, 29.0, 0.0127, 2e8);
+  SoilParameters s = soil("cmu_2022", 8e6, 0.0, 1.46, 0.0, 29.0, 0.0127, 1e8);
   s.slip_sinkage = 0.232;
   s.front_angle = 0.3;
   s.front_angle_driven = 0.192;
@@ -77,8 +77,8 @@ SoilParameters cmu_2022() {
 SoilParameters gravel() {
   SoilParameters s = soil("gravel", 827e3, 0.0, 0.9, 0.0, 22.8, 0.0017, 2e6);
   s.repose_deg = 34.4;
-  s.compaction = 0.42;
-  s.drag_depth_m = 0.0022;
+  s.compaction = 0.38;
+  s.drag_depth_m = 0.00195;
   return s;
 }
 
@@ -95,13 +95,13 @@ const std::vector<SoilPreset>& soil_presets() {
   // soft and viper: loose sands of rover studies, origin not verified; lete_sand, dry_sand, clay:
   // Wong, Theory of Ground Vehicles, table 2.3; ding_2011: the simulant of Ding et al., Journal of
   // Terramechanics 48(1), 2011; cmu_2022: C. Pavlov, A. Johnson, 2022. The stiffness of unloading
-  // is not in these sources: chosen so that the elastic part of the sinkage stays small.
+  // is not in these sources: docs/soil.md tells where its order of magnitude comes from.
   static const std::vector<SoilPreset> presets = {
       {soil("soft", 0.2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 4e7), kLoam},
-      {soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 2e8), kLoam},
-      {soil("lete_sand", 5301e3, 102e3, 0.793, 1.3e3, 31.1, 0.012, 4e8), kSand},
-      {soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 2e8), kSand},
-      {soil("clay", 692.15e3, 13.19e3, 0.5, 4.14e3, 13.0, 0.010, 2e8), kClay},
+      {soil("viper", 2e6, 0.0, 1.1, 0.0, 30.0, 0.010, 1e8), kLoam},
+      {soil("lete_sand", 5301e3, 102e3, 0.793, 1.3e3, 31.1, 0.012, 1e8), kSand},
+      {soil("dry_sand", 1528.43e3, 0.99e3, 1.1, 1.04e3, 28.0, 0.025, 1e8), kSand},
+      {soil("clay", 692.15e3, 13.19e3, 0.5, 4.14e3, 13.0, 0.010, 4e7), kClay},
       {ding_2011(), kSimulant},
       {cmu_2022(), kSand},
       {gravel(), kGravel},

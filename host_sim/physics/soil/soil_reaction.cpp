@@ -98,13 +98,19 @@ void SoilBed::advance_shear(const Range& range, const PressingBody& body, Footpr
   motion.omega = to_frame * body.omega;
   motion.surface_speed = range.frame.sense * contact.motion.surface_speed;
   motion.level = options_.normal_stress == NormalStress::kVertical;
-  kept.shear.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
-                     soil_.shear_damping_s, dt, kernels_);
+  const auto advance = [&](ShearField& shear, double damping_s) {
+    if (range.touching) {
+      shear.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
+                    damping_s, dt, kernels_);
+    } else {
+      shear.hover(range.frame.contour, motion, dt);
+    }
+  };
+  advance(kept.shear, soil_.shear_damping_s);
   if (passive_.none() || contact.footprint->kind() != Footprint::Kind::kTrack) return;
   motion.surface_speed = motion.velocity.x();  // the soil beside it stays behind
   motion.sideways_only = true;
-  kept.side.advance(range.frame.contour, motion, range.rear, range.front, soil_.shear_modulus_m,
-                    0.0, dt, kernels_);
+  advance(kept.side, 0.0);
 }
 
 ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,

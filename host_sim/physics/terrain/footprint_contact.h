@@ -83,8 +83,6 @@ struct ContactMemory {
   /// The footprint is in the air. Keeps room.
   void leave() {
     patch_b_m = patch_area_m2 = sinkage = slip = 0.0;
-    shear.release();
-    side.release();
     path = {};
     alone = {};
   }

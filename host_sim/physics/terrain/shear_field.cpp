@@ -73,12 +73,45 @@ ShearPlaces ShearField::places_from(int64_t index) const {
   return places;
 }
 
+/// Soil that has been sheared stays on the ground: the contour's ends leave it as they move over
+/// it. What comes up to it sideways or from above meets fresh soil, too.
+void ShearField::leave_behind(const RunContour& contour, const RunMotion& motion, double dt) {
+  const double reach = contour.half_m + contour.radius_m;
+  const auto moved = [&](double edge) -> Eigen::Vector2d {  // ahead; in other directions
+    const double ahead = std::clamp(edge, -reach, reach);
+    const Eigen::Vector3d v =
+        motion.velocity + motion.omega.cross(Eigen::Vector3d(ahead, 0.0, -contour.below_m));
+    return dt * Eigen::Vector2d(v.x(), std::hypot(v.y(), v.z()));
+  };
+  const Eigen::Vector2d at_front = moved(front_);
+  const Eigen::Vector2d at_rear = moved(rear_);
+  front_ -= std::max(0.0, at_front.x()) + at_front.y();
+  rear_ += std::max(0.0, -at_rear.x()) + at_rear.y();
+  touching_ = rear_ < front_;
+}
+
+void ShearField::hover(const RunContour& contour, const RunMotion& motion, double dt) {
+  if (!touching_) return;
+  travelled_ += motion.surface_speed * dt;
+  leave_behind(contour, motion, dt);
+  first_ = static_cast<int64_t>(std::ceil((rear_ + travelled_) / spacing_));
+  last_ = static_cast<int64_t>(std::floor((front_ + travelled_) / spacing_));
+  if (last_ < first_) touching_ = false;
+}
+
 void ShearField::advance(const RunContour& contour, const RunMotion& motion, double rear,
                          double front, double shear_modulus_m, double damping_s, double dt,
                          const Kernels& kernels) {
   if (arrays_.empty()) lay_out(contour);
   const double moved = motion.surface_speed * dt;
   travelled_ += moved;
+  const double rear_before = rear_ - moved;  // where the material of that edge is now
+  const double front_before = front_ - moved;
+  if (touching_) leave_behind(contour, motion, dt);
+  if (touching_) {
+    rear = std::min(rear, rear_);
+    front = std::max(front, front_);
+  }
   from_front_ = motion.surface_speed >= 0.0;
   auto first = static_cast<int64_t>(std::ceil((rear + travelled_) / spacing_));
   auto last = static_cast<int64_t>(std::floor((front + travelled_) / spacing_));
@@ -93,8 +126,8 @@ void ShearField::advance(const RunContour& contour, const RunMotion& motion, dou
   step.touching = touching_;
   step.rear = rear;
   step.front = front;
-  step.rear_before = rear_ - moved;  // where the material of that edge is now
-  step.front_before = front_ - moved;
+  step.rear_before = rear_before;
+  step.front_before = front_before;
   step.half = contour.half_m;
   step.radius = contour.radius_m;
   step.below = contour.below_m;

@@ -3,6 +3,8 @@
 // slid over it since it came into contact, as Wong counts shear displacement: along the rim or
 // belt, not over the ground. In steady driving this is his formula, j = s x from the front of a
 // belt; in turns, reversals and at rest it stays right.
+// What has been sheared lies on the ground: a surface that loses contact for a moment finds it
+// again, but where it has left that ground meanwhile.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,12 +46,12 @@ class ShearField {
     double sliding = 0.0;  ///< speed of the surface over the soil, m/s
   };
 
-  /// A step in which the contour touches between `rear` and `front` (along it, m).
+  /// A step of `dt` seconds in which the contour touches between `rear` and `front` (along it, m).
   void advance(const RunContour& contour, const RunMotion& motion, double rear, double front,
                double shear_modulus_m, double damping_s, double dt,
                const Kernels& kernels = best_kernels());
-  /// Contact ends.
-  void release() { touching_ = false; }
+  /// A step in the air: what was sheared below the contour is left behind.
+  void hover(const RunContour& contour, const RunMotion& motion, double dt);
   /// At `along` the contour and `across`, m, of the last step.
   Value at(double along, double across) const;
   /// For kernels that look up many at once; until the next advance().
@@ -70,6 +72,7 @@ class ShearField {
     kProperties
   };
   void lay_out(const RunContour& contour);
+  void leave_behind(const RunContour& contour, const RunMotion& motion, double dt);
   void make_room(int64_t first, int64_t last);
   double* array(int lane, Property property, int64_t index) const {
     return const_cast<double*>(arrays_.data()) +
@@ -84,11 +87,11 @@ class ShearField {
   double spacing_ = 0.0;    // of places, m
   double travelled_ = 0.0;  // of the material, backwards, m
   double lane_offset_ = 0.0;
-  bool touching_ = false;
+  bool touching_ = false;   // there is sheared ground below
   bool from_front_ = true;  // where material comes into contact
-  double rear_ = 0.0;       // of the contact, along the contour
+  double rear_ = 0.0;       // of the sheared ground below, along the contour
   double front_ = 0.0;
-  int64_t first_ = 0;  // places in contact
+  int64_t first_ = 0;  // places over it
   int64_t last_ = -1;
 };
 

@@ -51,7 +51,7 @@ TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
   expect_sunk(1.5, kSlip, slip);
   EXPECT_NEAR(slip.time_s, 0.57 / 0.08, 0.1);  // at 60 % slip indeed
   const DigResult charge = dig(Manoeuvre::kCharge, 0.005);
-  expect_raised(1.75, kCharge, charge);
+  expect_raised(1.6, kCharge, charge);
   expect_sunk(1.5, kCharge, charge);
   EXPECT_GT(charge.distance_m, 0.5);  // it comes over the mound
 }

@@ -29,6 +29,26 @@ TEST(MaterialFlow, WhatSinksIsInHandUntilItIsSetDownRoundTheFootprint) {
   }
 }
 
+// What is pressed beside a rut is deposited in it, too.
+TEST(MaterialFlow, WhatFillsARutIsLooseAndLiesOnWhatIsPressed) {
+  MaterialFlow flow = level();
+  const size_t rut = flow.index(10, 10);
+  press(flow, 10, 10, 800);
+  flow.deposit();
+  flow.uncover();
+  press(flow, 11, 10, 8 * 500);  // an eighth to each neighbour
+  flow.deposit();
+  flow.uncover();
+  EXPECT_EQ(flow.height(rut), -300);
+  EXPECT_EQ(flow.sunk(rut), 300) << "of 800 units 500 are filled";
+  EXPECT_EQ(flow.reference(rut), 0);
+  press(flow, 9, 10, 8 * 450);
+  flow.deposit();
+  EXPECT_EQ(flow.height(rut), 150);
+  EXPECT_EQ(flow.sunk(rut), 0);
+  EXPECT_EQ(flow.reference(rut), 150);
+}
+
 TEST(MaterialFlow, WhatDoesNotDivideGoesToOtherNeighboursEachTime) {
   for (const Height units : {9, 11, 15}) {
     MaterialFlow flow = level();

@@ -73,17 +73,69 @@ TEST(ShearFieldTest, ATurnSlidesTheEndsApart) {
   EXPECT_NEAR(field.at(0.08, 0.0).sliding, 0.5 * 0.08, 0.002);
 }
 
-// What leaves contact forgets: shear begins anew.
-TEST(ShearFieldTest, ContactThatEndsIsForgotten) {
-  const RunContour belt{0.1, 0.0, 0.03, 0.02};
+constexpr RunContour kBelt{0.1, 0.0, 0.03, 0.02};
+
+/// A belt that has slid ahead, locked, until its shear is mobilised all along.
+ShearField slid_belt() {
   ShearField field;
-  for (int i = 0; i < 500; ++i)
-    field.advance(belt, moving(0.1, 0.0, 0.0), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
-  EXPECT_GT(field.at(0.0, 0.0).along, 0.9);
-  field.release();
-  EXPECT_EQ(field.at(0.0, 0.0).along, 0.0);
-  field.advance(belt, moving(0.1, 0.0, 0.0), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
-  EXPECT_LT(field.at(0.0, 0.0).along, 0.02);
+  for (int i = 0; i < 800; ++i)
+    field.advance(kBelt, moving(0.1, 0.0, 0.0), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
+  return field;
+}
+
+// What was sheared lies still on the ground: a belt that trembles finds it again, but for what it
+// has moved meanwhile.
+TEST(ShearFieldTest, ContactThatIsFoundAgainIsRemembered) {
+  ShearField field = slid_belt();
+  for (int i = 0; i < 50; ++i)
+    field.advance(kBelt, moving(0.1, 0.0, 0.0), -0.1, 0.02, kModulus_m, 0.0, kStep_s);
+  field.advance(kBelt, moving(0.1, 0.0, 0.0), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
+  EXPECT_GT(field.at(0.09, 0.0).along, 0.99) << "5 mm are left behind";
+  EXPECT_LT(field.at(0.098, 0.0).along, 0.05);
+}
+
+TEST(ShearFieldTest, GroundThatIsLeftBehindIsForgotten) {
+  for (const Eigen::Vector3d& velocity :
+       {Eigen::Vector3d(0.1, 0.0, 0.0), Eigen::Vector3d(0.0, 0.1, 0.0),
+        Eigen::Vector3d(0.0, 0.0, 0.1)}) {
+    ShearField field = slid_belt();
+    RunMotion motion = moving(0.0, 0.0, 0.0);
+    motion.velocity = velocity;
+    for (int i = 0; i < 700; ++i)  // 70 mm
+      field.advance(kBelt, motion, -0.1, 0.0, kModulus_m, 0.0, kStep_s);
+    field.advance(kBelt, moving(0.0, 0.0, 0.0), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
+    const auto mobilised = [&](double along) {
+      const ShearField::Value here = field.at(along, 0.0);
+      return std::hypot(here.along, here.across);
+    };
+    EXPECT_GT(mobilised(0.02), 0.9) << velocity.transpose();
+    EXPECT_LT(mobilised(0.04), 0.02) << velocity.transpose();
+  }
+}
+
+// A belt that rolls takes its material along: it has fresh soil in front.
+TEST(ShearFieldTest, ARollingBeltsFrontMeetsFreshSoil) {
+  ShearField field = slid_belt();
+  for (int i = 0; i < 300; ++i)
+    field.advance(kBelt, moving(0.2, 0.0, 0.2), -0.1, 0.04, kModulus_m, 0.0, kStep_s);
+  field.advance(kBelt, moving(0.2, 0.0, 0.2), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
+  EXPECT_LT(field.at(0.05, 0.0).along, 0.02);
+  EXPECT_GT(field.at(-0.05, 0.0).along, 0.9);
+}
+
+TEST(ShearFieldTest, AHopIsRememberedAndAFlightIsNot) {
+  const RunMotion up = [] {
+    RunMotion motion = moving(0.1, 0.0, 0.0);
+    motion.velocity.z() = 0.2;
+    return motion;
+  }();
+  for (const auto& [seconds, remembers] : {std::pair{0.02, true}, {0.3, true}, {0.5, false}}) {
+    ShearField field = slid_belt();
+    for (int i = 0; i < static_cast<int>(seconds / kStep_s); ++i) field.hover(kBelt, up, kStep_s);
+    field.advance(kBelt, moving(0.1, 0.0, 0.0), -0.1, 0.1, kModulus_m, 0.0, kStep_s);
+    EXPECT_EQ(field.at(-0.02, 0.0).along > 0.9, remembers) << seconds;
+    EXPECT_EQ(field.at(0.08, 0.0).along > 0.9, seconds < 0.1) << seconds;
+  }
 }
 
 }  // namespace
