@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/physics/terrain/terrain_change.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {
@@ -115,6 +116,34 @@ TEST(SoilDriving, ComesToRest) {
     }
     EXPECT_LT(fastest / kDeg, 0.5) << soil;
     EXPECT_TRUE(drive.robot.attitude().at_rest()) << soil;
+  }
+}
+
+// Ten minutes of spinning on peaks with all that moves material: not a unit is lost, and what is in
+// hand was taken before.
+TEST(SoilDriving, TenMinutesLoseNoVolume) {
+  for (const char* name : {"gravel", "viper"}) {
+    WorldOptions options = drive_options(0.0, 0.0);
+    options.soil = soil_preset(name);
+    options.soil->drag_depth_m = 0.002;
+    options.soil->compaction = 0.3;
+    options.physics_step_s = 0.005;
+    Parameters parameters = drive_parameters();
+    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kSpinOnPeak);
+    const auto bumps = [](double x, double y) {
+      return 0.02 * std::sin(2.0 * std::numbers::pi * x) * std::sin(2.0 * std::numbers::pi * y);
+    };
+    TestDrive drive(HeightField::from_function(150, 150, 0.01, true, bumps), options, parameters);
+    ASSERT_TRUE(drive.start()) << name;
+    const HeightField before = drive.world.terrain();
+    for (int i = 0; i < 600 * kTickRate_hz; ++i) {
+      drive.tick();
+      const VolumeBalance balance = drive.world.plant().volume_balance();
+      ASSERT_EQ(balance.error(), 0) << name << ", tick " << i;
+      ASSERT_GE(balance.in_transit, 0) << name << ", tick " << i;
+    }
+    EXPECT_GT(drive.world.plant().volume_balance().compacted, 0) << name;
+    EXPECT_GT(terrain_change(before, drive.world.terrain()).moved_m3(), 1e-4) << name;
   }
 }
 
