@@ -73,20 +73,20 @@ ShearPlaces ShearField::places_from(int64_t index) const {
   return places;
 }
 
-/// Soil that has been sheared stays on the ground: the contour's ends leave it as they move over
-/// it. What comes up to it sideways or from above meets fresh soil, too.
+/// Soil that has been sheared stays on the ground while the contour moves over it. Beside it the
+/// contour meets fresh soil.
 void ShearField::leave_behind(const RunContour& contour, const RunMotion& motion, double dt) {
+  const double end = 0.5 * contour.length_m();
   const double reach = contour.half_m + contour.radius_m;
-  const auto moved = [&](double edge) -> Eigen::Vector2d {  // ahead; in other directions
-    const double ahead = std::clamp(edge, -reach, reach);
-    const Eigen::Vector3d v =
-        motion.velocity + motion.omega.cross(Eigen::Vector3d(ahead, 0.0, -contour.below_m));
-    return dt * Eigen::Vector2d(v.x(), std::hypot(v.y(), v.z()));
+  const auto moved = [&](double edge) -> Eigen::Vector2d {  // ahead, aside
+    const Eigen::Vector3d arm(std::clamp(edge, -reach, reach), 0.0, -contour.below_m);
+    const Eigen::Vector3d velocity = motion.velocity + motion.omega.cross(arm);
+    return {velocity.x() * dt, std::abs(velocity.y()) * dt};
   };
   const Eigen::Vector2d at_front = moved(front_);
   const Eigen::Vector2d at_rear = moved(rear_);
-  front_ -= std::max(0.0, at_front.x()) + at_front.y();
-  rear_ += std::max(0.0, -at_rear.x()) + at_rear.y();
+  front_ = std::min(front_ - at_front.x() - at_front.y(), end);
+  rear_ = std::max(rear_ - at_rear.x() + at_rear.y(), -end);
   touching_ = rear_ < front_;
 }
 

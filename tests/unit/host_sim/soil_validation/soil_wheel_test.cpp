@@ -272,7 +272,8 @@ TEST(SoilWheelTest, FurtherPassesAreThoseOfTheLimit) {
 }
 
 TEST(SoilWheelTest, StepSizeDoesNotMatterOnStiffSoil) {
-  WheelTest test = wheel_on("lete_sand", 0.2, NormalStress::kRadial, 0.005);  // E = 4e8
+  WheelTest test = wheel_on("lete_sand", 0.2, NormalStress::kRadial, 0.005);
+  test.soil.elastic_pa_per_m = 4e8;
   const double limit = wheel_limit(test.wheel, test.soil, NormalStress::kRadial).sinkage_m;
   for (const double step : {0.0005, 0.001, 0.002, 0.004}) {
     test.step_s = step;

@@ -265,7 +265,7 @@ TEST(SoilBedTest, ARutIsAsDeepDownhillAsOnTheLevel) {
   }
 }
 
-/// The robot of this project stands for a second on lete_sand (E = 4e8 Pa/m), then drives for five.
+/// The robot of this project stands for a second on lete_sand with E = 4e8 Pa/m, then drives for five.
 struct RoverRun {
   double highest_m = 0.0;        // of Body above where it was put down
   double fastest_m_per_s = 0.0;  // up or down, after the first 0.4 s
@@ -280,7 +280,9 @@ RoverRun rover_on_stiff_soil(bool tracks, double step_s) {
   options.tracks = tracks;
   Vehicle vehicle(world, import_urdf(std::string(kBoardsFolder) + "/a_star_32u4/rover5.urdf"),
                   options);
-  SoilBed bed(HeightField::flat(2.0, 0.005), soil_preset("lete_sand"));
+  SoilParameters soil = soil_preset("lete_sand");
+  soil.elastic_pa_per_m = 4e8;
+  SoilBed bed(HeightField::flat(2.0, 0.005), soil);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() << -0.5, 0.0, vehicle.resting_height(bed.surface(), -0.5, 0.0, pose.linear());
   vehicle.place(pose);
