@@ -265,7 +265,8 @@ TEST(SoilBedTest, ARutIsAsDeepDownhillAsOnTheLevel) {
   }
 }
 
-/// The robot of this project stands for a second on lete_sand with E = 4e8 Pa/m, then drives for five.
+/// The robot of this project stands for a second on lete_sand with E = 4e8 Pa/m, then drives for
+/// five.
 struct RoverRun {
   double highest_m = 0.0;        // of Body above where it was put down
   double fastest_m_per_s = 0.0;  // up or down, after the first 0.4 s
