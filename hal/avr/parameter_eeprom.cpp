@@ -14,14 +14,11 @@ const Parameters kDefaults PROGMEM;
 
 /// Parameters that are filled later: their default values would cost a constructor's code.
 union LateParameters {
+  uint8_t bytes[sizeof(Parameters)];
   Parameters value;
-  LateParameters() {}
+  constexpr LateParameters() : bytes() {}
 };
 LateParameters draft;
-
-void set_defaults(LateParameters& parameters) {
-  memcpy_P(&parameters, &kDefaults, sizeof(kDefaults));
-}
 
 struct State {
   StoreState store;
@@ -52,10 +49,10 @@ void parameter_eeprom_init() {
   state.has_good_copy = choice.state == StoreState::kStored;
   state.next_copy = choice.next_copy;
   state.next_sequence = choice.next_sequence;
-  set_defaults(draft);
+  parameter_draft_defaults();
   if (choice.state == StoreState::kStored) {
     read_copy(choice.copy, state.copy);
-    decode_parameters(state.copy, draft.value);
+    decode_parameters(state.copy, parameter_draft());
   }
 }
 
@@ -66,12 +63,12 @@ Parameters& parameter_draft() {
   return draft.value;
 }
 void parameter_draft_defaults() {
-  set_defaults(draft);
+  memcpy_P(draft.bytes, &kDefaults, sizeof(kDefaults));
 }
 
 bool parameter_save() {
-  if (parameter_saving() || !draft.value.valid()) return false;
-  encode_parameters(draft.value, state.next_sequence, state.copy);
+  if (parameter_saving() || !parameter_draft().valid()) return false;
+  encode_parameters(parameter_draft(), state.next_sequence, state.copy);
   state.next_sequence = static_cast<uint16_t>(state.next_sequence + 1U);
   // A store without a good copy gets two at once.
   state.copies = state.has_good_copy ? 1 : kParameterCopies;
@@ -80,7 +77,7 @@ bool parameter_save() {
 }
 
 bool parameter_store(uint8_t number, int16_t value) {
-  memcpy(reinterpret_cast<uint8_t*>(&draft) + sizeof(value) * (number - 1U), &value, sizeof(value));
+  memcpy(draft.bytes + sizeof(value) * (number - 1U), &value, sizeof(value));
   return parameter_save();
 }
 

@@ -83,15 +83,6 @@ ParameterCopy encoded(const Parameters& parameters, std::uint16_t sequence) {
   return copy;
 }
 
-TEST_F(BoardParts, IsAnAStarOnTheUsbBus) {
-  mcu_.run_ms(50);
-  ASSERT_TRUE(usb_.plug_in());
-  const std::vector<std::uint8_t> descriptor = usb_.device_descriptor();
-  ASSERT_EQ(descriptor.size(), 18U);
-  EXPECT_EQ(descriptor[8] | descriptor[9] << 8, 0x1FFB);
-  EXPECT_EQ(descriptor[10] | descriptor[11] << 8, 0x2300);
-}
-
 TEST_F(BoardParts, EntersTheBootloaderWhenTheLineIsClosedAt1200Baud) {
   mcu_.run_ms(50);
   ASSERT_TRUE(usb_.plug_in());
