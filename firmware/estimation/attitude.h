@@ -33,6 +33,7 @@ struct AttitudeAngles {
   /// counter-clockwise from east, seen from above; from the start pose without magnetometer
   Angle heading;
   int16_t sin_pitch_q14;
+  int16_t cos_tilt_q14;  ///< of the inclination, whichever way
 };
 
 /// What the estimator remembers, all of it zero after a reset but the orientation. By itself so

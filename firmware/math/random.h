@@ -6,6 +6,8 @@
 
 #include "firmware/math/fixed.h"
 
+#include "firmware/math/fixed.h"
+
 namespace screed {
 
 class Random {
@@ -27,7 +29,7 @@ class Random {
   }
 
  private:
-  uint32_t next() {
+  SCREED_OUT_OF_LINE uint32_t next() {
     state_ ^= state_ << 13;
     state_ ^= state_ >> 17;
     state_ ^= state_ << 5;

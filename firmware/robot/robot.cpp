@@ -31,11 +31,6 @@ static_assert(static_cast<uint8_t>(Request::kArm) == static_cast<uint8_t>(Comman
                   static_cast<uint8_t>(Request::kClear) == static_cast<uint8_t>(CommandOp::kClear),
               "these commands are requests of the same number");
 
-// 1 - 2 (x^2 + y^2): the element of the rotation matrix that is the cosine of the inclination.
-int32_t cos_tilt_q30(const Quaternion& q) {
-  return kQ30One - (mul_q30(q.x, q.x) + mul_q30(q.y, q.y)) * 2;
-}
-
 constexpr uint8_t kImuCounts = 9;
 static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * sizeof(int16_t) &&
                   offsetof(ImuSample, mag) == 6 * sizeof(int16_t) &&
@@ -256,7 +251,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.chips_failing = sample.chips_failing;
   input.gyro = sample.gyro;
   input.accel = sample.accel;
-  input.cos_tilt_q30 = cos_tilt_q30(attitude_.orientation());
+  input.cos_tilt_q14 = status_.angles.cos_tilt_q14;
   input.estimator_ready = attitude_.ready();
   input.battery_mv = status_.battery_mv;
   input.duty_left = status_.duty.duty_left;

@@ -76,7 +76,6 @@ Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
 
 void Supervisor::configure(const Parameters& parameters) {
   cos_tilt_limit_q15_ = cos_q15(angle_from_centidegrees(parameters.tilt_limit));
-  cos_tilt_limit_q30_ = static_cast<int32_t>(cos_tilt_limit_q15_) * 32768;
   battery_low_mv_ = static_cast<uint16_t>(parameters.battery_low);
   stall_ticks_ = ticks_from_ms(parameters.stall_time);
   stuck_ticks_ = ticks_from_ms(parameters.stuck_time);
@@ -94,7 +93,7 @@ bool Supervisor::link_alive() const {
 // In motion the accelerometer alone is no witness: tipping over a crest the robot falls and brakes,
 // and for a tenth of a second the force points anywhere.
 bool Supervisor::tilted(const SupervisorInput& input) {
-  if (input.estimator_ready && input.cos_tilt_q30 < cos_tilt_limit_q30_) return true;
+  if (input.estimator_ready && input.cos_tilt_q14 < asr_i16(cos_tilt_limit_q15_, 1)) return true;
   // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {

@@ -45,7 +45,7 @@ struct SupervisorInput {
   uint8_t fresh;         ///< SensorSample::fresh
   const int16_t* gyro;   ///< three raw counts
   const int16_t* accel;  ///< three raw counts
-  int32_t cos_tilt_q30;  ///< cosine of the estimated inclination
+  int16_t cos_tilt_q14;  ///< cosine of the estimated inclination
   bool estimator_ready;
   uint16_t battery_mv;
   int16_t duty_left;  ///< of the last tick
@@ -129,7 +129,6 @@ class Supervisor : private SupervisorMemory {
   void watch_link();
   void run_standalone();
 
-  int32_t cos_tilt_limit_q30_;
   int16_t cos_tilt_limit_q15_;
   uint16_t battery_low_mv_;
   uint16_t stall_ticks_;

@@ -50,7 +50,7 @@ const FaultCase kFaultCases[] = {
      [](SupervisedRobot& w) { w.roll_to(60.0); }},
     {"tilt seen by the estimator", Fault::kTilt, 10, 6,
      [](SupervisedRobot& w) {
-       w.cos_tilt_q30 = static_cast<int32_t>(kQ30One * std::cos(60.0 * std::numbers::pi / 180.0));
+       w.cos_tilt_q14 = static_cast<int16_t>(16384 * std::cos(60.0 * std::numbers::pi / 180.0));
      }},
     {"upside down", Fault::kTilt, 10, 6, [](SupervisedRobot& w) { w.roll_to(180.0); }},
     // 15: stop within 100 ms
@@ -213,8 +213,7 @@ TEST(SupervisorFaults, TheEstimatorsInclinationIsComparedWithTheLimitItself) {
   for (const double degrees : {59.9, 60.1}) {
     SupervisedRobot watch(parameters);
     watch.bring_to(RobotState::kRunning);
-    watch.cos_tilt_q30 =
-        static_cast<int32_t>(kQ30One * std::cos(degrees * std::numbers::pi / 180.0));
+    watch.cos_tilt_q14 = static_cast<int16_t>(16384 * std::cos(degrees * std::numbers::pi / 180.0));
     EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 300) == 300, degrees < 60.0) << degrees;
   }
 }
@@ -281,7 +280,7 @@ TEST(SupervisorFaults, InMotionTheAccelerometerAloneIsNoWitness) {
     watch.gyro[0] = force.rate;
     EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 300), 300) << force.x << " " << force.rate;
     // The estimator is.
-    watch.cos_tilt_q30 = 0;
+    watch.cos_tilt_q14 = 0;
     EXPECT_LE(watch.ticks_in(RobotState::kRunning, 300), 10);
   }
 }
@@ -294,7 +293,7 @@ TEST(SupervisorFaults, ClippedSamplesDoNotOverflow) {
       watch.accel[0] = x;
       watch.accel[1] = x;
       watch.accel[2] = z;
-      watch.cos_tilt_q30 = INT32_MIN;
+      watch.cos_tilt_q14 = INT16_MIN;
       EXPECT_LE(watch.ticks_in(RobotState::kRunning, 300), 10);
     }
   }

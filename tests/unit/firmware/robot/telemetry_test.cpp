@@ -215,7 +215,7 @@ TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
 }
 
 TEST_F(TelemetryTest, AttitudeAndOdometry) {
-  robot_.angles = {INT16_MIN, 8192, -1, 0};  // 65536 a turn
+  robot_.angles = {INT16_MIN, 8192, -1, 0, 0};  // 65536 a turn
   robot_.x_mm = -40000;
   robot_.y_mm = 32767;
   const uint8_t* at = payload(kIdAttitude);

@@ -97,7 +97,7 @@ void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
   input.fresh = kFreshGyro | kFreshAccel;
   input.gyro = gyro;
   input.accel = accel;
-  input.cos_tilt_q30 = kQ30One;
+  input.cos_tilt_q14 = 16384;
   input.estimator_ready = true;
   input.battery_mv = 7200;
   input.chips_failing = chips_failing;
