@@ -14,10 +14,13 @@ AVR_OBJDUMP ?= avr-objdump
 AVR_SIZE ?= avr-size
 AVR_NM ?= avr-nm
 
-# Most flash and RAM a program may use; RAM counts variables and the worst-case stack.
+# Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack. With USB=core flash
+# may be used up.
 FLASH_BUDGET := 28672
 RAM_BUDGET := 2560
 RAM_SPARE := 256
+FLASH_SPARE_own := 2048
+FLASH_SPARE_core := 0
 # Where the core writes the bootloader's key while the program still runs (MAGIC_KEY_POS in its USBCore.h).
 BOOT_KEY_ADDRESS := 0x0800
 # Half of a tick.
@@ -38,7 +41,8 @@ FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
 SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter no-ipa-cp no-ipa-sra
-AVR_FLAGS := -std=c++14 -Os -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
+# -g: `make size` names the sources; nothing of it is flashed.
+AVR_FLAGS := -std=c++14 -Os -g -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
   -mrelax -mstrict-X -mcall-prologues $(SMALLER:%=-f%)
 # make firmware STANDALONE=yes: the default of the parameter `standalone` is 1.
@@ -74,11 +78,12 @@ firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)
 	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | { grep -vxF '$(or $(ALLOWED_VTABLES_$(USB)),none)' || [ $$? -eq 1 ] ; }) ; \
 	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which the stack analysis does not know" >&2 ; exit 1 ; }
 	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
-	  --indirect-calls $(INDIRECT_CALLS) --flash-budget $(FLASH_BUDGET) --ram-budget $(RAM_BUDGET) \
-	  --ram-spare $(RAM_SPARE) --free-word $(BOOT_KEY_ADDRESS)
+	  $(STACK_OPTIONS_$(USB)) --flash-budget $(FLASH_BUDGET) --flash-spare $(FLASH_SPARE_$(USB)) \
+	  --ram-budget $(RAM_BUDGET) --ram-spare $(RAM_SPARE)
 
-# Longest tick and interrupts, measured in the simulator while the robot drives.
-size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash, RAM, stack and longest tick of that image against the budget
+# Bytes of each module; longest tick and interrupts, measured in the simulator while the robot drives.
+size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash by modules, RAM, stack, longest tick of that image, their reserve
+	@tools/avr/modules.sh $(FIRMWARE_ELF)
 	@$(B)/avr_cycles $(FIRMWARE_ELF) boards/$(BOARD)/wiring.ini --budget $(TICK_BUDGET_CYCLES)
 $(B)/avr_cycles: $(B)/tools/avr/cycles/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
