@@ -19,11 +19,15 @@ uint16_t crc_of(const ParameterCopy& copy) {
 
 }  // namespace
 
-void encode_parameters(const Parameters& parameters, uint16_t sequence, ParameterCopy& copy) {
+void seal_copy(uint16_t sequence, ParameterCopy& copy) {
   put_u16(copy.bytes, kParameterLayout);
   put_u16(copy.bytes + 2, sequence);
-  memcpy(copy.bytes + kParameterHeaderSize, &parameters, sizeof(parameters));
   put_u16(copy.bytes + kCrcAt, crc_of(copy));
+}
+
+void encode_parameters(const Parameters& parameters, uint16_t sequence, ParameterCopy& copy) {
+  memcpy(copy.bytes + kParameterHeaderSize, &parameters, sizeof(parameters));
+  seal_copy(sequence, copy);
 }
 
 CopyState check_copy(const ParameterCopy& copy) {
