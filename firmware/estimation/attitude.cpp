@@ -117,7 +117,10 @@ void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
   SmallQuaternion correction = {length_deficit_q24(orientation_),
                                 limit_i16(asr_round(gravity_[1], 3), kMaxHalfAngle),
                                 limit_i16(asr_round(-gravity_[0], 3), kMaxHalfAngle), 0};
-  if (ready()) learn_bias_in_motion(to_earth, correction);
+  if (ready()) {
+    known_ = true;
+    learn_bias_in_motion(to_earth, correction);
+  }
   if (mag_age_ < kMagAgeLimit) ++mag_age_;
   if (sample.mag_fresh) correction.z = heading_correction(to_earth, sample.mag);
   correct(correction);
@@ -229,7 +232,8 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] += asr(components(turned)[i], 1);
 }
 
-void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
+SCREED_OUT_OF_LINE void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth,
+                                                          const int16_t (&accel)[3]) {
   const bool starting = ticks_ < kStartTicks;
   if (starting) ++ticks_;
   const int16_t start_gain = starting ? mean_gain_q16(ticks_) : static_cast<int16_t>(0);

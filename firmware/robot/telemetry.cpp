@@ -149,7 +149,10 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       break;
     }
     case kIdTime:
-      set(frame, message::Time{quotient_u32(sample.time_us, 1000), uplink.ground_time_ms});
+      // Ticks are whole milliseconds.
+      time_ms_ += quotient_u32(sample.time_us - time_us_, 1000);
+      time_us_ = sample.time_us;
+      set(frame, message::Time{time_ms_, uplink.ground_time_ms});
       break;
     case kIdBaro:
     default: {

@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "130d3178b6f994daf55ec5cac43d1012"},
-    {"soft_bed", "--hal surrogate --duration 10", "bc6d79dbafbcea4c30d7b6aceb75b0ea"},
+    {"first_drive", "--duration 60", "fc4df45a2aa3a8ebb78a6929c41153ef"},
+    {"soft_bed", "--duration 6", "e394926f7199d2f735a646690210cbdb"},
+    {"soft_bed", "--hal surrogate --duration 10", "402e98aa0d42766e254189b7c1473d83"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "d6c25a7522ea8e4d935c9bf333351f70"},
-    {"gravel_bed", "--duration 1", "758ca4203ab5937e8d563267e21d4b2a"},
+     "52e5710500ecceb7bf385a73f01c84f0"},
+    {"gravel_bed", "--duration 1", "84a19b0739702aa45a6de71d434a5f7f"},
 }};
 
 class ContentHash : public Program {};

@@ -182,6 +182,7 @@ TEST(ParameterStore, ARobotWhoseParametersAreLostCannotBeArmed) {
     input.accel = accel;
     input.cos_tilt_q14 = 16384;
     input.estimator_ready = true;
+    input.attitude_known = true;
     input.battery_mv = 7200;
     supervisor.heartbeat();
     supervisor.tick(input);

@@ -61,9 +61,9 @@ const FaultCase kFaultCases[] = {
     // 16: stop within 200 ms
     {"gyro frozen", Fault::kGyroFrozen, 20, 18, [](SupervisedRobot& w) { w.gyro_frozen = true; }},
     // 21: one encoder dead, 200 ms; 24: track stalled, 300 ms: the same to see
-    {"left track stalled", Fault::kStallLeft, 20, 17,
-     [](SupervisedRobot& w) { w.duty_left = 240; }},
-    {"right track stalled backwards", Fault::kStallRight, 20, 17,
+    {"left track stalled", Fault::kStallLeft, 20, 15,
+     [](SupervisedRobot& w) { w.duty_left = 110; }},
+    {"right track stalled backwards", Fault::kStallRight, 20, 15,
      [](SupervisedRobot& w) { w.duty_right = -400; }},
     // 30: a sag of a second
     {"battery", Fault::kBattery, 100, 100, [](SupervisedRobot& w) { w.battery_mv = 5999; }},
@@ -218,6 +218,18 @@ TEST(SupervisorFaults, TheEstimatorsInclinationIsComparedWithTheLimitItself) {
   }
 }
 
+// The estimator averages anew in the first standstill; until then it knows roll and pitch as
+// before.
+TEST(SupervisorFaults, AnEstimatorThatAveragesAnewRemainsAWitnessOfTilt) {
+  SupervisedRobot watch;
+  watch.bring_to(RobotState::kRunning);
+  watch.ready = false;
+  watch.gyro[1] = 2000;  // the accelerometer is no plumb line while the robot rolls
+  watch.cos_tilt_q14 = 0;
+  EXPECT_LE(watch.ticks_in(RobotState::kRunning, 300), 10);
+  EXPECT_EQ(watch.supervisor.faults(), Fault::kTilt);
+}
+
 TEST(SupervisorFaults, SeveralCausesAreAllTold) {
   SupervisedRobot watch;
   watch.bring_to(RobotState::kRunning);
@@ -345,8 +357,8 @@ TEST(SupervisorFaults, AFrozenGyroIsCountedInSamplesNotInTicks) {
 TEST(SupervisorFaults, SlowOrWeaklyDrivenTracksAreNotStalled) {
   SupervisedRobot weak;
   weak.bring_to(RobotState::kRunning);
-  weak.duty_left = 239;
-  weak.duty_right = -239;
+  weak.duty_left = 109;
+  weak.duty_right = -109;
   EXPECT_EQ(weak.ticks_in(RobotState::kRunning, 500), 500);
   SupervisedRobot slow;
   slow.bring_to(RobotState::kRunning);
