@@ -6,8 +6,6 @@
 
 #include "firmware/math/fixed.h"
 
-#include "firmware/math/fixed.h"
-
 namespace screed {
 
 class Random {

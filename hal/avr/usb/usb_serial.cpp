@@ -15,7 +15,6 @@
 #include <avr/io.h>
 #include <avr/pgmspace.h>
 
-#include "firmware/math/fixed.h"
 #include "hal/avr/reset_cause.h"
 #include "hal/avr/usb/descriptors.h"
 #include "hal/avr/watchdog.h"
@@ -103,7 +102,7 @@ bool acknowledge() {
   return true;
 }
 
-SCREED_OUT_OF_LINE bool answer(const void* bytes, uint8_t size) {
+__attribute__((noinline)) bool answer(const void* bytes, uint8_t size) {
   state.stage = kSending;
   state.answer = static_cast<const uint8_t*>(bytes);
   state.answer_left = state.setup.length < size ? static_cast<uint8_t>(state.setup.length) : size;
@@ -142,7 +141,7 @@ bool send_descriptor() {
 }
 
 /// config0, config1: UECFG0X and UECFG1X.
-SCREED_OUT_OF_LINE void start_endpoint(uint8_t endpoint, uint8_t config0, uint8_t config1) {
+__attribute__((noinline)) void start_endpoint(uint8_t endpoint, uint8_t config0, uint8_t config1) {
   UENUM = endpoint;
   UECONX = _BV(EPEN);
   UECFG0X = config0;
@@ -224,7 +223,7 @@ bool execute() {
   }
 }
 
-SCREED_OUT_OF_LINE void receive(void* to, uint8_t size) {
+__attribute__((noinline)) void receive(void* to, uint8_t size) {
   auto* at = static_cast<uint8_t*>(to);
   for (; size > 0; --size) *at++ = UEDATX;
 }
@@ -264,6 +263,7 @@ void forget_host() {
 void start_bootloader() {
   set_next_reset_cause(ResetCause::kUpload);
   cli();
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
   *reinterpret_cast<volatile uint16_t*>(kBootKeyAddress) = kBootKey;
   watchdog_reset_now();
 }
@@ -290,7 +290,7 @@ void usb_serial_init() {
   state.coding.data_bits = 8;
 }
 
-SCREED_OUT_OF_LINE void usb_serial_step() {
+__attribute__((noinline)) void usb_serial_step() {
   if ((UDCON & _BV(DETACH)) != 0) {
     if ((PLLCSR & _BV(PLOCK)) != 0) attach();
     return;

@@ -156,9 +156,10 @@ void McuWorld::dispatch(const Event& event) {
     return;
   }
   if (!motion_.has_value()) {
-    motion_ = options_.world.calibration_motion
-                  ? calibration_motion(static_cast<double>(us_at(plant_.steps())) * 1e-6)
-                  : plant_.motion();
+    // The motion begins with a tick.
+    const double time_s =
+        std::max(1.0 / kTickRate_hz, 1e-6 * static_cast<double>(us_at(plant_.steps())));
+    motion_ = options_.world.calibration_motion ? calibration_motion(time_s) : plant_.motion();
   }
   switch (event.kind) {
     case EventKind::kAccel:
