@@ -87,7 +87,7 @@ TEST(DriveFaults, AStalledTrackAndADeadEncoderAreFoundAtLowSpeed) {
   }
 }
 
-// Motors that are told to reverse, stop and start obey with a delay; that is no fault.
+// Motors reverse, stop and start with a delay; that is no fault.
 TEST(DriveFaults, AWellRobotMayReverseAsItLikes) {
   for (const int16_t accel_limit : std::initializer_list<int16_t>{50, 600, 2000, 5000}) {
     Parameters parameters = driving();
