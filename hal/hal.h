@@ -43,7 +43,9 @@ bool wait_for_tick();
 /// its old numbers and its FreshBit stays clear.
 void read_sensors(SensorSample& sample);
 
-/// Applies motor duty and LEDs, queues the radio bytes, begins to store a parameter. Never blocks.
+/// Applies motor duty and LEDs, sends the radio bytes, begins to store a parameter. Never blocks.
+/// The radio bytes must stay as they are for two ticks (a full packet takes 15.3 ms): the target
+/// sends them from where they are.
 void write_outputs(const RobotOutput& output);
 
 }  // namespace hal

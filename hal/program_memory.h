@@ -29,6 +29,14 @@ inline int16_t read_program_i16(const int16_t* address) {
 #endif
 }
 
+inline uint16_t read_program_u16(const uint16_t* address) {
+#ifdef __AVR__
+  return pgm_read_word(address);
+#else
+  return *address;
+#endif
+}
+
 /// Little endian, at any address.
 inline uint16_t read_program_u16(const uint8_t* address) {
   return static_cast<uint16_t>(read_program_u8(address) | read_program_u8(address + 1) << 8);

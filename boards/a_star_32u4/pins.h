@@ -42,10 +42,16 @@ inline QuadratureLevels read_right_encoder() {
   return {(port & RightEncoderA::kMask) != 0, (port & RightEncoderB::kMask) != 0};
 }
 
+// Of a tick, both sides; 26 come at three times the full speed.
+constexpr uint8_t kMaxEncoderEdges = 60;
+
 inline void enable_encoder_interrupts() {
   PCMSK0 = LeftEncoderA::kMask | LeftEncoderB::kMask | RightEncoderA::kMask | RightEncoderB::kMask;
   PCIFR = _BV(PCIF0);
   PCICR = _BV(PCIE0);
+}
+inline void disable_encoder_interrupts() {
+  PCICR = 0;
 }
 
 constexpr bool kHasBarometer = true;

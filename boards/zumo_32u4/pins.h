@@ -41,6 +41,9 @@ inline void make_encoder_pins_inputs() {
   RightEncoderB::set();
 }
 
+// Of a tick, both sides; 114 come at three times the full speed.
+constexpr uint8_t kMaxEncoderEdges = 150;
+
 inline void enable_encoder_interrupts() {
   PCMSK0 = LeftEncoderXor::kMask;
   PCIFR = _BV(PCIF0);
@@ -48,6 +51,10 @@ inline void enable_encoder_interrupts() {
   EICRB = _BV(ISC60);  // any edge
   EIFR = _BV(INTF6);
   EIMSK = _BV(INT6);
+}
+inline void disable_encoder_interrupts() {
+  PCICR = 0;
+  EIMSK = 0;
 }
 
 constexpr bool kHasBarometer = false;

@@ -28,8 +28,7 @@ constexpr uint8_t kYawLag = 4;
 constexpr int16_t kYawErrorLimit = 16000;
 
 int16_t approach(int16_t value, int16_t target, int16_t step) {
-  return static_cast<int16_t>(
-      clamp_i32(target, static_cast<int32_t>(value) - step, static_cast<int32_t>(value) + step));
+  return static_cast<int16_t>(value + limit_i16(static_cast<int32_t>(target) - value, step));
 }
 
 }  // namespace
@@ -52,7 +51,7 @@ void DriveControl::idle(const DriveMeasurement& measured) {
   right_.release(measured.counts_right);
 }
 
-void DriveControl::forget_yaw() {
+SCREED_OUT_OF_LINE void DriveControl::forget_yaw() {
   yaw_error_ = 0;
   yaw_integral_q8_ = 0;
 }
@@ -69,8 +68,7 @@ int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t m
   // with the default gain). ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096,
   // shifted in two parts to fit 32 bits.
   const int32_t step = asr(asr(mul_i16(yaw_ki_, error), 4) * 41, 8);
-  yaw_integral_q8_ =
-      clamp_i32(yaw_integral_q8_ + step, -kYawIntegralLimit_q8, kYawIntegralLimit_q8);
+  yaw_integral_q8_ = limit_i32(yaw_integral_q8_ + step, kYawIntegralLimit_q8);
   const int32_t correction = asr(mul_i16(yaw_kp_, error), 8) + asr(yaw_integral_q8_, 8);
   // In 32 bits: the sum of two numbers of 16 does not fit the AVR's int.
   return static_cast<int32_t>(command.yaw_rate) + limit_i16(correction, kYawCorrectionLimit);

@@ -39,7 +39,7 @@ TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Paramete
       feed_forward_q8_(static_cast<int16_t>(
           quotient_u16(static_cast<uint32_t>(kDutyMax) * 256, board.full_speed_mm_per_s))) {}
 
-void TrackSpeedControl::release(int16_t counts) {
+SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
   integral_q16_ = 0;
   halfway_q4_ = 0;
   expected_q4_ = 0;
@@ -100,8 +100,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
                           (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
   if (!pushes_out) {
-    integral_q16_ = clamp_i32(integral_q16_ + asr(static_cast<int32_t>(ki_) * error * 131, 5),
-                              -kIntegralLimit_q16, kIntegralLimit_q16);
+    integral_q16_ = limit_i32(integral_q16_ + asr(static_cast<int32_t>(ki_) * error * 131, 5),
+                              kIntegralLimit_q16);
   }
   const int16_t duty = limit_i16(without_integral + asr(integral_q16_, 16), kDutyMax);
   motion_.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));

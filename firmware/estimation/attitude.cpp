@@ -57,7 +57,8 @@ constexpr uint16_t kHeadingStartSamples = 900;
 constexpr uint16_t kHeadingLimitedFrom = 300;
 constexpr uint16_t kHalfAnglePerAngle = 51472;  // pi / 65536 in Q30
 constexpr uint16_t kHeadingGain = 57;           // 0.01 s / 9 s of that
-constexpr int32_t kHeadingRateLimit = 2928;     // 0.02 degrees a tick as half angle in Q24
+constexpr int16_t kHeadingRateLimit = 2928;     // 0.02 degrees a tick as half angle in Q24
+constexpr int16_t kMaxHalfAngle = 32767;        // Q24; can be negated
 constexpr uint8_t kMagAgeLimit = 10;
 
 // Rest: no axis differs from its own short mean (time constant 0.64 s) by more than this, for 1.5
@@ -92,11 +93,6 @@ int32_t with_mean_bits(int16_t value) {
   return asr(static_cast<int32_t>(moved), 16 - kMeanBits);
 }
 
-/// A half angle in Q24, limited so that it can be negated.
-int16_t limited(int32_t half_angle, int32_t limit) {
-  return static_cast<int16_t>(clamp_i32(half_angle, -limit, limit));
-}
-
 }  // namespace
 
 void AttitudeEstimator::reset() {
@@ -119,9 +115,12 @@ void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
   // -x / (2 g) about y; with g = 2^12 counts and 14 digits that is 2^-3 in Q24. A filtered length
   // other than g only changes the gain.
   SmallQuaternion correction = {length_deficit_q24(orientation_),
-                                limited(asr_round(gravity_[1], 3), 32767),
-                                limited(asr_round(-gravity_[0], 3), 32767), 0};
-  if (ready()) learn_bias_in_motion(to_earth, correction);
+                                limit_i16(asr_round(gravity_[1], 3), kMaxHalfAngle),
+                                limit_i16(asr_round(-gravity_[0], 3), kMaxHalfAngle), 0};
+  if (ready()) {
+    known_ = true;
+    learn_bias_in_motion(to_earth, correction);
+  }
   if (mag_age_ < kMagAgeLimit) ++mag_age_;
   if (sample.mag_fresh) correction.z = heading_correction(to_earth, sample.mag);
   correct(correction);
@@ -203,8 +202,7 @@ void AttitudeEstimator::learn_bias_in_motion(const RotationMatrix& to_earth,
   for (uint8_t i = 0; i < 3; ++i) {
     const int32_t seen =
         mul_i16(to_earth.row[0][i], correction.x) + mul_i16(to_earth.row[1][i], correction.y);
-    bias_[i] =
-        clamp_i32(bias_[i] - scale_q16(asr(seen, 8), kMotionBiasGain), -kBiasLimit, kBiasLimit);
+    bias_[i] = limit_i32(bias_[i] - scale_q16(asr(seen, 8), kMotionBiasGain), kBiasLimit);
   }
 }
 
@@ -234,7 +232,8 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] += asr(components(turned)[i], 1);
 }
 
-void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
+SCREED_OUT_OF_LINE void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth,
+                                                          const int16_t (&accel)[3]) {
   const bool starting = ticks_ < kStartTicks;
   if (starting) ++ticks_;
   const int16_t start_gain = starting ? mean_gain_q16(ticks_) : static_cast<int16_t>(0);
@@ -254,7 +253,7 @@ void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int
 int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
                                               const int16_t (&mag)[3]) {
   const Angle error = atan2_angle(dot_q14(to_earth.row[0], mag), dot_q14(to_earth.row[1], mag));
-  const int32_t age = static_cast<int32_t>(mag_age_);
+  const auto age = static_cast<int16_t>(mag_age_);
   mag_age_ = 0;
   if (mag_samples_ == 0) {  // the first sample may be any angle away: turned at once and exactly
     mag_samples_ = 1;
@@ -267,9 +266,11 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
   const int32_t gain = mag_samples_ < kHeadingStartSamples
                            ? static_cast<int32_t>(kHalfAnglePerAngle / (mag_samples_ + 1U))
                            : static_cast<int32_t>(kHeadingGain) * age;
-  const int32_t limit = mag_samples_ < kHeadingLimitedFrom ? 32767 : kHeadingRateLimit * age;
+  const auto limit = mag_samples_ < kHeadingLimitedFrom
+                         ? kMaxHalfAngle
+                         : static_cast<int16_t>(kHeadingRateLimit * age);
   if (mag_samples_ < kHeadingStartSamples) ++mag_samples_;
-  return limited(asr_round(static_cast<int32_t>(error) * gain, 6), limit);
+  return limit_i16(asr_round(static_cast<int32_t>(error) * gain, 6), limit);
 }
 
 /// Turns the estimate about the earth's axes, and the filtered gravity with it, so that nothing is
@@ -298,7 +299,7 @@ AttitudeAngles AttitudeEstimator::angles() const {
   const int16_t up = to_earth.row[2][2];
   const uint16_t level = isqrt32(static_cast<uint32_t>(mul_i16(left, left) + mul_i16(up, up)));
   return {atan2_angle(left, up), atan2_angle(to_earth.row[2][0], static_cast<int32_t>(level)),
-          atan2_angle(to_earth.row[1][0], to_earth.row[0][0]), to_earth.row[2][0]};
+          atan2_angle(to_earth.row[1][0], to_earth.row[0][0]), to_earth.row[2][0], up};
 }
 
 int32_t AttitudeEstimator::gyro_bias_mdps(uint8_t axis) const {

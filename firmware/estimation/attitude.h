@@ -33,6 +33,7 @@ struct AttitudeAngles {
   /// counter-clockwise from east, seen from above; from the start pose without magnetometer
   Angle heading;
   int16_t sin_pitch_q14;
+  int16_t cos_tilt_q14;  ///< of the inclination, whichever way
 };
 
 /// What the estimator remembers, all of it zero after a reset but the orientation. By itself so
@@ -53,6 +54,7 @@ struct AttitudeState {
   uint8_t mag_age_;        // ticks since the last magnetometer sample
   uint8_t rest_ticks_;     // stops at kRestTicks
   uint8_t bias_samples_;   // taken at rest, stops at kBiasTicks
+  bool known_;             // gravity has been averaged once
 };
 
 class AttitudeEstimator : private AttitudeState {
@@ -85,6 +87,10 @@ class AttitudeEstimator : private AttitudeState {
   /// starts this again, since the bias may have spoilt what was before: at rest from the start on,
   /// it is true after 4.5 s.
   bool ready() const { return ticks_ == kStartTicks; }
+
+  /// It was ready once: roll and pitch are those of the gyro, and of what was averaged before, also
+  /// while the average is taken anew. A lost attitude begins again with that of the accelerometer.
+  bool known() const { return known_; }
 
   static constexpr uint16_t kStartTicks = 300;  ///< 3 s, the time constant of the gravity filter
   static constexpr uint8_t kRestTicks = 150;    ///< 1.5 s, until a standstill is found

@@ -22,6 +22,7 @@ constexpr uint16_t kFreeEvidence = 9830;
 constexpr int16_t kStanding_dmm_per_s = 100;
 constexpr int16_t kMaxVibration = 250;  // counts; 64 * 4 of it fit 16 bits
 constexpr uint8_t kSmoothShift = 4;
+constexpr int16_t kMaxEffort = 2000;  // duty, both tracks; 16 of it fit 16 bits
 
 /// part / whole in Q14, limited to 16 bits; whole > 0.
 SCREED_OUT_OF_LINE int16_t share_q14(uint16_t part, uint16_t whole) {
@@ -89,8 +90,9 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
   yaw_rate_ = static_cast<int16_t>(yaw_rate_ +
                                    asr_i16(static_cast<int16_t>(rate - yaw_rate_), kSmoothShift));
-  effort_ = static_cast<int16_t>(effort_ + negated_if(half_left < 0, left.effort) +
-                                 negated_if(half_right < 0, right.effort) -
+  const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
+                                           negated_if(half_right < 0, right.effort));
+  effort_ = static_cast<int16_t>(effort_ + limit_i16(effort, kMaxEffort) -
                                  asr_i16(effort_, kSmoothShift));
   if (classify_now) classify(half_left, half_right, sin_pitch_q14);
 }

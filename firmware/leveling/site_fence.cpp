@@ -17,7 +17,7 @@ bool beyond(int32_t x_mm, int32_t y_mm, int32_t radius_mm) {
 
 }  // namespace
 
-bool SiteFence::update(int32_t x_mm, int32_t y_mm) {
+SCREED_OUT_OF_LINE bool SiteFence::update(int32_t x_mm, int32_t y_mm) {
   if (radius_mm_ == 0) return false;
   const int32_t radius = radius_mm_;
   returning_ = beyond(x_mm, y_mm, returning_ ? asr(radius * 3, 2) : radius);

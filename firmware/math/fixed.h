@@ -50,9 +50,20 @@ static_assert(static_cast<int16_t>(static_cast<uint16_t>(0xFFFF)) == -1, "wrappi
 constexpr int16_t kQ15One = 32767;                          ///< the largest Q15, 1 - 2^-15
 constexpr int32_t kQ30One = static_cast<int32_t>(1) << 30;  ///< 1.0 in Q30
 
+namespace detail {
+
+/// One loop for the shifts of 32 bits, behind a move of bytes: gcc-avr would write one out for
+/// each.
+SCREED_OUT_OF_LINE constexpr int32_t shift_by_loop(int32_t value, uint8_t n) {
+  return n < 8 ? value >> n : (value >> 8) >> (n - 8);
+}
+
+}  // namespace detail
+
 /// floor(value / 2^n), n in 0..31.
 constexpr int32_t asr(int32_t value, uint8_t n) {
-  return value >> n;
+  // Whole bytes are moves.
+  return __builtin_constant_p(n) && n % 8 == 0 ? value >> n : detail::shift_by_loop(value, n);
 }
 
 /// floor(value / 2^n) of a short number, n in 0..15.
@@ -71,28 +82,30 @@ constexpr int32_t asr_round(int32_t value, uint8_t n) {
   return asr(value + (static_cast<int32_t>(1) << (n - 1)), n);
 }
 
-/// value limited to [low, high]; low <= high.
-SCREED_OUT_OF_LINE constexpr int32_t clamp_i32(int32_t value, int32_t low, int32_t high) {
-  return value < low ? low : (value > high ? high : value);
+/// value limited to [-limit, limit]; limit >= 0.
+SCREED_OUT_OF_LINE constexpr int32_t limit_i32(int32_t value, int32_t limit) {
+  return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-/// value limited to [-limit, limit]; limit >= 0. A call of it is shorter than one of clamp_i32().
+/// value limited to [-limit, limit]; limit >= 0. A call of it is shorter than one of limit_i32().
 SCREED_OUT_OF_LINE constexpr int16_t limit_i16(int32_t value, int16_t limit) {
   return static_cast<int16_t>(value > limit ? limit : value < -limit ? -limit : value);
 }
 
 /// value limited to [low, high]; low <= high.
-constexpr int16_t clamp_i16(int16_t value, int16_t low, int16_t high) {
+SCREED_OUT_OF_LINE constexpr int16_t clamp_i16(int16_t value, int16_t low, int16_t high) {
   return value < low ? low : (value > high ? high : value);
 }
 
 /// value limited to the range of int16_t.
-constexpr int16_t saturate_i16(int32_t value) {
-  return static_cast<int16_t>(clamp_i32(value, INT16_MIN, INT16_MAX));
+SCREED_OUT_OF_LINE constexpr int16_t saturate_i16(int32_t value) {
+  return static_cast<int16_t>(value > INT16_MAX   ? INT16_MAX
+                              : value < INT16_MIN ? INT16_MIN
+                                                  : value);
 }
 
 /// |value| as unsigned, right for INT32_MIN as well.
-constexpr uint32_t abs_u32(int32_t value) {
+SCREED_OUT_OF_LINE constexpr uint32_t abs_u32(int32_t value) {
   return value < 0 ? static_cast<uint32_t>(0) - static_cast<uint32_t>(value)
                    : static_cast<uint32_t>(value);
 }
@@ -295,23 +308,6 @@ SCREED_OUT_OF_LINE inline uint32_t quotient_u32(uint32_t a, uint16_t b) {
   const uint32_t remainder = (static_cast<uint32_t>(high % b) << 16) | (a & 0xFFFFU);
   return (static_cast<uint32_t>(static_cast<uint16_t>(high / b)) << 16) |
          quotient_u16(remainder, b);
-}
-
-/// floor((a * b + 2^29) / 2^30): the product of two Q30 numbers, the exact 64-bit product rounded
-/// to nearest, halves up. All of int32 x int32 is allowed as long as the result fits int32 (|a * b|
-/// < 2 in value).
-SCREED_OUT_OF_LINE SCREED_CONSTEXPR_OFF_AVR int32_t mul_q30(int32_t a, int32_t b) {
-  // Schoolbook in base 2^16. Each partial sum below fits 32 bits for every a and b:
-  // |signed x unsigned| <= 2^31 - 2^15 when positive, and what is added to it is below 2^16 + 2^13.
-  const uint32_t low = mul_u16(detail::low_half(a), detail::low_half(b));
-  const int32_t middle1 = detail::mul_su(detail::high_half(a), detail::low_half(b)) +
-                          static_cast<int32_t>(low >> 16) + (static_cast<int32_t>(1) << 13);
-  const int32_t middle2 = detail::mul_su(detail::high_half(b), detail::low_half(a)) +
-                          static_cast<int32_t>(detail::low_half(middle1));
-  const int32_t high =
-      mul_i16(detail::high_half(a), detail::high_half(b)) + asr(middle1, 16) + asr(middle2, 16);
-  return static_cast<int32_t>((static_cast<uint32_t>(high) << 2) |
-                              (static_cast<uint32_t>(detail::low_half(middle2)) >> 14));
 }
 
 }  // namespace screed

@@ -9,7 +9,7 @@ namespace screed {
 namespace {
 
 /// A Q30 component, at most 1 in magnitude, as Q14, rounded.
-int16_t q14_from_q30(int32_t value) {
+SCREED_OUT_OF_LINE int16_t q14_from_q30(int32_t value) {
   return detail::high_half(value + 0x8000);
 }
 

@@ -27,7 +27,7 @@ class Random {
   }
 
  private:
-  uint32_t next() {
+  SCREED_OUT_OF_LINE uint32_t next() {
     state_ ^= state_ << 13;
     state_ ^= state_ >> 17;
     state_ ^= state_ << 5;

@@ -78,7 +78,7 @@ int16_t sin_q15(Angle angle) {
   return (turn & 0x8000U) != 0 ? static_cast<int16_t>(-magnitude) : magnitude;
 }
 
-int16_t cos_q15(Angle angle) {
+SCREED_OUT_OF_LINE int16_t cos_q15(Angle angle) {
   return sin_q15(wrap_angle(static_cast<int32_t>(angle) + kQuarterTurn));
 }
 

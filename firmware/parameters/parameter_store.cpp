@@ -11,9 +11,7 @@ namespace {
 
 constexpr uint8_t kCrcAt = kParameterCopySize - 2;
 
-constexpr uint8_t value_at(uint8_t index) {
-  return static_cast<uint8_t>(kParameterHeaderSize + 2U * index);
-}
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are copied as they are");
 
 uint16_t crc_of(const ParameterCopy& copy) {
   return crc16_ccitt(copy.bytes, kCrcAt);
@@ -21,15 +19,15 @@ uint16_t crc_of(const ParameterCopy& copy) {
 
 }  // namespace
 
-void encode_parameters(const Parameters& parameters, uint16_t sequence, ParameterCopy& copy) {
-  int16_t values[kParameterCount];
-  memcpy(values, &parameters, sizeof(values));
+void seal_copy(uint16_t sequence, ParameterCopy& copy) {
   put_u16(copy.bytes, kParameterLayout);
   put_u16(copy.bytes + 2, sequence);
-  for (uint8_t i = 0; i < kParameterCount; ++i) {
-    put_s16(&copy.bytes[value_at(i)], values[i]);
-  }
   put_u16(copy.bytes + kCrcAt, crc_of(copy));
+}
+
+void encode_parameters(const Parameters& parameters, uint16_t sequence, ParameterCopy& copy) {
+  memcpy(copy.bytes + kParameterHeaderSize, &parameters, sizeof(parameters));
+  seal_copy(sequence, copy);
 }
 
 CopyState check_copy(const ParameterCopy& copy) {
@@ -43,11 +41,7 @@ CopyState check_copy(const ParameterCopy& copy) {
 }
 
 void decode_parameters(const ParameterCopy& copy, Parameters& parameters) {
-  int16_t values[kParameterCount];
-  for (uint8_t i = 0; i < kParameterCount; ++i) {
-    values[i] = get_s16(&copy.bytes[value_at(i)]);
-  }
-  memcpy(&parameters, values, sizeof(values));
+  memcpy(&parameters, copy.bytes + kParameterHeaderSize, sizeof(parameters));
 }
 
 uint16_t copy_sequence(const ParameterCopy& copy) {

@@ -69,6 +69,8 @@ enum class StoreState : uint8_t {
   kCorrupt,  ///< no good copy: the defaults, and the robot must not be armed
 };
 
+/// Puts the sequence number into a copy whose values stand, and what tells a good copy.
+void seal_copy(uint16_t sequence, ParameterCopy& copy);
 void encode_parameters(const Parameters& parameters, uint16_t sequence, ParameterCopy& copy);
 
 CopyState check_copy(const ParameterCopy& copy);

@@ -1,6 +1,8 @@
 // AUTOSAR E2E Profile 2.
 #include "firmware/protocol/e2e.h"
 
+#include "firmware/math/fixed.h"
+
 namespace screed {
 
 uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size) {
@@ -15,7 +17,7 @@ uint8_t crc8_h2f(uint8_t crc, const uint8_t* data, uint8_t size) {
   return crc;
 }
 
-uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size) {
+SCREED_OUT_OF_LINE uint8_t e2e_crc(uint8_t data_id, const uint8_t* data, uint8_t size) {
   const uint8_t over_data = crc8_h2f(0xFF, data + 1, static_cast<uint8_t>(size - 1));
   return static_cast<uint8_t>(crc8_h2f(over_data, &data_id, 1) ^ 0xFFU);
 }

@@ -1,15 +1,24 @@
 // CAN frames as text lines.
 #include "firmware/protocol/slcan.h"
 
-#include <stddef.h>
+#include <string.h>
+
+#include "firmware/math/fixed.h"
 
 namespace screed {
 namespace {
 
 constexpr uint8_t kNotHex = 0xFF;
+constexpr uint8_t kHeaderLength = 5;  // t, id, size
 
 uint8_t hex_digit(uint8_t value) {
   return static_cast<uint8_t>(value < 10 ? '0' + value : 'A' + (value - 10));
+}
+
+SCREED_OUT_OF_LINE uint8_t* put_byte(uint8_t* at, uint8_t byte) {
+  *at++ = hex_digit(static_cast<uint8_t>(byte >> 4));
+  *at++ = hex_digit(byte & 0xFU);
+  return at;
 }
 
 uint8_t hex_value(uint8_t digit) {
@@ -22,18 +31,15 @@ uint8_t hex_value(uint8_t digit) {
 }  // namespace
 
 uint8_t slcan_encode(const CanFrame& frame, uint8_t* line) {
-  uint8_t at = 0;
-  line[at++] = 't';
-  line[at++] = hex_digit((frame.id >> 8) & 0x7U);
-  line[at++] = hex_digit((frame.id >> 4) & 0xFU);
-  line[at++] = hex_digit(frame.id & 0xFU);
-  line[at++] = hex_digit(frame.size);
-  for (uint8_t i = 0; i < frame.size; ++i) {
-    line[at++] = hex_digit(static_cast<uint8_t>(frame.data[i] >> 4));
-    line[at++] = hex_digit(frame.data[i] & 0xFU);
-  }
-  line[at++] = '\r';
-  return at;
+  uint8_t* at = line;
+  *at++ = 't';
+  // The first digit of the id and the size are one digit alone.
+  *at++ = hex_digit((frame.id >> 8) & 0x7U);
+  at = put_byte(at, static_cast<uint8_t>(frame.id & 0xFFU));
+  *at++ = hex_digit(frame.size);
+  for (uint8_t i = 0; i < frame.size; ++i) at = put_byte(at, frame.data[i]);
+  *at++ = '\r';
+  return static_cast<uint8_t>(at - line);
 }
 
 bool slcan_byte(const uint8_t* digits, uint8_t& byte) {
@@ -44,37 +50,41 @@ bool slcan_byte(const uint8_t* digits, uint8_t& byte) {
 }
 
 bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
-  if (byte != '\r') {
-    if (length_ < sizeof(line_)) {
-      line_[length_++] = byte;
-    } else if (!too_long_) {
-      too_long_ = true;
-      ++rejected_;
-    }
+  if (byte == '\r') return end_line(frame);
+  if (length_ == kSlcanLineMax - 1) {
+    if (!too_long_) ++rejected_;
+    too_long_ = true;
     return false;
   }
-  const bool frame_like = length_ > 0 && line_[0] == 't';
-  const bool good = frame_like && !too_long_ && decode(frame);
-  if (frame_like && !too_long_ && !good) ++rejected_;
-  length_ = 0;
-  too_long_ = false;
-  return good;
+  if (length_ == 0) {
+    frame_like_ = byte == 't';
+    all_hex_ = true;
+  } else {
+    const uint8_t digit = hex_value(byte);
+    if (digit == kNotHex) all_hex_ = false;
+    if (length_ < kHeaderLength) {
+      header_ = static_cast<uint16_t>(header_ << 4 | digit);
+    } else {
+      uint8_t& data = data_[static_cast<uint8_t>(length_ - kHeaderLength) / 2U];
+      data = static_cast<uint8_t>(data << 4 | digit);
+    }
+  }
+  ++length_;
+  return false;
 }
 
-bool SlcanParser::decode(CanFrame& frame) const {
-  if (length_ < 5) return false;
-  uint8_t nibbles[4] = {0, 0, 0, 0};
-  for (uint8_t i = 0; i < 4; ++i) {
-    nibbles[i] = hex_value(line_[i + 1]);
-    if (nibbles[i] == kNotHex) return false;
-  }
-  if (nibbles[0] > 7 || nibbles[3] > 8) return false;
-  if (length_ != 5 + 2 * nibbles[3]) return false;
-  frame.id = static_cast<uint16_t>((nibbles[0] << 8) | (nibbles[1] << 4) | nibbles[2]);
-  frame.size = nibbles[3];
-  for (uint8_t i = 0; i < frame.size; ++i) {
-    if (!slcan_byte(line_ + 5 + size_t{2} * i, frame.data[i])) return false;
-  }
+bool SlcanParser::end_line(CanFrame& frame) {
+  const auto size = static_cast<uint8_t>(header_ & 0xFU);
+  const bool good = !too_long_ && all_hex_ && (header_ & 0x8000U) == 0 && size <= sizeof(data_) &&
+                    length_ == kHeaderLength + 2 * size;
+  const bool is_frame = length_ > 0 && frame_like_;
+  if (is_frame && !too_long_ && !good) ++rejected_;
+  length_ = 0;
+  too_long_ = false;
+  if (!is_frame || !good) return false;
+  frame.id = static_cast<uint16_t>(header_ >> 4);
+  frame.size = size;
+  memcpy(frame.data, data_, size);
   return true;
 }
 

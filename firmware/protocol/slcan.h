@@ -35,10 +35,13 @@ class SlcanParser {
   uint8_t rejected() const { return rejected_; }
 
  private:
-  bool decode(CanFrame& frame) const;
+  bool end_line(CanFrame& frame);
 
-  uint8_t line_[kSlcanLineMax - 1] = {};
-  uint8_t length_ = 0;
+  uint16_t header_ = 0;  ///< the first four digits: id and size
+  uint8_t data_[8] = {};
+  uint8_t length_ = 0;  ///< of the line so far
+  bool frame_like_ = false;
+  bool all_hex_ = false;
   bool too_long_ = false;
   uint8_t rejected_ = 0;
 };

@@ -31,9 +31,18 @@ static_assert(static_cast<uint8_t>(Request::kArm) == static_cast<uint8_t>(Comman
                   static_cast<uint8_t>(Request::kClear) == static_cast<uint8_t>(CommandOp::kClear),
               "these commands are requests of the same number");
 
-// 1 - 2 (x^2 + y^2): the element of the rotation matrix that is the cosine of the inclination.
-int32_t cos_tilt_q30(const Quaternion& q) {
-  return kQ30One - (mul_q30(q.x, q.x) + mul_q30(q.y, q.y)) * 2;
+/// Bytes of a message of the ground station that carries a CRC.
+uint8_t size_of(uint16_t id) {
+  if (id == kIdEmergencyStop) return message::EmergencyStop::kSize;
+  if (id == kIdParamStage) return message::ParamStage::kSize;
+  return message::GroundHeartbeat::kSize;
+}
+
+/// SupervisorInput::relative_speed_left.
+int16_t relative_speed(int16_t speed_dmm_per_s, uint16_t full_speed_mm_per_s) {
+  const int16_t magnitude = saturate_i16(static_cast<int32_t>(
+      quotient_u32(static_cast<uint32_t>(abs_i16(speed_dmm_per_s)) * 250U, full_speed_mm_per_s)));
+  return speed_dmm_per_s < 0 ? static_cast<int16_t>(-magnitude) : magnitude;
 }
 
 constexpr uint8_t kImuCounts = 9;
@@ -122,7 +131,7 @@ void Robot::handle(const CanFrame& frame) {
     case kIdGroundHeartbeat:
     case kIdEmergencyStop:
     case kIdParamStage:
-      if (!e2e_check(frame.id, frame.data, frame.size)) break;
+      if (frame.size != size_of(frame.id) || !e2e_check(frame.id, frame.data, frame.size)) break;
       ++uplink_.frames_received;
       if (frame.id == kIdEmergencyStop) {
         supervisor_.request(Request::kEmergencyStop);
@@ -256,7 +265,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.chips_failing = sample.chips_failing;
   input.gyro = sample.gyro;
   input.accel = sample.accel;
-  input.cos_tilt_q30 = cos_tilt_q30(attitude_.orientation());
+  input.cos_tilt_q14 = status_.angles.cos_tilt_q14;
   input.estimator_ready = attitude_.ready();
   input.battery_mv = status_.battery_mv;
   input.duty_left = status_.duty.duty_left;
@@ -264,6 +273,11 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.counts_left = deltas.left;
   input.counts_right = deltas.right;
   input.stuck = slip_watch_.stuck();
+  input.relative_speed_left =
+      relative_speed(drive_.speed_left_dmm_per_s(), board_.full_speed_mm_per_s);
+  input.relative_speed_right =
+      relative_speed(drive_.speed_right_dmm_per_s(), board_.full_speed_mm_per_s);
+  input.attitude_known = attitude_.known();
   supervisor_.tick(input);
 }
 

@@ -45,18 +45,21 @@ struct SupervisorInput {
   uint8_t fresh;         ///< SensorSample::fresh
   const int16_t* gyro;   ///< three raw counts
   const int16_t* accel;  ///< three raw counts
-  int32_t cos_tilt_q30;  ///< cosine of the estimated inclination
+  int16_t cos_tilt_q14;  ///< cosine of the estimated inclination
   bool estimator_ready;
   uint16_t battery_mv;
   int16_t duty_left;  ///< of the last tick
   int16_t duty_right;
   int16_t counts_left;  ///< encoder counts since the last tick
   int16_t counts_right;
-  uint8_t chips_failing = 0;  ///< SensorSample::chips_failing
-  bool stuck = false;         ///< the tracks turn and the robot does not move (slip_watch.h)
+  uint8_t chips_failing = 0;        ///< SensorSample::chips_failing
+  bool stuck = false;               ///< the tracks turn and the robot does not move (slip_watch.h)
+  int16_t relative_speed_left = 0;  ///< observed in the last tick, 2500 = the board's full speed
+  int16_t relative_speed_right = 0;
+  bool attitude_known = false;  ///< cos_tilt_q14 may be relied on
 };
 
-/// Watches one driven track for progress.
+/// Watches one driven track: whether it makes progress, and whether it does what its motor is told.
 ///
 /// It keeps the farthest position reached in the direction of the duty. A track that gets farther,
 /// or falls back by two counts, moves. A stalled track makes no counts; with a broken encoder wire
@@ -65,6 +68,10 @@ struct SupervisorInput {
 class TrackWatch {
  public:
   void tick(int16_t duty, int16_t counts);
+  /// One tick: a track that moves fast without duty in its direction is driven by something else,
+  /// or its encoder counts the wrong way.
+  void compare(int16_t duty, int16_t relative_speed);
+  bool disobeys() const;
   /// Ticks at high duty without progress.
   uint16_t still_ticks() const { return still_ticks_; }
   bool alternates() const;
@@ -73,6 +80,7 @@ class TrackWatch {
   uint16_t still_ticks_ = 0;
   int8_t counts_behind_farthest_ = 0;  ///< 0 or 1
   uint8_t reversals_ = 0;              ///< alternations since the last progress
+  uint8_t disobedience_ = 0;           ///< ticks, those against high duty twice
 };
 
 /// What the supervisor remembers, zero at the start but the time without a heartbeat: zeroed at
@@ -129,7 +137,6 @@ class Supervisor : private SupervisorMemory {
   void watch_link();
   void run_standalone();
 
-  int32_t cos_tilt_limit_q30_;
   int16_t cos_tilt_limit_q15_;
   uint16_t battery_low_mv_;
   uint16_t stall_ticks_;

@@ -3,6 +3,7 @@
 
 #include "firmware/math/units.h"
 #include "firmware/protocol/e2e.h"
+#include "hal/program_memory.h"
 
 namespace screed {
 namespace {
@@ -24,7 +25,7 @@ constexpr Schedule every(uint8_t first) {
 }
 
 // In order of importance; 119 lines a second of 200 possible, 2562 of the 2850 bytes of the budget.
-constexpr Schedule kSchedule[] = {
+const Schedule kSchedule[] SCREED_PROGRAM_MEMORY = {
     every<message::Heartbeat>(0), every<message::Attitude>(1), every<message::Encoders>(2),
     every<message::Motors>(3),    every<message::Leveling>(4), every<message::Odometry>(6),
     every<message::AccelRaw>(8),  every<message::GyroRaw>(9),  every<message::Power>(14),
@@ -148,7 +149,10 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       break;
     }
     case kIdTime:
-      set(frame, message::Time{quotient_u32(sample.time_us, 1000), uplink.ground_time_ms});
+      // Ticks are whole milliseconds.
+      time_ms_ += quotient_u32(sample.time_us - time_us_, 1000);
+      time_us_ = sample.time_us;
+      set(frame, message::Time{time_ms_, uplink.ground_time_ms});
       break;
     case kIdBaro:
     default: {
@@ -187,7 +191,9 @@ bool Telemetry::room(const RobotOutput& output) const {
 void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
   output.radio_out_count = 0;
   if (!started_) {
-    for (uint8_t i = 0; i < kTelemetryMessages; ++i) countdown_[i] = kSchedule[i].first;
+    for (uint8_t i = 0; i < kTelemetryMessages; ++i) {
+      countdown_[i] = read_program_u8(&kSchedule[i].first);
+    }
     started_ = true;
   }
   if (view.sample->last_tick_us > longest_tick_us_) longest_tick_us_ = view.sample->last_tick_us;
@@ -213,12 +219,12 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
     // schedule.
     if (countdown_[i] == 0) {
       due_ = static_cast<uint16_t>(due_ | bit);
-      countdown_[i] = kSchedule[i].period;
+      countdown_[i] = read_program_u8(&kSchedule[i].period);
     }
     --countdown_[i];
     if (!packet || (due_ & bit) == 0 || !room(output)) continue;
     CanFrame frame{};
-    frame.id = kSchedule[i].id;
+    frame.id = read_program_u16(&kSchedule[i].id);
     fill(frame, view);
     emit(frame, i, output);
     due_ = static_cast<uint16_t>(due_ & ~bit);

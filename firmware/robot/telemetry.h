@@ -54,6 +54,8 @@ struct TelemetryMemory {
   bool started_;
   uint8_t heartbeats_before_;  ///< UplinkCounts::ground_heartbeats at the last LINK
   uint16_t longest_tick_us_;   ///< since the last HEALTH
+  uint32_t time_ms_;           ///< at the last TIME; the sample's time wraps after 71.6 minutes
+  uint32_t time_us_;           ///< the sample's, then
 };
 
 class Telemetry : private TelemetryMemory {

@@ -3,9 +3,11 @@
 
 #include <string.h>
 
+#include "firmware/math/fixed.h"
+
 namespace screed {
 
-GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
+SCREED_OUT_OF_LINE GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
   if (!credentials_.key_set) return GateResult::kNoKey;
   if (locked_ticks_ != 0) return GateResult::kLockedOut;
   if (counter_ != 0 && memcmp(data, last_, kCommandSize) == 0) return GateResult::kRepeated;

@@ -16,6 +16,10 @@ uint16_t get_epoch(const CredentialRecord& record, uint8_t odd) {
   return get_u16(slot + 2) == static_cast<uint16_t>(~epoch) ? epoch : static_cast<uint16_t>(0);
 }
 
+bool is_key(const uint8_t* copy) {
+  return get_u16(copy + kKeySize) == crc16_ccitt(copy, kKeySize);
+}
+
 }  // namespace
 
 void put_epoch(CredentialRecord& record, uint16_t epoch) {
@@ -27,11 +31,14 @@ void put_epoch(CredentialRecord& record, uint16_t epoch) {
 void put_key(CredentialRecord& record, const uint8_t* key) {
   memcpy(record.bytes, key, kKeySize);
   put_u16(record.bytes + kKeySize, crc16_ccitt(record.bytes, kKeySize));
+  memcpy(record.bytes + kSecondKeyOffset, record.bytes, kKeyCopySize);
 }
 
 bool begin_start(CredentialRecord& record, Credentials& credentials) {
-  memcpy(credentials.key, record.bytes, kKeySize);
-  const bool key_set = get_u16(record.bytes + kKeySize) == crc16_ccitt(record.bytes, kKeySize);
+  const uint8_t* const second = record.bytes + kSecondKeyOffset;
+  const uint8_t* const key = is_key(record.bytes) ? record.bytes : second;
+  const bool key_set = is_key(key);
+  memcpy(credentials.key, key, kKeySize);
   const uint16_t even = get_epoch(record, 0);
   const uint16_t odd = get_epoch(record, 1);
   const uint16_t last = even > odd ? even : odd;

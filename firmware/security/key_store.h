@@ -3,10 +3,13 @@
 //
 //   byte 0   16   key
 //   byte 16  u8   robot id
-//   byte 17  u16  CRC-16/CCITT-FALSE of the bytes before it; wrong: there is no key
+//   byte 17  u16  CRC-16/CCITT-FALSE of the bytes before it
 //   byte 19  u16  number of the last start with an even one, u16 its complement
 //   byte 23  u16  number of the last start with an odd one, u16 its complement
+//   byte 27  19   key, robot id and CRC once more
 //
+// The bytes are written in their order, so power that fails meanwhile leaves the new key in the
+// first copy or the old one in the second. With both CRCs wrong there is no key.
 // Every start writes its number over that of two starts before: power that fails meanwhile leaves
 // the other one, and the start whose number was torn has accepted no command yet. 65,535 starts
 // wear a cell 33,000 times, a third of its endurance; after them no command is accepted any more.
@@ -22,7 +25,9 @@ namespace screed {
 
 constexpr uint8_t kKeySize = kSipHashKeySize + 1;  ///< key and robot id
 constexpr uint8_t kEpochSlotSize = 4;
-constexpr uint8_t kCredentialRecordSize = kKeySize + 2 + 2 * kEpochSlotSize;
+constexpr uint8_t kKeyCopySize = kKeySize + 2;
+constexpr uint8_t kSecondKeyOffset = kKeyCopySize + 2 * kEpochSlotSize;
+constexpr uint8_t kCredentialRecordSize = kSecondKeyOffset + kKeyCopySize;
 /// Address of its first byte, behind the parameters.
 constexpr uint16_t kCredentialRecordAddress = 0x110;
 

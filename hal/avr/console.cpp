@@ -36,14 +36,13 @@ namespace {
 constexpr uint8_t kInSize = 1 + 2 * kKeySize + 1;
 constexpr uint8_t kOutSize = 48;
 constexpr uint8_t kBytesPerStep = 16;
-constexpr uint8_t kNothingToList = kParameterCount;
 
 struct State {
   uint8_t in[kInSize];
   uint8_t in_count;  // kInSize: the line was too long
   uint8_t out[kOutSize];
   uint8_t out_count;
-  uint8_t list_at = kNothingToList;
+  uint8_t to_list;  // parameters that are still to be printed
 };
 State state;
 
@@ -103,7 +102,7 @@ void print_parameter(uint8_t index) {
 
 bool parameter_command() {
   if (state.in_count == 1) {
-    state.list_at = 0;
+    state.to_list = kParameterCount;
     return true;
   }
   uint8_t at = 1;
@@ -188,8 +187,9 @@ void end_line() {
 }  // namespace
 
 void console_step() {
-  if (state.out_count == 0 && state.list_at < kNothingToList) {
-    print_parameter(state.list_at++);
+  if (state.out_count == 0 && state.to_list != 0) {
+    print_parameter(static_cast<uint8_t>(kParameterCount - state.to_list));
+    --state.to_list;
     print('\n');
   }
   if (state.out_count != 0) {

@@ -16,8 +16,16 @@ namespace {
 struct State {
   Quadrature left;
   Quadrature right;
+  uint8_t edges;  // since the last read, both sides
 };
 State state;
+
+/// More edges in a tick than a board's limit are none of a track: a wire that picks up a radio or a
+/// motor can bring one every few microseconds, and with them the main loop would stand still. The
+/// encoders are deaf then until they are read.
+inline void count_edge() {
+  if (++state.edges == kMaxEncoderEdges) disable_encoder_interrupts();
+}
 
 }  // namespace
 
@@ -26,14 +34,17 @@ State state;
 // and right after an edge of this side there is no next one in between.
 ISR(PCINT0_vect) {
   state.left.update(read_left_encoder());
+  count_edge();
 }
 ISR(INT6_vect) {
   state.right.update(read_right_encoder());
+  count_edge();
 }
 #else
 ISR(PCINT0_vect) {
   state.left.update(read_left_encoder());
   state.right.update(read_right_encoder());
+  count_edge();
 }
 #endif
 
@@ -49,6 +60,13 @@ EncoderCounts encoders_read() {
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     counts.left = state.left.count;
     counts.right = state.right.count;
+    if (state.edges >= kMaxEncoderEdges) {
+      ++state.left.errors;
+      state.left.start(read_left_encoder());
+      state.right.start(read_right_encoder());
+      enable_encoder_interrupts();
+    }
+    state.edges = 0;
     counts.errors = static_cast<uint8_t>(state.left.errors + state.right.errors);
   }
   return counts;

@@ -1,6 +1,7 @@
 # The image for the robot's microcontroller, and its budget. Included by the top Makefile.
 #
 #   build/firmware/<board>/screed.elf and .hex, and their budget of flash, RAM, stack and cycles
+#   build/firmware/<board>_usb_core/ the same with USB=core: on the Arduino core's main() and USB instead of hal/avr/usb
 #
 # Needs options.mk and host.mk. A board is a folder boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
 
@@ -13,24 +14,35 @@ AVR_OBJDUMP ?= avr-objdump
 AVR_SIZE ?= avr-size
 AVR_NM ?= avr-nm
 
-# Most flash and RAM a program may use; RAM counts variables and the worst-case stack.
+# Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack. With USB=core flash
+# may be used up.
 FLASH_BUDGET := 28672
 RAM_BUDGET := 2560
 RAM_SPARE := 256
+FLASH_SPARE_own := 2048
+FLASH_SPARE_core := 0
 # Where the core writes the bootloader's key while the program still runs (MAGIC_KEY_POS in its USBCore.h).
 BOOT_KEY_ADDRESS := 0x0800
 # Half of a tick.
 TICK_BUDGET_CYCLES := 80000
 
-FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)
+USB ?= own
+USB_FOLDER_own := hal/avr/usb
+USB_FOLDER_core := hal/avr/arduino
+ifeq ($(USB_FOLDER_$(USB)),)
+$(error USB=$(USB): own or core)
+endif
+USB_SUFFIX_core := _usb_core
+FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
-FIRMWARE_SOURCES := $(call sources,firmware nn/infer hal/avr)
+FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) $(call sources,$(USB_FOLDER_$(USB)))
 FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
 SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter no-ipa-cp no-ipa-sra
-AVR_FLAGS := -std=c++14 -Os -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
+# -g: `make size` names the sources; nothing of it is flashed.
+AVR_FLAGS := -std=c++14 -Os -g -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
   -mrelax -mstrict-X -mcall-prologues $(SMALLER:%=-f%)
 # make firmware STANDALONE=yes: the default of the parameter `standalone` is 1.
@@ -41,13 +53,13 @@ AVR_WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Werror
 AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_ROOT)/generated
 AVR_LINK := -Wl,--gc-sections
 
-# The Arduino core of Debian's package arduino-core-avr: main(), USB and the serial line over it. Only what is used of it
-# reaches the image.
+# The Arduino core of Debian's package arduino-core-avr, with USB=core: main(), USB and the serial line over it. Only what is used
+# of it reaches the image.
 ARDUINO_ROOT ?= /usr/share/arduino/hardware/arduino/avr
 ARDUINO_CORE := $(ARDUINO_ROOT)/cores/arduino
 ARDUINO_VARIANT := $(ARDUINO_ROOT)/variants/leonardo
 ARDUINO_SOURCES := CDC.cpp PluggableUSB.cpp USBCore.cpp main.cpp Print.cpp Stream.cpp abi.cpp hooks.c
-ARDUINO_OBJECTS := $(patsubst %,$(FIRMWARE_BUILD)/arduino/%.o,$(ARDUINO_SOURCES))
+ARDUINO_OBJECTS_core := $(patsubst %,$(FIRMWARE_BUILD)/arduino/%.o,$(ARDUINO_SOURCES))
 ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_VID=$(BOARD_USB_VID) -DUSB_PID=$(BOARD_USB_PID) -DUSB_MANUFACTURER='"$(BOARD_USB_MANUFACTURER)"' \
   -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
@@ -55,21 +67,23 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
 .PHONY: firmware size firmware-budget
 firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget  ## build the image for the robot (BOARD=NAME, a folder in boards/)
 
-# What the analysis cannot see: targets of indirect calls. Its "never" lines hold as long as the core's serial line is the
-# only object with virtual functions.
-INDIRECT_CALLS := hal/avr/indirect_calls.txt
-ALLOWED_VTABLES := Serial_
+# What the analysis cannot see with USB=core: targets of indirect calls. Its "never" lines hold as long as the core's serial line is
+# the only object with virtual functions. The image without the core has neither.
+INDIRECT_CALLS := hal/avr/arduino/indirect_calls.txt
+ALLOWED_VTABLES_core := Serial_
+STACK_OPTIONS_core := --indirect-calls $(INDIRECT_CALLS) --free-word $(BOOT_KEY_ADDRESS)
 
 firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)/avr_stack
 	@echo "$(FIRMWARE_ELF)"
-	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | { grep -vxF '$(ALLOWED_VTABLES)' || [ $$? -eq 1 ] ; }) ; \
-	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which $(INDIRECT_CALLS) does not know" >&2 ; exit 1 ; }
+	@foreign=$$($(AVR_NM) -C $(FIRMWARE_ELF) | sed -n 's/.*vtable for //p' | { grep -vxF '$(or $(ALLOWED_VTABLES_$(USB)),none)' || [ $$? -eq 1 ] ; }) ; \
+	  [ -z "$$foreign" ] || { echo "$(FIRMWARE_ELF): virtual functions of $$foreign, which the stack analysis does not know" >&2 ; exit 1 ; }
 	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
-	  --indirect-calls $(INDIRECT_CALLS) --flash-budget $(FLASH_BUDGET) --ram-budget $(RAM_BUDGET) \
-	  --ram-spare $(RAM_SPARE) --free-word $(BOOT_KEY_ADDRESS)
+	  $(STACK_OPTIONS_$(USB)) --flash-budget $(FLASH_BUDGET) --flash-spare $(FLASH_SPARE_$(USB)) \
+	  --ram-budget $(RAM_BUDGET) --ram-spare $(RAM_SPARE)
 
-# Longest tick and interrupts, measured in the simulator while the robot drives.
-size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash, RAM, stack and longest tick of that image against the budget
+# Bytes of each module; longest tick and interrupts, measured in the simulator while the robot drives.
+size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash by modules, RAM, stack, longest tick of that image, their reserve
+	@tools/avr/modules.sh $(FIRMWARE_ELF)
 	@$(B)/avr_cycles $(FIRMWARE_ELF) boards/$(BOARD)/wiring.ini --budget $(TICK_BUDGET_CYCLES)
 $(B)/avr_cycles: $(B)/tools/avr/cycles/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
@@ -91,7 +105,9 @@ $(FIRMWARE_BUILD)/avr.flags: FORCE
 
 $(FIRMWARE_BUILD)/generated/build_info.h: FORCE
 	@mkdir -p $(@D)
-	@{ echo '#define SCREED_VERSION "$(COMMIT)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; } > $@.new
+	@{ echo '#define SCREED_VERSION "$(COMMIT)"' ; echo '#define SCREED_BOARD "$(BOARD)"' ; \
+	   echo '#define SCREED_USB_VID $(BOARD_USB_VID)' ; echo '#define SCREED_USB_PID $(BOARD_USB_PID)' ; \
+	   echo '#define SCREED_USB_MANUFACTURER "$(BOARD_USB_MANUFACTURER)"' ; echo '#define SCREED_USB_PRODUCT "$(BOARD_USB_PRODUCT)"' ; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 
 $(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/generated/build_info.h $(SCHEMA_HEADERS)
@@ -106,7 +122,7 @@ $(FIRMWARE_BUILD)/arduino/%.c.o: $(ARDUINO_CORE)/%.c $(FIRMWARE_BUILD)/avr.flags
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(patsubst -std=%,-std=gnu11,$(filter-out -fno-rtti -fno-threadsafe-statics,$(AVR_FLAGS))) -w $(ARDUINO_FLAGS) -c $< -o $@
 
-$(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS)
+$(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS_$(USB))
 	@echo "  LINK $@"
 	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
 

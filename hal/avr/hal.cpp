@@ -27,8 +27,9 @@ namespace screed {
 namespace hal {
 
 void init() {
-  // USB is attached by now. With this library's init() interrupts are off; a sketch that brings in
-  // the Arduino core's own has them on, and 10 a tick for millis(), which stands still from now on.
+  // On the Arduino core USB is attached by now. With hal/avr/arduino's init() interrupts are off; a
+  // sketch that brings in the core's own has them on, and 10 a tick for millis(), which stands
+  // still from now on.
   cli();
   avr::motors_init();
   TIMSK0 = 0;
@@ -42,6 +43,7 @@ void init() {
   avr::radio_uart_init();
   avr::battery_init();
   avr::imu_init();
+  avr::usb_serial_init();
   avr::tick_timer_init();
   avr::watchdog_init();
   sei();
@@ -65,7 +67,7 @@ bool parameters_intact() {
 
 bool wait_for_tick() {
   // What has time until the next tick.
-  avr::usb_serial_check_upload_request();
+  avr::usb_serial_step();
   avr::console_step();
   avr::parameter_eeprom_step();
   avr::stack_guard_step();

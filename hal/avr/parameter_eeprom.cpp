@@ -14,27 +14,51 @@ const Parameters kDefaults PROGMEM;
 
 /// Parameters that are filled later: their default values would cost a constructor's code.
 union LateParameters {
+  uint8_t bytes[sizeof(Parameters)];
   Parameters value;
-  LateParameters() {}
+  constexpr LateParameters() : bytes() {}
 };
 LateParameters draft;
+LateParameters in_force;  // what the robot drives with: of this start, and remote changes since
 
-void set_defaults(LateParameters& parameters) {
-  memcpy_P(&parameters, &kDefaults, sizeof(kDefaults));
-}
+/// A copy whose values can be looked at.
+union Copy {
+  ParameterCopy bytes;
+  struct {
+    uint8_t header[kParameterHeaderSize];
+    Parameters values;
+  } parts;
+  constexpr Copy() : bytes() {}
+};
+
+Copy copy;  // what is stored, or is being written
 
 struct State {
   StoreState store;
-  ParameterCopy copy;  // what is being written
   bool has_good_copy;
   uint8_t copies;  // still to write
   uint8_t next_copy;
   uint16_t next_sequence;
+  uint8_t pending;  // a parameter that waits to be stored, by its number; 0: none
+  int16_t pending_value;
 };
 State state;
 
-void read_copy(uint8_t index, ParameterCopy& copy) {
-  eeprom_read(parameter_copy_address(index), copy.bytes, kParameterCopySize);
+void read_copy(uint8_t index) {
+  eeprom_read(parameter_copy_address(index), copy.bytes.bytes, kParameterCopySize);
+}
+
+void put(Parameters& parameters, uint8_t number, int16_t value) {
+  reinterpret_cast<int16_t*>(&parameters)[number - 1] = value;
+}
+
+/// Begins to write copy.
+void begin_save() {
+  seal_copy(state.next_sequence, copy.bytes);
+  state.next_sequence = static_cast<uint16_t>(state.next_sequence + 1U);
+  // A store without a good copy gets two at once.
+  state.copies = state.has_good_copy ? 1 : kParameterCopies;
+  state.has_good_copy = true;
 }
 
 }  // namespace
@@ -43,20 +67,22 @@ void parameter_eeprom_init() {
   CopyState states[kParameterCopies];
   uint16_t sequences[kParameterCopies];
   for (uint8_t i = 0; i < kParameterCopies; ++i) {
-    read_copy(i, state.copy);
-    states[i] = check_copy(state.copy);
-    sequences[i] = copy_sequence(state.copy);
+    read_copy(i);
+    states[i] = check_copy(copy.bytes);
+    sequences[i] = copy_sequence(copy.bytes);
   }
   const StoreChoice choice = choose_copy(states[0], sequences[0], states[1], sequences[1]);
   state.store = choice.state;
   state.has_good_copy = choice.state == StoreState::kStored;
   state.next_copy = choice.next_copy;
   state.next_sequence = choice.next_sequence;
-  set_defaults(draft);
+  parameter_draft_defaults();
   if (choice.state == StoreState::kStored) {
-    read_copy(choice.copy, state.copy);
-    decode_parameters(state.copy, draft.value);
+    read_copy(choice.copy);
+    draft.value = copy.parts.values;
   }
+  copy.parts.values = draft.value;
+  in_force.value = draft.value;
 }
 
 StoreState parameter_store_state() {
@@ -66,32 +92,40 @@ Parameters& parameter_draft() {
   return draft.value;
 }
 void parameter_draft_defaults() {
-  set_defaults(draft);
+  memcpy_P(draft.bytes, &kDefaults, sizeof(kDefaults));
 }
 
 bool parameter_save() {
-  if (parameter_saving() || !draft.value.valid()) return false;
-  encode_parameters(draft.value, state.next_sequence, state.copy);
-  state.next_sequence = static_cast<uint16_t>(state.next_sequence + 1U);
-  // A store without a good copy gets two at once.
-  state.copies = state.has_good_copy ? 1 : kParameterCopies;
-  state.has_good_copy = true;
+  if (parameter_saving() || !parameter_draft().valid()) return false;
+  copy.parts.values = draft.value;
+  begin_save();
   return true;
 }
 
-bool parameter_store(uint8_t number, int16_t value) {
-  memcpy(reinterpret_cast<uint8_t*>(&draft) + sizeof(value) * (number - 1U), &value, sizeof(value));
-  return parameter_save();
+void parameter_store(uint8_t number, int16_t value) {
+  put(draft.value, number, value);
+  put(in_force.value, number, value);
+  state.pending = number;
+  state.pending_value = value;
 }
 
 bool parameter_saving() {
-  return state.copies != 0 || eeprom_busy();
+  return state.copies != 0 || state.pending != 0 || eeprom_busy();
 }
 
 void parameter_eeprom_step() {
   eeprom_step();
-  if (state.copies == 0 || eeprom_busy()) return;
-  eeprom_write(parameter_copy_address(state.next_copy), state.copy.bytes, kParameterCopySize);
+  if (eeprom_busy()) return;
+  if (state.copies == 0) {
+    if (state.pending == 0) return;
+    Parameters& stored = copy.parts.values;
+    put(stored, state.pending, state.pending_value);
+    state.pending = 0;
+    // What was saved for the next start may contradict it; what the robot drives with does not.
+    if (!stored.valid()) stored = in_force.value;
+    begin_save();
+  }
+  eeprom_write(parameter_copy_address(state.next_copy), copy.bytes.bytes, kParameterCopySize);
   state.next_copy = static_cast<uint8_t>(1 - state.next_copy);
   --state.copies;
 }

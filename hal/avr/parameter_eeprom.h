@@ -18,8 +18,10 @@ void parameter_draft_defaults();
 /// Begins to write the draft, one byte a tick; the new parameters hold from the next start on.
 /// False when the draft is out of its range, or a write is under way.
 bool parameter_save();
-/// The same with one more change: a parameter by its number in the table, from 1.
-bool parameter_store(uint8_t number, int16_t value);
+/// Stores one parameter, by its number in the table, from 1, among those that are stored; of the
+/// draft nothing else. Begins once nothing else is being written. Others of the robot must not
+/// contradict it. At most one in 1.5 s.
+void parameter_store(uint8_t number, int16_t value);
 /// The EEPROM is being written, by this or by others.
 bool parameter_saving();
 

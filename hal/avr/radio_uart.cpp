@@ -16,8 +16,9 @@ namespace {
 constexpr uint16_t kBaudDivider = 33;
 
 struct State {
-  Ring<128> in;  // 22 ms at line rate: two ticks
-  Ring<128> out;
+  Ring<128> in;         // 22 ms at line rate: two ticks
+  const uint8_t* next;  // byte to send
+  volatile uint8_t left;
   volatile uint8_t overruns;
 };
 State state;
@@ -33,11 +34,8 @@ ISR(USART1_RX_vect) {
 }
 
 ISR(USART1_UDRE_vect) {
-  if (state.out.used() == 0) {
-    UCSR1B &= static_cast<uint8_t>(~_BV(UDRIE1));
-  } else {
-    UDR1 = state.out.get();
-  }
+  UDR1 = *state.next++;
+  if (--state.left == 0) UCSR1B &= static_cast<uint8_t>(~_BV(UDRIE1));
 }
 
 void radio_uart_init() {
@@ -54,9 +52,10 @@ uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity) {
 }
 
 void radio_uart_write(const uint8_t* bytes, uint8_t count) {
-  if (count == 0 || count > state.out.room()) return;
-  for (uint8_t i = 0; i < count; ++i) state.out.put(bytes[i]);
+  if (count == 0) return;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    state.next = bytes;
+    state.left = count;
     UCSR1B |= _BV(UDRIE1);
   }
 }

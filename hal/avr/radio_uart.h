@@ -1,4 +1,4 @@
-// USART1: the line to the radio module, 58,824 baud, with a ring buffer each way.
+// USART1: the line to the radio module, 58,824 baud, with a ring buffer for what it receives.
 #pragma once
 
 #include <stdint.h>
@@ -12,7 +12,8 @@ void radio_uart_init();
 /// bytes the hardware lost, are gone and counted.
 uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity);
 
-/// Queues all bytes, or none when they do not fit. Never waits.
+/// Sends bytes from where they are, in the background: they must stay as they are until then, 174
+/// us each. What is still being sent is cut off. Never waits.
 void radio_uart_write(const uint8_t* bytes, uint8_t count);
 
 /// Received bytes lost since start, wraps.

@@ -36,11 +36,13 @@ extern "C" void screed_stop_watchdog() {
 
 void reset_cause_init() {
   const ResetCause mark = static_cast<ResetCause>(kept.mark & 0x0FU);
-  if ((kept.flags & _BV(PORF)) != 0) {
+  // Without a mark RAM was without power. A supply that rises slowly sets BORF as well as PORF, of
+  // which the A-Star's bootloader leaves BORF alone.
+  if ((kept.flags & _BV(PORF)) != 0 || !marked()) {
     cause = ResetCause::kPowerOn;
   } else if ((kept.flags & _BV(BORF)) != 0) {
     cause = ResetCause::kBrownOut;
-  } else if (marked()) {
+  } else {
     cause = (kept.flags & _BV(WDRF)) != 0 && mark == ResetCause::kExternal ? ResetCause::kWatchdog
                                                                            : mark;
   }

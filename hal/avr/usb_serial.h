@@ -1,4 +1,7 @@
-// The serial line over USB, on the Arduino core. Nothing here waits for a host.
+// The serial line over USB. Nothing here waits for a host.
+//
+// Two implementations, of which the build takes one: hal/avr/usb, the image's own driver, and
+// hal/avr/arduino, on the Arduino core's USB (the Arduino library; make firmware USB=core).
 #pragma once
 
 #include <stdint.h>
@@ -6,15 +9,18 @@
 namespace screed {
 namespace avr {
 
+void usb_serial_init();
+
+/// Answers the host, and starts the bootloader when it has asked for it (the line was closed at
+/// 1200 baud). Called once a tick.
+void usb_serial_step();
+
 /// Takes one received byte; false when there is none.
 bool usb_serial_get(uint8_t& byte);
 
 /// Sends all bytes (at most 48), or none when the host has left no room. true as well when no
 /// program on the host has opened the line: then they are dropped.
 bool usb_serial_put(const uint8_t* bytes, uint8_t count);
-
-/// Starts the bootloader when the host has asked for it: the line was closed at 1200 baud.
-void usb_serial_check_upload_request();
 
 }  // namespace avr
 }  // namespace screed

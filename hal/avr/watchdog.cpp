@@ -23,17 +23,17 @@ void watchdog_init() {
 
 void watchdog_feed() {
   wdt_reset();
+  // A main loop that comes back has not been reset.
+  if (looks == kMaxLooks) set_next_reset_cause(ResetCause::kExternal);
   looks = 0;
 }
 
 // Not the watchdog's own interrupt: as long as that one is pending the hardware does not reset, so
 // a program that hangs with its interrupts off would hang for ever.
 void watchdog_check() {
-  const uint8_t now = static_cast<uint8_t>(looks + 1);
-  if (now < kMaxLooks) {
-    looks = now;
-    return;
-  }
+  const uint8_t now = looks;
+  if (now < kMaxLooks) looks = static_cast<uint8_t>(now + 1);
+  if (now + 1 < kMaxLooks) return;
   motors_off();
   set_next_reset_cause(ResetCause::kWatchdog);
 }

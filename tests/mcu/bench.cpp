@@ -13,10 +13,7 @@
 namespace screed::mcu {
 unsigned computed_stack() {
   std::ifstream in(kScreedListing);
-  std::ifstream indirect(kIndirectCalls);
-  return avr_stack::analyze(avr_stack::Disassembly::read(in),
-                            avr_stack::read_indirect_calls(indirect))
-      .worst_case();
+  return avr_stack::analyze(avr_stack::Disassembly::read(in), {}).worst_case();
 }
 
 unsigned static_ram() {

@@ -83,15 +83,6 @@ ParameterCopy encoded(const Parameters& parameters, std::uint16_t sequence) {
   return copy;
 }
 
-TEST_F(BoardParts, IsAnAStarOnTheUsbBus) {
-  mcu_.run_ms(50);
-  ASSERT_TRUE(usb_.plug_in());
-  const std::vector<std::uint8_t> descriptor = usb_.device_descriptor();
-  ASSERT_EQ(descriptor.size(), 18U);
-  EXPECT_EQ(descriptor[8] | descriptor[9] << 8, 0x1FFB);
-  EXPECT_EQ(descriptor[10] | descriptor[11] << 8, 0x2300);
-}
-
 TEST_F(BoardParts, EntersTheBootloaderWhenTheLineIsClosedAt1200Baud) {
   mcu_.run_ms(50);
   ASSERT_TRUE(usb_.plug_in());
@@ -266,6 +257,31 @@ TEST_F(BoardParts, KnowsWhyItStarted) {
     open_console();
     EXPECT_EQ(cause(), static_cast<int>(it.cause)) << "MCUSR " << int{it.flags};
   }
+}
+
+TEST_F(BoardParts, ABrownOutIsNoneWhenRamWasLostAsWell) {
+  mcu_.run_ms(100);
+  // The supply rises slowly: BORF, which the bootloader leaves, and RAM as it comes.
+  for (std::uint16_t at = kRamBegin; at < kRamEnd; ++at) mcu_.simulator()->data[at] = 0x5A;
+  mcu_.reset(kBorf);
+  mcu_.run_ms(100);
+  open_console();
+  EXPECT_EQ(cause(), static_cast<int>(ResetCause::kPowerOn));
+}
+
+TEST_F(BoardParts, AMainLoopThatComesBackLeavesNoMarkOfTheWatchdog) {
+  mcu_.run_ms(100);
+  avr_t* const avr = mcu_.simulator();
+  const std::vector<std::uint8_t> flash(avr->flash, avr->flash + 4 * kVectors);
+  mcu_.break_tick();
+  mcu_.run_ms(90);
+  std::copy(flash.begin(), flash.end(), avr->flash);
+  mcu_.run_ms(100);
+  ASSERT_EQ(mcu_.starts(), 1) << "the watchdog was in time";
+  mcu_.reset(kExtrf);
+  mcu_.run_ms(100);
+  open_console();
+  EXPECT_EQ(cause(), static_cast<int>(ResetCause::kExternal));
 }
 
 TEST_F(BoardParts, TheWatchdogResetsAHungProgram) {

@@ -64,9 +64,10 @@ TEST_P(EachBoard, BootsAndTicks) {
 
 TEST_P(EachBoard, MissesNoEdgeAtThreeTimesTheFastest) {
   run_ms(300);
-  // 0.75 m/s on both tracks. The Rover 5 has 565.5 um a count, the Zumo 131.2 um: 5700 counts/s,
-  // an edge of one side every 175 us. The other side runs backwards and a little slower.
-  constexpr std::uint64_t kStep_cycles = 2800;
+  // 0.75 m/s on both tracks. The Rover 5 has 565.5 um a count, the Zumo 131.2 um: 1330 and 5700
+  // counts/s, an edge of one side every 750 and 175 us. The other side runs backwards and a little
+  // slower.
+  const std::uint64_t step_cycles = GetParam() == "zumo_32u4" ? 2800 : 12'000;
   std::int64_t left = 0;
   std::int64_t right = 0;
   for (std::uint64_t i = 0; i < 6000; ++i) {
@@ -76,7 +77,7 @@ TEST_P(EachBoard, MissesNoEdgeAtThreeTimesTheFastest) {
     board_.set_encoder(kLeft, ++left);
     run_until(now + 200 + 40 * (i % 60));
     if (i % 20 != 0) board_.set_encoder(kRight, --right);
-    run_until(now + kStep_cycles);
+    run_until(now + step_cycles);
   }
   run_until(board_.mcu.cycle() + kClock_hz / 10);
   EXPECT_EQ(get_u16(last(kIdEncoders).data + 2), static_cast<std::uint16_t>(left));

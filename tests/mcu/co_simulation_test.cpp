@@ -7,6 +7,7 @@
 
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/devices/sensors/calibration_motion.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/simulation/parity.h"
 #include "tests/mcu/image_drive.h"
@@ -83,6 +84,22 @@ TEST(CoSimulation, SensorsSayWhatTheWorldIs) {
   const double volt =
       drive.sample.battery * board_constants_of(kDefaultBoard).battery_uv_per_lsb * 1e-6;
   EXPECT_NEAR(volt, drive.world.plant().battery().terminal_v, 0.02);
+}
+
+TEST(CoSimulation, AHandledRobotFeelsWhatAPersonDoes) {
+  ImageDrive drive(1, 0.0, true);
+  const int ticks = static_cast<int>(0.5 * kCalibrationMotionPeriod_s * kTickRate_hz);
+  int compared = 0;
+  for (int i = 0; i < ticks; ++i) {
+    drive.tick();
+    const ImuTruth now = calibration_motion(1e-3 * drive.time_ms());
+    // The chips are configured, and the robot is held still.
+    if (i < 100 || now.mean_rate_rad_per_s.norm() > 0.01) continue;
+    const Eigen::Vector3d felt(drive.sample.accel[0], drive.sample.accel[1], drive.sample.accel[2]);
+    ASSERT_LT((felt * 0.244e-3 - now.mean_specific_force / 9.80665).norm(), 0.06) << i;
+    ++compared;
+  }
+  EXPECT_GT(compared, 1000);
 }
 
 TEST(CoSimulation, TheSameSeedGivesTheSameBytesAlsoBesideAnotherWorld) {

@@ -24,7 +24,7 @@
 
 namespace screed {
 
-constexpr uint8_t kGoldenSections = 13;
+constexpr uint8_t kGoldenSections = 12;
 
 constexpr BoardConstants kGoldenBoard = {9048, 1831, 195, 7200, 250};
 
@@ -105,27 +105,12 @@ void golden_shifts(Link& link) {
     const uint8_t n = static_cast<uint8_t>(numbers.any() % 31U);
     put_signed(link, asr(a, n));
     put_signed(link, asr_round(asr(a, 1), static_cast<uint8_t>(n % 29U + 1U)));
-    put_signed(link, clamp_i32(a, -static_cast<int32_t>(abs_u16(static_cast<int16_t>(b))), 1000));
+    put_signed(link, limit_i32(a, static_cast<int32_t>(abs_u16(static_cast<int16_t>(b)))));
     put_word(link, static_cast<uint16_t>(saturate_i16(a)));
     put_long(link, abs_u32(a));
     put_word(link, abs_u16(static_cast<int16_t>(a)));
     put_signed(link, add_sat_i32(a, b));
     put_signed(link, mul_i16(static_cast<int16_t>(a), static_cast<int16_t>(b)));
-  }
-}
-
-template <typename Link>
-void golden_mul_q30(Link& link) {
-  GoldenNumbers numbers;
-  for (uint8_t i = 0; i < kExtremeCount; ++i) {
-    for (uint8_t j = 0; j < kExtremeCount; ++j) {
-      // The second factor below 1/2: every product fits.
-      put_signed(link, mul_q30(extreme(i), asr(extreme(j), 2)));
-    }
-  }
-  for (uint16_t i = 0; i < 1000; ++i) {
-    const int32_t a = numbers.wide();
-    put_signed(link, mul_q30(a, asr(static_cast<int32_t>(numbers.any()), 2)));
   }
 }
 
@@ -358,26 +343,24 @@ void golden_section(uint8_t section, Link& link) {
     case 0:
       return golden_shifts(link);
     case 1:
-      return golden_mul_q30(link);
-    case 2:
       return golden_scale_q16(link);
-    case 3:
+    case 2:
       return golden_sine(link);
-    case 4:
+    case 3:
       return golden_atan2(link);
-    case 5:
+    case 4:
       return golden_sqrt(link);
-    case 6:
+    case 5:
       return golden_units(link);
-    case 7:
+    case 6:
       return golden_kinematics(link);
-    case 8:
+    case 7:
       return golden_control(link);
-    case 9:
+    case 8:
       return golden_odometry(link);
-    case 10:
+    case 9:
       return golden_attitude(link);
-    case 11:
+    case 10:
       return golden_leveling(link);
     default:
       return golden_messages(link);

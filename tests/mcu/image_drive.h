@@ -23,8 +23,11 @@ class ImageDrive {
  public:
   static constexpr double kSpeed_m_per_s = 0.15;
 
-  explicit ImageDrive(std::uint64_t seed = 1, double speed_m_per_s = kSpeed_m_per_s)
-      : world(HeightField::flat(20.0, 0.1), rover5(), options(seed, speed_m_per_s), &log) {}
+  /// handled: the IMU feels a person turning the robot over.
+  explicit ImageDrive(std::uint64_t seed = 1, double speed_m_per_s = kSpeed_m_per_s,
+                      bool handled = false)
+      : world(HeightField::flat(20.0, 0.1), rover5(), options(seed, speed_m_per_s, handled), &log) {
+  }
 
   /// One control tick of the program.
   void tick() {
@@ -91,12 +94,13 @@ class ImageDrive {
     static const Assembly model = import_urdf(find_model_file(Experiment{}));
     return model;
   }
-  static CoSimulationOptions options(std::uint64_t seed, double speed_m_per_s) {
+  static CoSimulationOptions options(std::uint64_t seed, double speed_m_per_s, bool handled) {
     CoSimulationOptions options;
     options.elf = kScreedImage;
     options.board = kDefaultBoard;
     options.parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
     options.world.seed = seed;
+    options.world.calibration_motion = handled;
     options.world.drive = DriveCommand{speed_m_per_s, 0.0};
     return options;
   }

@@ -6,7 +6,6 @@ namespace screed::mcu {
 constexpr const char* kScreedImage = SCREED_IMAGE_FOLDER "/screed.elf";
 constexpr const char* kScreedListing = SCREED_IMAGE_FOLDER "/screed.lst";
 constexpr const char* kScreedSizes = SCREED_IMAGE_FOLDER "/screed.size";
-constexpr const char* kIndirectCalls = SCREED_INDIRECT_CALLS;
 constexpr const char* kWiring = SCREED_WIRING;
 constexpr const char* kGoldenImage = SCREED_IMAGE_FOLDER "/golden.elf";
 constexpr const char* kNetworkImage = SCREED_IMAGE_FOLDER "/network.elf";

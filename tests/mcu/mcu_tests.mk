@@ -25,7 +25,7 @@ $(FIRMWARE_BUILD)/tests/mcu/images/model.o: $(FIRMWARE_BUILD)/generated/models/v
 
 $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
-	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"' -DSCREED_INDIRECT_CALLS='\"$(abspath $(INDIRECT_CALLS))\"'" | $(WRITE_CHANGED)
+	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
 
 $(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
 	@mkdir -p $(@D)

@@ -31,9 +31,9 @@ class Mission {
     sample_.pressure = 4'150'000 + numbers_.within(100);
     sample_.temperature = static_cast<std::int16_t>(-9000 + numbers_.within(10));
     if (moving) {
-      sample_.encoder_left = static_cast<std::uint16_t>(sample_.encoder_left + numbers_.any() % 5U);
+      sample_.encoder_left = static_cast<std::uint16_t>(sample_.encoder_left + numbers_.any() % 2U);
       sample_.encoder_right =
-          static_cast<std::uint16_t>(sample_.encoder_right + numbers_.any() % 5U);
+          static_cast<std::uint16_t>(sample_.encoder_right + numbers_.any() % 2U);
     }
     sample_.battery = static_cast<std::uint16_t>(4000U + numbers_.any() % 30U);
     sample_.last_tick_us = static_cast<std::uint16_t>(2500U + numbers_.any() % 500U);

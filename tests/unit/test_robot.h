@@ -36,7 +36,9 @@ class TestRobot {
       sample.radio_in[sample.radio_in_count++] = queue.front();
       queue.erase(queue.begin());
     }
-    const int16_t counts_left = left.step(output.duty_left);
+    const auto counts_left = static_cast<int16_t>(
+        left_encoder_sign * left.step(left_driver_stuck_at.value_or(output.duty_left), 7.2,
+                                      left_blocked ? 1000.0 : 0.0));
     const int16_t counts_right = right.step(output.duty_right);
     sample.encoder_left = static_cast<uint16_t>(sample.encoder_left + counts_left);
     sample.encoder_right =
@@ -101,6 +103,9 @@ class TestRobot {
   std::vector<uint8_t> queue;
   bool heartbeats = true;
   bool right_encoder_dead = false;
+  bool left_blocked = false;
+  int left_encoder_sign = 1;
+  std::optional<int16_t> left_driver_stuck_at;  ///< duty
   uint8_t heartbeat_counter = 0;
   int ticks = 0;
 };

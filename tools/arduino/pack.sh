@@ -25,7 +25,8 @@ mkdir -p "$src"
 find firmware nn/infer hal/avr boards \( -name '*.h' -o -name '*.cpp' \) -print0 | LC_ALL=C sort -z \
   | xargs -0 cp --parents -t "$src"
 cp --parents hal/*.h "$src"
-rm "$src/hal/avr/main.cpp"  # the sketch takes its place
+# The sketch takes the main program's place, the core's USB that of the image's own.
+rm -r "$src/hal/avr/arduino/main.cpp" "$src/hal/avr/usb"
 # The IDE has flags of its own, and 28,672 bytes as well: what makes the image smaller stands in the sources.
 pragma=$(printf ', "%s"' ${SMALLER:-})
 [ -z "${SMALLER:-}" ] || find "$src" -name '*.cpp' -exec sed -i "1i #pragma GCC optimize (${pragma#, })" {} +

@@ -13,8 +13,6 @@ namespace {
 constexpr double kGyroLsb_dps = 0.070;
 constexpr double kAccelLsb_mg = 0.244;
 constexpr double kMagLsb_mgauss = 0.160;
-// 50 Hz. The chip is set to 100 Hz (hal/avr/imu_registers.h), and --hal mcu has that rate.
-constexpr uint32_t kMagTicks = 2;
 constexpr uint32_t kBaroTicks = 4;
 
 Eigen::Vector3d normals(WorldRandom& random, double sigma) {
@@ -89,17 +87,13 @@ double ImuModel::pressure_hpa(const ImuTruth& truth) {
 void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
   const Eigen::Vector3d gyro = gyro_dps(truth);
   const Eigen::Vector3d accel = accel_mg(truth);
+  const Eigen::Vector3d mag = mag_mgauss(truth);
   for (int i = 0; i < 3; ++i) {
     sample.gyro[i] = quantise(gyro[i], kGyroLsb_dps);
     sample.accel[i] = quantise(accel[i], kAccelLsb_mg);
+    sample.mag[i] = quantise(mag[i], kMagLsb_mgauss);
   }
-  sample.fresh = kFreshGyro | kFreshAccel;
-
-  if (ticks_ % kMagTicks == 0) {
-    const Eigen::Vector3d mag = mag_mgauss(truth);
-    for (int i = 0; i < 3; ++i) sample.mag[i] = quantise(mag[i], kMagLsb_mgauss);
-    sample.fresh |= kFreshMag;
-  }
+  sample.fresh = kFreshGyro | kFreshAccel | kFreshMag;
   if (ticks_ % kBaroTicks == 0) {
     sample.pressure = static_cast<int32_t>(std::lround(pressure_hpa(truth) * 4096.0));
     sample.temperature = static_cast<int16_t>(std::lround((kTemperature_degc - 42.5) * 480.0));

@@ -2,10 +2,9 @@
 //
 // Noise, bias, scale error, full scale and quantisation are those of LSM303D (accelerometer,
 // magnetometer), L3GD20H (gyro) and LPS25H (pressure) at the ranges the firmware configures: +-8
-// g, +-4 G, +-2000 degrees/s. The rates are those of measure(): its magnetometer is half as fast as
-// the configured 100 Hz, which --hal mcu has. Biases and scale errors are drawn once per world;
-// what a calibration leaves behind, not what the chip leaves the factory with, where the firmware
-// relies on one.
+// g, +-4 G, +-2000 degrees/s, and so are the rates. Biases and scale errors are drawn once per
+// world; what a calibration leaves behind, not what the chip leaves the factory with, where the
+// firmware relies on one.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -64,8 +63,8 @@ class ImuModel {
  public:
   ImuModel(uint64_t seed, const ImuErrors& errors);
 
-  /// Counts of gyro, accelerometer (every tick), magnetometer (50 Hz, see above) and pressure
-  /// (25 Hz), with the FreshBits that go with them.
+  /// Counts of gyro, accelerometer, magnetometer (every tick) and pressure (25 Hz), with the
+  /// FreshBits that go with them.
   void measure(const ImuTruth& truth, SensorSample& sample);
 
   // What each sensor feels, in the robot frame, before its chip makes counts of it; a call is a

@@ -9,6 +9,7 @@
 #include "firmware/parameters/parameter_store.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/devices/sensors/calibration_motion.h"
 
 namespace screed::mcu {
 namespace {
@@ -154,7 +155,12 @@ void McuWorld::dispatch(const Event& event) {
     board_.mcu.receive_byte(static_cast<std::uint8_t>(event.value));
     return;
   }
-  if (!motion_.has_value()) motion_ = plant_.motion();
+  if (!motion_.has_value()) {
+    // The motion begins with a tick.
+    const double time_s =
+        std::max(1.0 / kTickRate_hz, 1e-6 * static_cast<double>(us_at(plant_.steps())));
+    motion_ = options_.world.calibration_motion ? calibration_motion(time_s) : plant_.motion();
+  }
   switch (event.kind) {
     case EventKind::kAccel:
       board_.set_acceleration(devices_.imu().accel_mg(*motion_));

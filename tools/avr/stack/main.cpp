@@ -25,6 +25,7 @@ struct Options {
   std::string sizes;
   unsigned flash_budget = 28672;
   unsigned ram_budget = 2560;
+  unsigned flash_spare = 0;
   unsigned ram_spare = 0;
   std::optional<unsigned> free_word;
 };
@@ -86,7 +87,11 @@ int run(const Options& options) {
   auto sizes = opened(options.sizes);
   const ImageSize size = read_image_size(sizes);
   std::printf("static RAM               %6u B\n", size.static_ram);
-  const bool flash_kept = print_budget("flash", size.flash, options.flash_budget);
+  bool flash_kept = print_budget("flash", size.flash, options.flash_budget);
+  if (flash_kept && size.flash + options.flash_spare > options.flash_budget) {
+    std::printf("%u B of flash must stay free\n", options.flash_spare);
+    flash_kept = false;
+  }
   const unsigned ram = size.static_ram + stack.worst_case();
   bool ram_kept = print_budget("static RAM and stack", ram, options.ram_budget);
   if (ram_kept && ram + options.ram_spare > options.ram_budget) {
@@ -117,6 +122,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--ram-budget", options.ram_budget,
                  "RAM budget of static data and stack together [bytes]")
+      ->capture_default_str();
+  app.add_option("--flash-spare", options.flash_spare,
+                 "Part of the flash budget that must stay free [bytes]")
       ->capture_default_str();
   app.add_option("--ram-spare", options.ram_spare,
                  "Part of the RAM budget that must stay free [bytes]")

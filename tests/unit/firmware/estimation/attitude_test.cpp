@@ -242,6 +242,26 @@ TEST(Attitude, BiasIsFoundAtRest) {
             0.6);  // what the start lost is pulled back slowly
 }
 
+// The first standstill takes the average anew, for 3 s; what was known until then remains known.
+TEST(Attitude, RollAndPitchRemainKnownInTheFirstStandstill) {
+  AttitudeEstimator estimator;
+  const Rot truth = pose(30, 5, -8);
+  ImuSample sample = reading(truth);
+  for (int tick = 0; tick < 400; ++tick) {
+    EXPECT_EQ(estimator.known(), tick >= AttitudeEstimator::kStartTicks) << tick;
+    estimator.update(sample, false);
+  }
+  ASSERT_TRUE(estimator.ready());
+  int averaging = 0;
+  for (int tick = 0; tick < 600; ++tick) {
+    estimator.update(sample, true);
+    if (!estimator.ready()) ++averaging;
+    EXPECT_TRUE(estimator.known());
+    EXPECT_LT(inclination_between(estimate(estimator), truth), 0.3);
+  }
+  EXPECT_GT(averaging, 250) << "else this tests nothing";
+}
+
 TEST(Attitude, LargeBiasAtTheStartLeavesNoTilt) {
   AttitudeEstimator estimator;
   const Rot truth = pose(30, 0, 0);

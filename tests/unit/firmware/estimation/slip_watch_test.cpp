@@ -66,6 +66,20 @@ TEST(SlipWatch, TracksThatStandTellNothing) {
   EXPECT_FALSE(drive.watch.stuck());
 }
 
+// A battery at half the motors' voltage doubles the feed-forward: the effort is what is missing.
+TEST(SlipWatch, GreatEffortsDoNotOverflow) {
+  for (const int16_t effort : std::initializer_list<int16_t>{1200, -1200, 16000, -16000}) {
+    SlipWatch watch(kTread_mm);
+    const TrackMotion track = {1000, effort};
+    const int16_t gyro[] = {0, 0, 0};
+    const int16_t accel[] = {0, 0, 4098};
+    for (int tick = 0; tick < 400; ++tick) {
+      watch.tick(track, track, gyro, accel, 0, 0, true);
+      ASSERT_EQ(watch.network_inputs()[6] > 0, effort > 0) << effort << " tick " << tick;
+    }
+  }
+}
+
 TEST(SlipWatch, ARobotThatMeasuresItsStartIsFree) {
   for (const double speed : {80.0, 150.0, 200.0}) {
     Drive drive;

@@ -180,8 +180,9 @@ TEST(ParameterStore, ARobotWhoseParametersAreLostCannotBeArmed) {
     input.fresh = kFreshGyro | kFreshAccel;
     input.gyro = gyro;
     input.accel = accel;
-    input.cos_tilt_q30 = kQ30One;
+    input.cos_tilt_q14 = 16384;
     input.estimator_ready = true;
+    input.attitude_known = true;
     input.battery_mv = 7200;
     supervisor.heartbeat();
     supervisor.tick(input);

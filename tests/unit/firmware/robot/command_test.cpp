@@ -181,6 +181,21 @@ CanFrame stage(uint16_t index, int32_t value) {
   return TestRobot::protect(frame_of(message::ParamStage{index, value}), counter);
 }
 
+/// LINK.frames_rejected, of the next such message.
+int rejected_frames(TestRobot& robot) {
+  for (int i = 0; i < 200; ++i) {
+    robot.tick();
+    SlcanParser parser;
+    CanFrame frame{};
+    for (uint8_t at = 0; at < robot.output.radio_out_count; ++at) {
+      if (parser.feed(robot.output.radio_out[at], frame) && frame.id == kIdLink) {
+        return message::Link::unpack(frame.data).frames_rejected;
+      }
+    }
+  }
+  return -1;
+}
+
 /// The argument that commits what stage() staged.
 uint32_t commitment(uint8_t index, int32_t value) {
   uint8_t bytes[4];
@@ -258,6 +273,32 @@ TEST(RadioParameters, AStricterTiltLimitIsHeededAtOnce) {
   EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kFaultPresent);
 }
 
+// A frame whose CRC is right and whose size is not that of its message is not taken for one.
+TEST(RadioParameters, AFrameOfAnotherSizeIsRejected) {
+  TestRobot robot = ready_robot();
+  robot.send(stage(kSpeedKp, 31));
+  const auto rejected = [&](CanFrame frame) {
+    const int before = rejected_frames(robot);
+    for (uint8_t size = 3; size <= 8; ++size) {
+      CanFrame other = frame;
+      other.size = size;
+      if (size == frame.size) continue;
+      uint8_t counter = 3;
+      robot.send(TestRobot::protect(other, counter));
+      robot.run(3);
+    }
+    return rejected_frames(robot) - before;
+  };
+  EXPECT_EQ(rejected(stage(kSpeedKp, 40)), 5);
+  EXPECT_EQ(rejected(frame_of(message::GroundHeartbeat{1000})), 5);
+  EXPECT_EQ(rejected(frame_of(message::EmergencyStop{})), 5);
+  EXPECT_NE(robot.state(), RobotState::kFault) << "no emergency stop among them";
+  EXPECT_EQ(
+      result_of(robot, robot.signer.sign(CommandOp::kParameterCommit, commitment(kSpeedKp, 31))),
+      RequestResult::kDone)
+      << "what was staged is whole";
+}
+
 TEST(RadioParameters, WhatIsNotStagedOrOutOfRangeIsRefused) {
   TestRobot robot = ready_robot();
   // Nothing staged; another value; another index; more than 16 bits; out of range; no such index.
@@ -310,6 +351,7 @@ TEST(Run, BeginsAtItsOwnOrigin) {
     robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 5);
     robot.tick();
   }
+  robot.run(50);  // set down: tracks that something else turns keep it from being armed
   EXPECT_GT(std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm()), 500);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   robot.send(robot.command(CommandOp::kRun));
@@ -348,6 +390,7 @@ TEST(Run, TheFenceLiesRoundThePlaceWhereItBegan) {
     robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 5);
     robot.tick();
   }
+  robot.run(50);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
   robot.run(50);

@@ -21,9 +21,9 @@ class SupervisedRobot {
   }
   void silent_tick() {
     if (!gyro_frozen) gyro[2] = gyro[2] == 0 ? 1 : 0;  // the noise of its last digit
-    const SupervisorInput input = {fresh,       gyro,         accel,     cos_tilt_q30,
-                                   ready,       battery_mv,   duty_left, duty_right,
-                                   counts_left, counts_right, 0,         stuck};
+    SupervisorInput input = {fresh,     gyro,       accel,       cos_tilt_q14, ready, battery_mv,
+                             duty_left, duty_right, counts_left, counts_right, 0,     stuck};
+    input.attitude_known = attitude_known;
     supervisor.tick(input);
   }
   /// Ticks until the robot has left the state, at most `most`.
@@ -59,8 +59,9 @@ class SupervisedRobot {
   int16_t gyro[3] = {0, 0, 0};
   bool gyro_frozen = false;
   int16_t accel[3] = {0, 0, 4098};
-  int32_t cos_tilt_q30 = kQ30One;
+  int16_t cos_tilt_q14 = 16384;
   bool ready = true;
+  bool attitude_known = true;
   uint16_t battery_mv = 7200;
   int16_t duty_left = 0;
   int16_t duty_right = 0;

@@ -50,7 +50,7 @@ const FaultCase kFaultCases[] = {
      [](SupervisedRobot& w) { w.roll_to(60.0); }},
     {"tilt seen by the estimator", Fault::kTilt, 10, 6,
      [](SupervisedRobot& w) {
-       w.cos_tilt_q30 = static_cast<int32_t>(kQ30One * std::cos(60.0 * std::numbers::pi / 180.0));
+       w.cos_tilt_q14 = static_cast<int16_t>(16384 * std::cos(60.0 * std::numbers::pi / 180.0));
      }},
     {"upside down", Fault::kTilt, 10, 6, [](SupervisedRobot& w) { w.roll_to(180.0); }},
     // 15: stop within 100 ms
@@ -61,9 +61,9 @@ const FaultCase kFaultCases[] = {
     // 16: stop within 200 ms
     {"gyro frozen", Fault::kGyroFrozen, 20, 18, [](SupervisedRobot& w) { w.gyro_frozen = true; }},
     // 21: one encoder dead, 200 ms; 24: track stalled, 300 ms: the same to see
-    {"left track stalled", Fault::kStallLeft, 20, 17,
-     [](SupervisedRobot& w) { w.duty_left = 240; }},
-    {"right track stalled backwards", Fault::kStallRight, 20, 17,
+    {"left track stalled", Fault::kStallLeft, 20, 15,
+     [](SupervisedRobot& w) { w.duty_left = 110; }},
+    {"right track stalled backwards", Fault::kStallRight, 20, 15,
      [](SupervisedRobot& w) { w.duty_right = -400; }},
     // 30: a sag of a second
     {"battery", Fault::kBattery, 100, 100, [](SupervisedRobot& w) { w.battery_mv = 5999; }},
@@ -213,10 +213,21 @@ TEST(SupervisorFaults, TheEstimatorsInclinationIsComparedWithTheLimitItself) {
   for (const double degrees : {59.9, 60.1}) {
     SupervisedRobot watch(parameters);
     watch.bring_to(RobotState::kRunning);
-    watch.cos_tilt_q30 =
-        static_cast<int32_t>(kQ30One * std::cos(degrees * std::numbers::pi / 180.0));
+    watch.cos_tilt_q14 = static_cast<int16_t>(16384 * std::cos(degrees * std::numbers::pi / 180.0));
     EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 300) == 300, degrees < 60.0) << degrees;
   }
+}
+
+// The estimator averages anew in the first standstill; until then it knows roll and pitch as
+// before.
+TEST(SupervisorFaults, AnEstimatorThatAveragesAnewRemainsAWitnessOfTilt) {
+  SupervisedRobot watch;
+  watch.bring_to(RobotState::kRunning);
+  watch.ready = false;
+  watch.gyro[1] = 2000;  // the accelerometer is no plumb line while the robot rolls
+  watch.cos_tilt_q14 = 0;
+  EXPECT_LE(watch.ticks_in(RobotState::kRunning, 300), 10);
+  EXPECT_EQ(watch.supervisor.faults(), Fault::kTilt);
 }
 
 TEST(SupervisorFaults, SeveralCausesAreAllTold) {
@@ -281,7 +292,7 @@ TEST(SupervisorFaults, InMotionTheAccelerometerAloneIsNoWitness) {
     watch.gyro[0] = force.rate;
     EXPECT_EQ(watch.ticks_in(RobotState::kRunning, 300), 300) << force.x << " " << force.rate;
     // The estimator is.
-    watch.cos_tilt_q30 = 0;
+    watch.cos_tilt_q14 = 0;
     EXPECT_LE(watch.ticks_in(RobotState::kRunning, 300), 10);
   }
 }
@@ -294,7 +305,7 @@ TEST(SupervisorFaults, ClippedSamplesDoNotOverflow) {
       watch.accel[0] = x;
       watch.accel[1] = x;
       watch.accel[2] = z;
-      watch.cos_tilt_q30 = INT32_MIN;
+      watch.cos_tilt_q14 = INT16_MIN;
       EXPECT_LE(watch.ticks_in(RobotState::kRunning, 300), 10);
     }
   }
@@ -346,8 +357,8 @@ TEST(SupervisorFaults, AFrozenGyroIsCountedInSamplesNotInTicks) {
 TEST(SupervisorFaults, SlowOrWeaklyDrivenTracksAreNotStalled) {
   SupervisedRobot weak;
   weak.bring_to(RobotState::kRunning);
-  weak.duty_left = 239;
-  weak.duty_right = -239;
+  weak.duty_left = 109;
+  weak.duty_right = -109;
   EXPECT_EQ(weak.ticks_in(RobotState::kRunning, 500), 500);
   SupervisedRobot slow;
   slow.bring_to(RobotState::kRunning);

@@ -202,6 +202,20 @@ TEST_F(TelemetryTest, LinkAndTime) {
   EXPECT_EQ(time.echo, 4321);
 }
 
+// The sample's time wraps after 71.6 minutes; the ground's clocks do not.
+TEST_F(TelemetryTest, TimeGoesOnWhenTheSamplesTimeWraps) {
+  std::uint32_t last_ms = 0;
+  for (int second = 0; second < 2 * 4295; ++second) {
+    sample_.time_us += 1000000U;
+    downlink_ = run(100);
+    const auto time = message::Time::unpack(downlink_.frames[kIdTime].front().data);
+    if (second > 0) {
+      ASSERT_EQ(time.time - last_ms, 1000U) << second;
+    }
+    last_ms = time.time;
+  }
+}
+
 TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
   run(100);
   sample_.last_tick_us = 5000;
@@ -215,7 +229,7 @@ TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
 }
 
 TEST_F(TelemetryTest, AttitudeAndOdometry) {
-  robot_.angles = {INT16_MIN, 8192, -1, 0};  // 65536 a turn
+  robot_.angles = {INT16_MIN, 8192, -1, 0, 0};  // 65536 a turn
   robot_.x_mm = -40000;
   robot_.y_mm = 32767;
   const uint8_t* at = payload(kIdAttitude);

@@ -22,11 +22,11 @@ TEST(TrackWatch, CountsStepToAndFroWithABrokenWire) {
 
 TEST(TrackWatch, BelowTheDutyOfAStallNothingIsCounted) {
   TrackWatch watch;
-  for (int tick = 0; tick < 10; ++tick) watch.tick(239, 0);
+  for (int tick = 0; tick < 10; ++tick) watch.tick(109, 0);
   EXPECT_EQ(watch.still_ticks(), 0);
-  for (int tick = 0; tick < 10; ++tick) watch.tick(240, 0);
+  for (int tick = 0; tick < 10; ++tick) watch.tick(110, 0);
   EXPECT_EQ(watch.still_ticks(), 10);
-  watch.tick(-239, 0);
+  watch.tick(-109, 0);
   EXPECT_EQ(watch.still_ticks(), 0);
 }
 
@@ -89,6 +89,37 @@ TEST(TrackWatch, GreatStepsDoNotOverflow) {
   EXPECT_FALSE(watch.alternates());
 }
 
+TEST(TrackWatch, ATrackThatMovesAgainstItsDutyDisobeys) {
+  struct Motion {
+    int16_t duty;
+    int16_t relative_speed;
+    int ticks;  ///< until it disobeys; 0: never
+  };
+  for (const Motion& it : std::initializer_list<Motion>{{240, -501, 12},
+                                                        {-240, 501, 12},
+                                                        {400, -2500, 12},
+                                                        {0, 1001, 24},
+                                                        {0, -1001, 24},
+                                                        {59, 1001, 24},
+                                                        {-239, 1001, 24},
+                                                        {60, 1001, 0},
+                                                        {0, 1000, 0},
+                                                        {240, -500, 0},
+                                                        {400, INT16_MAX, 0},
+                                                        {400, INT16_MIN, 12}}) {
+    TrackWatch watch;
+    int ticks = 0;
+    while (!watch.disobeys() && ticks < 300) {
+      watch.compare(it.duty, it.relative_speed);
+      ++ticks;
+    }
+    EXPECT_EQ(ticks, it.ticks == 0 ? 300 : it.ticks) << it.duty << " " << it.relative_speed;
+    // One tick in order ends it.
+    watch.compare(300, 0);
+    EXPECT_FALSE(watch.disobeys());
+  }
+}
+
 /// A tick of a healthy robot with these chips failing.
 void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
   const int16_t gyro[3] = {static_cast<int16_t>(number % 2), 0, 0};
@@ -97,8 +128,9 @@ void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
   input.fresh = kFreshGyro | kFreshAccel;
   input.gyro = gyro;
   input.accel = accel;
-  input.cos_tilt_q30 = kQ30One;
+  input.cos_tilt_q14 = 16384;
   input.estimator_ready = true;
+  input.attitude_known = true;
   input.battery_mv = 7200;
   input.chips_failing = chips_failing;
   supervisor.heartbeat();

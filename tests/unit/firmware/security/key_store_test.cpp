@@ -34,9 +34,32 @@ TEST(KeyStore, AKeyComesBackAndADamagedOneIsNone) {
   for (int bit = 0; bit < 8 * (kKeySize + 2); ++bit) {
     CredentialRecord damaged = record;
     damaged.bytes[bit / 8] = static_cast<uint8_t>(damaged.bytes[bit / 8] ^ (1U << (bit % 8)));
+    CredentialRecord twice = damaged;
     EXPECT_TRUE(begin_start(damaged, read));
+    EXPECT_TRUE(read.key_set) << bit << ": the second copy";
+    EXPECT_EQ(command_key_of(read), some_key());
+    uint8_t& second = twice.bytes[kSecondKeyOffset + bit / 8];
+    second = static_cast<uint8_t>(second ^ (1U << (bit % 8)));
+    EXPECT_TRUE(begin_start(twice, read));
     EXPECT_FALSE(read.key_set) << bit;
     EXPECT_EQ(read.boot_epoch, 77) << bit;
+  }
+}
+
+TEST(KeyStore, ATornWriteLeavesTheOldKeyOrTheNew) {
+  const CredentialRecord old = credential_record(credentials_of(some_key(), 77));
+  CommandKey other = some_key();
+  other.robot_id = 43;
+  CredentialRecord next = old;
+  Credentials read{};
+  begin_start(next, read);
+  put_key(next, credentials_of(other).key);
+  for (int written = 0; written <= kCredentialRecordSize; ++written) {
+    CredentialRecord torn = old;
+    std::copy_n(next.bytes, written, torn.bytes);
+    EXPECT_TRUE(begin_start(torn, read));
+    ASSERT_TRUE(read.key_set) << written;
+    EXPECT_EQ(command_key_of(read), written < kKeyCopySize ? some_key() : other) << written;
   }
 }
 

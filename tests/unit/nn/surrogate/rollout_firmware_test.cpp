@@ -55,7 +55,7 @@ void expect_to_follow_itself(const std::string& board) {
   EXPECT_TRUE(same.reached);
   EXPECT_LT(same.position_error, 5e-4);
   EXPECT_LT(same.heading_error_rad, 2e-3);
-  EXPECT_LT(farthest(result), 1e-3);
+  EXPECT_LT(farthest(result), 2e-3);  // the last bits of the field turn the heading
   // Encoders do not notice that the robot slips.
   EXPECT_GT(farthest(result, 1), 0.05);
 }

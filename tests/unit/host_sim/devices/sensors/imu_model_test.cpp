@@ -102,19 +102,15 @@ TEST(ImuModel, ChipsDeliverAtTheirOwnRates) {
   for (int tick = 0; tick < 100; ++tick) {
     imu.measure(at_rest(Eigen::Matrix3d::Identity()), sample);
     EXPECT_EQ(sample.fresh & (kFreshGyro | kFreshAccel), kFreshGyro | kFreshAccel);
-    if ((sample.fresh & kFreshMag) != 0) {
-      ++mags;
-    } else {
-      EXPECT_EQ(sample.mag[0], last.mag[0]);  // keeps its old numbers
-    }
+    if ((sample.fresh & kFreshMag) != 0) ++mags;
     if ((sample.fresh & kFreshBaro) != 0) {
       ++baros;
     } else {
-      EXPECT_EQ(sample.pressure, last.pressure);
+      EXPECT_EQ(sample.pressure, last.pressure);  // keeps its old numbers
     }
     last = sample;
   }
-  EXPECT_EQ(mags, 50);
+  EXPECT_EQ(mags, 100) << "as hal/avr/imu_registers.h sets the chip";
   EXPECT_EQ(baros, 25);
 }
 

@@ -121,8 +121,9 @@ TEST_F(Decode, TablesHaveUnitsAndExactNumbers) {
             "time [s],robot,pressure [Pa],temperature [degC]\n"
             "0.000006,1,268435455.9375,-0.01\n");
   EXPECT_EQ(table("heartbeat").substr(0, 47), "time [s],robot,state,link_alive,tilt,imu_silent");
-  EXPECT_NE(table("heartbeat").find("\n0.000005,1,running,lost,1,0,0,0,0,0,0,0,0,0,0,0,1,0,0,0\n"),
-            std::string::npos);
+  EXPECT_NE(
+      table("heartbeat").find("\n0.000005,1,running,lost,1,0,0,0,0,0,0,0,0,0,0,0,1,0,0,0,0,0\n"),
+      std::string::npos);
   EXPECT_EQ(err_.str(), scratch_.path().string() + "/radio.log: 4 messages of 4 lines\n");
   EXPECT_NE(out_.str().find("attitude.csv\n"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(scratch_.path() / "radio_csv" / "power.csv"))

@@ -1,4 +1,8 @@
 // The serial line over USB, on the Arduino core.
+//
+// The core waits without bound, interrupts off, for data of a control transfer that a host has
+// announced: one that breaks off there ends in a reset by the watchdog. The image's own driver
+// (hal/avr/usb) does not.
 #include "hal/avr/usb_serial.h"
 
 #include <Arduino.h>
@@ -37,7 +41,9 @@ bool usb_serial_put(const uint8_t* bytes, uint8_t count) {
   return sent;
 }
 
-void usb_serial_check_upload_request() {
+void usb_serial_init() {}  // the core's main() has attached it
+
+void usb_serial_step() {
   if (Serial.baud() != kTouchBaud || Serial.dtr()) return;
   // The core has written the bootloader's key, set the watchdog, and waits for the reset; but this
   // program feeds the watchdog. The key lies at 0x0800, between variables and stack: the build
