@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "144f0fdf4fc84c7d04e9460078c77c1d"},
-    {"soft_bed", "--duration 6", "763bb8871a6c441af99d3badef243259"},
-    {"soft_bed", "--hal surrogate --duration 10", "c0f80e75ee5265eb3e77d02acd9e1dea"},
+    {"first_drive", "--duration 60", "fc4df45a2aa3a8ebb78a6929c41153ef"},
+    {"soft_bed", "--duration 6", "26671c247de4691e760ab44e784f2dfc"},
+    {"soft_bed", "--hal surrogate --duration 10", "604227eab83f4d72c8357e30992c8d3d"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "702646f989db3b1f7eb65f74f35043b8"},
-    {"gravel_bed", "--duration 1", "758ca4203ab5937e8d563267e21d4b2a"},
+     "7889799a77b30fa1b0b3275c0ea0aaa7"},
+    {"gravel_bed", "--duration 1", "84a19b0739702aa45a6de71d434a5f7f"},
 }};
 
 class ContentHash : public Program {};
