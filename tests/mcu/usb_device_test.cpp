@@ -149,7 +149,8 @@ TEST_F(UsbDevice, DescribesASerialLine) {
 TEST_F(UsbDevice, GivesAsMuchAsIsAskedFor) {
   usb_.reset();
   const Bytes all = usb_.descriptor(kConfiguration, 0, 255);
-  for (std::uint16_t length = 1; length < all.size(); ++length) {
+  const auto size = static_cast<std::uint16_t>(all.size());
+  for (std::uint16_t length = 1; length < size; ++length) {
     EXPECT_EQ(usb_.descriptor(kConfiguration, 0, length), Bytes(all.begin(), all.begin() + length));
   }
   EXPECT_EQ(usb_.tell(0x80, 6, kDevice << 8), Outcome::kDone) << "nothing at all";
