@@ -10,7 +10,7 @@
 #     look at the function that is called with arguments nobody knows,
 #   a source that declares what others define (the list of subcommands),
 #   a source whose alias or using-declaration it does not use itself (another one might), or that includes a header twice.
-BEGIN { most = most ? most : 10 }
+BEGIN { most = most ? most : 30 }
 
 function note(name) { if (name != "") own[source, ++names[source]] = name }
 
