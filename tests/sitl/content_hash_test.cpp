@@ -18,7 +18,7 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "fc4df45a2aa3a8ebb78a6929c41153ef"},
-    {"soft_bed", "--duration 6", "26671c247de4691e760ab44e784f2dfc"},
+    {"soft_bed", "--duration 6", "83f80ab2b4bc73e7e2309be34944791c"},
     {"soft_bed", "--hal surrogate --duration 10", "604227eab83f4d72c8357e30992c8d3d"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "

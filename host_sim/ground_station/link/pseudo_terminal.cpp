@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <termios.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -64,18 +65,31 @@ std::vector<uint8_t> PseudoTerminal::read() {
 }
 
 void PseudoTerminal::write(std::span<const uint8_t> bytes) {
+  if (torn_) bytes = after_line(bytes);
   bool emptied = false;
   while (!bytes.empty()) {
     const ssize_t count = ::write(master_.get(), bytes.data(), bytes.size());
     if (count > 0) {
+      mid_line_ = bytes[static_cast<size_t>(count) - 1] != '\r';
       bytes = bytes.subspan(static_cast<size_t>(count));
     } else if (!emptied && errno == EAGAIN) {
       tcflush(slave_.get(), TCIFLUSH);
       emptied = true;
+      // What the program has of the line that was thrown away must not be joined to another one.
+      const char end = '\r';
+      if (::write(master_.get(), &end, 1) != 1) return;
+      if (mid_line_) bytes = after_line(bytes);
     } else {
       return;
     }
   }
+}
+
+/// What follows the line that `bytes` starts in. Remembers whether that line goes on.
+std::span<const uint8_t> PseudoTerminal::after_line(std::span<const uint8_t> bytes) {
+  const auto end = std::find(bytes.begin(), bytes.end(), '\r');
+  torn_ = end == bytes.end();
+  return torn_ ? std::span<const uint8_t>() : std::span(end + 1, bytes.end());
 }
 
 }  // namespace screed

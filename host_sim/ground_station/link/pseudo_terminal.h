@@ -27,14 +27,20 @@ class PseudoTerminal {
   /// What the program at the port has written. Never waits.
   std::vector<uint8_t> read();
   /// Gives bytes to the program at the port. Never waits: where nobody reads, about 4 kB pile up
-  /// and are then thrown away, so that a program that comes finds nothing old.
+  /// and are then thrown away, so that a program that comes finds nothing old. Of a line (one ends
+  /// with a carriage return) that loses its start or end this way the rest is left out, and what
+  /// was already read of it is ended: the halves of two lines never make one.
   void write(std::span<const uint8_t> bytes);
 
  private:
+  std::span<const uint8_t> after_line(std::span<const uint8_t> bytes);
+
   FileDescriptor master_;
   FileDescriptor slave_;  ///< held open, so that a reader may come and go
   std::filesystem::path device_;
   std::optional<std::filesystem::path> link_;
+  bool mid_line_ = false;  ///< the last byte that was written is not the end of a line
+  bool torn_ = false;      ///< the rest of a line is to be left out
 };
 
 }  // namespace screed

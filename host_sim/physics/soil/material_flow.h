@@ -55,7 +55,8 @@ class MaterialFlow {
   }
 
   Height height(size_t node) const { return surface_.node(node); }
-  /// How far a node has been pressed down, units. Material that comes or goes leaves it as it is.
+  /// How far a node has been pressed down, units: what is deposited on it takes from that, what
+  /// slides or is dug away leaves it as it is.
   Height sunk(size_t node) const { return sunk_[node]; }
   /// Level from which sinkage counts.
   Height reference(size_t node) const { return height(node) + sunk_[node]; }

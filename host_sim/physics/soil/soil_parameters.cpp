@@ -47,9 +47,9 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
   return s;
 }
 
-/// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi. E as for the
-/// other sands. c1 and c3 assumed, near the published ones of their wheels. Fitted to the smooth
-/// wheel (docs/measurements/soil.md): n, slip_sinkage, K, c2.
+/// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi. E as for the other sands. c1
+/// and c3 assumed, near the published ones of their wheels. Fitted to the smooth wheel
+/// (docs/measurements/soil.md): n, slip_sinkage, K, c2.
 SoilParameters ding_2011() {
   SoilParameters s = soil("ding_2011", 2407.4e3, 15.6e3, 0.94, 250.0, 31.9, 0.0041, 1e8);
   s.slip_sinkage = 0.54;

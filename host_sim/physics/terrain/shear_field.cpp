@@ -73,9 +73,9 @@ ShearPlaces ShearField::places_from(int64_t index) const {
   return places;
 }
 
-/// Soil that has been sheared stays on the ground while the contour moves over it. Beside it the
-/// contour meets fresh soil.
-void ShearField::leave_behind(const RunContour& contour, const RunMotion& motion, double dt) {
+/// Soil that has been sheared stays on the ground while the contour moves over it; beside it the
+/// contour meets fresh soil. False: none is left below.
+bool ShearField::leave_behind(const RunContour& contour, const RunMotion& motion, double dt) {
   const double end = 0.5 * contour.length_m();
   const double reach = contour.half_m + contour.radius_m;
   const auto moved = [&](double edge) -> Eigen::Vector2d {  // ahead, aside
@@ -87,13 +87,13 @@ void ShearField::leave_behind(const RunContour& contour, const RunMotion& motion
   const Eigen::Vector2d at_rear = moved(rear_);
   front_ = std::min(front_ - at_front.x() - at_front.y(), end);
   rear_ = std::max(rear_ - at_rear.x() + at_rear.y(), -end);
-  touching_ = rear_ < front_;
+  return rear_ < front_;
 }
 
 void ShearField::hover(const RunContour& contour, const RunMotion& motion, double dt) {
   if (!touching_) return;
   travelled_ += motion.surface_speed * dt;
-  leave_behind(contour, motion, dt);
+  touching_ = leave_behind(contour, motion, dt);
   first_ = static_cast<int64_t>(std::ceil((rear_ + travelled_) / spacing_));
   last_ = static_cast<int64_t>(std::floor((front_ + travelled_) / spacing_));
   if (last_ < first_) touching_ = false;
@@ -107,8 +107,7 @@ void ShearField::advance(const RunContour& contour, const RunMotion& motion, dou
   travelled_ += moved;
   const double rear_before = rear_ - moved;  // where the material of that edge is now
   const double front_before = front_ - moved;
-  if (touching_) leave_behind(contour, motion, dt);
-  if (touching_) {
+  if (touching_ && leave_behind(contour, motion, dt)) {
     rear = std::min(rear, rear_);
     front = std::max(front, front_);
   }

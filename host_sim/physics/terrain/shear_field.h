@@ -50,7 +50,7 @@ class ShearField {
   void advance(const RunContour& contour, const RunMotion& motion, double rear, double front,
                double shear_modulus_m, double damping_s, double dt,
                const Kernels& kernels = best_kernels());
-  /// A step in the air: what was sheared below the contour is left behind.
+  /// A step of `dt` seconds in the air: the ground that was sheared stays where it is.
   void hover(const RunContour& contour, const RunMotion& motion, double dt);
   /// At `along` the contour and `across`, m, of the last step.
   Value at(double along, double across) const;
@@ -72,7 +72,7 @@ class ShearField {
     kProperties
   };
   void lay_out(const RunContour& contour);
-  void leave_behind(const RunContour& contour, const RunMotion& motion, double dt);
+  bool leave_behind(const RunContour& contour, const RunMotion& motion, double dt);
   void make_room(int64_t first, int64_t last);
   double* array(int lane, Property property, int64_t index) const {
     return const_cast<double*>(arrays_.data()) +
@@ -87,7 +87,7 @@ class ShearField {
   double spacing_ = 0.0;    // of places, m
   double travelled_ = 0.0;  // of the material, backwards, m
   double lane_offset_ = 0.0;
-  bool touching_ = false;   // there is sheared ground below
+  bool touching_ = false;   // or there is sheared ground below
   bool from_front_ = true;  // where material comes into contact
   double rear_ = 0.0;       // of the sheared ground below, along the contour
   double front_ = 0.0;

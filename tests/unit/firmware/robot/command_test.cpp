@@ -181,19 +181,22 @@ CanFrame stage(uint16_t index, int32_t value) {
   return TestRobot::protect(frame_of(message::ParamStage{index, value}), counter);
 }
 
-/// LINK.frames_rejected, of the next such message.
-int rejected_frames(TestRobot& robot) {
-  for (int i = 0; i < 200; ++i) {
+/// The next frame of an id that the robot sends, within so many ticks.
+std::optional<CanFrame> next_frame(TestRobot& robot, uint16_t id, int ticks) {
+  for (int i = 0; i < ticks; ++i) {
     robot.tick();
     SlcanParser parser;
     CanFrame frame{};
     for (uint8_t at = 0; at < robot.output.radio_out_count; ++at) {
-      if (parser.feed(robot.output.radio_out[at], frame) && frame.id == kIdLink) {
-        return message::Link::unpack(frame.data).frames_rejected;
-      }
+      if (parser.feed(robot.output.radio_out[at], frame) && frame.id == id) return frame;
     }
   }
-  return -1;
+  return std::nullopt;
+}
+
+int rejected_frames(TestRobot& robot) {
+  const std::optional<CanFrame> link = next_frame(robot, kIdLink, 200);
+  return link ? message::Link::unpack(link->data).frames_rejected : -1;
 }
 
 /// The argument that commits what stage() staged.
@@ -211,18 +214,8 @@ RequestResult commit(TestRobot& robot, uint8_t index, int32_t value) {
 
 std::optional<message::ParamValue> read(TestRobot& robot, uint8_t index) {
   robot.send(robot.signer.sign(CommandOp::kParameterRead, index));
-  std::optional<message::ParamValue> value;
-  for (int i = 0; i < 10; ++i) {
-    robot.tick();
-    SlcanParser parser;
-    CanFrame frame{};
-    for (uint8_t at = 0; at < robot.output.radio_out_count; ++at) {
-      if (parser.feed(robot.output.radio_out[at], frame) && frame.id == kIdParamValue) {
-        value = message::ParamValue::unpack(frame.data);
-      }
-    }
-  }
-  return value;
+  const std::optional<CanFrame> value = next_frame(robot, kIdParamValue, 10);
+  return value ? std::optional(message::ParamValue::unpack(value->data)) : std::nullopt;
 }
 
 TEST(RadioParameters, AreReadByIndex) {

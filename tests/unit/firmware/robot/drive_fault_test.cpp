@@ -4,26 +4,10 @@
 
 #include <initializer_list>
 
-#include "tests/unit/test_robot.h"
+#include "tests/unit/firmware/robot/driving_robot.h"
 
 namespace screed {
 namespace {
-
-Parameters driving() {
-  Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(message::LevelingAlgorithm::kDrive);
-  return parameters;
-}
-
-/// Driving straight on at a constant speed.
-TestRobot at_speed(int16_t speed_mm_per_s) {
-  TestRobot robot(driving());
-  robot.start();
-  robot.send(robot.command(CommandOp::kDrive, {speed_mm_per_s, 0}));
-  robot.run(200);
-  EXPECT_EQ(robot.state(), RobotState::kRunning) << speed_mm_per_s;
-  return robot;
-}
 
 int ms_until_fault(TestRobot& robot) {
   int ticks = 0;
@@ -36,7 +20,7 @@ constexpr int16_t kSpeeds[] = {60, 100, 150, 200, 250, -60, -200};
 // 22
 TEST(DriveFaults, AnEncoderThatCountsTheWrongWayStopsTheRobot) {
   for (const int16_t speed : kSpeeds) {
-    TestRobot robot = at_speed(speed);
+    TestRobot robot = driving_robot(speed);
     robot.left_encoder_sign = -1;
     EXPECT_LE(ms_until_fault(robot), 280) << speed;
     EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kMotorLeft) << speed;
@@ -44,7 +28,7 @@ TEST(DriveFaults, AnEncoderThatCountsTheWrongWayStopsTheRobot) {
     EXPECT_EQ(robot.output.duty_right, 0);
   }
   // From the start on.
-  TestRobot robot(driving());
+  TestRobot robot(drive_parameters());
   robot.left_encoder_sign = -1;
   robot.start();
   robot.send(robot.command(CommandOp::kDrive, {200, 0}));
@@ -56,14 +40,14 @@ TEST(DriveFaults, AnEncoderThatCountsTheWrongWayStopsTheRobot) {
 TEST(DriveFaults, ADriverThatIsStuckIsAFault) {
   for (const int16_t duty : std::initializer_list<int16_t>{400, -400, 200, -200}) {
     // Nobody asked for motion.
-    TestRobot robot = at_speed(0);
+    TestRobot robot = driving_robot(0);
     robot.left_driver_stuck_at = duty;
     EXPECT_LE(ms_until_fault(robot), 350) << duty;
     EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kMotorLeft) << duty;
     // The motors are to stop, or to turn the other way.
     for (const int16_t to : std::initializer_list<int16_t>{0, -150, -250}) {
       const int sign = duty > 0 ? 1 : -1;
-      TestRobot moving = at_speed(static_cast<int16_t>(150 * sign));
+      TestRobot moving = driving_robot(static_cast<int16_t>(150 * sign));
       moving.left_driver_stuck_at = duty;
       moving.send(moving.command(CommandOp::kDrive, {static_cast<int16_t>(to * sign), 0}));
       EXPECT_LE(ms_until_fault(moving), 900) << duty << " to " << to;
@@ -75,12 +59,12 @@ TEST(DriveFaults, ADriverThatIsStuckIsAFault) {
 // 24 and 21: 300 and 200 ms
 TEST(DriveFaults, AStalledTrackAndADeadEncoderAreFoundAtLowSpeed) {
   for (const int16_t speed : kSpeeds) {
-    TestRobot stalled = at_speed(speed);
+    TestRobot stalled = driving_robot(speed);
     stalled.left_blocked = true;
     stalled.left.speed_mm_per_s = 0.0;
     EXPECT_LE(ms_until_fault(stalled), 200) << speed;
     EXPECT_EQ(stalled.robot.supervisor().faults(), Fault::kStallLeft) << speed;
-    TestRobot dead = at_speed(speed);
+    TestRobot dead = driving_robot(speed);
     dead.right_encoder_dead = true;
     EXPECT_LE(ms_until_fault(dead), 200) << speed;
     EXPECT_EQ(dead.robot.supervisor().faults(), Fault::kStallRight) << speed;
@@ -90,7 +74,7 @@ TEST(DriveFaults, AStalledTrackAndADeadEncoderAreFoundAtLowSpeed) {
 // Motors reverse, stop and start with a delay; that is no fault.
 TEST(DriveFaults, AWellRobotMayReverseAsItLikes) {
   for (const int16_t accel_limit : std::initializer_list<int16_t>{50, 600, 2000, 5000}) {
-    Parameters parameters = driving();
+    Parameters parameters = drive_parameters();
     parameters.accel_limit = accel_limit;
     TestRobot robot(parameters);
     robot.start();

@@ -7,28 +7,10 @@
 #include <cstring>
 #include <map>
 
-#include "tests/unit/test_robot.h"
+#include "tests/unit/firmware/robot/driving_robot.h"
 
 namespace screed {
 namespace {
-
-Parameters drive_parameters() {
-  Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
-  return parameters;
-}
-
-/// A robot that drives straight on at a speed, in mm/s.
-TestRobot driving_robot(int16_t speed) {
-  TestRobot robot(drive_parameters());
-  robot.start();
-  robot.send(robot.command(CommandOp::kDrive, {speed, 0}));
-  robot.run(200);
-  EXPECT_EQ(robot.state(), RobotState::kRunning);
-  EXPECT_NEAR(robot.left.speed_mm_per_s, speed, 10.0);
-  EXPECT_NEAR(robot.right.speed_mm_per_s, speed, 10.0);
-  return robot;
-}
 
 bool idle(const TestRobot& robot) {
   return robot.output.duty_left == 0 && robot.output.duty_right == 0;

@@ -31,7 +31,6 @@ WheelTest wheel_on(const char* soil, double slip, NormalStress stress, double ce
 
 SoilParameters viper_with(double front_angle, double front_angle_driven, double exit_angle) {
   SoilParameters soil = soil_preset("viper");
-  soil.elastic_pa_per_m = 2e8;  // the elastic part of the sinkage is small
   soil.front_angle = front_angle;
   soil.front_angle_driven = front_angle_driven;
   soil.exit_angle = exit_angle;

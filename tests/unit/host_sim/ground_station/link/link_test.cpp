@@ -1,10 +1,16 @@
 // The ways frames travel: serial port with and without the XBee's API mode, and the port of a
 // simulation.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
+#include <string>
 
 #include "firmware/protocol/e2e.h"
 #include "host_sim/core/errors.h"
@@ -54,6 +60,47 @@ TEST_F(LinkTest, LinesOfASerialPortBecomeFrames) {
   EXPECT_EQ(frames[1].frame.id, 0x010);
   EXPECT_EQ(link.status().received, 2U);
   EXPECT_EQ(link.status().refused, 1U);
+}
+
+// Whatever part of the lines was read before the rest was thrown away, however they were cut.
+TEST_F(LinkTest, LinesThatNobodyReadsInTimeAreLostWhole) {
+  const auto line = [](int i) {
+    char characters[32];
+    std::snprintf(characters, sizeof characters, "t%03X8%08X%08X\r", i % 0x700, i, i);
+    return std::string(characters);
+  };
+  PseudoTerminal device(folder_ / "radio");
+  FileDescriptor reader(open((folder_ / "radio").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  ASSERT_TRUE(reader.is_open());
+  std::string sent;
+  for (int i = 0; i < 4000; ++i) sent += line(i);
+  std::string got;
+  size_t cut = 1;
+  for (size_t at = 0; at < sent.size(); at += cut) {
+    cut = 1 + (cut * 7 + 5) % 53;
+    device.write(text(sent.substr(at, cut)));
+    if (at % 5000 > 200) continue;
+    std::array<char, 37> some{};
+    const ssize_t count = read(reader.get(), some.data(), some.size());
+    if (count > 0) got.append(some.data(), static_cast<size_t>(count));
+  }
+  std::array<char, 8192> rest{};
+  for (ssize_t count; (count = read(reader.get(), rest.data(), rest.size())) > 0;)
+    got.append(rest.data(), static_cast<size_t>(count));
+  std::istringstream lines(got);
+  int whole = 0;
+  int last = -1;
+  for (std::string one; std::getline(lines, one, '\r');) {
+    EXPECT_TRUE(one.empty() || one[0] == 't') << one;
+    if (one.size() < line(0).size() - 1) continue;
+    ++whole;
+    const int i = std::stoi(one.substr(5, 8), nullptr, 16);
+    EXPECT_EQ(one + '\r', line(i));
+    EXPECT_GT(i, last);
+    last = i;
+  }
+  EXPECT_GT(whole, 100);
+  EXPECT_LT(whole, 4000);
 }
 
 TEST_F(LinkTest, FramesGoOutAsLines) {
