@@ -119,9 +119,9 @@ TEST(SoilDriving, ComesToRest) {
   }
 }
 
-// Ten minutes of spinning on peaks with all that moves material: not a unit is lost, and what is in
-// hand was taken before.
-TEST(SoilDriving, TenMinutesLoseNoVolume) {
+// Ten minutes of spinning on peaks with all that moves material: not a unit is lost, what is in hand
+// was taken before, and no robot that digs itself in is thrown out of its pit.
+TEST(SoilDriving, TenMinutesOfDigging) {
   for (const char* name : {"gravel", "viper"}) {
     WorldOptions options = drive_options(0.0, 0.0);
     options.soil = soil_preset(name);
@@ -141,6 +141,7 @@ TEST(SoilDriving, TenMinutesLoseNoVolume) {
       const VolumeBalance balance = drive.world.plant().volume_balance();
       ASSERT_EQ(balance.error(), 0) << name << ", tick " << i;
       ASSERT_GE(balance.in_transit, 0) << name << ", tick " << i;
+      ASSERT_LT(drive.world.vehicle().chassis().velocity.z(), 0.2) << name << ", tick " << i;
     }
     EXPECT_GT(drive.world.plant().volume_balance().compacted, 0) << name;
     EXPECT_GT(terrain_change(before, drive.world.terrain()).moved_m3(), 1e-4) << name;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/physics/soil/footprint_path.h"
+
 namespace screed {
 namespace {
 
@@ -16,43 +18,6 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStableStiffness = 0.3;
 // Moves of sliding material in one step: what is left over goes on in the next.
 constexpr int64_t kSlidesPerStep = 400;
-// Greatest gradient of a path: what drops has not driven there.
-constexpr double kMaxPathGradient = 1.0;
-// Least vertical part of a body's z axis at which a level path has a gradient in the body's axes.
-constexpr double kUpright = 1e-3;
-
-// What a footprint comes back by before its path counts as a new one, m: less is trembling.
-constexpr double kTurnedBack_m = 0.001;
-
-/// Extends a footprint's path by this step's displacement, world frame, m. With s and dz its parts
-/// along local x and z, |dz| <= |s|, and L half the length of a track, wheel or box:
-///   travel   += s
-///   gradient += |s| / L (dz / s - gradient)    a mean that favours the recent path; 0 if |s| >= L
-/// Without follow_slopes the gradient is that of a level path.
-void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement,
-                 bool follow_slopes, PathHistory& path) {
-  const Eigen::Matrix3d& axes = footprint.pose().linear();
-  const double along = displacement.dot(axes.col(0));
-  if (along * path.travel_m < 0.0) {
-    path.back_m += std::abs(along);
-    if (path.back_m <= kTurnedBack_m) return;
-    path = {};
-  } else if (path.back_m > 0.0) {  // back to where it had been
-    path.back_m = std::max(0.0, path.back_m - std::abs(along));
-    return;
-  }
-  path.travel_m += along;
-  if (!follow_slopes) {
-    path.gradient = std::abs(axes(2, 2)) > kUpright ? -axes(2, 0) / axes(2, 2) : 0.0;
-    return;
-  }
-  const double length = footprint.half().x() + footprint.radius();
-  const double share = std::abs(along) / length;
-  const double max_rise = kMaxPathGradient * std::abs(along);
-  const double up = std::clamp(displacement.dot(axes.col(2)), -max_rise, max_rise) / length;
-  path.gradient =
-      share < 1.0 ? path.gradient + (along < 0.0 ? -up : up) - share * path.gradient : 0.0;
-}
 
 /// The slip that soil has felt: slip-sinkage comes with the soil that is sheared, so a footprint
 /// averages its slip over the length of its contact.
@@ -127,7 +92,8 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     ContactMemory& kept = *contact.memory;
     const Eigen::Vector3d arm = contact.arm = footprint.pose().translation() - body.centre;
     const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
-    extend_path(footprint, velocity * dt, options_.follow_slopes, kept.path);
+    const double turned = dt * body.omega.dot(footprint.pose().linear().col(2));
+    extend_path(footprint, velocity * dt, turned, options_.follow_slopes, kept.path);
     average_slip(contact, velocity, dt);
     double elastic = soil_.elastic_pa_per_m;
     if (footprint.extended() && !tilts && !imposed) {

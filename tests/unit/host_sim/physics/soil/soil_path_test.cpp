@@ -11,6 +11,7 @@ namespace screed {
 namespace {
 
 constexpr double kRadius_m = 0.06;  // of a wheel: its L
+constexpr double kWidth_m = 0.05;
 constexpr double kStep_s = 0.001;
 
 /// A wheel in the soil that is moved as the test wants.
@@ -24,6 +25,7 @@ class MovedWheel {
     FootprintMotion motion;
     motion.mass_kg = std::numeric_limits<double>::infinity();
     motion.velocity = velocity;
+    motion.omega = omega;
     for (int i = 0; i < steps; ++i) {
       wheel_.set_pose(pose);
       reaction = bed_.press(wheel_, motion, kStep_s, memory);
@@ -33,12 +35,13 @@ class MovedWheel {
   const PathHistory& path() const { return memory.path; }
 
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< as the soil is told
   ContactMemory memory;
   TerrainReaction reaction;
 
  private:
   SoilBed bed_;
-  Footprint wheel_ = Footprint::wheel(kRadius_m, 0.05);
+  Footprint wheel_ = Footprint::wheel(kRadius_m, kWidth_m);
 };
 
 /// The mean gradient after so many steps of one gradient, each of this length.
@@ -127,6 +130,49 @@ TEST(SoilPath, WithoutFollowingSlopesItIsLevel) {
       wheel.pose.linear() * Eigen::Vector3d(1.0, 0.0, wheel.path().gradient);
   EXPECT_NEAR(along.z(), 0.0, 1e-12);
   EXPECT_GT(std::abs(wheel.path().gradient), 0.1);
+}
+
+TEST(SoilPath, IsNoLongerThanTheBody) {
+  MovedWheel wheel;
+  wheel.move({0.5, 0.0, 0.01}, 400);
+  EXPECT_NEAR(wheel.path().travel_m, 2.0 * kRadius_m, 1e-12);
+  wheel.move({-0.5, 0.0, 0.0}, 403);
+  EXPECT_NEAR(wheel.path().travel_m, -2.0 * kRadius_m, 1e-12);
+}
+
+// Where it leaves the curve by half its width: s^2 = w R.
+TEST(SoilPath, EndsWhereATurnLeavesIt) {
+  for (const double rate : {-5.0, 5.0}) {
+    MovedWheel wheel;
+    wheel.move({0.5, 0.0, 0.01}, 400);
+    wheel.omega.z() = rate;
+    wheel.move({0.5, 0.0, 0.01});
+    EXPECT_NEAR(wheel.path().travel_m, std::sqrt(kWidth_m * 0.5 / 5.0), 1e-12);
+    wheel.move({0.0, 0.1, 0.0});  // turns on the spot
+    EXPECT_EQ(wheel.path().travel_m, 0.0);
+  }
+}
+
+// A wheel that has come up on its way stands on nothing until it has sunk by that: then the soil
+// carries it as one that never moved.
+TEST(SoilPath, WhatSinksOnTheSpotComesDownToIt) {
+  constexpr double kGradient = 0.02;
+  const double kFarEnd_m = kGradient * 2.0 * kRadius_m;  // lower than the wheel
+  MovedWheel wheel;
+  wheel.move({0.5, 0.0, kGradient * 0.5}, 2000);
+  ASSERT_NEAR(wheel.path().gradient, kGradient, 1e-6);
+  for (const double speed : {0.0, -0.001, 0.001}) {  // trembling, too
+    MovedWheel sinking = wheel;
+    sinking.move({speed, 0.0, -0.25 * kFarEnd_m / kStep_s});
+    EXPECT_NEAR(sinking.path().gradient, 0.75 * kGradient, 0.002 * kGradient) << speed;
+    sinking.move({0.0, 0.0, -0.5 * kFarEnd_m / kStep_s});
+    EXPECT_NEAR(sinking.path().gradient, 0.25 * kGradient, 0.002 * kGradient) << speed;
+    sinking.move({0.0, 0.0, -kFarEnd_m / kStep_s});
+    EXPECT_EQ(sinking.path().gradient, 0.0) << speed;
+    // What rises from there is no path.
+    sinking.move({0.0, 0.0, 0.1}, 3);
+    EXPECT_EQ(sinking.path().gradient, 0.0) << speed;
+  }
 }
 
 TEST(SoilPath, IsForgottenWhereTheBodyLeavesTheGround) {
