@@ -25,12 +25,13 @@ constexpr int32_t kMaxRestAccel = 1229;
 constexpr int16_t kStallDuty = 110;
 // From this duty on a track is meant to move.
 constexpr int16_t kPushDuty = 60;
-// A track that moves faster than two fifths of its full speed without being pushed has another
-// driver. On a slope of 25 degrees gravity alone makes no half of it.
-constexpr uint16_t kDrivenSpeed = 1000;
-// Against this duty no track moves on for long.
+// A track that moves faster than two fifths of its full speed (in mm/s: 4 of it in 0.1 mm/s)
+// without being pushed has another driver. On a slope of 25 degrees gravity alone makes no half of
+// it.
+constexpr uint8_t kDrivenSpeed = 4;
+// Against this duty no track moves on for long, faster than a fifth.
 constexpr int16_t kReverseDuty = 240;
-constexpr uint16_t kReversedSpeed = 500;
+constexpr uint8_t kReversedSpeed = 2;
 constexpr uint8_t kDisobedienceTicks = 24;
 // Alternations without progress that prove a broken wire.
 constexpr uint8_t kReversals = 4;
@@ -67,11 +68,13 @@ void TrackWatch::tick(int16_t duty, int16_t counts) {
   still_ticks_ = push < kStallDuty ? static_cast<uint16_t>(0) : count_up(still_ticks_);
 }
 
-void TrackWatch::compare(int16_t duty, int16_t relative_speed) {
-  const int16_t along = relative_speed < 0 ? static_cast<int16_t>(-duty) : duty;
-  const uint16_t speed = abs_i16(relative_speed);
-  const bool reversed = along <= static_cast<int16_t>(-kReverseDuty) && speed > kReversedSpeed;
-  if (reversed || (along < kPushDuty && speed > kDrivenSpeed)) {
+void TrackWatch::compare(int16_t duty, int16_t speed_dmm_per_s, uint16_t full_speed_mm_per_s) {
+  const int16_t along = speed_dmm_per_s < 0 ? static_cast<int16_t>(-duty) : duty;
+  const uint16_t speed = abs_i16(speed_dmm_per_s);
+  const bool reversed = along <= static_cast<int16_t>(-kReverseDuty) &&
+                        speed > static_cast<uint16_t>(kReversedSpeed * full_speed_mm_per_s);
+  if (reversed ||
+      (along < kPushDuty && speed > static_cast<uint16_t>(kDrivenSpeed * full_speed_mm_per_s))) {
     if (disobedience_ < kDisobedienceTicks) {
       disobedience_ = static_cast<uint8_t>(disobedience_ + (reversed ? 2 : 1));
     }
@@ -161,8 +164,8 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (right_.still_ticks() >= stall_ticks_) found |= Fault::kStallRight;
   if (left_.alternates()) found |= Fault::kEncoderLeft;
   if (right_.alternates()) found |= Fault::kEncoderRight;
-  left_.compare(input.duty_left, input.relative_speed_left);
-  right_.compare(input.duty_right, input.relative_speed_right);
+  left_.compare(input.duty_left, input.speed_left_dmm_per_s, input.full_speed_mm_per_s);
+  right_.compare(input.duty_right, input.speed_right_dmm_per_s, input.full_speed_mm_per_s);
   if (left_.disobeys()) found |= Fault::kMotorLeft;
   if (right_.disobeys()) found |= Fault::kMotorRight;
 

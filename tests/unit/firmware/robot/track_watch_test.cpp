@@ -90,9 +90,10 @@ TEST(TrackWatch, GreatStepsDoNotOverflow) {
 }
 
 TEST(TrackWatch, ATrackThatMovesAgainstItsDutyDisobeys) {
+  constexpr uint16_t kFullSpeed_mm_per_s = 250;
   struct Motion {
     int16_t duty;
-    int16_t relative_speed;
+    int16_t speed_dmm_per_s;
     int ticks;  ///< until it disobeys; 0: never
   };
   for (const Motion& it : std::initializer_list<Motion>{{240, -501, 12},
@@ -110,12 +111,12 @@ TEST(TrackWatch, ATrackThatMovesAgainstItsDutyDisobeys) {
     TrackWatch watch;
     int ticks = 0;
     while (!watch.disobeys() && ticks < 300) {
-      watch.compare(it.duty, it.relative_speed);
+      watch.compare(it.duty, it.speed_dmm_per_s, kFullSpeed_mm_per_s);
       ++ticks;
     }
-    EXPECT_EQ(ticks, it.ticks == 0 ? 300 : it.ticks) << it.duty << " " << it.relative_speed;
+    EXPECT_EQ(ticks, it.ticks == 0 ? 300 : it.ticks) << it.duty << " " << it.speed_dmm_per_s;
     // One tick in order ends it.
-    watch.compare(300, 0);
+    watch.compare(300, 0, kFullSpeed_mm_per_s);
     EXPECT_FALSE(watch.disobeys());
   }
 }
