@@ -8,10 +8,12 @@ namespace screed {
 namespace {
 
 // Deadlines from cause to reaction, in ticks of 10 ms.
-constexpr uint8_t kTiltTicks = 6;       // 60 ms; the reaction must come within 100 ms
-constexpr uint8_t kSilentTicks = 8;     // 80 ms; the reaction must come within 100 ms
-constexpr uint8_t kFrozenTicks = 18;    // 180 ms; the reaction must come within 200 ms
-constexpr uint8_t kChipTicks = 5;       // after the 40 ms until the barometer is read again
+constexpr uint8_t kTiltTicks = 6;     // 60 ms; the reaction must come within 100 ms
+constexpr uint8_t kSilentTicks = 8;   // 80 ms; the reaction must come within 100 ms
+constexpr uint8_t kFrozenTicks = 18;  // 180 ms; the reaction must come within 200 ms
+constexpr uint8_t kChipTicks = 5;     // a hitch of the bus is no fault
+// Chips that driving relies on; a failing barometer is only reported (HEALTH).
+constexpr uint8_t kVitalChips = ChipBit::kAccelMagChip | ChipBit::kGyroChip;
 constexpr uint8_t kBatteryTicks = 100;  // a start-up dip is not an empty battery
 constexpr uint16_t kLinkStopTicks = 50;
 constexpr uint16_t kLinkDisarmTicks = 150;
@@ -92,8 +94,7 @@ bool TrackWatch::alternates() const {
 }
 
 static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
-                  Fault::kGyroChip == ChipBit::kGyroChip << 8 &&
-                  Fault::kBaroChip == ChipBit::kBaroChip << 8,
+                  Fault::kGyroChip == ChipBit::kGyroChip << 8,
               "faults of chips are their bits, shifted");
 
 Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
@@ -154,8 +155,9 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
   if (frozen_gyro_ticks_ >= kFrozenTicks) found |= Fault::kGyroFrozen;
 
-  if (lasts(input.chips_failing != 0, chip_ticks_, kChipTicks)) {
-    found |= static_cast<uint16_t>(static_cast<uint16_t>(input.chips_failing & 0x07U) << 8);
+  const auto failing = static_cast<uint8_t>(input.chips_failing & kVitalChips);
+  if (lasts(failing != 0, chip_ticks_, kChipTicks)) {
+    found |= static_cast<uint16_t>(static_cast<uint16_t>(failing) << 8);
   }
 
   left_.tick(input.duty_left, input.counts_left);

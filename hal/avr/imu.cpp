@@ -16,7 +16,8 @@ enum Step : uint8_t { kReadGyro, kReadAccel, kReadMag, kReadBaro, kCheckSetting,
 
 constexpr uint8_t kVectorBytes = 7;  // status and three axes
 constexpr uint8_t kBaroBytes = 6;    // status, pressure (3), temperature (2)
-constexpr uint8_t kBaroRounds = 4;   // 25 Hz
+// The barometer is only reported, once a second: read every 0.64 s.
+constexpr uint8_t kBaroRounds = 64;
 
 /// Who owns the state: the bus interrupt from the start of a round to its end, the main program
 /// while it reads.

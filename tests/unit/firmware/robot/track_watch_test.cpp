@@ -139,7 +139,7 @@ void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
 }
 
 TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
-  for (const uint8_t chip : {ChipBit::kAccelMagChip, ChipBit::kGyroChip, ChipBit::kBaroChip}) {
+  for (const uint8_t chip : {ChipBit::kAccelMagChip, ChipBit::kGyroChip}) {
     const Parameters parameters;
     Supervisor supervisor(parameters);
     for (int i = 0; i < 10; ++i) tick(supervisor, 0, i);
@@ -160,10 +160,21 @@ TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
 TEST(SupervisorChips, ARobotWithAFailingChipIsNotArmed) {
   const Parameters parameters;
   Supervisor supervisor(parameters);
-  for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kBaroChip, i);
+  for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kGyroChip, i);
   EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kFaultPresent);
   EXPECT_EQ(supervisor.faults(), 0) << "nothing latched in a robot that nobody armed";
-  EXPECT_EQ(supervisor.reported_faults(), Fault::kBaroChip) << "but the ground is told why";
+  EXPECT_EQ(supervisor.reported_faults(), Fault::kGyroChip) << "but the ground is told why";
+}
+
+TEST(SupervisorChips, ARobotDrivesWithoutItsBarometer) {
+  const Parameters parameters;
+  Supervisor supervisor(parameters);
+  for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kBaroChip, i);
+  EXPECT_EQ(supervisor.reported_faults(), 0);
+  EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kDone);
+  EXPECT_EQ(supervisor.request(Request::kRun), RequestResult::kDone);
+  for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kBaroChip, i);
+  EXPECT_TRUE(supervisor.running());
 }
 
 }  // namespace
