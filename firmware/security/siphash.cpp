@@ -29,7 +29,9 @@ SCREED_OUT_OF_LINE void exclusive_or(uint8_t* word, const uint8_t* other) {
 SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
   uint32_t low;
   uint32_t high;
-  uint8_t* at = a;
+  uint8_t i;
+  uint8_t byte;
+  uint8_t* word = b;
   asm volatile(
       // low, high = b
       "ld %A[low], %a[b]\n\t"
@@ -40,32 +42,18 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
       "ldd %B[high], %a[b]+5\n\t"
       "ldd %C[high], %a[b]+6\n\t"
       "ldd %D[high], %a[b]+7\n\t"
-      // a += b
+      // a += b, byte by byte: dec leaves the carry alone
+      "ldi %[i], 8\n\t"
+      "clc\n"
+      "5:\n\t"
       "ld __tmp_reg__, X\n\t"
-      "add __tmp_reg__, %A[low]\n\t"
+      "ld %[byte], %a[b]+\n\t"
+      "adc __tmp_reg__, %[byte]\n\t"
       "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %B[low]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %C[low]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %D[low]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %A[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %B[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %C[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %D[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "sbiw r26, 8\n"
+      "dec %[i]\n\t"
+      "brne 5b\n\t"
+      "sbiw r26, 8\n\t"
+      "sbiw %[b], 8\n"
       // left by bytes, at least one
       "1:\n\t"
       "mov __tmp_reg__, %D[high]\n\t"
@@ -95,34 +83,20 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
       "3:\n\t"
       "subi %[bits], 1\n\t"
       "brcc 2b\n\t"
-      // b ^= a
-      "ld __tmp_reg__, X+\n\t"
-      "eor %A[low], __tmp_reg__\n\t"
+      // b = what was turned
       "st %a[b], %A[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %B[low], __tmp_reg__\n\t"
       "std %a[b]+1, %B[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %C[low], __tmp_reg__\n\t"
       "std %a[b]+2, %C[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %D[low], __tmp_reg__\n\t"
       "std %a[b]+3, %D[low]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %A[high], __tmp_reg__\n\t"
       "std %a[b]+4, %A[high]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %B[high], __tmp_reg__\n\t"
       "std %a[b]+5, %B[high]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %C[high], __tmp_reg__\n\t"
       "std %a[b]+6, %C[high]\n\t"
-      "ld __tmp_reg__, X+\n\t"
-      "eor %D[high], __tmp_reg__\n\t"
       "std %a[b]+7, %D[high]\n\t"
-      : [low] "=&r"(low), [high] "=&r"(high), [a] "+x"(at), [bytes] "+d"(bytes), [bits] "+d"(bits)
-      : [b] "b"(b)
+      : [low] "=&r"(low), [high] "=&r"(high), [i] "=&d"(i), [byte] "=&r"(byte), [bytes] "+d"(bytes),
+        [bits] "+d"(bits), [b] "+b"(word)
+      : [a] "x"(a)
       : "memory");
+  exclusive_or(b, a);
 }
 #else
 void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
