@@ -137,19 +137,20 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
   // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
   // the components.
   const bool upside_down = accel[2] < 0;
-  const int32_t n = static_cast<int32_t>(isqrt32(squared));
-  const int32_t ax = static_cast<int32_t>(accel[0]);
   const int32_t ay = upside_down ? -static_cast<int32_t>(accel[1]) : static_cast<int32_t>(accel[1]);
-  const int32_t az = static_cast<int32_t>(abs_u16(accel[2]));
-  const int32_t w = asr(n + az, 2);  // quartered: the squares of clipped values stay within 32 bits
-  const int32_t x = asr(ay, 2);
-  const int32_t y = asr(-ax, 2);
-  const int32_t length =
-      static_cast<int32_t>(isqrt32(static_cast<uint32_t>(w * w + x * x + y * y)));
+  const auto az = static_cast<int32_t>(abs_u16(accel[2]));
+  // Quartered they fit 16 bits, and the squares of clipped values 32.
+  const auto w = static_cast<int16_t>(asr(isqrt32(squared) + az, 2));
+  const auto x = static_cast<int16_t>(asr(ay, 2));
+  const auto y = static_cast<int16_t>(asr(-static_cast<int32_t>(accel[0]), 2));
+  const uint16_t length =
+      isqrt32(static_cast<uint32_t>(mul_i16(w, w) + mul_i16(x, x) + mul_i16(y, y)));
   const auto scale = static_cast<int32_t>(
-      quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1)));
-  orientation_ = upside_down ? Quaternion{-x, w, 0, -y} : Quaternion{w, x, y, 0};
-  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] *= scale;
+      quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1U)));
+  const SmallQuaternion direction =
+      upside_down ? SmallQuaternion{static_cast<int16_t>(-x), w, 0, static_cast<int16_t>(-y)}
+                  : SmallQuaternion{w, x, y, 0};
+  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] = (&direction.w)[i] * scale;
   gravity_[0] = 0;
   gravity_[1] = 0;
   gravity_[2] = kCountsPerG << kGravityBits;

@@ -31,6 +31,7 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
   uint32_t high;
   uint8_t i;
   uint8_t byte;
+  uint8_t* at = a;
   uint8_t* word = b;
   asm volatile(
       // low, high = b
@@ -83,20 +84,35 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
       "3:\n\t"
       "subi %[bits], 1\n\t"
       "brcc 2b\n\t"
-      // b = what was turned
+      // b ^= a
+      "ld __tmp_reg__, X+\n\t"
+      "eor %A[low], __tmp_reg__\n\t"
       "st %a[b], %A[low]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %B[low], __tmp_reg__\n\t"
       "std %a[b]+1, %B[low]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %C[low], __tmp_reg__\n\t"
       "std %a[b]+2, %C[low]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %D[low], __tmp_reg__\n\t"
       "std %a[b]+3, %D[low]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %A[high], __tmp_reg__\n\t"
       "std %a[b]+4, %A[high]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %B[high], __tmp_reg__\n\t"
       "std %a[b]+5, %B[high]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %C[high], __tmp_reg__\n\t"
       "std %a[b]+6, %C[high]\n\t"
+      "ld __tmp_reg__, X+\n\t"
+      "eor %D[high], __tmp_reg__\n\t"
       "std %a[b]+7, %D[high]\n\t"
       : [low] "=&r"(low), [high] "=&r"(high), [i] "=&d"(i), [byte] "=&r"(byte), [bytes] "+d"(bytes),
-        [bits] "+d"(bits), [b] "+b"(word)
-      : [a] "x"(a)
+        [bits] "+d"(bits), [a] "+x"(at), [b] "+b"(word)
+      :
       : "memory");
-  exclusive_or(b, a);
 }
 #else
 void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
