@@ -129,16 +129,15 @@ void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
 /// Sets the shortest rotation that turns the measured acceleration upright. False: no acceleration
 /// to speak of.
 bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
-  const uint32_t squared = static_cast<uint32_t>(mul_i16(accel[0], accel[0])) +
-                           static_cast<uint32_t>(mul_i16(accel[1], accel[1])) +
-                           static_cast<uint32_t>(mul_i16(accel[2], accel[2]));
+  uint32_t squared = 0;
+  for (const int16_t count : accel) squared += static_cast<uint32_t>(mul_i16(count, count));
   if (squared < kMinAccelSquared) return false;
   // For a = (ax, ay, az) of length n: q is along (n + az, ay, -ax, 0). Upside down that vanishes,
   // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
   // the components.
   const bool upside_down = accel[2] < 0;
   const int32_t ay = upside_down ? -static_cast<int32_t>(accel[1]) : static_cast<int32_t>(accel[1]);
-  const auto az = static_cast<int32_t>(abs_u16(accel[2]));
+  const auto az = static_cast<int32_t>(abs_i16(accel[2]));
   // Quartered they fit 16 bits, and the squares of clipped values 32.
   const auto w = static_cast<int16_t>(asr(isqrt32(squared) + az, 2));
   const auto x = static_cast<int16_t>(asr(ay, 2));

@@ -113,11 +113,6 @@ SCREED_OUT_OF_LINE constexpr uint32_t abs_u32(int32_t value) {
                    : static_cast<uint32_t>(value);
 }
 
-/// |value| as unsigned, right for INT16_MIN as well.
-constexpr uint16_t abs_u16(int16_t value) {
-  return static_cast<uint16_t>(abs_u32(static_cast<int32_t>(value)));
-}
-
 /// Sum that stops at the ends of int32_t instead of overflowing.
 SCREED_OUT_OF_LINE constexpr int32_t add_sat_i32(int32_t a, int32_t b) {
   return b > 0 ? (a > INT32_MAX - b ? INT32_MAX : a + b) : (a < INT32_MIN - b ? INT32_MIN : a + b);

@@ -126,7 +126,7 @@ bool Supervisor::tilted(const SupervisorInput& input) {
   // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {
-    if (abs_u16(input.gyro[i]) > kMaxRestGyro) return false;
+    if (abs_i16(input.gyro[i]) > kMaxRestGyro) return false;
     const int32_t part = asr(input.accel[i], 2);
     square += static_cast<uint32_t>(part * part);
   }

@@ -157,7 +157,7 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
     case e2e_data_id(kIdBaro):
     default: {
       const uint16_t from_zero =
-          quotient_u16(static_cast<uint32_t>(abs_u16(sample.temperature)) * 5U, 24);
+          quotient_u16(static_cast<uint32_t>(abs_i16(sample.temperature)) * 5U, 24);
       message::Baro it{};
       // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
       it.pressure = (static_cast<uint32_t>(sample.pressure) * 25U) >> 6;

@@ -3,7 +3,6 @@
 #include "firmware/security/siphash.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #include "firmware/math/fixed.h"
 #include "hal/program_memory.h"
@@ -175,8 +174,9 @@ void siphash_2_4(const uint8_t* key, const uint8_t* message, uint8_t size, uint8
   }
   v[size_t{2} * kWord] = static_cast<uint8_t>(v[size_t{2} * kWord] ^ 0xFFU);
   rounds(v, 4);
-  memcpy(hash, v, kWord);
-  for (uint8_t word = 1; word < 4; ++word) exclusive_or(hash, v + size_t{word} * kWord);
+  for (uint8_t i = 0; i < kWord; ++i) {
+    hash[i] = static_cast<uint8_t>(v[i] ^ v[i + kWord] ^ v[i + 2 * kWord] ^ v[i + 3 * kWord]);
+  }
 }
 
 }  // namespace screed
