@@ -223,7 +223,7 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
     }
     --countdown_[i];
     if (!packet || (due_ & bit) == 0 || !room(output)) continue;
-    CanFrame frame{};
+    CanFrame frame;  // fill() and emit() write what is sent of it
     frame.id = read_program_u16(&kSchedule[i].id);
     fill(frame, view);
     emit(frame, i, output);
