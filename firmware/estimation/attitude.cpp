@@ -232,8 +232,7 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] += asr(components(turned)[i], 1);
 }
 
-SCREED_OUT_OF_LINE void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth,
-                                                          const int16_t (&accel)[3]) {
+void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
   const bool starting = ticks_ < kStartTicks;
   if (starting) ++ticks_;
   const int16_t start_gain = starting ? mean_gain_q16(ticks_) : static_cast<int16_t>(0);

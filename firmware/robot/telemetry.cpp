@@ -67,7 +67,7 @@ void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
 
 }  // namespace
 
-SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
+void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
   const SensorSample& sample = *view.sample;
   const RobotStatus& robot = *view.robot;
   const UplinkCounts& uplink = *view.uplink;
