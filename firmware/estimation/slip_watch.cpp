@@ -57,8 +57,7 @@ bool SlipWatch::slips() const {
 }
 
 void SlipWatch::set_share(uint8_t input, bool negative, uint16_t part) {
-  values_[input] =
-      static_cast<int8_t>(negated_if(negative, share_q7(part, faster_track_)));
+  values_[input] = static_cast<int8_t>(negated_if(negative, share_q7(part, faster_track_)));
 }
 
 void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
@@ -106,8 +105,8 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   update_vibration(vibration_[2], accel[2]);
   // Twice halved, so that a difference fits 16 bits.
   const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
-  yaw_rate_ = static_cast<int16_t>(yaw_rate_ +
-                                   asr_i16(static_cast<int16_t>(rate - yaw_rate_), kYawShift));
+  yaw_rate_ =
+      static_cast<int16_t>(yaw_rate_ + asr_i16(static_cast<int16_t>(rate - yaw_rate_), kYawShift));
   const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
                                            negated_if(half_right < 0, right.effort));
   effort_ = static_cast<int16_t>(effort_ + limit_i16(effort, kMaxEffort) -

@@ -7,8 +7,8 @@
 // (over 0.6, 2.6 and 10 s, since more would be drift), the turn that the gyro measures and the
 // difference of the tracks that ought to make one, the belts' speed, the slope, what the motors
 // need beyond idling (a robot that hangs needs little), how much the chassis vibrates (one that
-// stands does not) and how it pitches (one that digs itself in does so slowly). The network's memory
-// holds how all this was before. A step takes two calls, so that no tick has all of it.
+// stands does not) and how it pitches (one that digs itself in does so slowly). The network's
+// memory holds how all this was before. A step takes two calls, so that no tick has all of it.
 // docs/networks.md has figures, `screed nn stuck` measures them.
 #pragma once
 
@@ -74,8 +74,8 @@ class SlipWatch : private SlipMemory {
 
   /// One tick. gyro, accel: the three counts (70 mdps, 0.244 mg) as they come; sin_pitch_q14 > 0:
   /// nose up; yaw_rate: angle units/s. Half a step of the network is made when `classify_now` is
-  /// set, in every second tick: those in which no command's MAC is checked, so that the longest tick
-  /// stays as long as it is. A robot whose tracks stand is not stuck, and the network forgets.
+  /// set, in every second tick: those in which no command's MAC is checked, so that the longest
+  /// tick stays as long as it is. A robot whose tracks stand is not stuck, and the network forgets.
   SCREED_OUT_OF_LINE void tick(const TrackMotion& left, const TrackMotion& right,
                                const int16_t* gyro, const int16_t* accel, int16_t sin_pitch_q14,
                                int32_t yaw_rate, bool classify_now);

@@ -21,8 +21,8 @@ struct GatedNetwork {
   GatedShape shape() const;
 };
 
-inline constexpr float kWeightScale = 32.0F;                  ///< a weight's integer for 1
-inline constexpr float kMaxWeight = 127.0F / kWeightScale;    ///< what 8 bits hold
+inline constexpr float kWeightScale = 32.0F;                ///< a weight's integer for 1
+inline constexpr float kMaxWeight = 127.0F / kWeightScale;  ///< what 8 bits hold
 
 /// Random weights by the seed; gates open differently wide, so that units remember for different
 /// times.

@@ -2,6 +2,7 @@
 #include "nn/slip/gated_trainer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -24,16 +25,21 @@ constexpr double kRoundedFrom = 0.4;  // of the epochs
 /// Gradient of what is cut at its ends: a little beyond them, so that no unit is lost for ever.
 constexpr float kBeyond = 0.05F;
 constexpr float kMaxNorm = 1.0F;  // of a window's gradient
+/// Deviations of what is added to the inputs for a window, in their units: other soils, motors and
+/// sensors than those of the drives. In the order of slip_watch.h.
+constexpr std::array<float, kSlipInputs> kOffsets = {4, 6, 10, 2, 2, 3, 4, 4, 10, 10, 10, 3};
 
 /// A window of all lanes, and what the forward pass keeps for the way back.
 struct Window {
   explicit Window(const GatedShape& shape, Index lanes)
-      : steps(static_cast<std::size_t>(kWindow),
+      : offsets(MatrixXf::Zero(shape.inputs, lanes)),
+        steps(static_cast<std::size_t>(kWindow),
               std::vector<const SlipStep*>(static_cast<std::size_t>(lanes), nullptr)),
         values(kWindow, MatrixXf::Zero(shape.row_size(), lanes)),
         candidates(kWindow),
         gates(kWindow) {}
 
+  MatrixXf offsets;                                 ///< added to all inputs of the lane, /128
   std::vector<std::vector<const SlipStep*>> steps;  ///< null: the lane has none
   std::vector<MatrixXf> values;                     ///< 1, inputs, states before the step
   std::vector<MatrixXf> candidates, gates;          ///< sums
@@ -74,8 +80,9 @@ class Pass {
         if (step == nullptr) continue;
         if (step->forgets) states.col(lane).setZero();
         for (Index i = 0; i < shape_.inputs; ++i) {
-          values(1 + i, lane) =
+          const float input =
               static_cast<float>(step->inputs[static_cast<std::size_t>(i)]) / 128.0F;
+          values(1 + i, lane) = std::clamp(input + window_.offsets(i, lane), -1.0F, 1.0F);
         }
       }
       values.bottomRows(shape_.units) = states;
@@ -161,7 +168,10 @@ std::vector<MatrixXf*> matrices(GatedNetwork& network) {
 class Feed {
  public:
   Feed(const std::vector<std::vector<SlipStep>>& sequences, std::uint64_t seed, std::size_t epoch)
-      : sequences_(sequences), order_(sequences.size()), lanes_(kLanes) {
+      : sequences_(sequences),
+        order_(sequences.size()),
+        lanes_(kLanes),
+        random_(seed + 1000003 * epoch, "offsets") {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     WorldRandom random(seed + 1000003 * epoch, "order of drives");
     for (std::size_t i = order_.size(); i > 1; --i) {
@@ -171,6 +181,12 @@ class Feed {
 
   /// False when too few lanes still have steps.
   bool fill(Window& window) {
+    for (Index lane = 0; lane < window.offsets.cols(); ++lane) {
+      for (Index i = 0; i < window.offsets.rows(); ++i) {
+        window.offsets(i, lane) =
+            kOffsets[static_cast<std::size_t>(i)] / 128.0F * static_cast<float>(random_.normal());
+      }
+    }
     std::size_t filled = 0;
     for (auto& of_step : window.steps) {
       for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
@@ -196,6 +212,7 @@ class Feed {
   std::vector<std::size_t> order_;
   std::size_t next_ = 0;
   std::vector<std::span<const SlipStep>> lanes_;
+  WorldRandom random_;
 };
 
 }  // namespace
@@ -205,8 +222,7 @@ GatedNetwork train_gated(const std::vector<std::vector<SlipStep>>& sequences,
   std::size_t steps = 0;
   for (const auto& sequence : sequences) steps += sequence.size();
   if (steps == 0) throw RunError("slip: no steps to learn from");
-  GatedNetwork network =
-      random_network({kSlipInputs, options.units, kSlipOutputs}, options.seed);
+  GatedNetwork network = random_network({kSlipInputs, options.units, kSlipOutputs}, options.seed);
   std::vector<UpdateState> updates(3);
   for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
     const double done = static_cast<double>(epoch) / static_cast<double>(options.epochs);
@@ -229,9 +245,9 @@ GatedNetwork train_gated(const std::vector<std::vector<SlipStep>>& sequences,
         MatrixXf& of = *matrices(gradient)[i];
         of *= scale;
         MatrixXf& parameters = *matrices(network)[i];
-        update_parameters(OptimiserKind::kAdam, rate, 0.0, {of.data(), static_cast<std::size_t>(of.size())},
-                          {parameters.data(), static_cast<std::size_t>(parameters.size())},
-                          updates[i]);
+        update_parameters(
+            OptimiserKind::kAdam, rate, 0.0, {of.data(), static_cast<std::size_t>(of.size())},
+            {parameters.data(), static_cast<std::size_t>(parameters.size())}, updates[i]);
         parameters = parameters.cwiseMax(-kMaxWeight).cwiseMin(kMaxWeight);
       }
     }

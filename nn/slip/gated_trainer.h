@@ -21,7 +21,7 @@ struct GatedTrainingOptions {
   std::uint8_t units = kSlipUnits;
   std::size_t epochs = 60;
   double learning_rate = 0.01;
-  double final_rate = 0.02;  ///< share of it in the last epoch; geometric between
+  double final_rate = 0.02;    ///< share of it in the last epoch; geometric between
   double held_emphasis = 1.0;  ///< weight of a step that is held, where a free one has 1
   std::function<void(std::size_t epoch, double loss)> progress;  ///< may be empty
 };

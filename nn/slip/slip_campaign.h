@@ -13,7 +13,7 @@
 namespace screed::nn {
 
 struct SlipCampaign {
-  std::uint64_t seed = 1;  ///< of the first drive of each kind; each further one adds 1
+  std::uint64_t seed = 1;   ///< of the first drive of each kind; each further one adds 1
   std::size_t trapped = 0;  ///< numbers of drives
   std::size_t free = 0;
   std::size_t ordinary = 0;
@@ -39,11 +39,11 @@ Interval poisson(int count);
 /// Errors of the travel share, weighted by the belts' speed.
 struct ShareError {
   double weight = 0.0;
-  double sum = 0.0;             ///< of share said minus true share
-  double squares = 0.0;         ///< of that
-  double true_sum = 0.0;        ///< of true shares
-  double true_squares = 0.0;    ///< of those
-  double missing_squares = 0.0; ///< of 1 minus true shares
+  double sum = 0.0;              ///< of share said minus true share
+  double squares = 0.0;          ///< of that
+  double true_sum = 0.0;         ///< of true shares
+  double true_squares = 0.0;     ///< of those
+  double missing_squares = 0.0;  ///< of 1 minus true shares
 
   void add(double said, double truth, double weight_of_it);
   double mean() const { return sum / weight; }
@@ -55,7 +55,7 @@ struct ShareError {
 
 struct SlipFigures {
   StuckCounts all;
-  std::map<std::string, StuckCounts> by_trap;    ///< none: without a trap
+  std::map<std::string, StuckCounts> by_trap;  ///< none: without a trap
   std::map<std::string, StuckCounts> by_ground;
   std::map<std::string, ShareError> share_by_ground;
   ShareError share;

@@ -69,10 +69,18 @@ std::vector<ThresholdResult> try_thresholds(const SlipModel& model,
   return results;
 }
 
-std::uint16_t choose_threshold(const std::vector<ThresholdResult>& results, double per_hour) {
+std::uint16_t choose_threshold(const std::vector<ThresholdResult>& results, double false_per_hour,
+                               double early_per_drive) {
   std::uint16_t chosen = results.back().stuck;
+  int detected = -1;
   for (auto result = results.rbegin(); result != results.rend(); ++result) {
-    if (result->counts.false_alarms > per_hour * result->counts.driven_s / 3600.0) break;
+    const StuckCounts& counts = result->counts;
+    if (counts.false_alarms > false_per_hour * counts.driven_s / 3600.0 ||
+        counts.early_alarms > early_per_drive * counts.trapped) {
+      break;
+    }
+    if (counts.detected <= detected) continue;
+    detected = counts.detected;
     chosen = result->stuck;
   }
   return chosen;

@@ -18,8 +18,10 @@ struct ThresholdResult {
 std::vector<ThresholdResult> try_thresholds(const SlipModel& model,
                                             const std::vector<SlipDrive>& drives);
 
-/// The lowest threshold from which on all have at most that many false alarms an hour; the highest
-/// one where none has.
-std::uint16_t choose_threshold(const std::vector<ThresholdResult>& results, double per_hour);
+/// Of the thresholds from which on all have at most that many false alarms an hour and early alarms
+/// a drive into a trap, the one that detects most, the highest of those that detect equally many.
+/// The highest one where none holds.
+std::uint16_t choose_threshold(const std::vector<ThresholdResult>& results, double false_per_hour,
+                               double early_per_drive);
 
 }  // namespace screed::nn

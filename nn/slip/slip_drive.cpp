@@ -109,8 +109,8 @@ SlipDrive drive(const StuckScenario& scenario, const TaskProgress& progress) {
 }
 
 std::vector<SlipDrive> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads,
-                               const TaskProgress& progress,
-                               const std::filesystem::path& folder) {
+                                 const TaskProgress& progress,
+                                 const std::filesystem::path& folder) {
   MadeFolders folders;
   if (!folder.empty()) folders.make(folder);
   std::vector<SlipDrive> runs(scenarios.size());

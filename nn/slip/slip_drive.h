@@ -33,8 +33,8 @@ struct SlipTick {
 struct SlipDrive {
   std::uint64_t seed = 0;
   ScenarioKind kind = ScenarioKind::kFree;
-  std::string ground;  ///< rigid, or the soil's preset
-  std::string trap;    ///< none without one
+  std::string ground;   ///< rigid, or the soil's preset
+  std::string trap;     ///< none without one
   std::string failure;  ///< of the physics; empty: none
   std::vector<SlipTick> ticks;
 };

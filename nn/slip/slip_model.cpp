@@ -103,8 +103,8 @@ std::string slip_model_header(const SlipModel& model) {
   threshold("kFreeEvidence", model.thresholds.free);
   text += "\nconst int8_t parameters[] SCREED_PROGRAM_MEMORY = {";
   for (std::size_t i = 0; i < model.parameters.size(); i += kInALine) {
-    text += "\n    " +
-            text_of(model, i, std::min(kInALine, model.parameters.size() - i), ", ") + ",";
+    text +=
+        "\n    " + text_of(model, i, std::min(kInALine, model.parameters.size() - i), ", ") + ",";
   }
   return text + "\n};\n\n}  // namespace model_slip\n}  // namespace nn\n}  // namespace screed\n";
 }

@@ -13,7 +13,7 @@ namespace screed::nn {
 /// Evidence (slip_watch.h) from which a robot slips, from which it is stuck, and below which it is
 /// free again.
 struct SlipThresholds {
-  std::uint16_t slip = 34000;   ///< odds of 1.4
+  std::uint16_t slip = 32768;   ///< even odds
   std::uint16_t stuck = 40000;  ///< odds of 6; `screed nn slip choose` sets it
   std::uint16_t free = 28000;   ///< odds of 0.3
 };

@@ -27,14 +27,13 @@ std::vector<SlipStep> slip_steps(const SlipDrive& drive, const TrueMotion& motio
     step.tick = static_cast<std::uint32_t>(i);
     step.forgets = what.forgets;
     if (tick.running) {
-      const double share = motion.travel_share(i > kMotionWindow ? i - kMotionWindow : 0,
-                                               i + kMotionWindow);
+      const double share =
+          motion.travel_share(i > kMotionWindow ? i - kMotionWindow : 0, i + kMotionWindow);
       const double before = motion.travel_share(i > kShareWindow ? i - kShareWindow : 0, i + 1);
       const bool free = share > kFreeMin || before > kFreeShare;
       step.held = !free && share < kHeldMax ? 1.0F : 0.0F;
       step.held_weight = free || share < kHeldMax ? 1.0F : 0.0F;
-      const auto forward =
-          motion.forward_share(i > kShareWindow ? i - kShareWindow : 0, i);
+      const auto forward = motion.forward_share(i > kShareWindow ? i - kShareWindow : 0, i);
       step.share = static_cast<float>(forward.share);
       step.share_weight =
           static_cast<float>(forward.belts_m * kTickRate_hz / static_cast<double>(kShareWindow));

@@ -67,9 +67,60 @@ std::optional<std::size_t> TrueMotion::first_dug_in(const SlipDrive& drive) cons
   return std::nullopt;
 }
 
+namespace {
+
+enum class Alarm : std::uint8_t { kFalse, kRecovered, kTrue };
+
+/// What an alarm is that begins at that tick of a robot that is not dug in.
+Alarm alarm_at(const TrueMotion& motion, std::size_t tick) {
+  const std::size_t begin = tick > kSecond / 2 ? tick - kSecond / 2 : 0;
+  if (motion.travel_share(begin, tick + 1) > kFreeShare) return Alarm::kFalse;
+  return motion.travel_share(begin, tick + kSecond / 2) > kFreeShare ? Alarm::kRecovered
+                                                                     : Alarm::kTrue;
+}
+
+bool rises(const std::vector<WatchTick>& watch, std::size_t i) {
+  return watch[i].stuck && (i == 0 || !watch[i - 1].stuck);
+}
+
+void count_trapped(const TrueMotion& motion, const std::vector<WatchTick>& watch,
+                   StuckCounts& counts) {
+  const auto dug_in = motion.dug_in_at();
+  const std::size_t begin = dug_in.value_or(watch.size());
+  counts.trapped = 1;
+  counts.dug_in = dug_in ? 1 : 0;
+  bool too_early = false;  // the alarm that is on
+  for (std::size_t i = 0; i < watch.size() && i <= begin + kSecond; ++i) {
+    if (rises(watch, i)) {
+      const bool early = i < begin && alarm_at(motion, i) == Alarm::kFalse;
+      counts.early_alarms += early ? 1 : 0;
+      too_early = early && i + kSecond < begin;
+    }
+    if (i < begin || !watch[i].stuck || too_early || counts.detected != 0) continue;
+    counts.detected = 1;
+    counts.delay_s = static_cast<double>(i - begin) / kTickRate_hz;
+  }
+}
+
+void count_free(const TrueMotion& motion, const std::vector<WatchTick>& watch,
+                StuckCounts& counts) {
+  for (std::size_t i = 0; i < watch.size(); ++i) {
+    if (watch[i].evaluated) counts.driven_s += 1.0 / kTickRate_hz;
+    if (!rises(watch, i)) continue;
+    const Alarm alarm = alarm_at(motion, i);
+    counts.false_alarms += alarm == Alarm::kFalse ? 1 : 0;
+    counts.recovered_alarms += alarm == Alarm::kRecovered ? 1 : 0;
+    counts.other_alarms += alarm == Alarm::kTrue ? 1 : 0;
+  }
+}
+
+}  // namespace
+
 StuckCounts& StuckCounts::operator+=(const StuckCounts& other) {
+  trapped += other.trapped;
   dug_in += other.dug_in;
   detected += other.detected;
+  early_alarms += other.early_alarms;
   driven_s += other.driven_s;
   false_alarms += other.false_alarms;
   recovered_alarms += other.recovered_alarms;
@@ -80,32 +131,10 @@ StuckCounts& StuckCounts::operator+=(const StuckCounts& other) {
 StuckCounts count_alarms(const SlipDrive& drive, const TrueMotion& motion,
                          const std::vector<WatchTick>& watch) {
   StuckCounts counts;
-  const std::size_t ticks = watch.size();
-  const bool trapped = drive.kind == ScenarioKind::kTrapped;
-  const auto dug_in = trapped ? motion.dug_in_at() : std::nullopt;
-  counts.dug_in = dug_in ? 1 : 0;
-  bool alarm_was_false = false;
-  for (std::size_t i = 0; i < ticks; ++i) {
-    const bool before = !dug_in || i < *dug_in;
-    if (before && watch[i].evaluated) counts.driven_s += 1.0 / kTickRate_hz;
-    if (watch[i].stuck && (i == 0 || !watch[i - 1].stuck)) {
-      const std::size_t begin = i > kSecond / 2 ? i - kSecond / 2 : 0;
-      alarm_was_false = before && motion.travel_share(begin, i + 1) > kFreeShare;
-      if (before) {
-        if (alarm_was_false) {
-          ++counts.false_alarms;
-        } else if (motion.travel_share(begin, i + kSecond / 2) > kFreeShare) {
-          ++counts.recovered_alarms;
-        } else if (!dug_in || i + kSecond < *dug_in) {
-          ++counts.other_alarms;
-        }
-      }
-    }
-    if (dug_in && !before && i <= *dug_in + kSecond && watch[i].stuck && !alarm_was_false &&
-        counts.detected == 0) {
-      counts.detected = 1;
-      counts.delay_s = static_cast<double>(i - *dug_in) / kTickRate_hz;
-    }
+  if (drive.kind == ScenarioKind::kTrapped) {
+    count_trapped(motion, watch, counts);
+  } else {
+    count_free(motion, watch, counts);
   }
   return counts;
 }

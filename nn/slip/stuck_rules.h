@@ -50,11 +50,15 @@ struct WatchTick {
 };
 
 struct StuckCounts {
-  int dug_in = 0;            ///< 0 or 1 of a drive into a trap
-  int detected = 0;          ///< likewise
-  double delay_s = 0.0;      ///< of the detection
-  double driven_s = 0.0;     ///< evaluated, of a drive into a trap only until it is dug in
-  int false_alarms = 0;      ///< in that time, that began after the robot had moved
+  // Of drives into a trap.
+  int trapped = 0;       ///< drives
+  int dug_in = 0;        ///< of them
+  int detected = 0;      ///< of those
+  double delay_s = 0.0;  ///< of the detection
+  int early_alarms = 0;  ///< before it was dug in, that began after the robot had moved
+  // Of drives without.
+  double driven_s = 0.0;     ///< evaluated
+  int false_alarms = 0;      ///< that began after the robot had moved
   int recovered_alarms = 0;  ///< not those, but with the half second after it it had: it came free
   int other_alarms = 0;      ///< that began while it hardly moved: slip, or dug in without a trap
 
@@ -63,9 +67,10 @@ struct StuckCounts {
 };
 
 /// A drive into a trap is detected when `stuck` is set at any time from the moment at which it is
-/// dug in to 1 s after it, by an alarm that was not false: one that begins before that moment is
-/// judged as in any other drive. Stall faults are no detections: they end
-/// the drive, and a drive that ends within the second is not dug in.
+/// dug in to 1 s after it, unless by an early alarm of more than 1 s before. An early alarm is
+/// what would be a false one without a trap; one that began within the second before is both. Stall
+/// faults are no detections: they end the drive, and a drive that ends within the second is not dug
+/// in.
 StuckCounts count_alarms(const SlipDrive& drive, const TrueMotion& motion,
                          const std::vector<WatchTick>& watch);
 

@@ -19,8 +19,13 @@ struct SlipArguments : SlipCampaignArguments {
   std::string model = "nn/models/slip.json";
   std::string header = "firmware/estimation/slip_model.h";
   nn::GatedTrainingOptions training;
-  double false_alarms_per_hour = 0.7;
+  double false_per_hour = 0.7;
+  double early_per_drive = 0.03;
 };
+
+double percent(int part, int whole) {
+  return whole == 0 ? 0.0 : 100.0 * part / whole;
+}
 
 int drive(const SlipArguments& arguments) {
   std::printf("%zu drives\n", run_campaign(arguments).size());
@@ -57,15 +62,17 @@ int train(SlipArguments& arguments) {
 int choose(const SlipArguments& arguments) {
   nn::SlipModel model = nn::read_slip_model(arguments.model);
   const auto results = nn::try_thresholds(model, run_campaign(arguments));
-  std::printf("%8s %18s %16s\n", "evidence", "detected", "false alarms");
+  std::printf("%8s %22s %26s %24s\n", "evidence", "detected", "early alarms", "false alarms");
   for (const nn::ThresholdResult& result : results) {
     const nn::StuckCounts& counts = result.counts;
-    std::printf("%8d %6d of %4d %4.1f %% %6d, %5.2f an hour\n", result.stuck, counts.detected,
-                counts.dug_in, counts.dug_in == 0 ? 0.0 : 100.0 * counts.detected / counts.dug_in,
+    std::printf("%8d %6d of %4d, %5.1f %% %6d of %4d, %5.1f %% %6d, %5.2f an hour\n", result.stuck,
+                counts.detected, counts.dug_in, percent(counts.detected, counts.dug_in),
+                counts.early_alarms, counts.trapped, percent(counts.early_alarms, counts.trapped),
                 counts.false_alarms,
                 counts.driven_s <= 0.0 ? 0.0 : counts.false_alarms * 3600.0 / counts.driven_s);
   }
-  model.thresholds.stuck = nn::choose_threshold(results, arguments.false_alarms_per_hour);
+  model.thresholds.stuck =
+      nn::choose_threshold(results, arguments.false_per_hour, arguments.early_per_drive);
   nn::write_slip_model(arguments.model, model);
   std::printf("stuck from %d on, in %s\n", model.thresholds.stuck, arguments.model.c_str());
   return 0;
@@ -104,8 +111,10 @@ void register_nn_slip_command(CLI::App& nn, Program& program) {
   add_number(*of_train.first, "--units", training.units, "Number of units", {1, 100});
   auto of_choose = add("choose", "Choose the threshold of stuck on drives", choose, true);
   add_model(of_choose);
-  add_number(*of_choose.first, "--false-alarms", of_choose.second->false_alarms_per_hour,
-             "Most false alarms an hour", {0.0, 1e6});
+  add_number(*of_choose.first, "--false-alarms", of_choose.second->false_per_hour,
+             "Most false alarms an hour, without a trap", {0.0, 1e6});
+  add_number(*of_choose.first, "--early-alarms", of_choose.second->early_per_drive,
+             "Most early alarms a drive into a trap", {0.0, 1e6});
   auto of_export = add("export", "Write the header of the firmware", export_header, false);
   add_model(of_export);
   of_export.first->add_option("--header", of_export.second->header, "Header file")

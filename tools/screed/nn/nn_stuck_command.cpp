@@ -38,15 +38,19 @@ void print_row(const std::string& name, const StuckCounts& counts) {
   const Interval detected = nn::wilson(counts.detected, counts.dug_in);
   const Interval alarms = nn::poisson(counts.false_alarms);
   std::printf("%-12s", name.c_str());
-  if (counts.dug_in == 0) {
-    std::printf(" %32s", "-");
+  if (counts.trapped == 0) {
+    std::printf(" %46s", "-");
   } else {
-    std::printf(" %4d of %4d %5.1f %% (%3.0f to %3.0f)", counts.detected, counts.dug_in,
-                100.0 * detected_share(counts), 100.0 * detected.low, 100.0 * detected.high);
+    std::printf(" %4d of %4d %5.1f %% (%3.0f to %3.0f) %4d of %4d", counts.detected, counts.dug_in,
+                100.0 * detected_share(counts), 100.0 * detected.low, 100.0 * detected.high,
+                counts.early_alarms, counts.trapped);
   }
-  std::printf(" %4d in %6.2f h %6.2f (%.2f to %.2f) an hour\n", counts.false_alarms, hours(counts),
-              an_hour(counts.false_alarms, counts), an_hour(alarms.low, counts),
-              an_hour(alarms.high, counts));
+  if (counts.driven_s > 0.0) {
+    std::printf(" %4d in %5.2f h, %5.2f (%.2f to %.2f) an hour", counts.false_alarms, hours(counts),
+                an_hour(counts.false_alarms, counts), an_hour(alarms.low, counts),
+                an_hour(alarms.high, counts));
+  }
+  std::printf("\n");
 }
 
 void print_share(const std::string& name, const ShareError& error) {
@@ -55,7 +59,7 @@ void print_share(const std::string& name, const ShareError& error) {
 }
 
 void print(const SlipFigures& figures) {
-  std::printf("%-12s %32s %s\n", "", "detected within 1 s", "  false alarms");
+  std::printf("%-12s %33s %12s %13s\n", "", "detected within 1 s", "early", "false alarms");
   print_row("all", figures.all);
   for (const auto& [trap, counts] : figures.by_trap) print_row(trap, counts);
   for (const auto& [ground, counts] : figures.by_ground) print_row(ground, counts);
@@ -79,14 +83,11 @@ void print(const SlipFigures& figures) {
 nlohmann::ordered_json json_of(const StuckCounts& counts) {
   const Interval detected = nn::wilson(counts.detected, counts.dug_in);
   const Interval alarms = nn::poisson(counts.false_alarms);
-  return {{"dug_in", counts.dug_in},
-          {"detected", counts.detected},
-          {"detected_low", detected.low},
-          {"detected_high", detected.high},
-          {"driven_h", hours(counts)},
-          {"false_alarms", counts.false_alarms},
-          {"false_alarms_low", alarms.low},
-          {"false_alarms_high", alarms.high}};
+  return {{"trapped", counts.trapped},      {"dug_in", counts.dug_in},
+          {"detected", counts.detected},    {"detected_low", detected.low},
+          {"detected_high", detected.high}, {"early_alarms", counts.early_alarms},
+          {"driven_h", hours(counts)},      {"false_alarms", counts.false_alarms},
+          {"false_alarms_low", alarms.low}, {"false_alarms_high", alarms.high}};
 }
 
 nlohmann::ordered_json json_of(const ShareError& error) {
