@@ -56,6 +56,7 @@ struct SupervisorInput {
   bool stuck = false;               ///< the tracks turn and the robot does not move (slip_watch.h)
   int16_t relative_speed_left = 0;  ///< observed in the last tick, 2500 = the board's full speed
   int16_t relative_speed_right = 0;
+  bool gave_up = false;         ///< stuck, and the escape did not help
   bool attitude_known = false;  ///< cos_tilt_q14 may be relied on
 };
 

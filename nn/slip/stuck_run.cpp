@@ -45,7 +45,9 @@ class SharedProgress {
   double done_s_ = 0.0;
 };
 
-SlipTick tick_of(const World& world, const Robot& robot) {
+}  // namespace
+
+SlipTick slip_tick_of(const World& world, const Robot& robot) {
   const VehicleState& vehicle = world.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Vector3d velocity = chassis.pose.linear().transpose() * chassis.velocity;
@@ -69,8 +71,6 @@ SlipTick tick_of(const World& world, const Robot& robot) {
   return tick;
 }
 
-}  // namespace
-
 SlipRun drive(const StuckScenario& scenario, const TaskProgress& progress) {
   SlipRun run{scenario, {}, {}};
   const Experiment& e = scenario.experiment;
@@ -85,7 +85,7 @@ SlipRun drive(const StuckScenario& scenario, const TaskProgress& progress) {
       if (i % kReportTicks == 0) report_progress(progress, kTask, i, ticks);
       world->advance();
       robot.tick(world->sample(), output);
-      run.ticks.push_back(tick_of(*world, robot));
+      run.ticks.push_back(slip_tick_of(*world, robot));
       world->apply(output);
       if (robot.supervisor().faults() != 0) break;
     }

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "firmware/estimation/slip_watch.h"
+#include "firmware/robot/robot.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/run/world/world.h"
 #include "nn/slip/stuck_scenario.h"
 
 namespace screed::nn {
@@ -26,6 +28,9 @@ struct SlipTick {
   bool stuck;          ///< likewise
   bool stalled;        ///< the supervisor's stall faults: the tracks do not turn either
 };
+
+/// What the tick that the robot has just had was.
+SlipTick slip_tick_of(const World& world, const Robot& robot);
 
 /// Drives until its end, a fault, or the physics' failure (described in `failure`). `progress` gets
 /// the share of the duration, and may stop it.
