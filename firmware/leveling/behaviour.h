@@ -75,7 +75,7 @@ class Behaviour {
   MotionCommand walk();
   /// Straight on, as Algorithm 6. With the parameter climb_turn, on an incline: towards the
   /// steepest ascent that pitch and roll show.
-  MotionCommand climb(const LevelingInput& input);
+  SCREED_OUT_OF_LINE MotionCommand climb(const LevelingInput& input);
   /// Towards the point that lies so far east and north of the robot; turns on the spot while it
   /// lies behind.
   MotionCommand steer(int32_t east_mm, int32_t north_mm, Angle heading) const {

@@ -17,7 +17,7 @@ class Coverage : public AlgorithmDefaults {
   explicit Coverage(const Parameters& parameters)
       : half_side_mm_(parameters.coverage_half_side), step_mm_(parameters.coverage_spacing) {}
 
-  MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
+  SCREED_OUT_OF_LINE MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
 
  private:
   void next_line();

@@ -25,20 +25,21 @@ class Escape {
   void start();
 
   /// One tick of a robot that runs. Returns true while the manoeuvre drives, with motion().
-  bool tick(bool stuck);
-  MotionCommand motion() const;
+  SCREED_OUT_OF_LINE bool tick(bool stuck);
+  const MotionCommand& motion() const { return motion_; }
   /// Stuck, and no attempt is left: in this tick.
   bool gave_up() const { return gave_up_; }
 
  private:
   void begin(uint8_t way);
-  uint8_t value(uint8_t index) const;
+  void begin_step();
 
-  uint8_t attempts_;        ///< 0: no escape
-  uint16_t ticks_ = 0;      ///< in the step, or since the last attempt
-  uint8_t attempt_ = 0;     ///< how many were begun since the robot was free for long
-  uint8_t way_ = 0;         ///< to come loose
-  uint8_t steps_left_ = 0;  ///< of that way; 0: does not drive
+  MotionCommand motion_ = {0, 0};
+  uint16_t ticks_left_ = 0;  ///< of the step; of the time in which the attempts count
+  uint8_t attempts_;         ///< 0: no escape
+  uint8_t attempt_ = 0;      ///< how many were begun since the robot was free for long
+  uint8_t way_ = 0;          ///< to come loose
+  uint8_t steps_left_ = 0;   ///< of that way; 0: does not drive
   bool gave_up_ = false;
 };
 

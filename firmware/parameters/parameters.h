@@ -76,26 +76,20 @@
 
 namespace screed {
 
-/// Whether `word` is one of the words of `list`.
-constexpr bool lists(const char* list, const char* word) {
-  while (*list != 0) {
-    const char* letter = word;
-    while (*letter != 0 && *list == *letter) {
-      ++list;
-      ++letter;
-    }
-    if (*letter == 0 && (*list == 0 || *list == ' ')) return true;
-    while (*list != 0 && *list != ' ') ++list;
-    while (*list == ' ') ++list;
-  }
-  return false;
+/// Whether `list` begins with this word.
+constexpr bool begins_with(const char* list, const char* word) {
+  return *word == 0 ? *list == 0 || *list == ' '
+                    : *list == *word && begins_with(list + 1, word + 1);
 }
-constexpr uint8_t words_of(const char* list) {
-  uint8_t words = 0;
-  for (char before = ' '; *list != 0; before = *list++) {
-    if (before == ' ' && *list != ' ') ++words;
-  }
-  return words;
+/// Whether `word` is one of the words of `list`, which begins between two words or in one.
+constexpr bool lists(const char* list, const char* word, bool between = true) {
+  return *list != 0 &&
+         ((between && begins_with(list, word)) || lists(list + 1, word, *list == ' '));
+}
+constexpr uint8_t words_of(const char* list, bool between = true) {
+  return *list == 0 ? static_cast<uint8_t>(0)
+                    : static_cast<uint8_t>((between && *list != ' ' ? 1 : 0) +
+                                           words_of(list + 1, *list == ' '));
 }
 
 /// The leveling algorithms of this build, a bit each.

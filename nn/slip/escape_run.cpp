@@ -198,12 +198,12 @@ EscapeResult escape_trials(std::uint64_t seed, const EscapeOptions& options,
   result.held = (escape.faults & Fault::kStuck) != 0;
   const auto other = static_cast<std::uint16_t>(escape.faults & ~Fault::kStuck);
   if (other != 0) result.fault = fault_names(other);
-  result.out_oracle = result.out_alone;
+  result.recoverable = result.out_alone || result.out_escape;
   if (!options.oracle) return result;
   for (const Manoeuvre& manoeuvre : oracle_manoeuvres()) {
-    if (result.out_oracle && !options.all_manoeuvres) break;
+    if (result.recoverable && !options.all_manoeuvres) break;
     result.out_by.push_back(trial_of(result.scenario, plain, &manoeuvre, progress).out);
-    result.out_oracle = result.out_oracle || result.out_by.back();
+    result.recoverable = result.recoverable || result.out_by.back();
   }
   return result;
 }

@@ -44,17 +44,20 @@ struct EscapeResult {
   StuckScenario scenario;
   bool stuck = false;  ///< the alarm came and was none of a robot that moves (kFreeShare)
   double alarm_s = 0.0;
-  bool out_alone = false;    ///< the algorithm goes on as if nothing was
-  bool out_oracle = false;   ///< a manoeuvre of the list gets it out, or it gets out alone
-  std::vector<bool> out_by;  ///< each manoeuvre; up to the first one unless all are asked for
-  bool out_escape = false;   ///< the firmware's escape does
-  double escape_s = 0.0;     ///< from the alarm until it was out
-  bool held = false;         ///< it gave up: fault stuck
-  std::string fault;  ///< another fault that ended the escape, or the drive before it was stuck
+  bool out_alone = false;  ///< the algorithm goes on as if nothing was
+  /// It gets out alone, by the escape, or by a manoeuvre of the oracle.
+  bool recoverable = false;
+  /// By each manoeuvre, up to the first that gets it out; none when it gets out without one, unless
+  /// all are asked for.
+  std::vector<bool> out_by;
+  bool out_escape = false;  ///< the firmware's escape gets it out
+  double escape_s = 0.0;    ///< from the alarm until it was out
+  bool held = false;        ///< it gave up: fault stuck
+  std::string fault;        ///< another fault that ended the escape, or the drive before the alarm
 };
 
 struct EscapeOptions {
-  bool all_manoeuvres = false;  ///< the oracle does not end with the first that gets out
+  bool all_manoeuvres = false;  ///< of every stuck robot
   bool oracle = true;
 };
 

@@ -35,7 +35,6 @@ struct Counts {
   int alone = 0;
   int escaped = 0;
   int recoverable = 0;
-  int escaped_recoverable = 0;
   int held = 0;
   int other_faults = 0;
 };
@@ -44,10 +43,7 @@ void count(Counts& counts, const nn::EscapeResult& result) {
   ++counts.stuck;
   counts.alone += result.out_alone ? 1 : 0;
   counts.escaped += result.out_escape ? 1 : 0;
-  // What the escape gets out of can be got out of.
-  const bool recoverable = result.out_oracle || result.out_escape;
-  counts.recoverable += recoverable ? 1 : 0;
-  counts.escaped_recoverable += result.out_escape ? 1 : 0;
+  counts.recoverable += result.recoverable ? 1 : 0;
   counts.held += result.held ? 1 : 0;
   counts.other_faults += result.fault.empty() ? 0 : 1;
 }
@@ -77,7 +73,7 @@ Figures figures_of(const std::vector<nn::EscapeResult>& results) {
     count(figures.by_ground[result.scenario.ground], result);
     if (result.out_escape) {
       figures.times_s.push_back(result.escape_s);
-    } else if (result.out_oracle) {
+    } else if (result.recoverable) {
       const std::string why = result.held ? "held" : result.fault.empty() ? "time" : result.fault;
       figures.failed.push_back(std::to_string(result.scenario.experiment.experiment.seed) + " (" +
                                trap_of(result) + ", " + result.scenario.ground + ": " + why + ")");
@@ -97,7 +93,7 @@ std::string share_text(int part, int whole) {
 void print_row(const std::string& name, const Counts& c) {
   std::printf("%-12s %5d   %s   %s   %s   %4d  %4d\n", name.c_str(), c.stuck,
               share_text(c.alone, c.stuck).c_str(), share_text(c.recoverable, c.stuck).c_str(),
-              share_text(c.escaped_recoverable, c.recoverable).c_str(), c.held, c.other_faults);
+              share_text(c.escaped, c.recoverable).c_str(), c.held, c.other_faults);
 }
 
 void print(const EscapeArguments& arguments, const Figures& figures) {
@@ -133,12 +129,11 @@ void print_manoeuvres(const std::vector<nn::EscapeResult>& results) {
 }
 
 nlohmann::ordered_json json_of(const Counts& c) {
-  const nn::ShareInterval interval = nn::wilson_interval(c.escaped_recoverable, c.recoverable);
+  const nn::ShareInterval interval = nn::wilson_interval(c.escaped, c.recoverable);
   return {{"stuck", c.stuck},
           {"out_without_escape", c.alone},
-          {"out", c.escaped},
           {"recoverable", c.recoverable},
-          {"out_of_recoverable", c.escaped_recoverable},
+          {"out", c.escaped},
           {"out_of_recoverable_low", interval.low},
           {"out_of_recoverable_high", interval.high},
           {"held", c.held},

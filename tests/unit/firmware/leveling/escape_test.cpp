@@ -58,7 +58,7 @@ TEST(Escape, EveryAttemptIsBoundedInTimeSpeedAndDistance) {
       ASSERT_LT(++ticks, 11 * kTickRate_hz) << i;
     }
     EXPECT_GT(ticks, kTickRate_hz) << i;
-    EXPECT_LE(std::abs(travel_mm), 600.0) << i;
+    EXPECT_LE(std::abs(travel_mm), 700.0) << i;
   }
 }
 
@@ -100,15 +100,12 @@ TEST(Escape, ARobotThatIsFreeForLongHasAllAttemptsAgain) {
   EXPECT_TRUE(escape.gave_up());
 }
 
-TEST(Escape, AStepThatGetsStuckEndsEarly) {
+TEST(Escape, WhatTheWatchSaysMeanwhileChangesNothing) {
   Escape free(escape_parameters(6));
   Escape held(escape_parameters(6));
-  // The report before the escape is not one of the escape.
-  int ticks = 1;
-  ASSERT_TRUE(held.tick(true));
-  while (held.tick(true)) ++ticks;
-  EXPECT_LT(ticks, attempt(free));
-  EXPECT_GE(ticks, kTickRate_hz);
+  int ticks = 0;
+  while (held.tick(true) && ticks < 10000) ++ticks;
+  EXPECT_EQ(ticks, attempt(free));
 }
 
 TEST(Escape, ARunBeginsWithAllAttempts) {
