@@ -97,10 +97,15 @@ constexpr uint8_t words_of(const char* list, bool between = true) {
   | (lists(SCREED_LEAVE_OUT, #name) ? 0U : 1U << (number))
 constexpr uint16_t kAlgorithmsInBuild = 0U SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_BIT);
 #undef SCREED_ALGORITHM_BIT
-#define SCREED_LEFT_OUT(number, name, Name) +(lists(SCREED_LEAVE_OUT, #name) ? 1 : 0)
-static_assert(words_of(SCREED_LEAVE_OUT) == 0 SCREED_LEVELING_ALGORITHM(SCREED_LEFT_OUT),
+#define SCREED_ANY_BIT(number, name, Name) | 1U << (number)
+constexpr uint16_t kAllAlgorithms = 0U SCREED_LEVELING_ALGORITHM(SCREED_ANY_BIT);
+#undef SCREED_ANY_BIT
+constexpr uint8_t bits_of(uint16_t bits) {
+  return bits == 0 ? static_cast<uint8_t>(0)
+                   : static_cast<uint8_t>((bits & 1U) + bits_of(static_cast<uint16_t>(bits >> 1)));
+}
+static_assert(words_of(SCREED_LEAVE_OUT) == bits_of(kAllAlgorithms) - bits_of(kAlgorithmsInBuild),
               "LEAVE_OUT names algorithms");
-#undef SCREED_LEFT_OUT
 static_assert(message::kLevelingAlgorithmMax < 16, "kAlgorithmsInBuild has 16 bits");
 
 constexpr bool algorithm_in_build(int16_t number) {
