@@ -41,7 +41,6 @@ TEST(Leveling, HillSensingChargesTheHill) {
 TEST(Leveling, SpinOnPeakSpinsNearTheTop) {
   Parameters parameters = leveling_parameters(LevelingAlgorithm::kSpinOnPeak);
   parameters.walk_yaw_rate_max = 5;  // nearly straight at the hill
-  parameters.escape_attempts = 0;    // the slip watch takes this climb for being stuck
   TestDrive drive(hill(), facing_the_hill(), parameters);
   ASSERT_TRUE(drive.run_until(
       120.0, [&] { return drive.robot.leveling().state() == LevelingState::kSpin; }));

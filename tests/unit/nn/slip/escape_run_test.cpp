@@ -15,7 +15,7 @@ namespace {
 TEST(EscapeScenario, IsTheTrappedDriveByAnAlgorithmThatEscapes) {
   std::set<std::string> algorithms;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const StuckScenario drive = stuck_scenario(seed, true, 14.0);
+    const StuckScenario drive = stuck_scenario(seed, ScenarioKind::kTrapped, 14.0);
     const StuckScenario escape = escape_scenario(seed);
     EXPECT_EQ(escape.ground, drive.ground);
     EXPECT_EQ(escape.experiment.trap.kind, drive.experiment.trap.kind);
