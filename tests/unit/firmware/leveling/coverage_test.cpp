@@ -59,7 +59,8 @@ TEST(Coverage, LeavesNoStripOfItsSquareOut) {
       for (int column = 0; column < kCells; ++column) {
         const double dx = (column + 0.5) * kCell_mm - kHalf_mm - point.x;
         const double dy = (row + 0.5) * kCell_mm - kHalf_mm - point.y;
-        if (std::hypot(dx, dy) < 110.0) covered[static_cast<size_t>(row * kCells + column)] = 1;
+        if (std::hypot(dx, dy) < 110.0)
+          covered.at(static_cast<size_t>(row) * kCells + static_cast<size_t>(column)) = 1;
       }
     }
   }

@@ -85,7 +85,8 @@ TEST_F(LinkTest, LinesThatNobodyReadsInTimeAreLostWhole) {
     if (count > 0) got.append(some.data(), static_cast<size_t>(count));
   }
   std::array<char, 8192> rest{};
-  for (ssize_t count; (count = read(reader.get(), rest.data(), rest.size())) > 0;)
+  ssize_t count = 0;
+  while ((count = read(reader.get(), rest.data(), rest.size())) > 0)
     got.append(rest.data(), static_cast<size_t>(count));
   std::istringstream lines(got);
   int whole = 0;
