@@ -291,9 +291,15 @@ void Robot::select_motion() {
     drive_command_ = {0, 0};
     return;
   }
-  const LevelingInput input = {status_.angles.pitch, status_.angles.heading, status_.x_mm,
-                               status_.y_mm,         drive_command_,         status_.angles.roll,
-                               slip_watch_.stuck()};
+  // Member by member: the Arduino IDE's C++11 knows no list for a struct with defaults.
+  LevelingInput input;
+  input.pitch = status_.angles.pitch;
+  input.heading = status_.angles.heading;
+  input.x_mm = status_.x_mm;
+  input.y_mm = status_.y_mm;
+  input.drive = drive_command_;
+  input.roll = status_.angles.roll;
+  input.stuck = slip_watch_.stuck();
   status_.motion = leveling_.tick(input);
 }
 
