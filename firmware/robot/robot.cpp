@@ -13,7 +13,9 @@ namespace screed {
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.
-constexpr uint8_t kStoreTicks = 150;
+constexpr uint8_t kSigmaTicks = 32;  // its square root takes long
+constexpr uint8_t kMostRefusedFixes = 4;
+constexpr uint8_t kStoreTicks = 170;
 static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
 
 static_assert(
@@ -59,7 +61,8 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
     : RobotMemory(),
       board_(board),
       parameters_(parameters),
-      odometry_(board.count_um_q4),
+      position_(board.count_um_q4, parameters.position_drift),
+      walls_(board, parameters),
       supervisor_(parameters, parameters_intact),
       leveling_(parameters),
       drive_(board, parameters),
@@ -104,9 +107,14 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
                               deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
   status_.angles = attitude_.angles();
-  odometry_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch);
-  status_.x_mm = odometry_.x_mm();
-  status_.y_mm = odometry_.y_mm();
+  position_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch);
+  status_.x_mm = position_.x_mm();
+  status_.y_mm = position_.y_mm();
+  if (until_sigma_ == 0) {
+    until_sigma_ = kSigmaTicks;
+    status_.sigma_mm = position_.sigma_mm();
+  }
+  --until_sigma_;
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -213,12 +221,29 @@ RequestResult Robot::execute(const uint8_t* data) {
       drive_command_ = {drive.speed_mm_per_s, limit_i16(rate, INT16_MAX)};
       return RequestResult::kDone;
     }
+    case CommandOp::kPositionFix:
+      fix_position(get_drive_argument(argument));
+      return RequestResult::kDone;
     case CommandOp::kParameterRead:
       return send_parameter(get_u16(argument));
     case CommandOp::kParameterCommit:
       return commit_parameter(argument[0], get_u16(argument + 1));
   }
   return RequestResult::kBadArgument;
+}
+
+// One that is further off than can be is left out. Several in a row are right, and the robot was
+// not where it thought.
+void Robot::fix_position(const DriveArgument& place) {
+  const int16_t sigma = parameters_.fix_sigma;
+  if (fixes_refused_ == kMostRefusedFixes) position_.forget();
+  const bool x_fits = position_.measure(PositionEstimate::kX,
+                                        static_cast<int16_t>(place.speed_mm_per_s * 10), sigma);
+  const bool y_fits = position_.measure(PositionEstimate::kY,
+                                        static_cast<int16_t>(place.turn_ddeg_per_s * 10), sigma);
+  fixes_refused_ =
+      x_fits && y_fits ? static_cast<uint8_t>(0) : static_cast<uint8_t>(fixes_refused_ + 1);
+  located_ = true;
 }
 
 int16_t& Robot::parameter(uint8_t index) {
@@ -252,6 +277,7 @@ RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
   }
   supervisor_.configure(parameters_);
   new (&leveling_) Leveling(parameters_);
+  walls_ = SiteWalls(board_, parameters_);
   new (&drive_) DriveControl(board_, parameters_);
   store_parameter_ = static_cast<uint8_t>(index + 1U);
   store_value_ = value_16;
@@ -287,8 +313,8 @@ void Robot::select_motion() {
     leveling_.start();
     // The site lies round the place where the run began. One that goes on after a stop is the same
     // run: otherwise the site would wander with every stop.
-    if (status_.state != RobotState::kStopped) {
-      odometry_.reset();
+    if (status_.state != RobotState::kStopped && !located_) {
+      position_.reset();
       status_.x_mm = 0;
       status_.y_mm = 0;
     }
@@ -306,6 +332,24 @@ void Robot::select_motion() {
 void Robot::watch_slip(const SensorSample& sample) {
   slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel,
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
+}
+
+// Stuck after a blow it stands at a wall, and has not moved since.
+void Robot::feel_walls(const SensorSample& sample) {
+  const int16_t left = drive_.speed_left_dmm_per_s();
+  const int16_t right = drive_.speed_right_dmm_per_s();
+  if (collision_.tick(left, right, sample.accel[0], status_.angles.sin_pitch_q14)) position_.mark();
+  const bool stuck = slip_watch_.stuck();
+  if (stuck && !was_stuck_ && collision_.recent()) {
+    position_.return_to_mark();
+    const bool backwards = left + right < 0;
+    const Angle travel = wrap_angle(status_.angles.heading + (backwards ? 32768 : 0));
+    if (walls_.touch(travel, position_)) {
+      status_.sigma_mm = position_.sigma_mm();
+      event(message::EventCode::kWall, status_.angles.heading);
+    }
+  }
+  was_stuck_ = stuck;
 }
 
 void Robot::announce_state() {
@@ -378,6 +422,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
     status_.duty = {0, 0};
   }
   watch_slip(sample);
+  feel_walls(sample);
   announce_state();
   report(sample, output);
   write_actuators(output);

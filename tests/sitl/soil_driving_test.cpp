@@ -119,8 +119,8 @@ TEST(SoilDriving, ComesToRest) {
   }
 }
 
-// Ten minutes of spinning on peaks with all that moves material: not a unit is lost, what is in hand
-// was taken before, and no robot that digs itself in is thrown out of its pit.
+// Ten minutes of spinning on peaks with all that moves material: not a unit is lost, what is in
+// hand was taken before, and no robot that digs itself in is thrown out of its pit.
 TEST(SoilDriving, TenMinutesOfDigging) {
   for (const char* name : {"gravel", "viper"}) {
     WorldOptions options = drive_options(0.0, 0.0);

@@ -1,0 +1,68 @@
+// Where the robot is on the plane, and how well it knows: dead reckoning from encoder counts and
+// heading, corrected by position fixes and by walls that it touches.
+//
+// The heading comes from the attitude estimator, not from the difference of the tracks: skid
+// steering makes the latter useless (thesis 4.3.1). Track travel is along the slope; its horizontal
+// part counts, and of that the share that the tracks do not lose by slip.
+//
+// Each axis is a Kalman filter of one state. Slip makes the position drift like a random walk, so
+// the variance grows with what the tracks travel:
+//   variance += drift^2 |travel|                         drift: mm per square root of a metre
+// and a measurement z with the variance r, unless it is off by more than three standard deviations,
+//   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/math/trig.h"
+
+namespace screed {
+
+/// Zero after a reset.
+struct PositionState {
+  int32_t place_[2];      ///< 2^-10 mm
+  int32_t marked_[2];     ///< likewise
+  uint16_t variance_[2];  ///< 16 mm^2: up to 1 m of standard deviation
+  uint32_t travel_;       ///< not booked as variance yet, 2^-10 mm
+};
+
+class PositionEstimate : private PositionState {
+ public:
+  /// count_um_q4: track travel per encoder count, 1/16 um. drift: standard deviation of the
+  /// position after 1 m of travel, mm, 0..400.
+  PositionEstimate(uint16_t count_um_q4, int16_t drift_mm);
+
+  /// At the origin for sure.
+  void reset();
+
+  /// One tick: counts of both tracks since the last tick (limited to kMaxTrackCounts), heading and
+  /// pitch now; share: of the tracks' travel that moves the robot, 255: all of it.
+  void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch,
+              uint8_t share = 255);
+
+  enum Axis : uint8_t { kX, kY };
+
+  /// Measured along an axis: z_mm +-sigma_mm (4..1000). False, and nothing changed, where that is
+  /// further off than can be.
+  SCREED_OUT_OF_LINE bool measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm);
+  /// It may be anywhere: the next measurement decides.
+  void forget() { variance_[kX] = variance_[kY] = UINT16_MAX; }
+
+  /// Remembers this place; return_to_mark() goes back to it, since the robot has not moved since.
+  void mark();
+  void return_to_mark();
+
+  /// Position relative to the place of the last reset, or in the frame of the fixes, mm; x is east,
+  /// y north. Stops at +-2097 m.
+  int32_t x_mm() const { return mm(kX); }
+  int32_t y_mm() const { return mm(kY); }
+  SCREED_OUT_OF_LINE int32_t mm(uint8_t axis) const;
+  /// Standard deviation of the less certain axis, mm; 1020: that, or more.
+  uint16_t sigma_mm() const;
+
+ private:
+  uint16_t count_q4_;  ///< travel of a count, 2^-14 mm
+  uint16_t noise_;     ///< variance for each kBooked of travel, 16 mm^2
+};
+
+}  // namespace screed
