@@ -129,27 +129,27 @@ void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
 /// Sets the shortest rotation that turns the measured acceleration upright. False: no acceleration
 /// to speak of.
 bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
-  const uint32_t squared = static_cast<uint32_t>(mul_i16(accel[0], accel[0])) +
-                           static_cast<uint32_t>(mul_i16(accel[1], accel[1])) +
-                           static_cast<uint32_t>(mul_i16(accel[2], accel[2]));
+  uint32_t squared = 0;
+  for (const int16_t count : accel) squared += static_cast<uint32_t>(mul_i16(count, count));
   if (squared < kMinAccelSquared) return false;
   // For a = (ax, ay, az) of length n: q is along (n + az, ay, -ax, 0). Upside down that vanishes,
   // so then the pose is first rolled by half a turn, which changes the signs of ay and az and moves
   // the components.
   const bool upside_down = accel[2] < 0;
-  const int32_t n = static_cast<int32_t>(isqrt32(squared));
-  const int32_t ax = static_cast<int32_t>(accel[0]);
   const int32_t ay = upside_down ? -static_cast<int32_t>(accel[1]) : static_cast<int32_t>(accel[1]);
-  const int32_t az = static_cast<int32_t>(abs_u16(accel[2]));
-  const int32_t w = asr(n + az, 2);  // quartered: the squares of clipped values stay within 32 bits
-  const int32_t x = asr(ay, 2);
-  const int32_t y = asr(-ax, 2);
-  const int32_t length =
-      static_cast<int32_t>(isqrt32(static_cast<uint32_t>(w * w + x * x + y * y)));
+  const auto az = static_cast<int32_t>(abs_i16(accel[2]));
+  // Quartered they fit 16 bits, and the squares of clipped values 32.
+  const auto w = static_cast<int16_t>(asr(isqrt32(squared) + az, 2));
+  const auto x = static_cast<int16_t>(asr(ay, 2));
+  const auto y = static_cast<int16_t>(asr(-static_cast<int32_t>(accel[0]), 2));
+  const uint16_t length =
+      isqrt32(static_cast<uint32_t>(mul_i16(w, w) + mul_i16(x, x) + mul_i16(y, y)));
   const auto scale = static_cast<int32_t>(
-      quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1)));
-  orientation_ = upside_down ? Quaternion{-x, w, 0, -y} : Quaternion{w, x, y, 0};
-  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] *= scale;
+      quotient_u32(static_cast<uint32_t>(kQ30One), static_cast<uint16_t>(length + 1U)));
+  const SmallQuaternion direction =
+      upside_down ? SmallQuaternion{static_cast<int16_t>(-x), w, 0, static_cast<int16_t>(-y)}
+                  : SmallQuaternion{w, x, y, 0};
+  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] = (&direction.w)[i] * scale;
   gravity_[0] = 0;
   gravity_[1] = 0;
   gravity_[2] = kCountsPerG << kGravityBits;
@@ -232,8 +232,7 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] += asr(components(turned)[i], 1);
 }
 
-SCREED_OUT_OF_LINE void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth,
-                                                          const int16_t (&accel)[3]) {
+void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
   const bool starting = ticks_ < kStartTicks;
   if (starting) ++ticks_;
   const int16_t start_gain = starting ? mean_gain_q16(ticks_) : static_cast<int16_t>(0);

@@ -31,7 +31,7 @@ MotionCommand Behaviour::enter_or_stay(LevelingState state, MotionCommand motion
   return motion;
 }
 
-bool Behaviour::uphill(Angle pitch) const {
+SCREED_OUT_OF_LINE bool Behaviour::uphill(Angle pitch) const {
   const Angle limit =
       state_ == LevelingState::kClimb ? static_cast<Angle>(threshold_ - hysteresis_) : threshold_;
   return pitch > limit;

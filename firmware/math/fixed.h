@@ -23,9 +23,11 @@
 #ifdef __AVR__
 #define SCREED_CONSTEXPR_OFF_AVR inline
 #define SCREED_OUT_OF_LINE __attribute__((noinline))
+#define SCREED_IN_LINE __attribute__((always_inline))
 #else
 #define SCREED_CONSTEXPR_OFF_AVR constexpr
 #define SCREED_OUT_OF_LINE
+#define SCREED_IN_LINE
 #endif
 
 /// A function of several statements that constant expressions may call. The Arduino IDE compiles as
@@ -61,9 +63,9 @@ SCREED_OUT_OF_LINE constexpr int32_t shift_by_loop(int32_t value, uint8_t n) {
 }  // namespace detail
 
 /// floor(value / 2^n), n in 0..31.
-constexpr int32_t asr(int32_t value, uint8_t n) {
+SCREED_IN_LINE constexpr int32_t asr(int32_t value, uint8_t n) {
   // Whole bytes are moves.
-  return __builtin_constant_p(n) && n % 8 == 0 ? value >> n : detail::shift_by_loop(value, n);
+  return __builtin_constant_p(n) && n == 16 ? value >> n : detail::shift_by_loop(value, n);
 }
 
 /// floor(value / 2^n) of a short number, n in 0..15.
@@ -78,8 +80,9 @@ SCREED_OUT_OF_LINE constexpr uint16_t abs_i16(int16_t value) {
 }
 
 /// value / 2^n rounded to nearest, halves up. n in 1..31; |value| + 2^(n-1) must fit 32 bits.
-constexpr int32_t asr_round(int32_t value, uint8_t n) {
-  return asr(value + (static_cast<int32_t>(1) << (n - 1)), n);
+SCREED_OUT_OF_LINE constexpr int32_t asr_round(int32_t value, uint8_t n) {
+  // Not value + 2^(n-1): a shift by a variable number of bits is a second loop on the AVR.
+  return asr(asr(value, static_cast<uint8_t>(n - 1)) + 1, 1);
 }
 
 /// value limited to [-limit, limit]; limit >= 0.
@@ -108,11 +111,6 @@ SCREED_OUT_OF_LINE constexpr int16_t saturate_i16(int32_t value) {
 SCREED_OUT_OF_LINE constexpr uint32_t abs_u32(int32_t value) {
   return value < 0 ? static_cast<uint32_t>(0) - static_cast<uint32_t>(value)
                    : static_cast<uint32_t>(value);
-}
-
-/// |value| as unsigned, right for INT16_MIN as well.
-constexpr uint16_t abs_u16(int16_t value) {
-  return static_cast<uint16_t>(abs_u32(static_cast<int32_t>(value)));
 }
 
 /// Sum that stops at the ends of int32_t instead of overflowing.
@@ -187,8 +185,8 @@ SCREED_CONSTEXPR_OFF_AVR int32_t mul_su(int16_t a, uint16_t b) {
 #endif
 
 /// floor(value / 2^16); a plain move on the AVR.
-constexpr int16_t high_half(int32_t value) {
-  return static_cast<int16_t>(asr(value, 16));
+SCREED_IN_LINE constexpr int16_t high_half(int32_t value) {
+  return static_cast<int16_t>(static_cast<uint16_t>(static_cast<uint32_t>(value) >> 16));
 }
 
 /// The lower 16 bits of a 32-bit number.

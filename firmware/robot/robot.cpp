@@ -40,13 +40,6 @@ uint8_t size_of(uint16_t id) {
   return message::GroundHeartbeat::kSize;
 }
 
-/// SupervisorInput::relative_speed_left.
-int16_t relative_speed(int16_t speed_dmm_per_s, uint16_t full_speed_mm_per_s) {
-  const int16_t magnitude = saturate_i16(static_cast<int32_t>(
-      quotient_u32(static_cast<uint32_t>(abs_i16(speed_dmm_per_s)) * 250U, full_speed_mm_per_s)));
-  return speed_dmm_per_s < 0 ? static_cast<int16_t>(-magnitude) : magnitude;
-}
-
 constexpr uint8_t kImuCounts = 9;
 static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * sizeof(int16_t) &&
                   offsetof(ImuSample, mag) == 6 * sizeof(int16_t) &&
@@ -299,10 +292,9 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.counts_left = deltas.left;
   input.counts_right = deltas.right;
   input.stuck = slip_watch_.stuck();
-  input.relative_speed_left =
-      relative_speed(drive_.speed_left_dmm_per_s(), board_.full_speed_mm_per_s);
-  input.relative_speed_right =
-      relative_speed(drive_.speed_right_dmm_per_s(), board_.full_speed_mm_per_s);
+  input.speed_left_dmm_per_s = drive_.speed_left_dmm_per_s();
+  input.speed_right_dmm_per_s = drive_.speed_right_dmm_per_s();
+  input.full_speed_mm_per_s = board_.full_speed_mm_per_s;
   input.attitude_known = attitude_.known();
   supervisor_.tick(input);
 }

@@ -8,10 +8,12 @@ namespace screed {
 namespace {
 
 // Deadlines from cause to reaction, in ticks of 10 ms.
-constexpr uint8_t kTiltTicks = 6;       // 60 ms; the reaction must come within 100 ms
-constexpr uint8_t kSilentTicks = 8;     // 80 ms; the reaction must come within 100 ms
-constexpr uint8_t kFrozenTicks = 18;    // 180 ms; the reaction must come within 200 ms
-constexpr uint8_t kChipTicks = 5;       // after the 40 ms until the barometer is read again
+constexpr uint8_t kTiltTicks = 6;     // 60 ms; the reaction must come within 100 ms
+constexpr uint8_t kSilentTicks = 8;   // 80 ms; the reaction must come within 100 ms
+constexpr uint8_t kFrozenTicks = 18;  // 180 ms; the reaction must come within 200 ms
+constexpr uint8_t kChipTicks = 5;     // a hitch of the bus is no fault
+// Chips that driving relies on; a failing barometer is only reported (HEALTH).
+constexpr uint8_t kVitalChips = ChipBit::kAccelMagChip | ChipBit::kGyroChip;
 constexpr uint8_t kBatteryTicks = 100;  // a start-up dip is not an empty battery
 constexpr uint16_t kLinkStopTicks = 50;
 constexpr uint16_t kLinkDisarmTicks = 150;
@@ -25,12 +27,13 @@ constexpr int32_t kMaxRestAccel = 1229;
 constexpr int16_t kStallDuty = 110;
 // From this duty on a track is meant to move.
 constexpr int16_t kPushDuty = 60;
-// A track that moves faster than two fifths of its full speed without being pushed has another
-// driver. On a slope of 25 degrees gravity alone makes no half of it.
-constexpr uint16_t kDrivenSpeed = 1000;
-// Against this duty no track moves on for long.
+// A track that moves faster than two fifths of its full speed (in mm/s: 4 of it in 0.1 mm/s)
+// without being pushed has another driver. On a slope of 25 degrees gravity alone makes no half of
+// it.
+constexpr uint8_t kDrivenSpeed = 4;
+// Against this duty no track moves on for long, faster than a fifth.
 constexpr int16_t kReverseDuty = 240;
-constexpr uint16_t kReversedSpeed = 500;
+constexpr uint8_t kReversedSpeed = 2;
 constexpr uint8_t kDisobedienceTicks = 24;
 // Alternations without progress that prove a broken wire.
 constexpr uint8_t kReversals = 4;
@@ -67,11 +70,13 @@ void TrackWatch::tick(int16_t duty, int16_t counts) {
   still_ticks_ = push < kStallDuty ? static_cast<uint16_t>(0) : count_up(still_ticks_);
 }
 
-void TrackWatch::compare(int16_t duty, int16_t relative_speed) {
-  const int16_t along = relative_speed < 0 ? static_cast<int16_t>(-duty) : duty;
-  const uint16_t speed = abs_i16(relative_speed);
-  const bool reversed = along <= static_cast<int16_t>(-kReverseDuty) && speed > kReversedSpeed;
-  if (reversed || (along < kPushDuty && speed > kDrivenSpeed)) {
+void TrackWatch::compare(int16_t duty, int16_t speed_dmm_per_s, uint16_t full_speed_mm_per_s) {
+  const int16_t along = speed_dmm_per_s < 0 ? static_cast<int16_t>(-duty) : duty;
+  const uint16_t speed = abs_i16(speed_dmm_per_s);
+  const bool reversed = along <= static_cast<int16_t>(-kReverseDuty) &&
+                        speed > static_cast<uint16_t>(kReversedSpeed * full_speed_mm_per_s);
+  if (reversed ||
+      (along < kPushDuty && speed > static_cast<uint16_t>(kDrivenSpeed * full_speed_mm_per_s))) {
     if (disobedience_ < kDisobedienceTicks) {
       disobedience_ = static_cast<uint8_t>(disobedience_ + (reversed ? 2 : 1));
     }
@@ -89,8 +94,7 @@ bool TrackWatch::alternates() const {
 }
 
 static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
-                  Fault::kGyroChip == ChipBit::kGyroChip << 8 &&
-                  Fault::kBaroChip == ChipBit::kBaroChip << 8,
+                  Fault::kGyroChip == ChipBit::kGyroChip << 8,
               "faults of chips are their bits, shifted");
 
 Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
@@ -122,7 +126,7 @@ bool Supervisor::tilted(const SupervisorInput& input) {
   // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {
-    if (abs_u16(input.gyro[i]) > kMaxRestGyro) return false;
+    if (abs_i16(input.gyro[i]) > kMaxRestGyro) return false;
     const int32_t part = asr(input.accel[i], 2);
     square += static_cast<uint32_t>(part * part);
   }
@@ -151,8 +155,9 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
   if (frozen_gyro_ticks_ >= kFrozenTicks) found |= Fault::kGyroFrozen;
 
-  if (lasts(input.chips_failing != 0, chip_ticks_, kChipTicks)) {
-    found |= static_cast<uint16_t>(static_cast<uint16_t>(input.chips_failing & 0x07U) << 8);
+  const auto failing = static_cast<uint8_t>(input.chips_failing & kVitalChips);
+  if (lasts(failing != 0, chip_ticks_, kChipTicks)) {
+    found |= static_cast<uint16_t>(static_cast<uint16_t>(failing) << 8);
   }
 
   left_.tick(input.duty_left, input.counts_left);
@@ -161,8 +166,8 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (right_.still_ticks() >= stall_ticks_) found |= Fault::kStallRight;
   if (left_.alternates()) found |= Fault::kEncoderLeft;
   if (right_.alternates()) found |= Fault::kEncoderRight;
-  left_.compare(input.duty_left, input.relative_speed_left);
-  right_.compare(input.duty_right, input.relative_speed_right);
+  left_.compare(input.duty_left, input.speed_left_dmm_per_s, input.full_speed_mm_per_s);
+  right_.compare(input.duty_right, input.speed_right_dmm_per_s, input.full_speed_mm_per_s);
   if (left_.disobeys()) found |= Fault::kMotorLeft;
   if (right_.disobeys()) found |= Fault::kMotorRight;
 

@@ -52,11 +52,12 @@ struct SupervisorInput {
   int16_t duty_right;
   int16_t counts_left;  ///< encoder counts since the last tick
   int16_t counts_right;
-  uint8_t chips_failing = 0;        ///< SensorSample::chips_failing
-  bool stuck = false;               ///< the tracks turn and the robot does not move (slip_watch.h)
-  int16_t relative_speed_left = 0;  ///< observed in the last tick, 2500 = the board's full speed
-  int16_t relative_speed_right = 0;
-  bool attitude_known = false;  ///< cos_tilt_q14 may be relied on
+  uint8_t chips_failing = 0;         ///< SensorSample::chips_failing
+  bool stuck = false;                ///< the tracks turn and the robot does not move (slip_watch.h)
+  int16_t speed_left_dmm_per_s = 0;  ///< observed in the last tick, 0.1 mm/s
+  int16_t speed_right_dmm_per_s = 0;
+  uint16_t full_speed_mm_per_s = 0;  ///< of the board, below 8192
+  bool attitude_known = false;       ///< cos_tilt_q14 may be relied on
 };
 
 /// Watches one driven track: whether it makes progress, and whether it does what its motor is told.
@@ -69,8 +70,8 @@ class TrackWatch {
  public:
   void tick(int16_t duty, int16_t counts);
   /// One tick: a track that moves fast without duty in its direction is driven by something else,
-  /// or its encoder counts the wrong way.
-  void compare(int16_t duty, int16_t relative_speed);
+  /// or its encoder counts the wrong way. full_speed_mm_per_s: of the board, below 8192.
+  void compare(int16_t duty, int16_t speed_dmm_per_s, uint16_t full_speed_mm_per_s);
   bool disobeys() const;
   /// Ticks at high duty without progress.
   uint16_t still_ticks() const { return still_ticks_; }

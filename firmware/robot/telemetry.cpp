@@ -67,12 +67,12 @@ void set_vector(CanFrame& frame, const int16_t (&vector)[3]) {
 
 }  // namespace
 
-SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
+void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
   const SensorSample& sample = *view.sample;
   const RobotStatus& robot = *view.robot;
   const UplinkCounts& uplink = *view.uplink;
-  switch (frame.id) {
-    case kIdHeartbeat: {
+  switch (e2e_data_id(frame.id)) {
+    case e2e_data_id(kIdHeartbeat): {
       message::Heartbeat it{};
       it.state = static_cast<uint8_t>(robot.state);
       it.faults = view.faults;
@@ -82,11 +82,11 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       set(frame, it);
       break;
     }
-    case kIdAttitude:
+    case e2e_data_id(kIdAttitude):
       set_words(frame, centidegrees_from_angle(robot.angles.roll),
                 centidegrees_from_angle(robot.angles.pitch), heading_cdeg(robot.angles.heading));
       break;
-    case kIdLeveling: {
+    case e2e_data_id(kIdLeveling): {
       message::Leveling it{};
       it.state = static_cast<uint8_t>(view.leveling_state);
       it.algorithm = static_cast<uint8_t>(view.algorithm);
@@ -96,37 +96,37 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       set(frame, it);
       break;
     }
-    case kIdEncoders:
+    case e2e_data_id(kIdEncoders):
       set_words(frame, static_cast<int16_t>(sample.encoder_left),
                 static_cast<int16_t>(sample.encoder_right),
                 static_cast<int16_t>(kTickPeriod_us / 4));  // ENCODERS.interval, 4 us a unit
       break;
-    case kIdMotors:
+    case e2e_data_id(kIdMotors):
       set(frame, message::Motors{view.slip, view.stuck, robot.duty.duty_left, robot.duty.duty_right,
                                  sample.encoder_errors});
       break;
-    case kIdOdometry:
+    case e2e_data_id(kIdOdometry):
       set_words(frame, saturate_i16(robot.x_mm), saturate_i16(robot.y_mm),
                 heading_cdeg(robot.angles.heading));
       break;
-    case kIdPosition:
+    case e2e_data_id(kIdPosition):
       set(frame, message::Position{robot.sigma_mm});
       break;
-    case kIdAccelRaw:
+    case e2e_data_id(kIdAccelRaw):
       set_vector(frame, sample.accel);
       break;
-    case kIdGyroRaw:
+    case e2e_data_id(kIdGyroRaw):
       set_vector(frame, sample.gyro);
       break;
-    case kIdMagRaw:
+    case e2e_data_id(kIdMagRaw):
       set_vector(frame, sample.mag);
       break;
-    case kIdPower: {
+    case e2e_data_id(kIdPower): {
       const uint16_t load = static_cast<uint16_t>(sample.last_tick_us / (kTickPeriod_us / 100U));
       set(frame, message::Power{robot.battery_mv, static_cast<uint8_t>(load > 255 ? 255 : load)});
       break;
     }
-    case kIdHealth: {
+    case e2e_data_id(kIdHealth): {
       message::Health it{};
       it.reset_cause = sample.reset_cause;
       it.conditions = static_cast<uint8_t>(
@@ -138,7 +138,7 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       set(frame, it);
       break;
     }
-    case kIdLink: {
+    case e2e_data_id(kIdLink): {
       message::Link it{};
       it.frames_received = uplink.frames_received;
       it.lines_rejected = view.rejected_lines;
@@ -151,16 +151,16 @@ SCREED_OUT_OF_LINE void Telemetry::fill(CanFrame& frame, const TelemetryView& vi
       set(frame, it);
       break;
     }
-    case kIdTime:
+    case e2e_data_id(kIdTime):
       // Ticks are whole milliseconds.
       time_ms_ += quotient_u32(sample.time_us - time_us_, 1000);
       time_us_ = sample.time_us;
       set(frame, message::Time{time_ms_, uplink.ground_time_ms});
       break;
-    case kIdBaro:
+    case e2e_data_id(kIdBaro):
     default: {
       const uint16_t from_zero =
-          quotient_u16(static_cast<uint32_t>(abs_u16(sample.temperature)) * 5U, 24);
+          quotient_u16(static_cast<uint32_t>(abs_i16(sample.temperature)) * 5U, 24);
       message::Baro it{};
       // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
       it.pressure = (static_cast<uint32_t>(sample.pressure) * 25U) >> 6;
@@ -226,7 +226,7 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
     }
     --countdown_[i];
     if (!packet || (due_ & bit) == 0 || !room(output)) continue;
-    CanFrame frame{};
+    CanFrame frame;  // fill() and emit() write what is sent of it
     frame.id = read_program_u16(&kSchedule[i].id);
     fill(frame, view);
     emit(frame, i, output);

@@ -3,7 +3,6 @@
 #include "firmware/security/siphash.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #include "firmware/math/fixed.h"
 #include "hal/program_memory.h"
@@ -29,7 +28,10 @@ SCREED_OUT_OF_LINE void exclusive_or(uint8_t* word, const uint8_t* other) {
 SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits) {
   uint32_t low;
   uint32_t high;
+  uint8_t i;
+  uint8_t byte;
   uint8_t* at = a;
+  uint8_t* word = b;
   asm volatile(
       // low, high = b
       "ld %A[low], %a[b]\n\t"
@@ -40,32 +42,18 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
       "ldd %B[high], %a[b]+5\n\t"
       "ldd %C[high], %a[b]+6\n\t"
       "ldd %D[high], %a[b]+7\n\t"
-      // a += b
+      // a += b, byte by byte: dec leaves the carry alone
+      "ldi %[i], 8\n\t"
+      "clc\n"
+      "5:\n\t"
       "ld __tmp_reg__, X\n\t"
-      "add __tmp_reg__, %A[low]\n\t"
+      "ld %[byte], %a[b]+\n\t"
+      "adc __tmp_reg__, %[byte]\n\t"
       "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %B[low]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %C[low]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %D[low]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %A[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %B[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %C[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "ld __tmp_reg__, X\n\t"
-      "adc __tmp_reg__, %D[high]\n\t"
-      "st X+, __tmp_reg__\n\t"
-      "sbiw r26, 8\n"
+      "dec %[i]\n\t"
+      "brne 5b\n\t"
+      "sbiw r26, 8\n\t"
+      "sbiw %[b], 8\n"
       // left by bytes, at least one
       "1:\n\t"
       "mov __tmp_reg__, %D[high]\n\t"
@@ -120,8 +108,9 @@ SCREED_OUT_OF_LINE void mix(uint8_t* a, uint8_t* b, uint8_t bytes, uint8_t bits)
       "ld __tmp_reg__, X+\n\t"
       "eor %D[high], __tmp_reg__\n\t"
       "std %a[b]+7, %D[high]\n\t"
-      : [low] "=&r"(low), [high] "=&r"(high), [a] "+x"(at), [bytes] "+d"(bytes), [bits] "+d"(bits)
-      : [b] "b"(b)
+      : [low] "=&r"(low), [high] "=&r"(high), [i] "=&d"(i), [byte] "=&r"(byte), [bytes] "+d"(bytes),
+        [bits] "+d"(bits), [a] "+x"(at), [b] "+b"(word)
+      :
       : "memory");
 }
 #else
@@ -185,8 +174,9 @@ void siphash_2_4(const uint8_t* key, const uint8_t* message, uint8_t size, uint8
   }
   v[size_t{2} * kWord] = static_cast<uint8_t>(v[size_t{2} * kWord] ^ 0xFFU);
   rounds(v, 4);
-  memcpy(hash, v, kWord);
-  for (uint8_t word = 1; word < 4; ++word) exclusive_or(hash, v + size_t{word} * kWord);
+  for (uint8_t i = 0; i < kWord; ++i) {
+    hash[i] = static_cast<uint8_t>(v[i] ^ v[i + kWord] ^ v[i + 2 * kWord] ^ v[i + 3 * kWord]);
+  }
 }
 
 }  // namespace screed

@@ -150,7 +150,7 @@ void print_health() {
 }
 
 /// False: not understood, or not possible now.
-bool execute() {
+__attribute__((noinline)) bool execute() {
   const uint8_t command = state.in[0];
   if (command == 'p') return parameter_command();
   if (command == 'k') return key_command();

@@ -27,7 +27,7 @@ void eeprom_read(uint16_t address, uint8_t* bytes, uint8_t count) {
   }
 }
 
-void eeprom_write(uint16_t address, const uint8_t* bytes, uint8_t count) {
+__attribute__((noinline)) void eeprom_write(uint16_t address, const uint8_t* bytes, uint8_t count) {
   state.next = bytes;
   state.address = address;
   state.left = count;

@@ -39,12 +39,14 @@ FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,
 FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
+# -fno-toplevel-reorder: functions lie in the order of the sources, so callers lie near what they call (a call within 4 kB is 2 bytes
+# shorter).
 # Optimisations of gcc-avr 5.4 that make the image larger (docs/firmware-budget.md). The Arduino library names them too.
 SMALLER := no-gcse no-move-loop-invariants no-tree-loop-im no-tree-dominator-opts no-tree-tail-merge no-tree-ter no-ipa-cp no-ipa-sra
 # -g: `make size` names the sources; nothing of it is flashed.
 AVR_FLAGS := -std=c++14 -Os -g -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -flto -fno-fat-lto-objects \
   -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-jump-tables -ffunction-sections -fdata-sections \
-  -mrelax -mstrict-X -mcall-prologues $(SMALLER:%=-f%)
+  -mrelax -mstrict-X -mcall-prologues -fno-toplevel-reorder $(SMALLER:%=-f%)
 # make firmware STANDALONE=yes: the default of the parameter `standalone` is 1.
 ifeq ($(STANDALONE),yes)
 AVR_FLAGS += -DSCREED_STANDALONE=1

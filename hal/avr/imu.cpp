@@ -16,7 +16,26 @@ enum Step : uint8_t { kReadGyro, kReadAccel, kReadMag, kReadBaro, kCheckSetting,
 
 constexpr uint8_t kVectorBytes = 7;  // status and three axes
 constexpr uint8_t kBaroBytes = 6;    // status, pressure (3), temperature (2)
-constexpr uint8_t kBaroRounds = 4;   // 25 Hz
+
+/// What a step up to kReadBaro reads; as the first members of TwiTransfer.
+struct Burst {
+  uint8_t address;
+  uint8_t reg;
+  uint8_t size;
+};
+constexpr Burst burst_of(Chip chip, uint8_t reg, uint8_t size) {
+  return {chip_address(chip), static_cast<uint8_t>(reg | kAutoIncrement), size};
+}
+constexpr Burst kBursts[] PROGMEM = {
+    burst_of(kGyroChip, kStatusAndData, kVectorBytes),
+    burst_of(kAccelMagChip, kStatusAndData, kVectorBytes),
+    burst_of(kAccelMagChip, kMagStatusAndData, kVectorBytes),
+    burst_of(kBaroChip, kStatusAndData, kBaroBytes),
+};
+constexpr uint8_t kBurstCount = sizeof(kBursts) / sizeof(kBursts[0]);
+static_assert(kBurstCount == kReadBaro + 1, "a row each");
+// The barometer is only reported, once a second: read every 0.64 s.
+constexpr uint8_t kBaroRounds = 64;
 
 /// Who owns the state: the bus interrupt from the start of a round to its end, the main program
 /// while it reads.
@@ -27,10 +46,7 @@ struct State {
   Step step;
   uint8_t round;
   uint8_t arrived;  // FreshBit set of the bursts that came whole in this round
-  uint8_t gyro[kVectorBytes];
-  uint8_t accel[kVectorBytes];
-  uint8_t mag[kVectorBytes];
-  uint8_t baro[kBaroBytes];
+  uint8_t bursts[kBurstCount][kVectorBytes];
   // The check of settings.
   uint8_t setting;                   // the one checked in this round
   uint8_t register_value;            // what was read, then what is to be written
@@ -40,9 +56,10 @@ struct State {
 };
 State state;
 
-Setting setting_at(uint8_t index) {
+/// The setting that is checked in this round.
+__attribute__((noinline)) Setting current_setting() {
   Setting setting;
-  memcpy_P(&setting, &kSettings[index], sizeof(setting));
+  memcpy_P(&setting, &kSettings[state.setting], sizeof(setting));
   return setting;
 }
 
@@ -60,33 +77,23 @@ bool configured(Chip chip) {
   return state.consecutive_good[chip] >= pgm_read_byte(&kNeeded[chip]);
 }
 
-TwiTransfer read_of(Chip chip, uint8_t reg, uint8_t* data, uint8_t size) {
-  return {chip_address(chip), static_cast<uint8_t>(reg | kAutoIncrement), size, false, data};
-}
-
-TwiTransfer transfer_of(Step step) {
-  switch (step) {
-    case kReadGyro:
-      return read_of(kGyroChip, kStatusAndData, state.gyro, kVectorBytes);
-    case kReadAccel:
-      return read_of(kAccelMagChip, kStatusAndData, state.accel, kVectorBytes);
-    case kReadMag:
-      return read_of(kAccelMagChip, kMagStatusAndData, state.mag, kVectorBytes);
-    case kReadBaro:
-      return read_of(kBaroChip, kStatusAndData, state.baro, kBaroBytes);
-    case kCheckSetting:
-    case kRewriteSetting:
-    default: {
-      const Setting setting = setting_at(state.setting);
-      return {chip_address(setting.chip), setting.reg, 1, step == kRewriteSetting,
-              &state.register_value};
-    }
+void set_transfer(Step step, TwiTransfer& transfer) {
+  if (step <= kReadBaro) {
+    memcpy_P(&transfer, &kBursts[step], sizeof(Burst));
+    transfer.data = state.bursts[step];
+  } else {
+    const Setting setting = current_setting();
+    transfer.address = chip_address(setting.chip);
+    transfer.reg = setting.reg;
+    transfer.size = 1;
+    transfer.data = &state.register_value;
   }
+  transfer.write = step == kRewriteSetting;
 }
 
 /// Books what the check of a setting found; returns true when the register has to be written.
 bool judge_setting(bool ok) {
-  const Setting setting = setting_at(state.setting);
+  const Setting setting = current_setting();
   uint8_t& right = state.consecutive_good[setting.chip];
   if (ok && state.register_value == setting.value) {
     if (right < kSettingCount) ++right;
@@ -171,7 +178,7 @@ void take_vector(const uint8_t (&burst)[kVectorBytes], Chip chip, FreshBit bit,
 }
 
 void take_baro(SensorSample& sample) {
-  const uint8_t* const burst = state.baro;
+  const uint8_t* const burst = state.bursts[kReadBaro];
   if ((state.arrived & kFreshBaro) == 0 || (burst[0] & kNewPressure) == 0 ||
       !configured(kBaroChip)) {
     return;
@@ -197,7 +204,7 @@ bool twi_done(bool ok, TwiTransfer& next) {
     state.phase = kIdle;
     return false;
   }
-  next = transfer_of(state.step);
+  set_transfer(state.step, next);
   return true;
 }
 
@@ -206,14 +213,16 @@ void imu_init() {
   twi_recover();
 }
 
-void imu_start_round() {
+__attribute__((noinline)) void imu_start_round() {
   if (state.phase == kRunning) state.phase = kBusStuck;  // for 10 ms, when 1.3 ms is enough
   if (state.phase != kIdle) return;
   state.phase = kRunning;
   state.step = kReadGyro;
   state.arrived = 0;
   state.round = static_cast<uint8_t>(state.round + 1);
-  twi_start(transfer_of(kReadGyro));
+  TwiTransfer transfer;
+  set_transfer(kReadGyro, transfer);
+  twi_start(transfer);
 }
 
 void imu_read(SensorSample& sample) {
@@ -231,9 +240,9 @@ void imu_read(SensorSample& sample) {
         ChipBit::kAccelMagChip | ChipBit::kGyroChip | (kHasBarometer ? ChipBit::kBaroChip : 0);
     state.errors = static_cast<uint8_t>(state.errors + 1);
   }
-  take_vector(state.gyro, kGyroChip, kFreshGyro, sample.gyro, sample);
-  take_vector(state.accel, kAccelMagChip, kFreshAccel, sample.accel, sample);
-  take_vector(state.mag, kAccelMagChip, kFreshMag, sample.mag, sample);
+  take_vector(state.bursts[kReadGyro], kGyroChip, kFreshGyro, sample.gyro, sample);
+  take_vector(state.bursts[kReadAccel], kAccelMagChip, kFreshAccel, sample.accel, sample);
+  take_vector(state.bursts[kReadMag], kAccelMagChip, kFreshMag, sample.mag, sample);
   take_baro(sample);
   sample.chips_failing = chips_failing();
   sample.bus_errors = state.errors;

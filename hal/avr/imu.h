@@ -1,6 +1,6 @@
 // The inertial sensors on the I2C bus, read in the background once a tick.
 //
-// A round reads gyro, accelerometer and magnetometer (the barometer every fourth round) and one
+// A round reads gyro, accelerometer and magnetometer (the barometer every 64th round) and one
 // configuration register in turn, all in the interrupt of the bus. A register that does not hold
 // what it must is written again, and the chip's numbers count as stale until all its registers were
 // found right: so a chip is configured at start, and again after a brown-out.

@@ -16,7 +16,7 @@ struct Drive {
   bool reverse;
 };
 
-Drive drive_from(int16_t duty) {
+__attribute__((noinline)) Drive drive_from(int16_t duty) {
   if (duty < 0) {
     return {duty < -kDutyMax ? static_cast<uint16_t>(kDutyMax) : static_cast<uint16_t>(-duty),
             true};

@@ -44,7 +44,7 @@ struct State {
 };
 State state;
 
-void read_copy(uint8_t index) {
+__attribute__((noinline)) void read_copy(uint8_t index) {
   eeprom_read(parameter_copy_address(index), copy.bytes.bytes, kParameterCopySize);
 }
 
@@ -91,7 +91,7 @@ StoreState parameter_store_state() {
 Parameters& parameter_draft() {
   return draft.value;
 }
-void parameter_draft_defaults() {
+__attribute__((noinline)) void parameter_draft_defaults() {
   memcpy_P(draft.bytes, &kDefaults, sizeof(kDefaults));
 }
 
@@ -113,7 +113,7 @@ bool parameter_saving() {
   return state.copies != 0 || state.pending != 0 || eeprom_busy();
 }
 
-void parameter_eeprom_step() {
+__attribute__((noinline)) void parameter_eeprom_step() {
   eeprom_step();
   if (eeprom_busy()) return;
   if (state.copies == 0) {

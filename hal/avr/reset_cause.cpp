@@ -53,7 +53,7 @@ ResetCause reset_cause() {
   return cause;
 }
 
-void set_next_reset_cause(ResetCause next) {
+__attribute__((noinline)) void set_next_reset_cause(ResetCause next) {
   kept.mark = static_cast<uint16_t>(kMark | static_cast<uint8_t>(next));
 }
 

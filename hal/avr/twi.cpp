@@ -33,7 +33,7 @@ struct State {
 };
 State state;
 
-void rewind() {
+__attribute__((noinline)) void rewind() {
   state.at = state.transfer.data;
   state.left = state.transfer.size;
   state.register_sent = false;

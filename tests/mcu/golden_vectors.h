@@ -107,10 +107,10 @@ void golden_shifts(Link& link) {
     const uint8_t n = static_cast<uint8_t>(numbers.any() % 31U);
     put_signed(link, asr(a, n));
     put_signed(link, asr_round(asr(a, 1), static_cast<uint8_t>(n % 29U + 1U)));
-    put_signed(link, limit_i32(a, static_cast<int32_t>(abs_u16(static_cast<int16_t>(b)))));
+    put_signed(link, limit_i32(a, static_cast<int32_t>(abs_i16(static_cast<int16_t>(b)))));
     put_word(link, static_cast<uint16_t>(saturate_i16(a)));
     put_long(link, abs_u32(a));
-    put_word(link, abs_u16(static_cast<int16_t>(a)));
+    put_word(link, abs_i16(static_cast<int16_t>(a)));
     put_signed(link, add_sat_i32(a, b));
     put_signed(link, mul_i16(static_cast<int16_t>(a), static_cast<int16_t>(b)));
   }

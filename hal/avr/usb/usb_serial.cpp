@@ -223,7 +223,7 @@ bool execute() {
   }
 }
 
-__attribute__((noinline)) void receive(void* to, uint8_t size) {
+void receive(void* to, uint8_t size) {
   auto* at = static_cast<uint8_t*>(to);
   for (; size > 0; --size) *at++ = UEDATX;
 }

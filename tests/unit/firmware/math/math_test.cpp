@@ -68,7 +68,7 @@ TEST(Fixed, Saturation) {
   EXPECT_EQ(add_sat_i32(kMin, -1), kMin);
   EXPECT_EQ(add_sat_i32(kMin, kMax), -1);
   EXPECT_EQ(abs_u32(kMin), 2147483648U);
-  EXPECT_EQ(abs_u16(-32768), 32768U);
+  EXPECT_EQ(abs_i16(-32768), 32768U);
 }
 
 TEST(Fixed, ScaleQ16MatchesWideProductBitForBit) {

@@ -73,9 +73,9 @@ TEST_F(ArmingTest, ATiltHasItsAngleAndItsLimit) {
 }
 
 TEST_F(ArmingTest, OtherFaultsAreSaidInTheSchemasWords) {
-  say_state(State::kDisarmed, Fault::kGyroFrozen | Fault::kBaroChip);
+  say_state(State::kDisarmed, Fault::kGyroFrozen | Fault::kGyroChip);
   EXPECT_EQ(obstacles(), (Sentences{"gyro frozen: the gyro repeats itself to the bit",
-                                    "baro chip: LPS25H does not answer or lost its settings"}));
+                                    "gyro chip: L3GD20H does not answer or lost its settings"}));
 }
 
 TEST_F(ArmingTest, StartUpHasTheTimeThatIsLeft) {

@@ -225,7 +225,7 @@ TEST(Schema, TheFirmwaresEnumerationsAreThoseOfTheTables) {
 TEST(Schema, FlagsHaveTheNamesOfTheirBits) {
   EXPECT_EQ(flag_names("heartbeat", "faults", 0), "");
   EXPECT_EQ(flag_names("heartbeat", "faults", Fault::kStuck), "stuck");
-  EXPECT_EQ(flag_names("heartbeat", "faults", Fault::kBaroChip | Fault::kTilt), "tilt, baro_chip");
+  EXPECT_EQ(flag_names("heartbeat", "faults", Fault::kGyroChip | Fault::kTilt), "tilt, gyro_chip");
   EXPECT_EQ(flag_names("health", "conditions", ChipBit::kBaroChip | ChipBit::kAccelMagChip),
             "accel_mag_chip, baro_chip");
   EXPECT_EQ(flag_names("health", "conditions", 0x80), "") << "a bit without a name";
