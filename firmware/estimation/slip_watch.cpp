@@ -4,31 +4,46 @@
 // in u = 0.048 mm/s, what two accelerometer counts gain in a tick.
 //   residual   = dv - T (a - g sin pitch) - mean
 //   mean      += residual / 64 while the tracks stand (0.64 s), / 512 while they turn (5 s)
-//   loss_k    += residual - loss_k / 2^8, 2^10     leaky sums of 2.6 and 10 s; 0 at rest
-//   vibration: x - its mean (0.64 s), clipped, low pass of 4 ticks, mean magnitude (0.64 s)
-//   yaw rate, effort: low pass of 16 ticks
-//   evidence  += ((held + 1) / 2 - evidence) / 16  every second tick: 0.32 s
+//   loss_k    += residual - loss_k / 2^6, 2^8, 2^10  leaky sums of 0.6, 2.6 and 10 s; 0 at rest
+//   vibration: x - its mean (0.64 s), clipped, low pass of 4 ticks, mean magnitude (0.16 s)
+//   yaw rate: low pass of 16 ticks; effort: of 8
+//   evidence  += ((held + 1) / 2 - evidence) / 4  every fourth tick: 0.16 s
 #include "firmware/estimation/slip_watch.h"
 
 #include "firmware/estimation/slip_model.h"
+#include "nn/infer/gated.h"
 
 namespace screed {
 namespace {
 
-// Of evidence_, 65535 = 1: slips from 0.35 on; stuck from 0.73 on, until below 0.15.
-constexpr uint16_t kSlipEvidence = 22938;
-constexpr uint16_t kStuckEvidence = 47841;
-constexpr uint16_t kFreeEvidence = 9830;
-constexpr int16_t kStanding_dmm_per_s = 100;
 constexpr int16_t kMaxVibration = 250;  // counts; 64 * 4 of it fit 16 bits
-constexpr uint8_t kSmoothShift = 4;
-constexpr int16_t kMaxEffort = 2000;  // duty, both tracks; 16 of it fit 16 bits
+constexpr uint8_t kYawShift = 4;
+constexpr uint8_t kEffortShift = 3;
+constexpr int16_t kMaxEffort = 2000;  // duty, both tracks; 8 of it fit 16 bits
+constexpr nn::GatedShape kShape = {kSlipInputs, kSlipUnits, kSlipOutputs};
+static_assert(sizeof nn::model_slip::parameters == kShape.size(), "a network of another shape");
 
-/// part / whole in Q14, limited to 16 bits; whole > 0.
-SCREED_OUT_OF_LINE int16_t share_q14(uint16_t part, uint16_t whole) {
-  return part / 2 >= whole
-             ? static_cast<int16_t>(INT16_MAX)
-             : static_cast<int16_t>(quotient_u16(static_cast<uint32_t>(part) << 14, whole));
+/// part / whole in Q7, 0..127; whole > 0.
+SCREED_OUT_OF_LINE uint8_t share_q7(uint16_t part, uint16_t whole) {
+  return part >= whole
+             ? static_cast<uint8_t>(INT8_MAX)
+             : static_cast<uint8_t>(quotient_u16(static_cast<uint32_t>(part) << 7, whole));
+}
+
+/// 32 log2(value / 2^10) with straight lines between the powers, limited to a byte.
+int8_t logarithm_q5(uint16_t value) {
+  if (value < 64) return INT8_MIN;
+  if (value >= 0x4000) return INT8_MAX;
+  int16_t result = 3 * 32;  // of 2^13
+  while (value < 0x2000) {
+    value = static_cast<uint16_t>(value << 1);
+    result = static_cast<int16_t>(result - 32);
+  }
+  return static_cast<int8_t>(result + static_cast<int16_t>(value >> 8) - 32);
+}
+
+int8_t byte_of(int16_t value) {
+  return static_cast<int8_t>(limit_i16(value, INT8_MAX));
 }
 
 constexpr int16_t negated_if(bool negated, int16_t value) {
@@ -38,12 +53,11 @@ constexpr int16_t negated_if(bool negated, int16_t value) {
 }  // namespace
 
 bool SlipWatch::slips() const {
-  return evidence_ >= kSlipEvidence;
+  return evidence_ >= nn::model_slip::kSlipEvidence;
 }
 
-int16_t SlipWatch::velocity_loss_share(uint8_t which, bool backwards) const {
-  const int16_t lost = saturate_i16(asr(velocity_loss_[which], 1));
-  return negated_if(backwards != (lost < 0), share_q14(abs_i16(lost), faster_track_));
+void SlipWatch::set_share(uint8_t input, bool negative, uint16_t part) {
+  values_[input] = static_cast<int8_t>(negated_if(negative, share_q7(part, faster_track_)));
 }
 
 void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
@@ -53,7 +67,7 @@ void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
   vibration.band_pass =
       static_cast<int16_t>(vibration.band_pass + limited - asr_i16(vibration.band_pass, 2));
   vibration.magnitude = static_cast<uint16_t>(vibration.magnitude + abs_i16(vibration.band_pass) -
-                                              (vibration.magnitude >> 6));
+                                              (vibration.magnitude >> 4));
 }
 
 void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const int16_t* gyro,
@@ -76,55 +90,66 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
   if (faster_track_ < kStanding_dmm_per_s) {
     mean_ += residual * 8;
-    velocity_loss_[0] = 0;
-    velocity_loss_[1] = 0;
+    for (int32_t& loss : velocity_loss_) loss = 0;
+    for (uint8_t i = 0; i < kSlipUnits; ++i) {
+      states_[i] = 0;
+      values_[kSlipInputs + i] = 0;
+    }
   } else {
     mean_ += residual;
-    velocity_loss_[0] += residual - asr(velocity_loss_[0], 8);
-    velocity_loss_[1] += residual - asr(velocity_loss_[1], 10);
+    for (uint8_t i = 0; i < 3; ++i)
+      velocity_loss_[i] += residual - asr(velocity_loss_[i], static_cast<uint8_t>(6 + 2 * i));
   }
   update_vibration(vibration_[0], gyro[1]);
   update_vibration(vibration_[1], accel[0]);
   update_vibration(vibration_[2], accel[2]);
   // Twice halved, so that a difference fits 16 bits.
   const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
-  yaw_rate_ = static_cast<int16_t>(yaw_rate_ +
-                                   asr_i16(static_cast<int16_t>(rate - yaw_rate_), kSmoothShift));
+  yaw_rate_ =
+      static_cast<int16_t>(yaw_rate_ + asr_i16(static_cast<int16_t>(rate - yaw_rate_), kYawShift));
   const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
                                            negated_if(half_right < 0, right.effort));
   effort_ = static_cast<int16_t>(effort_ + limit_i16(effort, kMaxEffort) -
-                                 asr_i16(effort_, kSmoothShift));
-  if (classify_now) classify(half_left, half_right, sin_pitch_q14);
-}
-
-void SlipWatch::classify(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14) {
-  const uint16_t faster = faster_track_;
-  if (faster < kMinTrackSpeed_dmm_per_s) {
+                                 asr_i16(effort_, kEffortShift));
+  if (!classify_now) return;
+  if (faster_track_ < kMinTrackSpeed_dmm_per_s) {
     evidence_ = 0;
     stuck_ = false;
+    travel_share_ = UINT8_MAX;
+    half_done_ = false;
     return;
   }
-  const bool backwards = half_speed_ < 0;
-  inputs_[0] = velocity_loss_share(0, backwards);
-  inputs_[1] = velocity_loss_share(1, backwards);
-  inputs_[2] =
-      share_q14(static_cast<uint16_t>(mul_u16(abs_i16(yaw_rate_), arc_q16_) >> 16), faster);
-  inputs_[3] = share_q14(abs_i16(static_cast<int16_t>(half_right - half_left)), faster);
-  inputs_[4] = static_cast<int16_t>(faster >> 1);
-  inputs_[5] = negated_if(backwards, sin_pitch_q14);
-  inputs_[6] = effort_;
-  for (uint8_t i = 0; i < 3; ++i)
-    inputs_[7 + i] = static_cast<int16_t>(vibration_[i].magnitude >> 1);
-  inputs_[10] = negated_if(backwards, saturate_i16(vibration_[0].mean));
-  nn::model_slip::run_held(inputs_, &held_);
+  half_done_ = !half_done_;
+  if (half_done_) {
+    set_inputs(half_left, half_right, sin_pitch_q14);
+    nn::gated_candidates(kShape, nn::model_slip::parameters, values_, candidates_);
+  } else {
+    conclude();
+  }
+}
 
-  // Halves, so that a difference fits 16 bits.
-  const auto half_held = static_cast<int16_t>(asr_i16(held_, 1) + 16384);
-  evidence_ = static_cast<uint16_t>(
-      evidence_ +
-      asr_i16(static_cast<int16_t>(half_held - static_cast<int16_t>(evidence_ >> 1)), 3));
-  if (evidence_ >= kStuckEvidence) stuck_ = true;
-  if (evidence_ < kFreeEvidence) stuck_ = false;
+void SlipWatch::set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14) {
+  const bool backwards = half_speed_ < 0;
+  for (uint8_t i = 0; i < 3; ++i) {
+    const int16_t lost = saturate_i16(asr(velocity_loss_[i], 1));
+    set_share(i, backwards != (lost < 0), abs_i16(lost));
+  }
+  set_share(3, false, static_cast<uint16_t>(mul_u16(abs_i16(yaw_rate_), arc_q16_) >> 16));
+  set_share(4, false, abs_i16(static_cast<int16_t>(half_right - half_left)));
+  values_[5] = byte_of(static_cast<int16_t>(faster_track_ >> 5));
+  values_[6] = byte_of(negated_if(backwards, asr_i16(sin_pitch_q14, 6)));
+  values_[7] = byte_of(asr_i16(effort_, 3));
+  for (uint8_t i = 0; i < 3; ++i) values_[8 + i] = logarithm_q5(vibration_[i].magnitude);
+  values_[11] = byte_of(negated_if(backwards, saturate_i16(asr(vibration_[0].mean, 6))));
+}
+
+void SlipWatch::conclude() {
+  int16_t outputs[kSlipOutputs];
+  nn::gated_update(kShape, nn::model_slip::parameters, values_, candidates_, states_, outputs);
+  evidence_ = slip_evidence(evidence_, outputs[0]);
+  if (evidence_ >= nn::model_slip::kStuckEvidence) stuck_ = true;
+  if (evidence_ < nn::model_slip::kFreeEvidence) stuck_ = false;
+  travel_share_ = static_cast<uint8_t>(clamp_i16(asr_i16(outputs[1], 4), 0, UINT8_MAX));
 }
 
 }  // namespace screed

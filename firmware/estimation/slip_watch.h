@@ -1,13 +1,15 @@
-// Says whether the tracks move the robot: slip and stuck, from what it has on board.
+// Says how far the tracks move the robot: slip, stuck and the share of travel, from what it has on
+// board.
 //
-// A network (nn/models/slip.json, in nn/infer's integers) predicts 50 times a second whether the
-// robot hardly moves. Its inputs are how far the belts' speed departs from what the accelerometer
-// measured since the tracks stood (over 2.6 and 10 s, since more would be drift), the turn that the
-// gyro measures and the difference of the tracks that ought to make one, the belts' speed, the
-// slope, what the motors need beyond idling (a robot that hangs needs little), how much the
-// chassis vibrates (one that stands does not) and how it pitches (one that digs itself in does so
-// slowly). The mean of its outputs over a third of a second sets the flags. docs/networks.md has
-// figures, `screed nn stuck` measures them.
+// A recurrent network (nn/models/slip.json, in nn/infer's integers) is asked 25 times a second
+// whether the robot hardly moves, and what share of the belts' travel the chassis makes. Its inputs
+// are how far the belts' speed departs from what the accelerometer measured since the tracks stood
+// (over 0.6, 2.6 and 10 s, since more would be drift), the turn that the gyro measures and the
+// difference of the tracks that ought to make one, the belts' speed, the slope, what the motors
+// need beyond idling (a robot that hangs needs little), how much the chassis vibrates (one that
+// stands does not) and how it pitches (one that digs itself in does so slowly). The network's
+// memory holds how all this was before. A step takes two calls, so that no tick has all of it.
+// docs/networks.md has figures, `screed nn stuck` measures them.
 #pragma once
 
 #include <stdint.h>
@@ -17,7 +19,17 @@
 
 namespace screed {
 
-constexpr uint8_t kSlipInputs = 11;
+constexpr uint8_t kSlipInputs = 12;
+constexpr uint8_t kSlipUnits = 10;
+constexpr uint8_t kSlipOutputs = 2;  // held: log of the odds; share of travel
+
+/// The mean of the network's output "held" (log of the odds, Q12) after one step more, 0..65535 for
+/// -8..8: over four steps, 0.16 s. Halves, so that a difference fits 16 bits.
+SCREED_CONSTEXPR14 uint16_t slip_evidence(uint16_t evidence, int16_t held) {
+  const auto half_held = static_cast<int16_t>(asr_i16(held, 1) + 16384);
+  return static_cast<uint16_t>(
+      evidence + asr_i16(static_cast<int16_t>(half_held - static_cast<int16_t>(evidence >> 1)), 1));
+}
 
 /// What the watch remembers, zero at the start.
 struct SlipMemory {
@@ -25,32 +37,32 @@ struct SlipMemory {
   struct Vibration {
     int32_t mean;        // 64 times the mean over 0.64 s
     int16_t band_pass;   // 4 times what differs from the mean, smoothed over 4 ticks
-    uint16_t magnitude;  // 64 times the mean of its absolute value
+    uint16_t magnitude;  // 16 times the mean of its absolute value over 0.16 s
   };
 
   int32_t mean_;  // of what enters velocity_loss_ when nothing slips: bias, error of the pitch; Q9
-  int32_t velocity_loss_[2];  // belts' speed minus that by inertia; about 0.05 mm/s
+  int32_t velocity_loss_[3];  // belts' speed minus that by inertia; about 0.05 mm/s
   uint16_t faster_track_;     // track's speed, 0.1 mm/s
   int16_t yaw_rate_;          // smoothed, a quarter
-  int16_t effort_;            // smoothed, Q4 duty
+  int16_t effort_;            // smoothed over 8 ticks, Q3 duty
   int16_t half_speed_;        // of the belts in the tick before, half of 0.1 mm/s
-  uint16_t evidence_;         // mean of held_, 0..65535
+  uint16_t evidence_;         // mean of the output "held", 0..65535
   bool stuck_;
-  // clang-format off
-  // Inputs of the network. Signs are for driving ahead; "share" is over the faster track's speed,
-  // Q14.
-  //   0    belts' speed minus inertial speed, over 2.6 s, share
-  //   1    the same over 10 s
-  //   2    |yaw rate| as speed of a track, share
-  //   3    half the difference of the tracks, share
-  //   4    faster track, 0.2 mm/s
-  //   5    sine of the pitch, Q14
-  //   6    effort of both tracks, 1/16 duty
-  //   7-9  vibration of pitch rate, force ahead, force up, 1/128 count
-  //   10   mean pitch rate, 1/64 count
-  // clang-format on
-  int16_t inputs_[kSlipInputs];
-  int16_t held_;            // the network's output, Q15: -1 it moves, 1 it hardly does
+  bool half_done_;  // of a step of the network
+  uint8_t travel_share_;
+  // Inputs of the network, then the bytes of its states. Signs are for driving ahead; "share" is
+  // over the faster track's speed. What exceeds a byte is limited.
+  //   0-2   belts' speed minus inertial speed, over 0.6, 2.6 and 10 s, share, Q7
+  //   3     |yaw rate| as speed of a track, share, Q7
+  //   4     half the difference of the tracks, share, Q7
+  //   5     faster track, 3.2 mm/s
+  //   6     sine of the pitch, Q8
+  //   7     effort of both tracks, 1 duty
+  //   8-10  vibration of pitch rate, force ahead, force up: 32 log2 of it, 0 at 16 counts
+  //   11    mean pitch rate, counts
+  int8_t values_[kSlipInputs + kSlipUnits];
+  int16_t candidates_[kSlipUnits];
+  int16_t states_[kSlipUnits];
   Vibration vibration_[3];  // pitch rate, specific force ahead, up
 };
 
@@ -61,9 +73,9 @@ class SlipWatch : private SlipMemory {
       : SlipMemory(), arc_q16_(static_cast<uint16_t>(tread_mm * 126U)) {}
 
   /// One tick. gyro, accel: the three counts (70 mdps, 0.244 mg) as they come; sin_pitch_q14 > 0:
-  /// nose up; yaw_rate: angle units/s. The network is asked when `classify_now` is set, in every
-  /// second tick: those in which no command's MAC is checked, so that the longest tick stays as
-  /// long as it is. A robot whose tracks stand gives no evidence and is not stuck.
+  /// nose up; yaw_rate: angle units/s. Half a step of the network is made when `classify_now` is
+  /// set, in every second tick: those in which no command's MAC is checked, so that the longest
+  /// tick stays as long as it is. A robot whose tracks stand is not stuck, and the network forgets.
   SCREED_OUT_OF_LINE void tick(const TrackMotion& left, const TrackMotion& right,
                                const int16_t* gyro, const int16_t* accel, int16_t sin_pitch_q14,
                                int32_t yaw_rate, bool classify_now);
@@ -73,16 +85,23 @@ class SlipWatch : private SlipMemory {
   /// They have done so for long: the robot is dug in or hangs. Until it moves or the tracks stop.
   bool stuck() const { return stuck_; }
 
+  /// Share of the belts' mean travel that the chassis makes, over about the last half second, 255:
+  /// all of it, which is also said where nothing is known, with tracks at rest.
+  uint8_t travel_share() const { return travel_share_; }
+
   // For training and tests.
-  const int16_t* network_inputs() const { return inputs_; }
+  const int8_t* network_inputs() const { return values_; }
   uint16_t evidence() const { return evidence_; }
+  bool half_done() const { return half_done_; }  ///< of a step of the network
 
   static constexpr int16_t kMinTrackSpeed_dmm_per_s = 350;  ///< below, slip is not observable
+  static constexpr int16_t kStanding_dmm_per_s = 100;       ///< below, the tracks stand
 
  private:
   static void update_vibration(Vibration& vibration, int16_t counts);
-  int16_t velocity_loss_share(uint8_t which, bool backwards) const;
-  SCREED_OUT_OF_LINE void classify(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14);
+  void set_share(uint8_t input, bool negative, uint16_t part);
+  void set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14);
+  void conclude();
 
   uint16_t arc_q16_;  ///< 0.1 mm/s at the track per four units of yaw rate
 };

@@ -20,8 +20,8 @@ enum class DriveKind : std::uint8_t { kRandom, kArc, kStraight };
 
 class Draw {
  public:
-  explicit Draw(std::uint64_t seed, bool trapped)
-      : random_(seed, trapped ? "trapped drive" : "free drive") {}
+  explicit Draw(std::uint64_t seed, ScenarioKind kind)
+      : random_(seed, std::string(name_of(kind)) + " drive") {}
   double between(double low, double high) { return random_.uniform(low, high); }
   std::size_t below(std::size_t count) {
     return static_cast<std::size_t>((std::uint64_t{random_.next()} * count) >> 32U);
@@ -44,11 +44,16 @@ void choose_soil(Draw& draw, Experiment& e, std::string& ground) {
   e.soil.overrides.drag_depth_m = draw.between(0.0, 0.003);
 }
 
-void choose_terrain(Draw& draw, Experiment& e, bool trapped) {
+double max_slope_deg(ScenarioKind kind) {
+  if (kind == ScenarioKind::kTrapped) return 4.0;
+  return kind == ScenarioKind::kOrdinary ? 20.0 : 8.0;
+}
+
+void choose_terrain(Draw& draw, Experiment& e, ScenarioKind kind) {
   e.map.filename = kTerrains[draw.below(std::size(kTerrains))];
-  e.map.size_m = trapped ? 6.0 : 10.0;
+  e.map.size_m = kind == ScenarioKind::kTrapped ? 6.0 : 10.0;
   e.map.smoothing_m = draw.between(0.05, 0.2);
-  e.map.max_slope_deg = draw.between(0.5, trapped ? 4.0 : 8.0);
+  e.map.max_slope_deg = draw.between(0.5, max_slope_deg(kind));
   e.map.edges = "wrap";
   e.vehicle.x_m = draw.between(-1.0, 1.0);
   e.vehicle.y_m = draw.between(-1.0, 1.0);
@@ -74,30 +79,49 @@ void choose_trap(Draw& draw, Experiment& e, const std::string& ground, DriveKind
   spins = trap == kStartsInRuts && draw.one_in_two();
 }
 
+/// Leveling algorithms, or straight on along the bed, again and again through the same ruts.
+void choose_ordinary_drive(Draw& draw, Experiment& e) {
+  constexpr const char* kAlgorithms[] = {"hill_sensing", "spin_on_peak", "training_drive", "drive"};
+  e.experiment.algorithm = kAlgorithms[draw.below(std::size(kAlgorithms))];
+  if (e.experiment.algorithm != "drive") return;
+  e.map.size_m = draw.between(2.0, 3.0);
+  e.vehicle.heading_deg = draw.one_in_two() ? 0.0 : 90.0;
+}
+
 }  // namespace
 
-StuckScenario stuck_scenario(std::uint64_t seed, bool trapped, double duration_s) {
-  Draw draw(seed, trapped);
+const char* name_of(ScenarioKind kind) {
+  if (kind == ScenarioKind::kTrapped) return "trapped";
+  return kind == ScenarioKind::kOrdinary ? "ordinary" : "free";
+}
+
+StuckScenario stuck_scenario(std::uint64_t seed, ScenarioKind kind, double duration_s) {
+  const bool trapped = kind == ScenarioKind::kTrapped;
+  Draw draw(seed, kind);
   StuckScenario scenario;
-  scenario.trapped = trapped;
+  scenario.kind = kind;
   Experiment& e = scenario.experiment;
-  e.experiment.name = trapped ? "trapped" : "free";
+  e.experiment.name = name_of(kind);
   e.experiment.seed = seed;
   e.experiment.duration_s = duration_s;
   choose_soil(draw, e, scenario.ground);
-  choose_terrain(draw, e, trapped);
+  choose_terrain(draw, e, kind);
   DriveKind drive_kind = static_cast<DriveKind>(draw.below(3));
   bool spins = false;
   if (trapped) choose_trap(draw, e, scenario.ground, drive_kind, spins);
   e.drive.speed_m_per_s = draw.between(0.08, 0.2);
   const double side = draw.one_in_two() ? 1.0 : -1.0;
   const double rate = draw.between(5.0, 30.0);
-  if (drive_kind == DriveKind::kArc) e.drive.yaw_rate_deg_per_s = side * rate;
-  if (spins) {
-    if (draw.one_in_two()) e.drive.speed_m_per_s = 0.0;
-    e.drive.yaw_rate_deg_per_s = side * (rate + 20.0);
+  if (kind == ScenarioKind::kOrdinary) {
+    choose_ordinary_drive(draw, e);
+  } else {
+    if (drive_kind == DriveKind::kArc) e.drive.yaw_rate_deg_per_s = side * rate;
+    if (spins) {
+      if (draw.one_in_two()) e.drive.speed_m_per_s = 0.0;
+      e.drive.yaw_rate_deg_per_s = side * (rate + 20.0);
+    }
+    e.experiment.algorithm = drive_kind == DriveKind::kRandom ? "hill_sensing" : "drive";
   }
-  e.experiment.algorithm = drive_kind == DriveKind::kRandom ? "hill_sensing" : "drive";
   e.parameters.algorithm = algorithm_number(e.experiment.algorithm);
   e.parameters.random_seed = static_cast<int16_t>(seed % 32767 + 1);
   return scenario;

@@ -17,9 +17,9 @@ struct NetworkImage : ::testing::Test {
   Mcu mcu{kNetworkImage};
 };
 
-TEST_F(NetworkImage, TwentyThousandVectorsAndEveryArgumentOfTanhAgreeWithTheHost) {
-  mcu.run_until_sent(4 * (kNetworkBlocks + kTanhBlocks), 120'000);
-  ASSERT_EQ(mcu.sent().size(), 4U * (kNetworkBlocks + kTanhBlocks));
+TEST_F(NetworkImage, TwentyThousandVectorsEveryArgumentOfTanhAndRecurrentLayersAgreeWithTheHost) {
+  mcu.run_until_sent(4 * (kNetworkBlocks + kTanhBlocks + kGatedBlocks), 120'000);
+  ASSERT_EQ(mcu.sent().size(), 4U * (kNetworkBlocks + kTanhBlocks + kGatedBlocks));
   const auto sent = [&](std::size_t block) {
     std::uint32_t hash = 0;
     for (std::size_t byte = 0; byte < 4; ++byte) {
@@ -34,6 +34,10 @@ TEST_F(NetworkImage, TwentyThousandVectorsAndEveryArgumentOfTanhAgreeWithTheHost
     ASSERT_EQ(sent(std::size_t{kNetworkBlocks} + block),
               tanh_hash(static_cast<std::uint16_t>(block << 8)))
         << "tanh, block " << block;
+  }
+  for (std::uint16_t block = 0; block < kGatedBlocks; ++block) {
+    ASSERT_EQ(sent(kNetworkBlocks + kTanhBlocks + block), gated_hash(block + 1U))
+        << "recurrent layer, block " << block;
   }
 }
 

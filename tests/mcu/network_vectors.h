@@ -7,12 +7,16 @@
 
 #include "hal/program_memory.h"
 #include "nn/infer/dense.h"
+#include "nn/infer/gated.h"
 
 namespace screed {
 
 /// 200 blocks of 100 vectors.
 constexpr uint16_t kNetworkBlocks = 200;
 constexpr uint16_t kVectorsPerBlock = 100;
+/// Recurrent layers: each block has its own parameters and runs this many steps.
+constexpr uint16_t kGatedBlocks = 100;
+constexpr uint16_t kGatedSteps = 20;
 
 /// Bytes that serve as parameters from any offset: an xorshift sequence, and runs of the edges.
 constexpr uint16_t kParameterBytes = 2048;
@@ -103,6 +107,30 @@ inline uint32_t network_vectors_hash(uint32_t seed, uint16_t vectors) {
       const uint16_t bits = static_cast<uint16_t>(out[i]);
       hash = hashed(hash, static_cast<uint8_t>(bits));
       hash = hashed(hash, static_cast<uint8_t>(bits >> 8));
+    }
+  }
+  return hash;
+}
+
+/// Outputs and states of a recurrent layer over random inputs, hashed.
+inline uint32_t gated_hash(uint32_t seed) {
+  constexpr nn::GatedShape kShape = {5, 4, 2};
+  VectorNumbers numbers(seed);
+  const auto* parameters = reinterpret_cast<const int8_t*>(
+      kParameters + static_cast<uint16_t>(numbers.any() % (kParameterBytes - kShape.size())));
+  int8_t x[kShape.values()] = {};
+  int16_t candidates[kShape.units];
+  int16_t states[kShape.units] = {};
+  int16_t outputs[kShape.outputs];
+  uint32_t hash = 2166136261UL;
+  for (uint16_t step = 0; step < kGatedSteps; ++step) {
+    for (uint8_t i = 0; i < kShape.inputs; ++i)
+      x[i] = static_cast<int8_t>(static_cast<uint16_t>(numbers.activation()) >> 8);
+    nn::gated_candidates(kShape, parameters, x, candidates);
+    nn::gated_update(kShape, parameters, x, candidates, states, outputs);
+    for (const int16_t number : {outputs[0], outputs[1], states[0], states[3]}) {
+      hash = hashed(hash, static_cast<uint8_t>(static_cast<uint16_t>(number)));
+      hash = hashed(hash, static_cast<uint8_t>(static_cast<uint16_t>(number) >> 8));
     }
   }
   return hash;

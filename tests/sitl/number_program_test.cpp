@@ -37,7 +37,7 @@ TEST_F(Numbers, WhatOnceCrashedOrHungIsOneLine) {
       // Never ended, or filled the memory.
       {"parity e.ini --minutes nan", "--minutes nan: allowed are 0.01 to 10000"},
       {"parity e.ini --minutes inf", "--minutes inf: allowed are 0.01 to 10000"},
-      {"nn stuck --free nan --runs 1", "--free nan: allowed are 5 to 36000"},
+      {"nn stuck --duration nan --trapped 1", "--duration nan: allowed are 5 to 36000"},
       // Were taken.
       {"view r --speed nan --frames-dir f", "--speed nan: allowed are 0.01 to 1000, and 0"},
       {"view r --at nan --screenshot z.png", "--at nan: allowed are 0 to 1000000"},

@@ -2,61 +2,85 @@
 // `screed nn stuck` drives. Rigid ground alone, which is quick.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <memory>
 #include <vector>
 
-#include "nn/slip/stuck_run.h"
-#include "nn/slip/stuck_scenario.h"
+#include "firmware/robot/robot.h"
+#include "host_sim/run/world/world.h"
+#include "host_sim/run/world/world_setup.h"
+#include "nn/slip/slip_campaign.h"
+#include "nn/slip/slip_replay.h"
+#include "tests/temp_folder.h"
 
 namespace screed::nn {
 namespace {
 
 /// The first seeds whose ground is rigid.
-std::vector<StuckScenario> on_rigid_ground(bool trapped, std::size_t count, double duration_s) {
+std::vector<StuckScenario> on_rigid_ground(ScenarioKind kind, std::size_t count,
+                                           double duration_s) {
   std::vector<StuckScenario> all;
   for (std::uint64_t seed = 1; all.size() < count; ++seed) {
-    StuckScenario scenario = stuck_scenario(seed, trapped, duration_s);
+    StuckScenario scenario = stuck_scenario(seed, kind, duration_s);
     if (scenario.ground == "rigid") all.push_back(std::move(scenario));
   }
   return all;
 }
 
 TEST(Stuck, DugInTracksAreDetectedWithinASecond) {
-  int dug_in = 0;
-  int detected = 0;
-  for (const StuckScenario& scenario : on_rigid_ground(true, 8, 12.0)) {
-    const SlipRun run = drive(scenario);
-    ASSERT_TRUE(run.failure.empty()) << run.failure;
-    const auto begin = dug_in_at(run);
-    if (!begin) continue;
-    ++dug_in;
-    detected += detection_of(run, *begin).detected ? 1 : 0;
-  }
-  EXPECT_GE(dug_in, 3);
-  EXPECT_GE(detected * 10, dug_in * 8) << detected << " of " << dug_in;
+  const SlipFigures figures =
+      figures_of(drive_all(on_rigid_ground(ScenarioKind::kTrapped, 8, 12.0), 1));
+  EXPECT_EQ(figures.failures, 0);
+  EXPECT_GE(figures.all.dug_in, 3);
+  EXPECT_GE(figures.all.detected * 10, figures.all.dug_in * 8)
+      << figures.all.detected << " of " << figures.all.dug_in;
 }
 
-TEST(Stuck, FreeDrivesRaiseNoAlarm) {
-  double driven_s = 0.0;
-  int alarms = 0;
-  for (const StuckScenario& scenario : on_rigid_ground(false, 6, 30.0)) {
-    const FreeResult result = alarms_of(drive(scenario));
-    driven_s += result.driven_s;
-    alarms += result.false_alarms + result.recovered_alarms + result.other_alarms;
-  }
-  EXPECT_GT(driven_s, 120.0);
-  EXPECT_EQ(alarms, 0);
+TEST(Stuck, FreeDrivesRaiseNoAlarmAndTravelAsTheirTracksDo) {
+  const SlipFigures figures =
+      figures_of(drive_all(on_rigid_ground(ScenarioKind::kFree, 6, 30.0), 1));
+  EXPECT_GT(figures.all.driven_s, 120.0);
+  EXPECT_EQ(figures.all.false_alarms + figures.all.recovered_alarms + figures.all.other_alarms, 0);
+  EXPECT_LT(figures.share.rms(), 0.1);
 }
 
-TEST(Stuck, TheSameSeedIsTheSameDrive) {
-  const StuckScenario scenario = on_rigid_ground(true, 1, 6.0).front();
-  const SlipRun once = drive(scenario);
-  const SlipRun again = drive_all({scenario, scenario}, 2).back();
-  ASSERT_EQ(once.ticks.size(), again.ticks.size());
-  for (std::size_t i = 0; i < once.ticks.size(); ++i) {
-    ASSERT_EQ(once.ticks[i].inputs, again.ticks[i].inputs) << i;
-    ASSERT_EQ(once.ticks[i].speed, again.ticks[i].speed) << i;
+TEST(Stuck, TheSameSeedIsTheSameDriveAndAKeptOneIsReadAgain) {
+  const TempFolder folder;
+  const StuckScenario scenario = on_rigid_ground(ScenarioKind::kTrapped, 1, 6.0).front();
+  const SlipDrive once = drive(scenario);
+  const SlipDrive again = drive_all({scenario, scenario}, 2).back();
+  const SlipDrive kept = drive_all({scenario}, 1, {}, folder.path()).front();
+  const SlipDrive read = drive_all({scenario}, 1, {}, folder.path()).front();
+  ASSERT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  for (const SlipDrive* other : {&again, &kept, &read}) {
+    ASSERT_EQ(once.ticks.size(), other->ticks.size());
+    for (std::size_t i = 0; i < once.ticks.size(); ++i) {
+      ASSERT_EQ(once.ticks[i].gyro, other->ticks[i].gyro) << i;
+      ASSERT_EQ(once.ticks[i].effort_left, other->ticks[i].effort_left) << i;
+      ASSERT_EQ(once.ticks[i].speed, other->ticks[i].speed) << i;
+    }
   }
-  EXPECT_NE(stuck_scenario(2, true, 6.0).experiment.text(), scenario.experiment.text());
+  EXPECT_NE(stuck_scenario(2, ScenarioKind::kTrapped, 6.0).experiment.text(),
+            scenario.experiment.text());
+}
+
+TEST(Stuck, AReplayedWatchSaysWhatTheRobotsOwnSaid) {
+  const StuckScenario scenario = on_rigid_ground(ScenarioKind::kTrapped, 1, 12.0).front();
+  const SlipDrive recorded = drive(scenario);
+  const Experiment& e = scenario.experiment;
+  const std::unique_ptr<World> world = make_world(e, nullptr);
+  Robot robot(board_constants_of(kDefaultBoard), e.parameters, credentials_of(e));
+  RobotOutput output{};
+  int moved = 0;
+  replay(recorded, [&](std::size_t tick, const SlipWatch& watch, const ReplayedTick& /*what*/) {
+    world->advance();
+    robot.tick(world->sample(), output);
+    world->apply(output);
+    ASSERT_EQ(watch.evidence(), robot.slip_watch().evidence()) << tick;
+    ASSERT_EQ(watch.travel_share(), robot.slip_watch().travel_share()) << tick;
+    moved += watch.evidence() != 0 ? 1 : 0;
+  });
+  EXPECT_GT(moved, 200);
 }
 
 }  // namespace

@@ -31,5 +31,8 @@ int main() {
   for (uint16_t block = 0; block < 256; ++block) {
     put(link, screed::tanh_hash(static_cast<uint16_t>(block << 8)));
   }
+  for (uint16_t block = 0; block < screed::kGatedBlocks; ++block) {
+    put(link, screed::gated_hash(block + 1UL));
+  }
   link.stop();
 }

@@ -10,8 +10,8 @@
 #include <random>
 #include <sstream>
 
-#include "nn/model/header_export.h"
-#include "nn/model/model_file.h"
+#include "firmware/estimation/slip_model.h"
+#include "nn/slip/slip_model.h"
 #include "paths.h"
 
 namespace screed {
@@ -75,7 +75,8 @@ TEST(SlipWatch, GreatEffortsDoNotOverflow) {
     const int16_t accel[] = {0, 0, 4098};
     for (int tick = 0; tick < 400; ++tick) {
       watch.tick(track, track, gyro, accel, 0, 0, true);
-      ASSERT_EQ(watch.network_inputs()[6] > 0, effort > 0) << effort << " tick " << tick;
+      if (tick < 8) continue;
+      ASSERT_EQ(watch.network_inputs()[7] > 0, effort > 0) << effort << " tick " << tick;
     }
   }
 }
@@ -133,34 +134,24 @@ TEST(SlipWatch, ATurnThatTheGyroDoesNotSeeIsNone) {
   EXPECT_TRUE(dug_in.watch.stuck());
 }
 
-// Means of the network's answer from which the robot slips, is stuck, and is free again.
-TEST(SlipWatch, SlipsFromAThirdIsStuckFromThreeQuartersAndFreeBelowAnEighth) {
-  const auto share = [](double of_certainty) { return of_certainty * 65535.0; };
+TEST(SlipWatch, SlipsIsStuckAndIsFreeAgainFromTheModelsThresholds) {
+  using nn::model_slip::kFreeEvidence;
+  using nn::model_slip::kSlipEvidence;
+  using nn::model_slip::kStuckEvidence;
   Drive drive;
   int rising = 0;
   int falling = 0;
   bool was_stuck = false;
   const auto watch = [&](double seconds, const Drive::Feeling& feeling) {
-    for (int i = 0; i < std::lround(seconds * 50.0); ++i) {
-      drive.go(150.0, 0.02, feeling);
+    for (int i = 0; i < std::lround(seconds * 25.0); ++i) {
+      drive.go(150.0, 0.04, feeling);
       const SlipWatch& now = drive.watch;
-      if (now.evidence() >= share(0.36)) {
-        EXPECT_TRUE(now.slips()) << now.evidence();
-      }
-      if (now.evidence() < share(0.34)) {
-        EXPECT_FALSE(now.slips()) << now.evidence();
-      }
-      if (now.evidence() >= share(0.74)) {
-        EXPECT_TRUE(now.stuck()) << now.evidence();
-      }
-      if (now.evidence() < share(0.14)) {
-        EXPECT_FALSE(now.stuck()) << now.evidence();
-      }
-      if (now.evidence() >= share(0.16) && now.evidence() < share(0.72)) {
-        EXPECT_EQ(now.stuck(), was_stuck) << now.evidence();
-      }
-      if (now.evidence() > share(0.65) && now.evidence() < share(0.72) && !was_stuck) ++rising;
-      if (now.evidence() > share(0.16) && now.evidence() < share(0.3) && was_stuck) ++falling;
+      EXPECT_EQ(now.slips(), now.evidence() >= kSlipEvidence) << now.evidence();
+      const bool between = now.evidence() >= kFreeEvidence && now.evidence() < kStuckEvidence;
+      EXPECT_EQ(now.stuck(), between ? was_stuck : now.evidence() >= kStuckEvidence)
+          << now.evidence();
+      rising += between && now.evidence() > kSlipEvidence && !was_stuck ? 1 : 0;
+      falling += between && was_stuck ? 1 : 0;
       was_stuck = now.stuck();
     }
   };
@@ -193,13 +184,22 @@ TEST(SlipWatch, BearsAnything) {
 
 TEST(SlipWatch, TheRobotsNetworkIsTheModelFiles) {
   const std::filesystem::path models = kModelsFolder;
-  const std::string header = nn::model_header(nn::read_model(models / "slip.json"));
+  const std::string header = nn::slip_model_header(nn::read_slip_model(models / "slip.json"));
   std::ifstream file(models / "../../firmware/estimation/slip_model.h");
   ASSERT_TRUE(file) << "firmware/estimation/slip_model.h";
   std::ostringstream text;
   text << file.rdbuf();
-  EXPECT_EQ(text.str(), header) << "screed nn export nn/models/slip.json --header "
-                                   "firmware/estimation/slip_model.h";
+  EXPECT_EQ(text.str(), header) << "screed nn slip export";
+}
+
+TEST(SlipWatch, EvidenceIsAMeanOverFourSteps) {
+  EXPECT_EQ(slip_evidence(0, INT16_MIN), 0);
+  EXPECT_NEAR(slip_evidence(0, INT16_MAX), 16384, 2);
+  EXPECT_NEAR(slip_evidence(65535, INT16_MIN), 49151, 2);
+  EXPECT_NEAR(slip_evidence(20000, 0), 23192, 2);
+  std::uint16_t evidence = 0;
+  for (int i = 0; i < 60; ++i) evidence = slip_evidence(evidence, INT16_MAX);
+  EXPECT_GT(evidence, 65500);
 }
 
 }  // namespace

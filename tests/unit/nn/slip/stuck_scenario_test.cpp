@@ -15,7 +15,7 @@ TEST(StuckScenario, DrawsEverySoilAndEveryTrap) {
   std::set<std::string> grounds;
   std::set<std::string> traps;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
-    const StuckScenario scenario = stuck_scenario(seed, true, 10.0);
+    const StuckScenario scenario = stuck_scenario(seed, ScenarioKind::kTrapped, 10.0);
     grounds.insert(scenario.ground);
     traps.insert(scenario.experiment.trap.kind);
     EXPECT_EQ(scenario.experiment.map.model, scenario.ground == "rigid" ? "rigid" : "scm");
@@ -28,6 +28,29 @@ TEST(StuckScenario, DrawsEverySoilAndEveryTrap) {
   EXPECT_EQ(grounds, soils);
   const std::vector<std::string> kinds = trap_kinds();
   EXPECT_EQ(traps, std::set<std::string>(kinds.begin() + 1, kinds.end()));
+}
+
+TEST(StuckScenario, OrdinaryDrivesRunEveryLevelingAlgorithmAndMeetTheirOwnRuts) {
+  std::set<std::string> algorithms;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Experiment e = stuck_scenario(seed, ScenarioKind::kOrdinary, 10.0).experiment;
+    EXPECT_EQ(e.trap.kind, "none");
+    algorithms.insert(e.experiment.algorithm);
+    if (e.experiment.algorithm == "drive") {
+      EXPECT_LE(e.map.size_m, 3.0) << "round the bed in a drive";
+      EXPECT_EQ(e.drive.yaw_rate_deg_per_s, 0.0);
+    }
+  }
+  EXPECT_EQ(algorithms,
+            (std::set<std::string>{"hill_sensing", "spin_on_peak", "training_drive", "drive"}));
+}
+
+TEST(StuckScenario, KindsOfTheSameSeedAreDrivesOfTheirOwn) {
+  const Experiment free = stuck_scenario(3, ScenarioKind::kFree, 10.0).experiment;
+  const Experiment trapped = stuck_scenario(3, ScenarioKind::kTrapped, 10.0).experiment;
+  EXPECT_NE(free.vehicle.x_m, trapped.vehicle.x_m);
+  EXPECT_EQ(free.trap.kind, "none");
+  EXPECT_NE(trapped.trap.kind, "none");
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// A drive of the firmware in a simulated world: what the slip watch got in every tick, and the
+// truth. The watch only observes, so a recorded drive evaluates any network for it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/task_progress.h"
+#include "nn/slip/stuck_scenario.h"
+
+namespace screed::nn {
+
+/// One tick: arguments of SlipWatch::tick() as they were, then the truth.
+struct SlipTick {
+  std::int16_t speed_left;  ///< TrackMotion, 0.1 mm/s
+  std::int16_t effort_left;
+  std::int16_t speed_right;
+  std::int16_t effort_right;
+  std::array<std::int16_t, 3> gyro;
+  std::array<std::int16_t, 3> accel;
+  std::int16_t sin_pitch_q14;
+  std::int32_t yaw_rate;  ///< angle units/s
+  bool running;
+  float speed;        ///< of the chassis, forward, m/s
+  float turn;         ///< of the chassis, as speed of a track, m/s
+  float track_left;   ///< speed of the belt, m/s
+  float track_right;  ///< likewise
+};
+
+struct SlipDrive {
+  std::uint64_t seed = 0;
+  ScenarioKind kind = ScenarioKind::kFree;
+  std::string ground;   ///< rigid, or the soil's preset
+  std::string trap;     ///< none without one
+  std::string failure;  ///< of the physics; empty: none
+  std::vector<SlipTick> ticks;
+};
+
+/// The drive of a scenario before its first tick.
+SlipDrive drive_of(const StuckScenario& scenario);
+
+/// Drives until its end, a fault, or the physics' failure. `progress` gets the share of the
+/// duration, and may stop it.
+SlipDrive drive(const StuckScenario& scenario, const TaskProgress& progress = {});
+
+/// As many drives as scenarios, on as many threads; results in the scenarios' order. `progress` is
+/// called from any of the threads, never from two at once, with the share of all durations. With a
+/// folder every drive is kept there as a file by its experiment's content, and one that is there
+/// is read instead of driven: a stopped campaign goes on where it was. Throws RunError when the
+/// folder cannot be written.
+std::vector<SlipDrive> drive_all(const std::vector<StuckScenario>& scenarios, unsigned threads,
+                                 const TaskProgress& progress = {},
+                                 const std::filesystem::path& folder = {});
+
+}  // namespace screed::nn
