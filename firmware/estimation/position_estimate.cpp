@@ -54,28 +54,30 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   }
 }
 
+void PositionEstimate::blend(uint8_t axis, int16_t innovation, int16_t sigma_mm) {
+  const uint16_t half = variance_[axis] >> 1;
+  const auto sum =
+      static_cast<uint16_t>(half + static_cast<uint16_t>(mul_i16(sigma_mm, sigma_mm) >> 5));
+  // Below 1: sigma_mm is at least 8.
+  const uint16_t gain_q15 = quotient_u16(static_cast<uint32_t>(half) << 15, sum);
+  place_[axis] += asr(mul_i16(innovation, static_cast<int16_t>(gain_q15)), 5);
+  variance_[axis] =
+      static_cast<uint16_t>(variance_[axis] - static_cast<uint16_t>(mul_u16(half, gain_q15) >> 14));
+}
+
 bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm) {
   const int16_t innovation = limit_i16(z_mm - mm(axis), INT16_MAX);
-  const uint16_t variance = variance_[axis];
-  // Halves, so that the sum fits.
-  const auto sum = static_cast<uint16_t>((variance >> 1) +
-                                         static_cast<uint16_t>(mul_i16(sigma_mm, sigma_mm) >> 5));
-  if (static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, 9)) return false;
-  // Below 1: sigma_mm is at least 4.
-  const auto gain_q15 =
-      static_cast<int16_t>(quotient_u16(static_cast<uint32_t>(variance >> 1) << 15, sum));
-  place_[axis] += mul_i16(innovation, gain_q15) >> 5;
-  variance_[axis] =
-      static_cast<uint16_t>(variance - (mul_u16(variance, static_cast<uint16_t>(gain_q15)) >> 15));
+  // innovation^2 > 9 (variance + r), all of it over 32: 4.5 and 9 / 32, about.
+  if (static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 >
+      mul_u16(variance_[axis], 5) + (static_cast<uint32_t>(mul_i16(sigma_mm, sigma_mm)) >> 2))
+    return false;
+  blend(axis, innovation, sigma_mm);
   return true;
 }
 
-void PositionEstimate::mark() {
-  for (uint8_t axis = 0; axis < 2; ++axis) marked_[axis] = place_[axis];
-}
-
-void PositionEstimate::return_to_mark() {
-  for (uint8_t axis = 0; axis < 2; ++axis) place_[axis] = marked_[axis];
+void PositionEstimate::fix(int16_t x_cm, int16_t y_cm, int16_t sigma_mm) {
+  blend(kX, limit_i16(x_cm * 10 - mm(kX), INT16_MAX), sigma_mm);
+  blend(kY, limit_i16(y_cm * 10 - mm(kY), INT16_MAX), sigma_mm);
 }
 
 int32_t PositionEstimate::mm(uint8_t axis) const {

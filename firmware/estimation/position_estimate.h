@@ -8,7 +8,7 @@
 // Each axis is a Kalman filter of one state. Slip makes the position drift like a random walk, so
 // the variance grows with what the tracks travel:
 //   variance += drift^2 |travel|                         drift: mm per square root of a metre
-// and a measurement z with the variance r, unless it is off by more than three standard deviations,
+// and with a measurement z of the variance r
 //   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
 #pragma once
 
@@ -21,7 +21,6 @@ namespace screed {
 /// Zero after a reset.
 struct PositionState {
   int32_t place_[2];      ///< 2^-10 mm
-  int32_t marked_[2];     ///< likewise
   uint16_t variance_[2];  ///< 16 mm^2: up to 1 m of standard deviation
   uint32_t travel_;       ///< not booked as variance yet, 2^-10 mm
 };
@@ -37,20 +36,15 @@ class PositionEstimate : private PositionState {
 
   /// One tick: counts of both tracks since the last tick (limited to kMaxTrackCounts), heading and
   /// pitch now; share: of the tracks' travel that moves the robot, 255: all of it.
-  void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch,
-              uint8_t share = 255);
+  void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch, uint8_t share);
 
   enum Axis : uint8_t { kX, kY };
 
-  /// Measured along an axis: z_mm +-sigma_mm (4..1000). False, and nothing changed, where that is
-  /// further off than can be.
-  SCREED_OUT_OF_LINE bool measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm);
-  /// It may be anywhere: the next measurement decides.
-  void forget() { variance_[kX] = variance_[kY] = UINT16_MAX; }
-
-  /// Remembers this place; return_to_mark() goes back to it, since the robot has not moved since.
-  void mark();
-  void return_to_mark();
+  /// Measured along an axis: z_mm, +-sigma_mm (8..1000). False, and nothing changed, where that is
+  /// further off than three standard deviations.
+  bool measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm);
+  /// Measured from outside, +-sigma_mm: who sends this has left out what is false.
+  void fix(int16_t x_cm, int16_t y_cm, int16_t sigma_mm);
 
   /// Position relative to the place of the last reset, or in the frame of the fixes, mm; x is east,
   /// y north. Stops at +-2097 m.
@@ -61,6 +55,8 @@ class PositionEstimate : private PositionState {
   uint16_t sigma_mm() const;
 
  private:
+  SCREED_OUT_OF_LINE void blend(uint8_t axis, int16_t innovation, int16_t sigma_mm);
+
   uint16_t count_q4_;  ///< travel of a count, 2^-14 mm
   uint16_t noise_;     ///< variance for each kBooked of travel, 16 mm^2
 };

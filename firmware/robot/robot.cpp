@@ -13,8 +13,6 @@ namespace screed {
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.
-constexpr uint8_t kSigmaTicks = 32;  // its square root takes long
-constexpr uint8_t kMostRefusedFixes = 4;
 constexpr uint8_t kStoreTicks = 170;
 static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
 
@@ -100,14 +98,10 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
                               deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
   status_.angles = attitude_.angles();
-  position_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch);
+  position_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch,
+                   slip_watch_.travel_share());
   status_.x_mm = position_.x_mm();
   status_.y_mm = position_.y_mm();
-  if (until_sigma_ == 0) {
-    until_sigma_ = kSigmaTicks;
-    status_.sigma_mm = position_.sigma_mm();
-  }
-  --until_sigma_;
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -225,17 +219,8 @@ RequestResult Robot::execute(const uint8_t* data) {
   return RequestResult::kBadArgument;
 }
 
-// One that is further off than can be is left out. Several in a row are right, and the robot was
-// not where it thought.
-void Robot::fix_position(const DriveArgument& place) {
-  const int16_t sigma = parameters_.fix_sigma;
-  if (fixes_refused_ == kMostRefusedFixes) position_.forget();
-  const bool x_fits = position_.measure(PositionEstimate::kX,
-                                        static_cast<int16_t>(place.speed_mm_per_s * 10), sigma);
-  const bool y_fits = position_.measure(PositionEstimate::kY,
-                                        static_cast<int16_t>(place.turn_ddeg_per_s * 10), sigma);
-  fixes_refused_ =
-      x_fits && y_fits ? static_cast<uint8_t>(0) : static_cast<uint8_t>(fixes_refused_ + 1);
+void Robot::fix_position(const DriveArgument& place_cm) {
+  position_.fix(place_cm.speed_mm_per_s, place_cm.turn_ddeg_per_s, parameters_.fix_sigma);
   located_ = true;
 }
 
@@ -326,18 +311,12 @@ void Robot::watch_slip(const SensorSample& sample) {
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
 
-// Stuck after a blow it stands at a wall, and has not moved since.
-void Robot::feel_walls(const SensorSample& sample) {
-  const int16_t left = drive_.speed_left_dmm_per_s();
-  const int16_t right = drive_.speed_right_dmm_per_s();
-  if (collision_.tick(left, right, sample.accel[0], status_.angles.sin_pitch_q14)) position_.mark();
+// Stuck after a collision it stands at a wall.
+void Robot::feel_walls() {
   const bool stuck = slip_watch_.stuck();
-  if (stuck && !was_stuck_ && collision_.recent()) {
-    position_.return_to_mark();
-    const bool backwards = left + right < 0;
-    const Angle travel = wrap_angle(status_.angles.heading + (backwards ? 32768 : 0));
-    if (walls_.touch(travel, position_)) {
-      status_.sigma_mm = position_.sigma_mm();
+  if (stuck && !was_stuck_ && slip_watch_.collided()) {
+    const bool backwards = drive_.speed_left_dmm_per_s() + drive_.speed_right_dmm_per_s() < 0;
+    if (walls_.touch(wrap_angle(status_.angles.heading + (backwards ? 32768 : 0)), position_)) {
       event(message::EventCode::kWall, status_.angles.heading);
     }
   }
@@ -357,6 +336,7 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
   TelemetryView view;
   view.sample = &sample;
   view.robot = &status_;
+  view.position = &position_;
   view.uplink = &uplink_;
   view.slip = slip_watch_.slips() ? 1 : 0;
   view.stuck = slip_watch_.stuck() ? 1 : 0;
@@ -414,7 +394,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
     status_.duty = {0, 0};
   }
   watch_slip(sample);
-  feel_walls(sample);
+  feel_walls();
   announce_state();
   report(sample, output);
   write_actuators(output);

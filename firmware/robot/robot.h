@@ -7,7 +7,6 @@
 
 #include "firmware/control/drive_control.h"
 #include "firmware/estimation/attitude.h"
-#include "firmware/estimation/collision_sense.h"
 #include "firmware/estimation/position_estimate.h"
 #include "firmware/estimation/site_walls.h"
 #include "firmware/estimation/slip_watch.h"
@@ -43,8 +42,6 @@ struct RobotMemory {
   bool started_;  ///< the first tick is over
   bool located_;  ///< a position fix has told where the robot is
   bool was_stuck_;
-  uint8_t fixes_refused_;  ///< in a row
-  uint8_t until_sigma_;    ///< ticks
 };
 
 class Robot : private RobotMemory {
@@ -84,7 +81,7 @@ class Robot : private RobotMemory {
   void handle(const CanFrame& frame);
   void process_command();
   RequestResult execute(const uint8_t* data);
-  void fix_position(const DriveArgument& place);
+  void fix_position(const DriveArgument& place_cm);
   int16_t& parameter(uint8_t index);
   RequestResult send_parameter(uint16_t index);
   RequestResult commit_parameter(uint8_t index, uint16_t crc);
@@ -93,7 +90,7 @@ class Robot : private RobotMemory {
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void select_motion();
   void watch_slip(const SensorSample& sample);
-  void feel_walls(const SensorSample& sample);
+  void feel_walls();
   void announce_state();
   void report(const SensorSample& sample, RobotOutput& output);
   void write_actuators(RobotOutput& output);
@@ -103,7 +100,6 @@ class Robot : private RobotMemory {
   AttitudeEstimator attitude_;
   PositionEstimate position_;
   SiteWalls walls_;
-  CollisionSense collision_;
   Supervisor supervisor_;
   Leveling leveling_;
   DriveControl drive_;

@@ -110,7 +110,7 @@ void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
                 heading_cdeg(robot.angles.heading));
       break;
     case e2e_data_id(kIdPosition):
-      set(frame, message::Position{robot.sigma_mm});
+      set(frame, message::Position{view.position->sigma_mm()});
       break;
     case e2e_data_id(kIdAccelRaw):
       set_vector(frame, sample.accel);

@@ -10,7 +10,6 @@
 #include "firmware/control/kinematics.h"
 #include "firmware/control/track_speed_control.h"
 #include "firmware/estimation/attitude.h"
-#include "firmware/estimation/collision_sense.h"
 #include "firmware/estimation/position_estimate.h"
 #include "firmware/estimation/site_walls.h"
 #include "firmware/leveling/leveling.h"
@@ -244,23 +243,19 @@ void golden_position(Link& link) {
   parameters.site_x = 1500;
   parameters.site_y = 1280;
   const SiteWalls walls(kGoldenBoard, parameters);
-  CollisionSense collision;
   for (uint16_t i = 0; i < 500; ++i) {
     const int16_t left = numbers.within(100);
     const int16_t right = numbers.within(100);
     const Angle heading = numbers.narrow();
     position.update(left, right, heading, numbers.within(8000), static_cast<uint8_t>(i));
-    const bool hit = collision.tick(numbers.within(3000), numbers.within(3000), numbers.narrow(),
-                                    numbers.within(16384));
-    if (hit) position.mark();
     bool fits = false;
     if (i % 16U == 0) fits = position.measure(PositionEstimate::kX, numbers.within(3000), 20);
     if (i % 16U == 8) fits = walls.touch(heading, position);
-    if (i % 128U == 100) position.forget();
+    if (i % 128U == 100) position.fix(numbers.within(200), numbers.within(200), 30);
     put_signed(link, position.x_mm());
     put_signed(link, position.y_mm());
     put_word(link, position.sigma_mm());
-    put_word(link, static_cast<uint16_t>((hit ? 2U : 0U) + (fits ? 1U : 0U)));
+    put_word(link, fits ? 1U : 0U);
   }
 }
 
