@@ -12,7 +12,7 @@ namespace nn {
 namespace model_slip {
 
 constexpr uint16_t kSlipEvidence = 32768;
-constexpr uint16_t kStuckEvidence = 32768;
+constexpr uint16_t kStuckEvidence = 36352;
 constexpr uint16_t kFreeEvidence = 28000;
 
 const int8_t parameters[] SCREED_PROGRAM_MEMORY = {

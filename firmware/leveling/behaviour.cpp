@@ -2,11 +2,17 @@
 #include "firmware/leveling/behaviour.h"
 
 namespace screed {
+namespace {
+
+constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(60);
+
+}  // namespace
 
 Behaviour::Behaviour(const Parameters& parameters)
     : threshold_(angle_from_centidegrees(parameters.climb_threshold)),
       hysteresis_(angle_from_centidegrees(parameters.climb_hysteresis)),
       climb_speed_(parameters.climb_speed),
+      climb_turn_(parameters.climb_turn),
       walk_(parameters),
       fence_(parameters.site_radius, parameters.walk_speed_max) {}
 
@@ -20,7 +26,11 @@ void Behaviour::enter_or_stay(LevelingState next) {
     if (ticks_in_state_ < UINT16_MAX) ++ticks_in_state_;
     return;
   }
-  if (state_ == LevelingState::kClimb && next != LevelingState::kReturn) ++peaks_;
+  // One that the fence or the escape cut off came to no peak.
+  if (state_ == LevelingState::kClimb && next != LevelingState::kReturn &&
+      next != LevelingState::kEscape) {
+    ++peaks_;
+  }
   if (next == LevelingState::kWalk) walk_.restart();
   state_ = next;
   ticks_in_state_ = 1;
@@ -42,8 +52,13 @@ MotionCommand Behaviour::walk() {
   return walk_.tick();
 }
 
-MotionCommand Behaviour::climb() {
-  return enter_or_stay(LevelingState::kClimb, {climb_speed_, 0});
+// The slope vector in the robot's axes is (pitch, roll): angles stand in for tangents, which turns
+// it by less than 4 degrees on slopes up to 25. On a plateau it is noise.
+MotionCommand Behaviour::climb(const LevelingInput& input) {
+  enter_or_stay(LevelingState::kClimb);
+  if (climb_turn_ == 0 || !uphill(input.pitch)) return {climb_speed_, 0};
+  const Angle steepest = atan2_angle(input.roll, input.pitch);
+  return {climb_speed_, limit_i16(mul_i16(climb_turn_, steepest), kMaxTurnRate)};
 }
 
 bool Behaviour::update_return(const LevelingInput& input) {

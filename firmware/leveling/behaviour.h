@@ -24,8 +24,8 @@
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
-#include "firmware/leveling/random_walk.h"
 #include "firmware/leveling/site_fence.h"
+#include "firmware/leveling/walk_legs.h"
 #include "firmware/parameters/parameters.h"
 #include "schema/values.h"
 
@@ -42,11 +42,14 @@ struct LevelingInput {
   int32_t x_mm;   ///< dead reckoning from the start of the run
   int32_t y_mm;
   MotionCommand drive;  ///< what the ground station commands
+  Angle roll = 0;       ///< left side up positive; with the pitch the direction of the slope
+  bool stuck = false;   ///< the tracks turn and the robot does not move (slip_watch.h)
 };
 
 /// What holds for an algorithm that does not say otherwise.
 struct AlgorithmDefaults {
-  /// Outside the site the robot drives back, and the algorithm is not asked, unless it spins.
+  /// Outside the site the robot drives back, unless it spins, and a stuck robot gets itself out
+  /// (escape.h); the algorithm is not asked meanwhile.
   static constexpr bool kKeepsToSite = true;
 };
 
@@ -58,8 +61,8 @@ class Behaviour {
   /// Ticks spent in this state, before the current one, since it was entered or restart_time().
   uint16_t ticks_in_state() const { return ticks_in_state_; }
   void restart_time() { ticks_in_state_ = 0; }
-  /// Climbs that ended in another motion than the return to the site. Starts at 0 again after a
-  /// parameter change; a climb cut off by a stop does not count.
+  /// Climbs that ended in another motion than the return to the site or the escape. Starts at 0
+  /// again after a parameter change; a climb cut off by a stop does not count.
   uint16_t peaks() const { return peaks_; }
 
   /// The pitch is that of an incline worth climbing. A climb goes on until the pitch has fallen
@@ -70,8 +73,14 @@ class Behaviour {
 
   /// A leg of the random walk; a new one where the walk begins.
   MotionCommand walk();
-  /// Straight on.
-  MotionCommand climb();
+  /// Straight on, as Algorithm 6. With the parameter climb_turn, on an incline: towards the
+  /// steepest ascent that pitch and roll show.
+  SCREED_OUT_OF_LINE MotionCommand climb(const LevelingInput& input);
+  /// Towards the point that lies so far east and north of the robot; turns on the spot while it
+  /// lies behind.
+  MotionCommand steer(int32_t east_mm, int32_t north_mm, Angle heading) const {
+    return fence_.steer(-east_mm, -north_mm, heading);
+  }
   /// Any other motion, in a state of its own.
   MotionCommand enter_or_stay(LevelingState state, MotionCommand motion);
 
@@ -90,7 +99,8 @@ class Behaviour {
   Angle threshold_;
   Angle hysteresis_;
   int16_t climb_speed_;
-  RandomWalk walk_;
+  int16_t climb_turn_;
+  WalkLegs walk_;
   SiteFence fence_;
   LevelingState state_ = LevelingState::kIdle;
   uint16_t ticks_in_state_ = 0;

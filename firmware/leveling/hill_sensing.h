@@ -1,5 +1,5 @@
 // Algorithm 6 of the thesis: above a threshold of the pitch climb straight on, below it walk at
-// random.
+// random. With the parameter climb_turn the climb follows the slope.
 #pragma once
 
 #include "firmware/leveling/behaviour.h"
@@ -11,7 +11,7 @@ class HillSensing : public AlgorithmDefaults {
   explicit HillSensing(const Parameters& /*parameters*/) {}
 
   MotionCommand tick(const LevelingInput& input, Behaviour& behaviour) {
-    return behaviour.uphill(input.pitch) ? behaviour.climb() : behaviour.walk();
+    return behaviour.uphill(input.pitch) ? behaviour.climb(input) : behaviour.walk();
   }
 };
 

@@ -16,7 +16,8 @@ bool keeps_to_site(LevelingAlgorithm algorithm) {
 
 Leveling::Leveling(const Parameters& parameters)
     : algorithm_(static_cast<LevelingAlgorithm>(parameters.algorithm)),
-      behaviour_(parameters)
+      behaviour_(parameters),
+      escape_(parameters)
 #define SCREED_CONSTRUCT(number, name, Name) , name##_(parameters)
           SCREED_LEVELING_ALGORITHM(SCREED_CONSTRUCT)
 #undef SCREED_CONSTRUCT
@@ -24,8 +25,11 @@ Leveling::Leveling(const Parameters& parameters)
 }
 
 MotionCommand Leveling::tick(const LevelingInput& input) {
-  if (keeps_to_site(algorithm_) && behaviour_.update_return(input)) {
-    return behaviour_.return_to_site(input);
+  if (keeps_to_site(algorithm_)) {
+    if (escape_.tick(input.stuck)) {
+      return behaviour_.enter_or_stay(LevelingState::kEscape, escape_.motion());
+    }
+    if (behaviour_.update_return(input)) return behaviour_.return_to_site(input);
   }
   switch (algorithm_) {
 #define SCREED_TICK(number, name, Name) \

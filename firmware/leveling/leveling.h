@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "firmware/leveling/behaviour.h"
+#include "firmware/leveling/escape.h"
 #include "schema/classes.h"
 
 namespace screed {
@@ -35,20 +36,26 @@ class Leveling {
 
   /// Starts a run: the state begins anew. What an algorithm holds, the random sequence and the
   /// fence go on.
-  void start() { behaviour_.start(); }
+  void start() {
+    behaviour_.start();
+    escape_.start();
+  }
 
   /// One tick of the selected algorithm.
   MotionCommand tick(const LevelingInput& input);
 
   LevelingAlgorithm algorithm() const { return algorithm_; }
   LevelingState state() const { return behaviour_.state(); }
-  /// Climbs that ended in another motion than the return to the site. Starts at 0 again after a
-  /// parameter change; a climb cut off by a stop does not count.
+  /// Climbs that ended in another motion than the return to the site or the escape. Starts at 0
+  /// again after a parameter change; a climb cut off by a stop does not count.
   uint16_t peaks() const { return behaviour_.peaks(); }
+  /// In this tick the robot is stuck and the escape has no attempt left.
+  bool gave_up() const { return escape_.gave_up(); }
 
  private:
   LevelingAlgorithm algorithm_;
   Behaviour behaviour_;
+  Escape escape_;
 #define SCREED_OBJECT(number, name, Name) Slot<Name, algorithm_in_build(number)> name##_;
   SCREED_LEVELING_ALGORITHM(SCREED_OBJECT)
 #undef SCREED_OBJECT

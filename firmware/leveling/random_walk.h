@@ -1,36 +1,17 @@
-// The random walk of Algorithm 6: legs of random speed, turn rate and length.
-//
-// The thesis draws anew at every step; at 100 steps a second that averages to a straight crawl, so
-// a draw is held for a random time.
+// The random walk of Algorithm 6 alone, whatever the pitch: what a leveling algorithm has to beat.
 #pragma once
 
-#include <stdint.h>
-
-#include "firmware/control/kinematics.h"
-#include "firmware/math/random.h"
-#include "firmware/parameters/parameters.h"
+#include "firmware/leveling/behaviour.h"
 
 namespace screed {
 
-class RandomWalk {
+class RandomWalk : public AlgorithmDefaults {
  public:
-  explicit RandomWalk(const Parameters& parameters);
+  explicit RandomWalk(const Parameters& /*parameters*/) {}
 
-  /// Draws a new leg at the next tick.
-  void restart() { ticks_left_ = 0; }
-
-  /// One tick: the motion of the current leg.
-  MotionCommand tick();
-
- private:
-  Random random_;
-  int16_t speed_min_;
-  int16_t speed_max_;
-  YawRate yaw_rate_max_;
-  int16_t leg_min_ms_;
-  int16_t leg_max_ms_;
-  uint16_t ticks_left_ = 0;
-  MotionCommand leg_ = {0, 0};
+  MotionCommand tick(const LevelingInput& /*input*/, Behaviour& behaviour) {
+    return behaviour.walk();
+  }
 };
 
 }  // namespace screed

@@ -22,7 +22,7 @@ class SiteFence {
 
   /// The motion that leads back: turns on the spot while the start lies behind, drives as soon as
   /// it lies ahead.
-  MotionCommand steer(int32_t x_mm, int32_t y_mm, Angle heading) const;
+  SCREED_OUT_OF_LINE MotionCommand steer(int32_t x_mm, int32_t y_mm, Angle heading) const;
 
  private:
   int16_t radius_mm_;

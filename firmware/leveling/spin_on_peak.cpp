@@ -28,9 +28,9 @@ MotionCommand SpinOnPeak::tick(const LevelingInput& input, Behaviour& behaviour)
         return spin(behaviour);
       }
       if (behaviour.uphill(input.pitch)) behaviour.restart_time();
-      return behaviour.ticks_in_state() < kPlateauTicks ? behaviour.climb() : behaviour.walk();
+      return behaviour.ticks_in_state() < kPlateauTicks ? behaviour.climb(input) : behaviour.walk();
     default:
-      return behaviour.uphill(input.pitch) ? behaviour.climb() : behaviour.walk();
+      return behaviour.uphill(input.pitch) ? behaviour.climb(input) : behaviour.walk();
   }
 }
 

@@ -9,15 +9,16 @@
 
 #include "schema/values.h"
 
-// Whether the training drive is there. Not in a microcontroller's image: it drives blindly, which
-// simulated terrain without edges tolerates and a site does not, and flash is scarce (the drive
-// takes 434 bytes). An image without it takes algorithm 3 for an invalid parameter and refuses to
-// arm; -DSCREED_TRAINING_DRIVE=1 brings it in.
-#ifndef SCREED_TRAINING_DRIVE
+// The algorithms that this build leaves out, by their names, a space between two: make firmware
+// LEAVE_OUT="coverage training_drive". Their numbers are then invalid parameters, with which a
+// robot refuses to arm. Left out of a microcontroller's image is the training drive: it drives
+// blindly, which simulated terrain without edges tolerates and a site does not, and flash is
+// scarce.
+#ifndef SCREED_LEAVE_OUT
 #ifdef __AVR__
-#define SCREED_TRAINING_DRIVE 0
+#define SCREED_LEAVE_OUT "training_drive"
 #else
-#define SCREED_TRAINING_DRIVE 1
+#define SCREED_LEAVE_OUT ""
 #endif
 #endif
 
@@ -70,19 +71,45 @@
   X(mag_offset_z,           "0.16 mG",  -8000,  8000,      0, "likewise") \
   X(standalone,             "",            0,     1, SCREED_STANDALONE, "1: arm and run after power-up without a ground station") \
   X(standalone_delay,       "ms",          0, 30000,   3000, "stand-alone: time between power-up and the start of the run") \
-  X(stuck_time,             "ms",          0, 30000,      0, "stop with a fault when dug in or hung up for this long; 0: report only")
+  X(stuck_time,             "ms",          0, 30000,      0, "stop with a fault when dug in or hung up for this long; 0: no limit") \
+  X(climb_turn,             "1/s",         0,     4,      0, "while climbing, turn towards the steepest ascent at this rate per angle to it; 0: straight on") \
+  X(coverage_half_side,     "mm",        100, 30000,    500, "coverage: half the side of the square round the start; within 0.7 of site_radius") \
+  X(coverage_spacing,       "mm",         50,  2000,    200, "coverage: distance between two lines") \
+  X(escape_attempts,        "",            0,    20,      6, "a robot that is stuck tries this often to get out, then stops with the fault stuck; 0: no escape")
 // clang-format on
 
 namespace screed {
 
+/// Whether `list` begins with this word.
+constexpr bool begins_with(const char* list, const char* word) {
+  return *word == 0 ? *list == 0 || *list == ' '
+                    : *list == *word && begins_with(list + 1, word + 1);
+}
+/// Whether `word` is one of the words of `list`, which begins between two words or in one.
+constexpr bool lists(const char* list, const char* word, bool between = true) {
+  return *list != 0 &&
+         ((between && begins_with(list, word)) || lists(list + 1, word, *list == ' '));
+}
+constexpr uint8_t words_of(const char* list, bool between = true) {
+  return *list == 0 ? static_cast<uint8_t>(0)
+                    : static_cast<uint8_t>((between && *list != ' ' ? 1 : 0) +
+                                           words_of(list + 1, *list == ' '));
+}
+
 /// The leveling algorithms of this build, a bit each.
-#define SCREED_ALGORITHM_BIT(number, name, Name) | 1U << (number)
-constexpr uint16_t kAlgorithmsInBuild =
-    (0U SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_BIT)) &
-    ~(SCREED_TRAINING_DRIVE != 0
-          ? 0U
-          : 1U << static_cast<uint8_t>(message::LevelingAlgorithm::kTrainingDrive));
+#define SCREED_ALGORITHM_BIT(number, name, Name) \
+  | (lists(SCREED_LEAVE_OUT, #name) ? 0U : 1U << (number))
+constexpr uint16_t kAlgorithmsInBuild = 0U SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_BIT);
 #undef SCREED_ALGORITHM_BIT
+#define SCREED_ANY_BIT(number, name, Name) | 1U << (number)
+constexpr uint16_t kAllAlgorithms = 0U SCREED_LEVELING_ALGORITHM(SCREED_ANY_BIT);
+#undef SCREED_ANY_BIT
+constexpr uint8_t bits_of(uint16_t bits) {
+  return bits == 0 ? static_cast<uint8_t>(0)
+                   : static_cast<uint8_t>((bits & 1U) + bits_of(static_cast<uint16_t>(bits >> 1)));
+}
+static_assert(words_of(SCREED_LEAVE_OUT) == bits_of(kAllAlgorithms) - bits_of(kAlgorithmsInBuild),
+              "LEAVE_OUT names algorithms");
 static_assert(message::kLevelingAlgorithmMax < 16, "kAlgorithmsInBuild has 16 bits");
 
 constexpr bool algorithm_in_build(int16_t number) {
@@ -94,6 +121,8 @@ constexpr int16_t max_algorithm(int16_t from) {
   return algorithm_in_build(from) ? from : max_algorithm(static_cast<int16_t>(from - 1));
 }
 constexpr int16_t kMaxAlgorithm = max_algorithm(message::kLevelingAlgorithmMax);
+static_assert(algorithm_in_build(static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing)),
+              "the default algorithm is in every build");
 
 struct Parameters {
 #define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = (value);

@@ -13,7 +13,7 @@ namespace screed {
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.
-constexpr uint8_t kStoreTicks = 170;
+constexpr uint8_t kStoreTicks = 220;
 static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
 
 static_assert(
@@ -277,6 +277,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.counts_left = deltas.left;
   input.counts_right = deltas.right;
   input.stuck = slip_watch_.stuck();
+  input.gave_up = supervisor_.running() && leveling_.gave_up();
   input.speed_left_dmm_per_s = drive_.speed_left_dmm_per_s();
   input.speed_right_dmm_per_s = drive_.speed_right_dmm_per_s();
   input.full_speed_mm_per_s = board_.full_speed_mm_per_s;
@@ -302,7 +303,8 @@ void Robot::select_motion() {
     return;
   }
   const LevelingInput input = {status_.angles.pitch, status_.angles.heading, status_.x_mm,
-                               status_.y_mm, drive_command_};
+                               status_.y_mm,         drive_command_,         status_.angles.roll,
+                               slip_watch_.stuck()};
   status_.motion = leveling_.tick(input);
 }
 

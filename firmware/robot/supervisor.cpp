@@ -172,7 +172,7 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (right_.disobeys()) found |= Fault::kMotorRight;
 
   stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
-  if (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_) found |= Fault::kStuck;
+  if (input.gave_up || (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_)) found |= Fault::kStuck;
 
   if (lasts(input.battery_mv < battery_low_mv_, battery_ticks_, kBatteryTicks)) {
     found |= Fault::kBattery;

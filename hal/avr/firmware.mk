@@ -51,6 +51,10 @@ AVR_FLAGS := -std=c++14 -Os -g -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -f
 ifeq ($(STANDALONE),yes)
 AVR_FLAGS += -DSCREED_STANDALONE=1
 endif
+# make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/parameters.h says.
+ifneq ($(origin LEAVE_OUT),undefined)
+AVR_FLAGS += -DSCREED_LEAVE_OUT='"$(LEAVE_OUT)"'
+endif
 AVR_WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Werror
 AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_ROOT)/generated
 AVR_LINK := -Wl,--gc-sections

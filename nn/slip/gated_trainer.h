@@ -19,7 +19,7 @@ namespace screed::nn {
 struct GatedTrainingOptions {
   std::uint64_t seed = 1;
   std::uint8_t units = kSlipUnits;
-  std::size_t epochs = 60;
+  std::size_t epochs = 150;
   double learning_rate = 0.01;
   double final_rate = 0.02;    ///< share of it in the last epoch; geometric between
   double held_emphasis = 1.0;  ///< weight of a step that is held, where a free one has 1

@@ -44,7 +44,19 @@ class SharedProgress {
   double done_s_ = 0.0;
 };
 
-SlipTick tick_of(const World& world, const SensorSample& sample, const Robot& robot) {
+SlipDrive recorded_drive(const StuckScenario& scenario, const TaskProgress& progress,
+                         const std::filesystem::path& folder) {
+  if (folder.empty()) return drive(scenario, progress);
+  const std::filesystem::path file = folder / archive_name(scenario);
+  if (std::optional<SlipDrive> found = read_drive(file, scenario)) return *std::move(found);
+  SlipDrive driven = drive(scenario, progress);
+  write_drive(file, driven);
+  return driven;
+}
+
+}  // namespace
+
+SlipTick slip_tick_of(const World& world, const SensorSample& sample, const Robot& robot) {
   const VehicleState& vehicle = world.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Vector3d velocity = chassis.pose.linear().transpose() * chassis.velocity;
@@ -66,18 +78,6 @@ SlipTick tick_of(const World& world, const SensorSample& sample, const Robot& ro
   return tick;
 }
 
-SlipDrive recorded_drive(const StuckScenario& scenario, const TaskProgress& progress,
-                         const std::filesystem::path& folder) {
-  if (folder.empty()) return drive(scenario, progress);
-  const std::filesystem::path file = folder / archive_name(scenario);
-  if (std::optional<SlipDrive> found = read_drive(file, scenario)) return *std::move(found);
-  SlipDrive driven = drive(scenario, progress);
-  write_drive(file, driven);
-  return driven;
-}
-
-}  // namespace
-
 SlipDrive drive_of(const StuckScenario& scenario) {
   const Experiment& e = scenario.experiment;
   return {e.experiment.seed, scenario.kind, scenario.ground, e.trap.kind, {}, {}};
@@ -98,7 +98,7 @@ SlipDrive drive(const StuckScenario& scenario, const TaskProgress& progress) {
       world->advance();
       const SensorSample sample = world->sample();
       robot.tick(sample, output);
-      driven.ticks.push_back(tick_of(*world, sample, robot));
+      driven.ticks.push_back(slip_tick_of(*world, sample, robot));
       world->apply(output);
       if (robot.supervisor().faults() != 0) break;
     }

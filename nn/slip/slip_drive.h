@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/robot/robot.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/run/world/world.h"
 #include "nn/slip/stuck_scenario.h"
 
 namespace screed::nn {
@@ -38,6 +40,9 @@ struct SlipDrive {
   std::string failure;  ///< of the physics; empty: none
   std::vector<SlipTick> ticks;
 };
+
+/// What the tick that the robot has just had was.
+SlipTick slip_tick_of(const World& world, const SensorSample& sample, const Robot& robot);
 
 /// The drive of a scenario before its first tick.
 SlipDrive drive_of(const StuckScenario& scenario);

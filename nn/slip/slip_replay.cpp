@@ -17,7 +17,7 @@ void replay(const SlipDrive& drive,
     const bool half_done = watch.half_done();
     // Packets leave in every second tick.
     watch.tick({tick.speed_left, tick.effort_left}, {tick.speed_right, tick.effort_right},
-               tick.gyro.data(), tick.accel.data(), tick.sin_pitch_q14, tick.yaw_rate, i % 2 == 1);
+               tick.gyro.data(), tick.accel.data(), tick.sin_pitch_q14, tick.yaw_rate, i % 2 == 0);
     const int faster = std::max(std::abs(int{tick.speed_left}), std::abs(int{tick.speed_right}));
     const bool fast = faster >= SlipWatch::kMinTrackSpeed_dmm_per_s;
     forgets = forgets || faster < SlipWatch::kStanding_dmm_per_s;

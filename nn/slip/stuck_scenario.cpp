@@ -124,6 +124,7 @@ StuckScenario stuck_scenario(std::uint64_t seed, ScenarioKind kind, double durat
   }
   e.parameters.algorithm = algorithm_number(e.experiment.algorithm);
   e.parameters.random_seed = static_cast<int16_t>(seed % 32767 + 1);
+  e.parameters.escape_attempts = 0;  // what is stuck stays so
   return scenario;
 }
 

@@ -128,9 +128,10 @@ inline uint32_t gated_hash(uint32_t seed) {
       x[i] = static_cast<int8_t>(static_cast<uint16_t>(numbers.activation()) >> 8);
     nn::gated_candidates(kShape, parameters, x, candidates);
     nn::gated_update(kShape, parameters, x, candidates, states, outputs);
-    for (const int16_t number : {outputs[0], outputs[1], states[0], states[3]}) {
-      hash = hashed(hash, static_cast<uint8_t>(static_cast<uint16_t>(number)));
-      hash = hashed(hash, static_cast<uint8_t>(static_cast<uint16_t>(number) >> 8));
+    const int16_t results[] = {outputs[0], outputs[1], states[0], states[3]};
+    for (const int16_t result : results) {
+      hash = hashed(hash, static_cast<uint8_t>(static_cast<uint16_t>(result)));
+      hash = hashed(hash, static_cast<uint8_t>(static_cast<uint16_t>(result) >> 8));
     }
   }
   return hash;

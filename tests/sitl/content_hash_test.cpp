@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "fc4df45a2aa3a8ebb78a6929c41153ef"},
-    {"soft_bed", "--duration 6", "40df53f9dc8d9d71dce54f80378aa9b4"},
-    {"soft_bed", "--hal surrogate --duration 10", "604227eab83f4d72c8357e30992c8d3d"},
+    {"first_drive", "--duration 60", "8304d388067597b6411be4d622b5555a"},
+    {"soft_bed", "--duration 6", "0bc97d0e0f77b57e06ca5e9512d57a1d"},
+    {"soft_bed", "--hal surrogate --duration 10", "a4ad9637f5ac205aa52f9f61d6be4873"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "7889799a77b30fa1b0b3275c0ea0aaa7"},
-    {"gravel_bed", "--duration 1", "84a19b0739702aa45a6de71d434a5f7f"},
+     "3b5379fb9ebd8c555b68dbf7555374f1"},
+    {"gravel_bed", "--duration 1", "66730c0a2052d1e71810b08cb5b1fd78"},
 }};
 
 class ContentHash : public Program {};

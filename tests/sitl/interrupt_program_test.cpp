@@ -77,7 +77,7 @@ TEST_F(Interrupt, AMissingImageShowsBeforeParticlesAreLaid) {
 TEST_F(Interrupt, DrivesIntoATrap) {
   // The bar is gone before the message.
   for (const Signal& signal : kSignals) {
-    expect_stopped({"nn", "stuck", "--runs", "1000"}, "with a trap: driving", signal,
+    expect_stopped({"nn", "stuck", "--trapped", "1000"}, "driving", signal,
                    "\r\033[Kscreed: stopped while driving\r\n");
   }
 }

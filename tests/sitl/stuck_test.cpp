@@ -71,16 +71,18 @@ TEST(Stuck, AReplayedWatchSaysWhatTheRobotsOwnSaid) {
   const std::unique_ptr<World> world = make_world(e, nullptr);
   Robot robot(board_constants_of(kDefaultBoard), e.parameters, credentials_of(e));
   RobotOutput output{};
-  int moved = 0;
-  replay(recorded, [&](std::size_t tick, const SlipWatch& watch, const ReplayedTick& /*what*/) {
+  int different = 0;
+  int known = 0;  // ticks with a share of travel
+  replay(recorded, [&](std::size_t /*tick*/, const SlipWatch& watch, const ReplayedTick& /*what*/) {
     world->advance();
     robot.tick(world->sample(), output);
     world->apply(output);
-    ASSERT_EQ(watch.evidence(), robot.slip_watch().evidence()) << tick;
-    ASSERT_EQ(watch.travel_share(), robot.slip_watch().travel_share()) << tick;
-    moved += watch.evidence() != 0 ? 1 : 0;
+    const SlipWatch& own = robot.slip_watch();
+    different += watch.evidence() != own.evidence() || watch.travel_share() != own.travel_share();
+    known += watch.travel_share() != 255 ? 1 : 0;
   });
-  EXPECT_GT(moved, 200);
+  EXPECT_EQ(different, 0);
+  EXPECT_GT(known, 100);
 }
 
 }  // namespace

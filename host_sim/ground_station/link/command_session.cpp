@@ -14,7 +14,7 @@ namespace {
 using Result = message::CommandAckResult;
 
 constexpr std::chrono::milliseconds kPump{20};
-/// The robot stores a parameter for 1.5 s and takes no other meanwhile.
+/// The robot stores a parameter for 2 s and takes no other meanwhile.
 constexpr int kMaxBusyAnswers = 12;
 constexpr int kMaxStagings = 3;
 

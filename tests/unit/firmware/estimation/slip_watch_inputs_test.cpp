@@ -177,6 +177,33 @@ TEST(SlipWatchInputs, AreTheFormulasInFloatingPoint) {
   for (int input = 0; input < kSlipInputs; ++input) EXPECT_GT(seen[input], 1500) << input;
 }
 
+TEST(SlipWatchInputs, SlipsIsStuckAndIsFreeAgainFromTheModelsThresholds) {
+  using nn::model_slip::kFreeEvidence;
+  using nn::model_slip::kSlipEvidence;
+  using nn::model_slip::kStuckEvidence;
+  int rising = 0;
+  int falling = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    RandomDrive drive(seed);
+    SlipWatch watch(kTread_mm);
+    bool was_stuck = false;
+    for (int i = 0; i < 3000; ++i) {
+      const Tick tick = drive.next();
+      watch.tick(tick.left, tick.right, tick.gyro.data(), tick.accel.data(), tick.sin_pitch_q14,
+                 tick.yaw_rate, i % 2 == 0);
+      const uint16_t evidence = watch.evidence();
+      ASSERT_EQ(watch.slips(), evidence >= kSlipEvidence) << evidence;
+      const bool between = evidence >= kFreeEvidence && evidence < kStuckEvidence;
+      ASSERT_EQ(watch.stuck(), between ? was_stuck : evidence >= kStuckEvidence) << evidence;
+      rising += between && !was_stuck ? 1 : 0;
+      falling += between && was_stuck ? 1 : 0;
+      was_stuck = watch.stuck();
+    }
+  }
+  EXPECT_GT(rising, 0) << "the band below the threshold was seen";
+  EXPECT_GT(falling, 0);
+}
+
 TEST(SlipWatchInputs, EvidenceAndShareAreThoseOfTheNetworksAnswers) {
   constexpr nn::GatedShape kShape = {kSlipInputs, kSlipUnits, kSlipOutputs};
   RandomDrive drive(5);

@@ -91,6 +91,17 @@ TEST(AlgorithmTable, OneThatIsLeftOutOfABuildStands) {
   EXPECT_EQ(behaviour.state(), LevelingState::kClimb);
 }
 
+// As LEAVE_OUT of make names them.
+TEST(AlgorithmTable, TheListOfWhatIsLeftOutIsReadByWords) {
+  static_assert(lists("coverage training_drive", "training_drive"), "the last");
+  static_assert(lists("coverage  training_drive ", "coverage"), "the first");
+  static_assert(!lists("training_drive", "drive"), "the end of a word is no word");
+  static_assert(!lists("drive2 hill", "drive"), "nor is its beginning");
+  static_assert(!lists("", "drive"), "none");
+  static_assert(words_of("") == 0 && words_of(" a  bc ") == 2, "words");
+  EXPECT_TRUE(algorithm_in_build(static_cast<int16_t>(LevelingAlgorithm::kTrainingDrive)));
+}
+
 TEST(AlgorithmTable, TheParameterNamesThem) {
   const ParameterInfo& info = kParameterTable[0];
   ASSERT_STREQ(info.name, "algorithm");

@@ -121,6 +121,63 @@ TEST(SpinOnPeak, APlateauEndsTheClimbAfterThreeSeconds) {
   EXPECT_EQ(walker.ticks_in(LevelingState::kClimb, 0.0), 299);
 }
 
+/// The commanded turn rate on a slope, degrees/s.
+double turn_on_slope(const Parameters& parameters, double pitch_deg, double roll_deg) {
+  Leveling leveling(parameters);
+  leveling.start();
+  LevelingInput input{};
+  input.pitch = degrees(pitch_deg);
+  input.roll = degrees(roll_deg);
+  const MotionCommand motion = leveling.tick(input);
+  EXPECT_EQ(leveling.state(), LevelingState::kClimb);
+  EXPECT_EQ(motion.speed_mm_per_s, parameters.climb_speed);
+  return motion.yaw_rate * 360.0 / 65536.0;
+}
+
+TEST(Climb, TurnsTowardsTheSteepestAscent) {
+  for (const LevelingAlgorithm algorithm :
+       {LevelingAlgorithm::kHillSensing, LevelingAlgorithm::kSpinOnPeak}) {
+    Parameters parameters = parameters_of(algorithm);
+    parameters.climb_turn = 1;
+    EXPECT_NEAR(turn_on_slope(parameters, 10.0, 0.0), 0.0, 0.1);
+    // Left side up: the ascent is to the left, by the slope's direction and not by its size.
+    EXPECT_NEAR(turn_on_slope(parameters, 10.0, 10.0), 45.0, 0.1);
+    EXPECT_NEAR(turn_on_slope(parameters, 20.0, 20.0), 45.0, 0.1);
+    EXPECT_NEAR(turn_on_slope(parameters, 10.0, -5.0), -26.565, 0.1);
+    parameters.climb_turn = 4;
+    EXPECT_NEAR(turn_on_slope(parameters, 20.0, 2.0), 4.0 * 5.711, 0.1);
+    EXPECT_NEAR(turn_on_slope(parameters, 10.0, 30.0), 60.0, 0.1);  // no faster
+    EXPECT_NEAR(turn_on_slope(parameters, 10.0, -30.0), -60.0, 0.1);
+    parameters.climb_turn = 0;  // Algorithm 6 as printed
+    EXPECT_EQ(turn_on_slope(parameters, 10.0, 10.0), 0.0);
+  }
+}
+
+TEST(Climb, GoesStraightOnOverAPlateau) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
+  parameters.climb_turn = 1;
+  Leveling leveling(parameters);
+  leveling.start();
+  LevelingInput input{};
+  input.pitch = degrees(10.0);
+  leveling.tick(input);
+  input.pitch = degrees(1.0);
+  input.roll = degrees(5.0);
+  EXPECT_EQ(leveling.tick(input).yaw_rate, 0);
+  EXPECT_EQ(leveling.state(), LevelingState::kClimb);
+}
+
+TEST(RandomWalk, WalksOverHillsAsWell) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kRandomWalk);
+  Walker walker(parameters);
+  for (const double pitch_deg : {0.0, 20.0, -20.0}) {
+    EXPECT_EQ(walker.tick(pitch_deg), LevelingState::kWalk);
+    EXPECT_GE(walker.motion.speed_mm_per_s, parameters.walk_speed_min);
+    EXPECT_LE(walker.motion.speed_mm_per_s, parameters.walk_speed_max);
+  }
+  EXPECT_EQ(walker.leveling.peaks(), 0);
+}
+
 TEST(Leveling, OutsideTheFenceItReturns) {
   for (const LevelingAlgorithm algorithm :
        {LevelingAlgorithm::kHillSensing, LevelingAlgorithm::kSpinOnPeak}) {

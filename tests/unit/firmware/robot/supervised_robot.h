@@ -24,6 +24,7 @@ class SupervisedRobot {
     SupervisorInput input = {fresh,     gyro,       accel,       cos_tilt_q14, ready, battery_mv,
                              duty_left, duty_right, counts_left, counts_right, 0,     stuck};
     input.attitude_known = attitude_known;
+    input.gave_up = gave_up;
     supervisor.tick(input);
   }
   /// Ticks until the robot has left the state, at most `most`.
@@ -68,6 +69,7 @@ class SupervisedRobot {
   int16_t counts_left = 0;
   int16_t counts_right = 0;
   bool stuck = false;
+  bool gave_up = false;
 };
 
 }  // namespace screed

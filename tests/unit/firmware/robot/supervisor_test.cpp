@@ -218,6 +218,18 @@ TEST(Supervisor, StopsARobotThatIsStuckForTooLong) {
   EXPECT_EQ(watch.supervisor.faults(), Fault::kStuck);
 }
 
+TEST(Supervisor, HoldsARobotWhoseEscapeDidNotHelp) {
+  SupervisedRobot watch;
+  watch.bring_to(RobotState::kRunning);
+  watch.stuck = true;
+  watch.tick();
+  ASSERT_EQ(watch.supervisor.state(), RobotState::kRunning);
+  watch.gave_up = true;
+  watch.tick();
+  EXPECT_EQ(watch.supervisor.state(), RobotState::kFault);
+  EXPECT_EQ(watch.supervisor.faults(), Fault::kStuck);
+}
+
 TEST(Supervisor, OnlyTellsOfAStuckRobotByDefault) {
   SupervisedRobot watch;
   watch.bring_to(RobotState::kRunning);

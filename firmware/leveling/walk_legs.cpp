@@ -1,9 +1,9 @@
-// The random walk of Algorithm 6.
-#include "firmware/leveling/random_walk.h"
+// The legs of the random walk of Algorithm 6.
+#include "firmware/leveling/walk_legs.h"
 
 namespace screed {
 
-RandomWalk::RandomWalk(const Parameters& parameters)
+WalkLegs::WalkLegs(const Parameters& parameters)
     : random_(static_cast<uint16_t>(parameters.random_seed)),
       speed_min_(parameters.walk_speed_min),
       speed_max_(parameters.walk_speed_max),
@@ -11,7 +11,7 @@ RandomWalk::RandomWalk(const Parameters& parameters)
       leg_min_ms_(parameters.walk_leg_min),
       leg_max_ms_(parameters.walk_leg_max) {}
 
-MotionCommand RandomWalk::tick() {
+MotionCommand WalkLegs::tick() {
   if (ticks_left_ == 0) {
     leg_.speed_mm_per_s = random_.uniform(speed_min_, speed_max_);
     leg_.yaw_rate = random_.uniform(static_cast<int16_t>(-yaw_rate_max_), yaw_rate_max_);

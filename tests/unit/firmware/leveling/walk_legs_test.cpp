@@ -1,5 +1,5 @@
 // The robot's random numbers and the walk made of them.
-#include "firmware/leveling/random_walk.h"
+#include "firmware/leveling/walk_legs.h"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ struct Leg {
 };
 
 std::vector<Leg> legs(const Parameters& parameters, int ticks) {
-  RandomWalk walk(parameters);
+  WalkLegs walk(parameters);
   std::vector<Leg> all;
   for (int tick = 0; tick < ticks; ++tick) {
     const MotionCommand motion = walk.tick();
@@ -86,7 +86,7 @@ std::vector<Leg> legs(const Parameters& parameters, int ticks) {
   return all;
 }
 
-TEST(RandomWalk, LegsKeepTheirRangesAndFillThem) {
+TEST(WalkLegs, LegsKeepTheirRangesAndFillThem) {
   Parameters parameters;
   parameters.walk_leg_min = 100;
   parameters.walk_leg_max = 300;
@@ -118,13 +118,13 @@ TEST(RandomWalk, LegsKeepTheirRangesAndFillThem) {
   EXPECT_LE(longest, 30);
 }
 
-TEST(RandomWalk, SameSeedSameWalkOtherSeedOtherWalk) {
+TEST(WalkLegs, SameSeedSameWalkOtherSeedOtherWalk) {
   Parameters one;
   Parameters two;
   two.random_seed = 2;
-  RandomWalk walk_a(one);
-  RandomWalk walk_b(one);
-  RandomWalk walk_c(two);
+  WalkLegs walk_a(one);
+  WalkLegs walk_b(one);
+  WalkLegs walk_c(two);
   bool differs = false;
   for (int tick = 0; tick < 5000; ++tick) {
     const MotionCommand a = walk_a.tick();
@@ -137,11 +137,11 @@ TEST(RandomWalk, SameSeedSameWalkOtherSeedOtherWalk) {
   EXPECT_TRUE(differs);
 }
 
-TEST(RandomWalk, RestartDrawsANewLeg) {
+TEST(WalkLegs, RestartDrawsANewLeg) {
   Parameters parameters;
   parameters.walk_leg_min = 20000;
   parameters.walk_leg_max = 20000;
-  RandomWalk walk(parameters);
+  WalkLegs walk(parameters);
   const MotionCommand before = walk.tick();
   EXPECT_EQ(walk.tick().yaw_rate, before.yaw_rate);
   walk.restart();

@@ -1,0 +1,34 @@
+// Coverage in parallel lines.
+#include "firmware/leveling/coverage.h"
+
+namespace screed {
+namespace {
+
+// Of the point the robot steers for: a line that is off by a spacing is met at some 35 degrees.
+constexpr int16_t kLookAhead_mm = 300;
+
+}  // namespace
+
+void Coverage::next_line() {
+  west_ = !west_;
+  auto next = static_cast<int16_t>(line_mm_ + step_mm_);
+  if (abs_i16(next) > static_cast<uint16_t>(half_side_mm_)) {
+    step_mm_ = static_cast<int16_t>(-step_mm_);
+    next = static_cast<int16_t>(line_mm_ + step_mm_);
+  }
+  // One line alone where the square is no wider than the spacing.
+  if (abs_i16(next) <= static_cast<uint16_t>(half_side_mm_)) line_mm_ = next;
+}
+
+MotionCommand Coverage::tick(const LevelingInput& input, Behaviour& behaviour) {
+  const LevelingState state = behaviour.state();
+  if ((west_ ? -input.x_mm : input.x_mm) > half_side_mm_ || state == LevelingState::kReturn ||
+      state == LevelingState::kEscape) {
+    next_line();
+  }
+  const int16_t ahead = west_ ? static_cast<int16_t>(-kLookAhead_mm) : kLookAhead_mm;
+  return behaviour.enter_or_stay(LevelingState::kCover,
+                                 behaviour.steer(ahead, line_mm_ - input.y_mm, input.heading));
+}
+
+}  // namespace screed

@@ -1,0 +1,92 @@
+// A bounded manoeuvre out of where the robot is stuck.
+#include "firmware/leveling/escape.h"
+
+#include "firmware/math/units.h"
+#include "hal/program_memory.h"
+#include "hal/sample.h"
+
+namespace screed {
+namespace {
+
+// Units of a step, chosen so that its numbers fit a byte and are shifts away from those of a
+// motion.
+constexpr uint8_t speed(int16_t mm_per_s) {
+  return static_cast<uint8_t>(mm_per_s / 2);
+}
+constexpr uint8_t turn(int16_t deg_per_s) {
+  return static_cast<uint8_t>(deg_per_s * 256 / 360);
+}
+constexpr uint8_t time(int16_t ms) {
+  return static_cast<uint8_t>(ms / 40);
+}
+
+// A way to come loose: two steps in turn, each a speed, a turn and a time; how many steps. The
+// turns are those of the first attempt and every second one after it, the others turn the other
+// way.
+constexpr uint8_t kStepBytes = 3;
+constexpr uint8_t kWayBytes = 2 * kStepBytes + 1;
+const uint8_t kWays[][kWayBytes] SCREED_PROGRAM_MEMORY = {
+    {speed(-200), turn(0), time(1500), speed(0), turn(60), time(1500), 2},     // back, turn away
+    {speed(-250), turn(0), time(480), speed(250), turn(0), time(480), 16},     // rock
+    {speed(-100), turn(60), time(480), speed(-100), turn(-60), time(480), 8},  // alternate tracks
+    {speed(-250), turn(0), time(800), speed(250), turn(0), time(800), 10},     // rock slowly
+};
+constexpr uint8_t kLastWay = sizeof(kWays) / kWayBytes - 1;
+static_assert((kLastWay & (kLastWay + 1)) == 0, "the ways begin again by a mask");
+
+// A robot that has been free for so long got out.
+constexpr uint16_t kFreeTicks = 10 * kTickRate_hz;
+
+}  // namespace
+
+void Escape::start() {
+  ticks_left_ = 0;
+  attempt_ = 0;
+  steps_left_ = 0;
+  gave_up_ = false;
+}
+
+void Escape::begin(uint8_t way) {
+  way_ = way;
+  steps_left_ = read_program_u8(&kWays[way][kWayBytes - 1]);
+}
+
+void Escape::begin_step() {
+  const uint8_t* step = kWays[way_];
+  if ((steps_left_ & 1U) != 0) step += kStepBytes;
+  motion_.speed_mm_per_s = static_cast<int16_t>(2 * static_cast<int8_t>(read_program_u8(step)));
+  uint8_t turn = read_program_u8(step + 1);
+  if ((attempt_ & 1U) == 0) turn = static_cast<uint8_t>(-turn);
+  motion_.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
+  ticks_left_ = static_cast<uint16_t>(read_program_u8(step + 2) * 4U);
+}
+
+bool Escape::tick(bool stuck) {
+  gave_up_ = false;
+  if (ticks_left_ != 0) --ticks_left_;
+  if (steps_left_ == 0) {
+    if (!stuck) {
+      if (ticks_left_ == 0) attempt_ = 0;
+      return false;
+    }
+    if (attempt_ == attempts_) {
+      gave_up_ = attempts_ != 0;
+      return false;
+    }
+    begin(attempt_ & kLastWay);
+    ++attempt_;
+  } else {
+    if (ticks_left_ != 0) return true;
+    if (--steps_left_ == 0) {
+      if (way_ == 0) {
+        ticks_left_ = kFreeTicks;
+        return false;
+      }
+      begin(0);  // loose, perhaps: out of there
+    }
+  }
+  begin_step();
+  return true;
+}
+
+}  // namespace screed

@@ -1,0 +1,46 @@
+// Gets a stuck robot out: a bounded manoeuvre, then it gives up.
+//
+// The robot is stuck when the slip watch says so. Each such report is an attempt. The first goes
+// back, since every algorithm drives ahead and what lies behind was passable, and turns away, so
+// that the algorithm goes on elsewhere. The next ones rock or alternate the tracks before that;
+// left and right in turn. A step that gets stuck itself ends early. A robot that is free for 10 s
+// has all attempts again; one that is stuck after the last has given up.
+//
+// It commands motions as an algorithm does: the supervisor's protection of the tracks holds.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/kinematics.h"
+#include "firmware/parameters/parameters.h"
+
+namespace screed {
+
+class Escape {
+ public:
+  explicit Escape(const Parameters& parameters)
+      : attempts_(static_cast<uint8_t>(parameters.escape_attempts)) {}
+
+  /// A run begins: all attempts are left.
+  void start();
+
+  /// One tick of a robot that runs. Returns true while the manoeuvre drives, with motion().
+  SCREED_OUT_OF_LINE bool tick(bool stuck);
+  const MotionCommand& motion() const { return motion_; }
+  /// Stuck, and no attempt is left: in this tick.
+  bool gave_up() const { return gave_up_; }
+
+ private:
+  void begin(uint8_t way);
+  void begin_step();
+
+  MotionCommand motion_ = {0, 0};
+  uint16_t ticks_left_ = 0;  ///< of the step; of the time in which the attempts count
+  uint8_t attempts_;         ///< 0: no escape
+  uint8_t attempt_ = 0;      ///< how many were begun since the robot was free for long
+  uint8_t way_ = 0;          ///< to come loose
+  uint8_t steps_left_ = 0;   ///< of that way; 0: does not drive
+  bool gave_up_ = false;
+};
+
+}  // namespace screed

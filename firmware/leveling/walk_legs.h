@@ -1,0 +1,36 @@
+// The legs of the random walk of Algorithm 6: of random speed, turn rate and length.
+//
+// The thesis draws anew at every step; at 100 steps a second that averages to a straight crawl, so
+// a draw is held for a random time.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/control/kinematics.h"
+#include "firmware/math/random.h"
+#include "firmware/parameters/parameters.h"
+
+namespace screed {
+
+class WalkLegs {
+ public:
+  explicit WalkLegs(const Parameters& parameters);
+
+  /// Draws a new leg at the next tick.
+  void restart() { ticks_left_ = 0; }
+
+  /// One tick: the motion of the current leg.
+  MotionCommand tick();
+
+ private:
+  Random random_;
+  int16_t speed_min_;
+  int16_t speed_max_;
+  YawRate yaw_rate_max_;
+  int16_t leg_min_ms_;
+  int16_t leg_max_ms_;
+  uint16_t ticks_left_ = 0;
+  MotionCommand leg_ = {0, 0};
+};
+
+}  // namespace screed

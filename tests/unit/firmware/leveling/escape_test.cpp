@@ -1,0 +1,245 @@
+// The escape: bounded, ends when the robot is free, gives up when it is not.
+#include "firmware/leveling/escape.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "firmware/leveling/leveling.h"
+#include "tests/unit/test_robot.h"
+
+namespace screed {
+namespace {
+
+Parameters escape_parameters(int16_t attempts) {
+  Parameters parameters;
+  parameters.escape_attempts = attempts;
+  return parameters;
+}
+
+/// Ticks of one attempt that meets no resistance; the first tick is stuck.
+int attempt(Escape& escape) {
+  int ticks = 0;
+  for (bool stuck = true; escape.tick(stuck) && ticks < 10000; stuck = false) ++ticks;
+  return ticks;
+}
+
+TEST(Escape, AFreeRobotIsLeftAlone) {
+  Escape escape(escape_parameters(6));
+  for (int i = 0; i < 5000; ++i) {
+    ASSERT_FALSE(escape.tick(false));
+    ASSERT_FALSE(escape.gave_up());
+  }
+}
+
+TEST(Escape, DrivesBackFirstAndTurnsAway) {
+  Escape escape(escape_parameters(6));
+  ASSERT_TRUE(escape.tick(true));
+  EXPECT_LT(escape.motion().speed_mm_per_s, 0);
+  EXPECT_EQ(escape.motion().yaw_rate, 0);
+  YawRate last_turn = 0;
+  while (escape.tick(false)) last_turn = escape.motion().yaw_rate;
+  EXPECT_NE(last_turn, 0);
+  EXPECT_FALSE(escape.gave_up());
+  EXPECT_FALSE(escape.tick(false));
+}
+
+TEST(Escape, EveryAttemptIsBoundedInTimeSpeedAndDistance) {
+  Escape escape(escape_parameters(20));
+  for (int i = 0; i < 20; ++i) {
+    int ticks = 0;
+    double travel_mm = 0.0;
+    for (bool stuck = true; escape.tick(stuck); stuck = false) {
+      const MotionCommand motion = escape.motion();
+      ASSERT_LE(std::abs(motion.speed_mm_per_s), 250);
+      ASSERT_LE(std::abs(motion.yaw_rate), yaw_rate_from_degrees(90));
+      travel_mm += motion.speed_mm_per_s / 100.0;
+      ASSERT_LT(++ticks, 11 * kTickRate_hz) << i;
+    }
+    EXPECT_GT(ticks, kTickRate_hz) << i;
+    EXPECT_LE(std::abs(travel_mm), 700.0) << i;
+  }
+}
+
+TEST(Escape, SuccessiveAttemptsDiffer) {
+  Escape escape(escape_parameters(6));
+  std::vector<std::vector<std::pair<int16_t, YawRate>>> motions;
+  for (int i = 0; i < 4; ++i) {
+    std::vector<std::pair<int16_t, YawRate>> of_attempt;
+    for (bool stuck = true; escape.tick(stuck); stuck = false) {
+      of_attempt.emplace_back(escape.motion().speed_mm_per_s, escape.motion().yaw_rate);
+    }
+    for (const auto& before : motions) EXPECT_NE(of_attempt, before) << i;
+    motions.push_back(of_attempt);
+  }
+}
+
+TEST(Escape, StuckAfterTheLastAttemptItGivesUp) {
+  Escape escape(escape_parameters(3));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_GT(attempt(escape), 0) << i;
+    EXPECT_FALSE(escape.gave_up()) << i;
+    for (int tick = 0; tick < 300; ++tick) ASSERT_FALSE(escape.tick(false));
+  }
+  EXPECT_FALSE(escape.tick(true));
+  EXPECT_TRUE(escape.gave_up());
+  EXPECT_FALSE(escape.tick(false));
+  EXPECT_FALSE(escape.gave_up());
+}
+
+TEST(Escape, ARobotThatIsFreeForLongHasAllAttemptsAgain) {
+  Escape escape(escape_parameters(1));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_GT(attempt(escape), 0) << i;
+    for (int tick = 0; tick < 11 * kTickRate_hz; ++tick) escape.tick(false);
+  }
+  attempt(escape);
+  for (int tick = 0; tick < 9 * kTickRate_hz; ++tick) escape.tick(false);
+  escape.tick(true);
+  EXPECT_TRUE(escape.gave_up());
+}
+
+TEST(Escape, WhatTheWatchSaysMeanwhileChangesNothing) {
+  Escape free(escape_parameters(6));
+  Escape held(escape_parameters(6));
+  int ticks = 0;
+  while (held.tick(true) && ticks < 10000) ++ticks;
+  EXPECT_EQ(ticks, attempt(free));
+}
+
+TEST(Escape, ARunBeginsWithAllAttempts) {
+  Escape escape(escape_parameters(2));
+  attempt(escape);
+  attempt(escape);
+  escape.tick(true);
+  ASSERT_TRUE(escape.gave_up());
+  escape.start();
+  EXPECT_FALSE(escape.gave_up());
+  EXPECT_GT(attempt(escape), 0);
+}
+
+TEST(Escape, NoAttemptsIsNoEscapeAndNoFault) {
+  Escape escape(escape_parameters(0));
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_FALSE(escape.tick(true));
+    ASSERT_FALSE(escape.gave_up());
+  }
+}
+
+LevelingInput stuck_input(bool stuck, int32_t x_mm = 0) {
+  LevelingInput input{};
+  input.stuck = stuck;
+  input.x_mm = x_mm;
+  input.drive = {100, 0};
+  return input;
+}
+
+TEST(LevelingEscape, OnlyOfAlgorithmsThatKeepToTheirSite) {
+  for (const LevelingAlgorithm algorithm :
+       {LevelingAlgorithm::kDrive, LevelingAlgorithm::kHillSensing, LevelingAlgorithm::kSpinOnPeak,
+        LevelingAlgorithm::kTrainingDrive, LevelingAlgorithm::kRandomWalk,
+        LevelingAlgorithm::kCoverage}) {
+    Parameters parameters;
+    parameters.algorithm = static_cast<int16_t>(algorithm);
+    Leveling leveling(parameters);
+    leveling.start();
+    leveling.tick(stuck_input(true));
+    const bool expected =
+        algorithm != LevelingAlgorithm::kDrive && algorithm != LevelingAlgorithm::kTrainingDrive;
+    EXPECT_EQ(leveling.state() == LevelingState::kEscape, expected) << static_cast<int>(algorithm);
+  }
+}
+
+TEST(LevelingEscape, TheSiteFenceGoesOnAfterIt) {
+  Parameters parameters;
+  parameters.site_radius = 1000;
+  Leveling leveling(parameters);
+  leveling.start();
+  leveling.tick(stuck_input(false, 1100));
+  ASSERT_EQ(leveling.state(), LevelingState::kReturn);
+  leveling.tick(stuck_input(true, 1100));
+  ASSERT_EQ(leveling.state(), LevelingState::kEscape);
+  for (int tick = 0; tick < 1000 && leveling.state() == LevelingState::kEscape; ++tick) {
+    leveling.tick(stuck_input(false, 1100));
+  }
+  EXPECT_EQ(leveling.state(), LevelingState::kReturn);
+}
+
+TEST(LevelingEscape, AClimbThatEndsInItIsNoPeak) {
+  Parameters parameters;
+  Leveling leveling(parameters);
+  leveling.start();
+  LevelingInput input = stuck_input(false);
+  input.pitch = 3000;
+  leveling.tick(input);
+  ASSERT_EQ(leveling.state(), LevelingState::kClimb);
+  input.stuck = true;
+  leveling.tick(input);
+  ASSERT_EQ(leveling.state(), LevelingState::kEscape);
+  EXPECT_EQ(leveling.peaks(), 0);
+}
+
+/// Its tracks turn as they are told and its IMU feels nothing of it.
+struct HungUpRobot {
+  explicit HungUpRobot(const Parameters& parameters) : robot(parameters) {
+    robot.start();
+    EXPECT_EQ(robot.state(), RobotState::kRunning);
+  }
+  /// Ticks until the robot stops running, at most `most`; counts those in the escape.
+  int run(int most) {
+    int ticks = 0;
+    while (robot.state() == RobotState::kRunning && ticks < most) {
+      robot.tick();
+      ++ticks;
+      if (robot.robot.leveling().state() == LevelingState::kEscape) ++escaping;
+    }
+    return ticks;
+  }
+
+  TestRobot robot;
+  int escaping = 0;
+};
+
+TEST(RobotEscape, ARobotThatHangsHoldsWithTheFaultStuckAfterTheAttempts) {
+  Parameters parameters;
+  parameters.walk_speed_min = 150;
+  HungUpRobot hung_up(parameters);
+  const int ticks = hung_up.run(180 * kTickRate_hz);
+  EXPECT_LT(ticks, 120 * kTickRate_hz);
+  EXPECT_GT(hung_up.escaping, 6 * kTickRate_hz);
+  EXPECT_EQ(hung_up.robot.state(), RobotState::kFault);
+  EXPECT_EQ(hung_up.robot.robot.supervisor().faults(), Fault::kStuck);
+  EXPECT_EQ(hung_up.robot.output.duty_left, 0);
+  EXPECT_EQ(hung_up.robot.output.duty_right, 0);
+  // Cleared, it may run again: the cause does not stay.
+  hung_up.robot.run(50);
+  EXPECT_EQ(hung_up.robot.robot.supervisor().present_faults(), 0);
+}
+
+TEST(RobotEscape, TheGroundStationsDriveIsNotInterfered) {
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  HungUpRobot hung_up(parameters);
+  hung_up.robot.send(hung_up.robot.command(CommandOp::kDrive, {150, 0}));
+  EXPECT_EQ(hung_up.run(60 * kTickRate_hz), 60 * kTickRate_hz);
+  EXPECT_EQ(hung_up.escaping, 0);
+  EXPECT_TRUE(hung_up.robot.robot.slip_watch().stuck());
+}
+
+TEST(RobotEscape, AStopEndsIt) {
+  Parameters parameters;
+  parameters.walk_speed_min = 150;
+  HungUpRobot hung_up(parameters);
+  for (int tick = 0; tick < 60 * kTickRate_hz && hung_up.escaping == 0; ++tick) hung_up.run(1);
+  ASSERT_EQ(hung_up.escaping, 1);
+  hung_up.robot.send(hung_up.robot.command(CommandOp::kStop));
+  hung_up.robot.run(4);
+  ASSERT_EQ(hung_up.robot.state(), RobotState::kStopped);
+  hung_up.robot.run(100);
+  EXPECT_EQ(hung_up.robot.output.duty_left, 0);
+  EXPECT_EQ(hung_up.robot.output.duty_right, 0);
+}
+
+}  // namespace
+}  // namespace screed

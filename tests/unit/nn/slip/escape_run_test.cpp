@@ -1,0 +1,65 @@
+// Trials of the escape: their scenarios and their statistics. The drives are in tests/sitl.
+#include "nn/slip/escape_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "firmware/leveling/behaviour.h"
+
+namespace screed::nn {
+namespace {
+
+TEST(EscapeScenario, IsTheTrappedDriveByAnAlgorithmThatEscapes) {
+  std::set<std::string> algorithms;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const StuckScenario drive = stuck_scenario(seed, ScenarioKind::kTrapped, 14.0);
+    const StuckScenario escape = escape_scenario(seed);
+    EXPECT_EQ(escape.ground, drive.ground);
+    EXPECT_EQ(escape.experiment.trap.kind, drive.experiment.trap.kind);
+    EXPECT_EQ(escape.experiment.trap.size, drive.experiment.trap.size);
+    EXPECT_EQ(escape.experiment.vehicle.heading_deg, drive.experiment.vehicle.heading_deg);
+    algorithms.insert(escape.experiment.experiment.algorithm);
+    const Parameters& parameters = escape.experiment.parameters;
+    EXPECT_TRUE(parameters.valid()) << seed;
+    EXPECT_GT(parameters.escape_attempts, 0);
+    if (drive.experiment.experiment.algorithm != "drive") continue;
+    EXPECT_NEAR(parameters.walk_speed_max, drive.experiment.drive.speed_m_per_s * 1000.0, 0.5);
+    EXPECT_EQ(parameters.walk_speed_min, parameters.walk_speed_max);
+    EXPECT_EQ(parameters.walk_yaw_rate_max == 0, drive.experiment.drive.yaw_rate_deg_per_s == 0.0);
+  }
+  EXPECT_EQ(algorithms, (std::set<std::string>{"hill_sensing", "random_walk"}));
+}
+
+TEST(EscapeScenario, ManoeuvresAreBoundedAndHaveTheirOwnNames) {
+  std::set<std::string> names;
+  for (const Manoeuvre& manoeuvre : oracle_manoeuvres()) {
+    EXPECT_TRUE(names.insert(manoeuvre.name).second) << manoeuvre.name;
+    ASSERT_FALSE(manoeuvre.steps.empty());
+    for (const ManoeuvreStep& step : manoeuvre.steps) {
+      EXPECT_GT(step.duration_s, 0.0);
+      EXPECT_LE(std::abs(step.speed_m_per_s), 0.25);
+      EXPECT_LE(std::abs(step.turn_deg_per_s), 90.0);
+    }
+  }
+}
+
+// E. B. Wilson, J. Am. Stat. Assoc. 22, 1927; values by R's binom::binom.wilson.
+TEST(WilsonInterval, AgreesWithTabulatedValues) {
+  const ShareInterval half = wilson_interval(5, 10);
+  EXPECT_NEAR(half.low, 0.2366, 1e-4);
+  EXPECT_NEAR(half.high, 0.7634, 1e-4);
+  const ShareInterval none = wilson_interval(0, 10);
+  EXPECT_NEAR(none.low, 0.0, 1e-12);
+  EXPECT_NEAR(none.high, 0.2775, 1e-4);
+  const ShareInterval all = wilson_interval(10, 10);
+  EXPECT_NEAR(all.low, 0.7225, 1e-4);
+  EXPECT_NEAR(all.high, 1.0, 1e-12);
+  EXPECT_EQ(wilson_interval(0, 0).low, 0.0);
+  EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
+}
+
+}  // namespace
+}  // namespace screed::nn
