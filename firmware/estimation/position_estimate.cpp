@@ -8,8 +8,8 @@
 namespace screed {
 namespace {
 
-// Travel is booked as variance in pieces of 2^17 of its units: 128 mm.
-constexpr uint8_t kBookedShift = 17;
+// What both tracks travel is booked as variance in pieces of 128 mm each, counted in 16 um.
+constexpr uint16_t kBooked = 16000;
 
 /// length * factor (Q15), rounded; |length| below 2^30.
 int32_t times_q15(int32_t length, int16_t factor) {
@@ -17,14 +17,6 @@ int32_t times_q15(int32_t length, int16_t factor) {
 }
 
 }  // namespace
-
-// 2^-14 mm in 1/16 um: 1.024 = 1 + 3 / 125. drift^2 mm^2 a metre; of that 128 mm in units of 16
-// mm^2 are 1 / 125. It is rounded up: no drift at all would be a lie.
-PositionEstimate::PositionEstimate(uint16_t count_um_q4, int16_t drift_mm)
-    : PositionState(),
-      count_q4_(static_cast<uint16_t>(count_um_q4 + (count_um_q4 * 3UL + 62) / 125)),
-      noise_(static_cast<uint16_t>(quotient_u32(
-          mul_u16(static_cast<uint16_t>(drift_mm), static_cast<uint16_t>(drift_mm)) + 124, 125))) {}
 
 void PositionEstimate::reset() {
   static_cast<PositionState&>(*this) = PositionState();
@@ -34,19 +26,19 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
                               uint8_t share) {
   const int16_t left = clamp_i16(counts_left, -kMaxTrackCounts, kMaxTrackCounts);
   const int16_t right = clamp_i16(counts_right, -kMaxTrackCounts, kMaxTrackCounts);
-  // Mean of both tracks: half the sum; Q4, the half and the share together are a shift by 13. 100
-  // counts of 4 mm fit.
-  const auto counts = static_cast<int16_t>(left + right);
-  const int32_t travel = asr_round(
-      scale_q16(counts * static_cast<int32_t>(count_q4_), static_cast<int16_t>((share + 1) * 64)),
-      3);
+  // Mean of both tracks: half the sum; Q4, the half and the share together are a shift by 13, of
+  // which 16 - 3 are in the scaling. 2^-10 mm are 1.024 a um: 131 / 128, less 0.05 %.
+  const int32_t both = static_cast<int16_t>(left + right) * static_cast<int32_t>(count_um_q4_);
+  const auto scale = static_cast<int16_t>(static_cast<uint16_t>((share + 1) * 131) >> 1);
+  const int32_t travel = asr(scale_q16(both, scale), 3);
   const int32_t horizontal = times_q15(travel, cos_q15(pitch));
   place_[kX] = add_sat_i32(place_[kX], times_q15(horizontal, cos_q15(heading)));
   place_[kY] = add_sat_i32(place_[kY], times_q15(horizontal, sin_q15(heading)));
 
   // Of both tracks, so that a turn on the spot makes the place uncertain as well.
-  travel_ += mul_u16(static_cast<uint16_t>(abs_i16(left) + abs_i16(right)), count_q4_) >> 5;
-  if (travel_ >> kBookedShift == 0) return;
+  travel_ = static_cast<uint16_t>(travel_ + static_cast<uint8_t>(abs_i16(left) + abs_i16(right)) *
+                                                static_cast<uint16_t>(count_um_q4_ >> 8));
+  if (travel_ < kBooked) return;
   travel_ = 0;
   for (uint16_t& variance : variance_) {
     const auto sum = static_cast<uint16_t>(variance + noise_);
@@ -84,9 +76,8 @@ int32_t PositionEstimate::mm(uint8_t axis) const {
   return asr(place_[axis], 10);
 }
 
-uint16_t PositionEstimate::sigma_mm() const {
-  const uint16_t greater = variance_[kX] > variance_[kY] ? variance_[kX] : variance_[kY];
-  return static_cast<uint16_t>(isqrt32(static_cast<uint32_t>(greater) << 4));
+uint16_t PositionEstimate::sigma_mm(uint8_t axis) const {
+  return static_cast<uint16_t>(isqrt32(static_cast<uint32_t>(variance_[axis]) << 4));
 }
 
 }  // namespace screed

@@ -7,7 +7,7 @@
 //
 // Each axis is a Kalman filter of one state. Slip makes the position drift like a random walk, so
 // the variance grows with what the tracks travel:
-//   variance += drift^2 |travel|                         drift: mm per square root of a metre
+//   variance += noise |travel|
 // and with a measurement z of the variance r
 //   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
 #pragma once
@@ -22,14 +22,15 @@ namespace screed {
 struct PositionState {
   int32_t place_[2];      ///< 2^-10 mm
   uint16_t variance_[2];  ///< 16 mm^2: up to 1 m of standard deviation
-  uint32_t travel_;       ///< not booked as variance yet, 2^-10 mm
+  uint16_t travel_;       ///< of both tracks, not booked as variance yet, 16 um
 };
 
 class PositionEstimate : private PositionState {
  public:
-  /// count_um_q4: track travel per encoder count, 1/16 um. drift: standard deviation of the
-  /// position after 1 m of travel, mm, 0..400.
-  PositionEstimate(uint16_t count_um_q4, int16_t drift_mm);
+  /// count_um_q4: track travel per encoder count, 1/16 um. noise: variance of the position that a
+  /// metre of travel makes, 125 mm^2.
+  PositionEstimate(uint16_t count_um_q4, int16_t noise)
+      : PositionState(), count_um_q4_(count_um_q4), noise_(static_cast<uint16_t>(noise)) {}
 
   /// At the origin for sure.
   void reset();
@@ -51,14 +52,14 @@ class PositionEstimate : private PositionState {
   int32_t x_mm() const { return mm(kX); }
   int32_t y_mm() const { return mm(kY); }
   SCREED_OUT_OF_LINE int32_t mm(uint8_t axis) const;
-  /// Standard deviation of the less certain axis, mm; 1020: that, or more.
-  uint16_t sigma_mm() const;
+  /// Standard deviation along an axis, mm; 1020: that, or more.
+  SCREED_OUT_OF_LINE uint16_t sigma_mm(uint8_t axis) const;
 
  private:
   SCREED_OUT_OF_LINE void blend(uint8_t axis, int16_t innovation, int16_t sigma_mm);
 
-  uint16_t count_q4_;  ///< travel of a count, 2^-14 mm
-  uint16_t noise_;     ///< variance for each kBooked of travel, 16 mm^2
+  uint16_t count_um_q4_;
+  uint16_t noise_;  ///< 125 mm^2 a metre: 16 mm^2 for 128 mm
 };
 
 }  // namespace screed

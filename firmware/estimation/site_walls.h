@@ -16,9 +16,9 @@ class SiteWalls {
       : half_mm_{parameters.site_x, parameters.site_y},
         reach_mm_(static_cast<int16_t>(board.hull_reach_mm)) {}
 
-  /// The robot has driven against something; `travel`: where to, counter-clockwise from east. Of
-  /// the walls ahead it is the one that fits the position best. False where there are no walls, or
-  /// none can be there: then nothing is changed.
+  /// The robot has driven against something; `travel`: where to, counter-clockwise from east. It is
+  /// the wall that it travels to most directly. False where there is none, or it cannot be there:
+  /// then nothing is changed.
   bool touch(Angle travel, PositionEstimate& position) const;
 
   static constexpr uint8_t kSigma_mm = 40;  ///< of a place so found: hull, angle, piles

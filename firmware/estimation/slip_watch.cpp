@@ -17,9 +17,9 @@
 namespace screed {
 namespace {
 
-constexpr int16_t kMinLost = 625;       // 30 mm/s
-constexpr int16_t kMinHalfSpeed = 250;  // 50 mm/s
-constexpr int16_t kMaxVibration = 250;  // counts; 64 * 4 of it fit 16 bits
+constexpr int16_t kMaxResidual = 8000;   // four of them fit 16 bits
+constexpr uint16_t kMinHalfSpeed = 250;  // 50 mm/s
+constexpr int16_t kMaxVibration = 250;   // counts; 64 * 4 of it fit 16 bits
 constexpr uint8_t kYawShift = 4;
 constexpr uint8_t kEffortShift = 3;
 constexpr int16_t kMaxEffort = 2000;  // duty, both tracks; 8 of it fit 16 bits
@@ -73,16 +73,16 @@ void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
                                               (vibration.magnitude >> 4));
 }
 
-/// What the robot drives against stops it within a few ticks, while its tracks go on.
+/// What the robot drives against takes half of its speed, or more, within a few ticks, while its
+/// tracks go on.
 void SlipWatch::feel_collision(int16_t residual) {
-  lost_ = limit_i16(static_cast<int32_t>(lost_) - asr_i16(lost_, 2) + residual, INT16_MAX);
-  const int16_t lost = negated_if(half_speed_ < 0, lost_);
-  const auto fast = static_cast<int16_t>(abs_i16(half_speed_));
+  lost_ = static_cast<int16_t>(lost_ - asr_i16(lost_, 2) + residual);
+  const uint16_t fast = abs_i16(half_speed_);
   // Half the speed is half of 4.2 for each half of 0.1 mm/s.
-  if (fast >= kMinHalfSpeed && lost >= kMinLost && asr_i16(lost, 1) >= fast) {
-    since_collision_ = 0;
-  } else if (since_collision_ < kCollisionTicks) {
-    ++since_collision_;
+  if (fast >= kMinHalfSpeed && abs_i16(lost_) >> 1 >= fast) {
+    collision_ticks_ = kCollisionTicks;
+  } else if (collision_ticks_ != 0) {
+    --collision_ticks_;
   }
 }
 
@@ -103,7 +103,7 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   const int32_t residual = static_cast<int16_t>(gained + asr_i16(change, 2) - asr_i16(accel[0], 1) +
                                                 asr_i16(sin_pitch_q14, 3)) -
                            asr_i16(saturate_i16(asr(mean_, 8)), 1);
-  feel_collision(saturate_i16(residual));
+  feel_collision(limit_i16(residual, kMaxResidual));
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
   if (faster_track_ < kStanding_dmm_per_s) {
     mean_ += residual * 8;

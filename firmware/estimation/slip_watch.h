@@ -43,7 +43,7 @@ struct SlipMemory {
   int32_t mean_;  // of what enters velocity_loss_ when nothing slips: bias, error of the pitch; Q9
   int32_t velocity_loss_[3];  // belts' speed minus that by inertia; about 0.05 mm/s
   int16_t lost_;              // speed lost in a few ticks, in the same unit
-  uint8_t since_collision_;   // ticks
+  uint8_t collision_ticks_;   // left until a collision is long ago
   uint16_t faster_track_;     // track's speed, 0.1 mm/s
   int16_t yaw_rate_;          // smoothed, a quarter
   int16_t effort_;            // smoothed over 8 ticks, Q3 duty
@@ -72,9 +72,7 @@ class SlipWatch : private SlipMemory {
  public:
   // 126 = 40 pi = 10 (0.1 mm) x 4 (quartered rate) x pi (B/2 x 2 pi / 65536, Q16)
   explicit SlipWatch(uint16_t tread_mm)
-      : SlipMemory(), arc_q16_(static_cast<uint16_t>(tread_mm * 126U)) {
-    since_collision_ = kCollisionTicks;
-  }
+      : SlipMemory(), arc_q16_(static_cast<uint16_t>(tread_mm * 126U)) {}
 
   /// One tick. gyro, accel: the three counts (70 mdps, 0.244 mg) as they come; sin_pitch_q14 > 0:
   /// nose up; yaw_rate: angle units/s. Half a step of the network is made when `classify_now` is
@@ -95,7 +93,7 @@ class SlipWatch : private SlipMemory {
 
   /// The robot has driven against something hard within the last 2.5 s: it lost half of its speed
   /// within a few ticks. Digging in takes longer.
-  bool collided() const { return since_collision_ < kCollisionTicks; }
+  bool collided() const { return collision_ticks_ != 0; }
   static constexpr uint8_t kCollisionTicks = 250;
 
   // For training and tests.

@@ -52,13 +52,13 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
     : RobotMemory(),
       board_(board),
       parameters_(parameters),
-      position_(board.count_um_q4, parameters.position_drift),
-      walls_(board, parameters),
       supervisor_(parameters, parameters_intact),
       leveling_(parameters),
       drive_(board, parameters),
       slip_watch_(board.tread_mm),
-      gate_(credentials) {}
+      gate_(credentials),
+      position_(board.count_um_q4, parameters.position_noise),
+      walls_(board, parameters) {}
 
 void Robot::begin_first_tick(const SensorSample& sample) {
   event(message::EventCode::kStarted, sample.reset_cause);
@@ -339,6 +339,7 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
   view.sample = &sample;
   view.robot = &status_;
   view.position = &position_;
+  view.travel_share = slip_watch_.travel_share();
   view.uplink = &uplink_;
   view.slip = slip_watch_.slips() ? 1 : 0;
   view.stuck = slip_watch_.stuck() ? 1 : 0;

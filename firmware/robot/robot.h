@@ -98,8 +98,6 @@ class Robot : private RobotMemory {
   BoardConstants board_;
   Parameters parameters_;
   AttitudeEstimator attitude_;
-  PositionEstimate position_;
-  SiteWalls walls_;
   Supervisor supervisor_;
   Leveling leveling_;
   DriveControl drive_;
@@ -107,6 +105,8 @@ class Robot : private RobotMemory {
   SlcanParser parser_;
   Telemetry telemetry_;
   CommandGate gate_;
+  PositionEstimate position_;
+  SiteWalls walls_;
 };
 
 }  // namespace screed

@@ -110,7 +110,9 @@ void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
                 heading_cdeg(robot.angles.heading));
       break;
     case e2e_data_id(kIdPosition):
-      set(frame, message::Position{view.position->sigma_mm()});
+      set_words(frame, static_cast<int16_t>(view.position->sigma_mm(PositionEstimate::kX)),
+                static_cast<int16_t>(view.position->sigma_mm(PositionEstimate::kY)),
+                view.travel_share);
       break;
     case e2e_data_id(kIdAccelRaw):
       set_vector(frame, sample.accel);

@@ -23,6 +23,7 @@ struct TelemetryView {
   const SensorSample* sample;
   const RobotStatus* robot;
   const PositionEstimate* position;
+  uint8_t travel_share;  ///< SlipWatch::travel_share()
   const UplinkCounts* uplink;
   uint8_t slip;     ///< 1: the tracks move much more than the robot
   uint8_t stuck;    ///< 1: and have done so for long
