@@ -13,7 +13,7 @@ namespace screed {
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.
-constexpr uint8_t kStoreTicks = 220;
+constexpr uint8_t kStoreTicks = 200;
 static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
 
 static_assert(
@@ -52,13 +52,12 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
     : RobotMemory(),
       board_(board),
       parameters_(parameters),
+      odometry_(board.count_um_q4),
       supervisor_(parameters, parameters_intact),
       leveling_(parameters),
       drive_(board, parameters),
       slip_watch_(board.tread_mm),
-      gate_(credentials),
-      position_(board.count_um_q4, parameters.position_noise),
-      walls_(board, parameters) {}
+      gate_(credentials) {}
 
 void Robot::begin_first_tick(const SensorSample& sample) {
   event(message::EventCode::kStarted, sample.reset_cause);
@@ -98,10 +97,9 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
                               deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
   status_.angles = attitude_.angles();
-  position_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch,
-                   slip_watch_.travel_share());
-  status_.x_mm = position_.x_mm();
-  status_.y_mm = position_.y_mm();
+  odometry_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch);
+  status_.x_mm = odometry_.x_mm();
+  status_.y_mm = odometry_.y_mm();
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -208,20 +206,12 @@ RequestResult Robot::execute(const uint8_t* data) {
       drive_command_ = {drive.speed_mm_per_s, limit_i16(rate, INT16_MAX)};
       return RequestResult::kDone;
     }
-    case CommandOp::kPositionFix:
-      fix_position(get_drive_argument(argument));
-      return RequestResult::kDone;
     case CommandOp::kParameterRead:
       return send_parameter(get_u16(argument));
     case CommandOp::kParameterCommit:
       return commit_parameter(argument[0], get_u16(argument + 1));
   }
   return RequestResult::kBadArgument;
-}
-
-void Robot::fix_position(const DriveArgument& place_cm) {
-  position_.fix(place_cm.speed_mm_per_s, place_cm.turn_ddeg_per_s, parameters_.fix_sigma);
-  located_ = true;
 }
 
 int16_t& Robot::parameter(uint8_t index) {
@@ -255,7 +245,6 @@ RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
   }
   supervisor_.configure(parameters_);
   new (&leveling_) Leveling(parameters_);
-  walls_ = SiteWalls(board_, parameters_);
   new (&drive_) DriveControl(board_, parameters_);
   store_parameter_ = static_cast<uint8_t>(index + 1U);
   store_value_ = value_16;
@@ -291,8 +280,8 @@ void Robot::select_motion() {
     leveling_.start();
     // The site lies round the place where the run began. One that goes on after a stop is the same
     // run: otherwise the site would wander with every stop.
-    if (status_.state != RobotState::kStopped && !located_) {
-      position_.reset();
+    if (status_.state != RobotState::kStopped) {
+      odometry_.reset();
       status_.x_mm = 0;
       status_.y_mm = 0;
     }
@@ -319,18 +308,6 @@ void Robot::watch_slip(const SensorSample& sample) {
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
 
-// Stuck after a collision it stands at a wall.
-void Robot::feel_walls() {
-  const bool stuck = slip_watch_.stuck();
-  if (stuck && !was_stuck_ && slip_watch_.collided()) {
-    const bool backwards = drive_.speed_left_dmm_per_s() + drive_.speed_right_dmm_per_s() < 0;
-    if (walls_.touch(wrap_angle(status_.angles.heading + (backwards ? 32768 : 0)), position_)) {
-      event(message::EventCode::kWall, status_.angles.heading);
-    }
-  }
-  was_stuck_ = stuck;
-}
-
 void Robot::announce_state() {
   const RobotState state = supervisor_.state();
   if (state == status_.state) return;
@@ -344,8 +321,6 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
   TelemetryView view;
   view.sample = &sample;
   view.robot = &status_;
-  view.position = &position_;
-  view.travel_share = slip_watch_.travel_share();
   view.uplink = &uplink_;
   view.slip = slip_watch_.slips() ? 1 : 0;
   view.stuck = slip_watch_.stuck() ? 1 : 0;
@@ -403,7 +378,6 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
     status_.duty = {0, 0};
   }
   watch_slip(sample);
-  feel_walls();
   announce_state();
   report(sample, output);
   write_actuators(output);

@@ -24,13 +24,13 @@ constexpr Schedule every(uint8_t first) {
   return {Message::kId, static_cast<uint8_t>(Message::kPeriod_ms / kTick_ms), first};
 }
 
-// In order of importance; 121 lines a second of 200 possible, 2562 of the 2850 bytes of the budget.
+// In order of importance; 119 lines a second of 200 possible, 2562 of the 2850 bytes of the budget.
 const Schedule kSchedule[] SCREED_PROGRAM_MEMORY = {
     every<message::Heartbeat>(0), every<message::Attitude>(1), every<message::Encoders>(2),
     every<message::Motors>(3),    every<message::Leveling>(4), every<message::Odometry>(6),
     every<message::AccelRaw>(8),  every<message::GyroRaw>(9),  every<message::Power>(14),
     every<message::MagRaw>(24),   every<message::Baro>(34),    every<message::Health>(44),
-    every<message::Link>(54),     every<message::Time>(64),    every<message::Position>(74),
+    every<message::Link>(54),     every<message::Time>(64),
 };
 static_assert(sizeof(kSchedule) / sizeof(kSchedule[0]) == kTelemetryMessages,
               "every message with a period has a row");
@@ -108,11 +108,6 @@ void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
     case e2e_data_id(kIdOdometry):
       set_words(frame, saturate_i16(robot.x_mm), saturate_i16(robot.y_mm),
                 heading_cdeg(robot.angles.heading));
-      break;
-    case e2e_data_id(kIdPosition):
-      set_words(frame, static_cast<int16_t>(view.position->sigma_mm(PositionEstimate::kX)),
-                static_cast<int16_t>(view.position->sigma_mm(PositionEstimate::kY)),
-                view.travel_share);
       break;
     case e2e_data_id(kIdAccelRaw):
       set_vector(frame, sample.accel);

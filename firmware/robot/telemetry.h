@@ -9,7 +9,6 @@
 
 #include <stdint.h>
 
-#include "firmware/estimation/position_estimate.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/protocol/messages.h"
 #include "firmware/robot/robot_status.h"
@@ -22,8 +21,6 @@ namespace screed {
 struct TelemetryView {
   const SensorSample* sample;
   const RobotStatus* robot;
-  const PositionEstimate* position;
-  uint8_t travel_share;  ///< SlipWatch::travel_share()
   const UplinkCounts* uplink;
   uint8_t slip;     ///< 1: the tracks move much more than the robot
   uint8_t stuck;    ///< 1: and have done so for long

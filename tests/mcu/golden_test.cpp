@@ -18,7 +18,7 @@ struct HostLink {
 
 constexpr const char* kNames[kGoldenSections] = {"shifts",   "scale_q16", "sine",       "atan2",
                                                  "sqrt",     "units",     "kinematics", "control",
-                                                 "position", "attitude",  "leveling",   "messages"};
+                                                 "odometry", "attitude",  "leveling",   "messages"};
 
 TEST(GoldenVectors, McuAgreesWithHost) {
   HostLink host;

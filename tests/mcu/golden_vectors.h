@@ -10,8 +10,7 @@
 #include "firmware/control/kinematics.h"
 #include "firmware/control/track_speed_control.h"
 #include "firmware/estimation/attitude.h"
-#include "firmware/estimation/position_estimate.h"
-#include "firmware/estimation/site_walls.h"
+#include "firmware/estimation/odometry.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/math/fixed.h"
 #include "firmware/math/random.h"
@@ -236,26 +235,16 @@ void golden_control(Link& link) {
 }
 
 template <typename Link>
-void golden_position(Link& link) {
+void golden_odometry(Link& link) {
   GoldenNumbers numbers;
-  PositionEstimate position(kGoldenBoard.count_um_q4, 42);
-  Parameters parameters;
-  parameters.site_x = 1500;
-  parameters.site_y = 1280;
-  const SiteWalls walls(kGoldenBoard, parameters);
+  Odometry odometry(kGoldenBoard.count_um_q4);
   for (uint16_t i = 0; i < 500; ++i) {
     const int16_t left = numbers.within(100);
     const int16_t right = numbers.within(100);
     const Angle heading = numbers.narrow();
-    position.update(left, right, heading, numbers.within(8000), static_cast<uint8_t>(i));
-    bool fits = false;
-    if (i % 16U == 0) fits = position.measure(PositionEstimate::kX, numbers.within(3000), 20);
-    if (i % 16U == 8) fits = walls.touch(heading, position);
-    if (i % 128U == 100) position.fix(numbers.within(200), numbers.within(200), 30);
-    put_signed(link, position.x_mm());
-    put_signed(link, position.y_mm());
-    put_word(link, position.sigma_mm());
-    put_word(link, fits ? 1U : 0U);
+    odometry.update(left, right, heading, numbers.within(8000));
+    put_signed(link, odometry.x_mm());
+    put_signed(link, odometry.y_mm());
   }
 }
 
@@ -368,7 +357,7 @@ void golden_section(uint8_t section, Link& link) {
     case 7:
       return golden_control(link);
     case 8:
-      return golden_position(link);
+      return golden_odometry(link);
     case 9:
       return golden_attitude(link);
     case 10:

@@ -347,12 +347,12 @@ TEST(Run, BeginsAtItsOwnOrigin) {
     robot.tick();
   }
   robot.run(50);  // set down: tracks that something else turns keep it from being armed
-  EXPECT_GT(std::abs(robot.robot.position().x_mm()) + std::abs(robot.robot.position().y_mm()), 500);
+  EXPECT_GT(std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm()), 500);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   robot.send(robot.command(CommandOp::kRun));
   while (robot.state() != RobotState::kRunning) robot.tick();
-  EXPECT_LE(std::abs(robot.robot.position().x_mm()), 1);
-  EXPECT_LE(std::abs(robot.robot.position().y_mm()), 1);
+  EXPECT_LE(std::abs(robot.robot.odometry().x_mm()), 1);
+  EXPECT_LE(std::abs(robot.robot.odometry().y_mm()), 1);
 }
 
 TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
@@ -363,7 +363,7 @@ TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
   robot.send(robot.command(CommandOp::kDrive, {200, 0}));
   robot.run(300);
   const auto way = [&robot] {
-    return std::abs(robot.robot.position().x_mm()) + std::abs(robot.robot.position().y_mm());
+    return std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm());
   };
   ASSERT_GT(way(), 300);
   ASSERT_EQ(result_of(robot, CommandOp::kStop), RequestResult::kDone);

@@ -107,8 +107,8 @@ void compare(const HeardRobot& robot, const CanFrame& frame) {
     }
     case message::Odometry::kId: {
       const auto it = message::Odometry::unpack(frame.data);
-      EXPECT_EQ(it.x, core.position().x_mm());
-      EXPECT_EQ(it.y, core.position().y_mm());
+      EXPECT_EQ(it.x, core.odometry().x_mm());
+      EXPECT_EQ(it.y, core.odometry().y_mm());
       break;
     }
     case message::AccelRaw::kId:
@@ -147,8 +147,8 @@ TEST_P(RobotDownlinkTo, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
   hear(4);
   robot.send(robot.command(CommandOp::kDrive, {150, 100}));
   hear(300);
-  const int32_t x_mm = std::abs(robot.robot.position().x_mm());
-  const int32_t y_mm = std::abs(robot.robot.position().y_mm());
+  const int32_t x_mm = std::abs(robot.robot.odometry().x_mm());
+  const int32_t y_mm = std::abs(robot.robot.odometry().y_mm());
   EXPECT_GT(std::max(x_mm, y_mm), 100);
   EXPECT_EQ(x_mm > y_mm, !GetParam()) << x_mm << " " << y_mm;
   robot.sample.accel[1] = 700;  // rolls
