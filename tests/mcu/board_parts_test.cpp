@@ -132,7 +132,7 @@ TEST_F(BoardParts, ChangesAndSavesParameters) {
   const std::string threshold = "p " + std::to_string(index_of("climb_threshold"));
   EXPECT_EQ(ask(threshold), threshold + " 500\n");
   EXPECT_EQ(ask(threshold + " 750"), threshold + " 750\n");
-  EXPECT_EQ(ask("w", 1500), "ok\n");
+  EXPECT_EQ(ask("w", 2000), "ok\n");
   for (const std::uint8_t index :
        {std::uint8_t{0}, std::uint8_t{1}}) {  // a blank store gets both copies
     const ParameterCopy copy = read_copy(index);

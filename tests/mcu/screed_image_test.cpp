@@ -246,7 +246,13 @@ TEST(ScreedImage, ReversesAMotorOnlyWithoutDuty) {
       if (it.bench.mcu.word(it.duty_register) != 0) ++it.changes_under_power;
     };
   };
+  // As the ground station says: of the other algorithms a robot that the world pushes may be stuck.
+  bench.ground_station = true;
+  bench.run_ms(500);
+  bench.set_parameter(0, static_cast<std::int16_t>(message::LevelingAlgorithm::kDrive));
   set_off(bench);
+  bench.command(CommandOp::kDrive, {100, 0});
+  bench.run_ms(500);
   bench.mcu.watch_pin({'D', 6}, watch(left));
   bench.mcu.watch_pin({'E', 2}, watch(right));
   // Downhill: the motors have to brake. For long no slope pushes so.
