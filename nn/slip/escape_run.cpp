@@ -210,15 +210,4 @@ EscapeResult escape_trials(std::uint64_t seed, const EscapeOptions& options,
   return result;
 }
 
-ShareInterval wilson_interval(int successes, int trials) {
-  if (trials == 0) return {0.0, 1.0};
-  constexpr double kZ = 1.959963984540054;  // 97.5 % of the normal distribution
-  const double n = trials;
-  const double share = successes / n;
-  const double spread = kZ * std::sqrt(share * (1.0 - share) / n + kZ * kZ / (4.0 * n * n));
-  const double centre = share + kZ * kZ / (2.0 * n);
-  const double scale = 1.0 + kZ * kZ / n;
-  return {std::max(0.0, (centre - spread) / scale), std::min(1.0, (centre + spread) / scale)};
-}
-
 }  // namespace screed::nn

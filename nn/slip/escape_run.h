@@ -66,11 +66,4 @@ struct EscapeOptions {
 EscapeResult escape_trials(std::uint64_t seed, const EscapeOptions& options,
                            const TaskProgress& progress = {});
 
-/// Wilson's interval of a share, 95 %; {0, 1} of none.
-struct ShareInterval {
-  double low;
-  double high;
-};
-ShareInterval wilson_interval(int successes, int trials);
-
 }  // namespace screed::nn

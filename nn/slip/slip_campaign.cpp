@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kTrapped_s = 14.0;
 constexpr std::size_t kShareWindow = kTickRate_hz / 2;
-constexpr double kNormal95 = 1.959964;
 
 void add_drive(SlipFigures& figures, const SlipDrive& drive) {
   const TrueMotion motion(drive);
@@ -49,24 +48,6 @@ std::vector<StuckScenario> scenarios(const SlipCampaign& campaign) {
 
 std::vector<SlipDrive> run(const SlipCampaign& campaign, const TaskProgress& progress) {
   return drive_all(scenarios(campaign), campaign.threads, progress, campaign.folder);
-}
-
-Interval wilson(int hits, int all) {
-  if (all == 0) return {0.0, 1.0};
-  const double n = all;
-  const double share = hits / n;
-  const double z2 = kNormal95 * kNormal95;
-  const double middle = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
-  const double half =
-      kNormal95 / (1.0 + z2 / n) * std::sqrt(share * (1.0 - share) / n + z2 / (4.0 * n * n));
-  return {middle - half, middle + half};
-}
-
-Interval poisson(int count) {
-  const auto end = [](double n, double z) {
-    return n <= 0.0 ? 0.0 : n * std::pow(1.0 - 1.0 / (9.0 * n) + z / (3.0 * std::sqrt(n)), 3.0);
-  };
-  return {end(count, -kNormal95), end(count + 1.0, kNormal95)};
 }
 
 void ShareError::add(double said, double truth, double weight_of_it) {

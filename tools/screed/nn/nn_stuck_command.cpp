@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host_sim/core/quantile.h"
+#include "nn/slip/intervals.h"
 #include "nn/slip/slip_campaign.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/nn/slip_options.h"

@@ -46,20 +46,5 @@ TEST(EscapeScenario, ManoeuvresAreBoundedAndHaveTheirOwnNames) {
   }
 }
 
-// E. B. Wilson, J. Am. Stat. Assoc. 22, 1927; values by R's binom::binom.wilson.
-TEST(WilsonInterval, AgreesWithTabulatedValues) {
-  const ShareInterval half = wilson_interval(5, 10);
-  EXPECT_NEAR(half.low, 0.2366, 1e-4);
-  EXPECT_NEAR(half.high, 0.7634, 1e-4);
-  const ShareInterval none = wilson_interval(0, 10);
-  EXPECT_NEAR(none.low, 0.0, 1e-12);
-  EXPECT_NEAR(none.high, 0.2775, 1e-4);
-  const ShareInterval all = wilson_interval(10, 10);
-  EXPECT_NEAR(all.low, 0.7225, 1e-4);
-  EXPECT_NEAR(all.high, 1.0, 1e-12);
-  EXPECT_EQ(wilson_interval(0, 0).low, 0.0);
-  EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
-}
-
 }  // namespace
 }  // namespace screed::nn
