@@ -79,8 +79,27 @@ void choose_trap(Draw& draw, Experiment& e, const std::string& ground, DriveKind
   spins = trap == kStartsInRuts && draw.one_in_two();
 }
 
-/// Leveling algorithms, or straight on along the bed, again and again through the same ruts.
+/// A bed with walls and steep relief, as those that are leveled: the robot meets walls, its own
+/// ruts and slopes that slide.
+void choose_bed(Draw& draw, Experiment& e) {
+  constexpr const char* kAlgorithms[] = {"hill_sensing", "spin_on_peak", "random_walk"};
+  e.experiment.algorithm = kAlgorithms[draw.below(std::size(kAlgorithms))];
+  e.map.edges = "walls";
+  e.map.size_m = draw.between(1.6, 3.0);
+  e.map.max_slope_deg = draw.between(8.0, 25.0);
+  e.vehicle.x_m = draw.between(-0.3, 0.3);
+  e.vehicle.y_m = draw.between(-0.3, 0.3);
+  // Half of them turn before they meet a wall.
+  if (draw.one_in_two()) e.parameters.site_radius = 450;
+}
+
+/// Leveling algorithms on open ground or in a bed, or straight on along the bed, again and again
+/// through the same ruts.
 void choose_ordinary_drive(Draw& draw, Experiment& e) {
+  if (draw.one_in_two()) {
+    choose_bed(draw, e);
+    return;
+  }
   constexpr const char* kAlgorithms[] = {"hill_sensing", "spin_on_peak", "training_drive", "drive"};
   e.experiment.algorithm = kAlgorithms[draw.below(std::size(kAlgorithms))];
   if (e.experiment.algorithm != "drive") return;
