@@ -16,6 +16,7 @@ constexpr BoardConstants kBoard = {
     195,   // track centre to track centre, as in rover5.urdf
     7200,  // motor data sheet
     250,   // Rover 5 data sheet: 25 cm/s
+    145,   // 245 x 225 mm over the tracks (data sheet): 123 to 167
 };
 
 }  // namespace screed

@@ -18,6 +18,7 @@ constexpr BoardConstants kBoard = {
     85,    // estimate: 98 mm over all, tracks 13 mm wide
     6000,  // motor data sheet
     796,   // 400 rpm without load at 6 V (motor data sheet) times 119.4 mm
+    59,    // 98 x 98 mm over all: 49 to 69
 };
 
 }  // namespace screed

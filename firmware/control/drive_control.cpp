@@ -27,22 +27,22 @@ constexpr uint8_t kYawLag = 4;
 // Twice that and half a step still fit 16 bits; 88 degrees/s.
 constexpr int16_t kYawErrorLimit = 16000;
 
-int16_t approach(int16_t value, int16_t target, int16_t step) {
+SCREED_OUT_OF_LINE int16_t approach(int16_t value, int16_t target, int16_t step) {
   return static_cast<int16_t>(value + limit_i16(static_cast<int32_t>(target) - value, step));
 }
 
 }  // namespace
 
 DriveControl::DriveControl(const BoardConstants& board, const Parameters& parameters)
-    : kinematics_(board.tread_mm),
-      left_(board, parameters),
-      right_(left_),
-      full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
+    : full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
       step_mm_per_s_(
           static_cast<int16_t>(static_cast<uint16_t>(parameters.accel_limit + kTickRate_hz - 1) /
                                static_cast<uint16_t>(kTickRate_hz))),
       yaw_kp_(parameters.yaw_kp),
-      yaw_ki_(parameters.yaw_ki) {}
+      yaw_ki_(parameters.yaw_ki),
+      kinematics_(board.tread_mm),
+      left_(board, parameters),
+      right_(left_) {}
 
 void DriveControl::idle(const DriveMeasurement& measured) {
   targets_ = {0, 0};
@@ -56,7 +56,8 @@ SCREED_OUT_OF_LINE void DriveControl::forget_yaw() {
   yaw_integral_q8_ = 0;
 }
 
-int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate) {
+SCREED_OUT_OF_LINE int32_t DriveControl::corrected_yaw_rate(const MotionCommand& command,
+                                                            int32_t measured_rate) {
   const int16_t seen =
       limit_i16(static_cast<int32_t>(command.yaw_rate) - measured_rate, kYawErrorLimit);
   yaw_error_ = static_cast<int16_t>(

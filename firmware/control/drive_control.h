@@ -53,16 +53,16 @@ class DriveControl {
   void forget_yaw();
   int32_t corrected_yaw_rate(const MotionCommand& command, int32_t measured_rate);
 
+  TrackSpeeds targets_ = {0, 0};
+  int32_t yaw_integral_q8_ = 0;  ///< angle units/s
+  int16_t yaw_error_ = 0;        ///< with a lag, angle units/s
+  int16_t full_speed_mm_per_s_;
+  int16_t step_mm_per_s_;  ///< greatest change of a target in one tick
+  int16_t yaw_kp_;
+  int16_t yaw_ki_;
   SkidSteer kinematics_;
   TrackSpeedControl left_;
   TrackSpeedControl right_;
-  TrackSpeeds targets_ = {0, 0};
-  int32_t yaw_integral_q8_ = 0;  ///< angle units/s
-  int16_t full_speed_mm_per_s_;
-  int16_t step_mm_per_s_;  ///< greatest change of a target in one tick
-  int16_t yaw_error_ = 0;  ///< with a lag, angle units/s
-  int16_t yaw_kp_;
-  int16_t yaw_ki_;
 };
 
 }  // namespace screed

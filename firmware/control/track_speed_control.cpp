@@ -48,14 +48,13 @@ SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
 }
 
 void TrackSpeedControl::expect(int16_t target_mm_per_s) {
-  const int32_t target_q4 = static_cast<int32_t>(target_mm_per_s) * 160;
+  const int32_t target_q4 = mul_i16(target_mm_per_s, 160);
   halfway_q4_ += asr_round((target_q4 - halfway_q4_) * kLag_q8, 8);
   expected_q4_ += asr_round((halfway_q4_ - expected_q4_) * kLag_q8, 8);
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
-  const int32_t step_q12 =
-      static_cast<int32_t>(clamp_i16(counts, -kMaxTrackCounts, kMaxTrackCounts)) * 4096;
+  const int32_t step_q12 = static_cast<int32_t>(counts) * 4096;
   const int32_t error = lag_q12_ + step_q12 - speed_q12_;
   lag_q12_ = error - asr(error * kAlpha_q8, 8);
   // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the
@@ -79,19 +78,19 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
     return 0;
   }
 
-  const int32_t error =
+  const int16_t error =
       limit_i16(asr_round(expected_q4_, 4) - motion_.speed_dmm_per_s, kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A
   // lower reading than half the nominal one is implausible; limits the compensation to twice.
   const auto least_mv = static_cast<uint16_t>(nominal_mv_ / 2);
   const uint16_t supply_mv = battery_mv < least_mv ? least_mv : battery_mv;
-  const int32_t nominal_q4 = asr(static_cast<int32_t>(target_mm_per_s) * feed_forward_q8_, 4);
+  const int32_t nominal_q4 = asr(mul_i16(target_mm_per_s, feed_forward_q8_), 4);
   const int32_t feed_forward_q10 =
       nominal_q4 *
       static_cast<int32_t>(quotient_u16(static_cast<uint32_t>(nominal_mv_) << 6, supply_mv));
   // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
-  const int32_t proportional_q8 = asr(static_cast<int32_t>(kp_) * error * 102, 6);
+  const int32_t proportional_q8 = asr(mul_i16(kp_, error) * 102, 6);
   const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);
 
   // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
@@ -100,8 +99,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
                           (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
   if (!pushes_out) {
-    integral_q16_ = limit_i32(integral_q16_ + asr(static_cast<int32_t>(ki_) * error * 131, 5),
-                              kIntegralLimit_q16);
+    integral_q16_ =
+        limit_i32(integral_q16_ + asr(mul_i16(ki_, error) * 131, 5), kIntegralLimit_q16);
   }
   const int16_t duty = limit_i16(without_integral + asr(integral_q16_, 16), kDutyMax);
   motion_.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));

@@ -18,6 +18,8 @@
 //                         at first gravity += difference / (n + 1)
 //   correction            w = (1 - |q|^2) / 2,  x = gravity[1] / (2 g),  y = -gravity[0] / (2 g)
 //   learn_bias_in_motion  bias -= 0.02/s T (E transposed) (x, y, 0)
+//   trust                 f = (|mag|, m[2]),  field += (f - field) / 2^3 at first, / 2^11 then
+//                         trusted: |f - field| <= |mag| / 8 in both
 //   heading_correction    m = E mag,  error = atan2(m[0], m[1]),  z = gain error / 2
 //                         gain = 1 / (n + 1) at first, then T / 9 s a tick
 //   correct               q += (w, x, y, z) q,  gravity turned about x and y by twice that
@@ -61,6 +63,12 @@ constexpr int16_t kHeadingRateLimit = 2928;     // 0.02 degrees a tick as half a
 constexpr int16_t kMaxHalfAngle = 32767;        // Q24; can be negated
 constexpr uint8_t kMagAgeLimit = 10;
 
+// What strength and inclination of the field have to keep to: an eighth, or 7 degrees; it is
+// learned in 0.1 s at first, then anew in 20 s, as VQF does.
+constexpr uint8_t kFieldTolerance = 3;
+constexpr uint8_t kFieldStartShift = 3;
+constexpr uint8_t kFieldShift = 11;
+
 // Rest: no axis differs from its own short mean (time constant 0.64 s) by more than this, for 1.5
 // s.
 constexpr uint8_t kMeanBits = 14;
@@ -88,7 +96,7 @@ int16_t mean_gain_q16(uint16_t n) {
 }
 
 /// value * 2^kMeanBits, by a move of 16 bits and a short shift.
-int32_t with_mean_bits(int16_t value) {
+SCREED_OUT_OF_LINE int32_t with_mean_bits(int16_t value) {
   const uint32_t moved = static_cast<uint32_t>(static_cast<uint16_t>(value)) << 16;
   return asr(static_cast<int32_t>(moved), 16 - kMeanBits);
 }
@@ -122,7 +130,11 @@ void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
     learn_bias_in_motion(to_earth, correction);
   }
   if (mag_age_ < kMagAgeLimit) ++mag_age_;
-  if (sample.mag_fresh) correction.z = heading_correction(to_earth, sample.mag);
+  if (mag_distrusted_ < UINT16_MAX) ++mag_distrusted_;
+  if (sample.mag_fresh && trust(to_earth, sample.mag)) {
+    correction.z = heading_correction(to_earth, sample.mag);
+    mag_distrusted_ = 0;
+  }
   correct(correction);
 }
 
@@ -247,6 +259,23 @@ void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int
   }
 }
 
+/// The field is that of the site, as far as its strength and its inclination tell: the length of
+/// the measured vector and its vertical part are what they were.
+bool AttitudeEstimator::trust(const RotationMatrix& to_earth, const int16_t (&mag)[3]) {
+  uint32_t squared = 0;
+  for (const int16_t count : mag) squared += static_cast<uint32_t>(mul_i16(count, count));
+  const auto strength = static_cast<int16_t>(isqrt32(squared) >> 1);
+  const int16_t sum = limit_i16(asr(dot_q14(to_earth.row[2], mag), 2) + strength, INT16_MAX);
+  const int32_t change = with_mean_bits(sum) - field_;
+  const bool starting = mag_samples_ < kHeadingLimitedFrom;
+  field_ += asr_round(change, starting ? kFieldStartShift : kFieldShift);
+  return starting || abs_i16(detail::high_half(change)) < static_cast<uint16_t>(strength) >> 5;
+}
+
+uint8_t AttitudeEstimator::heading_sigma() const {
+  return mag_samples_ == 0 ? UINT8_MAX : static_cast<uint8_t>(4 + (mag_distrusted_ >> 11));
+}
+
 /// Half angle about the vertical, Q24, by which the magnetometer pulls its horizontal part to
 /// north.
 int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
@@ -262,14 +291,14 @@ int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
     for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] = components(turned)[i] * 2;
     return 0;
   }
-  const int32_t gain = mag_samples_ < kHeadingStartSamples
-                           ? static_cast<int32_t>(kHalfAnglePerAngle / (mag_samples_ + 1U))
-                           : static_cast<int32_t>(kHeadingGain) * age;
+  const auto gain = mag_samples_ < kHeadingStartSamples
+                        ? static_cast<int16_t>(kHalfAnglePerAngle / (mag_samples_ + 1U))
+                        : static_cast<int16_t>(kHeadingGain * age);
   const auto limit = mag_samples_ < kHeadingLimitedFrom
                          ? kMaxHalfAngle
                          : static_cast<int16_t>(kHeadingRateLimit * age);
   if (mag_samples_ < kHeadingStartSamples) ++mag_samples_;
-  return limit_i16(asr_round(static_cast<int32_t>(error) * gain, 6), limit);
+  return limit_i16(asr_round(mul_i16(error, gain), 6), limit);
 }
 
 /// Turns the estimate about the earth's axes, and the filtered gravity with it, so that nothing is

@@ -55,6 +55,10 @@ struct AttitudeState {
   uint8_t rest_ticks_;     // stops at kRestTicks
   uint8_t bias_samples_;   // taken at rest, stops at kBiasTicks
   bool known_;             // gravity has been averaged once
+  // Strength of the magnetic field and its part along gravity, halves of counts, 14 binary digits:
+  // what is measured now has to agree with them.
+  int32_t field_;
+  uint16_t mag_distrusted_;  // ticks since the magnetometer was last trusted, stops at its end
 };
 
 class AttitudeEstimator : private AttitudeState {
@@ -98,6 +102,15 @@ class AttitudeEstimator : private AttitudeState {
   /// The magnetometer has set the heading.
   bool heading_ready() const { return mag_samples_ != 0; }
 
+  /// The magnetic field differs from what it was, so the heading follows the gyroscope alone.
+  bool mag_disturbed() const { return mag_distrusted_ > kMagHitchTicks; }
+
+  /// Standard deviation of the heading by its age, 0.5 degrees: 2 degrees while the magnetometer is
+  /// trusted, then 0.5 more in 20 s; 255 before the magnetometer has set it.
+  uint8_t heading_sigma() const;
+
+  static constexpr uint8_t kMagHitchTicks = 20;  ///< without a sample to trust: no disturbance yet
+
   /// Standstill is detected: the bias is being taken from the gyroscope's mean.
   bool at_rest() const { return rest_ticks_ == kRestTicks; }
 
@@ -111,6 +124,7 @@ class AttitudeEstimator : private AttitudeState {
   void learn_bias_in_motion(const RotationMatrix& to_earth, const SmallQuaternion& correction);
   void integrate(const int16_t (&gyro)[3]);
   void filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]);
+  bool trust(const RotationMatrix& to_earth, const int16_t (&mag)[3]);
   int16_t heading_correction(const RotationMatrix& to_earth, const int16_t (&mag)[3]);
   void correct(const SmallQuaternion& correction);
 };

@@ -5,6 +5,7 @@
 //   residual   = dv - T (a - g sin pitch) - mean
 //   mean      += residual / 64 while the tracks stand (0.64 s), / 512 while they turn (5 s)
 //   loss_k    += residual - loss_k / 2^6, 2^8, 2^10  leaky sums of 0.6, 2.6 and 10 s; 0 at rest
+//   lost      += residual - lost / 4              of the last few ticks, for collisions
 //   vibration: x - its mean (0.64 s), clipped, low pass of 4 ticks, mean magnitude (0.16 s)
 //   yaw rate: low pass of 16 ticks; effort: of 8
 //   evidence  += ((held + 1) / 2 - evidence) / 4  every fourth tick: 0.16 s
@@ -16,7 +17,9 @@
 namespace screed {
 namespace {
 
-constexpr int16_t kMaxVibration = 250;  // counts; 64 * 4 of it fit 16 bits
+constexpr int16_t kMaxResidual = 8000;   // four of them fit 16 bits
+constexpr uint16_t kMinHalfSpeed = 250;  // 50 mm/s
+constexpr int16_t kMaxVibration = 250;   // counts; 64 * 4 of it fit 16 bits
 constexpr uint8_t kYawShift = 4;
 constexpr uint8_t kEffortShift = 3;
 constexpr int16_t kMaxEffort = 2000;  // duty, both tracks; 8 of it fit 16 bits
@@ -42,7 +45,7 @@ int8_t logarithm_q5(uint16_t value) {
   return static_cast<int8_t>(result + static_cast<int16_t>(value >> 8) - 32);
 }
 
-int8_t byte_of(int16_t value) {
+SCREED_OUT_OF_LINE int8_t byte_of(int16_t value) {
   return static_cast<int8_t>(limit_i16(value, INT8_MAX));
 }
 
@@ -70,6 +73,19 @@ void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
                                               (vibration.magnitude >> 4));
 }
 
+/// What the robot drives against takes half of its speed, or more, within a few ticks, while its
+/// tracks go on.
+SCREED_OUT_OF_LINE void SlipWatch::feel_collision(int16_t residual) {
+  lost_ = static_cast<int16_t>(lost_ - asr_i16(lost_, 2) + residual);
+  const uint16_t fast = abs_i16(half_speed_);
+  // Half the speed is half of 4.2 for each half of 0.1 mm/s.
+  if (fast >= kMinHalfSpeed && abs_i16(lost_) >> 1 >= fast) {
+    collision_ticks_ = kCollisionTicks;
+  } else if (collision_ticks_ != 0) {
+    --collision_ticks_;
+  }
+}
+
 void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const int16_t* gyro,
                      const int16_t* accel, int16_t sin_pitch_q14, int32_t yaw_rate,
                      bool classify_now) {
@@ -87,6 +103,7 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   const int32_t residual = static_cast<int16_t>(gained + asr_i16(change, 2) - asr_i16(accel[0], 1) +
                                                 asr_i16(sin_pitch_q14, 3)) -
                            asr_i16(saturate_i16(asr(mean_, 8)), 1);
+  feel_collision(limit_i16(residual, kMaxResidual));
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
   if (faster_track_ < kStanding_dmm_per_s) {
     mean_ += residual * 8;

@@ -42,6 +42,8 @@ struct SlipMemory {
 
   int32_t mean_;  // of what enters velocity_loss_ when nothing slips: bias, error of the pitch; Q9
   int32_t velocity_loss_[3];  // belts' speed minus that by inertia; about 0.05 mm/s
+  int16_t lost_;              // speed lost in a few ticks, in the same unit
+  uint8_t collision_ticks_;   // left until a collision is long ago
   uint16_t faster_track_;     // track's speed, 0.1 mm/s
   int16_t yaw_rate_;          // smoothed, a quarter
   int16_t effort_;            // smoothed over 8 ticks, Q3 duty
@@ -89,6 +91,11 @@ class SlipWatch : private SlipMemory {
   /// all of it, which is also said where nothing is known, with tracks at rest.
   uint8_t travel_share() const { return travel_share_; }
 
+  /// The robot has driven against something hard within the last 2.5 s: it lost half of its speed
+  /// within a few ticks. Digging in takes longer.
+  bool collided() const { return collision_ticks_ != 0; }
+  static constexpr uint8_t kCollisionTicks = 250;
+
   // For training and tests.
   const int8_t* network_inputs() const { return values_; }
   uint16_t evidence() const { return evidence_; }
@@ -99,6 +106,7 @@ class SlipWatch : private SlipMemory {
 
  private:
   static void update_vibration(Vibration& vibration, int16_t counts);
+  void feel_collision(int16_t residual);
   void set_share(uint8_t input, bool negative, uint16_t part);
   void set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14);
   void conclude();

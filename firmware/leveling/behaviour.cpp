@@ -26,9 +26,9 @@ void Behaviour::enter_or_stay(LevelingState next) {
     if (ticks_in_state_ < UINT16_MAX) ++ticks_in_state_;
     return;
   }
-  // One that the fence or the escape cut off came to no peak.
+  // One that fence, escape or search cut off came to no peak.
   if (state_ == LevelingState::kClimb && next != LevelingState::kReturn &&
-      next != LevelingState::kEscape) {
+      next != LevelingState::kEscape && next != LevelingState::kSeekWall) {
     ++peaks_;
   }
   if (next == LevelingState::kWalk) walk_.restart();
@@ -63,11 +63,13 @@ MotionCommand Behaviour::climb(const LevelingInput& input) {
 
 bool Behaviour::update_return(const LevelingInput& input) {
   // A spin stays where it is.
-  return state_ != LevelingState::kSpin && fence_.update(input.x_mm, input.y_mm);
+  return state_ != LevelingState::kSpin && fence_.update(input.place);
 }
 
 MotionCommand Behaviour::return_to_site(const LevelingInput& input) {
-  return enter_or_stay(LevelingState::kReturn, fence_.steer(input.x_mm, input.y_mm, input.heading));
+  return enter_or_stay(LevelingState::kReturn,
+                       fence_.steer(static_cast<int16_t>(-input.place.mm[kX]),
+                                    static_cast<int16_t>(-input.place.mm[kY]), input.heading));
 }
 
 }  // namespace screed

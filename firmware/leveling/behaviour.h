@@ -24,6 +24,7 @@
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
+#include "firmware/estimation/place.h"
 #include "firmware/leveling/site_fence.h"
 #include "firmware/leveling/walk_legs.h"
 #include "firmware/parameters/parameters.h"
@@ -39,8 +40,7 @@ using LevelingState = message::LevelingState;
 struct LevelingInput {
   Angle pitch;    ///< nose up positive
   Angle heading;  ///< counter-clockwise from east
-  int32_t x_mm;   ///< dead reckoning from the start of the run
-  int32_t y_mm;
+  Place place;
   MotionCommand drive;  ///< what the ground station commands
   Angle roll = 0;       ///< left side up positive; with the pitch the direction of the slope
   bool stuck = false;   ///< the tracks turn and the robot does not move (slip_watch.h)
@@ -78,8 +78,8 @@ class Behaviour {
   SCREED_OUT_OF_LINE MotionCommand climb(const LevelingInput& input);
   /// Towards the point that lies so far east and north of the robot; turns on the spot while it
   /// lies behind.
-  MotionCommand steer(int32_t east_mm, int32_t north_mm, Angle heading) const {
-    return fence_.steer(-east_mm, -north_mm, heading);
+  MotionCommand steer(int16_t east_mm, int16_t north_mm, Angle heading) const {
+    return fence_.steer(east_mm, north_mm, heading);
   }
   /// Any other motion, in a state of its own.
   MotionCommand enter_or_stay(LevelingState state, MotionCommand motion);

@@ -22,13 +22,16 @@ void Coverage::next_line() {
 
 MotionCommand Coverage::tick(const LevelingInput& input, Behaviour& behaviour) {
   const LevelingState state = behaviour.state();
-  if ((west_ ? -input.x_mm : input.x_mm) > half_side_mm_ || state == LevelingState::kReturn ||
-      state == LevelingState::kEscape) {
+  if ((west_ ? -input.place.mm[kX] : input.place.mm[kX]) > half_side_mm_ ||
+      state == LevelingState::kReturn || state == LevelingState::kEscape) {
     next_line();
   }
   const int16_t ahead = west_ ? static_cast<int16_t>(-kLookAhead_mm) : kLookAhead_mm;
-  return behaviour.enter_or_stay(LevelingState::kCover,
-                                 behaviour.steer(ahead, line_mm_ - input.y_mm, input.heading));
+  return behaviour.enter_or_stay(
+      LevelingState::kCover,
+      behaviour.steer(ahead,
+                      limit_i16(static_cast<int32_t>(line_mm_) - input.place.mm[kY], INT16_MAX),
+                      input.heading));
 }
 
 }  // namespace screed

@@ -17,7 +17,8 @@ bool keeps_to_site(LevelingAlgorithm algorithm) {
 Leveling::Leveling(const Parameters& parameters)
     : algorithm_(static_cast<LevelingAlgorithm>(parameters.algorithm)),
       behaviour_(parameters),
-      escape_(parameters)
+      escape_(parameters),
+      search_(parameters)
 #define SCREED_CONSTRUCT(number, name, Name) , name##_(parameters)
           SCREED_LEVELING_ALGORITHM(SCREED_CONSTRUCT)
 #undef SCREED_CONSTRUCT
@@ -28,6 +29,11 @@ MotionCommand Leveling::tick(const LevelingInput& input) {
   if (keeps_to_site(algorithm_)) {
     if (escape_.tick(input.stuck)) {
       return behaviour_.enter_or_stay(LevelingState::kEscape, escape_.motion());
+    }
+    if (search_.update(input.place)) {
+      return behaviour_.enter_or_stay(
+          LevelingState::kSeekWall,
+          behaviour_.steer(search_.east(), search_.north(), input.heading));
     }
     if (behaviour_.update_return(input)) return behaviour_.return_to_site(input);
   }

@@ -10,6 +10,7 @@
 
 #include "firmware/leveling/behaviour.h"
 #include "firmware/leveling/escape.h"
+#include "firmware/leveling/wall_search.h"
 #include "schema/classes.h"
 
 namespace screed {
@@ -51,11 +52,14 @@ class Leveling {
   uint16_t peaks() const { return behaviour_.peaks(); }
   /// In this tick the robot is stuck and the escape has no attempt left.
   bool gave_up() const { return escape_.gave_up(); }
+  /// In this tick it does not know where it is, and is to stop then.
+  bool lost() const { return search_.gave_up(); }
 
  private:
   LevelingAlgorithm algorithm_;
   Behaviour behaviour_;
   Escape escape_;
+  WallSearch search_;
 #define SCREED_OBJECT(number, name, Name) Slot<Name, algorithm_in_build(number)> name##_;
   SCREED_LEVELING_ALGORITHM(SCREED_OBJECT)
 #undef SCREED_OBJECT

@@ -6,27 +6,26 @@ namespace {
 
 constexpr Angle kAhead = 8192;  // 45 degrees either side
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(60);
-constexpr int16_t kMaxDistance_mm = 32000;  // beyond any radius; two squares of it fit 32 bits
-
-bool beyond(int32_t x_mm, int32_t y_mm, int32_t radius_mm) {
-  const int32_t x = limit_i16(x_mm, kMaxDistance_mm);
-  const int32_t y = limit_i16(y_mm, kMaxDistance_mm);
-  return static_cast<uint32_t>(x * x) + static_cast<uint32_t>(y * y) >
-         static_cast<uint32_t>(radius_mm * radius_mm);
+uint32_t squares(int16_t x, int16_t y) {
+  return static_cast<uint32_t>(mul_i16(x, x)) + static_cast<uint32_t>(mul_i16(y, y));
 }
 
 }  // namespace
 
-SCREED_OUT_OF_LINE bool SiteFence::update(int32_t x_mm, int32_t y_mm) {
+SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
   if (radius_mm_ == 0) return false;
-  const int32_t radius = radius_mm_;
-  returning_ = beyond(x_mm, y_mm, returning_ ? asr(radius * 3, 2) : radius);
+  const uint8_t sigma = place.sigma[kX] > place.sigma[kY] ? place.sigma[kX] : place.sigma[kY];
+  auto radius = static_cast<int16_t>(radius_mm_ - 2 * 4 * sigma);
+  const int16_t least = asr_i16(radius_mm_, 1);
+  if (radius < least) radius = least;
+  if (returning_) radius = static_cast<int16_t>(radius - asr_i16(radius, 2));
+  returning_ = squares(place.mm[kX], place.mm[kY]) > squares(radius, 0);
   return returning_;
 }
 
-MotionCommand SiteFence::steer(int32_t x_mm, int32_t y_mm, Angle heading) const {
-  const Angle home = atan2_angle(-y_mm, -x_mm);
-  const Angle error = angle_difference(home, heading);
+MotionCommand SiteFence::steer(int16_t east_mm, int16_t north_mm, Angle heading) const {
+  const Angle there = atan2_angle(north_mm, east_mm);
+  const Angle error = angle_difference(there, heading);
   // Two turns of the error a second, as fast as the robot turns well: time constant 0.5 s.
   const YawRate rate = limit_i16(static_cast<int32_t>(error) * 2, kMaxTurnRate);
   const bool ahead = error > static_cast<Angle>(-kAhead) && error < kAhead;

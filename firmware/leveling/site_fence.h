@@ -1,10 +1,12 @@
 // Keeps a robot that has no map on its site: outside a circle around the start it turns and drives
-// back.
+// back. The circle shrinks as the robot knows less where it is, by twice the standard deviation
+// (95 % along a line), down to half of its radius.
 #pragma once
 
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
+#include "firmware/estimation/place.h"
 #include "firmware/math/units.h"
 
 namespace screed {
@@ -15,14 +17,13 @@ class SiteFence {
   SiteFence(int16_t radius_mm, int16_t speed_mm_per_s)
       : radius_mm_(radius_mm), speed_mm_per_s_(speed_mm_per_s) {}
 
-  /// Looks at the position (dead reckoning from the start). Returns true while the robot has to
-  /// drive back: from the moment it leaves the circle until it is well inside (three quarters of
-  /// the radius) again.
-  bool update(int32_t x_mm, int32_t y_mm);
+  /// Looks at the position. Returns true while the robot has to drive back: from the moment it
+  /// leaves the circle until it is well inside (three quarters of the radius) again.
+  bool update(const Place& place);
 
-  /// The motion that leads back: turns on the spot while the start lies behind, drives as soon as
-  /// it lies ahead.
-  SCREED_OUT_OF_LINE MotionCommand steer(int32_t x_mm, int32_t y_mm, Angle heading) const;
+  /// The motion towards the point so far east and north of the robot: turns on the spot while it
+  /// lies behind, drives as soon as it lies ahead.
+  SCREED_OUT_OF_LINE MotionCommand steer(int16_t east_mm, int16_t north_mm, Angle heading) const;
 
  private:
   int16_t radius_mm_;

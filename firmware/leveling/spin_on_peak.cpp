@@ -13,7 +13,7 @@ SpinOnPeak::SpinOnPeak(const Parameters& parameters)
     : spin_rate_(yaw_rate_from_degrees(parameters.spin_rate)),
       spin_ticks_(ticks_from_ms(parameters.spin_time)) {}
 
-MotionCommand SpinOnPeak::spin(Behaviour& behaviour) const {
+SCREED_OUT_OF_LINE MotionCommand SpinOnPeak::spin(Behaviour& behaviour) const {
   const YawRate rate = spin_left_ ? spin_rate_ : static_cast<YawRate>(-spin_rate_);
   return behaviour.enter_or_stay(LevelingState::kSpin, {0, rate});
 }

@@ -13,6 +13,7 @@ struct BoardConstants {
   uint16_t tread_mm;             ///< distance between the centre lines of the tracks
   uint16_t motor_nominal_mv;     ///< voltage at which the full-speed figure holds
   uint16_t full_speed_mm_per_s;  ///< track speed at full duty and nominal voltage, unloaded
+  uint16_t hull_reach_mm;  ///< from the middle to a wall that it touches, a mean of all angles
 };
 
 /// More counts than any board's track makes in a tick (Rover 5: 4.4, Zumo: 61, at full speed):

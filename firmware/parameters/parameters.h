@@ -48,6 +48,13 @@
   X(spin_rate,              "deg/s",      10,   120,     90, "turn rate on the peak") \
   X(spin_time,              "ms",        100, 30000,   4000, "how long to spin on a peak") \
   X(site_radius,            "mm",          0, 30000,      0, "leave the random walk and turn back outside this circle around the start; 0: no limit") \
+  X(site_x,                 "mm",          0, 15000,      0, "walls of the site: as far east and west of the origin; 0: none") \
+  X(site_y,                 "mm",          0, 15000,      0, "walls of the site: as far north and south of the origin; 0: none") \
+  X(position_noise,         "125 mm^2/m",    0,  1000,     14, "variance of the position that a metre of dead reckoning makes; 14: 42 mm after a metre") \
+  X(site_heading,           "0.01 deg", -17999, 17999,   0, "the site's x axis, counter-clockwise from magnetic east: all headings count from it") \
+  X(lost_sigma,             "mm",          0,   700,      0, "the robot is lost when the standard deviation of its position exceeds this; 0: never") \
+  X(lost_action,            "",            0,     1,      0, "what a lost robot does: 0 stop with the fault lost, 1 seek a wall of the site") \
+  X(fix_sigma,              "mm",          8,  1000,     30, "standard deviation of position fixes from the ground station") \
   X(speed_kp,               "1/16 duty per mm/s",  0, 320,  24, "wheel speed: proportional gain") \
   X(speed_ki,               "1/16 duty per mm",    0, 3200, 160, "wheel speed: integral gain") \
   X(accel_limit,            "mm/s^2",     50,  5000,    600, "greatest change of a track's commanded speed") \

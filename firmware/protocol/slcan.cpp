@@ -15,12 +15,6 @@ uint8_t hex_digit(uint8_t value) {
   return static_cast<uint8_t>(value < 10 ? '0' + value : 'A' + (value - 10));
 }
 
-SCREED_OUT_OF_LINE uint8_t* put_byte(uint8_t* at, uint8_t byte) {
-  *at++ = hex_digit(static_cast<uint8_t>(byte >> 4));
-  *at++ = hex_digit(byte & 0xFU);
-  return at;
-}
-
 uint8_t hex_value(uint8_t digit) {
   if (digit >= '0' && digit <= '9') return static_cast<uint8_t>(digit - '0');
   if (digit >= 'A' && digit <= 'F') return static_cast<uint8_t>(digit - 'A' + 10);
@@ -30,14 +24,20 @@ uint8_t hex_value(uint8_t digit) {
 
 }  // namespace
 
+SCREED_OUT_OF_LINE uint8_t* slcan_put_byte(uint8_t* at, uint8_t byte) {
+  *at++ = hex_digit(static_cast<uint8_t>(byte >> 4));
+  *at++ = hex_digit(byte & 0xFU);
+  return at;
+}
+
 uint8_t slcan_encode(const CanFrame& frame, uint8_t* line) {
   uint8_t* at = line;
   *at++ = 't';
   // The first digit of the id and the size are one digit alone.
   *at++ = hex_digit((frame.id >> 8) & 0x7U);
-  at = put_byte(at, static_cast<uint8_t>(frame.id & 0xFFU));
+  at = slcan_put_byte(at, static_cast<uint8_t>(frame.id & 0xFFU));
   *at++ = hex_digit(frame.size);
-  for (uint8_t i = 0; i < frame.size; ++i) at = put_byte(at, frame.data[i]);
+  for (uint8_t i = 0; i < frame.size; ++i) at = slcan_put_byte(at, frame.data[i]);
   *at++ = '\r';
   return static_cast<uint8_t>(at - line);
 }
@@ -49,7 +49,7 @@ bool slcan_byte(const uint8_t* digits, uint8_t& byte) {
   return high != kNotHex && low != kNotHex;
 }
 
-bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
+SCREED_OUT_OF_LINE bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
   if (byte == '\r') return end_line(frame);
   if (length_ == kSlcanLineMax - 1) {
     if (!too_long_) ++rejected_;

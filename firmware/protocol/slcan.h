@@ -20,6 +20,9 @@ constexpr uint8_t kSlcanLineMax = 22;
 /// characters; no final 0.
 uint8_t slcan_encode(const CanFrame& frame, uint8_t* line);
 
+/// Writes a byte as two hexadecimal digits, upper case; returns what follows them.
+uint8_t* slcan_put_byte(uint8_t* at, uint8_t byte);
+
 /// The byte of two hexadecimal digits; false when they are none.
 bool slcan_byte(const uint8_t* digits, uint8_t& byte);
 

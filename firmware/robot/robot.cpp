@@ -52,12 +52,12 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
     : RobotMemory(),
       board_(board),
       parameters_(parameters),
-      odometry_(board.count_um_q4),
       supervisor_(parameters, parameters_intact),
       leveling_(parameters),
       drive_(board, parameters),
       slip_watch_(board.tread_mm),
-      gate_(credentials) {}
+      gate_(credentials),
+      position_(board.count_um_q4, parameters.position_noise) {}
 
 void Robot::begin_first_tick(const SensorSample& sample) {
   event(message::EventCode::kStarted, sample.reset_cause);
@@ -67,16 +67,18 @@ void Robot::begin_first_tick(const SensorSample& sample) {
 }
 
 Robot::Deltas Robot::count_deltas(const SensorSample& sample) {
-  // Modulo 2^16: a wrap of the counters has no effect.
+  // Modulo 2^16: a wrap of the counters has no effect. What no track can make is cut off.
   const Deltas deltas = {
-      static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - last_left_)),
-      static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_right - last_right_))};
+      limit_i16(static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_left - last_left_)),
+                kMaxTrackCounts),
+      limit_i16(static_cast<int16_t>(static_cast<uint16_t>(sample.encoder_right - last_right_)),
+                kMaxTrackCounts)};
   last_left_ = sample.encoder_left;
   last_right_ = sample.encoder_right;
   return deltas;
 }
 
-void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
+SCREED_OUT_OF_LINE void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
   ImuSample imu;  // all of it is written below
   auto* const to = reinterpret_cast<int16_t*>(&imu);
   const auto* const from = reinterpret_cast<const int16_t*>(
@@ -97,9 +99,11 @@ void Robot::estimate_pose(const SensorSample& sample, const Deltas& deltas) {
                               deltas.left == 0 && deltas.right == 0;
   attitude_.update(imu, tracks_at_rest);
   status_.angles = attitude_.angles();
-  odometry_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch);
-  status_.x_mm = odometry_.x_mm();
-  status_.y_mm = odometry_.y_mm();
+  status_.angles.heading =
+      wrap_angle(status_.angles.heading - angle_from_centidegrees(parameters_.site_heading));
+  position_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch,
+                   slip_watch_.travel_share());
+  position_.get(status_.place);
 }
 
 void Robot::receive(const SensorSample& sample) {
@@ -206,12 +210,24 @@ RequestResult Robot::execute(const uint8_t* data) {
       drive_command_ = {drive.speed_mm_per_s, limit_i16(rate, INT16_MAX)};
       return RequestResult::kDone;
     }
+    case CommandOp::kPositionFix:
+      fix_position(get_drive_argument(argument));
+      return RequestResult::kDone;
     case CommandOp::kParameterRead:
       return send_parameter(get_u16(argument));
     case CommandOp::kParameterCommit:
       return commit_parameter(argument[0], get_u16(argument + 1));
   }
   return RequestResult::kBadArgument;
+}
+
+void Robot::fix_position(const DriveArgument& place_cm) {
+  // Who sends them has left out what is false.
+  position_.measure(kX, static_cast<int16_t>(place_cm.speed_mm_per_s * 10), parameters_.fix_sigma,
+                    false);
+  position_.measure(kY, static_cast<int16_t>(place_cm.turn_ddeg_per_s * 10), parameters_.fix_sigma,
+                    false);
+  located_ = true;
 }
 
 int16_t& Robot::parameter(uint8_t index) {
@@ -267,6 +283,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.counts_right = deltas.right;
   input.stuck = slip_watch_.stuck();
   input.gave_up = supervisor_.running() && leveling_.gave_up();
+  input.lost = supervisor_.running() && leveling_.lost();
   input.speed_left_dmm_per_s = drive_.speed_left_dmm_per_s();
   input.speed_right_dmm_per_s = drive_.speed_right_dmm_per_s();
   input.full_speed_mm_per_s = board_.full_speed_mm_per_s;
@@ -280,10 +297,9 @@ void Robot::select_motion() {
     leveling_.start();
     // The site lies round the place where the run began. One that goes on after a stop is the same
     // run: otherwise the site would wander with every stop.
-    if (status_.state != RobotState::kStopped) {
-      odometry_.reset();
-      status_.x_mm = 0;
-      status_.y_mm = 0;
+    if (status_.state != RobotState::kStopped && !located_) {
+      position_.reset();
+      position_.get(status_.place);
     }
   }
   if (!running) {
@@ -295,8 +311,7 @@ void Robot::select_motion() {
   LevelingInput input;
   input.pitch = status_.angles.pitch;
   input.heading = status_.angles.heading;
-  input.x_mm = status_.x_mm;
-  input.y_mm = status_.y_mm;
+  input.place = status_.place;
   input.drive = drive_command_;
   input.roll = status_.angles.roll;
   input.stuck = slip_watch_.stuck();
@@ -306,6 +321,20 @@ void Robot::select_motion() {
 void Robot::watch_slip(const SensorSample& sample) {
   slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel,
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
+}
+
+// Stuck after a collision it stands at a wall.
+void Robot::feel_walls() {
+  const bool stuck = slip_watch_.stuck();
+  if (stuck && !was_stuck_ && slip_watch_.collided()) {
+    const bool backwards = status_.motion.speed_mm_per_s < 0;
+    const Angle travel =
+        backwards ? wrap_angle(status_.angles.heading + 32768) : status_.angles.heading;
+    if (touch_wall(board_, parameters_, travel, position_)) {
+      event(message::EventCode::kWall, travel);
+    }
+  }
+  was_stuck_ = stuck;
 }
 
 void Robot::announce_state() {
@@ -321,6 +350,9 @@ void Robot::report(const SensorSample& sample, RobotOutput& output) {
   TelemetryView view;
   view.sample = &sample;
   view.robot = &status_;
+  view.sigma_heading = attitude_.heading_sigma();
+  view.mag_disturbed = attitude_.mag_disturbed();
+  view.travel_share = slip_watch_.travel_share();
   view.uplink = &uplink_;
   view.slip = slip_watch_.slips() ? 1 : 0;
   view.stuck = slip_watch_.stuck() ? 1 : 0;
@@ -353,11 +385,9 @@ void Robot::write_actuators(RobotOutput& output) {
 // (supervisor), status_.state (start of a run). is_packet_tick() is constant until report(): ticks
 // with a packet run the slip network, the others check a command's MAC.
 void Robot::tick(const SensorSample& sample, RobotOutput& output) {
-  // At most 65,535 mV: what the sensor can say (8184 LSB) is far below.
-  const uint32_t battery_uv = static_cast<uint32_t>(sample.battery) * board_.battery_uv_per_lsb;
-  status_.battery_mv = battery_uv < static_cast<uint32_t>(1000) << 16
-                           ? quotient_u16(battery_uv, 1000)
-                           : static_cast<uint16_t>(0xFFFFU);
+  // The sensor says 8184 LSB at most; a board makes less than 8 mV of each, so 16 bits hold it.
+  status_.battery_mv =
+      quotient_u16(mul_u16(sample.battery & 0x1FFFU, board_.battery_uv_per_lsb), 1000);
   if (!started_) begin_first_tick(sample);
   const Deltas deltas = count_deltas(sample);
 
@@ -378,6 +408,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
     status_.duty = {0, 0};
   }
   watch_slip(sample);
+  feel_walls();
   announce_state();
   report(sample, output);
   write_actuators(output);

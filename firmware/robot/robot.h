@@ -7,7 +7,8 @@
 
 #include "firmware/control/drive_control.h"
 #include "firmware/estimation/attitude.h"
-#include "firmware/estimation/odometry.h"
+#include "firmware/estimation/position_estimate.h"
+#include "firmware/estimation/site_walls.h"
 #include "firmware/estimation/slip_watch.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/parameters/board_constants.h"
@@ -29,16 +30,18 @@ struct RobotMemory {
   MotionCommand drive_command_;  ///< last CommandOp::kDrive
   uint16_t last_left_;
   uint16_t last_right_;
-  uint8_t command_[kCommandSize];  ///< waits for its tick
-  message::CommandAck answer_;     ///< to the last command that was accepted
-  uint8_t staged_[kStagedSize];    ///< index and value of a PARAM_STAGE
-  uint8_t store_parameter_;        ///< as RobotOutput
+  message::CommandAck answer_;   ///< to the last command that was accepted
+  uint8_t staged_[kStagedSize];  ///< index and value of a PARAM_STAGE
+  uint8_t store_parameter_;      ///< as RobotOutput
   int16_t store_value_;
   uint8_t store_ticks_;     ///< until the EEPROM takes another parameter
   uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
   UplinkCounts uplink_;
   bool command_pending_;
   bool started_;  ///< the first tick is over
+  bool located_;  ///< a position fix has told where the robot is
+  bool was_stuck_;
+  uint8_t command_[kCommandSize];  ///< waits for its tick
 };
 
 class Robot : private RobotMemory {
@@ -54,7 +57,7 @@ class Robot : private RobotMemory {
 
   // What the robot thinks, for recording and tests.
   const AttitudeEstimator& attitude() const { return attitude_; }
-  const Odometry& odometry() const { return odometry_; }
+  const PositionEstimate& position() const { return position_; }
   const Supervisor& supervisor() const { return supervisor_; }
   const Leveling& leveling() const { return leveling_; }
   const DriveControl& drive() const { return drive_; }
@@ -78,6 +81,7 @@ class Robot : private RobotMemory {
   void handle(const CanFrame& frame);
   void process_command();
   RequestResult execute(const uint8_t* data);
+  void fix_position(const DriveArgument& place_cm);
   int16_t& parameter(uint8_t index);
   RequestResult send_parameter(uint16_t index);
   RequestResult commit_parameter(uint8_t index, uint16_t crc);
@@ -86,6 +90,7 @@ class Robot : private RobotMemory {
   void supervise(const SensorSample& sample, const Deltas& deltas);
   void select_motion();
   void watch_slip(const SensorSample& sample);
+  void feel_walls();
   void announce_state();
   void report(const SensorSample& sample, RobotOutput& output);
   void write_actuators(RobotOutput& output);
@@ -93,7 +98,6 @@ class Robot : private RobotMemory {
   BoardConstants board_;
   Parameters parameters_;
   AttitudeEstimator attitude_;
-  Odometry odometry_;
   Supervisor supervisor_;
   Leveling leveling_;
   DriveControl drive_;
@@ -101,6 +105,7 @@ class Robot : private RobotMemory {
   SlcanParser parser_;
   Telemetry telemetry_;
   CommandGate gate_;
+  PositionEstimate position_;
 };
 
 }  // namespace screed

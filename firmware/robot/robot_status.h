@@ -6,6 +6,7 @@
 
 #include "firmware/control/drive_control.h"
 #include "firmware/estimation/attitude.h"
+#include "firmware/estimation/place.h"
 #include "firmware/robot/supervisor.h"
 
 namespace screed {
@@ -14,8 +15,7 @@ struct RobotStatus {
   // Pose: asked for once a tick, since on the AVR an angle costs 1500 cycles and a position a
   // division.
   AttitudeAngles angles;
-  int32_t x_mm;  ///< dead reckoning from the start of the run, east
-  int32_t y_mm;  ///< north
+  Place place;
   uint16_t battery_mv;
   MotionCommand motion;  ///< commanded
   DriveOutput duty;      ///< motor duty; the last tick's until drive control has run

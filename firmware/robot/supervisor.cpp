@@ -20,8 +20,8 @@ constexpr uint16_t kLinkDisarmTicks = 150;
 // The accelerometer is taken for a plumb line while nothing turns faster than 57 degrees/s and it
 // feels 0.8 to 1.2 g.
 constexpr uint16_t kMaxRestGyro = 814;
-constexpr int32_t kMinRestAccel = 819;
-constexpr int32_t kMaxRestAccel = 1229;
+constexpr uint16_t kMinRestAccel = 819;
+constexpr uint16_t kMaxRestAccel = 1229;
 // A track that does not move below this duty is not stalled, it is asked for too little: 69 mm/s
 // without load. A blocked track that is to drive slower gets it within 50 ms.
 constexpr int16_t kStallDuty = 110;
@@ -127,12 +127,15 @@ bool Supervisor::tilted(const SupervisorInput& input) {
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {
     if (abs_i16(input.gyro[i]) > kMaxRestGyro) return false;
-    const int32_t part = asr(input.accel[i], 2);
-    square += static_cast<uint32_t>(part * part);
+    const int16_t part = asr_i16(input.accel[i], 2);
+    square += static_cast<uint32_t>(mul_i16(part, part));
   }
-  const int32_t length = isqrt32(square);
+  const uint16_t length = isqrt32(square);
   if (length < kMinRestAccel || length > kMaxRestAccel) return false;
-  return asr(input.accel[2], 2) < asr(length * cos_tilt_limit_q15_, 15);
+  // Up to 1229, so half of it and of the cosine in Q14 fit 16 bits.
+  return asr_i16(input.accel[2], 2) <
+         asr_i16(detail::high_half(mul_i16(static_cast<int16_t>(length * 4), cos_tilt_limit_q15_)),
+                 1);
 }
 
 uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
@@ -173,6 +176,7 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
 
   stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
   if (input.gave_up || (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_)) found |= Fault::kStuck;
+  if (input.lost) found |= Fault::kLost;
 
   if (lasts(input.battery_mv < battery_low_mv_, battery_ticks_, kBatteryTicks)) {
     found |= Fault::kBattery;

@@ -55,6 +55,7 @@ struct SupervisorInput {
   uint8_t chips_failing = 0;         ///< SensorSample::chips_failing
   bool stuck = false;                ///< the tracks turn and the robot does not move (slip_watch.h)
   bool gave_up = false;              ///< stuck, and the escape did not help
+  bool lost = false;                 ///< it does not know where it is, and is to stop then
   int16_t speed_left_dmm_per_s = 0;  ///< observed in the last tick, 0.1 mm/s
   int16_t speed_right_dmm_per_s = 0;
   uint16_t full_speed_mm_per_s = 0;  ///< of the board, below 8192

@@ -24,19 +24,28 @@ constexpr Schedule every(uint8_t first) {
   return {Message::kId, static_cast<uint8_t>(Message::kPeriod_ms / kTick_ms), first};
 }
 
-// In order of importance; 119 lines a second of 200 possible, 2562 of the 2850 bytes of the budget.
+// In order of importance; 121 lines a second of 200 possible, 2562 of the 2850 bytes of the budget.
 const Schedule kSchedule[] SCREED_PROGRAM_MEMORY = {
     every<message::Heartbeat>(0), every<message::Attitude>(1), every<message::Encoders>(2),
     every<message::Motors>(3),    every<message::Leveling>(4), every<message::Odometry>(6),
     every<message::AccelRaw>(8),  every<message::GyroRaw>(9),  every<message::Power>(14),
     every<message::MagRaw>(24),   every<message::Baro>(34),    every<message::Health>(44),
-    every<message::Link>(54),     every<message::Time>(64),
+    every<message::Link>(54),     every<message::Time>(64),    every<message::Position>(19),
 };
 static_assert(sizeof(kSchedule) / sizeof(kSchedule[0]) == kTelemetryMessages,
               "every message with a period has a row");
 
 // A full packet (88) plus what one packet period earns (57).
 constexpr uint8_t kMaxCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
+
+/// The alive counter of a message that is sent when there is something to say: by its class.
+constexpr uint8_t urgent_counter(uint16_t id) {
+  return static_cast<uint8_t>(kTelemetryMessages + (id >> 8));
+}
+static_assert(urgent_counter(kIdCommandAck) != urgent_counter(kIdParamValue) &&
+                  urgent_counter(kIdParamValue) != urgent_counter(kIdEvent) &&
+                  urgent_counter(kIdCommandAck) != urgent_counter(kIdEvent),
+              "each has a counter of its own");
 
 /// Turn rate in 0.01 degree/s; int16_t holds it up to 327 degrees/s.
 int16_t centidegrees_per_s(YawRate rate) {
@@ -106,8 +115,11 @@ void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
                                  sample.encoder_errors});
       break;
     case e2e_data_id(kIdOdometry):
-      set_words(frame, saturate_i16(robot.x_mm), saturate_i16(robot.y_mm),
-                heading_cdeg(robot.angles.heading));
+      set_words(frame, robot.place.mm[kX], robot.place.mm[kY], heading_cdeg(robot.angles.heading));
+      break;
+    case e2e_data_id(kIdPosition):
+      set(frame, message::Position{robot.place.sigma[kX], robot.place.sigma[kY], view.sigma_heading,
+                                   view.travel_share});
       break;
     case e2e_data_id(kIdAccelRaw):
       set_vector(frame, sample.accel);
@@ -127,7 +139,8 @@ void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
       message::Health it{};
       it.reset_cause = sample.reset_cause;
       it.conditions = static_cast<uint8_t>(
-          sample.chips_failing | (view.starting ? message::HealthConditions::kStarting : 0));
+          sample.chips_failing | (view.starting ? message::HealthConditions::kStarting : 0) |
+          (view.mag_disturbed ? message::HealthConditions::kMagDisturbed : 0));
       it.i2c_errors = sample.bus_errors;
       it.uart_errors = sample.radio_errors;
       it.longest_tick = longest_tick_us_;
@@ -155,24 +168,15 @@ void Telemetry::fill(CanFrame& frame, const TelemetryView& view) {
       set(frame, message::Time{time_ms_, uplink.ground_time_ms});
       break;
     case e2e_data_id(kIdBaro):
-    default: {
-      const uint16_t from_zero =
-          quotient_u16(static_cast<uint32_t>(abs_i16(sample.temperature)) * 5U, 24);
-      message::Baro it{};
-      // 1/4096 hPa = 25/64 Pa/16; 24 bits times 25 fit
-      it.pressure = (static_cast<uint32_t>(sample.pressure) * 25U) >> 6;
-      // 42.5 degC + raw/480, in 0.01 degC
-      it.temperature =
-          static_cast<int16_t>(sample.temperature < 0 ? 4250 - from_zero : 4250 + from_zero);
-      set(frame, it);
+    default:
+      set(frame, message::Baro{static_cast<uint32_t>(asr(sample.pressure, 4)), sample.temperature});
       break;
-    }
   }
 }
 
 void Telemetry::queue(const CanFrame& frame) {
   if (queued_ == kQueue) return;
-  queue_[queued_] = frame;
+  queue_[(first_queued_ + queued_) % kQueue] = frame;
   ++queued_;
 }
 
@@ -203,14 +207,12 @@ void Telemetry::tick(const TelemetryView& view, RobotOutput& output) {
   if (packet) {
     const uint8_t credit = static_cast<uint8_t>(credit_ + kPacketBudget);
     credit_ = credit < kMaxCredit ? credit : kMaxCredit;
-    uint8_t sent = 0;
-    for (; sent < queued_ && room(output); ++sent) {
-      const uint16_t id = queue_[sent].id;
-      const uint8_t place = id == kIdCommandAck ? 0 : id == kIdParamValue ? 1 : 2;
-      emit(queue_[sent], static_cast<uint8_t>(kTelemetryMessages + place), output);
+    while (queued_ != 0 && room(output)) {
+      CanFrame& frame = queue_[first_queued_];
+      emit(frame, urgent_counter(frame.id), output);
+      first_queued_ = (first_queued_ + 1U) % kQueue;
+      --queued_;
     }
-    queued_ = static_cast<uint8_t>(queued_ - sent);
-    for (uint8_t i = 0; i < queued_; ++i) queue_[i] = queue_[i + sent];
   }
 
   uint16_t bit = 1;

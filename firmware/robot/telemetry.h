@@ -21,6 +21,9 @@ namespace screed {
 struct TelemetryView {
   const SensorSample* sample;
   const RobotStatus* robot;
+  uint8_t sigma_heading;  ///< AttitudeEstimator::heading_sigma()
+  bool mag_disturbed;
+  uint8_t travel_share;  ///< SlipWatch::travel_share()
   const UplinkCounts* uplink;
   uint8_t slip;     ///< 1: the tracks move much more than the robot
   uint8_t stuck;    ///< 1: and have done so for long
@@ -37,20 +40,21 @@ struct TelemetryView {
 };
 
 constexpr uint8_t kTelemetryMessages = kPeriodicMessages;  ///< sent by their rate
-constexpr uint8_t kUrgentMessages = 3;                     ///< sent when there is something to say
+constexpr uint8_t kMessageClasses = 8;                     ///< of ids, their upper three bits
 
 /// What the downlink remembers, zero at the start: zeroed at once, which takes less flash.
 struct TelemetryMemory {
   static constexpr uint8_t kQueue = 4;
 
   CanFrame queue_[kQueue];
+  uint8_t first_queued_;
   uint8_t queued_;
   uint8_t next_packet_;  ///< ticks
   uint8_t credit_;       ///< bytes
   uint16_t due_;         ///< a bit a message: it waits for room
   static_assert(kTelemetryMessages <= 16, "due_ has a bit for each");
   uint8_t countdown_[kTelemetryMessages];
-  uint8_t counter_[kTelemetryMessages + kUrgentMessages];
+  uint8_t counter_[kTelemetryMessages + kMessageClasses];
   bool started_;
   uint8_t heartbeats_before_;  ///< UplinkCounts::ground_heartbeats at the last LINK
   uint16_t longest_tick_us_;   ///< since the last HEALTH

@@ -25,7 +25,7 @@ void take(uint16_t conversion) {
   state.at = static_cast<uint8_t>((state.at + 1U) % kWindow);
 }
 
-void start_conversion() {
+__attribute__((noinline)) void start_conversion() {
   ADCSRA |= _BV(ADSC);
 }
 

@@ -1,7 +1,8 @@
-// A line console on the USB serial line.
+// A line console on the USB serial line. Numbers are hexadecimal, as in the lines of the radio: two
+// digits, or four of a parameter's value (two's complement). Blanks do not matter.
 //
 //   v          version, board, health      p          all parameters, one a line: number, value
-//   p N        one parameter               p N VALUE  changes the draft
+//   p NN       one parameter               p NN VVVV  changes the draft
 //   d          the draft becomes the defaults
 //   w          writes the draft; it holds from the next start on
 //   r          restarts, unless the motors have power
@@ -54,40 +55,21 @@ void print_text(const char* text) {
   for (uint8_t byte = pgm_read_byte(text); byte != 0; byte = pgm_read_byte(++text)) print(byte);
 }
 
-void print_number(int16_t value) {
-  uint16_t remainder = static_cast<uint16_t>(value);
-  print(' ');
-  if (value < 0) {
-    print('-');
-    remainder = static_cast<uint16_t>(0U - remainder);
-  }
-  uint8_t digits[5];
-  uint8_t count = 0;
-  do {
-    digits[count++] = static_cast<uint8_t>('0' + remainder % 10U);
-    remainder /= 10U;
-  } while (remainder != 0);
-  while (count > 0) print(digits[--count]);
+__attribute__((noinline)) void print_byte(uint8_t byte) {
+  uint8_t digits[2];
+  slcan_put_byte(digits, byte);
+  print(digits[0]);
+  print(digits[1]);
 }
 
-/// The decimal number after the blanks at `at`, which moves behind it. False when there is none, or
-/// it does not fit.
-bool number(uint8_t& at, int16_t& value) {
-  while (at < state.in_count && state.in[at] == ' ') ++at;
-  const bool negative = at < state.in_count && state.in[at] == '-';
-  if (negative) ++at;
-  const uint8_t begin = at;
-  uint16_t sum = 0;
-  while (at < state.in_count && sum <= INT16_MAX) {
-    const uint8_t digit = static_cast<uint8_t>(state.in[at] - '0');
-    if (digit > 9 || sum > INT16_MAX / 10) break;
-    sum = static_cast<uint16_t>(sum * 10U + digit);
-    ++at;
-  }
-  if (at == begin || sum > INT16_MAX) return false;
-  value = static_cast<int16_t>(sum);
-  if (negative) value = static_cast<int16_t>(-value);
-  return true;
+__attribute__((noinline)) void print_number(uint8_t value) {
+  print(' ');
+  print_byte(value);
+}
+
+__attribute__((noinline)) void print_word(uint16_t value) {
+  print_number(static_cast<uint8_t>(value >> 8));
+  print_byte(static_cast<uint8_t>(value & 0xFFU));
 }
 
 int16_t* draft_value(uint8_t index) {
@@ -97,7 +79,7 @@ int16_t* draft_value(uint8_t index) {
 void print_parameter(uint8_t index) {
   print('p');
   print_number(index);
-  print_number(*draft_value(index));
+  print_word(static_cast<uint16_t>(*draft_value(index)));
 }
 
 bool parameter_command() {
@@ -105,15 +87,18 @@ bool parameter_command() {
     state.to_list = kParameterCount;
     return true;
   }
-  uint8_t at = 1;
-  int16_t index = 0;
-  if (!number(at, index) || index < 0 || index >= kParameterCount) return false;
-  if (at < state.in_count) {
-    int16_t value = 0;
-    if (!number(at, value) || at != state.in_count) return false;
-    *draft_value(static_cast<uint8_t>(index)) = value;
+  uint8_t index;
+  if ((state.in_count != 3 && state.in_count != 7) || !slcan_byte(state.in + 1, index) ||
+      index >= kParameterCount) {
+    return false;
   }
-  print_parameter(static_cast<uint8_t>(index));
+  if (state.in_count == 7) {
+    uint8_t high;
+    uint8_t low;
+    if (!slcan_byte(state.in + 3, high) || !slcan_byte(state.in + 5, low)) return false;
+    *draft_value(index) = static_cast<int16_t>(static_cast<uint16_t>(high) << 8 | low);
+  }
+  print_parameter(index);
   return true;
 }
 
@@ -126,7 +111,7 @@ bool key_command() {
     print('k');
     print_number(credentials().key_set ? 1 : 0);
     print_number(credentials().robot_id);
-    print_number(static_cast<int16_t>(credentials().boot_epoch));
+    print_word(credentials().boot_epoch);
     return true;
   }
   if (state.in_count != 1 + 2 * kKeySize) return false;
@@ -142,9 +127,9 @@ bool key_command() {
 
 void print_health() {
   print_text(PSTR("screed " SCREED_VERSION " " SCREED_BOARD));
-  print_number(static_cast<int16_t>(reset_cause()));
-  print_number(static_cast<int16_t>(parameter_store_state()));
-  print_number(static_cast<int16_t>(stack_free()));
+  print_number(static_cast<uint8_t>(reset_cause()));
+  print_number(static_cast<uint8_t>(parameter_store_state()));
+  print_word(stack_free());
   print_number(radio_uart_overruns());
   print_number(buttons_read());
 }
@@ -202,7 +187,7 @@ void console_step() {
       end_line();
       return;
     }
-    if (state.in_count < kInSize) state.in[state.in_count++] = byte;
+    if (byte != ' ' && state.in_count < kInSize) state.in[state.in_count++] = byte;
   }
 }
 

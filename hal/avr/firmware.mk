@@ -9,6 +9,7 @@ include boards/$(BOARD)/board.mk
 
 AVR_CC ?= avr-gcc
 AVR_CXX ?= avr-g++
+AVR_LD ?= avr-ld
 AVR_OBJCOPY ?= avr-objcopy
 AVR_OBJDUMP ?= avr-objdump
 AVR_SIZE ?= avr-size
@@ -58,6 +59,11 @@ endif
 AVR_WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Werror
 AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_ROOT)/generated
 AVR_LINK := -Wl,--gc-sections
+# The order of the functions in the image: near what they call. The linker's own script with the list of their sections before the others;
+# a function that is not on it comes behind them. `make function-order` makes it anew.
+FUNCTION_ORDER := hal/avr/function_order.txt
+LINKER_SCRIPT := $(FIRMWARE_BUILD)/screed.ld
+AVR_EMULATION := avr5
 
 # The Arduino core of Debian's package arduino-core-avr, with USB=core: main(), USB and the serial line over it. Only what is used
 # of it reaches the image.
@@ -70,7 +76,7 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_VID=$(BOARD_USB_VID) -DUSB_PID=$(BOARD_USB_PID) -DUSB_MANUFACTURER='"$(BOARD_USB_MANUFACTURER)"' \
   -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
 
-.PHONY: firmware size firmware-budget
+.PHONY: firmware size firmware-budget function-order
 firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget  ## build the image for the robot (BOARD=NAME, a folder in boards/)
 
 # What the analysis cannot see with USB=core: targets of indirect calls. Its "never" lines hold as long as the core's serial line is
@@ -128,9 +134,22 @@ $(FIRMWARE_BUILD)/arduino/%.c.o: $(ARDUINO_CORE)/%.c $(FIRMWARE_BUILD)/avr.flags
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(patsubst -std=%,-std=gnu11,$(filter-out -fno-rtti -fno-threadsafe-statics,$(AVR_FLAGS))) -w $(ARDUINO_FLAGS) -c $< -o $@
 
-$(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS_$(USB))
+$(FIRMWARE_ELF): $(FIRMWARE_OBJECTS) $(ARDUINO_OBJECTS_$(USB)) $(LINKER_SCRIPT)
 	@echo "  LINK $@"
-	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) $^ -o $@
+	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_LINK) -Wl,-T,$(LINKER_SCRIPT) -Wl,-Map,$(@:.elf=.map) $(filter %.o,$^) -o $@
+
+$(LINKER_SCRIPT): $(FUNCTION_ORDER) $(FIRMWARE_BUILD)/avr.flags
+	@$(AVR_LD) -m $(AVR_EMULATION) --verbose | awk -v list=$< ' \
+	  /^=====/ {inside = !inside; next} !inside {next} \
+	  !done && /^ *\*\(\.text\)/ {while ((getline name < list) > 0) if (name !~ /^#/) print "    *(" name ")"; done = 1} {print} \
+	  END {if (!done) {print "the linker script has no *(.text)" > "/dev/stderr"; exit 1}}' > $@
+
+function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order  ## search the order of the image's functions with the fewest long calls
+	@{ echo "# Sections of the image's functions in the order in which they lie. Made by: make function-order" ; \
+	   $(B)/avr_order $(FIRMWARE_BUILD)/screed.map $(FIRMWARE_BUILD)/screed.lst ; } > $(FUNCTION_ORDER).new
+	@mv $(FUNCTION_ORDER).new $(FUNCTION_ORDER)
+$(B)/avr_order: $(B)/tools/avr/order/main.o $(B)/libavr_stack.a $(LIBRARY) $(B)/link.flags
+	$(call link)
 
 $(FIRMWARE_BUILD)/%.hex: $(FIRMWARE_BUILD)/%.elf
 	@$(AVR_OBJCOPY) -O ihex -R .eeprom -R .fuse -R .lock $< $@

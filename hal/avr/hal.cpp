@@ -80,7 +80,7 @@ bool wait_for_tick() {
   return true;
 }
 
-void read_sensors(SensorSample& sample) {
+__attribute__((noinline)) void read_sensors(SensorSample& sample) {
   sample.time_us = avr::tick_timer_time_us();
   sample.last_tick_us = avr::tick_timer_last_us();
   const avr::EncoderCounts counts = avr::encoders_read();

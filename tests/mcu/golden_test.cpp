@@ -18,7 +18,7 @@ struct HostLink {
 
 constexpr const char* kNames[kGoldenSections] = {"shifts",   "scale_q16", "sine",       "atan2",
                                                  "sqrt",     "units",     "kinematics", "control",
-                                                 "odometry", "attitude",  "leveling",   "messages"};
+                                                 "position", "attitude",  "leveling",   "messages"};
 
 TEST(GoldenVectors, McuAgreesWithHost) {
   HostLink host;

@@ -10,7 +10,8 @@
 #include "firmware/control/kinematics.h"
 #include "firmware/control/track_speed_control.h"
 #include "firmware/estimation/attitude.h"
-#include "firmware/estimation/odometry.h"
+#include "firmware/estimation/position_estimate.h"
+#include "firmware/estimation/site_walls.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/math/fixed.h"
 #include "firmware/math/random.h"
@@ -26,7 +27,7 @@ namespace screed {
 
 constexpr uint8_t kGoldenSections = 12;
 
-constexpr BoardConstants kGoldenBoard = {9048, 1831, 195, 7200, 250};
+constexpr BoardConstants kGoldenBoard = {9048, 1831, 195, 7200, 250, 145};
 
 /// Inputs: numbers whose size varies as well, so that small and huge ones meet. One
 /// number a statement: the order in which arguments are evaluated is the compiler's choice.
@@ -221,7 +222,7 @@ void golden_control(Link& link) {
     DriveControl drive(kGoldenBoard, parameters);
     for (uint16_t i = 0; i < 300; ++i) {
       const int16_t target = i % 7U == 0 ? static_cast<int16_t>(0) : numbers.within(250);
-      const int16_t counts = i % 31U == 0 ? numbers.narrow() : numbers.within(8);
+      const int16_t counts = i % 31U == 0 ? numbers.within(kMaxTrackCounts) : numbers.within(8);
       const uint16_t battery =
           static_cast<uint16_t>(i % 13U == 0 ? 0 : 6000U + (numbers.any() & 2047U));
       put_word(link, static_cast<uint16_t>(track.tick(target, counts, battery)));
@@ -235,16 +236,28 @@ void golden_control(Link& link) {
 }
 
 template <typename Link>
-void golden_odometry(Link& link) {
+void golden_position(Link& link) {
   GoldenNumbers numbers;
-  Odometry odometry(kGoldenBoard.count_um_q4);
+  PositionEstimate position(kGoldenBoard.count_um_q4, 42);
+  Parameters parameters;
+  parameters.site_x = 1500;
+  parameters.site_y = 1280;
   for (uint16_t i = 0; i < 500; ++i) {
     const int16_t left = numbers.within(100);
     const int16_t right = numbers.within(100);
     const Angle heading = numbers.narrow();
-    odometry.update(left, right, heading, numbers.within(8000));
-    put_signed(link, odometry.x_mm());
-    put_signed(link, odometry.y_mm());
+    position.update(left, right, heading, numbers.within(8000), static_cast<uint8_t>(i));
+    bool fits = false;
+    if (i % 16U == 0) fits = position.measure(kX, numbers.within(3000), 20, true);
+    if (i % 16U == 8) fits = touch_wall(kGoldenBoard, parameters, heading, position);
+    if (i % 128U == 100) position.measure(kY, numbers.within(2000), 30, false);
+    put_signed(link, position.mm(kX));
+    put_signed(link, position.mm(kY));
+    Place place;
+    position.get(place);
+    link.put(place.sigma[kX]);
+    link.put(place.sigma[kY]);
+    put_word(link, fits ? 1U : 0U);
   }
 }
 
@@ -287,14 +300,15 @@ void golden_leveling(Link& link) {
     parameters.random_seed = static_cast<int16_t>(32767 - run);
     Leveling leveling(parameters);
     leveling.start();
-    LevelingInput input = {0, 0, 0, 0, {0, 0}};
+    LevelingInput input = {0, 0, {{0, 0}, {0, 0}}, {0, 0}};
     for (uint16_t i = 0; i < 400; ++i) {
       if (i % 10U == 0) {
         input.pitch = numbers.within(3000);
         input.heading = numbers.narrow();
-        input.x_mm = asr(numbers.wide(), 14);
-        input.y_mm =
-            i % 100U == 0 ? extreme(static_cast<uint8_t>(i / 100U)) / 2 : asr(numbers.wide(), 14);
+        input.place.mm[kX] = numbers.narrow();
+        input.place.mm[kY] = i % 100U == 0 ? INT16_MIN : numbers.narrow();
+        input.place.sigma[kX] = static_cast<uint8_t>(numbers.any());
+        input.place.sigma[kY] = static_cast<uint8_t>(numbers.any() & 63U);
       }
       input.drive = {numbers.narrow(), 77};
       const MotionCommand motion = leveling.tick(input);
@@ -357,7 +371,7 @@ void golden_section(uint8_t section, Link& link) {
     case 7:
       return golden_control(link);
     case 8:
-      return golden_odometry(link);
+      return golden_position(link);
     case 9:
       return golden_attitude(link);
     case 10:

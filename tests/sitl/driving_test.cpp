@@ -94,8 +94,8 @@ TEST(Estimation, DeadReckoningStaysNearTheTruth) {
   ASSERT_TRUE(drive.start());
   drive.run(60.0);
   const Eigen::Vector3d truth = drive.position();
-  const double x = drive.robot.odometry().x_mm() * 1e-3;
-  const double y = drive.robot.odometry().y_mm() * 1e-3;
+  const double x = drive.robot.position().mm(kX) * 1e-3;
+  const double y = drive.robot.position().mm(kY) * 1e-3;
   // 9 m of path: a heading error of a few degrees (hard iron left over) and track slip.
   EXPECT_LT(std::hypot(x - truth.x(), y - truth.y()), 0.3);
 }

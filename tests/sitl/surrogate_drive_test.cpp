@@ -59,7 +59,7 @@ TEST(SurrogateDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
   const Eigen::Vector3d begin = drive.place();
   drive.run(10.0);
   EXPECT_NEAR((drive.place() - begin).norm(), 1.0, 0.02);
-  EXPECT_NEAR(drive.robot.odometry().x_mm() * 1e-3, drive.place().x(), 0.1);
+  EXPECT_NEAR(drive.robot.position().mm(kX) * 1e-3, drive.place().x(), 0.1);
   EXPECT_EQ(drive.robot.supervisor().faults(), 0);
 }
 

@@ -76,6 +76,10 @@ std::vector<uint8_t> GroundStation::transmit(uint64_t now_us) {
       add_line(signer_.sign(CommandOp::kDrive, argument), lines);
     }
   }
+  if (fixes_.has_value() && report_.heard) {
+    if (const auto fix = fixes_->at(ticks_, robot_x_m_, robot_y_m_))
+      add_line(signer_.sign(CommandOp::kPositionFix, *fix), lines);
+  }
   ++ticks_;
   return lines;
 }

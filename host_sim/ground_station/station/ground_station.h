@@ -8,12 +8,14 @@
 #include <optional>
 #include <ostream>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "firmware/protocol/messages.h"
 #include "firmware/protocol/slcan.h"
 #include "firmware/robot/supervisor.h"
 #include "host_sim/ground_station/station/command_signer.h"
+#include "host_sim/ground_station/station/position_fixes.h"
 
 namespace screed {
 
@@ -34,10 +36,18 @@ struct RobotReport {
 
 class GroundStation {
  public:
-  /// log may be null. arm: arm and start the robot as soon as it is ready.
+  /// log may be null. fixes: sent from the first heartbeat on. arm: arm and start the robot as soon
+  /// as it is ready.
   GroundStation(bool arm, std::optional<DriveCommand> drive, std::ostream* log,
-                const CommandKey& key = test_key())
-      : arm_(arm), drive_(drive), log_(log), signer_(key) {}
+                const CommandKey& key = test_key(),
+                std::optional<PositionFixes> fixes = std::nullopt)
+      : arm_(arm), drive_(drive), log_(log), signer_(key), fixes_(std::move(fixes)) {}
+
+  /// What an overhead camera sees: where the robot is, m.
+  void see_robot(double x_m, double y_m) {
+    robot_x_m_ = x_m;
+    robot_y_m_ = y_m;
+  }
 
   /// Takes what came down since the last tick.
   void receive(uint64_t now_us, std::span<const uint8_t> bytes);
@@ -57,6 +67,9 @@ class GroundStation {
   std::optional<DriveCommand> drive_;
   std::ostream* log_;
   CommandSigner signer_;
+  std::optional<PositionFixes> fixes_;
+  double robot_x_m_ = 0.0;
+  double robot_y_m_ = 0.0;
   SlcanParser parser_;
   RobotReport report_;
   uint64_t frames_ = 0;

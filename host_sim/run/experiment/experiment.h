@@ -20,6 +20,7 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/sections/drive_section.h"
 #include "host_sim/run/experiment/sections/experiment_section.h"
+#include "host_sim/run/experiment/sections/fixes_section.h"
 #include "host_sim/run/experiment/sections/map_section.h"
 #include "host_sim/run/experiment/sections/particles_section.h"
 #include "host_sim/run/experiment/sections/physics_section.h"
@@ -46,6 +47,7 @@ struct Experiment {
   SoilSection soil;
   ExperimentSection experiment;
   DriveSection drive;
+  FixesSection fixes;
   SensorsSection sensors;
   RadioSection radio;
   PhysicsSection physics;

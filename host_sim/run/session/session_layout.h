@@ -69,6 +69,7 @@ inline constexpr BoardField kBoardFields[] = {
     {"tread_mm", "mm", &BoardConstants::tread_mm},
     {"motor_nominal_mv", "mV", &BoardConstants::motor_nominal_mv},
     {"full_speed_mm_per_s", "mm/s", &BoardConstants::full_speed_mm_per_s},
+    {"hull_reach_mm", "mm", &BoardConstants::hull_reach_mm},
 };
 static_assert(sizeof(BoardConstants) == std::size(kBoardFields) * sizeof(std::uint16_t),
               "a board constant is missing from the list");

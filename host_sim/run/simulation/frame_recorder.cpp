@@ -78,8 +78,8 @@ SimFrame FrameRecorder::record(const Environment& plant, const Robot& robot) {
   frame.est_pitch = robot.attitude().pitch() * kRadPerAngle;
   frame.est_roll = robot.attitude().roll() * kRadPerAngle;
   frame.est_heading = robot.attitude().heading() * kRadPerAngle;
-  frame.odometry_x = robot.odometry().x_mm() * 1e-3;
-  frame.odometry_y = robot.odometry().y_mm() * 1e-3;
+  frame.odometry_x = robot.position().mm(kX) * 1e-3;
+  frame.odometry_y = robot.position().mm(kY) * 1e-3;
   frame.state = static_cast<int32_t>(robot.supervisor().state());
   frame.leveling_state = static_cast<int32_t>(robot.leveling().state());
   frame.faults = robot.supervisor().faults();

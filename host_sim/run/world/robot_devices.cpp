@@ -25,7 +25,8 @@ RobotDevices::RobotDevices(const WorldOptions& options, const Environment& plant
     : imu_(options.seed, options.imu),
       uplink_(options.seed, "uplink", options.radio),
       downlink_(options.seed, "downlink", options.radio),
-      ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key),
+      ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key,
+              PositionFixes(options.seed, options.fixes)),
       ground_end_(options.ground_port),
       station_m_(robot_position(plant)),
       encoder_counts_per_turn_(options.encoder_counts_per_turn),
@@ -36,7 +37,9 @@ void RobotDevices::execute_events(uint64_t tick, Environment& plant) {
 }
 
 void RobotDevices::exchange_radio(uint64_t now_us, const Environment& plant) {
-  const double distance_m = (robot_position(plant) - station_m_).norm();
+  const Eigen::Vector3d position = robot_position(plant);
+  const double distance_m = (position - station_m_).norm();
+  ground_.see_robot(position.x(), position.y());
   uplink_.set_distance(distance_m);
   downlink_.set_distance(distance_m);
   ground_end_.tick(now_us, ground_, uplink_, downlink_);

@@ -10,6 +10,7 @@
 #include "host_sim/ground_station/station/command_key.h"
 #include "host_sim/ground_station/station/ground_port.h"
 #include "host_sim/ground_station/station/ground_station.h"
+#include "host_sim/ground_station/station/position_fixes.h"
 #include "host_sim/physics/world/plant.h"
 
 namespace screed {
@@ -20,6 +21,7 @@ struct WorldOptions : PlantOptions {
   RadioOptions radio;
   bool ground_station_arms = true;
   std::optional<DriveCommand> drive;
+  PositionFixOptions fixes;
   CommandKey ground_key = test_key();  ///< what the ground station signs with
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
   GroundPort* ground_port = nullptr;

@@ -114,6 +114,8 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.radio.pause_characters = experiment.radio.packet_pause;
   options.ground_key = ground_key_of(experiment);
   options.ground_station_arms = experiment.radio.ground_station;
+  options.fixes = {experiment.fixes.period_s, experiment.fixes.sigma_m,
+                   experiment.fixes.outage_every_s, experiment.fixes.outage_s};
   if (experiment.experiment.algorithm == "drive") {
     options.drive =
         DriveCommand{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};

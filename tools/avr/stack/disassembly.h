@@ -27,6 +27,9 @@ class Disassembly {
   /// Throws InputError when there is no instruction at all.
   static Disassembly read(std::istream& in);
 
+  /// All instructions, by address.
+  const std::map<std::uint32_t, Instruction>& instructions() const { return instructions_; }
+
   /// The instruction that starts at `address`; nullptr when none does.
   const Instruction* at(std::uint32_t address) const;
 

@@ -23,8 +23,8 @@ double turn_speed(double tread_mm, double yaw_rate) {
 TEST(Kinematics, FollowsTheThesisWithinHalfAMillimetreASecond) {
   for (const uint16_t tread_mm : std::initializer_list<uint16_t>{1, 50, 98, 195, 300}) {
     const SkidSteer kinematics(tread_mm);
-    // The largest turn is made of a factor that is rounded once.
-    const double rounding = 0.5 + turn_speed(tread_mm, 32767.0) * 64.0 / (tread_mm * 12868.0);
+    // The factor is short of 64 pi by 0.03 %.
+    const double rounding = 0.5 + 0.00032 * turn_speed(tread_mm, 32767.0);
     for (int32_t rate = -32767; rate <= 32767; rate += 331) {
       for (const int16_t speed : std::initializer_list<int16_t>{-250, -31, 0, 1, 200}) {
         const TrackSpeeds tracks = kinematics.tracks(speed, rate, kNoLimit);
@@ -56,7 +56,7 @@ TEST(Kinematics, TurnIsKeptWhenTheTracksSaturate) {
       ASSERT_LE(std::abs(tracks.right), kLimit_mm_per_s);
       const double wanted = turn_speed(kTread_mm, rate);
       const double turn = (tracks.right - tracks.left) / 2.0;
-      ASSERT_NEAR(turn, std::clamp(wanted, -250.0, 250.0), 0.51) << rate << " " << speed;
+      ASSERT_NEAR(turn, std::clamp(wanted, -250.0, 250.0), 0.59) << rate << " " << speed;
       const double forward = (tracks.right + tracks.left) / 2.0;
       ASSERT_TRUE(forward == 0.0 || (forward > 0.0) == (speed > 0)) << rate << " " << speed;
     }

@@ -10,6 +10,7 @@
 #include <random>
 #include <sstream>
 
+#include "firmware/estimation/slip_model.h"
 #include "nn/slip/slip_model.h"
 #include "paths.h"
 
@@ -122,6 +123,77 @@ TEST(SlipWatch, OneThatStartsAnewIsNoLongerStuck) {
   drive.go(150.0, 3.0, {});
   EXPECT_FALSE(drive.watch.stuck()) << "it has forgotten";
   EXPECT_GT(drive.watch.travel_share(), 192);
+}
+
+// Whatever it feels, the evidence decides: stuck from one threshold, free below another, and
+// between them what it was.
+TEST(SlipWatch, SlipsIsStuckAndIsFreeFromTheModelsThresholds) {
+  using nn::model_slip::kFreeEvidence;
+  using nn::model_slip::kSlipEvidence;
+  using nn::model_slip::kStuckEvidence;
+  static_assert(kFreeEvidence < kSlipEvidence && kSlipEvidence <= kStuckEvidence);
+  Drive drive;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform;
+  drive.go(0.0, 5.0, kStands);
+  int rising = 0;
+  int falling = 0;
+  int held = 0;
+  for (int piece = 0; piece < 400; ++piece) {
+    const Drive::Feeling feeling = {uniform(random) < 0.5 ? 1.0 : 0.0,
+                                    static_cast<std::int16_t>(uniform(random) * 80.0),
+                                    (uniform(random) - 0.5) * 1.5, 0};
+    const double speed = 80.0 + 120.0 * uniform(random);
+    for (int i = 0; i < 25; ++i) {
+      const bool was_stuck = drive.watch.stuck();
+      drive.go(speed, 0.04, feeling);
+      const std::uint16_t evidence = drive.watch.evidence();
+      ASSERT_EQ(drive.watch.slips(), evidence >= kSlipEvidence) << evidence;
+      if (evidence >= kStuckEvidence) {
+        ASSERT_TRUE(drive.watch.stuck()) << evidence;
+        rising += was_stuck ? 0 : 1;
+      } else if (evidence < kFreeEvidence) {
+        ASSERT_FALSE(drive.watch.stuck()) << evidence;
+        falling += was_stuck ? 1 : 0;
+      } else {
+        ASSERT_EQ(drive.watch.stuck(), was_stuck) << evidence;
+        held += was_stuck ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(rising, 3);
+  EXPECT_GE(falling, 3);
+  EXPECT_GE(held, 3);
+}
+
+// Half of the speed lost within a few ticks while the tracks go on. What is lost slowly, with the
+// tracks, or by hand from outside at rest is no collision.
+TEST(SlipWatch, ACollisionIsSpeedLostAtOnce) {
+  const auto collides = [](double speed, double seconds, double braking, double target) {
+    Drive drive;
+    drive.go(0.0, 5.0, kStands);
+    drive.go(speed, 3.0, {});
+    EXPECT_FALSE(drive.watch.collided()) << speed;
+    drive.go(target, seconds, {target == speed ? 0.0 : 1.0, 60, braking, 0});
+    return drive.watch.collided();
+  };
+  EXPECT_TRUE(collides(150.0, 0.05, 3.0, 150.0)) << "all of it in 50 ms";
+  EXPECT_TRUE(collides(100.0, 0.05, 2.0, 100.0));
+  EXPECT_FALSE(collides(150.0, 1.0, 0.15, 150.0)) << "dug in within a second";
+  EXPECT_FALSE(collides(150.0, 0.05, 0.6, 150.0)) << "a fifth of it";
+  EXPECT_FALSE(collides(150.0, 0.3, 0.0, 0.0)) << "brakes by its tracks";
+
+  Drive drive;
+  drive.go(0.0, 5.0, kStands);
+  drive.go(0.0, 0.05, {0.0, 0, 3.0, 0});
+  EXPECT_FALSE(drive.watch.collided()) << "kicked at rest";
+  drive.go(150.0, 3.0, {});
+  drive.go(150.0, 0.05, {0.0, 60, 3.0, 0});
+  ASSERT_TRUE(drive.watch.collided());
+  drive.go(150.0, 2.4, {0.0, 60, 0.0, 0});
+  EXPECT_TRUE(drive.watch.collided()) << "remembered for 2.5 s";
+  drive.go(150.0, 0.2, {0.0, 60, 0.0, 0});
+  EXPECT_FALSE(drive.watch.collided());
 }
 
 TEST(SlipWatch, ATurnThatTheGyroDoesNotSeeIsNone) {

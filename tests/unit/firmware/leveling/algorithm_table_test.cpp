@@ -53,8 +53,8 @@ TEST(AlgorithmTable, WhatIsNoAlgorithmIsAnInvalidParameterAndStands) {
   EXPECT_FALSE(parameters.valid());
   Leveling leveling(parameters);
   leveling.start();
-  for (const int32_t x_mm : {0, 1100}) {  // on its site and off it
-    const MotionCommand motion = leveling.tick({8192, 0, x_mm, 0, {100, 100}});
+  for (const int16_t x_mm : {int16_t{0}, int16_t{1100}}) {  // on its site and off it
+    const MotionCommand motion = leveling.tick({8192, 0, {{x_mm, 0}, {0, 0}}, {100, 100}});
     EXPECT_EQ(motion.speed_mm_per_s, 0);
     EXPECT_EQ(motion.yaw_rate, 0);
     EXPECT_EQ(leveling.state(), LevelingState::kIdle);
@@ -66,7 +66,7 @@ TEST(AlgorithmTable, TheFenceHoldsThoseThatKeepToTheSite) {
   for (const schema::ValueName& it : algorithms()) {
     Leveling leveling(parameters_of(it.value));
     leveling.start();
-    leveling.tick({0, 0, 1100, 0, {0, 0}});
+    leveling.tick({0, 0, {{1100, 0}, {0, 0}}, {0, 0}});
     if (leveling.state() == LevelingState::kReturn) kept.push_back(it.name);
   }
   std::vector<std::string> expected;
@@ -83,11 +83,11 @@ TEST(AlgorithmTable, OneThatIsLeftOutOfABuildStands) {
   const Parameters parameters;
   Behaviour behaviour(parameters);
   Slot<HillSensing, false> left_out(parameters);
-  const MotionCommand motion = left_out.tick({8192, 0, 0, 0, {0, 0}}, behaviour);
+  const MotionCommand motion = left_out.tick({8192, 0, {{0, 0}, {0, 0}}, {0, 0}}, behaviour);
   EXPECT_EQ(motion.speed_mm_per_s, 0);
   EXPECT_EQ(behaviour.state(), LevelingState::kIdle);
   Slot<HillSensing, true> there(parameters);
-  EXPECT_GT(there.tick({8192, 0, 0, 0, {0, 0}}, behaviour).speed_mm_per_s, 0);
+  EXPECT_GT(there.tick({8192, 0, {{0, 0}, {0, 0}}, {0, 0}}, behaviour).speed_mm_per_s, 0);
   EXPECT_EQ(behaviour.state(), LevelingState::kClimb);
 }
 

@@ -26,11 +26,11 @@ Parameters coverage_parameters(int16_t half_side_mm, int16_t spacing_mm) {
 struct Point {
   void tick(Leveling& leveling) {
     const auto heading = wrap_angle(static_cast<int32_t>(std::lround(angle * kAngleUnits)));
-    const MotionCommand motion = leveling.tick({0,
-                                                heading,
-                                                static_cast<int32_t>(std::lround(x)),
-                                                static_cast<int32_t>(std::lround(y)),
-                                                {0, 0}});
+    const MotionCommand motion = leveling.tick(
+        {0,
+         heading,
+         {{static_cast<int16_t>(std::lround(x)), static_cast<int16_t>(std::lround(y))}, {0, 0}},
+         {0, 0}});
     angle += motion.yaw_rate / kAngleUnits / kTickRate_hz;
     x += motion.speed_mm_per_s * std::cos(angle) / kTickRate_hz;
     y += motion.speed_mm_per_s * std::sin(angle) / kTickRate_hz;

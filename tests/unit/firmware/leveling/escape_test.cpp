@@ -127,10 +127,10 @@ TEST(Escape, NoAttemptsIsNoEscapeAndNoFault) {
   }
 }
 
-LevelingInput stuck_input(bool stuck, int32_t x_mm = 0) {
+LevelingInput stuck_input(bool stuck, int16_t x_mm = 0) {
   LevelingInput input{};
   input.stuck = stuck;
-  input.x_mm = x_mm;
+  input.place.mm[kX] = x_mm;
   input.drive = {100, 0};
   return input;
 }

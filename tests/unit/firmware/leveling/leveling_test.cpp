@@ -25,7 +25,7 @@ class Walker {
   explicit Walker(const Parameters& parameters) : leveling(parameters) { leveling.start(); }
 
   LevelingState tick(double pitch_deg) {
-    motion = leveling.tick({degrees(pitch_deg), 0, x_mm, 0, drive});
+    motion = leveling.tick({degrees(pitch_deg), 0, {{x_mm, 0}, {0, 0}}, drive});
     return leveling.state();
   }
   /// Number of ticks, this one included, for which the state stays the same at this pitch.
@@ -38,7 +38,7 @@ class Walker {
   Leveling leveling;
   MotionCommand motion = {0, 0};
   MotionCommand drive = {0, 0};
-  int32_t x_mm = 0;
+  int16_t x_mm = 0;
 };
 
 TEST(HillSensing, ClimbsAboveTheThresholdAndWalksBelow) {
@@ -238,7 +238,7 @@ TEST(Leveling, StartBeginsAnew) {
 
 /// The state after one more tick at exactly this pitch.
 LevelingState state_at(Leveling& leveling, int32_t pitch) {
-  leveling.tick({static_cast<Angle>(pitch), 0, 0, 0, {0, 0}});
+  leveling.tick({static_cast<Angle>(pitch), 0, {{0, 0}, {0, 0}}, {0, 0}});
   return leveling.state();
 }
 
@@ -294,14 +294,14 @@ TEST(Leveling, ATrainingDriveIsDrivenToItsEnd) {
   int ticks = 0;
   bool moved = false;
   for (; leveling.state() != LevelingState::kDone && ticks < 1000; ++ticks) {
-    const MotionCommand motion = leveling.tick({0, 0, 0, 0, {0, 0}});
+    const MotionCommand motion = leveling.tick({0, 0, {{0, 0}, {0, 0}}, {0, 0}});
     moved = moved || motion.speed_mm_per_s != 0;
     const bool over = ticks >= 150;
     ASSERT_TRUE(over || leveling.state() == LevelingState::kTrainingDrive) << ticks;
   }
   EXPECT_TRUE(moved);
   EXPECT_NEAR(ticks, 8 * 20, 1);
-  EXPECT_EQ(leveling.tick({0, 0, 0, 0, {0, 0}}).speed_mm_per_s, 0);
+  EXPECT_EQ(leveling.tick({0, 0, {{0, 0}, {0, 0}}, {0, 0}}).speed_mm_per_s, 0);
 }
 
 }  // namespace

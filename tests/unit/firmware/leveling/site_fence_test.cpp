@@ -10,48 +10,72 @@
 namespace screed {
 namespace {
 
+/// A place that is known exactly.
+Place at(int x_mm, int y_mm) {
+  return {{static_cast<int16_t>(x_mm), static_cast<int16_t>(y_mm)}, {0, 0}};
+}
+
 TEST(SiteFence, CallsBackAtTheRadiusAndLetsGoAtThreeQuarters) {
   SiteFence fence(1000, 100);
-  EXPECT_FALSE(fence.update(0, 0));
-  EXPECT_FALSE(fence.update(600, -800));  // exactly on the circle
-  EXPECT_TRUE(fence.update(601, -800));
-  EXPECT_TRUE(fence.update(600, -790));
-  EXPECT_TRUE(fence.update(0, 751));
-  EXPECT_FALSE(fence.update(0, 750));
-  EXPECT_FALSE(fence.update(0, 999));
-  EXPECT_TRUE(fence.update(-1001, 0));
+  EXPECT_FALSE(fence.update(at(0, 0)));
+  EXPECT_FALSE(fence.update(at(600, -800)));  // exactly on the circle
+  EXPECT_TRUE(fence.update(at(601, -800)));
+  EXPECT_TRUE(fence.update(at(600, -790)));
+  EXPECT_TRUE(fence.update(at(0, 751)));
+  EXPECT_FALSE(fence.update(at(0, 750)));
+  EXPECT_FALSE(fence.update(at(0, 999)));
+  EXPECT_TRUE(fence.update(at(-1001, 0)));
 }
 
 TEST(SiteFence, RadiusZeroSwitchesItOff) {
   SiteFence fence(0, 100);
-  EXPECT_FALSE(fence.update(INT32_MAX, INT32_MIN));
+  EXPECT_FALSE(fence.update(at(INT16_MAX, INT16_MIN)));
 }
 
 TEST(SiteFence, SeesTheFarthestPlaces) {
   for (const int16_t radius_mm : std::initializer_list<int16_t>{1, 1000, 30000}) {
     SiteFence fence(radius_mm, 100);
-    EXPECT_FALSE(fence.update(0, 0));
-    for (const int32_t far : {30001, 100000, 2147483}) {
-      EXPECT_TRUE(fence.update(far, 0)) << radius_mm << " " << far;
-      EXPECT_TRUE(fence.update(0, -far)) << radius_mm << " " << far;
-      EXPECT_TRUE(fence.update(-far, far)) << radius_mm << " " << far;
+    EXPECT_FALSE(fence.update(at(0, 0)));
+    for (const int far : {30001, INT16_MAX}) {
+      EXPECT_TRUE(fence.update(at(far, 0))) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.update(at(0, -far))) << radius_mm << " " << far;
+      EXPECT_TRUE(fence.update(at(-far, far))) << radius_mm << " " << far;
     }
   }
+}
+
+// The circle is smaller by twice the deviation of the worse axis, and by half at most.
+TEST(SiteFence, TurnsBackEarlierTheLessItKnows) {
+  const auto turns_back_at = [](uint8_t sigma_x, uint8_t sigma_y) {
+    for (int16_t x = 0;; ++x) {
+      SiteFence fence(1000, 100);
+      if (fence.update({{x, 0}, {sigma_x, sigma_y}})) return x;
+    }
+  };
+  EXPECT_EQ(turns_back_at(0, 0), 1001);
+  EXPECT_EQ(turns_back_at(10, 0), 921) << "40 mm";
+  EXPECT_EQ(turns_back_at(3, 25), 801) << "100 mm";
+  EXPECT_EQ(turns_back_at(100, 0), 501) << "400 mm";
+  EXPECT_EQ(turns_back_at(255, 255), 501);
+  SiteFence fence(1000, 100);
+  EXPECT_TRUE(fence.update({{900, 0}, {25, 25}}));
+  EXPECT_TRUE(fence.update({{601, 0}, {25, 25}}));
+  EXPECT_FALSE(fence.update({{600, 0}, {25, 25}})) << "three quarters of 800 mm";
 }
 
 TEST(SiteFence, TurnsOnTheSpotUntilHomeLiesAhead) {
   const SiteFence fence(1000, 100);
   // East of home: home lies in the west, -32768.
-  EXPECT_EQ(fence.steer(1100, 0, 0).speed_mm_per_s, 0);
-  EXPECT_NE(fence.steer(1100, 0, 0).yaw_rate, 0);
-  EXPECT_EQ(fence.steer(1100, 0, -32768).speed_mm_per_s, 100);
-  EXPECT_EQ(fence.steer(1100, 0, -32768).yaw_rate, 0);
+  EXPECT_EQ(fence.steer(-1100, 0, 0).speed_mm_per_s, 0);
+  EXPECT_NE(fence.steer(-1100, 0, 0).yaw_rate, 0);
+  EXPECT_EQ(fence.steer(-1100, 0, -32768).speed_mm_per_s, 100);
+  EXPECT_EQ(fence.steer(-1100, 0, -32768).yaw_rate, 0);
   // Heading a little south of west (counter-clockwise of it): a turn clockwise.
-  EXPECT_LT(fence.steer(1100, 0, static_cast<Angle>(-32768 + 2000)).yaw_rate, 0);
-  EXPECT_GT(fence.steer(1100, 0, static_cast<Angle>(32767 - 2000)).yaw_rate, 0);
+  EXPECT_LT(fence.steer(-1100, 0, static_cast<Angle>(-32768 + 2000)).yaw_rate, 0);
+  EXPECT_GT(fence.steer(-1100, 0, static_cast<Angle>(32767 - 2000)).yaw_rate, 0);
   // Never faster than 60 degrees/s.
   for (int32_t heading = -32768; heading <= 32767; heading += 111) {
-    EXPECT_LE(std::abs(fence.steer(1100, 300, static_cast<Angle>(heading)).yaw_rate), 10923);
+    EXPECT_LE(std::abs(fence.steer(-1100, -300, static_cast<Angle>(heading)).yaw_rate), 10923);
   }
 }
 
@@ -59,16 +83,16 @@ TEST(SiteFence, TurnsTwiceTheErrorASecondAndDrivesWithinFortyFiveDegrees) {
   const SiteFence fence(1000, 100);
   // West of home, home lies in the east: the error is minus the heading.
   for (const int error : {1, 100, 2000, 5000, -5000}) {
-    EXPECT_EQ(fence.steer(-1100, 0, static_cast<Angle>(-error)).yaw_rate, 2 * error) << error;
+    EXPECT_EQ(fence.steer(1100, 0, static_cast<Angle>(-error)).yaw_rate, 2 * error) << error;
   }
   // 60 degrees/s are 10922.7 units.
-  EXPECT_NEAR(fence.steer(-1100, 0, -20000).yaw_rate, 10922.7, 1.0);
-  EXPECT_NEAR(fence.steer(-1100, 0, 20000).yaw_rate, -10922.7, 1.0);
+  EXPECT_NEAR(fence.steer(1100, 0, -20000).yaw_rate, 10922.7, 1.0);
+  EXPECT_NEAR(fence.steer(1100, 0, 20000).yaw_rate, -10922.7, 1.0);
   constexpr Angle kFortyFive = 8192;
   for (const int side : {1, -1}) {
     const auto heading = [&](int angle) { return static_cast<Angle>(side * angle); };
-    EXPECT_EQ(fence.steer(-1100, 0, heading(kFortyFive - 1)).speed_mm_per_s, 100) << side;
-    EXPECT_EQ(fence.steer(-1100, 0, heading(kFortyFive)).speed_mm_per_s, 0) << side;
+    EXPECT_EQ(fence.steer(1100, 0, heading(kFortyFive - 1)).speed_mm_per_s, 100) << side;
+    EXPECT_EQ(fence.steer(1100, 0, heading(kFortyFive)).speed_mm_per_s, 0) << side;
   }
 }
 
@@ -80,9 +104,10 @@ TEST(SiteFence, LeadsHomeFromEverywhere) {
       double y = 1100.0 * std::sin(degrees * std::numbers::pi / 180.0);
       double heading = heading_degrees * 65536.0 / 360.0;
       int ticks = 0;
-      const auto mm = [](double value) { return static_cast<int32_t>(std::lround(value)); };
-      while (fence.update(mm(x), mm(y)) && ticks < 3000) {
-        const MotionCommand motion = fence.steer(mm(x), mm(y), wrap_angle(mm(heading)));
+      const auto mm = [](double value) { return static_cast<int16_t>(std::lround(value)); };
+      while (fence.update(at(mm(x), mm(y))) && ticks < 3000) {
+        const MotionCommand motion =
+            fence.steer(mm(-x), mm(-y), wrap_angle(static_cast<int32_t>(std::lround(heading))));
         heading += motion.yaw_rate * 0.01;
         x += motion.speed_mm_per_s * 0.01 * std::cos(heading * 2.0 * std::numbers::pi / 65536.0);
         y += motion.speed_mm_per_s * 0.01 * std::sin(heading * 2.0 * std::numbers::pi / 65536.0);

@@ -1,6 +1,8 @@
 // Commands through the whole core: who may, when, and what the robot answers.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -338,21 +340,28 @@ TEST(RadioParameters, NoOtherStagedValueFitsACommit) {
 
 // ---- odometry and fence
 
+/// Carries the robot over the floor, its tracks turning, so slowly that no slip is sought.
+void push(TestRobot& robot, int way_mm) {
+  for (int i = 0; i * 0.1885 < way_mm; ++i) {
+    if (i % 3 == 0) {
+      robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 1);
+      robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 1);
+    }
+    robot.tick();
+  }
+}
+
 TEST(Run, BeginsAtItsOwnOrigin) {
   TestRobot robot = ready_robot();
   // Carried over the floor, tracks turning, before it is armed.
-  for (int i = 0; i < 300; ++i) {
-    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
-    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 5);
-    robot.tick();
-  }
+  push(robot, 600);
   robot.run(50);  // set down: tracks that something else turns keep it from being armed
-  EXPECT_GT(std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm()), 500);
+  EXPECT_GT(std::abs(robot.robot.position().mm(kX)) + std::abs(robot.robot.position().mm(kY)), 500);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   robot.send(robot.command(CommandOp::kRun));
   while (robot.state() != RobotState::kRunning) robot.tick();
-  EXPECT_LE(std::abs(robot.robot.odometry().x_mm()), 1);
-  EXPECT_LE(std::abs(robot.robot.odometry().y_mm()), 1);
+  EXPECT_LE(std::abs(robot.robot.position().mm(kX)), 1);
+  EXPECT_LE(std::abs(robot.robot.position().mm(kY)), 1);
 }
 
 TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
@@ -360,10 +369,10 @@ TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   TestRobot robot(parameters);
   robot.start();
-  robot.send(robot.command(CommandOp::kDrive, {200, 0}));
-  robot.run(300);
+  robot.send(robot.command(CommandOp::kDrive, {30, 0}));  // no slip is sought below 35 mm/s
+  robot.run(1500);
   const auto way = [&robot] {
-    return std::abs(robot.robot.odometry().x_mm()) + std::abs(robot.robot.odometry().y_mm());
+    return std::abs(robot.robot.position().mm(kX)) + std::abs(robot.robot.position().mm(kY));
   };
   ASSERT_GT(way(), 300);
   ASSERT_EQ(result_of(robot, CommandOp::kStop), RequestResult::kDone);
@@ -380,16 +389,62 @@ TEST(Run, TheFenceLiesRoundThePlaceWhereItBegan) {
   Parameters parameters;
   parameters.site_radius = 1000;
   TestRobot robot = ready_robot(parameters);
-  for (int i = 0; i < 1000; ++i) {  // 2.8 m away from where it was switched on
-    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
-    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 5);
-    robot.tick();
-  }
+  push(robot, 1200);
   robot.run(50);
+  ASSERT_GT(std::hypot(robot.robot.position().mm(kX), robot.robot.position().mm(kY)), 1000);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
   robot.run(50);
   EXPECT_NE(robot.robot.leveling().state(), LevelingState::kReturn);
+}
+
+TEST(PositionFix, TellsTheRobotWhereItIs) {
+  TestRobot robot = ready_robot();
+  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {120, -85})),
+            RequestResult::kDone);
+  EXPECT_EQ(robot.robot.position().mm(kX), 0) << "it knows that it has not moved";
+  for (int i = 0; i < 6000; ++i) {  // until it does not know that well any more
+    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
+    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right - 5);
+    robot.tick();
+  }
+  robot.run(50);
+  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {120, -85})),
+            RequestResult::kDone);
+  EXPECT_NEAR(robot.robot.position().mm(kX), 1200, 50);
+  EXPECT_NEAR(robot.robot.position().mm(kY), -850, 40);
+}
+
+// The site is that of the fixes: a run does not begin at an origin of its own.
+TEST(PositionFix, ARunBeginsWhereTheFixesSay) {
+  Parameters parameters;
+  parameters.fix_sigma = 8;
+  parameters.site_radius = 500;
+  TestRobot robot = ready_robot(parameters);
+  for (int i = 0; i < 3000; ++i) {
+    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
+    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right - 5);
+    robot.tick();
+  }
+  robot.run(50);
+  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {100, 0})),
+            RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
+  robot.run(5);
+  EXPECT_NEAR(robot.robot.position().mm(kX), 1000, 30);
+  EXPECT_EQ(robot.robot.leveling().state(), LevelingState::kReturn) << "outside the site";
+}
+
+TEST(Lost, StopsWithTheFault) {
+  Parameters parameters;
+  parameters.lost_sigma = 20;
+  TestRobot robot(parameters);
+  robot.start();
+  ASSERT_EQ(robot.state(), RobotState::kRunning);
+  for (int i = 0; i < 3000 && robot.state() == RobotState::kRunning; ++i) robot.tick();
+  EXPECT_EQ(robot.state(), RobotState::kFault);
+  EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kLost);
 }
 
 }  // namespace

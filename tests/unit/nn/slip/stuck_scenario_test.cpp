@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "host_sim/physics/soil/soil_parameters.h"
@@ -41,8 +43,21 @@ TEST(StuckScenario, OrdinaryDrivesRunEveryLevelingAlgorithmAndMeetTheirOwnRuts) 
       EXPECT_EQ(e.drive.yaw_rate_deg_per_s, 0.0);
     }
   }
-  EXPECT_EQ(algorithms,
-            (std::set<std::string>{"hill_sensing", "spin_on_peak", "training_drive", "drive"}));
+  EXPECT_EQ(algorithms, (std::set<std::string>{"hill_sensing", "spin_on_peak", "random_walk",
+                                               "training_drive", "drive"}));
+}
+
+TEST(StuckScenario, HalfOfTheOrdinaryDrivesAreInBedsWithWalls) {
+  int beds = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Experiment e = stuck_scenario(seed, ScenarioKind::kOrdinary, 10.0).experiment;
+    if (e.map.edges != "walls") continue;
+    ++beds;
+    EXPECT_LE(e.map.size_m, 3.0);
+    EXPECT_LE(e.map.max_slope_deg, 25.0);
+    EXPECT_LE(std::max(std::abs(e.vehicle.x_m), std::abs(e.vehicle.y_m)), 0.3) << "clear of them";
+  }
+  EXPECT_NEAR(beds, 50, 15);
 }
 
 TEST(StuckScenario, KindsOfTheSameSeedAreDrivesOfTheirOwn) {

@@ -129,8 +129,8 @@ TEST(Schema, ValuesAndTexts) {
   EXPECT_EQ(pitch.text(-5), "-0.05");
   EXPECT_EQ(pitch.text(0), "0.00");
   const SignalInfo& pressure = *find_signal("BARO.pressure").signal;
-  EXPECT_DOUBLE_EQ(pressure.value(101325 * 16 + 1), 101325.0625);
-  EXPECT_EQ(pressure.text(UINT32_MAX), "268435455.9375");
+  EXPECT_DOUBLE_EQ(pressure.value(1013 * 256 + 1), 101300.390625);
+  EXPECT_EQ(pressure.text(UINT32_MAX), "1677721599.609375");
   const SignalInfo& state = *find_signal("heartbeat.state").signal;
   EXPECT_EQ(state.text(2), "running");
   EXPECT_EQ(state.text(15), "15") << "no name";

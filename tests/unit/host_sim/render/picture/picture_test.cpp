@@ -337,7 +337,7 @@ TEST_F(PictureTest, RefusesWrongOptions) {
   options.height_px = 8001;
   refused(options);
   options = small_picture();
-  options.state_names.assign(kCategoryColors + 1, "state");
+  options.state_names.assign(kStateColors + 1, "state");
   refused(options);
 }
 

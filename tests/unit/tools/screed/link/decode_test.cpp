@@ -119,7 +119,7 @@ TEST_F(Decode, TablesHaveUnitsAndExactNumbers) {
             "1700000000.250000,3,-0.05,-90.00,359.99\n");
   EXPECT_EQ(table("baro"),
             "time [s],robot,pressure [Pa],temperature [degC]\n"
-            "0.000006,1,268435455.9375,-0.01\n");
+            "0.000006,1,1677721599.609375,42.49791667\n");
   EXPECT_EQ(table("heartbeat").substr(0, 47), "time [s],robot,state,link_alive,tilt,imu_silent");
   EXPECT_NE(
       table("heartbeat").find("\n0.000005,1,running,lost,1,0,0,0,0,0,0,0,0,0,0,0,1,0,0,0,0,0\n"),

@@ -1,0 +1,70 @@
+// Where the robot is, and how well it knows.
+#include "firmware/estimation/position_estimate.h"
+
+#include "firmware/math/fixed.h"
+#include "firmware/math/sqrt.h"
+#include "firmware/parameters/board_constants.h"
+
+namespace screed {
+namespace {
+
+/// length * factor (Q15), rounded; |length| below 2^30.
+SCREED_OUT_OF_LINE int32_t times_q15(int32_t length, int16_t factor) {
+  return scale_q16(length * 2, factor);
+}
+
+/// Up to 2^31: neither addend is larger.
+uint32_t limited(uint32_t variance) {
+  return static_cast<int32_t>(variance) < 0 ? static_cast<uint32_t>(INT32_MAX) : variance;
+}
+
+}  // namespace
+
+void PositionEstimate::reset() {
+  static_cast<PositionState&>(*this) = PositionState();
+}
+
+void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch,
+                              uint8_t share) {
+  // Mean of both tracks: half the sum; Q4, the half and the share together are a shift by 13, of
+  // which 16 are in the scaling; 2^-13 mm are 8.192 a um: 8 times 131 / 128, less 0.05 %.
+  const int32_t both =
+      detail::mul_su(static_cast<int16_t>(counts_left + counts_right), count_um_q4_);
+  const auto scale = static_cast<int16_t>(static_cast<uint16_t>((share + 1) * 131) >> 1);
+  const int32_t travel = scale_q16(both, scale);
+  const int32_t horizontal = times_q15(travel, cos_q15(pitch));
+  const int16_t direction[2] = {cos_q15(heading), sin_q15(heading)};
+  for (uint8_t axis = 0; axis < 2; ++axis) place_[axis] += times_q15(horizontal, direction[axis]);
+
+  // Of both tracks, so that a turn on the spot makes the place uncertain as well. In 16 um: 16000
+  // of it, 128 mm of both, make the parameter's unit; in Q16 that is 4.1 for each, taken as 4.
+  const auto travelled =
+      static_cast<uint16_t>(static_cast<uint8_t>(abs_i16(counts_left) + abs_i16(counts_right)) *
+                            static_cast<uint16_t>(count_um_q4_ >> 8));
+  const uint32_t growth = mul_u16(travelled, noise_x4_);
+  for (uint32_t& variance : variance_) variance = limited(variance + growth);
+}
+
+bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, bool gated) {
+  const int16_t innovation = limit_i16(static_cast<int32_t>(z_mm) - short_mm(axis), INT16_MAX);
+  // Variances in 32 mm^2.
+  const uint16_t half = static_cast<uint16_t>(variance_[axis] >> 17);
+  const auto sum =
+      static_cast<uint16_t>(half + static_cast<uint16_t>(mul_i16(sigma_mm, sigma_mm) >> 5));
+  if (gated && static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, 9))
+    return false;
+  // Below 1: sigma_mm is at least 8.
+  const uint16_t gain_q15 = quotient_u16(static_cast<uint32_t>(half) << 15, sum);
+  place_[axis] += asr(mul_i16(innovation, static_cast<int16_t>(gain_q15)), 2);
+  variance_[axis] -= mul_u16(half, gain_q15) << 2;
+  return true;
+}
+
+void PositionEstimate::get(Place& place) const {
+  for (uint8_t axis = 0; axis < 2; ++axis) {
+    place.mm[axis] = short_mm(axis);
+    place.sigma[axis] = static_cast<uint8_t>(isqrt32(variance_[axis]) >> 8);
+  }
+}
+
+}  // namespace screed

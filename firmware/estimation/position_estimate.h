@@ -1,0 +1,59 @@
+// Where the robot is on the plane, and how well it knows: dead reckoning from encoder counts and
+// heading, corrected by position fixes and by walls that it touches.
+//
+// The heading comes from the attitude estimator, not from the difference of the tracks: skid
+// steering makes the latter useless (thesis 4.3.1). Track travel is along the slope; its horizontal
+// part counts, and of that the share that the tracks do not lose by slip.
+//
+// Each axis is a Kalman filter of one state. Slip makes the position drift like a random walk, so
+// the variance grows with what the tracks travel:
+//   variance += noise |travel|
+// and with a measurement z of the variance r
+//   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/estimation/place.h"
+#include "firmware/math/fixed.h"
+#include "firmware/math/trig.h"
+
+namespace screed {
+
+/// Zero after a reset.
+struct PositionState {
+  int32_t place_[2];      ///< 2^-13 mm
+  uint32_t variance_[2];  ///< 16 mm^2, Q16: up to 724 mm of standard deviation
+};
+
+class PositionEstimate : private PositionState {
+ public:
+  /// count_um_q4: track travel per encoder count, 1/16 um. noise: variance of the position that a
+  /// metre of travel makes, 125 mm^2.
+  PositionEstimate(uint16_t count_um_q4, int16_t noise)
+      : PositionState(), count_um_q4_(count_um_q4), noise_x4_(static_cast<uint16_t>(noise << 2)) {}
+
+  /// At the origin for sure.
+  void reset();
+
+  /// One tick: counts of both tracks since the last tick (within kMaxTrackCounts), heading and
+  /// pitch now; share: of the tracks' travel that moves the robot, 255: all of it.
+  void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch, uint8_t share);
+
+  /// Measured along an axis: z_mm, +-sigma_mm (8..1000). False, and nothing changed, where it is
+  /// `gated` and that is further off than three standard deviations.
+  SCREED_OUT_OF_LINE bool measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, bool gated);
+
+  /// Position and deviation now.
+  SCREED_OUT_OF_LINE void get(Place& place) const;
+  /// Along an axis, also beyond what a Place holds, mm. Wraps at +-262 m.
+  SCREED_OUT_OF_LINE int32_t mm(uint8_t axis) const { return asr(place_[axis], 13); }
+
+ private:
+  int16_t short_mm(uint8_t axis) const { return limit_i16(mm(axis), INT16_MAX); }
+
+  uint16_t count_um_q4_;
+  uint16_t noise_x4_;  ///< of 125 mm^2 a metre: 16 mm^2 for 128 mm
+};
+
+}  // namespace screed

@@ -1,0 +1,22 @@
+// The walls of the site: a rectangle whose sides run east and north about the origin, in which a
+// robot that touches a wall learns where it is.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/estimation/position_estimate.h"
+#include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/parameters.h"
+
+namespace screed {
+
+/// Standard deviation of a place that a wall tells: hull, angle, piles before it.
+constexpr uint8_t kWallSigma_mm = 40;
+
+/// The robot has driven against something; `travel`: where to, counter-clockwise from east. It is
+/// the wall that it travels to most directly. False where there is none (site_x, site_y), or it
+/// cannot be there: then nothing is changed.
+bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel,
+                PositionEstimate& position);
+
+}  // namespace screed

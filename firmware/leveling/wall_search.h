@@ -1,0 +1,38 @@
+// What a robot does that does not know any more where it is.
+//
+// It is lost when the standard deviation of its position along an axis exceeds the parameter
+// lost_sigma. Then it stops with the fault lost, or seeks a wall, as the parameter lost_action
+// says: it drives along the axis it knows least about, towards the wall that it believes nearer,
+// until that has told it where it is (site_walls.h) and the deviation is below half of lost_sigma.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/estimation/place.h"
+#include "firmware/parameters/parameters.h"
+
+namespace screed {
+
+/// Parameter lost_action.
+enum class LostAction : uint8_t { kStop, kSeekWall };
+
+class WallSearch {
+ public:
+  explicit WallSearch(const Parameters& parameters);
+
+  /// One tick. Returns true while the robot is to drive towards (east, north).
+  bool update(const Place& place);
+  /// Lost, and not seeking a wall: in this tick.
+  bool gave_up() const { return gave_up_; }
+  int16_t east() const { return towards_[kX]; }
+  int16_t north() const { return towards_[kY]; }
+
+ private:
+  uint8_t limit_;  ///< 4 mm; 255 of a robot that is never lost
+  bool seeks_[2];  ///< a wall, at the ends of x and of y
+  bool lost_ = false;
+  bool gave_up_ = false;
+  int16_t towards_[2] = {0, 0};
+};
+
+}  // namespace screed

@@ -1,0 +1,178 @@
+// Dead reckoning on paths whose end is known, its deviation, and measurements that correct it.
+#include "firmware/estimation/position_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "firmware/math/units.h"
+
+namespace screed {
+namespace {
+
+constexpr uint16_t kCount_um_q4 = 9048;
+constexpr double kCount_mm = 9048.0 / 16000.0;
+
+Place place_of(const PositionEstimate& position) {
+  Place place;
+  position.get(place);
+  return place;
+}
+
+TEST(PositionEstimate, StraightOnInEveryDirection) {
+  for (const int degrees : {0, 45, 90, 135, 180, -60}) {
+    PositionEstimate position(kCount_um_q4, 0);
+    const auto heading = wrap_angle(degrees * 65536 / 360);
+    for (int tick = 0; tick < 1000; ++tick) position.update(3, 3, heading, 0, 255);
+    const double length = 3000 * kCount_mm;
+    EXPECT_NEAR(position.mm(kX), length * std::cos(degrees * std::numbers::pi / 180.0), 2.0);
+    EXPECT_NEAR(position.mm(kY), length * std::sin(degrees * std::numbers::pi / 180.0), 2.0);
+  }
+}
+
+TEST(PositionEstimate, BackwardsIsTheOppositeDistance) {
+  PositionEstimate position(kCount_um_q4, 0);
+  for (int tick = 0; tick < 500; ++tick) position.update(2, 2, 0, 0, 255);
+  for (int tick = 0; tick < 500; ++tick) position.update(-2, -2, 0, 0, 255);
+  EXPECT_EQ(position.mm(kX), 0);
+  EXPECT_EQ(position.mm(kY), 0);
+}
+
+TEST(PositionEstimate, ASquareCloses) {
+  PositionEstimate position(kCount_um_q4, 0);
+  for (int side = 0; side < 4; ++side) {
+    for (int tick = 0; tick < 800; ++tick) position.update(2, 2, wrap_angle(side * 16384), 0, 255);
+    // Turns on the spot: the tracks run against each other and cover no distance.
+    for (int tick = 0; tick < 100; ++tick)
+      position.update(-3, 3, wrap_angle(side * 16384 + tick * 163), 0, 255);
+  }
+  EXPECT_NEAR(position.mm(kX), 0, 1);
+  EXPECT_NEAR(position.mm(kY), 0, 1);
+}
+
+TEST(PositionEstimate, ACircleHasItsDiameterAndCloses) {
+  // Heading of the middle of each tick, so that the polygon closes exactly; 3000 ticks of 5 counts
+  // on both tracks.
+  constexpr int kTicks = 3000;
+  PositionEstimate position(kCount_um_q4, 0);
+  int32_t north_most = 0;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    position.update(2, 3, wrap_angle(static_cast<int32_t>((tick + 0.5) * 65536.0 / kTicks)), 0,
+                    255);
+    north_most = std::max(north_most, position.mm(kY));
+  }
+  EXPECT_NEAR(position.mm(kX), 0, 2);
+  EXPECT_NEAR(position.mm(kY), 0, 2);
+  EXPECT_NEAR(north_most, kTicks * 2.5 * kCount_mm / std::numbers::pi, 2.0);
+}
+
+TEST(PositionEstimate, OnASlopeOnlyTheHorizontalPartCounts) {
+  for (const int pitch_deg : {-30, 30, 60}) {
+    PositionEstimate position(kCount_um_q4, 0);
+    for (int tick = 0; tick < 1000; ++tick)
+      position.update(2, 2, 0, wrap_angle(pitch_deg * 65536 / 360), 255);
+    EXPECT_NEAR(position.mm(kX), 2000 * kCount_mm * std::cos(pitch_deg * std::numbers::pi / 180.0),
+                1.0);
+  }
+}
+
+TEST(PositionEstimate, HalfCountsAreNotLost) {
+  // One track alone: half a count of travel a tick.
+  PositionEstimate position(kCount_um_q4, 0);
+  for (int tick = 0; tick < 10000; ++tick) position.update(tick % 2 == 0 ? 1 : 0, 0, 0, 0, 255);
+  EXPECT_NEAR(position.mm(kX), 2500 * kCount_mm, 0.002 * 2500 * kCount_mm);
+}
+
+TEST(PositionEstimate, APlaceStopsAtItsRange) {
+  PositionEstimate position(kCount_um_q4, 0);
+  for (int tick = 0; tick < 1000; ++tick) position.update(-100, 100, 0, 0, 255);
+  EXPECT_EQ(position.mm(kX), 0) << "on the spot";
+  for (int tick = 0; tick < 1000; ++tick) position.update(-100, -100, 0, 0, 255);
+  EXPECT_NEAR(position.mm(kX), -100'000 * kCount_mm, 40.0);
+  EXPECT_EQ(place_of(position).mm[kX], -INT16_MAX);
+}
+
+// Half of what the belts travel moves the robot.
+TEST(PositionEstimate, SlipIsTakenOff) {
+  for (const int share : {0, 63, 127, 255}) {
+    PositionEstimate position(kCount_um_q4, 0);
+    for (int tick = 0; tick < 1000; ++tick)
+      position.update(3, 3, 0, 0, static_cast<uint8_t>(share));
+    // 131 / 128 for 1.024, and (share + 1) / 256.
+    EXPECT_NEAR(position.mm(kX), 3000 * kCount_mm * (share + 1) / 256.0, 2.0) << share;
+  }
+}
+
+// The variance that a metre makes is that of the parameter, whatever the robot does on it.
+TEST(PositionEstimate, DeviationGrowsWithTheRootOfTheWay) {
+  const auto sigma_after = [](double way_m, int16_t left, int16_t right) {
+    PositionEstimate position(kCount_um_q4, 14);
+    const double step_mm = (std::abs(left) + std::abs(right)) / 2.0 * kCount_mm;
+    const auto ticks = static_cast<int>(way_m * 1000.0 / step_mm);
+    for (int tick = 0; tick < ticks; ++tick) position.update(left, right, 0, 0, 255);
+    return 4.0 * place_of(position).sigma[kX];
+  };
+  const double after_1_m = std::sqrt(14.0 * 125.0);
+  EXPECT_NEAR(sigma_after(1.0, 2, 2), after_1_m, 4.0);
+  EXPECT_NEAR(sigma_after(1.0, -2, 2), after_1_m, 4.0) << "turns on the spot";
+  EXPECT_NEAR(sigma_after(25.0, 2, 2), 5.0 * after_1_m, 8.0);
+  EXPECT_EQ(sigma_after(1000.0, 2, 2), 724.0) << "and stops";
+}
+
+// Two measurements of the same variance: the mean, and the root of half the variance.
+TEST(PositionEstimate, AMeasurementIsWeighedByItsVariance) {
+  PositionEstimate position(kCount_um_q4, 100);
+  while (place_of(position).sigma[kX] < 50) position.update(2, -2, 0, 0, 255);  // 200 mm
+  EXPECT_TRUE(position.measure(kX, 300, 200, true));
+  EXPECT_NEAR(position.mm(kX), 150, 3);
+  EXPECT_NEAR(4.0 * place_of(position).sigma[kX], 200.0 / std::sqrt(2.0), 4.0);
+  EXPECT_EQ(position.mm(kY), 0);
+  EXPECT_EQ(place_of(position).sigma[kY], 50) << "the other axis knows nothing of it";
+}
+
+TEST(PositionEstimate, AGatedMeasurementBeyondThreeDeviationsIsLeftOut) {
+  const auto taken = [](int16_t z_mm, bool gated) {
+    PositionEstimate position(kCount_um_q4, 100);
+    while (place_of(position).sigma[kX] < 25) position.update(2, -2, 0, 0, 255);  // 100 mm
+    const bool it_was = position.measure(kX, z_mm, 40, gated);
+    EXPECT_EQ(it_was, position.mm(kX) != 0) << z_mm;
+    return it_was;
+  };
+  // 3 root(100^2 + 40^2) = 323
+  EXPECT_TRUE(taken(310, true));
+  EXPECT_TRUE(taken(-310, true));
+  EXPECT_FALSE(taken(336, true));
+  EXPECT_FALSE(taken(-32000, true));
+  EXPECT_TRUE(taken(336, false));
+  EXPECT_TRUE(taken(-32000, false));
+}
+
+// The tracks turn and the robot stands, which the slip watch did not notice: fixes hold it.
+TEST(PositionEstimate, FixesBoundErrorAndDeviation) {
+  PositionEstimate position(kCount_um_q4, 14);
+  for (int second = 0; second < 600; ++second) {
+    for (int tick = 0; tick < 100; ++tick) position.update(2, 2, 16384, 0, 255);
+    position.measure(kY, 1000, 30, false);
+  }
+  // Steady: p (1 - k) + q = p, k = p / (p + r), with q = 14 * 125 mm^2 * 0.113, r = 30^2 mm^2: k is
+  // 0.37, so what is left of 113 mm a second is 113 (1 - k) / k.
+  EXPECT_NEAR(position.mm(kY), 1000 + 193, 12);
+  EXPECT_NEAR(4 * place_of(position).sigma[kY], 18, 4);
+  EXPECT_GE(4 * place_of(position).sigma[kX], 300) << "nobody measured that";
+}
+
+TEST(PositionEstimate, AResetKnowsThePlaceForSure) {
+  PositionEstimate position(1000, 1000);
+  for (int tick = 0; tick < 4700; ++tick) position.update(1, 1, 8192, 0, 255);
+  ASSERT_GT(place_of(position).sigma[kX], 20);
+  position.reset();
+  const Place place = place_of(position);
+  EXPECT_EQ(place.mm[kX], 0);
+  EXPECT_EQ(place.mm[kY], 0);
+  EXPECT_EQ(place.sigma[kX], 0);
+  EXPECT_EQ(place.sigma[kY], 0);
+}
+
+}  // namespace
+}  // namespace screed
