@@ -14,9 +14,9 @@ namespace screed {
 constexpr uint8_t kWallSigma_mm = 40;
 
 /// The robot has driven against something; `travel`: where to, counter-clockwise from east. It is
-/// the wall that it travels to most directly. False where there is none (site_x, site_y), or it
-/// cannot be there: then nothing is changed.
-bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel,
+/// the wall that it travels to most directly. False where there is none (site_x, site_y), or it is
+/// `gated` and the wall cannot be there: then nothing is changed.
+bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel, bool gated,
                 PositionEstimate& position);
 
 }  // namespace screed

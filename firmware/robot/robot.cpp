@@ -330,7 +330,9 @@ void Robot::feel_walls() {
     const bool backwards = status_.motion.speed_mm_per_s < 0;
     const Angle travel =
         backwards ? wrap_angle(status_.angles.heading + 32768) : status_.angles.heading;
-    if (touch_wall(board_, parameters_, travel, position_)) {
+    // Who seeks a wall has found one, however far off it believes it to be.
+    const bool gated = leveling_.state() != LevelingState::kSeekWall;
+    if (touch_wall(board_, parameters_, travel, gated, position_)) {
       event(message::EventCode::kWall, travel);
     }
   }

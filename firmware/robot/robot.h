@@ -17,6 +17,7 @@
 #include "firmware/robot/supervisor.h"
 #include "firmware/robot/telemetry.h"
 #include "firmware/security/command_gate.h"
+#include "hal/kept.h"
 #include "hal/sample.h"
 
 namespace screed {
@@ -95,7 +96,7 @@ class Robot : private RobotMemory {
   void report(const SensorSample& sample, RobotOutput& output);
   void write_actuators(RobotOutput& output);
 
-  BoardConstants board_;
+  Kept<BoardConstants> board_;
   Parameters parameters_;
   AttitudeEstimator attitude_;
   Supervisor supervisor_;

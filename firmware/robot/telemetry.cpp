@@ -42,6 +42,7 @@ constexpr uint8_t kMaxCredit = kRadioOutCapacity + Telemetry::kPacketBudget;
 constexpr uint8_t urgent_counter(uint16_t id) {
   return static_cast<uint8_t>(kTelemetryMessages + (id >> 8));
 }
+static_assert(urgent_counter(kIdEvent) < kTelemetryMessages + kMessageClasses, "there is one");
 static_assert(urgent_counter(kIdCommandAck) != urgent_counter(kIdParamValue) &&
                   urgent_counter(kIdParamValue) != urgent_counter(kIdEvent) &&
                   urgent_counter(kIdCommandAck) != urgent_counter(kIdEvent),

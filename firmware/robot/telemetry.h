@@ -40,7 +40,7 @@ struct TelemetryView {
 };
 
 constexpr uint8_t kTelemetryMessages = kPeriodicMessages;  ///< sent by their rate
-constexpr uint8_t kMessageClasses = 8;                     ///< of ids, their upper three bits
+constexpr uint8_t kMessageClasses = 6;                     ///< of ids of such messages, id >> 8
 
 /// What the downlink remembers, zero at the start: zeroed at once, which takes less flash.
 struct TelemetryMemory {

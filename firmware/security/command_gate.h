@@ -15,6 +15,7 @@
 
 #include "firmware/security/command_mac.h"
 #include "firmware/security/credentials.h"
+#include "hal/kept.h"
 #include "hal/sample.h"
 
 namespace screed {
@@ -52,7 +53,7 @@ class CommandGate {
   uint8_t refused() const { return refused_; }
 
  private:
-  Credentials credentials_;
+  Kept<Credentials> credentials_;
   uint16_t counter_ = 0;
   uint16_t locked_ticks_ = 0;
   uint16_t bad_mac_decay_ticks_ = 0;

@@ -35,7 +35,7 @@ namespace avr {
 namespace {
 
 constexpr uint8_t kInSize = 1 + 2 * kKeySize + 1;
-constexpr uint8_t kOutSize = 48;
+constexpr uint8_t kOutSize = 50;
 constexpr uint8_t kBytesPerStep = 16;
 
 struct State {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <sstream>
 
 #include "firmware/parameters/parameter_store.h"
@@ -64,8 +65,8 @@ class BoardParts : public testing::Test {
     std::string version;
     std::string board;
     Health it;
-    in >> name >> version >> board >> it.reset_cause >> it.store >> it.stack_free >> it.overruns >>
-        it.buttons;
+    in >> name >> version >> board >> std::hex >> it.reset_cause >> it.store >> it.stack_free >>
+        it.overruns >> it.buttons;
     EXPECT_EQ(name, "screed");
     EXPECT_FALSE(in.fail());
     return it;
@@ -104,7 +105,7 @@ TEST_F(BoardParts, EntersTheBootloaderWhenTheLineIsClosedAt1200Baud) {
 TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
   mcu_.run_ms(50);
   open_console();
-  ASSERT_NE(ask("p 2"), "");
+  ASSERT_NE(ask("p 02"), "");
   // The line stays open, the list of parameters is asked for again and again, and nobody fetches.
   mcu_.clear_load();
   const double begin_ms = mcu_.time_ms();
@@ -119,6 +120,13 @@ TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
   EXPECT_LT(mcu_.longest_tick(), kClock_hz / kTickRate_hz + 1500);
 }
 
+/// As the console writes numbers.
+std::string hex(std::size_t value, int digits) {
+  char text[8];
+  std::snprintf(text, sizeof text, "%0*zX", digits, value);
+  return text;
+}
+
 /// The number by which the console knows a parameter.
 std::size_t index_of(const std::string& name) {
   const auto* const at = std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
@@ -129,9 +137,9 @@ std::size_t index_of(const std::string& name) {
 TEST_F(BoardParts, ChangesAndSavesParameters) {
   mcu_.run_ms(50);
   open_console();
-  const std::string threshold = "p " + std::to_string(index_of("climb_threshold"));
-  EXPECT_EQ(ask(threshold), threshold + " 500\n");
-  EXPECT_EQ(ask(threshold + " 750"), threshold + " 750\n");
+  const std::string threshold = "p " + hex(index_of("climb_threshold"), 2);
+  EXPECT_EQ(ask(threshold), threshold + " 01F4\n");
+  EXPECT_EQ(ask(threshold + " 02EE"), threshold + " 02EE\n");
   EXPECT_EQ(ask("w", 2000), "ok\n");
   for (const std::uint8_t index :
        {std::uint8_t{0}, std::uint8_t{1}}) {  // a blank store gets both copies
@@ -141,31 +149,31 @@ TEST_F(BoardParts, ChangesAndSavesParameters) {
     decode_parameters(copy, stored);
     EXPECT_EQ(stored.climb_threshold, 750);
   }
-  EXPECT_EQ(ask(threshold + " 800"), threshold + " 800\n");
+  EXPECT_EQ(ask(threshold + "0320"), threshold + " 0320\n");
   EXPECT_EQ(ask("w", 1000), "ok\n");
   EXPECT_EQ(copy_sequence(read_copy(0)), 1) << "the older copy is replaced";
   EXPECT_EQ(copy_sequence(read_copy(1)), 0);
   EXPECT_EQ(ask("d"), "ok\n");
-  EXPECT_EQ(ask(threshold), threshold + " 500\n");
+  EXPECT_EQ(ask(threshold), threshold + " 01F4\n");
   usb_.send("r\n");
   usb_.pull_out();
   mcu_.run_ms(200);
   EXPECT_EQ(mcu_.starts(), 2);
   open_console();
-  EXPECT_EQ(ask(threshold), threshold + " 800\n");
+  EXPECT_EQ(ask(threshold), threshold + " 0320\n");
   EXPECT_EQ(cause(), static_cast<int>(ResetCause::kRequested));
 }
 
 TEST_F(BoardParts, RefusesNonsenseOnTheConsole) {
   mcu_.run_ms(50);
   open_console();
-  const std::string beyond = "p " + std::to_string(kParameterCount);
+  const std::string beyond = "p " + hex(kParameterCount, 2);
   for (const std::string& line :
-       std::vector<std::string>{"x", beyond, "p -1", "p 2 40000", "p 2 7x", "p x", "ww", "p 2 3 4",
-                                "pppppppppppppppppppppppppppppppppppppppppp"}) {
+       std::vector<std::string>{"x", beyond, "p -1", "p 2", "p 02 7", "p 02 007x", "p x", "ww",
+                                "p 02 0003 4", "pppppppppppppppppppppppppppppppppppppppppp"}) {
     EXPECT_EQ(ask(line), "?\n") << line;
   }
-  const std::string threshold = "p " + std::to_string(index_of("climb_threshold")) + " 32000";
+  const std::string threshold = "p " + hex(index_of("climb_threshold"), 2) + " 7D00";
   EXPECT_EQ(ask(threshold), threshold + "\n") << "a draft may be anything";
   EXPECT_EQ(ask("w"), "?\n") << "but not be written";
   EXPECT_EQ(check_copy(read_copy(0)), CopyState::kBlank);
@@ -210,11 +218,11 @@ TEST_F(BoardParts, WithoutAGoodCopyItRefusesToBeArmed) {
 TEST_F(BoardParts, TakesAKeyOverUsbForTheNextStart) {
   mcu_.run_ms(100);
   open_console();
-  EXPECT_EQ(ask("k"), "k 0 255 1\n") << "an erased EEPROM";
+  EXPECT_EQ(ask("k"), "k 00 FF 0001\n") << "an erased EEPROM";
   EXPECT_EQ(ask("k00"), "?\n");
   EXPECT_EQ(ask("k000102030405060708090A0B0C0D0E0FG1"), "?\n");
   EXPECT_EQ(ask("k000102030405060708090a0B0C0D0E0F01", 600), "ok\n");
-  EXPECT_EQ(ask("k"), "k 0 255 1\n") << "not yet, and never shown";
+  EXPECT_EQ(ask("k"), "k 00 FF 0001\n") << "not yet, and never shown";
   const std::vector<std::uint8_t> eeprom = mcu_.read_eeprom();
   CredentialRecord record{};
   std::copy_n(eeprom.begin() + kCredentialRecordAddress, kCredentialRecordSize, record.bytes);

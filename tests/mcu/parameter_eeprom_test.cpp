@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 #include "firmware/parameters/parameter_store.h"
@@ -32,8 +33,10 @@ class ParameterEeprom : public testing::Test {
     return usb_.listen_ms(60);
   }
   void draft(std::int16_t Parameters::*field, int value) {
-    const std::string line = "p " + std::to_string(index_of(field)) + " " + std::to_string(value);
-    EXPECT_EQ(ask(line), line + "\n");
+    char line[16];
+    std::snprintf(line, sizeof line, "p %02zX %04X", static_cast<std::size_t>(index_of(field)),
+                  static_cast<unsigned>(value) & 0xFFFFU);
+    EXPECT_EQ(ask(line), std::string(line) + "\n");
   }
   /// Of the newest copy.
   Parameters stored() const {

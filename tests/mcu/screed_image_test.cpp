@@ -85,9 +85,8 @@ TEST(ScreedImage, ConfiguresAndReadsTheSensors) {
   EXPECT_EQ(value_at(bench.last_frame(kIdMagRaw), 1), 1250);
   bench.run_ms(1500);
   const CanFrame baro = bench.last_frame(kIdBaro);
-  const int pascal_q4 = get_u16(baro.data + 2) | (baro.data[4] << 16);
-  EXPECT_NEAR(pascal_q4, 0x3F5678 * 100.0 / 256, 100);
-  EXPECT_EQ(value_at(baro, 2), 4250 + (0xD8DC - 0x10000) * 5 / 24);
+  EXPECT_EQ(get_u16(baro.data + 2) | (baro.data[4] << 16), 0x3F5678 >> 4);
+  EXPECT_EQ(value_at(baro, 2), 0xD8DC - 0x10000);
   expect_healthy(bench);
 }
 
@@ -211,7 +210,7 @@ TEST(ScreedImage, DrivesAndStopsWithTheLink) {
   set_off(bench);
   EXPECT_GT(bench.mcu.word(kOcr1a) + bench.mcu.word(kOcr1b), 0);
   const CanFrame motors = bench.last_frame(kIdMotors);
-  EXPECT_NEAR(bench.left_duty(), value_at(motors, 0), 40);
+  EXPECT_NEAR(bench.left_duty(), value_at(motors, 0), 60) << "up to 50 ms ago";
   // The image's own measure of its load, in percent: from the tick to the end of its computation.
   const double busy = 100.0 * static_cast<double>(bench.mcu.busiest_tick_cycles()) / kTickCycles;
   EXPECT_LE(bench.last_frame(kIdPower).data[4], busy);

@@ -38,7 +38,7 @@ class UsbDevice : public testing::Test {
     ASSERT_TRUE(usb_.plug_in());
     ASSERT_TRUE(usb_.set_line(115200, true));
     usb_.send("k\n");
-    EXPECT_EQ(usb_.listen_ms(100), "k 0 255 1\n");
+    EXPECT_EQ(usb_.listen_ms(100), "k 00 FF 0001\n");
   }
 
   Board board_;

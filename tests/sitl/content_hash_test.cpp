@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "8304d388067597b6411be4d622b5555a"},
-    {"soft_bed", "--duration 6", "0bc97d0e0f77b57e06ca5e9512d57a1d"},
-    {"soft_bed", "--hal surrogate --duration 10", "a4ad9637f5ac205aa52f9f61d6be4873"},
+    {"first_drive", "--duration 60", "e61cfc1689b7c604e11ddf18cad91626"},
+    {"soft_bed", "--duration 6", "bea62daae6893f701117ac4c34b04924"},
+    {"soft_bed", "--hal surrogate --duration 10", "4881f61dced032d86654a4dcbecc536b"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "3b5379fb9ebd8c555b68dbf7555374f1"},
-    {"gravel_bed", "--duration 1", "66730c0a2052d1e71810b08cb5b1fd78"},
+     "8269b8e979b1bab09fb1fa96c02155ec"},
+    {"gravel_bed", "--duration 1", "6d8a45462b7d641872168c8aef943ce6"},
 }};
 
 class ContentHash : public Program {};

@@ -36,9 +36,10 @@ TEST(Downlink, AllMessagesAtTheirRatesWithinHalfOfTheLineAndNoneLost) {
   EXPECT_NEAR(static_cast<double>(heard), static_cast<double>(frames), 8.0);  // on their way
   EXPECT_LE(static_cast<double>(bytes), 0.5 * 5760.0 * kSeconds);
   const std::map<uint16_t, double> rates = {
-      {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20}, {kIdLeveling, 10},
-      {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},  {kIdMagRaw, 2},  {kIdPower, 2},
-      {kIdBaro, 1},      {kIdHealth, 2},    {kIdLink, 1},      {kIdTime, 1},    {kIdCommandAck, 4}};
+      {kIdHeartbeat, 5}, {kIdAttitude, 25}, {kIdEncoders, 20}, {kIdMotors, 20},
+      {kIdLeveling, 10}, {kIdOdometry, 10}, {kIdAccelRaw, 10}, {kIdGyroRaw, 10},
+      {kIdMagRaw, 2},    {kIdPower, 2},     {kIdBaro, 1},      {kIdHealth, 2},
+      {kIdLink, 1},      {kIdTime, 1},      {kIdPosition, 2},  {kIdCommandAck, 4}};
   for (const auto& [id, rate] : rates) {
     EXPECT_NEAR(sent[id] / kSeconds, rate, 0.04 + 1.0 / kSeconds) << std::hex << id;
   }

@@ -41,7 +41,7 @@ TEST(SiteWalls, TheWallIsTheOneItTravelsToMostDirectly) {
         Case{134, kY, 700 - reach}, Case{136, kX, reach - 1000}, Case{180, kX, reach - 1000},
         Case{-134, kY, reach - 700}, Case{-46, kY, reach - 700}, Case{-44, kX, 1000 - reach}}) {
     PositionEstimate position = uncertain();
-    ASSERT_TRUE(touch_wall(kBoard, site(), wrap_angle(it.degrees * kDegree), position))
+    ASSERT_TRUE(touch_wall(kBoard, site(), wrap_angle(it.degrees * kDegree), true, position))
         << it.degrees;
     // 400 mm against 40: all but a hundredth.
     EXPECT_NEAR(position.mm(it.axis), it.wall_mm, 16) << it.degrees;
@@ -54,17 +54,26 @@ TEST(SiteWalls, TheWallIsTheOneItTravelsToMostDirectly) {
 
 TEST(SiteWalls, AWallThatCannotBeThereIsNone) {
   PositionEstimate sure(kCount_um_q4, 0);
-  EXPECT_FALSE(touch_wall(kBoard, site(), 0, sure));
+  EXPECT_FALSE(touch_wall(kBoard, site(), 0, true, sure));
   EXPECT_EQ(sure.mm(kX), 0);
+}
+
+TEST(SiteWalls, AWallThatWasSoughtIsThere) {
+  Parameters parameters = site();
+  parameters.site_x = 2000;
+  PositionEstimate position = uncertain();
+  EXPECT_FALSE(touch_wall(kBoard, parameters, 0, true, position)) << "more than 3 deviations off";
+  EXPECT_TRUE(touch_wall(kBoard, parameters, 0, false, position));
+  EXPECT_NEAR(position.mm(kX), 2000 - kBoard.hull_reach_mm, 22);
 }
 
 TEST(SiteWalls, ASiteMayHaveWallsOnTwoSidesOnlyOrNone) {
   Parameters parameters = site();
   parameters.site_y = 0;
   PositionEstimate position = uncertain();
-  EXPECT_FALSE(touch_wall(kBoard, parameters, 90 * kDegree, position));
+  EXPECT_FALSE(touch_wall(kBoard, parameters, 90 * kDegree, true, position));
   EXPECT_EQ(position.mm(kY), 0);
-  EXPECT_TRUE(touch_wall(kBoard, parameters, 0, position));
+  EXPECT_TRUE(touch_wall(kBoard, parameters, 0, true, position));
 }
 
 }  // namespace

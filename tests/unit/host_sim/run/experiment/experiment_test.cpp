@@ -142,7 +142,6 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
         room = {"map.model=particles"};
       if (row.key == "wall_friction") room = {"map.edges=walls"};
       if (row.section == "trap" && row.key != "kind") room = {"trap.kind=wall"};
-      if (row.section == "fixes" && row.key != "period") room = {"fixes.period=1"};
       if (row.key == "walk_speed_min") room = {"parameters.walk_speed_max=250"};
       if (row.key == "walk_speed_max") room = {"parameters.walk_speed_min=0"};
       if (row.key == "walk_leg_min") room = {"parameters.walk_leg_max=20000"};

@@ -1,0 +1,16 @@
+// What the core is given at its start and keeps.
+#pragma once
+
+namespace screed {
+
+/// On the robot such things lie in one place for good, so a reference does, and RAM is scarce.
+/// Elsewhere whoever makes a Robot may hand in what soon is no more: there it is a copy.
+#ifdef __AVR__
+template <class T>
+using Kept = const T&;
+#else
+template <class T>
+using Kept = T;
+#endif
+
+}  // namespace screed
