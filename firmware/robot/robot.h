@@ -12,12 +12,12 @@
 #include "firmware/estimation/slip_watch.h"
 #include "firmware/leveling/leveling.h"
 #include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"
 #include "firmware/robot/robot_status.h"
 #include "firmware/robot/supervisor.h"
 #include "firmware/robot/telemetry.h"
 #include "firmware/security/command_gate.h"
-#include "hal/kept.h"
 #include "hal/sample.h"
 
 namespace screed {

@@ -13,9 +13,9 @@
 
 #include <stdint.h>
 
+#include "firmware/parameters/kept.h"
 #include "firmware/security/command_mac.h"
 #include "firmware/security/credentials.h"
-#include "hal/kept.h"
 #include "hal/sample.h"
 
 namespace screed {

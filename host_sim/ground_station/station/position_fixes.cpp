@@ -13,10 +13,10 @@ namespace {
 // Fixes go up in ticks of their own: heartbeats take every 20th, other commands 12 of 25.
 constexpr std::uint64_t kSlotTicks = kTickRate_hz / 4;
 constexpr std::uint64_t kSlot = 7;
-constexpr double kMostCm = 2047.0;  // 12 bits
+constexpr double kMaxCm = 2047.0;  // 12 bits
 
 std::int16_t centimetres(double metres) {
-  return static_cast<std::int16_t>(std::lround(std::clamp(metres * 100.0, -kMostCm, kMostCm)));
+  return static_cast<std::int16_t>(std::lround(std::clamp(metres * 100.0, -kMaxCm, kMaxCm)));
 }
 
 }  // namespace

@@ -106,10 +106,10 @@ TEST(PositionEstimate, SlipIsTakenOff) {
 
 // The variance that a metre makes is that of the parameter, whatever the robot does on it.
 TEST(PositionEstimate, DeviationGrowsWithTheRootOfTheWay) {
-  const auto sigma_after = [](double way_m, int16_t left, int16_t right) {
+  const auto sigma_after = [](double distance_m, int16_t left, int16_t right) {
     PositionEstimate position(kCount_um_q4, 14);
     const double step_mm = (std::abs(left) + std::abs(right)) / 2.0 * kCount_mm;
-    const auto ticks = static_cast<int>(way_m * 1000.0 / step_mm);
+    const auto ticks = static_cast<int>(distance_m * 1000.0 / step_mm);
     for (int tick = 0; tick < ticks; ++tick) position.update(left, right, 0, 0, 255);
     return 4.0 * place_of(position).sigma[kX];
   };
