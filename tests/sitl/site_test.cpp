@@ -1,0 +1,66 @@
+// A robot on its site: it recognises walls, takes its place from them and from position fixes, and
+// the shipped beds are run without leaving them.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "tests/sitl/program.h"
+#include "tests/sitl/test_drive.h"
+
+namespace screed::testing {
+namespace {
+
+/// Stuck at a wall of a bed of 3 m, having driven there from the middle.
+std::unique_ptr<TestDrive> at_wall(double heading_deg) {
+  Parameters parameters = drive_parameters();
+  parameters.site_x = 1500;
+  parameters.site_y = 1500;
+  WorldOptions options = drive_options(0.15, 0.0);
+  options.start.attitude.heading = heading_deg * std::numbers::pi / 180.0;
+  HeightField field = HeightField::flat(3.0, 0.1);
+  field.add_walls();
+  auto drive = std::make_unique<TestDrive>(std::move(field), options, parameters);
+  EXPECT_TRUE(drive->start());
+  EXPECT_TRUE(drive->run_until(30.0, [&] { return drive->robot.slip_watch().stuck(); }))
+      << heading_deg;
+  drive->run(0.1);
+  return drive;
+}
+
+TEST(Site, AWallTellsTheRobotWhereItIs) {
+  for (const double heading_deg : {0.0, 90.0, 200.0}) {
+    const std::unique_ptr<TestDrive> drive = at_wall(heading_deg);
+    const Axis axis = heading_deg == 90.0 ? kY : kX;
+    EXPECT_NEAR(drive->robot.position().mm(axis) * 1e-3, drive->position()[axis], 0.04)
+        << heading_deg;
+    Place place;
+    drive->robot.position().get(place);
+    EXPECT_LE(4 * place.sigma[axis], 44) << heading_deg << ": that of a wall";
+    EXPECT_GT(place.sigma[1 - axis], place.sigma[axis]) << heading_deg;
+  }
+}
+
+class Beds : public Program {};
+
+// Shipped experiments, shorter than they are: nobody leaves the bed, nothing fails.
+TEST_F(Beds, AreRunWithoutLeavingThem) {
+  for (const std::string name :
+       {"soft_bed --duration 90", "open_bed --duration 90", "gravel_bed --duration 8"}) {
+    const std::string folder = name.substr(0, name.find(' '));
+    const Result result = run("sim " + name + " --quiet --json --out " + folder);
+    ASSERT_EQ(result.exit_code, 0) << name << ": " << result.err;
+    const auto summary = nlohmann::json::parse(result.out);
+    EXPECT_EQ(summary["left_bed"], false) << name;
+    EXPECT_EQ(summary["stopped_early"], false) << name;
+    EXPECT_EQ(summary["state"], "running") << name;
+    EXPECT_EQ(summary["faults"], "none") << name;
+    EXPECT_GT(summary["distance_m"].get<double>(), folder == "gravel_bed" ? 0.05 : 3.0) << name;
+  }
+}
+
+}  // namespace
+}  // namespace screed::testing
