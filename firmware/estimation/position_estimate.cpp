@@ -45,13 +45,13 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   for (uint32_t& variance : variance_) variance = limited(variance + growth);
 }
 
-bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, bool gated) {
+bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uint8_t gate) {
   const int16_t innovation = limit_i16(static_cast<int32_t>(z_mm) - short_mm(axis), INT16_MAX);
   // Variances in 32 mm^2.
   const uint16_t half = static_cast<uint16_t>(variance_[axis] >> 17);
   const auto sum =
       static_cast<uint16_t>(half + static_cast<uint16_t>(mul_i16(sigma_mm, sigma_mm) >> 5));
-  if (gated && static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, 9))
+  if (gate != 0 && static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, gate))
     return false;
   // Below 1: sigma_mm is at least 8.
   const uint16_t gain_q15 = quotient_u16(static_cast<uint32_t>(half) << 15, sum);

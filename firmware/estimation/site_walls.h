@@ -14,9 +14,10 @@ namespace screed {
 constexpr uint8_t kWallSigma_mm = 40;
 
 /// The robot has driven against something; `travel`: where to, counter-clockwise from east. It is
-/// the wall that it travels to most directly. False where there is none (site_x, site_y), or it is
-/// `gated` and the wall cannot be there: then nothing is changed.
-bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel, bool gated,
-                PositionEstimate& position);
+/// the wall that it travels to most directly. False where there is none (site_x, site_y), or it
+/// cannot be there: more than 3 standard deviations off, of a wall that was sought 4.5. Then
+/// nothing is changed.
+bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel,
+                bool sought, PositionEstimate& position);
 
 }  // namespace screed

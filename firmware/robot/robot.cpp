@@ -224,9 +224,9 @@ RequestResult Robot::execute(const uint8_t* data) {
 void Robot::fix_position(const DriveArgument& place_cm) {
   // Who sends them has left out what is false.
   position_.measure(kX, static_cast<int16_t>(place_cm.speed_mm_per_s * 10), parameters_.fix_sigma,
-                    false);
+                    0);
   position_.measure(kY, static_cast<int16_t>(place_cm.turn_ddeg_per_s * 10), parameters_.fix_sigma,
-                    false);
+                    0);
   located_ = true;
 }
 
@@ -330,9 +330,8 @@ void Robot::feel_walls() {
     const bool backwards = status_.motion.speed_mm_per_s < 0;
     const Angle travel =
         backwards ? wrap_angle(status_.angles.heading + 32768) : status_.angles.heading;
-    // Who seeks a wall has found one, however far off it believes it to be.
-    const bool gated = leveling_.state() != LevelingState::kSeekWall;
-    if (touch_wall(board_, parameters_, travel, gated, position_)) {
+    const bool sought = leveling_.state() == LevelingState::kSeekWall;
+    if (touch_wall(board_, parameters_, travel, sought, position_)) {
       event(message::EventCode::kWall, travel);
     }
   }

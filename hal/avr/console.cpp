@@ -56,7 +56,7 @@ void print_text(const char* text) {
 }
 
 __attribute__((noinline)) void print_byte(uint8_t byte) {
-  uint8_t digits[2];
+  uint8_t digits[2] = {};
   slcan_put_byte(digits, byte);
   print(digits[0]);
   print(digits[1]);
@@ -87,14 +87,14 @@ bool parameter_command() {
     state.to_list = kParameterCount;
     return true;
   }
-  uint8_t index;
+  uint8_t index = 0;
   if ((state.in_count != 3 && state.in_count != 7) || !slcan_byte(state.in + 1, index) ||
       index >= kParameterCount) {
     return false;
   }
   if (state.in_count == 7) {
-    uint8_t high;
-    uint8_t low;
+    uint8_t high = 0;
+    uint8_t low = 0;
     if (!slcan_byte(state.in + 3, high) || !slcan_byte(state.in + 5, low)) return false;
     *draft_value(index) = static_cast<int16_t>(static_cast<uint16_t>(high) << 8 | low);
   }

@@ -51,7 +51,10 @@ TEST_F(Beds, AreRunWithoutLeavingThem) {
   for (const std::string name :
        {"soft_bed --duration 90", "open_bed --duration 90", "gravel_bed --duration 8"}) {
     const std::string folder = name.substr(0, name.find(' '));
-    const Result result = run("sim " + name + " --quiet --json --out " + folder);
+    std::string command = "sim " + name;
+    command += " --quiet --json --out ";
+    command += folder;
+    const Result result = run(command);
     ASSERT_EQ(result.exit_code, 0) << name << ": " << result.err;
     const auto summary = nlohmann::json::parse(result.out);
     EXPECT_EQ(summary["left_bed"], false) << name;

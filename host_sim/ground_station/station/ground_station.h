@@ -8,7 +8,6 @@
 #include <optional>
 #include <ostream>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "firmware/protocol/messages.h"
@@ -40,8 +39,8 @@ class GroundStation {
   /// as it is ready.
   GroundStation(bool arm, std::optional<DriveCommand> drive, std::ostream* log,
                 const CommandKey& key = test_key(),
-                std::optional<PositionFixes> fixes = std::nullopt)
-      : arm_(arm), drive_(drive), log_(log), signer_(key), fixes_(std::move(fixes)) {}
+                const std::optional<PositionFixes>& fixes = std::nullopt)
+      : arm_(arm), drive_(drive), log_(log), signer_(key), fixes_(fixes) {}
 
   /// What an overhead camera sees: where the robot is, m.
   void see_robot(double x_m, double y_m) {

@@ -26,7 +26,6 @@ namespace {
 
 using screed::InputError;
 using screed::avr_stack::Disassembly;
-using screed::avr_stack::Instruction;
 
 struct Options {
   std::string map;

@@ -124,28 +124,28 @@ TEST(PositionEstimate, DeviationGrowsWithTheRootOfTheWay) {
 TEST(PositionEstimate, AMeasurementIsWeighedByItsVariance) {
   PositionEstimate position(kCount_um_q4, 100);
   while (place_of(position).sigma[kX] < 50) position.update(2, -2, 0, 0, 255);  // 200 mm
-  EXPECT_TRUE(position.measure(kX, 300, 200, true));
+  EXPECT_TRUE(position.measure(kX, 300, 200, 9));
   EXPECT_NEAR(position.mm(kX), 150, 3);
   EXPECT_NEAR(4.0 * place_of(position).sigma[kX], 200.0 / std::sqrt(2.0), 4.0);
   EXPECT_EQ(position.mm(kY), 0);
   EXPECT_EQ(place_of(position).sigma[kY], 50) << "the other axis knows nothing of it";
 }
 
-TEST(PositionEstimate, AGatedMeasurementBeyondThreeDeviationsIsLeftOut) {
-  const auto taken = [](int16_t z_mm, bool gated) {
+TEST(PositionEstimate, AMeasurementBeyondItsGateIsLeftOut) {
+  const auto taken = [](int16_t z_mm, std::uint8_t gate) {
     PositionEstimate position(kCount_um_q4, 100);
     while (place_of(position).sigma[kX] < 25) position.update(2, -2, 0, 0, 255);  // 100 mm
-    const bool it_was = position.measure(kX, z_mm, 40, gated);
+    const bool it_was = position.measure(kX, z_mm, 40, gate);
     EXPECT_EQ(it_was, position.mm(kX) != 0) << z_mm;
     return it_was;
   };
   // 3 root(100^2 + 40^2) = 323
-  EXPECT_TRUE(taken(310, true));
-  EXPECT_TRUE(taken(-310, true));
-  EXPECT_FALSE(taken(336, true));
-  EXPECT_FALSE(taken(-32000, true));
-  EXPECT_TRUE(taken(336, false));
-  EXPECT_TRUE(taken(-32000, false));
+  EXPECT_TRUE(taken(310, 9));
+  EXPECT_TRUE(taken(-310, 9));
+  EXPECT_FALSE(taken(336, 9));
+  EXPECT_FALSE(taken(-32000, 9));
+  EXPECT_TRUE(taken(336, 0));
+  EXPECT_TRUE(taken(-32000, 0));
 }
 
 // The tracks turn and the robot stands, which the slip watch did not notice: fixes hold it.
@@ -153,7 +153,7 @@ TEST(PositionEstimate, FixesBoundErrorAndDeviation) {
   PositionEstimate position(kCount_um_q4, 14);
   for (int second = 0; second < 600; ++second) {
     for (int tick = 0; tick < 100; ++tick) position.update(2, 2, 16384, 0, 255);
-    position.measure(kY, 1000, 30, false);
+    position.measure(kY, 1000, 30, 0);
   }
   // Steady: p (1 - k) + q = p, k = p / (p + r), with q = 14 * 125 mm^2 * 0.113, r = 30^2 mm^2: k is
   // 0.37, so what is left of 113 mm a second is 113 (1 - k) / k.

@@ -80,7 +80,7 @@ TEST(PositionFixes, OutagesHideWhatWouldHaveBeenSent) {
     EXPECT_EQ(all.places[i].speed_mm_per_s, some.places[k].speed_mm_per_s) << "the same noise";
     if (k > 0 && some.ticks[k] - some.ticks[k - 1] >= 1000) ++outages;
   }
-  EXPECT_NEAR(outages, 100'000 / 70, 150);
+  EXPECT_NEAR(outages, 100'000.0 / 70.0, 150);
 }
 
 TEST(PositionFixes, OfASeedAreAlwaysTheSame) {
