@@ -199,7 +199,7 @@ TEST(RobotDownlink, TheBatteryIsTheSumOfEightConversionsInTheBoardsUnit) {
   // No sensor can say that: the bits beyond its range are not looked at.
   robot.sample.battery = 65535;
   robot.run(2);
-  EXPECT_NEAR(robot.next<message::Power>().battery, 8191 * kBoard.battery_uv_per_lsb / 1000, 1);
+  EXPECT_NEAR(robot.next<message::Power>().battery, 8.191 * kBoard.battery_uv_per_lsb, 1.0);
 }
 
 // ---- events and lamps
