@@ -18,8 +18,8 @@
 //                         at first gravity += difference / (n + 1)
 //   correction            w = (1 - |q|^2) / 2,  x = gravity[1] / (2 g),  y = -gravity[0] / (2 g)
 //   learn_bias_in_motion  bias -= 0.02/s T (E transposed) (x, y, 0)
-//   trust                 f = (|mag|, m[2]),  field += (f - field) / 2^3 at first, / 2^11 then
-//                         trusted: |f - field| <= |mag| / 8 in both
+//   trust                 f = (|mag|, m[2]),  field = f at first and after 20 s of distrust
+//                         trusted: |f - field| < |mag| / 8 in both
 //   heading_correction    m = E mag,  error = atan2(m[0], m[1]),  z = gain error / 2
 //                         gain = 1 / (n + 1) at first, then T / 9 s a tick
 //   correct               q += (w, x, y, z) q,  gravity turned about x and y by twice that
@@ -63,11 +63,11 @@ constexpr int16_t kHeadingRateLimit = 2928;     // 0.02 degrees a tick as half a
 constexpr int16_t kMaxHalfAngle = 32767;        // Q24; can be negated
 constexpr uint8_t kMagAgeLimit = 10;
 
-// What strength and inclination of the field have to keep to: an eighth, or 7 degrees; it is
-// learned in 0.1 s at first, then anew in 20 s, as VQF does.
+// The field's strength and its vertical part may each change by an eighth of the strength, which
+// for the inclination is 7 degrees and more. A field that stays different is taken for that of the
+// site, as VQF does after 20 s.
 constexpr uint8_t kFieldTolerance = 3;
-constexpr uint8_t kFieldStartShift = 3;
-constexpr uint8_t kFieldShift = 11;
+constexpr uint16_t kFieldRelearnTicks = 2048;
 
 // Rest: no axis differs from its own short mean (time constant 0.64 s) by more than this, for 1.5
 // s.
@@ -259,17 +259,20 @@ void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int
   }
 }
 
-/// The field is that of the site, as far as its strength and its inclination tell: the length of
-/// the measured vector and its vertical part are what they were.
+/// The field is that of the site, as far as its strength and its vertical part tell.
 bool AttitudeEstimator::trust(const RotationMatrix& to_earth, const int16_t (&mag)[3]) {
   uint32_t squared = 0;
   for (const int16_t count : mag) squared += static_cast<uint32_t>(mul_i16(count, count));
-  const auto strength = static_cast<int16_t>(isqrt32(squared) >> 1);
-  const int16_t sum = limit_i16(asr(dot_q14(to_earth.row[2], mag), 2) + strength, INT16_MAX);
-  const int32_t change = with_mean_bits(sum) - field_;
-  const bool starting = mag_samples_ < kHeadingLimitedFrom;
-  field_ += asr_round(change, starting ? kFieldStartShift : kFieldShift);
-  return starting || abs_i16(detail::high_half(change)) < static_cast<uint16_t>(strength) >> 5;
+  const int16_t seen[2] = {static_cast<int16_t>(isqrt32(squared) >> 2),
+                           detail::high_half(dot_q14(to_earth.row[2], mag))};
+  const bool learning = mag_samples_ < kHeadingLimitedFrom || mag_distrusted_ > kFieldRelearnTicks;
+  bool trusted = true;
+  for (uint8_t i = 0; i < 2; ++i) {
+    if (learning) field_[i] = seen[i];
+    const auto change = static_cast<int16_t>(seen[i] - field_[i]);
+    if (abs_i16(change) >= static_cast<uint16_t>(seen[0]) >> kFieldTolerance) trusted = false;
+  }
+  return trusted;
 }
 
 uint8_t AttitudeEstimator::heading_sigma() const {

@@ -48,16 +48,14 @@ struct AttitudeState {
   int32_t yaw_rate_;
   uint16_t
       carry_[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
-  int16_t half_angle_[3];  // rotation of this tick, half angle in radians, 17 binary digits
-  uint16_t ticks_;         // since the alignment, stops at kStartTicks; 0: not aligned yet
-  uint16_t mag_samples_;   // taken in, stops at kHeadingStartSamples
-  uint8_t mag_age_;        // ticks since the last magnetometer sample
-  uint8_t rest_ticks_;     // stops at kRestTicks
-  uint8_t bias_samples_;   // taken at rest, stops at kBiasTicks
-  bool known_;             // gravity has been averaged once
-  // Strength of the magnetic field and its part along gravity, halves of counts, 14 binary digits:
-  // what is measured now has to agree with them.
-  int32_t field_;
+  int16_t half_angle_[3];    // rotation of this tick, half angle in radians, 17 binary digits
+  uint16_t ticks_;           // since the alignment, stops at kStartTicks; 0: not aligned yet
+  uint16_t mag_samples_;     // taken in, stops at kHeadingStartSamples
+  uint8_t mag_age_;          // ticks since the last magnetometer sample
+  uint8_t rest_ticks_;       // stops at kRestTicks
+  uint8_t bias_samples_;     // taken at rest, stops at kBiasTicks
+  bool known_;               // gravity has been averaged once
+  int16_t field_[2];         // the site's magnetic field: strength and vertical part, 4 counts
   uint16_t mag_distrusted_;  // ticks since the magnetometer was last trusted, stops at its end
 };
 

@@ -440,6 +440,53 @@ TEST(Attitude, MagneticDisturbanceTurnsSlowly) {
   EXPECT_NEAR(degrees(estimator.heading()), 60.0, 0.2);
 }
 
+/// Steel passes by: a field of another strength or inclination, which points elsewhere.
+ImuSample near_steel(const Rot& truth, const Vec& field) {
+  ImuSample sample = reading(truth);
+  const Vec m = seen(truth, field);
+  for (std::size_t i = 0; i < 3; ++i) sample.mag[i] = counts(m[i]);
+  return sample;
+}
+
+TEST(Attitude, AFieldThatIsNotTheSitesDoesNotTurnTheHeading) {
+  for (const Vec& field : {Vec{1500, 1100, -2500 * 1.3}, Vec{900, 800, -1300}}) {
+    AttitudeEstimator estimator;
+    const Rot truth = pose(60, 0, 0);
+    repeat(estimator, reading(truth), 2000);
+    ASSERT_FALSE(estimator.mag_disturbed());
+    EXPECT_EQ(estimator.heading_sigma(), 4) << "2 degrees";
+    repeat(estimator, near_steel(truth, field), AttitudeEstimator::kMagHitchTicks);
+    EXPECT_FALSE(estimator.mag_disturbed()) << "a hitch";
+    repeat(estimator, near_steel(truth, field), 180);
+    EXPECT_TRUE(estimator.mag_disturbed());
+    EXPECT_NEAR(degrees(estimator.heading()), 60.0, 0.1) << "the gyroscope says that it stands";
+    repeat(estimator, reading(truth), 1);
+    EXPECT_FALSE(estimator.mag_disturbed());
+  }
+}
+
+// A robot that is carried to another site takes the field that it finds there.
+TEST(Attitude, AFieldThatStaysIsTakenForThatOfTheSite) {
+  AttitudeEstimator estimator;
+  const Rot truth = pose(0, 0, 0);
+  repeat(estimator, reading(truth), 2000);
+  const ImuSample elsewhere = near_steel(truth, {0, 1400, -3300});
+  repeat(estimator, elsewhere, 500);
+  EXPECT_TRUE(estimator.mag_disturbed());
+  repeat(estimator, elsewhere, 6000);
+  EXPECT_FALSE(estimator.mag_disturbed());
+  EXPECT_EQ(estimator.heading_sigma(), 4);
+}
+
+TEST(Attitude, WithoutAMagnetometerTheHeadingAges) {
+  AttitudeEstimator estimator;
+  repeat(estimator, without_mag(reading(pose(0, 0, 0))), 100);
+  EXPECT_EQ(estimator.heading_sigma(), 255) << "never set";
+  repeat(estimator, reading(pose(0, 0, 0)), 400);
+  repeat(estimator, without_mag(reading(pose(0, 0, 0))), 2048 * 5);
+  EXPECT_EQ(estimator.heading_sigma(), 9) << "0.5 degrees in 20 s";
+}
+
 TEST(Attitude, StaleMagnetometerIsNotLookedAt) {
   AttitudeEstimator estimator;
   repeat(estimator, without_mag(reading(pose(90, 0, 0))), 400);
