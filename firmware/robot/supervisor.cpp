@@ -98,19 +98,8 @@ static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
               "faults of chips are their bits, shifted");
 
 Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
-    : SupervisorMemory(), parameters_intact_(parameters_intact) {
+    : SupervisorMemory(), parameters_good_(parameters_intact && parameters.valid()) {
   ticks_since_heartbeat_ = UINT16_MAX;
-  configure(parameters);
-}
-
-void Supervisor::configure(const Parameters& parameters) {
-  cos_tilt_limit_q15_ = cos_q15(angle_from_centidegrees(parameters.tilt_limit));
-  battery_low_mv_ = static_cast<uint16_t>(parameters.battery_low);
-  stall_ticks_ = ticks_from_ms(parameters.stall_time);
-  stuck_ticks_ = ticks_from_ms(parameters.stuck_time);
-  standalone_ticks_ = ticks_from_ms(parameters.standalone_delay);
-  standalone_ = parameters.standalone != 0;
-  parameters_valid_ = parameters_intact_ && parameters.valid();
 }
 
 bool Supervisor::link_alive() const {
@@ -121,8 +110,9 @@ bool Supervisor::link_alive() const {
 // accelerometer, which also sees a robot that was turned over while the estimator was not looking.
 // In motion the accelerometer alone is no witness: tipping over a crest the robot falls and brakes,
 // and for a tenth of a second the force points anywhere.
-bool Supervisor::tilted(const SupervisorInput& input) {
-  if (input.attitude_known && input.cos_tilt_q14 < asr_i16(cos_tilt_limit_q15_, 1)) return true;
+bool Supervisor::tilted(const Parameters& parameters, const SupervisorInput& input) {
+  const int16_t cos_limit_q15 = cos_q15(angle_from_centidegrees(parameters.tilt_limit));
+  if (input.attitude_known && input.cos_tilt_q14 < asr_i16(cos_limit_q15, 1)) return true;
   // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;
   for (uint8_t i = 0; i < 3; ++i) {
@@ -132,16 +122,15 @@ bool Supervisor::tilted(const SupervisorInput& input) {
   }
   const uint16_t length = isqrt32(square);
   if (length < kMinRestAccel || length > kMaxRestAccel) return false;
-  // Up to 1229, so half of it and of the cosine in Q14 fit 16 bits.
+  // length cos in Q15; four times the length, at most 1229, fits 16 bits.
   return asr_i16(input.accel[2], 2) <
-         asr_i16(detail::high_half(mul_i16(static_cast<int16_t>(length * 4), cos_tilt_limit_q15_)),
-                 1);
+         asr_i16(detail::high_half(mul_i16(static_cast<int16_t>(length * 4), cos_limit_q15)), 1);
 }
 
-uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
-  uint16_t found = parameters_valid_ ? 0 : static_cast<uint16_t>(Fault::kParameters);
+uint16_t Supervisor::look_for_faults(const Parameters& parameters, const SupervisorInput& input) {
+  uint16_t found = parameters_good_ ? 0 : static_cast<uint16_t>(Fault::kParameters);
 
-  if (lasts(tilted(input), tilt_ticks_, kTiltTicks)) found |= Fault::kTilt;
+  if (lasts(tilted(parameters, input), tilt_ticks_, kTiltTicks)) found |= Fault::kTilt;
 
   const bool new_gyro = (input.fresh & kFreshGyro) != 0;
   if (lasts(!new_gyro, silent_gyro_ticks_, kSilentTicks)) found |= Fault::kImuSilent;
@@ -165,8 +154,9 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
 
   left_.tick(input.duty_left, input.counts_left);
   right_.tick(input.duty_right, input.counts_right);
-  if (left_.still_ticks() >= stall_ticks_) found |= Fault::kStallLeft;
-  if (right_.still_ticks() >= stall_ticks_) found |= Fault::kStallRight;
+  const uint16_t stall_ticks = ticks_from_ms(parameters.stall_time);
+  if (left_.still_ticks() >= stall_ticks) found |= Fault::kStallLeft;
+  if (right_.still_ticks() >= stall_ticks) found |= Fault::kStallRight;
   if (left_.alternates()) found |= Fault::kEncoderLeft;
   if (right_.alternates()) found |= Fault::kEncoderRight;
   left_.compare(input.duty_left, input.speed_left_dmm_per_s, input.full_speed_mm_per_s);
@@ -175,10 +165,12 @@ uint16_t Supervisor::look_for_faults(const SupervisorInput& input) {
   if (right_.disobeys()) found |= Fault::kMotorRight;
 
   stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
-  if (input.gave_up || (stuck_ticks_ != 0 && stuck_for_ >= stuck_ticks_)) found |= Fault::kStuck;
+  const uint16_t stuck_ticks = ticks_from_ms(parameters.stuck_time);
+  if (input.gave_up || (stuck_ticks != 0 && stuck_for_ >= stuck_ticks)) found |= Fault::kStuck;
   if (input.lost) found |= Fault::kLost;
 
-  if (lasts(input.battery_mv < battery_low_mv_, battery_ticks_, kBatteryTicks)) {
+  if (lasts(input.battery_mv < static_cast<uint16_t>(parameters.battery_low), battery_ticks_,
+            kBatteryTicks)) {
     found |= Fault::kBattery;
   }
   return found;
@@ -196,9 +188,9 @@ void Supervisor::watch_link() {
 
 // Arms and runs once, after the delay: a stand-alone robot that was stopped, even before that,
 // stays stopped. ticks_since_start_ == UINT16_MAX: the start has happened or was cancelled.
-void Supervisor::run_standalone() {
+void Supervisor::run_standalone(uint16_t delay_ticks) {
   if (!standalone_ || ticks_since_start_ == UINT16_MAX) return;
-  if (ticks_since_start_ < standalone_ticks_) {
+  if (ticks_since_start_ < delay_ticks) {
     ++ticks_since_start_;
     return;
   }
@@ -208,16 +200,17 @@ void Supervisor::run_standalone() {
   }
 }
 
-void Supervisor::tick(const SupervisorInput& input) {
+void Supervisor::tick(const Parameters& parameters, const SupervisorInput& input) {
+  standalone_ = parameters.standalone != 0;
   estimator_ready_ = input.estimator_ready;
-  present_ = look_for_faults(input);
+  present_ = look_for_faults(parameters, input);
   // Before anybody armed the robot a fault is no event: it only keeps the robot from being armed.
   if (present_ != 0 && state_ != RobotState::kDisarmed) {
     latched_ |= present_;
     state_ = RobotState::kFault;
   }
   watch_link();
-  run_standalone();
+  run_standalone(ticks_from_ms(parameters.standalone_delay));
 }
 
 RequestResult Supervisor::request(Request request) {

@@ -93,6 +93,7 @@ struct SupervisorMemory {
   uint16_t latched_;
   uint16_t present_;  ///< causes seen in the last tick
   bool estimator_ready_;
+  bool standalone_;
   uint16_t ticks_since_heartbeat_;
   uint16_t ticks_since_start_;
   uint8_t tilt_ticks_;
@@ -109,12 +110,12 @@ struct SupervisorMemory {
 
 class Supervisor : private SupervisorMemory {
  public:
+  /// Parameters that are not intact, or not valid, are a fault for good.
   explicit Supervisor(const Parameters& parameters, bool parameters_intact = true);
-  /// Other parameters, for a robot at rest.
-  void configure(const Parameters& parameters);
 
-  /// One tick: looks for faults, watches the link, runs the stand-alone timer.
-  void tick(const SupervisorInput& input);
+  /// One tick: looks for faults, watches the link, runs the stand-alone timer. The parameters are
+  /// those of this tick: they change while the robot is disarmed.
+  void tick(const Parameters& parameters, const SupervisorInput& input);
 
   RequestResult request(Request request);
   /// A valid heartbeat of the ground station arrived.
@@ -135,19 +136,12 @@ class Supervisor : private SupervisorMemory {
   bool link_alive() const;
 
  private:
-  uint16_t look_for_faults(const SupervisorInput& input);
-  bool tilted(const SupervisorInput& input);
+  uint16_t look_for_faults(const Parameters& parameters, const SupervisorInput& input);
+  bool tilted(const Parameters& parameters, const SupervisorInput& input);
   void watch_link();
-  void run_standalone();
+  void run_standalone(uint16_t delay_ticks);
 
-  int16_t cos_tilt_limit_q15_;
-  uint16_t battery_low_mv_;
-  uint16_t stall_ticks_;
-  uint16_t stuck_ticks_;
-  uint16_t standalone_ticks_;
-  bool standalone_;
-  bool parameters_intact_;
-  bool parameters_valid_;
+  bool parameters_good_;
 };
 
 }  // namespace screed

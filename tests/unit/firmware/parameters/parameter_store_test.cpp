@@ -185,7 +185,7 @@ TEST(ParameterStore, ARobotWhoseParametersAreLostCannotBeArmed) {
     input.attitude_known = true;
     input.battery_mv = 7200;
     supervisor.heartbeat();
-    supervisor.tick(input);
+    supervisor.tick(Parameters(), input);
     EXPECT_EQ(supervisor.request(Request::kArm),
               intact ? RequestResult::kDone : RequestResult::kFaultPresent);
   }

@@ -12,7 +12,7 @@ namespace screed {
 
 class SupervisedRobot {
  public:
-  explicit SupervisedRobot(const Parameters& parameters = {}) : supervisor(parameters) {}
+  explicit SupervisedRobot(const Parameters& given = {}) : parameters(given), supervisor(given) {}
 
   /// One tick with the ground station heard.
   void tick() {
@@ -25,7 +25,7 @@ class SupervisedRobot {
                              duty_left, duty_right, counts_left, counts_right, 0,     stuck};
     input.attitude_known = attitude_known;
     input.gave_up = gave_up;
-    supervisor.tick(input);
+    supervisor.tick(parameters, input);
   }
   /// Ticks until the robot has left the state, at most `most`.
   int ticks_in(RobotState state, int most) {
@@ -54,6 +54,7 @@ class SupervisedRobot {
     accel[2] = static_cast<int16_t>(std::lround(4098.0 * std::cos(angle)));
   }
 
+  Parameters parameters;
   Supervisor supervisor;
   bool heard = true;
   uint8_t fresh = kFreshGyro | kFreshAccel;

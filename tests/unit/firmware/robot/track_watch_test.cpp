@@ -135,7 +135,7 @@ void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
   input.battery_mv = 7200;
   input.chips_failing = chips_failing;
   supervisor.heartbeat();
-  supervisor.tick(input);
+  supervisor.tick(Parameters(), input);
 }
 
 TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
