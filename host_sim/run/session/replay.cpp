@@ -14,10 +14,7 @@
 
 namespace screed {
 
-ReplayResult replay_session(const std::filesystem::path& session_file,
-                            const TaskProgress& progress) {
-  constexpr std::uint64_t kBlockRows = 1024;
-  const SessionReader session(session_file);
+void check_replayable(const SessionReader& session, const std::filesystem::path& session_file) {
   if (session.frames() == 0) throw InputError(session_file.string() + ": no tick was recorded");
   const SessionInfo& info = session.info();
   if (info.tick_rate_hz != kTickRate_hz) {
@@ -31,6 +28,14 @@ ReplayResult replay_session(const std::filesystem::path& session_file,
                        "' is 0; no robot can run with it");
     }
   }
+}
+
+ReplayResult replay_session(const std::filesystem::path& session_file,
+                            const TaskProgress& progress) {
+  constexpr std::uint64_t kBlockRows = 1024;
+  const SessionReader session(session_file);
+  check_replayable(session, session_file);
+  const SessionInfo& info = session.info();
 
   ReplayResult result;
   result.complete = session.complete();

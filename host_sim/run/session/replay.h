@@ -23,10 +23,15 @@ struct ReplayResult {
       true;  ///< false when the file's content no longer has the hash it was saved with
 };
 
+class SessionReader;
+
+/// Throws InputError, with the file's name, when no robot of this program can be fed the session:
+/// it has no tick, a board constant of 0, or was recorded at another tick rate.
+void check_replayable(const SessionReader& session, const std::filesystem::path& session_file);
+
 /// Builds a Robot from the recorded parameters and board constants, feeds it the recorded samples
 /// and compares its outputs byte for byte, of the radio only the valid bytes. Throws InputError
-/// when the file is no session, has no tick or a board constant of 0, or was recorded at another
-/// tick rate. Reports the task "replaying".
+/// when the file is no session, or as check_replayable(). Reports the task "replaying".
 ReplayResult replay_session(const std::filesystem::path& session_file,
                             const TaskProgress& progress = {});
 
