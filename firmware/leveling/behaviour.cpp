@@ -9,12 +9,7 @@ constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(60);
 }  // namespace
 
 Behaviour::Behaviour(const Parameters& parameters)
-    : threshold_(angle_from_centidegrees(parameters.climb_threshold)),
-      hysteresis_(angle_from_centidegrees(parameters.climb_hysteresis)),
-      climb_speed_(parameters.climb_speed),
-      climb_turn_(parameters.climb_turn),
-      walk_(parameters),
-      fence_(parameters.site_radius, parameters.walk_speed_max) {}
+    : parameters_(parameters), walk_(parameters), fence_(parameters) {}
 
 void Behaviour::start() {
   state_ = LevelingState::kIdle;
@@ -42,8 +37,8 @@ MotionCommand Behaviour::enter_or_stay(LevelingState state, MotionCommand motion
 }
 
 SCREED_OUT_OF_LINE bool Behaviour::uphill(Angle pitch) const {
-  const Angle limit =
-      state_ == LevelingState::kClimb ? static_cast<Angle>(threshold_ - hysteresis_) : threshold_;
+  Angle limit = angle_from_centidegrees(parameters_.climb_threshold);
+  if (state_ == LevelingState::kClimb) limit = static_cast<Angle>(limit - hysteresis());
   return pitch > limit;
 }
 
@@ -56,9 +51,10 @@ MotionCommand Behaviour::walk() {
 // it by less than 4 degrees on slopes up to 25. On a plateau it is noise.
 MotionCommand Behaviour::climb(const LevelingInput& input) {
   enter_or_stay(LevelingState::kClimb);
-  if (climb_turn_ == 0 || !uphill(input.pitch)) return {climb_speed_, 0};
+  if (parameters_.climb_turn == 0 || !uphill(input.pitch)) return {parameters_.climb_speed, 0};
   const Angle steepest = atan2_angle(input.roll, input.pitch);
-  return {climb_speed_, limit_i16(mul_i16(climb_turn_, steepest), kMaxTurnRate)};
+  return {parameters_.climb_speed,
+          limit_i16(mul_i16(parameters_.climb_turn, steepest), kMaxTurnRate)};
 }
 
 bool Behaviour::update_return(const LevelingInput& input) {

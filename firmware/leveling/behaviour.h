@@ -27,6 +27,7 @@
 #include "firmware/estimation/place.h"
 #include "firmware/leveling/site_fence.h"
 #include "firmware/leveling/walk_legs.h"
+#include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"
 #include "schema/values.h"
 
@@ -41,9 +42,10 @@ struct LevelingInput {
   Angle pitch;    ///< nose up positive
   Angle heading;  ///< counter-clockwise from east
   Place place;
-  MotionCommand drive;  ///< what the ground station commands
-  Angle roll = 0;       ///< left side up positive; with the pitch the direction of the slope
-  bool stuck = false;   ///< the tracks turn and the robot does not move (slip_watch.h)
+  MotionCommand drive;     ///< what the ground station commands
+  Angle roll = 0;          ///< left side up positive; with the pitch the direction of the slope
+  bool backwards = false;  ///< it was told to drive so in the tick before
+  bool stuck = false;      ///< the tracks turn and the robot does not move (slip_watch.h)
 };
 
 /// What holds for an algorithm that does not say otherwise.
@@ -69,15 +71,15 @@ class Behaviour {
   /// below the threshold by the hysteresis.
   bool uphill(Angle pitch) const;
   /// The pitch is that of a decline.
-  bool downhill(Angle pitch) const { return pitch < static_cast<Angle>(-hysteresis_); }
+  bool downhill(Angle pitch) const { return pitch < static_cast<Angle>(-hysteresis()); }
 
   /// A leg of the random walk; a new one where the walk begins.
   MotionCommand walk();
   /// Straight on, as Algorithm 6. With the parameter climb_turn, on an incline: towards the
   /// steepest ascent that pitch and roll show.
   SCREED_OUT_OF_LINE MotionCommand climb(const LevelingInput& input);
-  /// Towards the point that lies so far east and north of the robot; turns on the spot while it
-  /// lies behind.
+  /// Towards the point that lies so far east and north of the robot, backwards where it lies
+  /// behind; turns on the spot while it lies aside.
   MotionCommand steer(int16_t east_mm, int16_t north_mm, Angle heading) const {
     return fence_.steer(east_mm, north_mm, heading);
   }
@@ -96,10 +98,9 @@ class Behaviour {
   /// before.
   void enter_or_stay(LevelingState next);
 
-  Angle threshold_;
-  Angle hysteresis_;
-  int16_t climb_speed_;
-  int16_t climb_turn_;
+  Angle hysteresis() const { return angle_from_centidegrees(parameters_.climb_hysteresis); }
+
+  Kept<Parameters> parameters_;
   WalkLegs walk_;
   SiteFence fence_;
   LevelingState state_ = LevelingState::kIdle;

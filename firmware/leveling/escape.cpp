@@ -26,12 +26,14 @@ constexpr uint8_t time(int16_t ms) {
 constexpr uint8_t kStepBytes = 3;
 constexpr uint8_t kWayBytes = 2 * kStepBytes + 1;
 const uint8_t kWays[][kWayBytes] SCREED_PROGRAM_MEMORY = {
-    {speed(-200), turn(0), time(1500), speed(0), turn(60), time(1500), 2},     // back, turn away
+    {speed(-200), turn(0), time(1480), speed(0), turn(60), time(1480), 2},     // back, turn away
     {speed(-250), turn(0), time(480), speed(250), turn(0), time(480), 16},     // rock
     {speed(-100), turn(60), time(480), speed(-100), turn(-60), time(480), 8},  // alternate tracks
     {speed(-250), turn(0), time(800), speed(250), turn(0), time(800), 10},     // rock slowly
+    {0, 0, 0, speed(0), turn(0), time(400), 1},  // stand: the slip watch begins anew
 };
-constexpr uint8_t kLastWay = sizeof(kWays) / kWayBytes - 1;
+constexpr uint8_t kStand = sizeof(kWays) / kWayBytes - 1;
+constexpr uint8_t kLastWay = kStand - 1;
 static_assert((kLastWay & (kLastWay + 1)) == 0, "the ways begin again by a mask");
 
 // A robot that has been free for so long got out.
@@ -55,13 +57,14 @@ void Escape::begin_step() {
   const uint8_t* step = kWays[way_];
   if ((steps_left_ & 1U) != 0) step += kStepBytes;
   motion_.speed_mm_per_s = static_cast<int16_t>(2 * static_cast<int8_t>(read_program_u8(step)));
+  if (mirrored_) motion_.speed_mm_per_s = static_cast<int16_t>(-motion_.speed_mm_per_s);
   uint8_t turn = read_program_u8(step + 1);
   if ((attempt_ & 1U) == 0) turn = static_cast<uint8_t>(-turn);
   motion_.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
   ticks_left_ = static_cast<uint16_t>(read_program_u8(step + 2) * 4U);
 }
 
-bool Escape::tick(bool stuck) {
+bool Escape::tick(bool stuck, bool backwards) {
   gave_up_ = false;
   if (ticks_left_ != 0) --ticks_left_;
   if (steps_left_ == 0) {
@@ -73,16 +76,17 @@ bool Escape::tick(bool stuck) {
       gave_up_ = attempts_ != 0;
       return false;
     }
+    mirrored_ = backwards;
     begin(attempt_ & kLastWay);
     ++attempt_;
   } else {
     if (ticks_left_ != 0) return true;
     if (--steps_left_ == 0) {
-      if (way_ == 0) {
+      if (way_ == kStand) {
         ticks_left_ = kFreeTicks;
         return false;
       }
-      begin(0);  // loose, perhaps: out of there
+      begin(way_ == 0 ? kStand : 0);  // loose, perhaps: out of there
     }
   }
   begin_step();

@@ -1,10 +1,11 @@
 // Gets a stuck robot out: a bounded manoeuvre, then it gives up.
 //
 // The robot is stuck when the slip watch says so. Each such report is an attempt. The first goes
-// back, since every algorithm drives ahead and what lies behind was passable, and turns away, so
-// that the algorithm goes on elsewhere. The next ones rock or alternate the tracks before that;
-// left and right in turn. A step that gets stuck itself ends early. A robot that is free for 10 s
-// has all attempts again; one that is stuck after the last has given up.
+// back, since what lies there was passable, and turns away, so that the algorithm goes on
+// elsewhere. The next ones rock or alternate the tracks before that; left and right in turn. For a
+// robot that drove backwards all of it is mirrored. Each attempt ends with the tracks at rest: then
+// the slip watch forgets what was. A robot that is free for 10 s has all attempts again; one that
+// is stuck after the last has given up.
 //
 // It commands motions as an algorithm does: the supervisor's protection of the tracks holds.
 #pragma once
@@ -25,7 +26,8 @@ class Escape {
   void start();
 
   /// One tick of a robot that runs. Returns true while the manoeuvre drives, with motion().
-  SCREED_OUT_OF_LINE bool tick(bool stuck);
+  /// backwards: it was told to drive so before.
+  SCREED_OUT_OF_LINE bool tick(bool stuck, bool backwards = false);
   const MotionCommand& motion() const { return motion_; }
   /// Stuck, and no attempt is left: in this tick.
   bool gave_up() const { return gave_up_; }
@@ -40,6 +42,7 @@ class Escape {
   uint8_t attempt_ = 0;      ///< how many were begun since the robot was free for long
   uint8_t way_ = 0;          ///< to come loose
   uint8_t steps_left_ = 0;   ///< of that way; 0: does not drive
+  bool mirrored_ = false;    ///< it drove backwards into where it is stuck
   bool gave_up_ = false;
 };
 

@@ -45,6 +45,9 @@ class Leveling {
   /// One tick of the selected algorithm.
   MotionCommand tick(const LevelingInput& input);
 
+  /// What it is stuck at is a wall: no failed escape.
+  void met_wall() { escape_.start(); }
+
   LevelingAlgorithm algorithm() const { return algorithm_; }
   LevelingState state() const { return behaviour_.state(); }
   /// Climbs that ended in another motion than the return to the site or the escape. Starts at 0

@@ -4,7 +4,9 @@
 namespace screed {
 namespace {
 
-constexpr Angle kAhead = 8192;  // 45 degrees either side
+constexpr uint16_t kHalfTurn = 32768;
+constexpr uint16_t kSideways = 16384;
+constexpr uint16_t kAhead = 8192;  // 45 degrees either side
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(60);
 uint32_t squares(int16_t x, int16_t y) {
   return static_cast<uint32_t>(mul_i16(x, x)) + static_cast<uint32_t>(mul_i16(y, y));
@@ -13,10 +15,10 @@ uint32_t squares(int16_t x, int16_t y) {
 }  // namespace
 
 SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
-  if (radius_mm_ == 0) return false;
+  if (parameters_.site_radius == 0) return false;
   const uint8_t sigma = place.sigma[kX] > place.sigma[kY] ? place.sigma[kX] : place.sigma[kY];
-  auto radius = static_cast<int16_t>(radius_mm_ - 2 * 4 * sigma);
-  const int16_t least = asr_i16(radius_mm_, 1);
+  auto radius = static_cast<int16_t>(parameters_.site_radius - 2 * 4 * sigma);
+  const int16_t least = asr_i16(parameters_.site_radius, 1);
   if (radius < least) radius = least;
   if (returning_) radius = static_cast<int16_t>(radius - asr_i16(radius, 2));
   returning_ = squares(place.mm[kX], place.mm[kY]) > squares(radius, 0);
@@ -24,12 +26,16 @@ SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
 }
 
 MotionCommand SiteFence::steer(int16_t east_mm, int16_t north_mm, Angle heading) const {
-  const Angle there = atan2_angle(north_mm, east_mm);
-  const Angle error = angle_difference(there, heading);
+  // A turn is 2^16: sums wrap.
+  auto error = static_cast<uint16_t>(angle_difference(atan2_angle(north_mm, east_mm), heading));
+  int16_t speed = parameters_.walk_speed_max;
+  if ((static_cast<uint16_t>(error + kSideways) & kHalfTurn) != 0) {  // behind: backwards
+    error ^= kHalfTurn;
+    speed = static_cast<int16_t>(-speed);
+  }
+  if (static_cast<uint16_t>(error + kAhead) >= 2 * kAhead) speed = 0;
   // Two turns of the error a second, as fast as the robot turns well: time constant 0.5 s.
-  const YawRate rate = limit_i16(static_cast<int32_t>(error) * 2, kMaxTurnRate);
-  const bool ahead = error > static_cast<Angle>(-kAhead) && error < kAhead;
-  return {ahead ? speed_mm_per_s_ : static_cast<int16_t>(0), rate};
+  return {speed, limit_i16(static_cast<int32_t>(static_cast<Angle>(error)) * 2, kMaxTurnRate)};
 }
 
 }  // namespace screed

@@ -8,26 +8,28 @@
 #include "firmware/control/kinematics.h"
 #include "firmware/estimation/place.h"
 #include "firmware/math/units.h"
+#include "firmware/parameters/kept.h"
+#include "firmware/parameters/parameters.h"
 
 namespace screed {
 
 class SiteFence {
  public:
-  /// radius_mm: of the circle around the start; 0 switches the fence off. speed: on the way back.
-  SiteFence(int16_t radius_mm, int16_t speed_mm_per_s)
-      : radius_mm_(radius_mm), speed_mm_per_s_(speed_mm_per_s) {}
+  /// site_radius: of the circle around the start; 0 switches the fence off. walk_speed_max: on the
+  /// way back.
+  explicit SiteFence(const Parameters& parameters) : parameters_(parameters) {}
 
   /// Looks at the position. Returns true while the robot has to drive back: from the moment it
   /// leaves the circle until it is well inside (three quarters of the radius) again.
   bool update(const Place& place);
 
-  /// The motion towards the point so far east and north of the robot: turns on the spot while it
-  /// lies behind, drives as soon as it lies ahead.
+  /// The motion towards the point so far east and north of the robot, backwards where it lies
+  /// behind: on loose ground turning digs in. Turns on the spot while it lies aside, drives as soon
+  /// as it lies within 45 degrees.
   SCREED_OUT_OF_LINE MotionCommand steer(int16_t east_mm, int16_t north_mm, Angle heading) const;
 
  private:
-  int16_t radius_mm_;
-  int16_t speed_mm_per_s_;
+  Kept<Parameters> parameters_;
   bool returning_ = false;
 };
 

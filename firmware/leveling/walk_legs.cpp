@@ -4,18 +4,15 @@
 namespace screed {
 
 WalkLegs::WalkLegs(const Parameters& parameters)
-    : random_(static_cast<uint16_t>(parameters.random_seed)),
-      speed_min_(parameters.walk_speed_min),
-      speed_max_(parameters.walk_speed_max),
-      yaw_rate_max_(yaw_rate_from_degrees(parameters.walk_yaw_rate_max)),
-      leg_min_ms_(parameters.walk_leg_min),
-      leg_max_ms_(parameters.walk_leg_max) {}
+    : random_(static_cast<uint16_t>(parameters.random_seed)), parameters_(parameters) {}
 
 MotionCommand WalkLegs::tick() {
   if (ticks_left_ == 0) {
-    leg_.speed_mm_per_s = random_.uniform(speed_min_, speed_max_);
-    leg_.yaw_rate = random_.uniform(static_cast<int16_t>(-yaw_rate_max_), yaw_rate_max_);
-    ticks_left_ = ticks_from_ms(random_.uniform(leg_min_ms_, leg_max_ms_));
+    leg_.speed_mm_per_s = random_.uniform(parameters_.walk_speed_min, parameters_.walk_speed_max);
+    const YawRate fastest = yaw_rate_from_degrees(parameters_.walk_yaw_rate_max);
+    leg_.yaw_rate = random_.uniform(static_cast<YawRate>(-fastest), fastest);
+    ticks_left_ =
+        ticks_from_ms(random_.uniform(parameters_.walk_leg_min, parameters_.walk_leg_max));
   }
   --ticks_left_;
   return leg_;

@@ -8,6 +8,7 @@
 
 #include "firmware/control/kinematics.h"
 #include "firmware/math/random.h"
+#include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"
 
 namespace screed {
@@ -24,11 +25,7 @@ class WalkLegs {
 
  private:
   Random random_;
-  int16_t speed_min_;
-  int16_t speed_max_;
-  YawRate yaw_rate_max_;
-  int16_t leg_min_ms_;
-  int16_t leg_max_ms_;
+  Kept<Parameters> parameters_;
   uint16_t ticks_left_ = 0;
   MotionCommand leg_ = {0, 0};
 };

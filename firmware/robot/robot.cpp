@@ -259,7 +259,6 @@ RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
     parameter = before;
     return RequestResult::kBadArgument;
   }
-  supervisor_.configure(parameters_);
   new (&leveling_) Leveling(parameters_);
   new (&drive_) DriveControl(board_, parameters_);
   store_parameter_ = static_cast<uint8_t>(index + 1U);
@@ -288,7 +287,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.speed_right_dmm_per_s = drive_.speed_right_dmm_per_s();
   input.full_speed_mm_per_s = board_.full_speed_mm_per_s;
   input.attitude_known = attitude_.known();
-  supervisor_.tick(input);
+  supervisor_.tick(parameters_, input);
 }
 
 void Robot::select_motion() {
@@ -315,6 +314,7 @@ void Robot::select_motion() {
   input.drive = drive_command_;
   input.roll = status_.angles.roll;
   input.stuck = slip_watch_.stuck();
+  input.backwards = status_.motion.speed_mm_per_s < 0;
   status_.motion = leveling_.tick(input);
 }
 
@@ -333,6 +333,7 @@ void Robot::feel_walls() {
     const bool sought = leveling_.state() == LevelingState::kSeekWall;
     if (touch_wall(board_, parameters_, travel, sought, position_)) {
       event(message::EventCode::kWall, travel);
+      leveling_.met_wall();
     }
   }
   was_stuck_ = stuck;

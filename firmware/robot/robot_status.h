@@ -12,8 +12,8 @@
 namespace screed {
 
 struct RobotStatus {
-  // Pose: asked for once a tick, since on the AVR an angle costs 1500 cycles and a position a
-  // division.
+  // Pose: asked for once a tick, since on the AVR an angle costs 1500 cycles and a deviation a
+  // root.
   AttitudeAngles angles;
   Place place;
   uint16_t battery_mv;

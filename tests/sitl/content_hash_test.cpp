@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "e61cfc1689b7c604e11ddf18cad91626"},
-    {"soft_bed", "--duration 6", "bea62daae6893f701117ac4c34b04924"},
-    {"soft_bed", "--hal surrogate --duration 10", "4881f61dced032d86654a4dcbecc536b"},
+    {"first_drive", "--duration 60", "0da11805bc200bb9188a6aa6201314b1"},
+    {"soft_bed", "--duration 6", "9bc3bda26ed81a72513231b24da47280"},
+    {"soft_bed", "--hal surrogate --duration 10", "74b35d63f3b769e1f9b74c4a1c6b4e6f"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "8269b8e979b1bab09fb1fa96c02155ec"},
-    {"gravel_bed", "--duration 1", "6d8a45462b7d641872168c8aef943ce6"},
+     "77c6e22d66f7d1dc8924eb8bba8cd938"},
+    {"gravel_bed", "--duration 1", "24fd1eb064d40afc46308f32a71daada"},
 }};
 
 class ContentHash : public Program {};

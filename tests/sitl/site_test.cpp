@@ -8,6 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "host_sim/physics/terrain/terrain.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/world/world_setup.h"
 #include "tests/sitl/program.h"
 #include "tests/sitl/test_drive.h"
 
@@ -41,6 +44,17 @@ TEST(Site, AWallTellsTheRobotWhereItIs) {
     drive->robot.position().get(place);
     EXPECT_LE(4 * place.sigma[axis], 44) << heading_deg << ": that of a wall";
     EXPECT_GT(place.sigma[1 - axis], place.sigma[axis]) << heading_deg;
+  }
+}
+
+// A robot that believes its walls elsewhere is moved there by the first it touches.
+TEST(Site, TheWallsOfShippedBedsStandWhereTheRobotIsTold) {
+  for (const char* name : {"soft_bed", "gravel_bed"}) {
+    const Experiment experiment = read_experiment(find_experiment(name), {});
+    const BedBounds bed = bounds_of(make_terrain(experiment));
+    ASSERT_EQ(bed.edge, BedEdge::kWalled) << name;
+    EXPECT_NEAR(experiment.parameters.site_x, 500.0 * bed.width_m, 5.0) << name;
+    EXPECT_NEAR(experiment.parameters.site_y, 500.0 * bed.depth_m, 5.0) << name;
   }
 }
 

@@ -38,9 +38,15 @@ TEST(Escape, DrivesBackFirstAndTurnsAway) {
   ASSERT_TRUE(escape.tick(true));
   EXPECT_LT(escape.motion().speed_mm_per_s, 0);
   EXPECT_EQ(escape.motion().yaw_rate, 0);
-  YawRate last_turn = 0;
-  while (escape.tick(false)) last_turn = escape.motion().yaw_rate;
-  EXPECT_NE(last_turn, 0);
+  YawRate turn = 0;
+  int standing = 0;
+  while (escape.tick(false)) {
+    if (escape.motion().yaw_rate != 0) turn = escape.motion().yaw_rate;
+    const bool stands = escape.motion().speed_mm_per_s == 0 && escape.motion().yaw_rate == 0;
+    standing = stands ? standing + 1 : 0;
+  }
+  EXPECT_NE(turn, 0);
+  EXPECT_EQ(standing, 40) << "the slip watch forgets while the tracks stand";
   EXPECT_FALSE(escape.gave_up());
   EXPECT_FALSE(escape.tick(false));
 }
@@ -55,10 +61,26 @@ TEST(Escape, EveryAttemptIsBoundedInTimeSpeedAndDistance) {
       ASSERT_LE(std::abs(motion.speed_mm_per_s), 250);
       ASSERT_LE(std::abs(motion.yaw_rate), yaw_rate_from_degrees(90));
       travel_mm += motion.speed_mm_per_s / 100.0;
-      ASSERT_LT(++ticks, 11 * kTickRate_hz) << i;
+      ASSERT_LT(++ticks, 12 * kTickRate_hz) << i;
     }
     EXPECT_GT(ticks, kTickRate_hz) << i;
     EXPECT_LE(std::abs(travel_mm), 700.0) << i;
+  }
+}
+
+// What lies behind was passable, and that is ahead for one that drove backwards.
+TEST(Escape, OfARobotThatDroveBackwardsIsMirrored) {
+  Escape ahead(escape_parameters(6));
+  Escape back(escape_parameters(6));
+  for (int attempt = 0; attempt < 6; ++attempt) {
+    bool first = true;
+    while (ahead.tick(first, false)) {
+      ASSERT_TRUE(back.tick(first, true));
+      first = false;
+      EXPECT_EQ(back.motion().speed_mm_per_s, -ahead.motion().speed_mm_per_s);
+      EXPECT_EQ(back.motion().yaw_rate, ahead.motion().yaw_rate);
+    }
+    EXPECT_FALSE(back.tick(false, true));
   }
 }
 
@@ -164,6 +186,22 @@ TEST(LevelingEscape, TheSiteFenceGoesOnAfterIt) {
     leveling.tick(stuck_input(false, 1100));
   }
   EXPECT_EQ(leveling.state(), LevelingState::kReturn);
+}
+
+// Seeking walls it is stuck at one again and again: each is the first attempt.
+TEST(LevelingEscape, AWallIsNoFailedAttempt) {
+  Parameters parameters;
+  parameters.escape_attempts = 2;
+  Leveling leveling(parameters);
+  leveling.start();
+  for (int wall = 0; wall < 5; ++wall) {
+    leveling.met_wall();
+    leveling.tick(stuck_input(true));
+    ASSERT_EQ(leveling.state(), LevelingState::kEscape) << wall;
+    for (int tick = 0; tick < 400; ++tick) leveling.tick(stuck_input(false));
+    ASSERT_NE(leveling.state(), LevelingState::kEscape) << "the first one is short: " << wall;
+  }
+  EXPECT_FALSE(leveling.gave_up());
 }
 
 TEST(LevelingEscape, AClimbThatEndsInItIsNoPeak) {

@@ -10,13 +10,20 @@
 namespace screed {
 namespace {
 
+Parameters site(int16_t radius_mm) {
+  Parameters parameters;
+  parameters.site_radius = radius_mm;
+  parameters.walk_speed_max = 100;
+  return parameters;
+}
+
 /// A place that is known exactly.
 Place at(int x_mm, int y_mm) {
   return {{static_cast<int16_t>(x_mm), static_cast<int16_t>(y_mm)}, {0, 0}};
 }
 
 TEST(SiteFence, CallsBackAtTheRadiusAndLetsGoAtThreeQuarters) {
-  SiteFence fence(1000, 100);
+  SiteFence fence(site(1000));
   EXPECT_FALSE(fence.update(at(0, 0)));
   EXPECT_FALSE(fence.update(at(600, -800)));  // exactly on the circle
   EXPECT_TRUE(fence.update(at(601, -800)));
@@ -28,13 +35,13 @@ TEST(SiteFence, CallsBackAtTheRadiusAndLetsGoAtThreeQuarters) {
 }
 
 TEST(SiteFence, RadiusZeroSwitchesItOff) {
-  SiteFence fence(0, 100);
+  SiteFence fence(site(0));
   EXPECT_FALSE(fence.update(at(INT16_MAX, INT16_MIN)));
 }
 
 TEST(SiteFence, SeesTheFarthestPlaces) {
   for (const int16_t radius_mm : std::initializer_list<int16_t>{1, 1000, 30000}) {
-    SiteFence fence(radius_mm, 100);
+    SiteFence fence(site(radius_mm));
     EXPECT_FALSE(fence.update(at(0, 0)));
     for (const int far : {30001, INT16_MAX}) {
       EXPECT_TRUE(fence.update(at(far, 0))) << radius_mm << " " << far;
@@ -48,7 +55,7 @@ TEST(SiteFence, SeesTheFarthestPlaces) {
 TEST(SiteFence, TurnsBackEarlierTheLessItKnows) {
   const auto turns_back_at = [](uint8_t sigma_x, uint8_t sigma_y) {
     for (int16_t x = 0;; ++x) {
-      SiteFence fence(1000, 100);
+      SiteFence fence(site(1000));
       if (fence.update({{x, 0}, {sigma_x, sigma_y}})) return x;
     }
   };
@@ -57,49 +64,53 @@ TEST(SiteFence, TurnsBackEarlierTheLessItKnows) {
   EXPECT_EQ(turns_back_at(3, 25), 801) << "100 mm";
   EXPECT_EQ(turns_back_at(100, 0), 501) << "400 mm";
   EXPECT_EQ(turns_back_at(255, 255), 501);
-  SiteFence fence(1000, 100);
+  SiteFence fence(site(1000));
   EXPECT_TRUE(fence.update({{900, 0}, {25, 25}}));
   EXPECT_TRUE(fence.update({{601, 0}, {25, 25}}));
   EXPECT_FALSE(fence.update({{600, 0}, {25, 25}})) << "three quarters of 800 mm";
 }
 
-TEST(SiteFence, TurnsOnTheSpotUntilHomeLiesAhead) {
-  const SiteFence fence(1000, 100);
-  // East of home: home lies in the west, -32768.
-  EXPECT_EQ(fence.steer(-1100, 0, 0).speed_mm_per_s, 0);
-  EXPECT_NE(fence.steer(-1100, 0, 0).yaw_rate, 0);
+// On loose ground a turn on the spot digs in: it is as short as it can be.
+TEST(SiteFence, DrivesBackwardsWhereHomeLiesBehind) {
+  const SiteFence fence(site(1000));
+  // East of home: home lies in the west.
+  EXPECT_EQ(fence.steer(-1100, 0, 0).speed_mm_per_s, -100);
+  EXPECT_EQ(fence.steer(-1100, 0, 0).yaw_rate, 0);
   EXPECT_EQ(fence.steer(-1100, 0, -32768).speed_mm_per_s, 100);
   EXPECT_EQ(fence.steer(-1100, 0, -32768).yaw_rate, 0);
-  // Heading a little south of west (counter-clockwise of it): a turn clockwise.
-  EXPECT_LT(fence.steer(-1100, 0, static_cast<Angle>(-32768 + 2000)).yaw_rate, 0);
-  EXPECT_GT(fence.steer(-1100, 0, static_cast<Angle>(32767 - 2000)).yaw_rate, 0);
-  // Never faster than 60 degrees/s.
+  // Heading north its nose turns west, heading south its tail: to either side of a quarter turn.
+  EXPECT_GT(fence.steer(-1100, 0, 16384 + 10).yaw_rate, 0);
+  EXPECT_LT(fence.steer(-1100, 0, 16384 - 10).yaw_rate, 0);
+  // Never faster than 60 degrees/s, nor further than a quarter turn.
   for (int32_t heading = -32768; heading <= 32767; heading += 111) {
     EXPECT_LE(std::abs(fence.steer(-1100, -300, static_cast<Angle>(heading)).yaw_rate), 10923);
   }
 }
 
 TEST(SiteFence, TurnsTwiceTheErrorASecondAndDrivesWithinFortyFiveDegrees) {
-  const SiteFence fence(1000, 100);
+  const SiteFence fence(site(1000));
   // West of home, home lies in the east: the error is minus the heading.
   for (const int error : {1, 100, 2000, 5000, -5000}) {
     EXPECT_EQ(fence.steer(1100, 0, static_cast<Angle>(-error)).yaw_rate, 2 * error) << error;
+    // The tail towards home: the same turns.
+    EXPECT_EQ(fence.steer(-1100, 0, static_cast<Angle>(-error)).yaw_rate, 2 * error) << error;
   }
   // 60 degrees/s are 10922.7 units.
-  EXPECT_NEAR(fence.steer(1100, 0, -20000).yaw_rate, 10922.7, 1.0);
-  EXPECT_NEAR(fence.steer(1100, 0, 20000).yaw_rate, -10922.7, 1.0);
+  EXPECT_NEAR(fence.steer(1100, 0, -15000).yaw_rate, 10922.7, 1.0);
+  EXPECT_NEAR(fence.steer(1100, 0, 15000).yaw_rate, -10922.7, 1.0);
   constexpr Angle kFortyFive = 8192;
   for (const int side : {1, -1}) {
     const auto heading = [&](int angle) { return static_cast<Angle>(side * angle); };
     EXPECT_EQ(fence.steer(1100, 0, heading(kFortyFive - 1)).speed_mm_per_s, 100) << side;
-    EXPECT_EQ(fence.steer(1100, 0, heading(kFortyFive)).speed_mm_per_s, 0) << side;
+    EXPECT_EQ(fence.steer(1100, 0, heading(kFortyFive + 1)).speed_mm_per_s, 0) << side;
+    EXPECT_EQ(fence.steer(-1100, 0, heading(kFortyFive - 1)).speed_mm_per_s, -100) << side;
   }
 }
 
 TEST(SiteFence, LeadsHomeFromEverywhere) {
   for (int degrees = 0; degrees < 360; degrees += 15) {
     for (int heading_degrees = 0; heading_degrees < 360; heading_degrees += 45) {
-      SiteFence fence(1000, 100);
+      SiteFence fence(site(1000));
       double x = 1100.0 * std::cos(degrees * std::numbers::pi / 180.0);
       double y = 1100.0 * std::sin(degrees * std::numbers::pi / 180.0);
       double heading = heading_degrees * 65536.0 / 360.0;
@@ -114,8 +125,8 @@ TEST(SiteFence, LeadsHomeFromEverywhere) {
         ASSERT_LT(std::hypot(x, y), 1150.0);
         ++ticks;
       }
-      // 0.35 m at 0.1 m/s and half a turn at up to 60 degrees/s.
-      ASSERT_LT(ticks, 850) << degrees << " " << heading_degrees;
+      // 0.35 m at 0.1 m/s and a quarter turn at up to 60 degrees/s.
+      ASSERT_LT(ticks, 600) << degrees << " " << heading_degrees;
     }
   }
 }
