@@ -15,7 +15,8 @@ void add_campaign_options(CLI::App& command, SlipCampaignArguments& arguments) {
   add_number(command, "--free", campaign.free, "Number of drives without a trap, slopes to 8 deg",
              kDrives);
   add_number(command, "--ordinary", campaign.ordinary,
-             "Number of drives of leveling algorithms, slopes to 20 deg", kDrives);
+             "Number of drives of leveling algorithms, slopes to 20 deg, or in beds with walls",
+             kDrives);
   add_number(command, "--duration", campaign.duration_s, "Duration of a drive without a trap [s]",
              {5.0, 36000.0});
   add_number(command, "--threads", campaign.threads, "Number of drives run in parallel", {1, 256});
