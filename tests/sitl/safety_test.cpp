@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "host_sim/core/display_units.h"
 #include "tests/sitl/test_drive.h"
 
 namespace screed::testing {
@@ -102,6 +104,36 @@ TEST(Safety, HalfOfAllPacketsLostIsNoReasonToDriveOn) {
       ASSERT_TRUE(drive.robot.supervisor().link_alive());
     }
   }
+}
+
+// Steel beside the site: the heading follows the gyroscope, and the robot drives on.
+TEST(Safety, AMagneticDisturbanceIsFlaggedAndTheHeadingHolds) {
+  TestDrive drive(HeightField::flat(8.0, 0.1), drive_options(0.1, 0.0));
+  ASSERT_TRUE(drive.start());
+  drive.run(5.0);
+  ASSERT_FALSE(drive.robot.attitude().mag_disturbed());
+  const auto heading_error_deg = [&] {
+    const double believed = drive.robot.attitude().heading() * std::numbers::pi / 32768.0;
+    return kDegPerRad *
+           std::abs(std::remainder(believed - drive.attitude().heading, 2.0 * std::numbers::pi));
+  };
+  const double before = heading_error_deg();
+
+  drive.tamper = [](SensorSample& sample) {  // half of the site's field, across the robot
+    sample.mag[1] = static_cast<int16_t>(sample.mag[1] + 1600);
+  };
+  for (int second = 0; second < 12; ++second) {
+    drive.run(1.0);
+    EXPECT_TRUE(drive.robot.attitude().mag_disturbed()) << second;
+    EXPECT_NEAR(heading_error_deg(), before, 1.0) << second;
+  }
+  EXPECT_TRUE(drive.robot.supervisor().running());
+  EXPECT_GT(drive.forward_speed(), 0.08);
+
+  drive.tamper = nullptr;
+  drive.run(1.0);
+  EXPECT_FALSE(drive.robot.attitude().mag_disturbed());
+  EXPECT_NEAR(heading_error_deg(), before, 1.0);
 }
 
 }  // namespace

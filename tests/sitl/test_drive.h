@@ -35,7 +35,9 @@ class TestDrive {
 
   void tick() {
     world.advance();
-    robot.tick(world.sample(), output);
+    SensorSample sample = world.sample();
+    if (tamper) tamper(sample);
+    robot.tick(sample, output);
     world.apply(output);
   }
   void run(double seconds) {
@@ -71,6 +73,7 @@ class TestDrive {
   World world;
   Robot robot;
   RobotOutput output{};
+  std::function<void(SensorSample&)> tamper;  ///< a fault of the sensors, each tick
 };
 
 inline WorldOptions drive_options(double speed_m_per_s, double yaw_rate_deg_per_s) {
