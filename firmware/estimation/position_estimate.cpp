@@ -8,6 +8,9 @@
 namespace screed {
 namespace {
 
+/// Variance of (256 mm)^2.
+constexpr uint32_t kDoubt = 1UL << 28;
+
 /// length * factor (Q15), rounded; |length| below 2^30.
 SCREED_OUT_OF_LINE int32_t times_q15(int32_t length, int16_t factor) {
   return scale_q16(length * 2, factor);
@@ -51,8 +54,11 @@ bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uin
   const uint16_t half = static_cast<uint16_t>(variance_[axis] >> 17);
   const auto sum =
       static_cast<uint16_t>(half + static_cast<uint16_t>(mul_i16(sigma_mm, sigma_mm) >> 5));
-  if (gate != 0 && static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, gate))
+  if (gate != 0 &&
+      static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, gate)) {
+    variance_[axis] += kDoubt;  // the next tick's growth limits it
     return false;
+  }
   // Below 1: sigma_mm is at least 8.
   const uint16_t gain_q15 = quotient_u16(static_cast<uint32_t>(half) << 15, sum);
   place_[axis] += asr(mul_i16(innovation, static_cast<int16_t>(gain_q15)), 2);

@@ -40,8 +40,9 @@ class PositionEstimate : private PositionState {
   /// pitch now; share: of the tracks' travel that moves the robot, 255: all of it.
   void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch, uint8_t share);
 
-  /// Measured along an axis: z_mm, +-sigma_mm (8..1000). False, and nothing changed, where that is
-  /// further off than the root of `gate` standard deviations; 0: however far off it is.
+  /// Measured along an axis: z_mm, +-sigma_mm (8..1000). False where that is further off than the
+  /// root of `gate` standard deviations; 0: however far off it is. Then the position stays, and its
+  /// variance grows by (256 mm)^2, since one of the two is wrong.
   SCREED_OUT_OF_LINE bool measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uint8_t gate);
 
   /// Position and deviation now.

@@ -6,7 +6,7 @@
 namespace screed {
 
 bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel,
-                bool sought, PositionEstimate& position) {
+                PositionEstimate& position) {
   // Quarters of a turn, their middles east, north, west and south.
   const auto quarter = static_cast<uint8_t>(static_cast<uint16_t>(travel + 8192) >> 14);
   const uint8_t axis = quarter & 1U;
@@ -14,7 +14,7 @@ bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle
   if (half == 0) return false;
   auto place = static_cast<int16_t>(half - static_cast<int16_t>(board.hull_reach_mm));
   if (quarter >= 2) place = static_cast<int16_t>(-place);
-  return position.measure(axis, place, kWallSigma_mm, sought ? 20 : 9);
+  return position.measure(axis, place, kWallSigma_mm, 9);
 }
 
 }  // namespace screed

@@ -15,9 +15,9 @@ constexpr uint8_t kWallSigma_mm = 40;
 
 /// The robot has driven against something; `travel`: where to, counter-clockwise from east. It is
 /// the wall that it travels to most directly. False where there is none (site_x, site_y), or it
-/// cannot be there: more than 3 standard deviations off, of a wall that was sought 4.5. Then
-/// nothing is changed.
+/// cannot be there: more than 3 standard deviations off. Then the place is not changed, but its
+/// variance grows: where blow follows blow the next is believed from farther off.
 bool touch_wall(const BoardConstants& board, const Parameters& parameters, Angle travel,
-                bool sought, PositionEstimate& position);
+                PositionEstimate& position);
 
 }  // namespace screed

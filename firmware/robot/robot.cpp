@@ -330,8 +330,7 @@ void Robot::feel_walls() {
     const bool backwards = status_.motion.speed_mm_per_s < 0;
     const Angle travel =
         backwards ? wrap_angle(status_.angles.heading + 32768) : status_.angles.heading;
-    const bool sought = leveling_.state() == LevelingState::kSeekWall;
-    if (touch_wall(board_, parameters_, travel, sought, position_)) {
+    if (touch_wall(board_, parameters_, travel, position_)) {
       event(message::EventCode::kWall, travel);
       leveling_.met_wall();
     }
