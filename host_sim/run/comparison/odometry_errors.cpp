@@ -166,6 +166,7 @@ OdometrySummary summarize(const std::vector<OdometryLeg>& legs) {
   const double half_width = 0.5 * kNormal95 / std::sqrt(count);
   for (std::size_t way = 0; way < kReckonings; ++way) {
     std::vector<double> errors;
+    errors.reserve(legs.size());
     for (const OdometryLeg& leg : legs) errors.push_back(leg.error_m[way]);
     summary.errors[way] = {quantile(errors, 0.5), quantile(errors, std::max(0.0, 0.5 - half_width)),
                            quantile(errors, std::min(1.0, 0.5 + half_width)),
