@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "firmware/estimation/position_estimate.h"
 #include "firmware/math/units.h"
 #include "firmware/robot/robot.h"
-#include "host_sim/core/display_units.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/session_reader.h"
@@ -18,8 +19,40 @@ namespace screed {
 namespace {
 
 constexpr double kSigmaUnit_m = 0.004;  // of Place::sigma, which is cut off
-constexpr double kNormal95 = 1.959964;
-constexpr double kAnglePerRad = 32768.0 / 3.14159265358979323846;
+constexpr double kAnglePerRad = 32768.0 / std::numbers::pi;
+
+/// What the tracks did in a tick, as the firmware takes it.
+struct Counts {
+  std::int16_t left;
+  std::int16_t right;
+};
+
+class CountDeltas {
+ public:
+  Counts next(const SensorSample& sample) {
+    return {next(sample.encoder_left, left_), next(sample.encoder_right, right_)};
+  }
+
+ private:
+  // Modulo 2^16.
+  static std::int16_t next(std::uint16_t now, std::uint16_t& last) {
+    const auto delta = static_cast<std::int16_t>(static_cast<std::uint16_t>(now - last));
+    last = now;
+    return limit_i16(delta, kMaxTrackCounts);
+  }
+
+  std::uint16_t left_ = 0;
+  std::uint16_t right_ = 0;
+};
+
+/// What the firmware senses in a tick.
+struct Sensed {
+  Counts counts;
+  Angle heading;  ///< in the site
+  Angle pitch;
+  double yaw_rate;  ///< angle units a second
+  std::uint8_t travel_share;
+};
 
 /// One way to reckon, over the leg so far.
 class Reckoner {
@@ -27,21 +60,17 @@ class Reckoner {
   Reckoner(const SessionInfo& info, Reckoning way)
       : way_(way), estimate_(info.board.count_um_q4, info.parameters.position_noise) {}
 
-  void begin(Angle true_heading) {
+  void begin(double true_heading) {
     estimate_.reset();
-    gyro_heading_ = true_heading * 256.0;
+    gyro_heading_ = true_heading;
   }
 
-  void tick(const Robot& robot, std::int16_t left, std::int16_t right, Angle site_heading) {
-    const AttitudeAngles angles = robot.attitude().angles();
-    gyro_heading_ += robot.attitude().yaw_rate() * 256.0 / kTickRate_hz;
+  void tick(const Sensed& sensed) {
+    gyro_heading_ += sensed.yaw_rate / kTickRate_hz;
     const Angle heading =
-        way_ == Reckoning::kCountsAndGyro
-            ? wrap_angle(static_cast<std::int32_t>(std::lround(gyro_heading_ / 256.0)))
-            : wrap_angle(angles.heading - site_heading);
-    const std::uint8_t share =
-        way_ == Reckoning::kFirmware ? robot.slip_watch().travel_share() : UINT8_MAX;
-    estimate_.update(left, right, heading, angles.pitch, share);
+        way_ == Reckoning::kCountsAndGyro ? rounded(gyro_heading_) : sensed.heading;
+    const std::uint8_t share = way_ == Reckoning::kFirmware ? sensed.travel_share : UINT8_MAX;
+    estimate_.update(sensed.counts.left, sensed.counts.right, heading, sensed.pitch, share);
   }
 
   Place place() const {
@@ -51,17 +80,68 @@ class Reckoner {
   }
 
  private:
+  static Angle rounded(double angle) {
+    return wrap_angle(static_cast<std::int32_t>(std::lround(angle)));
+  }
+
   Reckoning way_;
   PositionEstimate estimate_;
-  double gyro_heading_ = 0.0;  ///< 2^-8 angle units
+  double gyro_heading_ = 0.0;  ///< angle units, of several turns
 };
 
-/// Quantile of the chi-squared distribution over its degrees of freedom (Wilson and Hilferty,
-/// 1931).
-double chi_squared_over_mean(double degrees, double z) {
-  const double part = 2.0 / (9.0 * degrees);
-  return std::pow(1.0 - part + z * std::sqrt(part), 3.0);
-}
+/// The leg that is being driven.
+class CurrentLeg {
+ public:
+  explicit CurrentLeg(const SessionInfo& info)
+      : m_per_count_(info.board.count_um_q4 / 16.0 * 1e-6) {
+    for (std::size_t way = 0; way < kReckonings; ++way) {
+      reckoners_.emplace_back(info, static_cast<Reckoning>(way));
+    }
+  }
+
+  void begin(const SimFrame& frame) {
+    leg_ = {.start_s = frame.time};
+    x_m_ = y_m_ = path_m_ = 0.0;
+    for (Reckoner& reckoner : reckoners_) reckoner.begin(frame.yaw * kAnglePerRad);
+  }
+
+  void tick(const Sensed& sensed, const SimFrame& frame) {
+    for (Reckoner& reckoner : reckoners_) reckoner.tick(sensed);
+    leg_.duration_s = frame.time - leg_.start_s;
+    leg_.travelled_m +=
+        0.5 * m_per_count_ * (std::abs(sensed.counts.left) + std::abs(sensed.counts.right));
+    x_m_ += frame.delta_x;
+    y_m_ += frame.delta_y;
+    path_m_ += std::hypot(frame.delta_x, frame.delta_y);
+  }
+
+  /// The true path so far.
+  double path_m() const { return path_m_; }
+
+  OdometryLeg ended() const {
+    OdometryLeg leg = leg_;
+    for (std::size_t way = 0; way < kReckonings; ++way) {
+      const Place place = reckoners_[way].place();
+      const double error_x = place.mm[kX] * 1e-3 - x_m_;
+      const double error_y = place.mm[kY] * 1e-3 - y_m_;
+      leg.error_m[way] = std::hypot(error_x, error_y);
+      if (static_cast<Reckoning>(way) != Reckoning::kFirmware) continue;
+      const double sigma_x = (place.sigma[kX] + 0.5) * kSigmaUnit_m;
+      const double sigma_y = (place.sigma[kY] + 0.5) * kSigmaUnit_m;
+      leg.normalized_squared =
+          error_x * error_x / (sigma_x * sigma_x) + error_y * error_y / (sigma_y * sigma_y);
+    }
+    return leg;
+  }
+
+ private:
+  double m_per_count_;
+  std::vector<Reckoner> reckoners_;
+  OdometryLeg leg_;
+  double x_m_ = 0.0;  ///< since the leg's start, true
+  double y_m_ = 0.0;
+  double path_m_ = 0.0;
+};
 
 }  // namespace
 
@@ -83,23 +163,13 @@ std::vector<OdometryLeg> odometry_legs(const std::filesystem::path& session_file
   const SessionReader session(session_file);
   check_replayable(session, session_file);
   const SessionInfo& info = session.info();
+  const Angle site_heading = angle_from_centidegrees(info.parameters.site_heading);
   const auto robot = std::make_unique<Robot>(info.board, info.parameters, info.credentials);
   RobotOutput output{};
-  std::vector<Reckoner> reckoners;
-  for (std::size_t way = 0; way < kReckonings; ++way) {
-    reckoners.emplace_back(info, static_cast<Reckoning>(way));
-  }
-  const Angle site_heading = angle_from_centidegrees(info.parameters.site_heading);
-
-  std::vector<OdometryLeg> legs;
-  OdometryLeg leg;
+  CountDeltas deltas;
+  CurrentLeg leg(info);
   bool begun = false;
-  double true_x = 0.0;  // since the leg's start
-  double true_y = 0.0;
-  double path_m = 0.0;
-  std::uint16_t last_left = 0;
-  std::uint16_t last_right = 0;
-  const double m_per_count = info.board.count_um_q4 / 16.0 * 1e-6;
+  std::vector<OdometryLeg> legs;
   std::vector<SensorSample> samples;
   std::vector<SimFrame> frames;
   for (std::uint64_t first = 0; first < session.frames(); first += frames.size()) {
@@ -110,47 +180,23 @@ std::vector<OdometryLeg> odometry_legs(const std::filesystem::path& session_file
     session.read(first, std::span(samples));
     session.read(first, std::span(frames));
     for (std::uint64_t i = 0; i < count; ++i) {
-      const SimFrame& frame = frames[i];
       robot->tick(samples[i], output);
-      // Modulo 2^16, as the firmware takes them.
-      const auto left = static_cast<std::int16_t>(
-          static_cast<std::uint16_t>(samples[i].encoder_left - last_left));
-      const auto right = static_cast<std::int16_t>(
-          static_cast<std::uint16_t>(samples[i].encoder_right - last_right));
-      last_left = samples[i].encoder_left;
-      last_right = samples[i].encoder_right;
+      const Counts counts = deltas.next(samples[i]);
       // As recorded: a firmware that levels otherwise still senses the same.
-      const auto state = static_cast<RobotState>(frame.state);
+      const auto state = static_cast<RobotState>(frames[i].state);
       if (state == RobotState::kFault) return legs;
       if (!begun) {
-        if (state != RobotState::kRunning) continue;
-        begun = true;
-        leg = {.start_s = frame.time};
-        true_x = true_y = path_m = 0.0;
-        const Angle heading =
-            wrap_angle(static_cast<std::int32_t>(std::lround(frame.yaw * kAnglePerRad)));
-        for (Reckoner& reckoner : reckoners) reckoner.begin(heading);
+        begun = state == RobotState::kRunning;
+        if (begun) leg.begin(frames[i]);
         continue;
       }
-      for (Reckoner& reckoner : reckoners) reckoner.tick(*robot, left, right, site_heading);
-      leg.travelled_m += 0.5 * m_per_count * (std::abs(left) + std::abs(right));
-      true_x += frame.delta_x;
-      true_y += frame.delta_y;
-      path_m += std::hypot(frame.delta_x, frame.delta_y);
-      if (path_m < length_m) continue;
-      leg.duration_s = frame.time - leg.start_s;
-      for (std::size_t way = 0; way < kReckonings; ++way) {
-        const Place place = reckoners[way].place();
-        const double error_x = place.mm[kX] * 1e-3 - true_x;
-        const double error_y = place.mm[kY] * 1e-3 - true_y;
-        leg.error_m[way] = std::hypot(error_x, error_y);
-        if (static_cast<Reckoning>(way) != Reckoning::kFirmware) continue;
-        const double sigma_x = (place.sigma[kX] + 0.5) * kSigmaUnit_m;
-        const double sigma_y = (place.sigma[kY] + 0.5) * kSigmaUnit_m;
-        leg.normalized_squared =
-            error_x * error_x / (sigma_x * sigma_x) + error_y * error_y / (sigma_y * sigma_y);
-      }
-      legs.push_back(leg);
+      const AttitudeAngles angles = robot->attitude().angles();
+      leg.tick(
+          {counts, wrap_angle(angles.heading - site_heading), angles.pitch,
+           static_cast<double>(robot->attitude().yaw_rate()), robot->slip_watch().travel_share()},
+          frames[i]);
+      if (leg.path_m() < length_m) continue;
+      legs.push_back(leg.ended());
       begun = false;
     }
   }
@@ -162,19 +208,14 @@ OdometrySummary summarize(const std::vector<OdometryLeg>& legs) {
   OdometrySummary summary;
   summary.legs = legs.size();
   const auto count = static_cast<double>(legs.size());
-  // The median's rank, binomial, as shares of the sorted sample.
-  const double half_width = 0.5 * kNormal95 / std::sqrt(count);
   for (std::size_t way = 0; way < kReckonings; ++way) {
     std::vector<double> errors;
     errors.reserve(legs.size());
     for (const OdometryLeg& leg : legs) errors.push_back(leg.error_m[way]);
-    summary.errors[way] = {quantile(errors, 0.5), quantile(errors, std::max(0.0, 0.5 - half_width)),
-                           quantile(errors, std::min(1.0, 0.5 + half_width)),
-                           quantile(errors, 0.9)};
+    summary.errors[way] = {quantile(errors, 0.5), median_interval(errors), quantile(errors, 0.9)};
   }
   for (const OdometryLeg& leg : legs) summary.consistency += leg.normalized_squared / (2.0 * count);
-  summary.consistency_low = chi_squared_over_mean(2.0 * count, -kNormal95);
-  summary.consistency_high = chi_squared_over_mean(2.0 * count, kNormal95);
+  summary.consistent = mean_square_interval(2.0 * count);
   return summary;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/intervals.h"
 #include "host_sim/core/task_progress.h"
 
 namespace screed {
@@ -39,20 +40,18 @@ struct OdometryLeg {
 std::vector<OdometryLeg> odometry_legs(const std::filesystem::path& session_file, double length_m,
                                        const TaskProgress& progress = {});
 
-/// Of the legs of one or more runs, errors in shares of the length.
+/// Of the legs of one or more runs, all of one length.
 struct OdometrySummary {
   struct Errors {
     double median_m = 0.0;
-    double median_low_m = 0.0;  ///< 95 %, by order statistics
-    double median_high_m = 0.0;
+    Interval median_95_m{};
     double ninety_percent_m = 0.0;
   };
   std::size_t legs = 0;
   std::array<Errors, kReckonings> errors{};
   /// Mean of normalized_squared over 2: 1 of a consistent estimate.
   double consistency = 0.0;
-  double consistency_low = 0.0;  ///< 95 % of consistent ones lie between, if legs are independent
-  double consistency_high = 0.0;
+  Interval consistent{};  ///< 95 % of consistent ones lie there, if legs are independent
 };
 /// Throws std::invalid_argument without legs.
 OdometrySummary summarize(const std::vector<OdometryLeg>& legs);

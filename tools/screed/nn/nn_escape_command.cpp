@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "host_sim/core/intervals.h"
 #include "host_sim/core/quantile.h"
 #include "nn/slip/escape_run.h"
-#include "nn/slip/intervals.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/task_bar.h"
@@ -84,7 +84,7 @@ Figures figures_of(const std::vector<nn::EscapeResult>& results) {
 }
 
 std::string share_text(int part, int whole) {
-  const nn::Interval interval = nn::wilson(part, whole);
+  const Interval interval = wilson(part, whole);
   char text[64];
   std::snprintf(text, sizeof text, "%3d of %3d  %3.0f-%3.0f %%", part, whole, 100.0 * interval.low,
                 100.0 * interval.high);
@@ -130,7 +130,7 @@ void print_manoeuvres(const std::vector<nn::EscapeResult>& results) {
 }
 
 nlohmann::ordered_json json_of(const Counts& c) {
-  const nn::Interval interval = nn::wilson(c.escaped, c.recoverable);
+  const Interval interval = wilson(c.escaped, c.recoverable);
   return {{"stuck", c.stuck},
           {"out_without_escape", c.alone},
           {"recoverable", c.recoverable},

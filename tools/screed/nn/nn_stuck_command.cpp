@@ -4,8 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/core/intervals.h"
 #include "host_sim/core/quantile.h"
-#include "nn/slip/intervals.h"
 #include "nn/slip/slip_campaign.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/nn/slip_options.h"
@@ -13,7 +13,6 @@
 namespace screed {
 namespace {
 
-using nn::Interval;
 using nn::ShareError;
 using nn::SlipFigures;
 using nn::StuckCounts;
@@ -36,8 +35,8 @@ double an_hour(double alarms, const StuckCounts& counts) {
 }
 
 void print_row(const std::string& name, const StuckCounts& counts) {
-  const Interval detected = nn::wilson(counts.detected, counts.dug_in);
-  const Interval alarms = nn::poisson(counts.false_alarms);
+  const Interval detected = wilson(counts.detected, counts.dug_in);
+  const Interval alarms = poisson(counts.false_alarms);
   std::printf("%-12s", name.c_str());
   if (counts.trapped == 0) {
     std::printf(" %46s", "-");
@@ -82,8 +81,8 @@ void print(const SlipFigures& figures) {
 }
 
 nlohmann::ordered_json json_of(const StuckCounts& counts) {
-  const Interval detected = nn::wilson(counts.detected, counts.dug_in);
-  const Interval alarms = nn::poisson(counts.false_alarms);
+  const Interval detected = wilson(counts.detected, counts.dug_in);
+  const Interval alarms = poisson(counts.false_alarms);
   return {{"trapped", counts.trapped},      {"dug_in", counts.dug_in},
           {"detected", counts.detected},    {"detected_low", detected.low},
           {"detected_high", detected.high}, {"early_alarms", counts.early_alarms},

@@ -32,11 +32,11 @@ Json json_of(const OdometrySummary& summary, double length_m) {
     const OdometrySummary::Errors& errors = summary.errors[way];
     json["errors"][name_of(static_cast<Reckoning>(way))] = {
         {"median_m", errors.median_m},
-        {"median_95_m", {errors.median_low_m, errors.median_high_m}},
+        {"median_95_m", {errors.median_95_m.low, errors.median_95_m.high}},
         {"ninety_percent_m", errors.ninety_percent_m}};
   }
   json["consistency"] = summary.consistency;
-  json["consistent_95"] = {summary.consistency_low, summary.consistency_high};
+  json["consistent_95"] = {summary.consistent.low, summary.consistent.high};
   return json;
 }
 
@@ -47,13 +47,13 @@ void print_text(const OdometrySummary& summary, double length_m) {
   for (std::size_t way = 0; way < kReckonings; ++way) {
     const OdometrySummary::Errors& errors = summary.errors[way];
     std::printf("%-30s %8.2f %7.2f to %5.2f %8.2f\n", name_of(static_cast<Reckoning>(way)),
-                errors.median_m, errors.median_low_m, errors.median_high_m,
+                errors.median_m, errors.median_95_m.low, errors.median_95_m.high,
                 errors.ninety_percent_m);
   }
   std::printf(
       "squared error over the variance that the firmware states: %.2f; consistent from %.2f to "
       "%.2f\n",
-      summary.consistency, summary.consistency_low, summary.consistency_high);
+      summary.consistency, summary.consistent.low, summary.consistent.high);
 }
 
 int run_odometry(const OdometryArguments& arguments) {

@@ -26,8 +26,8 @@ TEST(OdometryErrors, AreSummarizedByQuantiles) {
   EXPECT_NEAR(summary.errors[0].median_m, 0.50, 1e-12);
   EXPECT_NEAR(summary.errors[1].ninety_percent_m, 1.80, 1e-12);
   // Binomial, 101 values: the 41st and the 61st.
-  EXPECT_NEAR(summary.errors[0].median_low_m, 0.40, 0.01);
-  EXPECT_NEAR(summary.errors[2].median_high_m, 1.80, 0.03);
+  EXPECT_NEAR(summary.errors[0].median_95_m.low, 0.40, 0.01);
+  EXPECT_NEAR(summary.errors[2].median_95_m.high, 1.80, 0.03);
 }
 
 TEST(OdometryErrors, ConsistencyIsTheMeanSquareOverTheVariance) {
@@ -38,10 +38,10 @@ TEST(OdometryErrors, ConsistencyIsTheMeanSquareOverTheVariance) {
 // Chi squared, 2.5 and 97.5 %: 9.591 and 34.170 of 20 degrees of freedom, 74.222 and 129.561 of
 // 100.
 TEST(OdometryErrors, ConsistentOnesLieBetweenTheQuantilesOfChiSquared) {
-  EXPECT_NEAR(summarize(legs_of(10)).consistency_low, 9.591 / 20.0, 0.002);
-  EXPECT_NEAR(summarize(legs_of(10)).consistency_high, 34.170 / 20.0, 0.002);
-  EXPECT_NEAR(summarize(legs_of(50)).consistency_low, 0.74222, 0.0005);
-  EXPECT_NEAR(summarize(legs_of(50)).consistency_high, 1.29561, 0.0005);
+  EXPECT_NEAR(summarize(legs_of(10)).consistent.low, 9.591 / 20.0, 0.002);
+  EXPECT_NEAR(summarize(legs_of(10)).consistent.high, 34.170 / 20.0, 0.002);
+  EXPECT_NEAR(summarize(legs_of(50)).consistent.low, 0.74222, 0.0005);
+  EXPECT_NEAR(summarize(legs_of(50)).consistent.high, 1.29561, 0.0005);
 }
 
 TEST(OdometryErrors, OfNoLegThereIsNoSummary) {

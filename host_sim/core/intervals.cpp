@@ -1,10 +1,12 @@
 // Confidence intervals.
-#include "nn/slip/intervals.h"
+#include "host_sim/core/intervals.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace screed::nn {
+#include "host_sim/core/quantile.h"
+
+namespace screed {
 namespace {
 
 constexpr double kNormal95 = 1.959964;
@@ -29,4 +31,15 @@ Interval poisson(int count) {
   return {end(count, -kNormal95), end(count + 1.0, kNormal95)};
 }
 
-}  // namespace screed::nn
+Interval median_interval(const std::vector<double>& values) {
+  const double half = 0.5 * kNormal95 / std::sqrt(static_cast<double>(values.size()));
+  return {quantile(values, std::max(0.0, 0.5 - half)), quantile(values, std::min(1.0, 0.5 + half))};
+}
+
+Interval mean_square_interval(double degrees) {
+  const double part = 2.0 / (9.0 * degrees);
+  const auto end = [part](double z) { return std::pow(1.0 - part + z * std::sqrt(part), 3.0); };
+  return {end(-kNormal95), end(kNormal95)};
+}
+
+}  // namespace screed

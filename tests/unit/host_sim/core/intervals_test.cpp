@@ -1,9 +1,9 @@
 // Confidence intervals against published tables and another program.
-#include "nn/slip/intervals.h"
+#include "host_sim/core/intervals.h"
 
 #include <gtest/gtest.h>
 
-namespace screed::nn {
+namespace screed {
 namespace {
 
 TEST(Intervals, WilsonsIsThatOfTheTables) {
@@ -42,4 +42,4 @@ TEST(Intervals, WilsonsAgreesWithAnotherProgram) {
 }
 
 }  // namespace
-}  // namespace screed::nn
+}  // namespace screed
