@@ -16,7 +16,7 @@ SCREED_OUT_OF_LINE int32_t times_q15(int32_t length, int16_t factor) {
   return scale_q16(length * 2, factor);
 }
 
-/// Up to 2^31: neither addend is larger.
+/// At most 2^31 - 1. The sum before does not wrap: what is added is below 2^29.
 uint32_t limited(uint32_t variance) {
   return static_cast<int32_t>(variance) < 0 ? static_cast<uint32_t>(INT32_MAX) : variance;
 }

@@ -81,7 +81,10 @@ bool Escape::tick(bool stuck, bool backwards) {
     ++attempt_;
   } else {
     if (ticks_left_ != 0) return true;
-    if (--steps_left_ == 0) {
+    --steps_left_;
+    // Loose before the way's end: rocked on, it would roll downhill and out of an open site.
+    if (!stuck && way_ != 0) steps_left_ = 0;
+    if (steps_left_ == 0) {
       if (way_ == kStand) {
         ticks_left_ = kFreeTicks;
         return false;

@@ -5,9 +5,9 @@ namespace screed {
 namespace {
 
 constexpr uint16_t kHalfTurn = 32768;
-constexpr uint16_t kSideways = 16384;
 constexpr uint16_t kAhead = 8192;  // 45 degrees either side
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(60);
+
 uint32_t squares(int16_t x, int16_t y) {
   return static_cast<uint32_t>(mul_i16(x, x)) + static_cast<uint32_t>(mul_i16(y, y));
 }
@@ -29,7 +29,7 @@ MotionCommand SiteFence::steer(int16_t east_mm, int16_t north_mm, Angle heading)
   // A turn is 2^16: sums wrap.
   auto error = static_cast<uint16_t>(angle_difference(atan2_angle(north_mm, east_mm), heading));
   int16_t speed = parameters_.walk_speed_max;
-  if ((static_cast<uint16_t>(error + kSideways) & kHalfTurn) != 0) {  // behind: backwards
+  if ((static_cast<uint16_t>(error + kQuarterTurn) & kHalfTurn) != 0) {  // behind: backwards
     error ^= kHalfTurn;
     speed = static_cast<int16_t>(-speed);
   }

@@ -7,25 +7,50 @@
 namespace screed {
 namespace {
 
-const int16_t kRanges[][2] SCREED_PROGRAM_MEMORY = {
-#define SCREED_RANGE(name, unit, min, max, value, meaning) {min, max},
+// Flash is scarce and the least value small, or the greatest one with the other sign: a byte says
+// which.
+constexpr uint8_t kSymmetric = UINT8_MAX;
+constexpr uint8_t packed_min(int16_t min) {
+  return min < 0 ? kSymmetric : static_cast<uint8_t>(min);
+}
+#define SCREED_FITS(name, unit, min, max, value, meaning) \
+  static_assert((min) == -(max) || ((min) >= 0 && (min) < kSymmetric), "least value of " #name);
+SCREED_PARAMETERS(SCREED_FITS)
+#undef SCREED_FITS
+
+struct Range {
+  uint8_t min;
+  int16_t max;
+};
+const Range kRanges[] SCREED_PROGRAM_MEMORY = {
+#define SCREED_RANGE(name, unit, min, max, value, meaning) {packed_min(min), max},
     SCREED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
 };
 constexpr uint8_t kCount = sizeof(kRanges) / sizeof(kRanges[0]);
 static_assert(sizeof(Parameters) == kCount * sizeof(int16_t), "parameters are numbers alone");
 
+// Algorithms below the greatest number that this build leaves out; of a single one the number.
+constexpr uint16_t kGaps = kAllAlgorithms & ~kAlgorithmsInBuild & ((1U << kMaxAlgorithm) - 1U);
+constexpr bool kOneGap = bits_of(kGaps) == 1;
+constexpr int16_t kGap = bits_of(static_cast<uint16_t>(kGaps - 1U));
+
 }  // namespace
 
 bool Parameters::valid() const {
   const auto* value = reinterpret_cast<const int16_t*>(this);
-  for (uint8_t i = 0; i < kCount; ++i, ++value) {
-    if (*value < read_program_i16(&kRanges[i][0]) || *value > read_program_i16(&kRanges[i][1]))
-      return false;
+  for (const Range* range = kRanges; range != kRanges + kCount; ++range, ++value) {
+    int16_t min = read_program_u8(&range->min);
+    const int16_t max = read_program_i16(&range->max);
+    if (min == kSymmetric) min = static_cast<int16_t>(-max);
+    if (*value < min || *value > max) return false;
   }
-  // Their numbers follow each other, or the range has let one pass that there is not.
-  constexpr bool kGapless = (kAlgorithmsInBuild & (kAlgorithmsInBuild + 1U)) == 0;
-  if (!kGapless && !algorithm_in_build(algorithm)) return false;
+  // The algorithms' numbers follow each other, or the range has let one pass that there is not.
+  if (kOneGap) {
+    if (algorithm == kGap) return false;
+  } else if (kGaps != 0 && !algorithm_in_build(algorithm)) {
+    return false;
+  }
   return walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;
 }
 

@@ -60,7 +60,7 @@
   X(accel_limit,            "mm/s^2",     50,  5000,    600, "greatest change of a track's commanded speed") \
   X(yaw_kp,                 "1/256",       0,  1024,      0, "yaw rate: proportional gain") \
   X(yaw_ki,                 "1/256 per s", 0,  4096,    768, "yaw: gain on the heading lost, the rate's integral") \
-  X(tilt_limit,             "0.01 deg", 1000,  9000,   5000, "inclination at which the robot stops and latches a fault") \
+  X(tilt_limit,             "0.01 deg",  100,  9000,   5000, "inclination at which the robot stops and latches a fault") \
   X(battery_low,            "mV",          0, 12000,   6000, "stop below this voltage; 0: never") \
   X(stall_time,             "ms",         50,  5000,    150, "a track at high duty that does not move for this long is stalled") \
   X(gyro_offset_x,          "0.07 deg/s", -1000,  1000,      0, "what the gyro says at rest (screed calibrate)") \

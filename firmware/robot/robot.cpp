@@ -38,6 +38,9 @@ uint8_t size_of(uint16_t id) {
   return message::GroundHeartbeat::kSize;
 }
 
+// Piles before a wall are no steeper for long: a robot that drives at one sinks in.
+constexpr Angle kWallPitch = angle_from_centidegrees(2000);
+
 constexpr uint8_t kImuCounts = 9;
 static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * sizeof(int16_t) &&
                   offsetof(ImuSample, mag) == 6 * sizeof(int16_t) &&
@@ -52,7 +55,7 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
     : RobotMemory(),
       board_(board),
       parameters_(parameters),
-      supervisor_(parameters, parameters_intact),
+      supervisor_(parameters_intact),
       leveling_(parameters),
       drive_(board, parameters),
       slip_watch_(board.tread_mm),
@@ -313,7 +316,7 @@ void Robot::select_motion() {
   input.place = status_.place;
   input.drive = drive_command_;
   input.roll = status_.angles.roll;
-  input.stuck = slip_watch_.stuck();
+  input.stuck = stuck_;
   input.backwards = status_.motion.speed_mm_per_s < 0;
   status_.motion = leveling_.tick(input);
 }
@@ -323,10 +326,17 @@ void Robot::watch_slip(const SensorSample& sample) {
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
 
-// Stuck after a collision it stands at a wall.
+// Stuck after a collision it stands at a wall. One that seeks a wall may climb it instead, the
+// tracks gripping it, until it tips over.
 void Robot::feel_walls() {
-  const bool stuck = slip_watch_.stuck();
-  if (stuck && !was_stuck_ && slip_watch_.collided()) {
+  bool stuck = slip_watch_.stuck();
+  bool at_wall = slip_watch_.collided();
+  if (leveling_.state() == LevelingState::kSeekWall &&
+      static_cast<uint16_t>(status_.angles.pitch + kWallPitch) > 2U * kWallPitch) {
+    stuck = true;
+    at_wall = true;
+  }
+  if (stuck && !stuck_ && at_wall) {
     const bool backwards = status_.motion.speed_mm_per_s < 0;
     const Angle travel =
         backwards ? wrap_angle(status_.angles.heading + 32768) : status_.angles.heading;
@@ -335,7 +345,7 @@ void Robot::feel_walls() {
       leveling_.met_wall();
     }
   }
-  was_stuck_ = stuck;
+  stuck_ = stuck;
 }
 
 void Robot::announce_state() {

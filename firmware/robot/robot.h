@@ -41,7 +41,7 @@ struct RobotMemory {
   bool command_pending_;
   bool started_;  ///< the first tick is over
   bool located_;  ///< a position fix has told where the robot is
-  bool was_stuck_;
+  bool stuck_;
   uint8_t command_[kCommandSize];  ///< waits for its tick
 };
 

@@ -97,8 +97,8 @@ static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
                   Fault::kGyroChip == ChipBit::kGyroChip << 8,
               "faults of chips are their bits, shifted");
 
-Supervisor::Supervisor(const Parameters& parameters, bool parameters_intact)
-    : SupervisorMemory(), parameters_good_(parameters_intact && parameters.valid()) {
+Supervisor::Supervisor(bool parameters_intact)
+    : SupervisorMemory(), parameters_intact_(parameters_intact) {
   ticks_since_heartbeat_ = UINT16_MAX;
 }
 
@@ -128,7 +128,10 @@ bool Supervisor::tilted(const Parameters& parameters, const SupervisorInput& inp
 }
 
 uint16_t Supervisor::look_for_faults(const Parameters& parameters, const SupervisorInput& input) {
-  uint16_t found = parameters_good_ ? 0 : static_cast<uint16_t>(Fault::kParameters);
+  // They change while the robot is disarmed alone, and the check takes time.
+  const bool parameters_good =
+      parameters_intact_ && (state_ != RobotState::kDisarmed || parameters.valid());
+  uint16_t found = parameters_good ? 0 : static_cast<uint16_t>(Fault::kParameters);
 
   if (lasts(tilted(parameters, input), tilt_ticks_, kTiltTicks)) found |= Fault::kTilt;
 

@@ -110,8 +110,9 @@ struct SupervisorMemory {
 
 class Supervisor : private SupervisorMemory {
  public:
-  /// Parameters that are not intact, or not valid, are a fault for good.
-  explicit Supervisor(const Parameters& parameters, bool parameters_intact = true);
+  /// Parameters that are not intact are a fault for good; intact ones that are not valid are one
+  /// until a change makes them valid.
+  explicit Supervisor(bool parameters_intact = true);
 
   /// One tick: looks for faults, watches the link, runs the stand-alone timer. The parameters are
   /// those of this tick: they change while the robot is disarmed.
@@ -141,7 +142,7 @@ class Supervisor : private SupervisorMemory {
   void watch_link();
   void run_standalone(uint16_t delay_ticks);
 
-  bool parameters_good_;
+  bool parameters_intact_;
 };
 
 }  // namespace screed

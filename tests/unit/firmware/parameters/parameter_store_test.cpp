@@ -173,7 +173,7 @@ TEST(ParameterStore, WithoutAGoodCopyItSaysWhether) {
 
 TEST(ParameterStore, ARobotWhoseParametersAreLostCannotBeArmed) {
   for (const bool intact : {true, false}) {
-    Supervisor supervisor(Parameters(), intact);
+    Supervisor supervisor(intact);
     const std::int16_t gyro[3] = {1, 2, 3};
     const std::int16_t accel[3] = {0, 0, 4096};
     SupervisorInput input{};

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <numbers>
 #include <optional>
 
 #include "firmware/math/crc16.h"
@@ -270,6 +271,28 @@ TEST(RadioParameters, AStricterTiltLimitIsHeededAtOnce) {
   EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kFaultPresent);
 }
 
+// As an image without this algorithm finds them in its EEPROM.
+TEST(RadioParameters, AChangeThatMakesThemValidLetsTheRobotBeArmed) {
+  Parameters parameters;
+  parameters.algorithm = message::kLevelingAlgorithmMax + 1;
+  for (const bool intact : {true, false}) {
+    TestRobot robot(parameters);
+    if (!intact) {
+      robot.robot = Robot(kBoard, parameters, credentials_of(test_key()), false);
+    }
+    robot.run(600);
+    EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kFaultPresent);
+    EXPECT_EQ(robot.robot.supervisor().reported_faults(), Fault::kParameters);
+    EXPECT_EQ(commit(robot, kSpeedKp, 30), RequestResult::kBadArgument) << "still not valid";
+    EXPECT_EQ(commit(robot, kAlgorithm, static_cast<int>(LevelingAlgorithm::kDrive)),
+              RequestResult::kDone);
+    robot.tick();
+    EXPECT_EQ(result_of(robot, CommandOp::kArm),
+              intact ? RequestResult::kDone : RequestResult::kFaultPresent)
+        << "lost ones stay lost";
+  }
+}
+
 // A frame whose CRC is right and whose size is not that of its message is not taken for one.
 TEST(RadioParameters, AFrameOfAnotherSizeIsRejected) {
   TestRobot robot = ready_robot();
@@ -445,6 +468,62 @@ TEST(Lost, StopsWithTheFault) {
   for (int i = 0; i < 3000 && robot.state() == RobotState::kRunning; ++i) robot.tick();
   EXPECT_EQ(robot.state(), RobotState::kFault);
   EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kLost);
+}
+
+/// A robot in a walled site of 0.8 m by 0.8 m that has lost its place and drives at a wall. It has
+/// walked too slowly for its slip watch, whose senses are not simulated here.
+struct WallSeeker : TestRobot {
+  static constexpr int16_t kSite_mm = 400;
+
+  WallSeeker() : TestRobot(parameters()) {
+    start();
+    for (int i = 0; i < 1000 && !seeks(); ++i) tick();
+    run(5);
+    EXPECT_TRUE(seeks());
+    EXPECT_FALSE(robot.slip_watch().stuck());
+  }
+  static Parameters parameters() {
+    Parameters parameters;
+    parameters.site_x = kSite_mm;
+    parameters.site_y = kSite_mm;
+    parameters.walk_speed_min = 30;
+    parameters.walk_speed_max = 30;
+    parameters.walk_yaw_rate_max = 0;
+    parameters.position_noise = 1000;
+    parameters.lost_sigma = 100;
+    parameters.lost_action = static_cast<int16_t>(LostAction::kSeekWall);
+    return parameters;
+  }
+  bool seeks() const { return robot.leveling().state() == LevelingState::kSeekWall; }
+  /// Raises the nose by so much within a quarter of a second.
+  void raise_nose(double degrees) {
+    constexpr int kTicks = 25;
+    const double step = degrees / kTicks;
+    sample.gyro[1] = static_cast<int16_t>(std::lround(-step * 100.0 / 0.07));
+    for (int i = 1; i <= kTicks; ++i) {
+      const double angle = i * step * std::numbers::pi / 180.0;
+      sample.accel[0] = static_cast<int16_t>(std::lround(4098 * std::sin(angle)));
+      sample.accel[2] = static_cast<int16_t>(std::lround(4098 * std::cos(angle)));
+      tick();
+    }
+    sample.gyro[1] = 0;
+  }
+};
+
+TEST(WallSearch, ARobotThatClimbsTheWallItSeeksTakesItForFoundAndBacksOff) {
+  for (const double pitch : {15.0, 25.0, -25.0}) {
+    WallSeeker robot;
+    const int speed = robot.robot.motion().speed_mm_per_s;
+    robot.raise_nose(pitch);
+    const bool steep = std::abs(pitch) > 20.0;
+    EXPECT_EQ(robot.seeks(), !steep) << pitch;
+    if (!steep) continue;
+    EXPECT_EQ(robot.robot.leveling().state(), LevelingState::kEscape);
+    EXPECT_LT(robot.robot.motion().speed_mm_per_s * speed, 0) << "the way it came";
+    const int reach =
+        std::max(std::abs(robot.robot.position().mm(kX)), std::abs(robot.robot.position().mm(kY)));
+    EXPECT_NEAR(reach, WallSeeker::kSite_mm - kBoard.hull_reach_mm, 30) << "it stands at a wall";
+  }
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace screed {
 
 class SupervisedRobot {
  public:
-  explicit SupervisedRobot(const Parameters& given = {}) : parameters(given), supervisor(given) {}
+  explicit SupervisedRobot(const Parameters& given = {}) : parameters(given) {}
 
   /// One tick with the ground station heard.
   void tick() {

@@ -140,8 +140,7 @@ void tick(Supervisor& supervisor, uint8_t chips_failing, int number) {
 
 TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
   for (const uint8_t chip : {ChipBit::kAccelMagChip, ChipBit::kGyroChip}) {
-    const Parameters parameters;
-    Supervisor supervisor(parameters);
+    Supervisor supervisor;
     for (int i = 0; i < 10; ++i) tick(supervisor, 0, i);
     ASSERT_EQ(supervisor.request(Request::kArm), RequestResult::kDone);
     ASSERT_EQ(supervisor.request(Request::kRun), RequestResult::kDone);
@@ -158,8 +157,7 @@ TEST(SupervisorChips, AFailingChipStopsTheRobotAndIsNamed) {
 }
 
 TEST(SupervisorChips, ARobotWithAFailingChipIsNotArmed) {
-  const Parameters parameters;
-  Supervisor supervisor(parameters);
+  Supervisor supervisor;
   for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kGyroChip, i);
   EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kFaultPresent);
   EXPECT_EQ(supervisor.faults(), 0) << "nothing latched in a robot that nobody armed";
@@ -167,8 +165,7 @@ TEST(SupervisorChips, ARobotWithAFailingChipIsNotArmed) {
 }
 
 TEST(SupervisorChips, ARobotDrivesWithoutItsBarometer) {
-  const Parameters parameters;
-  Supervisor supervisor(parameters);
+  Supervisor supervisor;
   for (int i = 0; i < 10; ++i) tick(supervisor, ChipBit::kBaroChip, i);
   EXPECT_EQ(supervisor.reported_faults(), 0);
   EXPECT_EQ(supervisor.request(Request::kArm), RequestResult::kDone);
