@@ -22,11 +22,12 @@ constexpr uint8_t time(int16_t ms) {
 
 // A way to come loose: two steps in turn, each a speed, a turn and a time; how many steps. The
 // turns are those of the first attempt and every second one after it, the others turn the other
-// way.
+// way. The first way turns by 41 degrees: beyond 45 a robot that drives home would turn back on the
+// spot (site_fence.cpp), dig in there, and every attempt would lead it farther out.
 constexpr uint8_t kStepBytes = 3;
 constexpr uint8_t kWayBytes = 2 * kStepBytes + 1;
 const uint8_t kWays[][kWayBytes] SCREED_PROGRAM_MEMORY = {
-    {speed(-200), turn(0), time(1480), speed(0), turn(60), time(1480), 2},     // back, turn away
+    {speed(-200), turn(0), time(1480), speed(0), turn(28), time(1480), 2},     // back, turn away
     {speed(-250), turn(0), time(480), speed(250), turn(0), time(480), 16},     // rock
     {speed(-100), turn(60), time(480), speed(-100), turn(-60), time(480), 8},  // alternate tracks
     {speed(-250), turn(0), time(800), speed(250), turn(0), time(800), 10},     // rock slowly

@@ -38,8 +38,8 @@ uint8_t size_of(uint16_t id) {
   return message::GroundHeartbeat::kSize;
 }
 
-// Piles before a wall are no steeper for long: a robot that drives at one sinks in.
-constexpr Angle kWallPitch = angle_from_centidegrees(2000);
+// No ground to level is that steep for long; beds of the steepest relief have 25 degrees.
+constexpr uint16_t kWallPitch = angle_from_centidegrees(3000);
 
 constexpr uint8_t kImuCounts = 9;
 static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * sizeof(int16_t) &&
@@ -326,13 +326,12 @@ void Robot::watch_slip(const SensorSample& sample) {
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
 
-// Stuck after a collision it stands at a wall. One that seeks a wall may climb it instead, the
-// tracks gripping it, until it tips over.
+// Stuck after a collision it stands at a wall. It may climb it instead, the tracks gripping it,
+// until it tips over.
 void Robot::feel_walls() {
   bool stuck = slip_watch_.stuck();
   bool at_wall = slip_watch_.collided();
-  if (leveling_.state() == LevelingState::kSeekWall &&
-      static_cast<uint16_t>(status_.angles.pitch + kWallPitch) > 2U * kWallPitch) {
+  if (abs_i16(status_.angles.pitch) > kWallPitch) {
     stuck = true;
     at_wall = true;
   }

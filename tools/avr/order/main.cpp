@@ -231,6 +231,7 @@ int main(int argc, char** argv) {
   app.add_option("disassembly", options.disassembly, "Output of avr-objdump -d")->required();
   app.add_option("--searches", options.searches, "Searches, of which the best counts")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--moves", options.moves, "Orders tried in each")->check(CLI::Range(1, 100'000'000));
+  app.add_option("--moves", options.moves, "Orders tried in each")
+      ->check(CLI::Range(1, 100'000'000));
   return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -56,7 +56,7 @@ TEST(Escape, EveryAttemptIsBoundedInTimeSpeedAndDistance) {
   for (int i = 0; i < 20; ++i) {
     int ticks = 0;
     double travel_mm = 0.0;
-    for (bool stuck = true; escape.tick(stuck); stuck = false) {
+    while (escape.tick(true)) {
       const MotionCommand motion = escape.motion();
       ASSERT_LE(std::abs(motion.speed_mm_per_s), 250);
       ASSERT_LE(std::abs(motion.yaw_rate), yaw_rate_from_degrees(90));
@@ -68,15 +68,30 @@ TEST(Escape, EveryAttemptIsBoundedInTimeSpeedAndDistance) {
   }
 }
 
+// Rocked on, a loose robot would roll downhill.
+TEST(Escape, RockingEndsWithTheStepInWhichItComesLoose) {
+  Escape escape(escape_parameters(6));
+  while (escape.tick(true)) {
+  }
+  for (int tick = 0; tick < 100; ++tick) ASSERT_TRUE(escape.tick(true));  // the second attempt
+  const int16_t rocking = escape.motion().speed_mm_per_s;
+  EXPECT_EQ(std::abs(rocking), 250);
+  int ticks = 0;
+  while (std::abs(escape.motion().speed_mm_per_s) == 250) {
+    ASSERT_TRUE(escape.tick(false));
+    ++ticks;
+  }
+  EXPECT_LE(ticks, 48);
+  EXPECT_EQ(escape.motion().speed_mm_per_s, -200) << "then out of there, as the first attempt";
+}
+
 // What lies behind was passable, and that is ahead for one that drove backwards.
 TEST(Escape, OfARobotThatDroveBackwardsIsMirrored) {
   Escape ahead(escape_parameters(6));
   Escape back(escape_parameters(6));
   for (int attempt = 0; attempt < 6; ++attempt) {
-    bool first = true;
-    while (ahead.tick(first, false)) {
-      ASSERT_TRUE(back.tick(first, true));
-      first = false;
+    while (ahead.tick(true, false)) {
+      ASSERT_TRUE(back.tick(true, true));
       EXPECT_EQ(back.motion().speed_mm_per_s, -ahead.motion().speed_mm_per_s);
       EXPECT_EQ(back.motion().yaw_rate, ahead.motion().yaw_rate);
     }
@@ -89,7 +104,7 @@ TEST(Escape, SuccessiveAttemptsDiffer) {
   std::vector<std::vector<std::pair<int16_t, YawRate>>> motions;
   for (int i = 0; i < 4; ++i) {
     std::vector<std::pair<int16_t, YawRate>> of_attempt;
-    for (bool stuck = true; escape.tick(stuck); stuck = false) {
+    while (escape.tick(true)) {
       of_attempt.emplace_back(escape.motion().speed_mm_per_s, escape.motion().yaw_rate);
     }
     for (const auto& before : motions) EXPECT_NE(of_attempt, before) << i;
@@ -122,7 +137,7 @@ TEST(Escape, ARobotThatIsFreeForLongHasAllAttemptsAgain) {
   EXPECT_TRUE(escape.gave_up());
 }
 
-TEST(Escape, WhatTheWatchSaysMeanwhileChangesNothing) {
+TEST(Escape, WhatTheWatchSaysInTheFirstAttemptChangesNothing) {
   Escape free(escape_parameters(6));
   Escape held(escape_parameters(6));
   int ticks = 0;

@@ -511,11 +511,11 @@ struct WallSeeker : TestRobot {
 };
 
 TEST(WallSearch, ARobotThatClimbsTheWallItSeeksTakesItForFoundAndBacksOff) {
-  for (const double pitch : {15.0, 25.0, -25.0}) {
+  for (const double pitch : {25.0, 35.0, -35.0}) {
     WallSeeker robot;
     const int speed = robot.robot.motion().speed_mm_per_s;
     robot.raise_nose(pitch);
-    const bool steep = std::abs(pitch) > 20.0;
+    const bool steep = std::abs(pitch) > 30.0;
     EXPECT_EQ(robot.seeks(), !steep) << pitch;
     if (!steep) continue;
     EXPECT_EQ(robot.robot.leveling().state(), LevelingState::kEscape);
