@@ -37,7 +37,7 @@ USB_SUFFIX_core := _usb_core
 FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
 FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) $(call sources,$(USB_FOLDER_$(USB)))
-FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
+FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o) $(FIRMWARE_BUILD)/hal/avr/startup.o
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
 # -fno-toplevel-reorder: functions lie in the order of the sources, so callers lie near what they call (a call within 4 kB is 2 bytes
@@ -58,7 +58,9 @@ AVR_FLAGS += -DSCREED_LEAVE_OUT='"$(LEAVE_OUT)"'
 endif
 AVR_WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Werror
 AVR_INCLUDES := -I. -Iboards/$(BOARD) -I$(FIRMWARE_BUILD)/generated -I$(BUILD_ROOT)/generated
-AVR_LINK := -Wl,--gc-sections
+# Start-up code of our own (hal/avr/startup.S), vectors up to that of the TWI.
+LAST_VECTOR := 36
+AVR_LINK := -Wl,--gc-sections -nostartfiles
 # The order of the functions in the image: near what they call. The linker's own script with the list of their sections before the others;
 # a function that is not on it comes behind them. `make function-order` makes it anew.
 FUNCTION_ORDER := hal/avr/function_order.txt
@@ -109,7 +111,7 @@ $(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_stack.a $(LIBRARY) $(B)/
 
 # Changes only when compiler or flags do, and then everything is built anew.
 define AVR_FLAGS_TEXT
-$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK) $(ARDUINO_FLAGS)
+$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(AVR_LINK) $(ARDUINO_FLAGS) $(LAST_VECTOR)
 endef
 $(FIRMWARE_BUILD)/avr.flags: FORCE
 	$(shell mkdir -p $(@D))$(file > $@.new,$(AVR_FLAGS_TEXT))
@@ -127,6 +129,11 @@ $(FIRMWARE_BUILD)/%.o: %.cpp $(FIRMWARE_BUILD)/avr.flags | $(FIRMWARE_BUILD)/gen
 	@echo "  AVR  $<"
 	@$(AVR_CXX) $(AVR_FLAGS) $(AVR_WARNINGS) $(AVR_INCLUDES) $(ARDUINO_FLAGS) -MMD -MP -c $< -o $@
 
+$(FIRMWARE_BUILD)/%.o: %.S $(FIRMWARE_BUILD)/avr.flags
+	@mkdir -p $(@D)
+	@echo "  AVR  $<"
+	@$(AVR_CC) -mmcu=$(BOARD_MCU) -DLAST_VECTOR=$(LAST_VECTOR) -MMD -MP -c $< -o $@
+
 $(FIRMWARE_BUILD)/arduino/%.cpp.o: $(ARDUINO_CORE)/%.cpp $(FIRMWARE_BUILD)/avr.flags
 	@mkdir -p $(@D)
 	@$(AVR_CXX) $(AVR_FLAGS) -std=gnu++11 -w $(ARDUINO_FLAGS) -c $< -o $@
@@ -143,6 +150,8 @@ $(LINKER_SCRIPT): $(FUNCTION_ORDER) $(FIRMWARE_BUILD)/avr.flags
 	  /^=====/ {inside = !inside; next} !inside {next} \
 	  !done && /^ *\*\(\.text\)/ {while ((getline name < list) > 0) if (name !~ /^#/) print "    *(" name ")"; done = 1} {print} \
 	  END {if (!done) {print "the linker script has no *(.text)" > "/dev/stderr"; exit 1}}' > $@
+	@for number in $$(seq $$(($(LAST_VECTOR) + 1)) 63) ; do \
+	   echo "ASSERT(!DEFINED(__vector_$$number), \"an interrupt handler beyond LAST_VECTOR of hal/avr/firmware.mk\")" ; done >> $@
 
 function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order  ## search the order of the image's functions with the fewest long calls
 	@{ echo "# Sections of the image's functions in the order in which they lie. Made by: make function-order" ; \

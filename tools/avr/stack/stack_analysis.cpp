@@ -18,7 +18,8 @@ namespace {
 constexpr std::int32_t kReturnAddress = 2;
 constexpr std::uint32_t kReset = 0;
 constexpr std::uint32_t kVectorSize = 4;
-// A vector that no program part claims jumps here, and from here to reset.
+// A vector that no program part claims jumps to reset, of the C library's start-up code by way of
+// this.
 constexpr std::string_view kUnusedVector = "__bad_interrupt";
 
 bool is_any(std::string_view text, std::initializer_list<std::string_view> of) {
@@ -261,7 +262,7 @@ StackReport Analysis::report() {
   in_interrupt_ = true;
   for (std::uint32_t at = vectors->begin + kVectorSize; at < vectors->end; at += kVectorSize) {
     const auto target = instruction_at(at).target;
-    if (!target || program_.name_of(*target) == kUnusedVector) continue;
+    if (!target || *target == kReset || program_.name_of(*target) == kUnusedVector) continue;
     result.interrupts.push_back(path(*target, program_.name_of(*target), kReturnAddress));
   }
   std::stable_sort(result.interrupts.begin(), result.interrupts.end(),
