@@ -326,20 +326,20 @@ void Robot::watch_slip(const SensorSample& sample) {
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
 
-// Stuck after a collision it stands at a wall. It may climb it instead, the tracks gripping it,
-// until it tips over.
+// Stuck after a collision it stands at a wall, if there is one. It may climb it instead, the tracks
+// gripping it, until it tips over.
 void Robot::feel_walls() {
   bool stuck = slip_watch_.stuck();
-  bool at_wall = slip_watch_.collided();
+  bool felt = slip_watch_.collided();
   if (abs_i16(status_.angles.pitch) > kWallPitch) {
     stuck = true;
-    at_wall = true;
+    felt = true;
   }
-  if (stuck && !stuck_ && at_wall) {
-    const bool backwards = status_.motion.speed_mm_per_s < 0;
-    const Angle travel =
-        backwards ? wrap_angle(status_.angles.heading + 32768) : status_.angles.heading;
-    if (touch_wall(board_, parameters_, travel, position_)) {
+  if (stuck && !stuck_) {
+    Angle travel = status_.angles.heading;
+    // Half a turn is the upper bit.
+    if (status_.motion.speed_mm_per_s < 0) travel = static_cast<Angle>(travel ^ INT16_MIN);
+    if (touch_wall(board_, parameters_, travel, felt, position_)) {
       event(message::EventCode::kWall, travel);
       leveling_.met_wall();
     }

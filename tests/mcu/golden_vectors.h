@@ -249,7 +249,9 @@ void golden_position(Link& link) {
     position.update(left, right, heading, numbers.within(8000), static_cast<uint8_t>(i));
     bool fits = false;
     if (i % 16U == 0) fits = position.measure(kX, numbers.within(3000), 20, 9);
-    if (i % 16U == 8) fits = touch_wall(kGoldenBoard, parameters, heading, position);
+    if (i % 16U == 8) {
+      fits = touch_wall(kGoldenBoard, parameters, heading, i % 32U == 8, position);
+    }
     if (i % 128U == 100) position.measure(kY, numbers.within(2000), 30, 0);
     put_signed(link, position.mm(kX));
     put_signed(link, position.mm(kY));
