@@ -22,12 +22,13 @@ constexpr uint8_t time(int16_t ms) {
 
 // A way to come loose: two steps in turn, each a speed, a turn and a time; how many steps. The
 // turns are those of the first attempt and every second one after it, the others turn the other
-// way. The first way turns by 41 degrees: beyond 45 a robot that drives home would turn back on the
-// spot (site_fence.cpp), dig in there, and every attempt would lead it farther out.
+// way. The first way leads a tenth of a metre back and turns by 41 degrees. Farther back, a robot
+// on its way home that is stuck again and again leaves its site; beyond 45 degrees it would turn
+// back on the spot (site_fence.cpp) and dig in there.
 constexpr uint8_t kStepBytes = 3;
 constexpr uint8_t kWayBytes = 2 * kStepBytes + 1;
 const uint8_t kWays[][kWayBytes] SCREED_PROGRAM_MEMORY = {
-    {speed(-200), turn(0), time(1480), speed(0), turn(28), time(1480), 2},     // back, turn away
+    {speed(-200), turn(0), time(600), speed(0), turn(41), time(1000), 2},      // back, turn away
     {speed(-250), turn(0), time(480), speed(250), turn(0), time(480), 16},     // rock
     {speed(-100), turn(60), time(480), speed(-100), turn(-60), time(480), 8},  // alternate tracks
     {speed(-250), turn(0), time(800), speed(250), turn(0), time(800), 10},     // rock slowly

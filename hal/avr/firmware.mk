@@ -37,7 +37,8 @@ USB_SUFFIX_core := _usb_core
 FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
 FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) $(call sources,$(USB_FOLDER_$(USB)))
-FIRMWARE_OBJECTS := $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o) $(FIRMWARE_BUILD)/hal/avr/startup.o
+FIRMWARE_STARTUP := $(FIRMWARE_BUILD)/hal/avr/startup.o
+FIRMWARE_OBJECTS := $(FIRMWARE_STARTUP) $(FIRMWARE_SOURCES:%.cpp=$(FIRMWARE_BUILD)/%.o)
 
 # No jump tables: they are indirect jumps, which the stack analysis refuses. -mrelax, -mstrict-X and -mcall-prologues make the code smaller.
 # -fno-toplevel-reorder: functions lie in the order of the sources, so callers lie near what they call (a call within 4 kB is 2 bytes

@@ -10,7 +10,7 @@ TESTS += $(MCU_TESTS)
 
 # An image: its main program and what it uses of the firmware's core.
 MCU_IMAGES := $(patsubst tests/mcu/images/%.cpp,$(FIRMWARE_BUILD)/%.elf,$(wildcard tests/mcu/images/*.cpp))
-MCU_IMAGE_CORE := $(filter-out %/main_loop.o,$(filter $(FIRMWARE_BUILD)/firmware/% $(FIRMWARE_BUILD)/nn/%,$(FIRMWARE_OBJECTS)))
+MCU_IMAGE_CORE := $(FIRMWARE_STARTUP) $(filter-out %/main_loop.o,$(filter $(FIRMWARE_BUILD)/firmware/% $(FIRMWARE_BUILD)/nn/%,$(FIRMWARE_OBJECTS)))
 TEST_IMAGES += $(MCU_IMAGES) $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size
 
 $(MCU_IMAGES): $(FIRMWARE_BUILD)/%.elf: $(FIRMWARE_BUILD)/tests/mcu/images/%.o $(MCU_IMAGE_CORE)
