@@ -22,13 +22,11 @@ constexpr uint8_t time(int16_t ms) {
 
 // A way to come loose: two steps in turn, each a speed, a turn and a time; how many steps. The
 // turns are those of the first attempt and every second one after it, the others turn the other
-// way. The first way leads a tenth of a metre back and turns by 41 degrees. Farther back, a robot
-// on its way home that is stuck again and again leaves its site; beyond 45 degrees it would turn
-// back on the spot (site_fence.cpp) and dig in there.
+// way.
 constexpr uint8_t kStepBytes = 3;
 constexpr uint8_t kWayBytes = 2 * kStepBytes + 1;
 const uint8_t kWays[][kWayBytes] SCREED_PROGRAM_MEMORY = {
-    {speed(-200), turn(0), time(600), speed(0), turn(41), time(1000), 2},      // back, turn away
+    {speed(-200), turn(0), time(1480), speed(0), turn(60), time(1480), 2},     // back, turn away
     {speed(-250), turn(0), time(480), speed(250), turn(0), time(480), 16},     // rock
     {speed(-100), turn(60), time(480), speed(-100), turn(-60), time(480), 8},  // alternate tracks
     {speed(-250), turn(0), time(800), speed(250), turn(0), time(800), 10},     // rock slowly
@@ -63,12 +61,17 @@ void Escape::begin_step() {
   uint8_t turn = read_program_u8(step + 1);
   if ((attempt_ & 1U) == 0) turn = static_cast<uint8_t>(-turn);
   motion_.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
-  ticks_left_ = static_cast<uint16_t>(read_program_u8(step + 2) * 4U);
+  uint8_t time = read_program_u8(step + 2);
+  // On its way home a robot that is stuck again and again would leave the site, and turned by more
+  // than 45 degrees it would turn back on the spot (site_fence.cpp) and dig in there.
+  if (homewards_ && way_ == 0) time = static_cast<uint8_t>(time >> 1);
+  ticks_left_ = static_cast<uint16_t>(time * 4U);
 }
 
-bool Escape::tick(bool stuck, bool backwards) {
+bool Escape::tick(bool stuck, bool backwards, bool homewards) {
   gave_up_ = false;
   if (ticks_left_ != 0) --ticks_left_;
+  uint8_t next_way = 0;  // loose, perhaps: out of there
   if (steps_left_ == 0) {
     if (!stuck) {
       if (ticks_left_ == 0) attempt_ = 0;
@@ -79,21 +82,24 @@ bool Escape::tick(bool stuck, bool backwards) {
       return false;
     }
     mirrored_ = backwards;
-    begin(attempt_ & kLastWay);
+    homewards_ = homewards;
+    next_way = attempt_ & kLastWay;
     ++attempt_;
   } else {
     if (ticks_left_ != 0) return true;
     --steps_left_;
-    // Loose before the way's end: rocked on, it would roll downhill and out of an open site.
-    if (!stuck && way_ != 0) steps_left_ = 0;
-    if (steps_left_ == 0) {
-      if (way_ == kStand) {
-        ticks_left_ = kFreeTicks;
-        return false;
-      }
-      begin(way_ == 0 ? kStand : 0);  // loose, perhaps: out of there
+    if (way_ == 0) {
+      next_way = kStand;
+    } else if (!stuck) {
+      // Loose before the way's end: rocked on, it would roll downhill and out of an open site.
+      steps_left_ = 0;
+    }
+    if (steps_left_ == 0 && way_ == kStand) {
+      ticks_left_ = kFreeTicks;
+      return false;
     }
   }
+  if (steps_left_ == 0) begin(next_way);
   begin_step();
   return true;
 }

@@ -27,7 +27,7 @@ Leveling::Leveling(const Parameters& parameters)
 
 MotionCommand Leveling::tick(const LevelingInput& input) {
   if (keeps_to_site(algorithm_)) {
-    if (escape_.tick(input.stuck, input.backwards)) {
+    if (escape_.tick(input.stuck, input.backwards, behaviour_.state() == LevelingState::kReturn)) {
       return behaviour_.enter_or_stay(LevelingState::kEscape, escape_.motion());
     }
     if (search_.update(input.place)) {

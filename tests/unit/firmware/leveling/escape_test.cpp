@@ -68,6 +68,25 @@ TEST(Escape, EveryAttemptIsBoundedInTimeSpeedAndDistance) {
   }
 }
 
+// Otherwise every attempt would lead it farther out, and it would turn back on the spot.
+TEST(Escape, OnItsWayHomeItGoesHalfAsFarAndTurnsByLessThan45Degrees) {
+  const auto way_of = [](bool homewards) {
+    Escape escape(escape_parameters(6));
+    std::pair<int, int> way{0, 0};  // 0.01 mm, yaw rates summed
+    while (escape.tick(true, false, homewards)) {
+      way.first += escape.motion().speed_mm_per_s;
+      way.second += escape.motion().yaw_rate;
+    }
+    return way;
+  };
+  const auto [far, wide] = way_of(false);
+  const auto [near, narrow] = way_of(true);
+  EXPECT_NEAR(far, 2 * near, 1000);
+  EXPECT_NEAR(wide, 2 * narrow, 5 * yaw_rate_from_degrees(60));
+  EXPECT_LT(std::abs(narrow), 45 * kTickRate_hz * yaw_rate_from_degrees(1));
+  EXPECT_LT(near, 0);
+}
+
 // Rocked on, a loose robot would roll downhill.
 TEST(Escape, RockingEndsWithTheStepInWhichItComesLoose) {
   Escape escape(escape_parameters(6));
