@@ -13,7 +13,8 @@ MAKEFLAGS += --no-builtin-rules
 DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
 PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
-                 $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt)
+                 $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt) \
+                 $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt)
 BUILD_FILES := Makefile $(sort $(wildcard tools/build/*.mk hal/avr/*.mk nn/*/*.mk tests/*.mk tests/*/*.mk tools/*/*.mk tools/*/*/*.mk))
 
 .PHONY: help deps clean
@@ -46,6 +47,7 @@ include tools/bench/bench.mk
 include tools/bench/telemetry/telemetry_lab.mk
 include tests/fuzz/fuzz.mk
 include tests/can/can.mk
+include tests/python/python.mk
 include tests/asan.mk
 include tools/mutants/mutants.mk
 include nn/training/training.mk

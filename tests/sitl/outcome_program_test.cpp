@@ -1,7 +1,9 @@
 // What `screed sim` says about the outcome of a run: table, JSON, pictures.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/sitl/program.h"
 
@@ -80,6 +82,47 @@ TEST_F(Outcome, ASpinDigsAndTheSummarySaysHowMuch) {
   EXPECT_TRUE(std::filesystem::exists(root_ / "r" / "terrain_change.png"));
 }
 
+TEST_F(Outcome, TheLevelingCurveIsInTheSummaryTheSessionAndItsCsv) {
+  write_spin("[metrics]\ninterval = 2.5\ntransport_interval = 5\n");
+  const Result result = run("sim spin.ini --out r");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* words : {"flat at robot scale", "transport to level ground", "time stuck"}) {
+    EXPECT_NE(result.out.find(words), std::string::npos) << words << " in: " << result.out;
+  }
+  const Json summary = Json::parse(read(root_ / "r" / "summary.json"));
+  const Json& leveling = summary["leveling"];
+  EXPECT_EQ(leveling["transport_before_m4"], 0.0) << "the bed was level";
+  EXPECT_TRUE(leveling["progress"].is_null());
+  EXPECT_GT(leveling["transport_after_m4"].get<double>(), 0.0);
+  EXPECT_LT(leveling["transport_per_joule_m4"].get<double>(), 0.0) << "digging levels no bed";
+
+  const std::string csv = read(root_ / "r" / "leveling.csv");
+  std::istringstream lines(csv);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 6U) << "header, start, three points, end: " << csv;
+  EXPECT_TRUE(rows[0].starts_with("time [s],relief [m],")) << rows[0];
+  EXPECT_TRUE(rows[1].starts_with("0,0,0,1,1,0,0,0,0,nan,nan,0,0,")) << rows[1];
+  EXPECT_TRUE(rows[2].starts_with("2.5")) << rows[2];
+  EXPECT_NE(rows[2].find(",nan,nan,nan,nan,nan,"), std::string::npos) << rows[2];
+  EXPECT_EQ(rows[3].find(",nan,nan,nan,nan,nan,"), std::string::npos) << rows[3];
+
+  ASSERT_EQ(run("session export r --leveling --out again").exit_code, 0);
+  EXPECT_EQ(read(root_ / "again" / "leveling.csv"), csv);
+}
+
+TEST_F(Outcome, MeasuringMoreOftenChangesNothingElse) {
+  write_spin();
+  const std::string arguments = "sim spin.ini --json --duration 3";
+  const Json rare = Json::parse(run(arguments + " --out a").out);
+  const Json often = Json::parse(run(arguments + " --set metrics.interval=0.1 --out b").out);
+  EXPECT_EQ(rare["leveling"], often["leveling"]);
+  EXPECT_EQ(rare["terrain_after"], often["terrain_after"]);
+  EXPECT_EQ(read(root_ / "a" / "frames.csv"), read(root_ / "b" / "frames.csv"));
+  const Json defaults = Json::parse(run(arguments + " --set metrics.interval=30 --out c").out);
+  EXPECT_EQ(defaults["content_hash"], rare["content_hash"]);
+}
+
 TEST_F(Outcome, RigidGroundHasNoPictureOfItsChange) {
   write("flat.ini", "[experiment]\nname = flat\nduration = 1\n");
   const Result result = run("sim flat.ini --out r");
@@ -88,6 +131,9 @@ TEST_F(Outcome, RigidGroundHasNoPictureOfItsChange) {
   EXPECT_EQ(result.out.find("change of terrain"), std::string::npos) << result.out;
   const Json summary = Json::parse(read(root_ / "r" / "summary.json"));
   EXPECT_EQ(summary["terrain_change"]["cut_m3"], 0.0);
+  EXPECT_TRUE(summary["leveling"]["transport_after_m4"].is_null());
+  EXPECT_EQ(result.out.find("transport"), std::string::npos) << result.out;
+  EXPECT_EQ(summary["leveling"]["stuck"], 0.0);
 }
 
 TEST_F(Outcome, ARampOfTheLimitIsFlatAndASteeperOneIsNot) {

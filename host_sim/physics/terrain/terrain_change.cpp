@@ -1,11 +1,9 @@
-// Volumes are summed in integers, so that they are exact; squares always in the same order.
+// Volumes are summed in integers, so that they are exact.
 #include "host_sim/physics/terrain/terrain_change.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/terrain/low_pass.h"
 
 namespace screed {
 
@@ -33,20 +31,6 @@ TerrainChange terrain_change(const HeightField& before, const HeightField& after
   return {static_cast<double>(cut) * unit_m3, static_cast<double>(fill) * unit_m3,
           static_cast<double>(-lowest) * kHeightUnit_m,
           static_cast<double>(highest) * kHeightUnit_m};
-}
-
-RobotScaleRelief robot_scale_relief(const HeightField& field) {
-  const FilteredHeights heights = filter_heights(field, kRobotScale_m);
-  double relief = 0.0;
-  double roughness = 0.0;
-  for (size_t node = 0; node < heights.low_m.size(); ++node) {
-    const double low = heights.low_m[node];
-    const double rest = heights.heights_m[node] - low;
-    relief += low * low;
-    roughness += rest * rest;
-  }
-  const auto count = static_cast<double>(heights.low_m.size());
-  return {std::sqrt(relief / count), std::sqrt(roughness / count)};
 }
 
 }  // namespace screed

@@ -1,5 +1,4 @@
-// What a run has done to a terrain, in numbers: volumes, depths, and the relief at the scale of the
-// robot.
+// What a run has done to a terrain, in numbers: volumes and depths.
 #pragma once
 
 #include "host_sim/physics/terrain/height_field.h"
@@ -19,16 +18,5 @@ struct TerrainChange {
 
 /// Throws InputError when the two differ in their grid.
 TerrainChange terrain_change(const HeightField& before, const HeightField& after);
-
-/// Standard deviation of the low-pass that parts relief from roughness: half the robot's width, m.
-inline constexpr double kRobotScale_m = 0.05;
-
-/// Root mean squares over the nodes, m, of the heights above the mean plane (low_pass.h).
-struct RobotScaleRelief {
-  double relief_m = 0.0;     ///< of what a low-pass of kRobotScale_m leaves: what a robot drives up
-  double roughness_m = 0.0;  ///< of what it takes away: ruts, ridges, single stones
-};
-
-RobotScaleRelief robot_scale_relief(const HeightField& field);
 
 }  // namespace screed

@@ -28,24 +28,24 @@ std::vector<double> centre_gradients(const HeightField& field) {
   return gradients;
 }
 
+double mean_height(const HeightField& field) {
+  return static_cast<double>(field.height_sum()) / (static_cast<double>(field.nx()) * field.ny());
+}
+
 void add_heights(const HeightField& field, TerrainStatistics& statistics) {
-  const double count = static_cast<double>(field.nx()) * field.ny();
-  const double mean = static_cast<double>(field.height_sum()) / count;
   Height lowest = field.node(0, 0);
   Height highest = lowest;
-  double squares = 0.0;
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
       const Height height = field.node(ix, iy);
       lowest = std::min(lowest, height);
       highest = std::max(highest, height);
-      squares += (height - mean) * (height - mean);
     }
   }
   statistics.lowest_m = lowest * kHeightUnit_m;
   statistics.highest_m = highest * kHeightUnit_m;
-  statistics.mean_height_m = mean * kHeightUnit_m;
-  statistics.height_deviation_m = std::sqrt(squares / count) * kHeightUnit_m;
+  statistics.mean_height_m = mean_height(field) * kHeightUnit_m;
+  statistics.height_deviation_m = height_deviation_m(field);
 }
 
 void add_slopes(const HeightField& field, TerrainStatistics& statistics) {
@@ -69,6 +69,19 @@ void add_slopes(const HeightField& field, TerrainStatistics& statistics) {
 }
 
 }  // namespace
+
+double height_deviation_m(const HeightField& field) {
+  const double mean = mean_height(field);
+  double squares = 0.0;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix) {
+      const double off = field.node(ix, iy) - mean;
+      squares += off * off;
+    }
+  }
+  const double count = static_cast<double>(field.nx()) * field.ny();
+  return std::sqrt(squares / count) * kHeightUnit_m;
+}
 
 TerrainStatistics terrain_statistics(const HeightField& field) {
   TerrainStatistics statistics{};

@@ -39,6 +39,9 @@ inline double gradient_rounding(const HeightField& field) {
 
 TerrainStatistics terrain_statistics(const HeightField& field);
 
+/// TerrainStatistics::height_deviation_m alone.
+double height_deviation_m(const HeightField& field);
+
 /// The share (0..1) of cells that are level within epsilon: |grad f| <= tan(epsilon_deg), the
 /// definition of flatness in section 4.1 of the thesis; 1 = leveled. A slope that exceeds epsilon
 /// by no more than gradient_rounding() counts as level, so that a ramp of epsilon does.

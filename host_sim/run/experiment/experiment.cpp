@@ -152,11 +152,13 @@ Credentials credentials_of(const Experiment& experiment) {
 }
 
 std::string Experiment::text() const {
+  const Experiment defaults;
   std::string text;
   std::string section;
   for (const ExperimentKey& key : experiment_keys()) {
     const std::optional<std::string> value = key.get(*this);
     if (!value.has_value()) continue;
+    if (!key.default_written && value == key.get(defaults)) continue;
     if (decides_nothing(key, map)) continue;
     if (key.section != section) text += "\n[" + key.section + "]\n";
     section = key.section;

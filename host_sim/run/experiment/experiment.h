@@ -22,6 +22,7 @@
 #include "host_sim/run/experiment/sections/experiment_section.h"
 #include "host_sim/run/experiment/sections/fixes_section.h"
 #include "host_sim/run/experiment/sections/map_section.h"
+#include "host_sim/run/experiment/sections/metrics_section.h"
 #include "host_sim/run/experiment/sections/particles_section.h"
 #include "host_sim/run/experiment/sections/physics_section.h"
 #include "host_sim/run/experiment/sections/radio_section.h"
@@ -51,6 +52,7 @@ struct Experiment {
   SensorsSection sensors;
   RadioSection radio;
   PhysicsSection physics;
+  MetricsSection metrics;
   Parameters parameters;
 
   /// Notes for the user of the file: keys that were understood in another way than

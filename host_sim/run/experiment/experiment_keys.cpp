@@ -87,6 +87,7 @@ std::vector<ExperimentKey> make_keys() {
   list_section(keys, "sensors", &Experiment::sensors);
   list_section(keys, "radio", &Experiment::radio);
   list_section(keys, "physics", &Experiment::physics);
+  list_section(keys, "metrics", &Experiment::metrics);
   list_parameters(keys);
   return keys;
 }

@@ -29,6 +29,9 @@ struct ExperimentKey {
   std::function<bool(Experiment&, const std::string&)> set;
   /// The value in force; nothing when an optional key is not set.
   std::function<std::optional<std::string>(const Experiment&)> get;
+  /// Its default is written as well. Not of a key that decides nothing: texts, and with them the
+  /// content hashes of their runs, are what they were without it.
+  bool default_written = true;
 };
 
 /// By section, in the order in which they are written.

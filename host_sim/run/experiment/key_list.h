@@ -48,6 +48,12 @@ class KeyList {
       return *this;
     }
 
+    /// See ExperimentKey::default_written.
+    Row default_not_written() {
+      key_.default_written = false;
+      return *this;
+    }
+
    private:
     friend class KeyList;
     Row(ExperimentKey& key, Section Experiment::*member) : key_(key), member_(member) {}

@@ -104,6 +104,22 @@ void export_frames_csv(const SessionReader& session, const std::filesystem::path
   file.commit();
 }
 
+void export_leveling_csv(std::span<const LevelingPoint> points, const std::filesystem::path& csv) {
+  AtomicFile file(csv);
+  file.write(header(kLevelingColumns, false));
+  std::array<char, kLevelingColumns.size() * (kNumberChars + 1)> text{};
+  for (const LevelingPoint& point : points) {
+    char* cursor = text.data();
+    for (const Column& column : kLevelingColumns) {
+      const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&point);
+      cursor = put(cursor, taken_from<double>(bytes + column.offset));
+    }
+    cursor[-1] = '\n';
+    file.write(std::string_view(text.data(), static_cast<std::size_t>(cursor - text.data())));
+  }
+  file.commit();
+}
+
 void export_columns_csv(const SessionReader& session, std::span<const Column> columns,
                         const FrameRange& range, const std::filesystem::path& csv,
                         const TaskProgress& progress) {

@@ -7,6 +7,7 @@
 
 #include "host_sim/core/record.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/run/session/session_reader.h"
 
 namespace screed {
@@ -22,6 +23,9 @@ struct FrameRange {
 /// session lacks is "nan". The file appears only when it is complete, and replaces one of the same
 /// name. Throws RunError when it cannot be written.
 void export_frames_csv(const SessionReader& session, const std::filesystem::path& csv);
+
+/// The same of the leveling curve: one line a point.
+void export_leveling_csv(std::span<const LevelingPoint> points, const std::filesystem::path& csv);
 
 /// The variables of thesis Table 5.1, in its order.
 std::span<const Column> table_5_1_columns();

@@ -8,6 +8,7 @@
 #include "firmware/parameters/board_constants.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed::layout {
@@ -57,6 +58,7 @@ struct TableLayout {
 inline constexpr TableLayout kFramesTable{"frames", kFrameColumns};
 inline constexpr TableLayout kSamplesTable{"samples", kSampleColumns};
 inline constexpr TableLayout kOutputsTable{"outputs", kOutputColumns};
+inline constexpr TableLayout kLevelingTable{"leveling", kLevelingColumns};
 
 struct BoardField {
   const char* name;

@@ -315,6 +315,18 @@ class SessionReader::Impl {
     return read_spheres(group.get(), name);
   }
 
+  std::vector<LevelingPoint> leveling() const {
+    if (!h5::has_link(file_.get(), layout::kLevelingTable.dataset)) return {};
+    const Table table(file_.get(), layout::kLevelingTable, true);
+    constexpr std::uint64_t kAtStartAndEnd = 2;
+    if (table.rows() > rows_ + kAtStartAndEnd)
+      throw Hdf5Failure("the leveling curve has more points than the run has ticks");
+    std::vector<LevelingPoint> points(table.rows());
+    const auto bytes = table.read(0, table.rows());
+    if (!points.empty()) std::memcpy(points.data(), bytes.data(), bytes.size());
+    return points;
+  }
+
   HeightSeriesReader* heights() { return heights_ ? &*heights_ : nullptr; }
 
   std::string compute_hash() {
@@ -423,6 +435,10 @@ std::optional<SphereSet> SessionReader::particles_before() const {
 
 std::optional<SphereSet> SessionReader::particles_after() const {
   return or_input_error(impl_->path(), [&] { return impl_->particles(layout::kParticlesAfter); });
+}
+
+std::vector<LevelingPoint> SessionReader::leveling() const {
+  return or_input_error(impl_->path(), [&] { return impl_->leveling(); });
 }
 
 bool SessionReader::has_heights() const {

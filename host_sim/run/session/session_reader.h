@@ -12,6 +12,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/run/session/session_info.h"
 
@@ -50,6 +51,10 @@ class SessionReader {
   /// Nothing on terrain without particles, and in sessions of programs that did not record them.
   std::optional<SphereSet> particles_before() const;
   std::optional<SphereSet> particles_after() const;
+
+  /// The leveling curve; empty where none was recorded. A figure that was not measured, or that the
+  /// session's program did not know, is not a number.
+  std::vector<LevelingPoint> leveling() const;
 
   /// Whether the height map was recorded tick by tick. The rest of this block may only be called
   /// when it was.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -22,16 +23,17 @@ namespace {
 /// A growing table and the rows that wait to be written.
 class Table {
  public:
-  Table(hid_t file, const layout::TableLayout& table)
+  /// block_rows: as many rows wait at most, and are one chunk of the file.
+  Table(hid_t file, const layout::TableLayout& table,
+        std::size_t block_rows = SessionWriter::kBlockRows)
       : name_(table.dataset),
         row_bytes_(row_bytes(table.columns)),
         type_(layout::row_type(table.columns)),
-        buffer_(SessionWriter::kBlockRows * row_bytes_) {
+        buffer_(block_rows * row_bytes_) {
     const hsize_t rows = 0;
     const hsize_t limit = H5S_UNLIMITED;
     const h5::Handle space(H5Screate_simple(1, &rows, &limit), H5Sclose, name_);
-    const h5::Handle options =
-        layout::compressed(std::array<hsize_t, 1>{SessionWriter::kBlockRows});
+    const h5::Handle options = layout::compressed(std::array<hsize_t, 1>{block_rows});
     dataset_ = {
         H5Dcreate2(file, name_, type_.get(), space.get(), H5P_DEFAULT, options.get(), H5P_DEFAULT),
         H5Dclose, name_};
@@ -173,6 +175,13 @@ class SessionWriter::Impl {
     flush();
   }
 
+  void append_leveling(const LevelingPoint& point) {
+    constexpr std::size_t kBlockPoints = 64;
+    if (!leveling_) leveling_.emplace(file_.get(), layout::kLevelingTable, kBlockPoints);
+    std::memcpy(leveling_->row(0), &point, kLevelingBytes);  // our hosts are little endian
+    leveling_->write(leveling_points_++, 1);
+  }
+
   void write_soil(const SoilParameters& soil) {
     const h5::Handle group = layout::create_group(file_.get(), layout::kSoilGroup);
     for (const SoilParameterInfo& parameter : kSoilParameters) {
@@ -239,6 +248,7 @@ class SessionWriter::Impl {
     frames_.close();
     samples_.close();
     outputs_.close();
+    if (leveling_) leveling_->close();
     terrain_.close("cannot close it");
     h5::write_attribute(file_.get(), layout::kHashAttribute, hash);
     flush();
@@ -255,6 +265,8 @@ class SessionWriter::Impl {
   Table frames_;
   Table samples_;
   Table outputs_;
+  std::optional<Table> leveling_;
+  std::uint64_t leveling_points_ = 0;
   std::optional<HeightSeriesWriter> heights_;
   SessionHash hash_;
   std::uint64_t written_ = 0;
@@ -303,6 +315,10 @@ void SessionWriter::append(const SimFrame& frame, const SensorSample& sample,
 void SessionWriter::record_heights(const HeightMapView& map) {
   check_map(map);
   or_run_error(impl_->path(), [&] { impl_->record_heights(map); });
+}
+
+void SessionWriter::append_leveling(const LevelingPoint& point) {
+  or_run_error(impl_->path(), [&] { impl_->append_leveling(point); });
 }
 
 void SessionWriter::write_soil(const SoilParameters& soil) {

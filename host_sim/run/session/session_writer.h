@@ -10,6 +10,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/sphere_set.h"
 #include "host_sim/run/session/session_info.h"
@@ -36,6 +37,10 @@ class SessionWriter {
   /// when a block cannot be written (disk full).
   void append(const SimFrame& frame, const SensorSample& sample, const RobotOutput& output,
               std::span<const HeightChange> changes = {});
+
+  /// Adds a point of the leveling curve, a table of its own. Not part of the content hash, which
+  /// has what the curve is made of.
+  void append_leveling(const LevelingPoint& point);
 
   /// What the ground is made of, as it is used: the preset with what the experiment changed. At
   /// most once. Not part of the content hash, which has the experiment's text.

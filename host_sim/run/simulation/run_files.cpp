@@ -33,8 +33,10 @@ RunFiles::RunFiles(const Experiment& experiment, const SimulationOptions& option
   write_file(folder() / "experiment.ini", experiment.text());
 }
 
-void RunFiles::write_table() const {
-  export_frames_csv(SessionReader(session()), folder() / "frames.csv");
+void RunFiles::write_tables() const {
+  const SessionReader session_file(session());
+  export_frames_csv(session_file, folder() / "frames.csv");
+  export_leveling_csv(session_file.leveling(), folder() / "leveling.csv");
 }
 
 void RunFiles::write_summary(std::string_view json) const {

@@ -43,8 +43,8 @@ class RunFiles {
   /// Folders of interrupted runs that were passed over, for a note to the user.
   const std::vector<std::filesystem::path>& leftovers() const { return folder_.leftovers(); }
 
-  /// Exports frames.csv from the session, which is closed. Throws RunError.
-  void write_table() const;
+  /// Exports frames.csv and leveling.csv from the session, which is closed. Throws RunError.
+  void write_tables() const;
   /// Writes summary.json. Throws RunError.
   void write_summary(std::string_view json) const;
   /// The run is complete: gives the folder its name. Throws RunError.

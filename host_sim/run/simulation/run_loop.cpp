@@ -10,6 +10,7 @@ RunLoop::RunLoop(RunWorld& world, const RunParts& parts)
       plant_(world.plant()),
       robot_(parts.robot),
       recorder_(parts.recorder),
+      leveling_(parts.leveling),
       stop_(parts.stop),
       progress_(parts.progress),
       pacer_(parts.pacer),
@@ -18,8 +19,10 @@ RunLoop::RunLoop(RunWorld& world, const RunParts& parts)
 
 RunEnd RunLoop::run() {
   if (observer_ != nullptr) observer_->on_begin(before_, plant_.terrain());
+  leveling_.begin(before_, take_point_);
   World* native = world_.native();
   const RunEnd end = native != nullptr ? run_native(*native) : run_image(*world_.image());
+  leveling_.end(plant_.terrain(), take_point_);
   if (observer_ != nullptr) observer_->on_end();
   return end;
 }
@@ -47,8 +50,14 @@ void RunLoop::on_output(const RobotOutput& output) {
   const Robot& shadow = robot_.parity.shadow();
   stop_.count_tick(shadow.supervisor().state(), shadow.leveling().state());
   progress_.on_tick(stop_, robot_.frame.time, plant_);
+  leveling_.on_tick(robot_.frame, robot_.frames.distance_m(), plant_.terrain(), take_point_);
   if (observer_ != nullptr) observer_->on_tick(robot_.frame, plant_.terrain());
   pacer_.wait_until(plant_.time_s());
+}
+
+void RunLoop::on_leveling(const LevelingPoint& point) {
+  recorder_.record_leveling(point);
+  if (observer_ != nullptr) observer_->on_leveling(point);
 }
 
 // ---- firmware compiled for this machine --------------------------------------------------------

@@ -9,6 +9,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/run/simulation/frame_recorder.h"
+#include "host_sim/run/simulation/leveling_monitor.h"
 #include "host_sim/run/simulation/pacer.h"
 #include "host_sim/run/simulation/parity_checker.h"
 #include "host_sim/run/simulation/progress.h"
@@ -39,6 +40,7 @@ struct WatchedRobot {
 struct RunParts {
   WatchedRobot& robot;
   SessionRecorder& recorder;
+  LevelingMonitor& leveling;
   StopCondition& stop;
   Progress& progress;
   Pacer& pacer;
@@ -64,11 +66,16 @@ class RunLoop {
   std::optional<RunEnd> reason_to_end() const;
   void on_sample(const SensorSample& sample);
   void on_output(const RobotOutput& output);
+  void on_leveling(const LevelingPoint& point);
 
   RunWorld& world_;
   const Environment& plant_;
   WatchedRobot& robot_;
   SessionRecorder& recorder_;
+  LevelingMonitor& leveling_;
+  const LevelingMonitor::Sink take_point_ = [this](const LevelingPoint& point) {
+    on_leveling(point);
+  };
   StopCondition& stop_;
   Progress& progress_;
   Pacer& pacer_;

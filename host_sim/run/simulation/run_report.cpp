@@ -1,6 +1,7 @@
 // The summary as JSON.
 #include "host_sim/run/simulation/run_report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "host_sim/run/simulation/names.h"
@@ -30,7 +31,25 @@ nlohmann::ordered_json json_of(const TerrainFigures& terrain) {
           {"steepest_slope_deg", heights.steepest_slope_deg},
           {"flatness", terrain.flatness},
           {"relief_m", terrain.robot_scale.relief_m},
-          {"roughness_m", terrain.robot_scale.roughness_m}};
+          {"roughness_m", terrain.robot_scale.roughness_m},
+          {"robot_scale_flatness", terrain.robot_scale.flatness}};
+}
+
+/// What is not a number becomes null.
+nlohmann::ordered_json json_of(const LevelingOutcome& leveling) {
+  const LevelingPoint& before = leveling.before;
+  const LevelingPoint& after = leveling.after;
+  return {{"progress", after.progress},
+          {"transport_before_m4", before.transport},
+          {"transport_after_m4", after.transport},
+          {"transport_error_m4", std::max(before.transport_error, after.transport_error)},
+          {"squared_transport_before_m5", before.transport_squared},
+          {"squared_transport_after_m5", after.transport_squared},
+          {"transport_per_joule_m4", after.transport_per_joule},
+          {"slip", after.slip},
+          {"stuck", after.stuck},
+          {"tilted", after.tilted},
+          {"off_site", after.off_site}};
 }
 
 nlohmann::ordered_json json_of(const CycleReport& cycles) {
@@ -78,6 +97,7 @@ nlohmann::ordered_json json_of(const SimulationSummary& summary) {
       {"terrain_before", json_of(summary.terrain.before)},
       {"terrain_after", json_of(summary.terrain.after)},
       {"terrain_change", json_of(summary.terrain.change)},
+      {"leveling", json_of(summary.leveling)},
   });
   if (summary.cycles.has_value()) json["microcontroller"] = json_of(*summary.cycles);
   return json;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host_sim/devices/mcu/cycle_report.h"
+#include "host_sim/run/simulation/leveling_monitor.h"
 #include "host_sim/run/simulation/stop_condition.h"
 #include "host_sim/run/simulation/terrain_outcome.h"
 
@@ -53,6 +54,7 @@ struct SimulationSummary {
   uint64_t telemetry_frames_damaged = 0;  ///< that reached the ground with a wrong check
   double telemetry_share = 0.0;           ///< of what the radio's line carries, 0..1
   TerrainOutcome terrain;
+  LevelingOutcome leveling;
   /// folders of interrupted runs that were passed over
   std::vector<std::filesystem::path> leftovers;
   std::optional<CycleReport> cycles;  ///< of a run with an image

@@ -59,7 +59,14 @@ void SessionRecorder::append(const SimFrame& frame, const SensorSample& sample,
   if (ticks_++ % kPathTicks == 0) path_.push_back(path_point(frame));
 }
 
+void SessionRecorder::record_leveling(const LevelingPoint& point) {
+  if (last_point_.has_value() && last_point_->time < point.time)
+    writer_.append_leveling(*last_point_);
+  last_point_ = point;
+}
+
 std::string SessionRecorder::finish(const HeightField& after) {
+  if (last_point_.has_value()) writer_.append_leveling(*last_point_);
   writer_.write_terrain_after(height_map_of(after).view());
   return writer_.finish();
 }

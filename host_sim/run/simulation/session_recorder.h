@@ -11,6 +11,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/sphere_set.h"
@@ -49,6 +50,9 @@ class SessionRecorder {
   /// Records the tick. Throws RunError when the disk is full.
   void append(const SimFrame& frame, const SensorSample& sample, const RobotOutput& output);
 
+  /// A point of the leveling curve; one of the time of the last one takes its place.
+  void record_leveling(const LevelingPoint& point);
+
   /// Closes the file with the terrain as the run left it. Returns the content hash. Nothing may be
   /// called afterwards but the two below.
   std::string finish(const HeightField& after);
@@ -60,6 +64,7 @@ class SessionRecorder {
 
  private:
   SessionWriter writer_;
+  std::optional<LevelingPoint> last_point_;  ///< not written yet
   std::optional<HeightWatch> watch_;
   std::span<const HeightChange> changes_;  ///< of this tick
   uint64_t height_changes_ = 0;

@@ -130,7 +130,9 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   Progress progress(options.progress, measure, before);
   WallClock clock;
   Pacer pacer(clock, options.realtime);
-  RunLoop loop(world, {robot, recorder, stop, progress, pacer, options.observer, before});
+  LevelingMonitor leveling(experiment, world.robot_settings().board.tread_mm * 1e-3,
+                           plant.is_deformable());
+  RunLoop loop(world, {robot, recorder, leveling, stop, progress, pacer, options.observer, before});
   summary.end = loop.run();
   summary.wall_s = pacer.elapsed_s();
 
@@ -144,12 +146,13 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
   summary.height_changes = recorder.height_changes();
   const RunSurfaces surfaces{measure.surface(before), measure.surface(plant.terrain())};
   summary.terrain = measure.outcome(surfaces.before, surfaces.after);
+  summary.leveling = leveling.outcome();
   report_world(world, summary);
   report_robot(robot, summary);
 
   try {
     files.write_summary(summary_json(summary));
-    if (options.table) files.write_table();
+    if (options.table) files.write_tables();
     write_run_pictures(files.folder(), experiment, surfaces,
                        driven_run(recorder.path(), robot.frame, shape));
   } catch (const RunError& error) {

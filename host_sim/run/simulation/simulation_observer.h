@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/terrain/height_field.h"
 
 namespace screed {
@@ -19,6 +20,8 @@ class SimulationObserver {
   /// After each tick, with the frame as it was recorded and the terrain after the answer (natively
   /// that of the sample). May take its time: the run waits.
   virtual void on_tick(const SimFrame& frame, const HeightField& terrain) = 0;
+  /// A new point of the leveling curve, the first one after on_begin().
+  virtual void on_leveling(const LevelingPoint& /*point*/) {}
   /// After the last tick; the run is not saved yet.
   virtual void on_end() = 0;
 };

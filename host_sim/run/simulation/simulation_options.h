@@ -33,7 +33,7 @@ struct SimulationOptions {
   SimulationObserver* observer = nullptr;
   /// Record the height map tick by tick, for training data.
   bool heights = false;
-  /// Write frames.csv beside the session; it can be exported later as well.
+  /// Write frames.csv and leveling.csv beside the session; they can be exported later as well.
   bool table = true;
   std::string program_version;
   std::string board = kDefaultBoard;

@@ -7,7 +7,8 @@ namespace screed {
 namespace {
 
 TerrainFigures figures_of(const HeightField& surface, double flat_deg) {
-  return {terrain_statistics(surface), flatness(surface, flat_deg), robot_scale_relief(surface)};
+  return {terrain_statistics(surface), flatness(surface, flat_deg),
+          robot_scale_figures(surface, flat_deg)};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What a run did to its terrain: how the surface is measured, and what comes of it.
 #pragma once
 
+#include "host_sim/leveling/robot_scale.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/terrain_change.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
@@ -12,7 +13,7 @@ namespace screed {
 struct TerrainFigures {
   TerrainStatistics heights;
   double flatness = 0.0;  ///< share of flat cells, 0..1
-  RobotScaleRelief robot_scale;
+  RobotScaleFigures robot_scale;
 };
 
 /// The terrain before and after a run. Heights of particle beds are those of TerrainMeasure.

@@ -41,6 +41,7 @@ struct ExportArguments {
   bool csv = false;
   bool all = false;
   bool heights = false;
+  bool leveling = false;
   bool pictures = false;
   std::optional<std::uint64_t> every;
   std::optional<std::uint64_t> first;
@@ -197,8 +198,9 @@ void export_all_pictures(const ExportArguments& arguments, const SessionReader& 
 }
 
 int run_export(const ExportArguments& arguments) {
-  if (!arguments.csv && !arguments.heights && !arguments.pictures) {
-    throw InputError("session export: say what: --csv, --heights, --pictures or several of them");
+  if (!arguments.csv && !arguments.heights && !arguments.leveling && !arguments.pictures) {
+    throw InputError(
+        "session export: say what: --csv, --heights, --leveling, --pictures or several of them");
   }
   const fs::path file = session_file(arguments.run);
   const SessionReader session(file);
@@ -206,6 +208,10 @@ int run_export(const ExportArguments& arguments) {
     throw InputError(file.string() +
                      ": has no recorded heights; sim --heights and record keep them");
   }
+  const std::vector<LevelingPoint> leveling = session.leveling();
+  if (arguments.leveling && leveling.empty())
+    throw InputError(file.string() +
+                     ": has no leveling curve; it is of a program before there were");
   const FrameRange range = chosen_range(arguments, session);
   MadeFolders folders;
   const fs::path out =
@@ -221,6 +227,10 @@ int run_export(const ExportArguments& arguments) {
                        range, csv, bar.progress());
     bar.clear();
     std::printf("%s: %llu frames\n", csv.c_str(), static_cast<unsigned long long>(range.count));
+  }
+  if (arguments.leveling) {
+    export_leveling_csv(leveling, out / "leveling.csv");
+    std::printf("%s: %zu points\n", (out / "leveling.csv").c_str(), leveling.size());
   }
   if (arguments.heights) {
     constexpr std::uint64_t kEverySecond = 100;
@@ -260,6 +270,8 @@ void register_session_command(CLI::App& root, Program& program) {
       "Export all frames, and with --csv all columns (default: the training drive's)");
   command->add_flag("--heights", exported->heights,
                     "Export height maps as 16-bit PNGs, with their scale in scale.json");
+  command->add_flag("--leveling", exported->leveling,
+                    "Export the leveling curve as CSV, with units in the header");
   command->add_flag(
       "--pictures", exported->pictures,
       "Export shaded height maps with the driven path: of the start, the end and what "

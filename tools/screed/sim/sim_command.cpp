@@ -112,12 +112,38 @@ void print_terrain(const TerrainOutcome& terrain, double flatness_deg) {
             millimetres(after.robot_scale.relief_m));
   print_row("roughness", millimetres(before.robot_scale.roughness_m),
             millimetres(after.robot_scale.roughness_m));
+  print_row("flat at robot scale", percent(before.robot_scale.flatness),
+            percent(after.robot_scale.flatness));
   const TerrainChange& change = terrain.change;
   if (change.cut_m3 == 0.0 && change.fill_m3 == 0.0) return;  // rigid ground
   std::printf("\n  %-26s %12s %12s\n", "change of terrain", "volume", "deepest");
   print_row("cut", litres(change.cut_m3), millimetres(change.deepest_cut_m));
   print_row("fill", litres(change.fill_m3), millimetres(change.deepest_fill_m));
   std::printf("  %-26s %12s\n", "moved", litres(change.moved_m3()).c_str());
+}
+
+/// What levelling would still take, what was gained for what, and what kept the robot from its
+/// work.
+void print_leveling(const LevelingOutcome& leveling) {
+  const LevelingPoint& before = leveling.before;
+  const LevelingPoint& after = leveling.after;
+  const auto percent = [](double share) { return format("%.1f %%", share * 100.0); };
+  const auto row = [](const char* name, const std::string& value) {
+    std::printf("  %-26s %12s\n", name, value.c_str());
+  };
+  std::printf("\n");
+  if (!std::isnan(after.transport)) {
+    const auto litre_metres = [](double m4) { return format("%.3f L m", m4 * 1e3); };
+    print_row("transport to level ground", litre_metres(before.transport),
+              litre_metres(after.transport));
+  }
+  if (!std::isnan(after.progress)) row("progress", format("%.2f %%", after.progress * 100.0));
+  if (!std::isnan(after.transport_per_joule))
+    row("transport per energy", format("%.4f cm3 m/J", after.transport_per_joule * 1e6));
+  row("slip", percent(after.slip));
+  row("time stuck", percent(after.stuck));
+  row("time tilted", percent(after.tilted));
+  row("time off the site", percent(after.off_site));
 }
 
 /// A robot that did not drive: why, or that nothing but a command was missing.
@@ -149,6 +175,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12s\n", "real-time factor", factor_text(s.real_time_factor()).c_str());
   std::printf("\n");
   print_terrain(s.terrain, experiment.experiment.flatness_deg);
+  print_leveling(s.leveling);
   if (s.cycles.has_value()) print_cycles(*s.cycles);
   std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
               s.content_hash.c_str());

@@ -69,6 +69,10 @@ void LiveViewer::on_tick(const SimFrame& frame, const HeightField& ground) {
   if (display_->controls().closed || display_->all_shown()) end_run_();
 }
 
+void LiveViewer::on_leveling(const LevelingPoint& point) {
+  display_->add_leveling(point);
+}
+
 void LiveViewer::steer() {
   Controls& controls = display_->controls();
   if (controls.hand_back) driver_.hand_back();

@@ -21,6 +21,7 @@ class LiveViewer : public SimulationObserver {
 
   void on_begin(const HeightField& before, const HeightField& ground) override;
   void on_tick(const SimFrame& frame, const HeightField& ground) override;
+  void on_leveling(const LevelingPoint& point) override;
   void on_end() override;
 
   /// After the run: shows how it ended until the user closes the window.

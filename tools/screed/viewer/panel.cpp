@@ -188,6 +188,16 @@ void add_slopes(Rows& rows, const Status::Terrain& s) {
       number_text(s.before.flat * 100.0, 1) + " %", number_text(s.now.flat * 100.0, 1) + " %");
 }
 
+void add_leveling(Rows& rows, const Status::Leveling& before, const Status::Leveling& now) {
+  rows.heading(kDetail, "AT ROBOT SCALE", "start", "now");
+  const auto millimetres = [](double metres) { return number_text(metres * 1e3, 1) + " mm"; };
+  const auto percent = [](double share) { return number_text(share * 100.0, 1) + " %"; };
+  rows.figure(kDetail, "relief", millimetres(now.relief_m), millimetres(before.relief_m));
+  rows.figure(kSpare, "roughness", millimetres(now.roughness_m), millimetres(before.roughness_m));
+  rows.figure(kDetail, "flat", percent(now.flat), percent(before.flat));
+  if (now.progress) rows.figure(kDetail, "progress", percent(*now.progress));
+}
+
 void add_path(Rows& rows, const Status& s) {
   rows.heading(kChangeOrPath, "DRIVEN PATH");
   for (size_t state = 0; state < kLevelingStates; ++state) {
@@ -279,6 +289,8 @@ PanelLayout panel_layout(const Layout& layout, const Status& s, const Measure& m
   add_robot(rows, s.motion);
   if (s.terrain.volume.has_value()) add_volume(rows, *s.terrain.volume);
   add_slopes(rows, s.terrain);
+  if (s.terrain.loose && s.leveling_before.has_value() && s.leveling_now.has_value())
+    add_leveling(rows, *s.leveling_before, *s.leveling_now);
   add_path(rows, s);
   if (!s.notice.empty()) {
     rows.add(kWho, 8.0, "", {});

@@ -54,6 +54,7 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   display_.emplace(options_, std::move(shown), field_of(before),
                    field_of(session_.has_heights() ? session_.heights_after(0) : before));
   display_->set_trail(trail_);
+  for (const LevelingPoint& point : session_.leveling()) display_->add_leveling(point);
   if (!session_.has_heights()) {
     after_ = session_.terrain_after();
     if (after_ && after_->heights == before.heights) after_.reset();

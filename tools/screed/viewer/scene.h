@@ -68,6 +68,16 @@ struct Status {
     bool operator==(const Terrain&) const = default;
   };
 
+  /// Of points of the leveling curve.
+  struct Leveling {
+    double relief_m = 0.0;
+    double roughness_m = 0.0;
+    double flat = 0.0;               ///< share of cells flat at robot scale, 0..1
+    std::optional<double> progress;  ///< the last one measured
+
+    bool operator==(const Leveling&) const = default;
+  };
+
   std::string title;
   std::string subtitle;
   double time_s = 0.0;
@@ -79,6 +89,8 @@ struct Status {
   int faults = 0;
   Motion motion;
   Terrain terrain;
+  std::optional<Leveling> leveling_before;
+  std::optional<Leveling> leveling_now;
   std::string notice;  ///< one line the user should know
   std::string driver;  ///< what the user who drives should know
   std::string keys;    ///< the line at the foot

@@ -150,12 +150,30 @@ void ViewerDisplay::measure_terrain(bool exact) {
                   change.deepest_fill_m};
 }
 
+void ViewerDisplay::add_leveling(const LevelingPoint& point) {
+  leveling_.push_back(point);
+  show_leveling();
+}
+
+void ViewerDisplay::show_leveling() {
+  status_.leveling_before.reset();
+  status_.leveling_now.reset();
+  std::optional<double> progress;
+  for (const LevelingPoint& point : leveling_) {
+    if (point.time > status_.time_s) break;
+    if (std::isfinite(point.progress)) progress = point.progress;
+    status_.leveling_now = {point.relief, point.roughness, point.robot_scale_flatness, progress};
+    if (!status_.leveling_before.has_value()) status_.leveling_before = status_.leveling_now;
+  }
+}
+
 void ViewerDisplay::set_frame(const SimFrame& frame) {
   const auto finite = [](double value) { return std::isfinite(value) ? value : 0.0; };
   robot_.x_m = finite(frame.x);
   robot_.y_m = finite(frame.y);
   robot_.heading_rad = finite(frame.yaw);
   status_.time_s = frame.time;
+  show_leveling();
   // A training drive lasts for its frames, and some seconds before them.
   status_.duration_s = std::max(setup_.duration_s, frame.time);
   status_.state = frame.state;

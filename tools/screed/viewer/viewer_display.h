@@ -13,6 +13,7 @@
 #include "host_sim/core/made_folders.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/core/task_progress.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/terrain_outcome.h"
@@ -104,6 +105,9 @@ class ViewerDisplay {
     robot_.travel_left_m = left_m;
     robot_.travel_right_m = right_m;
   }
+  /// The next point of the leveling curve; of those not after the moment shown the last one is
+  /// shown, beside the first.
+  void add_leveling(const LevelingPoint& point);
   /// The moment to be shown.
   void set_frame(const SimFrame& frame);
 
@@ -139,6 +143,7 @@ class ViewerDisplay {
   HeightField surface() const;
   /// Slopes, and the volume moved where the colours show it.
   void measure_terrain(bool exact);
+  void show_leveling();
   void save_on_demand();
   /// Whether `write` did not throw RunError, which is a notice and failure().
   bool attempt(const std::function<void()>& write);
@@ -150,7 +155,8 @@ class ViewerDisplay {
   DisplaySetup setup_;
   HeightField ground_;
   TerrainImage image_;
-  HeightField before_;      ///< the surface from which changes count
+  HeightField before_;  ///< the surface from which changes count
+  std::vector<LevelingPoint> leveling_;
   SlopeStatistics slopes_;  ///< of the terrain as it is
   bool measured_ = false;   ///< the figures on particles are up to date
   Controls controls_;

@@ -1,17 +1,14 @@
-// Volumes of moved boxes, and the relief of waves.
+// Volumes of moved boxes.
 #include "host_sim/physics/terrain/terrain_change.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "host_sim/core/errors.h"
 
 namespace screed {
 namespace {
-
-using std::numbers::pi;
 
 constexpr double kSpacing_m = 0.01;
 
@@ -70,27 +67,6 @@ TEST(TerrainChange, NeedsTheSameGrid) {
         HeightField(20, 20, 0.2, false), HeightField(20, 20, 0.1, true)}) {
     EXPECT_THROW(terrain_change(grid, other), InputError);
   }
-}
-
-TEST(RobotScaleRelief, PartsAWaveByItsLength) {
-  // Root mean square a / sqrt 2, of which the low-pass keeps exp(-(2 pi sigma / L)^2 / 2).
-  constexpr double kAmplitude_m = 0.02;
-  for (const double length_m : {0.1, 0.25, 0.5, 1.0}) {
-    const HeightField wave =
-        HeightField::from_function(200, 20, 0.005, true, [&](double x, double /*y*/) {
-          return 0.3 + kAmplitude_m * std::cos(2.0 * pi * x / length_m);
-        });
-    const double kept = std::exp(-0.5 * std::pow(2.0 * pi * kRobotScale_m / length_m, 2.0));
-    const RobotScaleRelief relief = robot_scale_relief(wave);
-    EXPECT_NEAR(relief.relief_m, kAmplitude_m / std::sqrt(2.0) * kept, 3e-6) << length_m;
-    EXPECT_NEAR(relief.roughness_m, kAmplitude_m / std::sqrt(2.0) * (1.0 - kept), 3e-6) << length_m;
-  }
-}
-
-TEST(RobotScaleRelief, APlaneHasNone) {
-  const RobotScaleRelief relief = robot_scale_relief(HeightField::ramp(1.5, 0.01, 20.0));
-  EXPECT_LT(relief.relief_m, kHeightUnit_m);
-  EXPECT_LT(relief.roughness_m, kHeightUnit_m);
 }
 
 }  // namespace

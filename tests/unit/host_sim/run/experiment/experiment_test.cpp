@@ -394,6 +394,9 @@ TEST_F(ExperimentFile, TextOfTheDefaultsGivesTheDefaults) {
   EXPECT_EQ(read(text).text(), text);
   EXPECT_EQ(read("").text(), text);
   EXPECT_FALSE(contains(text, "max_slope"));  // optional and not set
+  // What decides nothing is not written with its default, which the table has all the same.
+  EXPECT_FALSE(contains(text, "[metrics]"));
+  EXPECT_TRUE(contains(experiment_key_table(), "| [metrics] interval | s | 30 |"));
 }
 
 TEST_F(ExperimentFile, NumbersComeBackToTheBit) {

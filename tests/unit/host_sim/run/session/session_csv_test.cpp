@@ -52,6 +52,25 @@ TEST_F(SessionTest, CsvWritesTheShortestNumbers) {
   EXPECT_NE(read_text(base_ / "frames.csv").find("\n0.1,-2,1e-09,"), std::string::npos);
 }
 
+TEST_F(SessionTest, CsvOfTheLevelingCurve) {
+  LevelingPoint point;
+  point.time = 30.0;
+  point.relief = 0.0125;
+  point.off_site = 0.25;
+  export_leveling_csv(std::vector{point, LevelingPoint()}, base_ / "leveling.csv");
+  std::istringstream csv(read_text(base_ / "leveling.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("time [s],relief [m],roughness [m],")) << line;
+  EXPECT_NE(line.find(",transport [m3 m],"), std::string::npos) << line;
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("30,0.0125,nan,")) << line;
+  EXPECT_TRUE(line.ends_with(",nan,0.25")) << line;
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("nan,nan,")) << line;
+  EXPECT_FALSE(std::getline(csv, line));
+}
+
 TEST_F(SessionTest, CsvThatCannotBeWrittenIsARunErrorAndLeavesNothing) {
   write_run(file_, random_run(1300));
   const SessionReader reader(file_);

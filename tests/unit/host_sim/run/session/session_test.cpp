@@ -282,6 +282,40 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   EXPECT_NE(listing.find("/outputs                 Dataset {3/Inf}"), std::string::npos) << listing;
 }
 
+TEST_F(SessionTest, TheLevelingCurveComesBackAndIsNotHashed) {
+  const Recording run = random_run(200);
+  const std::string without = write_run(base_ / "without.h5", run);
+  EXPECT_TRUE(SessionReader(base_ / "without.h5").leveling().empty());
+
+  SessionWriter writer(file_, run.info);
+  writer.write_terrain_before(run.before.view());
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    writer.append(run.frames[i], run.samples[i], run.outputs[i]);
+    LevelingPoint point;
+    point.time = static_cast<double>(i);
+    point.progress = 0.5 * static_cast<double>(i);
+    writer.append_leveling(point);
+  }
+  writer.write_terrain_after(run.after.view());
+  EXPECT_EQ(writer.finish(), without);
+
+  const SessionReader reader(file_);
+  const std::vector<LevelingPoint> points = reader.leveling();
+  ASSERT_EQ(points.size(), 200U);
+  EXPECT_EQ(points[7].time, 7.0);
+  EXPECT_EQ(points[199].progress, 99.5);
+  EXPECT_TRUE(std::isnan(points[7].relief));
+  EXPECT_EQ(reader.compute_content_hash(), without);
+}
+
+TEST_F(SessionTest, MorePointsThanTicksAreNoCurve) {
+  SessionWriter writer(file_, random_run(1).info);
+  for (int i = 0; i < 3; ++i) writer.append_leveling({});
+  writer.finish();
+  const SessionReader reader(file_);
+  EXPECT_THROW(reader.leveling(), InputError);
+}
+
 TEST_F(SessionTest, TheSoilIsAnAttributeAParameter) {
   SoilParameters soil;
   double value = 0.5;

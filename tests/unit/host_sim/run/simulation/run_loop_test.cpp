@@ -80,7 +80,9 @@ class RunLoopTest : public ::testing::Test {
     StopCondition stop(experiment, &stop_);
     Progress progress({}, TerrainMeasure(experiment), world_->plant().terrain());
     Pacer pacer(clock_, true);
-    RunLoop loop(*world_, {robot_, *recorder_, stop, progress, pacer, &observer_, laid_out_});
+    LevelingMonitor leveling(experiment, 0.2, false);
+    RunLoop loop(*world_,
+                 {robot_, *recorder_, leveling, stop, progress, pacer, &observer_, laid_out_});
     return loop.run();
   }
 

@@ -42,11 +42,23 @@ SimulationSummary summary() {
   s.terrain.before.heights.p95_slope_deg = 37.5;
   s.terrain.before.heights.steepest_slope_deg = 38.5;
   s.terrain.before.flatness = 0.5;
-  s.terrain.before.robot_scale = {39.5, 40.5};
+  s.terrain.before.robot_scale = {39.5, 40.5, 0.625};
   s.terrain.after = s.terrain.before;
   s.terrain.after.heights.mean_slope_deg = 45.5;
   s.terrain.after.flatness = 0.75;
   s.terrain.change = {46.5, 47.5, 48.5, 49.5};
+  s.leveling.before.transport = 61.5;
+  s.leveling.before.transport_error = 2.5;
+  s.leveling.before.transport_squared = 62.5;
+  s.leveling.after.transport = 63.5;
+  s.leveling.after.transport_error = 1.5;
+  s.leveling.after.transport_squared = 64.5;
+  s.leveling.after.progress = 0.375;
+  s.leveling.after.transport_per_joule = 65.5;
+  s.leveling.after.slip = 0.125;
+  s.leveling.after.stuck = 0.0625;
+  s.leveling.after.tilted = 0.03125;
+  s.leveling.after.off_site = 0.015625;
   return s;
 }
 
@@ -63,7 +75,8 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
       R"("lowest_m": 31.5, "highest_m": 32.5, "mean_height_m": 33.5, "height_deviation_m": 34.5,)";
   const std::string slopes =
       R"("rms_slope_deg": 36.5, "p95_slope_deg": 37.5, "steepest_slope_deg": 38.5,)";
-  const std::string robot_scale = R"("relief_m": 39.5, "roughness_m": 40.5})";
+  const std::string robot_scale =
+      R"("relief_m": 39.5, "roughness_m": 40.5, "robot_scale_flatness": 0.625})";
   const Json expected =
       Json::parse(R"({"name": "hill", "algorithm": "spin_on_peak", "seed": 7,
       "world": {"hal": "native", "board": "a_star_32u4", "terrain": "scm", "soil": "viper"},
@@ -79,8 +92,21 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
                   robot_scale + R"(, "terrain_after": {)" + terrain + R"("mean_slope_deg": 45.5,)" +
                   slopes + R"("flatness": 0.75,)" + robot_scale +
                   R"(, "terrain_change": {"moved_m3": 46.5, "cut_m3": 46.5, "fill_m3": 47.5,
-                  "deepest_cut_m": 48.5, "deepest_fill_m": 49.5}})");
+                  "deepest_cut_m": 48.5, "deepest_fill_m": 49.5},
+                  "leveling": {"progress": 0.375, "transport_before_m4": 61.5,
+                  "transport_after_m4": 63.5, "transport_error_m4": 2.5,
+                  "squared_transport_before_m5": 62.5, "squared_transport_after_m5": 64.5,
+                  "transport_per_joule_m4": 65.5, "slip": 0.125, "stuck": 0.0625,
+                  "tilted": 0.03125, "off_site": 0.015625}})");
   EXPECT_EQ(summary_json(summary()), expected.dump(2) + "\n");
+}
+
+TEST(RunReport, WhatWasNotMeasuredIsNull) {
+  SimulationSummary s = summary();
+  s.leveling = {};
+  const Json leveling = Json::parse(summary_json(s)).at("leveling");
+  EXPECT_TRUE(leveling.at("progress").is_null());
+  EXPECT_TRUE(leveling.at("transport_error_m4").is_null());
 }
 
 TEST(RunReport, TerrainThatIsNoSoilNamesNone) {

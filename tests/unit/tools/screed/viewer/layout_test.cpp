@@ -86,6 +86,8 @@ Status full_status() {
   status.terrain.flat_limit_deg = 5.0;
   status.terrain.loose = true;
   status.terrain.volume = Status::VolumeMoved{0.123456, 0.0001, 0.0001, 0.1234, 0.0567};
+  status.leveling_before = Status::Leveling{0.1234, 0.0567, 0.999, 0.0};
+  status.leveling_now = Status::Leveling{0.1234, 0.0567, 0.999, -0.999};
   status.notice =
       "Heights of the ticks were not recorded (sim --heights does): the terrain is that of the "
       "start, at the end that of the end.";

@@ -2,6 +2,8 @@
 // of its recording.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -24,11 +26,12 @@ class ViewerVolume : public ::testing::Test {
     options_.screenshot = (folder_.path() / "p.png").string();
   }
 
-  /// Of a robot that settles into soft soil and drives; `size`: of the bed.
-  Experiment on_soil() const {
+  /// Of a robot that settles into soft soil and drives; `more`: lines of [map].
+  Experiment on_soil(const std::string& more = "") const {
     write_text(folder_.path() / "e.ini",
-               "[experiment]\nduration = 1\nalgorithm = hill_sensing\n[map]\nsize = 1\n"
-               "model = scm\n[soil]\npreset = viper\ncell = 0.02\n");
+               "[experiment]\nduration = 1\nalgorithm = hill_sensing\n[soil]\npreset = viper\n"
+               "cell = 0.02\n[map]\nsize = 1\nmodel = scm\n" +
+                   more);
     return read_experiment(folder_.path() / "e.ini");
   }
 
@@ -50,7 +53,8 @@ class ViewerVolume : public ::testing::Test {
     return viewer.status();
   }
 
-  static void expect_as(const TerrainOutcome& expected, const Status& shown) {
+  static void expect_as(const SimulationSummary& summary, const Status& shown) {
+    const TerrainOutcome& expected = summary.terrain;
     const TerrainChange& change = expected.change;
     EXPECT_GT(change.cut_m3, 0.0);
     ASSERT_TRUE(shown.terrain.volume.has_value());
@@ -61,6 +65,14 @@ class ViewerVolume : public ::testing::Test {
     EXPECT_DOUBLE_EQ(shown.terrain.volume->deepest_fill_m, change.deepest_fill_m);
     EXPECT_NEAR(shown.terrain.before.mean_deg, expected.before.heights.mean_slope_deg, 0.005);
     EXPECT_NEAR(shown.terrain.now.mean_deg, expected.after.heights.mean_slope_deg, 0.005);
+    ASSERT_TRUE(shown.leveling_before.has_value() && shown.leveling_now.has_value());
+    EXPECT_EQ(shown.leveling_before->relief_m, expected.before.robot_scale.relief_m);
+    EXPECT_EQ(shown.leveling_now->relief_m, expected.after.robot_scale.relief_m);
+    EXPECT_EQ(shown.leveling_now->roughness_m, expected.after.robot_scale.roughness_m);
+    EXPECT_EQ(shown.leveling_now->flat, expected.after.robot_scale.flatness);
+    const double progress = summary.leveling.after.progress;
+    EXPECT_EQ(shown.leveling_now->progress,
+              std::isnan(progress) ? std::nullopt : std::optional(progress));
   }
 
   TempFolder folder_;
@@ -69,17 +81,28 @@ class ViewerVolume : public ::testing::Test {
 
 TEST_F(ViewerVolume, IsThatOfTheSummaryOnSoil) {
   const auto [summary, live] = watched(on_soil(), false);
-  expect_as(summary.terrain, live);
-  expect_as(summary.terrain, replayed());
+  expect_as(summary, live);
+  expect_as(summary, replayed());
 }
 
 TEST_F(ViewerVolume, IsThatOfTheSummaryWithRecordedHeights) {
   const auto [summary, live] = watched(on_soil(), true);
-  expect_as(summary.terrain, live);
+  expect_as(summary, live);
   const SessionReader session(folder_.path() / "run" / "session.h5");
   EXPECT_NE(session.heights_after(0).heights, session.terrain_before()->heights)
       << "the robot settles before the first tick";
-  expect_as(summary.terrain, replayed());
+  expect_as(summary, replayed());
+}
+
+TEST_F(ViewerVolume, TheProgressShownIsThatOfTheSummary) {
+  const auto [summary, live] = watched(on_soil("ramp = 3\n"), false);
+  EXPECT_NE(summary.leveling.after.progress, 0.0);
+  ASSERT_TRUE(live.leveling_now.has_value());
+  EXPECT_EQ(live.leveling_now->progress, summary.leveling.after.progress);
+  EXPECT_EQ(live.leveling_before->progress, 0.0);
+  const Status again = replayed();
+  ASSERT_TRUE(again.leveling_now.has_value());
+  EXPECT_EQ(again.leveling_now, live.leveling_now);
 }
 
 TEST_F(ViewerVolume, RecordedTerrainsOfDifferentGridsAreRefused) {

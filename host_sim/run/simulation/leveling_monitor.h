@@ -1,0 +1,56 @@
+// Measures the leveling of a run while it goes on: when, and of which surface. What is measured is
+// in host_sim/leveling. Changes nothing in the run.
+#pragma once
+
+#include <functional>
+
+#include "host_sim/leveling/leveling_meter.h"
+#include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
+
+namespace screed {
+
+/// What comes of a run in leveling: its first and its last point.
+struct LevelingOutcome {
+  LevelingPoint before;
+  LevelingPoint after;
+};
+
+/// Points are due at the start, at whole multiples of [metrics] interval and at the end. On terrain
+/// that cannot deform none has a transport.
+class LevelingMonitor {
+ public:
+  /// Is given each point once, in the order of time.
+  using Sink = std::function<void(const LevelingPoint&)>;
+
+  /// tread_m: distance between the robot's tracks. deformable: the terrain can change.
+  LevelingMonitor(const Experiment& experiment, double tread_m, bool deformable);
+
+  /// The point at the start, of the terrain before the run.
+  void begin(const HeightField& before, const Sink& sink);
+  /// After each control tick; distance_m: the path so far.
+  void on_tick(const SimFrame& frame, double distance_m, const HeightField& terrain,
+               const Sink& sink);
+  /// The point at the end, of the terrain after the run. When the last tick was a point already, it
+  /// is given once more, with transport.
+  void end(const HeightField& after, const Sink& sink);
+
+  /// Both points are there after end().
+  const LevelingOutcome& outcome() const { return outcome_; }
+
+ private:
+  LevelingPoint measure(const HeightField& terrain, bool with_transport);
+
+  TerrainMeasure measure_;
+  LevelingMeter meter_;
+  TraversabilityMeter traversability_;
+  double interval_s_;
+  double transport_interval_s_;
+  bool deformable_;
+  double next_s_;
+  double next_transport_s_;
+  LevelingCost cost_;  ///< without the shares
+  LevelingOutcome outcome_;
+};
+
+}  // namespace screed
