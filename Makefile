@@ -41,6 +41,7 @@ include tools/schema/schema.mk
 include tools/build/host.mk
 include hal/avr/firmware.mk
 include tools/arduino/arduino.mk
+include tools/report/report.mk
 include tests/tests.mk
 include tools/flash/flash.mk
 include tools/bench/bench.mk

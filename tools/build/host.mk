@@ -6,6 +6,7 @@ DATA_DIR := $(CURDIR)/host_sim/data
 BOARDS_DIR := $(CURDIR)/boards
 MODELS_DIR := $(CURDIR)/nn/models
 FIRMWARE_DIR := $(abspath $(BUILD_ROOT))/firmware
+REPORT_DIR := $(abspath $(BUILD_ROOT))/report
 EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
 # MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
 MCU ?= yes
@@ -87,7 +88,8 @@ $(B)/generated/paths.h: FORCE
 	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
 	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; \
 	   echo 'inline constexpr const char* kModelsFolder = "$(MODELS_DIR)";' ; \
-	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; echo '}' ; } | $(WRITE_CHANGED)
+	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; \
+	   echo 'inline constexpr const char* kReportFolder = "$(REPORT_DIR)";' ; echo '}' ; } | $(WRITE_CHANGED)
 # The constants of every board, under their folders' names.
 $(B)/generated/boards.h: FORCE
 	@mkdir -p $(@D)
