@@ -48,7 +48,8 @@ struct CurveInfo {
   const char* column;  ///< of SCREED_FRAME_COLUMNS: without it there is no curve
   double factor;       ///< from the column's unit to that of the panel
   double (*value)(const SimFrame&);
-  double jump = 0.0;  ///< a step of more than this, in the panel's unit, is no line; 0: all are
+  double jump =
+      0.0;  ///< of an angle, by how much it may step from one tick to the next; 0: no angle
 };
 
 struct PanelInfo {

@@ -6,16 +6,8 @@ import { element, onSchemeChange, shortNumber, styleColor } from './elements.js'
 const sync = uPlot.sync('time');
 const seriesColors = () => [1, 2, 3, 4].map((i) => styleColor(`--series-${i}`));
 
-/// Numbers for uPlot: null where there is none, and where a step is no line (a heading that passes south-west).
-function points(values, jump) {
-  const list = Array.from(values, (value) => (Number.isNaN(value) ? null : value));
-  if (jump > 0) {
-    for (let i = 1; i < list.length; ++i) {
-      if (list[i - 1] !== null && Math.abs(values[i] - values[i - 1]) > jump) list[i - 1] = null;
-    }
-  }
-  return list;
-}
+/// Numbers for uPlot: null where there is none.
+const points = (values) => Array.from(values, (value) => (Number.isNaN(value) ? null : value));
 
 export class Curves {
   /// `events`: times in s. `onTime` gets the time at which the reader clicks.
@@ -35,7 +27,7 @@ export class Curves {
   async add(panels, read, sparse = false) {
     for (const panel of panels) {
       const times = await doubles(panel.times);
-      const values = await Promise.all(panel.series.map(async (series) => points(await read(series.block), series.jump ?? 0)));
+      const values = await Promise.all(panel.series.map(async (series) => points(await read(series.block))));
       this.panels.push({ ...panel, data: [Array.from(times), ...values], sparse });
       this.range[1] = Math.max(this.range[1], times[times.length - 1]);
     }
@@ -88,9 +80,12 @@ export class Curves {
     let estimates = 0;
     const series = panel.series.map((it) => {
       const estimated = (it.column ?? '').startsWith('est_');
-      const color = colors[(estimated ? estimates++ : truths++) % colors.length];
-      return { label: it.label, stroke: color, width: 1.5, dash: estimated ? [5, 4] : undefined, points: { show: panel.sparse, size: 8, fill: color },
-               paths: panel.sparse ? () => null : undefined, value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) };
+      // An angle steps from 180 to -180 degrees: dots, since a line would cross the plot.
+      const dots = panel.sparse || it.jump > 0;
+      const color = colors[(estimated && !dots ? estimates++ : truths++) % colors.length];
+      return { label: it.label, stroke: color, width: 1.5, dash: estimated ? [5, 4] : undefined,
+               points: { show: dots, size: panel.sparse ? 8 : 2.5, width: panel.sparse ? 1 : 0, fill: color },
+               paths: dots ? () => null : undefined, value: (plot, value) => (value === null ? '\u2013' : shortNumber(value)) };
     });
     const unit = panel.unit === '1' ? '\u2013' : panel.unit;
     const options = this.#options(190);

@@ -40,6 +40,9 @@ export function shortNumber(number) {
   return number.toFixed(digits).replace('-', '\u2212');
 }
 
+/// The same without zeros at its end, for running text.
+export const plainNumber = (number) => (number === 0 ? '0' : String(Number(number.toPrecision(4))).replace('-', '\u2212'));
+
 export const seconds = (time) => `${time.toFixed(2)} s`;
 
 /// A colour of the style sheet.

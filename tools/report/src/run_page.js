@@ -1,7 +1,7 @@
 // The page of one run.
 import { Curves, readDoubles, readFloats, swatch } from './curves.js';
 import { Heights, doubles, floats, words } from './data.js';
-import { element, figure, seconds, shortNumber, table } from './elements.js';
+import { element, figure, plainNumber, seconds, shortNumber, table } from './elements.js';
 import { TerrainView } from './terrain_view.js';
 
 /// Columns of frames.csv that stand beside the slider; all of them are below.
@@ -54,7 +54,7 @@ function legend(facts, view) {
     bar.style.background = `linear-gradient(to right, ${colors.map((rgb) => `rgb(${rgb.join(' ')})`).join(', ')})`;
     title.textContent = byChange ? 'change since the start [mm]' : 'height [mm]';
     const range = byChange ? [-terrain.change_limit_m, 0, terrain.change_limit_m] : terrain.color_range_m;
-    ends.replaceChildren(...range.map((value) => element('span', {}, shortNumber(1000 * value).replace(/\.0+$/, ''))));
+    ends.replaceChildren(...range.map((value) => element('span', {}, plainNumber(1000 * value))));
   };
   show(false);
   return { box, show };
@@ -68,9 +68,9 @@ function select(label, options, onChange) {
 
 function terrainNotes(terrain, view) {
   const grid = terrain.merged > 1
-    ? `Each height is the mean of ${terrain.merged} \u00d7 ${terrain.merged} heights of the run's grid (${shortNumber(1000 * terrain.spacing_m)} mm).`
-    : `The run's own grid of ${shortNumber(1000 * terrain.spacing_m)} mm.`;
-  const notes = [`${grid} Heights are rounded to ${shortNumber(1000 * terrain.unit_m)} mm.`];
+    ? `Each height is the mean of ${terrain.merged} \u00d7 ${terrain.merged} heights of the run's grid (${plainNumber(1000 * terrain.spacing_m)} mm).`
+    : `The run's own grid of ${plainNumber(1000 * terrain.spacing_m)} mm.`;
+  const notes = [`${grid} Heights are rounded to ${plainNumber(1000 * terrain.unit_m)} mm.`];
   if (terrain.filtered) notes.push('The surface of a bed of particles is shown without single stones (low-pass of one particle radius).');
   if (!terrain.recorded) notes.push('The heights of the ticks were not recorded (sim --heights, record): the terrain is that before the run until its end.');
   if (view === null) notes.push('This browser has no WebGL: there is no picture of the terrain.');
@@ -196,11 +196,11 @@ function rowSection(page, facts, timeline, rows) {
 
 async function curveSection(page, facts, timeline) {
   page.append(element('h2', {}, 'Curves'),
-    element('p', { class: 'faint' }, 'Drag to zoom, double-click to see all, click to move the slider. The blue line is the slider\u2019s time; dotted lines are events.'));
+    element('p', { class: 'faint' }, 'Drag to zoom, double-click to see all, click to move the slider. The blue line is the slider\u2019s time, dotted lines are events, dashed curves are estimates of the firmware.'));
   for (const robot of facts.robots) {
     if (facts.robots.length > 1) page.append(element('h3', {}, robot.name));
     if (robot.bucket_ticks > 1) {
-      page.append(element('p', { class: 'faint' }, `Of each ${robot.bucket_ticks} ticks (${shortNumber(robot.bucket_ticks * facts.tick_s)} s) the lowest and the highest value is drawn.`));
+      page.append(element('p', { class: 'faint' }, `Of each ${robot.bucket_ticks} ticks (${plainNumber(robot.bucket_ticks * facts.tick_s)} s) the lowest and the highest value is drawn.`));
     }
     const box = element('div', {});
     page.append(box);

@@ -258,9 +258,9 @@ export class TerrainView {
   /// From the south-west, or from above.
   resetCamera(above = false) {
     const { x_m: x, y_m: y } = this.facts.terrain;
-    const middle = new THREE.Vector3((x[0] + x[x.length - 1]) / 2, (y[0] + y[y.length - 1]) / 2, (this.surface.lowest + this.surface.highest) / 2);
+    const middle = new THREE.Vector3((x[0] + x[x.length - 1]) / 2, (y[0] + y[y.length - 1]) / 2, this.surface.lowest);
     const size = Math.max(x[x.length - 1] - x[0], y[y.length - 1] - y[0]);
-    const offset = above ? new THREE.Vector3(0, -0.001, 1.75) : new THREE.Vector3(-0.55, -1.1, 0.85);
+    const offset = above ? new THREE.Vector3(0, -0.001, 1.85) : new THREE.Vector3(-0.6, -1.25, 1.0);
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(offset, size);
     this.controls.update();
