@@ -68,9 +68,15 @@ export class Curves {
       width: this.#width(),
       height,
       cursor: { sync: { key: sync.key, scales: ['x', null] }, drag: { x: true, y: false }, y: false },
-      scales: { x: { time: false, range: (plot, low, high) => (low === null ? this.range : [low, high]) } },
+      // All of the run where nothing is zoomed: the last sample of a curve may stand before its end.
+      scales: { x: { time: false, range: (plot, low, high) => (low === null || this.#isWhole(plot, low, high) ? this.range : [low, high]) } },
       hooks: { draw: [(plot) => this.#drawMarks(plot)], ready: [(plot) => this.#followClicks(plot)] },
     };
+  }
+
+  #isWhole(plot, low, high) {
+    const [times] = plot.data;
+    return low === times[0] && high === times[times.length - 1];
   }
 
   #drawPanel(panel) {
