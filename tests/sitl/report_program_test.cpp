@@ -1,6 +1,7 @@
 // `screed report` as a user meets it; what a browser makes of the page is tests/report's.
 #include <string>
 
+#include "host_sim/core/data_folders.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -30,7 +31,7 @@ TEST_F(Report, RefusesInOneLineAndLeavesNothing) {
 TEST_F(Report, WithoutABuiltPageSaysHowToBuildIt) {
   // An installation that lacks it.
   std::filesystem::create_directories(root_ / "data" / "experiments");
-  std::filesystem::create_directories(root_ / "data" / "boards");
+  std::filesystem::create_directory_symlink(data_folders().boards, root_ / "data" / "boards");
   const Result result = run("report one", "SCREED_DATA=data");
   EXPECT_EQ(result.exit_code, 2) << result.err;
   EXPECT_NE(result.err.find("data/report/page.html: no such file; make report-page builds"),
