@@ -2,11 +2,15 @@
 import puppeteer from 'puppeteer-core';
 import { pathToFileURL } from 'node:url';
 
+// For a machine that is busy: a page that hangs ends the test, a slow one does not.
+const patience_ms = 600000;
+
 /// The browser; its WebGL is software, so that no graphics card decides.
 export function startBrowser() {
   return puppeteer.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     headless: true,
+    protocolTimeout: patience_ms,
     args: ['--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
   });
 }
@@ -26,7 +30,7 @@ export async function openReport(browser, file, { scheme = 'light', width = 1280
   });
   await page.setViewport({ width, height });
   await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: scheme }]);
-  await page.goto(url);
-  await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes', { timeout: 60000 });
+  await page.goto(url, { timeout: patience_ms });
+  await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes', { timeout: patience_ms });
   return { page, complaints };
 }
