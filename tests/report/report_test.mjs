@@ -165,6 +165,8 @@ for (const [name, test] of Object.entries(tests)) {
     ++failed;
     console.log(`failed: ${name}\n${error.stack}`);
   }
+  // Of a test that failed, its page.
+  for (const page of await browser.pages()) if (page.url() !== 'about:blank') await page.close();
 }
 await browser.close();
 console.log(`${Object.keys(tests).length - failed} passed, ${failed} failed`);
