@@ -14,7 +14,9 @@ DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
 PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
                  $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt) \
-                 $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt)
+                 $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt) \
+                 $(if $(filter test-report,$(MAKECMDGOALS)),tests/report/debian-packages.txt) \
+                 $(if $(shell command -v npm),,$(if $(filter build report-page install test-install test-report,$(MAKECMDGOALS)),tools/report/debian-packages.txt))
 BUILD_FILES := Makefile $(sort $(wildcard tools/build/*.mk hal/avr/*.mk nn/*/*.mk tests/*.mk tests/*/*.mk tools/*/*.mk tools/*/*/*.mk))
 
 .PHONY: help deps clean
@@ -41,6 +43,7 @@ include tools/schema/schema.mk
 include tools/build/host.mk
 include hal/avr/firmware.mk
 include tools/arduino/arduino.mk
+include tools/report/report.mk
 include tests/tests.mk
 include tools/flash/flash.mk
 include tools/bench/bench.mk
@@ -48,6 +51,7 @@ include tools/bench/telemetry/telemetry_lab.mk
 include tests/fuzz/fuzz.mk
 include tests/can/can.mk
 include tests/python/python.mk
+include tests/report/report_tests.mk
 include tests/asan.mk
 include tools/mutants/mutants.mk
 include nn/training/training.mk

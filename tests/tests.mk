@@ -41,5 +41,5 @@ test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md, from top to botto
 	@tests/docs/tutorial.sh docs/tutorial.md
 
 .PHONY: test-install
-test-install: $(SCREED) $(B)/screed_flash  ## install, move the tree, run it from elsewhere
+test-install: $(SCREED) $(B)/screed_flash $(REPORT_PAGE)  ## install, move the tree, run it from elsewhere
 	@tests/install/run.sh

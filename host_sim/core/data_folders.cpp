@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 // As `make install` lays it out.
 DataFolders installed_in(const fs::path& folder) {
-  return {folder, folder / "boards", folder / "models", folder / "firmware"};
+  return {folder, folder / "boards", folder / "models", folder / "firmware", folder / "report"};
 }
 
 bool is_there(const DataFolders& folders) {
@@ -36,7 +36,7 @@ DataFolders find_data_folders(const std::string& chosen, const fs::path& program
   }
   const fs::path beside = program.parent_path().parent_path() / "share" / "screed";
   if (DataFolders folders = installed_in(beside); is_there(folders)) return folders;
-  DataFolders built{kDataFolder, kBoardsFolder, kModelsFolder, kFirmwareFolder};
+  DataFolders built{kDataFolder, kBoardsFolder, kModelsFolder, kFirmwareFolder, kReportFolder};
   if (is_there(built)) return built;
   throw InputError("Screed's data is neither in " + beside.string() + " nor in " +
                    built.data.string() + "; SCREED_DATA=FOLDER says where it is");

@@ -1,5 +1,5 @@
 // Where the program's data lies: experiments, terrains and soils, boards, models, images for the
-// microcontroller.
+// microcontroller, the page of reports.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,7 @@ struct DataFolders {
   std::filesystem::path boards;    ///< a folder a board
   std::filesystem::path models;    ///< networks
   std::filesystem::path firmware;  ///< a folder a board, with screed.elf
+  std::filesystem::path report;    ///< page.html, into which `screed report` writes a run
 };
 
 /// The first of

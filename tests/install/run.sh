@@ -36,6 +36,7 @@ check 'an experiment of its own' "$screed" sim moved_drive --duration 1 --quiet 
 check 'a model of its own' "$screed" sim soft_bed --hal surrogate --duration 1 --quiet --out surrogate
 check 'a robot of its own' "$screed" sim four_wheels --duration 1 --quiet --out wheeled
 check 'a session' "$screed" replay native
+check 'a page of it' "$screed" report native
 check 'the flash tool' test -x "$tree/moved/bin/screed_flash"
 check 'the udev rule' test -s "$tree/moved/lib/udev/rules.d/60-screed.rules"
 check 'completion for bash' bash -n "$tree/moved/share/bash-completion/completions/screed"

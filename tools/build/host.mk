@@ -6,6 +6,7 @@ DATA_DIR := $(CURDIR)/host_sim/data
 BOARDS_DIR := $(CURDIR)/boards
 MODELS_DIR := $(CURDIR)/nn/models
 FIRMWARE_DIR := $(abspath $(BUILD_ROOT))/firmware
+REPORT_DIR := $(abspath $(BUILD_ROOT))/report
 EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
 # MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
 MCU ?= yes
@@ -87,7 +88,8 @@ $(B)/generated/paths.h: FORCE
 	   echo 'inline constexpr const char* kDataFolder = "$(DATA_DIR)";' ; \
 	   echo 'inline constexpr const char* kBoardsFolder = "$(BOARDS_DIR)";' ; \
 	   echo 'inline constexpr const char* kModelsFolder = "$(MODELS_DIR)";' ; \
-	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; echo '}' ; } | $(WRITE_CHANGED)
+	   echo 'inline constexpr const char* kFirmwareFolder = "$(FIRMWARE_DIR)";' ; \
+	   echo 'inline constexpr const char* kReportFolder = "$(REPORT_DIR)";' ; echo '}' ; } | $(WRITE_CHANGED)
 # The constants of every board, under their folders' names.
 $(B)/generated/boards.h: FORCE
 	@mkdir -p $(@D)
@@ -171,11 +173,12 @@ INSTALLED_FISH := share/fish/vendor_completions.d/screed.fish
 INSTALLED_MAN := share/man/man1
 # One word, since make takes blanks for the ends of names.
 INTO = $(if $(word 2,$(DESTDIR)$(PREFIX)),$(error PREFIX and DESTDIR: no blanks),$(DESTDIR)$(PREFIX))
-install: $(SCREED) $(B)/screed_flash $(SCHEMA_HEADERS)  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+install: $(SCREED) $(B)/screed_flash $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html  ## install program, data, flash tool and docs (PREFIX=/usr/local)
 	install -D -m 755 -t $(INTO)/bin $(SCREED) $(B)/screed_flash
 	install -D -m 644 tools/flash/60-screed.rules $(INTO)/$(INSTALLED_RULES)
 	@mkdir -p $(INTO)/$(INSTALLED_DATA) $(INTO)/$(INSTALLED_DOC)
 	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(INTO)/$(INSTALLED_DATA)/
+	install -D -m 644 -t $(INTO)/$(INSTALLED_DATA)/report $(BUILD_ROOT)/report/page.html
 	cp -r README.md CHANGELOG.md LICENSE docs $(INTO)/$(INSTALLED_DOC)/
 	@mkdir -p $(dir $(addprefix $(INTO)/,$(INSTALLED_BASH) $(INSTALLED_ZSH) $(INSTALLED_FISH)))
 	$(SCREED) completion bash > $(INTO)/$(INSTALLED_BASH)

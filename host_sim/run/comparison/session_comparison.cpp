@@ -248,16 +248,12 @@ TerrainDifference terrain_difference(const MeasuredRun& a, const MeasuredRun& b)
   return result;
 }
 
-bool is_secret(const IniEntry& entry) {
-  return entry.section == "radio" && entry.key == "key";
-}
-
 std::string key_of(const IniEntry& entry) {
   return entry.section.empty() ? entry.key : entry.section + "." + entry.key;
 }
 
 std::string shown(const IniEntry& entry) {
-  return is_secret(entry) ? "(not shown)" : entry.value;
+  return is_secret(entry) ? kSecretText : entry.value;
 }
 
 }  // namespace

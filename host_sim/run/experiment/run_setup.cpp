@@ -25,6 +25,10 @@ double number_of(const IniEntry& entry) {
 
 }  // namespace
 
+bool is_secret(const IniEntry& entry) {
+  return entry.section == "radio" && entry.key == "key";
+}
+
 RunSetup setup_of(const SessionInfo& info, const std::filesystem::path& folder) {
   RunSetup setup;
   setup.experiment.folder = folder;

@@ -6,11 +6,17 @@
 #include <optional>
 #include <string>
 
+#include "host_sim/core/ini_file.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/session_info.h"
 
 namespace screed {
+
+/// Whether an entry of an experiment is a key of the radio, and what stands for it where an
+/// experiment is shown.
+bool is_secret(const IniEntry& entry);
+inline constexpr const char* kSecretText = "(not shown)";
 
 struct RunSetup {
   /// Only the vehicle's keys that find and shape the model, the model of the map and the radius of

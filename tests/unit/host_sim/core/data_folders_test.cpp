@@ -32,6 +32,7 @@ TEST_F(DataFoldersTest, AnInstalledProgramsDataStandsBesideIt) {
   EXPECT_EQ(folders.boards, tree / "share/screed/boards");
   EXPECT_EQ(folders.models, tree / "share/screed/models");
   EXPECT_EQ(folders.firmware, tree / "share/screed/firmware");
+  EXPECT_EQ(folders.report, tree / "share/screed/report");
 }
 
 TEST_F(DataFoldersTest, ThatOfTheSourcesServesAProgramWhereItWasBuilt) {
@@ -40,6 +41,7 @@ TEST_F(DataFoldersTest, ThatOfTheSourcesServesAProgramWhereItWasBuilt) {
   EXPECT_EQ(folders.boards, kBoardsFolder);
   EXPECT_EQ(folders.models, kModelsFolder);
   EXPECT_EQ(folders.firmware, kFirmwareFolder);
+  EXPECT_EQ(folders.report, kReportFolder);
 }
 
 TEST_F(DataFoldersTest, TheUsersChoiceComesFirst) {

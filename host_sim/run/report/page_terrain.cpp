@@ -1,0 +1,244 @@
+// Goes through the recorded heights once.
+#include "host_sim/run/report/page_terrain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host_sim/core/display_units.h"
+#include "host_sim/render/picture/color_map.h"
+#include "host_sim/run/comparison/comparison_picture.h"
+#include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/report/height_steps.h"
+#include "host_sim/run/session/height_export.h"
+#include "host_sim/run/simulation/terrain_outcome.h"
+
+namespace screed {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What the changes of the terrain may take, deflated: 2.7 MB as text.
+constexpr std::size_t kMaxStepBytes = 2'000'000;
+// Work for one page: nodes of all maps that are looked at, and of those that are measured.
+constexpr std::uint64_t kMaxMapNodes = 200'000'000;
+constexpr std::uint64_t kMaxMeasuredNodes = 20'000'000;
+
+/// Every n-th of `count` things, so that they have no more than `max_nodes` nodes together, but the
+/// first and the last in any case.
+std::uint64_t stride(std::uint64_t count, std::uint64_t nodes, std::uint64_t max_nodes) {
+  const std::uint64_t most =
+      std::max<std::uint64_t>(20, max_nodes / std::max<std::uint64_t>(1, nodes));
+  return (count + most - 1) / most;
+}
+
+/// A figure of the terrain as it is on the page, in the unit of TerrainRow.
+struct TerrainRow {
+  const char* name;
+  const char* unit;
+  double factor;  ///< from that of TerrainFigures
+  double (*value)(const TerrainFigures&);
+};
+
+constexpr TerrainRow kTerrainRows[] = {
+    {"Lowest height", "mm", kMmPerM, [](const TerrainFigures& it) { return it.heights.lowest_m; }},
+    {"Highest height", "mm", kMmPerM,
+     [](const TerrainFigures& it) { return it.heights.highest_m; }},
+    {"Height deviation (standard)", "mm", kMmPerM,
+     [](const TerrainFigures& it) { return it.heights.height_deviation_m; }},
+    {"Relief at robot scale (rms)", "mm", kMmPerM,
+     [](const TerrainFigures& it) { return it.robot_scale.relief_m; }},
+    {"Roughness at robot scale (rms)", "mm", kMmPerM,
+     [](const TerrainFigures& it) { return it.robot_scale.roughness_m; }},
+    {"Mean slope", "deg", 1.0, [](const TerrainFigures& it) { return it.heights.mean_slope_deg; }},
+    {"Slope that 95 % of the cells do not exceed", "deg", 1.0,
+     [](const TerrainFigures& it) { return it.heights.p95_slope_deg; }},
+    {"Flat cells", "%", 100.0, [](const TerrainFigures& it) { return it.flatness; }},
+};
+
+Json before_and_after(const TerrainOutcome& outcome) {
+  Json rows = Json::array();
+  for (const TerrainRow& row : kTerrainRows) {
+    rows.push_back({{"name", row.name},
+                    {"unit", row.unit},
+                    {"before", row.factor * row.value(outcome.before)},
+                    {"after", row.factor * row.value(outcome.after)}});
+  }
+  return rows;
+}
+
+Json change_figures(const TerrainChange& change) {
+  const auto figure = [](const char* name, const char* unit, double value) {
+    return Json{{"name", name}, {"unit", unit}, {"value", value}};
+  };
+  return {figure("Ground moved", "L", kLitresPerM3 * change.moved_m3()),
+          figure("Cut", "L", kLitresPerM3 * change.cut_m3),
+          figure("Fill", "L", kLitresPerM3 * change.fill_m3),
+          figure("Deepest cut", "mm", kMmPerM * change.deepest_cut_m),
+          figure("Highest fill", "mm", kMmPerM * change.deepest_fill_m)};
+}
+
+/// Curves of the figures that lengths and shares are the unit of.
+class TerrainCurves {
+ public:
+  void add(double time_s, const TerrainFigures& figures) {
+    times_s_.push_back(time_s);
+    deviation_mm_.push_back(kMmPerM * figures.heights.height_deviation_m);
+    relief_mm_.push_back(kMmPerM * figures.robot_scale.relief_m);
+    roughness_mm_.push_back(kMmPerM * figures.robot_scale.roughness_m);
+    flat_percent_.push_back(100.0 * figures.flatness);
+  }
+  Json finish(PageFile& page) const {
+    page.add_numbers("terrain-times", std::span(times_s_));
+    Json panels = Json::array();
+    const auto series = [&](const char* label, const char* block,
+                            const std::vector<double>& values) {
+      page.add_numbers(block, std::span(values));
+      return Json{{"label", label}, {"block", block}};
+    };
+    panels.push_back(
+        {{"title", "Terrain, whole bed"},
+         {"unit", "mm"},
+         {"times", "terrain-times"},
+         {"series",
+          Json::array({series("height deviation", "terrain-deviation", deviation_mm_),
+                       series("relief (robot scale)", "terrain-relief", relief_mm_),
+                       series("roughness (robot scale)", "terrain-roughness", roughness_mm_)})}});
+    panels.push_back({{"title", "Flat cells"},
+                      {"unit", "%"},
+                      {"times", "terrain-times"},
+                      {"series", Json::array({series("flat", "terrain-flat", flat_percent_)})}});
+    return panels;
+  }
+
+ private:
+  std::vector<double> times_s_;
+  std::vector<double> deviation_mm_;
+  std::vector<double> relief_mm_;
+  std::vector<double> roughness_mm_;
+  std::vector<double> flat_percent_;
+};
+
+Json colors(Color (*color)(double), double low, double high) {
+  constexpr int kColors = 64;
+  Json list = Json::array();
+  for (int i = 0; i <= kColors; ++i) {
+    const Color c = color(low + (high - low) * i / kColors);
+    list.push_back(
+        {std::lround(255.0 * c.red), std::lround(255.0 * c.green), std::lround(255.0 * c.blue)});
+  }
+  return list;
+}
+
+/// Makes the range hold all of the heights.
+void widen(std::vector<double>& range_m, const std::vector<double>& heights_m) {
+  const auto [low, high] = std::minmax_element(heights_m.begin(), heights_m.end());
+  range_m[0] = std::min(range_m[0], *low);
+  range_m[1] = std::max(range_m[1], *high);
+}
+
+}  // namespace
+
+Json add_terrain(PageFile& page, const SessionReader& session, std::span<const std::uint64_t> stops,
+                 const TaskProgress& progress) {
+  const std::optional<HeightMap> before_map = session.terrain_before();
+  if (!before_map) return nullptr;
+  const HeightMapGeometry& geometry = before_map->geometry;
+  const TerrainMeasure measure(setup_of(session.info(), {}).experiment);
+  const HeightField before = measure.surface(field_of(*before_map));
+  std::optional<HeightField> after;
+  if (const std::optional<HeightMap> map = session.terrain_after();
+      map && map->geometry == geometry) {
+    after = measure.surface(field_of(*map));
+  }
+  const CoarseGrid grid(geometry);
+  std::vector<double> range_m = {1e9, -1e9};
+  widen(range_m, grid.heights_m(before));
+  if (after) widen(range_m, grid.heights_m(*after));
+  double low_m = range_m[0];
+  double high_m = range_m[1];
+  if (session.has_heights() && !measure.is_filtered()) {
+    const HeightExtremes extremes = session.height_extremes();
+    low_m = std::min(low_m, extremes.lowest * geometry.unit_m);
+    high_m = std::max(high_m, extremes.highest * geometry.unit_m);
+  } else {
+    // Between the two ends a filtered surface may go a little beyond both.
+    const double margin_m = 0.1 * (high_m - low_m) + 0.01;
+    low_m -= margin_m;
+    high_m += margin_m;
+  }
+
+  HeightSteps steps(grid, before, low_m, high_m);
+  TerrainCurves curves;
+  const auto figures = [&](const HeightField& field) {
+    return measure.outcome(field, field).after;
+  };
+  std::vector<std::uint64_t> step_stops;  // indices of `stops`
+  curves.add(0.0, figures(before));
+  const double tick_s = 1.0 / session.info().tick_rate_hz;
+  const auto time_after = [&](std::uint64_t row) { return static_cast<double>(row + 1) * tick_s; };
+  if (session.has_heights()) {
+    const std::uint64_t nodes = before_map->heights.size();
+    const std::uint64_t every = stride(stops.size(), nodes, kMaxMapNodes);
+    const std::uint64_t measured = stride(stops.size(), nodes, kMaxMeasuredNodes);
+    for (std::uint64_t i = 0; i < stops.size(); ++i) {
+      const bool last = i + 1 == stops.size();
+      report_progress(progress, "reading the terrain", i, stops.size());
+      const bool shown = i % every == 0 || last;
+      const bool counted = i % measured == 0 || last;
+      if (!shown && !counted) continue;
+      const HeightField field = measure.surface(field_of(session.heights_after(stops[i] + 1)));
+      if (shown) {
+        steps.add(field);
+        step_stops.push_back(i);
+      }
+      if (counted) curves.add(time_after(stops[i]), figures(field));
+    }
+  } else if (after) {
+    steps.add(*after);
+    step_stops.push_back(stops.size() - 1);
+    curves.add(time_after(stops.back()), figures(*after));
+  }
+
+  // Of joined moments the last is where the terrain is known.
+  const std::uint32_t joined = steps.fit(kMaxStepBytes);
+  std::vector<std::uint64_t> kept;
+  for (std::size_t i = 0; i < steps.steps(); ++i) {
+    kept.push_back(step_stops[std::min<std::size_t>((i + 1) * joined, step_stops.size()) - 1]);
+  }
+  page.add_block("terrain-start", steps.packed_start());
+  page.add_block("terrain-steps", steps.packed_steps());
+
+  Json json;
+  json["x_m"] = grid.x_m;
+  json["y_m"] = grid.y_m;
+  json["merged"] = grid.merged;
+  json["spacing_m"] = geometry.spacing_m;
+  json["wrap"] = geometry.wrap;
+  json["walls"] = geometry.walls;
+  json["low_m"] = steps.scale().low_m;
+  json["unit_m"] = steps.scale().unit_m;
+  json["color_range_m"] = range_m;
+  json["step_stops"] = kept;
+  json["recorded"] = session.has_heights();
+  json["filtered"] = measure.is_filtered();
+  json["flat_deg"] = measure.flat_deg();
+  json["height_colors"] = colors(height_color, 0.0, 1.0);
+  json["change_colors"] = colors(difference_color, -1.0, 1.0);
+  json["curves"] = curves.finish(page);
+  json["change_limit_m"] = 1e-3;
+  if (after) {
+    const std::vector<double> from = grid.heights_m(before);
+    std::vector<double> change = grid.heights_m(*after);
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] -= from[i];
+    json["change_limit_m"] = difference_limit_m(change);
+    const TerrainOutcome outcome = measure.outcome(before, *after);
+    json["figures"] = before_and_after(outcome);
+    json["change"] = change_figures(outcome.change);
+  }
+  return json;
+}
+
+}  // namespace screed

@@ -1,0 +1,356 @@
+// One pass through the frames, one through the terrain.
+#include "host_sim/run/report/run_page.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "firmware/parameters/parameter_table.h"
+#include "host_sim/core/display_units.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/core/record.h"
+#include "host_sim/render/picture/robot_shape.h"
+#include "host_sim/render/picture/state_color.h"
+#include "host_sim/render/report/page_file.h"
+#include "host_sim/run/experiment/run_setup.h"
+#include "host_sim/run/report/curve_sampler.h"
+#include "host_sim/run/report/page_terrain.h"
+#include "host_sim/run/report/page_track.h"
+#include "host_sim/run/simulation/names.h"
+#include "version.h"
+
+namespace screed {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kBlockRows = 1024;
+constexpr std::uint64_t kMaxStops = 900;
+
+/// Rows at which the page can stop: evenly spaced, the first and the last among them.
+std::vector<std::uint64_t> stops_of(std::uint64_t ticks) {
+  const std::uint64_t every = std::max<std::uint64_t>(1, (ticks + kMaxStops - 2) / (kMaxStops - 1));
+  std::vector<std::uint64_t> rows;
+  for (std::uint64_t row = 0; row < ticks; row += every) rows.push_back(row);
+  if (rows.back() != ticks - 1) rows.push_back(ticks - 1);
+  return rows;
+}
+
+/// A column of frames.csv, or what is made of several, as a curve.
+struct CurveInfo {
+  const char* label;
+  const char* column;  ///< of SCREED_FRAME_COLUMNS: without it there is no curve
+  double factor;       ///< from the column's unit to that of the panel
+  double (*value)(const SimFrame&);
+  double jump =
+      0.0;  ///< of an angle, by how much it may step from one tick to the next; 0: no angle
+};
+
+struct PanelInfo {
+  const char* title;
+  const char* unit;
+  std::vector<CurveInfo> curves;
+};
+
+#define COLUMN(label, name, factor)                                                  \
+  {                                                                                  \
+    label, #name, factor, [](const SimFrame& frame) -> double { return frame.name; } \
+  }
+
+const std::vector<PanelInfo>& panels() {
+  static const std::vector<PanelInfo> list = {
+      {"Attitude",
+       "deg",
+       {COLUMN("pitch", pitch, kDegPerRad), COLUMN("roll", roll, kDegPerRad),
+        COLUMN("pitch, estimated", est_pitch, kDegPerRad),
+        COLUMN("roll, estimated", est_roll, kDegPerRad)}},
+      {"Heading",
+       "deg",
+       {{"heading", "yaw", kDegPerRad, [](const SimFrame& frame) { return frame.yaw; }, 180.0},
+        {"heading, estimated", "est_heading", kDegPerRad,
+         [](const SimFrame& frame) { return frame.est_heading; }, 180.0}}},
+      {"Speed",
+       "m/s",
+       {COLUMN("forward", velocity_x, 1.0), COLUMN("left track", track_left, 1.0),
+        COLUMN("right track", track_right, 1.0)}},
+      {"Slip", "1", {COLUMN("left", slip_left, 1.0), COLUMN("right", slip_right, 1.0)}},
+      {"Sinkage",
+       "mm",
+       {COLUMN("left", sinkage_left, kMmPerM), COLUMN("right", sinkage_right, kMmPerM)}},
+      {"Motor current",
+       "A",
+       {COLUMN("left", current_left, 1.0), COLUMN("right", current_right, 1.0)}},
+      {"Battery", "V", {COLUMN("terminal voltage", battery, 1.0)}},
+      {"Energy drawn", "J", {COLUMN("energy", energy, 1.0)}},
+  };
+  return list;
+}
+
+#undef COLUMN
+
+/// The curves of one robot, on their way through the frames.
+class Curves {
+ public:
+  Curves(std::uint64_t ticks, const std::vector<std::string>& missing) : sampling_(ticks) {
+    for (const PanelInfo& panel : panels()) {
+      for (const CurveInfo& curve : panel.curves) {
+        if (std::find(missing.begin(), missing.end(), curve.column) != missing.end()) continue;
+        taken_.push_back({&panel, &curve, CurveSampler(sampling_)});
+      }
+    }
+  }
+  void add(const SimFrame& frame) {
+    for (Taken& it : taken_) it.sampler.add(it.curve->factor * it.curve->value(frame));
+  }
+  Json finish(PageFile& page, const std::string& prefix, double tick_s) {
+    std::vector<double> times_s;
+    for (const std::uint64_t row : sampling_.rows()) {
+      times_s.push_back(static_cast<double>(row + 1) * tick_s);
+    }
+    page.add_numbers(prefix + "times", std::span<const double>(times_s));
+    Json list = Json::array();
+    const PanelInfo* last = nullptr;
+    for (Taken& it : taken_) {
+      if (it.panel != last) {
+        list.push_back({{"title", it.panel->title},
+                        {"unit", it.panel->unit},
+                        {"times", prefix + "times"},
+                        {"series", Json::array()}});
+      }
+      last = it.panel;
+      const std::string block = prefix + it.curve->column;
+      const std::vector<float> samples = it.sampler.samples();
+      page.add_numbers(block, std::span<const float>(samples));
+      list.back()["series"].push_back({{"label", it.curve->label},
+                                       {"column", it.curve->column},
+                                       {"factor", it.curve->factor},
+                                       {"jump", it.curve->jump},
+                                       {"block", block}});
+    }
+    return list;
+  }
+  std::uint64_t bucket_ticks() const { return sampling_.bucket_ticks; }
+
+ private:
+  struct Taken {
+    const PanelInfo* panel;
+    const CurveInfo* curve;
+    CurveSampler sampler;
+  };
+  CurveSampling sampling_;
+  std::vector<Taken> taken_;
+};
+
+double number_in(const Column& column, const std::array<std::uint8_t, kFrameBytes>& row) {
+  static_assert(std::all_of(kFrameColumns.begin(), kFrameColumns.end(),
+                            [](const Column& it) {
+                              return it.type == ColumnType::kDouble ||
+                                     it.type == ColumnType::kInt32;
+                            }),
+                "no other type is read");
+  // Rows are little endian, and so are our hosts.
+  if (column.type == ColumnType::kDouble) {
+    double value = 0.0;
+    std::memcpy(&value, &row[column.offset], sizeof value);
+    return value;
+  }
+  std::int32_t value = 0;
+  std::memcpy(&value, &row[column.offset], sizeof value);
+  return value;
+}
+
+/// Whole rows of frames.csv, column by column.
+class StopRows {
+ public:
+  void add(const SimFrame& frame) {
+    std::array<std::uint8_t, kFrameBytes> row{};
+    pack(frame, row);
+    for (std::size_t i = 0; i < kFrameColumns.size(); ++i) {
+      columns_[i].push_back(number_in(kFrameColumns[i], row));
+    }
+  }
+  Json finish(PageFile& page, const std::string& block) const {
+    std::vector<double> all;
+    Json list = Json::array();
+    for (std::size_t i = 0; i < kFrameColumns.size(); ++i) {
+      const Column& column = kFrameColumns[i];
+      all.insert(all.end(), columns_[i].begin(), columns_[i].end());
+      list.push_back({{"name", column.name}, {"unit", column.unit}, {"meaning", column.meaning}});
+    }
+    page.add_numbers(block, std::span<const double>(all));
+    return {{"block", block}, {"columns", list}};
+  }
+
+ private:
+  std::array<std::vector<double>, kFrameColumns.size()> columns_;
+};
+
+Json box(const RobotPlate& plate, double bottom, double top) {
+  return {{"back", plate.back}, {"front", plate.front}, {"right", plate.right},
+          {"left", plate.left}, {"bottom", bottom},     {"top", top}};
+}
+
+/// Running gear and hull as boxes in the robot's frame.
+Json boxes_of(const Assembly& robot, bool tracks) {
+  const RobotShape shape = shape_of(robot, tracks);
+  const AssemblyWheel& wheel = robot.wheels[0][0];
+  Json json;
+  json["gear"] = Json::array();
+  for (const RobotPlate& gear : shape.running_gear) {
+    json["gear"].push_back(
+        box(gear, wheel.centre.z() - wheel.radius_m, wheel.centre.z() + wheel.radius_m));
+  }
+  json["hull"] = box(shape.hull, wheel.centre.z() - 0.3 * wheel.radius_m,
+                     wheel.centre.z() + 1.3 * wheel.radius_m);
+  return json;
+}
+
+/// What one robot did. Its blocks begin with `prefix`.
+Json add_robot(PageFile& page, const SessionReader& session, std::span<const std::uint64_t> stops,
+               const std::string& prefix, const TaskProgress& progress) {
+  const double tick_s = 1.0 / session.info().tick_rate_hz;
+  Curves curves(session.frames(), session.missing_columns());
+  StopRows rows;
+  PageTrack track;
+  PageEvents events;
+  double distance_m = 0.0;
+  std::size_t next_stop = 0;
+  std::vector<SimFrame> frames;
+  for (std::uint64_t first = 0; first < session.frames(); first += frames.size()) {
+    report_progress(progress, "reading the run", first, session.frames());
+    frames.resize(std::min(kBlockRows, session.frames() - first));
+    session.read(first, std::span(frames));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const SimFrame& frame = frames[i];
+      const std::uint64_t row = first + i;
+      curves.add(frame);
+      track.add(row, frame);
+      events.add(frame);
+      if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
+        distance_m += std::hypot(frame.delta_x, frame.delta_y);
+      }
+      if (next_stop < stops.size() && stops[next_stop] == row) {
+        rows.add(frame);
+        ++next_stop;
+      }
+    }
+  }
+  const SimFrame& last = frames.back();
+  const auto figure = [](const char* name, const char* unit, double value) {
+    return Json{{"name", name}, {"unit", unit}, {"value", value}};
+  };
+  Json json;
+  json["name"] = "robot";
+  json["figures"] = {figure("Simulated time", "s", static_cast<double>(session.frames()) * tick_s),
+                     figure("Path on the ground", "m", distance_m),
+                     figure("Energy drawn", "J", last.energy),
+                     figure("Battery at the end", "V", last.battery)};
+  json["state"] = state_name(static_cast<RobotState>(last.state));
+  json["faults"] = fault_names(static_cast<std::uint16_t>(last.faults));
+  json["bucket_ticks"] = curves.bucket_ticks();
+  json["panels"] = curves.finish(page, prefix, tick_s);
+  json["stops"] = rows.finish(page, prefix + "stops");
+  json["track"] = track.finish(page, prefix + "track");
+  events.finish(json);
+  return json;
+}
+
+Json css_color(const Color& color) {
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02lx%02lx%02lx", std::lround(255.0 * color.red),
+                std::lround(255.0 * color.green), std::lround(255.0 * color.blue));
+  return text;
+}
+
+Json leveling_states() {
+  Json list = Json::array();
+  const std::vector<std::string> names = leveling_state_names();
+  for (std::size_t state = 0; state < names.size(); ++state) {
+    list.push_back({{"name", names[state]}, {"color", css_color(state_color(state))}});
+  }
+  return list;
+}
+
+Json parameters_of(const SessionReader& session) {
+  const std::vector<std::string>& missing = session.missing_parameters();
+  Json list = Json::array();
+  for (const ParameterInfo& it : kParameterTable) {
+    const bool recorded = std::find(missing.begin(), missing.end(), it.name) == missing.end();
+    list.push_back({{"name", it.name},
+                    {"value", session.info().parameters.*it.field},
+                    {"unit", it.unit},
+                    {"default", it.default_value},
+                    {"meaning", it.meaning},
+                    {"recorded", recorded}});
+  }
+  return list;
+}
+
+Json configuration_of(const SessionReader& session) {
+  Json list = Json::array();
+  for (const IniEntry& it : read_ini_text(session.info().experiment_text, "the experiment")) {
+    list.push_back({{"section", it.section},
+                    {"key", it.key},
+                    {"value", is_secret(it) ? kSecretText : it.value}});
+  }
+  return list;
+}
+
+Json identity_of(const SessionReader& session, const RunPageOptions& options) {
+  const SessionInfo& info = session.info();
+  const RunSetup setup = setup_of(info, {});
+  const auto fact = [](const char* name, Json value) {
+    return Json{{"name", name}, {"value", std::move(value)}};
+  };
+  Json list = {fact("Run", options.name),
+               fact("Experiment", info.experiment_name),
+               fact("Algorithm", setup.experiment.experiment.algorithm),
+               fact("Terrain", setup.experiment.map.model),
+               fact("Board", info.board_name),
+               fact("Seed of the world", std::to_string(info.seed)),
+               fact("Seed of the drive", std::to_string(info.parameters.random_seed)),
+               fact("Ticks", std::to_string(session.frames()) + " at " +
+                                 std::to_string(info.tick_rate_hz) + " Hz"),
+               fact("Program of the run", info.program_version),
+               fact("Program of this page", SCREED_VERSION),
+               fact("Content hash",
+                    session.complete() ? session.content_hash() : "none: the run did not end")};
+  if (!setup.soil.empty()) list.insert(list.begin() + 4, fact("Soil", setup.soil));
+  return list;
+}
+
+}  // namespace
+
+std::string run_page(const SessionReader& session, const RunPageOptions& options) {
+  if (session.frames() == 0) throw InputError("the session has no tick to report");
+  const std::vector<std::uint64_t> stops = stops_of(session.frames());
+  PageFile page;
+  Json robot = add_robot(page, session, stops, "robot-0-", options.progress);
+  if (options.robot) {
+    robot["boxes"] =
+        boxes_of(*options.robot, setup_of(session.info(), {}).experiment.vehicle.tracks);
+  }
+  Json facts;
+  facts["kind"] = "run";
+  facts["title"] = options.name;
+  facts["complete"] = session.complete();
+  facts["tick_s"] = 1.0 / session.info().tick_rate_hz;
+  facts["stops"] = stops;
+  facts["identity"] = identity_of(session, options);
+  facts["robots"] = Json::array({std::move(robot)});
+  facts["leveling_states"] = leveling_states();
+  facts["terrain"] = add_terrain(page, session, stops, options.progress);
+  facts["parameters"] = parameters_of(session);
+  facts["configuration"] = configuration_of(session);
+  // A name of a folder need not be UTF-8; JSON must.
+  return page.document(options.built_page,
+                       facts.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace screed

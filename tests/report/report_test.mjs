@@ -1,0 +1,173 @@
+// report_test.mjs PROGRAM FOLDER: pages of runs in a headless browser, against the CSV and the summary of the same runs.
+//
+// Ends with "N passed, N failed". FOLDER is for the runs; it is empty.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { openReport, startBrowser } from './browser.mjs';
+
+const [program, folder] = process.argv.slice(2);
+const key = '00112233445566778899aabbccddeeff';
+const soil = `[experiment]
+duration = 40
+algorithm = spin_on_peak
+seed = 3
+[map]
+size = 2
+edges = walls
+model = scm
+[soil]
+cell = 0.01
+`;
+
+const screed = (...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'inherit'] });
+
+function record(name, text, ...options) {
+  writeFileSync(join(folder, `${name}.ini`), text);
+  screed('sim', `${name}.ini`, '--quiet', '--out', name, ...options);
+  screed('report', name, '--quiet', '--out', `${name}.html`);
+  return join(folder, `${name}.html`);
+}
+
+/// frames.csv as columns of numbers.
+function readCsv(name) {
+  screed('session', 'export', name, '--csv', '--all', '--out', `${name}_export`);
+  const [head, ...lines] = readFileSync(join(folder, `${name}_export`, 'frames.csv'), 'utf8').trimEnd().split('\n');
+  const rows = lines.map((line) => line.split(','));
+  return new Map(head.split(',').map((title, i) => [title.replace(/ \[.*\]$/, ''), rows.map((row) => Number(row[i]))]));
+}
+
+const moveSlider = (page, stop) =>
+  page.$eval('input[type=range]', (input, value) => {
+    input.value = value;
+    input.dispatchEvent(new Event('input', { bubbles: true }));
+  }, stop);
+const lastStop = (page) => page.$eval('input[type=range]', (input) => Number(input.max));
+const shownRow = (page) =>
+  page.$$eval('details.row tr[data-column]', (rows) => Object.fromEntries(rows.map((row) => [row.dataset.column, row.children[1].dataset.value])));
+const figure = (page, name) => page.$eval(`tr[data-name="${name}"] td[data-value]`, (cell) => Number(cell.dataset.value));
+const canvas = async (page) => (await page.$('.view canvas')).screenshot({ encoding: 'base64' });
+/// The numbers of a block as the page unpacks them.
+const block = (page, name, type) =>
+  page.evaluate(async (id, kind) => {
+    const packed = Uint8Array.from(atob(document.getElementById(`block-${id}`).textContent), (c) => c.charCodeAt(0));
+    const bytes = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
+    return Array.from(kind === 'float' ? new Float32Array(bytes) : new Float64Array(bytes));
+  }, name, type);
+const facts = (page) => page.$eval('#facts', (script) => JSON.parse(script.textContent));
+
+/// Each curve that is a column: every tick of a short run, of a long one the extremes of each bucket.
+async function curvesAreTheCsv(page, csv) {
+  const robot = (await facts(page)).robots[0];
+  let curves = 0;
+  for (const panel of robot.panels) {
+    for (const series of panel.series) {
+      const shown = await block(page, series.block, 'float');
+      const column = csv.get(series.column).map((value) => Math.fround(value * series.factor));
+      if (robot.bucket_ticks === 1) assert.deepEqual(shown, column, series.column);
+      for (let first = 0, at = 0; robot.bucket_ticks > 1 && first < column.length; first += robot.bucket_ticks, at += 2) {
+        const bucket = column.slice(first, first + robot.bucket_ticks);
+        assert.deepEqual([Math.min(shown[at], shown[at + 1]), Math.max(shown[at], shown[at + 1])], [Math.min(...bucket), Math.max(...bucket)], `${series.column} from row ${first}`);
+      }
+      ++curves;
+    }
+  }
+  assert.ok(curves >= 15, `${curves} curves`);
+}
+
+const tests = {
+  async 'of a run on soil: no complaint, the slider moves robot and terrain, light and dark differ'(browser) {
+    const { page, complaints } = await openReport(browser, join(folder, 'soil.html'));
+    const start = await canvas(page);
+    await moveSlider(page, await lastStop(page));
+    assert.equal(await page.$eval('.time output', (it) => it.textContent), '40.00 s of 40.00 s');
+    const end = await canvas(page);
+    assert.notEqual(end, start, 'the picture does not change with the slider');
+    // With the robot where it is, only the ground differs.
+    await page.select('select[aria-label=Terrain]', 'before');
+    assert.notEqual(await canvas(page), end, 'the terrain before looks like that after');
+    await page.select('select[aria-label=Terrain]', 'time');
+    assert.equal(await canvas(page), end, 'going back and forth changes the terrain');
+    await page.select('select[aria-label=Colours]', 'change');
+    assert.match(await page.$eval('.legend', (it) => it.textContent), /change since the start \[mm\]/);
+    await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: 'dark' }]);
+    assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(20, 24, 27)');
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+  async 'each stop of the slider shows a row of frames.csv, to the last bit'(browser) {
+    const { page } = await openReport(browser, join(folder, 'soil.html'));
+    const csv = readCsv('soil');
+    const { stops } = await facts(page);
+    assert.equal(stops.at(-1), csv.get('time').length - 1);
+    for (const stop of [0, 1, Math.floor(stops.length / 3), stops.length - 1]) {
+      await moveSlider(page, stop);
+      const row = await shownRow(page);
+      assert.deepEqual(['frame', ...Object.keys(row)], [...csv.keys()]);
+      row.frame = stops[stop];
+      for (const [name, column] of csv) assert.equal(Number(row[name]), column[stops[stop]], `${name} in row ${stops[stop]}`);
+    }
+    await page.close();
+  },
+  async 'curves are the columns of frames.csv'(browser) {
+    for (const name of ['soil', 'rigid']) {
+      const { page } = await openReport(browser, join(folder, `${name}.html`));
+      await curvesAreTheCsv(page, readCsv(name));
+      await page.close();
+    }
+  },
+  async 'figures are those of the summary'(browser) {
+    const { page } = await openReport(browser, join(folder, 'soil.html'));
+    const summary = JSON.parse(readFileSync(join(folder, 'soil', 'summary.json'), 'utf8'));
+    const near = (got, wanted, name) => assert.ok(Math.abs(got - wanted) <= 1e-9 * Math.abs(wanted), `${name}: ${got}, not ${wanted}`);
+    near(await figure(page, 'Energy drawn'), summary.energy_j, 'energy');
+    near(await figure(page, 'Battery at the end'), summary.battery_v, 'battery');
+    near(await figure(page, 'Ground moved'), 1000 * summary.terrain_change.moved_m3, 'moved');
+    near(await figure(page, 'Deepest cut'), 1000 * summary.terrain_change.deepest_cut_m, 'cut');
+    const rows = await page.$$eval('tr[data-name]', (all) => all.map((row) => [row.dataset.name, ...[...row.querySelectorAll('td[data-value]')].map((cell) => Number(cell.dataset.value))]));
+    for (const [name, key_, factor] of [['Height deviation (standard)', 'height_deviation_m', 1000], ['Relief at robot scale (rms)', 'relief_m', 1000], ['Flat cells', 'flatness', 100]]) {
+      const [, before, after] = rows.find((row) => row[0] === name);
+      near(before, factor * summary.terrain_before[key_], `${name} before`);
+      near(after, factor * summary.terrain_after[key_], `${name} after`);
+    }
+    const identity = await page.$eval('#page', (it) => it.textContent);
+    assert.ok(identity.includes(summary.content_hash) && identity.includes(summary.version));
+    // The last point of the terrain's curve is the terrain at the end.
+    near((await block(page, 'terrain-deviation', 'double')).at(-1), 1000 * summary.terrain_after.height_deviation_m, 'last of the curve');
+    await page.close();
+  },
+  async 'a run without recorded heights says so and moves its robot'(browser) {
+    const { page, complaints } = await openReport(browser, join(folder, 'rigid.html'), { scheme: 'dark' });
+    assert.match(await page.$eval('#page', (it) => it.textContent), /heights of the ticks were not recorded/);
+    const start = await canvas(page);
+    await moveSlider(page, await lastStop(page));
+    assert.notEqual(await canvas(page), start);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+  async 'no key of the radio is on the page, and a page stays small'() {
+    const text = readFileSync(join(folder, 'rigid.html'), 'utf8');
+    assert.ok(readFileSync(join(folder, 'rigid', 'experiment.ini'), 'utf8').includes(key), 'the run has the key');
+    assert.ok(!text.includes(key));
+    assert.ok(statSync(join(folder, 'soil.html')).size < 5e6);
+  },
+};
+
+record('soil', soil, '--heights');
+record('rigid', `[experiment]\nduration = 12\nseed = 2\n[map]\nsize = 2\nedges = walls\n[radio]\nkey = ${key}\n`);
+const browser = await startBrowser();
+let failed = 0;
+for (const [name, test] of Object.entries(tests)) {
+  try {
+    await test(browser);
+  } catch (error) {
+    ++failed;
+    console.log(`failed: ${name}\n${error.stack}`);
+  }
+  // Of a test that failed, its page.
+  for (const page of await browser.pages()) if (page.url() !== 'about:blank') await page.close();
+}
+await browser.close();
+console.log(`${Object.keys(tests).length - failed} passed, ${failed} failed`);
+process.exitCode = failed === 0 ? 0 : 1;
