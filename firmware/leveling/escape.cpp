@@ -88,12 +88,7 @@ bool Escape::tick(bool stuck, bool backwards, bool homewards) {
   } else {
     if (ticks_left_ != 0) return true;
     --steps_left_;
-    if (way_ == 0) {
-      next_way = kStand;
-    } else if (!stuck) {
-      // Loose before the way's end: rocked on, it would roll downhill and out of an open site.
-      steps_left_ = 0;
-    }
+    if (way_ == 0) next_way = kStand;
     if (steps_left_ == 0 && way_ == kStand) {
       ticks_left_ = kFreeTicks;
       return false;

@@ -87,23 +87,6 @@ TEST(Escape, OnItsWayHomeItGoesHalfAsFarAndTurnsByLessThan45Degrees) {
   EXPECT_LT(near, 0);
 }
 
-// Rocked on, a loose robot would roll downhill.
-TEST(Escape, RockingEndsWithTheStepInWhichItComesLoose) {
-  Escape escape(escape_parameters(6));
-  while (escape.tick(true)) {
-  }
-  for (int tick = 0; tick < 100; ++tick) ASSERT_TRUE(escape.tick(true));  // the second attempt
-  const int16_t rocking = escape.motion().speed_mm_per_s;
-  EXPECT_EQ(std::abs(rocking), 250);
-  int ticks = 0;
-  while (std::abs(escape.motion().speed_mm_per_s) == 250) {
-    ASSERT_TRUE(escape.tick(false));
-    ++ticks;
-  }
-  EXPECT_LE(ticks, 48);
-  EXPECT_EQ(escape.motion().speed_mm_per_s, -200) << "then out of there, as the first attempt";
-}
-
 // What lies behind was passable, and that is ahead for one that drove backwards.
 TEST(Escape, OfARobotThatDroveBackwardsIsMirrored) {
   Escape ahead(escape_parameters(6));
@@ -156,7 +139,7 @@ TEST(Escape, ARobotThatIsFreeForLongHasAllAttemptsAgain) {
   EXPECT_TRUE(escape.gave_up());
 }
 
-TEST(Escape, WhatTheWatchSaysInTheFirstAttemptChangesNothing) {
+TEST(Escape, WhatTheWatchSaysMeanwhileChangesNothing) {
   Escape free(escape_parameters(6));
   Escape held(escape_parameters(6));
   int ticks = 0;
