@@ -48,6 +48,7 @@ TEST_F(PageFileTest, SaysHowAPageIsBuiltWhereThereIsNone) {
 
 TEST(Deflated, IsReadByZlib) {
   std::vector<std::uint8_t> bytes;
+  bytes.reserve(5000);
   for (int i = 0; i < 5000; ++i) bytes.push_back(static_cast<std::uint8_t>(i * i));
   const std::vector<std::uint8_t> packed = deflated(bytes);
   EXPECT_LT(packed.size(), bytes.size());
