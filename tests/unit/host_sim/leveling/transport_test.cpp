@@ -126,7 +126,8 @@ TEST(Transport, IsTheBestOfAllAssignments) {
     }
     const auto distance = [&](int heap, int pit) {
       const GroundBlock& a = ground.blocks[static_cast<size_t>(heap)];
-      const GroundBlock& b = ground.blocks[static_cast<std::size_t>(kHeaps) + static_cast<std::size_t>(pit)];
+      const GroundBlock& b =
+          ground.blocks[static_cast<std::size_t>(kHeaps) + static_cast<std::size_t>(pit)];
       double dx = std::abs(a.x_m - b.x_m);
       double dy = std::abs(a.y_m - b.y_m);
       if (ground.wrap) {
