@@ -1,7 +1,7 @@
 // The frames that travel between robot and ground. Their ids, sizes and fields are made from
 // screed.dbc, which is the one place to change them; here is what a DBC file cannot say.
 //
-// id = class[10:8] | node[7:4] | index[3:0]; node 0 is the ground, 1 the robot. A protected frame
+// id = class[10:8] | node[7:4] | index[3:0] (node.h); here stand those of node 1. A protected frame
 // starts with the two bytes of e2e.h; bits 12..15 carry four bits of the message. All numbers are
 // little endian.
 #pragma once
@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "firmware/protocol/bytes.h"
+#include "firmware/protocol/node.h"
 #include "firmware/protocol/slcan.h"
 #include "schema/messages.h"
 

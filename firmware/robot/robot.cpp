@@ -59,6 +59,7 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
       leveling_(parameters),
       drive_(board, parameters),
       slip_watch_(board.tread_mm),
+      telemetry_(credentials.robot_id),
       gate_(credentials),
       position_(board.count_um_q4, parameters.position_noise) {}
 
@@ -119,7 +120,8 @@ void Robot::receive(const SensorSample& sample) {
 }
 
 void Robot::handle(const CanFrame& frame) {
-  switch (frame.id) {
+  const uint16_t id = telemetry_.exchange(frame.id);
+  switch (id) {
     case kIdCommand:
       // Authenticated by its MAC, which a later tick checks. While one command waits, others are
       // dropped.
@@ -131,11 +133,11 @@ void Robot::handle(const CanFrame& frame) {
     case kIdGroundHeartbeat:
     case kIdEmergencyStop:
     case kIdParamStage:
-      if (frame.size != size_of(frame.id) || !e2e_check(frame.id, frame.data, frame.size)) break;
+      if (frame.size != size_of(id) || !e2e_check(frame.id, frame.data, frame.size)) break;
       ++uplink_.frames_received;
-      if (frame.id == kIdEmergencyStop) {
+      if (id == kIdEmergencyStop) {
         supervisor_.request(Request::kEmergencyStop);
-      } else if (frame.id == kIdParamStage) {
+      } else if (id == kIdParamStage) {
         memcpy(staged_, frame.data + kE2eHeaderSize, kStagedSize);
       } else {
         const auto counter = static_cast<uint8_t>((frame.data[1] & 0x0FU) + 1U);
@@ -158,7 +160,7 @@ void Robot::handle(const CanFrame& frame) {
 void Robot::process_command() {
   if (!command_pending_ || telemetry_.is_packet_tick()) return;
   command_pending_ = false;
-  const GateResult checked = gate_.check(kIdCommand, command_);
+  const GateResult checked = gate_.check(telemetry_.exchange(kIdCommand), command_);
   if (checked == GateResult::kRepeated) {
     telemetry_.queue(frame_of(answer_));
     return;

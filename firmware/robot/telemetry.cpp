@@ -182,6 +182,7 @@ void Telemetry::queue(const CanFrame& frame) {
 }
 
 void Telemetry::emit(CanFrame& frame, uint8_t message, RobotOutput& output) {
+  frame.id = exchange(frame.id);
   e2e_protect(frame.id, counter_[message], frame.data, frame.size);
   counter_[message] = static_cast<uint8_t>((counter_[message] + 1) & 0x0F);
   const uint8_t length = slcan_encode(frame, output.radio_out + output.radio_out_count);

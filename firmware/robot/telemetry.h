@@ -62,9 +62,13 @@ struct TelemetryMemory {
   uint32_t time_us_;           ///< the sample's, then
 };
 
-class Telemetry : private TelemetryMemory {
+/// The node as a base: on the AVR it is empty, and then takes no byte.
+class Telemetry : private TelemetryMemory, private OwnNode {
  public:
-  Telemetry() : TelemetryMemory() {}
+  /// robot_id: as Credentials has it.
+  explicit Telemetry(uint8_t robot_id) : TelemetryMemory(), OwnNode(robot_id) {}
+
+  using OwnNode::exchange;
 
   static constexpr uint8_t kPacketTicks = 2;
   /// Half of 57,600 baud for the time of a packet.

@@ -2,6 +2,7 @@
 #
 #   build/firmware/<board>/screed.elf and .hex, and their budget of flash, RAM, stack and cycles
 #   build/firmware/<board>_usb_core/ the same with USB=core: on the Arduino core's main() and USB instead of hal/avr/usb
+#   build/firmware/<board>_node_3/ the same with NODE=3: of the robot that is node 3 on the radio
 #
 # Needs options.mk and host.mk. A board is a folder boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
 
@@ -34,7 +35,7 @@ ifeq ($(USB_FOLDER_$(USB)),)
 $(error USB=$(USB): own or core)
 endif
 USB_SUFFIX_core := _usb_core
-FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))
+FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))$(NODE:%=_node_%)
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
 FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) $(call sources,$(USB_FOLDER_$(USB)))
 FIRMWARE_STARTUP := $(FIRMWARE_BUILD)/hal/avr/startup.o
@@ -52,6 +53,10 @@ AVR_FLAGS := -std=c++14 -Os -g -mmcu=$(BOARD_MCU) -DF_CPU=$(BOARD_CLOCK_HZ)UL -f
 # make firmware STANDALONE=yes: the default of the parameter `standalone` is 1.
 ifeq ($(STANDALONE),yes)
 AVR_FLAGS += -DSCREED_STANDALONE=1
+endif
+# make firmware NODE=3: the robot's number on the radio, 1 (the default) to 15.
+ifdef NODE
+AVR_FLAGS += -DSCREED_NODE=$(NODE)
 endif
 # make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/parameters.h says.
 ifneq ($(origin LEAVE_OUT),undefined)
@@ -103,11 +108,11 @@ size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash by modules, RAM,
 $(B)/avr_cycles: $(B)/tools/avr/cycles/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
 
-STACK_SOURCES := $(filter-out tools/avr/stack/main.cpp,$(call sources,tools/avr/stack))
-$(B)/libavr_stack.a: $(call objects,$(STACK_SOURCES))
+AVR_TOOL_SOURCES := $(filter-out %/main.cpp,$(call sources,tools/avr/stack) $(call sources,tools/avr/order))
+$(B)/libavr_tools.a: $(call objects,$(AVR_TOOL_SOURCES))
 	@rm -f $@
 	@ar rcs $@ $^
-$(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_stack.a $(LIBRARY) $(B)/link.flags
+$(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_tools.a $(LIBRARY) $(B)/link.flags
 	$(call link)
 
 # Changes only when compiler or flags do, and then everything is built anew.
@@ -158,7 +163,7 @@ function-order: $(FIRMWARE_ELF) $(FIRMWARE_BUILD)/screed.lst $(B)/avr_order  ## 
 	@{ echo "# Sections of the image's functions in the order in which they lie. Made by: make function-order" ; \
 	   $(B)/avr_order $(FIRMWARE_BUILD)/screed.map $(FIRMWARE_BUILD)/screed.lst ; } > $(FUNCTION_ORDER).new
 	@mv $(FUNCTION_ORDER).new $(FUNCTION_ORDER)
-$(B)/avr_order: $(B)/tools/avr/order/main.o $(B)/libavr_stack.a $(LIBRARY) $(B)/link.flags
+$(B)/avr_order: $(B)/tools/avr/order/main.o $(B)/libavr_tools.a $(LIBRARY) $(B)/link.flags
 	$(call link)
 
 $(FIRMWARE_BUILD)/%.hex: $(FIRMWARE_BUILD)/%.elf
@@ -175,3 +180,10 @@ OTHER_IMAGES := $(patsubst %,$(BUILD_ROOT)/firmware/%/screed.elf,$(filter-out $(
 TEST_IMAGES += $(OTHER_IMAGES)
 $(OTHER_IMAGES): $(BUILD_ROOT)/firmware/%/screed.elf: FORCE
 	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) BOARD=$* $@
+# And that of another node.
+ifndef NODE
+OTHER_NODE_IMAGE := $(FIRMWARE_BUILD)_node_3/screed.elf
+TEST_IMAGES += $(OTHER_NODE_IMAGE)
+$(OTHER_NODE_IMAGE): FORCE
+	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) NODE=3 $@
+endif

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
@@ -16,17 +17,24 @@ namespace screed::mcu {
 namespace {
 
 double forward_speed(ImageDrive& drive) {
-  const ChassisState chassis = drive.world.plant().vehicle().chassis();
+  const ChassisState chassis = drive.plant().vehicle().chassis();
   return chassis.pose.linear().col(0).dot(chassis.velocity);
+}
+
+/// Against a host's robot with these parameters.
+ParityResult parity(ImageDrive& drive, const Parameters& parameters, double seconds,
+                    const CommandKey& key = test_key()) {
+  const std::vector<RobotSettings> robots = {
+      {board_constants_of(kDefaultBoard), parameters, credentials_of(key)}};
+  return run_parity(drive.world, robots, seconds, [](const ParityResult&) { return true; });
 }
 
 TEST(CoSimulation, TheImageDrivesAtTheSpeedItIsTold) {
   ImageDrive drive;
   drive.set_off();
-  const double begin_x = drive.world.plant().vehicle().chassis().pose.translation().x();
+  const double begin_x = drive.plant().vehicle().chassis().pose.translation().x();
   drive.run(5.0);
-  const double displacement =
-      drive.world.plant().vehicle().chassis().pose.translation().x() - begin_x;
+  const double displacement = drive.plant().vehicle().chassis().pose.translation().x() - begin_x;
   EXPECT_NEAR(displacement, 5.0 * ImageDrive::kSpeed_m_per_s, 0.05);
   EXPECT_NEAR(forward_speed(drive), ImageDrive::kSpeed_m_per_s, 0.02);
   drive.expect_punctual();
@@ -40,12 +48,23 @@ TEST(CoSimulation, HostAndImageGiveTheSameBytes) {
   ImageDrive drive;
   Parameters parameters;
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
-  const ParityResult result =
-      run_parity(drive.world, board_constants_of(kDefaultBoard), parameters,
-                 credentials_of(test_key()), 15.0, [](const ParityResult&) { return true; });
+  const ParityResult result = parity(drive, parameters, 15.0);
   EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
   EXPECT_GT(result.ticks, 1490U);
   EXPECT_GT(result.driving_ticks, 500U);
+}
+
+TEST(CoSimulation, TheImageOfAnotherNodeIsThatRobotToTheByte) {
+  CommandKey key = test_key();
+  key.robot_id = kOtherNode;
+  ImageDrive drive(kOtherNodeImage, key);
+  Parameters parameters;
+  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  const ParityResult result = parity(drive, parameters, 12.0, key);
+  EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
+  EXPECT_GT(result.driving_ticks, 300U) << "it took the commands of its ground station";
+  EXPECT_FALSE(drive.last_frame(id_of_node(kIdAttitude, kOtherNode)).empty());
+  EXPECT_TRUE(drive.last_frame(kIdAttitude).empty());
 }
 
 TEST(CoSimulation, ParityFindsADifference) {
@@ -53,9 +72,7 @@ TEST(CoSimulation, ParityFindsADifference) {
   Parameters parameters;
   parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   parameters.speed_kp = 25;  // the image has 24
-  const ParityResult result =
-      run_parity(drive.world, board_constants_of(kDefaultBoard), parameters,
-                 credentials_of(test_key()), 10.0, [](const ParityResult&) { return true; });
+  const ParityResult result = parity(drive, parameters, 10.0);
   EXPECT_GT(result.differing_bytes, 0U);
   ASSERT_TRUE(result.first_difference_tick.has_value());
   EXPECT_GT(*result.first_difference_tick, 500U) << "while the robot stands, kp means nothing";
@@ -83,7 +100,7 @@ TEST(CoSimulation, SensorsSayWhatTheWorldIs) {
   EXPECT_NEAR(drive.sample.temperature / 480.0 + 42.5, ImuModel::kTemperature_degc, 0.01);
   const double volt =
       drive.sample.battery * board_constants_of(kDefaultBoard).battery_uv_per_lsb * 1e-6;
-  EXPECT_NEAR(volt, drive.world.plant().battery().terminal_v, 0.02);
+  EXPECT_NEAR(volt, drive.plant().battery().terminal_v, 0.02);
 }
 
 TEST(CoSimulation, AHandledRobotFeelsWhatAPersonDoes) {

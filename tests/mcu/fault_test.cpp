@@ -163,7 +163,7 @@ TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
   ImageDrive drive;
   drive.set_off();
   const std::uint8_t rejected_before = drive.last_frame(kIdLink).at(4);
-  drive.world.flood = true;
+  drive.world.image_robot().flood = true;
   const std::optional<double> stopped = drive.ms_until_stop(4.0);
   ASSERT_TRUE(stopped.has_value());
   EXPECT_LE(*stopped, 1500.0) << "0.5 s without a heartbeat, then the ramp";
@@ -176,7 +176,7 @@ TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
   drive.expect_punctual();
   EXPECT_NE(drive.last_frame(kIdLink).at(4), rejected_before) << "rejected lines are not counted";
   // No arming by itself when the line is free again.
-  drive.world.flood = false;
+  drive.world.image_robot().flood = false;
   drive.run(2.0);
   EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
 }

@@ -29,6 +29,10 @@ class ImageDrive {
       : world(HeightField::flat(20.0, 0.1), rover5(), options(seed, speed_m_per_s, handled), &log) {
   }
 
+  /// The image of another node, with that robot's key.
+  ImageDrive(const std::string& image, const CommandKey& key)
+      : world(HeightField::flat(20.0, 0.1), rover5(), options(image, key), &log) {}
+
   /// One control tick of the program.
   void tick() {
     sample = world.run_to_sample();
@@ -62,7 +66,8 @@ class ImageDrive {
     return ms_until([this] { return !powered(); }, most_s);
   }
 
-  const RobotReport& report() const { return world.ground_station().report(); }
+  const Environment& plant() { return world.world().plant(); }
+  const RobotReport& report() { return world.world().ground_station().report(); }
   /// Payload of the newest frame of an id that came down the radio, as the log has it.
   std::vector<std::uint8_t> last_frame(std::uint16_t id) const {
     char name[8];
@@ -103,6 +108,13 @@ class ImageDrive {
     options.world.calibration_motion = handled;
     options.world.drive = DriveCommand{speed_m_per_s, 0.0};
     return options;
+  }
+  static CoSimulationOptions options(const std::string& image, const CommandKey& key) {
+    CoSimulationOptions own = options(1, kSpeed_m_per_s, false);
+    own.elf = image;
+    own.credentials = credentials_of(key);
+    own.world.ground_key = key;
+    return own;
   }
 };
 

@@ -4,6 +4,9 @@
 namespace screed::mcu {
 
 constexpr const char* kScreedImage = SCREED_IMAGE_FOLDER "/screed.elf";
+/// Built with NODE=3.
+constexpr int kOtherNode = 3;
+constexpr const char* kOtherNodeImage = SCREED_IMAGE_FOLDER "_node_3/screed.elf";
 constexpr const char* kScreedListing = SCREED_IMAGE_FOLDER "/screed.lst";
 constexpr const char* kScreedSizes = SCREED_IMAGE_FOLDER "/screed.size";
 constexpr const char* kWiring = SCREED_WIRING;

@@ -94,6 +94,83 @@ TEST_F(McuProgram, ARunOfTheImageIsASessionThatReplays) {
   EXPECT_EQ(nlohmann::json::parse(again.out)["content_hash"], json["content_hash"]);
 }
 
+/// The image is robot 0; the others stand far enough away to meet it never, and one another late.
+class ImageAmongRobots : public McuProgram {
+ protected:
+  void write_bed(const std::string& map) const {
+    std::ofstream(root_ / "bed.ini")
+        << "[experiment]\nname = bed\nseed = 5\nalgorithm = drive\nduration = 8\n[drive]\nspeed = "
+           "0.15\nyaw_rate = 20\n[map]\nsize = 3\nedges = walls\n"
+        << map;
+  }
+  std::string read(const std::string& file) const {
+    std::ifstream stream(root_ / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void run_bed(const std::string& options) const {
+    const Result result = run("sim bed.ini --quiet " + options);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  static std::string three() {
+    return " --set robots.count=3 --set robots.placement=list "
+           "--set 'robots.places=-1 -1 0, 1 -1 0, 0 1 90'";
+  }
+};
+
+TEST_F(ImageAmongRobots, TheSameRunTwiceIsTheSameInEveryFileAndReplays) {
+  write_bed("model = scm\n[soil]\npreset = lete_sand\n[robots]\nspacing = 0.35\ncount = 3\n");
+  run_bed("--hal mcu --out one" + image());
+  run_bed("--hal mcu --out two" + image());
+  for (const std::string robot : {"", "robot_1/", "robot_2/"}) {
+    for (const std::string file : {"session.h5", "frames.csv", "telemetry.log"}) {
+      const std::string path = std::string(robot).append(file);
+      EXPECT_FALSE(read("one/" + path).empty()) << path;
+      EXPECT_EQ(read("one/" + path), read("two/" + path)) << path;
+    }
+  }
+  const auto json = nlohmann::json::parse(read("one/summary.json"));
+  EXPECT_EQ(json["world"]["hal"], "mcu");
+  EXPECT_EQ(json["microcontroller"]["missed_ticks"], 0);
+  ASSERT_EQ(json["robots"].size(), 3U);
+  for (const auto& robot : json["robots"]) EXPECT_GT(robot["distance_m"], 0.1);
+
+  const Result replay = run("replay one");
+  EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
+  EXPECT_NE(replay.out.find("robot 2: 800 ticks replayed, outputs identical"), std::string::npos)
+      << replay.out;
+  // The image has made a tick less than the others.
+  EXPECT_EQ(run("render one --pov-only --out all.png").exit_code, 0);
+  EXPECT_EQ(run("view one --screenshot all_view.png").exit_code, 0);
+  EXPECT_EQ(run("session export one --pictures").exit_code, 0);
+}
+
+TEST_F(ImageAmongRobots, DriveAsTheyDoWithoutEachOther) {
+  write_bed("model = rigid\n");
+  run_bed("--hal mcu --out among" + image() + three());
+  run_bed("--hal mcu --out alone --set vehicle.x=-1 --set vehicle.y=-1" + image());
+  run_bed("--out native" + three());
+  EXPECT_EQ(read("among/frames.csv"), read("alone/frames.csv"));
+  EXPECT_EQ(read("among/telemetry.log"), read("alone/telemetry.log"));
+  EXPECT_EQ(read("among/robot_1/frames.csv"), read("native/robot_1/frames.csv"));
+  EXPECT_EQ(read("among/robot_2/telemetry.log"), read("native/robot_2/telemetry.log"));
+  EXPECT_NE(read("among/frames.csv"), read("native/frames.csv")) << "it is the image";
+}
+
+TEST_F(ImageAmongRobots, ParityHoldsOnRigidGroundAndOnSoil) {
+  for (const char* const map : {"model = rigid\n", "model = scm\n[soil]\npreset = lete_sand\n"}) {
+    write_bed(map);
+    const Result result =
+        run("parity bed.ini --json --minutes 0.2 --set robots.count=4 "
+            "--set robots.spacing=0.35" +
+            image());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["differing_bytes"], 0) << map << json["first_difference"];
+    EXPECT_GE(json["ticks"], 1195);
+    EXPECT_GE(json["driving_ticks"], 500);
+  }
+}
+
 TEST_F(McuProgram, SaysWhatIsMissing) {
   const auto refused = [&](const std::string& arguments, const std::string& says) {
     const Result result = run(arguments);

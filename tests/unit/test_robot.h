@@ -16,9 +16,11 @@ namespace screed {
 
 class TestRobot {
  public:
-  explicit TestRobot(const Parameters& parameters = {})
-      : robot(kBoard, parameters, credentials_of(test_key())), signer(test_key()) {
-    signer.handle_frame(frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0}));
+  explicit TestRobot(const Parameters& parameters = {}, const CommandKey& key = test_key())
+      : robot(kBoard, parameters, credentials_of(key)), signer(key) {
+    CanFrame heard = frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0});
+    heard.id = id_of_node(heard.id, signer.node());
+    signer.handle_frame(heard);
     sample.accel[2] = 4098;
     sample.mag[1] = 1217;
     sample.mag[2] = -3013;
@@ -85,7 +87,8 @@ class TestRobot {
       SlcanParser parser;
       CanFrame frame{};
       for (uint8_t at = 0; at < output.radio_out_count; ++at) {
-        if (parser.feed(output.radio_out[at], frame) && frame.id == kIdCommandAck) {
+        if (parser.feed(output.radio_out[at], frame) &&
+            frame.id == id_of_node(kIdCommandAck, signer.node())) {
           return message::CommandAck::unpack(frame.data);
         }
       }

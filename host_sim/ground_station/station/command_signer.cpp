@@ -16,7 +16,8 @@ constexpr int kMaxAhead = 200;
 }  // namespace
 
 void CommandSigner::handle_frame(const CanFrame& frame) {
-  if (frame.id != kIdHeartbeat || frame.size != message::Heartbeat::kSize) return;
+  if (frame.id != id_of_node(kIdHeartbeat, node()) || frame.size != message::Heartbeat::kSize)
+    return;
   const auto heartbeat = message::Heartbeat::unpack(frame.data);
   const uint16_t epoch = heartbeat.boot_epoch;
   const uint16_t counter = heartbeat.freshness;
@@ -34,7 +35,7 @@ CanFrame CommandSigner::sign(CommandOp op, uint32_t argument) {
   }
   ++counter_;
   CanFrame frame{};
-  frame.id = kIdCommand;
+  frame.id = id_of_node(kIdCommand, node());
   frame.size = kCommandSize;
   frame.data[0] = static_cast<uint8_t>(op);
   for (int i = 0; i < 3; ++i) frame.data[1 + i] = static_cast<uint8_t>(argument >> (8 * i));

@@ -20,7 +20,10 @@ class CommandSigner {
  public:
   explicit CommandSigner(const CommandKey& key) : key_(key) {}
 
-  /// Takes a frame of the robot whose protection was found right. What is no heartbeat is ignored.
+  /// The node of the robot that has the key.
+  uint8_t node() const { return node_of_robot(key_.robot_id); }
+
+  /// Takes a frame whose protection was found right. What is no heartbeat of the robot is ignored.
   void handle_frame(const CanFrame& frame);
 
   /// A heartbeat was heard: number of the robot's start and its counter are known.

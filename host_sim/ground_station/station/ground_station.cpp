@@ -28,14 +28,15 @@ void GroundStation::handle_message(uint64_t now_us, const CanFrame& frame) {
     return;
   }
   ++frames_;
-  if (frame.id == kIdHeartbeat && frame.size == message::Heartbeat::kSize) {
+  const uint16_t id = exchange_node_1(frame.id, signer_.node());
+  if (id == kIdHeartbeat && frame.size == message::Heartbeat::kSize) {
     const message::Heartbeat heartbeat = message::Heartbeat::unpack(frame.data);
     report_.heard = true;
     report_.state = static_cast<RobotState>(heartbeat.state);
     report_.faults = heartbeat.faults;
     if (report_.state == RobotState::kRunning) started_ = true;
   }
-  if (frame.id == kIdCommandAck && frame.size == message::CommandAck::kSize) {
+  if (id == kIdCommandAck && frame.size == message::CommandAck::kSize) {
     report_.answer = message::CommandAck::unpack(frame.data);
   }
   signer_.handle_frame(frame);

@@ -158,7 +158,8 @@ void register_key_command(CLI::App& root, Program& program) {
       ->add_option("--port", arguments->port,
                    "The robot's USB port, e.g. /dev/ttyACM0 (default: create the file only)")
       ->type_name("DEVICE");
-  add_number(*command, "--robot-id", arguments->robot_id, "Robot id of a new key (default: 1)",
+  add_number(*command, "--robot-id", arguments->robot_id,
+             "Robot id of a new key: its node on the radio, as in make flash NODE=N (default: 1)",
              {0, 255});
   command->callback([arguments, &program] {
     program.action = [arguments] { return run_key_command(*arguments); };

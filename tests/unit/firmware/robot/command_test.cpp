@@ -91,7 +91,7 @@ TEST(Command, OfAnEarlierStartIsRefusedFault10) {
 
 TEST(Command, OfAnotherRobotIsRefusedFault11) {
   CommandKey key = test_key();
-  key.robot_id = 2;
+  key.robot_id = 1 + kMaxNode;  // of the same node, so that the robot looks at it
   TestRobot robot = ready_robot();
   robot.signer = CommandSigner(key);
   message::Heartbeat heartbeat{};

@@ -75,7 +75,7 @@ class TelemetryTest : public ::testing::Test {
   RobotStatus robot_{};
   UplinkCounts uplink_{};
   TelemetryView view_{};
-  Telemetry telemetry_;
+  Telemetry telemetry_{1};
   Downlink downlink_;
 };
 
