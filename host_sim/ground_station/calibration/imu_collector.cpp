@@ -62,13 +62,14 @@ std::vector<CalibrationParameter> calibration_parameters(const ImuCalibration& c
 }
 
 void ImuCollector::add_frame(const CanFrame& frame) {
-  if (frame.id == kIdMagRaw) {
+  const uint16_t id = id_of_node(frame.id, 1);
+  if (id == kIdMagRaw) {
     add_mag(vector_of<message::MagRaw>(frame));
-  } else if (frame.id == kIdGyroRaw) {
+  } else if (id == kIdGyroRaw) {
     keep_recent(recent_gyro_, vector_of<message::GyroRaw>(frame));
     // The oldest of the window: what came after it was still as well.
     if (at_rest() && rest_gyro_.size() < kMaxSamples) rest_gyro_.push_back(recent_gyro_.front());
-  } else if (frame.id == kIdAccelRaw) {
+  } else if (id == kIdAccelRaw) {
     keep_recent(recent_accel_, vector_of<message::AccelRaw>(frame));
     const bool still = recent_gyro_.size() == kRecent && recent_accel_.size() == kRecent &&
                        spread(recent_gyro_) < kStillGyro_counts &&

@@ -36,7 +36,7 @@ class ImuCollector {
   static constexpr double kEnoughCoverage = 0.8;
   static constexpr size_t kEnoughMagSamples = 60;
 
-  /// Looks at ACCEL_RAW, GYRO_RAW and MAG_RAW.
+  /// Looks at ACCEL_RAW, GYRO_RAW and MAG_RAW; all frames are of one robot.
   void add_frame(const CanFrame& frame);
 
   /// The robot has not moved for a while.

@@ -78,11 +78,12 @@ void CommandSession::send_command() {
 
 void CommandSession::handle_frame(const CanFrame& frame) {
   signer_.handle_frame(frame);
-  if (frame.id == kIdParamValue) {
+  const uint16_t id = exchange_node_1(frame.id, node());
+  if (id == kIdParamValue) {
     const auto value = message::ParamValue::unpack(frame.data);
     parameters_[value.index] = value.value;
   }
-  if (frame.id != kIdCommandAck || !waiting_ || !command_.has_value()) return;
+  if (id != kIdCommandAck || !waiting_ || !command_.has_value()) return;
   const auto ack = message::CommandAck::unpack(frame.data);
   if (ack.op != command_->data[0] || ack.freshness != command_->data[kCommandFreshnessOffset])
     return;
@@ -120,7 +121,8 @@ std::optional<int32_t> CommandSession::read_parameter(uint16_t index,
 }
 
 void CommandSession::start_write(uint16_t index, int32_t value) {
-  const CanFrame staged = frame_of(message::ParamStage{index, value});
+  CanFrame staged = frame_of(message::ParamStage{index, value});
+  staged.id = id_of_node(staged.id, node());
   constexpr uint8_t kSignedSize = 4;  // index and lower half of the value
   const uint16_t crc = crc16_ccitt(staged.data + kE2eHeaderSize, kSignedSize);
   start(CommandOp::kParameterCommit,

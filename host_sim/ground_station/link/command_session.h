@@ -45,7 +45,10 @@ class CommandSession {
   /// Takes what arrives, at most `wait` long, and sends what is due.
   void pump(std::chrono::milliseconds wait);
 
-  /// A heartbeat was heard: commands can be signed.
+  /// The node of the robot that has the key: commands go to it, and its answers count.
+  uint8_t node() const { return signer_.node(); }
+
+  /// A heartbeat of the robot was heard: commands can be signed.
   bool ready() const { return signer_.ready(); }
 
   /// Signs and sends a command; one that is still waiting is given up. Before ready() the command

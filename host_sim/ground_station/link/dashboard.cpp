@@ -250,7 +250,8 @@ std::string plain_report(const DashboardInput& input) {
     for (const DashboardGroup& group : dashboard_groups(input, robot)) {
       for (const DashboardRow& row : group.rows) {
         if (row.importance == 0) report += "  " + group.title + ": " + row.value + "\n";
-        if (row.label == "battery") report += "  battery: " + row.value + "\n";
+        if (row.label == "battery" || row.label == kSlipLabel)
+          report += "  " + row.label + ": " + row.value + "\n";
       }
     }
     for (const MessageInfo& message : messages()) {

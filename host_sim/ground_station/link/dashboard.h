@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/parameters/board_constants.h"
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/link/robot_view.h"
 #include "host_sim/ground_station/link/text_canvas.h"
@@ -18,10 +19,11 @@ struct DashboardInput {
   std::string link_name;
   LinkStatus link;
   const FleetView* fleet = nullptr;
-  RobotKey robot;                   ///< which one to show
-  std::vector<std::string> curves;  ///< "attitude.pitch"
-  double window_s = 30.0;           ///< of the curves
-  int battery_cells = 0;            ///< NiMH, in series; 0: not known, no charge is shown
+  RobotKey robot;                         ///< which one to show
+  std::vector<std::string> curves;        ///< "attitude.pitch"
+  double window_s = 30.0;                 ///< of the curves
+  int battery_cells = 0;                  ///< NiMH, in series; 0: not known, no charge is shown
+  const BoardConstants* board = nullptr;  ///< of the robot; null: not known, no slip is shown
   /// Parts of the last line, the most important first: as many are shown as fit.
   std::vector<std::string> footer;
 };

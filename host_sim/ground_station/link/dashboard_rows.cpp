@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "firmware/protocol/messages.h"
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/ground_station/telemetry/battery_charge.h"
+#include "host_sim/ground_station/telemetry/track_slip.h"
 
 namespace screed {
 namespace {
@@ -75,6 +77,43 @@ DashboardRow battery_row(const DashboardInput& input, const RobotView& robot,
                   below_limit ? CellStyle::kAlarm
                   : low       ? CellStyle::kWarning
                               : CellStyle::kNormal);
+}
+
+/// How well it knows where it is: standard deviations.
+DashboardRow certainty_row(const RobotView& robot, const RowMaker& make) {
+  return make.row(11, "certain to", "POSITION",
+                  robot.text("position.sigma_x") + ", " + robot.text("position.sigma_y") + " mm, " +
+                      robot.text("position.sigma_heading") + " deg");
+}
+
+/// Slip with the newest POSITION, from what was said in the second before.
+std::optional<TrackSlip> newest_slip(const RobotView& robot, const BoardConstants& board) {
+  const MessageInfo* const position = find_message("POSITION");
+  if (robot.history(*position).empty()) return std::nullopt;
+  const RobotView::Sample& newest = robot.history(*position).front();
+  TrackSlipEstimate estimate(board);
+  for (const char* name : {"ENCODERS", "ODOMETRY"}) {
+    const MessageInfo& message = *find_message(name);
+    const auto& samples = robot.history(message);  // the newest first
+    const auto older = std::find_if(samples.begin(), samples.end(), [&](const auto& sample) {
+      return sample.time_us + 2 * TrackSlipEstimate::kWindow_us < newest.time_us;
+    });
+    for (auto it = std::make_reverse_iterator(older); it != samples.rend(); ++it) {
+      if (it->time_us <= newest.time_us)
+        estimate.add(it->time_us, message, message_bits(it->data.data()));
+    }
+  }
+  return estimate.add(newest.time_us, *position, message_bits(newest.data.data()));
+}
+
+DashboardRow slip_row(const DashboardInput& input, const RobotView& robot, const RowMaker& make) {
+  const auto text = [](const std::optional<double>& slip) {
+    return slip.has_value() ? number("%.0f %%", *slip * 100.0) : "-";
+  };
+  const std::optional<TrackSlip> slip =
+      input.board == nullptr ? std::nullopt : newest_slip(robot, *input.board);
+  return make.row(8, kSlipLabel, "POSITION",
+                  slip.has_value() ? text(slip->left) + ", " + text(slip->right) : "-");
 }
 
 DashboardGroup algorithm_group(const RobotView& robot, const RowMaker& make) {
@@ -171,12 +210,13 @@ std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input, const 
           {"odometry",
            {make.signal(10, "x (east)", "odometry.x"), make.signal(10, "y (north)", "odometry.y"),
             make.row(9, "from start", "ODOMETRY", number("%.2f m", distance_m)),
+            certainty_row(robot, make),
             make.row(13, "encoders", "ENCODERS",
                      robot.text("encoders.left") + "  " + robot.text("encoders.right"))}},
           {"motors",
            {make.bar(6, "left", "motors.duty_left", 100.0, 90.0),
-            make.bar(6, "right", "motors.duty_right", 100.0, 90.0), battery_row(input, robot, make),
-            make.signal(12, "CPU load", "power.cpu_load")}},
+            make.bar(6, "right", "motors.duty_right", 100.0, 90.0), slip_row(input, robot, make),
+            battery_row(input, robot, make), make.signal(12, "CPU load", "power.cpu_load")}},
           algorithm_group(robot, make),
           link_group(input, robot, make),
           fault_group(input, robot)};

@@ -11,6 +11,9 @@
 
 namespace screed {
 
+/// Of the row with the slip of both tracks, which no message carries.
+constexpr const char* kSlipLabel = "slip l, r";
+
 struct DashboardBar {
   double value;  ///< -1..1
   bool warn;

@@ -183,6 +183,12 @@ std::optional<double> RobotView::loss_percent(uint64_t now_us) const {
   return 100.0 * static_cast<double>(missed) / static_cast<double>(got + missed);
 }
 
+const RobotView* FleetView::robot(uint8_t node) const {
+  const auto found = std::find_if(robots_.begin(), robots_.end(),
+                                  [node](const auto& robot) { return robot.first.node == node; });
+  return found == robots_.end() ? nullptr : &found->second;
+}
+
 RobotView* FleetView::add_frame(const LinkFrame& frame) {
   switch (check_frame(frame.frame)) {
     case FrameFault::kNone:

@@ -103,6 +103,8 @@ class FleetView {
   /// it belongs to, or null: damaged, or of the ground.
   RobotView* add_frame(const LinkFrame& frame);
 
+  /// The first robot of a node; null when it was not heard.
+  const RobotView* robot(uint8_t node) const;
   const std::map<RobotKey, RobotView>& robots() const { return robots_; }
   std::map<RobotKey, RobotView>& robots() { return robots_; }
   /// Frames that the schema's check refused.

@@ -53,10 +53,14 @@ int64_t SignalInfo::raw(uint64_t bits) const {
   return static_cast<int64_t>(field ^ sign) - static_cast<int64_t>(sign);
 }
 
-int64_t SignalInfo::raw(const uint8_t* data) const {
+uint64_t message_bits(const uint8_t* data) {
   uint64_t bits = 0;
   for (unsigned i = 0; i < 8; ++i) bits |= static_cast<uint64_t>(data[i]) << (8 * i);
-  return raw(bits);
+  return bits;
+}
+
+int64_t SignalInfo::raw(const uint8_t* data) const {
+  return raw(message_bits(data));
 }
 
 double SignalInfo::value(int64_t raw) const {

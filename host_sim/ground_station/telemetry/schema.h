@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/protocol/node.h"
 #include "firmware/protocol/slcan.h"
 
 namespace screed {
@@ -20,6 +21,9 @@ struct ValueInfo {
   uint32_t value;
   const char* name;
 };
+
+/// The 8 bytes of a message as one number, for SignalInfo::raw().
+uint64_t message_bits(const uint8_t* data);
 
 enum class SignalRole : uint8_t { kData, kCrc, kCounter };
 
@@ -101,16 +105,6 @@ std::string flag_text(const SignalInfo& flag);
 /// flag_names("heartbeat", "faults", 5) is "tilt, gyro_frozen"; empty: none. Bits without a name
 /// are passed over. Throws InputError when there is no such message.
 std::string flag_names(std::string_view message, std::string_view field, uint32_t bits);
-
-/// The node of an id: 0 the ground, 1..15 a robot.
-constexpr uint8_t node_of(uint16_t id) {
-  return (id >> 4) & 0xFU;
-}
-
-/// The id of a robot's message: that of node 1, moved to another node; ids of node 0 stay.
-constexpr uint16_t id_of_node(uint16_t id, uint8_t node) {
-  return node_of(id) == 0 ? id : static_cast<uint16_t>((id & 0x70FU) | (node & 0xFU) << 4);
-}
 
 /// What is wrong with a frame.
 enum class FrameFault : uint8_t {

@@ -18,6 +18,7 @@
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/terminal_screen.h"
 #include "tools/screed/link/link_options.h"
+#include "tools/screed/link/robot_session.h"
 #include "tools/screed/link/store_calibration.h"
 
 namespace screed {
@@ -80,10 +81,10 @@ class Calibration {
   bool over() const { return interrupted() || given_up_; }
 
   void on_frame(const LinkFrame& frame) {
-    if (fleet_.add_frame(frame) == nullptr) return;
+    if (fleet_.add_frame(frame) == nullptr || node_of(frame.frame.id) != session_.node()) return;
     heard_us_ = wall_clock_us();
     collector_.add_frame(frame.frame);
-    if (frame.frame.id != find_message("MAG_RAW")->id) return;
+    if (find_message(frame.frame.id) != find_message("MAG_RAW")) return;
     const double field = collector_.mag_samples().back().norm() * kMag_mg;
     field_.push_back({static_cast<double>(frame.time_us) * 1e-6, field});
     if (field_.size() > 240) field_.pop_front();
@@ -96,7 +97,7 @@ class Calibration {
       session_.pump(kPump);
     }
     if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
-    if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
+    if (!session_.ready()) throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_));
   }
 
   void collect_plain() {
@@ -180,7 +181,8 @@ class Calibration {
 
   const LatestTelemetry& robot_said() const {
     static const LatestTelemetry kNothing;
-    return fleet_.robots().empty() ? kNothing : fleet_.robots().begin()->second.latest();
+    const RobotView* const robot = fleet_.robot(session_.node());
+    return robot == nullptr ? kNothing : robot->latest();
   }
 
   std::string state() const { return robot_said().text("heartbeat.state"); }

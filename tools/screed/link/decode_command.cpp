@@ -9,6 +9,7 @@
 #include "host_sim/ground_station/telemetry/csv_tables.h"
 #include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "host_sim/ground_station/telemetry/mcap_file.h"
+#include "host_sim/ground_station/telemetry/track_slip_table.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
@@ -31,9 +32,15 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
   bool more = decoder.next(frame);
   if (!more) decoder.expect_messages();  // before anything is made
   if (options.csv) {
+    const BoardConstants& board = board_constants_of(options.board);
     CsvTables tables(target, options.numbers);
-    for (; more; more = decoder.next(frame)) tables.add(frame);
+    TrackSlipTable slip(target, board);
+    for (; more; more = decoder.next(frame)) {
+      tables.add(frame);
+      slip.add(frame);
+    }
     for (const std::string& name : tables.finish()) out << name << "\n";
+    if (const auto name = slip.finish(); name.has_value()) out << *name << "\n";
   } else {
     McapFile file(target);
     for (; more; more = decoder.next(frame)) file.add(frame);
@@ -50,13 +57,18 @@ void register_decode_command(CLI::App& root, Program& program) {
       "decode", "Convert a radio log to CSV tables or to an MCAP file for Foxglove");
   command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
       ->required();
-  command->add_flag("--csv", options->csv, "Write a folder of CSV tables, one per message");
+  command->add_flag(
+      "--csv", options->csv,
+      "Write a folder of CSV tables, one per message, and one of the slip of both tracks");
   command->add_flag("--mcap", options->mcap, "Write an MCAP file");
   command
       ->add_option("--out", options->out,
                    "Output path (default: LOG without its extension, with _csv or .mcap)")
       ->type_name("PATH");
   command->add_flag("--numbers", options->numbers, "Write named values as numbers (CSV)");
+  command->add_option("--board", options->board, "Board of the robots (CSV)")
+      ->type_name("NAME")
+      ->capture_default_str();
   command->callback([options, &program] {
     program.action = [options] { return run_decode(*options, std::cout, std::cerr); };
   });

@@ -37,6 +37,7 @@ struct MonitorArguments {
   LinkArguments link;
   std::optional<std::string> log;
   std::vector<std::string> curves;
+  std::string board = kDefaultBoard;
   std::optional<int> cells;
   double duration_s = 0.0;
   bool listen = false;
@@ -54,7 +55,9 @@ class Monitor {
                           [this](const LinkFrame& frame) { on_frame(frame); },
                           {}}),
         curves_(arguments.curves),
-        cells_(arguments.cells.has_value() ? *arguments.cells : board_battery_cells(kDefaultBoard)),
+        cells_(arguments.cells.has_value() ? *arguments.cells
+                                           : board_battery_cells(arguments.board)),
+        board_(board_constants_of(arguments.board)),
         begin_us_(wall_clock_us()) {
     for (const std::string& path : curves_) find_signal(path);
     if (arguments.log.has_value()) {
@@ -112,6 +115,7 @@ class Monitor {
     input.curves = curves_;
     input.window_s = window_s_;
     input.battery_cells = cells_;
+    input.board = &board_;
     input.footer = {std::string(kEmergencyStopKeyName) + " emergency stop",
                     "a arm",
                     "r run",
@@ -258,6 +262,7 @@ class Monitor {
   CommandSession session_;
   std::vector<std::string> curves_;
   int cells_;
+  const BoardConstants& board_;
   double window_s_ = 30.0;
   uint64_t begin_us_;
   uint64_t heard_us_ = 0;  ///< when the first robot was heard; 0: none yet
@@ -280,11 +285,13 @@ void register_monitor_command(CLI::App& root, Program& program) {
       ->add_option("--curves", arguments->curves,
                    "Signals to draw, e.g. attitude.pitch,motors.duty_left")
       ->delimiter(',');
+  command->add_option("--board", arguments->board, "Board of the robots, for the slip of tracks")
+      ->type_name("NAME")
+      ->capture_default_str();
   add_number(
       *command, "--cells", arguments->cells,
       "NiMH cells of the robot's battery in series, for its charge in per cent; 0: not shown "
-      "(default: the battery of the robot of the board " +
-          std::string(kDefaultBoard) + ")",
+      "(default: the battery of the board's robot)",
       {0, 20});
   command->add_flag("--listen", arguments->listen,
                     "Send no heartbeats: another ground station is in charge");

@@ -20,6 +20,13 @@ constexpr char kNoAnswer[] = "no answer";
 
 }  // namespace
 
+std::string not_heard_text(const FleetView& fleet, const CommandSession& session) {
+  if (fleet.robots().empty()) return "no robot is heard";
+  return fleet.robots().begin()->first.text() + " is heard, but the key is that of robot " +
+         std::to_string(session.node()) +
+         "; --key names another, make flash NODE=N gives a robot its number";
+}
+
 RobotSession::RobotSession(const LinkArguments& arguments, const CommandKey& key)
     : link_(open_link(arguments)),
       session_(*link_, {key,
@@ -33,26 +40,26 @@ RobotSession::RobotSession(const LinkArguments& arguments, const CommandKey& key
 void RobotSession::meet() {
   const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
   const auto heard = [this] {
-    return std::any_of(fleet_.robots().begin(), fleet_.robots().end(), [](const auto& robot) {
-      return robot.second.value("heartbeat.link_alive").value_or(0.0) != 0.0;
-    });
+    const RobotView* const robot = fleet_.robot(session_.node());
+    return robot != nullptr && robot->value("heartbeat.link_alive").value_or(0.0) != 0.0;
   };
   while (wall_clock_us() < end_us && !(session_.ready() && heard())) {
     stop_if_interrupted("waiting for the robot");
     session_.pump(kPump);
   }
   if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
-  if (!session_.ready()) throw RunError(link_->name() + ": no robot is heard");
+  if (!session_.ready()) throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_));
 }
 
 std::optional<int> RobotSession::node() const {
-  if (fleet_.robots().empty()) return std::nullopt;
-  return fleet_.robots().begin()->first.node;
+  if (fleet_.robot(session_.node()) == nullptr) return std::nullopt;
+  return session_.node();
 }
 
 std::string RobotSession::reason(const std::optional<CommandAnswer>& answer) {
-  if (!answer.has_value() || fleet_.robots().empty()) return kNoAnswer;
-  const LatestTelemetry& robot = fleet_.robots().begin()->second.latest();
+  const RobotView* const view = fleet_.robot(session_.node());
+  if (!answer.has_value() || view == nullptr) return kNoAnswer;
+  const LatestTelemetry& robot = view->latest();
   if (answer->result == static_cast<uint8_t>(message::CommandAckResult::kFaultPresent)) {
     // The sentences name the robot's own limits.
     std::optional<CommandAnswer> read;

@@ -12,6 +12,9 @@
 
 namespace screed {
 
+/// Why no heartbeat of the session's robot was heard: nothing was, or another robot.
+std::string not_heard_text(const FleetView& fleet, const CommandSession& session);
+
 class RobotSession {
  public:
   /// Opens the link; from now on Ctrl-C ends what waits. Throws as open_link().

@@ -17,7 +17,8 @@ using Result = message::CommandAckResult;
 /// A robot and the link to it: one object, one clock.
 class FakeRobot : public Link {
  public:
-  explicit FakeRobot(const CommandKey& key) : gate_(credentials_of(key, 5)) {}
+  explicit FakeRobot(const CommandKey& key)
+      : gate_(credentials_of(key, 5)), node_(node_of_robot(key.robot_id)) {}
 
   void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override {
     now_us += static_cast<uint64_t>(wait.count()) * 1000U;
@@ -36,9 +37,9 @@ class FakeRobot : public Link {
     sent.push_back(frame);
     if (lose-- > 0) return true;
     lose = 0;
-    if (frame.id == kIdParamStage && e2e_check(frame.id, frame.data, frame.size))
+    if (frame.id == id_of_node(kIdParamStage, node_) && e2e_check(frame.id, frame.data, frame.size))
       stage_ = message::ParamStage::unpack(frame.data);
-    if (frame.id != kIdCommand) return true;
+    if (frame.id != id_of_node(kIdCommand, node_)) return true;
     const GateResult checked = gate_.check(frame.id, frame.data);
     if (checked != GateResult::kRepeated) {
       result_ = checked == GateResult::kAccepted ? execute(frame) : static_cast<Result>(checked);
@@ -72,6 +73,7 @@ class FakeRobot : public Link {
   template <class Message>
   void say(const Message& message) {
     CanFrame frame = frame_of(message);
+    frame.id = id_of_node(frame.id, node_);
     e2e_protect(frame.id, 0, frame.data, frame.size);
     out_.push_back(frame);
   }
@@ -95,6 +97,7 @@ class FakeRobot : public Link {
   }
 
   CommandGate gate_;
+  uint8_t node_;
   Result result_ = Result::kDone;
   message::ParamStage stage_{0xFFFF, 0};
   uint64_t heartbeat_due_us_ = 0;
@@ -102,6 +105,57 @@ class FakeRobot : public Link {
   LinkStatus status_;
   std::string name_ = "fake";
 };
+
+/// Two robots on one radio channel: both hear all, and the ground hears both.
+class TwoRobots : public Link {
+ public:
+  void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override {
+    one.receive(wait, frames);
+    three.receive(wait, frames);
+  }
+  bool send(const CanFrame& frame) override { return one.send(frame) && three.send(frame); }
+  const LinkStatus& status() const override { return one.status(); }
+  const std::string& name() const override { return one.name(); }
+
+  static CommandKey key_of(uint8_t robot_id) {
+    CommandKey key = test_key();
+    key.robot_id = robot_id;
+    return key;
+  }
+
+  FakeRobot one{key_of(1)};
+  FakeRobot three{key_of(3)};
+};
+
+TEST(CommandSessionOfTwo, CommandsAndParametersReachTheRobotOfTheKeyAlone) {
+  TwoRobots robots;
+  robots.one.parameter = 10;
+  robots.three.parameter = 30;
+  CommandSession session{robots,
+                         {TwoRobots::key_of(3), true, {}, [&] { return robots.one.now_us; }}};
+  EXPECT_EQ(session.node(), 3);
+  const auto answer = session.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  std::optional<CommandAnswer> read;
+  EXPECT_EQ(session.read_parameter(7, read), 30);
+  const auto written = session.write_parameter(7, 31);
+  ASSERT_TRUE(written.has_value());
+  EXPECT_TRUE(written->done());
+  EXPECT_EQ(robots.three.parameter, 31);
+  EXPECT_EQ(robots.one.parameter, 10);
+  EXPECT_EQ(robots.one.done, 0);
+}
+
+TEST(CommandSessionOfTwo, IsNotReadyByTheOtherRobotsHeartbeat) {
+  TwoRobots robots;
+  robots.three.silent = true;
+  CommandSession session{robots,
+                         {TwoRobots::key_of(3), true, {}, [&] { return robots.one.now_us; }}};
+  EXPECT_FALSE(session.run(CommandOp::kArm).has_value());
+  EXPECT_FALSE(session.ready());
+  EXPECT_EQ(robots.one.sent_with(kIdCommand), 0U);
+}
 
 class CommandSessionTest : public ::testing::Test {
  protected:

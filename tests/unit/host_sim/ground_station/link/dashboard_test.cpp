@@ -255,6 +255,23 @@ TEST_F(DashboardTest, ALinkOfALongNameHidesNothing) {
   expect_words(text, {"robot 1 fault", "/dev/serial/by-id", "…"});
 }
 
+TEST_F(DashboardTest, ShowsHowSureThePlaceIsAndTheSlipOfBothTracks) {
+  constexpr BoardConstants kHalfMillimetre = {8000, 1831, 200, 7200, 250, 145};
+  for (uint16_t i = 0; i <= 20; ++i) {
+    const uint64_t after_us = 2'900'000 + i * 50'000U;
+    // 0.2 m/s on the left, 0.1 m/s on the right, the heading that of a robot that rolls.
+    say(message::Encoders{static_cast<uint16_t>(i * 20), static_cast<uint16_t>(i * 10), 0},
+        after_us);
+    say(message::Odometry{0, 0, 9000}, after_us);
+  }
+  say(message::Position{12, 30, 7, 255}, 3'900'000);
+  EXPECT_NE(plain_report(input_).find("slip l, r: -\n"), std::string::npos) << "of which board?";
+  input_.board = &kHalfMillimetre;
+  const std::string slip = "25 %, -50 %";  // straight on at 0.15 m/s
+  expect_words(plain_report(input_), {"  slip l, r: " + slip});
+  expect_words(draw(120, 40), {slip, "48, 120 mm, 3.5 deg"});
+}
+
 TEST_F(DashboardTest, APlainReportHasEveryValueOnce) {
   expect_words(plain_report(input_),
                {"link vcan0: up", "robot 1: fault, 104 frames, ", "  faults: tilted beyond",

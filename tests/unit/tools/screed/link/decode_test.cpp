@@ -130,6 +130,34 @@ TEST_F(Decode, TablesHaveUnitsAndExactNumbers) {
       << "no table without a message";
 }
 
+TEST_F(Decode, TheSlipOfTracksHasATableOfItsOwn) {
+  std::string text;
+  const auto say = [&](double time_s, const CanFrame& frame) {
+    text += candump_line(static_cast<uint64_t>(std::llround(time_s * 1e6)), "can0", frame);
+  };
+  for (int i = 0; i <= 20; ++i) {
+    const auto counter = static_cast<uint8_t>(i % 16);
+    const auto count = static_cast<uint16_t>(i * 20);
+    say(i * 0.05, protected_frame(message::Encoders{count, count, 0}, counter, 2));
+    say(i * 0.05, protected_frame(message::Odometry{0, 0, 0}, counter, 2));
+    if (i % 10 == 0) say(i * 0.05, protected_frame(message::Position{0, 0, 0, 102}, counter, 2));
+  }
+  EXPECT_EQ(csv(text), 0);
+  EXPECT_EQ(table("track_slip"),
+            "time [s],robot,slip_left [1],slip_right [1]\n"
+            "0.500000,2,0.600,0.600\n"
+            "1.000000,2,0.600,0.600\n");
+  EXPECT_NE(out_.str().find("track_slip.csv\n"), std::string::npos);
+  csv(attitude_line(0.1, 1, 0));
+  EXPECT_EQ(out_.str().find("track_slip.csv\n"), std::string::npos) << "nothing is known of it";
+
+  DecodeOptions options;
+  options.log = log(text);
+  options.csv = true;
+  options.board = "abacus";
+  EXPECT_THROW(run_decode(options, out_, err_), InputError);
+}
+
 TEST_F(Decode, NumbersInPlaceOfNames) {
   message::Heartbeat heartbeat{};
   heartbeat.state = 2;
