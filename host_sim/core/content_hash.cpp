@@ -49,4 +49,11 @@ std::string ContentHash::hex() const {
   return text;
 }
 
+std::string combined_hash(const std::vector<std::string>& hashes) {
+  if (hashes.size() == 1) return hashes.front();
+  ContentHash all;
+  for (const std::string& hash : hashes) all.add(hash);
+  return all.hex();
+}
+
 }  // namespace screed

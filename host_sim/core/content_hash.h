@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 struct XXH3_state_s;  // <xxhash.h>, which no user of this header needs
 
@@ -59,5 +60,8 @@ class ContentHash {
 
   std::unique_ptr<XXH3_state_s, Free> state_;
 };
+
+/// Of several fingerprints one, in their order; of a single one itself.
+std::string combined_hash(const std::vector<std::string>& hashes);
 
 }  // namespace screed

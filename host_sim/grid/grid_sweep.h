@@ -1,5 +1,6 @@
-// Many runs of the grid world on all cores: points of a sweep, each run so many times. What comes
-// out does not depend on the number of threads, and an interrupted sweep goes on where it stopped.
+// Many runs of the grid world on all cores: points of a sweep, each run so many times. The engine
+// (task_engine.h) executes them in worker processes. What comes out does not depend on their
+// number, and an interrupted sweep goes on where it stopped.
 #pragma once
 
 #include <atomic>
@@ -9,37 +10,41 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/engine/task_engine.h"
 #include "host_sim/grid/grid_config.h"
 #include "host_sim/grid/grid_run.h"
+#include "host_sim/grid/grid_sweep_plan.h"
 
 namespace screed {
 
-struct SweepPoint {
-  std::string label;  ///< for tables and charts
-  double x = 0.0;     ///< place on the chart's axis
-  GridConfig config;  ///< its seed is that of the first run; run i has seed + i
-};
-
 struct SweepOptions {
   int runs = 30;    ///< a point
-  int threads = 0;  ///< 0: as many as the machine has cores
-  /// Empty: nothing is kept. Otherwise every finished run is appended to this file at once, in one
-  /// write; runs that it has already are not run again. Once all are there it is rewritten in
-  /// order.
-  std::filesystem::path results;
+  int workers = 0;  ///< 0: one for each processor
+  std::string version;
+  /// Of the program, for a worker; the folder of the sweep is added. It is to call
+  /// serve_sweep() (grid_sweep_worker.h).
+  std::vector<std::string> worker_arguments;
+  /// Where runs are stored as soon as they have ended; runs that are there are not run again.
+  /// Empty: nothing is kept.
+  std::filesystem::path folder;
+  /// Once all runs are there they are written to this file: CSV, a line a run, by point and run.
+  /// It has all runs that are stored, be they more than asked for. Empty: no file; only with a
+  /// folder.
+  std::filesystem::path table;
   const std::atomic<bool>* stop = nullptr;  ///< set to end early
-  /// Called from any thread, one at a time, after each run.
-  std::function<void(size_t done, size_t all)> progress;
+  std::function<void(const EngineProgress&)> progress;
+  /// Is told what is odd about stored results, a line each.
+  std::function<void(const std::string&)> note;
 };
 
 struct SweepResult {
   bool complete = false;                         ///< false when stopped early
-  size_t resumed = 0;                            ///< runs found in the results file
-  std::vector<std::vector<GridResult>> results;  ///< by point, then run
+  size_t resumed = 0;                            ///< runs that were there already
+  std::vector<std::vector<GridResult>> results;  ///< by point, then run; when complete
 };
 
-/// Throws InputError for a wrong configuration, a results file of another sweep or in use; RunError
-/// when it cannot be written.
+/// Throws InputError for a wrong configuration, a table of another sweep, a folder in use;
+/// RunError when something cannot be written or runs fail.
 SweepResult run_sweep(const std::vector<SweepPoint>& points, const SweepOptions& options);
 
 /// Mean, standard error of the mean (0 for a single value) and extremes.

@@ -1,8 +1,11 @@
-// `screed grid` as a user meets it.
+// `screed grid` as a user meets it: single runs, and sweeps with workers that come and go.
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/sitl/background.h"
 #include "tests/sitl/program.h"
 #include "tests/sitl/terminal.h"
 
@@ -115,6 +118,228 @@ TEST_F(Program, GridLeavesNothingOnAFullDisk) {
     EXPECT_NE(result.exit_code, 0);
     EXPECT_TRUE(std::filesystem::is_empty(root_)) << what;
   }
+}
+
+// ---- sweeps ------------------------------------------------------------------------------------
+
+namespace fs = std::filesystem;
+
+class GridSweep : public Program {
+ protected:
+  /// Lines in the result files of a sweep's folder.
+  size_t stored(const std::string& folder) const {
+    size_t lines = 0;
+    for (const fs::path& file : result_files(folder)) {
+      const std::string text = read(file);
+      lines += static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+    }
+    return lines;
+  }
+  std::vector<fs::path> result_files(const std::string& folder) const {
+    std::vector<fs::path> files;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(root_ / folder / "results", ignored))
+      files.push_back(entry.path());
+    return files;
+  }
+  static size_t lines(const std::string& text) {
+    return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+};
+
+TEST_F(GridSweep, GivesTheSameBytesWithAnyNumberOfWorkers) {
+  ASSERT_EQ(run(small("--runs 40 --workers 1 --out one")).exit_code, 0);
+  const Result two = run(small("--runs 40 --workers 2 --out two"));
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_EQ(two.err, "");
+  const std::string table = read(root_ / "one/runs.csv");
+  EXPECT_EQ(lines(table), 42U);
+  EXPECT_EQ(read(root_ / "two/runs.csv"), table);
+  // --threads is its former name; without a folder the figures are the same and nothing is kept.
+  const Result unkept = run(small("--runs 40 --threads 3"));
+  EXPECT_EQ(unkept.out, two.out);
+  EXPECT_FALSE(fs::exists(root_ / "results"));
+  // Each run is the one of its seed alone.
+  const auto alone = nlohmann::json::parse(
+      run("grid --headless --size 12 --lattice 5 --mean 4 --agents 4 --seed 5 --json").out);
+  EXPECT_NE(table.find("\n0,2,5,1," + std::to_string(alone["cycles"].get<int>()) + "," +
+                       std::to_string(alone["units"].get<int>()) + ","),
+            std::string::npos)
+      << table;
+}
+
+/// Tables of former versions stay what they are.
+TEST_F(GridSweep, TableHasItsForm) {
+  ASSERT_EQ(
+      run("grid --size 8 --agents 4 --algorithm forager --runs 3 --quiet --out sweep").exit_code,
+      0);
+  EXPECT_EQ(read(root_ / "sweep/runs.csv"),
+            "# screed grid sweep 825f25593032c64d7bcb0d0dbf3d5d83\n"
+            "point,run,seed,level,cycles,units,least_units,straight_steps,diagonal_steps\n"
+            "0,0,1,1,1265,56,53,2286,1236\n"
+            "0,1,2,1,1163,57,52,2079,1214\n"
+            "0,2,3,1,910,47,45,1489,1125\n");
+}
+
+TEST_F(GridSweep, KilledAndResumedGivesTheSameBytes) {
+  const std::vector<std::string> sweep = {"grid",   "--size",  "12",        "--lattice", "5",
+                                          "--mean", "4",       "--agents",  "4",         "--runs",
+                                          "3000",   "--quiet", "--workers", "2",         "--out"};
+  const auto sweep_into = [&](const std::string& folder) {
+    std::string text;
+    for (const std::string& word : sweep) text += word + " ";
+    return run(text + folder);
+  };
+  ASSERT_EQ(sweep_into("whole").exit_code, 0);
+
+  constexpr size_t kKills = 12;
+  size_t kills = 0;
+  for (int start = 0; kills < kKills && start < 60; ++start) {
+    std::vector<std::string> words = sweep;
+    words.emplace_back("killed");
+    Background program(program_, words, root_, log("background"));
+    // The program and one worker in turns, each time some runs further on.
+    for (; kills < kKills; ++kills) {
+      const size_t goal = (kills + 1) * 3000 / (kKills + 1);
+      if (!wait_until(program, [&] { return stored("killed") >= goal; })) break;
+      const std::vector<pid_t> workers = program.workers();
+      if (kills % 2 == 0 || workers.empty()) {
+        program.signal(SIGKILL);
+        ++kills;
+        break;
+      }
+      ::kill(workers.front(), SIGKILL);
+    }
+    program.wait();
+  }
+  EXPECT_EQ(kills, kKills);
+  const Result rest = sweep_into("killed");
+  ASSERT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_NE(rest.err.find(" runs were there already\n"), std::string::npos) << rest.err;
+  EXPECT_EQ(read(root_ / "killed/runs.csv"), read(root_ / "whole/runs.csv"));
+}
+
+TEST_F(GridSweep, AKilledWorkerCostsNothing) {
+  // A run takes long enough to be met.
+  Background program(program_,
+                     {"grid", "--size", "300", "--max-cycles", "100000", "--runs", "3", "--workers",
+                      "1", "--quiet", "--out", "sweep"},
+                     root_, log("background"));
+  ASSERT_TRUE(wait_until(program, [&] { return !program.workers().empty(); }));
+  ::kill(program.workers().front(), SIGKILL);
+  EXPECT_EQ(program.wait(), 0) << read(log("background"));
+  EXPECT_EQ(stored("sweep"), 4U);  // the failed attempt is one of them
+  EXPECT_EQ(lines(read(root_ / "sweep/runs.csv")), 5U);
+}
+
+/// Its runs are tried one by one.
+TEST_F(GridSweep, AKilledWorkerCostsNoneOfItsBatch) {
+  Background program(program_,
+                     {"grid", "--size", "12", "--lattice", "5", "--mean", "4", "--agents", "4",
+                      "--runs", "2000", "--workers", "1", "--quiet", "--out", "sweep"},
+                     root_, log("background"));
+  ASSERT_TRUE(wait_until(program, [&] { return stored("sweep") >= 500; }));
+  const std::vector<pid_t> workers = program.workers();
+  ASSERT_EQ(workers.size(), 1U);
+  ::kill(workers.front(), SIGKILL);
+  EXPECT_EQ(program.wait(), 0) << read(log("background"));
+  EXPECT_EQ(lines(read(root_ / "sweep/runs.csv")), 2002U);
+}
+
+TEST_F(GridSweep, GoesOnAfterCtrlC) {
+  Background program(program_,
+                     {"grid", "--size", "100", "--max-cycles", "20000", "--runs", "20000",
+                      "--quiet", "--workers", "1", "--out", "sweep"},
+                     root_, log("background"));
+  ASSERT_TRUE(wait_until(program, [&] { return stored("sweep") >= 2; }));
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_EQ(read(log("background")), "stopped; the same command goes on where it stopped\n");
+  EXPECT_FALSE(fs::exists(root_ / "sweep/runs.csv"));
+  const Result rest = run("grid --size 100 --max-cycles 20000 --runs 2 --quiet --out sweep");
+  EXPECT_EQ(rest.exit_code, 0);
+  EXPECT_EQ(rest.err, "note: 2 runs were there already\n");
+  EXPECT_GE(lines(read(root_ / "sweep/runs.csv")), 4U);
+}
+
+TEST_F(GridSweep, MoreRunsAreAddedToThoseThatAreThere) {
+  ASSERT_EQ(run(small("--runs 4 --quiet --out sweep")).exit_code, 0);
+  EXPECT_EQ(run(small("--runs 6 --quiet --out sweep")).err, "note: 4 runs were there already\n");
+  const std::string six = read(root_ / "sweep/runs.csv");
+  EXPECT_EQ(lines(six), 8U);
+  // Fewer are read from it without loss.
+  EXPECT_EQ(run(small("--runs 2 --quiet --out sweep")).err, "note: 2 runs were there already\n");
+  EXPECT_EQ(read(root_ / "sweep/runs.csv"), six);
+  EXPECT_EQ(stored("sweep"), 6U);
+}
+
+TEST_F(GridSweep, ADamagedResultIsRunAgain) {
+  ASSERT_EQ(run(small("--runs 6 --quiet --workers 1 --out sweep")).exit_code, 0);
+  const std::string table = read(root_ / "sweep/runs.csv");
+  const fs::path file = result_files("sweep").front();
+  std::string text = read(file);
+  char& byte = text[text.find('\n') + 60];  // in the second line
+  byte = static_cast<char>(byte ^ 1);
+  write_text(file, text);
+  const Result again = run(small("--runs 6 --quiet --out sweep"));
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.err.find(file.filename().string() + ":2: the line is damaged"), std::string::npos)
+      << again.err;
+  EXPECT_NE(again.err.find("note: 5 runs were there already\n"), std::string::npos) << again.err;
+  EXPECT_EQ(read(root_ / "sweep/runs.csv"), table);
+}
+
+TEST_F(GridSweep, AFullDiskLosesNothingFinished) {
+  const Result full = run(small("--runs 2000 --quiet --workers 1 --out sweep"), "ulimit -f 30;");
+  expect_refused(full, 1, {"results/", "cannot be written"});
+  const size_t kept = stored("sweep");
+  EXPECT_GT(kept, 10U);
+  const Result rest = run(small("--runs 2000 --quiet --out sweep"));
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_EQ(rest.err, "note: " + std::to_string(kept) + " runs were there already\n");
+}
+
+TEST_F(GridSweep, RefusesInOneLine) {
+  expect_refused(run(small("--runs 0")), 2, {"--runs 0", "allowed"});
+  expect_refused(run(small("--runs 2 --workers -1")), 2, {"--workers -1", "allowed"});
+  expect_refused(run("grid --terrain gone.png --runs 2 --out sweep"), 2, {"gone.png"});
+  expect_refused(run("grid --size 12 --agents 145 --runs 2 --out sweep"), 2,
+                 {"agents = 145", "144"});
+  expect_refused(run(small("--runs 2 --record run.h5")), 2, {"--record", "single run"});
+  EXPECT_FALSE(fs::exists(root_ / "sweep"));
+  expect_refused(run("grid --figure 4.1"), 2, {"figure = 4.1", "better"});
+  ASSERT_EQ(run(small("--runs 2 --quiet --out sweep")).exit_code, 0);
+  expect_refused(run("grid --size 12 --runs 2 --out sweep"), 2,
+                 {"sweep/runs.csv", "another sweep"});
+  write("taken", "a file");
+  expect_refused(run(small("--runs 2 --out taken")), 1, {"taken", "cannot be made"});
+}
+
+TEST_F(GridSweep, OnlyOneRunsInAFolder) {
+  Background program(program_,
+                     {"grid", "--size", "300", "--max-cycles", "1000000000", "--runs", "1",
+                      "--quiet", "--out", "sweep"},
+                     root_, log("background"));
+  ASSERT_TRUE(wait_until(program, [&] { return !program.workers().empty(); }));
+  expect_refused(run("grid --size 300 --max-cycles 1000000000 --runs 1 --out sweep"), 2,
+                 {"sweep", "another sweep"});
+  // Its workers end with it, even when it is killed.
+  const std::vector<pid_t> workers = program.workers();
+  program.signal(SIGKILL);
+  program.wait();
+  for (const pid_t worker : workers)
+    while (::kill(worker, 0) == 0) sched_yield();
+}
+
+TEST_F(GridSweep, FiguresShareTheirRuns) {
+  const std::string base = "--size 8 --lattice 5 --agents 4 --runs 2 --quiet --out figures";
+  const Result first = run("grid --figure 4.4 " + base);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const Result second = run("grid --figure 4.5 " + base);
+  EXPECT_EQ(second.err, "note: 6 runs were there already\n");
+  for (const char* file : {"figure-4.4-4.5_runs.csv", "figure-4.4.csv", "figure-4.5.svg"})
+    EXPECT_TRUE(fs::exists(root_ / "figures" / file)) << file;
+  EXPECT_NE(second.out.find("figures/figure-4.4-4.5_runs.csv"), std::string::npos) << second.out;
 }
 
 }  // namespace

@@ -8,8 +8,8 @@ $(B)/terrain_bench: $(call objects,$(TERRAIN_BENCH_SOURCES)) $(LIBRARY) $(B)/lin
 	$(call link)
 
 .PHONY: bench bench-terrain soil-same-bits
-bench: $(B)/bench  ## real-time factor and ns per tick
-	@$(B)/bench --benchmark_counters_tabular=true $(ARGS)
+bench: $(B)/bench $(SCREED)  ## real-time factor, ns per tick, throughput of campaigns
+	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/bench --benchmark_counters_tabular=true $(ARGS)
 bench-terrain: $(B)/terrain_bench  ## time and memory of a frame on every terrain, beside the thesis'
 	@$(B)/terrain_bench --out $(OUT)/bench-terrain $(ARGS)
 soil-same-bits: $(SCREED)  ## soil and particles compiled with -O1 and -O3 leave the same bytes

@@ -44,7 +44,7 @@ struct GridOptions {
   std::string follow_slope;
   std::string turn_back;
   int runs = 1;
-  int threads = 0;
+  int workers = 0;
   std::string figure;
   std::string out;
   std::string record;
@@ -368,26 +368,38 @@ int run_replay(const GridOptions& options) {
   return matches ? 0 : 1;
 }
 
-SweepOptions sweep_options(const GridOptions& options) {
-  SweepOptions sweep;
-  sweep.runs = options.runs;
-  sweep.threads = options.threads;
-  sweep.stop = &interrupted();
-  if (!options.quiet && isatty(STDERR_FILENO) == 1) {
-    sweep.progress = [](size_t done, size_t all) {
-      std::fprintf(stderr, "\r%zu of %zu runs%s", done, all, done == all ? "\033[2K\r" : "");
+/// Runs a sweep with a bar.
+SweepResult sweep(const GridOptions& options, const std::vector<SweepPoint>& points,
+                  SweepOptions settings, const std::string& version) {
+  settings.runs = options.runs;
+  settings.workers = options.workers;
+  settings.version = version;
+  settings.worker_arguments = {"campaign", "worker", "--grid"};
+  settings.stop = &interrupted();
+  settings.note = [](const std::string& note) { std::cerr << "note: " << note << "\n"; };
+  std::optional<ProgressBar> bar;
+  if (!options.quiet) {
+    bar.emplace(std::cerr);
+    settings.progress = [&bar](const EngineProgress& progress) {
+      bar->show_share(progress.share, std::to_string(progress.done) + " of " +
+                                          std::to_string(progress.tasks) + " runs");
     };
   }
-  return sweep;
+  try {
+    SweepResult result = run_sweep(points, settings);
+    if (bar) bar->clear();
+    if (result.resumed > 0) {
+      std::cerr << "note: " << result.resumed << " runs were there already\n";
+    }
+    return result;
+  } catch (...) {
+    if (bar) bar->clear();
+    throw;
+  }
 }
 
-void note_resumed(const SweepResult& sweep) {
-  if (sweep.resumed > 0) std::cerr << "note: " << sweep.resumed << " runs were there already\n";
-}
-
-int stopped_early(const SweepOptions& sweep) {
-  std::cerr << "\nstopped"
-            << (sweep.results.empty() ? "" : "; the same command goes on where it stopped") << "\n";
+int stopped_early(bool is_kept) {
+  std::cerr << "stopped" << (is_kept ? "; the same command goes on where it stopped" : "") << "\n";
   return interrupted_exit_code();
 }
 
@@ -429,49 +441,40 @@ void print_points_json(const std::vector<SweepPoint>& points,
   print_json(json);
 }
 
-std::filesystem::path results_folder(const std::string& out) {
-  std::filesystem::path folder = out.empty() ? "out/grid" : out;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw RunError(folder.string() + ": cannot be created: " + error.message());
-  return folder;
-}
-
-int run_figure(const GridOptions& options) {
+int run_figure(const GridOptions& options, const std::string& version) {
   const GridFigure figure = grid_figure(options.figure, config_of(options));
-  SweepOptions sweep_settings = sweep_options(options);
-  for (const SweepPoint& point : figure.points) check(point.config);
-  const std::filesystem::path folder = results_folder(options.out);
-  sweep_settings.results = folder / ("figure-" + figure.results_name + "_runs.csv");
-  const SweepResult sweep = run_sweep(figure.points, sweep_settings);
-  note_resumed(sweep);
-  if (!sweep.complete) return stopped_early(sweep_settings);
-  const FigureFiles files = write_figure(folder, figure, sweep.results);
+  const std::filesystem::path folder = options.out.empty() ? "out/grid" : options.out;
+  const std::string name = "figure-" + figure.results_name;
+  SweepOptions settings;
+  settings.folder = folder / name;
+  settings.table = folder / (name + "_runs.csv");
+  const SweepResult result = sweep(options, figure.points, settings, version);
+  if (!result.complete) return stopped_early(true);
+  const FigureFiles files = write_figure(folder, figure, result.results);
   if (options.json) {
-    print_points_json(figure.points, sweep.results);
+    print_points_json(figure.points, result.results);
   } else {
-    print_points(figure.points, sweep.results);
-    std::printf("\n  runs    %s\n  table   %s\n  figure  %s\n", sweep_settings.results.c_str(),
+    print_points(figure.points, result.results);
+    std::printf("\n  runs    %s\n  table   %s\n  figure  %s\n", settings.table.c_str(),
                 files.csv.c_str(), files.svg.c_str());
   }
   return 0;
 }
 
-int run_many(const GridOptions& options) {
+int run_many(const GridOptions& options, const std::string& version) {
   const GridConfig config = config_of(options);
   const std::vector<SweepPoint> points = {{name_of(config.algorithm), 0.0, config}};
-  SweepOptions sweep_settings = sweep_options(options);
+  SweepOptions settings;
   if (!options.out.empty()) {
-    check(config);
-    sweep_settings.results = results_folder(options.out) / "runs.csv";
+    settings.folder = options.out;
+    settings.table = settings.folder / "runs.csv";
   }
-  const SweepResult sweep = run_sweep(points, sweep_settings);
-  note_resumed(sweep);
-  if (!sweep.complete) return stopped_early(sweep_settings);
+  const SweepResult result = sweep(options, points, settings, version);
+  if (!result.complete) return stopped_early(!options.out.empty());
   if (options.json) {
-    print_points_json(points, sweep.results);
+    print_points_json(points, result.results);
   } else {
-    print_points(points, sweep.results);
+    print_points(points, result.results);
   }
   return 0;
 }
@@ -488,10 +491,10 @@ int run_command(GridOptions options, bool runs_given, const std::string& version
   catch_interrupts();
   if (!options.figure.empty()) {
     if (!runs_given) options.runs = 30;
-    return run_figure(options);
+    return run_figure(options, version);
   }
   if (!options.replay.empty()) return run_replay(options);
-  return runs_given ? run_many(options) : run_one(options, version);
+  return runs_given ? run_many(options, version) : run_one(options, version);
 }
 
 }  // namespace
@@ -570,8 +573,9 @@ void register_grid_command(CLI::App& root, Program& program) {
   CLI::Option* runs =
       add_number(*command, "--runs", options->runs,
                  "Number of runs, on all cores; with --figure: per point", {1, 1e7});
-  add_number(*command, "--threads", options->threads,
-             "Number of threads; 0: one per core; results do not depend on it", {0, 1024});
+  add_number(*command, "--workers,--threads", options->workers,
+             "Worker processes of many runs; 0: one per core; results do not depend on it",
+             {0, 1024});
   command->add_option("--figure", options->figure,
                       "Reproduce a figure: 4.2, 4.3, 4.4, 4.5, better or better-units");
   command

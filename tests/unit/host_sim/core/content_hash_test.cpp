@@ -84,5 +84,12 @@ TEST(ContentHash, AskingDoesNotEndTheHash) {
   EXPECT_EQ(hash.hex(), hash_of(1, 2));
 }
 
+TEST(ContentHash, OfSeveralOneDependsOnEachAndOnTheirOrder) {
+  EXPECT_EQ(combined_hash({hash_of(1)}), hash_of(1));
+  EXPECT_NE(combined_hash({hash_of(1), hash_of(2)}), combined_hash({hash_of(2), hash_of(1)}));
+  EXPECT_NE(combined_hash({hash_of(1), hash_of(2)}), combined_hash({hash_of(1), hash_of(3)}));
+  EXPECT_EQ(combined_hash({hash_of(1), hash_of(2)}), combined_hash({hash_of(1), hash_of(2)}));
+}
+
 }  // namespace
 }  // namespace screed

@@ -4,15 +4,19 @@
 
 #include <fstream>
 #include <functional>
+#include <numeric>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "firmware/protocol/e2e.h"
 #include "firmware/protocol/messages.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/engine/task_worker.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_sweep.h"
+#include "host_sim/grid/grid_sweep_worker.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/ground_station/telemetry/csv_tables.h"
 #include "host_sim/ground_station/telemetry/log_decoder.h"
@@ -121,19 +125,31 @@ TEST_F(HalfWritten, GridRecordingWhoseNameIsTakenMeanwhile) {
   });
 }
 
-TEST_F(HalfWritten, SortedSweepKeepsTheResultsThatAreThere) {
+TEST_F(HalfWritten, TableOfASweepKeepsTheOneThatIsThere) {
   GridConfig config;
   config.noise.width = config.noise.height = 8;
   config.agents = 4;
   const std::vector<SweepPoint> points = {{"ours", 0.0, config}};
   SweepOptions options;
-  options.results = folder_ / "results.csv";
-  options.threads = 1;
-  options.runs = 4;
+  options.folder = folder_;
+  options.table = folder_ / "results.csv";
+  options.runs = 80;
+  const SweepPlan plan = make_sweep_plan(points, options.version);
+  const SweepFolder folder{folder_};
+  write_text(folder.plan(), sweep_plan_text(plan));
+  std::vector<size_t> tasks(static_cast<size_t>(options.runs));
+  std::iota(tasks.begin(), tasks.end(), size_t{0});
+  std::istringstream request(execute_request(tasks, 1));
+  serve_sweep(folder, options.version, request, [](const std::string&) {});
   static_cast<void>(run_sweep(points, options));
-  const std::string whole = read_text(options.results);
-  expect_nothing_left(whole.size() / 2, [&] { static_cast<void>(run_sweep(points, options)); });
-  EXPECT_EQ(read_text(options.results), whole);
+  const std::string whole = read_text(options.table);
+  // Less than the table and more than the plan.
+  const auto bytes = static_cast<rlim_t>(whole.size() - 1);
+  ASSERT_GT(bytes, fs::file_size(folder.plan()));
+  expect_nothing_left(bytes, [&] { static_cast<void>(run_sweep(points, options)); });
+  EXPECT_EQ(read_text(options.table), whole);
+  fs::remove(options.table);
+  expect_nothing_left(bytes, [&] { static_cast<void>(run_sweep(points, options)); });
 }
 
 TEST_F(HalfWritten, TablesAndMcapOfALog) {

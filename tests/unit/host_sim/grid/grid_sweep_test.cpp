@@ -3,17 +3,22 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/engine/task_worker.h"
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_sweep.h"
+#include "host_sim/grid/grid_sweep_worker.h"
 #include "host_sim/render/chart/line_chart.h"
 #include "tests/temp_folder.h"
 
@@ -36,76 +41,200 @@ std::vector<SweepPoint> small_sweep() {
   return {{"ours", 0.0, config}, {"theirs", 1.0, other}};
 }
 
-SweepOptions options_of(const std::filesystem::path& results, int threads, int runs = 12) {
+SweepOptions options_of(const std::filesystem::path& folder, int runs) {
   SweepOptions options;
-  options.results = results;
-  options.threads = threads;
+  options.folder = folder;
+  options.table = folder / "runs.csv";
+  options.version = "1.2.3";
   options.runs = runs;
   return options;
 }
 
+/// What a worker would do: executes the first runs of each point.
+void serve(const std::filesystem::path& path, const std::vector<SweepPoint>& points, size_t runs,
+           const std::string& version = "1.2.3") {
+  const SweepFolder folder{path};
+  std::filesystem::create_directories(path);
+  write_text(folder.plan(), sweep_plan_text(make_sweep_plan(points, version)));
+  std::vector<size_t> tasks(points.size() * runs);
+  std::iota(tasks.begin(), tasks.end(), size_t{0});
+  std::istringstream requests(execute_request(tasks, 1));
+  serve_sweep(folder, version, requests, [](const std::string& text) {
+    const WorkerAnswer answer = parse_answer(text);
+    EXPECT_EQ(answer.kind, WorkerAnswer::Kind::kDone) << text;
+    EXPECT_TRUE(answer.failures.empty()) << text;
+  });
+}
+
+/// A configuration that differs from all others here and from the default in every value.
+GridConfig unusual(const std::filesystem::path& image) {
+  GridConfig config;
+  config.algorithm = GridAlgorithm::kMemetic2;
+  config.seed = 12345678901234567890U;
+  config.agents = 3;
+  config.max_cycles = 77;
+  config.stop = {GridStop::kDeviation, 0.1 + 0.2};
+  config.noise = {9, 8, 4.0 / 3.0, 2.0 / 3.0, 7.0 / 3.0, GridBorder::kTorus};
+  config.image = image;
+  config.image_width = 5;
+  config.image_height = 4;
+  config.white = 10.0 / 3.0;
+  config.image_mean = 5.0 / 3.0;
+  config.p_sense = 1.0 / 3.0;
+  config.p_turn = 1.0 / 7.0;
+  config.p_pick_up = 1.0 / 9.0;
+  config.p_deposit = 1.0 / 11.0;
+  config.k = 13.0 / 3.0;
+  config.memory = 7;
+  config.fitness_threshold = 1.0 / 13.0;
+  config.chromosomes = 4;
+  config.repetitions = 3;
+  config.fitness_base = FitnessBase::kAttempted;
+  config.averaging = 99;
+  config.dead_band = 1.0 / 17.0;
+  config.patience = 11;
+  config.hold_out = 12;
+  config.follows_slope = true;
+  config.turns_back = false;
+  return config;
+}
+
+TEST_F(GridFiles, PlanOfASweepIsReadBack) {
+  std::filesystem::copy_file("host_sim/data/terrain/terrain_a.png", folder_ / "image.png");
+  const SweepPlan plan = make_sweep_plan(
+      {{"a", 0.0, unusual(folder_ / "image.png")}, {"b", 1.0, GridConfig()}}, "1.2.3");
+  write_text(folder_ / "plan.json", sweep_plan_text(plan));
+  const SweepPlan read = read_sweep_plan(folder_ / "plan.json");
+  EXPECT_EQ(read.version, "1.2.3");
+  EXPECT_EQ(read.ids, plan.ids);
+  ASSERT_EQ(read.points.size(), 2U);
+  // Each value to the last bit, in the text and in what workers use.
+  EXPECT_EQ(sweep_plan_text(read), sweep_plan_text(plan));
+  EXPECT_EQ(describe(read.points[0]), describe(unusual(folder_ / "image.png")));
+  EXPECT_EQ(read.points[0].stop.epsilon, 0.1 + 0.2);
+  EXPECT_EQ(read.points[0].noise.mean, 4.0 / 3.0);
+  EXPECT_EQ(identity_of(read.points[0], "1.2.3"), plan.ids[0]);
+  EXPECT_EQ(run_grid(read.config_of(2)), run_grid(plan.config_of(2)));
+
+  for (const std::string& damage : {std::string("{}"), std::string("[]"), std::string(),
+                                    read_text(folder_ / "plan.json").substr(0, 500)}) {
+    write_text(folder_ / "damaged.json", damage);
+    EXPECT_THROW(read_sweep_plan(folder_ / "damaged.json"), InputError) << damage;
+  }
+  EXPECT_THROW(read_sweep_plan(folder_ / "gone.json"), InputError);
+}
+
+TEST_F(GridFiles, IdentityOfARunIsAllThatDecidesIt) {
+  const GridConfig base;
+  std::set<std::string> ids = {identity_of(base, "1"), identity_of(base, "2")};
+  GridConfig changed = base;
+  changed.seed = 2;
+  ids.insert(identity_of(changed, "1"));
+  changed = base;
+  changed.p_pick_up = 0.3 + 1e-15;
+  ids.insert(identity_of(changed, "1"));
+  EXPECT_EQ(ids.size(), 4U);
+  // What is not given has the value that it would be given.
+  EXPECT_EQ(identity_of(with_defaults(base), "1"), identity_of(base, "1"));
+
+  // The image counts by its bytes.
+  std::filesystem::copy_file("host_sim/data/terrain/terrain_a.png", folder_ / "image.png");
+  write_text(folder_ / "other.png", read_text(folder_ / "image.png") + "x");
+  GridConfig image = base;
+  image.image = folder_ / "image.png";
+  const std::string id = identity_of(image, "1");
+  image.image = folder_ / "other.png";
+  EXPECT_NE(identity_of(image, "1"), id);
+}
+
 using GridSweep = GridFiles;
 
-TEST_F(GridSweep, IsBitIdenticalForAnyNumberOfThreads) {
-  const SweepResult one = run_sweep(small_sweep(), options_of(folder_ / "one", 1));
-  const SweepResult five = run_sweep(small_sweep(), options_of(folder_ / "five", 5));
-  EXPECT_TRUE(one.complete);
-  EXPECT_EQ(one.results, five.results);
-  EXPECT_EQ(read_text(folder_ / "one"), read_text(folder_ / "five"));
-  // Each run is the one that its seed gives alone.
+TEST_F(GridSweep, HasTheRunsOfItsSeeds) {
+  serve(folder_, small_sweep(), 3);
+  const SweepResult sweep = run_sweep(small_sweep(), options_of(folder_, 3));
+  EXPECT_TRUE(sweep.complete);
+  EXPECT_EQ(sweep.resumed, 6U);
+  ASSERT_EQ(sweep.results.size(), 2U);
   GridConfig config = small_sweep()[1].config;
-  config.seed += 7;
-  EXPECT_EQ(one.results[1][7], run_grid(config));
+  config.seed += 2;
+  ASSERT_EQ(sweep.results[1].size(), 3U);
+  EXPECT_EQ(sweep.results[1][2], run_grid(config));
+  const std::string table = read_text(folder_ / "runs.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2 + 6);
+  const GridResult r = sweep.results[1][2];
+  std::ostringstream line;
+  line << "\n1,2,3," << r.level << ',' << r.cycles << ',' << r.units << ',' << r.min_units << ','
+       << r.straight << ',' << r.diagonal << '\n';
+  EXPECT_NE(table.find(line.str()), std::string::npos) << table;
 }
 
-TEST_F(GridSweep, GoesOnWhereItStopped) {
-  run_sweep(small_sweep(), options_of(folder_ / "whole", 2));
-  std::atomic<bool> stop = false;
-  SweepOptions options = options_of(folder_ / "broken", 2);
-  options.stop = &stop;
-  options.progress = [&stop](size_t done, size_t) { stop = done >= 5; };
-  const SweepResult broken = run_sweep(small_sweep(), options);
-  EXPECT_FALSE(broken.complete);
-  const size_t kept = broken.results[0].size() + broken.results[1].size();
-  EXPECT_GE(kept, 5U);
-  EXPECT_LT(kept, 24U);
-  // The power failed in the middle of a line.
-  write_text(folder_ / "broken", read_text(folder_ / "broken") + "1,11,12,1,3");
-  options.stop = nullptr;
-  size_t began_with = 0;
-  options.progress = [&began_with](size_t done, size_t) {
-    if (began_with == 0) began_with = done;
-  };
-  const SweepResult resumed = run_sweep(small_sweep(), options);
-  EXPECT_TRUE(resumed.complete);
-  EXPECT_EQ(resumed.resumed, kept);
-  EXPECT_EQ(began_with, kept + 1);
-  EXPECT_EQ(read_text(folder_ / "broken"), read_text(folder_ / "whole"));
-}
-
-TEST_F(GridSweep, MoreRunsAreAddedToThoseThatAreThere) {
-  run_sweep(small_sweep(), options_of(folder_ / "grown", 2, 4));
-  const SweepResult grown = run_sweep(small_sweep(), options_of(folder_ / "grown", 2, 6));
-  EXPECT_EQ(grown.resumed, 8U);
-  EXPECT_EQ(grown.results[0].size(), 6U);
-  // Fewer are read from it without loss.
-  const SweepResult fewer = run_sweep(small_sweep(), options_of(folder_ / "grown", 2, 2));
+TEST_F(GridSweep, FewerRunsAreReadWithoutLoss) {
+  serve(folder_, small_sweep(), 6);
+  run_sweep(small_sweep(), options_of(folder_, 6));
+  const std::string table = read_text(folder_ / "runs.csv");
+  const SweepResult fewer = run_sweep(small_sweep(), options_of(folder_, 2));
   EXPECT_EQ(fewer.results[1].size(), 2U);
-  EXPECT_EQ(run_sweep(small_sweep(), options_of(folder_ / "grown", 2, 6)).resumed, 12U);
+  EXPECT_EQ(fewer.resumed, 4U);
+  EXPECT_EQ(read_text(folder_ / "runs.csv"), table);
+}
+
+TEST_F(GridSweep, SaysWhatIsOddAboutItsResults) {
+  serve(folder_, small_sweep(), 2, "1.2.2");
+  serve(folder_, small_sweep(), 2);
+  SweepOptions options = options_of(folder_, 2);
+  std::vector<std::string> notes;
+  options.note = [&notes](const std::string& note) { notes.push_back(note); };
+  EXPECT_EQ(run_sweep(small_sweep(), options).resumed, 4U);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(notes[0].starts_with("4 results are of other")) << notes[0];
 }
 
 TEST_F(GridSweep, RefusesFilesOfOthers) {
-  run_sweep(small_sweep(), options_of(folder_ / "runs", 1, 1));
+  serve(folder_, small_sweep(), 2);
+  run_sweep(small_sweep(), options_of(folder_, 1));
   auto other = small_sweep();
   other[1].config.p_pick_up = 0.31;
-  EXPECT_THROW(run_sweep(other, options_of(folder_ / "runs", 1, 1)), InputError);
-  write_text(folder_ / "letter", "Dear Madam,\nthank you\nfor nothing\n");
-  EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_ / "letter", 1)), InputError);
-  EXPECT_EQ(read_text(folder_ / "letter"), "Dear Madam,\nthank you\nfor nothing\n");
-  write_text(folder_ / "runs", read_text(folder_ / "runs") + "0,1,2,3\n");
-  EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_ / "runs", 1, 3)), InputError);
-  EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_ / "none" / "runs", 1)), RunError);
-  EXPECT_THROW(run_sweep(small_sweep(), options_of({}, 1, 0)), InputError);
+  EXPECT_THROW(run_sweep(other, options_of(folder_, 1)), InputError);
+  const std::string table = read_text(folder_ / "runs.csv");
+  write_text(folder_ / "runs.csv", "Dear Madam,\nthank you\nfor nothing\n");
+  EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_, 1)), InputError);
+  EXPECT_EQ(read_text(folder_ / "runs.csv"), "Dear Madam,\nthank you\nfor nothing\n");
+  // A table of this sweep that holds more than is stored here.
+  write_text(folder_ / "runs.csv", table + "1,2,3,1,5,6,7,8,9\n");
+  EXPECT_THROW(run_sweep(small_sweep(), options_of(folder_, 2)), InputError);
+  // One that was hardly begun.
+  write_text(folder_ / "runs.csv", table.substr(0, 30));
+  EXPECT_TRUE(run_sweep(small_sweep(), options_of(folder_, 2)).complete);
+  EXPECT_EQ(read_text(folder_ / "runs.csv"), table);
+  EXPECT_THROW(run_sweep(small_sweep(), options_of({}, 0)), InputError);
+}
+
+TEST(GridResult, IsReadBack) {
+  const GridResult result{true, 18446744073709551615U, 2, 3, 4, 5};
+  const std::string text = result_text(result);
+  EXPECT_EQ(parse_result(text), result);
+  EXPECT_EQ(parse_result(result_text({})), GridResult());
+  EXPECT_EQ(nlohmann::json::parse(text)["cycles"], 18446744073709551615U);
+  for (const std::string& bad : {std::string(), std::string("{}"), text.substr(0, 40)})
+    EXPECT_THROW(parse_result(bad), RunError) << bad;
+}
+
+TEST_F(GridSweep, AnImageMayNotChangeMeanwhile) {
+  std::filesystem::copy_file("host_sim/data/terrain/terrain_a.png", folder_ / "image.png");
+  GridConfig config = small_sweep()[0].config;
+  config.image = folder_ / "image.png";
+  config.image_width = config.image_height = 8;
+  SweepPlan plan = make_sweep_plan({{"image", 0.0, config}}, "1.2.3");
+  plan.ids[0] = std::string(32, '0');  // as of other bytes
+  const SweepFolder folder{folder_ / "sweep"};
+  std::filesystem::create_directories(folder.path);
+  write_text(folder.plan(), sweep_plan_text(plan));
+  std::istringstream requests(execute_request({0}, 1));
+  std::string said;
+  serve_sweep(folder, "1.2.3", requests, [&said](const std::string& text) { said = text; });
+  const WorkerAnswer answer = parse_answer(said);
+  ASSERT_EQ(answer.failures.size(), 1U) << said;
+  EXPECT_NE(answer.failures[0].second.find("image"), std::string::npos);
 }
 
 TEST(GridSummary, IsTextbookStatistics) {

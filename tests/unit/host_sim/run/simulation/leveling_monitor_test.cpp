@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -30,7 +31,7 @@ class LevelingMonitorTest : public ::testing::Test {
     for (int tick = 1; tick <= std::lround(duration_s * kTickRate_hz); ++tick) {
       frame.time = tick * 0.01;
       frame.energy = 2.0 * frame.time;
-      monitor.on_tick(frame, 0.1 * frame.time, terrain_, sink_);
+      monitor.on_tick({&frame, 1}, 0.1 * frame.time, terrain_, sink_);
     }
     monitor.end(terrain_, sink_);
   }
@@ -111,11 +112,37 @@ TEST_F(LevelingMonitorTest, TheLimitsAreThoseOfTheRobotsParameters) {
   for (int tick = 1; tick <= 10; ++tick) {
     frame.time = tick * 0.01;
     frame.pitch = tick <= 4 ? 0.18 : 0.17;  // 10 degrees are 0.1745
-    monitor.on_tick(frame, 0.0, terrain_, sink_);
+    monitor.on_tick({&frame, 1}, 0.0, terrain_, sink_);
   }
   monitor.end(terrain_, sink_);
   EXPECT_DOUBLE_EQ(points_.back().tilted, 0.4);
   EXPECT_NEAR(points_.back().off_site, 0.5, 0.11);
+}
+
+TEST_F(LevelingMonitorTest, OfSeveralRobotsCostsAreSumsAndSharesAreMeans) {
+  experiment_.robots.count = 2;
+  LevelingMonitor monitor(experiment_, kTread_m, true);
+  monitor.begin(terrain_, sink_);
+  std::array<SimFrame, 2> frames{};
+  constexpr int kTicks = 400;
+  for (int tick = 1; tick <= kTicks; ++tick) {
+    // One drives, tilted; the other one is stuck: its tracks run on the spot.
+    for (SimFrame& frame : frames) {
+      frame.time = tick * 0.01;
+      frame.track_left = frame.track_right = 0.2;
+      frame.energy = frame.time;
+    }
+    frames[0].velocity_x = 0.2;
+    frames[0].pitch = 1.0;
+    frames[1].slip_left = frames[1].slip_right = 1.0;
+    monitor.on_tick(frames, 0.2 * frames[0].time, terrain_, sink_);
+  }
+  monitor.end(terrain_, sink_);
+  EXPECT_DOUBLE_EQ(points_.back().energy, 8.0);
+  EXPECT_DOUBLE_EQ(points_.back().tilted, 0.5);
+  EXPECT_DOUBLE_EQ(points_.back().slip, 0.5);
+  // The second in which it could not be known yet is not counted.
+  EXPECT_DOUBLE_EQ(points_.back().stuck, 0.5 * (kTicks - 99) / kTicks);
 }
 
 }  // namespace

@@ -1,0 +1,42 @@
+// Statistics of runs that are paired by their seeds: intervals of means, tests of differences,
+// ranks.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "host_sim/core/intervals.h"
+
+namespace screed {
+
+/// NaN without values.
+double mean_of(const std::vector<double>& values);
+
+/// Of the mean, 95 %, by the bootstrap, bias-corrected and accelerated (BCa; Efron 1987), with
+/// 10,000 samples of a fixed seed: the same values give the same interval. Both ends the value
+/// where all are equal; NaN of fewer than two.
+Interval bootstrap_mean_interval(const std::vector<double>& values);
+
+struct SignedRank {
+  double p = 1.0;       ///< two-sided
+  double effect = 0.0;  ///< matched-pairs rank-biserial correlation, -1..1: 1, all differences rise
+  std::size_t pairs = 0;  ///< differences that are not 0
+};
+
+/// Wilcoxon's signed-rank test of the differences of pairs, those of 0 left out, equal ones with
+/// their mean rank. Exact, ties included, for up to 200 pairs; by the normal distribution beyond.
+SignedRank signed_rank(const std::vector<double>& differences);
+
+/// The same p adjusted so that the chance of any false one among all is that of one (Holm 1979), in
+/// their order; at most 1.
+std::vector<double> holm(const std::vector<double>& p);
+
+/// Mean rank of each column over the rows, 1 the lowest value, equal ones with their mean rank,
+/// with the interval of bootstrap_mean_interval() over the rows. Rows are of the same length.
+struct MeanRank {
+  double mean = 0.0;
+  Interval interval{};
+};
+std::vector<MeanRank> mean_ranks(const std::vector<std::vector<double>>& rows);
+
+}  // namespace screed

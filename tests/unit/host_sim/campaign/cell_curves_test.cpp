@@ -1,0 +1,100 @@
+// Curves of a campaign's cells over time: a small table whose means are known.
+#include "host_sim/campaign/cell_curves.h"
+
+#include <gtest/gtest.h>
+
+#include "host_sim/core/paired_statistics.h"
+
+namespace screed {
+namespace {
+
+/// Two cells with three seeds each.
+CampaignPlan two_cells() {
+  CampaignPlan plan;
+  plan.cells = {{"a"}, {"b"}};
+  plan.settings.seeds = {1, 2, 3};
+  plan.ids = {"0", "1", "2", "3", "4", "5"};
+  return plan;
+}
+
+class Points {
+ public:
+  Points& add(int run, double time_s, TableValue relief, TableValue progress = nullptr) {
+    table.add_row();
+    table.set("run", run);
+    table.set("time", time_s);
+    table.set("relief", std::move(relief));
+    table.set("progress", std::move(progress));
+    return *this;
+  }
+  ValueTable table;
+};
+
+CellCurve named(const std::vector<CellCurve>& curves, const std::string& name) {
+  for (const CellCurve& curve : curves) {
+    if (curve.name == name) return curve;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(CellCurves, MeansAreOverTheSeedsOfACellAtEachTime) {
+  Points points;
+  const double relief[3][2] = {{8.0, 4.0}, {6.0, 5.0}, {10.0, 9.0}};
+  for (int run = 0; run < 6; ++run) {
+    for (int at = 0; at < 2; ++at)
+      points.add(run, 60.0 * at, relief[run % 3][at] + (run < 3 ? 0.0 : 100.0));
+  }
+  const auto curves = cell_curves(two_cells(), points.table);
+  const CellCurve curve = named(curves, "relief");
+  EXPECT_EQ(curve.times_s, (std::vector<double>{0.0, 60.0}));
+  ASSERT_EQ(curve.cells.size(), 2U);
+  EXPECT_EQ(curve.cells[0][0].mean, 8.0);
+  EXPECT_EQ(curve.cells[0][1].mean, 6.0);
+  EXPECT_EQ(curve.cells[1][1].mean, 106.0);
+  EXPECT_EQ(curve.cells[0][1].count, 3U);
+  const Interval interval = bootstrap_mean_interval({4.0, 5.0, 9.0});
+  EXPECT_EQ(curve.cells[0][1].interval.low, interval.low);
+  EXPECT_EQ(curve.cells[0][1].interval.high, interval.high);
+}
+
+TEST(CellCurves, ARunThatEndedBeforeKeepsItsLastValue) {
+  Points points;
+  points.add(0, 0.0, 8.0).add(0, 60.0, 7.0).add(0, 120.0, 6.0);
+  points.add(1, 0.0, 8.0).add(1, 31.0, 2.0);  // a fault
+  points.add(2, 0.0, 8.0).add(2, 60.0, 7.0).add(2, 120.0, 7.0);
+  const CellCurve curve = named(cell_curves(two_cells(), points.table), "relief");
+  EXPECT_EQ(curve.times_s, (std::vector<double>{0.0, 31.0, 60.0, 120.0}));
+  EXPECT_EQ(curve.cells[0][1].mean, (8.0 + 2.0 + 8.0) / 3.0);
+  EXPECT_EQ(curve.cells[0][3].mean, 5.0);
+  EXPECT_EQ(curve.cells[0][3].count, 3U);
+  EXPECT_EQ(curve.cells[1][3].count, 0U) << "no run of this cell";
+}
+
+TEST(CellCurves, AFigureThatIsMeasuredMoreSeldomHasItsOwnTimes) {
+  Points points;
+  for (int run = 0; run < 6; ++run)
+    points.add(run, 0.0, 8.0, 0.0).add(run, 10.0, 8.0).add(run, 20.0, 8.0, 0.5);
+  const auto curves = cell_curves(two_cells(), points.table);
+  EXPECT_EQ(named(curves, "relief").times_s.size(), 3U);
+  EXPECT_EQ(named(curves, "progress").times_s, (std::vector<double>{0.0, 20.0}));
+}
+
+TEST(CellCurves, LongCurvesAreThinnedAndKeepTheirEnds) {
+  Points points;
+  for (int at = 0; at <= 1000; ++at) points.add(0, at, 1.0 + at);
+  const CellCurve curve = named(cell_curves(two_cells(), points.table), "relief");
+  ASSERT_EQ(curve.times_s.size(), kMaxCurveTimes);
+  EXPECT_EQ(curve.times_s.front(), 0.0);
+  EXPECT_EQ(curve.times_s.back(), 1000.0);
+  EXPECT_EQ(curve.cells[0].back().mean, 1001.0);
+}
+
+TEST(CellCurves, ThereAreNoneWhereNoneWereKeptOrMeasured) {
+  EXPECT_TRUE(cell_curves(two_cells(), ValueTable()).empty());
+  Points points;
+  points.add(0, 0.0, nullptr).add(0, 10.0, nullptr);
+  EXPECT_TRUE(cell_curves(two_cells(), points.table).empty());
+}
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,99 @@
+// Throughput of a campaign as the user runs it: simulated hours for an hour of a processor, engine,
+// start of the world and summary included. The program is that of the environment variable
+// SCREED_PROGRAM, which `make bench` sets.
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tools/bench/require.h"
+
+namespace screed {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRuns = 4;
+
+struct Ground {
+  const char* name;
+  const char* experiment;
+  const char* settings;
+  int duration_s;  ///< some seconds of a processor for each run
+};
+
+constexpr Ground kGrounds[] = {
+    {"rigid", "first_drive", "", 300},
+    {"soil", "soft_bed", "", 60},
+    {"soil, 5 ms", "soft_bed", "physics.step = 0.005\n", 120},
+    {"particles", "gravel_bed", "", 6},
+    {"surrogate", "soft_bed", "world.hal = surrogate\n", 300},
+};
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Of processes that have ended and been waited for.
+double children_s() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+void write_campaign(const Ground& ground, const fs::path& file) {
+  std::ofstream(file) << "[campaign]\nexperiment = " << ground.experiment << "\nseeds = 1.."
+                      << kRuns
+                      // Given, so that no trial is counted.
+                      << "\ntime_limit = 3600\nmemory = 500\n[set]\nexperiment.duration = "
+                      << ground.duration_s << "\n"
+                      << ground.settings;
+}
+
+/// Whether the campaign in this folder ended with all runs done.
+bool run_campaign_of(const fs::path& folder, const char* program) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder.c_str()) != 0 || std::freopen("/dev/null", "w", stdout) == nullptr) _exit(1);
+    execl(program, program, "campaign", "run", "bench.ini", "--workers", "1", "--quiet", "--out",
+          "out", nullptr);
+    _exit(1);
+  }
+  int status = 1;
+  return child > 0 && waitpid(child, &status, 0) == child && status == 0;
+}
+
+void campaign(benchmark::State& state) {
+  const Ground& ground = kGrounds[state.range(0)];
+  const char* const program = std::getenv("SCREED_PROGRAM");
+  if (!require(state, program != nullptr, "SCREED_PROGRAM names no program")) return;
+  const fs::path folder =
+      fs::temp_directory_path() / ("screed-bench-campaign-" + std::to_string(getpid()));
+  double simulated_s = 0.0;
+  const double before_s = children_s();
+  while (state.KeepRunning()) {
+    fs::create_directories(folder);
+    write_campaign(ground, folder / "bench.ini");
+    const bool done = run_campaign_of(folder, program);
+    fs::remove_all(folder);
+    if (!require(state, done, "the campaign is not complete")) return;
+    simulated_s += kRuns * ground.duration_s;
+  }
+  state.SetLabel(ground.name);
+  state.counters["simulated_h_per_core_h"] = simulated_s / (children_s() - before_s);
+}
+BENCHMARK(campaign)
+    ->DenseRange(0, static_cast<int>(std::size(kGrounds)) - 1)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace screed

@@ -1,0 +1,178 @@
+// `screed campaign run FILE`: executes what is missing of a campaign on this machine.
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/campaign/campaign_merge.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/engine/worker_pool.h"
+#include "tools/screed/campaign/campaign_work.h"
+#include "tools/screed/cli/command.h"
+#include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_option.h"
+#include "tools/screed/cli/progress_bar.h"
+
+namespace screed {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kFailuresShown = 10;
+constexpr double kMemoryMargin = 1.25;  ///< a run may need more than its trial
+
+struct Arguments {
+  CampaignChoice campaign;
+  std::optional<int> workers;
+  std::optional<std::string> shard;
+  bool quiet = false;
+  bool json = false;
+};
+
+int worker_count(const Arguments& arguments, const CampaignPlan& plan,
+                 const std::optional<CampaignTrial>& trial) {
+  const int asked = arguments.workers.value_or(usable_processors());
+  double memory_mb = trial.has_value() ? trial->memory_mb * kMemoryMargin : 0.0;
+  memory_mb = plan.settings.memory_mb.value_or(memory_mb);
+  const int fit = workers_that_fit(memory_mb, asked);
+  if (fit < asked)
+    std::cerr << "note: " << fit << " of " << asked << " workers: each needs " << memory_mb
+              << " MB of memory\n";
+  return fit;
+}
+
+void show_failures(const EngineOutcome& outcome) {
+  for (size_t i = 0; i < outcome.failures.size() && i < kFailuresShown; ++i)
+    std::cerr << "note: " << outcome.failures[i] << "\n";
+  if (outcome.failures.size() > kFailuresShown)
+    std::cerr << "note: and " << outcome.failures.size() - kFailuresShown << " failed runs more\n";
+}
+
+Json json_of(const ChosenCampaign& campaign, const CampaignCount& count,
+             const EngineOutcome& outcome, int workers, double seconds) {
+  return {{"name", campaign.plan.settings.name},
+          {"folder", campaign.folder.path.string()},
+          {"runs", count.runs},
+          {"done", count.done},
+          {"failed", count.failed},
+          {"missing", count.missing()},
+          {"done_now", outcome.done},
+          {"workers", workers},
+          {"seconds", seconds}};
+}
+
+/// Executes the runs, with a bar.
+EngineOutcome execute(const Arguments& arguments, const ChosenCampaign& campaign, CampaignJob job) {
+  std::optional<ProgressBar> bar;
+  if (!arguments.quiet) {
+    bar.emplace(std::cerr);
+    job.progress = [&bar](const EngineProgress& progress) {
+      std::string note = std::to_string(progress.done) + "/" + std::to_string(progress.tasks);
+      if (progress.failed > 0) note += ", " + std::to_string(progress.failed) + " failed";
+      bar->show_share(progress.share, note);
+    };
+  }
+  try {
+    EngineOutcome outcome = run_campaign(campaign.plan, engine_options(campaign.folder), job);
+    if (bar.has_value()) bar->clear();
+    return outcome;
+  } catch (const RunError& error) {
+    if (bar.has_value()) bar->clear();
+    throw RunError(std::string(error.what()) +
+                   "; what was finished is kept, the same command goes on");
+  }
+}
+
+/// All runs, on this machine alone.
+CampaignJob whole_job(const Arguments& arguments, const ChosenCampaign& campaign) {
+  const CampaignPlan& plan = campaign.plan;
+  save_plan(plan, campaign.folder);
+  const ResultIndex results(campaign.folder.results());
+  note_odd_results(plan, results);
+  CampaignJob job;
+  const bool is_known =
+      plan.settings.time_limit_s.has_value() && plan.settings.memory_mb.has_value();
+  if (!is_known && !count_results(plan, results).complete())
+    job.trial = find_trial(plan, campaign.folder, arguments.quiet);
+  job.runs.resize(plan.run_count());
+  std::iota(job.runs.begin(), job.runs.end(), size_t{0});
+  return job;
+}
+
+/// The task of a job array, beside others on this machine and elsewhere.
+CampaignJob shard_job(const Arguments& arguments, const ChosenCampaign& campaign) {
+  CampaignJob job;
+  job.trial = kept_trial(campaign.plan, campaign.folder);
+  job.runs = read_shard(*arguments.shard, campaign.plan);
+  return job;
+}
+
+int run_run(const Arguments& arguments, const std::string& version) {
+  catch_interrupts();
+  const Clock::time_point begin = Clock::now();
+  const ChosenCampaign campaign = choose_campaign(arguments.campaign, version);
+  const CampaignPlan& plan = campaign.plan;
+  std::optional<CampaignLock> lock;
+  if (!arguments.shard.has_value()) lock.emplace(campaign.folder);
+  CampaignJob job =
+      arguments.shard.has_value() ? shard_job(arguments, campaign) : whole_job(arguments, campaign);
+  job.workers = worker_count(arguments, plan, job.trial);
+  const EngineOutcome outcome = execute(arguments, campaign, job);
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+
+  show_failures(outcome);
+  const CampaignCount count = count_results(plan, ResultIndex(campaign.folder.results()), job.runs);
+  if (arguments.json) {
+    std::cout << json_of(campaign, count, outcome, job.workers, seconds).dump(2) << "\n";
+  } else {
+    std::printf("%s: %s; %zu now, in %.1f s with %d workers\n", plan.settings.name.c_str(),
+                count.text().c_str(), outcome.done, seconds, job.workers);
+    std::printf("  folder  %s\n", campaign.folder.path.c_str());
+  }
+  if (interrupted()) {
+    std::cerr << "screed: stopped; the same command goes on\n";
+    return interrupted_exit_code();
+  }
+  if (!outcome.stopped.empty()) throw RunError(outcome.stopped);
+  return count.complete() ? 0 : 1;
+}
+
+}  // namespace
+
+void register_campaign_run_command(CLI::App& campaign, Program& program) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = campaign.add_subcommand(
+      "run", "Execute what is missing of a campaign; interrupted, the same command goes on");
+  command->add_option("FILE", arguments->campaign.file, "Campaign file (INI), or its folder")
+      ->required();
+  command
+      ->add_option("--out", arguments->campaign.out, "Folder of the campaign (default: out/NAME)")
+      ->type_name("FOLDER");
+  add_number(*command, "--workers", arguments->workers,
+             "Runs at a time (default: one on each processor, as many as memory allows)",
+             {1, 4096});
+  command
+      ->add_option("--as-version", arguments->campaign.as_version,
+                   "Count results of this version of Screed as this program's, and the other way "
+                   "round")
+      ->type_name("VERSION");
+  command
+      ->add_option("--shard", arguments->shard,
+                   "Execute the runs in this line of a file alone, as a task of a job array")
+      ->type_name("FILE:LINE");
+  command->add_flag("--quiet", arguments->quiet, "Show no progress");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback([arguments, &program] {
+    program.action = [arguments, version = program.version] {
+      return run_run(*arguments, version);
+    };
+  });
+}
+
+}  // namespace screed

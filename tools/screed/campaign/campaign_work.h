@@ -1,0 +1,67 @@
+// What the subcommands of `screed campaign` have in common: which campaign, in which folder, and
+// what stands there.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/campaign/campaign_engine.h"
+#include "host_sim/campaign/campaign_folder.h"
+#include "host_sim/campaign/campaign_plan.h"
+#include "host_sim/engine/folder_lock.h"
+#include "host_sim/engine/result_store.h"
+
+namespace screed {
+
+/// Which campaign the user means.
+struct CampaignChoice {
+  std::string file;                       ///< campaign file, or the folder of a campaign
+  std::optional<std::string> out;         ///< folder; else out/NAME
+  std::optional<std::string> as_version;  ///< counts as the program's version
+};
+
+struct ChosenCampaign {
+  CampaignPlan plan;
+  CampaignFolder folder;
+};
+
+/// Reads the file, or the plan in the folder, which must be of this version. Notes of the
+/// experiment go to standard error. Throws InputError.
+ChosenCampaign choose_campaign(const CampaignChoice& choice, const std::string& version);
+
+/// Only one process at a time executes the runs of a folder on one machine.
+class CampaignLock : public FolderLock {
+ public:
+  /// Throws InputError when another process has it, RunError when the folder cannot be written.
+  explicit CampaignLock(const CampaignFolder& folder);
+};
+
+/// Makes the folder and writes the plan where it differs from what is there. Throws RunError.
+void save_plan(const CampaignPlan& plan, const CampaignFolder& folder);
+
+/// Says on standard error what is odd about the stored results: damaged lines, results of another
+/// version or other values.
+void note_odd_results(const CampaignPlan& plan, const ResultIndex& results);
+
+EngineOptions engine_options(const CampaignFolder& folder);
+
+/// The trial of this plan on this machine: the one in the folder, or a new one, which is kept
+/// there. Shows that it works on standard error unless `quiet`.
+CampaignTrial find_trial(const CampaignPlan& plan, const CampaignFolder& folder, bool quiet);
+/// The trial in the folder, of whatever machine; nothing without one.
+std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const CampaignFolder& folder);
+
+/// A job array that was submitted.
+struct SlurmJob {
+  std::string number;
+  std::filesystem::path folder;
+};
+/// Of this campaign, the oldest first.
+std::vector<SlurmJob> slurm_jobs(const CampaignFolder& folder);
+
+/// The runs of a shard, "FILE:LINE", lines counted from 0. Throws InputError.
+std::vector<size_t> read_shard(const std::string& text, const CampaignPlan& plan);
+
+}  // namespace screed

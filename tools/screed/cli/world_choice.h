@@ -1,0 +1,25 @@
+// How the firmware of a run is executed and what stands for physics, for the commands that run
+// experiments.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "host_sim/run/simulation/simulation_options.h"
+
+namespace screed {
+
+struct WorldChoice {
+  std::string hal = "native";  ///< native, mcu or surrogate
+  std::optional<std::string> board;
+  std::optional<std::string> elf;         ///< for mcu; else the one of `make firmware`
+  std::optional<std::string> model;       ///< for surrogate; else the installed one
+  std::optional<std::string> soil_model;  ///< for surrogate; else the installed one
+  bool no_ruts = false;                   ///< for surrogate: the terrain stays rigid
+};
+
+/// Sets board, image and environment. Throws InputError for an unknown board, a model that cannot
+/// be read, and what needs another hal.
+void choose_world(const WorldChoice& choice, SimulationOptions& options);
+
+}  // namespace screed
