@@ -3,7 +3,7 @@
 // Ends with "N passed, N failed". FOLDER is for the runs; it is empty.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openReport, startBrowser } from './browser.mjs';
 
@@ -146,6 +146,101 @@ const tests = {
     assert.deepEqual(complaints, []);
     await page.close();
   },
+  async 'of several robots each has its figures, its row at the slider and its path'(browser) {
+    const { page, complaints } = await openReport(browser, join(folder, 'several.html'));
+    const summary = JSON.parse(readFileSync(join(folder, 'several', 'summary.json'), 'utf8'));
+    const { robots } = summary;
+    assert.equal(await page.$eval('tr[data-name="Content hash"]', (row) => row.children[1].textContent), summary.content_hash);
+    const drawn = await page.$$eval('tr[data-name="Energy drawn"] td[data-value]', (cells) => cells.map((cell) => Number(cell.dataset.value)));
+    assert.equal(drawn.length, 3);
+    drawn.forEach((energy, i) => assert.ok(Math.abs(energy - robots[i].energy_j) <= 1e-9 * energy, `robot ${i}: ${energy}`));
+    assert.equal((await page.$$('details.row')).length, 3);
+    const start = await canvas(page);
+    await moveSlider(page, await lastStop(page));
+    assert.notEqual(await canvas(page), start);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+  async 'figures of a campaign are those of runs.csv'(browser) {
+    const { page, complaints } = await openReport(browser, join(folder, 'out/soils/report.html'));
+    const runs = readTable('soils', 'runs.csv');
+    const near = (got, wanted, name) => assert.ok(Math.abs(got - wanted) <= 1e-9 * Math.max(1e-6, Math.abs(wanted)), `${name}: ${got}, not ${wanted}`);
+    const mean = (list) => list.reduce((sum, it) => sum + it, 0) / list.length;
+    for (const metric of ['energy_j', 'terrain_after.relief_m']) {
+      const { metrics } = await facts(page);
+      await page.select('select[aria-label=Metric]', String(metrics.findIndex((it) => it.name === metric)));
+      await page.waitForFunction((name) => document.querySelector('[data-metric]')?.dataset.metric === name && document.querySelector('[data-name="cell 5"]') !== null, {}, metric);
+      for (let cell = 0; cell < 6; ++cell) {
+        const of = (at) => runs.filter((run) => Number(run.cell) === at).map((run) => Number(run[metric]));
+        const shown = await page.$eval(`tr[data-name="cell ${cell}"]`, (row) => ({ text: row.textContent, numbers: [...row.querySelectorAll('td[data-value]')].map((it) => Number(it.dataset.value)),
+          intervals: [...row.querySelectorAll('.interval')].map((it) => [Number(it.dataset.low), Number(it.dataset.high)]) }));
+        assert.ok(shown.text.startsWith(runs[5 * cell]['experiment.algorithm'] + runs[5 * cell]['soil.preset']), shown.text);
+        assert.equal(shown.numbers[0], 5);
+        near(shown.numbers[1], mean(of(cell)), `${metric} of cell ${cell}`);
+        const [low, high] = shown.intervals[0];
+        assert.ok(low <= shown.numbers[1] && shown.numbers[1] <= high && low >= Math.min(...of(cell)) && high <= Math.max(...of(cell)), `${low} to ${high}`);
+        if (cell === 1) assert.equal(shown.numbers.length, 3, 'the baseline is not compared with itself');
+        else near(shown.numbers[2], mean(of(cell).map((value, seed) => value - of(1)[seed])), `difference of cell ${cell}`);
+      }
+    }
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+  async 'curves of a campaign are those of curves.csv, and one stands for its cells'(browser) {
+    const { page, complaints } = await openReport(browser, join(folder, 'out/soils/report.html'));
+    const { curves } = await facts(page);
+    assert.ok(curves.length >= 4, 'progress, relief, roughness, flat share');
+    for (const name of ['relief', 'progress']) {
+      await page.select('select[aria-label=Curve]', String(curves.findIndex((it) => it.name === name)));
+      await page.waitForFunction((wanted) => document.querySelector('[data-curve]')?.dataset.curve === wanted, {}, name);
+      const end = Math.max(...readTable('soils', 'curves.csv').map((point) => Number(point.time)));
+      for (let cell = 0; cell < 6; ++cell) {
+        const values = readTable('soils', 'curves.csv').filter((point) => Math.floor(Number(point.run) / 5) === cell && Number(point.time) === end).map((point) => Number(point[name]));
+        assert.equal(values.length, 5);
+        const mean = values.reduce((sum, it) => sum + it, 0) / 5;
+        const shown = await page.$eval(`tr[data-name="curve of cell ${cell}"]`, (row) => ({ mean: Number([...row.querySelectorAll('td[data-value]')].at(-1).dataset.value), interval: { ...[...row.querySelectorAll('.interval')].at(-1).dataset } }));
+        assert.ok(Math.abs(shown.mean - mean) <= 1e-9 * Math.abs(mean), `${name} of cell ${cell}: ${shown.mean}, not ${mean}`);
+        assert.ok(Number(shown.interval.low) <= mean && mean <= Number(shown.interval.high));
+      }
+      assert.equal(await page.$eval('[data-curve] .u-legend', (it) => [...it.querySelectorAll('.u-series')].filter((row) => getComputedStyle(row).display !== 'none').length), 1 + 6, 'time and cells; no bands');
+    }
+    assert.deepEqual(complaints, []);
+    await page.close();
+    const samples = await openReport(browser, join(folder, 'out/samples/report.html'));
+    assert.match(await samples.page.$eval('body', (it) => it.textContent), /Curves over time are drawn of at most 12 cells\./);
+    await samples.page.close();
+  },
+  async 'a campaign leads to its runs, says how they ended, and draws samples over their factor'(browser) {
+    const { page, complaints } = await openReport(browser, join(folder, 'out/soils/report.html'), { scheme: 'dark' });
+    assert.deepEqual(await page.$$eval('[data-column] .mean', (all) => all.length), 6 + 5 + 6 + 2 + 3, 'cells, differences, ranks, levels');
+    const ended = await page.$$eval('tr[data-name^="ends of cell"]', (rows) => rows.map((row) => Number(row.querySelector('td[data-value]').dataset.value)));
+    assert.deepEqual(ended, [5, 5, 5, 5, 5, 5]);
+    const links = await page.$$eval('details.runs a', (all) => all.map((it) => decodeURI(new URL(it.href).pathname)));
+    assert.equal(links.length, 30);
+    for (const link of links) assert.ok(existsSync(join(link, 'session.h5')), link);
+    await page.close();
+    const samples = await openReport(browser, join(folder, 'out/samples/report.html'));
+    assert.equal(await samples.page.$$eval('[data-factor="parameters.walk_speed_max"] .single', (all) => all.length), 15);
+    assert.deepEqual([...complaints, ...samples.complaints], []);
+    await samples.page.close();
+  },
+  async 'an incomplete campaign has a page only on request, which says so'(browser) {
+    cpSync(join(folder, 'out/soils'), join(folder, 'out/part'), { recursive: true });
+    for (const file of readdirSync(join(folder, 'out/part/results'))) {
+      const path = join(folder, 'out/part/results', file);
+      writeFileSync(path, readFileSync(path, 'utf8').split('\n').slice(1).join('\n'));
+    }
+    assert.throws(() => execFileSync(program, ['report', 'out/part'], { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] }), (error) => {
+      const text = String(error.stderr);
+      assert.match(text, /^screed: out\/part: \d+ of 30 runs done, \d+ missing; .*--incomplete\n$/);
+      return true;
+    });
+    screed('report', 'out/part', '--incomplete');
+    const { page, complaints } = await openReport(browser, join(folder, 'out/part/report.html'));
+    assert.match(await page.$eval('.warning', (it) => it.textContent), /^Incomplete: \d of 30 runs/);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
   async 'no key of the radio is on the page, and a page stays small'() {
     const text = readFileSync(join(folder, 'rigid.html'), 'utf8');
     assert.ok(readFileSync(join(folder, 'rigid', 'experiment.ini'), 'utf8').includes(key), 'the run has the key');
@@ -154,8 +249,28 @@ const tests = {
   },
 };
 
+/// A campaign of two algorithms on two soils, and its page.
+function runCampaign(name, text, ...options) {
+  writeFileSync(join(folder, `${name}.ini`), text);
+  screed('campaign', 'run', `${name}.ini`, '--quiet');
+  screed('campaign', 'merge', join('out', name));
+  screed('report', join('out', name), ...options);
+  return join(folder, 'out', name, 'report.html');
+}
+
+/// Rows of a campaign's table, as objects.
+function readTable(name, file) {
+  const [head, ...lines] = readFileSync(join(folder, 'out', name, file), 'utf8').trimEnd().split('\n');
+  return lines.map((line) => Object.fromEntries(line.split(',').map((cell, i) => [head.split(',')[i], cell])));
+}
+
 record('soil', soil, '--heights');
 record('rigid', `[experiment]\nduration = 12\nseed = 2\n[map]\nsize = 2\nedges = walls\n[radio]\nkey = ${key}\n`);
+record('several', '[experiment]\nduration = 12\n[map]\nsize = 3\nedges = walls\n[robots]\ncount = 3\n');
+runCampaign('soils', `[campaign]\nexperiment = soil.ini\nseeds = 1..5\nkeep = session\n[set]\nexperiment.duration = 8\n[grid]
+experiment.algorithm = random_walk, spin_on_peak\nsoil.preset = gravel, viper, lete_sand\n`, '--metric', 'energy_j', '--baseline', '1');
+runCampaign('samples', `[campaign]\nexperiment = rigid.ini\n[set]\nexperiment.duration = 10\n[latin_hypercube]\ncount = 15
+parameters.walk_speed_max = 100..200\n`, '--metric', 'distance_m');
 const browser = await startBrowser();
 let failed = 0;
 for (const [name, test] of Object.entries(tests)) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "firmware/parameters/parameter_table.h"
+#include "host_sim/core/content_hash.h"
 #include "host_sim/core/display_units.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/record.h"
@@ -302,7 +303,18 @@ Json configuration_of(const SessionReader& session) {
   return list;
 }
 
-Json identity_of(const SessionReader& session, const RunPageOptions& options) {
+/// As the summary of the run has it.
+std::string hash_of(std::span<const SessionReader> sessions) {
+  std::vector<std::string> hashes;
+  for (const SessionReader& session : sessions) {
+    if (!session.complete()) return "none: the run did not end";
+    hashes.push_back(session.content_hash());
+  }
+  return combined_hash(hashes);
+}
+
+Json identity_of(std::span<const SessionReader> sessions, const RunPageOptions& options) {
+  const SessionReader& session = sessions.front();
   const SessionInfo& info = session.info();
   const RunSetup setup = setup_of(info, {});
   const auto fact = [](const char* name, Json value) {
@@ -319,22 +331,28 @@ Json identity_of(const SessionReader& session, const RunPageOptions& options) {
                                  std::to_string(info.tick_rate_hz) + " Hz"),
                fact("Program of the run", info.program_version),
                fact("Program of this page", SCREED_VERSION),
-               fact("Content hash",
-                    session.complete() ? session.content_hash() : "none: the run did not end")};
+               fact("Content hash", hash_of(sessions))};
   if (!setup.soil.empty()) list.insert(list.begin() + 4, fact("Soil", setup.soil));
   return list;
 }
 
 }  // namespace
 
-std::string run_page(const SessionReader& session, const RunPageOptions& options) {
+std::string run_page(std::span<const SessionReader> sessions, const RunPageOptions& options) {
+  const SessionReader& session = sessions.front();
   if (session.frames() == 0) throw InputError("the session has no tick to report");
   const std::vector<std::uint64_t> stops = stops_of(session.frames());
   PageFile page;
-  Json robot = add_robot(page, session, stops, "robot-0-", options.progress);
-  if (options.robot) {
-    robot["boxes"] =
-        boxes_of(*options.robot, setup_of(session.info(), {}).experiment.vehicle.tracks);
+  Json robots = Json::array();
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    const std::string number = std::to_string(i);
+    Json robot = add_robot(page, sessions[i], stops, "robot-" + number + "-", options.progress);
+    if (sessions.size() > 1) robot["name"] = "robot " + number;
+    if (options.robot) {
+      robot["boxes"] =
+          boxes_of(*options.robot, setup_of(session.info(), {}).experiment.vehicle.tracks);
+    }
+    robots.push_back(std::move(robot));
   }
   Json facts;
   facts["kind"] = "run";
@@ -342,8 +360,8 @@ std::string run_page(const SessionReader& session, const RunPageOptions& options
   facts["complete"] = session.complete();
   facts["tick_s"] = 1.0 / session.info().tick_rate_hz;
   facts["stops"] = stops;
-  facts["identity"] = identity_of(session, options);
-  facts["robots"] = Json::array({std::move(robot)});
+  facts["identity"] = identity_of(sessions, options);
+  facts["robots"] = std::move(robots);
   facts["leveling_states"] = leveling_states();
   facts["terrain"] = add_terrain(page, session, stops, options.progress);
   facts["parameters"] = parameters_of(session);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "host_sim/core/task_progress.h"
@@ -20,8 +21,9 @@ struct RunPageOptions {
   TaskProgress progress;             ///< of the task "reading the run"
 };
 
-/// The page. The same session and options give the same bytes. Keys of the radio are not on it.
-/// Throws InputError when the run has no tick or is damaged, or there is no built page.
-std::string run_page(const SessionReader& session, const RunPageOptions& options);
+/// The page of a run's robots, at least one, with the same ticks; the terrain is that of the first
+/// one's session. The same sessions and options give the same bytes. Keys of the radio are not on
+/// it. Throws InputError when the run has no tick or is damaged, or there is no built page.
+std::string run_page(std::span<const SessionReader> sessions, const RunPageOptions& options);
 
 }  // namespace screed

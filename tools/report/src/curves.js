@@ -9,6 +9,13 @@ const seriesColors = () => [1, 2, 3, 4].map((i) => styleColor(`--series-${i}`));
 /// Numbers for uPlot: null where there is none.
 const points = (values) => Array.from(values, (value) => (Number.isNaN(value) ? null : value));
 
+/// An axis of uPlot in the page's colours; `size` in pixels.
+export function axis(label, size) {
+  const faint = styleColor('--faint');
+  return { label, labelSize: 20, size, stroke: faint, font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif',
+           grid: { stroke: styleColor('--line'), width: 1 }, ticks: { stroke: styleColor('--line') } };
+}
+
 export class Curves {
   /// `events`: times in s. `onTime` gets the time at which the reader clicks.
   constructor(parent, events, onTime) {
@@ -57,12 +64,6 @@ export class Curves {
     for (const plot of this.plots) plot.setSize({ width: this.#width(), height: plot.height });
   }
 
-  #axis(label, size) {
-    const faint = styleColor('--faint');
-    return { label, labelSize: 20, size, stroke: faint, font: '12px system-ui, sans-serif', labelFont: '12px system-ui, sans-serif',
-             grid: { stroke: styleColor('--line'), width: 1 }, ticks: { stroke: styleColor('--line') } };
-  }
-
   #options(height) {
     return {
       width: this.#width(),
@@ -96,7 +97,7 @@ export class Curves {
     const unit = panel.unit === '1' ? '\u2013' : panel.unit;
     const options = this.#options(190);
     options.series = [{ label: 'time [s]', value: (plot, value) => (value === null ? '\u2013' : value.toFixed(2)) }, ...series];
-    options.axes = [this.#axis('time [s]', 32), this.#axis(`[${unit}]`, 56)];
+    options.axes = [axis('time [s]', 32), axis(`[${unit}]`, 56)];
     return new uPlot(options, panel.data, box);
   }
 
@@ -106,7 +107,7 @@ export class Curves {
     options.legend = { show: false };
     options.scales.y = { range: [0, panel.rows.length] };
     options.series = [{}, { show: false }];
-    options.axes = [this.#axis('time [s]', 32), { ...this.#axis('', 56), labelSize: 0, size: 76, grid: { show: false }, ticks: { show: false },
+    options.axes = [axis('time [s]', 32), { ...axis('', 56), labelSize: 0, size: 76, grid: { show: false }, ticks: { show: false },
       splits: panel.rows.map((row, i) => panel.rows.length - i - 0.5), values: () => panel.rows.map((row) => row.name) }];
     options.hooks.draw.unshift((plot) => this.#drawRows(plot, panel.rows));
     const plot = new uPlot(options, [[...this.range], [null, null]], box);

@@ -11,13 +11,20 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
+/// A labelled choice. `options`: [value, text]; `chosen`: the value at the start, the first one without.
+export function select(label, options, onChange, chosen) {
+  const made = element('select', { 'aria-label': label }, ...options.map(([value, text]) => element('option', { value, selected: value === chosen }, text)));
+  made.addEventListener('change', () => onChange(made.value));
+  return element('label', {}, label, made);
+}
+
 /// Rows of cells; a cell is text, an element, or { number, text } for a figure, which keeps all its digits in data-value.
 export function table(head, rows) {
   const cell = (kind, content) => {
     if (content !== null && typeof content === 'object' && 'number' in content) {
       return element(kind, { class: 'number', 'data-value': content.number }, content.text);
     }
-    return element(kind, {}, content);
+    return element(kind, {}, content ?? '');
   };
   const numeric = (column) => rows.some((row) => row.cells[column] !== null && typeof row.cells[column] === 'object' && 'number' in row.cells[column]);
   const parts = [];
@@ -36,6 +43,7 @@ export function figure(number) {
 export function shortNumber(number) {
   if (!Number.isFinite(number)) return '\u2013';
   if (number === 0) return '0';
+  if (Math.abs(number) < 1e-3) return number.toExponential(2).replaceAll('-', '\u2212');
   const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(Math.abs(number)))));
   return number.toFixed(digits).replace('-', '\u2212');
 }

@@ -1,9 +1,10 @@
 // Shows what the file holds. Each kind of page is a function of the facts, by its name.
+import { showCampaign } from './campaign_page.js';
 import { facts } from './data.js';
 import { element } from './elements.js';
 import { showRun } from './run_page.js';
 
-const kinds = { run: showRun };
+const kinds = { run: showRun, campaign: showCampaign };
 
 async function show() {
   const all = facts();

@@ -1,7 +1,7 @@
 // The page of one run.
 import { Curves, readDoubles, readFloats, swatch } from './curves.js';
 import { Heights, doubles, floats, words } from './data.js';
-import { element, figure, plainNumber, seconds, shortNumber, table } from './elements.js';
+import { element, figure, plainNumber, seconds, select, shortNumber, table } from './elements.js';
 import { TerrainView } from './terrain_view.js';
 
 /// Columns of frames.csv that stand beside the slider; all of them are below.
@@ -31,12 +31,20 @@ function figures(list, more = []) {
   return table(null, [...rows, ...more.map(([name, text]) => ({ name, cells: [element('span', { class: 'faint' }, name), text, ''] }))]);
 }
 
+/// The same of several robots, a column each.
+function figuresByRobot(robots, ends) {
+  const name = (text) => element('span', { class: 'faint' }, text);
+  const rows = robots[0].figures.map((it, i) => ({ name: it.name, cells: [name(it.name), ...robots.map((robot) => figure(robot.figures[i].value)), it.unit] }));
+  return table(['', ...robots.map((robot) => robot.name), ''], [...rows, ...ends.map(([title, key]) => ({ name: title, cells: [name(title), ...robots.map((robot) => robot[key]), ''] }))]);
+}
+
 function header(page, facts) {
   page.append(element('h1', {}, facts.title));
   if (!facts.complete) page.append(element('p', { class: 'warning' }, 'The recorded run did not end: this is what was written until then.'));
-  const robots = facts.robots.map((robot) => element('div', {}, facts.robots.length > 1 ? element('h3', {}, robot.name) : null,
-    figures(robot.figures, [['State at the end', robot.state], ['Faults at the end', robot.faults]])));
-  page.append(element('div', { class: 'columns' }, identity(facts), element('div', {}, ...robots, facts.terrain?.change ? figures(facts.terrain.change) : null)));
+  const { robots } = facts;
+  const ends = [['State at the end', 'state'], ['Faults at the end', 'faults']];
+  const of = robots.length > 1 ? figuresByRobot(robots, ends) : figures(robots[0].figures, ends.map(([name, key]) => [name, robots[0][key]]));
+  page.append(element('div', { class: 'columns' }, identity(facts), element('div', {}, of, facts.terrain?.change ? figures(facts.terrain.change) : null)));
 }
 
 function legend(facts, view) {
@@ -58,12 +66,6 @@ function legend(facts, view) {
   };
   show(false);
   return { box, show };
-}
-
-function select(label, options, onChange) {
-  const made = element('select', { 'aria-label': label }, ...options.map(([value, text]) => element('option', { value }, text)));
-  made.addEventListener('change', () => onChange(made.value));
-  return element('label', {}, label, made);
 }
 
 function terrainNotes(terrain, view) {

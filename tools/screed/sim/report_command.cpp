@@ -1,17 +1,27 @@
-// `screed report`: a recorded run as one HTML page.
+// `screed report`: a recorded run, or a campaign, as one HTML page.
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "host_sim/campaign/campaign_folder.h"
+#include "host_sim/campaign/campaign_merge.h"
+#include "host_sim/campaign/campaign_page.h"
+#include "host_sim/campaign/campaign_plan.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/engine/result_store.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/report/run_page.h"
+#include "host_sim/run/session/robot_sessions.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tools/screed/cli/command.h"
+#include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/task_bar.h"
 
 namespace screed {
@@ -20,10 +30,33 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string run;
+  std::string of;  ///< run or campaign
   std::string out;
+  std::optional<std::string> metric;
+  std::optional<std::uint64_t> baseline;
+  bool incomplete = false;
   bool quiet = false;
 };
+
+fs::path built_page() {
+  return data_folders().report / "page.html";
+}
+
+/// The page's own path, or the one beside what it reports. Throws InputError.
+fs::path page_path(const Options& options, const fs::path& folder) {
+  fs::path out = options.out.empty() ? folder / "report.html" : fs::path(options.out);
+  if (out.extension() != ".html")
+    throw InputError("--out " + options.out + ": the name ends in .html");
+  return out;
+}
+
+int write_page(const fs::path& out, const std::string& text) {
+  write_file(out, text);
+  char size[32];
+  std::snprintf(size, sizeof size, "%.2f MB", static_cast<double>(text.size()) * 1e-6);
+  std::cout << out.string() << ": " << size << "\n";
+  return 0;
+}
 
 std::optional<Assembly> robot_of(const SessionReader& session, const fs::path& folder) {
   try {
@@ -34,41 +67,73 @@ std::optional<Assembly> robot_of(const SessionReader& session, const fs::path& f
   }
 }
 
-int run_report(const Options& options) {
-  const fs::path file = session_file(options.run);
+int report_run(const Options& options) {
+  if (options.metric || options.baseline || options.incomplete)
+    throw InputError("--metric, --baseline, --incomplete: of campaigns, and " + options.of +
+                     " is none");
+  const fs::path file = session_file(options.of);
   const fs::path folder = fs::absolute(file).parent_path();
-  const fs::path out = options.out.empty() ? folder / "report.html" : fs::path(options.out);
-  if (out.extension() != ".html") {
-    throw InputError("--out " + options.out + ": the name ends in .html");
-  }
-  const SessionReader session(file);
+  const fs::path out = page_path(options, folder);
+  const std::vector<SessionReader> sessions = open_robots(options.of);
+  const SessionReader& session = sessions.front();
   if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
   TaskBar bar(options.quiet);
   RunPageOptions page;
-  page.built_page = data_folders().report / "page.html";
+  page.built_page = built_page();
   page.name = file.filename() == "session.h5" ? folder.filename().string() : file.stem().string();
   page.robot = robot_of(session, folder);
   page.progress = bar.progress();
-  const std::string text = run_page(session, page);
+  const std::string text = run_page(sessions, page);
   bar.clear();
-  write_file(out, text);
-  char size[32];
-  std::snprintf(size, sizeof size, "%.2f MB", static_cast<double>(text.size()) * 1e-6);
-  std::cout << out.string() << ": " << size << "\n";
-  return 0;
+  return write_page(out, text);
+}
+
+int report_campaign(const Options& options, const CampaignFolder& folder) {
+  const fs::path out = page_path(options, folder.path);
+  const CampaignPlan plan = read_plan(folder.plan());
+  const ResultIndex results(folder.results());
+  const CampaignCount count = count_results(plan, results);
+  if (count.missing() > 0 && !options.incomplete) {
+    throw InputError(options.of + ": " + count.text() +
+                     "; statistics of an incomplete campaign mislead: run the rest, or say "
+                     "--incomplete");
+  }
+  CampaignPageOptions page;
+  page.built_page = built_page();
+  page.baseline = options.baseline.value_or(0);
+  page.metric = options.metric;
+  page.link_base = out.parent_path();
+  return write_page(out, campaign_page(plan, count, run_table(plan, results),
+                                       curve_table(plan, results), folder, page));
+}
+
+int run_report(const Options& options) {
+  const CampaignFolder campaign{options.of};
+  return fs::exists(campaign.plan()) ? report_campaign(options, campaign) : report_run(options);
 }
 
 }  // namespace
 
 void register_report_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand(
-      "report", "Write a recorded run as one HTML page: terrain over time, path, curves, figures");
+      "report",
+      "Write a recorded run or a campaign as one HTML page: terrain over time, path, curves, "
+      "figures; means, differences, ranks");
   const auto options = std::make_shared<Options>();
-  command->add_option("RUN", options->run, "Run folder or session.h5")->required();
+  command->add_option("RUN", options->of, "Run folder, session.h5, or folder of a campaign")
+      ->required();
   command
       ->add_option("--out", options->out,
                    "Output page, .html; replaced where it exists (default: RUN/report.html)")
       ->type_name("FILE");
+  command
+      ->add_option("--metric", options->metric,
+                   "Column of runs.csv that the page of a campaign shows first")
+      ->type_name("NAME");
+  add_number(*command, "--baseline", options->baseline,
+             "Cell that the others of a campaign are compared with (default: 0)", {0, 1e6});
+  command->add_flag("--incomplete", options->incomplete,
+                    "Report a campaign although runs are missing; the page says so");
   command->add_flag("--quiet", options->quiet, "Show no progress");
   command->callback(
       [options, &program] { program.action = [options] { return run_report(*options); }; });
