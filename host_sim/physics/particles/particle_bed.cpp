@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/particles/solid_contact.h"
+#include "host_sim/physics/terrain/solid_contact.h"
 
 namespace screed {
 namespace {

@@ -26,6 +26,9 @@ class Hull {
   void reset_contacts();
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
+  /// The boxes that the hull is made of, and where they are in the body's frame.
+  const std::vector<Footprint>& boxes() const { return boxes_; }
+  const std::vector<Eigen::Isometry3d>& box_poses() const { return box_poses_; }
 
   /// Adds what a hard surface does to the body's points in this step.
   void stand_on(const HeightField& hard, const CarrierMotion& motion, double dt, Wrench& wrench);

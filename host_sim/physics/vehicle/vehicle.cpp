@@ -162,24 +162,14 @@ void Vehicle::meet_walls(const BedBounds& bed, size_t carrier, const CarrierMoti
     walls.reset_contacts();
     return;
   }
-  drives_.clear();
-  for (const Shaft& shaft : shafts_) {
-    drives_.push_back({shaft.shaft.omega_rad_per_s(), 1.0 / shaft.shaft.inertia_kg_m2(), 0.0});
-  }
+  list_shaft_drives();
   // A chain answers by itself, its wheels a step later (ChainTrack::pull).
   for (const Chain& chain : chains_) {
     const double radius = chain.track.radius_m();
     drives_.push_back({chain.track.surface_speed(motion) / radius,
                        1.0 / (chain.track.mass_kg() * radius * radius), 0.0});
   }
-  PressingBody body;
-  body.mass_kg = carriers_[carrier].mass;
-  body.inverse_inertia =
-      motion.rotation * carriers_[carrier].inverse_inertia * motion.rotation.transpose();
-  body.centre = motion.origin;
-  body.velocity = motion.velocity;
-  body.omega = motion.omega;
-  walls.press(bed, body, motion.rotation, dt, drives_, wrench);
+  walls.press(bed, moving_body(carrier, motion), motion.rotation, dt, drives_, wrench);
   for (size_t i = 0; i < shafts_.size(); ++i) shafts_[i].torque += drives_[i].torque_n_m;
   for (const WallContact::Touch& touch : walls.touches()) {
     const size_t drive = walls.drive(touch.point);
@@ -194,26 +184,112 @@ ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
           shafts_[chain.shafts[1]].shaft.omega_rad_per_s()};
 }
 
+CarrierMotion Vehicle::motion_of(size_t carrier) const {
+  const dBodyID body = carriers_[carrier].body;
+  CarrierMotion motion;
+  motion.origin = to_eigen(dBodyGetPosition(body));
+  motion.rotation = rotation_to_eigen(dBodyGetRotation(body));
+  motion.velocity = to_eigen(dBodyGetLinearVel(body));
+  motion.omega = to_eigen(dBodyGetAngularVel(body));
+  return motion;
+}
+
+PressingBody Vehicle::moving_body(size_t carrier, const CarrierMotion& motion) const {
+  PressingBody body;
+  body.mass_kg = carriers_[carrier].mass;
+  body.inverse_inertia =
+      motion.rotation * carriers_[carrier].inverse_inertia * motion.rotation.transpose();
+  body.centre = motion.origin;
+  body.velocity = motion.velocity;
+  body.omega = motion.omega;
+  return body;
+}
+
+void Vehicle::list_shaft_drives() {
+  drives_.clear();
+  for (const Shaft& shaft : shafts_) {
+    drives_.push_back({shaft.shaft.omega_rad_per_s(), 1.0 / shaft.shaft.inertia_kg_m2(), 0.0});
+  }
+}
+
+void Vehicle::add_wrench(size_t carrier, const Wrench& wrench) {
+  const dBodyID body = carriers_[carrier].body;
+  dBodyAddForce(body, wrench.force.x(), wrench.force.y(), wrench.force.z());
+  dBodyAddTorque(body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
+}
+
+RobotBody Vehicle::robot_body(size_t carrier, const Eigen::Vector3d& offset, Wrench& wrench) {
+  CarrierMotion motion = motion_of(carrier);
+  motion.origin += offset;
+  const Carrier& of = carriers_[carrier];
+  return {moving_body(carrier, motion),
+          motion.rotation,
+          of.reach,
+          of.points,
+          of.solids,
+          mass_,
+          drives_,
+          wrench};
+}
+
+bool Vehicle::within_reach(const Carrier& one, const Carrier& other,
+                           const Eigen::Vector3d& to_other) {
+  const Eigen::Vector3d apart =
+      to_eigen(dBodyGetPosition(other.body)) + to_other - to_eigen(dBodyGetPosition(one.body));
+  const double reach = one.reach + other.reach;
+  return apart.squaredNorm() < reach * reach;
+}
+
+template <class Visit>
+void Vehicle::visit_near(Vehicle& other, const Eigen::Vector3d& to_other, Visit visit) {
+  for (size_t mine = 0; mine < carriers_.size(); ++mine) {
+    for (size_t theirs = 0; theirs < other.carriers_.size(); ++theirs) {
+      if (within_reach(carriers_[mine], other.carriers_[theirs], to_other)) visit(mine, theirs);
+    }
+  }
+}
+
+void Vehicle::collide(Vehicle& other, const Eigen::Vector3d& to_other, double dt,
+                      RobotContact& contact) {
+  visit_near(other, to_other, [&](size_t mine, size_t theirs) {
+    list_shaft_drives();
+    other.list_shaft_drives();
+    Wrench on_mine;
+    Wrench on_theirs;
+    contact.press(robot_body(mine, Eigen::Vector3d::Zero(), on_mine),
+                  other.robot_body(theirs, to_other, on_theirs), dt);
+    add_wrench(mine, on_mine);
+    other.add_wrench(theirs, on_theirs);
+    for (Vehicle* const robot : {this, &other}) {
+      for (size_t i = 0; i < robot->shafts_.size(); ++i)
+        robot->shafts_[i].torque += robot->drives_[i].torque_n_m;
+    }
+  });
+}
+
+double Vehicle::depth_in(Vehicle& other, const Eigen::Vector3d& to_other, RobotContact& contact) {
+  double deepest = 0.0;
+  visit_near(other, to_other, [&](size_t mine, size_t theirs) {
+    Wrench none;
+    deepest = std::max(deepest, contact.depth(robot_body(mine, Eigen::Vector3d::Zero(), none),
+                                              other.robot_body(theirs, to_other, none)));
+  });
+  return deepest;
+}
+
 void Vehicle::apply_forces(Terrain& terrain, const std::array<double, 2>& motor_voltage,
                            double dt) {
   const BedBounds bed = terrain.bounds();
-  for (Shaft& shaft : shafts_) shaft.torque = 0.0;
   for (size_t c = 0; c < carriers_.size(); ++c) {
-    Carrier& carrier = carriers_[c];
-    CarrierMotion motion;
-    motion.origin = to_eigen(dBodyGetPosition(carrier.body));
-    motion.rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
-    motion.velocity = to_eigen(dBodyGetLinearVel(carrier.body));
-    motion.omega = to_eigen(dBodyGetAngularVel(carrier.body));
-
+    const CarrierMotion motion = motion_of(c);
     Wrench wrench;
     terrain_contact(terrain, c, motion, dt, wrench);
     if (bed.edge == BedEdge::kWalled) meet_walls(bed, c, motion, dt, wrench);
-    dBodyAddForce(carrier.body, wrench.force.x(), wrench.force.y(), wrench.force.z());
-    dBodyAddTorque(carrier.body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
+    add_wrench(c, wrench);
   }
   for (Shaft& shaft : shafts_) {
     shaft.shaft.step(motor_voltage[static_cast<size_t>(shaft.side)], shaft.torque, dt);
+    shaft.torque = 0.0;
   }
 }
 

@@ -4,7 +4,8 @@
 // Bodies that a fixed joint holds together are one ODE body. Wheels ride with the body that carries
 // them and turn on shafts (drive_shaft.h) under their running gear (running_gear.h). Other revolute
 // joints are ODE hinges. All forces of the terrain are our own
-// (terrain.h, terrain_contact.h), and those of the walls round it (wall_contact.h).
+// (terrain.h, terrain_contact.h), those of the walls round it (wall_contact.h) and those of other
+// robots (robot_contact.h).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,6 +20,7 @@
 #include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/hull.h"
 #include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/physics/vehicle/robot_contact.h"
 #include "host_sim/physics/vehicle/running_gear.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/vehicle/wall_contact.h"
@@ -60,6 +62,14 @@ class Vehicle : public VehicleState {
   /// From above: the rectangle round all contact points where they are now.
   Eigen::AlignedBox2d outline() const;
 
+  /// Adds what two robots do to each other in this step. `to_other`: where the other one is to be
+  /// looked for, from where it is; on a bed that wraps around one of its copies may be nearer.
+  /// Before apply_forces() of either. Between chains and another robot there is friction, but their
+  /// drive does not feel it.
+  void collide(Vehicle& other, const Eigen::Vector3d& to_other, double dt, RobotContact& contact);
+  /// How deep two robots stand in one another, m; 0 when they do not.
+  double depth_in(Vehicle& other, const Eigen::Vector3d& to_other, RobotContact& contact);
+
   /// Adds the forces of this step to the bodies and advances the motors. The terrain's end_step()
   /// and the world's step() are the caller's, afterwards.
   void apply_forces(Terrain& terrain, const std::array<double, 2>& motor_voltage, double dt);
@@ -85,6 +95,10 @@ class Vehicle : public VehicleState {
     Eigen::Isometry3d rest_pose;  // its centre of mass in the frame of the chassis, joints at zero
     Hull hull;
     WallContact walls;
+    // For other robots:
+    std::vector<BodyPoint> points;
+    std::vector<SolidPart> solids;
+    double reach;  // of points and solids from the centre of mass
     BodyMemory memory;
     double mass;
     Eigen::Matrix3d inverse_inertia;  // in its own axes
@@ -92,7 +106,7 @@ class Vehicle : public VehicleState {
   struct Shaft {
     Side side;
     DriveShaft shaft;
-    double torque = 0.0;  // of the terrain in this step, N m
+    double torque = 0.0;  // of all that it touches in this step, N m
   };
   struct Unit {
     size_t carrier;
@@ -128,7 +142,23 @@ class Vehicle : public VehicleState {
   void add_wall_points(const VehicleOptions& options);
   void meet_walls(const BedBounds& bed, size_t carrier, const CarrierMotion& motion, double dt,
                   Wrench& wrench);
+  /// Lists what other robots meet of running gear, and then of all the rest.
+  void add_gear_surface(size_t carrier, const RunningGearGeometry& gear, size_t drive);
+  void add_hull_surface();
+  /// Whether bodies of two robots may touch.
+  static bool within_reach(const Carrier& one, const Carrier& other,
+                           const Eigen::Vector3d& to_other);
+  /// Calls visit(mine, theirs) for the bodies that may touch.
+  template <class Visit>
+  void visit_near(Vehicle& other, const Eigen::Vector3d& to_other, Visit visit);
   PressingBody pressing_body(size_t carrier, const CarrierMotion& motion) const;
+  CarrierMotion motion_of(size_t carrier) const;
+  /// The carrier as it moves by itself, whatever hangs on it.
+  PressingBody moving_body(size_t carrier, const CarrierMotion& motion) const;
+  /// Fills drives_ with the shafts.
+  void list_shaft_drives();
+  RobotBody robot_body(size_t carrier, const Eigen::Vector3d& offset, Wrench& wrench);
+  void add_wrench(size_t carrier, const Wrench& wrench);
   /// Ends the step of a carrier's chains; theirs begin at `first` among contacts_.
   void end_chains(const Terrain& terrain, size_t carrier, size_t first, const CarrierMotion& motion,
                   double dt, Wrench& wrench);

@@ -1,5 +1,6 @@
 // How an assembly becomes a vehicle: which bodies are one, what carries the wheels, which shafts
 // turn them.
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -51,12 +52,14 @@ Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions
     add_hinges(without);
     add_running_gear(without, options);
     add_wall_points(options);
+    add_hull_surface();
     return;
   }
   add_carriers(assembly, is_wheel, options);
   add_hinges(assembly);
   add_running_gear(assembly, options);
   add_wall_points(options);
+  add_hull_surface();
 }
 
 void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
@@ -180,6 +183,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
     const auto add_unit = [&](const Wheel& a, const Wheel& b, size_t shaft) {
       const RunningGearGeometry geometry{a.centre, b.centre, a.radius, a.width};
       units_.push_back({a.carrier, shaft, RunningGear(geometry, options.track_friction, load)});
+      add_gear_surface(a.carrier, geometry, shaft);
     };
     // The encoder is on the first motor's shaft, front before rear.
     const Wheel& motored = front.driven ? front : rear;
@@ -199,6 +203,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
       chains_.push_back({front.carrier,
                          {of_front, of_rear},
                          ChainTrack(geometry, options.chain, options.track_friction, load)});
+      add_gear_surface(front.carrier, geometry, kNoSurfaceDrive);
     } else if (options.tracks) {
       add_unit(front, rear, add_shaft(motors, front.spin_inertia + rear.spin_inertia));
     } else if (motors == 2) {
@@ -233,6 +238,27 @@ void Vehicle::add_wall_points(const VehicleOptions& options) {
              track.radius_m());
   }
   for (Carrier& carrier : carriers_) carrier.walls.close(options.wall_friction, mass_);
+}
+
+void Vehicle::add_gear_surface(size_t carrier, const RunningGearGeometry& gear, size_t drive) {
+  Carrier& of = carriers_[carrier];
+  of.solids.push_back(solid_of(gear, drive));
+  for (const BodyPoint& point : middle_of(gear, drive)) of.points.push_back(point);
+}
+
+void Vehicle::add_hull_surface() {
+  for (Carrier& carrier : carriers_) {
+    for (size_t i = 0; i < carrier.walls.points(); ++i)
+      carrier.points.push_back(carrier.walls.body_point(i));
+    const Hull& hull = carrier.hull;
+    for (size_t i = 0; i < hull.boxes().size(); ++i)
+      carrier.solids.push_back({hull.boxes()[i], hull.box_poses()[i]});
+    carrier.reach = carrier.walls.reach_m();
+    for (const SolidPart& solid : carrier.solids) {
+      carrier.reach = std::max(carrier.reach, solid.pose.translation().norm() +
+                                                  solid.shape.half().norm() + solid.shape.radius());
+    }
+  }
 }
 
 }  // namespace screed

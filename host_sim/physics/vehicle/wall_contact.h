@@ -35,6 +35,17 @@ struct SurfaceDrive {
   double torque_n_m = 0.0;  ///< of the walls in this step: the answer
 };
 
+/// The drive of what no drive moves.
+inline constexpr size_t kNoSurfaceDrive = static_cast<size_t>(-1);
+
+/// A point on the outside of a body, in the frame of its centre of mass.
+struct BodyPoint {
+  Eigen::Vector3d at;
+  Eigen::Vector3d along;  ///< which way its drive moves the surface, unit length; zero without one
+  size_t drive;           ///< kNoSurfaceDrive without one
+  double radius;          ///< speed of the surface over that of the drive, m
+};
+
 class WallContact {
  public:
   /// A point that no drive moves.
@@ -70,20 +81,18 @@ class WallContact {
     Eigen::Vector3d friction() const { return impulse - impulse.dot(normal) * normal; }
   };
   const std::vector<Touch>& touches() const { return touches_; }
+  static constexpr size_t kNoDrive = kNoSurfaceDrive;
   size_t points() const { return points_.size(); }
   /// In the frame of the body's centre of mass.
   const Eigen::Vector3d& point(size_t i) const { return points_[i].at; }
-  /// As given to add_point(); none of a point without one.
-  static constexpr size_t kNoDrive = static_cast<size_t>(-1);
+  /// As given to add_point().
+  const BodyPoint& body_point(size_t i) const { return points_[i]; }
   size_t drive(size_t point) const { return points_[point].drive; }
+  /// Of the points from the centre of mass, m.
+  double reach_m() const { return reach_; }
 
  private:
-  struct Point {
-    Eigen::Vector3d at;
-    Eigen::Vector3d along;
-    size_t drive;
-    double radius;
-  };
+  using Point = BodyPoint;
   struct Memory {  // of a point on the walls across one axis
     Eigen::Vector3d bristle = Eigen::Vector3d::Zero();
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();

@@ -1,11 +1,13 @@
-// What a robot is driven in, as the rest of the program sees it: the terrain, the robot's true
-// state, the battery, advanced a step at a time. Behind it stands physics (plant.h), or a network
+// What robots are driven in, as the rest of the program sees it: the terrain, each robot's true
+// state and battery, advanced a step at a time. Behind it stands physics (plant.h), or a network
 // that has learned from physics (surrogate_plant.h).
 #pragma once
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
@@ -14,13 +16,14 @@
 
 namespace screed {
 
-class Environment {
- public:
-  virtual ~Environment() = default;
+/// Mean output of a robot's drivers over the battery voltage, -1..1, left and right; positive
+/// drives forward.
+using DutyRatio = std::array<double, 2>;
 
-  /// One physics step. Mean output of each driver over the battery voltage, -1..1, left and right;
-  /// positive drives forward.
-  virtual void step(const std::array<double, 2>& duty_ratio) = 0;
+/// One robot, and the world that it is in.
+class RobotView {
+ public:
+  virtual ~RobotView() = default;
 
   /// True motion: means over the last kTickPeriod_us, ending now, not at the last tick (the
   /// simulated microcontroller asks between ticks). Throws RunError when the physics has diverged.
@@ -49,6 +52,25 @@ class Environment {
   /// The chassis' place as if there had been no teleport, m.
   virtual Eigen::Vector3d unwrapped_position() const = 0;
   virtual const Battery& battery() const = 0;
+
+ protected:
+  RobotView() = default;
+  RobotView(const RobotView&) = default;
+  RobotView& operator=(const RobotView&) = default;
+};
+
+/// A world, seen by the first of its robots.
+class Environment : public RobotView {
+ public:
+  /// One physics step of a world with one robot.
+  virtual void step(const DutyRatio& duty_ratio) = 0;
+  /// One physics step, with a duty for each robot in their order.
+  virtual void step_all(std::span<const DutyRatio> duty_ratios) { step(duty_ratios[0]); }
+
+  virtual size_t robots() const { return 1; }
+  /// Number 0 is the first robot.
+  virtual RobotView& robot(size_t /*number*/) { return *this; }
+  virtual const RobotView& robot(size_t /*number*/) const { return *this; }
 
  protected:
   Environment() = default;

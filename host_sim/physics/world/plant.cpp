@@ -1,14 +1,12 @@
-// Terrain, bodies, motors and battery.
+// Terrain, bodies, motors and batteries.
 #include "host_sim/physics/world/plant.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "hal/sample.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/core/gravity.h"
 #include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
@@ -28,10 +26,9 @@ int steps_in_tick(double physics_step_s) {
   return static_cast<int>(whole);
 }
 
-Eigen::Vector3d imu_position(const Assembly& model) {
-  const int imu = model.imu;
-  return imu < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                 : Eigen::Vector3d(model.bodies[static_cast<size_t>(imu)].pose.translation());
+/// To the copy of a coordinate that is nearest to another one, on a bed that wraps around.
+double to_nearest_copy(double coordinate, double from, double size_m) {
+  return -size_m * std::round((coordinate - from) / size_m);
 }
 
 }  // namespace
@@ -44,30 +41,73 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
       steps_per_tick_(steps_in_tick(options.physics_step_s)),
       terrain_(std::move(terrain)),
       substeps_(std::max(1, static_cast<int>(std::ceil(step_s_ / terrain_->longest_step_s())))),
-      vehicle_(ode_, model, options.vehicle),
-      battery_(options.battery),
-      imu_position_(imu_position(model)),
-      imu_history_(static_cast<size_t>(steps_per_tick_) + 1) {
-  if (vehicle_.chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
+      contact_(options.robot_friction) {
+  add_robot(model, options);
+  check_step(options);
+  place(*robots_[0], options.start);
+  for (const StartPose& start : options.further_starts) {
+    add_robot(model, options);
+    place(*robots_.back(), start);
+    check_apart();
+  }
+  if (!options.start.z_m.has_value()) settle(options.progress);
+}
+
+void Plant::add_robot(const Assembly& model, const PlantOptions& options) {
+  robots_.push_back(std::make_unique<PlantRobot>(*this, *terrain_, ode_, model, options.vehicle,
+                                                 options.battery));
+  voltages_.push_back({0.0, 0.0});
+}
+
+void Plant::check_step(const PlantOptions& options) const {
+  if (robots_[0]->vehicle().chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
     throw InputError("[physics] step = " + std::to_string(step_s_) +
                      " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
   }
-  const StartPose& start = options.start;
+  if (!options.further_starts.empty() && step_s_ > RobotContact::kLongestStep_s + 1e-12) {
+    throw InputError("[physics] step = " + std::to_string(step_s_) +
+                     " s; with several robots at most 0.002 s is allowed");
+  }
+}
+
+void Plant::place(PlantRobot& robot, const StartPose& start) {
+  Vehicle& vehicle = robot.vehicle();
   const Eigen::Matrix3d rotation = rotation_from(start.attitude);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = rotation;
-  const double resting = vehicle_.resting_height(Plant::terrain(), start.x_m, start.y_m, rotation);
+  const double resting = vehicle.resting_height(Plant::terrain(), start.x_m, start.y_m, rotation);
   pose.translation() << start.x_m, start.y_m, start.z_m.value_or(resting);
   if (start.z_m.has_value() && *start.z_m < resting - 0.01) {
     throw InputError("[vehicle] z = " + std::to_string(*start.z_m) +
                      " m puts the robot into the ground; at this place it must be " +
                      std::to_string(resting) + " or more (leave z out to set the robot down)");
   }
-  vehicle_.place(pose);
-  check_between_walls(terrain_->bounds(), vehicle_.outline(), {start.x_m, start.y_m});
-  wrap_around();
-  wrap_counts_ = {0, 0};
-  if (!start.z_m.has_value()) settle(options.progress);
+  vehicle.place(pose);
+  check_between_walls(terrain_->bounds(), vehicle.outline(), {start.x_m, start.y_m});
+  robot.wrap_around();
+  robot.reset_wrap_counts();
+}
+
+void Plant::check_apart() {
+  PlantRobot& last = *robots_.back();
+  for (size_t i = 0; i + 1 < robots_.size(); ++i) {
+    PlantRobot& other = *robots_[i];
+    if (last.vehicle().depth_in(other.vehicle(), to_near_copy(other, last), contact_) == 0.0) {
+      continue;
+    }
+    throw InputError("[robots] robots " + std::to_string(i) + " and " +
+                     std::to_string(robots_.size() - 1) +
+                     " would stand in one another at the start; put them further apart");
+  }
+}
+
+Eigen::Vector3d Plant::to_near_copy(const PlantRobot& robot, const PlantRobot& from) const {
+  const BedBounds bed = terrain_->bounds();
+  if (bed.edge != BedEdge::kWrapped) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d at = robot.vehicle().chassis().pose.translation();
+  const Eigen::Vector3d origin = from.vehicle().chassis().pose.translation();
+  return {to_nearest_copy(at.x(), origin.x(), bed.width_m),
+          to_nearest_copy(at.y(), origin.y(), bed.depth_m), 0.0};
 }
 
 void Plant::settle(const TaskProgress& progress) {
@@ -75,117 +115,46 @@ void Plant::settle(const TaskProgress& progress) {
   const auto steps = static_cast<int>(std::lround(kSettle_s / step_s_));
   for (int i = 0; i < steps; ++i) {
     report_progress(progress, "settling the robot", static_cast<double>(i) / steps);
-    step_bodies({0.0, 0.0});
+    step_bodies();
   }
-  reset_motion_history(imu_velocity(vehicle_.chassis()));
+  for (const auto& robot : robots_) robot->begin_motion_here();
 }
 
-void Plant::step_bodies(const std::array<double, 2>& motor_voltage) {
+void Plant::collide(double dt) {
+  for (size_t i = 0; i < robots_.size(); ++i) {
+    for (size_t j = i + 1; j < robots_.size(); ++j) {
+      robots_[i]->vehicle().collide(robots_[j]->vehicle(), to_near_copy(*robots_[j], *robots_[i]),
+                                    dt, contact_);
+    }
+  }
+}
+
+void Plant::step_bodies() {
   const double dt = step_s_ / substeps_;
   for (int i = 0; i < substeps_; ++i) {
-    vehicle_.apply_forces(*terrain_, motor_voltage, dt);
+    collide(dt);
+    for (size_t robot = 0; robot < robots_.size(); ++robot)
+      robots_[robot]->vehicle().apply_forces(*terrain_, voltages_[robot], dt);
     terrain_->end_step(dt);
     ode_.step(dt);
   }
-  wrap_around();
+  for (const auto& robot : robots_) robot->wrap_around();
 }
 
-void Plant::wrap_around() {
-  const BedBounds bed = terrain_->bounds();
-  if (bed.edge != BedEdge::kWrapped) return;
-  const Eigen::Vector3d at = vehicle_.chassis().pose.translation();
-  const auto beds_off = [](double coordinate, double size) {
-    // Half open, so that a robot on the very edge stays where it is put.
-    return coordinate >= -0.5 * size && coordinate < 0.5 * size
-               ? 0.0
-               : std::floor(coordinate / size + 0.5);
-  };
-  const double east = beds_off(at.x(), bed.width_m);
-  const double north = beds_off(at.y(), bed.depth_m);
-  if (east == 0.0 && north == 0.0) return;
-  // A place that is no number stays: motion() says that the physics diverged.
-  if (!std::isfinite(east) || !std::isfinite(north)) return;
-  vehicle_.shift(-east * bed.width_m, -north * bed.depth_m);
-  wrap_counts_[0] += static_cast<int64_t>(east);
-  wrap_counts_[1] += static_cast<int64_t>(north);
+void Plant::step(const DutyRatio& duty_ratio) {
+  step_all({&duty_ratio, 1});
 }
 
-Eigen::Vector3d Plant::unwrapped_position() const {
-  const BedBounds bed = terrain_->bounds();
-  return vehicle_.chassis().pose.translation() +
-         Eigen::Vector3d(static_cast<double>(wrap_counts_[0]) * bed.width_m,
-                         static_cast<double>(wrap_counts_[1]) * bed.depth_m, 0.0);
-}
-
-Eigen::Vector3d Plant::imu_velocity(const ChassisState& chassis) const {
-  const Eigen::Matrix3d& rotation = chassis.pose.linear();
-  return chassis.velocity + rotation * chassis.omega_body.cross(imu_position_);
-}
-
-void Plant::reset_motion_history(const Eigen::Vector3d& velocity) {
-  std::fill(imu_history_.begin(), imu_history_.end(), ImuState{velocity, Eigen::Vector3d::Zero()});
-}
-
-void Plant::step(const std::array<double, 2>& duty_ratio) {
-  // Terminal voltage and motor currents are those of the step before: the battery is one step late.
-  std::array<double, 2> voltage{};
-  double current = 0.0;
-  for (const Side side : {kLeft, kRight}) {
-    const double of_side = duty_ratio[static_cast<size_t>(side)];
-    voltage[static_cast<size_t>(side)] = of_side * battery_.terminal_v;
-    // The driver's off phase brakes: current then circulates in the motor, and never flows back
-    // into the battery.
-    current += std::max(0.0, of_side * vehicle_.current_a(side));
-  }
-  step_bodies(voltage);
-  battery_.step(current, step_s_);
+void Plant::step_all(std::span<const DutyRatio> duty_ratios) {
+  for (size_t i = 0; i < robots_.size(); ++i)
+    voltages_[i] = robots_[i]->motor_voltage(duty_ratios[i]);
+  step_bodies();
+  for (const auto& robot : robots_) robot->end_step(step_s_);
   ++steps_;
-  newest_ = (newest_ + 1) % imu_history_.size();
-  const ChassisState chassis = vehicle_.chassis();
-  imu_history_[newest_] = {imu_velocity(chassis), chassis.omega_body};
 }
 
 double Plant::time_s() const {
   return static_cast<double>(steps_) / (static_cast<double>(steps_per_tick_) * kTickRate_hz);
-}
-
-ImuTruth Plant::motion() const {
-  const ChassisState chassis = vehicle_.chassis();
-  const ImuState& now = imu_history_[newest_];
-  const Eigen::Matrix3d rotation = chassis.pose.linear();
-  if (!now.velocity.allFinite() || !chassis.pose.translation().allFinite() ||
-      now.velocity.norm() > 1000.0) {
-    throw RunError("the physics diverged at " + std::to_string(time_s()) +
-                   " s; a smaller [physics] step may help");
-  }
-  const size_t oldest = (newest_ + 1) % imu_history_.size();
-  Eigen::Vector3d rate_sum = Eigen::Vector3d::Zero();
-  for (size_t i = 1; i < imu_history_.size(); ++i) {
-    rate_sum += imu_history_[(oldest + i) % imu_history_.size()].rate_body;
-  }
-  ImuTruth truth;
-  truth.mean_rate_rad_per_s = rate_sum / steps_per_tick_;
-  truth.mean_specific_force =
-      rotation.transpose() * ((now.velocity - imu_history_[oldest].velocity) / kTick_s +
-                              kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
-  truth.body_to_world = rotation;
-  truth.altitude_m = chassis.pose.translation().z();
-  return truth;
-}
-
-void Plant::lay_on_side() {
-  Eigen::Isometry3d pose = vehicle_.chassis().pose;
-  Attitude attitude = attitude_of(pose.linear());
-  attitude.roll = -std::numbers::pi / 2.0;
-  attitude.pitch = 0.0;
-  pose.linear() = rotation_from(attitude);
-  vehicle_.place(pose);
-  pose.translation().head<2>() += out_of_walls(terrain_->bounds(), vehicle_.outline());
-  pose.translation().z() = vehicle_.resting_height(Plant::terrain(), pose.translation().x(),
-                                                   pose.translation().y(), pose.linear());
-  vehicle_.place(pose);
-  // A hand, not an impact: the accelerometer sees the new attitude, no jerk.
-  reset_motion_history(Eigen::Vector3d::Zero());
 }
 
 }  // namespace screed

@@ -1,5 +1,6 @@
-// What the robot is driven in, as physics: terrain, bodies, motors and battery, advanced a physics
-// step at a time. Knows no clock but its own steps, no sensor counts and no firmware.
+// What robots are driven in, as physics: one terrain, and bodies, motors and battery of each robot
+// (plant_robot.h), advanced a physics step at a time. Knows no clock but its own steps, no sensor
+// counts and no firmware.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,15 +8,18 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/physics/vehicle/robot_contact.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/imu_truth.h"
+#include "host_sim/physics/world/plant_robot.h"
 #include "host_sim/physics/world/terrain_factory.h"
 
 namespace screed {
@@ -31,21 +35,28 @@ struct StartPose {
 struct PlantOptions : TerrainOptions {
   double physics_step_s = 0.001;  ///< divides the control tick of 10 ms
   StartPose start;
+  /// Of robots of the same kind beside the first one; z_m as the first one has it, given or not.
+  std::vector<StartPose> further_starts;
+  double robot_friction = 0.5;  ///< Coulomb coefficient between robots
   VehicleOptions vehicle;
   Battery battery;
 };
 
 class Plant : public Environment {
  public:
-  /// A robot on this terrain. Throws InputError when the options do not fit together. Reports the
+  /// Robots on this terrain. Throws InputError when the options do not fit together. Reports the
   /// task "settling the robot" to options.progress.
   Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const PlantOptions& options);
   /// The same on terrain of the kind that the options name, with this surface.
   Plant(HeightField surface, const Assembly& model, const PlantOptions& options);
+  Plant(const Plant&) = delete;
+  Plant& operator=(const Plant&) = delete;
 
-  void step(const std::array<double, 2>& duty_ratio) override;
-  ImuTruth motion() const override;
-  void lay_on_side() override;
+  void step(const DutyRatio& duty_ratio) override;
+  void step_all(std::span<const DutyRatio> duty_ratios) override;
+  size_t robots() const override { return robots_.size(); }
+  PlantRobot& robot(size_t number) override { return *robots_[number]; }
+  const PlantRobot& robot(size_t number) const override { return *robots_[number]; }
 
   int steps_per_tick() const override { return steps_per_tick_; }
   double step_s() const { return step_s_; }
@@ -56,41 +67,42 @@ class Plant : public Environment {
   VolumeBalance volume_balance() const override { return terrain_->balance(); }
   TerrainWork terrain_work() const override { return terrain_->work(); }
   SphereSet spheres() const override { return terrain_->spheres(); }
-  const Vehicle& vehicle() const override { return vehicle_; }
-  const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
-  Eigen::Vector3d unwrapped_position() const override;
-  const Battery& battery() const override { return battery_; }
+
+  // Of the first robot.
+  ImuTruth motion() const override { return first().motion(); }
+  void lay_on_side() override { robots_[0]->lay_on_side(); }
+  const Vehicle& vehicle() const override { return first().vehicle(); }
+  const std::array<int64_t, 2>& wrap_counts() const override { return first().wrap_counts(); }
+  Eigen::Vector3d unwrapped_position() const override { return first().unwrapped_position(); }
+  const Battery& battery() const override { return first().battery(); }
 
  private:
-  struct ImuState {
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of the IMU, world frame, m/s
-    Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< rad/s
-  };
-
-  /// Lets the robot come to rest on the ground before the clock starts, as one that stood there
-  /// when it was switched on.
+  const PlantRobot& first() const { return *robots_[0]; }
+  void add_robot(const Assembly& model, const PlantOptions& options);
+  void check_step(const PlantOptions& options) const;
+  /// Puts a robot where it starts.
+  void place(PlantRobot& robot, const StartPose& start);
+  /// Throws InputError when the last robot stands in another one.
+  void check_apart();
+  /// Lets the robots come to rest on the ground before the clock starts, as ones that stood there
+  /// when they were switched on.
   void settle(const TaskProgress& progress);
-  /// Teleports the robot when it has left the bed.
-  void wrap_around();
-  /// Forces, integration and terrain of one physics step.
-  void step_bodies(const std::array<double, 2>& motor_voltage);
-  Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
-  /// The history says: the IMU has been moving at this velocity all the time.
-  void reset_motion_history(const Eigen::Vector3d& velocity);
+  /// From a robot to its copy that is nearest to another one; zero on a bed that does not wrap
+  /// around.
+  Eigen::Vector3d to_near_copy(const PlantRobot& robot, const PlantRobot& from) const;
+  void collide(double dt);
+  /// Forces, integration and terrain of one physics step, with voltages_.
+  void step_bodies();
 
   double step_s_;
   int steps_per_tick_;
   std::unique_ptr<Terrain> terrain_;
   int substeps_;  // in one physics step, as short as the terrain needs them
   OdeWorld ode_;
-  Vehicle vehicle_;
-  Battery battery_;
-  Eigen::Vector3d imu_position_;  ///< in the frame of the chassis
+  RobotContact contact_;
+  std::vector<std::unique_ptr<PlantRobot>> robots_;
+  std::vector<std::array<double, 2>> voltages_;  // of each robot's motors in this step
   uint64_t steps_ = 0;
-  std::array<int64_t, 2> wrap_counts_ = {0, 0};
-  /// A ring buffer of the last tick's steps and the one before; the newest stands at newest_.
-  std::vector<ImuState> imu_history_;
-  size_t newest_ = 0;
 };
 
 }  // namespace screed

@@ -52,8 +52,9 @@ std::vector<Pixel> pixels_of(const MapFrame& frame, const std::vector<PathPoint>
   return pixels;
 }
 
-void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, const PictureOptions& options) {
-  const std::vector<PathPoint>& path = options.path;
+void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap,
+               const std::vector<PathPoint>& path) {
+  if (path.empty()) return;
   const auto apart = [&](const PathPoint& from, const PathPoint& to) {
     return wrap && jumps(from, to, frame.map(), frame.pixels_per_metre());
   };
@@ -70,6 +71,8 @@ void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, const PictureOp
       canvas.line(pixels_of(frame, path, run), kPathWidth_px, state_color(path[run.first].state));
     }
   }
+  draw_path_start(canvas, frame.to_pixel(path.front().x_m, path.front().y_m), kMarkerRadius_px);
+  draw_path_end(canvas, frame.to_pixel(path.back().x_m, path.back().y_m), kMarkerRadius_px);
 }
 
 void draw_robot(Canvas& canvas, const MapFrame& frame, const RobotOutline& robot) {
@@ -122,24 +125,27 @@ void draw_path_end(Canvas& canvas, Pixel at, double radius_px) {
 void draw_path_overlay(Canvas& canvas, const MapFrame& frame, bool wrap,
                        const PictureOptions& options) {
   canvas.clip(frame.map());
-  // Below the path, whose end it would hide.
+  // Below the paths, whose ends they would hide.
   if (options.robot) draw_robot(canvas, frame, *options.robot);
-  if (!options.path.empty()) {
-    draw_path(canvas, frame, wrap, options);
-    const PathPoint& start = options.path.front();
-    const PathPoint& end = options.path.back();
-    draw_path_start(canvas, frame.to_pixel(start.x_m, start.y_m), kMarkerRadius_px);
-    draw_path_end(canvas, frame.to_pixel(end.x_m, end.y_m), kMarkerRadius_px);
+  for (const PictureRobot& robot : options.further_robots) {
+    if (robot.outline) draw_robot(canvas, frame, *robot.outline);
   }
+  draw_path(canvas, frame, wrap, options.path);
+  for (const PictureRobot& robot : options.further_robots)
+    draw_path(canvas, frame, wrap, robot.path);
   canvas.unclip();
 }
 
-std::vector<size_t> states_on_path(const std::vector<PathPoint>& path) {
+std::vector<size_t> states_on_paths(const PictureOptions& options) {
   std::vector<size_t> states;
-  for (const PathPoint& point : path) {
-    if (std::find(states.begin(), states.end(), point.state) == states.end())
-      states.push_back(point.state);
-  }
+  const auto add = [&](const std::vector<PathPoint>& path) {
+    for (const PathPoint& point : path) {
+      if (std::find(states.begin(), states.end(), point.state) == states.end())
+        states.push_back(point.state);
+    }
+  };
+  add(options.path);
+  for (const PictureRobot& robot : options.further_robots) add(robot.path);
   std::sort(states.begin(), states.end());
   return states;
 }
@@ -147,7 +153,7 @@ std::vector<size_t> states_on_path(const std::vector<PathPoint>& path) {
 double legend_height_px(const PictureOptions& options) {
   if (options.path.empty()) return 0.0;
   constexpr size_t kMarkers = 2;  // start and end
-  return kLegendRow_px * static_cast<double>(1 + states_on_path(options.path).size() + kMarkers);
+  return kLegendRow_px * static_cast<double>(1 + states_on_paths(options).size() + kMarkers);
 }
 
 void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& options) {
@@ -160,7 +166,7 @@ void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& op
   };
   canvas.text(row, "Driven path", {.color = kInk, .bold = true});
   row.y += kLegendRow_px;
-  for (const size_t state : states_on_path(options.path)) {
+  for (const size_t state : states_on_paths(options)) {
     canvas.line(std::array<Pixel, 2>{{{row.x + 2.0, row.y}, {row.x + kSample_px - 2.0, row.y}}},
                 kPathWidth_px, state_color(state));
     name(options.state_names[state]);

@@ -19,7 +19,7 @@ void draw_path_start(Canvas& canvas, Pixel at, double radius_px);
 void draw_path_end(Canvas& canvas, Pixel at, double radius_px);
 
 /// The states that occur on a path, each once, in ascending order.
-std::vector<size_t> states_on_path(const std::vector<PathPoint>& path);
+std::vector<size_t> states_on_paths(const PictureOptions& options);
 
 /// The height that draw_legend() needs, in pixels; 0 when it draws nothing.
 double legend_height_px(const PictureOptions& options);

@@ -34,6 +34,18 @@ void require_finite(const char* what, std::initializer_list<double> values) {
   }
 }
 
+void check_robot(const PictureOptions& options, const std::vector<PathPoint>& path,
+                 const std::optional<RobotOutline>& outline) {
+  for (const PathPoint& point : path) {
+    if (point.state >= options.state_names.size()) {
+      throw InputError("picture: path state " + std::to_string(point.state) + " has no name; " +
+                       std::to_string(options.state_names.size()) + " states are named");
+    }
+    require_finite("path point", {point.x_m, point.y_m});
+  }
+  if (outline) require_finite("robot outline", {outline->x_m, outline->y_m, outline->heading_rad});
+}
+
 void check(const PictureOptions& options) {
   require_side("width_px", options.width_px, 800);
   require_side("height_px", options.height_px, 700);
@@ -41,23 +53,15 @@ void check(const PictureOptions& options) {
     throw InputError("picture: " + std::to_string(options.state_names.size()) +
                      " state names; allowed: at most " + std::to_string(kStateColors));
   }
-  for (const PathPoint& point : options.path) {
-    if (point.state >= options.state_names.size()) {
-      throw InputError("picture: path state " + std::to_string(point.state) + " has no name; " +
-                       std::to_string(options.state_names.size()) + " states are named");
-    }
-    require_finite("path point", {point.x_m, point.y_m});
-  }
+  check_robot(options, options.path, options.robot);
+  for (const PictureRobot& robot : options.further_robots)
+    check_robot(options, robot.path, robot.outline);
   if (options.heights) {
     const HeightRange& heights = *options.heights;
     require_finite("range of heights", {heights.low_m, heights.high_m});
     if (heights.low_m > heights.high_m)
       throw InputError("picture: heights from " + std::to_string(heights.low_m) + " to " +
                        std::to_string(heights.high_m) + " m; allowed: the lower one first");
-  }
-  if (options.robot) {
-    const RobotOutline& robot = *options.robot;
-    require_finite("robot outline", {robot.x_m, robot.y_m, robot.heading_rad});
   }
 }
 

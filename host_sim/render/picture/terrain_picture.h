@@ -34,6 +34,12 @@ struct HeightRange {
   double high_m;
 };
 
+/// A driven path and who drove it.
+struct PictureRobot {
+  std::vector<PathPoint> path;
+  std::optional<RobotOutline> outline;
+};
+
 struct PictureOptions {
   int width_px = 1200;   ///< 800..8000
   int height_px = 1000;  ///< 700..8000
@@ -44,6 +50,7 @@ struct PictureOptions {
   std::vector<PathPoint> path;
   std::vector<std::string> state_names;  ///< of all states; the legend lists those of the path
   std::optional<RobotOutline> robot;
+  std::vector<PictureRobot> further_robots;  ///< beside that one
 };
 
 /// The heights of both.

@@ -36,7 +36,9 @@ bool take_quoted(std::string_view& text, std::string& cell) {
   return false;
 }
 
-std::vector<std::string> split(std::string_view text, const std::string& where) {
+}  // namespace
+
+std::vector<std::string> split_csv_line(std::string_view text, const std::string& where) {
   std::vector<std::string> cells;
   for (;;) {
     std::string quoted;
@@ -57,8 +59,6 @@ std::vector<std::string> split(std::string_view text, const std::string& where) 
   }
 }
 
-}  // namespace
-
 std::vector<CsvLine> read_csv_file(const std::filesystem::path& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
@@ -72,7 +72,8 @@ std::vector<CsvLine> read_csv_file(const std::filesystem::path& path) {
     if (!text.empty() && text.back() == '\r') text.pop_back();
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') continue;
-    lines.push_back({number, split(content, path.string() + ":" + std::to_string(number))});
+    lines.push_back(
+        {number, split_csv_line(content, path.string() + ":" + std::to_string(number))});
   }
   return lines;
 }

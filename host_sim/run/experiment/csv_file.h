@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace screed {
@@ -18,5 +19,8 @@ struct CsvLine {
 /// a cell ends with its line. Throws InputError, naming file and line, for a missing file and for
 /// a quotation that does not end with its cell.
 std::vector<CsvLine> read_csv_file(const std::filesystem::path& path);
+
+/// The cells of one line, as above; messages begin with `where`.
+std::vector<std::string> split_csv_line(std::string_view text, const std::string& where);
 
 }  // namespace screed

@@ -12,6 +12,7 @@
 #include "host_sim/core/name_list.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "host_sim/run/experiment/experiment_table.h"
+#include "host_sim/run/experiment/robot_sections.h"
 
 namespace screed {
 namespace {
@@ -111,9 +112,24 @@ void set_training_length(Experiment& experiment, const std::string& source) {
   experiment.parameters.training_block = static_cast<int16_t>(*frames / 8);
 }
 
-/// What no single key can tell.
-void check(const Experiment& experiment, const std::string& source) {
-  const Parameters& p = experiment.parameters;
+void check_robots(const Experiment& experiment, const std::string& source) {
+  const RobotsSection& robots = experiment.robots;
+  if (robots.count == 1) return;
+  const std::string count = ": [robots] count = " + std::to_string(robots.count);
+  if (experiment.experiment.algorithm == kTrainingDriveName) {
+    throw InputError(source + count + ": algorithm " + kTrainingDriveName +
+                     " records one robot; allowed is 1");
+  }
+  if ((robots.placement == "list") == robots.places.empty()) {
+    throw InputError(source + count + ": places belong to placement = list, which needs them");
+  }
+  if (robots.placement == "list" && places_in(robots.places)->size() != robots.count) {
+    throw InputError(source + count + ", but places has " +
+                     std::to_string(places_in(robots.places)->size()));
+  }
+}
+
+void check_parameters(const Parameters& p, const std::string& source) {
   if (p.walk_speed_min > p.walk_speed_max) {
     throw InputError(source +
                      ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min) +
@@ -123,6 +139,31 @@ void check(const Experiment& experiment, const std::string& source) {
     throw InputError(source + ": [parameters] walk_leg_min = " + std::to_string(p.walk_leg_min) +
                      " is above walk_leg_max = " + std::to_string(p.walk_leg_max));
   }
+}
+
+/// What robots have of their own.
+void check_robot_sections(const Experiment& experiment, const std::string& source) {
+  for (const auto& [place, value] : experiment.of_robots) {
+    const auto [robot, key] = place;
+    const std::string where = source + ": [" + section_of_robot(robot) + "]";
+    if (robot >= experiment.robots.count || experiment.robots.count == 1) {
+      throw InputError(where + ": [robots] count = " + std::to_string(experiment.robots.count) +
+                       "; sections of robots are for those of several, from [robot_0] on");
+    }
+    const Experiment own = experiment_of_robot(experiment, robot);
+    if (own.experiment.algorithm == kTrainingDriveName) {
+      throw InputError(where + " algorithm = " + kTrainingDriveName +
+                       ": that records one robot, alone");
+    }
+    check_parameters(own.parameters, where);
+  }
+}
+
+/// What no single key can tell.
+void check(const Experiment& experiment, const std::string& source) {
+  check_robots(experiment, source);
+  check_robot_sections(experiment, source);
+  check_parameters(experiment.parameters, source);
   if (!experiment.map.filename.empty() && experiment.map.ramp_deg != 0.0) {
     throw InputError(source + ": [map] has both filename and ramp; a ramp needs no image");
   }
@@ -164,6 +205,12 @@ std::string Experiment::text() const {
     section = key.section;
     text += key.name + " = " + *value + "\n";
   }
+  std::optional<size_t> robot;
+  for (const auto& [place, value] : of_robots) {
+    if (robot != place.first) text += "\n[" + section_of_robot(place.first) + "]\n";
+    robot = place.first;
+    text += experiment_keys()[place.second].name + " = " + value + "\n";
+  }
   return text;
 }
 
@@ -190,29 +237,40 @@ Experiment read_experiment(const std::filesystem::path& path,
   return read_experiment_row(path, {}, overrides);
 }
 
-Experiment read_experiment_row(const std::filesystem::path& file, const ExperimentRow& row,
+Experiment read_experiment_row(const std::filesystem::path& name, const ExperimentRow& row,
                                const std::vector<std::string>& overrides) {
-  const std::filesystem::path path = find_experiment(file);
+  const ExperimentFile file = read_experiment_file(name);
+  std::vector<PlacedEntry> entries;
+  for (const ExperimentRow::Value& value : row.values)
+    entries.push_back({value.entry, row.where + ", column '" + value.column + "'"});
+  for (const std::string& text : overrides) entries.push_back({parse_override(text), "--set"});
+  return make_experiment(file, entries, row.where.empty() ? file.path.string() : row.where);
+}
+
+ExperimentFile read_experiment_file(const std::filesystem::path& name) {
+  const std::filesystem::path path = find_experiment(name);
+  return {path, read_ini_file(path)};
+}
+
+Experiment make_experiment(const ExperimentFile& file, const std::vector<PlacedEntry>& entries,
+                           const std::string& whole) {
   Experiment experiment;
-  experiment.folder = path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
-  const std::string source = path.string();
-  const std::vector<IniEntry> entries = read_ini_file(path);
-  const bool sandbox = is_sandbox(entries, source, experiment);
+  const std::filesystem::path folder = file.path.parent_path();
+  experiment.folder = folder.empty() ? std::filesystem::path(".") : folder;
+  const std::string source = file.path.string();
+  const bool sandbox = is_sandbox(file.entries, source, experiment);
   // Its terrains have no edges: who leaves on one side comes back on the other (thesis 5.1.4).
   if (sandbox) {
     experiment.map.edges = "wrap";
     experiment.particles.depth_m = 0.0;
   }
-  for (const IniEntry& entry : entries)
+  for (const IniEntry& entry : file.entries)
     apply(experiment, sandbox ? from_sandbox(entry) : entry,
           source + ":" + std::to_string(entry.line));
   // A pixel's width is a length; of particles the key is a share.
   if (sandbox && experiment.map.xy_scale.has_value() && !experiment.map.of_particles())
     *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
-  for (const ExperimentRow::Value& value : row.values)
-    apply(experiment, value.entry, row.where + ", column '" + value.column + "'");
-  for (const std::string& text : overrides) apply(experiment, parse_override(text), "--set");
-  const std::string& whole = row.where.empty() ? source : row.where;
+  for (const PlacedEntry& placed : entries) apply(experiment, placed.entry, placed.where);
   experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
   if (experiment.experiment.algorithm == kTrainingDriveName) set_training_length(experiment, whole);
   if (experiment.experiment.frames.has_value())

@@ -11,11 +11,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/parameters/parameters.h"
+#include "host_sim/core/ini_file.h"
 #include "host_sim/ground_station/station/command_key.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/sections/drive_section.h"
@@ -27,6 +30,7 @@
 #include "host_sim/run/experiment/sections/physics_section.h"
 #include "host_sim/run/experiment/sections/radio_section.h"
 #include "host_sim/run/experiment/sections/raygrid_section.h"
+#include "host_sim/run/experiment/sections/robots_section.h"
 #include "host_sim/run/experiment/sections/sensors_section.h"
 #include "host_sim/run/experiment/sections/soil_section.h"
 #include "host_sim/run/experiment/sections/trap_section.h"
@@ -37,10 +41,14 @@ namespace screed {
 /// [experiment] algorithm of the drive that training data is recorded on (thesis Algorithm 5).
 inline constexpr const char* kTrainingDriveName = "training_drive";
 
+/// A robot's number, and the number in experiment_keys() of a key that it has otherwise.
+using KeyOfRobot = std::pair<size_t, size_t>;
+
 struct Experiment {
   std::string output_directory_prefix = "out";
 
   VehicleSection vehicle;
+  RobotsSection robots;
   MapSection map;
   ParticlesSection particles;
   TrapSection trap;
@@ -54,6 +62,8 @@ struct Experiment {
   PhysicsSection physics;
   MetricsSection metrics;
   Parameters parameters;
+  /// The sections [robot_0] and so on: values by robot and key (robot_sections.h).
+  std::map<KeyOfRobot, std::string> of_robots;
 
   /// Notes for the user of the file: keys that were understood in another way than
   /// they look. Not part of text().
@@ -75,6 +85,24 @@ std::filesystem::path find_experiment(const std::filesystem::path& name);
 /// InputError.
 Experiment read_experiment(const std::filesystem::path& path,
                            const std::vector<std::string>& overrides = {});
+
+/// The entries of an experiment file, for experiments that have it in common.
+struct ExperimentFile {
+  std::filesystem::path path;  ///< as messages call it; data files are looked for beside it first
+  std::vector<IniEntry> entries;
+};
+/// Reads `name` (see find_experiment). Throws InputError.
+ExperimentFile read_experiment_file(const std::filesystem::path& name);
+
+/// An entry that is put on top of a file, in SI units whatever the file's are.
+struct PlacedEntry {
+  IniEntry entry;
+  std::string where;  ///< its place, as messages call it
+};
+/// The experiment of a file with these entries on top, the last one of a key in force. Messages
+/// about several keys begin with `whole`. Throws InputError.
+Experiment make_experiment(const ExperimentFile& file, const std::vector<PlacedEntry>& entries,
+                           const std::string& whole);
 
 /// The robot's key and number of its start; without a key when the experiment says so.
 Credentials credentials_of(const Experiment& experiment);

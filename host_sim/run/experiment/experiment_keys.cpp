@@ -9,6 +9,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/experiment/key_list.h"
+#include "host_sim/run/experiment/robot_sections.h"
 
 namespace screed {
 namespace {
@@ -69,6 +70,7 @@ void list_parameters(std::vector<ExperimentKey>& keys) {
                       if (follows_from_others(e, info)) return std::nullopt;
                       return std::to_string(e.parameters.*info.field);
                     }});
+    keys.back().multiple_of = 1;
   }
 }
 
@@ -76,6 +78,7 @@ std::vector<ExperimentKey> make_keys() {
   std::vector<ExperimentKey> keys;
   list_keys_without_section(keys);
   list_section(keys, "vehicle", &Experiment::vehicle);
+  list_section(keys, "robots", &Experiment::robots);
   list_section(keys, "map", &Experiment::map);
   list_section(keys, "particles", &Experiment::particles);
   list_section(keys, "raygrid", &Experiment::raygrid);
@@ -92,10 +95,16 @@ std::vector<ExperimentKey> make_keys() {
   return keys;
 }
 
+/// The keys that a section is looked for in.
+const std::vector<ExperimentKey>& keys_with(const std::string& section) {
+  const std::optional<size_t> robot = robot_of_section(section);
+  return robot.has_value() ? robot_section_keys(*robot) : experiment_keys();
+}
+
 /// The known names most like what was written, to say what is allowed.
 std::string known_names(const std::string& section) {
   std::string names;
-  for (const ExperimentKey& key : experiment_keys()) {
+  for (const ExperimentKey& key : keys_with(section)) {
     if (key.section == section) names += (names.empty() ? "" : ", ") + key.name;
   }
   return names;
@@ -109,7 +118,7 @@ std::string known_sections() {
       names += (names.empty() ? "[" : ", [") + key.section + "]";
     last = key.section;
   }
-  return names;
+  return names + ", [" + section_of_robot(0) + "] to [" + section_of_robot(kMaxRobots - 1) + "]";
 }
 
 }  // namespace
@@ -138,10 +147,11 @@ int16_t algorithm_number(const std::string& name) {
 
 const ExperimentKey& find_experiment_key(const std::string& section, const std::string& name,
                                          const std::string& where) {
-  const auto key = std::find_if(
-      experiment_keys().begin(), experiment_keys().end(),
-      [&](const ExperimentKey& known) { return known.section == section && known.name == name; });
-  if (key != experiment_keys().end()) return *key;
+  const std::vector<ExperimentKey>& keys = keys_with(section);
+  const auto key = std::find_if(keys.begin(), keys.end(), [&](const ExperimentKey& known) {
+    return known.section == section && known.name == name;
+  });
+  if (key != keys.end()) return *key;
   if (section == "map" && name == "wrap") {
     throw InputError(where +
                      ": [map] wrap is now edges: for wrap = true write edges = wrap, for wrap = "

@@ -32,6 +32,8 @@ struct ExperimentKey {
   /// Its default is written as well. Not of a key that decides nothing: texts, and with them the
   /// content hashes of their runs, are what they were without it.
   bool default_written = true;
+  /// Values are integers, and multiples of this; 0: they are none.
+  uint64_t multiple_of = 0;
 };
 
 /// By section, in the order in which they are written.

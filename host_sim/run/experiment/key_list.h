@@ -93,7 +93,7 @@ class KeyList {
   template <class Field>
   Row integer(const char* name, const char* unit, uint64_t min, uint64_t max, const char* meaning,
               Field field, uint64_t step = 1) {
-    return add(
+    Row row = add(
         name, unit,
         (step == 1 ? "an integer " : "a multiple of " + std::to_string(step) + ", ") +
             std::to_string(min) + ".." + std::to_string(max),
@@ -109,6 +109,8 @@ class KeyList {
           const std::optional<Integer<decltype(value)>> number = value;
           return number.has_value() ? std::optional(std::to_string(*number)) : std::nullopt;
         });
+    keys_.back().multiple_of = step;
+    return row;
   }
 
   /// One of these names.

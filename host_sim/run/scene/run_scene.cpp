@@ -13,7 +13,7 @@
 #include "host_sim/render/scene/sphere_scene.h"
 #include "host_sim/render/scene/terrain_scene.h"
 #include "host_sim/run/experiment/run_setup.h"
-#include "host_sim/run/session/session_reader.h"
+#include "host_sim/run/session/robot_sessions.h"
 
 namespace screed {
 namespace {
@@ -23,14 +23,13 @@ constexpr double kMargin = 0.03;  // of the picture, round the bed
 constexpr double kPathRadius =
     0.0022;  // of the line that shows the way, to the distance it is seen from
 
-std::filesystem::path session_of(const std::filesystem::path& run) {
+std::vector<SessionReader> robots_of(const std::filesystem::path& run) {
   std::error_code error;
-  if (!std::filesystem::is_directory(run, error)) return run;
-  std::filesystem::path file = run / "session.h5";
-  if (!std::filesystem::exists(file, error)) {
+  if (std::filesystem::is_directory(run, error) &&
+      !std::filesystem::exists(run / "session.h5", error)) {
     throw InputError(run.string() + ": is not the folder of a run: there is no session.h5 in it");
   }
-  return file;
+  return open_robots(run);
 }
 
 /// For soil_appearance().
@@ -67,6 +66,19 @@ DrivenPath path_until(const SessionReader& session, std::uint64_t last) {
   driven.frame = frames.back();
   driven.path.emplace_back(driven.frame.x, driven.frame.y);
   return driven;
+}
+
+/// At the end of a path. Throws InputError when that is no pose.
+RobotPose pose_of(const DrivenPath& driven, const std::filesystem::path& run) {
+  RobotPose pose;
+  pose.body.linear() = rotation_from({driven.frame.roll, driven.frame.pitch, driven.frame.yaw});
+  pose.body.translation() << driven.frame.x, driven.frame.y, driven.frame.z;
+  pose.travel_m = driven.travel_m;
+  if (!pose.body.matrix().allFinite()) {
+    throw InputError(run.string() + ": the robot has no pose at " +
+                     std::to_string(driven.frame.time) + " s");
+  }
+  return pose;
 }
 
 std::uint64_t frame_number(const SessionReader& session, const RunSceneOptions& options,
@@ -156,7 +168,8 @@ void write_raster(const std::filesystem::path& file, const GreyRaster& raster) {
 
 RunSceneResult render_run(const std::filesystem::path& run, const std::filesystem::path& picture,
                           const RunSceneOptions& options) {
-  const SessionReader session(session_of(run));
+  const std::vector<SessionReader> robots = robots_of(run);
+  const SessionReader& session = robots.front();
   if (!session.complete()) {
     throw InputError(run.string() + ": the run did not end; only whole runs are drawn");
   }
@@ -165,15 +178,14 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   const RunSetup setup = setup_of(session.info(), run);
   const Assembly robot = robot_model(setup, session.info().board_name, options.model);
 
-  const DrivenPath driven = path_until(session, result.frame);
-  RobotPose pose;
-  pose.body.linear() = rotation_from({driven.frame.roll, driven.frame.pitch, driven.frame.yaw});
-  pose.body.translation() << driven.frame.x, driven.frame.y, driven.frame.z;
-  pose.travel_m = driven.travel_m;
-  if (!pose.body.matrix().allFinite()) {
-    throw InputError(run.string() + ": frame " + std::to_string(result.frame) +
-                     " has no pose of the robot");
+  std::vector<DrivenPath> paths;
+  std::vector<RobotPose> poses;
+  for (const SessionReader& of : robots) {
+    paths.push_back(path_until(of, result.frame));
+    poses.push_back(pose_of(paths.back(), run));
   }
+  const DrivenPath& driven = paths.front();
+  const RobotPose& pose = poses.front();
 
   const RecordedTerrain ground =
       ground_at(session, result.frame, setup.experiment.map.model != "rigid", run);
@@ -202,16 +214,18 @@ RunSceneResult render_run(const std::filesystem::path& run, const std::filesyste
   const SoilAppearance look = soil_appearance(soil_name(setup));
   std::optional<HeightTint> tint;
   if (options.tint) tint = tint_of(surface, *ground.before);
+  std::string robots_text;
+  for (size_t i = 0; i < robots.size(); ++i) {
+    if (options.path) robots_text += path_text(paths[i].path, surface, kPathRadius * distance_m);
+    robots_text += robot_text(robot, setup.experiment.vehicle.tracks, poses[i]);
+  }
   job.write_scene(
       "// Made by `screed render`. Metres; x east, y north, z up.\n#version 3.7;\n"
       "global_settings { assumed_gamma 1.0 }\n" +
       camera_text(camera, format.field_of_view_deg) + (tint ? tint_text(*tint) : "") +
       (ground.particles ? spheres_text(*ground.particles, look, tint)
                         : terrain_text(surface, files, look, tint)) +
-      walls_text(surface) +
-      (options.path ? path_text(driven.path, surface, kPathRadius * distance_m) : "") +
-      robot_text(robot, setup.experiment.vehicle.tracks, pose) +
-      (tint ? tint_legend_text(*tint, camera, format) : ""));
+      walls_text(surface) + robots_text + (tint ? tint_legend_text(*tint, camera, format) : ""));
   if (!options.pov_only)
     result.rendered = job.render(options.width_px, options.height_px, options.progress);
   job.publish();

@@ -50,6 +50,35 @@ void for_each_frame(const SessionReader& session, const FrameRange& range, std::
   }
 }
 
+/// What a robot has driven since a frame, on its way through the session.
+class RecordedPath {
+ public:
+  RecordedPath(const SessionReader& session, std::uint64_t first)
+      : session_(session), first_(first), next_(first) {}
+
+  /// Goes on to a frame, not before the last one. Without a shape there is no outline.
+  void go_to(std::uint64_t frame, const std::optional<RobotShape>& shape,
+             std::vector<PathPoint>& path, std::optional<RobotOutline>& outline) {
+    constexpr std::uint64_t kPathFrames = 10;
+    frames_.resize(frame + 1 - next_);
+    session_.read(next_, std::span(frames_));
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if ((next_ + i - first_) % kPathFrames == 0)
+        path.push_back(
+            {frames_[i].x, frames_[i].y, static_cast<std::size_t>(frames_[i].leveling_state)});
+    }
+    const SimFrame& now = frames_.back();
+    next_ = frame + 1;
+    if (shape) outline = RobotOutline{now.x, now.y, now.yaw, *shape};
+  }
+
+ private:
+  const SessionReader& session_;
+  std::uint64_t first_;
+  std::uint64_t next_;
+  std::vector<SimFrame> frames_;
+};
+
 }  // namespace
 
 HeightField field_of(const HeightMap& map) {
@@ -120,27 +149,23 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
                                       std::uint64_t every, const fs::path& folder,
                                       const PictureSeries& series, const TaskProgress& progress) {
   check(session, range, every);
-  constexpr std::uint64_t kPathFrames = 10;
   std::vector<fs::path> files;
   PictureOptions options;
   const HeightExtremes extremes = session.height_extremes();
   options.heights = HeightRange{extremes.lowest * kHeightUnit_m, extremes.highest * kHeightUnit_m};
   options.state_names = series.state_names;
-  std::uint64_t next = range.first;
-  std::vector<SimFrame> frames;
+  RecordedPath path(session, range.first);
+  std::vector<RecordedPath> further;
+  for (const SessionReader& robot : series.further_robots) further.emplace_back(robot, range.first);
+  options.further_robots.resize(further.size());
   const ExportProgress told{progress, "exporting pictures"};
   PartialFolder partial(folder);
   for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
-    frames.resize(frame + 1 - next);
-    session.read(next, std::span(frames));
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if ((next + i - range.first) % kPathFrames == 0)
-        options.path.push_back(
-            {frames[i].x, frames[i].y, static_cast<std::size_t>(frames[i].leveling_state)});
+    path.go_to(frame, series.shape, options.path, options.robot);
+    for (std::size_t i = 0; i < further.size(); ++i) {
+      PictureRobot& robot = options.further_robots[i];
+      further[i].go_to(frame, series.shape, robot.path, robot.outline);
     }
-    const SimFrame& now = frames.back();
-    next = frame + 1;
-    if (series.shape) options.robot = RobotOutline{now.x, now.y, now.yaw, *series.shape};
     options.title = session.info().experiment_name + ": frame " + std::to_string(frame);
     const std::string name = numbered("picture", frame);
     const HeightField terrain = field_of(map);

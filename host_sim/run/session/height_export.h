@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct PictureSeries {
   std::optional<RobotShape> shape;       ///< without one the path's end stands for the robot
   /// The surface that is drawn of a terrain; empty: the terrain.
   std::function<HeightField(const HeightField&)> surface;
+  /// Robots to be drawn beside that of the session.
+  std::span<const SessionReader> further_robots = {};
 };
 
 /// Writes frames first, first + every, ... of `range` as folder/height_NNNNNN.png (NNNNNN: the row

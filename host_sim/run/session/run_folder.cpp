@@ -36,6 +36,20 @@ fs::path session_file(const fs::path& run) {
   return fs::is_directory(run, error) ? run / "session.h5" : run;
 }
 
+fs::path folder_of_robot(const fs::path& folder, std::size_t robot) {
+  return robot == 0 ? folder : folder / ("robot_" + std::to_string(robot));
+}
+
+std::vector<fs::path> session_files(const fs::path& run) {
+  std::vector<fs::path> files = {session_file(run)};
+  if (files.front() == run) return files;
+  for (std::size_t robot = 1;; ++robot) {
+    fs::path further = folder_of_robot(run, robot) / "session.h5";
+    if (!is_taken(further)) return files;
+    files.push_back(std::move(further));
+  }
+}
+
 RunFolder::RunFolder(RunFolder&& other) noexcept
     : final_(std::move(other.final_)),
       partial_(std::move(other.partial_)),

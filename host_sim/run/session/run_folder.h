@@ -2,14 +2,24 @@
 // is ever overwritten.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace screed {
 
-/// The session of a run that a user names by its folder or by the file itself.
+/// The session of a run that a user names by its folder or by the file itself; of several robots
+/// that of the first one.
 std::filesystem::path session_file(const std::filesystem::path& run);
+
+/// Where a run in `folder` keeps its robot of that number: the first one, 0, in the folder itself,
+/// the others in robot_1, robot_2 and so on below it.
+std::filesystem::path folder_of_robot(const std::filesystem::path& folder, std::size_t robot);
+
+/// The sessions of all robots of a run that a user names by its folder, in their order, the first
+/// one whether it is there or not; of a run named by a session file that one.
+std::vector<std::filesystem::path> session_files(const std::filesystem::path& run);
 
 /// While a run goes on its folder is `<name>.partial`. commit() gives it its name; without commit()
 /// the destructor removes it. A `.partial` of another run, interrupted or still going on, is never

@@ -24,7 +24,7 @@ double slip(double surface, double ground) {
 
 }  // namespace
 
-SimFrame FrameRecorder::record(const Environment& plant, const Robot& robot) {
+SimFrame FrameRecorder::record(const RobotView& plant, const Robot& robot) {
   const VehicleState& vehicle = plant.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Matrix3d& rotation = chassis.pose.linear();

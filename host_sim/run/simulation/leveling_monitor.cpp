@@ -22,6 +22,23 @@ double next_after(double time_s, double interval_s) {
   return (std::floor((time_s + kRounding_s) / interval_s) + 1.0) * interval_s;
 }
 
+Traversability mean_shares(const std::vector<TraversabilityMeter>& robots) {
+  Traversability mean;
+  for (const TraversabilityMeter& robot : robots) {
+    const Traversability shares = robot.shares();
+    mean.stuck += shares.stuck;
+    mean.tilted += shares.tilted;
+    mean.off_site += shares.off_site;
+    mean.slip += shares.slip;
+  }
+  const auto count = static_cast<double>(robots.size());
+  mean.stuck /= count;
+  mean.tilted /= count;
+  mean.off_site /= count;
+  mean.slip /= count;
+  return mean;
+}
+
 bool on_bed(const SimFrame& frame, const HeightField& terrain) {
   return terrain.wrap() || terrain.inside(frame.x, frame.y);
 }
@@ -31,7 +48,7 @@ bool on_bed(const SimFrame& frame, const HeightField& terrain) {
 LevelingMonitor::LevelingMonitor(const Experiment& experiment, double tread_m, bool deformable)
     : measure_(experiment),
       meter_(measure_.flat_deg()),
-      traversability_(limits_of(experiment, tread_m)),
+      traversability_(experiment.robots.count, TraversabilityMeter(limits_of(experiment, tread_m))),
       interval_s_(experiment.metrics.interval_s),
       transport_interval_s_(experiment.metrics.transport_interval_s),
       deformable_(deformable),
@@ -43,16 +60,20 @@ void LevelingMonitor::begin(const HeightField& before, const Sink& sink) {
   sink(outcome_.before);
 }
 
-void LevelingMonitor::on_tick(const SimFrame& frame, double distance_m, const HeightField& terrain,
-                              const Sink& sink) {
-  traversability_.on_tick(frame, on_bed(frame, terrain));
-  cost_.time_s = frame.time;
+void LevelingMonitor::on_tick(std::span<const SimFrame> frames, double distance_m,
+                              const HeightField& terrain, const Sink& sink) {
+  cost_.energy_j = 0.0;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    traversability_[i].on_tick(frames[i], on_bed(frames[i], terrain));
+    cost_.energy_j += frames[i].energy;
+  }
+  const double time_s = frames.front().time;
+  cost_.time_s = time_s;
   cost_.distance_m = distance_m;
-  cost_.energy_j = frame.energy;
-  if (frame.time < next_s_ - kRounding_s) return;
-  next_s_ = next_after(frame.time, interval_s_);
-  const bool with_transport = deformable_ && frame.time >= next_transport_s_ - kRounding_s;
-  if (with_transport) next_transport_s_ = next_after(frame.time, transport_interval_s_);
+  if (time_s < next_s_ - kRounding_s) return;
+  next_s_ = next_after(time_s, interval_s_);
+  const bool with_transport = deformable_ && time_s >= next_transport_s_ - kRounding_s;
+  if (with_transport) next_transport_s_ = next_after(time_s, transport_interval_s_);
   sink(measure(terrain, with_transport));
 }
 
@@ -63,7 +84,7 @@ void LevelingMonitor::end(const HeightField& after, const Sink& sink) {
 
 LevelingPoint LevelingMonitor::measure(const HeightField& terrain, bool with_transport) {
   LevelingCost cost = cost_;
-  cost.traversability = traversability_.shares();
+  cost.traversability = mean_shares(traversability_);
   if (!measure_.is_filtered()) return meter_.measure(terrain, cost, with_transport);
   return meter_.measure(measure_.surface(terrain), cost, with_transport);
 }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "host_sim/leveling/leveling_meter.h"
 #include "host_sim/run/experiment/experiment.h"
@@ -28,8 +30,9 @@ class LevelingMonitor {
 
   /// The point at the start, of the terrain before the run.
   void begin(const HeightField& before, const Sink& sink);
-  /// After each control tick; distance_m: the path so far.
-  void on_tick(const SimFrame& frame, double distance_m, const HeightField& terrain,
+  /// After each control tick, with the frame of each robot; distance_m: their paths so far. Costs
+  /// are of all robots, shares of time are means over them.
+  void on_tick(std::span<const SimFrame> frames, double distance_m, const HeightField& terrain,
                const Sink& sink);
   /// The point at the end, of the terrain after the run. When the last tick was a point already, it
   /// is given once more, with transport.
@@ -43,7 +46,7 @@ class LevelingMonitor {
 
   TerrainMeasure measure_;
   LevelingMeter meter_;
-  TraversabilityMeter traversability_;
+  std::vector<TraversabilityMeter> traversability_;  ///< of each robot
   double interval_s_;
   double transport_interval_s_;
   bool deformable_;

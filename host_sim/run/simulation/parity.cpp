@@ -2,18 +2,21 @@
 #include "host_sim/run/simulation/parity.h"
 
 #include "host_sim/core/record.h"
+#include "host_sim/run/simulation/further_robots.h"
 #include "host_sim/run/simulation/parity_checker.h"
 
 namespace screed {
 
-ParityResult run_parity(CoSimulation& image, const BoardConstants& board,
-                        const Parameters& parameters, const Credentials& credentials,
-                        double seconds, const std::function<bool(const ParityResult&)>& go_on) {
+ParityResult run_parity(CoSimulation& image, std::span<const RobotSettings> robots, double seconds,
+                        const std::function<bool(const ParityResult&)>& go_on) {
   ParityResult result;
-  ParityChecker host(board, parameters, credentials);
+  const RobotSettings& first = robots.front();
+  ParityChecker host(first.board, first.parameters, first.credentials);
+  FurtherRobots further(image.world(), robots);
+  image.on_native_tick([&further] { further.answer(); });
   for (;; ++result.ticks) {
     const SensorSample& sample = image.run_to_sample();
-    result.simulated_s = image.plant().time_s();
+    result.simulated_s = image.world().plant().time_s();
     if (result.simulated_s > seconds || !go_on(result)) return result;
     host.tick(sample);
     const RobotOutput& output = image.run_to_output();

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "host_sim/run/world/co_simulation.h"
+#include "host_sim/run/world/robot_settings.h"
 
 namespace screed {
 
@@ -21,9 +23,10 @@ struct ParityResult {
   double simulated_s = 0.0;
 };
 
-/// Runs until the world's clock has passed `seconds`, or `go_on` returns false.
-ParityResult run_parity(CoSimulation& image, const BoardConstants& board,
-                        const Parameters& parameters, const Credentials& credentials,
-                        double seconds, const std::function<bool(const ParityResult&)>& go_on);
+/// Runs until the world's clock has passed `seconds`, or `go_on` returns false. `robots`: what the
+/// firmware of each robot of the world has; the first one's is that of the Robot beside the image,
+/// the others drive natively.
+ParityResult run_parity(CoSimulation& image, std::span<const RobotSettings> robots, double seconds,
+                        const std::function<bool(const ParityResult&)>& go_on);
 
 }  // namespace screed

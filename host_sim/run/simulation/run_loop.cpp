@@ -8,55 +8,77 @@ namespace screed {
 RunLoop::RunLoop(RunWorld& world, const RunParts& parts)
     : world_(world),
       plant_(world.plant()),
-      robot_(parts.robot),
-      recorder_(parts.recorder),
+      robots_{{parts.robot, parts.recorder}},
       leveling_(parts.leveling),
       stop_(parts.stop),
       progress_(parts.progress),
       pacer_(parts.pacer),
       observer_(parts.observer),
-      before_(parts.before) {}
+      before_(parts.before) {
+  for (const RecordedRobot& robot : parts.further_robots) robots_.push_back(robot);
+  frames_.resize(robots_.size());
+}
 
 RunEnd RunLoop::run() {
   if (observer_ != nullptr) observer_->on_begin(before_, plant_.terrain());
   leveling_.begin(before_, take_point_);
-  World* native = world_.native();
-  const RunEnd end = native != nullptr ? run_native(*native) : run_image(*world_.image());
+  FurtherRobots further(
+      world_.world(), world_.all_robot_settings(),
+      {[this](size_t robot, const SensorSample& sample) { on_sample(robot, sample); },
+       [this](size_t robot, const RobotOutput& output) { on_output(robot, output); }});
+  CoSimulation* image = world_.image();
+  const RunEnd end = image != nullptr ? run_image(*image, further) : run_native(further);
   leveling_.end(plant_.terrain(), take_point_);
   if (observer_ != nullptr) observer_->on_end();
   return end;
 }
 
 std::optional<RunEnd> RunLoop::reason_to_end() const {
-  return stop_.reason(left_bed(plant_));
+  bool off_bed = false;
+  for (size_t i = 0; i < robots_.size(); ++i) off_bed = off_bed || left_bed(plant_.robot(i));
+  return stop_.reason(off_bed);
 }
 
 // ---- what happens in every tick ----------------------------------------------------------------
 
 /// The robot has read its sensors; the world stands as they saw it.
-void RunLoop::on_sample(const SensorSample& sample) {
-  robot_.sample = sample;
+void RunLoop::on_sample(size_t robot, const SensorSample& sample) {
+  WatchedRobot& watched = robots_[robot].robot;
+  watched.sample = sample;
   // The shadow answers before the robot does: a frame shows what they think of this sample.
-  robot_.parity.tick(sample);
-  robot_.frame = robot_.frames.record(plant_, robot_.parity.shadow());
-  recorder_.observe_terrain(plant_.terrain());
+  watched.parity.tick(sample);
+  watched.frame = watched.frames.record(plant_.robot(robot), watched.parity.shadow());
+  robots_[robot].recorder.observe_terrain(plant_.terrain());
 }
 
 /// The robot has answered the sample; a native world has not taken the answer yet.
-void RunLoop::on_output(const RobotOutput& output) {
-  robot_.parity.require_equal(output);
-  robot_.telemetry.add(static_cast<uint64_t>(plant_.time_s() * 1e6), output);
-  recorder_.append(robot_.frame, robot_.sample, output);
-  const Robot& shadow = robot_.parity.shadow();
+void RunLoop::on_output(size_t robot, const RobotOutput& output) {
+  WatchedRobot& watched = robots_[robot].robot;
+  watched.parity.require_equal(output);
+  watched.telemetry.add(static_cast<uint64_t>(plant_.time_s() * 1e6), output);
+  robots_[robot].recorder.append(watched.frame, watched.sample, output);
+}
+
+void RunLoop::end_tick() {
+  const WatchedRobot& first = robots_[0].robot;
+  const Robot& shadow = first.parity.shadow();
   stop_.count_tick(shadow.supervisor().state(), shadow.leveling().state());
-  progress_.on_tick(stop_, robot_.frame.time, plant_);
-  leveling_.on_tick(robot_.frame, robot_.frames.distance_m(), plant_.terrain(), take_point_);
-  if (observer_ != nullptr) observer_->on_tick(robot_.frame, plant_.terrain());
+  progress_.on_tick(stop_, first.frame.time, plant_);
+  double distance_m = 0.0;
+  for (size_t i = 0; i < robots_.size(); ++i) {
+    frames_[i] = robots_[i].robot.frame;
+    distance_m += robots_[i].robot.frames.distance_m();
+  }
+  leveling_.on_tick(frames_, distance_m, plant_.terrain(), take_point_);
+  if (observer_ != nullptr) {
+    if (robots_.size() > 1) observer_->on_further_robots(std::span(frames_).subspan(1));
+    observer_->on_tick(frames_[0], plant_.terrain());
+  }
   pacer_.wait_until(plant_.time_s());
 }
 
 void RunLoop::on_leveling(const LevelingPoint& point) {
-  recorder_.record_leveling(point);
+  robots_[0].recorder.record_leveling(point);
   if (observer_ != nullptr) observer_->on_leveling(point);
 }
 
@@ -69,10 +91,11 @@ void RunLoop::on_leveling(const LevelingPoint& point) {
 ///       hal::read_sensors(sample);     // on_sample()
 ///       robot.tick(sample, output);
 ///       hal::write_outputs(output);    // on_output(), then the world takes duty and radio bytes
-///     }
+///     }                                // and the robots behind the first do the same
 class RunLoop::NativeTarget : public hal::Target {
  public:
-  NativeTarget(RunLoop& loop, World& world) : loop_(loop), world_(world) {}
+  NativeTarget(RunLoop& loop, World& world, FurtherRobots& further)
+      : loop_(loop), world_(world), further_(further) {}
 
   bool wait_for_tick() override {
     end_ = loop_.reason_to_end();
@@ -83,12 +106,14 @@ class RunLoop::NativeTarget : public hal::Target {
 
   void read_sensors(SensorSample& sample) override {
     sample = world_.sample();
-    loop_.on_sample(sample);
+    loop_.on_sample(0, sample);
   }
 
   void write_outputs(const RobotOutput& output) override {
-    loop_.on_output(output);
+    loop_.on_output(0, output);
     world_.apply(output);
+    further_.answer();
+    loop_.end_tick();
   }
 
   void init() override {}
@@ -102,11 +127,12 @@ class RunLoop::NativeTarget : public hal::Target {
  private:
   RunLoop& loop_;
   World& world_;
+  FurtherRobots& further_;
   std::optional<RunEnd> end_;
 };
 
-RunEnd RunLoop::run_native(World& world) {
-  NativeTarget target(*this, world);
+RunEnd RunLoop::run_native(FurtherRobots& further) {
+  NativeTarget target(*this, world_.world(), further);
   hal::run_firmware(target);
   return target.end();
 }
@@ -114,16 +140,19 @@ RunEnd RunLoop::run_native(World& world) {
 // ---- the flash image ---------------------------------------------------------------------------
 
 /// World and microcontroller run on in lockstep until the program marks that it has read its
-/// sensors, and then that it has set its outputs; the pins act on the world by themselves.
-RunEnd RunLoop::run_image(CoSimulation& image) {
+/// sensors, and then that it has set its outputs; the pins act on the world by themselves. The
+/// robots behind the first answer whenever a control tick of the world ends meanwhile.
+RunEnd RunLoop::run_image(CoSimulation& image, FurtherRobots& further) {
+  image.on_native_tick([&further] { further.answer(); });
   while (true) {
     if (const std::optional<RunEnd> reason = reason_to_end()) return *reason;
     const SensorSample& sample = image.run_to_sample();
     // The program needs some milliseconds to start, so that it makes fewer ticks than a native one
     // in the same time: here the world's clock ends the run.
     if (plant_.time_s() > stop_.duration_s()) return RunEnd::kDone;
-    on_sample(sample);
-    on_output(image.run_to_output());
+    on_sample(0, sample);
+    on_output(0, image.run_to_output());
+    end_tick();
   }
 }
 

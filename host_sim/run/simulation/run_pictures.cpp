@@ -72,13 +72,16 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
   options.state_names = leveling_state_names();
   options.path = run.path;
   options.robot = run.robot;
+  options.further_robots = run.further_robots;
   files.push_back(folder / "terrain_after.png");
   write_height_map_picture(files.back(), terrain.after, options);
   return files;
 }
 
-std::vector<fs::path> export_run_pictures(const fs::path& folder, const SessionReader& session,
+std::vector<fs::path> export_run_pictures(const fs::path& folder,
+                                          std::span<const SessionReader> sessions,
                                           const std::optional<RobotShape>& shape) {
+  const SessionReader& session = sessions.front();
   const std::optional<HeightMap> before = session.terrain_before();
   const std::optional<HeightMap> after = session.terrain_after();
   if (!before || !after) return {};
@@ -87,9 +90,14 @@ std::vector<fs::path> export_run_pictures(const fs::path& folder, const SessionR
   }
   const Experiment experiment = setup_of(session.info(), {}).experiment;
   const TerrainMeasure measure(experiment);
+  DrivenRun driven = driven_run(session, shape);
+  for (const SessionReader& further : sessions.subspan(1)) {
+    DrivenRun own = driven_run(further, shape);
+    driven.further_robots.push_back({std::move(own.path), std::move(own.robot)});
+  }
   return write_run_pictures(folder, experiment,
                             {measure.surface(field_of(*before)), measure.surface(field_of(*after))},
-                            driven_run(session, shape));
+                            driven);
 }
 
 }  // namespace screed

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "host_sim/core/sim_frame.h"
@@ -21,11 +22,12 @@ struct RunSurfaces {
   HeightField after;
 };
 
-/// What the robot did between them.
+/// What the robots did between them.
 struct DrivenRun {
   double time_s = 0.0;
   std::vector<PathPoint> path;  ///< its states are those of the leveling algorithm (LevelingState)
   std::optional<RobotOutline> robot;  ///< at the end
+  std::vector<PictureRobot> further_robots = {};
 };
 
 /// `last`: the frame of the last tick; of no use for a path without a point.
@@ -41,10 +43,10 @@ std::vector<std::filesystem::path> write_run_pictures(const std::filesystem::pat
                                                       const DrivenRun& run);
 
 /// The same pictures from a recorded run, byte by byte; without a shape the path's end stands for
-/// the robot. No file when the session lacks one of the terrains. Throws as above, InputError when
-/// the session is damaged.
+/// the robot. `sessions`: of its robots, at least one. No file when the first one lacks one of the
+/// terrains. Throws as above, InputError when a session is damaged.
 std::vector<std::filesystem::path> export_run_pictures(const std::filesystem::path& folder,
-                                                       const SessionReader& session,
+                                                       std::span<const SessionReader> sessions,
                                                        const std::optional<RobotShape>& shape);
 
 }  // namespace screed

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/core/content_hash.h"
 #include "host_sim/run/simulation/names.h"
 
 namespace screed {
@@ -74,6 +75,22 @@ nlohmann::ordered_json json_of(const CycleReport& cycles) {
           {"interrupts", interrupts}};
 }
 
+nlohmann::ordered_json json_of(const RobotSummary& robot) {
+  return {{"content_hash", robot.content_hash},
+          {"left_bed", robot.left_bed},
+          {"distance_m", robot.distance_m},
+          {"energy_j", robot.energy_j},
+          {"battery_v", robot.battery_v},
+          {"peaks", robot.peaks},
+          {"state", robot.state},
+          {"faults", fault_names(robot.faults)},
+          {"cannot_be_armed", robot.cannot_be_armed},
+          {"telemetry_frames", robot.telemetry_frames},
+          {"telemetry_frames_sent", robot.telemetry_frames_sent},
+          {"telemetry_frames_damaged", robot.telemetry_frames_damaged},
+          {"telemetry_share", robot.telemetry_share}};
+}
+
 nlohmann::ordered_json json_of(const SimulationSummary& summary) {
   nlohmann::ordered_json json = json_of(summary.identity);
   json.update({
@@ -99,6 +116,7 @@ nlohmann::ordered_json json_of(const SimulationSummary& summary) {
       {"terrain_change", json_of(summary.terrain.change)},
       {"leveling", json_of(summary.leveling)},
   });
+  for (const RobotSummary& robot : summary.robots) json["robots"].push_back(json_of(robot));
   if (summary.cycles.has_value()) json["microcontroller"] = json_of(*summary.cycles);
   return json;
 }
@@ -111,6 +129,31 @@ nlohmann::ordered_json json_of(const TerrainChange& change) {
           {"fill_m3", change.fill_m3},
           {"deepest_cut_m", change.deepest_cut_m},
           {"deepest_fill_m", change.deepest_fill_m}};
+}
+
+RobotSummary total_of(const std::vector<RobotSummary>& robots) {
+  RobotSummary total = robots.front();
+  if (robots.size() == 1) return total;
+  std::vector<std::string> hashes;
+  hashes.reserve(robots.size());
+  for (const RobotSummary& robot : robots) hashes.push_back(robot.content_hash);
+  total.content_hash = combined_hash(hashes);
+  for (size_t i = 1; i < robots.size(); ++i) {
+    const RobotSummary& robot = robots[i];
+    total.left_bed = total.left_bed || robot.left_bed;
+    total.distance_m += robot.distance_m;
+    total.energy_j += robot.energy_j;
+    total.battery_v = std::min(total.battery_v, robot.battery_v);
+    total.peaks += robot.peaks;
+    if (robot.state != total.state) total.state = "several";
+    total.faults = static_cast<uint16_t>(total.faults | robot.faults);
+    total.cannot_be_armed.clear();
+    total.telemetry_frames += robot.telemetry_frames;
+    total.telemetry_frames_sent += robot.telemetry_frames_sent;
+    total.telemetry_frames_damaged += robot.telemetry_frames_damaged;
+    total.telemetry_share = std::max(total.telemetry_share, robot.telemetry_share);
+  }
+  return total;
 }
 
 std::string summary_json(const SimulationSummary& summary) {

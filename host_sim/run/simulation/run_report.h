@@ -27,20 +27,11 @@ struct RunIdentity {
   std::string version;              ///< of the program
 };
 
-struct SimulationSummary {
-  RunIdentity identity;
-  std::filesystem::path folder;
-  std::string content_hash;
-  RunEnd end = RunEnd::kDone;
-  /// Frames that Algorithm 5 drove; 0 under another algorithm.
-  uint64_t training_frames = 0;
-  /// Changes of single heights, when they were recorded.
-  uint64_t height_changes = 0;
-  bool left_bed = false;  ///< the robot stands beyond the edge of the bed
-  double time_s = 0.0;
-  /// of the loop alone: building the world and writing pictures do not count
-  double wall_s = 0.0;
-  double distance_m = 0.0;  ///< length of the chassis' true path, in space
+/// What a robot did and says at the end of a run.
+struct RobotSummary {
+  std::string content_hash;  ///< of its session
+  bool left_bed = false;     ///< it stands beyond the edge of the bed
+  double distance_m = 0.0;   ///< length of the chassis' true path, in space
   double energy_j = 0.0;
   double battery_v = 0.0;
   int peaks = 0;
@@ -53,6 +44,28 @@ struct SimulationSummary {
   uint64_t telemetry_frames_sent = 0;     ///< lines the robot handed to its radio
   uint64_t telemetry_frames_damaged = 0;  ///< that reached the ground with a wrong check
   double telemetry_share = 0.0;           ///< of what the radio's line carries, 0..1
+};
+
+/// Of all robots of a run, one or more: distances, energies, peaks and telemetry frames are sums,
+/// the battery is the lowest, the share of the line the highest, faults are those of any robot. The
+/// content hash is over those of the robots. When states differ the state is "several".
+/// What keeps robots from being armed is said of each one alone.
+RobotSummary total_of(const std::vector<RobotSummary>& robots);
+
+/// What is of a robot here is of all of them (total_of).
+struct SimulationSummary : RobotSummary {
+  RunIdentity identity;
+  std::filesystem::path folder;
+  /// Each robot, in their order, when there are several.
+  std::vector<RobotSummary> robots;
+  RunEnd end = RunEnd::kDone;
+  /// Frames that Algorithm 5 drove; 0 under another algorithm.
+  uint64_t training_frames = 0;
+  /// Changes of single heights, when they were recorded.
+  uint64_t height_changes = 0;
+  double time_s = 0.0;
+  /// of the loop alone: building the world and writing pictures do not count
+  double wall_s = 0.0;
   TerrainOutcome terrain;
   LevelingOutcome leveling;
   /// folders of interrupted runs that were passed over

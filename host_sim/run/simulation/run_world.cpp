@@ -7,11 +7,16 @@
 namespace screed {
 
 RunWorld::RunWorld(const Experiment& experiment, const SimulationOptions& options,
-                   std::ostream* telemetry_log)
-    : robot_settings_{board_constants_of(options.board), experiment.parameters,
-                      credentials_of(experiment)} {
-  const WorldSetup setup{options.board, options.ground_port, options.environment,
-                         options.setup_progress};
+                   std::span<std::ostream* const> telemetry_logs)
+    : robot_settings_(screed::robot_settings(experiment, options.board)) {
+  WorldSetup setup;
+  setup.board = options.board;
+  setup.ground_port = options.ground_port;
+  setup.environment = options.environment;
+  setup.progress = options.setup_progress;
+  std::ostream* const telemetry_log = telemetry_logs.empty() ? nullptr : telemetry_logs[0];
+  if (!telemetry_logs.empty())
+    setup.further_telemetry_logs.assign(telemetry_logs.begin() + 1, telemetry_logs.end());
   if (!options.image.has_value()) {
     native_ = make_world(experiment, telemetry_log, setup);
     return;
@@ -22,10 +27,6 @@ RunWorld::RunWorld(const Experiment& experiment, const SimulationOptions& option
         "runs without --hal mcu");
   }
   image_ = make_co_simulation(experiment, telemetry_log, *options.image, setup);
-}
-
-const GroundStation& RunWorld::ground_station() const {
-  return image_ ? image_->ground_station() : std::as_const(*native_).ground_station();
 }
 
 std::optional<CycleReport> RunWorld::cycles() const {

@@ -1,7 +1,13 @@
 // A run from its input to its folder, step by step.
 #include "host_sim/run/simulation/simulation.h"
 
+#include <memory>
 #include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
@@ -37,8 +43,12 @@ const char* hal_name(const SimulationOptions& options) {
   return options.environment ? "surrogate" : "native";
 }
 
-RunIdentity identity_of(const Experiment& experiment, const SimulationOptions& options,
-                        const std::optional<SoilParameters>& soil) {
+std::optional<SoilParameters> soil_of(const Experiment& experiment) {
+  if (!experiment.map.is_soil()) return std::nullopt;
+  return make_soil(experiment);
+}
+
+RunIdentity identity_of(const Experiment& experiment, const SimulationOptions& options) {
   RunIdentity run;
   run.experiment = experiment.experiment.name;
   run.algorithm = experiment.experiment.algorithm;
@@ -46,7 +56,7 @@ RunIdentity identity_of(const Experiment& experiment, const SimulationOptions& o
   run.hal = hal_name(options);
   run.board = options.board;
   run.terrain = experiment.map.model;
-  if (soil.has_value()) run.soil = soil->name;
+  if (const auto soil = soil_of(experiment)) run.soil = soil->name;
   run.version = options.program_version;
   return run;
 }
@@ -55,23 +65,6 @@ RunIdentity identity_of(const Experiment& experiment, const SimulationOptions& o
 /// its. The robot has settled into plant.terrain() already. Particles lie as they fell.
 HeightField terrain_before(const Experiment& experiment, const Environment& plant) {
   return experiment.map.of_particles() ? plant.terrain() : make_terrain(experiment);
-}
-
-std::optional<SoilParameters> soil_of(const Experiment& experiment) {
-  if (!experiment.map.is_soil()) return std::nullopt;
-  return make_soil(experiment);
-}
-
-/// What the world says at the end of the run.
-void report_world(const RunWorld& world, SimulationSummary& summary) {
-  const Environment& plant = world.plant();
-  summary.time_s = plant.time_s();
-  summary.left_bed = left_bed(plant);
-  summary.energy_j = plant.battery().energy_j;
-  summary.battery_v = plant.battery().terminal_v;
-  summary.telemetry_frames = world.ground_station().frames();
-  summary.telemetry_frames_damaged = world.ground_station().rejected_frames();
-  summary.cycles = world.cycles();
 }
 
 /// Why the robot could not be armed at the end of the run, from its own telemetry; its limits are
@@ -86,75 +79,153 @@ std::vector<std::string> obstacles_of(const WatchedRobot& robot, double time_s) 
   return arming_obstacles(said, static_cast<uint64_t>(time_s * 1e6));
 }
 
-/// What the robot did and says at the end of the run.
-void report_robot(const WatchedRobot& robot, SimulationSummary& summary) {
+/// A robot of a run, and where what it does goes.
+struct RobotOfRun {
+  RobotOfRun(const RunWorld& world, size_t number, const std::filesystem::path& session,
+             const SessionInfo& info, const HeightField& before,
+             const std::optional<SoilParameters>& soil)
+      : robot(world.robot_settings(number)), recorder(session, info, before, soil) {}
+
+  WatchedRobot robot;
+  SessionRecorder recorder;
+};
+using RobotsOfRun = std::vector<std::unique_ptr<RobotOfRun>>;
+
+/// The telemetry logs of a run's robots, made before their files are.
+class TelemetryLogs {
+ public:
+  explicit TelemetryLogs(size_t robots) : logs_(robots) {
+    for (TelemetryLog& log : logs_) streams_.push_back(&log.stream());
+  }
+  std::span<std::ostream* const> streams() const { return streams_; }
+  void open(const RunFiles& files) {
+    for (size_t i = 0; i < logs_.size(); ++i) logs_[i].open(files.telemetry_log(i));
+  }
+  void close() {
+    for (TelemetryLog& log : logs_) log.close();
+  }
+
+ private:
+  std::vector<TelemetryLog> logs_;
+  std::vector<std::ostream*> streams_;
+};
+
+RobotsOfRun make_robots(const Experiment& experiment, const SimulationOptions& options,
+                        const RunWorld& world, const RunFiles& files, const HeightField& before) {
+  const std::optional<SoilParameters> soil = soil_of(experiment);
+  RobotsOfRun robots;
+  for (size_t i = 0; i < world.robots(); ++i) {
+    robots.push_back(std::make_unique<RobotOfRun>(
+        world, i, files.session(i), session_info(experiment, options, world.robot_settings(i)),
+        before, soil));
+  }
+  return robots;
+}
+
+/// What a robot did and says at the end of the run.
+RobotSummary report_robot(const RunWorld& world, size_t number, const WatchedRobot& robot,
+                          const std::string& content_hash) {
   const Robot& shadow = robot.parity.shadow();
+  const RobotView& view = world.robot(number);
+  const GroundStation& ground = world.ground_station(number);
+  RobotSummary summary;
+  summary.content_hash = content_hash;
+  summary.left_bed = left_bed(view);
   summary.distance_m = robot.frames.distance_m();
+  summary.energy_j = view.battery().energy_j;
+  summary.battery_v = view.battery().terminal_v;
   summary.peaks = shadow.leveling().peaks();
   summary.state = state_name(shadow.supervisor().state());
   summary.faults = shadow.supervisor().faults();
-  summary.cannot_be_armed = obstacles_of(robot, summary.time_s);
+  summary.cannot_be_armed = obstacles_of(robot, view.time_s());
+  summary.telemetry_frames = ground.frames();
+  summary.telemetry_frames_damaged = ground.rejected_frames();
   summary.telemetry_frames_sent = robot.telemetry.frames();
-  summary.telemetry_share = robot.telemetry.line_share(summary.time_s);
+  summary.telemetry_share = robot.telemetry.line_share(view.time_s());
+  return summary;
+}
+
+/// The robots between the terrains of a run.
+DrivenRun driven_by(const RobotsOfRun& robots, const RobotShape& shape) {
+  DrivenRun all = driven_run(robots[0]->recorder.path(), robots[0]->robot.frame, shape);
+  for (size_t i = 1; i < robots.size(); ++i) {
+    DrivenRun own = driven_run(robots[i]->recorder.path(), robots[i]->robot.frame, shape);
+    all.further_robots.push_back({std::move(own.path), std::move(own.robot)});
+  }
+  return all;
+}
+
+/// Closes the sessions with the terrain as the run left it.
+void finish_robots(const RunWorld& world, RobotsOfRun& robots, SimulationSummary& summary) {
+  const Environment& plant = world.plant();
+  std::vector<RobotSummary> all;
+  for (size_t i = 0; i < robots.size(); ++i) {
+    SessionRecorder& recorder = robots[i]->recorder;
+    if (i == 0) recorder.record_particles_after(plant.spheres());
+    all.push_back(report_robot(world, i, robots[i]->robot, recorder.finish(plant.terrain())));
+  }
+  static_cast<RobotSummary&>(summary) = total_of(all);
+  if (all.size() > 1) summary.robots = std::move(all);
 }
 
 }  // namespace
 
 void check_simulation(const Experiment& experiment, const SimulationOptions& options) {
-  const RunWorld trial(experiment, options, nullptr);
+  const RunWorld trial(experiment, options, {});
 }
 
 SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options) {
   // Everything that can be wrong with the input is found before the first file is made.
-  TelemetryLog telemetry;
-  RunWorld world(experiment, options, &telemetry.stream());
+  TelemetryLogs telemetry(experiment.robots.count);
+  RunWorld world(experiment, options, telemetry.streams());
   const Environment& plant = world.plant();
   const RobotShape shape =
       shape_of(make_robot_model(experiment, options.board), experiment.vehicle.tracks);
 
   RunFiles files(experiment, options);
-  telemetry.open(files.telemetry_log());
+  telemetry.open(files);
   const HeightField before = terrain_before(experiment, plant);
-  const std::optional<SoilParameters> soil = soil_of(experiment);
-  SessionRecorder recorder(files.session(),
-                           session_info(experiment, options, world.robot_settings()), before, soil);
+  RobotsOfRun robots = make_robots(experiment, options, world, files, before);
+  SessionRecorder& recorder = robots[0]->recorder;
   if (options.heights) recorder.record_heights(plant.terrain());
   recorder.record_particles_before(plant.spheres());
 
   SimulationSummary summary;
-  summary.identity = identity_of(experiment, options, soil);
+  summary.identity = identity_of(experiment, options);
   const TerrainMeasure measure(experiment);
 
-  WatchedRobot robot(world.robot_settings());
   StopCondition stop(experiment, options.stop);
   Progress progress(options.progress, measure, before);
   WallClock clock;
   Pacer pacer(clock, options.realtime);
   LevelingMonitor leveling(experiment, world.robot_settings().board.tread_mm * 1e-3,
                            plant.is_deformable());
-  RunLoop loop(world, {robot, recorder, leveling, stop, progress, pacer, options.observer, before});
+  RunParts parts{robots[0]->robot, recorder, leveling,         stop,
+                 progress,         pacer,    options.observer, before};
+  for (size_t i = 1; i < robots.size(); ++i)
+    parts.further_robots.push_back({robots[i]->robot, robots[i]->recorder});
+  RunLoop loop(world, parts);
   summary.end = loop.run();
   summary.wall_s = pacer.elapsed_s();
 
-  recorder.record_particles_after(plant.spheres());
-  summary.content_hash = recorder.finish(plant.terrain());
+  finish_robots(world, robots, summary);
   telemetry.close();
 
   summary.folder = files.final_folder();
   summary.leftovers = files.leftovers();
+  summary.time_s = plant.time_s();
+  summary.cycles = world.cycles();
   summary.training_frames = stop.training_frames();
   summary.height_changes = recorder.height_changes();
   const RunSurfaces surfaces{measure.surface(before), measure.surface(plant.terrain())};
   summary.terrain = measure.outcome(surfaces.before, surfaces.after);
   summary.leveling = leveling.outcome();
-  report_world(world, summary);
-  report_robot(robot, summary);
 
   try {
     files.write_summary(summary_json(summary));
     if (options.table) files.write_tables();
-    write_run_pictures(files.folder(), experiment, surfaces,
-                       driven_run(recorder.path(), robot.frame, shape));
+    if (options.pictures)
+      write_run_pictures(files.folder(), experiment, surfaces, driven_by(robots, shape));
   } catch (const RunError& error) {
     // What took the time is saved; where there is room, `session export` makes table and pictures
     // again.

@@ -35,6 +35,8 @@ struct SimulationOptions {
   bool heights = false;
   /// Write frames.csv and leveling.csv beside the session; they can be exported later as well.
   bool table = true;
+  /// Draw the terrain before and after; the pictures can be exported later as well.
+  bool pictures = true;
   std::string program_version;
   std::string board = kDefaultBoard;
   /// The image that is to run under the microcontroller simulation; without it the firmware runs

@@ -28,7 +28,7 @@ uint64_t frames_to_drive(const Experiment& experiment);
 
 /// A bed ends at its edges, unless it wraps around: a robot that drives over them has left its
 /// site.
-bool left_bed(const Environment& plant);
+bool left_bed(const RobotView& robot);
 
 class StopCondition {
  public:

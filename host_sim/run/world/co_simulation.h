@@ -1,18 +1,20 @@
-// The image that is flashed, running in a world of physics: what the rest of the program needs of
-// it. Needs no simavr; a build without it (MCU=no) has this header and a factory that refuses.
+// The image that is flashed, running in a world of physics, alone or beside native robots: what the
+// rest of the program needs of it. Needs no simavr; a build without it (MCU=no) has this header and
+// a factory that refuses.
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 
 #include "firmware/parameters/board_constants.h"
 #include "firmware/parameters/parameters.h"
 #include "hal/sample.h"
 #include "host_sim/devices/mcu/cycle_report.h"
-#include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/world/world.h"
 #include "host_sim/run/world/world_options.h"
 
 namespace screed {
@@ -27,9 +29,22 @@ class CoSimulation {
   virtual const SensorSample& run_to_sample() = 0;
   virtual const RobotOutput& run_to_output() = 0;
 
-  virtual const Environment& plant() const = 0;
-  virtual const GroundStation& ground_station() const = 0;
+  /// The image drives the first robot, native firmware all others.
+  virtual World& world() = 0;
   virtual CycleReport cycles() const = 0;
+
+  /// Is called at the end of each control tick of the world, on the way to a sample or an output:
+  /// then the native robots have read their sensors, and World::apply() takes their answers.
+  /// Without it they stand still.
+  void on_native_tick(std::function<void()> answer) { answer_ = std::move(answer); }
+
+ protected:
+  void let_native_robots_answer() const {
+    if (answer_) answer_();
+  }
+
+ private:
+  std::function<void()> answer_;
 };
 
 struct CoSimulationOptions {
@@ -37,7 +52,7 @@ struct CoSimulationOptions {
   std::string board = kDefaultBoard;  ///< a folder in boards/
   Parameters parameters;              ///< stored in the EEPROM before the program starts
   Credentials credentials = credentials_of(test_key());  ///< likewise
-  WorldOptions world;
+  WorldOptions world;                                    ///< of all robots; the rest is the image's
 };
 
 /// The default image of a board: <firmware folder>/<board>/screed.elf.

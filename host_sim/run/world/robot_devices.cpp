@@ -9,8 +9,8 @@
 namespace screed {
 namespace {
 
-Eigen::Vector3d robot_position(const Environment& plant) {
-  return plant.vehicle().chassis().pose.translation();
+Eigen::Vector3d robot_position(const RobotView& robot) {
+  return robot.vehicle().chassis().pose.translation();
 }
 
 std::optional<uint64_t> tick_at(const std::optional<double>& time_s) {
@@ -20,7 +20,7 @@ std::optional<uint64_t> tick_at(const std::optional<double>& time_s) {
 
 }  // namespace
 
-RobotDevices::RobotDevices(const WorldOptions& options, const Environment& plant,
+RobotDevices::RobotDevices(const WorldOptions& options, const RobotView& robot,
                            std::ostream* telemetry_log)
     : imu_(options.seed, options.imu),
       uplink_(options.seed, "uplink", options.radio),
@@ -28,16 +28,16 @@ RobotDevices::RobotDevices(const WorldOptions& options, const Environment& plant
       ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key,
               PositionFixes(options.seed, options.fixes)),
       ground_end_(options.ground_port),
-      station_m_(robot_position(plant)),
+      station_m_(robot_position(robot)),
       encoder_counts_per_turn_(options.encoder_counts_per_turn),
       lay_on_side_tick_(tick_at(options.lay_on_side_at_s)) {}
 
-void RobotDevices::execute_events(uint64_t tick, Environment& plant) {
-  if (lay_on_side_tick_ == tick) plant.lay_on_side();
+void RobotDevices::execute_events(uint64_t tick, RobotView& robot) {
+  if (lay_on_side_tick_ == tick) robot.lay_on_side();
 }
 
-void RobotDevices::exchange_radio(uint64_t now_us, const Environment& plant) {
-  const Eigen::Vector3d position = robot_position(plant);
+void RobotDevices::exchange_radio(uint64_t now_us, const RobotView& robot) {
+  const Eigen::Vector3d position = robot_position(robot);
   const double distance_m = (position - station_m_).norm();
   ground_.see_robot(position.x(), position.y());
   uplink_.set_distance(distance_m);
@@ -45,8 +45,8 @@ void RobotDevices::exchange_radio(uint64_t now_us, const Environment& plant) {
   ground_end_.tick(now_us, ground_, uplink_, downlink_);
 }
 
-double RobotDevices::encoder_position(const Environment& plant, Side side) const {
-  const double turns = plant.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+double RobotDevices::encoder_position(const RobotView& robot, Side side) const {
+  const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
   return turns * encoder_counts_per_turn_;
 }
 

@@ -26,18 +26,18 @@ class RobotDevices {
  public:
   /// The ground station stands where the robot is now. telemetry_log may be null; it must outlive
   /// this.
-  RobotDevices(const WorldOptions& options, const Environment& plant, std::ostream* telemetry_log);
+  RobotDevices(const WorldOptions& options, const RobotView& robot, std::ostream* telemetry_log);
 
   /// Executes what is scripted for this control tick, counted from 1. Before its physics.
-  void execute_events(uint64_t tick, Environment& plant);
+  void execute_events(uint64_t tick, RobotView& robot);
 
   /// One control tick at the ground end of the radio, with the robot where it is now: the ground
   /// station's bytes go into the uplink, what has come down the downlink is taken out.
-  void exchange_radio(uint64_t now_us, const Environment& plant);
+  void exchange_radio(uint64_t now_us, const RobotView& robot);
 
   /// Of a side's encoder, counts since the robot was built; rises when the track drives forward.
   /// The counter shows the whole counts below it.
-  double encoder_position(const Environment& plant, Side side) const;
+  double encoder_position(const RobotView& robot, Side side) const;
 
   ImuModel& imu() { return imu_; }
   RadioLink& uplink() { return uplink_; }      ///< to the robot

@@ -1,71 +1,74 @@
-// One robot in one world of physics.
+// Robots in one world.
 #include "host_sim/run/world/world.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "host_sim/devices/sensors/calibration_motion.h"
+#include "host_sim/run/world/robot_number.h"
 
 namespace screed {
+namespace {
+
+WorldOptions options_of_robot(const WorldOptions& options, size_t number) {
+  WorldOptions own = options;
+  if (number == 0) return own;
+  own.seed = seed_of_robot(options.seed, number);
+  own.ground_key = key_of_robot(options.ground_key, number);
+  if (number <= options.further_drives.size()) own.drive = options.further_drives[number - 1];
+  own.lay_on_side_at_s.reset();
+  own.ground_port = nullptr;
+  return own;
+}
+
+std::ostream* log_of_robot(const WorldOptions& options, std::ostream* first, size_t number) {
+  if (number == 0) return first;
+  const auto& further = options.further_telemetry_logs;
+  return number <= further.size() ? further[number - 1] : nullptr;
+}
+
+}  // namespace
 
 World::World(HeightField terrain, const Assembly& model, const BoardConstants& board,
-             const WorldOptions& options, std::ostream* telemetry_log)
+             const WorldOptions& options, std::ostream* telemetry_log,
+             const ControllerFactory& first)
     : World(std::make_unique<Plant>(std::move(terrain), model, options), board, options,
-            telemetry_log) {}
+            telemetry_log, first) {}
 
 World::World(std::unique_ptr<Environment> plant, const BoardConstants& board,
-             const WorldOptions& options, std::ostream* telemetry_log)
-    : calibration_motion_(options.calibration_motion),
-      board_(board),
-      plant_(std::move(plant)),
-      devices_(options, *plant_, telemetry_log) {}
-
-void World::step_physics() {
-  const std::array<double, 2> duty_ratio = {static_cast<double>(duty_[kLeft]) / kDutyMax,
-                                            static_cast<double>(duty_[kRight]) / kDutyMax};
-  for (int i = 0; i < plant_->steps_per_tick(); ++i) plant_->step(duty_ratio);
+             const WorldOptions& options, std::ostream* telemetry_log,
+             const ControllerFactory& first)
+    : plant_(std::move(plant)), duty_ratios_(plant_->robots()) {
+  for (size_t i = 0; i < plant_->robots(); ++i) {
+    const WorldOptions own = options_of_robot(options, i);
+    std::ostream* const log = log_of_robot(options, telemetry_log, i);
+    if (i == 0 && first) {
+      robots_.push_back(first(own, plant_->robot(i), log));
+      natives_.push_back(nullptr);
+      continue;
+    }
+    auto native = std::make_unique<NativeRobot>(own, board, plant_->robot(i), log);
+    natives_.push_back(native.get());
+    robots_.push_back(std::move(native));
+  }
 }
 
-// Fields that only a microcontroller has (last_tick_us, errors, chips_failing, reset_cause) stay 0.
-void World::measure() {
-  devices_.imu().measure(calibration_motion_ ? calibration_motion(time_s()) : plant_->motion(),
-                         sample_);
-
-  const auto counts = [this](Side side) {
-    return static_cast<uint16_t>(
-        static_cast<int64_t>(std::floor(devices_.encoder_position(*plant_, side))) & 0xFFFF);
-  };
-  sample_.encoder_left = counts(kLeft);
-  sample_.encoder_right = counts(kRight);
-  sample_.battery = static_cast<uint16_t>(
-      std::clamp(std::round(battery().terminal_v * 1e6 / board_.battery_uv_per_lsb), 0.0,
-                 double{kBatteryMax}));
-  sample_.time_us = static_cast<uint32_t>(now_us());
+bool World::at_end_of_tick() const {
+  return plant_->steps() % static_cast<uint64_t>(plant_->steps_per_tick()) == 0;
 }
 
-void World::receive_radio() {
-  const std::vector<uint8_t> arrived = devices_.uplink().receive(now_us(), kRadioInCapacity);
-  sample_.radio_in_count = static_cast<uint8_t>(arrived.size());
-  std::fill(std::copy(arrived.begin(), arrived.end(), sample_.radio_in),
-            sample_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));
+void World::step() {
+  if (at_end_of_tick()) {
+    ++ticks_;
+    for (const auto& robot : robots_) robot->begin_tick(ticks_);
+  }
+  for (size_t i = 0; i < robots_.size(); ++i) duty_ratios_[i] = robots_[i]->duty_ratio();
+  plant_->step_all(duty_ratios_);
+  for (const auto& robot : robots_) robot->end_step();
 }
 
-// The order matters: events before the physics of their tick; the ground station sends before the
-// robot receives; the answer of the last tick (duty_) drives these physics steps.
 void World::advance() {
-  ++ticks_;
-  devices_.execute_events(ticks_, *plant_);
-  step_physics();
-  measure();
-  devices_.exchange_radio(now_us(), *plant_);
-  receive_radio();
-}
-
-void World::apply(const RobotOutput& output) {
-  duty_ = {std::clamp<int16_t>(output.duty_left, -kDutyMax, kDutyMax),
-           std::clamp<int16_t>(output.duty_right, -kDutyMax, kDutyMax)};
-  devices_.downlink().send(now_us(),
-                           {output.radio_out, std::min(output.radio_out_count, kRadioOutCapacity)});
+  do {
+    step();
+  } while (!at_end_of_tick());
 }
 
 }  // namespace screed

@@ -1,9 +1,11 @@
-// What a world is made of beside its terrain and the robot's bodies: physics, sensors, radio,
+// What a world is made of beside its terrain and the robots' bodies: physics, sensors, radio,
 // ground station, scripted events.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <ostream>
+#include <vector>
 
 #include "host_sim/devices/radio/radio_link.h"
 #include "host_sim/devices/sensors/imu_model.h"
@@ -21,6 +23,8 @@ struct WorldOptions : PlantOptions {
   RadioOptions radio;
   bool ground_station_arms = true;
   std::optional<DriveCommand> drive;
+  /// Of the robots behind the first one's; where there is none for a robot it has `drive`.
+  std::vector<std::optional<DriveCommand>> further_drives;
   PositionFixOptions fixes;
   CommandKey ground_key = test_key();  ///< what the ground station signs with
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
@@ -29,8 +33,11 @@ struct WorldOptions : PlantOptions {
   /// motion.
   bool calibration_motion = false;
   double encoder_counts_per_turn = 1000.0 / 3.0;
-  /// The robot is laid on its left side at this time, s: a fault to inject.
+  /// The robot is laid on its left side at this time, s: a fault to inject. Of several the first.
   std::optional<double> lay_on_side_at_s;
+  /// Telemetry of the robots behind the first; null, or none: nobody keeps it. Must outlive the
+  /// world.
+  std::vector<std::ostream*> further_telemetry_logs;
 };
 
 }  // namespace screed

@@ -13,7 +13,9 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/run/experiment/robot_model.h"
+#include "host_sim/run/experiment/robot_sections.h"
 #include "host_sim/run/experiment/trap.h"
+#include "host_sim/run/world/robot_placement.h"
 
 namespace screed {
 namespace {
@@ -78,6 +80,12 @@ HeightField untrapped_terrain(const Experiment& experiment) {
   return soft ? resampled(field, experiment.soil.cell_m) : field;
 }
 
+/// What the ground station commands.
+std::optional<DriveCommand> drive_of(const Experiment& experiment) {
+  if (experiment.experiment.algorithm != "drive") return std::nullopt;
+  return DriveCommand{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
+}
+
 WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup) {
   WorldOptions options;
   options.progress = setup.progress;
@@ -93,6 +101,8 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.start.attitude = {experiment.vehicle.roll_deg * kRadPerDeg,
                             experiment.vehicle.pitch_deg * kRadPerDeg,
                             experiment.vehicle.heading_deg * kRadPerDeg};
+  options.further_telemetry_logs = setup.further_telemetry_logs;
+  options.robot_friction = experiment.robots.friction;
   options.vehicle.tracks = experiment.vehicle.tracks;
   options.vehicle.track_model =
       experiment.vehicle.track_model == "chain" ? TrackModel::kChain : TrackModel::kBelt;
@@ -116,10 +126,9 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.ground_station_arms = experiment.radio.ground_station;
   options.fixes = {experiment.fixes.period_s, experiment.fixes.sigma_m,
                    experiment.fixes.outage_every_s, experiment.fixes.outage_s};
-  if (experiment.experiment.algorithm == "drive") {
-    options.drive =
-        DriveCommand{experiment.drive.speed_m_per_s, experiment.drive.yaw_rate_deg_per_s};
-  }
+  options.drive = drive_of(experiment);
+  for (size_t i = 1; i < experiment.robots.count; ++i)
+    options.further_drives.push_back(drive_of(experiment_of_robot(experiment, i)));
   options.lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
   if (experiment.map.is_soil()) {
     options.soil = make_soil(experiment);
@@ -129,6 +138,24 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   }
   if (experiment.map.of_particles()) options.particles = make_particles(experiment);
   return options;
+}
+
+/// Puts the robots where they start.
+void place_robots(const Experiment& experiment, const HeightField& terrain, WorldOptions& options) {
+  const StartPose as_in_file = options.start;
+  bool first = true;
+  for (const RobotPlace& place : robot_places(experiment, terrain)) {
+    StartPose start = as_in_file;
+    start.x_m = place.x_m;
+    start.y_m = place.y_m;
+    start.attitude.heading = place.heading_deg * kRadPerDeg;
+    if (first) {
+      options.start = start;
+    } else {
+      options.further_starts.push_back(start);
+    }
+    first = false;
+  }
 }
 
 /// Threads of a bed of particles. No key of an experiment: nothing in a run depends on it.
@@ -176,14 +203,21 @@ HeightField make_terrain(const Experiment& experiment) {
 
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const WorldSetup& setup) {
-  const WorldOptions options = world_options(experiment, setup);
+  WorldOptions options = world_options(experiment, setup);
   const BoardConstants& board = board_constants_of(setup.board);
   const Assembly model = make_robot_model(experiment, setup.board);
   if (setup.environment) {
+    if (experiment.robots.count > 1) {
+      throw InputError("[robots] count = " + std::to_string(experiment.robots.count) +
+                       ": with --hal surrogate allowed is 1; several robots run with --hal native "
+                       "or mcu");
+    }
     return std::make_unique<World>(setup.environment(make_terrain(experiment), model, options),
                                    board, options, telemetry_log);
   }
-  return std::make_unique<World>(make_terrain(experiment), model, board, options, telemetry_log);
+  HeightField terrain = make_terrain(experiment);
+  place_robots(experiment, terrain, options);
+  return std::make_unique<World>(std::move(terrain), model, board, options, telemetry_log);
 }
 
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
@@ -196,8 +230,10 @@ std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
   options.parameters = experiment.parameters;
   options.credentials = credentials_of(experiment);
   options.world = world_options(experiment, setup);
-  return make_co_simulation(make_terrain(experiment), make_robot_model(experiment, setup.board),
-                            options, telemetry_log);
+  HeightField terrain = make_terrain(experiment);
+  place_robots(experiment, terrain, options.world);
+  return make_co_simulation(std::move(terrain), make_robot_model(experiment, setup.board), options,
+                            telemetry_log);
 }
 
 }  // namespace screed

@@ -5,6 +5,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "host_sim/core/task_progress.h"
 #include "host_sim/physics/soil/soil_parameters.h"
@@ -27,6 +28,8 @@ struct WorldSetup {
   std::string board = kDefaultBoard;  ///< a folder of boards/
   /// Programs outside at the ground end of the radio; may be null, must outlive the world.
   GroundPort* ground_port = nullptr;
+  /// Of the robots behind the first, as in WorldOptions.
+  std::vector<std::ostream*> further_telemetry_logs = {};
   EnvironmentFactory environment = nullptr;  ///< in place of physics; may be empty
   TaskProgress progress = nullptr;           ///< of laying and settling; may be empty, may end it
 };
@@ -42,7 +45,7 @@ HeightField make_terrain(const Experiment& experiment);
 /// setup.progress throws.
 std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
                                   const WorldSetup& setup = {});
-/// The same world with the image running in it (co_simulation.h), always of physics.
+/// The same world with the image in the first robot (co_simulation.h), always of physics.
 std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
                                                  std::ostream* telemetry_log,
                                                  const std::string& image,

@@ -69,7 +69,7 @@ void print_text(const Arguments& arguments, const ParityResult& result, double f
 
 int run_parity_command(const Arguments& arguments) {
   const Experiment experiment = read_experiment(arguments.file, arguments.sets);
-  const BoardConstants& board = board_constants_of(arguments.board);
+  const std::vector<RobotSettings> robots = robot_settings(experiment, arguments.board);
   const bool quiet = arguments.quiet || arguments.json;
   TaskBar setup_bar(quiet);
   const std::unique_ptr<CoSimulation> image = make_co_simulation(
@@ -80,15 +80,13 @@ int run_parity_command(const Arguments& arguments) {
   if (!quiet) bar.emplace(std::cerr);
   const double seconds = arguments.minutes * 60.0;
   const auto begin = std::chrono::steady_clock::now();
-  const ParityResult result =
-      run_parity(*image, board, experiment.parameters, credentials_of(experiment), seconds,
-                 [&](const ParityResult& so_far) {
-                   if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
-                     bar->show(so_far.simulated_s, seconds,
-                               std::to_string(so_far.differing_bytes) + " bytes differ");
-                   }
-                   return !interrupted();
-                 });
+  const ParityResult result = run_parity(*image, robots, seconds, [&](const ParityResult& so_far) {
+    if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
+      bar->show(so_far.simulated_s, seconds,
+                std::to_string(so_far.differing_bytes) + " bytes differ");
+    }
+    return !interrupted();
+  });
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double factor = wall_s > 0.0 ? result.simulated_s / wall_s : 0.0;
@@ -107,10 +105,11 @@ int run_parity_command(const Arguments& arguments) {
 }  // namespace
 
 void register_parity_command(CLI::App& root, Program& program) {
-  CLI::App* command =
-      root.add_subcommand("parity",
-                          "Run the flash image in a simulated world and compare every output byte "
-                          "with the firmware compiled for this machine");
+  CLI::App* command = root.add_subcommand(
+      "parity",
+      "Run the flash image in a simulated world and compare every output byte "
+      "with the firmware compiled for this machine. Of several robots the first is the "
+      "image");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->file, "Experiment file (INI)")->required();
   command->add_option("--board", arguments->board,

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
@@ -19,7 +20,7 @@ struct Options {
   bool json = false;
 };
 
-void print_json(const std::string& run, const ReplayResult& result) {
+nlohmann::ordered_json json_of(const std::string& run, const ReplayResult& result) {
   nlohmann::ordered_json json;
   json["run"] = run;
   json["ticks"] = result.ticks;
@@ -33,12 +34,21 @@ void print_json(const std::string& run, const ReplayResult& result) {
   json["output_hash"] = result.output_hash;
   json["complete"] = result.complete;
   json["unchanged"] = result.unchanged;
+  return json;
+}
+
+/// The first robot of a run, with the others, if there are any, as a list.
+void print_json(const std::string& run, const std::vector<ReplayResult>& results) {
+  nlohmann::ordered_json json = json_of(run, results.front());
+  for (size_t i = 1; i < results.size(); ++i) {
+    json["further_robots"].push_back(json_of(folder_of_robot(run, i).string(), results[i]));
+  }
   // A path need not be UTF-8; JSON must.
   std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
 }
 
-void print_text(const ReplayResult& result) {
-  std::cout << result.ticks << " ticks replayed, ";
+void print_text(const std::string& of, const ReplayResult& result) {
+  std::cout << of << result.ticks << " ticks replayed, ";
   if (result.first_difference_tick) {
     std::cout << "first difference at tick " << *result.first_difference_tick << ": "
               << result.first_difference << "\n";
@@ -47,22 +57,31 @@ void print_text(const ReplayResult& result) {
   }
 }
 
-int run_replay(const Options& options) {
-  TaskBar bar(options.json);
-  const ReplayResult result = replay_session(session_file(options.run), bar.progress());
-  bar.clear();
+void print_notes(const std::string& of, const ReplayResult& result) {
   if (!result.complete) {
-    std::cerr << "note: the recorded run did not end; only its saved ticks were replayed\n";
+    std::cerr << "note: " << of
+              << "the recorded run did not end; only its saved ticks were replayed\n";
   }
   if (!result.unchanged) {
-    std::cerr << "note: the session does not have the content it was saved with\n";
+    std::cerr << "note: " << of << "the session does not have the content it was saved with\n";
   }
-  if (options.json) {
-    print_json(options.run, result);
-  } else {
-    print_text(result);
+}
+
+int run_replay(const Options& options) {
+  const std::vector<std::filesystem::path> files = session_files(options.run);
+  std::vector<ReplayResult> results;
+  bool identical = true;
+  TaskBar bar(options.json);
+  for (size_t i = 0; i < files.size(); ++i) {
+    const ReplayResult& result = results.emplace_back(replay_session(files[i], bar.progress()));
+    identical = identical && !result.first_difference_tick;
+    bar.clear();
+    const std::string of = files.size() > 1 ? "robot " + std::to_string(i) + ": " : "";
+    print_notes(of, result);
+    if (!options.json) print_text(of, result);
   }
-  return result.first_difference_tick ? 1 : 0;
+  if (options.json) print_json(options.run, results);
+  return identical ? 0 : 1;
 }
 
 }  // namespace

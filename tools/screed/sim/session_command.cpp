@@ -16,6 +16,7 @@
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/csv_export.h"
 #include "host_sim/run/session/height_export.h"
+#include "host_sim/run/session/robot_sessions.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/simulation/names.h"
@@ -173,12 +174,14 @@ struct PicturePaths {
 };
 
 /// The run's own pictures, and where heights were recorded a series.
-void export_all_pictures(const ExportArguments& arguments, const SessionReader& session,
+void export_all_pictures(const ExportArguments& arguments, std::span<const SessionReader> sessions,
                          const FrameRange& range, const PicturePaths& paths, TaskBar& bar) {
+  const SessionReader& session = sessions.front();
   PictureSeries series;
+  series.further_robots = sessions.subspan(1);
   series.state_names = leveling_state_names();
   series.shape = shape_of_run(session, paths.file);
-  std::size_t count = export_run_pictures(paths.folder, session, series.shape).size();
+  std::size_t count = export_run_pictures(paths.folder, sessions, series.shape).size();
   if (session.has_heights()) {
     const TerrainMeasure measure(setup_of(session.info(), {}).experiment);
     series.surface = [&](const HeightField& terrain) { return measure.surface(terrain); };
@@ -243,7 +246,8 @@ int run_export(const ExportArguments& arguments) {
                 done.scale.white_m);
   }
   if (arguments.pictures) {
-    export_all_pictures(arguments, session, range, {file, folders.make(out / "pictures")}, bar);
+    export_all_pictures(arguments, open_robots(arguments.run), range,
+                        {file, folders.make(out / "pictures")}, bar);
   }
   return 0;
 }

@@ -10,16 +10,15 @@
 #include "host_sim/ground_station/link/external_port.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "host_sim/run/experiment/robot_sections.h"
 #include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/simulation.h"
-#include "nn/model/model_file.h"
-#include "nn/surrogate/default_model.h"
-#include "nn/surrogate/surrogate_plant.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/number_text.h"
 #include "tools/screed/cli/run_batch.h"
+#include "tools/screed/cli/world_choice.h"
 #include "tools/screed/viewer/keyboard_driver.h"
 #include "tools/screed/viewer/live_viewer.h"
 #include "tools/screed/viewer/view_options.h"
@@ -31,12 +30,7 @@ struct SimArguments {
   BatchArguments runs;
   std::optional<std::uint64_t> seed;
   std::optional<double> duration_s;
-  std::string hal = "native";
-  std::optional<std::string> board;
-  std::optional<std::string> elf;
-  std::optional<std::string> model;
-  std::optional<std::string> soil_model;
-  bool no_ruts = false;
+  WorldChoice world;
   std::optional<std::string> can;
   std::optional<std::string> pty;
   bool realtime = false;
@@ -157,6 +151,21 @@ void print_arming(const SimulationSummary& s) {
   }
 }
 
+/// Of several robots; what is above is of all.
+void print_robots(const std::vector<RobotSummary>& robots) {
+  if (robots.empty()) return;
+  std::printf("\n  %-8s %12s %12s %7s %8s  %-12s %s\n", "robot", "distance", "energy", "peaks",
+              "battery", "state", "faults");
+  for (size_t i = 0; i < robots.size(); ++i) {
+    const RobotSummary& robot = robots[i];
+    std::printf("  %-8zu %12s %12s %7d %8s  %-12s %s\n", i,
+                format("%.2f m", robot.distance_m).c_str(),
+                format("%.0f J", robot.energy_j).c_str(), robot.peaks,
+                format("%.2f V", robot.battery_v).c_str(), robot.state.c_str(),
+                fault_names(robot.faults).c_str());
+  }
+}
+
 void print_table(const Experiment& experiment, const SimulationSummary& s) {
   const std::string ended =
       s.end == RunEnd::kDone ? "" : std::string(" (ended: ") + end_text(s.end) + ")";
@@ -167,7 +176,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
   std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());
   std::printf("  %-26s %12d\n", "peaks", s.peaks);
-  std::printf("  %-26s %12s\n", "robot", s.state.c_str());
+  std::printf("  %-26s %12s\n", s.robots.empty() ? "robot" : "robots", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());
   print_arming(s);
   std::printf("  %-26s %12llu\n", "telemetry frames",
@@ -176,6 +185,7 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("\n");
   print_terrain(s.terrain, experiment.experiment.flatness_deg);
   print_leveling(s.leveling);
+  print_robots(s.robots);
   if (s.cycles.has_value()) print_cycles(*s.cycles);
   std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
               s.content_hash.c_str());
@@ -212,31 +222,7 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   options.realtime = arguments.realtime || !ports.empty();
   options.program_version = version;
   options.heights = arguments.heights;
-  if (arguments.board.has_value()) options.board = *arguments.board;
-  if (arguments.hal == "mcu") {
-    options.image = arguments.elf.value_or(default_image(options.board));
-  } else if (arguments.elf.has_value()) {
-    throw InputError("--elf needs --hal mcu");
-  }
-  if (arguments.hal == "surrogate") {
-    const auto model = std::make_shared<const nn::Model>(
-        nn::read_model(arguments.model.has_value() ? std::filesystem::path(*arguments.model)
-                                                   : nn::default_model_file()));
-    std::shared_ptr<const nn::BearingCapacityNetwork> bearing;
-    if (!arguments.no_ruts) {
-      bearing = std::make_shared<const nn::BearingCapacityNetwork>(nn::BearingCapacityNetwork::read(
-          arguments.soil_model.has_value() ? std::filesystem::path(*arguments.soil_model)
-                                           : nn::default_bearing_capacity_file()));
-    }
-    options.environment = [model, bearing](HeightField terrain, const Assembly& robot,
-                                           const PlantOptions& plant) {
-      auto world = std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
-      if (bearing) world->enable_deformation(bearing);
-      return world;
-    };
-  } else if (arguments.model.has_value() || arguments.soil_model.has_value() || arguments.no_ruts) {
-    throw InputError("--model, --soil-model and --no-ruts need --hal surrogate");
-  }
+  choose_world(arguments.world, options);
 
   const std::optional<viewer::ViewerOptions> view =
       viewer_options(arguments.viewer, arguments.view);
@@ -301,29 +287,29 @@ void register_sim_command(CLI::App& root, Program& program) {
   add_number(*command, "--duration", arguments->duration_s,
              "Simulated time [s]; overrides [experiment] duration", {0.01, 1e6});
   command
-      ->add_option("--hal", arguments->hal,
+      ->add_option("--hal", arguments->world.hal,
                    "How the firmware runs: native: compiled for this machine; mcu: the flash image "
-                   "under a cycle-accurate simulation of the microcontroller; surrogate: native, "
-                   "with a network in place of the physics")
+                   "under a cycle-accurate simulation of the microcontroller, of several robots in "
+                   "the first; surrogate: native, with a network in place of the physics")
       ->capture_default_str()
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
-  command->add_option("--board", arguments->board,
+  command->add_option("--board", arguments->world.board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
   command
-      ->add_option("--elf", arguments->elf,
+      ->add_option("--elf", arguments->world.elf,
                    "ELF image for --hal mcu (default: the one of make firmware)")
       ->type_name("FILE");
   command
-      ->add_option("--model", arguments->model,
+      ->add_option("--model", arguments->world.model,
                    "Motion network for --hal surrogate (default: the installed model)")
       ->type_name("FILE");
   command
       ->add_option(
-          "--soil-model", arguments->soil_model,
+          "--soil-model", arguments->world.soil_model,
           "Network of the soil below the tracks for --hal surrogate (default: the installed model)")
       ->type_name("FILE");
   command
-      ->add_flag("--no-ruts", arguments->no_ruts,
+      ->add_flag("--no-ruts", arguments->world.no_ruts,
                  "Keep the terrain undeformed with --hal surrogate")
       ->excludes("--soil-model");
   command
@@ -350,7 +336,7 @@ void register_sim_command(CLI::App& root, Program& program) {
       program.action = [] {
         std::cout
             << "| key | unit | default | allowed | meaning |\n| --- | --- | --- | --- | --- |\n"
-            << experiment_key_table();
+            << experiment_key_table() << robot_section_table();
         return 0;
       };
       return;

@@ -22,6 +22,15 @@ constexpr double kLugPitch_m = 0.0115;  // of the tread
 constexpr double kBoard_m = 0.018;      // thickness of a wall
 constexpr double kMinBoard_px = 3.0;
 
+/// Calls draw(robot, trail, state), last for the one that the panel tells about.
+template <class Draw>
+void each_robot(const Scene& scene, Draw draw) {
+  if (scene.further_robots != nullptr) {
+    for (const FurtherRobot& it : *scene.further_robots) draw(it.robot, it.trail, it.state);
+  }
+  draw(scene.robot, *scene.trail, static_cast<uint8_t>(scene.status.leveling_state));
+}
+
 }  // namespace
 
 Drawing::Drawing(int width_px, int height_px)
@@ -49,12 +58,22 @@ void Drawing::draw(const Scene& scene) {
   }
   canvas_.clip(terrain_box());
   draw_bed_edge(scene);
-  // Below the path, whose end it would hide.
-  draw_robot(scene);
+  // Below the paths, whose ends they would hide.
+  each_robot(scene, [&](const RobotMarker& robot, const std::vector<TrailPoint>&, uint8_t state) {
+    draw_robot(scene, robot, state);
+  });
   canvas_.unclip();
-  if (scene.show_trail) draw_trail(scene);
+  if (scene.show_trail) {
+    each_robot(scene, [&](const RobotMarker& robot, const std::vector<TrailPoint>& trail, uint8_t) {
+      draw_trail(scene, trail, robot);
+    });
+  }
   canvas_.clip(terrain_box());
-  if (scene.show_trail) draw_trail_ends(scene);
+  if (scene.show_trail) {
+    each_robot(scene, [&](const RobotMarker& robot, const std::vector<TrailPoint>& trail, uint8_t) {
+      draw_trail_ends(scene, trail, robot);
+    });
+  }
   draw_overlay(scene);
   canvas_.unclip();
   draw_timeline(scene);
@@ -78,8 +97,8 @@ void Drawing::draw_bed_edge(const Scene& scene) {
       {a.x - 0.5 * board, a.y - 0.5 * board, b.x - a.x + board, b.y - a.y + board}, board, kBoards);
 }
 
-void Drawing::draw_trail(const Scene& scene) {
-  const std::vector<TrailPoint>& trail = *scene.trail;
+void Drawing::draw_trail(const Scene& scene, const std::vector<TrailPoint>& trail,
+                         const RobotMarker& robot) {
   const size_t count = std::min(scene.trail_points, trail.size());
   if (count == 0) return;
   const PixelBuffer buffer{canvas_.pixels(), canvas_.width()};
@@ -97,8 +116,7 @@ void Drawing::draw_trail(const Scene& scene) {
     uint8_t state = trail[0].state;
     for (size_t i = 1; i <= count; ++i) {
       const bool last = i == count;
-      const Pixel to =
-          last ? scene.camera.to_pixel(scene.robot.x_m, scene.robot.y_m) : place(trail[i]);
+      const Pixel to = last ? scene.camera.to_pixel(robot.x_m, robot.y_m) : place(trail[i]);
       const double length = std::hypot(to.x - from.x, to.y - from.y);
       if (length < kTrailStep_px && !last && trail[i].state == state) continue;
       if (length < jump_px) piece(from, to, state);
@@ -116,20 +134,21 @@ void Drawing::draw_trail(const Scene& scene) {
   canvas_.release_pixels();
 }
 
-void Drawing::draw_trail_ends(const Scene& scene) {
-  if (std::min(scene.trail_points, scene.trail->size()) == 0) return;
+void Drawing::draw_trail_ends(const Scene& scene, const std::vector<TrailPoint>& trail,
+                              const RobotMarker& robot) {
+  if (std::min(scene.trail_points, trail.size()) == 0) return;
   const double radius = kTrailEnd_px * layout_.scale;
-  const TrailPoint& start = scene.trail->front();
+  const TrailPoint& start = trail.front();
   draw_path_start(canvas_, scene.camera.to_pixel(start.x_m, start.y_m), radius);
-  draw_path_end(canvas_, scene.camera.to_pixel(scene.robot.x_m, scene.robot.y_m), radius);
+  draw_path_end(canvas_, scene.camera.to_pixel(robot.x_m, robot.y_m), radius);
 }
 
-void Drawing::draw_robot(const Scene& scene) {
-  const double cosine = std::cos(scene.robot.heading_rad);
-  const double sine = std::sin(scene.robot.heading_rad);
+void Drawing::draw_robot(const Scene& scene, const RobotMarker& robot, uint8_t state) {
+  const double cosine = std::cos(robot.heading_rad);
+  const double sine = std::sin(robot.heading_rad);
   const auto pixel = [&](double x, double y) {
-    return scene.camera.to_pixel(scene.robot.x_m + cosine * x - sine * y,
-                                 scene.robot.y_m + sine * x + cosine * y);
+    return scene.camera.to_pixel(robot.x_m + cosine * x - sine * y,
+                                 robot.y_m + sine * x + cosine * y);
   };
   const auto corners = [&](const RobotPlate& p, double by) {
     return std::array<Pixel, 4>{
@@ -150,8 +169,7 @@ void Drawing::draw_robot(const Scene& scene) {
     const RobotPlate& gear = shape.running_gear[i];
     canvas_.polygon(corners(gear, 0.0), kRubber);
     if (!lugs_are_seen) continue;
-    const double travel =
-        i < shape.left_gear ? scene.robot.travel_left_m : scene.robot.travel_right_m;
+    const double travel = i < shape.left_gear ? robot.travel_left_m : robot.travel_right_m;
     // Seen from above is the upper run, which goes forward faster than the robot.
     const double first = std::fmod(travel, kLugPitch_m) + (travel < 0.0 ? kLugPitch_m : 0.0);
     const auto lugs = static_cast<int>((gear.front - 0.002 - gear.back - first) / kLugPitch_m) + 1;
@@ -170,7 +188,7 @@ void Drawing::draw_robot(const Scene& scene) {
   const double notch = tail + 0.16 * (h.front - h.back);
   const std::array<Pixel, 4> arrow = {{pixel(nose, middle), pixel(tail, middle + half),
                                        pixel(notch, middle), pixel(tail, middle - half)}};
-  canvas_.polygon(arrow, state_color(static_cast<uint8_t>(scene.status.leveling_state)));
+  canvas_.polygon(arrow, state_color(state));
   canvas_.polygon_outline(arrow, 1.0, kInk);
 }
 

@@ -28,9 +28,11 @@ class Drawing {
   void draw(const Scene& scene);
 
  private:
-  void draw_robot(const Scene& scene);
-  void draw_trail(const Scene& scene);
-  void draw_trail_ends(const Scene& scene);
+  void draw_robot(const Scene& scene, const RobotMarker& robot, uint8_t state);
+  void draw_trail(const Scene& scene, const std::vector<TrailPoint>& trail,
+                  const RobotMarker& robot);
+  void draw_trail_ends(const Scene& scene, const std::vector<TrailPoint>& trail,
+                       const RobotMarker& robot);
   void draw_bed_edge(const Scene& scene);
   // In drawing_overlay.cpp:
   void draw_overlay(const Scene& scene);

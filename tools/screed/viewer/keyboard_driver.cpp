@@ -55,14 +55,15 @@ void KeyboardDriver::begin() {
 }
 
 void KeyboardDriver::note_frame(const CanFrame& frame) {
-  if (frame.id == kIdHeartbeat && frame.size == message::Heartbeat::kSize) {
+  const uint16_t id = exchange_node_1(frame.id, node_of_robot(key_.robot_id));
+  if (id == kIdHeartbeat && frame.size == message::Heartbeat::kSize) {
     const auto heartbeat = message::Heartbeat::unpack(frame.data);
     state_ = static_cast<RobotState>(heartbeat.state);
     emergency_stopped_ =
         state_ == RobotState::kFault && (heartbeat.faults & Fault::kEmergencyStop) != 0;
     // A heartbeat that was on its way may tell of an earlier stop.
     if (emergency_stopped_ && ticks_ >= confirmed_from_tick_) stopping_ = false;
-  } else if (frame.id == kIdLeveling && frame.size == message::Leveling::kSize) {
+  } else if (id == kIdLeveling && frame.size == message::Leveling::kSize) {
     reported_algorithm_ = message::Leveling::unpack(frame.data).algorithm;
   }
 }

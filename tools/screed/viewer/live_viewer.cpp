@@ -44,15 +44,24 @@ void LiveViewer::on_begin(const HeightField& before, const HeightField& ground) 
   display_->set_driver(driver_.driver());
 }
 
+void LiveViewer::on_further_robots(std::span<const SimFrame> frames) {
+  std::vector<FurtherRobot>& robots = display_->further_robots();
+  robots.resize(frames.size());
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const SimFrame& frame = frames[i];
+    robots[i].robot.travel_left_m += frame.track_left / kTickRate_hz;
+    robots[i].robot.travel_right_m += frame.track_right / kTickRate_hz;
+    if (ticks_ % kTrailTicks == 0) robots[i].trail.push_back(trail_point(frame));
+    place_robot(robots[i], frame);
+  }
+}
+
 void LiveViewer::on_tick(const SimFrame& frame, const HeightField& ground) {
   display_->change_terrain(watch_->changes(ground));
   travel_left_m_ += frame.track_left / kTickRate_hz;
   travel_right_m_ += frame.track_right / kTickRate_hz;
   display_->set_travel(travel_left_m_, travel_right_m_);
-  if (ticks_ % kTrailTicks == 0) {
-    display_->add_trail({static_cast<float>(frame.x), static_cast<float>(frame.y),
-                         static_cast<uint8_t>(frame.leveling_state)});
-  }
+  if (ticks_ % kTrailTicks == 0) display_->add_trail(trail_point(frame));
   ++ticks_;
   time_s_ = frame.time;
   display_->set_frame(frame);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <span>
 
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/height_watch.h"
@@ -20,6 +21,7 @@ class LiveViewer : public SimulationObserver {
              KeyboardDriver& driver, std::function<void()> end_run);
 
   void on_begin(const HeightField& before, const HeightField& ground) override;
+  void on_further_robots(std::span<const SimFrame> frames) override;
   void on_tick(const SimFrame& frame, const HeightField& ground) override;
   void on_leveling(const LevelingPoint& point) override;
   void on_end() override;

@@ -10,7 +10,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/height_export.h"
-#include "host_sim/run/session/run_folder.h"
+#include "host_sim/run/session/robot_sessions.h"
 #include "tools/screed/cli/interrupt.h"
 
 namespace screed::viewer {
@@ -37,70 +37,84 @@ HeightMap terrain_before(const SessionReader& session, const std::filesystem::pa
 }  // namespace
 
 RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOptions& options)
-    : session_(session_file(run)), options_(options) {
-  if (session_.frames() == 0) throw InputError(run.string() + ": no frame was recorded");
-  const HeightMap before = terrain_before(session_, run);
-  const RunSetup setup = setup_of(session_.info(), run);
-  tick_s_ = 1.0 / session_.info().tick_rate_hz;
-  duration_s_ = static_cast<double>(session_.frames()) * tick_s_;
+    : options_(options) {
+  for (SessionReader& session : open_robots(run)) robots_.emplace_back(std::move(session));
+  if (session().frames() == 0) throw InputError(run.string() + ": no frame was recorded");
+  const HeightMap before = terrain_before(session(), run);
+  const RunSetup setup = setup_of(session().info(), run);
+  tick_s_ = 1.0 / session().info().tick_rate_hz;
+  duration_s_ = static_cast<double>(session().frames()) * tick_s_;
   check_screenshot_time(options_, duration_s_, run.string());
   if (options_.window) require_screen();
   algorithm_ = setup.experiment.experiment.algorithm;
   DisplaySetup shown =
-      display_setup(setup.experiment, setup.soil, robot_model(setup, session_.info().board_name));
+      display_setup(setup.experiment, setup.soil, robot_model(setup, session().info().board_name));
   shown.duration_s = duration_s_;
   shown.recorded = true;
-  read_trail();
+  for (Recorded& robot : robots_) read_trail(robot);
   display_.emplace(options_, std::move(shown), field_of(before),
-                   field_of(session_.has_heights() ? session_.heights_after(0) : before));
-  display_->set_trail(trail_);
-  for (const LevelingPoint& point : session_.leveling()) display_->add_leveling(point);
-  if (!session_.has_heights()) {
-    after_ = session_.terrain_after();
+                   field_of(session().has_heights() ? session().heights_after(0) : before));
+  display_->set_trail(robots_.front().trail);
+  for (size_t i = 1; i < robots_.size(); ++i)
+    display_->further_robots().push_back({{}, robots_[i].trail});
+  for (const LevelingPoint& point : session().leveling()) display_->add_leveling(point);
+  if (!session().has_heights()) {
+    after_ = session().terrain_after();
     if (after_ && after_->heights == before.heights) after_.reset();
     if (after_) display_->set_notice(kNoHeights);
   }
   go_to(tick_s_);
 }
 
-void RecordedViewer::read_trail() {
+void RecordedViewer::read_trail(Recorded& robot) {
   double left_m = 0.0;
   double right_m = 0.0;
   std::vector<SimFrame> rows;
-  for (uint64_t first = 0; first < session_.frames(); first += rows.size()) {
-    report_progress(options_.progress, "reading the run", first, session_.frames());
-    rows.resize(std::min(kBlockRows, session_.frames() - first));
-    session_.read(first, std::span(rows));
+  for (uint64_t first = 0; first < robot.session.frames(); first += rows.size()) {
+    report_progress(options_.progress, "reading the run", first, robot.session.frames());
+    rows.resize(std::min(kBlockRows, robot.session.frames() - first));
+    robot.session.read(first, std::span(rows));
     for (size_t i = 0; i < rows.size(); ++i) {
       const SimFrame& row = rows[i];
       left_m += std::isfinite(row.track_left) ? row.track_left * tick_s_ : 0.0;
       right_m += std::isfinite(row.track_right) ? row.track_right * tick_s_ : 0.0;
       if ((first + i) % kTrailTicks != 0) continue;
-      const auto state = static_cast<uint8_t>(std::clamp<int32_t>(row.leveling_state, 0, 31));
-      trail_.push_back({static_cast<float>(row.x), static_cast<float>(row.y), state});
-      travel_m_.emplace_back(left_m, right_m);
+      robot.trail.push_back(trail_point(row));
+      robot.travel_m.emplace_back(left_m, right_m);
     }
   }
 }
 
-const SimFrame& RecordedViewer::frame(uint64_t row) {
-  if (block_.empty() || row < block_first_ || row >= block_first_ + block_.size()) {
-    block_first_ = row / kBlockRows * kBlockRows;
-    block_.resize(std::min(kBlockRows, session_.frames() - block_first_));
-    session_.read(block_first_, std::span(block_));
+const SimFrame& RecordedViewer::frame(Recorded& robot, uint64_t row) {
+  std::vector<SimFrame>& block = robot.block;
+  if (block.empty() || row < robot.block_first || row >= robot.block_first + block.size()) {
+    robot.block_first = row / kBlockRows * kBlockRows;
+    block.resize(std::min(kBlockRows, robot.session.frames() - robot.block_first));
+    robot.session.read(robot.block_first, std::span(block));
   }
-  return block_[row - block_first_];
+  return block[row - robot.block_first];
+}
+
+void RecordedViewer::show_further_robots(uint64_t ticks, size_t trail_point) {
+  for (size_t i = 1; i < robots_.size(); ++i) {
+    FurtherRobot& shown = display_->further_robots()[i - 1];
+    place_robot(shown, frame(robots_[i], ticks - 1));
+    shown.robot.travel_left_m = robots_[i].travel_m[trail_point].first;
+    shown.robot.travel_right_m = robots_[i].travel_m[trail_point].second;
+  }
 }
 
 /// The path and the ground up to this time.
 void RecordedViewer::go_to(double time_s) {
   time_s_ = std::clamp(time_s, tick_s_, duration_s_);
   const auto ticks = std::clamp<uint64_t>(static_cast<uint64_t>(std::llround(time_s_ / tick_s_)), 1,
-                                          session_.frames());
-  const SimFrame& now = frame(ticks - 1);
-  const size_t point = std::min(trail_.size() - 1, (ticks - 1) / kTrailTicks);
+                                          session().frames());
+  Recorded& first = robots_.front();
+  const SimFrame& now = frame(first, ticks - 1);
+  const size_t point = std::min(first.trail.size() - 1, (ticks - 1) / kTrailTicks);
   display_->show_trail_points(point + 1);
-  display_->set_travel(travel_m_[point].first, travel_m_[point].second);
+  display_->set_travel(first.travel_m[point].first, first.travel_m[point].second);
+  show_further_robots(ticks, point);
   display_->set_frame(now);
   Driver driver;
   driver.replay = true;
@@ -114,13 +128,13 @@ void RecordedViewer::go_to(double time_s) {
 void RecordedViewer::show_terrain_after(uint64_t ticks) {
   const HeightMap* target = nullptr;
   std::optional<HeightMap> before;
-  if (session_.has_heights()) {
-    target = &session_.heights_after(ticks);
+  if (session().has_heights()) {
+    target = &session().heights_after(ticks);
   } else if (after_) {
-    const bool end = ticks == session_.frames();
+    const bool end = ticks == session().frames();
     if (end == at_end_) return;
     at_end_ = end;
-    if (!end) before = session_.terrain_before();
+    if (!end) before = session().terrain_before();
     target = end ? &*after_ : &*before;
   } else {
     return;

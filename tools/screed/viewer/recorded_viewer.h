@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host_sim/run/session/session_reader.h"
@@ -26,25 +27,34 @@ class RecordedViewer {
   const Status& status() const { return display_->status(); }
 
  private:
-  void read_trail();
+  const SessionReader& session() const { return robots_.front().session; }
+  /// A robot of the run: its session, and its way through all of it.
+  struct Recorded {
+    explicit Recorded(SessionReader of) : session(std::move(of)) {}
+
+    SessionReader session;
+    std::vector<SimFrame> block;
+    uint64_t block_first = 0;
+    std::vector<TrailPoint> trail;
+    std::vector<std::pair<double, double>> travel_m;  ///< of the tracks, at each point of the trail
+  };
+
+  void read_trail(Recorded& robot);
   void go_to(double time_s);
-  const SimFrame& frame(uint64_t row);
+  static const SimFrame& frame(Recorded& robot, uint64_t row);
+  void show_further_robots(uint64_t ticks, size_t trail_point);
   void show_terrain_after(uint64_t ticks);
   void take_jumps();
   void capture_frames();
   void play();
 
-  SessionReader session_;
+  std::vector<Recorded> robots_;  ///< at least one
   ViewerOptions options_;
   std::optional<ViewerDisplay> display_;
   std::optional<HeightMap> after_;  ///< when the heights of the ticks were not recorded
   bool at_end_ = false;             ///< the ground is that of the end
   std::string algorithm_;           ///< of the experiment
   std::vector<HeightChange> changes_;
-  std::vector<SimFrame> block_;
-  uint64_t block_first_ = 0;
-  std::vector<TrailPoint> trail_;
-  std::vector<std::pair<double, double>> travel_m_;  ///< of the tracks, at each point of the trail
   double tick_s_ = 0.01;
   double duration_s_ = 0.0;
   double time_s_ = 0.0;

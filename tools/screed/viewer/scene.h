@@ -31,6 +31,13 @@ struct RobotMarker {
   double travel_right_m = 0.0;
 };
 
+/// A robot beside the one that the panel tells about.
+struct FurtherRobot {
+  RobotMarker robot;
+  std::vector<TrailPoint> trail;
+  uint8_t state = 0;  ///< LevelingState
+};
+
 /// What is written beside the ground. Compared to know whether to write it again.
 struct Status {
   struct Motion {
@@ -107,7 +114,8 @@ struct Scene {
   const RobotShape* shape = nullptr;
   RobotMarker robot;
   const std::vector<TrailPoint>* trail = nullptr;
-  size_t trail_points = 0;  ///< of the trail, that many
+  const std::vector<FurtherRobot>* further_robots = nullptr;  ///< null: none
+  size_t trail_points = 0;                                    ///< of each trail, that many
   bool show_trail = true;
   Status status;
   std::vector<std::string> badges;  ///< short words over the ground: paused, follow

@@ -1,6 +1,7 @@
 // The stage.
 #include "tools/screed/viewer/viewer_display.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -35,6 +36,16 @@ std::string numbered(const char* before, uint64_t number) {
   return text;
 }
 
+double finite(double value) {
+  return std::isfinite(value) ? value : 0.0;
+}
+
+void place(RobotMarker& robot, const SimFrame& frame) {
+  robot.x_m = finite(frame.x);
+  robot.y_m = finite(frame.y);
+  robot.heading_rad = finite(frame.yaw);
+}
+
 std::string frame_name(uint64_t frame) {
   return numbered("frame_", frame);
 }
@@ -65,6 +76,16 @@ DisplaySetup display_setup(const Experiment& experiment, const std::string& soil
   setup.measure = TerrainMeasure(experiment);
   setup.shape = shape_of(robot, experiment.vehicle.tracks);
   return setup;
+}
+
+TrailPoint trail_point(const SimFrame& frame) {
+  return {static_cast<float>(frame.x), static_cast<float>(frame.y),
+          static_cast<uint8_t>(std::clamp<int32_t>(frame.leveling_state, 0, 31))};
+}
+
+void place_robot(FurtherRobot& robot, const SimFrame& frame) {
+  place(robot.robot, frame);
+  robot.state = trail_point(frame).state;
 }
 
 std::string FrameTimes::text() const {
@@ -168,10 +189,7 @@ void ViewerDisplay::show_leveling() {
 }
 
 void ViewerDisplay::set_frame(const SimFrame& frame) {
-  const auto finite = [](double value) { return std::isfinite(value) ? value : 0.0; };
-  robot_.x_m = finite(frame.x);
-  robot_.y_m = finite(frame.y);
-  robot_.heading_rad = finite(frame.yaw);
+  place(robot_, frame);
   status_.time_s = frame.time;
   show_leveling();
   // A training drive lasts for its frames, and some seconds before them.
@@ -266,6 +284,11 @@ Scene ViewerDisplay::scene() {
   const size_t points = trail_points_.value_or(trail_.size());
   status_.states_seen = 1U << static_cast<unsigned>(status_.leveling_state);
   for (size_t i = 0; i < points; ++i) status_.states_seen |= 1U << trail_[i].state;
+  for (const FurtherRobot& robot : further_robots_) {
+    status_.states_seen |= 1U << robot.state;
+    for (size_t i = 0; i < std::min(points, robot.trail.size()); ++i)
+      status_.states_seen |= 1U << robot.trail[i].state;
+  }
 
   Scene scene;
   scene.ground = &image_;
@@ -278,6 +301,7 @@ Scene ViewerDisplay::scene() {
   scene.robot = robot_;
   scene.trail = &trail_;
   scene.trail_points = points;
+  scene.further_robots = &further_robots_;
   scene.show_trail = controls_.trail;
   scene.status = status_;
   if (controls_.paused) scene.badges.emplace_back("paused");

@@ -61,6 +61,11 @@ struct DisplaySetup {
 DisplaySetup display_setup(const Experiment& experiment, const std::string& soil,
                            const Assembly& robot);
 
+/// The place of this frame.
+TrailPoint trail_point(const SimFrame& frame);
+/// Puts the robot where it is in this frame.
+void place_robot(FurtherRobot& robot, const SimFrame& frame);
+
 /// Ticks from one point of the path to the next.
 inline constexpr uint64_t kTrailTicks = kTickRate_hz / 10;
 
@@ -96,6 +101,9 @@ class ViewerDisplay {
   /// Where the path goes on.
   void add_trail(const TrailPoint& point) { trail_.push_back(point); }
   void set_trail(std::vector<TrailPoint> trail) { trail_ = std::move(trail); }
+  /// Robots beside the one whose path, travel and frame the other calls tell; trails as long as its
+  /// own.
+  std::vector<FurtherRobot>& further_robots() { return further_robots_; }
   /// How many points of it are shown; all without a call.
   void show_trail_points(size_t points) { trail_points_ = points; }
   void set_notice(std::string notice) { status_.notice = std::move(notice); }
@@ -168,6 +176,7 @@ class ViewerDisplay {
   std::vector<HelpLine> help_;
   RobotMarker robot_;
   std::vector<TrailPoint> trail_;
+  std::vector<FurtherRobot> further_robots_;
   std::optional<size_t> trail_points_;
   std::optional<Pixel> drag_;
   bool scrubbing_ = false;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/particles/solid_contact.h"
+#include "host_sim/physics/terrain/solid_contact.h"
 #include "tests/unit/allocations.h"
 #include "tests/unit/host_sim/physics/particles/fingerprint.h"
 

@@ -261,7 +261,7 @@ TEST(PathOverlayTest, TheLegendNamesTheStatesOfThePathInTheirColours) {
   PictureOptions options = small_picture();
   options.state_names = {"idle", "walk", "climb", "spin", "return", "drive"};
   options.path = {{0.0, 0.0, 5}, {0.1, 0.0, 1}, {0.2, 0.0, 5}};
-  EXPECT_EQ(states_on_path(options.path), (std::vector<size_t>{1, 5}));
+  EXPECT_EQ(states_on_paths(options), (std::vector<size_t>{1, 5}));
   Canvas canvas(800, 700, {1.0, 1.0, 1.0});
   const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, legend_height_px(options));
   draw_legend(canvas, frame, options);

@@ -118,8 +118,9 @@ TEST_F(ExperimentTable, AWrongHeadingIsRefusedWithWhatIsKnown) {
   };
   starts("\n# heading\nexperiment.name,vehicle.speed\nrow,1\n",
          "t.csv:3: column 'vehicle.speed': unknown key 'speed' in [vehicle]; known are tracks, ");
-  starts("experiment.name,robot.x\nrow,1\n",
-         "t.csv:1: column 'robot.x': unknown section [robot]; known are [vehicle], [map], ");
+  starts(
+      "experiment.name,robot.x\nrow,1\n",
+      "t.csv:1: column 'robot.x': unknown section [robot]; known are [vehicle], [robots], [map], ");
   starts("experiment.name,x\nrow,1\n",
          "t.csv:1: column 'x'; expected section.key of an experiment file, such as vehicle.x");
   starts("experiment.name,\nrow,1\n", "t.csv:1: column ''; expected section.key");

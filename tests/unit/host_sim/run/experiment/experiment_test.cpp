@@ -110,6 +110,7 @@ std::string value_in(const std::string& text, const Row& row) {
 /// Values that are allowed and differ from the default.
 std::vector<std::string> good_values(const Row& row) {
   if (row.allowed == "true or false") return {row.value == "true" ? "false" : "true"};
+  if (row.section == "robots" && row.key == "count") return {"2", "64"};  // 1 is not written
   if (!ends_of(row.allowed).empty()) return ends_of(row.allowed);
   if (row.key == "algorithm")
     return {"drive", "spin_on_peak"};  // training_drive needs frames: below
@@ -120,6 +121,8 @@ std::vector<std::string> good_values(const Row& row) {
     return {"none", "0123456789abcdef0123456789ABCDEF 200"};
   }
   if (row.key == "preset") return {"clay", "ding_2011"};
+  if (row.key == "placement") return {"ring", "random"};
+  if (row.key == "places") return {"0 0 90, 1 0.5 -90"};
   if (row.key == "edges") return {"open", "walls", "wrap"};
   if (row.section == "trap") return {"wall", "ruts"};
   return {"Some-name_1"};
@@ -140,6 +143,7 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
       if (row.section == "soil") room = {"map.model=scm"};
       if (row.section == "particles" || row.section == "raygrid" || row.key == "particle_radius")
         room = {"map.model=particles"};
+      if (row.key == "places") room = {"robots.count=2", "robots.placement=list"};
       if (row.key == "wall_friction") room = {"map.edges=walls"};
       if (row.section == "trap" && row.key != "kind") room = {"trap.kind=wall"};
       if (row.key == "walk_speed_min") room = {"parameters.walk_speed_max=250"};
@@ -204,7 +208,9 @@ TEST_F(ExperimentFile, UnknownNamesSayWhatIsKnown) {
       "FILE:1: unknown key 'tracks' before the first section; known are output_directory_prefix, "
       "units, chrono_data_path");
   const std::string section = error_message("\n\n[vehicel]\nx = 1\n");
-  EXPECT_EQ(section.rfind("FILE:4: unknown section [vehicel]; known are [vehicle], [map], ", 0), 0U)
+  EXPECT_EQ(
+      section.rfind("FILE:4: unknown section [vehicel]; known are [vehicle], [robots], [map], ", 0),
+      0U)
       << section;
   EXPECT_TRUE(contains(section, "[parameters]")) << section;
   EXPECT_TRUE(contains(error_message("[Map]\nsize = 1\n"), "unknown section [Map]"));

@@ -19,23 +19,21 @@ namespace {
 class FakeImage : public CoSimulation {
  public:
   const SensorSample& run_to_sample() override {
-    for (int i = 0; i < plant_.steps_per_tick(); ++i) plant_.step({0.0, 0.0});
+    world_.advance();
     robot_.tick();
     if (++ticks_ == wrong_tick) robot_.output.leds ^= kLedGreen;
     return robot_.sample;
   }
   const RobotOutput& run_to_output() override { return robot_.output; }
 
-  const Environment& plant() const override { return plant_; }
-  const GroundStation& ground_station() const override { return ground_; }
+  World& world() override { return world_; }
   CycleReport cycles() const override { return {}; }
 
   int wrong_tick = 0;
 
  private:
-  Plant plant_{HeightField::flat(4.0, 0.1), rover5(), PlantOptions{}};
+  World world_{HeightField::flat(4.0, 0.1), rover5(), kBoard, WorldOptions{}, nullptr};
   TestRobot robot_;
-  GroundStation ground_{true, std::nullopt, nullptr};
   int ticks_ = 0;
 };
 
@@ -133,7 +131,7 @@ TEST_F(RunLoopTest, NoTickBeginsAfterTheRunWasToldToStop) {
 TEST_F(RunLoopTest, AnImageEndsWithTheWorldsClock) {
   // Busy with its start for so long: no tick of its own has been counted yet.
   for (int i = 0; i < 5; ++i) image_->run_to_sample();
-  ASSERT_DOUBLE_EQ(image_->plant().time_s(), 0.05);
+  ASSERT_DOUBLE_EQ(image_->world().plant().time_s(), 0.05);
   EXPECT_EQ(run(0.05), RunEnd::kDone);
   EXPECT_EQ(observer_.calls, "be");
 }

@@ -1,5 +1,5 @@
 // The place on a body's surface that is nearest to a point.
-#include "host_sim/physics/particles/solid_contact.h"
+#include "host_sim/physics/terrain/solid_contact.h"
 
 #include <algorithm>
 #include <cmath>
