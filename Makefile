@@ -14,6 +14,7 @@ DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
 PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
                  $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt) \
+                 $(if $(filter test-slurm,$(MAKECMDGOALS)),tests/slurm/debian-packages.txt) \
                  $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt) \
                  $(if $(filter test-report,$(MAKECMDGOALS)),tests/report/debian-packages.txt) \
                  $(if $(shell command -v npm),,$(if $(filter build report-page install test-install test-report,$(MAKECMDGOALS)),tools/report/debian-packages.txt))
@@ -50,6 +51,7 @@ include tools/bench/bench.mk
 include tools/bench/telemetry/telemetry_lab.mk
 include tests/fuzz/fuzz.mk
 include tests/can/can.mk
+include tests/slurm/slurm.mk
 include tests/python/python.mk
 include tests/report/report_tests.mk
 include tests/asan.mk

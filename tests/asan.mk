@@ -15,9 +15,9 @@ WARNINGS := -w
 
 # Bytes of the radio and of a console; CAN frames; keys and parameters as an EEPROM holds them.
 ASAN_UNIT := command command_gate command_key command_session corruption e2e ground_station host_hal key_command key_store link messages \
-  parameter_store parameters radio_link robot robot_downlink robot_view siphash slcan supervisor supervisor_fault telemetry
+  parameter_store parameters radio_link robot robot_downlink robot_view siphash slcan supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
-ASAN_UNIT += attitude_command avr_indirect_calls avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
+ASAN_UNIT += attitude_command avr_indirect_calls avr_order avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
   header_export height_field height_series ini_file mesh model_file network picture run_folder schema schema_compiler session session_csv \
   session_damage session_failure session_hash session_replay urdf urdf_refusal urdf_roles wheel_rim
 # Grids that a position indexes.
@@ -42,8 +42,8 @@ $(B)/libasan_tested.a: $(call objects,$(ASAN_LIBRARY_SOURCES))
 	@ar rcs $@ $^
 
 $(B)/tests/asan_unit_tests: $(call objects,$(ASAN_UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) \
-                            $(B)/libasan_tested.a $(B)/libavr_stack.a $(B)/link.flags
-$(B)/tests/asan_mcu_tests: $(ASAN_MCU_OBJECTS) $(B)/libasan_tested.a $(B)/libavr_stack.a $(B)/link.flags
+                            $(B)/libasan_tested.a $(B)/libavr_tools.a $(B)/link.flags
+$(B)/tests/asan_mcu_tests: $(ASAN_MCU_OBJECTS) $(B)/libasan_tested.a $(B)/libavr_tools.a $(B)/link.flags
 ASAN_TESTS := $(B)/tests/asan_unit_tests $(if $(filter yes,$(MCU)),$(B)/tests/asan_mcu_tests)
 $(ASAN_TESTS):
 	$(call link,$(TEST_LIBRARIES))

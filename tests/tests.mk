@@ -15,7 +15,7 @@ endif
 $(eval $(call with_headers,test,$(UNIT_SOURCES) $(SITL_SOURCES) $(MCU_TEST_SOURCES)))
 
 TEST_LIBRARIES = $$(pkg-config --libs $(TEST_PACKAGES))
-UNIT_TESTS_PARTS := $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_stack.a $(B)/libmutants.a
+UNIT_TESTS_PARTS := $(call objects,$(UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_tools.a $(B)/libmutants.a
 $(B)/tests/unit_tests: $(UNIT_TESTS_PARTS) $(B)/link.flags
 	$(call link,$(TEST_LIBRARIES))
 $(B)/tests/sitl_tests: $(call objects,$(SITL_SOURCES)) $(LIBRARY) $(B)/link.flags

@@ -16,7 +16,7 @@ MCU ?= yes
 # C++14 is what gcc-avr 5.4 understands: what reaches the microcontroller is compiled as such on the host too.
 CORE_SOURCES := $(call sources,firmware nn/infer)
 # Files that know simavr; without it, a stand-in that says so.
-SIMAVR_SOURCES := $(call sources,host_sim/devices/mcu) host_sim/run/world/mcu_world.cpp
+SIMAVR_SOURCES := $(call sources,host_sim/devices/mcu) $(wildcard host_sim/run/world/mcu_*.cpp)
 WITHOUT_SIMAVR := host_sim/run/world/without_simavr.cpp
 LEFT_OUT_yes := $(WITHOUT_SIMAVR)
 LEFT_OUT_no := $(SIMAVR_SOURCES)
