@@ -267,7 +267,7 @@ function readTable(name, file) {
 record('soil', soil, '--heights');
 record('rigid', `[experiment]\nduration = 12\nseed = 2\n[map]\nsize = 2\nedges = walls\n[radio]\nkey = ${key}\n`);
 record('several', '[experiment]\nduration = 12\n[map]\nsize = 3\nedges = walls\n[robots]\ncount = 3\n');
-runCampaign('soils', `[campaign]\nexperiment = soil.ini\nseeds = 1..5\nkeep = session\n[set]\nexperiment.duration = 8\n[grid]
+runCampaign('soils', `[campaign]\nexperiment = soil.ini\nseeds = 1..5\nkeep = session\n[set]\nexperiment.duration = 8\nmap.ramp = 5\n[grid]
 experiment.algorithm = random_walk, spin_on_peak\nsoil.preset = gravel, viper, lete_sand\n`, '--metric', 'energy_j', '--baseline', '1');
 runCampaign('samples', `[campaign]\nexperiment = rigid.ini\n[set]\nexperiment.duration = 10\n[latin_hypercube]\ncount = 15
 parameters.walk_speed_max = 100..200\n`, '--metric', 'distance_m');
