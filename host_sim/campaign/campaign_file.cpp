@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <system_error>
 
 #include "host_sim/campaign/campaign_values.h"
@@ -28,10 +30,15 @@ struct Sampling {
   uint64_t seed = 1;
 };
 
+/// Name of a factor with named levels, and of a level.
+using LevelName = std::pair<std::string, std::string>;
+
 /// What is being read.
 struct Reading {
   CampaignFile campaign;
   std::string base;  ///< name of the experiment file
+  /// The sections of named levels.
+  std::map<LevelName, std::vector<IniEntry>> levels;
 };
 
 /// One key that is no factor: how its value is read, and what stands in the documentation.
@@ -200,9 +207,23 @@ std::string place(const fs::path& path, const IniEntry& entry) {
   return place(path, entry.line) + ": [" + entry.section + "] " + entry.key;
 }
 
+/// A factor whose levels have sections of their own: its name is no key of an experiment.
+bool has_named_levels(const std::string& heading) {
+  return is_name(heading);
+}
+
+/// The name of a level, of a section such as [bed rough].
+std::optional<LevelName> level_of_section(const std::string& section) {
+  const size_t space = section.find(' ');
+  if (space == std::string::npos) return std::nullopt;
+  const LevelName name{section.substr(0, space), section.substr(space + 1)};
+  if (!is_name(name.first) || !is_name(name.second)) return std::nullopt;
+  return name;
+}
+
 CampaignFactor factor_of(const IniEntry& entry, const std::string& where) {
-  CampaignFactor factor{entry.key, parse_keys(entry.key, where), split_csv_line(entry.value, where),
-                        where};
+  CampaignFactor factor{entry.key, {}, split_csv_line(entry.value, where), where};
+  if (!has_named_levels(entry.key)) factor.keys = parse_keys(entry.key, where);
   if (std::find(factor.values.begin(), factor.values.end(), "") != factor.values.end())
     throw InputError(where + " = '" + entry.value + "': a value is empty");
   return factor;
@@ -272,7 +293,8 @@ void check_list(const std::vector<CampaignFactor>& list) {
   }
 }
 
-/// No key stands in two places.
+/// No key stands in two places, but in several factors with named levels: of those the later one
+/// holds.
 void check_unique(const CampaignFile& campaign) {
   std::vector<std::pair<CampaignKey, std::string>> seen;
   for (const CampaignKey& key : campaign.settings.seed_keys)
@@ -286,6 +308,21 @@ void check_unique(const CampaignFile& campaign) {
           throw InputError(factor.where + ": " + key.text() + " has its values from " +
                            same->second + " already");
         seen.emplace_back(key, factor.where);
+      }
+    }
+  }
+  for (const auto* factors : {&campaign.grid, &campaign.list}) {
+    for (const CampaignFactor& factor : *factors) {
+      for (const auto& [name, entries] : factor.levels) {
+        for (const IniEntry& entry : entries) {
+          const CampaignKey key{entry.section, entry.key};
+          const auto same = std::find_if(seen.begin(), seen.end(),
+                                         [&](const auto& other) { return other.first == key; });
+          if (same != seen.end())
+            throw InputError(place(campaign.path, entry.line) + ": [" + factor.heading + " " +
+                             name + "] " + key.text() + " has its values from " + same->second +
+                             " already");
+        }
       }
     }
   }
@@ -313,6 +350,9 @@ void take_entry(Reading& reading, const IniEntry& entry) {
     reading.campaign.grid.push_back(factor_of(entry, where));
   } else if (entry.section == "list") {
     reading.campaign.list.push_back(factor_of(entry, where));
+  } else if (const std::optional<LevelName> level = level_of_section(entry.section)) {
+    const CampaignKey key = parse_key(entry.key, where);
+    reading.levels[*level].push_back({key.section, key.name, entry.value, entry.line});
   } else {
     std::string known;
     for (const char* section : kSections)
@@ -320,7 +360,33 @@ void take_entry(Reading& reading, const IniEntry& entry) {
     throw InputError(place(path, entry.line) +
                      (entry.section.empty() ? ": key '" + entry.key + "' before the first section"
                                             : ": unknown section [" + entry.section + "]") +
-                     "; known are " + known);
+                     "; known are " + known + ", and of a factor with named levels [FACTOR LEVEL]");
+  }
+}
+
+/// Gives the factors their named levels. Each has its section, and each section its level.
+void take_levels(Reading& reading) {
+  CampaignFile& campaign = reading.campaign;
+  std::set<LevelName> used;
+  for (auto* factors : {&campaign.grid, &campaign.list}) {
+    for (CampaignFactor& factor : *factors) {
+      if (!factor.keys.empty()) continue;
+      for (const std::string& value : factor.values) {
+        const LevelName name{factor.heading, value};
+        const auto level = reading.levels.find(name);
+        if (level == reading.levels.end())
+          throw InputError(factor.where + ": no section [" + factor.heading + " " + value +
+                           "] says what " + value + " is");
+        factor.levels.insert({value, level->second});
+        used.insert(name);
+      }
+    }
+  }
+  for (const auto& [name, entries] : reading.levels) {
+    if (used.contains(name)) continue;
+    throw InputError(place(campaign.path, entries.front().line) + ": [" + name.first + " " +
+                     name.second + "] is the level of no factor; expected " + name.second +
+                     " among the values of " + name.first + " in [grid] or [list]");
   }
 }
 
@@ -349,6 +415,10 @@ CampaignFile read_campaign_file(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error))
     throw InputError(path.string() + ": no such campaign file");
+  return make_campaign_file(path, read_ini_file(path));
+}
+
+CampaignFile make_campaign_file(const fs::path& path, const std::vector<IniEntry>& entries) {
   Reading reading;
   CampaignFile& campaign = reading.campaign;
   campaign.path = path;
@@ -356,7 +426,7 @@ CampaignFile read_campaign_file(const fs::path& path) {
   campaign.settings.seed_keys = parse_keys(kDefaultSeedKeys, "");
   std::vector<IniEntry> random;
   std::vector<IniEntry> hypercube;
-  for (const IniEntry& entry : read_ini_file(path)) {
+  for (const IniEntry& entry : entries) {
     if (entry.section == "random") {
       random.push_back(entry);
     } else if (entry.section == "latin_hypercube") {
@@ -380,6 +450,7 @@ CampaignFile read_campaign_file(const fs::path& path) {
   campaign.experiment = read_base(path, reading.base);
   campaign.samples = random.empty() ? read_samples(hypercube, path, "latin_hypercube")
                                     : read_samples(random, path, "random");
+  take_levels(reading);
   check_list(campaign.list);
   check_unique(campaign);
   return std::move(reading.campaign);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,12 +29,15 @@ struct CampaignKey {
   bool operator==(const CampaignKey&) const = default;
 };
 
-/// Keys that always have the same value as each other, and their values, one a level.
+/// What changes from cell to cell: keys that always have the same value as each other, or levels
+/// with a name, each of which sets several keys.
 struct CampaignFactor {
-  std::string heading;  ///< as in the file: "soil.preset", "vehicle.x + vehicle.y"
-  std::vector<CampaignKey> keys;
+  std::string heading;            ///< as in the file: "soil.preset", "vehicle.x + vehicle.y", "bed"
+  std::vector<CampaignKey> keys;  ///< none where its levels have names
   std::vector<std::string> values;
   std::string where;  ///< place in the file, as messages call it
+  /// What each of the named levels sets, by its name.
+  std::map<std::string, std::vector<IniEntry>> levels = {};
 };
 
 /// What is kept of a run.
@@ -70,6 +74,9 @@ struct CampaignFile {
 
 /// Throws InputError.
 CampaignFile read_campaign_file(const std::filesystem::path& path);
+/// The same of entries that were read from a file, or that stand for such ones.
+CampaignFile make_campaign_file(const std::filesystem::path& path,
+                                const std::vector<IniEntry>& entries);
 
 /// The keys of [campaign], [random] and [latin_hypercube], one line each, for the documentation.
 std::string campaign_key_table();

@@ -86,6 +86,17 @@ void set_world(CampaignWorld& world, const CampaignKey& key, const std::string& 
 /// Puts a value of a factor on a run.
 void place_value(const CampaignFactor& factor, const std::string& value, CampaignWorld& world,
                  std::vector<PlacedEntry>& entries) {
+  if (!factor.levels.empty()) {
+    for (const IniEntry& entry : factor.levels.at(value)) {
+      const std::string where = factor.where + " " + value + ", " + entry.section + "." + entry.key;
+      if (entry.section == kWorldSection) {
+        set_world(world, {entry.section, entry.key}, entry.value, where);
+      } else {
+        entries.push_back({{entry.section, entry.key, entry.value, 0}, where});
+      }
+    }
+    return;
+  }
   for (const CampaignKey& key : factor.keys) {
     if (key.section == kWorldSection) {
       set_world(world, key, value, factor.where);
@@ -95,11 +106,28 @@ void place_value(const CampaignFactor& factor, const std::string& value, Campaig
   }
 }
 
+Json json_of(const std::vector<IniEntry>& entries) {
+  Json json = Json::array();
+  for (const IniEntry& entry : entries)
+    json.push_back({entry.section, entry.key, entry.value, entry.line});
+  return json;
+}
+
+std::vector<IniEntry> entries_of(const Json& json) {
+  std::vector<IniEntry> entries;
+  for (const Json& e : json) {
+    entries.push_back({e.at(0).get<std::string>(), e.at(1).get<std::string>(),
+                       e.at(2).get<std::string>(), e.at(3).get<int>()});
+  }
+  return entries;
+}
+
 Json json_of(const CampaignFactor& factor) {
   Json keys = Json::array();
   for (const CampaignKey& key : factor.keys) keys.push_back({key.section, key.name});
   Json json = {{"heading", factor.heading}, {"keys", keys}, {"where", factor.where}};
   if (!factor.values.empty()) json["value"] = factor.values.front();
+  for (const auto& [name, entries] : factor.levels) json["levels"][name] = json_of(entries);
   return json;
 }
 
@@ -113,6 +141,10 @@ CampaignFactor factor_of(const Json& json) {
   for (const Json& key : json.at("keys")) factor.keys.push_back(key_of(key));
   factor.where = json.at("where").get<std::string>();
   if (json.contains("value")) factor.values.push_back(json.at("value").get<std::string>());
+  if (json.contains("levels")) {
+    for (const auto& [name, entries] : json.at("levels").items())
+      factor.levels.insert({name, entries_of(entries)});
+  }
   return factor;
 }
 
@@ -225,9 +257,6 @@ std::string identity_of(const CampaignRun& run, const std::string& version) {
 }
 
 std::string plan_text(const CampaignPlan& plan) {
-  Json entries = Json::array();
-  for (const IniEntry& entry : plan.experiment.entries)
-    entries.push_back({entry.section, entry.key, entry.value, entry.line});
   Json fixed = Json::array();
   for (const CampaignFactor& factor : plan.fixed) fixed.push_back(json_of(factor));
   Json factors = Json::array();
@@ -237,7 +266,8 @@ std::string plan_text(const CampaignPlan& plan) {
       {"format_version", kFormatVersion},
       {"version", plan.version},
       {"settings", json_of(plan.settings)},
-      {"experiment", {{"path", plan.experiment.path.string()}, {"entries", entries}}},
+      {"experiment",
+       {{"path", plan.experiment.path.string()}, {"entries", json_of(plan.experiment.entries)}}},
       {"set", fixed},
       {"factors", factors},
       {"cells", plan.cells},
@@ -259,10 +289,7 @@ CampaignPlan read_plan(const fs::path& file) {
     plan.version = json.at("version").get<std::string>();
     plan.settings = settings_of(json.at("settings"));
     plan.experiment.path = json.at("experiment").at("path").get<std::string>();
-    for (const Json& e : json.at("experiment").at("entries")) {
-      plan.experiment.entries.push_back({e.at(0).get<std::string>(), e.at(1).get<std::string>(),
-                                         e.at(2).get<std::string>(), e.at(3).get<int>()});
-    }
+    plan.experiment.entries = entries_of(json.at("experiment").at("entries"));
     for (const Json& factor : json.at("set")) plan.fixed.push_back(factor_of(factor));
     for (const Json& factor : json.at("factors")) plan.factors.push_back(factor_of(factor));
     plan.cells = json.at("cells").get<std::vector<std::vector<std::string>>>();

@@ -83,16 +83,11 @@ TrackSoilModel::TrackSoilModel(const HeightField& ground, const SoilParameters& 
 TrackSoilModel::TrackSoilModel(const HeightField& ground, const HeightField& sinkage,
                                const SoilParameters& soil, const TrackGeometry& tracks)
     : TrackSoilModel(sum_of(ground, sinkage), soil, tracks) {
-  const std::size_t earlier = flow_.begin_footprint(0.0, 0.0);
   for (int iy = 0; iy < sinkage.ny(); ++iy) {
     for (int ix = 0; ix < sinkage.nx(); ++ix) {
-      const Height units = sinkage.node(ix, iy);
-      if (units == 0) continue;
-      flow_.sink(earlier, flow_.index(ix, iy), ix, iy, units);
-      flow_.compact(units);
+      flow_.begin_sunk(flow_.index(ix, iy), sinkage.node(ix, iy));
     }
   }
-  flow_.uncover();
 }
 
 HeightField TrackSoilModel::sinkage() const {

@@ -24,13 +24,17 @@ constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
 
 }  // namespace
 
-MaterialFlow::MaterialFlow(HeightField surface, double repose_deg) : surface_(std::move(surface)) {
+MaterialFlow::MaterialFlow(HeightField surface, double repose_deg, const Compaction& compaction)
+    : surface_(std::move(surface)), compaction_(compaction) {
   const double slope =
       std::tan(repose_deg * std::numbers::pi / 180.0) * surface_.spacing_m() / kHeightUnit_m;
   limit_straight_ = static_cast<Height>(std::floor(slope));
   limit_diagonal_ = static_cast<Height>(std::floor(slope * std::numbers::sqrt2));
   const size_t count = static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny());
   sunk_.assign(count, 0);
+  if (compaction.most_m > 0.0) {
+    loose_.assign(count, static_cast<Height>(std::lround(compaction.most_m / kHeightUnit_m)));
+  }
   flags_.assign(count, 0);
   queue_.resize(count);
   const int nx = surface_.nx();
@@ -64,56 +68,30 @@ size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
   return footprints_.size() - 1;
 }
 
-int64_t MaterialFlow::sunk_in_step() const {
-  int64_t sum = 0;
-  for (const ActiveFootprint& footprint : footprints_) sum += footprint.units;
-  return sum;
-}
-
-void MaterialFlow::compact(int64_t units) {
-  const auto take = [&](int64_t& from) {
-    const int64_t here = std::min(units, from);
-    from -= here;
-    units -= here;
-    in_transit_ -= here;
-  };
-  take(left_over_);
-  for (Dug& dug : dug_) take(dug.units);
-  for (ActiveFootprint& footprint : footprints_) take(footprint.units);
-}
-
-void MaterialFlow::compact_sunk(int64_t units) {
-  int64_t sunk = sunk_in_step();  // of this footprint and the next ones
-  for (ActiveFootprint& footprint : footprints_) {
-    const int64_t here = sunk > 0 ? units * footprint.units / sunk : 0;
-    sunk -= footprint.units;
-    footprint.units -= here;
-    units -= here;
-    in_transit_ -= here;
-  }
-}
-
-int64_t MaterialFlow::dig(const DugPatch& patch, int64_t units, int64_t compacted) {
+void MaterialFlow::dig(const DugPatch& patch, int64_t units) {
   double total = 0.0;
   for (const Sheared& here : sheared_) total += here.weight;
-  if (!(total > 0.0) || units <= 0) {
-    sheared_.clear();
-    return 0;
-  }
-  const double per_weight = static_cast<double>(units) / total;
-  double passed = 0.0;
-  int64_t taken = 0;
-  for (size_t i = 0; i < sheared_.size(); ++i) {
-    passed += sheared_[i].weight;
-    const bool last = i + 1 == sheared_.size();
-    const int64_t until = last ? units : std::min(units, static_cast<int64_t>(passed * per_weight));
-    if (until > taken) change(sheared_[i].node, -static_cast<Height>(until - taken));
-    taken = until;
+  if (total > 0.0 && units > 0) {
+    const double per_weight = static_cast<double>(units) / total;
+    double passed = 0.0;
+    int64_t taken = 0;
+    int64_t moved = 0;
+    for (size_t i = 0; i < sheared_.size(); ++i) {
+      passed += sheared_[i].weight;
+      const bool last = i + 1 == sheared_.size();
+      const int64_t until =
+          last ? units : std::min(units, static_cast<int64_t>(passed * per_weight));
+      if (until > taken) {
+        const auto here = static_cast<Height>(until - taken);
+        change(sheared_[i].node, -here);
+        moved += here - compact(sheared_[i].node, here);
+      }
+      taken = until;
+    }
+    in_transit_ += moved;
+    dug_.push_back({patch, moved});
   }
   sheared_.clear();
-  in_transit_ += units - compacted;
-  dug_.push_back({patch, units - compacted});
-  return compacted;
 }
 
 // What one footprint cannot deposit goes to the next; what the last cannot waits for the next step.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,9 +21,16 @@ struct DugPatch {
   double band;              ///< what is dug is deposited as far as this around it, m
 };
 
+/// What becomes of material that is pressed down or dug away: a share of it gets denser where it
+/// was, until the ground there can get no denser.
+struct Compaction {
+  double share = 0.0;   ///< 0..1
+  double most_m = 0.0;  ///< what a place may lose in all; 0: anything
+};
+
 class MaterialFlow {
  public:
-  MaterialFlow(HeightField surface, double repose_deg);
+  MaterialFlow(HeightField surface, double repose_deg, const Compaction& compaction = {});
 
   const HeightField& surface() const { return surface_; }
   size_t nodes() const { return sunk_.size(); }
@@ -61,6 +69,13 @@ class MaterialFlow {
   /// Level from which sinkage counts.
   Height reference(size_t node) const { return height(node) + sunk_[node]; }
 
+  /// Before the first step: the node has been pressed down by so many units.
+  void begin_sunk(size_t node, Height units) {
+    if (units == 0) return;
+    set_height(node, height(node) - units);
+    sunk_[node] += units;
+    enqueue(node);
+  }
   /// Begins a footprint that moves at this velocity, m/s (below 1 mm/s it stands and leaves no rut
   /// behind it). Nodes passed to cover() until the next call belong to it. Returns its number, for
   /// sink().
@@ -72,8 +87,9 @@ class MaterialFlow {
     flags_[node] |= kCovered;
     covered_list_.push_back({node, ix, iy});
   }
-  /// A footprint pushes a node's surface down by `units`: they are in transit until deposited
-  /// beside it. The reference stays: it is sinkage. `ix` and `iy` without wrap-around.
+  /// A footprint pushes a node's surface down by `units`: those that are not compacted are in
+  /// transit until deposited beside it. The reference stays: it is sinkage. `ix` and `iy` without
+  /// wrap-around.
   void sink(size_t footprint, size_t node, int ix, int iy, Height units) {
     const Height lower = height(node) - units;
     if (on_field(ix, iy)) {  // quicker than finding column and row by division
@@ -82,17 +98,14 @@ class MaterialFlow {
       set_height(node, lower);
     }
     sunk_[node] += units;
-    in_transit_ += units;
-    footprints_[footprint].units += units;
+    const Height moved = units - compact(node, units);
+    in_transit_ += moved;
+    footprints_[footprint].units += moved;
     enqueue(node);
   }
   int64_t in_transit() const { return in_transit_; }
-  /// Of these, what footprints have pushed down since uncover().
-  int64_t sunk_in_step() const;
-  /// Takes `units` out of transit, at most all: they stay where they are, denser.
-  void compact(int64_t units);
-  /// The same of what was sunk in this step, at most sunk_in_step(): of each footprint its share.
-  void compact_sunk(int64_t units);
+  /// What has got denser, units.
+  int64_t compacted() const { return compacted_; }
   /// Deposits what is in transit, in equal parts, on the free neighbours of each footprint's nodes,
   /// those behind it left out: there lies the rut. Keeps it in transit when there are none.
   void deposit();
@@ -100,10 +113,9 @@ class MaterialFlow {
   /// The footprint whose dig() comes next slips over this node; weights are relative.
   void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
   /// Takes `units` from the nodes given to shear() since the last call, in proportion to their
-  /// weights; the reference goes down with the surface. `compacted` of them vanish, the others are
-  /// in transit until they are deposited around the patch. Returns the units that vanished: 0
-  /// without sheared nodes, and then nothing was taken.
-  int64_t dig(const DugPatch& patch, int64_t units, int64_t compacted);
+  /// weights; the reference goes down with the surface. Those that are not compacted are in transit
+  /// until they are deposited around the patch. Takes nothing without sheared nodes.
+  void dig(const DugPatch& patch, int64_t units);
   /// Queues every node: slide() then checks the whole bed. A new bed starts with an empty queue.
   void enqueue_all();
   /// Slides slopes above the angle of repose, at most `max_moves` moves; returns the moves made.
@@ -138,6 +150,19 @@ class MaterialFlow {
   /// was: the reference goes down with the surface. What is laid down is loose: it fills a rut up
   /// to its reference first, and raises both from there on.
   void change(const GridNode& place, Height units);
+  /// Of so many units that a node loses, those that get denser there: they are booked.
+  Height compact(size_t node, Height units) {
+    if (compaction_.share <= 0.0) return 0;
+    remainder_ += compaction_.share * units;
+    auto denser = std::min(units, static_cast<Height>(remainder_));
+    remainder_ -= denser;
+    if (!loose_.empty()) {
+      denser = std::min(denser, loose_[node]);
+      loose_[node] -= denser;
+    }
+    compacted_ += denser;
+    return denser;
+  }
   /// A covered node comes into the queue when the body has left it.
   void enqueue(size_t node) {
     if ((flags_[node] & (kQueued | kCovered | kHeld)) == 0) push(node);
@@ -175,6 +200,10 @@ class MaterialFlow {
 
   HeightField surface_;
   std::vector<Height> sunk_;
+  Compaction compaction_;
+  std::vector<Height> loose_;  // what a node may still lose by compaction; none: anything
+  double remainder_ = 0.0;     // parts of a unit, for what is compacted next
+  int64_t compacted_ = 0;
   Height limit_straight_;  // greatest stable difference between neighbours
   Height limit_diagonal_;
   int64_t in_transit_ = 0;

@@ -36,7 +36,9 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
     : soil_(soil),
       options_(options),
       kernels_(kernels_for(options.instructions)),
-      flow_(std::move(surface), soil.repose_deg),
+      flow_(std::move(surface), soil.repose_deg,
+            options.bulldozing ? Compaction{soil.compaction, soil.compaction_depth_m}
+                               : Compaction{1.0, 0.0}),
       tan_friction_(std::tan(soil.friction_deg * kDegree)),
       passive_(soil) {
   check_soil(soil);
@@ -65,7 +67,7 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
 }
 
 VolumeBalance SoilBed::balance() const {
-  return {volume_before_, flow_.surface().height_sum(), compacted_, flow_.in_transit()};
+  return {volume_before_, flow_.surface().height_sum(), flow_.compacted(), flow_.in_transit()};
 }
 
 TerrainReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,
@@ -119,32 +121,12 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
 }
 
 void SoilBed::end_step() {
-  deposit();
+  flow_.deposit();
   if (options_.avalanches) flow_.slide(kSlidesPerStep);
   slopes_left_ = options_.avalanches ? flow_.queued() : 0;
   flow_.uncover();
   assert(flow_.in_transit() >= 0);
   ++step_;
-}
-
-void SoilBed::deposit() {
-  if (!options_.bulldozing) {
-    const int64_t sunk = flow_.in_transit();
-    flow_.compact(sunk);
-    compacted_ += sunk;
-    return;
-  }
-  // A share of what was pressed down in this step. What is dug has given its own share already, and
-  // what waits from earlier steps, too.
-  const int64_t pressed = flow_.sunk_in_step();
-  if (soil_.compaction > 0.0 && pressed > 0) {
-    compaction_remainder_ += soil_.compaction * static_cast<double>(pressed);
-    const auto units = std::min(pressed, static_cast<int64_t>(compaction_remainder_));
-    compaction_remainder_ -= static_cast<double>(units);
-    flow_.compact_sunk(units);
-    compacted_ += units;
-  }
-  flow_.deposit();
 }
 
 int64_t SoilBed::relax_slopes(int64_t max_moves) {

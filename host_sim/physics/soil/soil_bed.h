@@ -143,7 +143,6 @@ class SoilBed final : public Terrain {
   WheelStress wheel_stress(const FootprintContact& contact, Law& law);
   void find_extent(const Footprint& footprint, const CellSums& sums, Range& range) const;
   void measure_patch(const Footprint& footprint, const CellSums& sums, ContactMemory& memory) const;
-  void deposit();
   void advance_shear(const Range& range, const PressingBody& body, FootprintContact& contact,
                      double dt) const;
   ReactionLaw reaction_law(const Range& range, const PressingBody& body,
@@ -165,8 +164,6 @@ class SoilBed final : public Terrain {
   int samples_per_side_;  // along one side of a cell
   std::array<LatticePoints, kLattices> lattices_;
   int64_t volume_before_;
-  int64_t compacted_ = 0;
-  double compaction_remainder_ = 0.0;  // parts of a unit, for the next step
   double dig_remainder_ = 0.0;
   size_t slopes_left_ = 0;
   uint32_t step_ = 1;

@@ -31,6 +31,7 @@ namespace screed {
   X(shear_damping_s,    "shear_damping", "--shear-damping", "s",         0.0,  0.1,  0.002, "damping of small shear, over its stiffness; 0.002 by default") \
   X(repose_deg,         "repose",        "--repose",        "deg",       1.0,  60.0, 30.0,  "angle of repose") \
   X(compaction,         "compaction",    "--compaction",    "",          0.0,  1.0,  0.0,   "share of the sunk volume that is compacted") \
+  X(compaction_depth_m, "compaction_depth", "--compaction-depth", "m",   0.0,  1.0,  0.0,   "how much a place may lose by compaction in all; 0: any") \
   X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0,   "thickness of the layer that a slipping surface digs away") \
   X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip") \
   X(front_angle,        "c1",            "--c1",            "",          0.0,  0.9,  0.0,   "angle of a wheel's greatest stress over its entry angle, at slip 0; 0: below the axle") \

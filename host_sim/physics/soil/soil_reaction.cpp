@@ -75,12 +75,7 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
   dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
   const auto units = static_cast<int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
-  // Sheared soil settles too; nothing is deposited where nothing is pushed aside.
-  const double lost = options_.bulldozing ? soil_.compaction : 1.0;
-  compaction_remainder_ += lost * static_cast<double>(units);
-  const auto compacted = std::min(units, static_cast<int64_t>(compaction_remainder_));
-  compaction_remainder_ -= static_cast<double>(compacted);
-  compacted_ += flow_.dig(patch, units, compacted);
+  flow_.dig(patch, units);
 }
 
 /// Carries the shear of the running surface, and of the soil beside it, through this step.

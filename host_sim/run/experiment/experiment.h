@@ -30,6 +30,7 @@
 #include "host_sim/run/experiment/sections/physics_section.h"
 #include "host_sim/run/experiment/sections/radio_section.h"
 #include "host_sim/run/experiment/sections/raygrid_section.h"
+#include "host_sim/run/experiment/sections/relief_section.h"
 #include "host_sim/run/experiment/sections/robots_section.h"
 #include "host_sim/run/experiment/sections/sensors_section.h"
 #include "host_sim/run/experiment/sections/soil_section.h"
@@ -50,6 +51,7 @@ struct Experiment {
   VehicleSection vehicle;
   RobotsSection robots;
   MapSection map;
+  ReliefSection relief;
   ParticlesSection particles;
   TrapSection trap;
   RaygridSection raygrid;

@@ -80,6 +80,7 @@ std::vector<ExperimentKey> make_keys() {
   list_section(keys, "vehicle", &Experiment::vehicle);
   list_section(keys, "robots", &Experiment::robots);
   list_section(keys, "map", &Experiment::map);
+  list_section(keys, "relief", &Experiment::relief);
   list_section(keys, "particles", &Experiment::particles);
   list_section(keys, "raygrid", &Experiment::raygrid);
   list_section(keys, "soil", &Experiment::soil);

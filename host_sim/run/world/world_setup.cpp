@@ -196,6 +196,11 @@ SoilParameters make_soil(const Experiment& experiment) {
 
 HeightField make_terrain(const Experiment& experiment) {
   HeightField field = untrapped_terrain(experiment);
+  if (experiment.relief.is_there()) {
+    ReliefOptions relief = experiment.relief.options;
+    relief.seed = experiment.relief.seed.value_or(experiment.experiment.seed);
+    add_relief(relief, field);
+  }
   set_trap(experiment, field);
   if (experiment.map.edge() == BedEdge::kWalled) field.add_walls();
   return field;

@@ -4,28 +4,22 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/engine/worker_pool.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-constexpr size_t kFailuresShown = 10;
-constexpr double kMemoryMargin = 1.25;  ///< a run may need more than its trial
 
 struct Arguments {
   CampaignChoice campaign;
@@ -34,25 +28,6 @@ struct Arguments {
   bool quiet = false;
   bool json = false;
 };
-
-int worker_count(const Arguments& arguments, const CampaignPlan& plan,
-                 const std::optional<CampaignTrial>& trial) {
-  const int asked = arguments.workers.value_or(usable_processors());
-  double memory_mb = trial.has_value() ? trial->memory_mb * kMemoryMargin : 0.0;
-  memory_mb = plan.settings.memory_mb.value_or(memory_mb);
-  const int fit = workers_that_fit(memory_mb, asked);
-  if (fit < asked)
-    std::cerr << "note: " << fit << " of " << asked << " workers: each needs " << memory_mb
-              << " MB of memory\n";
-  return fit;
-}
-
-void show_failures(const EngineOutcome& outcome) {
-  for (size_t i = 0; i < outcome.failures.size() && i < kFailuresShown; ++i)
-    std::cerr << "note: " << outcome.failures[i] << "\n";
-  if (outcome.failures.size() > kFailuresShown)
-    std::cerr << "note: and " << outcome.failures.size() - kFailuresShown << " failed runs more\n";
-}
 
 Json json_of(const ChosenCampaign& campaign, const CampaignCount& count,
              const EngineOutcome& outcome, int workers, double seconds) {
@@ -65,44 +40,6 @@ Json json_of(const ChosenCampaign& campaign, const CampaignCount& count,
           {"done_now", outcome.done},
           {"workers", workers},
           {"seconds", seconds}};
-}
-
-/// Executes the runs, with a bar.
-EngineOutcome execute(const Arguments& arguments, const ChosenCampaign& campaign, CampaignJob job) {
-  std::optional<ProgressBar> bar;
-  if (!arguments.quiet) {
-    bar.emplace(std::cerr);
-    job.progress = [&bar](const EngineProgress& progress) {
-      std::string note = std::to_string(progress.done) + "/" + std::to_string(progress.tasks);
-      if (progress.failed > 0) note += ", " + std::to_string(progress.failed) + " failed";
-      bar->show_share(progress.share, note);
-    };
-  }
-  try {
-    EngineOutcome outcome = run_campaign(campaign.plan, engine_options(campaign.folder), job);
-    if (bar.has_value()) bar->clear();
-    return outcome;
-  } catch (const RunError& error) {
-    if (bar.has_value()) bar->clear();
-    throw RunError(std::string(error.what()) +
-                   "; what was finished is kept, the same command goes on");
-  }
-}
-
-/// All runs, on this machine alone.
-CampaignJob whole_job(const Arguments& arguments, const ChosenCampaign& campaign) {
-  const CampaignPlan& plan = campaign.plan;
-  save_plan(plan, campaign.folder);
-  const ResultIndex results(campaign.folder.results());
-  note_odd_results(plan, results);
-  CampaignJob job;
-  const bool is_known =
-      plan.settings.time_limit_s.has_value() && plan.settings.memory_mb.has_value();
-  if (!is_known && !count_results(plan, results).complete())
-    job.trial = find_trial(plan, campaign.folder, arguments.quiet);
-  job.runs.resize(plan.run_count());
-  std::iota(job.runs.begin(), job.runs.end(), size_t{0});
-  return job;
 }
 
 /// The task of a job array, beside others on this machine and elsewhere.
@@ -120,10 +57,10 @@ int run_run(const Arguments& arguments, const std::string& version) {
   const CampaignPlan& plan = campaign.plan;
   std::optional<CampaignLock> lock;
   if (!arguments.shard.has_value()) lock.emplace(campaign.folder);
-  CampaignJob job =
-      arguments.shard.has_value() ? shard_job(arguments, campaign) : whole_job(arguments, campaign);
-  job.workers = worker_count(arguments, plan, job.trial);
-  const EngineOutcome outcome = execute(arguments, campaign, job);
+  CampaignJob job = arguments.shard.has_value() ? shard_job(arguments, campaign)
+                                                : whole_job(campaign, arguments.quiet);
+  job.workers = worker_count(arguments.workers, plan, job.trial);
+  const EngineOutcome outcome = execute(campaign, job, arguments.quiet);
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
 
   show_failures(outcome);

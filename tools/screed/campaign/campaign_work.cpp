@@ -6,15 +6,19 @@
 #include <iostream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <system_error>
 
+#include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/engine/host.h"
+#include "host_sim/engine/worker_pool.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/progress_bar.h"
 
 namespace screed {
 namespace {
@@ -46,6 +50,9 @@ void keep_trial(const CampaignPlan& plan, const CampaignTrial& trial,
                      {"costs", costs}};
   write_file(folder.trial(), json.dump(1) + "\n");
 }
+
+constexpr size_t kFailuresShown = 10;
+constexpr double kMemoryMargin = 1.25;  ///< a run may need more than its trial
 
 }  // namespace
 
@@ -118,6 +125,61 @@ CampaignTrial find_trial(const CampaignPlan& plan, const CampaignFolder& folder,
   CampaignTrial trial = try_campaign(plan, engine_options(folder));
   keep_trial(plan, trial, folder);
   return trial;
+}
+
+CampaignJob whole_job(const ChosenCampaign& campaign, bool quiet) {
+  const CampaignPlan& plan = campaign.plan;
+  save_plan(plan, campaign.folder);
+  const ResultIndex results(campaign.folder.results());
+  note_odd_results(plan, results);
+  CampaignJob job;
+  const bool is_known =
+      plan.settings.time_limit_s.has_value() && plan.settings.memory_mb.has_value();
+  if (!is_known && !count_results(plan, results).complete())
+    job.trial = find_trial(plan, campaign.folder, quiet);
+  job.runs.resize(plan.run_count());
+  std::iota(job.runs.begin(), job.runs.end(), size_t{0});
+  return job;
+}
+
+int worker_count(std::optional<int> wanted, const CampaignPlan& plan,
+                 const std::optional<CampaignTrial>& trial) {
+  const int asked = wanted.value_or(usable_processors());
+  double memory_mb = trial.has_value() ? trial->memory_mb * kMemoryMargin : 0.0;
+  memory_mb = plan.settings.memory_mb.value_or(memory_mb);
+  const int fit = workers_that_fit(memory_mb, asked);
+  if (fit < asked)
+    std::cerr << "note: " << fit << " of " << asked << " workers: each needs " << memory_mb
+              << " MB of memory\n";
+  return fit;
+}
+
+void show_failures(const EngineOutcome& outcome) {
+  for (size_t i = 0; i < outcome.failures.size() && i < kFailuresShown; ++i)
+    std::cerr << "note: " << outcome.failures[i] << "\n";
+  if (outcome.failures.size() > kFailuresShown)
+    std::cerr << "note: and " << outcome.failures.size() - kFailuresShown << " failed runs more\n";
+}
+
+EngineOutcome execute(const ChosenCampaign& campaign, CampaignJob job, bool quiet) {
+  std::optional<ProgressBar> bar;
+  if (!quiet) {
+    bar.emplace(std::cerr);
+    job.progress = [&bar](const EngineProgress& progress) {
+      std::string note = std::to_string(progress.done) + "/" + std::to_string(progress.tasks);
+      if (progress.failed > 0) note += ", " + std::to_string(progress.failed) + " failed";
+      bar->show_share(progress.share, note);
+    };
+  }
+  try {
+    EngineOutcome outcome = run_campaign(campaign.plan, engine_options(campaign.folder), job);
+    if (bar.has_value()) bar->clear();
+    return outcome;
+  } catch (const RunError& error) {
+    if (bar.has_value()) bar->clear();
+    throw RunError(std::string(error.what()) +
+                   "; what was finished is kept, the same command goes on");
+  }
 }
 
 std::vector<SlurmJob> slurm_jobs(const CampaignFolder& folder) {

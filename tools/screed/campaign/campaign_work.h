@@ -53,6 +53,18 @@ CampaignTrial find_trial(const CampaignPlan& plan, const CampaignFolder& folder,
 /// The trial in the folder, of whatever machine; nothing without one.
 std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const CampaignFolder& folder);
 
+/// All runs, on this machine alone: saves the plan, and tries some runs where their cost is not
+/// known.
+CampaignJob whole_job(const ChosenCampaign& campaign, bool quiet);
+/// How many runs at a time: as many as wanted, else one a processor, no more than memory allows. A
+/// note says so.
+int worker_count(std::optional<int> wanted, const CampaignPlan& plan,
+                 const std::optional<CampaignTrial>& trial);
+/// Executes the runs, with a bar unless `quiet`.
+EngineOutcome execute(const ChosenCampaign& campaign, CampaignJob job, bool quiet);
+/// The first of the failures, on standard error.
+void show_failures(const EngineOutcome& outcome);
+
 /// A job array that was submitted.
 struct SlurmJob {
   std::string number;

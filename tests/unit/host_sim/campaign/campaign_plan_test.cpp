@@ -206,6 +206,14 @@ TEST_F(Campaign, RefusesInOneLine) {
       {"[random]\ncount = 2\nvehicle.x = 0..1\n[latin_hypercube]\ncount = 2\n",
        {"study.ini:7: [latin_hypercube] beside [random]"}},
       {"[worlds]\nx = 1\n", {"study.ini:4: unknown section [worlds]", "[grid]"}},
+      {"[grid]\nbed = flat\n", {"study.ini:4: [grid] bed: no section [bed flat]"}},
+      {"[grid]\nbed = a\n[bed a]\nvehicle.x = 1\n[bed b]\nvehicle.x = 2\n",
+       {"study.ini:8: [bed b] is the level of no factor", "among the values of bed"}},
+      {"[grid]\nbed = a\n[bed a]\nvehicle.q = 1\n", {"study.ini:6: [bed a] vehicle.q", "'q'"}},
+      {"[grid]\nbed = a\n[bed a]\nvehicle.x = far\n",
+       {"study.ini:4: [grid] bed a", "[vehicle] x = 'far' is not allowed"}},
+      {"[set]\nvehicle.x = 3\n[grid]\nbed = a\n[bed a]\nvehicle.x = 1\n",
+       {"study.ini:8: [bed a] vehicle.x has its values from", "[set] vehicle.x already"}},
       {"seeds = 1..1000\n[random]\ncount = 1001\nvehicle.x = 0..1\n", {"more than 1000000 runs"}},
       {"seeds = 40000\n", {"[campaign] seeds, parameters.random_seed", "0..32767"}},
       {"[set]\nmap.filename = gone.png\n", {"[map] filename", "gone.png", "no such file"}},
@@ -215,6 +223,33 @@ TEST_F(Campaign, RefusesInOneLine) {
     for (const std::string& part : bad.parts)
       EXPECT_NE(what.find(part), std::string::npos) << part << "\n  in: " << what;
   }
+}
+
+TEST_F(Campaign, ALevelWithANameSetsSeveralKeysAndALaterFactorHolds) {
+  const CampaignPlan campaign = plan(
+      "seeds = 1, 2\n"
+      "[grid]\nbed = flat, steep\nentry = walk, walk_mcu\n"
+      "[bed flat]\nmap.size = 2\nsoil.drag_depth = 0.001\n"
+      "[bed steep]\nmap.ramp = 10\n"
+      "[entry walk]\nexperiment.algorithm = random_walk\nsoil.drag_depth = 0\n"
+      "[entry walk_mcu]\nexperiment.algorithm = random_walk\nworld.hal = mcu\n");
+  ASSERT_EQ(
+      campaign.cells,
+      (Cells{{"flat", "walk"}, {"flat", "walk_mcu"}, {"steep", "walk"}, {"steep", "walk_mcu"}}));
+  const CampaignRun flat_walk = resolve_run(campaign, 0);
+  EXPECT_EQ(flat_walk.experiment.map.size_m, 2.0);
+  EXPECT_EQ(flat_walk.experiment.experiment.algorithm, "random_walk");
+  EXPECT_EQ(flat_walk.experiment.soil.overrides.drag_depth_m, 0.0);
+  EXPECT_EQ(flat_walk.world.hal, "native");
+  const CampaignRun flat_mcu = resolve_run(campaign, 2);
+  EXPECT_EQ(flat_mcu.experiment.soil.overrides.drag_depth_m, 0.001);
+  EXPECT_EQ(flat_mcu.world.hal, "mcu");
+  EXPECT_EQ(resolve_run(campaign, 4).experiment.map.ramp_deg, 10.0);
+
+  write_text(folder_.path() / "plan.json", plan_text(campaign));
+  const CampaignPlan read = read_plan(folder_.path() / "plan.json");
+  for (size_t run = 0; run < campaign.run_count(); ++run)
+    EXPECT_EQ(identity_of(resolve_run(read, run), kVersion), campaign.ids[run]);
 }
 
 TEST_F(Campaign, RefusesAFileWithoutExperiment) {

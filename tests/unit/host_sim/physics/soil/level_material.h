@@ -8,8 +8,8 @@ namespace screed {
 inline constexpr double kSpacing_m = 0.01;
 inline constexpr double kRepose_deg = 30.0;
 
-inline MaterialFlow level(int nodes = 21, bool wrap = false) {
-  return {HeightField(nodes, nodes, kSpacing_m, wrap), kRepose_deg};
+inline MaterialFlow level(int nodes = 21, bool wrap = false, const Compaction& compaction = {}) {
+  return {HeightField(nodes, nodes, kSpacing_m, wrap), kRepose_deg, compaction};
 }
 
 inline int64_t volume(const MaterialFlow& flow) {

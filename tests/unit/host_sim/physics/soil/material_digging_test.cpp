@@ -14,25 +14,30 @@ DugPatch patch_at(double x, double y) {
   return {{x, y}, {1.0, 0.0}, 2.0 * kSpacing_m, 1.0 * kSpacing_m, 3.0 * kSpacing_m};
 }
 
+/// A quarter of what is moved gets denser instead, without an end.
+constexpr Compaction kQuarter{0.25, 0.0};
+
 TEST(MaterialDigging, DigsWhereTheFootprintSlipsInProportionToIt) {
-  MaterialFlow flow = level();
+  MaterialFlow flow = level(21, false, kQuarter);
   flow.begin_footprint(0.0, 0.0);
   flow.shear(flow.index(10, 10), 1.0);
   flow.shear(flow.index(11, 10), 3.0);
-  EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 400, 100), 100);
+  flow.dig(patch_at(0.0, 0.0), 400);
+  EXPECT_EQ(flow.compacted(), 100);
   EXPECT_EQ(flow.height(flow.index(10, 10)), -100);
   EXPECT_EQ(flow.height(flow.index(11, 10)), -300);
   EXPECT_EQ(flow.reference(flow.index(11, 10)), -300) << "a hole, and no sinkage";
   EXPECT_EQ(flow.in_transit(), 300);
-  EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 400, 100), 0) << "where it slipped is forgotten";
-  EXPECT_EQ(flow.in_transit(), 300);
+  flow.dig(patch_at(0.0, 0.0), 400);
+  EXPECT_EQ(flow.in_transit(), 300) << "where it slipped is forgotten";
+  EXPECT_EQ(flow.compacted(), 100);
 }
 
 TEST(MaterialDigging, DigsToTheLastUnitWhereItDoesNotDivide) {
   MaterialFlow flow = level();
   flow.begin_footprint(0.0, 0.0);
   for (int i = 0; i < 7; ++i) flow.shear(flow.index(7 + i, 10), 1.0);
-  EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 100, 0), 0);
+  flow.dig(patch_at(0.0, 0.0), 100);
   EXPECT_EQ(volume(flow), -100);
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(flow.height(flow.index(7 + i, 10)), -14, 1) << i;
 }
@@ -45,7 +50,7 @@ TEST(MaterialDigging, DigsToTheLastUnitWhateverTheWeightsAddUpTo) {
       for (int i = 0; i < count; ++i) {
         flow.shear(static_cast<size_t>(i), 0.1 * (1 + i % 7) / 3.0);
       }
-      flow.dig(patch_at(0.0, 0.0), units, 0);
+      flow.dig(patch_at(0.0, 0.0), units);
       ASSERT_EQ(volume(flow), -units) << count;
     }
   }
@@ -55,20 +60,51 @@ TEST(MaterialDigging, OnlyWhatGivesOrGetsMaterialIsLookedAtAgain) {
   MaterialFlow flow = level();
   flow.begin_footprint(0.0, 0.0);
   for (int i = 0; i < 4; ++i) flow.shear(flow.index(8 + i, 10), 1.0);
-  flow.dig(patch_at(0.0, 0.0), 1, 0);
+  flow.dig(patch_at(0.0, 0.0), 1);
   EXPECT_EQ(flow.queued(), 1U) << "one unit comes from one node";
   flow.deposit();
   EXPECT_EQ(flow.queued(), 2U) << "and goes to one";
 }
 
 TEST(MaterialDigging, WhatIsCompactedWhileDiggingIsNotHeapedUp) {
-  MaterialFlow flow = level();
+  MaterialFlow flow = level(21, false, kQuarter);
   flow.begin_footprint(0.0, 0.0);
   flow.shear(flow.index(10, 10), 1.0);
-  flow.dig(patch_at(0.0, 0.0), 400, 100);
+  flow.dig(patch_at(0.0, 0.0), 400);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), -100);
+}
+
+TEST(MaterialDigging, APlaceGetsNoDenserThanItCan) {
+  MaterialFlow flow = level(21, false, {0.25, 150.0 * kHeightUnit_m});
+  const size_t here = flow.index(10, 10);
+  const auto dig = [&](int64_t units) {
+    flow.begin_footprint(0.0, 0.0);
+    flow.shear(here, 1.0);
+    flow.dig(patch_at(0.0, 0.0), units);
+    flow.uncover();
+  };
+  dig(400);
+  EXPECT_EQ(flow.compacted(), 100) << "its share";
+  dig(400);
+  EXPECT_EQ(flow.compacted(), 150) << "all that it may lose";
+  dig(400);
+  EXPECT_EQ(flow.compacted(), 150);
+  EXPECT_EQ(flow.in_transit(), 1200 - 150) << "the rest moves";
+  flow.begin_footprint(0.0, 0.0);
+  flow.sink(0, here, 10, 10, 400);
+  EXPECT_EQ(flow.compacted(), 150) << "pressing makes it no denser either";
+  flow.sink(0, flow.index(3, 3), 3, 3, 400);
+  EXPECT_EQ(flow.compacted(), 250) << "other ground is as loose as before";
+}
+
+TEST(MaterialDigging, PartsOfAUnitAreCompactedLater) {
+  MaterialFlow flow = level(21, false, kQuarter);
+  flow.begin_footprint(0.0, 0.0);
+  for (int i = 0; i < 400; ++i) flow.sink(0, flow.index(10, 10), 10, 10, 1);
+  EXPECT_EQ(flow.compacted(), 100);
+  EXPECT_EQ(flow.in_transit(), 300);
 }
 
 TEST(MaterialDigging, WhatIsDugWithoutABandIsSetDownRoundTheFootprint) {
@@ -77,7 +113,7 @@ TEST(MaterialDigging, WhatIsDugWithoutABandIsSetDownRoundTheFootprint) {
   patch.band = 0.0;
   press(flow, 10, 10, 80);
   flow.shear(flow.index(10, 10), 1.0);
-  flow.dig(patch, 720, 0);
+  flow.dig(patch, 720);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), 0);
@@ -85,7 +121,7 @@ TEST(MaterialDigging, WhatIsDugWithoutABandIsSetDownRoundTheFootprint) {
   // Without a footprint to set it down at, it waits.
   flow.uncover();
   flow.shear(flow.index(10, 10), 1.0);
-  flow.dig(patch, 8, 0);
+  flow.dig(patch, 8);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 8);
   flow.uncover();
@@ -103,7 +139,7 @@ TEST(MaterialDigging, WhatIsDugIsNotHeapedUpUnderABodyNorBesideTheField) {
     flow.begin_footprint(0.0, 0.0);
     for (int iy = 0; iy < 3; ++iy) flow.cover(flow.index(4, iy), 4, iy);
     flow.shear(flow.index(10, 10), 1.0);
-    flow.dig(patch, 480, 0);
+    flow.dig(patch, 480);
     flow.deposit();
     flow.uncover();
   }
@@ -123,7 +159,7 @@ TEST(MaterialDigging, TheFirstNodeIsHeapedUponAsAnyOther) {
   patch.half_length = 0.0;
   patch.half_width = 0.0;
   flow.shear(flow.index(10, 10), 1.0);
-  flow.dig(patch, 4800, 0);
+  flow.dig(patch, 4800);
   flow.deposit();
   EXPECT_GT(flow.height(flow.index(0, 0)), 0);
 }
@@ -135,7 +171,7 @@ TEST(MaterialDigging, WhatIsDugInAStepGoesToFortyEightPlacesFarApart) {
     std::vector<Eigen::Vector2d> places;
     flow.shear(0, 1.0);
     const MaterialFlow before = flow;
-    flow.dig(patch, 48 * units, 0);
+    flow.dig(patch, 48 * units);
     flow.deposit();
     for (int iy = 0; iy < 401; ++iy) {
       for (int ix = 0; ix < 401; ++ix) {
@@ -161,31 +197,32 @@ TEST(MaterialDigging, WithoutSlipOrWithNothingToTakeNothingIsDug) {
   MaterialFlow flow = level();
   flow.begin_footprint(0.0, 0.0);
   flow.shear(flow.index(10, 10), 0.0);
-  EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 400, 100), 0);
+  flow.dig(patch_at(0.0, 0.0), 400);
   flow.shear(flow.index(10, 10), 1.0);
-  EXPECT_EQ(flow.dig(patch_at(0.0, 0.0), 0, 0), 0);
+  flow.dig(patch_at(0.0, 0.0), 0);
   EXPECT_EQ(volume(flow), 0);
   EXPECT_EQ(flow.in_transit(), 0);
   // What was sheared then is forgotten.
   flow.shear(flow.index(3, 3), 1.0);
-  flow.dig(patch_at(0.0, 0.0), 10, 10);
+  flow.dig(patch_at(0.0, 0.0), 10);
   EXPECT_EQ(flow.height(flow.index(10, 10)), 0);
   EXPECT_EQ(flow.height(flow.index(3, 3)), -10);
 }
 
 // As on a bed that moves no material: nothing is deposited, steps end all the same.
 TEST(MaterialDigging, WhatIsDugAndCompactedLeavesNothingToLaterSteps) {
-  MaterialFlow flow = level(41);
+  MaterialFlow flow = level(41, false, {1.0, 480.0 * kHeightUnit_m});
   MaterialFlow fresh = level(41);
   const size_t dug = flow.index(20, 20);
   flow.begin_footprint(0.0, 0.0);
   flow.shear(dug, 1.0);
-  EXPECT_EQ(flow.dig(patch_at(0.02, -0.03), 480, 480), 480);
+  flow.dig(patch_at(0.02, -0.03), 480);
+  EXPECT_EQ(flow.compacted(), 480);
   flow.uncover();
   for (MaterialFlow* either : {&flow, &fresh}) {
     either->begin_footprint(0.0, 0.0);
     either->shear(dug, 1.0);
-    either->dig(patch_at(0.02, -0.03), 480, 0);
+    either->dig(patch_at(0.02, -0.03), 480);
     either->deposit();
     either->uncover();
   }
@@ -202,7 +239,7 @@ TEST(MaterialDigging, WhatIsDugIsHeapedUpInABandRoundTheFootprintAndNotInsideIt)
   for (int step = 0; step < 400; ++step) {
     flow.begin_footprint(0.0, 0.0);
     flow.shear(flow.index(20, 20), 1.0);
-    flow.dig(patch, 480, 0);
+    flow.dig(patch, 480);
     flow.deposit();
     ASSERT_EQ(flow.in_transit(), 0);
     flow.uncover();

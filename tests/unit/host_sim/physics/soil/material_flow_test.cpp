@@ -197,32 +197,24 @@ TEST(MaterialFlow, TheReferenceBeginsAtTheSurface) {
 }
 
 TEST(MaterialFlow, WhatIsCompactedIsNotSetDownAnyMore) {
-  MaterialFlow flow = level();
+  MaterialFlow flow = level(21, false, {0.5, 600.0 * kHeightUnit_m});
   press(flow, 4, 4, 800);
   press(flow, 14, 14, 1600);
-  flow.compact(1600);  // all of the first footprint's, half of the second's
-  EXPECT_EQ(flow.in_transit(), 800);
+  EXPECT_EQ(flow.compacted(), 400 + 600) << "half, and all that the second place may lose";
+  EXPECT_EQ(flow.in_transit(), 400 + 1000);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
-  EXPECT_EQ(volume(flow), -1600);
-  EXPECT_EQ(flow.height(flow.index(5, 4)), 0);
-  EXPECT_EQ(flow.height(flow.index(15, 14)), 100);
+  EXPECT_EQ(volume(flow), -1000);
+  EXPECT_EQ(flow.height(flow.index(5, 4)), 50);
+  EXPECT_EQ(flow.height(flow.index(15, 14)), 125);
 }
 
-TEST(MaterialFlow, WhatWaitsFromEarlierStepsIsCompactedFirst) {
-  MaterialFlow flow(HeightField(2, 2, kSpacing_m, false), kRepose_deg);
-  const size_t wide = flow.begin_footprint(0.0, 0.0);
-  for (int iy = 0; iy < 2; ++iy) {
-    for (int ix = 0; ix < 2; ++ix) flow.cover(flow.index(ix, iy), ix, iy);
-  }
-  flow.sink(wide, 0, 0, 0, 30);
-  flow.deposit();
-  flow.uncover();
-  press(flow, 0, 0, 6);
-  flow.compact(6);
-  flow.deposit();
-  EXPECT_EQ(flow.in_transit(), 0) << "24 that waited and the footprint's 6";
-  EXPECT_EQ(volume(flow), -6);
+TEST(MaterialFlow, ARutFromBeforeIsSunkAndNothingMoves) {
+  MaterialFlow flow = level();
+  flow.begin_sunk(flow.index(4, 4), 800);
+  EXPECT_EQ(flow.height(flow.index(4, 4)), -800);
+  EXPECT_EQ(flow.sunk(flow.index(4, 4)), 800);
+  EXPECT_EQ(flow.in_transit(), 0);
 }
 
 TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
@@ -236,14 +228,11 @@ TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
   EXPECT_EQ(flow.in_transit(), 30);
   EXPECT_EQ(volume(flow), -30);
   flow.uncover();
-  // A part of what waits is compacted, the rest set down with the next footprint's.
-  flow.compact(6);
-  EXPECT_EQ(flow.in_transit(), 24);
   press(flow, 0, 0, 6);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
-  EXPECT_EQ(volume(flow), -6);
-  EXPECT_EQ(flow.height(flow.index(1, 1)), 10);
+  EXPECT_EQ(volume(flow), 0);
+  EXPECT_EQ(flow.height(flow.index(1, 1)), 12);
 }
 
 TEST(MaterialFlow, TwoFootprintsDoNotSetDownUnderEachOther) {

@@ -111,6 +111,9 @@ std::string value_in(const std::string& text, const Row& row) {
 std::vector<std::string> good_values(const Row& row) {
   if (row.allowed == "true or false") return {row.value == "true" ? "false" : "true"};
   if (row.section == "robots" && row.key == "count") return {"2", "64"};  // 1 is not written
+  if (row.section == "relief" && (row.key == "rms" || row.key == "trench_depth"))
+    return {"0.1", "10"};  // 0 is not written
+  if (row.key == "mounds") return {"1", "1000"};
   if (!ends_of(row.allowed).empty()) return ends_of(row.allowed);
   if (row.key == "algorithm")
     return {"drive", "spin_on_peak"};  // training_drive needs frames: below
@@ -146,6 +149,16 @@ TEST_F(ExperimentFile, EveryKeyOfTheTableIsReadAndWrittenBack) {
       if (row.key == "places") room = {"robots.count=2", "robots.placement=list"};
       if (row.key == "wall_friction") room = {"map.edges=walls"};
       if (row.section == "trap" && row.key != "kind") room = {"trap.kind=wall"};
+      if (row.section == "relief") {
+        // Each kind of relief is written only where there is any.
+        const bool mound = row.key.rfind("mound_", 0) == 0 || row.key == "rms";
+        const bool trench = row.key == "trench_width" || row.key == "trench_slope";
+        room = {mound    ? "relief.mounds=2"
+                : trench ? "relief.trench_depth=0.02"
+                         : "relief.rms=0.02"};
+        if (row.key == "longest_wave") room.push_back("relief.shortest_wave=0.01");
+        if (row.key == "shortest_wave") room.push_back("relief.longest_wave=1000");
+      }
       if (row.key == "walk_speed_min") room = {"parameters.walk_speed_max=250"};
       if (row.key == "walk_speed_max") room = {"parameters.walk_speed_min=0"};
       if (row.key == "walk_leg_min") room = {"parameters.walk_leg_max=20000"};

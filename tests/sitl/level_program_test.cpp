@@ -1,0 +1,123 @@
+// `screed level bench` as a user meets it: the same table from the same beds, a stranger's entry,
+// and one clear line for what it refuses.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/sitl/program.h"
+
+namespace screed::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+class LevelBench : public Program {
+ protected:
+  Json entry_of(const Json& courses, const std::string& name) const {
+    for (const Json& entry : courses[0]["entries"])
+      if (entry["entry"] == name) return entry;
+    ADD_FAILURE() << "no entry " << name;
+    return {};
+  }
+  /// A column of the runs' table, in the order of the runs.
+  std::vector<std::string> column(const std::string& name) const {
+    std::istringstream table(read(root_ / "b" / "runs.csv"));
+    std::vector<std::string> values;
+    std::size_t at = 0;
+    for (std::string line; std::getline(table, line);) {
+      std::istringstream row(line);
+      std::vector<std::string> cells;
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+      if (values.empty() && at == 0) {
+        at = static_cast<std::size_t>(std::find(cells.begin(), cells.end(), name) - cells.begin());
+        EXPECT_LT(at, cells.size()) << "no column " << name;
+        continue;
+      }
+      values.push_back(cells.at(at));
+    }
+    return values;
+  }
+  /// What the runs of an entry moved, m3.
+  double mean_moved(const std::string& entry) const {
+    const std::vector<std::string> entries = column("entry");
+    const std::vector<std::string> moved = column("terrain_change.moved_m3");
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (entries[i] != entry) continue;
+      sum += std::stod(moved[i]);
+      count += 1.0;
+    }
+    return sum / count;
+  }
+};
+
+// Who is not armed moves nothing; who spins on peaks moves more than who walks.
+TEST_F(LevelBench, QuickRunsTheBaselines) {
+  const Result result = run("level bench --quick --seeds 2 --workers 2 --quiet --json --out b");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json courses = Json::parse(result.out);
+  ASSERT_EQ(courses.size(), 1U);
+  EXPECT_EQ(courses[0]["course"], Json({"small", "rough", "gravel", "one", "fixes"}));
+  EXPECT_EQ(courses[0]["duration_s"], 120.0);
+  ASSERT_EQ(courses[0]["entries"].size(), 4U);
+  for (const Json& entry : courses[0]["entries"]) {
+    EXPECT_EQ(entry["runs"], 2);
+    EXPECT_EQ(entry["failed"], 0);
+  }
+  EXPECT_NEAR(entry_of(courses, "nobody")["relief_change"]["mean"].get<double>(), 0.0, 1e-3);
+  EXPECT_LT(mean_moved("nobody"), 1e-5);
+  EXPECT_GT(mean_moved("random_walk"), 1e-4);
+  EXPECT_GT(mean_moved("spin_on_peak"), 1.1 * mean_moved("random_walk"));
+  // It is a campaign: the same command finds all of it done.
+  const Result again = run("level bench --quick --seeds 2 --quiet --json --out b");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, result.out);
+}
+
+// A changed hash here is a changed benchmark: its version goes up, or the robot levels otherwise.
+TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
+  const Result result = run("level bench --quick --seeds 1 --workers 2 --quiet --json --out b");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(column("content_hash"),
+            (std::vector<std::string>{
+                "2faeff86b859f880676ea1f69499a1cd", "90cb3c05a2122c58aeb493c71fdfdf22",
+                "9f2b0da95af7841b0f713fa468611b10", "380c931928d483dbd5b569eb62ea3ddb"}));
+}
+
+TEST_F(LevelBench, AStrangersFileIsScoredBesideTheBaseline) {
+  write("mine.ini", "[experiment]\nalgorithm = spin_on_peak\n[parameters]\nspin_time = 1000\n");
+  const Result result =
+      run("level bench mine.ini --quick --training --seeds 1 --quiet --json --out b");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json courses = Json::parse(result.out);
+  ASSERT_EQ(courses[0]["entries"].size(), 2U);
+  EXPECT_EQ(courses[0]["entries"][0]["entry"], "mine");
+  EXPECT_EQ(courses[0]["entries"][1]["entry"], "spin_on_peak");
+}
+
+TEST_F(LevelBench, RefusesInOneLine) {
+  write("cheat.ini", "[experiment]\nalgorithm = coverage\n[map]\nsize = 1\n");
+  struct Case {
+    const char* arguments;
+    const char* part;
+  };
+  for (const Case& bad :
+       {Case{"--suite moon", "no suite 'moon'; known are"},
+        Case{"bulldozer", "unknown entry 'bulldozer'"},
+        Case{"cheat.ini", "[map] size: is not an entry's"},
+        Case{"--seeds 31", "allowed are 1 to 30"}, Case{"--benchmark gone.ini", "gone.ini"}}) {
+    const Result result = run(std::string("level bench --out b ") + bad.arguments);
+    EXPECT_NE(result.exit_code, 0) << bad.arguments;
+    EXPECT_NE(result.err.find(bad.part), std::string::npos) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(root_ / "b")) << bad.arguments;
+  }
+}
+
+}  // namespace
+}  // namespace screed::testing
