@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
@@ -28,7 +29,9 @@ constexpr int64_t kReportSteps = 32;
 constexpr double kLowering_s = 1.0;
 constexpr double kLowering_m_per_s = 0.01;
 constexpr double kSlip = 0.6;
-constexpr double kWinch_s = 0.05;  // in which the winch makes good an error of speed
+constexpr double kTether_n_per_m = 400.0;  // a centimetre on the steepest slope
+constexpr double kTether_ns_per_m = 44.0;  // without overshoot
+constexpr double kWinch_s = 0.05;          // in which the winch makes good an error of speed
 // The mound: a cone's flank at 20 degrees, cut off at this height.
 constexpr double kMound_m = 0.08;
 constexpr double kMoundSlope_rad = 20.0 * std::numbers::pi / 180.0;
@@ -42,7 +45,7 @@ HeightField ground_before(const DigTest& test, double floor_m) {
   const int nodes = static_cast<int>(std::lround(test.size_m / test.cell_m)) + 1;
   const bool mound = test.manoeuvre == Manoeuvre::kCharge;
   return HeightField::from_function(nodes, nodes, test.cell_m, false, [&](double x, double y) {
-    if (!mound) return floor_m;
+    if (!mound) return floor_m + x * std::tan(test.slope_deg * std::numbers::pi / 180.0);
     const double flank = kMound_m / std::tan(kMoundSlope_rad);
     const double out = std::max(0.0, std::hypot(x - 0.12, y) - 0.06);
     return floor_m + kMound_m * std::max(0.0, 1.0 - out / flank);
@@ -57,6 +60,9 @@ void check(const DigTest& test) {
   check_range("dig", "speed", test.track_m_per_s, 0.01, 1.0);
   check_range("dig", "duration", test.duration_s, 0.1, 600.0);
   check_range("dig", "beds", test.beds, 1, 256);
+  check_range("dig", "slope", test.slope_deg, 0, 25);
+  if (test.slope_deg > 0.0 && test.manoeuvre != Manoeuvre::kSpin)
+    throw InputError("dig: slope = " + std::to_string(test.slope_deg) + ", which only a spin has");
 }
 
 class DiggingRobot {
@@ -112,6 +118,12 @@ class DiggingRobot {
       held_ -= pull.x() * dt;
       dBodyAddTorque(body_, 0.0, 0.0, -0.1 / dt * body.omega.z() / body.inverse_inertia(2, 2));
     }
+    if (tether_) {
+      // Holds the body where it is, seen from above.
+      const Eigen::Vector3d pull =
+          -kTether_n_per_m * (body.centre - *tether_) - kTether_ns_per_m * body.velocity;
+      dBodyAddForce(body_, pull.x(), pull.y(), 0.0);
+    }
     world_.step(dt);
     turned_ += body.omega.z() * dt;
   }
@@ -126,6 +138,9 @@ class DiggingRobot {
     dBodySetAngularVel(body_, omega.x(), omega.y(), omega.z());
   }
 
+  /// From now on something holds the middle of the body where it is, seen from above.
+  void tether() { tether_ = position(); }
+
   Eigen::Vector3d position() const { return to_eigen(dBodyGetPosition(body_)); }
   Eigen::Matrix3d rotation() const { return rotation_to_eigen(dBodyGetRotation(body_)); }
   double turned_rad() const { return turned_; }
@@ -139,6 +154,7 @@ class DiggingRobot {
   std::array<Footprint, 2> belts_{Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m),
                                   Footprint::track(kHalfBelt_m, kWheelRadius_m, kBeltWidth_m)};
   std::array<ContactMemory, 2> memories_;
+  std::optional<Eigen::Vector3d> tether_;
   double turned_ = 0.0;
   double winch_n_ = 0.0;
   double held_ = 0.0;
@@ -178,6 +194,7 @@ void measure(DigResult& result) {
       result.deepest_m = std::max(result.deepest_m, -rise);
       const double volume = std::abs(rise) * area;
       (rise > 0.0 ? result.raised_m3 : result.sunk_m3) += volume;
+      result.downhill_m4 -= rise * area * dx;
       (rise > 0.0 ? result.raised_radius_m : result.sunk_radius_m) += volume * away;
       if (rise > 0.0 && dx < 0.0) result.behind_share += volume;
     }
@@ -205,6 +222,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& be
   DigResult result{averaged(bed.surface()), HeightField::flat(1.0, 0.1)};
   const auto lowering = static_cast<int>(std::lround(kLowering_s / dt));
   for (int i = 0; i < lowering; ++i) robot.lower(bed, dt);
+  if (test.slope_deg > 0.0) robot.tether();
   const Eigen::Vector3d start = robot.position();
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
@@ -238,7 +256,7 @@ DigResult dig_soil(const DigTest& test, const TaskProgress& progress) {
   check(test);
   SoilBed bed(ground_before(test, 0.0), test.soil, test.options);
   bed.relax_slopes();
-  DiggingRobot robot(start_x(test), 0.0);
+  DiggingRobot robot(start_x(test), bed.surface().max_height_within(start_x(test), 0.0, 0.1));
   DigResult result = drive(test, robot, test.step_s, bed, of_drive(progress, 0, 1));
   measure(result);
   return result;
@@ -272,6 +290,22 @@ RiseMap rise_of(const DigResult& result) {
   return rise;
 }
 
+/// Standard error of the mean of the beds.
+double downhill_error(const HeightField& field, std::span<const RiseMap> rises) {
+  const double area = field.spacing_m() * field.spacing_m();
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const RiseMap& rise : rises) {
+    double one = 0.0;
+    for (size_t i = 0; i < rise.size(); ++i)
+      one -= rise[i] * area * field.node_x(static_cast<int>(i) % field.nx());
+    sum += one;
+    squares += one * one;
+  }
+  const auto n = static_cast<double>(rises.size());
+  return n < 2 ? 0.0 : std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1) / n);
+}
+
 template <typename Change>
 void change_nodes(HeightField& field, const Change& change) {
   for (int iy = 0; iy < field.ny(); ++iy) {
@@ -303,6 +337,7 @@ DigResult dig_particles(const DigTest& test, const TaskProgress& progress) {
   measure(mean);
   const double area = mean.before.spacing_m() * mean.before.spacing_m();
   mean.error = standard_error(rises, area);
+  mean.downhill_error_m4 = downhill_error(mean.before, rises);
   mean.at_least = volume_without_noise(rises, area);
   for (int beds = 1; beds < test.beds; beds *= 4)
     mean.of_beds.push_back({beds, volume_of_means(rises, area, static_cast<size_t>(beds))});

@@ -31,6 +31,8 @@ struct DigTest {
   double size_m = 0.9;         ///< of the bed's side, 0.5..5
   double track_m_per_s = 0.2;  ///< belt speed over the wheels, 0.01..1
   double duration_s = 10.0;    ///< 0.1..600; slip: as far as the bed goes, at most
+  double slope_deg = 0.0;      ///< spin: of the ground, rising to the east, 0..25; above 0 the
+                               ///< robot is tethered to its place
   uint64_t seed = 1;           ///< of the particles' layout
   int beds = 16;               ///< of particles, laid with this seed and the next ones; 1..256
 };
@@ -53,12 +55,14 @@ struct DigResult {
   MovedVolume error = {};     ///< of particles: standard error of these two
   MovedVolume at_least = {};  ///< of particles: the two without noise are greater than this
   std::vector<DigOfBeds> of_beds = {};  ///< of particles: of fewer beds; 1, 4, 16, ...
-  double deepest_m = 0.0;               ///< of the hole or rut
-  double highest_m = 0.0;               ///< of what was thrown up
-  double sunk_radius_m = 0.0;           ///< mean distance of the sunk volume from there
-  double raised_radius_m = 0.0;         ///< and of the raised
-  double behind_share = 0.0;            ///< of the raised volume, west of there
-  double end_x_m = 0.0;                 ///< where the robot ended
+  double downhill_m4 = 0.0;  ///< volume times the way west that it was moved, from the robot's end
+  double downhill_error_m4 = 0.0;  ///< of particles: its standard error
+  double deepest_m = 0.0;          ///< of the hole or rut
+  double highest_m = 0.0;          ///< of what was thrown up
+  double sunk_radius_m = 0.0;      ///< mean distance of the sunk volume from there
+  double raised_radius_m = 0.0;    ///< and of the raised
+  double behind_share = 0.0;       ///< of the raised volume, west of there
+  double end_x_m = 0.0;            ///< where the robot ended
   double end_y_m = 0.0;
   double time_s = 0.0;      ///< that the drive took
   double pull_n = 0.0;      ///< slip: what held it back, mean

@@ -97,4 +97,14 @@ inline bool wait_until(Background& program, const std::function<bool()>& holds) 
   return true;
 }
 
+/// Waits until there is a worker, and says which there are. None when the program has ended before.
+inline std::vector<pid_t> wait_for_workers(Background& program) {
+  std::vector<pid_t> workers;
+  wait_until(program, [&] {
+    workers = program.workers();
+    return !workers.empty();
+  });
+  return workers;
+}
+
 }  // namespace screed::testing

@@ -221,8 +221,9 @@ TEST_F(Campaign, ACrashCostsOneRun) {
       "[grid]\nexperiment.duration = 200, 0.3, 0.4\n[set]\nmap.edges = walls\n");
   Background program(program_, {"campaign", "run", "study.ini", "--quiet", "--workers", "1"}, root_,
                      log("background"));
-  ASSERT_TRUE(wait_until(program, [&] { return !program.workers().empty(); }));
-  ::kill(program.workers().front(), SIGSEGV);
+  const std::vector<pid_t> workers = wait_for_workers(program);
+  ASSERT_FALSE(workers.empty());
+  ::kill(workers.front(), SIGSEGV);
   EXPECT_EQ(program.wait(), 1);
   const std::string said = read(log("background"));
   EXPECT_NE(said.find("run 0 its worker ended by signal 11"), std::string::npos) << said;
@@ -236,8 +237,9 @@ TEST_F(Campaign, ACrashedRunIsTriedAgain) {
       "map.edges = walls\n");
   Background program(program_, {"campaign", "run", "study.ini", "--quiet"}, root_,
                      log("background"));
-  ASSERT_TRUE(wait_until(program, [&] { return !program.workers().empty(); }));
-  ::kill(program.workers().front(), SIGKILL);
+  const std::vector<pid_t> workers = wait_for_workers(program);
+  ASSERT_FALSE(workers.empty());
+  ::kill(workers.front(), SIGKILL);
   EXPECT_EQ(program.wait(), 0);
   ASSERT_EQ(run("campaign merge out/study").exit_code, 0);
   const std::string provenance = read(root_ / "out/study/provenance.csv");

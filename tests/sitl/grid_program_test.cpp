@@ -225,8 +225,9 @@ TEST_F(GridSweep, AKilledWorkerCostsNothing) {
                      {"grid", "--size", "300", "--max-cycles", "100000", "--runs", "3", "--workers",
                       "1", "--quiet", "--out", "sweep"},
                      root_, log("background"));
-  ASSERT_TRUE(wait_until(program, [&] { return !program.workers().empty(); }));
-  ::kill(program.workers().front(), SIGKILL);
+  const std::vector<pid_t> workers = wait_for_workers(program);
+  ASSERT_FALSE(workers.empty());
+  ::kill(workers.front(), SIGKILL);
   EXPECT_EQ(program.wait(), 0) << read(log("background"));
   EXPECT_EQ(stored("sweep"), 4U);  // the failed attempt is one of them
   EXPECT_EQ(lines(read(root_ / "sweep/runs.csv")), 5U);
@@ -239,8 +240,8 @@ TEST_F(GridSweep, AKilledWorkerCostsNoneOfItsBatch) {
                       "--runs", "2000", "--workers", "1", "--quiet", "--out", "sweep"},
                      root_, log("background"));
   ASSERT_TRUE(wait_until(program, [&] { return stored("sweep") >= 500; }));
-  const std::vector<pid_t> workers = program.workers();
-  ASSERT_EQ(workers.size(), 1U);
+  const std::vector<pid_t> workers = wait_for_workers(program);
+  ASSERT_FALSE(workers.empty());
   ::kill(workers.front(), SIGKILL);
   EXPECT_EQ(program.wait(), 0) << read(log("background"));
   EXPECT_EQ(lines(read(root_ / "sweep/runs.csv")), 2002U);

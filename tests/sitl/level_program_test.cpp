@@ -85,8 +85,8 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "2faeff86b859f880676ea1f69499a1cd", "90cb3c05a2122c58aeb493c71fdfdf22",
-                "9f2b0da95af7841b0f713fa468611b10", "380c931928d483dbd5b569eb62ea3ddb"}));
+                "884284ec860d6de8d9f6c1697457900a", "69b8b55884ebc08e850c7c2bb056b2c3",
+                "271415562a2311997f7276f835899c13", "e4cea22a946c6c9054b0019c6394859f"}));
 }
 
 TEST_F(LevelBench, AStrangersFileIsScoredBesideTheBaseline) {

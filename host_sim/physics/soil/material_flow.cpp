@@ -22,6 +22,14 @@ constexpr double kStanding_m_per_s = 1e-3;  // below it a footprint has no direc
 constexpr Step kNeighbours[8] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                  {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
 
+/// Mean square of x over the band between the rectangles |x| < `inner_x`, |y| < `inner_y` and
+/// |x| < `outer_x`, |y| < `outer_y`.
+double mean_square(double inner_x, double inner_y, double outer_x, double outer_y) {
+  const auto cube = [](double x) { return x * x * x; };
+  return (cube(outer_x) * outer_y - cube(inner_x) * inner_y) /
+         (3.0 * (outer_x * outer_y - inner_x * inner_y));
+}
+
 }  // namespace
 
 MaterialFlow::MaterialFlow(HeightField surface, double repose_deg, const Compaction& compaction)
@@ -110,8 +118,9 @@ void MaterialFlow::deposit() {
 }
 
 /// On some nodes around the footprint, other ones each time, so that in a few steps all have got
-/// the same: a low-discrepancy sequence over the rectangle and its band. Returns the units
-/// deposited: all or none.
+/// the same: a low-discrepancy sequence over the rectangle and its band. What is carried past the
+/// footprint is added in proportion to how far a node lies on its way, and taken on the other side.
+/// Returns the units deposited: all or none.
 int64_t MaterialFlow::spread_dug(const Dug& dug) {
   // R2 sequence (Roberts 2018): 2^32 / p and 2^32 / p^2, p = 1.3247, the plastic number.
   constexpr uint32_t kAlong = 3242174889U;
@@ -121,6 +130,12 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
   const double length = patch.half_length + patch.band;
   const double width = patch.half_width + patch.band;
   const double per_spacing = 1.0 / surface_.spacing_m();
+  const double weight_along = patch.carried.dot(patch.forward) /
+                              mean_square(patch.half_length, patch.half_width, length, width);
+  const double weight_across =
+      (patch.forward.x() * patch.carried.y() - patch.forward.y() * patch.carried.x()) /
+      mean_square(patch.half_width, patch.half_length, width, length);
+  double weights = 0.0;
   deposit_nodes_.clear();
   for (int i = 0; i < kTriesPerStep; ++i) {
     ++sequence_index_;
@@ -134,13 +149,20 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
     const int64_t node = node_at(place.ix, place.iy);
     if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
     place.node = static_cast<size_t>(node);
-    deposit_nodes_.push_back(place);
+    deposit_nodes_.push_back({place, along * weight_along + across * weight_across});
+    weights += deposit_nodes_.back().weight;
   }
   if (deposit_nodes_.empty()) return 0;
-  const auto count = static_cast<int64_t>(deposit_nodes_.size());
-  for (int64_t i = 0; i < count; ++i) {
-    const int64_t units = dug.units * (i + 1) / count - dug.units * i / count;
-    if (units != 0) change(deposit_nodes_[static_cast<size_t>(i)], static_cast<Height>(units));
+  const auto count = static_cast<double>(deposit_nodes_.size());
+  const double each = (static_cast<double>(dug.units) - weights / count) / count;
+  double sum = 0.0;
+  int64_t done = 0;
+  for (size_t i = 0; i < deposit_nodes_.size(); ++i) {
+    const DepositNode& node = deposit_nodes_[i];
+    sum += each + node.weight / count;
+    const int64_t until = i + 1 < deposit_nodes_.size() ? std::llround(sum) : dug.units;
+    if (until != done) change(node.place, static_cast<Height>(until - done));
+    done = until;
   }
   in_transit_ -= dug.units;
   return dug.units;

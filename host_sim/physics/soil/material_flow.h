@@ -19,6 +19,8 @@ struct DugPatch {
   double half_length;       ///< m
   double half_width;        ///< m
   double band;              ///< what is dug is deposited as far as this around it, m
+  /// What goes past it from one side to the other: amount times way, units times m.
+  Eigen::Vector2d carried = Eigen::Vector2d::Zero();
 };
 
 /// What becomes of material that is pressed down or dug away: a share of it gets denser where it
@@ -114,7 +116,8 @@ class MaterialFlow {
   void shear(size_t node, double weight) { sheared_.push_back({node, weight}); }
   /// Takes `units` from the nodes given to shear() since the last call, in proportion to their
   /// weights; the reference goes down with the surface. Those that are not compacted are in transit
-  /// until they are deposited around the patch. Takes nothing without sheared nodes.
+  /// until they are deposited around the patch, more of them to where something is carried than to
+  /// where it comes from. Takes nothing without sheared nodes.
   void dig(const DugPatch& patch, int64_t units);
   /// Queues every node: slide() then checks the whole bed. A new bed starts with an empty queue.
   void enqueue_all();
@@ -220,7 +223,11 @@ class MaterialFlow {
   std::vector<Sheared> sheared_;  // by the current footprint
   std::vector<Dug> dug_;
   uint32_t sequence_index_ = 0;  // of the next point to try for what was dug, minus 1
-  std::vector<GridNode> deposit_nodes_;
+  struct DepositNode {
+    GridNode place;
+    double weight;  // of what is carried past, 1/m
+  };
+  std::vector<DepositNode> deposit_nodes_;
   std::vector<GridNode> ring_;
   std::vector<uint64_t> below_bits_;  // a footprint's nodes seen from above, a bit each
   std::vector<uint32_t> queue_;       // ring buffer of nodes whose slopes may be too steep

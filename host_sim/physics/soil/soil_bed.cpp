@@ -40,6 +40,7 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
             options.bulldozing ? Compaction{soil.compaction, soil.compaction_depth_m}
                                : Compaction{1.0, 0.0}),
       tan_friction_(std::tan(soil.friction_deg * kDegree)),
+      tan_repose_(std::tan(soil.repose_deg * kDegree)),
       passive_(soil) {
   check_soil(soil);
   const double spacing = flow_.surface().spacing_m();

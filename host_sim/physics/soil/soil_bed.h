@@ -160,6 +160,7 @@ class SoilBed final : public Terrain {
   static constexpr double kExponentStep = 0.005;
   std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
+  double tan_repose_;
   double cell_area_;
   int samples_per_side_;  // along one side of a cell
   std::array<LatticePoints, kLattices> lattices_;

@@ -37,6 +37,10 @@
 //   slip    = sum(share |m| sliding) / sum(share)                     mean speed, m/s
 //   sides   = sqrt(12 variance + edge^2)                              of the touched rectangle
 //   volume  = drag_depth slip dt width
+// The layer slips in the direction of all that shears it. Gravity does so, too: down a slope theta
+// with tan(theta) / tan(phi) of what makes it slip, so it goes that way with this part of its
+// speed, and no faster than it slips.
+//   carried = drag_depth slip dt area min(1, tan(theta) / tan phi)    volume times way, downhill
 #include <algorithm>
 #include <cmath>
 
@@ -73,6 +77,10 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
   patch.band = 2.0 * std::min(patch.half_length, patch.half_width);
   const double volume = soil_.drag_depth_m * dt * per_share * 2.0 * sums.slip * patch.half_width;
   dig_remainder_ += volume / (cell_area_ * kHeightUnit_m);
+  const Eigen::Vector3d normal = vector(law.axis_x).cross(vector(law.axis_y));
+  const Eigen::Vector2d fall = normal.head<2>() / std::max(normal.z(), 1e-3);
+  const double part = 1.0 / std::max(tan_repose_, fall.norm());
+  patch.carried = soil_.drag_depth_m * dt * sums.slip / kHeightUnit_m * part * fall;
   const auto units = static_cast<int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
   flow_.dig(patch, units);

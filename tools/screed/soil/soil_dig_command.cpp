@@ -103,6 +103,9 @@ int run_dig(DigArguments a) {
   add("sunk_distance_mm", result.sunk_radius_m * kMilli, "%.1f");
   add("raised_distance_mm", result.raised_radius_m * kMilli, "%.1f");
   add("raised_behind_share", result.behind_share, "%.3f");
+  if (a.test.slope_deg > 0.0) add("downhill_cm3m", result.downhill_m4 * 1e6, "%.3f");
+  if (a.test.slope_deg > 0.0 && particles && a.test.beds > 1)
+    add("downhill_error_cm3m", result.downhill_error_m4 * 1e6, "%.3f");
   add("time_s", result.time_s, "%.2f");
   if (a.test.manoeuvre == Manoeuvre::kSlip) add("pull_n", result.pull_n, "%.2f");
   add("distance_m", result.distance_m, "%.4f");
@@ -149,6 +152,9 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
   add_number(*command, "--track-speed", a->test.track_m_per_s, "Belt speed [m/s]", {0.01, 1.0});
   add_number(*command, "--duration", a->test.duration_s, "Duration [s]", {0.1, 600.0});
   add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
+  add_number(*command, "--slope", a->test.slope_deg,
+             "Slope that a spin is on, rising to the east; the robot is tethered [deg]",
+             {0.0, 25.0});
   add_number(*command, "--beds", a->test.beds, "Number of particle beds whose heights are averaged",
              {1, 256});
   add_number(*command, "--fit-raised", a->fit_cm3,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/soil_validation/dig_test.h"
 
 namespace screed {
@@ -63,6 +64,19 @@ TEST(SoilDigTest, ALongSpinFindsGroundThatIsDense) {
   const DigResult spin = dig(Manoeuvre::kSpin, 0.005, 40.0);
   EXPECT_NEAR((spin.sunk_m3 - spin.raised_m3) * 1e6, 127.0, 10.0);
   EXPECT_NEAR(spin.sunk_m3 * 1e6, 250.0, 25.0);
+}
+
+// On 16 beds of particles 10 s of spin carry 2.9 +- 0.25 and 4.8 +- 0.28 cm3 m down slopes of 10
+// and 15 degrees. Nothing was fitted to that.
+TEST(SoilDigTest, ASpinOnASlopeCarriesMaterialDownhill) {
+  DigTest test;
+  test.soil = soil_preset("gravel");
+  test.slope_deg = 10.0;
+  EXPECT_NEAR(dig_soil(test).downhill_m4 * 1e6, 2.92, 2 * 0.25);
+  test.slope_deg = 15.0;
+  EXPECT_NEAR(dig_soil(test).downhill_m4 * 1e6, 4.75, 2 * 0.28);
+  test.manoeuvre = Manoeuvre::kSlip;
+  EXPECT_THROW(dig_soil(test), InputError);
 }
 
 TEST(SoilDigTest, WithoutDraggingASpinOnlySinks) {

@@ -193,6 +193,33 @@ TEST(MaterialDigging, WhatIsDugInAStepGoesToFortyEightPlacesFarApart) {
   }
 }
 
+TEST(MaterialDigging, WhatIsCarriedPastTheFootprintKeepsItsAmountTimesWay) {
+  MaterialFlow flow = level(61);
+  DugPatch patch = patch_at(0.02, -0.03);
+  patch.forward = {0.6, 0.8};
+  patch.carried = {20.0, -50.0};
+  constexpr int kSteps = 400;
+  for (int step = 0; step < kSteps; ++step) {
+    flow.begin_footprint(0.0, 0.0);
+    for (const int ix : {31, 32, 33}) flow.shear(flow.index(ix, 27), 1.0);
+    flow.dig(patch, 480);
+    flow.deposit();
+    ASSERT_EQ(flow.in_transit(), 0);
+    ASSERT_EQ(volume(flow), 0);
+    flow.uncover();
+  }
+  Eigen::Vector2d carried = Eigen::Vector2d::Zero();
+  for (int iy = 0; iy < 61; ++iy) {
+    for (int ix = 0; ix < 61; ++ix) {
+      const Eigen::Vector2d at(flow.surface().node_x(ix), flow.surface().node_y(iy));
+      carried += flow.height(flow.index(ix, iy)) * (at - patch.centre);
+    }
+  }
+  // The places are those of a grid: its spacing is what the sum is uncertain by.
+  EXPECT_NEAR(carried.x() / kSteps, patch.carried.x(), 0.05 * patch.carried.norm());
+  EXPECT_NEAR(carried.y() / kSteps, patch.carried.y(), 0.05 * patch.carried.norm());
+}
+
 TEST(MaterialDigging, WithoutSlipOrWithNothingToTakeNothingIsDug) {
   MaterialFlow flow = level();
   flow.begin_footprint(0.0, 0.0);
