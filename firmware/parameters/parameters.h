@@ -16,7 +16,7 @@
 // scarce.
 #ifndef SCREED_LEAVE_OUT
 #ifdef __AVR__
-#define SCREED_LEAVE_OUT "training_drive"
+#define SCREED_LEAVE_OUT "training_drive peak_memory"
 #else
 #define SCREED_LEAVE_OUT ""
 #endif

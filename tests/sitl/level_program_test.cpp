@@ -64,7 +64,7 @@ TEST_F(LevelBench, QuickRunsTheBaselines) {
   ASSERT_EQ(courses.size(), 1U);
   EXPECT_EQ(courses[0]["course"], Json({"small", "rough", "gravel", "one", "fixes"}));
   EXPECT_EQ(courses[0]["duration_s"], 120.0);
-  ASSERT_EQ(courses[0]["entries"].size(), 4U);
+  ASSERT_EQ(courses[0]["entries"].size(), 5U);
   for (const Json& entry : courses[0]["entries"]) {
     EXPECT_EQ(entry["runs"], 2);
     EXPECT_EQ(entry["failed"], 0);
@@ -86,7 +86,8 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
                 "884284ec860d6de8d9f6c1697457900a", "69b8b55884ebc08e850c7c2bb056b2c3",
-                "271415562a2311997f7276f835899c13", "e4cea22a946c6c9054b0019c6394859f"}));
+                "271415562a2311997f7276f835899c13", "e4cea22a946c6c9054b0019c6394859f",
+                "4b2e3a440178a879ba33d82ba1231612"}));
 }
 
 TEST_F(LevelBench, AStrangersFileIsScoredBesideTheBaseline) {
