@@ -154,6 +154,21 @@ std::string joined(const std::vector<std::string>& names) {
   return name_list(names);
 }
 
+/// Of the section that says what a level is.
+std::string heading_of(const std::string& factor, const std::string& level) {
+  return factor + " " + level;
+}
+
+std::string key_of(const IniEntry& entry) {
+  return entry.section + "." + entry.key;
+}
+
+[[noreturn]] void refuse_level(const std::string& factor, const std::string& level,
+                               const std::vector<std::string>& known) {
+  throw InputError("unknown " + factor + " '" + level + "'; known are " + name_list(known) +
+                   (factor == kEntryFactor ? ", or an experiment file with its algorithm" : ""));
+}
+
 }  // namespace
 
 fs::path benchmark_path() {
@@ -192,7 +207,7 @@ Benchmark read_benchmark(const fs::path& path) {
 }
 
 std::string add_entry(const fs::path& file, Benchmark& benchmark) {
-  const std::string name = file.stem().string();
+  std::string name = file.stem().string();
   std::vector<IniEntry> entries = read_experiment_file(file).entries;
   check_entry(benchmark, file, entries);
   if (!std::any_of(entries.begin(), entries.end(), [](const IniEntry& entry) {
@@ -253,14 +268,13 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
       if (found == known.end()) {
         std::vector<std::string> all;
         for (const auto& [name, unused] : known) all.push_back(name);
-        throw InputError(
-            "unknown " + factor + " '" + level + "'; known are " + name_list(all) +
-            (factor == kEntryFactor ? ", or an experiment file with its algorithm" : ""));
+        refuse_level(factor, level, all);
       }
+      const std::string heading = heading_of(factor, level);
       for (const IniEntry& entry : found->second) {
         const bool duration = entry.section == "experiment" && entry.key == "duration";
         has_duration = has_duration || duration;
-        entries.push_back({factor + " " + level, entry.section + "." + entry.key,
+        entries.push_back({heading, key_of(entry),
                            duration && suite->second.duration_s.has_value()
                                ? shortest(*suite->second.duration_s)
                                : entry.value,

@@ -364,6 +364,11 @@ void take_entry(Reading& reading, const IniEntry& entry) {
   }
 }
 
+[[noreturn]] void refuse_level(const CampaignFactor& factor, const std::string& value) {
+  throw InputError(factor.where + ": no section [" + factor.heading + " " + value + "] says what " +
+                   value + " is");
+}
+
 /// Gives the factors their named levels. Each has its section, and each section its level.
 void take_levels(Reading& reading) {
   CampaignFile& campaign = reading.campaign;
@@ -374,9 +379,7 @@ void take_levels(Reading& reading) {
       for (const std::string& value : factor.values) {
         const LevelName name{factor.heading, value};
         const auto level = reading.levels.find(name);
-        if (level == reading.levels.end())
-          throw InputError(factor.where + ": no section [" + factor.heading + " " + value +
-                           "] says what " + value + " is");
+        if (level == reading.levels.end()) refuse_level(factor, value);
         factor.levels.insert({value, level->second});
         used.insert(name);
       }
