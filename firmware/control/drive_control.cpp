@@ -75,7 +75,8 @@ SCREED_OUT_OF_LINE int32_t DriveControl::corrected_yaw_rate(const MotionCommand&
   return static_cast<int32_t>(command.yaw_rate) + limit_i16(correction, kYawCorrectionLimit);
 }
 
-DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurement& measured) {
+DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurement& measured,
+                               bool at_once) {
   TrackSpeeds wanted = {0, 0};
   if (command.speed_mm_per_s == 0 && command.yaw_rate == 0) {
     forget_yaw();
@@ -84,8 +85,9 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
         kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
                            full_speed_mm_per_s_);
   }
-  targets_.left = approach(targets_.left, wanted.left, step_mm_per_s_);
-  targets_.right = approach(targets_.right, wanted.right, step_mm_per_s_);
+  const int16_t step = at_once ? INT16_MAX : step_mm_per_s_;
+  targets_.left = approach(targets_.left, wanted.left, step);
+  targets_.right = approach(targets_.right, wanted.right, step);
   return {left_.tick(targets_.left, measured.counts_left, measured.battery_mv),
           right_.tick(targets_.right, measured.counts_right, measured.battery_mv)};
 }

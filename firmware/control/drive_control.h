@@ -35,8 +35,9 @@ class DriveControl {
   /// first, and what lies there beyond 63 bytes costs flash wherever it is used.
   static void* operator new(size_t /*size*/, void* place) noexcept { return place; }
 
-  /// Drives: one tick towards `command`.
-  DriveOutput tick(const MotionCommand& command, const DriveMeasurement& measured);
+  /// Drives: one tick towards `command`; `at_once`: without the limit of acceleration.
+  DriveOutput tick(const MotionCommand& command, const DriveMeasurement& measured,
+                   bool at_once = false);
 
   /// Motors off: keeps observing the tracks, forgets the controllers' state.
   void idle(const DriveMeasurement& measured);

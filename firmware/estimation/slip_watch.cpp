@@ -86,6 +86,28 @@ SCREED_OUT_OF_LINE void SlipWatch::feel_collision(int16_t residual) {
   }
 }
 
+/// What was lost, and the network's memory.
+void SlipWatch::forget() {
+  for (int32_t& loss : velocity_loss_) loss = 0;
+  for (uint8_t i = 0; i < kSlipUnits; ++i) {
+    states_[i] = 0;
+    values_[kSlipInputs + i] = 0;
+  }
+}
+
+void SlipWatch::pass_over(const TrackMotion& left, const TrackMotion& right) {
+  half_speed_ = asr_i16(
+      static_cast<int16_t>(asr_i16(left.speed_dmm_per_s, 1) + asr_i16(right.speed_dmm_per_s, 1)),
+      1);
+  forget();
+  lost_ = 0;
+  collision_ticks_ = 0;
+  evidence_ = 0;
+  stuck_ = false;
+  half_done_ = false;
+  travel_share_ = 0;
+}
+
 void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const int16_t* gyro,
                      const int16_t* accel, int16_t sin_pitch_q14, int32_t yaw_rate,
                      bool classify_now) {
@@ -107,11 +129,7 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
   if (faster_track_ < kStanding_dmm_per_s) {
     mean_ += residual * 8;
-    for (int32_t& loss : velocity_loss_) loss = 0;
-    for (uint8_t i = 0; i < kSlipUnits; ++i) {
-      states_[i] = 0;
-      values_[kSlipInputs + i] = 0;
-    }
+    forget();
   } else {
     mean_ += residual;
     for (uint8_t i = 0; i < 3; ++i)

@@ -82,6 +82,10 @@ class SlipWatch : private SlipMemory {
                                const int16_t* gyro, const int16_t* accel, int16_t sin_pitch_q14,
                                int32_t yaw_rate, bool classify_now);
 
+  /// In place of tick(): the tracks slip on purpose. It forgets all but what it knows of the
+  /// sensors, and says that nothing is stuck and that the travel moves the robot nowhere.
+  void pass_over(const TrackMotion& left, const TrackMotion& right);
+
   /// The tracks move much more than the robot.
   bool slips() const;
   /// They have done so for long: the robot is dug in or hangs. Until it moves or the tracks stop.
@@ -110,6 +114,7 @@ class SlipWatch : private SlipMemory {
   void set_share(uint8_t input, bool negative, uint16_t part);
   void set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14);
   void conclude();
+  void forget();
 
   uint16_t arc_q16_;  ///< 0.1 mm/s at the track per four units of yaw rate
 };

@@ -27,17 +27,12 @@ int16_t between(int16_t from, int16_t to, uint8_t part) {
 PeakMemory::PeakMemory(const Parameters& parameters)
     : parameters_(parameters),
       random_(static_cast<uint16_t>(parameters.random_seed)),
-      half_mm_{parameters.site_x, parameters.site_y} {
-  for (int16_t& half : half_mm_) {
-    if (half == 0) half = parameters.site_radius;
-    if (half < 2 * kFromEdge_mm) half = 2 * kFromEdge_mm;
-  }
-}
+      site_(parameters) {}
 
 PeakMemory::Spot PeakMemory::spot(const int16_t (&mm)[2]) const {
   Spot spot{0, {0, 0}};
   for (uint8_t axis = kY + 1; axis-- > kX;) {
-    const int16_t half = half_mm_[axis];
+    const int16_t half = site_.half_mm[axis];
     const int16_t inside = limit_i16(mm[axis], static_cast<int16_t>(half - 1));
     // 2^-8 of the distance of two heights
     const auto at =
@@ -71,7 +66,7 @@ void PeakMemory::learn(const LevelingInput& input) {
     const uint8_t to_far = here.part[1 - axis];
     // From one height to the next, 1/32 mm: 2 half / (kSide - 1) times the slope, of which an angle
     // unit is 2 pi / 65536. 2 * 32 * 2 pi / 65536 = 1 / 163.
-    const auto rise = static_cast<int16_t>(mul_i16(uphill[axis], half_mm_[axis]) /
+    const auto rise = static_cast<int16_t>(mul_i16(uphill[axis], site_.half_mm[axis]) /
                                            (163 * static_cast<int32_t>(kSide - 1)));
     const int16_t known = between(static_cast<int16_t>(h[ahead] - h[0]),
                                   static_cast<int16_t>(h[ahead + aside] - h[aside]), to_far);
@@ -91,10 +86,7 @@ void PeakMemory::choose_target() {
   int16_t highest = INT16_MIN;
   for (uint8_t tries = kChoice; tries > 0; --tries) {
     int16_t point[2];
-    for (uint8_t axis = kX; axis <= kY; ++axis) {
-      const auto reach = static_cast<int16_t>(half_mm_[axis] - kFromEdge_mm);
-      point[axis] = random_.uniform(static_cast<int16_t>(-reach), reach);
-    }
+    site_.draw_place(random_, kFromEdge_mm, point);
     const int16_t here = height(point);
     if (here <= highest) continue;
     highest = here;

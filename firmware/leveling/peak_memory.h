@@ -12,6 +12,7 @@
 #pragma once
 
 #include "firmware/leveling/behaviour.h"
+#include "firmware/leveling/site_rectangle.h"
 #include "firmware/math/random.h"
 
 namespace screed {
@@ -39,7 +40,7 @@ class PeakMemory : public AlgorithmDefaults {
 
   Kept<Parameters> parameters_;
   Random random_;
-  int16_t half_mm_[2];  ///< of the site's sides
+  SiteRectangle site_;
   int16_t target_mm_[2] = {0, 0};
   uint16_t ticks_left_ = 0;  ///< of the way to the target, or of the spin
   uint8_t ticks_ = 0;        ///< since it learned last

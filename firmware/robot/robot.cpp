@@ -324,6 +324,10 @@ void Robot::select_motion() {
 }
 
 void Robot::watch_slip(const SensorSample& sample) {
+  if (strokes()) {  // slip on purpose
+    slip_watch_.pass_over(drive_.left(), drive_.right());
+    return;
+  }
   slip_watch_.tick(drive_.left(), drive_.right(), sample.gyro, sample.accel,
                    status_.angles.sin_pitch_q14, attitude_.yaw_rate(), telemetry_.is_packet_tick());
 }
@@ -414,7 +418,7 @@ void Robot::tick(const SensorSample& sample, RobotOutput& output) {
   const DriveMeasurement measured = {deltas.left, deltas.right, attitude_.yaw_rate(),
                                      status_.battery_mv};
   if (supervisor_.powered()) {
-    status_.duty = drive_.tick(status_.motion, measured);
+    status_.duty = drive_.tick(status_.motion, measured, strokes());
   } else {
     drive_.idle(measured);
     status_.duty = {0, 0};

@@ -92,6 +92,11 @@ class Robot : private RobotMemory {
   void select_motion();
   void watch_slip(const SensorSample& sample);
   void feel_walls();
+  /// It strokes: its tracks change their speed at once and slip.
+  bool strokes() const {
+    return algorithm_in_build(static_cast<int16_t>(LevelingAlgorithm::kStrokes)) &&
+           supervisor_.running() && leveling_.state() == LevelingState::kStroke;
+  }
   void announce_state();
   void report(const SensorSample& sample, RobotOutput& output);
   void write_actuators(RobotOutput& output);

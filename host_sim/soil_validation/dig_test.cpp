@@ -37,8 +37,13 @@ constexpr double kMound_m = 0.08;
 constexpr double kMoundSlope_rad = 20.0 * std::numbers::pi / 180.0;
 constexpr double kAverage_m = 0.035;
 
+/// It works about the place where it begins.
+bool stays(Manoeuvre manoeuvre) {
+  return manoeuvre == Manoeuvre::kSpin || manoeuvre == Manoeuvre::kStrokes;
+}
+
 double start_x(const DigTest& test) {
-  return test.manoeuvre == Manoeuvre::kSpin ? 0.0 : -0.5 * test.size_m + 0.17;
+  return stays(test.manoeuvre) ? 0.0 : -0.5 * test.size_m + 0.17;
 }
 
 HeightField ground_before(const DigTest& test, double floor_m) {
@@ -59,10 +64,15 @@ void check(const DigTest& test) {
   check_range("dig", "size", test.size_m, 0.5, 5.0);
   check_range("dig", "speed", test.track_m_per_s, 0.01, 1.0);
   check_range("dig", "duration", test.duration_s, 0.1, 600.0);
+  check_range("dig", "stroke", test.stroke_s, 0.0, 5.0);
+  check_range("dig", "stroke back", test.stroke_back_s, 0.0, 5.0);
+  check_range("dig", "stroke acceleration", test.stroke_accel_m_per_s2, 0.1, 100.0);
   check_range("dig", "beds", test.beds, 1, 256);
   check_range("dig", "slope", test.slope_deg, 0, 25);
-  if (test.slope_deg > 0.0 && test.manoeuvre != Manoeuvre::kSpin)
-    throw InputError("dig: slope = " + std::to_string(test.slope_deg) + ", which only a spin has");
+  if (test.slope_deg > 0.0 && !stays(test.manoeuvre)) {
+    throw InputError("dig: slope = " + std::to_string(test.slope_deg) +
+                     ", which only a spin and strokes have");
+  }
 }
 
 class DiggingRobot {
@@ -184,6 +194,9 @@ HeightField averaged(const HeightField& field) {
 void measure(DigResult& result) {
   const HeightField& field = result.before;
   const double area = field.spacing_m() * field.spacing_m();
+  double moment_m4 = 0.0;
+  double sunk_moment_m4 = 0.0;
+  double net_m3 = 0.0;
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
       const double rise =
@@ -195,6 +208,9 @@ void measure(DigResult& result) {
       const double volume = std::abs(rise) * area;
       (rise > 0.0 ? result.raised_m3 : result.sunk_m3) += volume;
       result.downhill_m4 -= rise * area * dx;
+      moment_m4 += rise * area * dx;
+      net_m3 += rise * area;
+      if (rise < 0.0) sunk_moment_m4 += volume * dx;
       (rise > 0.0 ? result.raised_radius_m : result.sunk_radius_m) += volume * away;
       if (rise > 0.0 && dx < 0.0) result.behind_share += volume;
     }
@@ -203,7 +219,12 @@ void measure(DigResult& result) {
     result.raised_radius_m /= result.raised_m3;
     result.behind_share /= result.raised_m3;
   }
-  if (result.sunk_m3 > 0.0) result.sunk_radius_m /= result.sunk_m3;
+  if (result.sunk_m3 > 0.0) {
+    result.sunk_radius_m /= result.sunk_m3;
+    const double sunk_dx = sunk_moment_m4 / result.sunk_m3;
+    result.sunk_x_m = result.end_x_m + sunk_dx;
+    result.carried_m4 = moment_m4 - net_m3 * sunk_dx;
+  }
 }
 
 /// Receives the share that is done of a drive, 0..1.
@@ -216,22 +237,36 @@ OfDrive of_drive(const TaskProgress& progress, int number, int drives) {
   };
 }
 
+/// Belt speed of the strokes at this time: up from -v to v gently, some time at v, down to -v at
+/// once, some time at -v.
+double stroke_speed(const DigTest& test, double time_s) {
+  const double v = test.track_m_per_s;
+  const double ramp = 2.0 * v / test.stroke_accel_m_per_s2;
+  const double at = std::fmod(time_s, ramp + test.stroke_s + test.stroke_back_s);
+  if (at < ramp) return -v + test.stroke_accel_m_per_s2 * at;
+  return at < ramp + test.stroke_s ? v : -v;
+}
+
 /// Drives the manoeuvre, with the robot standing at its start.
 DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& bed,
                 const OfDrive& progress) {
   DigResult result{averaged(bed.surface()), HeightField::flat(1.0, 0.1)};
   const auto lowering = static_cast<int>(std::lround(kLowering_s / dt));
   for (int i = 0; i < lowering; ++i) robot.lower(bed, dt);
-  if (test.slope_deg > 0.0) robot.tether();
+  if (test.slope_deg > 0.0 && test.manoeuvre == Manoeuvre::kSpin) robot.tether();
   const Eigen::Vector3d start = robot.position();
   const double v = test.track_m_per_s;
   const bool spin = test.manoeuvre == Manoeuvre::kSpin;
   const double hold = test.manoeuvre == Manoeuvre::kSlip ? (1.0 - kSlip) * v : 0.0;
-  const std::array<double, 2> belts = {spin ? -v : v, v};
+  std::array<double, 2> belts = {spin ? -v : v, v};
   const double edge = 0.5 * test.size_m - 0.17;
   const auto steps = static_cast<int64_t>(std::llround(test.duration_s / dt));
   for (int64_t i = 0; i < steps; ++i) {
     if (i % kReportSteps == 0) progress(static_cast<double>(i) / static_cast<double>(steps));
+    if (test.manoeuvre == Manoeuvre::kStrokes) {
+      const double speed = stroke_speed(test, result.time_s);
+      belts.fill(test.slope_deg > 0.0 ? -speed : speed);
+    }
     robot.step(bed, belts, hold, dt);
     result.time_s += dt;
     const Eigen::Vector3d place = robot.position();
@@ -290,15 +325,15 @@ RiseMap rise_of(const DigResult& result) {
   return rise;
 }
 
-/// Standard error of the mean of the beds.
-double downhill_error(const HeightField& field, std::span<const RiseMap> rises) {
+/// Standard error of the mean of the beds of what has moved along x, from there.
+double moment_error(const HeightField& field, std::span<const RiseMap> rises, double from_x_m) {
   const double area = field.spacing_m() * field.spacing_m();
   double sum = 0.0;
   double squares = 0.0;
   for (const RiseMap& rise : rises) {
     double one = 0.0;
     for (size_t i = 0; i < rise.size(); ++i)
-      one -= rise[i] * area * field.node_x(static_cast<int>(i) % field.nx());
+      one += rise[i] * area * (field.node_x(static_cast<int>(i) % field.nx()) - from_x_m);
     sum += one;
     squares += one * one;
   }
@@ -337,7 +372,8 @@ DigResult dig_particles(const DigTest& test, const TaskProgress& progress) {
   measure(mean);
   const double area = mean.before.spacing_m() * mean.before.spacing_m();
   mean.error = standard_error(rises, area);
-  mean.downhill_error_m4 = downhill_error(mean.before, rises);
+  mean.downhill_error_m4 = moment_error(mean.before, rises, mean.end_x_m);
+  mean.carried_error_m4 = moment_error(mean.before, rises, mean.sunk_x_m);
   mean.at_least = volume_without_noise(rises, area);
   for (int beds = 1; beds < test.beds; beds *= 4)
     mean.of_beds.push_back({beds, volume_of_means(rises, area, static_cast<size_t>(beds))});

@@ -15,26 +15,31 @@
 namespace screed {
 
 enum class Manoeuvre {
-  kSpin,    ///< 10 s on the spot, the tracks against each other
-  kCharge,  ///< against a mound whose flanks rise at 20 degrees
-  kSlip,    ///< straight ahead while something holds it back to 60 % slip
+  kSpin,     ///< 10 s on the spot, the tracks against each other
+  kCharge,   ///< against a mound whose flanks rise at 20 degrees
+  kSlip,     ///< straight ahead while something holds it back to 60 % slip
+  kStrokes,  ///< to and fro: gently into the way ahead, hard into the way back; on a slope, which
+             ///< it faces uphill, the other way round
 };
 
 struct DigTest {
   Manoeuvre manoeuvre = Manoeuvre::kSpin;
   SoilParameters soil;  ///< of deformable ground
   SoilOptions options;
-  double cell_m = 0.005;       ///< of its grid, and of the rays over particles
-  double step_s = 1e-3;        ///< of deformable ground; particles have their own
-  ParticleMaterial particle;   ///< of ground of particles
-  double depth_m = 0.10;       ///< of the bed of particles, 0.02..1
-  double size_m = 0.9;         ///< of the bed's side, 0.5..5
-  double track_m_per_s = 0.2;  ///< belt speed over the wheels, 0.01..1
-  double duration_s = 10.0;    ///< 0.1..600; slip: as far as the bed goes, at most
-  double slope_deg = 0.0;      ///< spin: of the ground, rising to the east, 0..25; above 0 the
-                               ///< robot is tethered to its place
-  uint64_t seed = 1;           ///< of the particles' layout
-  int beds = 16;               ///< of particles, laid with this seed and the next ones; 1..256
+  double cell_m = 0.005;               ///< of its grid, and of the rays over particles
+  double step_s = 1e-3;                ///< of deformable ground; particles have their own
+  ParticleMaterial particle;           ///< of ground of particles
+  double depth_m = 0.10;               ///< of the bed of particles, 0.02..1
+  double size_m = 0.9;                 ///< of the bed's side, 0.5..5
+  double track_m_per_s = 0.2;          ///< belt speed over the wheels, 0.01..1
+  double duration_s = 10.0;            ///< 0.1..600; slip: as far as the bed goes, at most
+  double stroke_s = 0.1;               ///< strokes: of full speed ahead, 0..5
+  double stroke_back_s = 0.22;         ///< strokes: of full speed back, 0..5
+  double stroke_accel_m_per_s2 = 1.5;  ///< strokes: of the belts into the way ahead, 0.1..100
+  double slope_deg = 0.0;  ///< spin, strokes: of the ground, rising to the east, 0..25; above
+                           ///< 0 the spinning robot is tethered to its place
+  uint64_t seed = 1;       ///< of the particles' layout
+  int beds = 16;           ///< of particles, laid with this seed and the next ones; 1..256
 };
 
 /// Volumes of the mean of so many beds' height maps.
@@ -57,12 +62,15 @@ struct DigResult {
   std::vector<DigOfBeds> of_beds = {};  ///< of particles: of fewer beds; 1, 4, 16, ...
   double downhill_m4 = 0.0;  ///< volume times the way west that it was moved, from the robot's end
   double downhill_error_m4 = 0.0;  ///< of particles: its standard error
-  double deepest_m = 0.0;          ///< of the hole or rut
-  double highest_m = 0.0;          ///< of what was thrown up
-  double sunk_radius_m = 0.0;      ///< mean distance of the sunk volume from there
-  double raised_radius_m = 0.0;    ///< and of the raised
-  double behind_share = 0.0;       ///< of the raised volume, west of there
-  double end_x_m = 0.0;            ///< where the robot ended
+  double carried_m4 = 0.0;  ///< volume times the way east that it was moved, from what has sunk
+  double carried_error_m4 = 0.0;  ///< of particles: its standard error
+  double sunk_x_m = 0.0;          ///< middle of the sunk volume
+  double deepest_m = 0.0;         ///< of the hole or rut
+  double highest_m = 0.0;         ///< of what was thrown up
+  double sunk_radius_m = 0.0;     ///< mean distance of the sunk volume from there
+  double raised_radius_m = 0.0;   ///< and of the raised
+  double behind_share = 0.0;      ///< of the raised volume, west of there
+  double end_x_m = 0.0;           ///< where the robot ended
   double end_y_m = 0.0;
   double time_s = 0.0;      ///< that the drive took
   double pull_n = 0.0;      ///< slip: what held it back, mean

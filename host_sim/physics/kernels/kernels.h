@@ -292,7 +292,9 @@ struct ReactionSums {
   double sum_across = 0.0;
   double sum_along_squared = 0.0;
   double sum_across_squared = 0.0;
-  double slip = 0.0;  ///< speed times mobilised share
+  double slip = 0.0;        ///< speed times mobilised share
+  double slip_along = 0.0;  ///< its parts ahead and to the left, signed
+  double slip_across = 0.0;
 };
 
 /// From the first to behind the last of some heights that are above a line; none: end = 0.

@@ -80,6 +80,7 @@ SoilParameters gravel() {
   s.compaction = 0.38;
   s.compaction_depth_m = 0.003;
   s.drag_depth_m = 0.00195;
+  s.drag_share = 0.68;
   return s;
 }
 

@@ -33,6 +33,7 @@ namespace screed {
   X(compaction,         "compaction",    "--compaction",    "",          0.0,  1.0,  0.0,   "share of the sunk volume that is compacted") \
   X(compaction_depth_m, "compaction_depth", "--compaction-depth", "m",   0.0,  1.0,  0.0,   "how much a place may lose by compaction in all; 0: any") \
   X(drag_depth_m,       "drag_depth",    "--drag-depth",    "m",         0.0,  1.0,  0.0,   "thickness of the layer that a slipping surface digs away") \
+  X(drag_share,         "drag_share",    "--drag-share",    "",          0.0,  1.0,  0.0,   "share of the surface's slip with which that layer goes along") \
   X(slip_sinkage,       "slip_sinkage",  "--slip-sinkage",  "",          0.0,  2.0,  0.0,   "growth of n with slip") \
   X(front_angle,        "c1",            "--c1",            "",          0.0,  0.9,  0.0,   "angle of a wheel's greatest stress over its entry angle, at slip 0; 0: below the axle") \
   X(front_angle_driven, "c2",            "--c2",            "",          -0.9, 0.9,  0.0,   "growth of c1 with slip, driven") \

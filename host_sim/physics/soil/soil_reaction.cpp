@@ -39,8 +39,10 @@
 //   volume  = drag_depth slip dt width
 // The layer slips in the direction of all that shears it. Gravity does so, too: down a slope theta
 // with tan(theta) / tan(phi) of what makes it slip, so it goes that way with this part of its
-// speed, and no faster than it slips.
+// speed, and by gravity no faster than it slips.
 //   carried = drag_depth slip dt area min(1, tan(theta) / tan phi)    volume times way, downhill
+// and it goes along with the surface, the slower the deeper in the layer; both add up:
+//   carried = drag_depth drag_share slip dt area                      the way the surface slips
 #include <algorithm>
 #include <cmath>
 
@@ -81,6 +83,9 @@ void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
   const Eigen::Vector2d fall = normal.head<2>() / std::max(normal.z(), 1e-3);
   const double part = 1.0 / std::max(tan_repose_, fall.norm());
   patch.carried = soil_.drag_depth_m * dt * sums.slip / kHeightUnit_m * part * fall;
+  const Eigen::Vector2d dragged = sums.slip_along * vector(law.level_ahead).head<2>() +
+                                  sums.slip_across * vector(law.level_left).head<2>();
+  patch.carried += soil_.drag_depth_m * soil_.drag_share * dt / kHeightUnit_m * dragged;
   const auto units = static_cast<int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
   flow_.dig(patch, units);

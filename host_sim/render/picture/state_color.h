@@ -10,7 +10,7 @@
 namespace screed {
 
 /// How many states have a colour; a test holds this against the schema.
-inline constexpr size_t kStateColors = 11;
+inline constexpr size_t kStateColors = 12;
 
 /// Of the path in a state and of all that names the state; grey for a state without a colour.
 inline Color state_color(size_t state) {
@@ -27,6 +27,7 @@ inline Color state_color(size_t state) {
       category_color(6),   // cover
       category_color(8),   // escape
       {0.15, 0.35, 0.15},  // seek_wall
+      {0.85, 0.10, 0.45},  // stroke
   }};
   return state < kColors.size() ? kColors[state] : Color{0.55, 0.58, 0.60};
 }

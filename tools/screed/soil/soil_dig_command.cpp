@@ -22,14 +22,16 @@ struct DigArguments {
   double fit_cm3 = 0.0;
 };
 
-constexpr std::pair<const char*, Manoeuvre> kManoeuvres[] = {
-    {"spin", Manoeuvre::kSpin}, {"charge", Manoeuvre::kCharge}, {"slip", Manoeuvre::kSlip}};
+constexpr std::pair<const char*, Manoeuvre> kManoeuvres[] = {{"spin", Manoeuvre::kSpin},
+                                                             {"charge", Manoeuvre::kCharge},
+                                                             {"slip", Manoeuvre::kSlip},
+                                                             {"strokes", Manoeuvre::kStrokes}};
 
 Manoeuvre manoeuvre_named(const std::string& name) {
   for (const auto& [known, manoeuvre] : kManoeuvres) {
     if (name == known) return manoeuvre;
   }
-  throw InputError("dig: manoeuvre = " + name + "; allowed is spin, charge or slip");
+  throw InputError("dig: manoeuvre = " + name + "; allowed is spin, charge, slip or strokes");
 }
 
 /// The drag depth with which the robot raises so much, to 0.1 mm: the nearest of a row, then
@@ -106,9 +108,13 @@ int run_dig(DigArguments a) {
   if (a.test.slope_deg > 0.0) add("downhill_cm3m", result.downhill_m4 * 1e6, "%.3f");
   if (a.test.slope_deg > 0.0 && particles && a.test.beds > 1)
     add("downhill_error_cm3m", result.downhill_error_m4 * 1e6, "%.3f");
+  add("carried_cm3m", result.carried_m4 * 1e6, "%.3f");
+  if (particles && a.test.beds > 1)
+    add("carried_error_cm3m", result.carried_error_m4 * 1e6, "%.3f");
   add("time_s", result.time_s, "%.2f");
   if (a.test.manoeuvre == Manoeuvre::kSlip) add("pull_n", result.pull_n, "%.2f");
   add("distance_m", result.distance_m, "%.4f");
+  if (a.test.manoeuvre == Manoeuvre::kStrokes) add("end_x_m", result.end_x_m, "%.4f");
   add("turned_deg", result.turned_rad * kDegrees, "%.1f");
   add("lower_by_mm", result.lower_by_m * kMilli, "%.2f");
   add("pitch_deg", result.pitch_rad * kDegrees, "%.2f");
@@ -139,7 +145,7 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
   a->test.particle.radius_m = 0.0075;
   command
       ->add_option("--manoeuvre", a->manoeuvre,
-                   "Manoeuvre: spin, charge (a mound of 20 degrees) or slip")
+                   "Manoeuvre: spin, charge (a mound of 20 degrees), slip or strokes")
       ->capture_default_str();
   command->add_option("--ground", a->ground, "Terrain model: scm or particles")
       ->capture_default_str();
@@ -151,10 +157,17 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
   add_number(*command, "--size", a->test.size_m, "Side length of the bed [m]", {0.5, 5.0});
   add_number(*command, "--track-speed", a->test.track_m_per_s, "Belt speed [m/s]", {0.01, 1.0});
   add_number(*command, "--duration", a->test.duration_s, "Duration [s]", {0.1, 600.0});
+  add_number(*command, "--stroke", a->test.stroke_s, "Strokes: time at full speed ahead [s]",
+             {0.0, 5.0});
+  add_number(*command, "--stroke-back", a->test.stroke_back_s,
+             "Strokes: time at full speed back [s]", {0.0, 5.0});
+  add_number(*command, "--stroke-accel", a->test.stroke_accel_m_per_s2,
+             "Strokes: acceleration of the belts into the way ahead [m/s^2]", {0.1, 100.0});
   add_number(*command, "--seed", a->test.seed, "Seed of the particle layout", kSeedRange);
-  add_number(*command, "--slope", a->test.slope_deg,
-             "Slope that a spin is on, rising to the east; the robot is tethered [deg]",
-             {0.0, 25.0});
+  add_number(
+      *command, "--slope", a->test.slope_deg,
+      "Slope that a spin, tethered to its place, or strokes are on, rising to the east [deg]",
+      {0.0, 25.0});
   add_number(*command, "--beds", a->test.beds, "Number of particle beds whose heights are averaged",
              {1, 256});
   add_number(*command, "--fit-raised", a->fit_cm3,

@@ -265,6 +265,16 @@ TEST(DriveControl, TheAccelerationLimitIsRoundedUpToWholeStepsATick) {
   }
 }
 
+TEST(DriveControl, AtOnceIsWithoutThatLimit) {
+  DriveControl control(kBoard, Parameters{});
+  control.tick({250, 0}, {0, 0, 0, 7200}, true);
+  EXPECT_EQ(control.targets().left, 250);
+  control.tick({-250, 0}, {0, 0, 0, 7200}, true);
+  EXPECT_EQ(control.targets().right, -250);
+  control.tick({250, 0}, {0, 0, 0, 7200});
+  EXPECT_LT(control.targets().left, -200);
+}
+
 TEST(DriveControl, MotorsThatAreOffAreStillObserved) {
   DriveControl control(kBoard, Parameters{});
   for (int tick = 0; tick < 200; ++tick) control.idle({2, -3, 0, 7200});

@@ -32,6 +32,7 @@ Trace drive(InstructionSet set) {
   SoilParameters soil = soil_preset("cmu_2022");  // with all that a soil can have
   soil.damping_pa_s_per_m = 300.0;
   soil.drag_depth_m = 0.002;
+  soil.drag_share = 0.7;
   soil.compaction = 0.2;
   SoilOptions options;
   options.instructions = set;

@@ -140,6 +140,29 @@ TEST(SoilDigging, HeapsItUpAroundThePlateAsFarAsThePlateIsWide) {
   }
 }
 
+// Volume times the way it has moved.
+TEST(SoilDigging, ADragShareCarriesTheLayerTheWayTheSurfaceSlips) {
+  SoilParameters soil = dragged_soil();
+  for (const double share : {0.0, 0.3, 0.6}) {
+    soil.drag_share = share;
+    for (const double yaw_deg : {0.0, 90.0, 180.0}) {
+      const Dug dug = dig({0.1, 0.05, yaw_deg}, soil, 0.3);
+      double east = 0.0;
+      double north = 0.0;
+      dug.visit([&](double x, double y, double lower) {
+        east -= lower * x;
+        north -= lower * y;
+      });
+      const double expected = soil.drag_depth_m * share * kSlip_m_per_s * 0.3 * 0.1 * 0.05;
+      const double yaw = yaw_deg * std::numbers::pi / 180.0;
+      const double tolerance = 0.02 * soil.drag_depth_m * kSlip_m_per_s * 0.3 * 0.1 * 0.05;
+      EXPECT_NEAR(east, expected * std::cos(yaw), tolerance) << share << " " << yaw_deg;
+      EXPECT_NEAR(north, expected * std::sin(yaw), tolerance) << share << " " << yaw_deg;
+      EXPECT_EQ(dug.balance.error(), 0);
+    }
+  }
+}
+
 TEST(SoilDigging, ThePatchIsWhatThePlateTouches) {
   // Half of the plate hangs over lower ground: along it, then across it.
   for (const bool along : {true, false}) {

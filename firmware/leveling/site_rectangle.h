@@ -1,0 +1,39 @@
+// The site as a rectangle: between its walls or, without walls, the square round its circle; with
+// both what is in both.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware/estimation/place.h"
+#include "firmware/math/random.h"
+#include "firmware/parameters/parameters.h"
+
+namespace screed {
+
+struct SiteRectangle {
+  explicit SiteRectangle(const Parameters& parameters)
+      : half_mm{parameters.site_x, parameters.site_y} {
+    for (int16_t& half : half_mm) {
+      const int16_t radius = parameters.site_radius;
+      if (half == 0 || (radius != 0 && radius < half)) half = radius;
+      if (half > kMax_mm) half = kMax_mm;
+      if (half < kMin_mm) half = kMin_mm;
+    }
+  }
+
+  /// A random place, at least so far from the edge.
+  void draw_place(Random& random, int16_t from_edge_mm, int16_t (&mm)[2]) const {
+    for (uint8_t axis = kX; axis <= kY; ++axis) {
+      const auto reach = static_cast<int16_t>(half_mm[axis] - from_edge_mm);
+      mm[axis] = random.uniform(static_cast<int16_t>(-reach), reach);
+    }
+  }
+
+  int16_t half_mm[2];  ///< of the sides, east and north
+
+ private:
+  static constexpr int16_t kMin_mm = 300;            ///< twice the robot's half diagonal
+  static constexpr int16_t kMax_mm = INT16_MAX / 2;  ///< so that distances fit 16 bits
+};
+
+}  // namespace screed

@@ -1,0 +1,51 @@
+// Strokes: on a slope the robot faces straight up or down it and drives to and fro so fast that its
+// tracks slip; the ground goes downhill.
+//
+// Tracks that slip carry the layer below them along. Where a robot turns round faster than friction
+// can turn it, it slips for a tenth of a second, until its body has followed. On a slope it does so
+// at the lower end of a stroke, where gravity works against it, and hardly at the upper one, where
+// gravity helps: so most of the slip is downhill. A spin slips as much to all sides and carries a
+// fifth of that (docs/measurements/soil.md, Strokes).
+//
+// Where: it drives from one random place of its site to the next and works on every slope on its
+// way that is worth it. What is worth it follows from what there is: the limit falls with every
+// journey and rises with every work, so the steepest goes first.
+#pragma once
+
+#include "firmware/leveling/behaviour.h"
+#include "firmware/leveling/site_rectangle.h"
+#include "firmware/math/random.h"
+
+namespace screed {
+
+class Strokes : public AlgorithmDefaults {
+ public:
+  explicit Strokes(const Parameters& parameters);
+
+  MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
+
+  /// Slope from which on it works.
+  Angle limit() const { return limit_; }
+
+ private:
+  enum class Phase : uint8_t { kTravel, kFace, kStroke };
+
+  void begin(Phase phase, uint16_t ticks);
+  void begin_journey();
+  MotionCommand travel(const LevelingInput& input, Behaviour& behaviour);
+  MotionCommand face(Behaviour& behaviour);
+  MotionCommand stroke(Behaviour& behaviour);
+
+  Random random_;
+  SiteRectangle site_;
+  Angle limit_;
+  Angle pitch_ = 0;  ///< with a lag
+  Angle roll_ = 0;
+  uint16_t ticks_left_ = 0;  ///< of the phase, at most
+  int16_t target_mm_[2] = {0, 0};
+  Phase phase_ = Phase::kTravel;
+  bool downhill_ = false;    ///< it faces downhill, else uphill
+  uint8_t cycle_ticks_ = 0;  ///< left of one way down and up
+};
+
+}  // namespace screed
