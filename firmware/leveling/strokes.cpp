@@ -8,8 +8,8 @@ namespace {
 // downhill where it turns round; so it stays where it is. Of the motors' disobedience
 // (supervisor.h) reversed tracks are suspected only after 12 ticks.
 constexpr int16_t kSpeed_mm_per_s = 250;
-constexpr uint8_t kDownTicks = 10;
-constexpr uint8_t kUpTicks = 28;
+constexpr uint8_t kDownTicks = 15;
+constexpr uint8_t kUpTicks = 33;
 
 constexpr int16_t kFromEdge_mm = 115;  // there the robot touches the wall with its front
 constexpr int16_t kArrived_mm = 40;
