@@ -5,8 +5,7 @@ namespace screed {
 namespace {
 
 // A stroke: full speed down, full speed up. The way up takes longer, by what the robot slides
-// downhill where it turns round; so it stays where it is. Of the motors' disobedience
-// (supervisor.h) reversed tracks are suspected only after 12 ticks.
+// downhill where it turns round; so it stays where it is.
 constexpr int16_t kSpeed_mm_per_s = 250;
 constexpr uint8_t kDownTicks = 15;
 constexpr uint8_t kUpTicks = 33;
