@@ -26,11 +26,24 @@ uint8_t* slcan_put_byte(uint8_t* at, uint8_t byte);
 /// The byte of two hexadecimal digits; false when they are none.
 bool slcan_byte(const uint8_t* digits, uint8_t& byte);
 
+/// What the parser remembers, zero at the start.
+struct SlcanMemory {
+  uint16_t header_;  ///< the first four digits: id and size
+  uint8_t data_[8];
+  uint8_t length_;  ///< of the line so far
+  bool frame_like_;
+  bool all_hex_;
+  bool too_long_;
+  uint8_t rejected_;
+};
+
 /// Collects bytes to lines and lines to frames. A line that is not exactly a data frame (other
 /// commands, wrong length, foreign characters, too long) is dropped; rejected() counts those that
 /// began like a frame, and those that are too long to be anything.
-class SlcanParser {
+class SlcanParser : private SlcanMemory {
  public:
+  SlcanParser() : SlcanMemory() {}
+
   /// Takes one byte. Returns true when it ended a well-formed frame, which is then in `frame`.
   bool feed(uint8_t byte, CanFrame& frame);
 
@@ -39,14 +52,6 @@ class SlcanParser {
 
  private:
   bool end_line(CanFrame& frame);
-
-  uint16_t header_ = 0;  ///< the first four digits: id and size
-  uint8_t data_[8] = {};
-  uint8_t length_ = 0;  ///< of the line so far
-  bool frame_like_ = false;
-  bool all_hex_ = false;
-  bool too_long_ = false;
-  uint8_t rejected_ = 0;
 };
 
 }  // namespace screed

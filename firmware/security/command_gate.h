@@ -30,13 +30,24 @@ enum class GateResult : uint8_t {
   kRepeated = 255,  ///< the command that was accepted last, once more: not to be done again
 };
 
-class CommandGate {
+/// What the gate remembers, zero at the start (one loop of the microcontroller, not a store a byte).
+struct GateMemory {
+  uint16_t counter_;
+  uint16_t locked_ticks_;
+  uint16_t bad_mac_decay_ticks_;
+  uint8_t bad_macs_;
+  uint8_t refused_;
+  uint8_t last_[kCommandSize];  ///< the command that was accepted last
+};
+
+class CommandGate : private GateMemory {
  public:
   static constexpr uint8_t kMaxBadMacs = 8;
   static constexpr uint16_t kBadMacDecayTicks = 4 * kTickRate_hz;
   static constexpr uint16_t kLockoutTicks = 30 * kTickRate_hz;
 
-  explicit CommandGate(const Credentials& credentials) : credentials_(credentials) {}
+  explicit CommandGate(const Credentials& credentials)
+      : GateMemory(), credentials_(credentials) {}
 
   /// Looks at the kCommandSize bytes of a COMMAND. Costs 10,000 cycles on the AVR: once a tick.
   GateResult check(uint16_t can_id, const uint8_t* data);
@@ -54,12 +65,6 @@ class CommandGate {
 
  private:
   Kept<Credentials> credentials_;
-  uint16_t counter_ = 0;
-  uint16_t locked_ticks_ = 0;
-  uint16_t bad_mac_decay_ticks_ = 0;
-  uint8_t bad_macs_ = 0;
-  uint8_t refused_ = 0;
-  uint8_t last_[kCommandSize] = {};  ///< the command that was accepted last
 };
 
 }  // namespace screed
