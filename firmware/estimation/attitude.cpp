@@ -192,12 +192,16 @@ void AttitudeEstimator::detect_rest(const ImuSample& sample, bool may_be_at_rest
   }
 }
 
+SCREED_OUT_OF_LINE void AttitudeEstimator::forget_slope() {
+  slope_[0] = slope_[1] = slope_[2] = 0;
+}
+
 /// Moves the bias to the mean of the gyroscope.
 void AttitudeEstimator::learn_bias_at_rest() {
   if (bias_samples_ == 0) {
     // The bias may have turned the estimate by many degrees until now: average gravity and north
     // anew.
-    for (uint8_t i = 0; i < 3; ++i) slope_[i] = 0;
+    forget_slope();
     ticks_ = 1;
     if (mag_samples_ != 0) mag_samples_ = 1;
   }
@@ -318,7 +322,7 @@ void AttitudeEstimator::correct(const SmallQuaternion& correction) {
   // Gravity that does not point up any more is a lost attitude (tumbling beyond the gyroscope's
   // range): start again.
   if (gravity_[2] < (kCountsPerG / 4) << kGravityBits) {
-    slope_[0] = slope_[1] = slope_[2] = 0;
+    forget_slope();
     ticks_ = 0;
     mag_samples_ = 0;
   }

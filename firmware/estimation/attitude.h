@@ -118,6 +118,7 @@ class AttitudeEstimator : private AttitudeState {
  private:
   bool align(const int16_t (&accel)[3]);
   void detect_rest(const ImuSample& sample, bool may_be_at_rest);
+  void forget_slope();
   void learn_bias_at_rest();
   void learn_bias_in_motion(const RotationMatrix& to_earth, const SmallQuaternion& correction);
   void integrate(const int16_t (&gyro)[3]);

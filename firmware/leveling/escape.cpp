@@ -41,7 +41,7 @@ constexpr uint16_t kFreeTicks = 10 * kTickRate_hz;
 
 }  // namespace
 
-void Escape::start() {
+SCREED_OUT_OF_LINE void Escape::start() {
   ticks_left_ = 0;
   attempt_ = 0;
   steps_left_ = 0;

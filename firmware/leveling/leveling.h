@@ -11,6 +11,7 @@
 #include "firmware/leveling/behaviour.h"
 #include "firmware/leveling/escape.h"
 #include "firmware/leveling/wall_search.h"
+#include "firmware/parameters/algorithms_in_build.h"
 #include "schema/classes.h"
 
 namespace screed {

@@ -4,25 +4,17 @@
 namespace screed {
 namespace {
 
-// A stroke: full speed down, full speed up. The way up takes longer, by what the robot slides
-// downhill where it turns round; so it stays where it is.
-constexpr int16_t kSpeed_mm_per_s = 250;
-constexpr uint8_t kDownTicks = 15;
-constexpr uint8_t kUpTicks = 33;
-
 constexpr int16_t kFromEdge_mm = 115;  // there the robot touches the wall with its front
 constexpr int16_t kArrived_mm = 40;
 constexpr uint16_t kTravelTicks = 12 * kTickRate_hz;
-constexpr uint16_t kApartTicks = kTickRate_hz / 2;    // of travel between two places of work
-constexpr uint16_t kFaceTicks = 3 * kTickRate_hz;     // longest turn
-constexpr uint16_t kStrokeTicks = 16 * kTickRate_hz;  // longest work at a place
+constexpr uint16_t kApartTicks = kTickRate_hz / 2;  // of travel between two places of work
+constexpr uint16_t kFaceTicks = 3 * kTickRate_hz;   // longest turn
 constexpr Angle kFacing = angle_from_centidegrees(1000);
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(90);
 constexpr uint8_t kSlopeLag = 4;  // of the slope, 2^4 ticks
 
-// Slope from which on it works: at first, at least, and by how much it changes.
+// Slope from which on it works: at first, and by how much it changes.
 constexpr Angle kFirstLimit = angle_from_centidegrees(800);
-constexpr Angle kMinLimit = angle_from_centidegrees(200);
 constexpr uint8_t kFall = 3;  // by 2^-3 after every journey
 constexpr uint8_t kRise = 4;  // by 2^-4 with every work
 
@@ -34,9 +26,12 @@ void follow(Angle& lagging, Angle value) {
 }  // namespace
 
 Strokes::Strokes(const Parameters& parameters)
-    : random_(static_cast<uint16_t>(parameters.random_seed)),
+    : parameters_(parameters),
+      random_(static_cast<uint16_t>(parameters.random_seed)),
       site_(parameters),
-      limit_(kFirstLimit) {
+      limit_(kFirstLimit),
+      down_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_down))),
+      up_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_up))) {
   begin_journey();
 }
 
@@ -44,6 +39,8 @@ void Strokes::begin(Phase phase, uint16_t ticks) {
   phase_ = phase;
   ticks_left_ = ticks;
 }
+
+void Strokes::begin_cycle() { cycle_ticks_ = static_cast<uint8_t>(down_ticks_ + up_ticks_); }
 
 void Strokes::begin_journey() {
   site_.draw_place(random_, kFromEdge_mm, target_mm_);
@@ -62,18 +59,25 @@ MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) 
   const auto north = static_cast<int16_t>(target_mm_[kY] - input.place.mm[kY]);
   if (ticks_left_ == 0 || (abs_i16(east) < kArrived_mm && abs_i16(north) < kArrived_mm)) {
     limit_ = static_cast<Angle>(limit_ - asr_i16(limit_, kFall));
-    if (limit_ < kMinLimit) limit_ = kMinLimit;
+    const Angle least = angle_from_centidegrees(parameters_.stroke_slope);
+    if (limit_ < least) limit_ = least;
     begin_journey();
   }
-  return behaviour.enter_or_stay(LevelingState::kWalk, behaviour.steer(east, north, input.heading));
+  MotionCommand motion = behaviour.steer(east, north, input.heading);
+  if (motion.speed_mm_per_s > 0) motion.speed_mm_per_s = parameters_.stroke_speed;
+  if (motion.speed_mm_per_s < 0) {
+    motion.speed_mm_per_s = static_cast<int16_t>(-parameters_.stroke_speed);
+  }
+  return behaviour.enter_or_stay(LevelingState::kWalk, motion);
 }
 
 MotionCommand Strokes::face(Behaviour& behaviour) {
   Angle turn = atan2_angle(roll_, pitch_);
   if (downhill_) turn = angle_difference(turn, INT16_MIN);
   if (abs_i16(turn) < kFacing || ticks_left_ == 0) {
-    begin(Phase::kStroke, kStrokeTicks);
-    cycle_ticks_ = kDownTicks + kUpTicks;
+    begin(Phase::kStroke, ticks_from_ms(parameters_.stroke_time));
+    begin_cycle();
+    speed_ = 0;
     return stroke(behaviour);
   }
   return behaviour.enter_or_stay(LevelingState::kWalk,
@@ -87,13 +91,18 @@ MotionCommand Strokes::stroke(Behaviour& behaviour) {
       begin(Phase::kTravel, kTravelTicks);  // on to the same place
       return behaviour.enter_or_stay(LevelingState::kWalk, {0, 0});
     }
-    cycle_ticks_ = kDownTicks + kUpTicks;
+    begin_cycle();
   }
   --cycle_ticks_;
-  const bool down = cycle_ticks_ >= kUpTicks;
-  return behaviour.enter_or_stay(
-      LevelingState::kStroke,
-      {down == downhill_ ? kSpeed_mm_per_s : static_cast<int16_t>(-kSpeed_mm_per_s), 0});
+  const int16_t fastest = parameters_.stroke_speed;
+  if (cycle_ticks_ < up_ticks_) {
+    speed_ = fastest;
+  } else {
+    speed_ = static_cast<int16_t>(speed_ - parameters_.stroke_ease);  // 0.1 m/s^2: mm/s a tick
+    if (speed_ < -fastest) speed_ = static_cast<int16_t>(-fastest);
+  }
+  return behaviour.enter_or_stay(LevelingState::kStroke,
+                                 {downhill_ ? static_cast<int16_t>(-speed_) : speed_, 0});
 }
 
 MotionCommand Strokes::tick(const LevelingInput& input, Behaviour& behaviour) {

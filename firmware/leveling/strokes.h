@@ -31,11 +31,13 @@ class Strokes : public AlgorithmDefaults {
   enum class Phase : uint8_t { kTravel, kFace, kStroke };
 
   void begin(Phase phase, uint16_t ticks);
+  void begin_cycle();
   void begin_journey();
   MotionCommand travel(const LevelingInput& input, Behaviour& behaviour);
   MotionCommand face(Behaviour& behaviour);
   MotionCommand stroke(Behaviour& behaviour);
 
+  Kept<Parameters> parameters_;
   Random random_;
   SiteRectangle site_;
   Angle limit_;
@@ -46,6 +48,9 @@ class Strokes : public AlgorithmDefaults {
   Phase phase_ = Phase::kTravel;
   bool downhill_ = false;    ///< it faces downhill, else uphill
   uint8_t cycle_ticks_ = 0;  ///< left of one way down and up
+  uint8_t down_ticks_;
+  uint8_t up_ticks_;
+  int16_t speed_ = 0;  ///< uphill
 };
 
 }  // namespace screed

@@ -2,6 +2,7 @@
 // and listings. Not for the MCU image, which has no room for the strings.
 #pragma once
 
+#include "firmware/parameters/algorithms_in_build.h"
 #include "firmware/parameters/parameters.h"
 
 namespace screed {

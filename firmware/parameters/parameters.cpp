@@ -2,6 +2,7 @@
 // long.
 #include "firmware/parameters/parameters.h"
 
+#include "firmware/parameters/algorithms_in_build.h"
 #include "hal/program_memory.h"
 
 namespace screed {

@@ -7,34 +7,16 @@
 
 #include <stdint.h>
 
-#include "schema/values.h"
-
-// The algorithms that this build leaves out, by their names, a space between two: make firmware
-// LEAVE_OUT="coverage training_drive". Their numbers are then invalid parameters, with which a
-// robot refuses to arm. Left out of a microcontroller's image are the training drive, which drives
-// blindly (simulated terrain without edges tolerates that, a site does not), and for want of flash
-// those behind it.
-#ifndef SCREED_LEAVE_OUT
-#ifdef __AVR__
-#define SCREED_LEAVE_OUT "training_drive peak_memory strokes"
-#else
-#define SCREED_LEAVE_OUT ""
-#endif
-#endif
-
 /// Default of the parameter standalone, for robots that run without a ground station: make firmware
 /// STANDALONE=yes.
 #ifndef SCREED_STANDALONE
 #define SCREED_STANDALONE 0
 #endif
 
-/// A row's text of one leveling algorithm.
-#define SCREED_ALGORITHM_TEXT(number, name, Name) ", " #number " " #name
-
 // clang-format off
 //  name                    unit         min    max  default  meaning
 #define SCREED_PARAMETERS(X) \
-  X(algorithm,              "",            0, kMaxAlgorithm, static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing), "leveling algorithm" SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_TEXT)) \
+  X(algorithm,              "",            0, kMaxAlgorithm, kDefaultAlgorithm, "leveling algorithm" SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_TEXT)) \
   X(random_seed,            "",            0, 32767,      1, "seed of the random walk and of the training drive") \
   X(training_block,         "tick",        1, 32767,   2000, "training drive: length of each of the eight blocks of Algorithm 5") \
   X(climb_threshold,        "0.01 deg",  100,  4500,    500, "pitch above which a hill is being climbed (epsilon of Algorithm 6)") \
@@ -78,54 +60,20 @@
   X(climb_turn,             "1/s",         0,     4,      0, "while climbing, turn towards the steepest ascent at this rate per angle to it; 0: straight on") \
   X(coverage_half_side,     "mm",        100, 30000,    500, "coverage: half the side of the square round the start; within 0.7 of site_radius") \
   X(coverage_spacing,       "mm",         50,  2000,    200, "coverage: distance between two lines") \
-  X(escape_attempts,        "",            0,    20,      6, "a robot that is stuck tries this often to get out, then stops with the fault stuck; 0: no escape")
+  X(escape_attempts,        "",            0,    20,      6, "a robot that is stuck tries this often to get out, then stops with the fault stuck; 0: no escape") \
+  X(stroke_speed,           "mm/s",       20,   250,    250, "strokes: of the tracks, down and up") \
+  X(stroke_down,            "ms",         20,  1000,    180, "strokes: time downhill") \
+  X(stroke_up,              "ms",         20,  1000,    240, "strokes: time uphill; longer, by what the robot slides down") \
+  X(stroke_ease,            "0.1 m/s^2",   1,   500,     30, "strokes: change of the commanded speed into the downhill way; uphill it is at once, as 500 is") \
+  X(stroke_time,            "ms",        100, 30000,  16000, "strokes: longest work at one place") \
+  X(stroke_slope,           "0.01 deg",   20,   800,    200, "strokes: least slope that is worked on")
 // clang-format on
 
 namespace screed {
 
-/// Whether `list` begins with this word.
-constexpr bool begins_with(const char* list, const char* word) {
-  return *word == 0 ? *list == 0 || *list == ' '
-                    : *list == *word && begins_with(list + 1, word + 1);
-}
-/// Whether `word` is one of the words of `list`, which begins between two words or in one.
-constexpr bool lists(const char* list, const char* word, bool between = true) {
-  return *list != 0 &&
-         ((between && begins_with(list, word)) || lists(list + 1, word, *list == ' '));
-}
-constexpr uint8_t words_of(const char* list, bool between = true) {
-  return *list == 0 ? static_cast<uint8_t>(0)
-                    : static_cast<uint8_t>((between && *list != ' ' ? 1 : 0) +
-                                           words_of(list + 1, *list == ' '));
-}
-
-/// The leveling algorithms of this build, a bit each.
-#define SCREED_ALGORITHM_BIT(number, name, Name) \
-  | (lists(SCREED_LEAVE_OUT, #name) ? 0U : 1U << (number))
-constexpr uint16_t kAlgorithmsInBuild = 0U SCREED_LEVELING_ALGORITHM(SCREED_ALGORITHM_BIT);
-#undef SCREED_ALGORITHM_BIT
-#define SCREED_ANY_BIT(number, name, Name) | 1U << (number)
-constexpr uint16_t kAllAlgorithms = 0U SCREED_LEVELING_ALGORITHM(SCREED_ANY_BIT);
-#undef SCREED_ANY_BIT
-constexpr uint8_t bits_of(uint16_t bits) {
-  return bits == 0 ? static_cast<uint8_t>(0)
-                   : static_cast<uint8_t>((bits & 1U) + bits_of(static_cast<uint16_t>(bits >> 1)));
-}
-static_assert(words_of(SCREED_LEAVE_OUT) == bits_of(kAllAlgorithms) - bits_of(kAlgorithmsInBuild),
-              "LEAVE_OUT names algorithms");
-static_assert(message::kLevelingAlgorithmMax < 16, "kAlgorithmsInBuild has 16 bits");
-
-constexpr bool algorithm_in_build(int16_t number) {
-  return (kAlgorithmsInBuild >> number & 1) != 0;
-}
-
-/// The greatest number of an algorithm of this build.
-constexpr int16_t max_algorithm(int16_t from) {
-  return algorithm_in_build(from) ? from : max_algorithm(static_cast<int16_t>(from - 1));
-}
-constexpr int16_t kMaxAlgorithm = max_algorithm(message::kLevelingAlgorithmMax);
-static_assert(algorithm_in_build(static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing)),
-              "the default algorithm is in every build");
+/// hill_sensing: Algorithm 6. Which other algorithms a build has, and so the greatest value, only
+/// what uses that part of the table needs to know: it includes algorithms_in_build.h.
+constexpr int16_t kDefaultAlgorithm = 1;
 
 struct Parameters {
 #define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = (value);

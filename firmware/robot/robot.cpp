@@ -13,7 +13,7 @@ namespace screed {
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.
-constexpr uint8_t kStoreTicks = 200;
+constexpr uint8_t kStoreTicks = 240;
 static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
 
 static_assert(

@@ -58,7 +58,7 @@ endif
 ifdef NODE
 AVR_FLAGS += -DSCREED_NODE=$(NODE)
 endif
-# make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/parameters.h says.
+# make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/algorithms_in_build.h says.
 ifneq ($(origin LEAVE_OUT),undefined)
 AVR_FLAGS += -DSCREED_LEAVE_OUT='"$(LEAVE_OUT)"'
 endif

@@ -156,10 +156,14 @@ $(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
 $(SCREED): $(B)/tools/screed/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
 
-.PHONY: build sim install uninstall
+.PHONY: build sim level install uninstall
 build: $(SCREED)  ## build/<BUILD>/screed, the host program (BUILD=release|debug|asan)
 sim: $(SCREED)  ## drive the robot over a real terrain (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')
 	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
+# Into a folder that is new: what was there stays.
+level: $(SCREED) $(REPORT_PAGE)  ## a robot levels a small walled bed, in minutes: pictures, curve, table, page (ARGS='--seed 2')
+	@run=$(OUT)/level ; number=2 ; while [ -e $$run ] ; do run=$(OUT)/level-$$number ; number=$$((number + 1)) ; done ; \
+	  $(SCREED) sim host_sim/data/experiments/level_bed.ini --out $$run $(ARGS) && $(SCREED) report $$run
 
 # What `make install` makes below PREFIX. The program finds its data from where it lies itself (host_sim/core/data_folders.h), so the
 # tree may be moved.

@@ -22,10 +22,11 @@ namespace screed::schema {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: schema_compiler SCHEMA.dbc [--values FILE] [--classes FILE] [--messages FILE]\n"
-    "                       [--tables FILE] [--wireshark FOLDER] [--document FILE]\n"
-    "                       [--check-document FILE]\n"
+    "usage: schema_compiler SCHEMA.dbc [--values FILE] [--class-values FILE] [--classes FILE]\n"
+    "                       [--messages FILE] [--tables FILE] [--wireshark FOLDER]\n"
+    "                       [--document FILE] [--check-document FILE]\n"
     "  --values      C++ enumerations of names of values and of flags\n"
+    "  --class-values  those of values that name classes (attribute ClassFolder)\n"
     "  --classes     the #include lines of classes that values name (attribute ClassFolder)\n"
     "  --messages    C++ structures with pack() and unpack()\n"
     "  --tables      C++ tables for the host\n"
@@ -53,6 +54,8 @@ int run(const std::vector<std::string>& arguments) {
   check_schema(database);
   const std::map<std::string, std::function<void(const std::string&)>> actions = {
       {"--values", [&](const std::string& path) { write(path, value_code(database)); }},
+      {"--class-values",
+       [&](const std::string& path) { write(path, class_values(database)); }},
       {"--classes", [&](const std::string& path) { write(path, class_includes(database)); }},
       {"--messages", [&](const std::string& path) { write(path, message_code(database)); }},
       {"--tables", [&](const std::string& path) { write(path, host_tables(database)); }},

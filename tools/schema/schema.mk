@@ -1,6 +1,7 @@
 # The schema of the radio's messages and what is made of it. Included by the top Makefile, before the first use of what it makes.
 #
 #   firmware/protocol/screed.dbc -> build/generated/schema/values.h     names of values and flags, for the microcontroller and the host
+#                                    build/generated/schema/class_values.h  names of values that name classes, likewise
 #                                    build/generated/schema/classes.h    the headers of classes that values name, likewise
 #                                    build/generated/schema/messages.h   pack and unpack, likewise
 #                                    build/generated/schema/tables.h     names, units, scales, for the host
@@ -13,7 +14,7 @@ GENERATED_FOLDER := $(BUILD_ROOT)/generated
 SCHEMA_COMPILER := $(BUILD_ROOT)/schema/schema_compiler
 SCHEMA_SOURCES := $(call sources,tools/schema)
 SCHEMA_OBJECTS := $(SCHEMA_SOURCES:%.cpp=$(BUILD_ROOT)/schema/%.o)
-FIRMWARE_SCHEMA_HEADERS := $(addprefix $(GENERATED_FOLDER)/schema/,values.h classes.h messages.h)
+FIRMWARE_SCHEMA_HEADERS := $(addprefix $(GENERATED_FOLDER)/schema/,values.h class_values.h classes.h messages.h)
 SCHEMA_HEADERS := $(FIRMWARE_SCHEMA_HEADERS) $(GENERATED_FOLDER)/schema/tables.h
 
 # The compiler is built once for every kind of build, and before everything else.
@@ -27,7 +28,8 @@ $(SCHEMA_COMPILER): $(SCHEMA_OBJECTS)
 # The stamp is new when the compiler has run; the headers only when they changed.
 $(GENERATED_FOLDER)/schema.stamp: $(SCHEMA) $(SCHEMA_COMPILER)
 	@mkdir -p $(GENERATED_FOLDER)/schema $(GENERATED_FOLDER)/wireshark
-	@$(SCHEMA_COMPILER) $(SCHEMA) --values $(GENERATED_FOLDER)/schema/values.h --classes $(GENERATED_FOLDER)/schema/classes.h \
+	@$(SCHEMA_COMPILER) $(SCHEMA) --values $(GENERATED_FOLDER)/schema/values.h \
+	  --class-values $(GENERATED_FOLDER)/schema/class_values.h --classes $(GENERATED_FOLDER)/schema/classes.h \
 	  --messages $(GENERATED_FOLDER)/schema/messages.h --tables $(GENERATED_FOLDER)/schema/tables.h \
 	  --wireshark $(GENERATED_FOLDER)/wireshark
 	@touch $@

@@ -27,12 +27,16 @@ std::string list_macro(const DbcMessage& message, const Field& field) {
   return text + "\n\n";
 }
 
+std::string enumeration(const DbcMessage& message, const Field& field) {
+  return "enum class " + type_name(message, field) + " : " + unsigned_type(field.length);
+}
+
 std::string value_names(const DbcMessage& message, const Field& field) {
   const DbcSignal& signal = *field.signals.front();
   const std::string type = unsigned_type(field.length);
   const std::string name = type_name(message, field);
   std::string text =
-      comment_of(message, field, signal.comment) + "enum class " + name + " : " + type + " {\n";
+      comment_of(message, field, signal.comment) + enumeration(message, field) + " {\n";
   std::int64_t max = 0;
   for (const ValueName& value : signal.values) {
     text += "  k" + pascal_case(value.name) + " = " + std::to_string(value.value) + ",\n";
@@ -40,7 +44,7 @@ std::string value_names(const DbcMessage& message, const Field& field) {
   }
   text += "};\nconstexpr " + type + " k" + name + "Max = " + std::to_string(max) +
           ";  ///< the greatest of them\n";
-  return text + (signal.class_folder().empty() ? "\n" : list_macro(message, field));
+  return text + "\n";
 }
 
 std::string flags(const DbcMessage& message, const Field& field) {
@@ -56,28 +60,50 @@ std::string flags(const DbcMessage& message, const Field& field) {
   return text + "  };\n};\n\n";
 }
 
+constexpr const char* kHead =
+    "#pragma once\n\n#include <stdint.h>\n\nnamespace screed {\nnamespace message {\n\n";
+constexpr const char* kTail = "}  // namespace message\n}  // namespace screed\n";
+
 }  // namespace
 
 std::string value_code(const Database& database) {
   std::string text = "// " + made_from(database) +
                      "\n//\n"
-                     "// Of every signal with names of values an enumeration, its greatest "
-                     "value and, where\n"
-                     "// the values name classes, a list X(number, name, Name); of every field of "
-                     "flags their bits.\n"
-                     "#pragma once\n\n#include <stdint.h>\n\n"
-                     "namespace screed {\nnamespace message {\n\n";
+                     "// Of every signal with names of values an enumeration and its greatest "
+                     "value, of every field\n"
+                     "// of flags their bits. Values that name classes stand in class_values.h: "
+                     "what does not name\n"
+                     "// one of them need not be compiled anew when one is added.\n" +
+                     kHead;
   for (const DbcMessage& message : database.messages) {
     for (const Field& field : fields_of(message)) {
       const DbcSignal& first = *field.signals.front();
       if (!first.flags().empty()) {
         text += flags(message, field);
+      } else if (!first.class_folder().empty()) {
+        text += enumeration(message, field) + ";\n\n";
       } else if (!first.values.empty()) {
         text += value_names(message, field);
       }
     }
   }
-  return text + "}  // namespace message\n}  // namespace screed\n";
+  return text + kTail;
+}
+
+std::string class_values(const Database& database) {
+  std::string text = "// " + made_from(database) +
+                     "\n//\n"
+                     "// Of every signal whose values name classes an enumeration, its greatest "
+                     "value, and a list\n"
+                     "// X(number, name, Name).\n" +
+                     kHead;
+  for (const DbcMessage& message : database.messages) {
+    for (const Field& field : fields_of(message)) {
+      if (field.signals.front()->class_folder().empty()) continue;
+      text += value_names(message, field) + list_macro(message, field);
+    }
+  }
+  return text + kTail;
 }
 
 std::string class_includes(const Database& database) {

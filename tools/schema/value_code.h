@@ -12,6 +12,10 @@ namespace screed::schema {
 /// layer may use it.
 std::string value_code(const Database& database);
 
+/// The header schema/class_values.h: the enumerations of signals whose values name classes
+/// (attribute "ClassFolder"), which schema/values.h only declares, and a list of each.
+std::string class_values(const Database& database);
+
 /// The header schema/classes.h: for every signal with the attribute "ClassFolder" the headers of
 /// its values' classes, FOLDER/<name>.h.
 std::string class_includes(const Database& database);

@@ -15,6 +15,7 @@
 #include "host_sim/ground_station/station/ground_port.h"
 #include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/ground_station/telemetry/latest_telemetry.h"
+#include "schema/class_values.h"
 #include "tools/screed/viewer/subtitle.h"
 
 namespace screed::viewer {

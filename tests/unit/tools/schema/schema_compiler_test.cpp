@@ -250,7 +250,11 @@ TEST(SchemaCompiler, WritesTheListOfClassesThatValuesName) {
   };
   const Database it = parse_dbc("it.dbc", of("firmware/modes"));
   check_schema(it);
-  const std::string code = value_code(it);
+  EXPECT_NE(value_code(it).find("enum class AttitudeMode : uint8_t;\n"), std::string::npos)
+      << "declared: its values stand apart" << value_code(it);
+  const std::string code = class_values(it);
+  EXPECT_NE(code.find("enum class AttitudeMode : uint8_t {\n  kIdle = 0,\n"), std::string::npos)
+      << code;
   EXPECT_NE(code.find("#define SCREED_ATTITUDE_MODE(X) \\\n  X(0, idle, Idle) \\\n"
                       "  X(1, very_busy, VeryBusy)\n"),
             std::string::npos)

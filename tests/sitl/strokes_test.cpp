@@ -1,0 +1,91 @@
+// Closed loop on soil: a robot that strokes moves ground downhill, and nothing that watches it
+// takes the slip for a fault.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sitl/test_drive.h"
+
+namespace screed::testing {
+namespace {
+
+constexpr double kSlope_deg = 12.0;
+
+/// A robot at work on a slope of gravel that rises to the east, between walls.
+class StrokesOnGravel : public ::testing::Test {
+ protected:
+  static WorldOptions options() {
+    WorldOptions options;
+    options.soil = soil_preset("gravel");
+    options.physics_step_s = 0.005;
+    return options;
+  }
+  static Parameters parameters() {
+    Parameters parameters;
+    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
+    parameters.site_radius = 1200;
+    parameters.site_x = 750;
+    parameters.site_y = 750;
+    return parameters;
+  }
+  bool strokes() const { return drive_.robot.leveling().state() == LevelingState::kStroke; }
+  Place place() const {
+    Place place{};
+    drive_.robot.position().get(place);
+    return place;
+  }
+  /// Sum of height times place, m^3 m over the cell's area: falls where ground goes to the west.
+  double moment() const {
+    const HeightField& ground = drive_.world.terrain();
+    double sum = 0.0;
+    for (int y = 0; y < ground.ny(); ++y) {
+      for (int x = 0; x < ground.nx(); ++x) {
+        sum += ground.node(x, y) * kHeightUnit_m * ground.node_x(x);
+      }
+    }
+    return sum * ground.spacing_m() * ground.spacing_m();
+  }
+
+  TestDrive drive_{HeightField::ramp(1.5, 0.01, kSlope_deg), options(), parameters()};
+};
+
+TEST_F(StrokesOnGravel, MoveGroundDownhillAndAreTakenForNoFault) {
+  ASSERT_TRUE(drive_.run_until(30.0, [&] { return strokes(); }));
+  const double before = moment();
+  const Place at = place();
+  int ticks = 0;
+  for (; strokes() && ticks < 8 * kTickRate_hz; ++ticks) {
+    drive_.tick();
+    ASSERT_FALSE(drive_.robot.slip_watch().stuck()) << ticks;
+    ASSERT_NEAR(place().mm[kX], at.mm[kX], 2) << "the tracks' travel is not the robot's";
+    ASSERT_NEAR(place().mm[kY], at.mm[kY], 2);
+  }
+  EXPECT_EQ(ticks, 8 * kTickRate_hz);
+  EXPECT_LT(moment() - before, -2e-6) << "2 cm^3 over a metre";
+  EXPECT_TRUE(drive_.robot.supervisor().running());
+  EXPECT_EQ(drive_.robot.supervisor().faults(), 0);
+}
+
+TEST_F(StrokesOnGravel, AStopInTheMiddleOfAStrokeIsNoFault) {
+  ASSERT_TRUE(drive_.run_until(30.0, [&] { return strokes(); }));
+  bool silent = false;
+  drive_.tamper = [&](SensorSample& sample) {
+    if (silent) sample.radio_in_count = 0;
+  };
+  // The link is lost and comes back, each time at another moment of a stroke.
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(drive_.run_until(30.0, [&] { return strokes(); })) << i;
+    drive_.run(0.07 * i);
+    silent = true;
+    ASSERT_TRUE(drive_.run_until(
+        2.0, [&] { return drive_.robot.supervisor().state() == RobotState::kStopped; }))
+        << i;
+    drive_.run(1.0);
+    EXPECT_EQ(drive_.robot.supervisor().faults(), 0) << i;
+    silent = false;
+    ASSERT_TRUE(drive_.run_until(5.0, [&] { return drive_.robot.supervisor().running(); })) << i;
+  }
+}
+
+}  // namespace
+}  // namespace screed::testing
