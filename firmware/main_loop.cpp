@@ -1,12 +1,17 @@
 // The main loop: the only code of the firmware that talks to the hardware abstraction layer.
 #include "firmware/main_loop.h"
 
+#ifndef __AVR__
+#include <new>
+#endif
+
 #include "firmware/robot/robot.h"
 #include "hal/hal.h"
 
 /// On the AVR the robot has a fixed address: what lies further than 63 bytes into a stack frame
-/// costs 20 bytes of code to reach, every time. A host runs several robots, each on the stack of
-/// its thread.
+/// costs 20 bytes of code to reach, every time. It is made where it lies, since this function runs
+/// once: of a static object the compiler would have to remember whether it is there. A host runs
+/// several robots, each on the stack of its thread.
 #ifdef __AVR__
 #define SCREED_RESIDENT static
 #else
@@ -17,8 +22,9 @@ namespace screed {
 
 void main_loop() {
   hal::init();
-  SCREED_RESIDENT Robot robot(hal::board_constants(), hal::parameters(), hal::credentials(),
-                              hal::parameters_intact());
+  alignas(Robot) SCREED_RESIDENT unsigned char place[sizeof(Robot)];
+  Robot& robot = *new (place) Robot(hal::board_constants(), hal::parameters(), hal::credentials(),
+                                    hal::parameters_intact());
   SCREED_RESIDENT SensorSample sample{};
   SCREED_RESIDENT RobotOutput output{};
   while (hal::wait_for_tick()) {

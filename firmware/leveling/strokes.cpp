@@ -4,6 +4,7 @@
 namespace screed {
 namespace {
 
+constexpr int16_t kSpeed_mm_per_s = 250;  // of the strokes, and of the journeys
 constexpr int16_t kFromEdge_mm = 115;  // there the robot touches the wall with its front
 constexpr int16_t kArrived_mm = 40;
 constexpr uint16_t kTravelTicks = 12 * kTickRate_hz;
@@ -13,8 +14,9 @@ constexpr Angle kFacing = angle_from_centidegrees(1000);
 constexpr YawRate kMaxTurnRate = yaw_rate_from_degrees(90);
 constexpr uint8_t kSlopeLag = 4;  // of the slope, 2^4 ticks
 
-// Slope from which on it works: at first, and by how much it changes.
+// Slope from which on it works: at first, at least, and by how much it changes.
 constexpr Angle kFirstLimit = angle_from_centidegrees(800);
+constexpr Angle kMinLimit = angle_from_centidegrees(200);
 constexpr uint8_t kFall = 3;  // by 2^-3 after every journey
 constexpr uint8_t kRise = 4;  // by 2^-4 with every work
 
@@ -40,7 +42,9 @@ void Strokes::begin(Phase phase, uint16_t ticks) {
   ticks_left_ = ticks;
 }
 
-void Strokes::begin_cycle() { cycle_ticks_ = static_cast<uint8_t>(down_ticks_ + up_ticks_); }
+void Strokes::begin_cycle() {
+  cycle_ticks_ = static_cast<uint8_t>(down_ticks_ + up_ticks_);
+}
 
 void Strokes::begin_journey() {
   site_.draw_place(random_, kFromEdge_mm, target_mm_);
@@ -59,15 +63,12 @@ MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) 
   const auto north = static_cast<int16_t>(target_mm_[kY] - input.place.mm[kY]);
   if (ticks_left_ == 0 || (abs_i16(east) < kArrived_mm && abs_i16(north) < kArrived_mm)) {
     limit_ = static_cast<Angle>(limit_ - asr_i16(limit_, kFall));
-    const Angle least = angle_from_centidegrees(parameters_.stroke_slope);
-    if (limit_ < least) limit_ = least;
+    if (limit_ < kMinLimit) limit_ = kMinLimit;
     begin_journey();
   }
   MotionCommand motion = behaviour.steer(east, north, input.heading);
-  if (motion.speed_mm_per_s > 0) motion.speed_mm_per_s = parameters_.stroke_speed;
-  if (motion.speed_mm_per_s < 0) {
-    motion.speed_mm_per_s = static_cast<int16_t>(-parameters_.stroke_speed);
-  }
+  if (motion.speed_mm_per_s > 0) motion.speed_mm_per_s = kSpeed_mm_per_s;
+  if (motion.speed_mm_per_s < 0) motion.speed_mm_per_s = -kSpeed_mm_per_s;
   return behaviour.enter_or_stay(LevelingState::kWalk, motion);
 }
 
@@ -94,12 +95,11 @@ MotionCommand Strokes::stroke(Behaviour& behaviour) {
     begin_cycle();
   }
   --cycle_ticks_;
-  const int16_t fastest = parameters_.stroke_speed;
   if (cycle_ticks_ < up_ticks_) {
-    speed_ = fastest;
+    speed_ = kSpeed_mm_per_s;
   } else {
     speed_ = static_cast<int16_t>(speed_ - parameters_.stroke_ease);  // 0.1 m/s^2: mm/s a tick
-    if (speed_ < -fastest) speed_ = static_cast<int16_t>(-fastest);
+    if (speed_ < -kSpeed_mm_per_s) speed_ = -kSpeed_mm_per_s;
   }
   return behaviour.enter_or_stay(LevelingState::kStroke,
                                  {downhill_ ? static_cast<int16_t>(-speed_) : speed_, 0});

@@ -66,8 +66,7 @@ constexpr int16_t max_algorithm(int16_t from) {
   return algorithm_in_build(from) ? from : max_algorithm(static_cast<int16_t>(from - 1));
 }
 constexpr int16_t kMaxAlgorithm = max_algorithm(message::kLevelingAlgorithmMax);
-static_assert(kDefaultAlgorithm ==
-                      static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing) &&
+static_assert(kDefaultAlgorithm == static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing) &&
                   algorithm_in_build(kDefaultAlgorithm),
               "the default algorithm is in every build");
 

@@ -61,12 +61,10 @@
   X(coverage_half_side,     "mm",        100, 30000,    500, "coverage: half the side of the square round the start; within 0.7 of site_radius") \
   X(coverage_spacing,       "mm",         50,  2000,    200, "coverage: distance between two lines") \
   X(escape_attempts,        "",            0,    20,      6, "a robot that is stuck tries this often to get out, then stops with the fault stuck; 0: no escape") \
-  X(stroke_speed,           "mm/s",       20,   250,    250, "strokes: of the tracks, down and up") \
   X(stroke_down,            "ms",         20,  1000,    180, "strokes: time downhill") \
   X(stroke_up,              "ms",         20,  1000,    240, "strokes: time uphill; longer, by what the robot slides down") \
   X(stroke_ease,            "0.1 m/s^2",   1,   500,     30, "strokes: change of the commanded speed into the downhill way; uphill it is at once, as 500 is") \
-  X(stroke_time,            "ms",        100, 30000,  16000, "strokes: longest work at one place") \
-  X(stroke_slope,           "0.01 deg",   20,   800,    200, "strokes: least slope that is worked on")
+  X(stroke_time,            "ms",        100, 30000,  16000, "strokes: longest work at one place")
 // clang-format on
 
 namespace screed {

@@ -292,6 +292,7 @@ void Robot::supervise(const SensorSample& sample, const Deltas& deltas) {
   input.speed_right_dmm_per_s = drive_.speed_right_dmm_per_s();
   input.full_speed_mm_per_s = board_.full_speed_mm_per_s;
   input.attitude_known = attitude_.known();
+  input.slips_on_purpose = strokes();
   supervisor_.tick(parameters_, input);
 }
 

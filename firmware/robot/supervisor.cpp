@@ -109,13 +109,13 @@ bool Supervisor::link_alive() const {
 // Two witnesses: the estimator, which follows a roll by its gyro, and, at rest, the raw
 // accelerometer, which also sees a robot that was turned over while the estimator was not looking.
 // In motion the accelerometer alone is no witness: tipping over a crest the robot falls and brakes,
-// and for a tenth of a second the force points anywhere. Tracks that are driven can brake it so
+// and for a tenth of a second the force points anywhere. Tracks that slip on purpose brake it so
 // evenly that it seems to rest; there it counts only while the estimator knows nothing.
 bool Supervisor::tilted(const Parameters& parameters, const SupervisorInput& input) {
   const int16_t cos_limit_q15 = cos_q15(angle_from_centidegrees(parameters.tilt_limit));
   if (input.attitude_known) {
     if (input.cos_tilt_q14 < asr_i16(cos_limit_q15, 1)) return true;
-    if ((input.duty_left | input.duty_right) != 0) return false;
+    if (input.slips_on_purpose) return false;
   }
   // Scaled by 1/4 so that the sum of squares fits 32 bits: 1 g is 1024.
   uint32_t square = 0;

@@ -60,6 +60,7 @@ struct SupervisorInput {
   int16_t speed_right_dmm_per_s = 0;
   uint16_t full_speed_mm_per_s = 0;  ///< of the board, below 8192
   bool attitude_known = false;       ///< cos_tilt_q14 may be relied on
+  bool slips_on_purpose = false;     ///< it strokes (strokes.h)
 };
 
 /// Watches one driven track: whether it makes progress, and whether it does what its motor is told.

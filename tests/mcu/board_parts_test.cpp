@@ -140,7 +140,7 @@ TEST_F(BoardParts, ChangesAndSavesParameters) {
   const std::string threshold = "p " + hex(index_of("climb_threshold"), 2);
   EXPECT_EQ(ask(threshold), threshold + " 01F4\n");
   EXPECT_EQ(ask(threshold + " 02EE"), threshold + " 02EE\n");
-  EXPECT_EQ(ask("w", 2000), "ok\n");
+  EXPECT_EQ(ask("w", 2500), "ok\n");
   for (const std::uint8_t index :
        {std::uint8_t{0}, std::uint8_t{1}}) {  // a blank store gets both copies
     const ParameterCopy copy = read_copy(index);

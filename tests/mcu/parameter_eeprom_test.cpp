@@ -60,7 +60,7 @@ class ParameterEeprom : public testing::Test {
 TEST_F(ParameterEeprom, ARemoteChangeStoresNothingElseOfTheDraft) {
   draft(&Parameters::climb_threshold, 750);
   bench_.set_parameter(index_of(&Parameters::stall_time), 220);
-  bench_.run_ms(2000);
+  bench_.run_ms(2500);
   EXPECT_EQ(stored().stall_time, 220);
   EXPECT_EQ(stored().climb_threshold, Parameters{}.climb_threshold);
   // The draft has both, and `w` stores both.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "firmware/robot/supervisor.h"
+#include "schema/class_values.h"
 #include "tests/mcu/bench.h"
 
 namespace screed::mcu {

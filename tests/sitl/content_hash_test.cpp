@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "0da11805bc200bb9188a6aa6201314b1"},
-    {"soft_bed", "--duration 6", "73adf77891396bc7818de9146b3da9fa"},
-    {"soft_bed", "--hal surrogate --duration 10", "74b35d63f3b769e1f9b74c4a1c6b4e6f"},
+    {"first_drive", "--duration 60", "98feb72cb580d38b8b4df9d2bc310a7f"},
+    {"soft_bed", "--duration 6", "96131fd34031132ceb712d68e51c8442"},
+    {"soft_bed", "--hal surrogate --duration 10", "cbb2873b5e9db60cc0c7626d6f5c7b20"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "06a80883f94c8ff8acab0ef6bd7f9eef"},
-    {"gravel_bed", "--duration 1", "24fd1eb064d40afc46308f32a71daada"},
+     "2eaca9da1c2c628112467298bfbff260"},
+    {"gravel_bed", "--duration 1", "82b59fed8e3265cd6d9dc5eab3255e62"},
 }};
 
 class ContentHash : public Program {};

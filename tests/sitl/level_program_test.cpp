@@ -147,5 +147,30 @@ TEST_F(LevelBench, RefusesInOneLine) {
   }
 }
 
+// Short runs; a search that was done before is found again, and what it found is an entry.
+TEST_F(LevelBench, EvolveSearchesVerifiesAndGoesOn) {
+  write("e.ini",
+        "[evolution]\nsuite = quick\nentry = strokes\npopulation = 5\ngenerations = 2\n"
+        "beds = 21, 22\nbeds_a_generation = 1\nduration = 8\nfinalists = 1\n"
+        "verification_beds = 23\n"
+        "[search]\nstroke_down = 100..300\nstroke_up = 150..400\n[coarse]\nsoil.cell = 0.02\n");
+  const Result first = run("level evolve e.ini --out e --workers 2 --quiet");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_NE(first.out.find("verified on 1 beds that the search never had"), std::string::npos);
+  const std::string archive = read(root_ / "e" / "archive.csv");
+  EXPECT_EQ(std::count(archive.begin(), archive.end(), '\n'), 11);
+  // As if it had been killed in the second generation.
+  std::filesystem::remove_all(root_ / "e" / "generation-02");
+  std::filesystem::remove(root_ / "e" / "archive.csv");
+  const Result again = run("level evolve e.ini --out e --workers 1 --quiet");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, first.out);
+  EXPECT_EQ(read(root_ / "e" / "archive.csv"), archive);
+
+  const Result wrong = run("level evolve none.ini");
+  EXPECT_NE(wrong.exit_code, 0);
+  EXPECT_EQ(std::count(wrong.err.begin(), wrong.err.end(), '\n'), 1) << wrong.err;
+}
+
 }  // namespace
 }  // namespace screed::testing

@@ -57,8 +57,9 @@ TEST_F(StrokesOnGravel, MoveGroundDownhillAndAreTakenForNoFault) {
   for (; strokes() && ticks < 8 * kTickRate_hz; ++ticks) {
     drive_.tick();
     ASSERT_FALSE(drive_.robot.slip_watch().stuck()) << ticks;
-    ASSERT_NEAR(place().mm[kX], at.mm[kX], 2) << "the tracks' travel is not the robot's";
-    ASSERT_NEAR(place().mm[kY], at.mm[kY], 2);
+    // A tick or two of travel at its begin.
+    ASSERT_NEAR(place().mm[kX], at.mm[kX], 6) << "the tracks' travel is not the robot's";
+    ASSERT_NEAR(place().mm[kY], at.mm[kY], 6);
   }
   EXPECT_EQ(ticks, 8 * kTickRate_hz);
   EXPECT_LT(moment() - before, -2e-6) << "2 cm^3 over a metre";
@@ -67,23 +68,21 @@ TEST_F(StrokesOnGravel, MoveGroundDownhillAndAreTakenForNoFault) {
 }
 
 TEST_F(StrokesOnGravel, AStopInTheMiddleOfAStrokeIsNoFault) {
-  ASSERT_TRUE(drive_.run_until(30.0, [&] { return strokes(); }));
-  bool silent = false;
-  drive_.tamper = [&](SensorSample& sample) {
-    if (silent) sample.radio_in_count = 0;
-  };
-  // The link is lost and comes back, each time at another moment of a stroke.
+  // The link is lost, each time at another moment of a stroke.
   for (int i = 0; i < 6; ++i) {
-    ASSERT_TRUE(drive_.run_until(30.0, [&] { return strokes(); })) << i;
-    drive_.run(0.07 * i);
-    silent = true;
-    ASSERT_TRUE(drive_.run_until(
-        2.0, [&] { return drive_.robot.supervisor().state() == RobotState::kStopped; }))
+    TestDrive drive(HeightField::ramp(1.5, 0.01, kSlope_deg), options(), parameters());
+    ASSERT_TRUE(drive.run_until(
+        30.0, [&] { return drive.robot.leveling().state() == LevelingState::kStroke; }))
         << i;
-    drive_.run(1.0);
-    EXPECT_EQ(drive_.robot.supervisor().faults(), 0) << i;
-    silent = false;
-    ASSERT_TRUE(drive_.run_until(5.0, [&] { return drive_.robot.supervisor().running(); })) << i;
+    drive.run(1.0 + 0.07 * i);
+    drive.tamper = [](SensorSample& sample) { sample.radio_in_count = 0; };
+    ASSERT_TRUE(drive.run_until(
+        2.0, [&] { return drive.robot.supervisor().state() == RobotState::kStopped; }))
+        << i;
+    EXPECT_EQ(drive.robot.leveling().state(), LevelingState::kStroke) << "else it was none";
+    drive.run(1.0);
+    EXPECT_EQ(drive.robot.supervisor().state(), RobotState::kStopped) << i;
+    EXPECT_EQ(drive.robot.supervisor().faults(), 0) << i;
   }
 }
 

@@ -33,7 +33,7 @@ grep -q '"training_drive peak_memory strokes coverage"' "$src/firmware/parameter
 # The IDE has flags of its own, and 28,672 bytes as well: what makes the image smaller stands in the sources.
 pragma=$(printf ', "%s"' ${SMALLER:-})
 [ -z "${SMALLER:-}" ] || find "$src" -name '*.cpp' -exec sed -i "1i #pragma GCC optimize (${pragma#, })" {} +
-install -D -m 644 -t "$src/schema" "$generated"/schema/{values,classes,messages}.h
+install -D -m 644 -t "$src/schema" "$generated"/schema/{values,class_values,classes,messages}.h
 cp "$here/Screed.h" "$src"
 
 { echo '// The board this library was packed for: change it here and in pins.h.' ; echo "#include \"boards/$board/board.h\"" ; } > "$src/board.h"

@@ -60,7 +60,7 @@ $(B)/firmware.flags: FORCE
 $(B)/link.flags: FORCE
 	@mkdir -p $(@D)
 	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
-	   echo "$(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
+	   echo "-lpagmo -lboost_serialization -ltbb $(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
 
 # Libraries whose headers are known to single files.
 TINY_DNN_OBJECTS := $(patsubst %.cpp,$(B)/%.o,$(shell grep -rl '"nn/training/tiny_dnn.h"' --include='*.cpp' nn tools tests))

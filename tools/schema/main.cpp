@@ -54,8 +54,7 @@ int run(const std::vector<std::string>& arguments) {
   check_schema(database);
   const std::map<std::string, std::function<void(const std::string&)>> actions = {
       {"--values", [&](const std::string& path) { write(path, value_code(database)); }},
-      {"--class-values",
-       [&](const std::string& path) { write(path, class_values(database)); }},
+      {"--class-values", [&](const std::string& path) { write(path, class_values(database)); }},
       {"--classes", [&](const std::string& path) { write(path, class_includes(database)); }},
       {"--messages", [&](const std::string& path) { write(path, message_code(database)); }},
       {"--tables", [&](const std::string& path) { write(path, host_tables(database)); }},

@@ -345,9 +345,9 @@ TEST(RadioParameters, OnlyOfADisarmedRobotAndOneAtATime) {
   TestRobot robot = ready_robot();
   EXPECT_EQ(commit(robot, kSpeedKp, 30), RequestResult::kDone);
   EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kBusy);
-  robot.run(200);
+  robot.run(240);
   EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kDone);
-  robot.run(200);
+  robot.run(240);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   EXPECT_EQ(commit(robot, kSpeedKp, 32), RequestResult::kWrongState);
   EXPECT_EQ(robot.robot.parameters().speed_kp, 31);

@@ -25,6 +25,7 @@ class SupervisedRobot {
                              duty_left, duty_right, counts_left, counts_right, 0,     stuck};
     input.attitude_known = attitude_known;
     input.gave_up = gave_up;
+    input.slips_on_purpose = slips_on_purpose;
     supervisor.tick(parameters, input);
   }
   /// Ticks until the robot has left the state, at most `most`.
@@ -71,6 +72,7 @@ class SupervisedRobot {
   int16_t counts_right = 0;
   bool stuck = false;
   bool gave_up = false;
+  bool slips_on_purpose = false;
 };
 
 }  // namespace screed

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "schema/class_values.h"
 #include "tests/unit/host_sim/ground_station/said_frames.h"
 
 namespace screed {
