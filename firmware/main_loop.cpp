@@ -1,7 +1,9 @@
 // The main loop: the only code of the firmware that talks to the hardware abstraction layer.
 #include "firmware/main_loop.h"
 
-#ifndef __AVR__
+#ifdef __AVR__
+#include <stddef.h>
+#else
 #include <new>
 #endif
 
@@ -16,6 +18,13 @@
 #define SCREED_RESIDENT static
 #else
 #define SCREED_RESIDENT
+#endif
+
+#ifdef __AVR__
+// avr-libc has no <new>.
+inline void* operator new(size_t /*size*/, void* place) noexcept {
+  return place;
+}
 #endif
 
 namespace screed {

@@ -5,7 +5,7 @@ namespace screed {
 namespace {
 
 constexpr int16_t kSpeed_mm_per_s = 250;  // of the strokes, and of the journeys
-constexpr int16_t kFromEdge_mm = 115;  // there the robot touches the wall with its front
+constexpr int16_t kFromEdge_mm = 115;     // there the robot touches the wall with its front
 constexpr int16_t kArrived_mm = 40;
 constexpr uint16_t kTravelTicks = 12 * kTickRate_hz;
 constexpr uint16_t kApartTicks = kTickRate_hz / 2;  // of travel between two places of work

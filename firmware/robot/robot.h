@@ -5,8 +5,6 @@
 // and many robots fit in one process.
 #pragma once
 
-#include <stddef.h>
-
 #include "firmware/control/drive_control.h"
 #include "firmware/estimation/attitude.h"
 #include "firmware/estimation/position_estimate.h"
@@ -53,11 +51,6 @@ class Robot : private RobotMemory {
   /// armed.
   Robot(const BoardConstants& board, const Parameters& parameters, const Credentials& credentials,
         bool parameters_intact = true);
-
-#ifdef __AVR__
-  /// Builds one in this place: what <new> has elsewhere.
-  static void* operator new(size_t /*size*/, void* place) noexcept { return place; }
-#endif
 
   /// One control tick. The sample's encoder counts may start anywhere; the first tick takes them as
   /// zero.

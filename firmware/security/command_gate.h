@@ -30,7 +30,8 @@ enum class GateResult : uint8_t {
   kRepeated = 255,  ///< the command that was accepted last, once more: not to be done again
 };
 
-/// What the gate remembers, zero at the start (one loop of the microcontroller, not a store a byte).
+/// What the gate remembers, zero at the start (one loop of the microcontroller, not a store a
+/// byte).
 struct GateMemory {
   uint16_t counter_;
   uint16_t locked_ticks_;
@@ -46,8 +47,7 @@ class CommandGate : private GateMemory {
   static constexpr uint16_t kBadMacDecayTicks = 4 * kTickRate_hz;
   static constexpr uint16_t kLockoutTicks = 30 * kTickRate_hz;
 
-  explicit CommandGate(const Credentials& credentials)
-      : GateMemory(), credentials_(credentials) {}
+  explicit CommandGate(const Credentials& credentials) : GateMemory(), credentials_(credentials) {}
 
   /// Looks at the kCommandSize bytes of a COMMAND. Costs 10,000 cycles on the AVR: once a tick.
   GateResult check(uint16_t can_id, const uint8_t* data);

@@ -92,9 +92,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "0a8a25ba8ebb522872d111df66622e0e", "e191e65239956f80990a0ab67d066a4c",
-                "36f6a543c466882615de0b57ded8967d", "7226a7bffff8d917c46a9848b51f6270",
-                "e5cdecd1087eeebe307c72d854815c04", "1d57ae4509029a3963ac2c164e17049a"}));
+                "f22d1910672615ea4e4aa0898c22c5b2", "c137ca33e5e2ead07910882b2a2cea53",
+                "9cd71bbfc80e82c6df94218668b44c77", "fd164f264a06c1d3a6b944aee453f72b",
+                "82421bc408bf088ee1e7bbecaad48017", "d93af40c5a296a262592e5b5d275e784"}));
 }
 
 // Courses with four robots have a step that they allow.

@@ -207,8 +207,11 @@ bool execute() {
       return to_endpoint && acknowledge();
     case kSetAddress:
       UDADDR = state.setup.value;
+      // Nothing comes between: simavr forgets an interrupt whose cause was there before its mask.
+      cli();
       acknowledge();
       UEIENX = _BV(TXINE);
+      sei();
       return true;
     case kGetDescriptor:
       return send_descriptor();

@@ -158,9 +158,7 @@ void register_level_evolve_command(CLI::App& level, Program& program) {
       "evolve",
       "Search parameters of a leveling algorithm, verify the best; interrupted, the same command "
       "goes on");
-  command
-      ->add_option("FILE", arguments->file,
-                   "INI file of what to search (docs/benchmark.md)")
+  command->add_option("FILE", arguments->file, "INI file of what to search (docs/benchmark.md)")
       ->required();
   command->add_option("--benchmark", arguments->benchmark, "Another benchmark's file")
       ->type_name("FILE");
