@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,6 +19,8 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kDrawnSides = 20.0;  ///< of the bed: the longest path that is drawn
 
 bool has_changed(const RunSurfaces& terrain) {
   const TerrainChange change = terrain_change(terrain.before, terrain.after);
@@ -50,6 +53,21 @@ DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
   return run;
 }
 
+std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m) {
+  std::size_t first = path.size();
+  double length = 0.0;
+  while (first > 0) {
+    if (first < path.size()) {
+      const PathPoint& behind = path[first];
+      const PathPoint& point = path[first - 1];
+      length += std::hypot(behind.x_m - point.x_m, behind.y_m - point.y_m);
+      if (length > length_m) break;
+    }
+    --first;
+  }
+  return path.subspan(first);
+}
+
 std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experiment& experiment,
                                          const RunSurfaces& terrain, const DrivenRun& run) {
   const std::string& name = experiment.experiment.name;
@@ -69,10 +87,19 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
   write_height_map_picture(files.back(), terrain.before, options);
 
   options.title = name + ": after " + what;
+  const double drawn_m = kDrawnSides * terrain.after.spacing_m() *
+                         std::max(terrain.after.cells_x(), terrain.after.cells_y());
+  const auto drawn = [&](const std::vector<PathPoint>& path) {
+    const std::span<const PathPoint> end = last_stretch(path, drawn_m);
+    return std::vector<PathPoint>(end.begin(), end.end());
+  };
   options.state_names = leveling_state_names();
-  options.path = run.path;
+  options.path = drawn(run.path);
   options.robot = run.robot;
   options.further_robots = run.further_robots;
+  for (PictureRobot& robot : options.further_robots) robot.path = drawn(robot.path);
+  if (options.path.size() < run.path.size())
+    options.title += ", path of the last " + std::to_string(std::lround(drawn_m)) + " m";
   files.push_back(folder / "terrain_after.png");
   write_height_map_picture(files.back(), terrain.after, options);
   return files;

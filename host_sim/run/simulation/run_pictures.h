@@ -34,9 +34,13 @@ struct DrivenRun {
 DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
                      const std::optional<RobotShape>& shape);
 
+/// The end of a path, no longer than so much; all of a path that is no longer.
+std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m);
+
 /// Writes terrain_before.png and terrain_after.png into the folder, both in the same colours for
-/// the same height, and terrain_change.png where the terrain is deformable or has changed. Returns
-/// the files. Throws RunError when one cannot be written.
+/// the same height, the second with the driven path, of a long one with its end, which leaves the
+/// ground to be seen; and terrain_change.png where the terrain is deformable or has changed.
+/// Returns the files. Throws RunError when one cannot be written.
 std::vector<std::filesystem::path> write_run_pictures(const std::filesystem::path& folder,
                                                       const Experiment& experiment,
                                                       const RunSurfaces& terrain,
