@@ -8,6 +8,7 @@ namespace {
 
 TEST(RunPictures, TheEndOfALongPathAndAllOfAShortOne) {
   std::vector<PathPoint> path;
+  path.reserve(11);
   for (int i = 0; i < 11; ++i) path.push_back({0.1 * i, 0.0, 1});  // a metre
   EXPECT_EQ(last_stretch(path, 2.0).size(), 11U);
   const std::span<const PathPoint> end = last_stretch(path, 0.35);
