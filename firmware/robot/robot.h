@@ -39,8 +39,8 @@ struct RobotMemory {
   uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
   UplinkCounts uplink_;
   bool command_pending_;
-  bool started_;  ///< the first tick is over
-  bool located_;  ///< a position fix has told where the robot is
+  bool started_ : 1;  ///< the first tick is over
+  bool located_ : 1;  ///< a position fix has told where the robot is
   bool stuck_;
   uint8_t command_[kCommandSize];  ///< waits for its tick
 };
