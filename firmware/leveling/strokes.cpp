@@ -4,8 +4,8 @@
 namespace screed {
 namespace {
 
-constexpr int16_t kSpeed_mm_per_s = 250;  // of the strokes, and of the journeys
-constexpr int16_t kFromEdge_mm = 115;     // there the robot touches the wall with its front
+constexpr int16_t kSpeed_mm_per_s = 250;
+constexpr int16_t kFromEdge_mm = 115;  // there the robot touches the wall with its front
 constexpr int16_t kArrived_mm = 40;
 constexpr uint16_t kTravelTicks = 12 * kTickRate_hz;
 constexpr uint16_t kApartTicks = kTickRate_hz / 2;  // of travel between two places of work
@@ -66,10 +66,7 @@ MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) 
     if (limit_ < kMinLimit) limit_ = kMinLimit;
     begin_journey();
   }
-  MotionCommand motion = behaviour.steer(east, north, input.heading);
-  if (motion.speed_mm_per_s > 0) motion.speed_mm_per_s = kSpeed_mm_per_s;
-  if (motion.speed_mm_per_s < 0) motion.speed_mm_per_s = -kSpeed_mm_per_s;
-  return behaviour.enter_or_stay(LevelingState::kWalk, motion);
+  return behaviour.enter_or_stay(LevelingState::kWalk, behaviour.steer(east, north, input.heading));
 }
 
 MotionCommand Strokes::face(Behaviour& behaviour) {

@@ -13,8 +13,8 @@ namespace screed {
 namespace {
 
 // The EEPROM takes a byte a tick, and two copies at first.
-constexpr uint8_t kStoreTicks = 240;
-static_assert(kStoreTicks > kParameterCopies * kParameterCopySize, "a write takes longer");
+constexpr uint16_t kStoreTicks = kParameterCopies * kParameterCopySize + 8;
+static_assert(kStoreTicks <= UINT8_MAX, "store_ticks_ has a byte");
 
 static_assert(
     static_cast<uint8_t>(GateResult::kNoKey) == static_cast<uint8_t>(RequestResult::kNoKey) &&
@@ -268,7 +268,7 @@ RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
   new (&drive_) DriveControl(board_, parameters_);
   store_parameter_ = static_cast<uint8_t>(index + 1U);
   store_value_ = value_16;
-  store_ticks_ = kStoreTicks;
+  store_ticks_ = static_cast<uint8_t>(kStoreTicks);
   return RequestResult::kDone;
 }
 

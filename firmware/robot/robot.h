@@ -39,6 +39,7 @@ struct RobotMemory {
   uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
   UplinkCounts uplink_;
   bool command_pending_;
+  // One byte: with the core's USB there is no other left below its word in RAM.
   bool started_ : 1;  ///< the first tick is over
   bool located_ : 1;  ///< a position fix has told where the robot is
   bool stuck_;

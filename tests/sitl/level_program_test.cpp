@@ -73,17 +73,36 @@ TEST_F(LevelBench, QuickRunsTheBaselines) {
   EXPECT_LT(mean_moved("nobody"), 1e-5);
   EXPECT_GT(mean_moved("random_walk"), 1e-4);
   EXPECT_GT(mean_moved("spin_on_peak"), 1.1 * mean_moved("random_walk"));
-  // Strokes level in two minutes as nobody else does. Were uphill taken for downhill, or were there
-  // no strokes, they would not.
+  // Strokes level more in two minutes than who remembers nothing.
   const auto relief = [&](const char* entry) {
     return entry_of(courses, entry)["relief_change"]["mean"].get<double>();
   };
-  for (const char* other : {"nobody", "random_walk", "hill_sensing", "spin_on_peak", "peak_memory"})
-    EXPECT_LT(relief("strokes"), relief(other) - 0.005) << other;
+  for (const char* other : {"nobody", "random_walk", "hill_sensing", "spin_on_peak"})
+    EXPECT_LT(relief("strokes"), relief(other) - 0.01) << other;
   // It is a campaign: the same command finds all of it done.
   const Result again = run("level bench --quick --seeds 2 --quiet --json --out b");
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(again.out, result.out);
+}
+
+// Ten minutes on training beds. Were uphill taken for downhill, or were there no strokes, this would
+// not hold.
+TEST_F(LevelBench, StrokesLevelMoreThanAllOthers) {
+  const std::filesystem::path data = "host_sim/data/benchmark";
+  write("bed.ini", read(data / "bed.ini"));
+  write("leveling.ini", read(data / "leveling.ini") +
+                            "\n[suite ten_minutes]\nsize = small\nbed = rough\nsoil = gravel\n"
+                            "robots = one\nposition = fixes\nduration = 600\nseeds = 2\n");
+  const Result result = run(
+      "level bench strokes peak_memory spin_on_peak --suite ten_minutes --training --benchmark "
+      "leveling.ini --workers 2 --quiet --json --out b");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json courses = Json::parse(result.out);
+  const auto relief = [&](const char* entry) {
+    return entry_of(courses, entry)["relief_change"]["mean"].get<double>();
+  };
+  for (const char* other : {"spin_on_peak", "peak_memory"})
+    EXPECT_LT(relief("strokes"), relief(other) - 0.03) << other;
 }
 
 // A changed hash here is a changed benchmark: its version goes up, or the robot levels otherwise.
@@ -94,7 +113,7 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
             (std::vector<std::string>{
                 "f22d1910672615ea4e4aa0898c22c5b2", "c137ca33e5e2ead07910882b2a2cea53",
                 "9cd71bbfc80e82c6df94218668b44c77", "fd164f264a06c1d3a6b944aee453f72b",
-                "82421bc408bf088ee1e7bbecaad48017", "d93af40c5a296a262592e5b5d275e784"}));
+                "82421bc408bf088ee1e7bbecaad48017", "4ab03905f9919a6630d14144504fde2d"}));
 }
 
 // Courses with four robots have a step that they allow.

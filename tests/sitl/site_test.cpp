@@ -49,7 +49,7 @@ TEST(Site, AWallTellsTheRobotWhereItIs) {
 
 // A robot that believes its walls elsewhere is moved there by the first it touches.
 TEST(Site, TheWallsOfShippedBedsStandWhereTheRobotIsTold) {
-  for (const char* name : {"soft_bed", "gravel_bed"}) {
+  for (const char* name : {"soft_bed", "gravel_bed", "level_bed"}) {
     const Experiment experiment = read_experiment(find_experiment(name), {});
     const BedBounds bed = bounds_of(make_terrain(experiment));
     ASSERT_EQ(bed.edge, BedEdge::kWalled) << name;
@@ -68,7 +68,8 @@ TEST_F(Beds, AreRunWithoutLeavingThem) {
        {"soft_bed --duration 90", "open_bed --duration 90",
         "soft_bed --duration 40 --set experiment.algorithm=hill_sensing",
         "soft_bed --duration 40 --set experiment.algorithm=coverage",
-        "soft_bed --duration 12 --set experiment.algorithm=drive", "gravel_bed --duration 8"}) {
+        "soft_bed --duration 12 --set experiment.algorithm=drive", "gravel_bed --duration 8",
+        "level_bed --duration 120"}) {
     const std::string folder = std::to_string(++number);
     std::string command = "sim " + name;
     command += " --quiet --json --out ";

@@ -52,7 +52,7 @@ std::vector<Pixel> pixels_of(const MapFrame& frame, const std::vector<PathPoint>
   return pixels;
 }
 
-void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap,
+void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap, bool from_start,
                const std::vector<PathPoint>& path) {
   if (path.empty()) return;
   const auto apart = [&](const PathPoint& from, const PathPoint& to) {
@@ -71,7 +71,8 @@ void draw_path(Canvas& canvas, const MapFrame& frame, bool wrap,
       canvas.line(pixels_of(frame, path, run), kPathWidth_px, state_color(path[run.first].state));
     }
   }
-  draw_path_start(canvas, frame.to_pixel(path.front().x_m, path.front().y_m), kMarkerRadius_px);
+  if (from_start)
+    draw_path_start(canvas, frame.to_pixel(path.front().x_m, path.front().y_m), kMarkerRadius_px);
   draw_path_end(canvas, frame.to_pixel(path.back().x_m, path.back().y_m), kMarkerRadius_px);
 }
 
@@ -130,9 +131,9 @@ void draw_path_overlay(Canvas& canvas, const MapFrame& frame, bool wrap,
   for (const PictureRobot& robot : options.further_robots) {
     if (robot.outline) draw_robot(canvas, frame, *robot.outline);
   }
-  draw_path(canvas, frame, wrap, options.path);
+  draw_path(canvas, frame, wrap, options.paths_from_start, options.path);
   for (const PictureRobot& robot : options.further_robots)
-    draw_path(canvas, frame, wrap, robot.path);
+    draw_path(canvas, frame, wrap, options.paths_from_start, robot.path);
   canvas.unclip();
 }
 
@@ -152,8 +153,8 @@ std::vector<size_t> states_on_paths(const PictureOptions& options) {
 
 double legend_height_px(const PictureOptions& options) {
   if (options.path.empty()) return 0.0;
-  constexpr size_t kMarkers = 2;  // start and end
-  return kLegendRow_px * static_cast<double>(1 + states_on_paths(options).size() + kMarkers);
+  const size_t markers = options.paths_from_start ? 2 : 1;  // start and end
+  return kLegendRow_px * static_cast<double>(1 + states_on_paths(options).size() + markers);
 }
 
 void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& options) {
@@ -171,8 +172,10 @@ void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& op
                 kPathWidth_px, state_color(state));
     name(options.state_names[state]);
   }
-  draw_path_start(canvas, {row.x + 0.5 * kSample_px, row.y}, kMarkerRadius_px);
-  name("start");
+  if (options.paths_from_start) {
+    draw_path_start(canvas, {row.x + 0.5 * kSample_px, row.y}, kMarkerRadius_px);
+    name("start");
+  }
   draw_path_end(canvas, {row.x + 0.5 * kSample_px, row.y}, kMarkerRadius_px);
   name("end");
 }

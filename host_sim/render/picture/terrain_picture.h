@@ -48,6 +48,7 @@ struct PictureOptions {
   /// Of a height map. Without it the map's own: pictures that are to be compared need the same.
   std::optional<HeightRange> heights;
   std::vector<PathPoint> path;
+  bool paths_from_start = true;  ///< else their first points are no starts, and are not marked
   std::vector<std::string> state_names;  ///< of all states; the legend lists those of the path
   std::optional<RobotOutline> robot;
   std::vector<PictureRobot> further_robots;  ///< beside that one

@@ -53,14 +53,16 @@ DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
   return run;
 }
 
-std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m) {
+std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m,
+                                        double bed_m) {
   std::size_t first = path.size();
   double length = 0.0;
   while (first > 0) {
     if (first < path.size()) {
       const PathPoint& behind = path[first];
       const PathPoint& point = path[first - 1];
-      length += std::hypot(behind.x_m - point.x_m, behind.y_m - point.y_m);
+      const double step_m = std::hypot(behind.x_m - point.x_m, behind.y_m - point.y_m);
+      if (step_m <= 0.5 * bed_m) length += step_m;
       if (length > length_m) break;
     }
     --first;
@@ -87,10 +89,13 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
   write_height_map_picture(files.back(), terrain.before, options);
 
   options.title = name + ": after " + what;
-  const double drawn_m = kDrawnSides * terrain.after.spacing_m() *
-                         std::max(terrain.after.cells_x(), terrain.after.cells_y());
+  const int cells_x = terrain.after.cells_x();
+  const int cells_y = terrain.after.cells_y();
+  const double drawn_m = kDrawnSides * terrain.after.spacing_m() * std::max(cells_x, cells_y);
   const auto drawn = [&](const std::vector<PathPoint>& path) {
-    const std::span<const PathPoint> end = last_stretch(path, drawn_m);
+    const std::span<const PathPoint> end =
+        last_stretch(path, drawn_m, terrain.after.spacing_m() * std::min(cells_x, cells_y));
+    if (end.size() < path.size()) options.paths_from_start = false;
     return std::vector<PathPoint>(end.begin(), end.end());
   };
   options.state_names = leveling_state_names();
@@ -98,7 +103,7 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
   options.robot = run.robot;
   options.further_robots = run.further_robots;
   for (PictureRobot& robot : options.further_robots) robot.path = drawn(robot.path);
-  if (options.path.size() < run.path.size())
+  if (!options.paths_from_start)
     options.title += ", path of the last " + std::to_string(std::lround(drawn_m)) + " m";
   files.push_back(folder / "terrain_after.png");
   write_height_map_picture(files.back(), terrain.after, options);

@@ -34,8 +34,10 @@ struct DrivenRun {
 DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
                      const std::optional<RobotShape>& shape);
 
-/// The end of a path, no longer than so much; all of a path that is no longer.
-std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m);
+/// The end of a path, no longer than so much; all of a path that is no longer. A step of more than
+/// half a bed is none that was driven: it leads over the edge of a wrapped one.
+std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m,
+                                        double bed_m);
 
 /// Writes terrain_before.png and terrain_after.png into the folder, both in the same colours for
 /// the same height, the second with the driven path, of a long one with its end, which leaves the

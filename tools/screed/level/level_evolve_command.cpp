@@ -138,6 +138,7 @@ int run_evolve(const Arguments& arguments, const std::string& version) {
     if (evolution.best.has_value()) {
       write_file(out / "best.ini", entry_text(file, benchmark, evolution.fine[*evolution.best]));
     } else {
+      fs::remove(out / "best.ini");  // of another search in this folder
       std::printf("nothing found is better than %s as it was\n", file.entry.c_str());
     }
     ContentHash hash;

@@ -1,6 +1,5 @@
 // Strokes: on a slope the robot faces straight up or down it and rocks, gently into the way down
-// and at once into the way up;
-// the limit of what is worth it follows from what there is.
+// and at once into the way up; the limit of what is worth it follows from what there is.
 #include "firmware/leveling/strokes.h"
 
 #include <gtest/gtest.h>
@@ -128,7 +127,7 @@ TEST_F(StrokesOnAPlane, OnLevelGroundItOnlyDrivesAndItsLimitFalls) {
   EXPECT_GT(first, 7.0);
   // It comes near all walls.
   EXPECT_GT(farthest_mm_, kHalf_mm - 220);
-  EXPECT_LE(farthest_mm_, kHalf_mm - 80);
+  EXPECT_LE(farthest_mm_, kHalf_mm - 100);
 }
 
 TEST_F(StrokesOnAPlane, TheLimitRisesWithWorkSoThatTheSteepestGoesFirst) {

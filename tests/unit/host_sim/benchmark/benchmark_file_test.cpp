@@ -132,5 +132,20 @@ TEST_F(BenchmarkFile, TheShippedOneResolvesEverySuite) {
   for (const std::uint64_t seed : benchmark.test_seeds) EXPECT_FALSE(training.contains(seed));
 }
 
+// What `make level` shows is what the benchmark scores.
+TEST(ShippedBenchmark, LevelBedIsARunOfStrokesOnItsFirstTrainingBed) {
+  BenchmarkChoice choice;
+  choice.suite = "single";
+  choice.training = true;
+  choice.entries = {"strokes"};
+  choice.seeds = 1;
+  const CampaignPlan plan =
+      make_plan(benchmark_campaign(read_benchmark(benchmark_path()), choice), "1");
+  Experiment scored = resolve_run(plan, 0).experiment;
+  scored.experiment.name = "level_bed";
+  Experiment shown = read_experiment(find_experiment("level_bed"));
+  EXPECT_EQ(scored.text(), shown.text());
+}
+
 }  // namespace
 }  // namespace screed

@@ -183,6 +183,29 @@ TEST_F(EvolutionOf, TheSearchsRunsAreShorterAndCoarser) {
   EXPECT_EQ(make_plan(fine, "1").durations_s, std::vector<double>{50.0});
 }
 
+// The shipped search begins at what the robot has, and every campaign of it can be planned.
+TEST_F(EvolutionOf, TheShippedSearchFitsTheBenchmark) {
+  const EvolutionFile file = read_evolution_file("host_sim/data/evolution/strokes.ini");
+  const Benchmark leveling = read_benchmark(benchmark_path());
+  std::size_t planned = 0;
+  const Evolution evolution =
+      evolve(file, leveling, [&](const Benchmark& benchmark, const EvolutionTask& task) {
+        const CampaignPlan plan = make_plan(evolution_campaign(file, benchmark, task), "1");
+        EXPECT_EQ(plan.run_count(), task.entries.size() * task.beds.size());
+        EXPECT_EQ(plan.durations_s.front(), task.coarse ? 1800.0 : 5400.0);
+        ++planned;
+        std::vector<EntryScore> scores(task.entries.size());
+        for (std::size_t i = 0; i < scores.size(); ++i) {
+          scores[i].entry = task.entries[i];
+          scores[i].relief_change.mean = -0.1;
+          scores[i].progress.mean = 0.1;
+        }
+        return scores;
+      });
+  EXPECT_EQ(planned, file.generations + 2);
+  EXPECT_FALSE(evolution.best.has_value()) << "all the same";
+}
+
 TEST_F(EvolutionOf, EveryMistakeIsNamed) {
   EXPECT_EQ(refusal("population = 6", "population = 4"),
             "e.ini:3: [evolution] population = '4' is not allowed; expected a number from 5 to "

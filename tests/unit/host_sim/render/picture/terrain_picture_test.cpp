@@ -122,6 +122,18 @@ TEST(HeightMapPicture, AnIntervalBelowAMillimetreHasItsDecimals) {
   EXPECT_EQ(height_map_subtitle(ramp, options), "Mine,  contours every 0.2 mm");
 }
 
+// Of a path that is cut short its first point is no start.
+TEST(HeightMapPicture, MarksTheStartOfPathsThatBeginThere) {
+  PictureOptions options;
+  options.path = {{-0.5, 0.0, 0}, {0.5, 0.0, 0}};
+  options.state_names = {"walk"};
+  const Shown from_start(draw_height_map(step(0.0, 0.0), options));
+  options.paths_from_start = false;
+  const Shown cut_short(draw_height_map(step(0.0, 0.0), options));
+  EXPECT_GT(distance(from_start.at(-0.5, 0.0), from_start.at(0.0, 0.0)), 0.3) << "a mark";
+  EXPECT_LT(distance(cut_short.at(-0.5, 0.0), cut_short.at(0.0, 0.0)), kRounding) << "path alone";
+}
+
 TEST(DifferencePicture, IsNeutralWhereNothingChanged) {
   const HeightField before = step(0.0, 0.0);
   HeightField after = before;
