@@ -64,12 +64,11 @@ class Beds : public Program {};
 // nobody leaves the bed, nothing fails.
 TEST_F(Beds, AreRunWithoutLeavingThem) {
   int number = 0;
-  for (const std::string name :
-       {"soft_bed --duration 90", "open_bed --duration 90",
-        "soft_bed --duration 40 --set experiment.algorithm=hill_sensing",
-        "soft_bed --duration 40 --set experiment.algorithm=coverage",
-        "soft_bed --duration 12 --set experiment.algorithm=drive", "gravel_bed --duration 8",
-        "level_bed --duration 120"}) {
+  for (const std::string name : {"soft_bed --duration 90", "open_bed --duration 90",
+                                 "soft_bed --duration 40 --set experiment.algorithm=hill_sensing",
+                                 "soft_bed --duration 40 --set experiment.algorithm=coverage",
+                                 "soft_bed --duration 12 --set experiment.algorithm=drive",
+                                 "gravel_bed --duration 8", "level_bed --duration 120"}) {
     const std::string folder = std::to_string(++number);
     std::string command = "sim " + name;
     command += " --quiet --json --out ";
