@@ -85,17 +85,17 @@ TEST_F(LevelBench, QuickRunsTheBaselines) {
   EXPECT_EQ(again.out, result.out);
 }
 
-// Ten minutes on training beds. Were uphill taken for downhill, or were there no strokes, this would
-// not hold.
+// Ten minutes on training beds. Were uphill taken for downhill, or were there no strokes, this
+// would not hold.
 TEST_F(LevelBench, StrokesLevelMoreThanAllOthers) {
   const std::filesystem::path data = "host_sim/data/benchmark";
   write("bed.ini", read(data / "bed.ini"));
   write("leveling.ini", read(data / "leveling.ini") +
                             "\n[suite ten_minutes]\nsize = small\nbed = rough\nsoil = gravel\n"
                             "robots = one\nposition = fixes\nduration = 600\nseeds = 2\n");
-  const Result result = run(
-      "level bench strokes peak_memory spin_on_peak --suite ten_minutes --training --benchmark "
-      "leveling.ini --workers 2 --quiet --json --out b");
+  const Result result =
+      run("level bench strokes peak_memory spin_on_peak --suite ten_minutes --training --benchmark "
+          "leveling.ini --workers 2 --quiet --json --out b");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json courses = Json::parse(result.out);
   const auto relief = [&](const char* entry) {
