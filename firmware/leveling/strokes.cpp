@@ -47,7 +47,7 @@ void Strokes::begin_cycle() {
 }
 
 void Strokes::begin_journey() {
-  site_.draw_place(random_, kFromEdge_mm, target_mm_);
+  site_.draw_place_at_edge(random_, kFromEdge_mm, target_mm_);
   begin(Phase::kTravel, kTravelTicks);
 }
 

@@ -8,9 +8,9 @@
 // way up takes longer, by what the robot slides down; so it stays where it is. A spin slips as much
 // to all sides and carries a fifth of that (docs/measurements/soil.md, Strokes).
 //
-// Where: it drives from one random place of its site to the next and works on every slope on its
-// way that is worth it. What is worth it follows from what there is: the limit falls with every
-// journey and rises with every work, so the steepest goes first.
+// Where: it drives from one random place at the edge of its site to the next and works on every
+// slope on its way that is worth it. What is worth it follows from what there is: the limit falls
+// with every journey and rises with every work, so the steepest goes first.
 #pragma once
 
 #include "firmware/leveling/behaviour.h"

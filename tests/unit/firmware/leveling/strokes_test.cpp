@@ -127,7 +127,7 @@ TEST_F(StrokesOnAPlane, OnLevelGroundItOnlyDrivesAndItsLimitFalls) {
   EXPECT_GT(first, 7.0);
   // It comes near all walls.
   EXPECT_GT(farthest_mm_, kHalf_mm - 220);
-  EXPECT_LE(farthest_mm_, kHalf_mm - 100);
+  EXPECT_LE(farthest_mm_, kHalf_mm - 80);
 }
 
 TEST_F(StrokesOnAPlane, TheLimitRisesWithWorkSoThatTheSteepestGoesFirst) {
