@@ -12,6 +12,7 @@ namespace {
 
 constexpr int16_t kFromEdge_mm = 115;
 constexpr int kDraws = 4000;
+constexpr int kQuarter = kDraws / 4;
 
 class SitePlaces : public ::testing::Test {
  protected:
@@ -41,7 +42,7 @@ TEST_F(SitePlaces, AnywhereAreSpreadOverTheSite) {
     ++quarters[static_cast<size_t>((mm[kX] < 0 ? 1 : 0) + (mm[kY] < 0 ? 2 : 0))];
   }
   // A quarter of 4000 is 1000 +- 27; of a uniform distribution the square's mean is a third.
-  for (const int count : quarters) EXPECT_NEAR(count, kDraws / 4, 110);
+  for (const int count : quarters) EXPECT_NEAR(count, kQuarter, 110);
   for (const uint8_t axis : {kX, kY}) {
     EXPECT_NEAR(squares[axis] / kDraws / kReach_mm[axis] / kReach_mm[axis], 1.0 / 3.0, 0.02);
   }
@@ -63,7 +64,7 @@ TEST_F(SitePlaces, AtTheEdgeLieOnAllFourSidesAllAlong) {
     ++along[other];
     squares[other] += static_cast<double>(mm[other]) * mm[other];
   }
-  for (const int count : sides) EXPECT_NEAR(count, kDraws / 4, 110);
+  for (const int count : sides) EXPECT_NEAR(count, kQuarter, 110);
   for (const uint8_t axis : {kX, kY}) {
     EXPECT_NEAR(squares[axis] / along[axis] / kReach_mm[axis] / kReach_mm[axis], 1.0 / 3.0, 0.03);
   }
