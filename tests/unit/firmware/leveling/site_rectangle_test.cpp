@@ -39,7 +39,9 @@ TEST_F(SitePlaces, AnywhereAreSpreadOverTheSite) {
       ASSERT_LE(std::abs(mm[axis]), kReach_mm[axis]);
       squares[axis] += static_cast<double>(mm[axis]) * mm[axis];
     }
-    ++quarters[static_cast<size_t>((mm[kX] < 0 ? 1 : 0) + (mm[kY] < 0 ? 2 : 0))];
+    const size_t west = mm[kX] < 0 ? 1 : 0;
+    const size_t south = mm[kY] < 0 ? 2 : 0;
+    ++quarters[west + south];
   }
   // A quarter of 4000 is 1000 +- 27; of a uniform distribution the square's mean is a third.
   for (const int count : quarters) EXPECT_NEAR(count, kQuarter, 110);
@@ -60,7 +62,8 @@ TEST_F(SitePlaces, AtTheEdgeLieOnAllFourSidesAllAlong) {
     const uint8_t side = east_or_west ? kX : kY;
     const uint8_t other = side == kX ? kY : kX;
     ASSERT_LE(std::abs(mm[other]), kReach_mm[other]);
-    ++sides[static_cast<size_t>(2 * side + (mm[side] < 0 ? 1 : 0))];
+    const size_t far = mm[side] < 0 ? 2 : 0;
+    ++sides[side + far];
     ++along[other];
     squares[other] += static_cast<double>(mm[other]) * mm[other];
   }
