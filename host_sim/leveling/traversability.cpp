@@ -12,16 +12,25 @@ constexpr double kStuckShare = 0.2;
 constexpr double kWindow_s = 1.0;
 constexpr double kTick_s = 1.0 / kTickRate_hz;
 
+double sign(double value) {
+  return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
+}
+
 double faster_track(const SimFrame& frame) {
   return std::max(std::abs(frame.track_left), std::abs(frame.track_right));
 }
 
 }  // namespace
 
-/// Summed anew each tick: a running sum would drift by rounding over hours.
+/// Travel counts in the sense of the tracks: they have no sign in the sum, and a robot that turns
+/// round within the second is not back where it was. Magnitudes of single ticks would count the
+/// shaking of a robot that digs. Summed anew each tick: a running sum would drift by rounding over
+/// hours.
 bool TraversabilityMeter::is_stuck(const SimFrame& frame) {
-  second_[ticks_ % second_.size()] = {frame.velocity_x * kTick_s,
-                                      frame.rate_z * limits_.half_tread_m * kTick_s,
+  const double along = sign(frame.track_left + frame.track_right);
+  const double round = sign(frame.track_right - frame.track_left);
+  second_[ticks_ % second_.size()] = {along * frame.velocity_x * kTick_s,
+                                      round * frame.rate_z * limits_.half_tread_m * kTick_s,
                                       faster_track(frame) * kTick_s};
   Travel sum;
   for (const Travel& tick : second_) {

@@ -27,7 +27,8 @@ struct Traversability {
 
 /// Looks at every frame of a run. A robot is stuck when its tracks have run over the second up to
 /// now, at 0.03 m/s or more in the mean, and the chassis has travelled less than a fifth of what
-/// the faster track has: forwards, and in turns at the radius of a track.
+/// the faster track has, in the sense in which the tracks ran: along, and in turns at the radius of
+/// a track.
 class TraversabilityMeter {
  public:
   explicit TraversabilityMeter(const TraversabilityLimits& limits) : limits_(limits) {}
@@ -40,9 +41,9 @@ class TraversabilityMeter {
  private:
   /// Travel of one tick, m.
   struct Travel {
-    double forward = 0.0;
-    double turn = 0.0;
-    double track = 0.0;  ///< of the faster one, >= 0
+    double forward = 0.0;  ///< > 0 with the tracks' mean
+    double turn = 0.0;     ///< > 0 with the tracks' difference
+    double track = 0.0;    ///< of the faster one, >= 0
   };
 
   bool is_stuck(const SimFrame& frame);

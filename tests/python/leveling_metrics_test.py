@@ -115,7 +115,9 @@ def shares(frames, tread_m, limits):
     """Traversability from the recorded frames."""
     tracks = np.maximum(np.abs(frames["track_left"]), np.abs(frames["track_right"]))
     second = np.ones(100) / 100.0
-    travelled = sum(np.abs(np.convolve(v, second, "valid")) for v in (frames["velocity_x"], frames["rate_z"] * tread_m / 2))
+    along = np.sign(frames["track_left"] + frames["track_right"]) * frames["velocity_x"]
+    turning = np.sign(frames["track_right"] - frames["track_left"]) * frames["rate_z"] * tread_m / 2
+    travelled = sum(np.abs(np.convolve(v, second, "valid")) for v in (along, turning))
     driven = np.convolve(tracks, second, "valid")
     running = tracks >= 0.03
     slip = (np.abs(frames["slip_left"]) + np.abs(frames["slip_right"])) / 2

@@ -60,6 +60,38 @@ TEST(Traversability, ARobotThatStandsOrTurnsIsNotStuck) {
   EXPECT_GT(meter.shares().stuck, 0.1);
 }
 
+/// To and fro, and left and right, each for less than the second that is looked at.
+TEST(Traversability, ARobotThatReversesIsStuckOnlyWhereItDoesNotFollowItsTracks) {
+  const auto reversing = [](double share) {
+    TraversabilityMeter meter(kLimits);
+    SimFrame left;
+    left.track_left = -0.1;
+    left.track_right = 0.1;
+    left.rate_z = share;  // 0.1 m/s at the tracks where it follows
+    SimFrame right;
+    right.track_left = 0.1;
+    right.track_right = -0.1;
+    right.rate_z = -share;
+    for (int i = 0; i < 5; ++i) {
+      drive(meter, driving(0.1, share * 0.1), 50);
+      drive(meter, driving(-0.1, -share * 0.1), 50);
+      drive(meter, left, 50);
+      drive(meter, right, 50);
+    }
+    return meter.shares().stuck;
+  };
+  EXPECT_EQ(reversing(1.0), 0.0);
+  EXPECT_EQ(reversing(0.3), 0.0);
+  EXPECT_GT(reversing(0.1), 0.9);
+}
+
+/// Shaking is no travel.
+TEST(Traversability, ARobotThatShakesWhileItsTracksDigIsStuck) {
+  TraversabilityMeter meter(kLimits);
+  for (int i = 0; i < 100; ++i) drive(meter, driving(0.1, i % 2 == 0 ? 0.1 : -0.1), 2);
+  EXPECT_GT(meter.shares().stuck, 0.5);
+}
+
 TEST(Traversability, CountsTimeTiltedInAnyDirection) {
   TraversabilityMeter meter(kLimits);
   SimFrame frame;
