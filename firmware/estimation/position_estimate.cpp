@@ -11,6 +11,9 @@ namespace {
 /// Variance of (256 mm)^2.
 constexpr uint32_t kDoubt = 1UL << 28;
 
+/// The share of all travel that makes noise, of 256.
+constexpr uint16_t kAlwaysLost = 8;
+
 /// length * factor (Q15), rounded; |length| below 2^30.
 SCREED_OUT_OF_LINE int32_t times_q15(int32_t length, int16_t factor) {
   return scale_q16(length * 2, factor);
@@ -44,7 +47,9 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   const auto travelled =
       static_cast<uint16_t>(static_cast<uint8_t>(abs_i16(counts_left) + abs_i16(counts_right)) *
                             static_cast<uint16_t>(count_um_q4_ >> 8));
-  const uint32_t growth = mul_u16(travelled, noise_x4_);
+  const auto lost = static_cast<uint16_t>(UINT8_MAX + kAlwaysLost - share);
+  const auto noise = static_cast<uint16_t>(mul_u16(noise_x4_, lost) >> 8);
+  const uint32_t growth = mul_u16(travelled, noise);
   for (uint32_t& variance : variance_) variance = limited(variance + growth);
 }
 

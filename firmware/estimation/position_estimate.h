@@ -6,8 +6,9 @@
 // part counts, and of that the share that the tracks do not lose by slip.
 //
 // Each axis is a Kalman filter of one state. Slip makes the position drift like a random walk, so
-// the variance grows with what the tracks travel:
-//   variance += noise |travel|
+// the variance grows with what the tracks travel and the robot does not, and with a 32nd of all
+// travel, for what the share is wrong by and the heading:
+//   variance += noise |travel| (1 - share + 1/32)
 // and with a measurement z of the variance r
 //   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
 #pragma once
@@ -29,7 +30,7 @@ struct PositionState {
 class PositionEstimate : private PositionState {
  public:
   /// count_um_q4: track travel per encoder count, 1/16 um. noise: variance of the position that a
-  /// metre of travel makes, 125 mm^2.
+  /// metre of travel makes which is lost by slip, 125 mm^2; 0..1000.
   PositionEstimate(uint16_t count_um_q4, int16_t noise)
       : PositionState(), count_um_q4_(count_um_q4), noise_x4_(static_cast<uint16_t>(noise << 2)) {}
 

@@ -81,9 +81,10 @@ bool Escape::tick(bool stuck, bool backwards, bool homewards) {
       gave_up_ = attempts_ != 0;
       return false;
     }
-    mirrored_ = backwards;
-    homewards_ = homewards;
     next_way = attempt_ & kLastWay;
+    // On its way home it backs off once. What else it tries leads on, or it would leave the site.
+    mirrored_ = backwards != (homewards && next_way != 0);
+    homewards_ = homewards;
     ++attempt_;
   } else {
     if (ticks_left_ != 0) return true;

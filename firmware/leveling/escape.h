@@ -2,11 +2,11 @@
 //
 // The robot is stuck when the slip watch says so. Each such report is an attempt. The first goes
 // back, since what lies there was passable, and turns away, so that the algorithm goes on
-// elsewhere; half as far where it drove back to its site. The next ones rock or alternate the
-// tracks before that; left and right in turn. For a robot that drove backwards all of it is
-// mirrored. Each attempt ends with the tracks at rest: then the slip watch forgets what was. A
-// robot that is free for 10 s has all attempts again; one that is stuck after the last has given
-// up.
+// elsewhere. The next ones rock or alternate the tracks before that; left and right in turn. For a
+// robot that drove backwards all of it is mirrored. Where it drove back to its site it goes half as
+// far, and all attempts but the first kind lead on instead of back: it would leave the site. Each
+// attempt ends with the tracks at rest: then the slip watch forgets what was. A robot that is free
+// for 10 s has all attempts again; one that is stuck after the last has given up.
 //
 // It commands motions as an algorithm does: the supervisor's protection of the tracks holds.
 #pragma once

@@ -32,7 +32,7 @@
   X(site_radius,            "mm",          0, 30000,      0, "leave the random walk and turn back outside this circle around the start; 0: no limit") \
   X(site_x,                 "mm",          0, 15000,      0, "walls of the site: as far east and west of the origin; 0: none") \
   X(site_y,                 "mm",          0, 15000,      0, "walls of the site: as far north and south of the origin; 0: none") \
-  X(position_noise,         "125 mm^2/m",    0,  1000,     24, "variance of the position that a metre of dead reckoning makes; 24: 55 mm after a metre") \
+  X(position_noise,         "125 mm^2/m",    0,  1000,    152, "variance of the position that a metre of travel makes which is lost by slip; a 32nd of the travel always is") \
   X(site_heading,           "0.01 deg", -17999, 17999,   0, "the site's x axis, counter-clockwise from magnetic east: all headings count from it") \
   X(lost_sigma,             "mm",          0,   700,      0, "the robot is lost when the standard deviation of its position exceeds this; 0: never") \
   X(lost_action,            "",            0,     1,      0, "what a lost robot does: 0 stop with the fault lost, 1 seek a wall of the site") \

@@ -17,14 +17,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "98feb72cb580d38b8b4df9d2bc310a7f"},
-    {"soft_bed", "--duration 6", "96131fd34031132ceb712d68e51c8442"},
-    {"soft_bed", "--hal surrogate --duration 10", "cbb2873b5e9db60cc0c7626d6f5c7b20"},
+    {"first_drive", "--duration 60", "6bc3c3a57a401eac108d267b19f14690"},
+    {"soft_bed", "--duration 6", "53f7d985448ea3357b62d43fdc35f025"},
+    {"soft_bed", "--hal surrogate --duration 10", "62488fd1dca7b8068ace496b7f7576be"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "2eaca9da1c2c628112467298bfbff260"},
-    {"gravel_bed", "--duration 1", "82b59fed8e3265cd6d9dc5eab3255e62"},
+     "96f0655c44e239274bb90f8b911f291b"},
+    {"gravel_bed", "--duration 1", "1bd120185594137da9caf4893e8d0bbd"},
 }};
 
 class ContentHash : public Program {};

@@ -111,9 +111,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "f22d1910672615ea4e4aa0898c22c5b2", "c137ca33e5e2ead07910882b2a2cea53",
-                "9cd71bbfc80e82c6df94218668b44c77", "fd164f264a06c1d3a6b944aee453f72b",
-                "82421bc408bf088ee1e7bbecaad48017", "ed929af031183c454ba9183a5832074f"}));
+                "8d84b5da2c01bfea88c704e9aa83cf5f", "6ff3c1b7a121a66552f5249070f7c57e",
+                "891f46ad7e3f234f674bf64198a3829e", "55b722329090ca49a0a1004ece74f2c3",
+                "d59cbc01a679e4ff398e8897d8dba5dd", "be8a5039669ec540c768dd9065b1de82"}));
 }
 
 // Courses with four robots have a step that they allow.

@@ -104,20 +104,23 @@ TEST(PositionEstimate, SlipIsTakenOff) {
   }
 }
 
-// The variance that a metre makes is that of the parameter, whatever the robot does on it.
-TEST(PositionEstimate, DeviationGrowsWithTheRootOfTheWay) {
-  const auto sigma_after = [](double distance_m, int16_t left, int16_t right) {
-    PositionEstimate position(kCount_um_q4, 14);
+// The variance that a metre lost by slip makes is that of the parameter, and a 32nd of it a metre
+// that is not lost, whatever the robot does on it.
+TEST(PositionEstimate, DeviationGrowsWithTheRootOfWhatSlipTakes) {
+  const auto sigma_after = [](double distance_m, int16_t left, int16_t right, uint8_t share) {
+    PositionEstimate position(kCount_um_q4, 448);
     const double step_mm = (std::abs(left) + std::abs(right)) / 2.0 * kCount_mm;
     const auto ticks = static_cast<int>(distance_m * 1000.0 / step_mm);
-    for (int tick = 0; tick < ticks; ++tick) position.update(left, right, 0, 0, 255);
+    for (int tick = 0; tick < ticks; ++tick) position.update(left, right, 0, 0, share);
     return 4.0 * place_of(position).sigma[kX];
   };
-  const double after_1_m = std::sqrt(14.0 * 125.0);
-  EXPECT_NEAR(sigma_after(1.0, 2, 2), after_1_m, 4.0);
-  EXPECT_NEAR(sigma_after(1.0, -2, 2), after_1_m, 4.0) << "turns on the spot";
-  EXPECT_NEAR(sigma_after(25.0, 2, 2), 5.0 * after_1_m, 8.0);
-  EXPECT_EQ(sigma_after(1000.0, 2, 2), 724.0) << "and stops";
+  const double kept_1_m = std::sqrt(448.0 / 32.0 * 125.0);
+  EXPECT_NEAR(sigma_after(1.0, 2, 2, 255), kept_1_m, 4.0);
+  EXPECT_NEAR(sigma_after(1.0, -2, 2, 255), kept_1_m, 4.0) << "turns on the spot";
+  EXPECT_NEAR(sigma_after(25.0, 2, 2, 255), 5.0 * kept_1_m, 8.0);
+  EXPECT_NEAR(sigma_after(1.0, 2, 2, 0), std::sqrt(448.0 * 125.0 * 33.0 / 32.0), 9.0);
+  EXPECT_NEAR(sigma_after(1.0, -2, -2, 127), std::sqrt(448.0 * 125.0 * 17.0 / 32.0), 6.0);
+  EXPECT_EQ(sigma_after(1000.0, 2, 2, 255), 724.0) << "and stops";
 }
 
 // Two measurements of the same variance: the mean, and the root of half the variance.
@@ -150,13 +153,13 @@ TEST(PositionEstimate, AMeasurementBeyondItsGateIsLeftOut) {
 
 // The tracks turn and the robot stands, which the slip watch did not notice: fixes hold it.
 TEST(PositionEstimate, FixesBoundErrorAndDeviation) {
-  PositionEstimate position(kCount_um_q4, 14);
+  PositionEstimate position(kCount_um_q4, 448);
   for (int second = 0; second < 600; ++second) {
     for (int tick = 0; tick < 100; ++tick) position.update(2, 2, 16384, 0, 255);
     position.measure(kY, 1000, 30, 0);
   }
-  // Steady: p (1 - k) + q = p, k = p / (p + r), with q = 14 * 125 mm^2 * 0.113, r = 30^2 mm^2: k is
-  // 0.37, so what is left of 113 mm a second is 113 (1 - k) / k.
+  // Steady: p (1 - k) + q = p, k = p / (p + r), with q = 448 / 32 * 125 mm^2 * 0.113, r = 30^2
+  // mm^2: k is 0.37, so what is left of 113 mm a second is 113 (1 - k) / k.
   EXPECT_NEAR(position.mm(kY), 1000 + 193, 12);
   EXPECT_NEAR(4 * place_of(position).sigma[kY], 18, 4);
   EXPECT_GE(4 * place_of(position).sigma[kX], 300) << "nobody measured that";
@@ -164,7 +167,7 @@ TEST(PositionEstimate, FixesBoundErrorAndDeviation) {
 
 TEST(PositionEstimate, AResetKnowsThePlaceForSure) {
   PositionEstimate position(1000, 1000);
-  for (int tick = 0; tick < 4700; ++tick) position.update(1, 1, 8192, 0, 255);
+  for (int tick = 0; tick < 4700; ++tick) position.update(1, 1, 8192, 0, 127);
   ASSERT_GT(place_of(position).sigma[kX], 20);
   position.reset();
   const Place place = place_of(position);

@@ -87,6 +87,23 @@ TEST(Escape, OnItsWayHomeItGoesHalfAsFarAndTurnsByLessThan45Degrees) {
   EXPECT_LT(near, 0);
 }
 
+// Stuck once more on its way home it goes on: each attempt that leads back would be farther out.
+TEST(Escape, OnItsWayHomeOnlyThePlainAttemptsLeadBack) {
+  Escape escape(escape_parameters(6));
+  for (int i = 0; i < 6; ++i) {
+    int32_t way = 0;  // 0.01 mm
+    for (bool stuck = true; escape.tick(stuck, true, true); stuck = false) {
+      way += escape.motion().speed_mm_per_s;
+    }
+    // It drives home backwards.
+    if (i == 0 || i == 4) {
+      EXPECT_GT(way, 10000) << i;
+    } else {
+      EXPECT_LT(way, -10000) << i;
+    }
+  }
+}
+
 // What lies behind was passable, and that is ahead for one that drove backwards.
 TEST(Escape, OfARobotThatDroveBackwardsIsMirrored) {
   Escape ahead(escape_parameters(6));

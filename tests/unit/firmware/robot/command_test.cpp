@@ -490,7 +490,7 @@ struct WallSeeker : TestRobot {
     parameters.walk_speed_max = 30;
     parameters.walk_yaw_rate_max = 0;
     parameters.position_noise = 1000;
-    parameters.lost_sigma = 100;
+    parameters.lost_sigma = 28;
     parameters.lost_action = static_cast<int16_t>(LostAction::kSeekWall);
     return parameters;
   }
