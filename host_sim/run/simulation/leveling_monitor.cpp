@@ -39,10 +39,6 @@ Traversability mean_shares(const std::vector<TraversabilityMeter>& robots) {
   return mean;
 }
 
-bool on_bed(const SimFrame& frame, const HeightField& terrain) {
-  return terrain.wrap() || terrain.inside(frame.x, frame.y);
-}
-
 }  // namespace
 
 LevelingMonitor::LevelingMonitor(const Experiment& experiment, double tread_m, bool deformable)
@@ -56,15 +52,16 @@ LevelingMonitor::LevelingMonitor(const Experiment& experiment, double tread_m, b
       next_transport_s_(next_after(0.0, transport_interval_s_)) {}
 
 void LevelingMonitor::begin(const HeightField& before, const Sink& sink) {
+  bounds_ = bounds_of(before);
   outcome_.before = measure(before, deformable_);
   sink(outcome_.before);
 }
 
 void LevelingMonitor::on_tick(std::span<const SimFrame> frames, double distance_m,
-                              const HeightField& terrain, const Sink& sink) {
+                              const Surface& terrain, const Sink& sink) {
   cost_.energy_j = 0.0;
   for (size_t i = 0; i < frames.size(); ++i) {
-    traversability_[i].on_tick(frames[i], on_bed(frames[i], terrain));
+    traversability_[i].on_tick(frames[i], on_bed(frames[i]));
     cost_.energy_j += frames[i].energy;
   }
   const double time_s = frames.front().time;
@@ -74,12 +71,17 @@ void LevelingMonitor::on_tick(std::span<const SimFrame> frames, double distance_
   next_s_ = next_after(time_s, interval_s_);
   const bool with_transport = deformable_ && time_s >= next_transport_s_ - kRounding_s;
   if (with_transport) next_transport_s_ = next_after(time_s, transport_interval_s_);
-  sink(measure(terrain, with_transport));
+  sink(measure(terrain(), with_transport));
 }
 
 void LevelingMonitor::end(const HeightField& after, const Sink& sink) {
   outcome_.after = measure(after, deformable_);
   sink(outcome_.after);
+}
+
+bool LevelingMonitor::on_bed(const SimFrame& frame) const {
+  return bounds_.edge == BedEdge::kWrapped ||
+         (std::abs(frame.x) <= 0.5 * bounds_.width_m && std::abs(frame.y) <= 0.5 * bounds_.depth_m);
 }
 
 LevelingPoint LevelingMonitor::measure(const HeightField& terrain, bool with_transport) {

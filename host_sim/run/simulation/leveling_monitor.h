@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host_sim/leveling/leveling_meter.h"
+#include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/terrain_outcome.h"
 
@@ -24,15 +25,17 @@ class LevelingMonitor {
  public:
   /// Is given each point once, in the order of time.
   using Sink = std::function<void(const LevelingPoint&)>;
+  /// The terrain as it is now. Only asked where a point is due.
+  using Surface = std::function<const HeightField&()>;
 
   /// tread_m: distance between the robot's tracks. deformable: the terrain can change.
   LevelingMonitor(const Experiment& experiment, double tread_m, bool deformable);
 
-  /// The point at the start, of the terrain before the run.
+  /// The point at the start, of the terrain before the run. Its edges are those of the bed.
   void begin(const HeightField& before, const Sink& sink);
   /// After each control tick, with the frame of each robot; distance_m: their paths so far. Costs
   /// are of all robots, shares of time are means over them.
-  void on_tick(std::span<const SimFrame> frames, double distance_m, const HeightField& terrain,
+  void on_tick(std::span<const SimFrame> frames, double distance_m, const Surface& terrain,
                const Sink& sink);
   /// The point at the end, of the terrain after the run. When the last tick was a point already, it
   /// is given once more, with transport.
@@ -42,6 +45,7 @@ class LevelingMonitor {
   const LevelingOutcome& outcome() const { return outcome_; }
 
  private:
+  bool on_bed(const SimFrame& frame) const;
   LevelingPoint measure(const HeightField& terrain, bool with_transport);
 
   TerrainMeasure measure_;
@@ -52,6 +56,7 @@ class LevelingMonitor {
   bool deformable_;
   double next_s_;
   double next_transport_s_;
+  BedBounds bounds_{};
   LevelingCost cost_;  ///< without the shares
   LevelingOutcome outcome_;
 };

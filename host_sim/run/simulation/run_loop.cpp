@@ -35,7 +35,8 @@ RunEnd RunLoop::run() {
 
 std::optional<RunEnd> RunLoop::reason_to_end() const {
   bool off_bed = false;
-  for (size_t i = 0; i < robots_.size(); ++i) off_bed = off_bed || left_bed(plant_.robot(i));
+  for (size_t i = 0; i < robots_.size(); ++i)
+    off_bed = off_bed || left_bed(before_, plant_.robot(i));
   return stop_.reason(off_bed);
 }
 
@@ -48,7 +49,9 @@ void RunLoop::on_sample(size_t robot, const SensorSample& sample) {
   // The shadow answers before the robot does: a frame shows what they think of this sample.
   watched.parity.tick(sample);
   watched.frame = watched.frames.record(plant_.robot(robot), watched.parity.shadow());
-  robots_[robot].recorder.observe_terrain(plant_.terrain());
+  // A bed of particles casts thousands of rays for its surface: it is asked for where it is needed.
+  SessionRecorder& recorder = robots_[robot].recorder;
+  if (recorder.records_heights()) recorder.observe_terrain(plant_.terrain());
 }
 
 /// The robot has answered the sample; a native world has not taken the answer yet.
@@ -69,7 +72,9 @@ void RunLoop::end_tick() {
     frames_[i] = robots_[i].robot.frame;
     distance_m += robots_[i].robot.frames.distance_m();
   }
-  leveling_.on_tick(frames_, distance_m, plant_.terrain(), take_point_);
+  leveling_.on_tick(
+      frames_, distance_m, [this]() -> const HeightField& { return plant_.terrain(); },
+      take_point_);
   if (observer_ != nullptr) {
     if (robots_.size() > 1) observer_->on_further_robots(std::span(frames_).subspan(1));
     observer_->on_tick(frames_[0], plant_.terrain());

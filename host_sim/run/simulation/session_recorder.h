@@ -44,6 +44,8 @@ class SessionRecorder {
   void record_particles_before(const SphereSet& particles);
   void record_particles_after(const SphereSet& particles);
 
+  /// Whether observe_terrain() has anything to do.
+  bool records_heights() const { return watch_.has_value(); }
   /// Looks for heights that have changed, when the robot has read its sensors: what is recorded of
   /// a tick is the world as its sample saw it.
   void observe_terrain(const HeightField& terrain);

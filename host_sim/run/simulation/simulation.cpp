@@ -130,7 +130,7 @@ RobotSummary report_robot(const RunWorld& world, size_t number, const WatchedRob
   const GroundStation& ground = world.ground_station(number);
   RobotSummary summary;
   summary.content_hash = content_hash;
-  summary.left_bed = left_bed(view);
+  summary.left_bed = left_bed(view.terrain(), view);
   summary.distance_m = robot.frames.distance_m();
   summary.energy_j = view.battery().energy_j;
   summary.battery_v = view.battery().terminal_v;

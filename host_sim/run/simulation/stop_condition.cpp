@@ -36,9 +36,9 @@ uint64_t frames_to_drive(const Experiment& experiment) {
   return std::min(all, static_cast<uint64_t>(some));
 }
 
-bool left_bed(const RobotView& robot) {
+bool left_bed(const HeightField& bed, const RobotView& robot) {
   const Eigen::Vector3d place = robot.vehicle().chassis().pose.translation();
-  return !robot.terrain().wrap() && !robot.terrain().inside(place.x(), place.y());
+  return !bed.wrap() && !bed.inside(place.x(), place.y());
 }
 
 StopCondition::StopCondition(const Experiment& experiment, const std::atomic<bool>* stop)

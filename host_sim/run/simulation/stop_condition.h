@@ -27,8 +27,8 @@ const char* end_text(RunEnd end);
 uint64_t frames_to_drive(const Experiment& experiment);
 
 /// A bed ends at its edges, unless it wraps around: a robot that drives over them has left its
-/// site.
-bool left_bed(const RobotView& robot);
+/// site. Of the bed only the edges count.
+bool left_bed(const HeightField& bed, const RobotView& robot);
 
 class StopCondition {
  public:

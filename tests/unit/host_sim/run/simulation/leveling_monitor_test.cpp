@@ -31,7 +31,7 @@ class LevelingMonitorTest : public ::testing::Test {
     for (int tick = 1; tick <= std::lround(duration_s * kTickRate_hz); ++tick) {
       frame.time = tick * 0.01;
       frame.energy = 2.0 * frame.time;
-      monitor.on_tick({&frame, 1}, 0.1 * frame.time, terrain_, sink_);
+      monitor.on_tick({&frame, 1}, 0.1 * frame.time, now_, sink_);
     }
     monitor.end(terrain_, sink_);
   }
@@ -50,6 +50,11 @@ class LevelingMonitorTest : public ::testing::Test {
 
   Experiment experiment_;
   HeightField terrain_ = hills();
+  int asked_ = 0;
+  LevelingMonitor::Surface now_ = [this]() -> const HeightField& {
+    ++asked_;
+    return terrain_;
+  };
   std::vector<LevelingPoint> points_;
   LevelingMonitor::Sink sink_ = [this](const LevelingPoint& point) { points_.push_back(point); };
 };
@@ -66,6 +71,7 @@ TEST_F(LevelingMonitorTest, MeasuresAtTheStartAtMultiplesAndAtTheEnd) {
   EXPECT_EQ(points_.back().progress, 0.0);
   EXPECT_EQ(monitor.outcome().before.time, 0.0);
   EXPECT_EQ(monitor.outcome().after.time, 1.7);
+  EXPECT_EQ(asked_, 3) << "a bed of particles casts rays for its surface: for points alone";
 }
 
 TEST_F(LevelingMonitorTest, TheEndHasTransportEvenWhereAPointIsDue) {
@@ -112,7 +118,7 @@ TEST_F(LevelingMonitorTest, TheLimitsAreThoseOfTheRobotsParameters) {
   for (int tick = 1; tick <= 10; ++tick) {
     frame.time = tick * 0.01;
     frame.pitch = tick <= 4 ? 0.18 : 0.17;  // 10 degrees are 0.1745
-    monitor.on_tick({&frame, 1}, 0.0, terrain_, sink_);
+    monitor.on_tick({&frame, 1}, 0.0, now_, sink_);
   }
   monitor.end(terrain_, sink_);
   EXPECT_DOUBLE_EQ(points_.back().tilted, 0.4);
@@ -135,7 +141,7 @@ TEST_F(LevelingMonitorTest, OfSeveralRobotsCostsAreSumsAndSharesAreMeans) {
     frames[0].velocity_x = 0.2;
     frames[0].pitch = 1.0;
     frames[1].slip_left = frames[1].slip_right = 1.0;
-    monitor.on_tick(frames, 0.2 * frames[0].time, terrain_, sink_);
+    monitor.on_tick(frames, 0.2 * frames[0].time, now_, sink_);
   }
   monitor.end(terrain_, sink_);
   EXPECT_DOUBLE_EQ(points_.back().energy, 8.0);
