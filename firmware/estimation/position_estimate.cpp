@@ -1,6 +1,8 @@
 // Where the robot is, and how well it knows.
 #include "firmware/estimation/position_estimate.h"
 
+#include <string.h>
+
 #include "firmware/math/fixed.h"
 #include "firmware/math/sqrt.h"
 #include "firmware/parameters/board_constants.h"
@@ -53,21 +55,37 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   for (uint32_t& variance : variance_) variance = limited(variance + growth);
 }
 
+void PositionEstimate::keep_inside(const int16_t (&half_mm)[2]) {
+  // The upper half of a place is in 8 mm, on a machine whose lower byte comes first. Two bytes are
+  // cheaper to compare and to change than four.
+  auto* upper = reinterpret_cast<uint8_t*>(place_) + 2;
+  for (const int16_t wall : half_mm) {
+    const auto half = static_cast<int16_t>(static_cast<uint16_t>(wall) >> 3);
+    int16_t place;
+    memcpy(&place, upper, sizeof(place));
+    if (half != 0) place = clamp_i16(place, static_cast<int16_t>(-half), half);
+    memcpy(upper, &place, sizeof(place));
+    upper += sizeof(place_[0]);
+  }
+}
+
 bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uint8_t gate) {
-  const int16_t innovation = limit_i16(static_cast<int32_t>(z_mm) - short_mm(axis), INT16_MAX);
-  // Variances in 32 mm^2.
-  const uint16_t half = static_cast<uint16_t>(variance_[axis] >> 17);
+  int32_t& place = place_[axis];
+  uint32_t& variance = variance_[axis];
+  const int16_t innovation = limit_i16(z_mm - asr(place, 13), INT16_MAX);
+  // Variances in 32 mm^2, this one below 2^14.
+  const auto half = static_cast<uint16_t>(static_cast<uint16_t>(variance >> 16) >> 1);
   const auto sum =
-      static_cast<uint16_t>(half + static_cast<uint16_t>(mul_i16(sigma_mm, sigma_mm) >> 5));
+      static_cast<uint16_t>(half + static_cast<uint16_t>(asr(mul_i16(sigma_mm, sigma_mm), 5)));
   if (gate != 0 &&
-      static_cast<uint32_t>(mul_i16(innovation, innovation)) >> 5 > mul_u16(sum, gate)) {
-    variance_[axis] += kDoubt;  // the next tick's growth limits it
+      static_cast<uint32_t>(asr(mul_i16(innovation, innovation), 5)) > mul_u16(sum, gate)) {
+    variance += kDoubt;  // the next tick's growth limits it
     return false;
   }
   // Below 1: sigma_mm is at least 8.
-  const uint16_t gain_q15 = quotient_u16(static_cast<uint32_t>(half) << 15, sum);
-  place_[axis] += asr(mul_i16(innovation, static_cast<int16_t>(gain_q15)), 2);
-  variance_[axis] -= mul_u16(half, gain_q15) << 2;
+  const uint16_t gain_q15 = quotient_u16(mul_u16(half, 1U << 15), sum);
+  place += asr(mul_i16(innovation, static_cast<int16_t>(gain_q15)), 2);
+  variance -= mul_u16(static_cast<uint16_t>(half << 2), gain_q15);
   return true;
 }
 

@@ -11,6 +11,9 @@
 //   variance += noise |travel| (1 - share + 1/32)
 // and with a measurement z of the variance r
 //   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
+// Between walls the place is projected onto what they allow, which can only bring it nearer to the
+// truth (Simon, "Kalman filtering with state constraints", IET Control Theory and Applications 4,
+// 2010, eq. 39).
 #pragma once
 
 #include <stdint.h>
@@ -40,6 +43,10 @@ class PositionEstimate : private PositionState {
   /// One tick: counts of both tracks since the last tick (within kMaxTrackCounts), heading and
   /// pitch now; share: of the tracks' travel that moves the robot, 255: all of it.
   void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch, uint8_t share);
+
+  /// No robot is beyond a wall: the place becomes the nearest within +-half_mm of the origin, east
+  /// and north, to 8 mm; below 8: no wall there. The variance stays.
+  void keep_inside(const int16_t (&half_mm)[2]);
 
   /// Measured along an axis: z_mm, +-sigma_mm (8..1000). False where that is further off than the
   /// root of `gate` standard deviations; 0: however far off it is. Then the position stays, and its

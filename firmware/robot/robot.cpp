@@ -41,6 +41,9 @@ uint8_t size_of(uint16_t id) {
 // No ground to level is that steep for long; beds of the steepest relief have 25 degrees.
 constexpr uint16_t kWallPitch = angle_from_centidegrees(3000);
 
+static_assert(offsetof(Parameters, site_y) == offsetof(Parameters, site_x) + sizeof(int16_t),
+              "the walls of both axes follow each other");
+
 constexpr uint8_t kImuCounts = 9;
 static_assert(offsetof(SensorSample, mag) == offsetof(SensorSample, gyro) + 6 * sizeof(int16_t) &&
                   offsetof(ImuSample, mag) == 6 * sizeof(int16_t) &&
@@ -107,6 +110,7 @@ SCREED_OUT_OF_LINE void Robot::estimate_pose(const SensorSample& sample, const D
       wrap_angle(status_.angles.heading - angle_from_centidegrees(parameters_.site_heading));
   position_.update(deltas.left, deltas.right, status_.angles.heading, status_.angles.pitch,
                    slip_watch_.travel_share());
+  position_.keep_inside(reinterpret_cast<const int16_t(&)[2]>(parameters_.site_x));
   position_.get(status_.place);
 }
 

@@ -93,6 +93,30 @@ TEST(PositionEstimate, APlaceStopsAtItsRange) {
   EXPECT_EQ(place_of(position).mm[kX], -INT16_MAX);
 }
 
+// Tracks that turn before a wall move nothing; on the way back all of their travel counts again.
+TEST(PositionEstimate, BetweenWallsThePlaceIsTheNearestThatIsPossible) {
+  for (const int sign : {1, -1}) {
+    PositionEstimate position(kCount_um_q4, 0);
+    const int16_t walls[2] = {1000, 0};
+    const Angle heading = wrap_angle(8192);  // as far east as north
+    const auto drive = [&](int ticks, int counts) {
+      const auto both = static_cast<int16_t>(counts);
+      for (int tick = 0; tick < ticks; ++tick) {
+        position.update(both, both, heading, 0, 255);
+        position.keep_inside(walls);
+      }
+    };
+    const double step_mm = 2 * kCount_mm * std::numbers::sqrt2 / 2;
+    drive(1000, sign * 2);
+    EXPECT_NEAR(position.mm(kX), sign * 1000 * step_mm, 2.0) << "0.8 m: nowhere near";
+    drive(2000, sign * 2);
+    EXPECT_NEAR(position.mm(kX), sign * 1000, 8.0);
+    EXPECT_NEAR(position.mm(kY), sign * 3000 * step_mm, 3.0) << "there is no wall";
+    drive(500, sign * -2);
+    EXPECT_NEAR(position.mm(kX), sign * (1000 - 500 * step_mm), 9.0);
+  }
+}
+
 // Half of what the belts travel moves the robot.
 TEST(PositionEstimate, SlipIsTakenOff) {
   for (const int share : {0, 63, 127, 255}) {

@@ -526,5 +526,18 @@ TEST(WallSearch, ARobotThatClimbsTheWallItSeeksTakesItForFoundAndBacksOff) {
   }
 }
 
+// Dead reckoning that runs on beyond the walls would take minutes of driving back to be right again.
+TEST(WallSearch, NoRobotBelievesItselfBeyondAWall) {
+  WallSeeker robot;
+  for (int i = 0; i < 2000; ++i) {
+    robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 2);
+    robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right + 2);
+    robot.tick();
+  }
+  const PositionEstimate& position = robot.robot.position();
+  EXPECT_NEAR(std::max(std::abs(position.mm(kX)), std::abs(position.mm(kY))), WallSeeker::kSite_mm,
+              8);
+}
+
 }  // namespace
 }  // namespace screed
