@@ -61,7 +61,7 @@ void PositionEstimate::keep_inside(const int16_t (&half_mm)[2]) {
   auto* upper = reinterpret_cast<uint8_t*>(place_) + 2;
   for (const int16_t wall : half_mm) {
     const auto half = static_cast<int16_t>(static_cast<uint16_t>(wall) >> 3);
-    int16_t place;
+    int16_t place = 0;
     memcpy(&place, upper, sizeof(place));
     if (half != 0) place = clamp_i16(place, static_cast<int16_t>(-half), half);
     memcpy(upper, &place, sizeof(place));

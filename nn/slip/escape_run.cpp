@@ -73,6 +73,7 @@ struct Trial {
   bool out = false;
   double out_s = 0.0;
   std::uint16_t faults = 0;
+  bool failed = false;  ///< the physics
 };
 
 /// One drive: to the alarm, and from there as parameters and manoeuvre (may be null) say.
@@ -126,7 +127,7 @@ Trial trial_of(const StuckScenario& scenario, const Parameters& parameters,
   try {
     return run_trial(scenario, parameters, manoeuvre, progress);
   } catch (const RunError&) {
-    return {};
+    return {.failed = true};
   }
 }
 
@@ -187,14 +188,18 @@ EscapeResult escape_trials(std::uint64_t seed, const EscapeOptions& options,
   Parameters plain = escaping;
   plain.escape_attempts = 0;
   const Trial alone = trial_of(result.scenario, plain, nullptr, progress);
-  result.stuck = alone.stuck;
   result.alarm_s = alone.alarm_s;
-  if (!result.stuck) {
+  if (!alone.stuck) {
     if (alone.faults != 0) result.fault = fault_names(alone.faults);
     return result;
   }
-  result.out_alone = alone.out;
   const Trial escape = trial_of(result.scenario, escaping, nullptr, progress);
+  // The drives are the same to the bit, or they are not.
+  const bool same = escape.stuck && escape.alarm_s == alone.alarm_s;
+  result.backed_off = !same && escape.faults == 0 && !escape.failed;
+  if (result.backed_off) return result;
+  result.stuck = true;
+  result.out_alone = alone.out;
   result.out_escape = escape.out;
   result.escape_s = escape.out_s;
   result.held = (escape.faults & Fault::kStuck) != 0;

@@ -1,7 +1,7 @@
 // Drives into a trap until the robot's slip watch says stuck, and what gets the robot out from
 // there: nothing, the firmware's escape, or the best of a list of manoeuvres.
 //
-// All trials of a seed are the same drive up to the moment of the alarm, to the bit.
+// All trials of a stuck robot are the same drive up to the moment of the alarm, to the bit.
 #pragma once
 
 #include <cstddef>
@@ -43,6 +43,9 @@ inline constexpr double kManoeuvreTime_s = 10.0;
 struct EscapeResult {
   StuckScenario scenario;
   bool stuck = false;  ///< the alarm came and was none of a robot that moves (kFreeShare)
+  /// With its escape the robot was not stuck then: a steep pitch is a wall to it, and it backed off
+  /// before the alarm (robot.cpp, feel_walls()). Its trials are not of one drive; `stuck` is false.
+  bool backed_off = false;
   double alarm_s = 0.0;
   bool out_alone = false;  ///< the algorithm goes on as if nothing was
   /// It gets out alone, by the escape, or by a manoeuvre of the oracle.

@@ -54,8 +54,9 @@ struct Figures {
   std::map<std::string, Counts> by_trap;
   std::map<std::string, Counts> by_ground;
   std::vector<double> times_s;
-  std::map<std::string, int> faults;  ///< that ended a drive before the alarm
-  std::vector<std::string> failed;    ///< seeds of recoverable ones that the escape did not get out
+  std::map<std::string, int> faults;      ///< that ended a drive before the alarm
+  std::map<std::string, int> backed_off;  ///< drives in which the robot did so before the alarm
+  std::vector<std::string> failed;  ///< seeds of recoverable ones that the escape did not get out
 };
 
 std::string trap_of(const nn::EscapeResult& result) {
@@ -66,6 +67,7 @@ Figures figures_of(const std::vector<nn::EscapeResult>& results) {
   Figures figures;
   for (const nn::EscapeResult& result : results) {
     if (!result.stuck) {
+      if (result.backed_off) ++figures.backed_off[trap_of(result)];
       if (!result.fault.empty()) ++figures.faults[trap_of(result) + ": " + result.fault];
       continue;
     }
@@ -108,6 +110,8 @@ void print(const EscapeArguments& arguments, const Figures& figures) {
     std::printf("time to get out  %.1f s median, %.1f s 95 %%\n", quantile(figures.times_s, 0.5),
                 quantile(figures.times_s, 0.95));
   }
+  for (const auto& [trap, drives] : figures.backed_off)
+    std::printf("backed off before the alarm, %s: %d\n", trap.c_str(), drives);
   for (const auto& [fault, drives] : figures.faults)
     std::printf("ended before the alarm, %s: %d\n", fault.c_str(), drives);
   for (const std::string& failed : figures.failed) std::printf("not out: %s\n", failed.c_str());
@@ -148,6 +152,7 @@ void print_json(const EscapeArguments& arguments, const Figures& figures) {
                                        {"runs", arguments.runs},
                                        {"all", json_of(figures.all)},
                                        {"traps", traps},
+                                       {"backed_off_before_the_alarm", figures.backed_off},
                                        {"time_median_s", quantile(figures.times_s, 0.5)},
                                        {"time_p95_s", quantile(figures.times_s, 0.95)},
                                        {"not_out", figures.failed}};

@@ -526,7 +526,8 @@ TEST(WallSearch, ARobotThatClimbsTheWallItSeeksTakesItForFoundAndBacksOff) {
   }
 }
 
-// Dead reckoning that runs on beyond the walls would take minutes of driving back to be right again.
+// Dead reckoning that runs on beyond the walls would take minutes of driving back to be right
+// again.
 TEST(WallSearch, NoRobotBelievesItselfBeyondAWall) {
   WallSeeker robot;
   for (int i = 0; i < 2000; ++i) {

@@ -1,4 +1,4 @@
-// Trials of the escape: their scenarios and their statistics. The drives are in tests/sitl.
+// Trials of the escape: their scenarios, and what counts as stuck.
 #include "nn/slip/escape_run.h"
 
 #include <gtest/gtest.h>
@@ -44,6 +44,28 @@ TEST(EscapeScenario, ManoeuvresAreBoundedAndHaveTheirOwnNames) {
       EXPECT_LE(std::abs(step.turn_deg_per_s), 90.0);
     }
   }
+}
+
+// A rigid slope: by its pitch the robot takes it for a wall and backs off before its tracks slip
+// for long. It was never stuck, and neither a success nor a failure of the escape.
+TEST(EscapeTrials, WhoBacksOffBeforeTheAlarmWasNotStuck) {
+  const EscapeResult result = escape_trials(480020, {.oracle = false});
+  ASSERT_EQ(result.scenario.experiment.trap.kind, "slope");
+  EXPECT_TRUE(result.backed_off);
+  EXPECT_FALSE(result.stuck);
+  EXPECT_FALSE(result.recoverable);
+}
+
+TEST(EscapeTrials, FromRutsItGetsOutWhereTheWalkAloneDoesNot) {
+  const EscapeResult result = escape_trials(430003, {.oracle = false});
+  ASSERT_EQ(result.scenario.experiment.trap.kind, "ruts");
+  EXPECT_FALSE(result.backed_off);
+  EXPECT_TRUE(result.stuck);
+  EXPECT_FALSE(result.out_alone);
+  EXPECT_TRUE(result.out_escape);
+  EXPECT_TRUE(result.recoverable);
+  EXPECT_GT(result.escape_s, 0.0);
+  EXPECT_LE(result.escape_s, kEscapeTime_s);
 }
 
 }  // namespace
