@@ -12,8 +12,8 @@
 // and with a measurement z of the variance r
 //   k = variance / (variance + r),  x += k (z - x),  variance -= k variance
 // Between walls the place is projected onto what they allow, which can only bring it nearer to the
-// truth (Simon, "Kalman filtering with state constraints", IET Control Theory and Applications 4,
-// 2010, eq. 39).
+// truth (estimate projection: Simon, "Kalman filtering with state constraints: a survey of linear
+// and nonlinear algorithms", IET Control Theory and Applications 4, 2010).
 #pragma once
 
 #include <stdint.h>
