@@ -116,23 +116,25 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
                 "d59cbc01a679e4ff398e8897d8dba5dd", "be8a5039669ec540c768dd9065b1de82"}));
 }
 
-// Courses with four robots have a step that they allow.
-TEST_F(LevelBench, FourRobotsRun) {
+// Courses with four robots have a step that they allow, those on particles no soil.
+TEST_F(LevelBench, FourRobotsRunAndParticles) {
   const std::filesystem::path data = "host_sim/data/benchmark";
   write("bed.ini", read(data / "bed.ini"));
-  write("leveling.ini", read(data / "leveling.ini") +
-                            "\n[suite tiny]\nsize = small\nbed = rough\nsoil = gravel\n"
-                            "robots = four\nposition = fixes\nentry = nobody, strokes\n"
-                            "seeds = 1\nduration = 10\n");
-  const Result result =
-      run("level bench --benchmark leveling.ini --suite tiny --training --against nobody --quiet "
-          "--json "
-          "--out b");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json courses = Json::parse(result.out);
-  for (const char* name : {"nobody", "strokes"}) {
-    EXPECT_EQ(entry_of(courses, name)["runs"], 1) << name;
-    EXPECT_EQ(entry_of(courses, name)["failed"], 0) << name;
+  for (const char* course : {"soil = gravel\nrobots = four", "soil = particles\nrobots = one"}) {
+    write("leveling.ini", read(data / "leveling.ini") +
+                              "\n[suite tiny]\nsize = small\nbed = rough\nposition = fixes\n" +
+                              course + "\nentry = nobody, strokes\nseeds = 1\nduration = 10\n");
+    std::filesystem::remove_all(root_ / "b");
+    const Result result =
+        run("level bench --benchmark leveling.ini --suite tiny --training --against nobody --quiet "
+            "--json "
+            "--out b");
+    ASSERT_EQ(result.exit_code, 0) << course << result.err;
+    const Json courses = Json::parse(result.out);
+    for (const char* name : {"nobody", "strokes"}) {
+      EXPECT_EQ(entry_of(courses, name)["runs"], 1) << course << name;
+      EXPECT_EQ(entry_of(courses, name)["failed"], 0) << course << name;
+    }
   }
 }
 
