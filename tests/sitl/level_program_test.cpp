@@ -116,8 +116,8 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
                 "d59cbc01a679e4ff398e8897d8dba5dd", "be8a5039669ec540c768dd9065b1de82"}));
 }
 
-// Courses with four robots have a step that they allow, those on particles no soil.
-TEST_F(LevelBench, FourRobotsRunAndParticles) {
+// Courses with four robots have a step that they allow, those on particles all that particles need.
+TEST_F(LevelBench, FourRobotsAndParticlesRun) {
   const std::filesystem::path data = "host_sim/data/benchmark";
   write("bed.ini", read(data / "bed.ini"));
   for (const char* course : {"soil = gravel\nrobots = four", "soil = particles\nrobots = one"}) {
