@@ -91,22 +91,45 @@ std::string two_digits(std::size_t number) {
   return (number < 10 ? "0" : "") + std::to_string(number);
 }
 
-/// The best of the archive with different values, each by its own generation's beds.
-std::vector<Candidate> finalists_of(const EvolutionFile& file, const Evolution& evolution) {
-  std::vector<std::size_t> order(evolution.archive.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto value = [&](std::size_t i) {
-    return value_of(evolution.archive[i].score, file.objective);
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return value(a) < value(b); });
-  std::vector<Candidate> finalists;
-  for (const std::size_t i : order) {
+/// A candidate and the point of the search that it stands for.
+struct Tried {
+  std::vector<double> point;
+  Candidate candidate;
+};
+
+/// Where CMA-ES goes on from these: the mean of their better half, the best of them weighing most
+/// (Hansen 2016, "The CMA Evolution Strategy: A Tutorial", eq. 6 and 49). `best_first`.
+std::vector<double> middle_of(const std::vector<Tried>& best_first) {
+  std::vector<double> middle(best_first.front().point.size(), 0.0);
+  const double count = static_cast<double>(best_first.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < best_first.size() / 2; ++i) {
+    const double weight = std::log((count + 1.0) / 2.0) - std::log(static_cast<double>(i + 1));
+    sum += weight;
+    for (std::size_t k = 0; k < middle.size(); ++k) middle[k] += weight * best_first[i].point[k];
+  }
+  for (double& component : middle) component /= sum;
+  return middle;
+}
+
+/// Of the last generation alone: what an earlier one reached is for other beds, and the best of all
+/// would be who had the easiest of them. Its middle, which chance favours least, then its best, all
+/// with different values.
+std::vector<Candidate> finalists_of(const EvolutionFile& file, std::vector<Tried> last) {
+  std::stable_sort(last.begin(), last.end(), [&](const Tried& a, const Tried& b) {
+    return value_of(a.candidate.score, file.objective) <
+           value_of(b.candidate.score, file.objective);
+  });
+  Candidate middle;
+  middle.name = "middle";
+  middle.values = values_at(file, middle_of(last));
+  std::vector<Candidate> finalists = {middle};
+  for (const Tried& tried : last) {
     if (finalists.size() == file.finalists) break;
-    const Candidate& candidate = evolution.archive[i];
-    if (std::none_of(finalists.begin(), finalists.end(),
-                     [&](const Candidate& known) { return known.values == candidate.values; }))
-      finalists.push_back(candidate);
+    if (std::none_of(finalists.begin(), finalists.end(), [&](const Candidate& known) {
+          return known.values == tried.candidate.values;
+        }))
+      finalists.push_back(tried.candidate);
   }
   return finalists;
 }
@@ -152,16 +175,19 @@ Evolution evolve(const EvolutionFile& file, const Benchmark& benchmark, const Ev
   check(file, benchmark);
   CmaSearch search(start_of(file), {file.population, file.sigma, file.seed});
   Evolution evolution;
+  std::vector<Tried> last;
   for (std::size_t generation = 0; generation < file.generations; ++generation) {
     EvolutionTask task{
         "generation-" + two_digits(generation + 1), "", {}, beds_of(file, generation)};
     Benchmark with_candidates = benchmark;
     std::vector<Candidate> candidates;
+    last.clear();
     for (const std::vector<double>& point : search.ask()) {
       Candidate candidate;
       candidate.name =
           "g" + std::to_string(generation + 1) + "c" + std::to_string(candidates.size() + 1);
       candidate.values = values_at(file, point);
+      last.push_back({point, {}});
       candidates.push_back(std::move(candidate));
     }
     // Points that round to the same parameters are one entry: a campaign has no cell twice.
@@ -183,6 +209,7 @@ Evolution evolve(const EvolutionFile& file, const Benchmark& benchmark, const Ev
       candidates[i].score = scores.at(entry_of[i]);
       values.push_back(value_of(candidates[i].score, file.objective));
       evolution.archive.push_back(candidates[i]);
+      last[i].candidate = candidates[i];
     }
     search.tell(values);
     if (told) told(generation, evolution);
@@ -193,7 +220,7 @@ Evolution evolve(const EvolutionFile& file, const Benchmark& benchmark, const Ev
   Candidate before;
   before.name = file.entry;
   evolution.fine.push_back(before);
-  for (Candidate& finalist : finalists_of(file, evolution)) {
+  for (Candidate& finalist : finalists_of(file, std::move(last))) {
     add_candidate(file, finalist, with_finalists);
     task.entries.push_back(finalist.name);
     evolution.fine.push_back(std::move(finalist));

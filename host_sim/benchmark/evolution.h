@@ -1,6 +1,6 @@
-// The search: generations of candidates by CMA-ES, each evaluated on beds of its own, then the best
-// of them on beds that the search never saw, at the fine setting and at the search's, beside what
-// there was before.
+// The search: generations of candidates by CMA-ES, each evaluated on beds of its own, then the
+// middle and the best of the last one on beds that the search never saw, at the fine setting and at
+// the search's, beside what there was before.
 //
 // A generation has the same beds for all of its candidates, and other ones than the last. What runs
 // the beds is handed in: the campaign engine, or a test. Nothing else here takes time, so a search
@@ -23,7 +23,7 @@ namespace screed {
 
 /// Parameters that were tried, and what they reached.
 struct Candidate {
-  std::string name;                  ///< g3c1: the second of the third generation
+  std::string name;                  ///< g3c1: the first of the third generation; middle
   std::vector<std::int16_t> values;  ///< of EvolutionFile::parameters
   EntryScore score;
 };
@@ -43,8 +43,8 @@ using EvolutionRunner =
 
 struct Evolution {
   std::vector<Candidate> archive;  ///< in the order in which they were tried
-  /// The entry as it was, then finalists, the best of the search first: at the fine setting and, on
-  /// the same beds, at the search's.
+  /// The entry as it was, then finalists, the middle of the last generation first: at the fine
+  /// setting and, on the same beds, at the search's.
   std::vector<Candidate> fine;
   std::vector<EntryScore> coarse;
   /// The best of `fine`; nothing when that is the entry as it was.

@@ -143,6 +143,23 @@ TEST_F(EvolutionOf, FindsTheBestParametersAndVerifiesThemOnOtherBeds) {
   EXPECT_EQ(archive_csv(file, evolved(file)), csv) << "the same search, the same archive";
 }
 
+// Beds differ more than candidates do: the first generation has by far the easiest ones here.
+TEST_F(EvolutionOf, EasyBedsMakeNoFinalist) {
+  const EvolutionFile file = read_evolution_text(kFile, "e.ini");
+  const Evolution evolution =
+      evolve(file, benchmark_, [this](const Benchmark& benchmark, const EvolutionTask& task) {
+        std::vector<EntryScore> scores = run(benchmark, task);
+        if (task.name == "generation-01")
+          for (EntryScore& score : scores) score.relief_change.mean -= 5.0;
+        return scores;
+      });
+  ASSERT_EQ(evolution.fine.size(), 3U);
+  EXPECT_EQ(evolution.fine[1].name, "middle");
+  EXPECT_NEAR(evolution.fine[1].values[0], 150, 15);
+  EXPECT_NEAR(evolution.fine[1].values[1], 70, 8);
+  EXPECT_EQ(evolution.fine[2].name.substr(0, 4), "g25c");
+}
+
 TEST_F(EvolutionOf, SaysSoWhereNothingFoundIsBetter) {
   // From where it is best, in steps that lead away.
   EvolutionFile file = read_evolution_text(
