@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -181,13 +180,12 @@ Evolution evolve(const EvolutionFile& file, const Benchmark& benchmark, const Ev
         "generation-" + two_digits(generation + 1), "", {}, beds_of(file, generation)};
     Benchmark with_candidates = benchmark;
     std::vector<Candidate> candidates;
-    last.clear();
-    for (const std::vector<double>& point : search.ask()) {
+    const std::vector<std::vector<double>> points = search.ask();
+    for (const std::vector<double>& point : points) {
       Candidate candidate;
       candidate.name =
           "g" + std::to_string(generation + 1) + "c" + std::to_string(candidates.size() + 1);
       candidate.values = values_at(file, point);
-      last.push_back({point, {}});
       candidates.push_back(std::move(candidate));
     }
     // Points that round to the same parameters are one entry: a campaign has no cell twice.
@@ -205,11 +203,12 @@ Evolution evolve(const EvolutionFile& file, const Benchmark& benchmark, const Ev
     }
     const std::vector<EntryScore> scores = run(with_candidates, task);
     std::vector<double> values;
+    last.clear();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       candidates[i].score = scores.at(entry_of[i]);
       values.push_back(value_of(candidates[i].score, file.objective));
       evolution.archive.push_back(candidates[i]);
-      last[i].candidate = candidates[i];
+      last.push_back({points[i], candidates[i]});
     }
     search.tell(values);
     if (told) told(generation, evolution);
