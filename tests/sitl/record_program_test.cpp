@@ -128,7 +128,8 @@ TEST_F(RecordProgram, ARunsPicturesAreMadeAgainFromItsSession) {
     ASSERT_EQ(exported.exit_code, 0) << exported.err;
     EXPECT_NE(exported.err.find("start and end alone"), std::string::npos) << exported.err;
     EXPECT_NE(exported.err.find("sim --heights"), std::string::npos) << exported.err;
-    for (const char* file : {"terrain_before.png", "terrain_after.png", "terrain_change.png"}) {
+    for (const char* file :
+         {"terrain_before.png", "terrain_after.png", "terrain_change.png", "leveling.png"}) {
       const std::string drawn = read(root_ / name / file);
       EXPECT_EQ(drawn.substr(1, 3), "PNG");
       EXPECT_TRUE(read(root_ / name / "export" / "pictures" / file) == drawn) << name << file;

@@ -7,7 +7,7 @@ BOARDS_DIR := $(CURDIR)/boards
 MODELS_DIR := $(CURDIR)/nn/models
 FIRMWARE_DIR := $(abspath $(BUILD_ROOT))/firmware
 REPORT_DIR := $(abspath $(BUILD_ROOT))/report
-EXPERIMENT ?= host_sim/data/experiments/first_drive.ini
+EXPERIMENT ?= host_sim/data/experiments/level_bed.ini
 # MCU=no: a program without simavr, and so without `sim --hal mcu` and `parity`.
 MCU ?= yes
 
@@ -158,10 +158,10 @@ $(SCREED): $(B)/tools/screed/main.o $(LIBRARY) $(B)/link.flags
 
 .PHONY: build sim level install uninstall
 build: $(SCREED)  ## build/<BUILD>/screed, the host program (BUILD=release|debug|asan)
-sim: $(SCREED)  ## drive the robot over a real terrain (EXPERIMENT=FILE ARGS='--seed 2 --duration 30')
+sim: $(SCREED)  ## a robot levels a small walled bed, a minute (EXPERIMENT=FILE ARGS='--seed 2 --duration 600')
 	@$(SCREED) sim $(EXPERIMENT) $(ARGS)
 # Into a folder that is new: what was there stays.
-level: $(SCREED) $(REPORT_PAGE)  ## a robot levels a small walled bed, in minutes: pictures, curve, table, page (ARGS='--seed 2')
+level: $(SCREED) $(REPORT_PAGE)  ## the same, and a page with a time slider (ARGS='--seed 2')
 	@run=$(OUT)/level ; number=2 ; while [ -e $$run ] ; do run=$(OUT)/level-$$number ; number=$$((number + 1)) ; done ; \
 	  $(SCREED) sim host_sim/data/experiments/level_bed.ini --out $$run $(ARGS) && $(SCREED) report $$run
 

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_sim/render/chart/svg.h"
 #include "host_sim/render/picture/map_frame.h"
+#include "host_sim/render/picture/map_image.h"
 
 namespace screed {
 
@@ -18,14 +18,6 @@ struct MapPath {
   std::vector<Pixel> points;          ///< x east, y north, m
   std::vector<std::size_t> breaks{};  ///< points before which the line breaks, in order
   std::optional<Color> color{};       ///< none: line_color() of its place among the paths
-};
-
-/// The ground as an image of width x height pixels, its rows from the north.
-struct MapImage {
-  MapRectangle ground;
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgb;
 };
 
 struct PathMap {

@@ -149,12 +149,33 @@ struct HeightScale {
   }
 };
 
-HeightScale height_scale(const TerrainStatistics& s, const PictureOptions& options) {
+HeightScale height_scale(const HeightRange& range) {
   constexpr double kMinRange_m = 0.001;  // level ground still gets a colour bar
   constexpr int kMaxContours = 14;
-  const HeightRange range = options.heights.value_or(HeightRange{s.lowest_m, s.highest_m});
   const double high = std::max(range.high_m, range.low_m + kMinRange_m);
   return {range.low_m, high, round_ticks(range.low_m, high, kMaxContours)};
+}
+
+HeightScale height_scale(const TerrainStatistics& s, const PictureOptions& options) {
+  return height_scale(options.heights.value_or(HeightRange{s.lowest_m, s.highest_m}));
+}
+
+/// The ground at a place, with light and contour lines.
+Color height_map_color(const HeightField& field, const HeightScale& heights, double x, double y,
+                       double metres_per_pixel) {
+  constexpr double kExaggeration = 1.6;
+  constexpr double kShadeStrength = 0.75;
+  constexpr double kContourStrength = 0.22;
+  const double height = field.at(x, y).height;
+  const Relief slope = smooth_gradient(field, x, y);
+  const double ink =
+      kContourStrength * contour_cover(height, slope, heights.contours.step, metres_per_pixel);
+  return shaded(heights.color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
+}
+
+ColorScale color_scale(const HeightScale& heights) {
+  return {heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height (mm)",
+          [heights](double mm) { return heights.color(mm / kMillimetres); }};
 }
 
 std::string subtitle_of(const HeightField& field, const TerrainStatistics& s,
@@ -208,20 +229,40 @@ Canvas draw_height_map(const HeightField& field, const PictureOptions& options) 
   const HeightScale heights = height_scale(statistics, options);
   const double metres_per_pixel = 1.0 / frame.pixels_per_metre();
   paint_map(canvas, frame, [&](double x, double y) {
-    constexpr double kExaggeration = 1.6;
-    constexpr double kShadeStrength = 0.75;
-    constexpr double kContourStrength = 0.22;
-    const double height = field.at(x, y).height;
-    const Relief slope = smooth_gradient(field, x, y);
-    const double ink =
-        kContourStrength * contour_cover(height, slope, heights.contours.step, metres_per_pixel);
-    return shaded(heights.color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
+    return height_map_color(field, heights, x, y, metres_per_pixel);
   });
-  const ColorScale scale{heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height (mm)",
-                         [&](double mm) { return heights.color(mm / kMillimetres); }};
-  finish(canvas, frame, scale, field.edge(), subtitle_of(field, statistics, heights, options),
-         options);
+  finish(canvas, frame, color_scale(heights), field.edge(),
+         subtitle_of(field, statistics, heights, options), options);
   return canvas;
+}
+
+MapImage height_map_image(const HeightField& field, const HeightRange& range, int side_px) {
+  require_side("side_px", side_px, 1);
+  MapImage image{ground_of(field), 0, 0, {}};
+  const double width_m = image.ground.x_max - image.ground.x_min;
+  const double height_m = image.ground.y_max - image.ground.y_min;
+  const double metres_per_pixel = std::max(width_m, height_m) / side_px;
+  image.width = std::max(1, static_cast<int>(std::lround(width_m / metres_per_pixel)));
+  image.height = std::max(1, static_cast<int>(std::lround(height_m / metres_per_pixel)));
+  image.rgb.reserve(std::size_t{3} * static_cast<std::size_t>(image.width) *
+                    static_cast<std::size_t>(image.height));
+  const HeightScale heights = height_scale(range);
+  for (int row = 0; row < image.height; ++row) {
+    const double y = image.ground.y_max - (row + 0.5) * height_m / image.height;
+    for (int column = 0; column < image.width; ++column) {
+      const double x = image.ground.x_min + (column + 0.5) * width_m / image.width;
+      const Color color = height_map_color(field, heights, x, y, metres_per_pixel);
+      for (const double part : {color.red, color.green, color.blue}) {
+        image.rgb.push_back(
+            static_cast<std::uint8_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255.0)));
+      }
+    }
+  }
+  return image;
+}
+
+ColorScale height_color_scale(const HeightRange& heights) {
+  return color_scale(height_scale(heights));
 }
 
 Canvas draw_difference(const HeightField& before, const HeightField& after,

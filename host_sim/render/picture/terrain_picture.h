@@ -8,6 +8,7 @@
 
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/canvas.h"
+#include "host_sim/render/picture/map_image.h"
 #include "host_sim/render/picture/robot_shape.h"
 
 namespace screed {
@@ -66,6 +67,13 @@ std::string height_map_subtitle(const HeightField& field, const PictureOptions& 
 /// Throws InputError for options out of range (a path's state without a name, a place or a height
 /// that is no number, heights upside down).
 Canvas draw_height_map(const HeightField& field, const PictureOptions& options);
+
+/// The same map alone: heights in colour, light and contour lines. Its larger side has so many
+/// pixels, 1 to 8000, else InputError.
+MapImage height_map_image(const HeightField& field, const HeightRange& heights, int side_px);
+
+/// What the colours of such a map mean, mm.
+ColorScale height_color_scale(const HeightRange& heights);
 
 /// Draws after - before in diverging colours around 0, with the relief of `after` as a faint shade.
 /// Both fields must have the same grid, else InputError. Otherwise as above.

@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/render/chart/svg_png.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/height_export.h"
+#include "host_sim/run/simulation/leveling_picture.h"
 #include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/session_recorder.h"
 #include "host_sim/run/simulation/terrain_outcome.h"
@@ -82,6 +84,12 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
     options.title = name + ": change by " + what;
     files.push_back(folder / "terrain_change.png");
     write_difference_picture(files.back(), terrain.before, terrain.after, options);
+    if (run.leveling.size() > 1) {
+      files.push_back(folder / "leveling.png");
+      write_svg_as_png(
+          files.back(),
+          leveling_svg(name + ": " + what, terrain.before, terrain.after, run.leveling), 1.0);
+    }
   }
   options.heights = common_range(terrain.before, terrain.after);
   options.title = name + ": before";
@@ -123,6 +131,7 @@ std::vector<fs::path> export_run_pictures(const fs::path& folder,
   const Experiment experiment = setup_of(session.info(), {}).experiment;
   const TerrainMeasure measure(experiment);
   DrivenRun driven = driven_run(session, shape);
+  driven.leveling = session.leveling();
   for (const SessionReader& further : sessions.subspan(1)) {
     DrivenRun own = driven_run(further, shape);
     driven.further_robots.push_back({std::move(own.path), std::move(own.robot)});

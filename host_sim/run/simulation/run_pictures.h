@@ -1,4 +1,5 @@
-// The pictures of a run: the terrain before, after it with the driven path, and what has changed.
+// The pictures of a run: the terrain before, after it with the driven path, what has changed, and
+// how it was leveled.
 // Made at its end, and again from its session.
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "host_sim/core/sim_frame.h"
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/render/picture/terrain_picture.h"
@@ -28,6 +30,7 @@ struct DrivenRun {
   std::vector<PathPoint> path;  ///< its states are those of the leveling algorithm (LevelingState)
   std::optional<RobotOutline> robot;  ///< at the end
   std::vector<PictureRobot> further_robots = {};
+  std::vector<LevelingPoint> leveling = {};
 };
 
 /// `last`: the frame of the last tick; of no use for a path without a point.
@@ -41,8 +44,9 @@ std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double 
 
 /// Writes terrain_before.png and terrain_after.png into the folder, both in the same colours for
 /// the same height, the second with the driven path, of a long one with its end, which leaves the
-/// ground to be seen; and terrain_change.png where the terrain is deformable or has changed.
-/// Returns the files. Throws RunError when one cannot be written.
+/// ground to be seen; and where the terrain is deformable or has changed terrain_change.png, and
+/// leveling.png when the run has a leveling curve. Returns the files. Throws RunError when one
+/// cannot be written.
 std::vector<std::filesystem::path> write_run_pictures(const std::filesystem::path& folder,
                                                       const Experiment& experiment,
                                                       const RunSurfaces& terrain,

@@ -145,13 +145,14 @@ RobotSummary report_robot(const RunWorld& world, size_t number, const WatchedRob
   return summary;
 }
 
-/// The robots between the terrains of a run.
-DrivenRun driven_by(const RobotsOfRun& robots, const RobotShape& shape) {
+/// The robots between the terrains of a run whose sessions are closed.
+DrivenRun driven_by(const RobotsOfRun& robots, const RobotShape& shape, const RunFiles& files) {
   DrivenRun all = driven_run(robots[0]->recorder.path(), robots[0]->robot.frame, shape);
   for (size_t i = 1; i < robots.size(); ++i) {
     DrivenRun own = driven_run(robots[i]->recorder.path(), robots[i]->robot.frame, shape);
     all.further_robots.push_back({std::move(own.path), std::move(own.robot)});
   }
+  all.leveling = SessionReader(files.session()).leveling();
   return all;
 }
 
@@ -225,7 +226,7 @@ SimulationSummary run_simulation(const Experiment& experiment, const SimulationO
     files.write_summary(summary_json(summary));
     if (options.table) files.write_tables();
     if (options.pictures)
-      write_run_pictures(files.folder(), experiment, surfaces, driven_by(robots, shape));
+      write_run_pictures(files.folder(), experiment, surfaces, driven_by(robots, shape, files));
   } catch (const RunError& error) {
     // What took the time is saved; where there is room, `session export` makes table and pictures
     // again.

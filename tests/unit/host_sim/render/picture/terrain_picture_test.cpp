@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/render/picture/map_frame.h"
 
 namespace screed {
@@ -75,6 +76,30 @@ TEST(HeightMapPicture, WithACommonRangeOneHeightHasOneColour) {
   EXPECT_LT(distance(common_low.at(-0.5, 0.0), color_of(0.05)), kRounding);
   EXPECT_LT(distance(common_low.at(0.5, 0.0), color_of(0.013)), kRounding);
   EXPECT_LT(distance(common_high.at(0.5, 0.0), color_of(0.211)), kRounding);
+}
+
+TEST(HeightMapImage, HasTheColoursOfThePictureAndItsNorthOnTop) {
+  // Higher in the north, 0.5 m wide and 1 m high, level at both ends.
+  const HeightField field = HeightField::from_function(
+      51, 101, 0.01, false, [](double /*x*/, double y) { return y > 0.0 ? 0.04 : -0.02; });
+  const HeightRange heights{-0.03, 0.05};
+  const MapImage image = height_map_image(field, heights, 200);
+  EXPECT_EQ(image.width, 100);
+  EXPECT_EQ(image.height, 200);
+  ASSERT_EQ(image.rgb.size(), 3U * 100U * 200U);
+  EXPECT_NEAR(image.ground.y_max - image.ground.y_min, 1.0, 1e-9);
+  const auto color_at = [&](std::size_t column, std::size_t row) {
+    const std::size_t i = 3 * (row * 100 + column);
+    return Color{image.rgb[i] / 255.0, image.rgb[i + 1] / 255.0, image.rgb[i + 2] / 255.0};
+  };
+  EXPECT_LT(distance(color_at(50, 20), height_color(0.07 / 0.08)), kRounding);
+  EXPECT_LT(distance(color_at(50, 180), height_color(0.01 / 0.08)), kRounding);
+  // The scale says which height has that colour, in mm.
+  const ColorScale scale = height_color_scale(heights);
+  EXPECT_DOUBLE_EQ(scale.low, -30.0);
+  EXPECT_DOUBLE_EQ(scale.high, 50.0);
+  EXPECT_LT(distance(scale.color(40.0), color_at(50, 20)), kRounding);
+  EXPECT_THROW(height_map_image(field, heights, 0), InputError);
 }
 
 TEST(HeightMapPicture, SaysHowFarItsContourLinesAreApart) {
