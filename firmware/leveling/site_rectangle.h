@@ -13,11 +13,11 @@ namespace screed {
 struct SiteRectangle {
   explicit SiteRectangle(const Parameters& parameters)
       : half_mm{parameters.site_x, parameters.site_y} {
-    for (int16_t& half : half_mm) {
-      const int16_t radius = parameters.site_radius;
+    const int16_t radius = parameters.site_radius;
+    for (int16_t& side : half_mm) {
+      int16_t half = side;
       if (half == 0 || (radius != 0 && radius < half)) half = radius;
-      if (half > kMax_mm) half = kMax_mm;
-      if (half < kMin_mm) half = kMin_mm;
+      side = clamp_i16(half, kMin_mm, kMax_mm);
     }
   }
 

@@ -28,7 +28,8 @@ void follow(Angle& lagging, Angle value) {
 }  // namespace
 
 Strokes::Strokes(const Parameters& parameters)
-    : parameters_(parameters),
+    : StrokesMemory(),
+      parameters_(parameters),
       random_(static_cast<uint16_t>(parameters.random_seed)),
       site_(parameters),
       limit_(kFirstLimit),

@@ -20,7 +20,21 @@
 
 namespace screed {
 
-class Strokes : public AlgorithmDefaults {
+/// What it remembers that begins with zero; by itself, so that it is zeroed at once.
+struct StrokesMemory {
+  enum class Phase : uint8_t { kTravel, kFace, kStroke };
+
+  Angle pitch_;  ///< with a lag
+  Angle roll_;
+  uint16_t ticks_left_;  ///< of the phase, at most
+  int16_t target_mm_[2];
+  int16_t speed_;  ///< uphill
+  Phase phase_;
+  bool downhill_;        ///< it faces downhill, else uphill
+  uint8_t cycle_ticks_;  ///< left of one way down and up
+};
+
+class Strokes : public AlgorithmDefaults, private StrokesMemory {
  public:
   explicit Strokes(const Parameters& parameters);
 
@@ -30,8 +44,6 @@ class Strokes : public AlgorithmDefaults {
   Angle limit() const { return limit_; }
 
  private:
-  enum class Phase : uint8_t { kTravel, kFace, kStroke };
-
   void begin(Phase phase, uint16_t ticks);
   void begin_cycle();
   void begin_journey();
@@ -43,16 +55,8 @@ class Strokes : public AlgorithmDefaults {
   Random random_;
   SiteRectangle site_;
   Angle limit_;
-  Angle pitch_ = 0;  ///< with a lag
-  Angle roll_ = 0;
-  uint16_t ticks_left_ = 0;  ///< of the phase, at most
-  int16_t target_mm_[2] = {0, 0};
-  Phase phase_ = Phase::kTravel;
-  bool downhill_ = false;    ///< it faces downhill, else uphill
-  uint8_t cycle_ticks_ = 0;  ///< left of one way down and up
   uint8_t down_ticks_;
   uint8_t up_ticks_;
-  int16_t speed_ = 0;  ///< uphill
 };
 
 }  // namespace screed

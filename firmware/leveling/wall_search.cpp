@@ -8,17 +8,15 @@ constexpr int16_t kFarAway_mm = 1000;  // in that direction: any distance does
 
 }  // namespace
 
-WallSearch::WallSearch(const Parameters& parameters)
-    : limit_(parameters.lost_sigma == 0
-                 ? static_cast<uint8_t>(UINT8_MAX)
-                 : static_cast<uint8_t>(static_cast<uint16_t>(parameters.lost_sigma) >> 2)),
-      seeks_{parameters.lost_action != 0 && parameters.site_x != 0,
-             parameters.lost_action != 0 && parameters.site_y != 0} {}
-
 bool WallSearch::update(const Place& place) {
   const uint8_t axis = place.sigma[kY] > place.sigma[kX] ? kY : kX;
-  lost_ = place.sigma[axis] > (lost_ ? static_cast<uint8_t>(limit_ >> 1) : limit_);
-  gave_up_ = lost_ && !seeks_[axis];
+  // In units of 4 mm. A robot without a limit is never lost.
+  auto limit = static_cast<uint16_t>(static_cast<uint16_t>(parameters_.lost_sigma) >> 2);
+  if (parameters_.lost_sigma == 0) limit = UINT8_MAX;
+  if (lost_) limit >>= 1;
+  lost_ = place.sigma[axis] > limit;
+  const int16_t wall = axis == kX ? parameters_.site_x : parameters_.site_y;
+  gave_up_ = lost_ && (parameters_.lost_action == 0 || wall == 0);
   if (!lost_ || gave_up_) return false;
   towards_[1 - axis] = 0;
   towards_[axis] = place.mm[axis] < 0 ? -kFarAway_mm : kFarAway_mm;

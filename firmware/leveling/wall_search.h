@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "firmware/estimation/place.h"
+#include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"
 
 namespace screed {
@@ -18,7 +19,7 @@ enum class LostAction : uint8_t { kStop, kSeekWall };
 
 class WallSearch {
  public:
-  explicit WallSearch(const Parameters& parameters);
+  explicit WallSearch(const Parameters& parameters) : parameters_(parameters) {}
 
   /// One tick. Returns true while the robot is to drive towards (east, north).
   bool update(const Place& place);
@@ -28,8 +29,7 @@ class WallSearch {
   int16_t north() const { return towards_[kY]; }
 
  private:
-  uint8_t limit_;  ///< 4 mm; 255 of a robot that is never lost
-  bool seeks_[2];  ///< a wall, at the ends of x and of y
+  Kept<Parameters> parameters_;
   bool lost_ = false;
   bool gave_up_ = false;
   int16_t towards_[2] = {0, 0};

@@ -185,11 +185,30 @@ TEST(Robots, MayNotStandInOneAnotherAtTheStart) {
   }
 }
 
-TEST(Robots, NeedShortSteps) {
-  PlantOptions options;
-  options.physics_step_s = 0.005;
-  options.further_starts = {{0.5, 0.0, std::nullopt, {}}};
-  EXPECT_THROW(Plant(ground(false, 2.0), rover5(), options), InputError);
+/// Steps are as long as one says while robots are apart, and short enough where they meet.
+TEST(Robots, MeetAsCalmlyInLongSteps) {
+  for (const double aside_m : {0.0, 0.015, 0.1}) {
+    PlantOptions options = options_on({"Soil", true, false});
+    options.physics_step_s = 0.005;  // as soil allows
+    options.start.x_m = -0.25;
+    options.further_starts = {{0.25, aside_m, std::nullopt, {0.0, 0.0, std::numbers::pi}}};
+    Plant plant(ground(false), rover5(), options);
+    const std::array<DutyRatio, 2> ahead = {{{0.9, 0.9}, {0.9, 0.9}}};
+    double depth = 0.0;
+    for (int i = 0; i < 800; ++i) {
+      plant.step_all(ahead);
+      const double apart = (place(plant.robot(0)) - place(plant.robot(1))).norm();
+      if (apart > 0.3) {
+        EXPECT_EQ(plant.substeps(), 1) << apart;
+      }
+      if (apart < 0.25) {
+        EXPECT_EQ(plant.substeps(), 3) << apart;
+      }
+      depth = std::max(depth, deepest(plant));
+    }
+    EXPECT_GT(depth, 0.0) << "they have met";
+    EXPECT_LT(depth, kDepth_m) << aside_m;
+  }
 }
 
 }  // namespace

@@ -95,12 +95,13 @@ void RobotContact::add_touches(const RobotBody& pointed, const RobotBody& solid)
   const Eigen::Matrix3d turn = solid.rotation.transpose() * pointed.rotation;
   const Eigen::Vector3d from =
       solid.rotation.transpose() * (pointed.motion.centre - solid.motion.centre);
-  const double reach = solid.reach_m;
+  const double reach = solid.reach_m + notice_m_;
   for (const BodyPoint& point : pointed.points) {
     const Eigen::Vector3d at = from + turn * point.at;
     if (at.squaredNorm() > reach * reach) continue;
     for (const SolidPart& part : solid.solids) {
       const SolidContact near = nearest_on(part.shape, part.pose.inverse() * at);
+      if (near.distance < notice_m_) gap_m_ = std::min(gap_m_, near.distance);
       if (near.distance >= 0.0) continue;
       const Eigen::Matrix3d axes = solid.rotation * part.pose.linear();
       touches_.push_back({&pointed, &solid, -near.distance, axes * near.normal,

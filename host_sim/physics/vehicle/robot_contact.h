@@ -12,11 +12,12 @@
 // p impulse of the step, d depth, n out of the solid, m_n and m_t how an impulse there changes the
 // velocities of both bodies along it (of running gear that of its drive too). Both bodies get the
 // same impulse at the same place, in opposite directions: linear and angular momentum are kept.
-// No memory: two robots that lean on each other on a slope creep.
+// No memory of forces: two robots that lean on each other on a slope creep.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "host_sim/physics/terrain/footprint.h"
@@ -54,11 +55,18 @@ struct RobotBody {
 
 class RobotContact {
  public:
-  /// `friction`: Coulomb coefficient between robots.
-  explicit RobotContact(double friction) : friction_(friction) {}
+  /// `friction`: Coulomb coefficient between robots. `notice_m`: from how far on gap() sees one.
+  explicit RobotContact(double friction, double notice_m = 0.0)
+      : friction_(friction), notice_m_(notice_m) {}
 
   /// The longest step in which robots that meet stay calm, s.
   static constexpr double kLongestStep_s = 0.002;
+
+  double notice_m() const { return notice_m_; }
+  /// From a point of one robot to a solid of another, the least since forget_gap(), m: negative
+  /// inside, infinite when none was within notice_m().
+  double gap_m() const { return gap_m_; }
+  void forget_gap() { gap_m_ = std::numeric_limits<double>::infinity(); }
 
   /// Adds what two bodies of different robots, near enough to touch, do to each other in this step.
   void press(const RobotBody& one, const RobotBody& other, double dt);
@@ -84,6 +92,8 @@ class RobotContact {
   void push(const Touch& touch, double dt) const;
 
   double friction_;
+  double notice_m_;
+  double gap_m_ = std::numeric_limits<double>::infinity();
   std::vector<Touch> touches_;  // of two bodies in one step; kept for its room
   double total_depth_ = 0.0;    // of these, m
 };

@@ -232,26 +232,28 @@ RobotBody Vehicle::robot_body(size_t carrier, const Eigen::Vector3d& offset, Wre
           wrench};
 }
 
-bool Vehicle::within_reach(const Carrier& one, const Carrier& other,
+bool Vehicle::within_reach(double gap_m, const Carrier& one, const Carrier& other,
                            const Eigen::Vector3d& to_other) {
   const Eigen::Vector3d apart =
       to_eigen(dBodyGetPosition(other.body)) + to_other - to_eigen(dBodyGetPosition(one.body));
-  const double reach = one.reach + other.reach;
+  const double reach = one.reach + other.reach + gap_m;
   return apart.squaredNorm() < reach * reach;
 }
 
 template <class Visit>
-void Vehicle::visit_near(Vehicle& other, const Eigen::Vector3d& to_other, Visit visit) {
+void Vehicle::visit_near(double gap_m, Vehicle& other, const Eigen::Vector3d& to_other,
+                         Visit visit) {
   for (size_t mine = 0; mine < carriers_.size(); ++mine) {
     for (size_t theirs = 0; theirs < other.carriers_.size(); ++theirs) {
-      if (within_reach(carriers_[mine], other.carriers_[theirs], to_other)) visit(mine, theirs);
+      if (within_reach(gap_m, carriers_[mine], other.carriers_[theirs], to_other))
+        visit(mine, theirs);
     }
   }
 }
 
 void Vehicle::collide(Vehicle& other, const Eigen::Vector3d& to_other, double dt,
                       RobotContact& contact) {
-  visit_near(other, to_other, [&](size_t mine, size_t theirs) {
+  visit_near(contact.notice_m(), other, to_other, [&](size_t mine, size_t theirs) {
     list_shaft_drives();
     other.list_shaft_drives();
     Wrench on_mine;
@@ -269,7 +271,7 @@ void Vehicle::collide(Vehicle& other, const Eigen::Vector3d& to_other, double dt
 
 double Vehicle::depth_in(Vehicle& other, const Eigen::Vector3d& to_other, RobotContact& contact) {
   double deepest = 0.0;
-  visit_near(other, to_other, [&](size_t mine, size_t theirs) {
+  visit_near(contact.notice_m(), other, to_other, [&](size_t mine, size_t theirs) {
     Wrench none;
     deepest = std::max(deepest, contact.depth(robot_body(mine, Eigen::Vector3d::Zero(), none),
                                               other.robot_body(theirs, to_other, none)));

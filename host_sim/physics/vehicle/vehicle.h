@@ -145,12 +145,12 @@ class Vehicle : public VehicleState {
   /// Lists what other robots meet of running gear, and then of all the rest.
   void add_gear_surface(size_t carrier, const RunningGearGeometry& gear, size_t drive);
   void add_hull_surface();
-  /// Whether bodies of two robots may touch.
-  static bool within_reach(const Carrier& one, const Carrier& other,
+  /// Whether bodies of two robots may be so near each other.
+  static bool within_reach(double gap_m, const Carrier& one, const Carrier& other,
                            const Eigen::Vector3d& to_other);
-  /// Calls visit(mine, theirs) for the bodies that may touch.
+  /// Calls visit(mine, theirs) for the bodies that may be so near each other.
   template <class Visit>
-  void visit_near(Vehicle& other, const Eigen::Vector3d& to_other, Visit visit);
+  void visit_near(double gap_m, Vehicle& other, const Eigen::Vector3d& to_other, Visit visit);
   PressingBody pressing_body(size_t carrier, const CarrierMotion& motion) const;
   CarrierMotion motion_of(size_t carrier) const;
   /// The carrier as it moves by itself, whatever hangs on it.

@@ -60,6 +60,9 @@ class Plant : public Environment {
 
   int steps_per_tick() const override { return steps_per_tick_; }
   double step_s() const { return step_s_; }
+  /// In how many parts the next step is taken: shorter ones where terrain needs them, and while
+  /// robots touch or are about to.
+  int substeps() const;
   uint64_t steps() const override { return steps_; }
   double time_s() const override;
   const HeightField& terrain() const override { return terrain_->surface(); }
@@ -79,7 +82,7 @@ class Plant : public Environment {
  private:
   const PlantRobot& first() const { return *robots_[0]; }
   void add_robot(const Assembly& model, const PlantOptions& options);
-  void check_step(const PlantOptions& options) const;
+  void check_step() const;
   /// Puts a robot where it starts.
   void place(PlantRobot& robot, const StartPose& start);
   /// Throws InputError when the last robot stands in another one.
@@ -97,7 +100,8 @@ class Plant : public Environment {
   double step_s_;
   int steps_per_tick_;
   std::unique_ptr<Terrain> terrain_;
-  int substeps_;  // in one physics step, as short as the terrain needs them
+  int substeps_;          // in one physics step, as short as the terrain needs them
+  int meeting_substeps_;  // the same while robots touch or are about to
   OdeWorld ode_;
   RobotContact contact_;
   std::vector<std::unique_ptr<PlantRobot>> robots_;
