@@ -95,15 +95,20 @@ void RobotContact::add_touches(const RobotBody& pointed, const RobotBody& solid)
   const Eigen::Matrix3d turn = solid.rotation.transpose() * pointed.rotation;
   const Eigen::Vector3d from =
       solid.rotation.transpose() * (pointed.motion.centre - solid.motion.centre);
-  const double reach = solid.reach_m + notice_m_;
-  for (const BodyPoint& point : pointed.points) {
-    const Eigen::Vector3d at = from + turn * point.at;
-    if (at.squaredNorm() > reach * reach) continue;
-    for (const SolidPart& part : solid.solids) {
-      const SolidContact near = nearest_on(part.shape, part.pose.inverse() * at);
+  for (const SolidPart& part : solid.solids) {
+    // Most points are far from most parts: by spheres round them.
+    const Eigen::Vector3d centre = part.pose.translation();
+    const double reach = part.shape.half().norm() + part.shape.radius() + notice_m_;
+    const double apart = pointed.reach_m + reach;
+    if ((from - centre).squaredNorm() > apart * apart) continue;
+    const Eigen::Isometry3d to_part = part.pose.inverse();
+    const Eigen::Matrix3d axes = solid.rotation * part.pose.linear();
+    for (const BodyPoint& point : pointed.points) {
+      const Eigen::Vector3d at = from + turn * point.at;
+      if ((at - centre).squaredNorm() > reach * reach) continue;
+      const SolidContact near = nearest_on(part.shape, to_part * at);
       if (near.distance < notice_m_) gap_m_ = std::min(gap_m_, near.distance);
       if (near.distance >= 0.0) continue;
-      const Eigen::Matrix3d axes = solid.rotation * part.pose.linear();
       touches_.push_back({&pointed, &solid, -near.distance, axes * near.normal,
                           solid.motion.centre + solid.rotation * at, point.drive,
                           pointed.rotation * (point.radius * point.along), part.drive,
