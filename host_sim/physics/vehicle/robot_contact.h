@@ -55,7 +55,7 @@ struct RobotBody {
 
 class RobotContact {
  public:
-  /// `friction`: Coulomb coefficient between robots. `notice_m`: from how far on gap() sees one.
+  /// `friction`: Coulomb coefficient between robots. `notice_m`: from how far on gap_m() sees one.
   explicit RobotContact(double friction, double notice_m = 0.0)
       : friction_(friction), notice_m_(notice_m) {}
 

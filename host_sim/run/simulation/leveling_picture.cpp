@@ -23,10 +23,13 @@ constexpr Color kReliefColor{0.84, 0.37, 0.0};
 constexpr Color kRoughnessColor{0.55, 0.58, 0.61};
 constexpr Color kTransportColor{0.10, 0.33, 0.62};
 
+/// From level ground there is no change in per cent.
 std::string change_text(double before, double after) {
+  const std::string text =
+      number_text(before * kMmPerM, 1) + " \u2192 " + number_text(after * kMmPerM, 1) + " mm";
   const double change = std::round((after / before - 1.0) * kPerCent);
-  return number_text(before * kMmPerM, 1) + " \u2192 " + number_text(after * kMmPerM, 1) + " mm (" +
-         (change > 0.0 ? "+" : "") + number_text(change, 0) + " %)";
+  if (!std::isfinite(change)) return text;
+  return text + " (" + (change > 0.0 ? "+" : "") + number_text(change, 0) + " %)";
 }
 
 PathMap map_of(const std::string& title, const HeightField& field, const HeightRange& heights) {

@@ -1,6 +1,5 @@
 // The pictures of a run: the terrain before, after it with the driven path, what has changed, and
-// how it was leveled.
-// Made at its end, and again from its session.
+// how it was leveled. Made at its end, and again from its session.
 #pragma once
 
 #include <filesystem>

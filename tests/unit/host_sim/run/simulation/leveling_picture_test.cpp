@@ -51,6 +51,11 @@ TEST_F(LevelingPicture, DrawsTransportWhereItWasMeasured) {
   EXPECT_NE(svg().find("transport left"), std::string::npos);
 }
 
+TEST_F(LevelingPicture, OfLevelGroundSaysNoPerCent) {
+  points_.front().relief = 0.0;
+  EXPECT_NE(svg().find("0.0 \u2192 5.4 mm,"), std::string::npos) << "neither inf nor nan";
+}
+
 TEST_F(LevelingPicture, NeedsACurve) {
   points_.resize(1);
   EXPECT_THROW(svg(), InputError);
