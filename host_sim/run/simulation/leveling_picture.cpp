@@ -25,7 +25,7 @@ constexpr Color kTransportColor{0.10, 0.33, 0.62};
 
 /// From level ground there is no change in per cent.
 std::string change_text(double before, double after) {
-  const std::string text =
+  std::string text =
       number_text(before * kMmPerM, 1) + " \u2192 " + number_text(after * kMmPerM, 1) + " mm";
   const double change = std::round((after / before - 1.0) * kPerCent);
   if (!std::isfinite(change)) return text;
