@@ -15,7 +15,7 @@ WARNINGS := -w
 
 # Bytes of the radio and of a console; CAN frames; keys and parameters as an EEPROM holds them.
 ASAN_UNIT := command command_gate command_key command_session corruption e2e ground_station host_hal key_command key_store link messages \
-  parameter_store parameters radio_link robot robot_downlink robot_view siphash slcan supervisor supervisor_fault telemetry track_slip
+  parameter_store parameters radio_link robot robot_downlink robot_history siphash slcan supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
 ASAN_UNIT += attitude_command avr_indirect_calls avr_order avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
   header_export height_field height_series ini_file mesh model_file network picture run_folder schema schema_compiler session session_csv \

@@ -22,6 +22,7 @@ check-words:
 	@tools/lint/glossary.sh
 check-one-source:
 	@tools/lint/one_source.sh
+	@tools/lint/one_class.sh
 check-links:
 	@tools/lint/check_links.sh
 format:  ## clang-format over the tree

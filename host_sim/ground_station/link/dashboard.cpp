@@ -42,7 +42,7 @@ CellStyle style_of_state(const std::string& state) {
 }
 
 /// The state first: a long name of the link may be cut.
-void draw_head(TextCanvas& page, const DashboardInput& input, const RobotView* robot) {
+void draw_head(TextCanvas& page, const DashboardInput& input, const RobotHistory* robot) {
   const bool lost = !input.link.up || (robot != nullptr && link_lost(input, *robot));
   const CellStyle link_style = lost ? CellStyle::kAlarm : CellStyle::kGood;
   int x = 0;
@@ -116,7 +116,7 @@ void draw_group(TextCanvas& page, int x, int y, const DashboardGroup& group, Cel
   }
 }
 
-int draw_curve(TextCanvas& page, int y, const DashboardInput& input, const RobotView& robot,
+int draw_curve(TextCanvas& page, int y, const DashboardInput& input, const RobotHistory& robot,
                const std::string& path, CellStyle edge) {
   const SignalRef place = find_signal(path);
   const std::vector<CurvePoint> points = robot.curve(place, input.now_us, input.window_s);
@@ -147,13 +147,13 @@ int draw_curve(TextCanvas& page, int y, const DashboardInput& input, const Robot
   return y + kCurveHeight + 2;
 }
 
-void draw_event(TextCanvas& page, int y, const RobotView::Event& event) {
+void draw_event(TextCanvas& page, int y, const RobotHistory::Event& event) {
   const int x = page.text(0, y, clock_text(event.time_us) + "  ", CellStyle::kDim);
   page.text_within(x, y, page.width() - x, event.words, event.style);
 }
 
 /// Boxes side by side, then curves, then events.
-void draw_boxes(TextCanvas& page, const DashboardInput& input, const RobotView& robot,
+void draw_boxes(TextCanvas& page, const DashboardInput& input, const RobotHistory& robot,
                 const std::vector<DashboardGroup>& groups) {
   const CellStyle edge = link_lost(input, robot) ? CellStyle::kAlarm : CellStyle::kDim;
   const int columns = page.width() / kColumn;
@@ -176,14 +176,14 @@ void draw_boxes(TextCanvas& page, const DashboardInput& input, const RobotView& 
              std::to_string(curves - shown) + " of " + std::to_string(curves) +
                  " curves have no room: they need " + std::to_string(needed) + " lines");
   }
-  for (const RobotView::Event& event : robot.events()) {
+  for (const RobotHistory::Event& event : robot.events()) {
     if (y >= footer) break;
     draw_event(page, y++, event);
   }
 }
 
 /// One value a line, the most important first.
-void draw_lines(TextCanvas& page, const DashboardInput& input, const RobotView& robot,
+void draw_lines(TextCanvas& page, const DashboardInput& input, const RobotHistory& robot,
                 const std::vector<DashboardGroup>& groups) {
   std::vector<DashboardRow> rows;
   for (const DashboardGroup& group : groups)
@@ -206,7 +206,7 @@ void draw_lines(TextCanvas& page, const DashboardInput& input, const RobotView& 
   }
   if (cut && y < footer)
     draw_cut(page, y++, std::to_string(all - shown) + " lines cut: 80 x 21 shows all");
-  for (const RobotView::Event& event : robot.events()) {
+  for (const RobotHistory::Event& event : robot.events()) {
     if (y >= footer) break;
     draw_event(page, y++, event);
   }
@@ -216,7 +216,7 @@ void draw_lines(TextCanvas& page, const DashboardInput& input, const RobotView& 
 
 void draw_dashboard(TextCanvas& page, const DashboardInput& input) {
   const auto found = input.fleet->robots().find(input.robot);
-  const RobotView* const robot = found == input.fleet->robots().end() ? nullptr : &found->second;
+  const RobotHistory* const robot = found == input.fleet->robots().end() ? nullptr : &found->second;
   draw_head(page, input, robot);
   draw_footer(page, input);
   if (robot == nullptr) return;
@@ -255,7 +255,7 @@ std::string plain_report(const DashboardInput& input) {
       }
     }
     for (const MessageInfo& message : messages()) {
-      const std::deque<RobotView::Sample>& samples = robot.history(message);
+      const std::deque<RobotHistory::Sample>& samples = robot.history(message);
       if (samples.empty()) continue;
       report += "  " + std::string(message.title);
       if (message.period_ms != 0 && is_old(robot, message, input.now_us)) {

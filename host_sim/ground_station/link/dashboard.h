@@ -9,7 +9,7 @@
 
 #include "firmware/parameters/board_constants.h"
 #include "host_sim/ground_station/link/link.h"
-#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/link/text_canvas.h"
 
 namespace screed {

@@ -25,7 +25,7 @@ std::string number(const char* pattern, double value) {
 /// Makes rows of one robot at one time. A row belongs to the message that carries its value.
 class RowMaker {
  public:
-  RowMaker(const DashboardInput& input, const RobotView& robot) : input_(input), robot_(robot) {}
+  RowMaker(const DashboardInput& input, const RobotHistory& robot) : input_(input), robot_(robot) {}
 
   DashboardRow row(int importance, const char* label, const char* message, std::string value,
                    CellStyle style = CellStyle::kNormal) const {
@@ -60,10 +60,10 @@ class RowMaker {
 
  private:
   const DashboardInput& input_;
-  const RobotView& robot_;
+  const RobotHistory& robot_;
 };
 
-DashboardRow battery_row(const DashboardInput& input, const RobotView& robot,
+DashboardRow battery_row(const DashboardInput& input, const RobotHistory& robot,
                          const RowMaker& make) {
   const double battery_v = robot.value("power.battery").value_or(0.0) * 1e-3;
   const std::optional<double> charge = battery_charge(battery_v, input.battery_cells);
@@ -80,17 +80,17 @@ DashboardRow battery_row(const DashboardInput& input, const RobotView& robot,
 }
 
 /// How well it knows where it is: standard deviations.
-DashboardRow certainty_row(const RobotView& robot, const RowMaker& make) {
+DashboardRow certainty_row(const RobotHistory& robot, const RowMaker& make) {
   return make.row(11, "certain to", "POSITION",
                   robot.text("position.sigma_x") + ", " + robot.text("position.sigma_y") + " mm, " +
                       robot.text("position.sigma_heading") + " deg");
 }
 
 /// Slip with the newest POSITION, from what was said in the second before.
-std::optional<TrackSlip> newest_slip(const RobotView& robot, const BoardConstants& board) {
+std::optional<TrackSlip> newest_slip(const RobotHistory& robot, const BoardConstants& board) {
   const MessageInfo* const position = find_message("POSITION");
   if (robot.history(*position).empty()) return std::nullopt;
-  const RobotView::Sample& newest = robot.history(*position).front();
+  const RobotHistory::Sample& newest = robot.history(*position).front();
   TrackSlipEstimate estimate(board);
   for (const char* name : {"ENCODERS", "ODOMETRY"}) {
     const MessageInfo& message = *find_message(name);
@@ -106,7 +106,8 @@ std::optional<TrackSlip> newest_slip(const RobotView& robot, const BoardConstant
   return estimate.add(newest.time_us, *position, message_bits(newest.data.data()));
 }
 
-DashboardRow slip_row(const DashboardInput& input, const RobotView& robot, const RowMaker& make) {
+DashboardRow slip_row(const DashboardInput& input, const RobotHistory& robot,
+                      const RowMaker& make) {
   const auto text = [](const std::optional<double>& slip) {
     return slip.has_value() ? number("%.0f %%", *slip * 100.0) : "-";
   };
@@ -116,7 +117,7 @@ DashboardRow slip_row(const DashboardInput& input, const RobotView& robot, const
                   slip.has_value() ? text(slip->left) + ", " + text(slip->right) : "-");
 }
 
-DashboardGroup algorithm_group(const RobotView& robot, const RowMaker& make) {
+DashboardGroup algorithm_group(const RobotHistory& robot, const RowMaker& make) {
   const bool stuck = make.flag("motors.stuck");
   const bool slips = make.flag("motors.slip");
   return {"algorithm",
@@ -134,7 +135,7 @@ DashboardGroup algorithm_group(const RobotView& robot, const RowMaker& make) {
            make.row(16, "peaks", "LEVELING", robot.text("leveling.peaks"))}};
 }
 
-DashboardGroup link_group(const DashboardInput& input, const RobotView& robot,
+DashboardGroup link_group(const DashboardInput& input, const RobotHistory& robot,
                           const RowMaker& make) {
   const std::optional<double> loss = robot.loss_percent(input.now_us);
   const bool silent = link_lost(input, robot);
@@ -156,7 +157,7 @@ DashboardGroup link_group(const DashboardInput& input, const RobotView& robot,
 }
 
 /// Latched faults, or what keeps a disarmed robot from being armed.
-DashboardGroup fault_group(const DashboardInput& input, const RobotView& robot) {
+DashboardGroup fault_group(const DashboardInput& input, const RobotHistory& robot) {
   const bool disarmed =
       robot.raw("heartbeat.state") == static_cast<int64_t>(message::HeartbeatState::kDisarmed);
   const std::vector<std::string> sentences =
@@ -176,11 +177,11 @@ DashboardGroup fault_group(const DashboardInput& input, const RobotView& robot) 
 
 }  // namespace
 
-bool link_lost(const DashboardInput& input, const RobotView& robot) {
+bool link_lost(const DashboardInput& input, const RobotHistory& robot) {
   return !input.link.up || input.now_us > robot.last_us() + kOld_us;
 }
 
-bool is_old(const RobotView& robot, const MessageInfo& message, uint64_t now_us) {
+bool is_old(const RobotHistory& robot, const MessageInfo& message, uint64_t now_us) {
   const LatestTelemetry::Frame* const last = robot.latest().frame(message);
   if (last == nullptr) return false;
   const uint64_t period_us = uint64_t{message.period_ms} * 1000U;
@@ -198,7 +199,8 @@ std::string refused_text(const DashboardInput& input) {
          std::to_string(input.fleet->unknown()) + " unknown";
 }
 
-std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input, const RobotView& robot) {
+std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input,
+                                             const RobotHistory& robot) {
   const RowMaker make(input, robot);
   const double distance_m =
       std::hypot(robot.value("odometry.x").value_or(0.0), robot.value("odometry.y").value_or(0.0)) *

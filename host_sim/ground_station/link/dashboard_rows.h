@@ -33,17 +33,18 @@ struct DashboardGroup {
 };
 
 /// Nothing has come from the robot for a second, or the link is down: everything shown is history.
-bool link_lost(const DashboardInput& input, const RobotView& robot);
+bool link_lost(const DashboardInput& input, const RobotHistory& robot);
 
 /// Of the values that a message carries: they are more than a second old, or than one and a half
 /// of its periods.
-bool is_old(const RobotView& robot, const MessageInfo& message, uint64_t now_us);
+bool is_old(const RobotHistory& robot, const MessageInfo& message, uint64_t now_us);
 
 /// "3 s", "5 min", "2 h".
 std::string age_text(double age_s);
 
 /// The groups, in the order of the page.
-std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input, const RobotView& robot);
+std::vector<DashboardGroup> dashboard_groups(const DashboardInput& input,
+                                             const RobotHistory& robot);
 
 /// "3 damaged, 0 unknown".
 std::string refused_text(const DashboardInput& input);

@@ -1,14 +1,14 @@
 // Test image: a model as `screed nn export` writes it. Sends for each network how many golden
 // vectors it has and how many of them come out otherwise.
 #include "models/v1.h"
-#include "tests/mcu/images/serial_link.h"
+#include "tests/mcu/images/image_link.h"
 
 namespace {
 
 using namespace screed;
 
 template <uint8_t kInputs, uint8_t kOutputs>
-void check(SerialLink& link, uint8_t vectors, const int16_t* golden_in, const int16_t* golden_out,
+void check(ImageLink& link, uint8_t vectors, const int16_t* golden_in, const int16_t* golden_out,
            void (*run)(const int16_t*, int16_t*)) {
   uint8_t wrong = 0;
   for (uint8_t vector = 0; vector < vectors; ++vector) {
@@ -30,7 +30,7 @@ void check(SerialLink& link, uint8_t vectors, const int16_t* golden_in, const in
 
 int main() {
   using namespace nn::model_v1;
-  SerialLink link;
+  ImageLink link;
   check<k_v_inputs, k_v_outputs>(link, k_v_golden_vectors, v_golden_in, v_golden_out, run_v);
   check<k_delta_theta_inputs, k_delta_theta_outputs>(link, k_delta_theta_golden_vectors,
                                                      delta_theta_golden_in, delta_theta_golden_out,

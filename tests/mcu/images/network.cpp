@@ -1,19 +1,19 @@
 // Test image: the network's layers. Sends the hash of every block of vectors, and drives PD4 high
 // while a network of the thesis' shapes runs, so that the simulator can count its cycles.
-#include "tests/mcu/images/serial_link.h"
+#include "tests/mcu/images/image_link.h"
 #include "tests/mcu/network_parameters.h"
 #include "tests/mcu/network_vectors.h"
 
 namespace {
 
-void put(screed::SerialLink& link, uint32_t hash) {
+void put(screed::ImageLink& link, uint32_t hash) {
   for (uint8_t byte = 0; byte < 4; ++byte) link.put(static_cast<uint8_t>(hash >> (8 * byte)));
 }
 
 }  // namespace
 
 int main() {
-  screed::SerialLink link;
+  screed::ImageLink link;
   DDRD |= _BV(DDD4);
   const int16_t in[4] = {12345, -23456, 32767, -32768};
   volatile int16_t sink;

@@ -2,13 +2,13 @@
 // output of that tick.
 #include "firmware/robot/robot.h"
 #include "board.h"
-#include "tests/mcu/images/serial_link.h"
+#include "tests/mcu/images/image_link.h"
 #include "tests/mcu/sample_wire.h"
 #include "tests/mcu/test_credentials.h"
 
 int main() {
   using namespace screed;
-  SerialLink link;
+  ImageLink link;
   const Parameters parameters;
   Robot robot(kBoard, parameters, kTestCredentials);
   SensorSample sample{};

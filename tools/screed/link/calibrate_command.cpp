@@ -13,7 +13,7 @@
 #include "host_sim/ground_station/calibration/imu_collector.h"
 #include "host_sim/ground_station/link/calibration_page.h"
 #include "host_sim/ground_station/link/command_session.h"
-#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/terminal_screen.h"
@@ -181,7 +181,7 @@ class Calibration {
 
   const LatestTelemetry& robot_said() const {
     static const LatestTelemetry kNothing;
-    const RobotView* const robot = fleet_.robot(session_.node());
+    const RobotHistory* const robot = fleet_.robot(session_.node());
     return robot == nullptr ? kNothing : robot->latest();
   }
 

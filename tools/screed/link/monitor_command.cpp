@@ -11,7 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/dashboard.h"
-#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/ground_station/telemetry/candump_log.h"
 #include "host_sim/run/experiment/board_table.h"
@@ -92,7 +92,7 @@ class Monitor {
 
   void on_frame(const LinkFrame& frame) {
     if (log_.is_open()) log_ << candump_line(frame.time_us, interface_name(), frame.frame);
-    RobotView* const robot = fleet_.add_frame(frame);
+    RobotHistory* const robot = fleet_.add_frame(frame);
     if (robot != nullptr && heard_us_ == 0) heard_us_ = wall_clock_us();
     if (robot != nullptr && !fleet_.robots().contains(robot_))
       robot_ = fleet_.robots().begin()->first;

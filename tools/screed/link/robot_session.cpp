@@ -40,7 +40,7 @@ RobotSession::RobotSession(const LinkArguments& arguments, const CommandKey& key
 void RobotSession::meet() {
   const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
   const auto heard = [this] {
-    const RobotView* const robot = fleet_.robot(session_.node());
+    const RobotHistory* const robot = fleet_.robot(session_.node());
     return robot != nullptr && robot->value("heartbeat.link_alive").value_or(0.0) != 0.0;
   };
   while (wall_clock_us() < end_us && !(session_.ready() && heard())) {
@@ -57,7 +57,7 @@ std::optional<int> RobotSession::node() const {
 }
 
 std::string RobotSession::reason(const std::optional<CommandAnswer>& answer) {
-  const RobotView* const view = fleet_.robot(session_.node());
+  const RobotHistory* const view = fleet_.robot(session_.node());
   if (!answer.has_value() || view == nullptr) return kNoAnswer;
   const LatestTelemetry& robot = view->latest();
   if (answer->result == static_cast<uint8_t>(message::CommandAckResult::kFaultPresent)) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host_sim/ground_station/link/command_session.h"
-#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/link/robot_history.h"
 #include "tools/screed/link/link_options.h"
 
 namespace screed {

@@ -122,7 +122,7 @@ TEST_F(DashboardTest, OldValuesArePaleAndHaveTheirAge) {
 TEST_F(DashboardTest, AMessageOfOneASecondIsNotOldBetweenTwo) {
   say(message::Link{0, 0, 0, 0, 100}, 4'000'000);
   say(heartbeat(State::kRunning, 0), 5'300'000);
-  const RobotView& robot = fleet_.robots().begin()->second;
+  const RobotHistory& robot = fleet_.robots().begin()->second;
   EXPECT_FALSE(is_old(robot, *find_message("LINK"), kStart_us + 5'400'000));
   EXPECT_TRUE(is_old(robot, *find_message("LINK"), kStart_us + 5'600'000));
   EXPECT_FALSE(is_old(robot, *find_message("POWER"), kStart_us + 4'900'000));

@@ -1,5 +1,5 @@
 // What a robot has said so far.
-#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/link/robot_history.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -33,7 +33,7 @@ std::string RobotKey::text() const {
   return words + hex;
 }
 
-void RobotView::add_frame(const LinkFrame& frame, const MessageInfo& message) {
+void RobotHistory::add_frame(const LinkFrame& frame, const MessageInfo& message) {
   if (frames_ == 0) first_us_ = frame.time_us;
   ++frames_;
   last_us_ = std::max(last_us_, frame.time_us);
@@ -58,12 +58,13 @@ void RobotView::add_frame(const LinkFrame& frame, const MessageInfo& message) {
     samples.pop_back();
 }
 
-void RobotView::note(uint64_t time_us, CellStyle style, std::string words) {
+void RobotHistory::note(uint64_t time_us, CellStyle style, std::string words) {
   events_.push_front({time_us, style, std::move(words)});
   if (events_.size() > kMaxEvents) events_.pop_back();
 }
 
-void RobotView::note_flags(const MessageInfo& heartbeat, const Sample* before, const Sample& now) {
+void RobotHistory::note_flags(const MessageInfo& heartbeat, const Sample* before,
+                              const Sample& now) {
   const auto said = message::Heartbeat::unpack(now.data.data());
   const bool disarmed =
       static_cast<message::HeartbeatState>(said.state) == message::HeartbeatState::kDisarmed;
@@ -79,8 +80,8 @@ void RobotView::note_flags(const MessageInfo& heartbeat, const Sample* before, c
   }
 }
 
-void RobotView::look_for_changes(const MessageInfo& message, const Sample* before,
-                                 const Sample& now) {
+void RobotHistory::look_for_changes(const MessageInfo& message, const Sample* before,
+                                    const Sample& now) {
   const uint8_t* const data = now.data.data();
   if (message.id == find_message("HEARTBEAT")->id) {
     const SignalInfo& state = *message.signal("state");
@@ -112,26 +113,26 @@ void RobotView::look_for_changes(const MessageInfo& message, const Sample* befor
   }
 }
 
-const std::deque<RobotView::Sample>& RobotView::history(const MessageInfo& message) const {
+const std::deque<RobotHistory::Sample>& RobotHistory::history(const MessageInfo& message) const {
   static const std::deque<Sample> kNone;
   const auto samples = samples_.find(message.id);
   return samples == samples_.end() ? kNone : samples->second;
 }
 
-std::optional<int64_t> RobotView::raw(std::string_view path) const {
+std::optional<int64_t> RobotHistory::raw(std::string_view path) const {
   return latest_.raw(path);
 }
 
-std::optional<double> RobotView::value(std::string_view path) const {
+std::optional<double> RobotHistory::value(std::string_view path) const {
   return latest_.value(path);
 }
 
-std::string RobotView::text(std::string_view path) const {
+std::string RobotHistory::text(std::string_view path) const {
   return latest_.text(path);
 }
 
-std::vector<CurvePoint> RobotView::curve(const SignalRef& place, uint64_t now_us,
-                                         double window_s) const {
+std::vector<CurvePoint> RobotHistory::curve(const SignalRef& place, uint64_t now_us,
+                                            double window_s) const {
   std::vector<CurvePoint> points;
   for (const Sample& sample : history(*place.message)) {
     const double age_s = (static_cast<double>(now_us) - static_cast<double>(sample.time_us)) * 1e-6;
@@ -142,17 +143,17 @@ std::vector<CurvePoint> RobotView::curve(const SignalRef& place, uint64_t now_us
   return points;
 }
 
-std::vector<std::string> RobotView::faults() const {
+std::vector<std::string> RobotHistory::faults() const {
   const LatestTelemetry::Frame* const last = latest_.frame(*find_message("HEARTBEAT"));
   if (last == nullptr) return {};
   return fault_sentences(message::Heartbeat::unpack(last->data.data()).faults, latest_);
 }
 
-std::vector<std::string> RobotView::obstacles(uint64_t now_us) const {
+std::vector<std::string> RobotHistory::obstacles(uint64_t now_us) const {
   return arming_obstacles(latest_, now_us);
 }
 
-double RobotView::rate_hz(const MessageInfo& message, uint64_t now_us) const {
+double RobotHistory::rate_hz(const MessageInfo& message, uint64_t now_us) const {
   const std::deque<Sample>& samples = history(message);
   const uint64_t begin_us = now_us > kWindow_us ? now_us - kWindow_us : 0;
   const auto recent = std::find_if(samples.begin(), samples.end(),
@@ -163,13 +164,13 @@ double RobotView::rate_hz(const MessageInfo& message, uint64_t now_us) const {
   return static_cast<double>(recent - samples.begin()) * 1e6 / static_cast<double>(heard_us);
 }
 
-double RobotView::frames_per_s(uint64_t now_us) const {
+double RobotHistory::frames_per_s(uint64_t now_us) const {
   double sum = 0.0;
   for (const MessageInfo& message : messages()) sum += rate_hz(message, now_us);
   return sum;
 }
 
-std::optional<double> RobotView::loss_percent(uint64_t now_us) const {
+std::optional<double> RobotHistory::loss_percent(uint64_t now_us) const {
   uint64_t got = 0;
   uint64_t missed = 0;
   for (const auto& [id, samples] : samples_) {
@@ -183,13 +184,13 @@ std::optional<double> RobotView::loss_percent(uint64_t now_us) const {
   return 100.0 * static_cast<double>(missed) / static_cast<double>(got + missed);
 }
 
-const RobotView* FleetView::robot(uint8_t node) const {
+const RobotHistory* FleetView::robot(uint8_t node) const {
   const auto found = std::find_if(robots_.begin(), robots_.end(),
                                   [node](const auto& robot) { return robot.first.node == node; });
   return found == robots_.end() ? nullptr : &found->second;
 }
 
-RobotView* FleetView::add_frame(const LinkFrame& frame) {
+RobotHistory* FleetView::add_frame(const LinkFrame& frame) {
   switch (check_frame(frame.frame)) {
     case FrameFault::kNone:
       break;
@@ -207,7 +208,7 @@ RobotView* FleetView::add_frame(const LinkFrame& frame) {
   }
   const RobotKey key{frame.source.has_value() ? frame.source->address : 0, node_of(frame.frame.id)};
   if (robots_.size() >= kMaxRobots && !robots_.contains(key)) return nullptr;
-  RobotView& robot = robots_[key];
+  RobotHistory& robot = robots_[key];
   robot.add_frame(frame, message);
   return &robot;
 }

@@ -8,8 +8,8 @@
 
 namespace screed {
 
-struct SerialLink {
-  SerialLink() {
+struct ImageLink {
+  ImageLink() {
     UBRR1 = 0;
     UCSR1A = _BV(U2X1);
     UCSR1B = _BV(RXEN1) | _BV(TXEN1);

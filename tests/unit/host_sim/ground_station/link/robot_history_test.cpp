@@ -1,5 +1,5 @@
 // What a robot has said: values, losses, what happened in words.
-#include "host_sim/ground_station/link/robot_view.h"
+#include "host_sim/ground_station/link/robot_history.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,11 @@
 namespace screed {
 namespace {
 
-TEST(RobotView, ValuesAreTheNewestInTheirUnits) {
+TEST(RobotHistory, ValuesAreTheNewestInTheirUnits) {
   FleetView fleet;
   ASSERT_NE(fleet.add_frame(frame_with(attitude(-1234, 500), 0, kStart_us)), nullptr);
-  RobotView* const robot = fleet.add_frame(frame_with(attitude(-1235, 501), 1, kStart_us + 40'000));
+  RobotHistory* const robot =
+      fleet.add_frame(frame_with(attitude(-1235, 501), 1, kStart_us + 40'000));
   ASSERT_NE(robot, nullptr);
   EXPECT_DOUBLE_EQ(robot->value("attitude.roll").value_or(0.0), -12.35);
   EXPECT_EQ(robot->text("attitude.pitch"), "5.01");
@@ -27,9 +28,9 @@ TEST(RobotView, ValuesAreTheNewestInTheirUnits) {
   EXPECT_DOUBLE_EQ(curve[0].y, -12.35);
 }
 
-TEST(RobotView, LostFramesAreCountedByTheAliveCounter) {
+TEST(RobotHistory, LostFramesAreCountedByTheAliveCounter) {
   FleetView fleet;
-  RobotView* robot = nullptr;
+  RobotHistory* robot = nullptr;
   uint64_t time_us = kStart_us;
   // 100 frames are sent, of which each tenth is lost.
   for (int i = 0; i < 100; ++i, time_us += 40'000) {
@@ -43,7 +44,7 @@ TEST(RobotView, LostFramesAreCountedByTheAliveCounter) {
   EXPECT_NEAR(robot->frames_per_s(time_us), 22.5, 1.0);
 }
 
-TEST(RobotView, DamagedAndForeignFramesAreCountedAndNotShown) {
+TEST(RobotHistory, DamagedAndForeignFramesAreCountedAndNotShown) {
   FleetView fleet;
   LinkFrame damaged = frame_with(attitude(0, 0), 0, kStart_us);
   damaged.frame.data[3] ^= 1U;
@@ -58,7 +59,7 @@ TEST(RobotView, DamagedAndForeignFramesAreCountedAndNotShown) {
   EXPECT_TRUE(fleet.robots().empty());
 }
 
-TEST(RobotView, RobotsAreToldApartByModuleAndNode) {
+TEST(RobotHistory, RobotsAreToldApartByModuleAndNode) {
   FleetView fleet;
   LinkFrame frame = frame_with(attitude(100, 0), 0, kStart_us);
   frame.source = RadioSource{0x0013A20040522BAA, -60};
@@ -70,11 +71,11 @@ TEST(RobotView, RobotsAreToldApartByModuleAndNode) {
   EXPECT_EQ(fleet.robots().begin()->second.rssi_dbm(), -60);
 }
 
-TEST(RobotView, WhatHappensIsSaidInWords) {
+TEST(RobotHistory, WhatHappensIsSaidInWords) {
   FleetView fleet;
   fleet.add_frame(frame_with(heartbeat(message::HeartbeatState::kDisarmed, 0), 0, kStart_us));
   const auto stall = static_cast<uint16_t>(message::HeartbeatFaults::kStallLeft);
-  RobotView* const robot = fleet.add_frame(
+  RobotHistory* const robot = fleet.add_frame(
       frame_with(heartbeat(message::HeartbeatState::kFault, stall), 1, kStart_us + 200'000));
   ASSERT_NE(robot, nullptr);
   EXPECT_EQ(robot->faults(), std::vector<std::string>{"stall left: high duty, no motion"});
@@ -88,7 +89,7 @@ TEST(RobotView, WhatHappensIsSaidInWords) {
   fleet.add_frame(frame_with(restarted, 0, kStart_us + 400'000));
 
   std::vector<std::string> words;
-  for (const RobotView::Event& event : robot->events()) words.push_back(event.words);
+  for (const RobotHistory::Event& event : robot->events()) words.push_back(event.words);
   EXPECT_EQ(words,
             (std::vector<std::string>{
                 "the robot restarted, start 8", "gone: stall left", "state: disarmed",
@@ -96,23 +97,23 @@ TEST(RobotView, WhatHappensIsSaidInWords) {
                 "fault: stall left: high duty, no motion", "state: fault", "state: disarmed"}));
 }
 
-TEST(RobotView, WhatPreventsArmingIsNoFaultYet) {
+TEST(RobotHistory, WhatPreventsArmingIsNoFaultYet) {
   FleetView fleet;
   const auto battery = static_cast<uint16_t>(message::HeartbeatFaults::kBattery);
   message::Heartbeat low = heartbeat(message::HeartbeatState::kDisarmed, battery);
   low.link_alive = 1;
-  RobotView* const robot = fleet.add_frame(frame_with(low, 0, kStart_us));
+  RobotHistory* const robot = fleet.add_frame(frame_with(low, 0, kStart_us));
   ASSERT_NE(robot, nullptr);
   EXPECT_EQ(robot->events().front().words,
             "prevents arming: battery below battery_low 6.00 V (the default)");
   EXPECT_EQ(robot->obstacles(kStart_us).size(), 1U);
 }
 
-TEST(RobotView, AParameterThatIsReadIsNoEvent) {
+TEST(RobotHistory, AParameterThatIsReadIsNoEvent) {
   FleetView fleet;
   message::CommandAck ack{};
   ack.op = static_cast<uint8_t>(CommandOp::kParameterRead);
-  RobotView* const robot = fleet.add_frame(frame_with(ack, 0, kStart_us));
+  RobotHistory* const robot = fleet.add_frame(frame_with(ack, 0, kStart_us));
   ASSERT_NE(robot, nullptr);
   EXPECT_TRUE(robot->events().empty());
   ack.result = static_cast<uint8_t>(message::CommandAckResult::kBadArgument);

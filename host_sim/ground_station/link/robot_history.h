@@ -19,7 +19,7 @@
 
 namespace screed {
 
-class RobotView {
+class RobotHistory {
  public:
   /// How far back curves reach.
   static constexpr uint64_t kHistory_us = 120'000'000;
@@ -101,12 +101,12 @@ class FleetView {
  public:
   /// Sorts a frame to its robot; a frame that is damaged or unknown is counted. Returns the robot
   /// it belongs to, or null: damaged, or of the ground.
-  RobotView* add_frame(const LinkFrame& frame);
+  RobotHistory* add_frame(const LinkFrame& frame);
 
   /// The first robot of a node; null when it was not heard.
-  const RobotView* robot(uint8_t node) const;
-  const std::map<RobotKey, RobotView>& robots() const { return robots_; }
-  std::map<RobotKey, RobotView>& robots() { return robots_; }
+  const RobotHistory* robot(uint8_t node) const;
+  const std::map<RobotKey, RobotHistory>& robots() const { return robots_; }
+  std::map<RobotKey, RobotHistory>& robots() { return robots_; }
   /// Frames that the schema's check refused.
   uint64_t damaged() const { return damaged_; }
   uint64_t unknown() const { return unknown_; }
@@ -114,7 +114,7 @@ class FleetView {
   uint64_t uplink() const { return uplink_; }
 
  private:
-  std::map<RobotKey, RobotView> robots_;
+  std::map<RobotKey, RobotHistory> robots_;
   uint64_t damaged_ = 0;
   uint64_t unknown_ = 0;
   uint64_t uplink_ = 0;
