@@ -5,7 +5,7 @@
 # Not together are therefore
 #   sources that give names of their own (in anonymous namespaces, static, as macros; main) the same name, or one that a header of
 #     ours gives which another of them includes,
-#   tests inside a namespace `testing` of ours and tests that mean gtest's by that name,
+#   tests that know a namespace `testing` of ours and tests that mean gtest's by that name,
 #   sources of which one includes the header of the other: the analyser would follow calls from one into the other, and then not
 #     look at the function that is called with arguments nobody knows,
 #   a source that declares what others define (the list of subcommands),
@@ -23,10 +23,12 @@ function declared(line) {
   return line
 }
 
-# What a header declares at its left margin: "name name ...".
+# What a header declares at its left margin, and its macros: "name name ...".
 function read_header(file,    line, names) {
   names = ""
   while ((getline line < file) > 0) {
+    if (line ~ /^namespace [a-z_:]*testing \{/) opens_testing[file] = 1
+    if (sub(/^# *define +/, "", line)) { sub(/[^A-Za-z0-9_].*/, "", line); names = names " " line; continue }
     if (line ~ /^[A-Za-z_]/ && line !~ /^(namespace|template|static_assert|using namespace)[^A-Za-z_0-9]/) names = names " " declared(line)
   }
   close(file)
@@ -34,7 +36,7 @@ function read_header(file,    line, names) {
 }
 
 # Names at the left margin of anonymous namespaces; clang-format keeps them there.
-function read_source(    line, inside, alias, aliases, included) {
+function read_source(    line, inside, alias, aliases, included, parts, count, i) {
   inside = 0
   split("", aliases)
   split("", included)
@@ -42,6 +44,12 @@ function read_source(    line, inside, alias, aliases, included) {
   while ((getline line < source) > 0) {
     if (line ~ /^#include / && included[line]++) alone[source] = 1
     if (line ~ /^#include "generated\/commands.h"/) alone[source] = 1
+    # Code for several instruction sets, inside the namespace where it is included.
+    if (line ~ /^#include ".*\.inc"/) {
+      split(line, parts, "\"")
+      count = split(read_header(parts[2]), parts, " ")
+      for (i = 1; i <= count; ++i) note(parts[i])
+    }
     if (line ~ /^int main\(/) note("main")
     for (alias in aliases) if (line ~ ("(^|[^A-Za-z_0-9])" alias "([^A-Za-z_0-9]|$)")) delete aliases[alias]
     if (line ~ /^ *(namespace [a-z_0-9]+ = |using [A-Za-z_0-9]+::)/) {
@@ -78,6 +86,7 @@ function read_dependencies(file,    line, parts, part, count, key, i) {
     split(key, part, SUBSEP)
     if (part[1] != source) continue
     if (!(part[2] in header_names)) header_names[part[2]] = read_header(part[2])
+    if (part[2] in opens_testing) testing[source] = "ours"
     count = split(header_names[part[2]], parts, " ")
     for (i = 1; i <= count; ++i) shared[parts[i]] = 1
   }
