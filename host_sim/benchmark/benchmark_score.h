@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,8 +28,14 @@ struct EntryScore {
   SeedMean transport_per_joule;  ///< cm3 m/J
   SeedMean stuck;                ///< share of the time
   std::size_t ended_early = 0;   ///< runs with a fault, or that left the bed
+  std::size_t halved = 0;        ///< beds whose relief was half of its start's at some time
+  /// When half of the beds had come to that [s]; NaN: fewer did, or no curves were kept.
+  double half_time_s = std::numeric_limits<double>::quiet_NaN();
   /// Of the relief's change, less the baseline's; nothing for the baseline itself.
   std::optional<PairedDifference> against_baseline;
+  /// Mean relief change by the baseline's, with its interval; nothing likewise, and where the
+  /// baseline's change may be none.
+  std::optional<SeedMean> times_baseline;
 };
 
 struct CourseScore {
@@ -37,9 +44,9 @@ struct CourseScore {
   std::vector<EntryScore> entries;  ///< in the order of the campaign
 };
 
-/// `plan`: of benchmark_campaign(); `runs`: its run_table(). `baseline`: an entry; without one that
-/// the plan has, nothing is compared.
+/// `plan`: of benchmark_campaign(); `runs`: its run_table(); `curves`: its curve_table().
+/// `baseline`: an entry; without one that the plan has, nothing is compared.
 std::vector<CourseScore> score_benchmark(const CampaignPlan& plan, const ValueTable& runs,
-                                         const std::string& baseline);
+                                         const ValueTable& curves, const std::string& baseline);
 
 }  // namespace screed

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 #include "host_sim/core/quantile.h"
 #include "host_sim/core/random.h"
@@ -17,6 +19,8 @@ constexpr int kSamples = 10'000;
 constexpr std::uint64_t kSeed = 1;
 constexpr double kTail = 0.025;
 constexpr std::size_t kMaxExact = 200;
+constexpr Interval kNoInterval{std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::quiet_NaN()};
 
 double normal_share_below(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
@@ -33,30 +37,60 @@ double normal_quantile(double share) {
   return 0.5 * (low + high);
 }
 
-/// Means of samples with replacement, rising.
-std::vector<double> resampled_means(const std::vector<double>& values) {
+/// A figure of a choice of values, by their numbers; a number may occur several times.
+using Statistic = std::function<double(const std::vector<std::size_t>& chosen)>;
+
+/// Of samples of `count` values with replacement, rising.
+std::vector<double> resampled(std::size_t count, const Statistic& statistic) {
   WorldRandom random(kSeed, "bootstrap");
-  const auto count = static_cast<std::uint64_t>(values.size());
-  std::vector<double> means(kSamples);
-  for (double& mean : means) {
-    double sum = 0.0;
-    for (std::uint64_t i = 0; i < count; ++i) sum += values[(random.next() * count) >> 32U];
-    mean = sum / static_cast<double>(count);
+  std::vector<std::size_t> chosen(count);
+  std::vector<double> figures(kSamples);
+  for (double& figure : figures) {
+    for (std::size_t& one : chosen) one = (random.next() * std::uint64_t{count}) >> 32U;
+    figure = statistic(chosen);
   }
-  std::sort(means.begin(), means.end());
-  return means;
+  std::sort(figures.begin(), figures.end());
+  return figures;
 }
 
-/// How the standard error of the mean changes with the mean, from leaving out one value each.
-double acceleration(const std::vector<double>& values, double mean) {
+/// How the figure's standard error changes with the figure, from leaving out one value each
+/// (Efron 1987, the jackknife's estimate).
+double acceleration(std::size_t count, const Statistic& statistic) {
+  std::vector<double> without(count);
+  std::vector<std::size_t> chosen(count - 1);
+  for (std::size_t left_out = 0; left_out < count; ++left_out) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = i < left_out ? i : i + 1;
+    without[left_out] = statistic(chosen);
+  }
+  const double mean = mean_of(without);
   double squares = 0.0;
   double cubes = 0.0;
-  for (const double value : values) {
-    const double d = value - mean;
+  for (const double figure : without) {
+    const double d = mean - figure;
     squares += d * d;
     cubes += d * d * d;
   }
   return cubes / (6.0 * std::pow(squares, 1.5));
+}
+
+/// BCa, of a figure that is not the same for all samples.
+Interval bootstrap_interval(std::size_t count, const Statistic& statistic) {
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const double figure = statistic(all);
+  const std::vector<double> figures = resampled(count, statistic);
+  // Of equal ones half are below.
+  const auto below = std::lower_bound(figures.begin(), figures.end(), figure) - figures.begin();
+  const auto equal =
+      std::upper_bound(figures.begin(), figures.end(), figure) - figures.begin() - below;
+  const double bias =
+      normal_quantile((static_cast<double>(below) + 0.5 * static_cast<double>(equal)) / kSamples);
+  const double a = acceleration(count, statistic);
+  const auto end = [&](double tail) {
+    const double z = bias + normal_quantile(tail);
+    return quantile(figures, normal_share_below(bias + z / (1.0 - a * z)));
+  };
+  return {end(kTail), end(1.0 - kTail)};
 }
 
 /// Ranks of values from 1 on, doubled so that the mean ranks of equal ones are integers too.
@@ -112,23 +146,35 @@ double mean_of(const std::vector<double>& values) {
 }
 
 Interval bootstrap_mean_interval(const std::vector<double>& values) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (values.size() < 2) return {kNone, kNone};
+  if (values.size() < 2) return kNoInterval;
   if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); }))
     return {values.front(), values.front()};
-  const double mean = mean_of(values);
-  const std::vector<double> means = resampled_means(values);
-  // Of equal ones half are below.
-  const auto below = std::lower_bound(means.begin(), means.end(), mean) - means.begin();
-  const auto equal = std::upper_bound(means.begin(), means.end(), mean) - means.begin() - below;
-  const double bias =
-      normal_quantile((static_cast<double>(below) + 0.5 * static_cast<double>(equal)) / kSamples);
-  const double a = acceleration(values, mean);
-  const auto end = [&](double tail) {
-    const double z = bias + normal_quantile(tail);
-    return quantile(means, normal_share_below(bias + z / (1.0 - a * z)));
+  return bootstrap_interval(values.size(), [&values](const std::vector<std::size_t>& chosen) {
+    double sum = 0.0;
+    for (const std::size_t one : chosen) sum += values[one];
+    return sum / static_cast<double>(chosen.size());
+  });
+}
+
+Interval bootstrap_ratio_interval(const std::vector<double>& over,
+                                  const std::vector<double>& under) {
+  if (over.size() != under.size()) throw std::logic_error("a ratio is of pairs");
+  const Interval divisor = bootstrap_mean_interval(under);
+  if (!(divisor.low > 0.0 || divisor.high < 0.0)) return kNoInterval;
+  const auto ratio = [&](const std::vector<std::size_t>& chosen) {
+    double sum_over = 0.0;
+    double sum_under = 0.0;
+    for (const std::size_t one : chosen) {
+      sum_over += over[one];
+      sum_under += under[one];
+    }
+    return sum_over / sum_under;
   };
-  return {end(kTail), end(1.0 - kTail)};
+  const double all = mean_of(over) / mean_of(under);
+  bool same = true;
+  for (std::size_t i = 0; i < over.size(); ++i) same = same && over[i] == all * under[i];
+  if (same) return {all, all};
+  return bootstrap_interval(over.size(), ratio);
 }
 
 SignedRank signed_rank(const std::vector<double>& differences) {

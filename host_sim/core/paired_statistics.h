@@ -17,6 +17,11 @@ double mean_of(const std::vector<double>& values);
 /// where all are equal; NaN of fewer than two.
 Interval bootstrap_mean_interval(const std::vector<double>& values);
 
+/// Of the mean of `over` by that of `under`, likewise, over pairs: both are of the same length.
+/// NaN unless the mean of `under` differs from 0 by its own interval.
+Interval bootstrap_ratio_interval(const std::vector<double>& over,
+                                  const std::vector<double>& under);
+
 struct SignedRank {
   double p = 1.0;       ///< two-sided
   double effect = 0.0;  ///< matched-pairs rank-biserial correlation, -1..1: 1, all differences rise

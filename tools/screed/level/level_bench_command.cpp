@@ -56,13 +56,26 @@ Json json_of(const EntryScore& score) {
                {"progress", json_of(score.progress)},
                {"energy_j", json_of(score.energy_j)},
                {"transport_per_joule_cm3_m", json_of(score.transport_per_joule)},
-               {"stuck", json_of(score.stuck)}};
+               {"stuck", json_of(score.stuck)},
+               {"halved", score.halved}};
+  if (std::isfinite(score.half_time_s)) json["half_time_s"] = score.half_time_s;
   if (score.against_baseline.has_value()) {
     json["against_baseline"] = {{"difference", json_of(score.against_baseline->difference)},
                                 {"p_holm", score.against_baseline->p_holm},
                                 {"effect", score.against_baseline->test.effect}};
+    if (score.times_baseline.has_value())
+      json["against_baseline"]["times"] = json_of(*score.times_baseline);
   }
   return json;
+}
+
+/// "15/30, 1.48 h": how many beds came to half of their relief, and when half of them had.
+std::string half_text(const EntryScore& score) {
+  std::string text = std::to_string(score.halved) + "/" + std::to_string(score.runs + score.failed);
+  if (!std::isfinite(score.half_time_s)) return text;
+  char time[32];
+  std::snprintf(time, sizeof time, ", %.2f h", score.half_time_s / 3600.0);
+  return text + time;
 }
 
 /// "-12.3 (-15.1 to -9.8)"; of a single bed without an interval.
@@ -82,9 +95,9 @@ void print_course(const CourseScore& course, const std::string& against) {
   for (const std::string& level : course.levels) name += (name.empty() ? "" : ", ") + level;
   std::printf("%s, %.0f s; means over the beds and 95 %% intervals; against %s: Wilcoxon, Holm\n",
               name.c_str(), course.duration_s, against.c_str());
-  std::printf("  %-16s %-26s %-26s %-24s %9s %8s %6s %5s  %s\n", "entry", "relief [%]",
-              "progress [%]", "rate [%/h]", "cm3 m/J", "stuck %", "early", "lost",
-              "difference of relief [%], p, effect");
+  std::printf("  %-16s %-26s %-26s %-24s %-14s %9s %8s %6s %5s  %s\n", "entry", "relief [%]",
+              "progress [%]", "rate [%/h]", "half by", "cm3 m/J", "stuck %", "early", "lost",
+              "difference of relief [%], p, effect; times the rate");
   for (const EntryScore& score : course.entries) {
     std::string difference = "-";
     if (score.against_baseline.has_value()) {
@@ -92,12 +105,15 @@ void print_course(const CourseScore& course, const std::string& against) {
       std::snprintf(p, sizeof p, ", %.2g, %+.2f", score.against_baseline->p_holm,
                     score.against_baseline->test.effect);
       difference = with_interval(score.against_baseline->difference, 100, 1) + p;
+      if (score.times_baseline.has_value())
+        difference += "; " + with_interval(*score.times_baseline, 1, 2);
     }
-    std::printf("  %-16s %-26s %-26s %-24s %9.3f %8.1f %6zu %5zu  %s\n", score.entry.c_str(),
+    std::printf("  %-16s %-26s %-26s %-24s %-14s %9.3f %8.1f %6zu %5zu  %s\n", score.entry.c_str(),
                 with_interval(score.relief_change, 100, 1).c_str(),
                 with_interval(score.progress, 100, 1).c_str(),
-                with_interval(score.rate_per_h, 100, 1).c_str(), score.transport_per_joule.mean,
-                100 * score.stuck.mean, score.ended_early, score.failed, difference.c_str());
+                with_interval(score.rate_per_h, 100, 1).c_str(), half_text(score).c_str(),
+                score.transport_per_joule.mean, 100 * score.stuck.mean, score.ended_early,
+                score.failed, difference.c_str());
   }
 }
 
@@ -150,8 +166,8 @@ int run_bench(const Arguments& arguments, const std::string& version) {
 
   const ResultIndex results(campaign.folder.results());
   merge_results(plan, results, campaign.folder);
-  const std::vector<CourseScore> courses =
-      score_benchmark(plan, run_table(plan, results), arguments.against);
+  const std::vector<CourseScore> courses = score_benchmark(
+      plan, run_table(plan, results), curve_table(plan, results), arguments.against);
   if (arguments.json) {
     Json json = Json::array();
     for (const CourseScore& course : courses) {

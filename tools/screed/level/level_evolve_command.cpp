@@ -51,7 +51,7 @@ std::vector<EntryScore> run_task(const Arguments& arguments, const std::string& 
   if (!outcome.stopped.empty()) throw RunError(outcome.stopped);
   const ResultIndex results(campaign.folder.results());
   merge_results(campaign.plan, results, campaign.folder);
-  return score_benchmark(campaign.plan, run_table(campaign.plan, results), task.against)
+  return score_benchmark(campaign.plan, run_table(campaign.plan, results), {}, task.against)
       .at(0)
       .entries;
 }

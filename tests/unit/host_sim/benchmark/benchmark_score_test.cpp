@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,7 @@ ValueTable runs() {
 }
 
 TEST(BenchmarkScore, OfEachEntryOnEachCourse) {
-  const std::vector<CourseScore> courses = score_benchmark(plan(), runs(), "walk");
+  const std::vector<CourseScore> courses = score_benchmark(plan(), runs(), {}, "walk");
   ASSERT_EQ(courses.size(), 2U);
   EXPECT_EQ(courses[1].levels,
             (std::vector<std::string>{"small", "rough", "gravel", "one", "fixes"}));
@@ -76,6 +77,55 @@ TEST(BenchmarkScore, OfEachEntryOnEachCourse) {
   EXPECT_EQ(courses[1].entries[1].ended_early, 0U);
 }
 
+/// Relief every minute: of runs 3 to 5 (the spin, first course) it falls to half after 2 and 3
+/// minutes, and never.
+ValueTable curves() {
+  ValueTable table;
+  const double falls[3] = {0.25, 0.2, 0.1};
+  for (int run = 0; run < 12; ++run) {
+    for (int minute = 0; minute < 5; ++minute) {
+      const double fall = run / 3 == 1 ? falls[run % 3] : 0.0;
+      table.add_row();
+      table.set("run", run);
+      table.set("time", 60.0 * minute);
+      if (minute != 1) table.set("relief", 0.01 * (1.0 - fall * minute));
+    }
+  }
+  return table;
+}
+
+TEST(BenchmarkScore, HalfIsReachedWhereHalfOfTheBedsReachIt) {
+  const std::vector<CourseScore> courses = score_benchmark(plan(), runs(), curves(), "walk");
+  const EntryScore& spin = courses[0].entries[1];
+  EXPECT_EQ(spin.halved, 2U);
+  EXPECT_EQ(spin.half_time_s, 180.0);
+  const EntryScore& walk = courses[0].entries[0];
+  EXPECT_EQ(walk.halved, 0U);
+  EXPECT_TRUE(std::isnan(walk.half_time_s));
+  EXPECT_TRUE(std::isnan(score_benchmark(plan(), runs(), {}, "walk")[0].entries[1].half_time_s));
+}
+
+TEST(BenchmarkScore, TimesTheBaselineIsOfMeansOverTheSameBeds) {
+  // The spin takes 10, 20, 30 %, the other 5, 10, nothing known; of three beds the last is left
+  // out.
+  ValueTable table;
+  const double shares[2][3] = {{0.05, 0.1, 0.0}, {0.1, 0.2, 0.3}};
+  for (int run = 0; run < 12; ++run) {
+    table.add_row();
+    table.set("terrain_before.relief_m", 0.01);
+    if (run % 6 == 2) continue;
+    table.set("terrain_after.relief_m", 0.01 * (1.0 - shares[run / 3 % 2][run % 3]));
+  }
+  const std::vector<CourseScore> courses = score_benchmark(plan(), table, {}, "walk");
+  const std::optional<SeedMean>& times = courses[0].entries[1].times_baseline;
+  ASSERT_TRUE(times.has_value());
+  EXPECT_EQ(times->count, 2U);
+  EXPECT_NEAR(times->mean, 2.0, 1e-12);
+  EXPECT_FALSE(courses[0].entries[0].times_baseline.has_value());
+  // By one that changes nothing: no number of times.
+  EXPECT_FALSE(score_benchmark(plan(), runs(), {}, "walk")[0].entries[1].times_baseline);
+}
+
 TEST(BenchmarkScore, ARunWithoutFiguresIsCountedAsFailed) {
   ValueTable table;
   for (int run = 0; run < 12; ++run) {
@@ -84,7 +134,7 @@ TEST(BenchmarkScore, ARunWithoutFiguresIsCountedAsFailed) {
     table.set("terrain_before.relief_m", 0.01);
     table.set("terrain_after.relief_m", 0.008);
   }
-  const std::vector<CourseScore> courses = score_benchmark(plan(), table, "nobody");
+  const std::vector<CourseScore> courses = score_benchmark(plan(), table, {}, "nobody");
   EXPECT_EQ(courses[0].entries[1].runs, 2U);
   EXPECT_EQ(courses[0].entries[1].failed, 1U);
   EXPECT_FALSE(courses[0].entries[1].against_baseline.has_value());

@@ -41,6 +41,26 @@ TEST(PairedStatistics, TheIntervalHoldsTheMeanInNineteenOfTwenty) {
   EXPECT_LE(held, 490);
 }
 
+TEST(PairedStatistics, TheIntervalOfARatioIsSciPys) {
+  // scipy.stats.bootstrap((over, under), lambda x, y, axis: x.mean(axis) / y.mean(axis),
+  // method='BCa', paired=True, n_resamples=100000)
+  const std::vector<double> under = {2.1, 1.7, 1.1, 2.9, 2.4, 1.2, 1.6, 0.8, 3.9, 1.9, 1.3, 2.2};
+  const Interval interval = bootstrap_ratio_interval(kEven, under);
+  EXPECT_NEAR(interval.low, 0.195, 0.015);
+  EXPECT_NEAR(interval.high, 0.665, 0.015);
+  // Pairs: put otherwise together they say less.
+  std::vector<double> turned(under.rbegin(), under.rend());
+  const Interval apart = bootstrap_ratio_interval(kEven, turned);
+  EXPECT_GT(apart.high - apart.low, 1.2 * (interval.high - interval.low));
+}
+
+TEST(PairedStatistics, ByAMeanThatMayBeNothingThereIsNoRatio) {
+  const std::vector<double> around = {0.1, -0.1, 0.2, -0.2, 0.05, -0.1, 0.1, 0.0, 0.1, -0.1, 0, 0};
+  EXPECT_TRUE(std::isnan(bootstrap_ratio_interval(kEven, around).low));
+  const std::vector<double> negative = {-1.0, -2.0, -4.0};
+  EXPECT_EQ(bootstrap_ratio_interval({2.0, 4.0, 8.0}, negative).low, -2.0);
+}
+
 TEST(PairedStatistics, OfTooFewOrEqualValuesTheIntervalSaysSo) {
   EXPECT_TRUE(std::isnan(bootstrap_mean_interval({3.0}).low));
   EXPECT_TRUE(std::isnan(mean_of({})));
