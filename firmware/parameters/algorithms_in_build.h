@@ -66,8 +66,10 @@ constexpr int16_t max_algorithm(int16_t from) {
   return algorithm_in_build(from) ? from : max_algorithm(static_cast<int16_t>(from - 1));
 }
 constexpr int16_t kMaxAlgorithm = max_algorithm(message::kLevelingAlgorithmMax);
-static_assert(kDefaultAlgorithm == static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing) &&
-                  algorithm_in_build(kDefaultAlgorithm),
-              "the default algorithm is in every build");
+static_assert(algorithm_in_build(kDefaultAlgorithm), "the default algorithm is in every build");
+#ifndef SCREED_DEFAULT_ALGORITHM
+static_assert(kDefaultAlgorithm == static_cast<int16_t>(message::LevelingAlgorithm::kHillSensing),
+              "the default algorithm is that of the thesis");
+#endif
 
 }  // namespace screed

@@ -69,9 +69,14 @@
 
 namespace screed {
 
-/// hill_sensing: Algorithm 6. Which other algorithms a build has, and so the greatest value, only
-/// what uses that part of the table needs to know: it includes algorithms_in_build.h.
+/// hill_sensing, Algorithm 6, unless make firmware LEVELING=NAME says another. Which algorithms a
+/// build has, and so the greatest value, only what uses that part of the table needs to know: it
+/// includes algorithms_in_build.h.
+#ifdef SCREED_DEFAULT_ALGORITHM
+constexpr int16_t kDefaultAlgorithm = SCREED_DEFAULT_ALGORITHM;
+#else
 constexpr int16_t kDefaultAlgorithm = 1;
+#endif
 
 struct Parameters {
 #define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = (value);

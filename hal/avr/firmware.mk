@@ -3,6 +3,7 @@
 #   build/firmware/<board>/screed.elf and .hex, and their budget of flash, RAM, stack and cycles
 #   build/firmware/<board>_usb_core/ the same with USB=core: on the Arduino core's main() and USB instead of hal/avr/usb
 #   build/firmware/<board>_node_3/ the same with NODE=3: of the robot that is node 3 on the radio
+#   build/firmware/<board>_strokes/ the same with LEVELING=strokes: its default algorithm is strokes
 #
 # Needs options.mk and host.mk. A board is a folder boards/<board> with board.h, pins.h and board.mk (docs/boards.md).
 
@@ -16,12 +17,12 @@ AVR_OBJDUMP ?= avr-objdump
 AVR_SIZE ?= avr-size
 AVR_NM ?= avr-nm
 
-# Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack. With USB=core flash
-# may be used up.
+# Most flash and RAM a program may use, and what of it must stay free; RAM counts variables and the worst-case stack. With LEVELING half of
+# that of flash, with USB=core none.
 FLASH_BUDGET := 28672
 RAM_BUDGET := 2560
 RAM_SPARE := 256
-FLASH_SPARE_own := 2048
+FLASH_SPARE_own := $(if $(LEVELING),1024,2048)
 FLASH_SPARE_core := 0
 # Where the core writes the bootloader's key while the program still runs (MAGIC_KEY_POS in its USBCore.h).
 BOOT_KEY_ADDRESS := 0x0800
@@ -35,7 +36,7 @@ ifeq ($(USB_FOLDER_$(USB)),)
 $(error USB=$(USB): own or core)
 endif
 USB_SUFFIX_core := _usb_core
-FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))$(NODE:%=_node_%)
+FIRMWARE_BUILD := $(BUILD_ROOT)/firmware/$(BOARD)$(USB_SUFFIX_$(USB))$(NODE:%=_node_%)$(LEVELING:%=_%)
 FIRMWARE_ELF := $(FIRMWARE_BUILD)/screed.elf
 FIRMWARE_SOURCES := $(filter-out hal/avr/usb/% hal/avr/arduino/%,$(call sources,firmware nn/infer hal/avr)) $(call sources,$(USB_FOLDER_$(USB)))
 FIRMWARE_STARTUP := $(FIRMWARE_BUILD)/hal/avr/startup.o
@@ -57,6 +58,16 @@ endif
 # make firmware NODE=3: the robot's number on the radio, 1 (the default) to 15.
 ifdef NODE
 AVR_FLAGS += -DSCREED_NODE=$(NODE)
+endif
+# make firmware LEVELING=NAME: the image whose default algorithm is that one; it has no other but `drive`, unless LEAVE_OUT says so.
+ifdef LEVELING
+ALGORITHM_VALUES := $(subst ",,$(shell sed -n 's/^VAL_ 529 algorithm \(.*\) *;$$/\1/p' $(SCHEMA)))
+ALGORITHMS := $(filter-out 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15,$(ALGORITHM_VALUES))
+ifeq ($(filter $(LEVELING),$(filter-out drive,$(ALGORITHMS))),)
+$(error LEVELING=$(LEVELING): one of $(filter-out drive,$(ALGORITHMS)))
+endif
+AVR_FLAGS += -DSCREED_DEFAULT_ALGORITHM=$(shell echo '$(ALGORITHM_VALUES)' | sed 's/ $(LEVELING)\b.*//; s/.* //')
+LEAVE_OUT ?= $(filter-out drive $(LEVELING),$(ALGORITHMS))
 endif
 # make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/algorithms_in_build.h says.
 ifneq ($(origin LEAVE_OUT),undefined)
@@ -186,4 +197,11 @@ OTHER_NODE_IMAGE := $(FIRMWARE_BUILD)_node_3/screed.elf
 TEST_IMAGES += $(OTHER_NODE_IMAGE)
 $(OTHER_NODE_IMAGE): FORCE
 	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) NODE=3 $@
+endif
+# And that of the algorithm that levels best.
+ifndef LEVELING
+STROKES_IMAGE := $(FIRMWARE_BUILD)_strokes/screed.elf
+TEST_IMAGES += $(STROKES_IMAGE)
+$(STROKES_IMAGE): FORCE
+	+@$(MAKE) --no-print-directory BUILD=$(BUILD) BUILD_ROOT=$(BUILD_ROOT) LEVELING=strokes $@
 endif

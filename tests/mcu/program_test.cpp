@@ -72,6 +72,28 @@ TEST_F(McuProgram, ParityOfAShortHillSensing) {
   EXPECT_GT(json["real_time_factor"], 0.0);
 }
 
+// The image with the algorithm that levels best, on the bed that `make sim` drives.
+TEST_F(McuProgram, TheImageWithStrokesLevelsAsTheFirmwareHere) {
+  const std::string bed = std::string("'") + kDataFolder + "/experiments/level_bed.ini' --json";
+  const std::string strokes = std::string(" --elf '") + kStrokesImage + "'";
+  const Result parity = run("parity " + bed + strokes + " --minutes 2");
+  ASSERT_EQ(parity.exit_code, 0) << parity.err;
+  const auto compared = nlohmann::json::parse(parity.out);
+  EXPECT_EQ(compared["differing_bytes"], 0) << compared["first_difference"];
+  EXPECT_GE(compared["driving_ticks"], 11000);
+
+  // On its own the image reads the sensors at times of its own, and drives another course.
+  for (const std::string& hal : {std::string("native"), "mcu" + strokes}) {
+    const Result run_of =
+        run("sim " + bed + " --duration 300 --out " + hal.substr(0, 3) + " --hal " + hal);
+    ASSERT_EQ(run_of.exit_code, 0) << run_of.err;
+    const auto json = nlohmann::json::parse(run_of.out);
+    const double before = json["terrain_before"]["relief_m"];
+    const double after = json["terrain_after"]["relief_m"];
+    EXPECT_LT(after, 0.97 * before) << hal;
+  }
+}
+
 TEST_F(McuProgram, ARunOfTheImageIsASessionThatReplays) {
   const Result sim =
       run("sim " + first_drive() + image() + " --hal mcu --duration 12 --seed 3 --out run --json");
