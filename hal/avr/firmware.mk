@@ -61,12 +61,12 @@ AVR_FLAGS += -DSCREED_NODE=$(NODE)
 endif
 # make firmware LEVELING=NAME: the image whose default algorithm is that one; it has no other but `drive`, unless LEAVE_OUT says so.
 ifdef LEVELING
-ALGORITHM_VALUES := $(subst ",,$(shell sed -n 's/^VAL_ 529 algorithm \(.*\) *;$$/\1/p' $(SCHEMA)))
-ALGORITHMS := $(filter-out 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15,$(ALGORITHM_VALUES))
-ifeq ($(filter $(LEVELING),$(filter-out drive,$(ALGORITHMS))),)
+ALGORITHM_NUMBERS := $(shell sed -nE 's/^VAL_ [0-9]+ algorithm //p' $(SCHEMA) | sed -E 's/([0-9]+) "(\w+)"/\2=\1/g; s/;//')
+ALGORITHMS := $(foreach it,$(ALGORITHM_NUMBERS),$(firstword $(subst =, ,$(it))))
+ifneq ($(filter $(LEVELING),$(filter-out drive,$(ALGORITHMS))) 1,$(LEVELING) $(words $(LEVELING)))
 $(error LEVELING=$(LEVELING): one of $(filter-out drive,$(ALGORITHMS)))
 endif
-AVR_FLAGS += -DSCREED_DEFAULT_ALGORITHM=$(shell echo '$(ALGORITHM_VALUES)' | sed 's/ $(LEVELING)\b.*//; s/.* //')
+AVR_FLAGS += -DSCREED_DEFAULT_ALGORITHM=$(patsubst $(LEVELING)=%,%,$(filter $(LEVELING)=%,$(ALGORITHM_NUMBERS)))
 LEAVE_OUT ?= $(filter-out drive $(LEVELING),$(ALGORITHMS))
 endif
 # make firmware LEAVE_OUT="NAME...": the image without these leveling algorithms; unset: as firmware/parameters/algorithms_in_build.h says.
