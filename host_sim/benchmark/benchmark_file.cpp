@@ -30,7 +30,8 @@ std::string place(const fs::path& path, const IniEntry& entry) {
 }
 
 std::vector<std::string> factor_names() {
-  std::vector<std::string> names(std::begin(kCourseFactors), std::end(kCourseFactors));
+  std::vector<std::string> names = {kWorldFactor};
+  names.insert(names.end(), std::begin(kCourseFactors), std::end(kCourseFactors));
   names.emplace_back(kEntryFactor);
   return names;
 }
@@ -97,12 +98,14 @@ std::pair<std::string, std::string> words_of(const std::string& section) {
   return {section.substr(0, space), section.substr(space + 1)};
 }
 
-/// "soil.preset" as a key of an experiment file.
-IniEntry experiment_entry(const IniEntry& entry, const std::string& where) {
+/// "soil.preset" as a key of an experiment file; of a world also what campaigns know of it.
+IniEntry experiment_entry(const std::string& factor, const IniEntry& entry,
+                          const std::string& where) {
   const std::size_t dot = entry.key.find('.');
   if (dot == std::string::npos)
     throw InputError(where + ": expected section.key of an experiment file");
   IniEntry result{entry.key.substr(0, dot), entry.key.substr(dot + 1), entry.value, entry.line};
+  if (factor == kWorldFactor && result.section == kWorldSection) return result;
   find_experiment_key(result.section, result.key, where);
   return result;
 }
@@ -189,7 +192,7 @@ Benchmark read_benchmark(const fs::path& path) {
     } else if (!name.empty() && std::find(factors.begin(), factors.end(), kind) != factors.end()) {
       std::vector<IniEntry>& level = benchmark.levels[kind][name];
       if (kind == kEntryFactor && level.empty()) benchmark.entries.push_back(name);
-      level.push_back(experiment_entry(entry, place(path, entry)));
+      level.push_back(experiment_entry(kind, entry, place(path, entry)));
     } else {
       throw InputError(
           path.string() + ":" + std::to_string(entry.line) + ": unknown section [" + entry.section +
@@ -259,6 +262,7 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
       if (!choice.entries.empty()) levels = choice.entries;
       if (levels.empty()) levels = benchmark.entries;
     }
+    if (levels.empty() && factor == kWorldFactor) continue;
     if (levels.empty())
       throw InputError(benchmark.path.string() + ": [suite " + choice.suite + "] has no " + factor);
     add("grid", factor, joined(levels));

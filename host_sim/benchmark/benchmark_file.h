@@ -17,6 +17,9 @@
 
 namespace screed {
 
+/// What a run is driven in, where a suite compares worlds; a suite that does not say runs in the
+/// physics.
+inline constexpr const char* kWorldFactor = "world";
 /// The factors that make a course, in the order in which their levels are put on a run.
 inline constexpr const char* kCourseFactors[] = {"size", "bed", "soil", "robots", "position"};
 /// The factor of what is scored: an algorithm with its parameters.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "host_sim/benchmark/benchmark_file.h"
+#include "host_sim/benchmark/run_column.h"
 
 namespace screed {
 namespace {
@@ -16,29 +17,6 @@ namespace {
 constexpr double kSecondsPerHour = 3600.0;
 constexpr double kCm3PerM3 = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Numbers of a column by run; NaN: none.
-class RunColumn {
- public:
-  RunColumn(const ValueTable& table, const std::string& name) {
-    for (const ValueTable::ValueColumn& column : table.columns())
-      if (column.name == name) column_ = &column;
-  }
-  double at(std::size_t run) const {
-    if (column_ == nullptr || run >= column_->values.size()) return kNone;
-    const TableValue& value = column_->values[run];
-    if (value.is_boolean()) return value.get<bool>() ? 1.0 : 0.0;
-    return value.is_number() ? value.get<double>() : kNone;
-  }
-  /// A text stands there, and another one than this.
-  bool says_other_than(const std::string& text, std::size_t run) const {
-    return column_ != nullptr && run < column_->values.size() && column_->values[run].is_string() &&
-           column_->values[run].get<std::string>() != text;
-  }
-
- private:
-  const ValueTable::ValueColumn* column_ = nullptr;
-};
 
 /// One figure of the runs of a course.
 using Figure = std::function<double(std::size_t run)>;

@@ -37,11 +37,8 @@ double normal_quantile(double share) {
   return 0.5 * (low + high);
 }
 
-/// A figure of a choice of values, by their numbers; a number may occur several times.
-using Statistic = std::function<double(const std::vector<std::size_t>& chosen)>;
-
 /// Of samples of `count` values with replacement, rising.
-std::vector<double> resampled(std::size_t count, const Statistic& statistic) {
+std::vector<double> resampled(std::size_t count, const FigureOfPairs& statistic) {
   WorldRandom random(kSeed, "bootstrap");
   std::vector<std::size_t> chosen(count);
   std::vector<double> figures(kSamples);
@@ -55,7 +52,7 @@ std::vector<double> resampled(std::size_t count, const Statistic& statistic) {
 
 /// How the figure's standard error changes with the figure, from leaving out one value each
 /// (Efron 1987, the jackknife's estimate).
-double acceleration(std::size_t count, const Statistic& statistic) {
+double acceleration(std::size_t count, const FigureOfPairs& statistic) {
   std::vector<double> without(count);
   std::vector<std::size_t> chosen(count - 1);
   for (std::size_t left_out = 0; left_out < count; ++left_out) {
@@ -74,7 +71,7 @@ double acceleration(std::size_t count, const Statistic& statistic) {
 }
 
 /// BCa, of a figure that is not the same for all samples.
-Interval bootstrap_interval(std::size_t count, const Statistic& statistic) {
+Interval bootstrap_interval(std::size_t count, const FigureOfPairs& statistic) {
   std::vector<std::size_t> all(count);
   std::iota(all.begin(), all.end(), std::size_t{0});
   const double figure = statistic(all);
@@ -175,6 +172,28 @@ Interval bootstrap_ratio_interval(const std::vector<double>& over,
   for (std::size_t i = 0; i < over.size(); ++i) same = same && over[i] == all * under[i];
   if (same) return {all, all};
   return bootstrap_interval(over.size(), ratio);
+}
+
+double kendall_tau(const std::vector<double>& one, const std::vector<double>& other) {
+  double agreement = 0.0;
+  double ordered = 0.0;  // pairs that the first orders
+  double ordered_by_other = 0.0;
+  const auto sign = [](double difference) { return (difference > 0.0) - (difference < 0.0); };
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const int a = sign(one[i] - one[k]);
+      const int b = sign(other[i] - other[k]);
+      agreement += a * b;
+      ordered += a * a;
+      ordered_by_other += b * b;
+    }
+  }
+  return agreement / std::sqrt(ordered * ordered_by_other);
+}
+
+Interval bootstrap_percentiles(std::size_t pairs, const FigureOfPairs& figure) {
+  const std::vector<double> figures = resampled(pairs, figure);
+  return {quantile(figures, kTail), quantile(figures, 1.0 - kTail)};
 }
 
 SignedRank signed_rank(const std::vector<double>& differences) {

@@ -42,15 +42,6 @@ Support support_at(const HeightField& ground, const SupportGeometry& geometry, d
   return support_on(height, geometry, x_m, y_m, cos_heading, sin_heading);
 }
 
-void PlanarPose::move(const FrameMotion& motion) {
-  const double middle = heading_rad + 0.5 * motion.turn_rad;
-  const double c = std::cos(middle);
-  const double s = std::sin(middle);
-  x_m += motion.forward_m * c - motion.sideways_m * s;
-  y_m += motion.forward_m * s + motion.sideways_m * c;
-  heading_rad += motion.turn_rad;
-}
-
 FrameMotion SkidKinematics::motion(double left_m_per_s, double right_m_per_s) const {
   return {0.5 * (left_m_per_s + right_m_per_s) * speed_share * kFrame_s, 0.0,
           (right_m_per_s - left_m_per_s) / tread_m * kFrame_s};

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
+#include "host_sim/standin/planar_pose.h"
 #include "nn/batch/batch_network.h"
 #include "nn/data/motion_signals.h"
 #include "nn/model/model_file.h"
@@ -26,21 +27,6 @@ namespace screed::nn {
 
 Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
                    double y_m, double cos_heading, double sin_heading);
-
-/// A frame's motion in the robot's own axes.
-struct FrameMotion {
-  double forward_m = 0.0;
-  double sideways_m = 0.0;
-  double turn_rad = 0.0;
-};
-
-struct PlanarPose {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double heading_rad = 0.0;  ///< not wrapped
-
-  void move(const FrameMotion& motion);
-};
 
 /// Motion from track speeds by two constants: what a network is compared with. No slip: a share of
 /// 1 and the real tread.
@@ -53,15 +39,15 @@ struct SkidKinematics {
 
 /// What tracks on soil do more or less whatever the soil, and how a robot that does otherwise
 /// returns to it: in an oscillation on its elastic ground contact that dies out within a tenth of a
-/// second. With d the motion less that of kUsualSkid, d(t) = kSwingLast d(t-1) + kSwingBefore
-/// d(t-2). A network that adds to it cannot run away, and one that adds nothing is still right in
-/// the mean.
+/// second. With d the motion less that of kNominalSkid, d(t) = kSettlingLast d(t-1) +
+/// kSettlingBeforeLast d(t-2). A network that adds to it cannot run away, and one that adds nothing
+/// is still right in the mean.
 inline constexpr SkidKinematics kNominalSkid = {0.96, 0.275};
 inline constexpr double kSettlingLast = 1.7;
 inline constexpr double kSettlingBeforeLast = -0.75;
 
 /// The next value of one of the three motions by that, from those of the last two frames and of
-/// kUsualSkid in the three.
+/// kNominalSkid in the three.
 constexpr double settling(double last, double before_last, double skid, double skid_last,
                           double skid_before_last) {
   return skid + kSettlingLast * (last - skid_last) +

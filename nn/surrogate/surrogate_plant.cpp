@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "hal/sample.h"
@@ -59,6 +60,10 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
     throw InputError(
         "the surrogate world knows tracks alone: [vehicle] tracks = true and track_model = belt, "
         "or another --hal than surrogate");
+  }
+  if (!options.further_starts.empty()) {
+    throw InputError("[robots] count = " + std::to_string(1 + options.further_starts.size()) +
+                     ": networks move 1; several robots run without --model");
   }
   // Bodies that are never stepped: their measures are wanted.
   OdeWorld world;

@@ -38,27 +38,6 @@ HeightField sum_of(const HeightField& a, const HeightField& b) {
 
 }  // namespace
 
-TrackGeometry track_geometry(const Assembly& robot) {
-  TrackGeometry tracks;
-  const auto& [front, rear] = robot.wheels[0];
-  const Eigen::Vector3d& at = front.centre;
-  tracks.half_length_m = 0.5 * (at.x() - rear.centre.x());
-  tracks.half_tread_m = at.y();
-  tracks.radius_m = front.radius_m;
-  tracks.width_m = front.width_m;
-  tracks.below_m = tracks.radius_m - at.z();
-  double mass = 0.0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const AssemblyBody& body : robot.bodies) {
-    mass += body.inertia.mass;
-    centre += body.inertia.mass * (body.pose * body.inertia.pose.translation());
-  }
-  tracks.mass_kg = mass;
-  tracks.mass_ahead_m = centre.x() / mass;
-  tracks.mass_height_m = centre.z() / mass + tracks.below_m;
-  return tracks;
-}
-
 TrackPlane track_plane_of(const TrackGeometry& tracks, const Stride& stride) {
   return {stride.z_m - tracks.below_m * std::cos(stride.pitch) * std::cos(stride.roll),
           std::tan(stride.pitch), std::tan(stride.roll)};

@@ -190,7 +190,9 @@ TEST_F(SeveralRobots, ASectionOfARobotIsForThatOneAlone) {
 
 TEST_F(SeveralRobots, WhatCannotBeRunIsRefusedByOneLine) {
   write_bed();
-  expect_refused("--set robots.count=2 --hal surrogate", "with --hal surrogate allowed is 1");
+  expect_refused("--set robots.count=2 --hal surrogate --model '" + std::string(kDataFolder) +
+                     "/../../nn/models/v3.json'",
+                 "networks move 1");
   expect_refused("--set robots.count=2 --set robots.spacing=0.1", "stand in one another");
   expect_refused("--set robots.count=65", "1..64");
   expect_refused("--set robots.count=2 --set robots.placement=list", "places");

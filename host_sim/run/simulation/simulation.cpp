@@ -1,6 +1,7 @@
 // A run from its input to its folder, step by step.
 #include "host_sim/run/simulation/simulation.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -59,6 +60,12 @@ RunIdentity identity_of(const Experiment& experiment, const SimulationOptions& o
   if (const auto soil = soil_of(experiment)) run.soil = soil->name;
   run.version = options.program_version;
   return run;
+}
+
+/// The experiment as the environment can run it.
+Experiment as_run(Experiment experiment, const SimulationOptions& options) {
+  experiment.soil.cell_m = std::max(experiment.soil.cell_m, options.least_cell_m);
+  return experiment;
 }
 
 /// As the experiment lays it out: the session begins with it, and the figures before the run are
@@ -172,10 +179,11 @@ void finish_robots(const RunWorld& world, RobotsOfRun& robots, SimulationSummary
 }  // namespace
 
 void check_simulation(const Experiment& experiment, const SimulationOptions& options) {
-  const RunWorld trial(experiment, options, {});
+  const RunWorld trial(as_run(experiment, options), options, {});
 }
 
-SimulationSummary run_simulation(const Experiment& experiment, const SimulationOptions& options) {
+SimulationSummary run_simulation(const Experiment& asked, const SimulationOptions& options) {
+  const Experiment experiment = as_run(asked, options);
   // Everything that can be wrong with the input is found before the first file is made.
   TelemetryLogs telemetry(experiment.robots.count);
   RunWorld world(experiment, options, telemetry.streams());

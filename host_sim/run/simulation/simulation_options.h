@@ -44,6 +44,9 @@ struct SimulationOptions {
   std::optional<std::string> image;
   /// Makes what the robot is driven in, in place of physics; may be empty.
   EnvironmentFactory environment;
+  /// Side of a cell of deformable ground in that environment, m: an experiment with finer ones runs
+  /// with these, and its session says so.
+  double least_cell_m = 0.0;
 };
 
 }  // namespace screed

@@ -211,17 +211,12 @@ std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* te
   WorldOptions options = world_options(experiment, setup);
   const BoardConstants& board = board_constants_of(setup.board);
   const Assembly model = make_robot_model(experiment, setup.board);
-  if (setup.environment) {
-    if (experiment.robots.count > 1) {
-      throw InputError("[robots] count = " + std::to_string(experiment.robots.count) +
-                       ": with --hal surrogate allowed is 1; several robots run with --hal native "
-                       "or mcu");
-    }
-    return std::make_unique<World>(setup.environment(make_terrain(experiment), model, options),
-                                   board, options, telemetry_log);
-  }
   HeightField terrain = make_terrain(experiment);
   place_robots(experiment, terrain, options);
+  if (setup.environment) {
+    return std::make_unique<World>(setup.environment(std::move(terrain), model, options), board,
+                                   options, telemetry_log);
+  }
   return std::make_unique<World>(std::move(terrain), model, board, options, telemetry_log);
 }
 

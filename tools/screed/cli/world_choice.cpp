@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/standin/standin_plant.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
@@ -12,9 +13,8 @@
 namespace screed {
 namespace {
 
-EnvironmentFactory surrogate(const WorldChoice& choice) {
-  const auto model = std::make_shared<const nn::Model>(nn::read_model(
-      choice.model.has_value() ? std::filesystem::path(*choice.model) : nn::default_model_file()));
+EnvironmentFactory networks_world(const WorldChoice& choice) {
+  const auto model = std::make_shared<const nn::Model>(nn::read_model(*choice.model));
   std::shared_ptr<const nn::BearingCapacityNetwork> bearing;
   if (!choice.no_ruts) {
     bearing = std::make_shared<const nn::BearingCapacityNetwork>(nn::BearingCapacityNetwork::read(
@@ -28,6 +28,11 @@ EnvironmentFactory surrogate(const WorldChoice& choice) {
   };
 }
 
+std::unique_ptr<Environment> stand_in(const HeightField& terrain, const Assembly& robot,
+                                      const PlantOptions& plant) {
+  return std::make_unique<StandInPlant>(terrain, robot, plant);
+}
+
 }  // namespace
 
 void choose_world(const WorldChoice& choice, SimulationOptions& options) {
@@ -37,10 +42,16 @@ void choose_world(const WorldChoice& choice, SimulationOptions& options) {
   } else if (choice.elf.has_value()) {
     throw InputError("--elf needs --hal mcu");
   }
-  if (choice.hal == "surrogate") {
-    options.environment = surrogate(choice);
-  } else if (choice.model.has_value() || choice.soil_model.has_value() || choice.no_ruts) {
-    throw InputError("--model, --soil-model and --no-ruts need --hal surrogate");
+  if (choice.model.has_value() && choice.hal != "surrogate") {
+    throw InputError("--model needs --hal surrogate");
+  }
+  if (choice.model.has_value()) {
+    options.environment = networks_world(choice);
+  } else if (choice.soil_model.has_value() || choice.no_ruts) {
+    throw InputError("--soil-model and --no-ruts need --hal surrogate with --model");
+  } else if (choice.hal == "surrogate") {
+    options.environment = stand_in;
+    options.least_cell_m = kStandInCell_m;
   }
 }
 

@@ -13,6 +13,7 @@
 
 #include "host_sim/benchmark/benchmark_file.h"
 #include "host_sim/benchmark/benchmark_score.h"
+#include "host_sim/benchmark/world_ranking.h"
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
 #include "tools/screed/campaign/campaign_work.h"
@@ -117,6 +118,47 @@ void print_course(const CourseScore& course, const std::string& against) {
   }
 }
 
+std::string course_text(const WorldRanking& ranking) {
+  std::string text;
+  for (const std::string& level : ranking.course) text += (text.empty() ? "" : ", ") + level;
+  return text.empty() ? "all courses" : text;
+}
+
+/// By how much more an entry levels in the other world, where it levels at all.
+std::string rate_text(const RankedEntry& entry) {
+  if (!(entry.reference.interval.high < 0.0 || entry.reference.interval.low > 0.0)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%+.0f %%",
+                100.0 * (entry.other.mean / entry.reference.mean - 1.0));
+  return text;
+}
+
+void print_ranking(const WorldRanking& ranking) {
+  std::printf("%s: %s orders the entries as %s with Kendall's tau %s, %zu beds\n",
+              course_text(ranking).c_str(), ranking.other.c_str(), ranking.reference.c_str(),
+              with_interval(ranking.tau, 1, 2).c_str(), ranking.tau.count);
+  if (ranking.course.empty()) return;
+  std::printf("  %-16s %-26s %-26s %s\n", "entry, relief [%]", ranking.reference.c_str(),
+              ranking.other.c_str(), "rate");
+  for (const RankedEntry& entry : ranking.entries) {
+    std::printf("  %-16s %-26s %-26s %s\n", entry.entry.c_str(),
+                with_interval(entry.reference, 100, 1).c_str(),
+                with_interval(entry.other, 100, 1).c_str(), rate_text(entry).c_str());
+  }
+}
+
+Json json_of(const WorldRanking& ranking) {
+  Json entries = Json::array();
+  for (const RankedEntry& entry : ranking.entries) {
+    entries.push_back({{"entry", entry.entry},
+                       {ranking.reference, json_of(entry.reference)},
+                       {ranking.other, json_of(entry.other)}});
+  }
+  return {{"ranking", ranking.other},    {"reference", ranking.reference},
+          {"course", ranking.course},    {"beds", ranking.tau.count},
+          {"tau", json_of(ranking.tau)}, {"entries", std::move(entries)}};
+}
+
 /// Entries by name, or files of entries, which are added.
 std::vector<std::string> chosen_entries(const std::vector<std::string>& words,
                                         Benchmark& benchmark) {
@@ -166,8 +208,10 @@ int run_bench(const Arguments& arguments, const std::string& version) {
 
   const ResultIndex results(campaign.folder.results());
   merge_results(plan, results, campaign.folder);
-  const std::vector<CourseScore> courses = score_benchmark(
-      plan, run_table(plan, results), curve_table(plan, results), arguments.against);
+  const ValueTable runs = run_table(plan, results);
+  const std::vector<CourseScore> courses =
+      score_benchmark(plan, runs, curve_table(plan, results), arguments.against);
+  const std::vector<WorldRanking> rankings = rank_worlds(plan, runs);
   if (arguments.json) {
     Json json = Json::array();
     for (const CourseScore& course : courses) {
@@ -178,9 +222,11 @@ int run_bench(const Arguments& arguments, const std::string& version) {
                       {"baseline", arguments.against},
                       {"entries", entries}});
     }
+    for (const WorldRanking& ranking : rankings) json.push_back(json_of(ranking));
     std::cout << json.dump(2) << "\n";
   } else {
     for (const CourseScore& course : courses) print_course(course, arguments.against);
+    for (const WorldRanking& ranking : rankings) print_ranking(ranking);
     std::printf("folder  %s\n", campaign.folder.path.c_str());
   }
   return count_results(plan, results).complete() ? 0 : 1;

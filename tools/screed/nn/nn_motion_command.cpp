@@ -239,8 +239,8 @@ void draw(const fs::path& folder, const nn::SessionRollouts& session,
     picture.title = session.source + ", from frame " +
                     std::to_string(session.by_surrogate[0][which].start) + ", " + drive + " drive";
     // Paths are recorded from the first tenth of a second on.
-    const auto from_start = [&](const std::vector<nn::PlanarPose>& path) {
-      std::vector<nn::PlanarPose> whole = {session.starts[which]};
+    const auto from_start = [&](const std::vector<PlanarPose>& path) {
+      std::vector<PlanarPose> whole = {session.starts[which]};
       whole.insert(whole.end(), path.begin(), path.end());
       return whole;
     };

@@ -11,24 +11,24 @@
 namespace screed {
 namespace {
 
-MapPath map_path(const std::string& label, const std::vector<nn::PlanarPose>& poses) {
+MapPath map_path(const std::string& label, const std::vector<PlanarPose>& poses) {
   MapPath path{label, {}};
   path.points.reserve(poses.size());
-  for (const nn::PlanarPose& pose : poses) path.points.push_back({pose.x_m, pose.y_m});
+  for (const PlanarPose& pose : poses) path.points.push_back({pose.x_m, pose.y_m});
   return path;
 }
 
 }  // namespace
 
-std::vector<RolloutDeviation> rollout_deviation(const std::vector<nn::PlanarPose>& physics,
-                                                const std::vector<nn::PlanarPose>& predicted) {
+std::vector<RolloutDeviation> rollout_deviation(const std::vector<PlanarPose>& physics,
+                                                const std::vector<PlanarPose>& predicted) {
   std::vector<RolloutDeviation> deviation;
   const std::size_t count = std::min(physics.size(), predicted.size());
   deviation.reserve(count);
   double distance = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    const nn::PlanarPose& real = physics[i];
-    const nn::PlanarPose& pose = predicted[i];
+    const PlanarPose& real = physics[i];
+    const PlanarPose& pose = predicted[i];
     if (i > 0) distance += std::hypot(real.x_m - physics[i - 1].x_m, real.y_m - physics[i - 1].y_m);
     deviation.push_back(
         {distance, std::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m),

@@ -16,17 +16,17 @@ struct RolloutDeviation {
 };
 
 /// One row a pose, as many as both paths have; poses are of the same moments.
-std::vector<RolloutDeviation> rollout_deviation(const std::vector<nn::PlanarPose>& physics,
-                                                const std::vector<nn::PlanarPose>& predicted);
+std::vector<RolloutDeviation> rollout_deviation(const std::vector<PlanarPose>& physics,
+                                                const std::vector<PlanarPose>& predicted);
 
 struct PredictedPath {
   std::string name;
-  std::vector<nn::PlanarPose> poses;
+  std::vector<PlanarPose> poses;
 };
 
 struct RolloutPicture {
   std::string title;
-  std::vector<nn::PlanarPose> physics;
+  std::vector<PlanarPose> physics;
   std::vector<PredictedPath> predictions;
 };
 

@@ -264,7 +264,7 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
     add_tracks("network", fresh(), [&, network](nn::TrackSoilModel& on, std::size_t i) {
       on.step(drive[i], network.get());
     });
-    const nn::TrackGeometry tracks = nn::track_geometry(drive.robot());
+    const TrackGeometry tracks = track_geometry(drive.robot());
     add_tracks("true stance", fresh(), [&, tracks](nn::TrackSoilModel& on, std::size_t i) {
       on.step_at(drive[i], track_plane_of(tracks, drive[i]));
     });

@@ -113,6 +113,27 @@ TEST(PairedStatistics, HolmsAdjustmentIsThatOfTheTextbook) {
   EXPECT_EQ(holm({0.7, 0.8}).front(), 1.0);
 }
 
+// scipy.stats.kendalltau
+TEST(PairedStatistics, KendallsTauIsSciPys) {
+  EXPECT_NEAR(kendall_tau({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}), 0.6, 1e-12);
+  EXPECT_NEAR(kendall_tau({1, 2, 2, 4}, {3, 1, 2, 4}), 0.18257418583505539, 1e-12);
+  EXPECT_NEAR(kendall_tau({1, 2, 3}, {9, 5, 1}), -1.0, 1e-12);
+  EXPECT_TRUE(std::isnan(kendall_tau({1, 1, 1}, {1, 2, 3})));
+}
+
+TEST(PairedStatistics, PercentilesOfAFigureOfPairs) {
+  const std::vector<double> values = {1.0, 2.0, 3.0, 4.0, 5.0};
+  const auto largest = [&](const std::vector<std::size_t>& chosen) {
+    double most = 0.0;
+    for (const std::size_t one : chosen) most = std::max(most, values[one]);
+    return most;
+  };
+  const Interval interval = bootstrap_percentiles(values.size(), largest);
+  EXPECT_EQ(interval.high, 5.0);
+  EXPECT_EQ(interval.low,
+            3.0);  // the largest of five is 3 or less in 0.6^5 = 8 %, 2 or less in 1 %
+}
+
 TEST(PairedStatistics, RanksAreMeansOverTheRows) {
   const std::vector<MeanRank> ranks =
       mean_ranks({{0.1, 0.3, 0.2}, {5.0, 7.0, 7.0}, {-1.0, 2.0, 1.0}});

@@ -12,7 +12,7 @@
 namespace screed {
 namespace {
 
-using Path = std::vector<nn::PlanarPose>;
+using Path = std::vector<PlanarPose>;
 
 TEST(RolloutPicture, DeviationIsOverTheDistanceOfThePhysics) {
   const Path physics = {{0.0, 0.0, 0.0}, {3.0, 4.0, 0.1}, {3.0, 6.0, 3.0}};

@@ -1,0 +1,360 @@
+// Standing, sinking, digging.
+#include "host_sim/standin/belt_ground.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "hal/sample.h"
+#include "host_sim/core/gravity.h"
+
+namespace screed {
+namespace {
+
+constexpr double kStride_s = static_cast<double>(kBeltStrideFrames) / kTickRate_hz;
+constexpr double kMinShare = 0.02;       // of a cell that counts as below a belt
+constexpr double kCoveredShare = 0.5;    // from which nothing slides onto a cell
+constexpr double kPressure_pa = 2000.0;  // about the robot's weight over its belts
+constexpr double kStanding_m = 0.001;    // of a stride: less is no direction
+constexpr double kMinBearing = 0.05;
+constexpr int kMaxIterations = 60;        // of Newton's method; a few are typical
+constexpr int kPlacingIterations = 2000;  // where it begins far from the ground
+constexpr double kMaxImbalance = 0.1;     // of the weight, else the last plane is kept
+constexpr std::int64_t kSlides = 2000;    // in one stride: what is left over goes on in the next
+constexpr int kPlacingStrides = 10;
+
+}  // namespace
+
+void BeltStrideRecorder::add_frame(const FrameMotion& motion,
+                                   const std::array<BeltShear, 2>& shear) {
+  forward_m_ = motion.forward_m;
+  for (std::size_t side = 0; side < 2; ++side) shear_[side] += shear[side];
+}
+
+BeltStride BeltStrideRecorder::take(const PlanarPose& end) {
+  const double faster = (forward_m_ - forward_begin_m_) * kTickRate_hz;
+  const BeltStride stride{end, end.since(begin_), shear_, faster / kStride_s};
+  begin_ = end;
+  forward_begin_m_ = forward_m_;
+  shear_ = {};
+  return stride;
+}
+
+BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
+                       const TrackGeometry& tracks, std::size_t robots, const BeltFit& fit)
+    : soil_(soil),
+      tracks_(tracks),
+      fit_(fit),
+      flow_(surface, soil.repose_deg, Compaction{soil.compaction, soil.compaction_depth_m}),
+      volume_before_(surface.height_sum()),
+      cell_area_(surface.spacing_m() * surface.spacing_m()),
+      bekker_(soil.k_c / tracks.width_m + soil.k_phi),
+      unloading_pa_per_m_(std::min(
+          soil.elastic_pa_per_m,
+          fit.unloading * kPressure_pa / std::pow(kPressure_pa / bekker_, 1.0 / soil.exponent))),
+      tan_repose_(std::tan(soil.repose_deg * std::numbers::pi / 180.0)),
+      histories_(flow_.nodes()),
+      stances_(robots) {
+  check_soil(soil);
+  const auto last = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
+  for (int i = 0; i <= last; ++i) powers_.emplace_back(soil.exponent + i * kExponentStep);
+}
+
+VolumeBalance BeltGround::balance() const {
+  return {volume_before_, flow_.surface().height_sum(), flow_.compacted(), flow_.in_transit()};
+}
+
+std::size_t BeltGround::patch_of(double x) const {
+  const double patch_m = 2.0 * tracks_.half_length_m / kBeltPatches;
+  const double from_front = 0.5 * (kBeltPatches - 1) - x / patch_m;
+  return static_cast<std::size_t>(std::lround(std::clamp(from_front, 0.0, kBeltPatches - 1.0)));
+}
+
+void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
+  const HeightField& field = flow_.surface();
+  const double edge = field.spacing_m();
+  const double c = std::cos(stride.pose.heading_rad);
+  const double s = std::sin(stride.pose.heading_rad);
+  const double across_edge = edge * (std::abs(c) + std::abs(s));
+  const double along = tracks_.half_length_m + tracks_.radius_m;
+  const double across = 0.5 * (tracks_.width_m + across_edge);
+  const double reach_x = std::abs(c) * along + std::abs(s) * across;
+  const double reach_y = std::abs(s) * along + std::abs(c) * across;
+  const double most_share = std::min(1.0, tracks_.width_m / edge);
+  // On a slope the robot does not stand below its origin.
+  const double x_m = stride.pose.x_m + tracks_.below_m * (c * about.forward - s * about.left);
+  const double y_m = stride.pose.y_m + tracks_.below_m * (s * about.forward + c * about.left);
+  const auto cell_of = [&](double coordinate, double begin) {
+    return static_cast<int>(std::floor((coordinate - begin) / edge + 0.5));
+  };
+  cells_.clear();
+  for (const std::size_t side : {0U, 1U}) {
+    sides_.at(side) = cells_.size();
+    const double cx = x_m - s * middle(side);
+    const double cy = y_m + c * middle(side);
+    const int east = cell_of(cx + reach_x, field.x_min());
+    const int north = cell_of(cy + reach_y, field.y_min());
+    for (int iy = cell_of(cy - reach_y, field.y_min()); iy <= north; ++iy) {
+      for (int ix = cell_of(cx - reach_x, field.x_min()); ix <= east; ++ix) {
+        const double dx = field.node_x(ix) - x_m;
+        const double dy = field.node_y(iy) - y_m;
+        Cell cell{};
+        cell.x = dx * c + dy * s;
+        cell.y = dy * c - dx * s;
+        const double beyond = std::abs(cell.x) - tracks_.half_length_m;
+        if (beyond >= 0.95 * tracks_.radius_m) continue;
+        cell.share =
+            std::min(most_share,
+                     0.5 + (0.5 * tracks_.width_m - std::abs(cell.y - middle(side))) / across_edge);
+        if (cell.share <= kMinShare) continue;
+        const std::int64_t node = flow_.node_at(ix, iy);
+        if (node < 0) continue;
+        cell.node = static_cast<std::size_t>(node);
+        cell.ix = ix;
+        cell.iy = iy;
+        const double r = tracks_.radius_m;
+        if (beyond > 0.0) cell.over = r - std::sqrt(r * r - beyond * beyond);
+        const double sunk = flow_.sunk(cell.node) * kHeightUnit_m;
+        cell.level = flow_.reference(cell.node) * kHeightUnit_m;
+        cell.division = histories_[cell.node].divide(cell.share, sunk, stride_);
+        cell.prior = cell.division.under(cell.share, sunk);
+        cells_.push_back(cell);
+      }
+    }
+  }
+  sides_[2] = cells_.size();
+}
+
+/// Bearing capacity: less below a belt's trailing end, another exponent where the belt slips. Soil
+/// feels slip while it is sheared, so a belt averages it over its length.
+void BeltGround::find_bearing(const BeltStride& stride, Stance& stance) {
+  const double length = tracks_.half_length_m + tracks_.radius_m;
+  for (const std::size_t side : {0U, 1U}) {
+    const BeltShear& shear = stride.shear.at(side);
+    if (shear.moved_m > 0.0) {
+      stance.slip.at(side) += std::min(1.0, shear.moved_m / length) *
+                              (shear.slid_m / shear.moved_m - stance.slip.at(side));
+    }
+    const double more = soil_.slip_sinkage * std::clamp(stance.slip.at(side), 0.0, 1.0);
+    const PowerTable* const power = &powers_[std::min(
+        powers_.size() - 1, static_cast<std::size_t>(std::lround(more / kExponentStep)))];
+    const double advance = stride.motion.forward_m - stride.motion.turn_rad * middle(side);
+    const double direction = std::clamp(advance / kStanding_m, -1.0, 1.0);
+    for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
+      Cell& cell = cells_[i];
+      const double behind = -direction * cell.x / tracks_.half_length_m;
+      cell.power = power;
+      cell.bearing = bekker_ * std::clamp(1.0 - fit_.rear_reduction * behind, kMinBearing, 1.0);
+    }
+  }
+}
+
+BeltGround::Reaction BeltGround::react(const TrackPlane& plane) {
+  Reaction sum;
+  for (Cell& cell : cells_) {
+    cell.depth =
+        cell.level - cell.over - (plane.height_m + plane.forward * cell.x + plane.left * cell.y);
+    cell.pressure = 0.0;
+    if (cell.depth <= 0.0 || cell.depth <= cell.prior) continue;
+    const double virgin = cell.bearing * cell.power->power(cell.depth);
+    const double elastic = unloading_pa_per_m_ * (cell.depth - cell.prior);
+    const bool yields = virgin < elastic;
+    cell.pressure = yields ? virgin : elastic;
+    const double area = cell_area_ * cell.share;
+    const double force = area * cell.pressure;
+    const double slope =
+        area * (yields ? cell.power->exponent() * virgin / cell.depth : unloading_pa_per_m_);
+    sum.force += force;
+    sum.moment_x += force * cell.x;
+    sum.moment_y += force * cell.y;
+    sum.stiffness[0] += slope;
+    sum.stiffness[1] += slope * cell.x;
+    sum.stiffness[2] += slope * cell.y;
+    sum.stiffness[3] += slope * cell.x * cell.x;
+    sum.stiffness[4] += slope * cell.x * cell.y;
+    sum.stiffness[5] += slope * cell.y * cell.y;
+  }
+  return sum;
+}
+
+/// Where forces balance: Newton's method with a line search, on a convex energy.
+TrackPlane BeltGround::find_equilibrium(const TrackPlane& from, double acceleration_m_per_s2,
+                                        int iterations) {
+  TrackPlane at = from;
+  const double weight = tracks_.mass_kg * kGravity_m_per_s2;
+  const double backward = at.forward + acceleration_m_per_s2 / kGravity_m_per_s2;
+  const Eigen::Vector3d load =
+      weight * Eigen::Vector3d(1.0, tracks_.mass_ahead_m - tracks_.mass_height_m * backward,
+                               -tracks_.mass_height_m * at.left);
+  Reaction soil;
+  const auto imbalance = [&](const TrackPlane& plane) {
+    soil = react(plane);
+    return Eigen::Vector3d(load - Eigen::Vector3d(soil.force, soil.moment_x, soil.moment_y));
+  };
+  Eigen::Vector3d gradient = imbalance(at);
+  for (int iteration = 0; iteration < iterations;) {
+    const std::array<double, 6>& k = soil.stiffness;
+    Eigen::Matrix3d matrix;
+    matrix << k[0] + 1.0, k[1], k[2], k[1], k[3] + 0.01, k[4], k[2], k[4], k[5] + 0.01;
+    const Eigen::Vector3d newton = -matrix.llt().solve(gradient);
+    const double begin = gradient.dot(newton);
+    if (!(begin < 0.0)) break;
+    constexpr double kMaxStep_m = 0.01;
+    constexpr double kArm_m = 0.1;
+    double step = std::min(
+        1.0,
+        kMaxStep_m / (std::abs(newton[0]) + kArm_m * (std::abs(newton[1]) + std::abs(newton[2]))));
+    TrackPlane next;
+    for (;;) {
+      ++iteration;
+      next = {at.height_m + step * newton[0], at.forward + step * newton[1],
+              at.left + step * newton[2]};
+      gradient = imbalance(next);
+      const double slope = gradient.dot(newton);
+      if (slope <= -0.3 * begin || iteration >= iterations) break;
+      step *= std::clamp(begin / (begin - slope), 0.1, 0.9);  // secant
+    }
+    at = next;
+    if (std::abs(gradient[0]) < 1e-2 * weight &&
+        std::abs(gradient[1]) + std::abs(gradient[2]) < 1e-3 * weight) {
+      break;
+    }
+  }
+  return std::abs(gradient[0]) < kMaxImbalance * weight ? at : from;
+}
+
+/// The cells of a belt are pressed to its depth, but for what springs back.
+void BeltGround::compact(const BeltStride& stride, std::size_t side) {
+  const double c = std::cos(stride.pose.heading_rad);
+  const double s = std::sin(stride.pose.heading_rad);
+  const double ahead =
+      (stride.motion.forward_m - stride.motion.turn_rad * middle(side)) / kStride_s;
+  const double left = stride.motion.sideways_m / kStride_s;
+  const std::size_t footprint = flow_.begin_footprint(ahead * c - left * s, ahead * s + left * c);
+  for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
+    const Cell& cell = cells_[i];
+    CellHistory& history = histories_[cell.node];
+    if (cell.pressure <= 0.0) {
+      history.release();
+      continue;
+    }
+    history.keep(cell.share, cell.division);
+    history.touch(stride_);
+    if (cell.share >= kCoveredShare) flow_.cover(cell.node, cell.ix, cell.iy);
+    const double now = cell.depth - cell.pressure / unloading_pa_per_m_;
+    const auto units =
+        static_cast<Height>(std::lround(cell.share * (now - cell.prior) / kHeightUnit_m));
+    if (units > 0) flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
+  }
+}
+
+/// As SoilBed::dig_below(), of a belt in a stride.
+void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::size_t side) {
+  const BeltShear& shear = stride.shear.at(side);
+  if (soil_.drag_depth_m <= 0.0 || shear.length_m <= 0.0) return;
+  double cells = 0.0;
+  double along = 0.0;
+  double square = 0.0;
+  for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
+    const Cell& cell = cells_[i];
+    if (cell.pressure <= 0.0) continue;
+    cells += cell.share;
+    along += cell.share * cell.x;
+    square += cell.share * cell.x * cell.x;
+    flow_.shear(cell.node, cell.share * shear.patch_m.at(patch_of(cell.x)));
+  }
+  if (cells <= 0.0) return;
+  along /= cells;
+  const double c = std::cos(stride.pose.heading_rad);
+  const double s = std::sin(stride.pose.heading_rad);
+  const Eigen::Vector2d forward(c, s);
+  const Eigen::Vector2d left(-s, c);
+  DugPatch patch;
+  patch.forward = forward;
+  patch.centre =
+      Eigen::Vector2d(stride.pose.x_m, stride.pose.y_m) + along * forward + middle(side) * left;
+  patch.half_length =
+      0.5 * std::sqrt(12.0 * std::max(0.0, square / cells - along * along) + cell_area_);
+  patch.half_width = 0.5 * tracks_.width_m;
+  patch.band = tracks_.width_m;
+  const double layer = fit_.digging * soil_.drag_depth_m / kHeightUnit_m;
+  dig_remainder_ += layer * shear.length_m * tracks_.width_m / cell_area_;
+  const Eigen::Vector2d fall = -(plane.forward * forward + plane.left * left);
+  const Eigen::Vector2d downhill = shear.length_m / std::max(tan_repose_, fall.norm()) * fall;
+  const Eigen::Vector2d dragged = shear.forward_m * forward + shear.left_m * left;
+  patch.carried = layer * cells * (downhill - soil_.drag_share * dragged);
+  const auto units = static_cast<std::int64_t>(dig_remainder_);
+  dig_remainder_ -= static_cast<double>(units);
+  flow_.dig(patch, units);
+}
+
+void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
+  BeltSupport& support = stance.support;
+  support = {plane.forward, plane.left, {}, {}};
+  double sum = 0.0;
+  for (const std::size_t side : {0U, 1U}) {
+    double area = 0.0;
+    double depth = 0.0;
+    for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
+      const Cell& cell = cells_[i];
+      if (cell.pressure <= 0.0) continue;
+      const std::size_t patch = patch_of(cell.x);
+      const double touched = cell_area_ * cell.share;
+      support.load.at(side).at(patch) += touched * cell.pressure;
+      support.area.at(side).at(patch) += touched;
+      sum += touched * cell.pressure;
+      area += touched;
+      depth += touched * cell.depth;
+    }
+    stance.sinkage_m.at(side) = area > 0.0 ? depth / area : 0.0;
+  }
+  if (sum <= 0.0) {
+    support.load = level_support(tracks_).load;
+    return;
+  }
+  for (auto& belt : support.load) {
+    for (double& load : belt) load /= sum;
+  }
+}
+
+void BeltGround::place(std::size_t robot, const PlanarPose& pose) {
+  for (int i = 0; i < kPlacingStrides; ++i) {
+    press(robot, {pose, {}, {}, 0.0});
+    end_stride();
+  }
+}
+
+void BeltGround::press(std::size_t robot, const BeltStride& stride) {
+  Stance& stance = stances_[robot];
+  find_cells(stride, stance.plane);
+  if (cells_.empty()) return;
+  TrackPlane from = stance.plane;
+  if (stance.placed) {
+    from.height_m += from.forward * stride.motion.forward_m + from.left * stride.motion.sideways_m;
+  } else {
+    from.height_m = -std::numeric_limits<double>::max();
+    for (const Cell& cell : cells_) from.height_m = std::max(from.height_m, cell.level - cell.over);
+  }
+  find_bearing(stride, stance);
+  const TrackPlane plane = find_equilibrium(from, stride.acceleration_m_per_s2,
+                                            stance.placed ? kMaxIterations : kPlacingIterations);
+  react(plane);
+  for (const std::size_t side : {0U, 1U}) {
+    compact(stride, side);
+    dig(stride, plane, side);
+  }
+  stance.placed = true;
+  stance.plane = plane;
+  keep_support(plane, stance);
+}
+
+void BeltGround::end_stride() {
+  flow_.deposit();
+  flow_.slide(kSlides);
+  flow_.uncover();
+  ++stride_;
+}
+
+}  // namespace screed

@@ -1,0 +1,106 @@
+// How a robot on two belts moves over soil, in closed form: a planar body, and soil that shears
+// below its belts.
+//
+// Each belt is three patches, one behind the other. m is the share of its strength that the soil
+// below a patch has mobilised, forward and to the left; it is carried backward with the belt and
+// wears off with the way slid, so that it is Janosi and Hanamoto's 1 - exp(-j / K) while a belt
+// slips in one direction, and right at reversals as well (shear_field.h):
+//   dm/dt = (slip - |slip| m) / K - |belt| dm/dx
+// along the belt by exponential fitting, which is exact where it slips evenly (D. L. Scharfetter,
+// H. K. Gummel, IEEE Transactions on Electron Devices 16, 1969), and with
+//   slip  = velocity of the belt's surface, seen from the ground, backward and to the right
+//   force = (c A + W tan phi) m,  across the belt times BeltFit::sideways
+// Gravity pulls down the slope, rolling resists. A frame is one implicit step, stable however stiff
+// the soil is. A belt that stands shears until it holds, and then stays: what is not driven and not
+// on too steep a slope stands for ever.
+// Not modelled: soil pushed ahead and aside by its density, a chassis that touches the ground.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "host_sim/physics/soil/soil_parameters.h"
+#include "host_sim/standin/belt_fit.h"
+#include "host_sim/standin/planar_pose.h"
+#include "host_sim/standin/track_geometry.h"
+
+namespace screed {
+
+inline constexpr std::size_t kBeltPatches = 3;  // of a belt, from the front to the rear
+
+/// How a robot stands: slopes of the plane of its belts (rise over run, nose and left side up), and
+/// what each patch carries and touches, left belt first.
+struct BeltSupport {
+  double forward = 0.0;
+  double left = 0.0;
+  std::array<std::array<double, kBeltPatches>, 2> load{};  ///< shares of the weight, 1 in all
+  std::array<std::array<double, kBeltPatches>, 2> area{};  ///< m^2 that touch
+};
+/// On level, even ground.
+BeltSupport level_support(const TrackGeometry& tracks);
+
+/// What a belt has done to the soil below it: its slip times what was mobilised, mean over its
+/// patches, as the way that the robot gained by it, m; and the way of both surfaces over the other.
+struct BeltShear {
+  double forward_m = 0.0;
+  double left_m = 0.0;
+  double length_m = 0.0;  ///< of the same, whatever its direction
+  /// The same of each patch: the mean is length_m.
+  std::array<double, kBeltPatches> patch_m{};
+  double slid_m = 0.0;   ///< along the belt, not weighted
+  double moved_m = 0.0;  ///< of belt or ground, whichever moved more
+
+  BeltShear& operator+=(const BeltShear& more);
+};
+
+class BeltMotion {
+ public:
+  BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, const BeltFit& fit = {});
+
+  /// One frame with these speeds of the belts' surfaces, m/s. `push`: force forward and to the left
+  /// and torque of something else, N, N, N m.
+  FrameMotion step(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
+                   const Eigen::Vector3d& push = Eigen::Vector3d::Zero());
+
+  /// Of the last frame, left and right.
+  const std::array<BeltShear, 2>& shear() const { return shear_; }
+  /// Forward on each belt in the last frame, N: what its shaft feels.
+  const std::array<double, 2>& traction_n() const { return traction_n_; }
+
+  /// What the last frame's motion was, when something else says so.
+  void set_motion(const FrameMotion& motion, const BeltSupport& support);
+
+ private:
+  static constexpr std::size_t kPatches = kBeltPatches;
+  struct Patch {
+    double x = 0.0;        // of its middle, from the robot's, m
+    double forward = 0.0;  // mobilised
+    double left = 0.0;
+    double slip = 0.0;      // in the last frame, m/s
+    double strength = 0.0;  // in this frame, N
+    double per_slip = 0.0;  // mobilised in this frame by its slip, 1/m
+  };
+  struct System;
+
+  void carry(std::array<Patch, kPatches>& belt, double speed) const;
+  void shear_patch(Patch& patch, double y, double speed, System& system) const;
+  BeltShear finish(std::array<Patch, kPatches>& belt, double y, double speed) const;
+
+  BeltFit fit_;
+  double mass_kg_;
+  double inertia_kg_m2_;
+  double half_tread_m_;
+  double patch_m_;  // its length
+  double cohesion_pa_;
+  double tan_friction_;
+  double per_modulus_;
+  double forward_ = 0.0;  // along the slope, m/s
+  double left_ = 0.0;
+  double turn_ = 0.0;  // rad/s
+  std::array<std::array<Patch, kPatches>, 2> patches_{};
+  std::array<BeltShear, 2> shear_{};
+  std::array<double, 2> traction_n_{};
+};
+
+}  // namespace screed

@@ -1,0 +1,204 @@
+// Clock, walls and contact between robots.
+//
+// Walls push the corners of a robot's outline out, another robot its outline, by a spring and a
+// damper that never pull and without friction.
+#include "host_sim/standin/standin_plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "hal/sample.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/physics/vehicle/ode_world.h"
+#include "host_sim/physics/vehicle/vehicle.h"
+#include "host_sim/physics/world/wall_clearance.h"
+
+namespace screed {
+namespace {
+
+constexpr double kFrame_s = 1.0 / kTickRate_hz;
+// As stiff and as damped as a frame of 10 ms allows for a robot of a kilogram.
+constexpr double kContact_n_per_m = 2000.0;
+constexpr double kContact_n_s_per_m = 40.0;
+
+double pushing(double depth_m, double parting_m_per_s) {
+  return std::max(0.0, kContact_n_per_m * depth_m - kContact_n_s_per_m * parting_m_per_s);
+}
+
+BeltGround ground_of(const HeightField& terrain, const TrackGeometry& tracks,
+                     const PlantOptions& options, const BeltFit& fit) {
+  if (!options.soil.has_value()) {
+    throw InputError(
+        "the surrogate world knows soil alone: [map] model = scm, or another --hal than surrogate");
+  }
+  if (!options.vehicle.tracks || options.vehicle.track_model != TrackModel::kBelt) {
+    throw InputError(
+        "the surrogate world knows tracks alone: [vehicle] tracks = true and track_model = belt, "
+        "or another --hal than surrogate");
+  }
+  return {terrain, *options.soil, tracks, 1 + options.further_starts.size(), fit};
+}
+
+StandInKind kind_of(const Assembly& model, const PlantOptions& options) {
+  StandInKind kind;
+  kind.tracks = track_geometry(model);
+  kind.motor = options.vehicle.motor;
+  kind.battery = options.battery;
+  // Bodies that are never stepped: their measures are wanted.
+  OdeWorld world;
+  kind.outline = Vehicle(world, model, options.vehicle).outline();
+  const int imu = model.body_index("Imu");
+  if (imu >= 0) kind.imu = model.bodies[static_cast<std::size_t>(imu)].pose.translation();
+  return kind;
+}
+
+/// How two robots' outlines lie in each other.
+struct Overlap {
+  Eigen::Vector2d normal;  ///< unit length: the robot is out when it has gone `depth_m` that way
+  double depth_m;
+  Eigen::Vector2d place;  ///< where they touch, beside the robot
+};
+
+/// From one robot to the nearest copy of another, on a bed that wraps around.
+Eigen::Vector2d nearest_way(const StandInRobot& robot, const StandInRobot& other) {
+  Eigen::Vector2d way = other.middle() - robot.middle();
+  const HeightField& ground = robot.terrain();
+  if (ground.wrap()) {
+    const Eigen::Array2d size(ground.x_max() - ground.x_min(), ground.y_max() - ground.y_min());
+    way.array() -= size * (way.array() / size).round();
+  }
+  return way;
+}
+
+/// By the separating axis (S. Gottschalk, M. Lin, D. Manocha, SIGGRAPH 1996); nothing when there is
+/// one.
+std::optional<Overlap> overlap(const StandInRobot& robot, const StandInRobot& other) {
+  const Eigen::Vector2d copy = robot.middle() + nearest_way(robot, other) - other.middle();
+  const auto own = robot.corners();
+  auto others = other.corners();
+  for (Eigen::Vector2d& corner : others) corner += copy;
+  Overlap least{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity(), {}};
+  for (const Eigen::Rotation2Dd& turned : {robot.heading(), other.heading()}) {
+    for (const int axis : {0, 1}) {
+      const Eigen::Vector2d along = turned * Eigen::Vector2d::Unit(axis);
+      const auto reach = [&along](const std::array<Eigen::Vector2d, 4>& corners) {
+        const auto [low, high] = std::minmax({corners[0].dot(along), corners[1].dot(along),
+                                              corners[2].dot(along), corners[3].dot(along)});
+        return std::array{low, high};
+      };
+      const auto [low, high] = reach(own);
+      const auto [other_low, other_high] = reach(others);
+      const double up = other_high - low;  // that way it would be out
+      const double down = high - other_low;
+      if (up <= 0.0 || down <= 0.0) return std::nullopt;
+      const double depth = std::min(up, down);
+      if (depth < least.depth_m) least = {up < down ? along : Eigen::Vector2d(-along), depth, {}};
+    }
+  }
+  // Where corners of either are inside the other; of two that cross without, between them.
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int inside = 0;
+  const auto add = [&](const std::array<Eigen::Vector2d, 4>& corners, const StandInRobot& in,
+                       const Eigen::Vector2d& middle) {
+    for (const Eigen::Vector2d& corner : corners) {
+      if (!in.outline().contains(Eigen::Vector2d(in.heading().inverse() * (corner - middle)))) {
+        continue;
+      }
+      sum += corner;
+      ++inside;
+    }
+  };
+  add(own, other, other.middle() + copy);
+  add(others, robot, robot.middle());
+  least.place = inside > 0 ? Eigen::Vector2d(sum / inside)
+                           : Eigen::Vector2d(0.5 * (robot.middle() + other.middle() + copy));
+  return least;
+}
+
+}  // namespace
+
+StandInPlant::StandInPlant(const HeightField& terrain, const Assembly& model,
+                           const PlantOptions& options, const BeltFit& fit)
+    : ground_(ground_of(terrain, track_geometry(model), options, fit)) {
+  const StandInKind kind = kind_of(model, options);
+  std::vector<StartPose> starts = {options.start};
+  starts.insert(starts.end(), options.further_starts.begin(), options.further_starts.end());
+  for (const StartPose& start : starts) {
+    robots_.push_back(std::make_unique<StandInRobot>(*this, ground_, robots_.size(), kind,
+                                                     *options.soil, fit, start));
+    check_apart(start);
+  }
+}
+
+void StandInPlant::check_apart(const StartPose& start) const {
+  const StandInRobot& last = *robots_.back();
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : last.corners()) box.extend(corner);
+  check_between_walls(bounds_of(ground_.surface()), box, {start.x_m, start.y_m});
+  for (std::size_t i = 0; i + 1 < robots_.size(); ++i) {
+    if (!overlap(last, *robots_[i]).has_value()) continue;
+    throw InputError("robots " + std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
+                     " stand in one another at the start");
+  }
+}
+
+void StandInPlant::push_from_walls(StandInRobot& robot) const {
+  const BedBounds bed = bounds_of(ground_.surface());
+  for (const Eigen::Vector2d& corner : robot.corners()) {
+    const Eigen::Vector2d back = out_of_walls(bed, Eigen::AlignedBox2d(corner));
+    for (const int axis : {0, 1}) {
+      if (back[axis] == 0.0) continue;
+      const Eigen::Vector2d normal = std::copysign(1.0, back[axis]) * Eigen::Vector2d::Unit(axis);
+      robot.push(corner,
+                 pushing(std::abs(back[axis]), robot.velocity_at(corner).dot(normal)) * normal);
+    }
+  }
+}
+
+void StandInPlant::push_apart(StandInRobot& robot, StandInRobot& other) {
+  const std::optional<Overlap> in = overlap(robot, other);
+  if (!in.has_value()) return;
+  const Eigen::Vector2d beside_other =
+      in->place + (other.middle() - robot.middle()) - nearest_way(robot, other);
+  const double parting =
+      (robot.velocity_at(in->place) - other.velocity_at(beside_other)).dot(in->normal);
+  const Eigen::Vector2d force = pushing(in->depth_m, parting) * in->normal;
+  robot.push(in->place, force);
+  other.push(beside_other, -force);
+}
+
+void StandInPlant::step(const DutyRatio& duty_ratio) {
+  step_all({&duty_ratio, 1});
+}
+
+void StandInPlant::step_all(std::span<const DutyRatio> duty_ratios) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    robots_[i]->step_motors(duty_ratios[i], kFrame_s / kStepsPerTick);
+  }
+  if (++steps_ % kStepsPerTick == 0) end_frame();
+}
+
+void StandInPlant::end_frame() {
+  for (const auto& robot : robots_) {
+    push_from_walls(*robot);
+  }
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) push_apart(*robots_[i], *robots_[k]);
+  }
+  for (const auto& robot : robots_) robot->move();
+  if (++stride_frames_ == kBeltStrideFrames) {
+    stride_frames_ = 0;
+    for (const auto& robot : robots_) robot->press();
+    ground_.end_stride();
+  }
+  for (const auto& robot : robots_) robot->end_frame();
+}
+
+double StandInPlant::time_s() const {
+  return static_cast<double>(steps_) / (kStepsPerTick * static_cast<double>(kTickRate_hz));
+}
+
+}  // namespace screed

@@ -1,0 +1,69 @@
+// The world of robots on belts in closed form, where the physics is too slow: the same motors and
+// batteries, a ground of the same soil, robots that stand on it without dynamics. The firmware, its
+// sensors and its radio notice nothing. docs/standin.md says how far it can be trusted.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/world/environment.h"
+#include "host_sim/physics/world/plant.h"
+#include "host_sim/standin/belt_fit.h"
+#include "host_sim/standin/belt_ground.h"
+#include "host_sim/standin/standin_robot.h"
+
+namespace screed {
+
+/// Coarsest cells of the ground on which belts 30 mm wide find their way, m: what a run in the
+/// stand-in takes where an experiment has finer ones.
+inline constexpr double kStandInCell_m = 0.02;
+
+class StandInPlant final : public Environment {
+ public:
+  /// Of the options the step, frictions, start heights and attitudes do not count. Throws
+  /// InputError when the ground is not soil, the robot has no belts, stands in a wall or in another
+  /// robot.
+  StandInPlant(const HeightField& terrain, const Assembly& model, const PlantOptions& options,
+               const BeltFit& fit = {});
+
+  void step(const DutyRatio& duty_ratio) override;
+  void step_all(std::span<const DutyRatio> duty_ratios) override;
+  std::size_t robots() const override { return robots_.size(); }
+  StandInRobot& robot(std::size_t number) override { return *robots_[number]; }
+  const StandInRobot& robot(std::size_t number) const override { return *robots_[number]; }
+
+  int steps_per_tick() const override { return kStepsPerTick; }
+  uint64_t steps() const override { return steps_; }
+  double time_s() const override;
+  const HeightField& terrain() const override { return ground_.surface(); }
+  bool is_deformable() const override { return true; }
+  VolumeBalance volume_balance() const override { return ground_.balance(); }
+
+  // Of the first robot.
+  ImuTruth motion() const override { return robots_[0]->motion(); }
+  void lay_on_side() override { robots_[0]->lay_on_side(); }
+  const VehicleState& vehicle() const override { return robots_[0]->vehicle(); }
+  const std::array<int64_t, 2>& wrap_counts() const override { return robots_[0]->wrap_counts(); }
+  Eigen::Vector3d unwrapped_position() const override { return robots_[0]->unwrapped_position(); }
+  const Battery& battery() const override { return robots_[0]->battery(); }
+
+ private:
+  static constexpr int kStepsPerTick = 5;  // of motors and battery
+
+  void check_apart(const StartPose& start) const;
+  void push_from_walls(StandInRobot& robot) const;
+  static void push_apart(StandInRobot& robot, StandInRobot& other);
+  void end_frame();
+
+  BeltGround ground_;
+  std::vector<std::unique_ptr<StandInRobot>> robots_;
+  uint64_t steps_ = 0;
+  int stride_frames_ = 0;
+};
+
+}  // namespace screed
