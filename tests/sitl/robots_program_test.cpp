@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "paths.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -190,8 +191,8 @@ TEST_F(SeveralRobots, ASectionOfARobotIsForThatOneAlone) {
 
 TEST_F(SeveralRobots, WhatCannotBeRunIsRefusedByOneLine) {
   write_bed();
-  expect_refused("--set robots.count=2 --hal surrogate --model '" + std::string(kDataFolder) +
-                     "/../../nn/models/v3.json'",
+  expect_refused("--set robots.count=2 --set map.model=scm --hal surrogate --model '" +
+                     std::string(kDataFolder) + "/../../nn/models/v3.json'",
                  "networks move 1");
   expect_refused("--set robots.count=2 --set robots.spacing=0.1", "stand in one another");
   expect_refused("--set robots.count=65", "1..64");

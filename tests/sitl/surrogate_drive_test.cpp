@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/session_reader.h"
@@ -191,25 +193,33 @@ TEST(SurrogateDrive, OnlyTracksOnSoil) {
   EXPECT_THROW(plant_of(HeightField::flat(2.0, 0.1), wheels), InputError);
 }
 
-using Surrogate = testing::Program;
+class Surrogate : public testing::Program {
+ protected:
+  /// A network in place of the closed form.
+  const std::string network_ =
+      " --hal surrogate --model '" + nn::default_model_file().string() + "' ";
+};
 
 TEST_F(Surrogate, RunsRecordsAndReplaysAndTheSameSeedGivesTheSameHash) {
   write("e.ini",
         "[map]\nmodel = scm\nsize = 4\n[experiment]\nname = e\nalgorithm = drive\nduration = 12\n");
-  const testing::Result a = run("sim e.ini --hal surrogate --quiet --out a");
-  const testing::Result b = run("sim e.ini --hal surrogate --quiet --out b");
-  ASSERT_EQ(a.exit_code, 0) << a.err;
-  EXPECT_EQ(a.out.substr(a.out.find(' ')), b.out.substr(b.out.find(' ')));
-  const testing::Result replay = run("replay a");
-  EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
+  for (const std::string& world : {std::string(" --hal surrogate "), network_}) {
+    const testing::Result a = run("sim e.ini" + world + "--quiet --out a");
+    const testing::Result b = run("sim e.ini" + world + "--quiet --out b");
+    ASSERT_EQ(a.exit_code, 0) << a.err;
+    EXPECT_EQ(a.out.substr(a.out.find(' ')), b.out.substr(b.out.find(' ')));
+    const testing::Result replay = run("replay a");
+    EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
+    for (const char* folder : {"a", "b"}) std::filesystem::remove_all(root_ / folder);
+  }
 }
 
 TEST_F(Surrogate, RutsAppearAreRecordedAndCanBeLeftOut) {
   write("e.ini",
         "[map]\nmodel = scm\nsize = 4\n[soil]\npreset = soft\ncell = 0.02\n[experiment]\n"
         "name = e\nalgorithm = drive\nduration = 14\n");
-  ASSERT_EQ(run("sim e.ini --hal surrogate --heights --quiet --out ruts").exit_code, 0);
-  ASSERT_EQ(run("sim e.ini --hal surrogate --heights --no-ruts --quiet --out none").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini" + network_ + "--heights --quiet --out ruts").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini" + network_ + "--heights --no-ruts --quiet --out none").exit_code, 0);
   const SessionReader ruts(root_ / "ruts" / "session.h5");
   const SessionReader none(root_ / "none" / "session.h5");
   EXPECT_GT(ruts.height_changes(), 1000U);
@@ -229,7 +239,9 @@ TEST_F(Surrogate, RefusesRigidGroundAndAForeignModel) {
   expect_refused(run("sim e.ini --hal surrogate"), 2, {"soil", "scm"});
   expect_refused(run("sim e.ini --model x.json"), 2, {"--model", "--hal surrogate"});
   expect_refused(run("sim e.ini --no-ruts"), 2, {"--no-ruts", "--hal surrogate"});
-  expect_refused(run("sim e.ini --hal surrogate --soil-model e.ini"), 2, {"e.ini"});
+  expect_refused(run("sim e.ini --hal surrogate --no-ruts"), 2, {"--no-ruts", "--model"});
+  expect_refused(run("sim e.ini" + network_), 2, {"soil", "scm"});
+  expect_refused(run("sim e.ini" + network_ + "--soil-model e.ini"), 2, {"e.ini"});
 }
 
 }  // namespace

@@ -290,7 +290,8 @@ void register_sim_command(CLI::App& root, Program& program) {
       ->add_option("--hal", arguments->world.hal,
                    "How the firmware runs: native: compiled for this machine; mcu: the flash image "
                    "under a cycle-accurate simulation of the microcontroller, of several robots in "
-                   "the first; surrogate: native, with a network in place of the physics")
+                   "the first; surrogate: native, with a closed form or a network (--model) in "
+                   "place of the physics")
       ->capture_default_str()
       ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
   command->add_option("--board", arguments->world.board,
@@ -301,16 +302,15 @@ void register_sim_command(CLI::App& root, Program& program) {
       ->type_name("FILE");
   command
       ->add_option("--model", arguments->world.model,
-                   "Motion network for --hal surrogate (default: the installed model)")
+                   "Motion network for --hal surrogate (default: none, the closed form)")
       ->type_name("FILE");
   command
       ->add_option(
           "--soil-model", arguments->world.soil_model,
-          "Network of the soil below the tracks for --hal surrogate (default: the installed model)")
+          "Network of the soil below the tracks for --model (default: the installed model)")
       ->type_name("FILE");
   command
-      ->add_flag("--no-ruts", arguments->world.no_ruts,
-                 "Keep the terrain undeformed with --hal surrogate")
+      ->add_flag("--no-ruts", arguments->world.no_ruts, "Keep the terrain undeformed with --model")
       ->excludes("--soil-model");
   command
       ->add_option("--can", arguments->can,
