@@ -40,7 +40,7 @@ void surrogate_frame(benchmark::State& state) {
   }
   std::size_t moving = 0;
   for (std::size_t i = 0; i < robots; ++i) {
-    const nn::FrameMotion motion = surrogate.motion(i);
+    const FrameMotion motion = surrogate.motion(i);
     if (std::abs(motion.forward_m) + std::abs(motion.turn_rad) > kMoves) ++moving;
   }
   require(state, moving == robots, "not every robot moves");
@@ -59,7 +59,7 @@ void surrogate_ruts(benchmark::State& state) {
   const HeightField ground = HeightField::from_function(
       2048, 2048, 0.005, true,
       [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });
-  nn::TrackSoilModel pressed(ground, soil_preset("ding_2011"), nn::TrackGeometry{});
+  nn::TrackSoilModel pressed(ground, soil_preset("ding_2011"), TrackGeometry{});
   nn::Stride stride;
   stride.forward_m = kStride_m;
   stride.turn_rad = kTurn_rad;
