@@ -19,7 +19,7 @@ struct KnownRun {
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "6bc3c3a57a401eac108d267b19f14690"},
     {"soft_bed", "--duration 6", "53f7d985448ea3357b62d43fdc35f025"},
-    {"soft_bed", "--hal surrogate --duration 10", "5014d0392992b90346fdaf3cdca1fd97"},
+    {"soft_bed", "--hal surrogate --duration 10", "a2ef2e8b9f8eb0152024ff95c3f20d35"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
