@@ -31,16 +31,16 @@ void standin_motion(benchmark::State& state) {
   support.forward = 0.1;
   PlanarPose pose;
   for (int i = 0; i < 100; ++i) belts.step(0.12, 0.16, support);  // until it drives
-  double way_m = 0.0;
+  double distance_m = 0.0;
   std::int64_t frame = 0;
   while (state.KeepRunning()) {
     const auto [left, right] = speeds_at(frame++);
     const FrameMotion motion = belts.step(left, right, support);
     pose.move(motion);
-    way_m += std::abs(motion.forward_m);
+    distance_m += std::abs(motion.forward_m);
   }
   benchmark::DoNotOptimize(pose);
-  require(state, way_m > 5e-4 * static_cast<double>(frame), "the robot does not drive");
+  require(state, distance_m > 5e-4 * static_cast<double>(frame), "the robot does not drive");
   report(state, frame);
 }
 BENCHMARK(standin_motion);
