@@ -48,6 +48,7 @@ double mean_at(const Change& change, std::size_t first, const std::vector<std::s
 SeedMean mean_of_cell(const Change& change, std::size_t first,
                       const std::vector<std::size_t>& seeds) {
   std::vector<double> values;
+  values.reserve(seeds.size());
   for (const std::size_t seed : seeds) values.push_back(change[first + seed]);
   return {values.size(), mean_of(values), bootstrap_mean_interval(values)};
 }
@@ -71,6 +72,7 @@ WorldRanking ranking_of(const CampaignPlan& plan, const Change& change,
   }
   const auto tau = [&](const std::vector<std::size_t>& chosen) {
     std::vector<std::size_t> beds;
+    beds.reserve(chosen.size());
     for (const std::size_t one : chosen) beds.push_back(seeds[one]);
     std::vector<double> reference;
     std::vector<double> other;
