@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "paths.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -55,6 +56,35 @@ class LevelBench : public Program {
     return sum / count;
   }
 };
+
+// One table of both worlds, and how far they order the entries alike.
+TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
+  const std::filesystem::path shipped = std::filesystem::path(kDataFolder) / "benchmark";
+  std::filesystem::copy(shipped / "bed.ini", root_ / "bed.ini");
+  write("leveling.ini",
+        read(shipped / "leveling.ini") +
+            "\n[suite worlds]\nworld = physics, stand_in\nsize = small\nbed = rough\n"
+            "soil = gravel\nrobots = one\nposition = fixes\n"
+            "entry = nobody, strokes\nseeds = 2\nduration = 400\n");
+  const Result result = run(
+      "level bench --suite worlds --benchmark leveling.ini --training --workers 2 --quiet --json "
+      "--against nobody --out b");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json tables = Json::parse(result.out);
+  ASSERT_EQ(tables.size(), 3U);
+  const Json& ranking = tables[2];
+  EXPECT_EQ(ranking["ranking"], "stand_in");
+  EXPECT_EQ(ranking["reference"], "physics");
+  EXPECT_EQ(ranking["beds"], 2);
+  EXPECT_EQ(ranking["tau"]["mean"], 1.0);
+  const Json& strokes = ranking["entries"][1];
+  const auto physics = strokes["physics"]["mean"].get<double>();
+  const auto stand_in = strokes["stand_in"]["mean"].get<double>();
+  EXPECT_LT(physics, -0.03);
+  EXPECT_GT(stand_in / physics, 0.5);
+  EXPECT_LT(stand_in / physics, 2.0);
+  EXPECT_NEAR(ranking["entries"][0]["stand_in"]["mean"].get<double>(), 0.0, 1e-3);
+}
 
 // Who is not armed moves nothing; who spins on peaks moves more than who walks.
 TEST_F(LevelBench, QuickRunsTheBaselines) {
