@@ -1,6 +1,7 @@
 // The firmware drives in the closed-form world that stands in for the physics, and notices nothing.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>

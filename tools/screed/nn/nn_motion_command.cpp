@@ -377,9 +377,7 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
       nn.add_subcommand("rollout", "Compare motion predicted by networks with recorded physics");
   rollout_command->add_option("SESSION", rollout->sessions, "Run folders of screed record")
       ->required();
-  rollout_command
-      ->add_option("--model", rollout->models,
-                   "Model files (default: the model of screed sim --hal surrogate)")
+  rollout_command->add_option("--model", rollout->models, "Model files (default: V3)")
       ->type_name("FILE");
   rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to")
       ->type_name("FOLDER");
@@ -387,9 +385,10 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
              "Number of rollouts per session, spread evenly; 0: each begins where the previous one "
              "ends",
              {0, 100000});
-  rollout_command->add_flag("--ruts", rollout->ruts,
-                            "Deform the terrain below the surrogates' tracks, as screed sim --hal "
-                            "surrogate does; otherwise it stays as at the start");
+  rollout_command->add_flag(
+      "--ruts", rollout->ruts,
+      "Deform the terrain below the surrogates' tracks, as screed sim --model "
+      "does; otherwise it stays as at the start");
   rollout_command
       ->add_option("--drive", rollout->drive,
                    "Input of the rollout: firmware: the firmware drives and measures the predicted "
