@@ -14,11 +14,8 @@ namespace screed {
 namespace {
 
 constexpr double kStride_s = static_cast<double>(kBeltStrideFrames) / kTickRate_hz;
-constexpr double kMinShare = 0.02;       // of a cell that counts as below a belt
-constexpr double kCoveredShare = 0.5;    // from which nothing slides onto a cell
-constexpr double kPressure_pa = 2000.0;  // about the robot's weight over its belts
-constexpr double kStanding_m = 0.001;    // of a stride: less is no direction
-constexpr double kMinBearing = 0.05;
+constexpr double kMinShare = 0.02;        // of a cell that counts as below a belt
+constexpr double kPressure_pa = 2000.0;   // about the robot's weight over its belts
 constexpr int kMaxIterations = 60;        // of Newton's method; a few are typical
 constexpr int kPlacingIterations = 2000;  // where it begins far from the ground
 constexpr double kMaxImbalance = 0.1;     // of the weight, else the last plane is kept
@@ -127,8 +124,8 @@ void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
   sides_[2] = cells_.size();
 }
 
-/// Bearing capacity: less below a belt's trailing end, another exponent where the belt slips. Soil
-/// feels slip while it is sheared, so a belt averages it over its length.
+/// Another exponent of Bekker's law where the belt slips. Soil feels slip while it is sheared, so a
+/// belt averages it over its length.
 void BeltGround::find_bearing(const BeltStride& stride, Stance& stance) {
   const double length = tracks_.half_length_m + tracks_.radius_m;
   for (const std::size_t side : {0U, 1U}) {
@@ -140,13 +137,9 @@ void BeltGround::find_bearing(const BeltStride& stride, Stance& stance) {
     const double more = soil_.slip_sinkage * std::clamp(stance.slip.at(side), 0.0, 1.0);
     const PowerTable* const power = &powers_[std::min(
         powers_.size() - 1, static_cast<std::size_t>(std::lround(more / kExponentStep)))];
-    const double advance = stride.motion.forward_m - stride.motion.turn_rad * middle(side);
-    const double direction = std::clamp(advance / kStanding_m, -1.0, 1.0);
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       Cell& cell = cells_[i];
-      const double behind = -direction * cell.x / tracks_.half_length_m;
       cell.power = power;
-      cell.bearing = bekker_ * std::clamp(1.0 - fit_.rear_reduction * behind, kMinBearing, 1.0);
     }
   }
 }
@@ -158,7 +151,7 @@ BeltGround::Reaction BeltGround::react(const TrackPlane& plane) {
         cell.level - cell.over - (plane.height_m + plane.forward * cell.x + plane.left * cell.y);
     cell.pressure = 0.0;
     if (cell.depth <= 0.0 || cell.depth <= cell.prior) continue;
-    const double virgin = cell.bearing * cell.power->power(cell.depth);
+    const double virgin = bekker_ * cell.power->power(cell.depth);
     const double elastic = unloading_pa_per_m_ * (cell.depth - cell.prior);
     const bool yields = virgin < elastic;
     cell.pressure = yields ? virgin : elastic;
@@ -232,7 +225,7 @@ void BeltGround::compact(const BeltStride& stride, std::size_t side) {
   const double ahead =
       (stride.motion.forward_m - stride.motion.turn_rad * middle(side)) / kStride_s;
   const double left = stride.motion.sideways_m / kStride_s;
-  const std::size_t footprint = flow_.begin_footprint(ahead * c - left * s, ahead * s + left * c);
+  flow_.begin_footprint({{ahead * c - left * s, ahead * s + left * c}, {c, s}, tracks_.width_m});
   for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
     const Cell& cell = cells_[i];
     CellHistory& history = histories_[cell.node];
@@ -242,11 +235,11 @@ void BeltGround::compact(const BeltStride& stride, std::size_t side) {
     }
     history.keep(cell.share, cell.division);
     history.touch(stride_);
-    if (cell.share >= kCoveredShare) flow_.cover(cell.node, cell.ix, cell.iy);
+    flow_.cover(cell.node, cell.ix, cell.iy);
     const double now = cell.depth - cell.pressure / unloading_pa_per_m_;
     const auto units =
         static_cast<Height>(std::lround(cell.share * (now - cell.prior) / kHeightUnit_m));
-    if (units > 0) flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
+    if (units > 0) flow_.sink(cell.node, cell.ix, cell.iy, units);
   }
 }
 
@@ -292,11 +285,14 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
 
 void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
   BeltSupport& support = stance.support;
-  support = {plane.forward, plane.left, {}, {}};
+  support = {plane.forward, plane.left, {}, {}, {}, {}};
+  const double half_cell = 0.5 * flow_.surface().spacing_m();
   double sum = 0.0;
   for (const std::size_t side : {0U, 1U}) {
     double area = 0.0;
     double depth = 0.0;
+    double& front = support.front.at(side) = -std::numeric_limits<double>::infinity();
+    double& rear = support.rear.at(side) = std::numeric_limits<double>::infinity();
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       const Cell& cell = cells_[i];
       if (cell.pressure <= 0.0) continue;
@@ -305,6 +301,8 @@ void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
       support.load.at(side).at(patch) += touched * cell.pressure;
       support.area.at(side).at(patch) += touched;
       sum += touched * cell.pressure;
+      front = std::max(front, cell.x + half_cell);
+      rear = std::min(rear, cell.x - half_cell);
       area += touched;
       depth += touched * cell.depth;
     }

@@ -99,7 +99,6 @@ class BeltGround {
     double level;  // from which sinkage counts, m
     double prior;  // sinkage of the part below the belt, m
     SinkageDivision division;
-    double bearing;  // Bekker's modulus, Pa / m^n
     const PowerTable* power;
     double depth;     // of the belt below the level, m
     double pressure;  // Pa

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / kTickRate_hz;
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which rolling resists in full
+constexpr double kLeastContact_m = 0.002;       // of a patch: what touches less is as much
 
 // std::hypot guards against overflows that there are none of, and takes ten times as long.
 double length_of(double x, double y) {
@@ -22,6 +23,12 @@ double length_of(double x, double y) {
 
 double along_slope(double slope) {
   return std::sqrt(1.0 + slope * slope);
+}
+
+/// Pressed to the ground by so much, N.
+double weight_on(const BeltSupport& support, double mass_kg) {
+  return mass_kg * kGravity_m_per_s2 /
+         std::sqrt(1.0 + support.forward * support.forward + support.left * support.left);
 }
 
 /// What is carried along at this rate, 1/s, from one patch to the next, while it wears off at that
@@ -40,6 +47,8 @@ BeltSupport level_support(const TrackGeometry& tracks) {
   for (auto& belt : support.area) {
     belt.fill(2.0 * tracks.half_length_m * tracks.width_m / kBeltPatches);
   }
+  support.front.fill(tracks.half_length_m);
+  support.rear.fill(-tracks.half_length_m);
   return support;
 }
 
@@ -65,7 +74,7 @@ BeltMotion::BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, 
       inertia_kg_m2_(tracks.yaw_inertia_kg_m2),
       half_tread_m_(tracks.half_tread_m),
       patch_m_(2.0 * tracks.half_length_m / kPatches),
-      cohesion_pa_(fit.cohesion * soil.cohesion_pa),
+      cohesion_pa_(soil.cohesion_pa),
       tan_friction_(std::tan(soil.friction_deg * std::numbers::pi / 180.0)),
       per_modulus_(1.0 / soil.shear_modulus_m) {
   for (auto& belt : patches_) {
@@ -85,10 +94,16 @@ void BeltMotion::set_motion(const FrameMotion& motion, const BeltSupport& suppor
 void BeltMotion::carry(std::array<Patch, kPatches>& belt, double speed) const {
   double forward = 0.0;
   double left = 0.0;
+  double before_m = 0.0;  // what touches of the patch before
   for (std::size_t k = 0; k < kPatches; ++k) {
     Patch& patch = belt[speed >= 0.0 ? k : kPatches - 1 - k];
-    // The first patch's middle is half as far from where the belt begins.
-    const double way = k == 0 ? 0.5 * patch_m_ : patch_m_;
+    if (patch.touching_m <= 0.0) {
+      patch.forward = patch.left = 0.0;
+      continue;  // before contact begins, or after its end
+    }
+    // From the middle of what touches of the patch before, or from where contact begins.
+    const double way = std::max(kLeastContact_m, 0.5 * (before_m + patch.touching_m));
+    before_m = patch.touching_m;
     const double share =
         std::min(1.0, kFrame_s * fitted_rate(std::abs(speed) / way, patch.slip * per_modulus_));
     const double forward_before = patch.forward;
@@ -142,23 +157,18 @@ BeltShear BeltMotion::finish(std::array<Patch, kPatches>& belt, double y, double
   return shear;
 }
 
-FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
-                             const Eigen::Vector3d& push) {
-  const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
-  const std::array<double, 2> middles = {half_tread_m_, -half_tread_m_};
-  const double weight =
-      mass_kg_ * kGravity_m_per_s2 /
-      std::sqrt(1.0 + support.forward * support.forward + support.left * support.left);
-  System system;
-  system.matrix = Eigen::Vector3d(mass_kg_, mass_kg_, inertia_kg_m2_).asDiagonal();
-  // The body turns, its axes with it.
-  system.sum << mass_kg_ * (forward_ + kFrame_s * turn_ * left_),
-      mass_kg_ * (left_ - kFrame_s * turn_ * forward_), inertia_kg_m2_ * turn_;
-  system.sum -= kFrame_s * weight * Eigen::Vector3d(support.forward, support.left, 0.0);
-  system.sum += kFrame_s * push;
+/// What the soil below both belts, and rolling, does to the robot.
+void BeltMotion::shear_belts(const std::array<double, 2>& speeds, const BeltSupport& support,
+                             System& system) {
+  const double weight = weight_on(support, mass_kg_);
   for (std::size_t side = 0; side < 2; ++side) {
     auto& belt = patches_[side];
-    const double y = middles[side];
+    const double y = middle(side);
+    for (std::size_t i = 0; i < kPatches; ++i) {
+      const double front = std::min(support.front[side], belt[i].x + 0.5 * patch_m_);
+      const double rear = std::max(support.rear[side], belt[i].x - 0.5 * patch_m_);
+      belt[i].touching_m = std::max(0.0, front - rear);
+    }
     carry(belt, speeds[side]);
     double load = 0.0;
     for (std::size_t i = 0; i < kPatches; ++i) {
@@ -171,21 +181,50 @@ FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const Be
                            std::clamp((forward_ - turn_ * y) / kRollingSpeed_m_per_s, -1.0, 1.0);
     system.sum -= rolling * Eigen::Vector3d(1.0, 0.0, -y);
   }
+}
+
+void BeltMotion::finish_belts(const std::array<double, 2>& speeds) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    shear_[side] = finish(patches_[side], middle(side), speeds[side]);
+    traction_n_[side] = 0.0;
+    for (const Patch& patch : patches_[side]) {
+      traction_n_[side] += patch.strength * patch.forward;
+    }
+  }
+}
+
+FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
+                             const Eigen::Vector3d& push) {
+  const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
+  System system;
+  system.matrix = Eigen::Vector3d(mass_kg_, mass_kg_, inertia_kg_m2_).asDiagonal();
+  // The body turns, its axes with it.
+  system.sum << mass_kg_ * (forward_ + kFrame_s * turn_ * left_),
+      mass_kg_ * (left_ - kFrame_s * turn_ * forward_), inertia_kg_m2_ * turn_;
+  system.sum -=
+      kFrame_s * weight_on(support, mass_kg_) * Eigen::Vector3d(support.forward, support.left, 0.0);
+  system.sum += kFrame_s * push;
+  shear_belts(speeds, support, system);
   system.matrix(2, 0) = system.matrix(0, 2);
   system.matrix(2, 1) = system.matrix(1, 2);
   const Eigen::Vector3d motion = system.matrix.llt().solve(system.sum);
   forward_ = motion[0];
   left_ = motion[1];
   turn_ = motion[2];
-  for (std::size_t side = 0; side < 2; ++side) {
-    shear_[side] = finish(patches_[side], middles[side], speeds[side]);
-    traction_n_[side] = 0.0;
-    for (const Patch& patch : patches_[side]) {
-      traction_n_[side] += patch.strength * patch.forward;
-    }
-  }
+  finish_belts(speeds);
   return {kFrame_s * forward_ / along_slope(support.forward),
           kFrame_s * left_ / along_slope(support.left), kFrame_s * turn_};
+}
+
+void BeltMotion::follow(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
+                        const FrameMotion& motion) {
+  const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
+  System unused;
+  unused.matrix.setZero();
+  unused.sum.setZero();
+  set_motion(motion, support);
+  shear_belts(speeds, support, unused);
+  finish_belts(speeds);
 }
 
 }  // namespace screed

@@ -36,6 +36,9 @@ struct BeltSupport {
   double left = 0.0;
   std::array<std::array<double, kBeltPatches>, 2> load{};  ///< shares of the weight, 1 in all
   std::array<std::array<double, kBeltPatches>, 2> area{};  ///< m^2 that touch
+  /// Between what of a belt touches first and last, from the robot's middle, m.
+  std::array<double, 2> front{};
+  std::array<double, 2> rear{};
 };
 /// On level, even ground.
 BeltSupport level_support(const TrackGeometry& tracks);
@@ -63,6 +66,11 @@ class BeltMotion {
   FrameMotion step(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
                    const Eigen::Vector3d& push = Eigen::Vector3d::Zero());
 
+  /// The same where something else moves the robot, this far in the frame: what its belts do to
+  /// the soil.
+  void follow(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
+              const FrameMotion& motion);
+
   /// Of the last frame, left and right.
   const std::array<BeltShear, 2>& shear() const { return shear_; }
   /// Forward on each belt in the last frame, N: what its shaft feels.
@@ -74,8 +82,9 @@ class BeltMotion {
  private:
   static constexpr std::size_t kPatches = kBeltPatches;
   struct Patch {
-    double x = 0.0;        // of its middle, from the robot's, m
-    double forward = 0.0;  // mobilised
+    double x = 0.0;           // of its middle, from the robot's, m
+    double touching_m = 0.0;  // of its length, from what touches first to what touches last
+    double forward = 0.0;     // mobilised
     double left = 0.0;
     double slip = 0.0;      // in the last frame, m/s
     double strength = 0.0;  // in this frame, N
@@ -83,6 +92,9 @@ class BeltMotion {
   };
   struct System;
 
+  double middle(std::size_t side) const { return side == 0 ? half_tread_m_ : -half_tread_m_; }
+  void shear_belts(const std::array<double, 2>& speeds, const BeltSupport& support, System& system);
+  void finish_belts(const std::array<double, 2>& speeds);
   void carry(std::array<Patch, kPatches>& belt, double speed) const;
   void shear_patch(Patch& patch, double y, double speed, System& system) const;
   BeltShear finish(std::array<Patch, kPatches>& belt, double y, double speed) const;

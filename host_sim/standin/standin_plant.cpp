@@ -181,6 +181,20 @@ void StandInPlant::step_all(std::span<const DutyRatio> duty_ratios) {
   if (++steps_ % kStepsPerTick == 0) end_frame();
 }
 
+void StandInPlant::step_frame(const std::array<double, 2>& belts_m_per_s) {
+  robots_[0]->run_belts(belts_m_per_s);
+  steps_ += kStepsPerTick;
+  end_frame();
+}
+
+void StandInPlant::follow_frame(const std::array<double, 2>& belts_m_per_s, const PlanarPose& pose,
+                                const FrameMotion& motion) {
+  robots_[0]->run_belts(belts_m_per_s);
+  steps_ += kStepsPerTick;
+  robots_[0]->follow(pose, motion);
+  end_stride();
+}
+
 void StandInPlant::end_frame() {
   for (const auto& robot : robots_) {
     push_from_walls(*robot);
@@ -189,6 +203,11 @@ void StandInPlant::end_frame() {
     for (std::size_t k = 0; k < i; ++k) push_apart(*robots_[i], *robots_[k]);
   }
   for (const auto& robot : robots_) robot->move();
+  end_stride();
+}
+
+/// The ground's part of a frame.
+void StandInPlant::end_stride() {
   if (++stride_frames_ == kBeltStrideFrames) {
     stride_frames_ = 0;
     for (const auto& robot : robots_) robot->press();

@@ -31,6 +31,16 @@ class StandInPlant final : public Environment {
   StandInPlant(const HeightField& terrain, const Assembly& model, const PlantOptions& options,
                const BeltFit& fit = {});
 
+  /// The first robot, which stands there, goes on from there.
+  void set_state(const DrivingState& state) { robots_[0]->set_state(state); }
+  PlanarPose pose() const { return robots_[0]->pose(); }
+  /// A frame in which the first robot's belts run at these speeds, m/s, left and right, whatever
+  /// drives them.
+  void step_frame(const std::array<double, 2>& belts_m_per_s);
+  /// The same where something else moves the robot: to this pose, by this motion.
+  void follow_frame(const std::array<double, 2>& belts_m_per_s, const PlanarPose& pose,
+                    const FrameMotion& motion);
+
   void step(const DutyRatio& duty_ratio) override;
   void step_all(std::span<const DutyRatio> duty_ratios) override;
   std::size_t robots() const override { return robots_.size(); }
@@ -59,6 +69,7 @@ class StandInPlant final : public Environment {
   void push_from_walls(StandInRobot& robot) const;
   static void push_apart(StandInRobot& robot, StandInRobot& other);
   void end_frame();
+  void end_stride();
 
   BeltGround ground_;
   std::vector<std::unique_ptr<StandInRobot>> robots_;

@@ -42,6 +42,29 @@ StandInRobot::StandInRobot(const Environment& world, BeltGround& ground, std::si
   count_wraps();
 }
 
+void StandInRobot::run_belts(const std::array<double, 2>& belts_m_per_s) {
+  for (std::size_t i = 0; i < shafts_.size(); ++i) {
+    shafts_[i].spin(belts_m_per_s[i] / kind_.tracks.radius_m);
+  }
+}
+
+void StandInRobot::set_state(const DrivingState& state) {
+  run_belts(state.track_speed_m_per_s);
+  for (std::size_t i = 0; i < shafts_.size(); ++i) {
+    angle_offset_rad_[i] = state.shaft_angle_rad[i] - shafts_[i].angle_rad();
+  }
+  battery_ = state.battery;
+  pose_ = state.pose;
+  motion_ = state.last;
+  belts_.set_motion(motion_, ground_.support(number_));
+  stride_ = BeltStrideRecorder(pose_);
+  now_ = body_pose();
+  velocity_ << heading() * Eigen::Vector2d(motion_.forward_m, motion_.sideways_m) / kFrame_s, 0.0;
+  imu_velocity_ = imu_velocity_before_ = velocity_;
+  rate_body_ << 0.0, 0.0, motion_.turn_rad / kFrame_s;
+  count_wraps();
+}
+
 void StandInRobot::step_motors(const DutyRatio& duty, double dt) {
   double current = 0.0;
   for (std::size_t i = 0; i < shafts_.size(); ++i) {
@@ -58,6 +81,14 @@ void StandInRobot::move() {
                         ground_.support(number_), push_);
   push_.setZero();
   pose_.move(motion_);
+  stride_.add_frame(motion_, belts_.shear());
+}
+
+void StandInRobot::follow(const PlanarPose& pose, const FrameMotion& motion) {
+  motion_ = motion;
+  belts_.follow(track_speed_m_per_s(kLeft), track_speed_m_per_s(kRight), ground_.support(number_),
+                motion);
+  pose_ = pose;
   stride_.add_frame(motion_, belts_.shear());
 }
 
@@ -171,7 +202,8 @@ double StandInRobot::track_speed_m_per_s(Side side) const {
 }
 
 double StandInRobot::shaft_angle_rad(Side side) const {
-  return shafts_[static_cast<std::size_t>(side)].angle_rad();
+  const auto i = static_cast<std::size_t>(side);
+  return shafts_[i].angle_rad() + angle_offset_rad_[i];
 }
 
 double StandInRobot::current_a(Side side) const {

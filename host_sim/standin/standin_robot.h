@@ -13,6 +13,7 @@
 #include "host_sim/physics/world/plant.h"
 #include "host_sim/standin/belt_ground.h"
 #include "host_sim/standin/belt_motion.h"
+#include "host_sim/standin/driving_state.h"
 
 namespace screed {
 
@@ -32,10 +33,19 @@ class StandInRobot final : public RobotView, public VehicleState {
                const StandInKind& kind, const SoilParameters& soil, const BeltFit& fit,
                const StartPose& start);
 
+  /// Standing there, it goes on from there.
+  void set_state(const DrivingState& state);
+  /// Of its origin, as travelled.
+  const PlanarPose& pose() const { return pose_; }
+  /// Its belts run at these speeds, m/s, left and right, whatever the motors do.
+  void run_belts(const std::array<double, 2>& belts_m_per_s);
+
   /// A part of a frame: motors and battery.
   void step_motors(const DutyRatio& duty, double dt);
   /// The frame's end: the belts move it.
   void move();
+  /// The same where something else moves it, to this pose.
+  void follow(const PlanarPose& pose, const FrameMotion& motion);
   /// A stride's end: it presses the ground.
   void press();
   /// The frame's end, after move() and press(): the body follows.
@@ -89,6 +99,7 @@ class StandInRobot final : public RobotView, public VehicleState {
   std::size_t number_;
   StandInKind kind_;
   std::array<DriveShaft, 2> shafts_;
+  std::array<double, 2> angle_offset_rad_{};
   Battery battery_;
   BeltMotion belts_;
   PlanarPose pose_;

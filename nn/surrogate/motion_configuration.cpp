@@ -148,22 +148,4 @@ std::array<double, 3> unchanged_r2(const MotionSeries& series) {
   return r2_of(series, [&](std::size_t k) { return series.frames[k - 1].motion; });
 }
 
-SkidKinematics fitted_kinematics(const std::vector<MotionSeries>& series) {
-  const SkidKinematics rolling;
-  double forward = 0.0;
-  double forward_squares = 0.0;
-  double turn = 0.0;
-  double turn_squares = 0.0;
-  for (const MotionSeries& one : series) {
-    for (const MotionFrame& frame : one.frames) {
-      const FrameMotion ideal = rolling.motion(frame.track_left_m_per_s, frame.track_right_m_per_s);
-      forward += ideal.forward_m * frame.motion.forward_m;
-      forward_squares += ideal.forward_m * ideal.forward_m;
-      turn += ideal.turn_rad * frame.motion.turn_rad;
-      turn_squares += ideal.turn_rad * ideal.turn_rad;
-    }
-  }
-  return {forward / forward_squares, rolling.tread_m * turn_squares / turn};
-}
-
 }  // namespace screed::nn

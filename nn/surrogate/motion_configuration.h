@@ -34,7 +34,4 @@ std::array<double, 3> one_frame_r2(const Model& model, const MotionSeries& serie
 /// The same of the prediction that nothing changes.
 std::array<double, 3> unchanged_r2(const MotionSeries& series);
 
-/// Share of the tracks' speed and tread that fit the sessions best, frame by frame.
-SkidKinematics fitted_kinematics(const std::vector<MotionSeries>& series);
-
 }  // namespace screed::nn

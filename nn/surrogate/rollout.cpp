@@ -7,6 +7,8 @@
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/height_export.h"
+#include "host_sim/standin/coarse_ground.h"
+#include "host_sim/standin/standin_plant.h"
 #include "nn/surrogate/recorded_drive.h"
 #include "nn/surrogate/rollout_robot.h"
 #include "nn/terrain/sinkage_replay.h"
@@ -29,8 +31,20 @@ Rollout by_tracks(const RecordedDrive& recording, std::uint64_t start, std::uint
   return checker.take();
 }
 
+Rollout by_tracks(const RecordedDrive& recording, std::uint64_t start, std::uint64_t end,
+                  StandInPlant& plant) {
+  RolloutChecker checker(recording, start);
+  for (std::uint64_t row = start + 1; row < end; ++row) {
+    const SimFrame& frame = recording.frames[row];
+    plant.step_frame({frame.track_left, frame.track_right});
+    checker.add_row(row, plant.pose());
+  }
+  return checker.take();
+}
+
+template <typename Plant>
 Rollout by_firmware(const RecordedDrive& recording, std::uint64_t start, std::uint64_t end,
-                    SurrogatePlant& plant, RolloutRobot robot) {
+                    Plant& plant, RolloutRobot robot) {
   plant.set_state(recording.state(start, robot.counts_per_turn()));
   RolloutChecker checker(recording, start);
   for (std::uint64_t row = start + 1; row < end; ++row) {
@@ -84,7 +98,18 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
     for (std::size_t i = 0; i < surrogates.size(); ++i) {
       report_progress(options.progress, "rolling out", row * surrogates.size() + (end - row) * i,
                       rows * surrogates.size());
-      if (options.drive == RolloutDrive::kTracks) {
+      if (!surrogates[i].robot) {
+        plant_options.start.x_m = recording.poses[row].x_m;
+        plant_options.start.y_m = recording.poses[row].y_m;
+        plant_options.start.attitude.heading = recording.poses[row].heading_rad;
+        StandInPlant plant(coarse_ground(ground, kStandInCell_m), model, plant_options);
+        if (options.drive == RolloutDrive::kTracks) {
+          plant.set_state(recording.state(row, robot.counts_per_turn()));
+          result.by_surrogate[i].push_back(by_tracks(recording, row, end, plant));
+        } else {
+          result.by_surrogate[i].push_back(by_firmware(recording, row, end, plant, robot));
+        }
+      } else if (options.drive == RolloutDrive::kTracks) {
         result.by_surrogate[i].push_back(
             by_tracks(recording, row, end, ground, surrogates[i].robot()));
       } else {

@@ -21,7 +21,8 @@ enum class RolloutDrive : std::uint8_t {
   kTracks,    ///< the tracks turn as they were recorded; no controller corrects an error
 };
 
-/// A surrogate by its name. A rollout makes a new robot of it at each start.
+/// A surrogate by its name. A rollout makes a new robot of it at each start. Without `robot`: the
+/// stand-in (host_sim/standin), on a ground that it changes.
 struct SurrogateFactory {
   std::string name;
   std::function<Surrogate()> robot;

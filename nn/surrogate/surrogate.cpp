@@ -47,7 +47,7 @@ FrameMotion SkidKinematics::motion(double left_m_per_s, double right_m_per_s) co
           (right_m_per_s - left_m_per_s) / tread_m * kFrame_s};
 }
 
-Surrogate::Surrogate(const SkidKinematics& kinematics, const SupportGeometry& geometry,
+Surrogate::Surrogate(const TrackKinematics& kinematics, const SupportGeometry& geometry,
                      std::size_t robots)
     : geometry_(geometry),
       robots_(robots),
@@ -348,7 +348,8 @@ void Surrogate::predict() {
   if (kinematics_.has_value()) {
     for (std::size_t i = 0; i < robots_; ++i) {
       const FrameMotion motion =
-          kinematics_->motion(row(MotionSignal::kTrackLeft)[i], row(MotionSignal::kTrackRight)[i]);
+          kinematics_->motion(row(MotionSignal::kTrackLeft)[i], row(MotionSignal::kTrackRight)[i],
+                              row(MotionSignal::kPitch)[i], row(MotionSignal::kRoll)[i]);
       motion_[0][i] = motion.forward_m;
       motion_[1][i] = motion.sideways_m;
       motion_[2][i] = motion.turn_rad;

@@ -22,14 +22,14 @@
 #include "nn/model/model_file.h"
 #include "nn/surrogate/input_preprocessing.h"
 #include "nn/surrogate/support.h"
+#include "nn/surrogate/track_kinematics.h"
 
 namespace screed::nn {
 
 Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
                    double y_m, double cos_heading, double sin_heading);
 
-/// Motion from track speeds by two constants: what a network is compared with. No slip: a share of
-/// 1 and the real tread.
+/// Motion from track speeds by two constants.
 struct SkidKinematics {
   double speed_share = 1.0;  ///< of the tracks' mean speed
   double tread_m = 0.127;    ///< that turns as much as the robot does
@@ -66,7 +66,10 @@ class Surrogate {
   Surrogate(const Model& model, const SupportGeometry& geometry, std::size_t robots,
             Arithmetic arithmetic = Arithmetic::kInteger,
             std::optional<BatchKernel> kernel = std::nullopt);
-  Surrogate(const SkidKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots);
+  /// No network: these constants move the robots.
+  Surrogate(const TrackKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots);
+  Surrogate(const SkidKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots)
+      : Surrogate(skid_kinematics(kinematics.speed_share, kinematics.tread_m), geometry, robots) {}
 
   std::size_t robots() const { return robots_; }
 
@@ -137,7 +140,7 @@ class Surrogate {
   SupportGeometry geometry_;
   std::size_t robots_;
   Arithmetic arithmetic_ = Arithmetic::kInteger;
-  std::optional<SkidKinematics> kinematics_;
+  std::optional<TrackKinematics> kinematics_;
   std::vector<Network> networks_;
   bool products_wanted_ = false;  ///< an input is one of those from kSpeed to kPivot
   std::vector<double> signals_;   ///< kSignals rows

@@ -16,20 +16,11 @@
 #include "host_sim/physics/vehicle/drive_shaft.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/plant.h"
+#include "host_sim/standin/driving_state.h"
 #include "nn/surrogate/surrogate.h"
 #include "nn/terrain/track_soil_model.h"
 
 namespace screed::nn {
-
-/// A robot in the middle of a drive.
-struct DrivingState {
-  PlanarPose pose;
-  FrameMotion last;
-  FrameMotion before_last;
-  std::array<double, 2> track_speed_m_per_s{};
-  std::array<double, 2> shaft_angle_rad{};
-  Battery battery;
-};
 
 class SurrogatePlant : public Environment {
  public:

@@ -307,8 +307,7 @@ void TrackSoilModel::compact_cells(const Stride& stride, double unloading_pa_per
   for (const std::size_t side : {0U, 1U}) {
     const double forward = kPerSecond * track_advance(stride, side);
     const double left = kPerSecond * stride.sideways_m;
-    const std::size_t footprint =
-        flow_.begin_footprint(forward * c - left * s, forward * s + left * c);
+    flow_.begin_footprint({{forward * c - left * s, forward * s + left * c}});
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       const TrackCell& cell = cells_[i];
       CellHistory& history = histories_[cell.node];
@@ -323,7 +322,7 @@ void TrackSoilModel::compact_cells(const Stride& stride, double unloading_pa_per
       const auto units =
           static_cast<Height>(std::lround(cell.share * (now - cell.prior) / kHeightUnit_m));
       if (units <= 0) continue;
-      flow_.sink(footprint, cell.node, cell.ix, cell.iy, units);
+      flow_.sink(cell.node, cell.ix, cell.iy, units);
     }
   }
   flow_.deposit();

@@ -18,12 +18,12 @@ struct KnownRun {
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "6bc3c3a57a401eac108d267b19f14690"},
-    {"soft_bed", "--duration 6", "53f7d985448ea3357b62d43fdc35f025"},
-    {"soft_bed", "--hal surrogate --duration 10", "a2ef2e8b9f8eb0152024ff95c3f20d35"},
+    {"soft_bed", "--duration 6", "ca6cc6e6aff80474a4a917cd19620a9b"},
+    {"soft_bed", "--hal surrogate --duration 10", "9d398168974fc9d65ca5f5e598fef622"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "96f0655c44e239274bb90f8b911f291b"},
+     "5cf5b8290c08b01b7420f05de835b2c2"},
     {"gravel_bed", "--duration 1", "1bd120185594137da9caf4893e8d0bbd"},
 }};
 
@@ -47,7 +47,7 @@ TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
       "--left 0.1 --right 0.2 --drag-depth 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["heights_hash"].get<std::string>(),
-            "92a218b48db7f1fddead31b9e9cfff89");
+            "2af6c25eb145905ad11c001f5fbe1582");
 }
 
 }  // namespace

@@ -141,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "8d84b5da2c01bfea88c704e9aa83cf5f", "6ff3c1b7a121a66552f5249070f7c57e",
-                "891f46ad7e3f234f674bf64198a3829e", "55b722329090ca49a0a1004ece74f2c3",
-                "d59cbc01a679e4ff398e8897d8dba5dd", "be8a5039669ec540c768dd9065b1de82"}));
+                "ad3adfd72a1c0c2e609838f5a6c9871c", "63437a543cdae49e33f8b427540086e1",
+                "f9213759bde69688720fee0e9b7b9e5d", "501b3de3de7ea67f24a2fc439ffc0a9a",
+                "bd3e3b1e228a9d56ca338f9b457d8b2c", "9033c64d51993e6ca47361de3fca4e32"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

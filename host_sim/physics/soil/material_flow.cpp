@@ -30,6 +30,13 @@ double mean_square(double inner_x, double inner_y, double outer_x, double outer_
          (3.0 * (outer_x * outer_y - inner_x * inner_y));
 }
 
+/// Anything but in step with its argument (the last steps of MurmurHash3, A. Appleby).
+uint32_t mixed(uint32_t x) {
+  x = (x ^ (x >> 16)) * 0x85EBCA6BU;
+  x = (x ^ (x >> 13)) * 0xC2B2AE35U;
+  return x ^ (x >> 16);
+}
+
 }  // namespace
 
 MaterialFlow::MaterialFlow(HeightField surface, double repose_deg, const Compaction& compaction)
@@ -69,11 +76,8 @@ void MaterialFlow::change(const GridNode& place, Height units) {
   enqueue(place.node);
 }
 
-size_t MaterialFlow::begin_footprint(double velocity_x, double velocity_y) {
-  const double speed = std::sqrt(velocity_x * velocity_x + velocity_y * velocity_y);
-  const double scale = speed > kStanding_m_per_s ? 1.0 / speed : 0.0;
-  footprints_.push_back({covered_list_.size(), velocity_x * scale, velocity_y * scale, 0});
-  return footprints_.size() - 1;
+void MaterialFlow::begin_footprint(const PressedPatch& patch) {
+  footprints_.push_back({patch, covered_list_.size(), pressed_.size(), 0});
 }
 
 void MaterialFlow::dig(const DugPatch& patch, int64_t units) {
@@ -111,15 +115,18 @@ void MaterialFlow::deposit() {
     footprint.units += left_over_;
     left_over_ = 0;
     if (footprint.units == 0) continue;
-    const size_t end = i + 1 < footprints_.size() ? footprints_[i + 1].begin : covered_list_.size();
-    left_over_ = footprint.units - spread(footprint, end);
+    const bool last = i + 1 == footprints_.size();
+    const size_t end = last ? covered_list_.size() : footprints_[i + 1].begin;
+    const size_t end_pressed = last ? pressed_.size() : footprints_[i + 1].begin_pressed;
+    if (!spread(footprint, end, end_pressed)) left_over_ = footprint.units;
     footprint.units = 0;
   }
 }
 
 /// On some nodes around the footprint, other ones each time, so that in a few steps all have got
 /// the same: a low-discrepancy sequence over the rectangle and its band. What is carried past the
-/// footprint is added in proportion to how far a node lies on its way, and taken on the other side.
+/// footprint is added in proportion to how far a node lies on its way, and taken on the other side:
+/// by the spread of these very nodes, so that it comes as far however much of the band is covered.
 /// Returns the units deposited: all or none.
 int64_t MaterialFlow::spread_dug(const Dug& dug) {
   // R2 sequence (Roberts 2018): 2^32 / p and 2^32 / p^2, p = 1.3247, the plastic number.
@@ -130,12 +137,10 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
   const double length = patch.half_length + patch.band;
   const double width = patch.half_width + patch.band;
   const double per_spacing = 1.0 / surface_.spacing_m();
-  const double weight_along = patch.carried.dot(patch.forward) /
-                              mean_square(patch.half_length, patch.half_width, length, width);
-  const double weight_across =
-      (patch.forward.x() * patch.carried.y() - patch.forward.y() * patch.carried.x()) /
-      mean_square(patch.half_width, patch.half_length, width, length);
-  double weights = 0.0;
+  double sum_along = 0.0;
+  double sum_across = 0.0;
+  double squares_along = 0.0;
+  double squares_across = 0.0;
   deposit_nodes_.clear();
   for (int i = 0; i < kTriesPerStep; ++i) {
     ++sequence_index_;
@@ -149,17 +154,36 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
     const int64_t node = node_at(place.ix, place.iy);
     if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
     place.node = static_cast<size_t>(node);
-    deposit_nodes_.push_back({place, along * weight_along + across * weight_across});
-    weights += deposit_nodes_.back().weight;
+    deposit_nodes_.push_back({place, along, across});
+    sum_along += along;
+    sum_across += across;
+    squares_along += along * along;
+    squares_across += across * across;
   }
   if (deposit_nodes_.empty()) return 0;
   const auto count = static_cast<double>(deposit_nodes_.size());
-  const double each = (static_cast<double>(dug.units) - weights / count) / count;
+  const double mean_along = sum_along / count;
+  const double mean_across = sum_across / count;
+  // Not much less than of the whole band: a few nodes side by side would get all too much.
+  const auto variance = [count](double squares, double mean, double whole) {
+    return std::max(squares / count - mean * mean, 0.25 * whole);
+  };
+  const double per_along =
+      patch.carried.dot(patch.forward) /
+      variance(squares_along, mean_along,
+               mean_square(patch.half_length, patch.half_width, length, width));
+  const double per_across =
+      (patch.forward.x() * patch.carried.y() - patch.forward.y() * patch.carried.x()) /
+      variance(squares_across, mean_across,
+               mean_square(patch.half_width, patch.half_length, width, length));
+  const double each = static_cast<double>(dug.units);
   double sum = 0.0;
   int64_t done = 0;
   for (size_t i = 0; i < deposit_nodes_.size(); ++i) {
     const DepositNode& node = deposit_nodes_[i];
-    sum += each + node.weight / count;
+    sum +=
+        (each + (node.along - mean_along) * per_along + (node.across - mean_across) * per_across) /
+        count;
     const int64_t until = i + 1 < deposit_nodes_.size() ? std::llround(sum) : dug.units;
     if (until != done) change(node.place, static_cast<Height>(until - done));
     done = until;
@@ -170,14 +194,14 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
 
 /// The free neighbours of a footprint's nodes, row by row: its outline seen from above as bits,
 /// grown by one to all sides, less the outline.
-void MaterialFlow::find_ring(const ActiveFootprint& footprint, size_t end) {
+void MaterialFlow::find_ring(size_t begin, size_t end) {
   ring_.clear();
-  if (footprint.begin == end) return;
-  int first_x = covered_list_[footprint.begin].ix;
-  int first_y = covered_list_[footprint.begin].iy;
+  if (begin == end) return;
+  int first_x = covered_list_[begin].ix;
+  int first_y = covered_list_[begin].iy;
   int last_x = first_x;
   int last_y = first_y;
-  for (size_t i = footprint.begin; i < end; ++i) {
+  for (size_t i = begin; i < end; ++i) {
     const GridNode& here = covered_list_[i];
     first_x = std::min(first_x, here.ix);
     last_x = std::max(last_x, here.ix);
@@ -191,7 +215,7 @@ void MaterialFlow::find_ring(const ActiveFootprint& footprint, size_t end) {
   if (below_bits_.size() < rows * words) below_bits_.resize(2 * rows * words);
   std::fill(below_bits_.begin(), below_bits_.begin() + static_cast<std::ptrdiff_t>(rows * words),
             uint64_t{0});
-  for (size_t i = footprint.begin; i < end; ++i) {
+  for (size_t i = begin; i < end; ++i) {
     const auto x = static_cast<size_t>(covered_list_[i].ix - first_x) + 1;
     const auto y = static_cast<size_t>(covered_list_[i].iy - first_y) + 2;
     below_bits_[y * words + x / kBits] |= uint64_t{1} << (x % kBits);
@@ -213,44 +237,114 @@ void MaterialFlow::find_ring(const ActiveFootprint& footprint, size_t end) {
         const int64_t node = node_at(neighbour.ix, neighbour.iy);
         if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
         neighbour.node = static_cast<size_t>(node);
-        ring_.push_back(neighbour);
+        ring_.push_back({neighbour, 0.0, 0.0});
       }
     }
   }
 }
 
-/// Returns the units deposited: all or none.
-int64_t MaterialFlow::spread(const ActiveFootprint& footprint, size_t end) {
-  find_ring(footprint, end);
-  if (ring_.empty()) return 0;
-  const auto ahead = [&](const GridNode& neighbour) {
-    return neighbour.ix * footprint.direction_x + neighbour.iy * footprint.direction_y;
+/// Leaves out what lies behind the footprint, unless nothing else is there.
+void MaterialFlow::drop_rut(const ActiveFootprint& footprint, size_t end) {
+  const Eigen::Vector2d& velocity = footprint.patch.velocity;
+  const double speed = std::sqrt(velocity.x() * velocity.x() + velocity.y() * velocity.y());
+  if (speed <= kStanding_m_per_s) return;
+  const Eigen::Vector2d direction = velocity / speed;
+  const auto ahead = [&](const GridNode& place) {
+    return place.ix * direction.x() + place.iy * direction.y();
   };
   double rear = std::numeric_limits<double>::infinity();
   for (size_t i = footprint.begin; i < end; ++i) rear = std::min(rear, ahead(covered_list_[i]));
-  // Behind the footprint lies its rut.
   constexpr double kRounding = 1e-6;
-  const auto behind = [&](const GridNode& neighbour) {
-    return ahead(neighbour) < rear - kRounding;
+  const auto behind = [&](const RingNode& node) { return ahead(node.place) < rear - kRounding; };
+  if (std::all_of(ring_.begin(), ring_.end(), behind)) return;
+  ring_.erase(std::remove_if(ring_.begin(), ring_.end(), behind), ring_.end());
+}
+
+/// Each node's share of what the footprint lays down. By slices of a spacing along the footprint:
+/// what is pressed in slice p goes to the ring's nodes in all slices s, with weights
+/// exp(-|s - p| spacing / reach) that sum up to one over them. Sums with such weights are two
+/// recursions, from either end.
+void MaterialFlow::weigh_ring(const ActiveFootprint& footprint, size_t end_pressed) {
+  const double spacing = surface_.spacing_m();
+  const double decay = std::exp(-spacing / std::max(spacing, footprint.patch.reach));
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  // From one of the ring's nodes on: the same bits wherever on the grid a footprint stands.
+  const GridNode origin = ring_.front().place;
+  const Eigen::Vector2d& forward = footprint.patch.forward;
+  const auto along = [&](int ix, int iy) {
+    return (ix - origin.ix) * forward.x() + (iy - origin.iy) * forward.y();
   };
-  const auto open = static_cast<size_t>(
-      std::count_if(ring_.begin(), ring_.end(), [&](const GridNode& p) { return !behind(p); }));
-  if (open > 0 && open < ring_.size()) {
-    ring_.erase(std::remove_if(ring_.begin(), ring_.end(), behind), ring_.end());
+  for (RingNode& node : ring_) {
+    node.along = along(node.place.ix, node.place.iy);
+    first = std::min(first, node.along);
+    last = std::max(last, node.along);
   }
-  const auto count = static_cast<int64_t>(ring_.size());
-  const int64_t each = footprint.units / count;
-  const int64_t remainder = footprint.units % count;
-  // The remainder goes to a few nodes, each step to others.
-  const auto first = static_cast<int64_t>(turn_ % ring_.size());
-  turn_ += static_cast<uint64_t>(remainder);
-  for (int64_t i = 0; i < count; ++i) {
-    const int64_t after = i >= first ? i - first : i - first + count;
-    const int64_t units = each + (after < remainder ? 1 : 0);
-    if (units != 0) change(ring_[static_cast<size_t>(i)], static_cast<Height>(units));
+  // What is pressed lies between the ring's ends, but for a rut that is left out.
+  const auto slice = [&](double at) {
+    return static_cast<size_t>(std::clamp(at, first, last) - first);
+  };
+  const size_t slices = slice(last) + 1;
+  const auto smooth = [&](std::vector<double>& values) {
+    double from_below = 0.0;
+    double from_above = 0.0;
+    smoothed_.assign(slices, 0.0);
+    for (size_t i = 0; i < slices; ++i) {
+      smoothed_[i] += from_below;
+      from_below = decay * (from_below + values[i]);
+    }
+    for (size_t i = slices; i-- > 0;) {
+      from_above += values[i];
+      smoothed_[i] += from_above;
+      from_above *= decay;
+    }
+    values.swap(smoothed_);
+  };
+  nearby_.assign(slices, 0.0);
+  for (const RingNode& node : ring_) nearby_[slice(node.along)] += 1.0;
+  smooth(nearby_);
+  laid_.assign(slices, 0.0);
+  double pressed = 0.0;
+  for (size_t i = footprint.begin_pressed; i < end_pressed; ++i) {
+    const size_t at = slice(along(pressed_[i].ix, pressed_[i].iy));
+    laid_[at] += pressed_[i].units / nearby_[at];
+    pressed += pressed_[i].units;
+  }
+  smooth(laid_);
+  for (RingNode& node : ring_) {
+    node.share = pressed > 0.0 ? laid_[slice(node.along)] / pressed
+                               : 1.0 / static_cast<double>(ring_.size());
+  }
+}
+
+/// Returns whether it was deposited: all or nothing.
+bool MaterialFlow::spread(const ActiveFootprint& footprint, size_t end, size_t end_pressed) {
+  find_ring(footprint.begin, end);
+  if (ring_.empty()) return false;
+  drop_rut(footprint, end);
+  weigh_ring(footprint, end_pressed);
+  // In whole units, and over many steps no place gets more than its share: the sums of shares are
+  // rounded down from a threshold, another one each step. Of equal shares each gets one unit more
+  // in turn.
+  const auto count = static_cast<uint64_t>(ring_.size());
+  const bool equal = !std::isfinite(footprint.patch.reach);
+  const double threshold =
+      equal ? (static_cast<double>(turn_ % count) + 0.5) / static_cast<double>(count)
+            : mixed(static_cast<uint32_t>(turn_)) * 0x1p-32;
+  turn_ += equal ? static_cast<uint64_t>(footprint.units) % count : 1;
+  const auto units = static_cast<double>(footprint.units);
+  double sum = threshold;
+  int64_t done = 0;
+  for (size_t i = 0; i < ring_.size(); ++i) {
+    sum += units * ring_[i].share;
+    const int64_t until = i + 1 < ring_.size()
+                              ? std::min(static_cast<int64_t>(sum), footprint.units)
+                              : footprint.units;
+    if (until != done) change(ring_[i].place, static_cast<Height>(until - done));
+    done = until;
   }
   in_transit_ -= footprint.units;
-  return footprint.units;
+  return true;
 }
 
 /// What a body has left may slide.
@@ -343,6 +437,7 @@ void MaterialFlow::uncover() {
   // What was neither deposited nor compacted waits for the next step.
   for (const ActiveFootprint& footprint : footprints_) left_over_ += footprint.units;
   footprints_.clear();
+  pressed_.clear();
   dug_.clear();
 }
 

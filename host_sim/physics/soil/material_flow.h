@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
@@ -21,6 +22,16 @@ struct DugPatch {
   double band;              ///< what is dug is deposited as far as this around it, m
   /// What goes past it from one side to the other: amount times way, units times m.
   Eigen::Vector2d carried = Eigen::Vector2d::Zero();
+};
+
+/// What presses the ground down in one step, seen from above.
+struct PressedPatch {
+  /// m/s; below 1 mm/s it stands and leaves no rut behind it.
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
+  Eigen::Vector2d forward = Eigen::Vector2d::UnitX();  ///< its longer side, unit length
+  /// Along that side, what is pressed down is laid beside the patch with exp(-distance / reach), m;
+  /// taken as a spacing where it is less.
+  double reach = std::numeric_limits<double>::infinity();
 };
 
 /// What becomes of material that is pressed down or dug away: a share of it gets denser where it
@@ -78,10 +89,9 @@ class MaterialFlow {
     sunk_[node] += units;
     enqueue(node);
   }
-  /// Begins a footprint that moves at this velocity, m/s (below 1 mm/s it stands and leaves no rut
-  /// behind it). Nodes passed to cover() until the next call belong to it. Returns its number, for
-  /// sink().
-  size_t begin_footprint(double velocity_x, double velocity_y);
+  /// Begins a footprint: what cover() and sink() say until the next call is about it. Comes before
+  /// them.
+  void begin_footprint(const PressedPatch& patch = {});
   /// The footprint stands on this node: nothing slides onto or off it. `ix` and `iy` without
   /// wrap-around.
   void cover(size_t node, int ix, int iy) {
@@ -89,10 +99,10 @@ class MaterialFlow {
     flags_[node] |= kCovered;
     covered_list_.push_back({node, ix, iy});
   }
-  /// A footprint pushes a node's surface down by `units`: those that are not compacted are in
+  /// The footprint pushes a node's surface down by `units`: those that are not compacted are in
   /// transit until deposited beside it. The reference stays: it is sinkage. `ix` and `iy` without
   /// wrap-around.
-  void sink(size_t footprint, size_t node, int ix, int iy, Height units) {
+  void sink(size_t node, int ix, int iy, Height units) {
     const Height lower = height(node) - units;
     if (on_field(ix, iy)) {  // quicker than finding column and row by division
       surface_.set_node(ix, iy, lower);
@@ -102,14 +112,16 @@ class MaterialFlow {
     sunk_[node] += units;
     const Height moved = units - compact(node, units);
     in_transit_ += moved;
-    footprints_[footprint].units += moved;
+    footprints_.back().units += moved;
+    pressed_.push_back({ix, iy, moved});
     enqueue(node);
   }
   int64_t in_transit() const { return in_transit_; }
   /// What has got denser, units.
   int64_t compacted() const { return compacted_; }
-  /// Deposits what is in transit, in equal parts, on the free neighbours of each footprint's nodes,
-  /// those behind it left out: there lies the rut. Keeps it in transit when there are none.
+  /// Deposits what is in transit on the free neighbours of each footprint's nodes, most of it
+  /// beside the place where it was pressed down (PressedPatch::reach); those behind the footprint
+  /// are left out: there lies the rut. Keeps it in transit when there are none.
   void deposit();
 
   /// The footprint whose dig() comes next slips over this node; weights are relative.
@@ -185,17 +197,24 @@ class MaterialFlow {
     kBorder = 8,  // its neighbours are not all beside it in memory, or nothing follows them there
   };
   struct ActiveFootprint {  // a footprint in this step
-    size_t begin;           // of its nodes among covered_list_
-    double direction_x;     // unit length; 0 when standing
-    double direction_y;
-    int64_t units;  // in transit
+    PressedPatch patch;
+    size_t begin;          // of its nodes among covered_list_
+    size_t begin_pressed;  // among pressed_
+    int64_t units;         // in transit
+  };
+  struct Pressed {
+    int ix;
+    int iy;
+    Height units;  // in transit
   };
   struct Dug {  // to be deposited around it
     DugPatch patch;
     int64_t units;
   };
-  void find_ring(const ActiveFootprint& footprint, size_t end);
-  int64_t spread(const ActiveFootprint& footprint, size_t end);
+  void find_ring(size_t begin, size_t end);
+  void drop_rut(const ActiveFootprint& footprint, size_t end);
+  void weigh_ring(const ActiveFootprint& footprint, size_t end_pressed);
+  bool spread(const ActiveFootprint& footprint, size_t end, size_t end_pressed);
   void release_held();
   bool may_slide(size_t node) const;
   int64_t slide_around(const GridNode& place);
@@ -215,6 +234,7 @@ class MaterialFlow {
   std::vector<GridNode> covered_list_;
   std::vector<GridNode> held_list_;
   std::vector<ActiveFootprint> footprints_;
+  std::vector<Pressed> pressed_;
   int64_t left_over_ = 0;  // in transit from earlier steps
   struct Sheared {
     size_t node;
@@ -225,10 +245,20 @@ class MaterialFlow {
   uint32_t sequence_index_ = 0;  // of the next point to try for what was dug, minus 1
   struct DepositNode {
     GridNode place;
-    double weight;  // of what is carried past, 1/m
+    double along;  // from the patch's centre, m
+    double across;
   };
   std::vector<DepositNode> deposit_nodes_;
-  std::vector<GridNode> ring_;
+  struct RingNode {
+    GridNode place;
+    double along;  // spacings
+    double share;  // of what the footprint lays down
+  };
+  std::vector<RingNode> ring_;
+  // By slices of a spacing along a footprint.
+  std::vector<double> nearby_;  // how much of the ring is near
+  std::vector<double> laid_;    // units laid down on each node of the ring
+  std::vector<double> smoothed_;
   std::vector<uint64_t> below_bits_;  // a footprint's nodes seen from above, a bit each
   std::vector<uint32_t> queue_;       // ring buffer of nodes whose slopes may be too steep
   size_t queue_begin_ = 0;

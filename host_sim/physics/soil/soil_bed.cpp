@@ -95,7 +95,7 @@ void SoilBed::press(const PressingBody& body, std::span<FootprintContact> contac
     ContactMemory& kept = *contact.memory;
     const Eigen::Vector3d arm = contact.arm = footprint.pose().translation() - body.centre;
     const Eigen::Vector3d velocity = body.velocity + body.omega.cross(arm);
-    const double turned = dt * body.omega.dot(footprint.pose().linear().col(2));
+    const Eigen::Vector3d turned = dt * (footprint.pose().linear().transpose() * body.omega);
     extend_path(footprint, velocity * dt, turned, options_.follow_slopes, kept.path);
     average_slip(contact, velocity, dt);
     double elastic = soil_.elastic_pa_per_m;

@@ -148,7 +148,7 @@ class SoilBed final : public Terrain {
   ReactionLaw reaction_law(const Range& range, const PressingBody& body,
                            const FootprintContact& contact) const;
   void react(const Range& range, const PressingBody& body, FootprintContact& contact, double dt);
-  void settle(const Range& range, size_t footprint, bool slips);
+  void settle(const Range& range, bool slips);
   void dig_below(const ReactionSums& sums, const ReactionLaw& law, const Eigen::Isometry3d& pose,
                  double dt);
 

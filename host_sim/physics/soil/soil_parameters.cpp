@@ -77,10 +77,10 @@ SoilParameters cmu_2022() {
 SoilParameters gravel() {
   SoilParameters s = soil("gravel", 827e3, 0.0, 0.9, 0.0, 22.8, 0.0017, 2e6);
   s.repose_deg = 34.4;
-  s.compaction = 0.38;
+  s.compaction = 0.37;
   s.compaction_depth_m = 0.003;
-  s.drag_depth_m = 0.00195;
-  s.drag_share = 0.68;
+  s.drag_depth_m = 0.002;
+  s.drag_share = 0.66;
   return s;
 }
 

@@ -165,7 +165,7 @@ ReactionLaw SoilBed::reaction_law(const Range& range, const PressingBody& body,
 
 /// Books what the cells of a footprint have sunk, and that it stands there: nothing slides onto or
 /// off them.
-void SoilBed::settle(const Range& range, size_t footprint, bool slips) {
+void SoilBed::settle(const Range& range, bool slips) {
   const GridPlace* places = places_.data() + range.begin * kLanes;
   for (size_t b = range.begin; b < range.end; ++b, places += kLanes) {
     const CellBlock& block = cells_[b];
@@ -181,7 +181,7 @@ void SoilBed::settle(const Range& range, size_t footprint, bool slips) {
       }
       history.touch(step_);
       const auto units = static_cast<Height>(block.units[lane]);
-      if (units > 0) flow_.sink(footprint, place.node, place.ix, place.iy, units);
+      if (units > 0) flow_.sink(place.node, place.ix, place.iy, units);
       if (slips) flow_.shear(place.node, block.shears[lane]);
     }
   }
@@ -198,7 +198,10 @@ void SoilBed::react(const Range& range, const PressingBody& body, FootprintConta
   const bool slips = law.digs && sums.slip > 0.0;
   const Eigen::Vector3d velocity =
       body.velocity + body.omega.cross(contact.footprint->pose().translation() - body.centre);
-  settle(range, flow_.begin_footprint(velocity.x(), velocity.y()), slips);
+  // As digging heaves the soil around a body as far as what touches is wide.
+  flow_.begin_footprint(
+      {velocity.head<2>(), vector(law.level_ahead).head<2>(), contact.memory->patch_b_m});
+  settle(range, slips);
   if (slips) dig_below(sums, law, contact.footprint->pose(), dt);
   contact.memory->sinkage = sums.sinkage;
   TerrainReaction& reaction = contact.reaction;

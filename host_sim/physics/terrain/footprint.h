@@ -53,6 +53,7 @@ struct PathHistory {
   double travel_m = 0.0;  ///< along local x, signed: it passed over no point that is further away
   double gradient = 0.0;  ///< displacement along local z over that along local x
   double back_m = 0.0;    ///< by how much it has come back from its furthest place, 0 or more
+  double bend_rad = 0.0;  ///< its pitch now less the recent path's mean, positive nose down
 };
 
 /// The face of a footprint that is below: its axes ahead, left and up in the world, and its

@@ -157,6 +157,7 @@ void Hull::add_footprint_contacts(const Terrain& terrain, const CarrierMotion& m
     contact.motion.velocity = motion.velocity + motion.omega.cross(arm);
     contact.motion.omega = motion.omega;
     contact.motion.friction = law_.friction;
+    contact.motion.soil_friction = law_.friction;  // smooth: no soil sticks to it
     contact.arm = arm;
     contacts.push_back(contact);
   }

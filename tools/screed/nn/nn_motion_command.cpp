@@ -19,6 +19,7 @@
 #include "nn/surrogate/default_model.h"
 #include "nn/surrogate/motion_configuration.h"
 #include "nn/surrogate/rollout.h"
+#include "nn/surrogate/slip_law.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
 #include "tools/screed/cli/progress_bar.h"
@@ -85,7 +86,6 @@ int run_motion(const MotionArguments& arguments) {
 struct RolloutArguments {
   std::vector<std::string> sessions;
   std::vector<std::string> models;
-  std::vector<std::string> fit;
   std::size_t starts = 0;
   std::string drive = "firmware";
   bool ruts = false;
@@ -258,6 +258,21 @@ void draw(const fs::path& folder, const nn::SessionRollouts& session,
   }
 }
 
+/// What a stand-in must beat, fitted to a drive; without one their names alone count.
+std::vector<nn::SurrogateFactory> baselines_of(const std::vector<nn::MotionSeries>& drive) {
+  const nn::SupportGeometry geometry;
+  const nn::TrackKinematics no_slip = nn::skid_kinematics(1.0, 2.0 * TrackGeometry{}.half_tread_m);
+  std::vector<nn::SurrogateFactory> baselines = {
+      {"no slip", [=] { return nn::Surrogate(no_slip, geometry, 1); }}};
+  for (const nn::SlipLaw law :
+       {nn::SlipLaw::kConstant, nn::SlipLaw::kBySlope, nn::SlipLaw::kRotationCentres,
+        nn::SlipLaw::kRotationCentresAndSlope}) {
+    const nn::TrackKinematics fitted = nn::fitted_kinematics(law, drive);
+    baselines.push_back({nn::name_of(law), [=] { return nn::Surrogate(fitted, geometry, 1); }});
+  }
+  return baselines;
+}
+
 int run_rollout(const RolloutArguments& arguments) {
   nn::RolloutOptions options;
   options.starts = arguments.starts;
@@ -267,24 +282,13 @@ int run_rollout(const RolloutArguments& arguments) {
     options.bearing = std::make_shared<const nn::BearingCapacityNetwork>(
         nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file()));
   }
-  const nn::SupportGeometry geometry;
-  std::vector<nn::SurrogateFactory> surrogates = {
-      {"no slip", [=] { return nn::Surrogate(nn::SkidKinematics{}, geometry, 1); }}};
-  std::vector<nn::MotionSeries> fitted;
-  fitted.reserve(arguments.fit.size());
-  for (const std::string& folder : arguments.fit) {
-    fitted.push_back(nn::read_motion_series(folder));
-  }
-  if (!fitted.empty()) {
-    const nn::SkidKinematics kinematics = nn::fitted_kinematics(fitted);
-    std::printf("constant slip: %.3f of the tracks' speed, tread of %.3f m\n",
-                kinematics.speed_share, kinematics.tread_m);
-    surrogates.push_back({"constant slip", [=] { return nn::Surrogate(kinematics, geometry, 1); }});
-  }
+  std::vector<nn::SurrogateFactory> surrogates = {{"stand-in", {}}};
+  const std::size_t baselines = surrogates.size();
+  const std::vector<nn::SurrogateFactory> first = baselines_of({});
+  surrogates.insert(surrogates.end(), first.begin(), first.end());
   std::vector<std::size_t> floats;
-  std::vector<std::string> models = arguments.models;
-  if (models.empty()) models.push_back(nn::default_model_file().string());
-  for (const std::string& file : models) {
+  const nn::SupportGeometry geometry;
+  for (const std::string& file : arguments.models) {
     const auto model = std::make_shared<const nn::Model>(nn::read_model(file));
     surrogates.push_back({model->name, [=] { return nn::Surrogate(*model, geometry, 1); }});
     if (model->networks.front().trained.empty()) continue;
@@ -306,6 +310,10 @@ int run_rollout(const RolloutArguments& arguments) {
                                 std::to_string(arguments.sessions.size()) + " " +
                                 std::string(task));
     };
+    const std::vector<nn::SurrogateFactory> fitted =
+        baselines_of({nn::read_motion_series(arguments.sessions[i])});
+    std::copy(fitted.begin(), fitted.end(),
+              surrogates.begin() + static_cast<std::ptrdiff_t>(baselines));
     all.push_back(nn::roll_out(arguments.sessions[i], surrogates, options));
     bar.clear();
     std::printf("\n%s, %s drive\n", all.back().source.c_str(), arguments.drive.c_str());
@@ -373,14 +381,13 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
       [motion, &program] { program.action = [motion] { return run_motion(*motion); }; });
 
   auto rollout = std::make_shared<RolloutArguments>();
-  CLI::App* rollout_command =
-      nn.add_subcommand("rollout", "Compare motion predicted by networks with recorded physics");
+  CLI::App* rollout_command = nn.add_subcommand(
+      "rollout", "Compare the stand-in's motion, and that of networks, with recorded physics");
   rollout_command->add_option("SESSION", rollout->sessions, "Run folders of screed record")
       ->required();
-  rollout_command->add_option("--model", rollout->models, "Model files (default: V3)")
+  rollout_command
+      ->add_option("--model", rollout->models, "Model files of networks to be rolled out as well")
       ->type_name("FILE");
-  rollout_command->add_option("--fit", rollout->fit, "Run folders to fit the constant slip to")
-      ->type_name("FOLDER");
   add_number(*rollout_command, "--starts", rollout->starts,
              "Number of rollouts per session, spread evenly; 0: each begins where the previous one "
              "ends",

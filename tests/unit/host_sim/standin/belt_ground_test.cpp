@@ -62,6 +62,38 @@ TEST(BeltGround, SinksUntilBekkerSupportsTheWeight) {
   }
 }
 
+// A robot that drives straight on leaves the ruts that Bekker's depth says, whatever part of a cell
+// its belts cover.
+TEST(BeltGround, AStraightRutIsAsDeepAsTheBeltsStand) {
+  for (const double aside_m : {0.0, 0.004, 0.01}) {
+    for (const double heading_rad : {0.0, 0.3, 0.785}) {
+      const TrackGeometry tracks;
+      SoilParameters soil = soil_preset("viper");
+      soil.compaction = 1.0;  // what leaves the ruts is booked
+      BeltGround ground(HeightField::flat(2.0, 0.02), soil, tracks, 1);
+      PlanarPose pose{-0.6 * std::cos(heading_rad), -0.6 * std::sin(heading_rad) + aside_m,
+                      heading_rad};
+      ground.place(0, pose);
+      const double way_m = 1.2;
+      constexpr int kStrides = 120;
+      for (int i = 0; i < kStrides; ++i) {
+        BeltStride stride;
+        stride.motion.forward_m = way_m / kStrides;
+        pose.move(stride.motion);
+        stride.pose = pose;
+        ground.press(0, stride);
+        ground.end_stride();
+      }
+      const double edge = ground.surface().spacing_m();
+      const double volume =
+          static_cast<double>(ground.balance().compacted) * kHeightUnit_m * edge * edge;
+      const double area = 2.0 * tracks.width_m * (way_m + 2.0 * tracks.half_length_m);
+      const double depth = 0.5 * (ground.sinkage_m(0, 0) + ground.sinkage_m(0, 1));
+      EXPECT_NEAR(volume / area, depth, 0.2 * depth) << aside_m << " m, " << heading_rad;
+    }
+  }
+}
+
 TEST(BeltGround, CarriesTheWeightInShares) {
   const TrackGeometry tracks;
   BeltGround ground(HeightField::ramp(1.0, 0.02, 10.0), soil_preset("viper"), tracks, 1);
@@ -153,10 +185,9 @@ double carried(const BeltGround& ground, const HeightField& before) {
 }
 
 TEST(BeltGround, SlipCarriesSoilDownhillAndWithTheBelt) {
-  const TrackGeometry tracks;
   BeltFit fit;
   fit.digging = 1.0;
-  const double area = 4.0 * tracks.half_length_m * tracks.width_m;
+  const TrackGeometry tracks;
   const auto dig = [&](double slope_deg, double drag_share) {
     SoilParameters soil = digging(0.002);
     soil.drag_share = drag_share;
@@ -168,6 +199,10 @@ TEST(BeltGround, SlipCarriesSoilDownhillAndWithTheBelt) {
       stride.shear = {slipping(0.002), slipping(0.002)};
       ground.press(0, stride);
       ground.end_stride();
+    }
+    double area = 0.0;
+    for (const auto& belt : ground.support(0).area) {
+      for (const double touched : belt) area += touched;
     }
     return carried(ground, before) / (0.002 * 0.02 * area);
   };

@@ -80,6 +80,32 @@ TEST_F(BeltMotionTest, PullsAsJanosiAndHanamotoSay) {
   }
 }
 
+// The same of belts that touch on two centimetres of their length alone: what comes into contact
+// there is fresh.
+TEST_F(BeltMotionTest, ShearBeginsWhereContactDoes) {
+  BeltFit fit;
+  fit.rolling = 0.0;
+  constexpr double kBelt_m_per_s = 0.1;
+  constexpr double kContact_m = 0.02;
+  BeltSupport support = level_support(tracks);
+  for (const std::size_t side : {0U, 1U}) {
+    support.load.at(side) = {0.0, 0.5, 0.0};
+    support.area.at(side) = {0.0, kContact_m * tracks.width_m, 0.0};
+    support.front.at(side) = 0.5 * kContact_m;
+    support.rear.at(side) = -0.5 * kContact_m;
+  }
+  for (const double share : {0.3, 0.5}) {
+    BeltMotion pulling(tracks, soil, fit);
+    const Eigen::Vector3d drawbar(-share * strength_n(), 0.0, 0.0);
+    FrameMotion motion;
+    for (int i = 0; i < 3000; ++i)
+      motion = pulling.step(kBelt_m_per_s, kBelt_m_per_s, support, drawbar);
+    const double slip = 1.0 - motion.forward_m / kFrame_s / kBelt_m_per_s;
+    const double x = slip * kContact_m / soil.shear_modulus_m;
+    EXPECT_NEAR(1.0 - (1.0 - std::exp(-x)) / x, share, 0.05) << share;
+  }
+}
+
 TEST_F(BeltMotionTest, TurnsLessThanItsBeltsAndToTheSideOfTheSlowerOne) {
   FrameMotion motion;
   for (int i = 0; i < 300; ++i) motion = belts.step(0.05, 0.15, level_support(tracks));

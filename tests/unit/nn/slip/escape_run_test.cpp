@@ -57,7 +57,7 @@ TEST(EscapeTrials, WhoBacksOffBeforeTheAlarmWasNotStuck) {
 }
 
 TEST(EscapeTrials, FromRutsItGetsOutWhereTheWalkAloneDoesNot) {
-  const EscapeResult result = escape_trials(430003, {.oracle = false});
+  const EscapeResult result = escape_trials(430007, {.oracle = false});
   ASSERT_EQ(result.scenario.experiment.trap.kind, "ruts");
   EXPECT_FALSE(result.backed_off);
   EXPECT_TRUE(result.stuck);

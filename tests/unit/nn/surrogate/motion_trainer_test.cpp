@@ -156,16 +156,5 @@ TEST(MotionTrainer, LearnsALawAndTheSameSeedLearnsTheSame) {
   EXPECT_GT(r2[2], 0.995);
 }
 
-TEST(MotionTrainer, FitsTheConstantsOfASlippingRobot) {
-  MotionSeries series = lagging_robot(4);
-  for (MotionFrame& frame : series.frames) {
-    frame.motion =
-        SkidKinematics{0.85, 0.21}.motion(frame.track_left_m_per_s, frame.track_right_m_per_s);
-  }
-  const SkidKinematics fitted = fitted_kinematics({series});
-  EXPECT_NEAR(fitted.speed_share, 0.85, 1e-9);
-  EXPECT_NEAR(fitted.tread_m, 0.21, 1e-9);
-}
-
 }  // namespace
 }  // namespace screed::nn

@@ -21,10 +21,10 @@ inline int64_t volume(const MaterialFlow& flow) {
 /// A footprint of one node, pressed down by so many units.
 inline void press(MaterialFlow& flow, int ix, int iy, Height units, double velocity_x = 0.0,
                   double velocity_y = 0.0) {
-  const size_t footprint = flow.begin_footprint(velocity_x, velocity_y);
+  flow.begin_footprint({{velocity_x, velocity_y}});
   const size_t node = flow.index(ix, iy);
   flow.cover(node, ix, iy);
-  flow.sink(footprint, node, ix, iy, units);
+  flow.sink(node, ix, iy, units);
 }
 
 }  // namespace screed

@@ -19,7 +19,7 @@ constexpr Compaction kQuarter{0.25, 0.0};
 
 TEST(MaterialDigging, DigsWhereTheFootprintSlipsInProportionToIt) {
   MaterialFlow flow = level(21, false, kQuarter);
-  flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   flow.shear(flow.index(10, 10), 1.0);
   flow.shear(flow.index(11, 10), 3.0);
   flow.dig(patch_at(0.0, 0.0), 400);
@@ -35,7 +35,7 @@ TEST(MaterialDigging, DigsWhereTheFootprintSlipsInProportionToIt) {
 
 TEST(MaterialDigging, DigsToTheLastUnitWhereItDoesNotDivide) {
   MaterialFlow flow = level();
-  flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   for (int i = 0; i < 7; ++i) flow.shear(flow.index(7 + i, 10), 1.0);
   flow.dig(patch_at(0.0, 0.0), 100);
   EXPECT_EQ(volume(flow), -100);
@@ -46,7 +46,7 @@ TEST(MaterialDigging, DigsToTheLastUnitWhateverTheWeightsAddUpTo) {
   for (int count = 1; count < 60; ++count) {
     for (const int units : {1, 2, 999, 1000, 12345}) {
       MaterialFlow flow = level();
-      flow.begin_footprint(0.0, 0.0);
+      flow.begin_footprint();
       for (int i = 0; i < count; ++i) {
         flow.shear(static_cast<size_t>(i), 0.1 * (1 + i % 7) / 3.0);
       }
@@ -58,7 +58,7 @@ TEST(MaterialDigging, DigsToTheLastUnitWhateverTheWeightsAddUpTo) {
 
 TEST(MaterialDigging, OnlyWhatGivesOrGetsMaterialIsLookedAtAgain) {
   MaterialFlow flow = level();
-  flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   for (int i = 0; i < 4; ++i) flow.shear(flow.index(8 + i, 10), 1.0);
   flow.dig(patch_at(0.0, 0.0), 1);
   EXPECT_EQ(flow.queued(), 1U) << "one unit comes from one node";
@@ -68,7 +68,7 @@ TEST(MaterialDigging, OnlyWhatGivesOrGetsMaterialIsLookedAtAgain) {
 
 TEST(MaterialDigging, WhatIsCompactedWhileDiggingIsNotHeapedUp) {
   MaterialFlow flow = level(21, false, kQuarter);
-  flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   flow.shear(flow.index(10, 10), 1.0);
   flow.dig(patch_at(0.0, 0.0), 400);
   flow.deposit();
@@ -80,7 +80,7 @@ TEST(MaterialDigging, APlaceGetsNoDenserThanItCan) {
   MaterialFlow flow = level(21, false, {0.25, 150.0 * kHeightUnit_m});
   const size_t here = flow.index(10, 10);
   const auto dig = [&](int64_t units) {
-    flow.begin_footprint(0.0, 0.0);
+    flow.begin_footprint();
     flow.shear(here, 1.0);
     flow.dig(patch_at(0.0, 0.0), units);
     flow.uncover();
@@ -92,17 +92,17 @@ TEST(MaterialDigging, APlaceGetsNoDenserThanItCan) {
   dig(400);
   EXPECT_EQ(flow.compacted(), 150);
   EXPECT_EQ(flow.in_transit(), 1200 - 150) << "the rest moves";
-  flow.begin_footprint(0.0, 0.0);
-  flow.sink(0, here, 10, 10, 400);
+  flow.begin_footprint();
+  flow.sink(here, 10, 10, 400);
   EXPECT_EQ(flow.compacted(), 150) << "pressing makes it no denser either";
-  flow.sink(0, flow.index(3, 3), 3, 3, 400);
+  flow.sink(flow.index(3, 3), 3, 3, 400);
   EXPECT_EQ(flow.compacted(), 250) << "other ground is as loose as before";
 }
 
 TEST(MaterialDigging, PartsOfAUnitAreCompactedLater) {
   MaterialFlow flow = level(21, false, kQuarter);
-  flow.begin_footprint(0.0, 0.0);
-  for (int i = 0; i < 400; ++i) flow.sink(0, flow.index(10, 10), 10, 10, 1);
+  flow.begin_footprint();
+  for (int i = 0; i < 400; ++i) flow.sink(flow.index(10, 10), 10, 10, 1);
   EXPECT_EQ(flow.compacted(), 100);
   EXPECT_EQ(flow.in_transit(), 300);
 }
@@ -136,7 +136,7 @@ TEST(MaterialDigging, WhatIsDugIsNotHeapedUpUnderABodyNorBesideTheField) {
   MaterialFlow flow = level();
   const DugPatch patch = patch_at(flow.surface().x_min(), flow.surface().y_min());
   for (int step = 0; step < 50; ++step) {
-    flow.begin_footprint(0.0, 0.0);
+    flow.begin_footprint();
     for (int iy = 0; iy < 3; ++iy) flow.cover(flow.index(4, iy), 4, iy);
     flow.shear(flow.index(10, 10), 1.0);
     flow.dig(patch, 480);
@@ -200,7 +200,7 @@ TEST(MaterialDigging, WhatIsCarriedPastTheFootprintKeepsItsAmountTimesWay) {
   patch.carried = {20.0, -50.0};
   constexpr int kSteps = 400;
   for (int step = 0; step < kSteps; ++step) {
-    flow.begin_footprint(0.0, 0.0);
+    flow.begin_footprint();
     for (const int ix : {31, 32, 33}) flow.shear(flow.index(ix, 27), 1.0);
     flow.dig(patch, 480);
     flow.deposit();
@@ -222,7 +222,7 @@ TEST(MaterialDigging, WhatIsCarriedPastTheFootprintKeepsItsAmountTimesWay) {
 
 TEST(MaterialDigging, WithoutSlipOrWithNothingToTakeNothingIsDug) {
   MaterialFlow flow = level();
-  flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   flow.shear(flow.index(10, 10), 0.0);
   flow.dig(patch_at(0.0, 0.0), 400);
   flow.shear(flow.index(10, 10), 1.0);
@@ -241,13 +241,13 @@ TEST(MaterialDigging, WhatIsDugAndCompactedLeavesNothingToLaterSteps) {
   MaterialFlow flow = level(41, false, {1.0, 480.0 * kHeightUnit_m});
   MaterialFlow fresh = level(41);
   const size_t dug = flow.index(20, 20);
-  flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   flow.shear(dug, 1.0);
   flow.dig(patch_at(0.02, -0.03), 480);
   EXPECT_EQ(flow.compacted(), 480);
   flow.uncover();
   for (MaterialFlow* either : {&flow, &fresh}) {
-    either->begin_footprint(0.0, 0.0);
+    either->begin_footprint();
     either->shear(dug, 1.0);
     either->dig(patch_at(0.02, -0.03), 480);
     either->deposit();
@@ -264,7 +264,7 @@ TEST(MaterialDigging, WhatIsDugIsHeapedUpInABandRoundTheFootprintAndNotInsideIt)
   patch.forward = {0.6, 0.8};
   const Eigen::Vector2d side(-0.8, 0.6);
   for (int step = 0; step < 400; ++step) {
-    flow.begin_footprint(0.0, 0.0);
+    flow.begin_footprint();
     flow.shear(flow.index(20, 20), 1.0);
     flow.dig(patch, 480);
     flow.deposit();
@@ -273,7 +273,8 @@ TEST(MaterialDigging, WhatIsDugIsHeapedUpInABandRoundTheFootprintAndNotInsideIt)
   }
   ASSERT_EQ(volume(flow), 0);
   // Fills the hole.
-  flow.sink(flow.begin_footprint(0.0, 0.0), flow.index(20, 20), 20, 20, -480 * 400);
+  flow.begin_footprint();
+  flow.sink(flow.index(20, 20), 20, 20, -480 * 400);
   double along_sum = 0.0;
   double across_sum = 0.0;
   Height least = INT32_MAX;

@@ -71,9 +71,7 @@ TEST(MaterialFlow, WhatDoesNotDivideGoesToOtherNeighboursEachTime) {
 TEST(MaterialFlow, AStepForgetsTheFootprintsOfTheOneBeforeButNotTheirMaterial) {
   MaterialFlow flow = level();
   press(flow, 10, 10, 80);
-  EXPECT_EQ(flow.begin_footprint(0.0, 0.0), 1U);
   flow.uncover();
-  EXPECT_EQ(flow.begin_footprint(0.0, 0.0), 0U);
   EXPECT_EQ(flow.in_transit(), 80) << "nobody has deposited it";
   press(flow, 4, 4, 8);
   flow.deposit();
@@ -156,9 +154,9 @@ TEST(MaterialFlow, AFootprintThatHardlyMovesHasNoRutBehindIt) {
 TEST(MaterialFlow, WhereAllIsBehindItTheRutIsFilled) {
   // A footprint as wide as the field drives off it.
   MaterialFlow flow = level(5);
-  const size_t footprint = flow.begin_footprint(0.1, 0.0);
+  flow.begin_footprint({{0.1, 0.0}});
   for (int iy = 0; iy < 5; ++iy) flow.cover(flow.index(4, iy), 4, iy);
-  flow.sink(footprint, flow.index(4, 2), 4, 2, 50);
+  flow.sink(flow.index(4, 2), 4, 2, 50);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   for (int iy = 0; iy < 5; ++iy) EXPECT_EQ(flow.height(flow.index(3, iy)), 10) << iy;
@@ -166,10 +164,10 @@ TEST(MaterialFlow, WhereAllIsBehindItTheRutIsFilled) {
 
 TEST(MaterialFlow, TheOnlyNeighbourThatIsNotBehindTakesAll) {
   MaterialFlow flow = level(5);
-  const size_t footprint = flow.begin_footprint(0.1, 0.0);
+  flow.begin_footprint({{0.1, 0.0}});
   for (int iy = 0; iy < 5; ++iy) flow.cover(flow.index(3, iy), 3, iy);
   for (int iy = 0; iy < 4; ++iy) flow.cover(flow.index(4, iy), 4, iy);
-  flow.sink(footprint, flow.index(3, 2), 3, 2, 50);
+  flow.sink(flow.index(3, 2), 3, 2, 50);
   flow.deposit();
   EXPECT_EQ(flow.height(flow.index(4, 4)), 50);
   EXPECT_EQ(flow.height(flow.index(2, 2)), 0);
@@ -219,11 +217,11 @@ TEST(MaterialFlow, ARutFromBeforeIsSunkAndNothingMoves) {
 
 TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
   MaterialFlow flow(HeightField(2, 2, kSpacing_m, false), kRepose_deg);
-  const size_t footprint = flow.begin_footprint(0.0, 0.0);
+  flow.begin_footprint();
   for (int iy = 0; iy < 2; ++iy) {
     for (int ix = 0; ix < 2; ++ix) flow.cover(flow.index(ix, iy), ix, iy);
   }
-  flow.sink(footprint, 0, 0, 0, 30);
+  flow.sink(0, 0, 0, 30);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 30);
   EXPECT_EQ(volume(flow), -30);
@@ -233,6 +231,112 @@ TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), 0);
   EXPECT_EQ(flow.height(flow.index(1, 1)), 12);
+}
+
+/// A footprint of 3 x `length` nodes from (10, 10) on, along x, pressed down at its first column.
+void press_one_end(MaterialFlow& flow, int length, const PressedPatch& patch, Height units) {
+  flow.begin_footprint(patch);
+  for (int ix = 10; ix < 10 + length; ++ix) {
+    for (int iy = 10; iy < 13; ++iy) flow.cover(flow.index(ix, iy), ix, iy);
+  }
+  for (int iy = 10; iy < 13; ++iy) flow.sink(flow.index(10, iy), 10, iy, units);
+}
+
+TEST(MaterialFlow, WhatIsPressedIsLaidBesideWhereItWas) {
+  constexpr double kReach_m = 0.03;
+  constexpr int kLength = 24;
+  MaterialFlow flow = level(51);
+  press_one_end(flow, kLength, {{0.0, 0.0}, {1.0, 0.0}, kReach_m}, 100000);
+  flow.deposit();
+  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(volume(flow), 0);
+  // Beside it both rows have the same, less by exp(-distance / reach) with each column.
+  const auto at = [&](int ix, int iy) {
+    return static_cast<double>(flow.height(flow.index(ix, iy)));
+  };
+  const double per_column = std::exp(-kSpacing_m / kReach_m);
+  for (int ix = 10; ix < 9 + kLength; ++ix) {
+    EXPECT_NEAR(at(ix, 9), at(ix, 13), 1.0) << ix;
+    EXPECT_NEAR(at(ix + 1, 9), per_column * at(ix, 9), 2.0) << ix;
+  }
+  EXPECT_NEAR(at(9, 11), per_column * at(10, 9), 2.0) << "and so at its end";
+  // Closed form: the ring has five nodes at either end, two beside each column.
+  double weights = 5.0 * per_column + 5.0 * std::pow(per_column, kLength);
+  for (int i = 0; i < kLength; ++i) weights += 2.0 * std::pow(per_column, i);
+  EXPECT_NEAR(at(10, 9), 300000.0 / weights, 2.0);
+}
+
+TEST(MaterialFlow, ATiltedPresserCarriesHardlyAnythingToItsOtherEnd) {
+  for (const double degrees : {0.0, 33.0, 90.0, 200.0}) {
+    const double angle = degrees * 3.14159265358979 / 180.0;
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    MaterialFlow flow = level(61);
+    flow.begin_footprint({{0.0, 0.0}, {c, s}, 0.03});
+    const auto each_node = [&](const auto& visit) {
+      for (int iy = 0; iy < 61; ++iy) {
+        for (int ix = 0; ix < 61; ++ix) {
+          const double along = (ix - 30) * c + (iy - 30) * s;
+          const double across = (iy - 30) * c - (ix - 30) * s;
+          visit(flow.index(ix, iy), ix, iy, along,
+                std::abs(along) <= 12.0 && std::abs(across) <= 1.6);
+        }
+      }
+    };
+    each_node([&](size_t node, int ix, int iy, double, bool below) {
+      if (below) flow.cover(node, ix, iy);
+    });
+    each_node([&](size_t node, int ix, int iy, double along, bool below) {
+      if (below && along < -6.0) flow.sink(node, ix, iy, 10000);
+    });
+    const auto moved = static_cast<double>(flow.in_transit());
+    flow.deposit();
+    double near = 0.0;
+    double far = 0.0;
+    each_node([&](size_t node, int, int, double along, bool below) {
+      if (below) return;
+      if (along < -3.0) near += flow.height(node);
+      if (along > 3.0) far += flow.height(node);
+    });
+    EXPECT_GT(near, 0.8 * moved) << degrees;
+    EXPECT_LT(far, 0.04 * moved) << degrees;
+    EXPECT_EQ(volume(flow), 0);
+  }
+}
+
+TEST(MaterialFlow, AFewUnitsAreSharedOutAsManyAre) {
+  const PressedPatch patch{{0.0, 0.0}, {1.0, 0.0}, 0.03};
+  constexpr int kSteps = 40000;
+  MaterialFlow flow = level(51);
+  for (int step = 0; step < kSteps; ++step) {  // less than a unit for each place
+    press_one_end(flow, 24, patch, 1 + step % 3);
+    flow.deposit();
+    flow.uncover();
+  }
+  MaterialFlow at_once = level(51);
+  press_one_end(at_once, 24, patch, 2 * kSteps);
+  at_once.deposit();
+  for (int ix = 9; ix <= 34; ++ix) {
+    const double expected = at_once.height(at_once.index(ix, 9));
+    EXPECT_NEAR(flow.height(flow.index(ix, 9)), expected, 2.0 + 4.0 * std::sqrt(expected)) << ix;
+  }
+}
+
+TEST(MaterialFlow, WhatComesFromOtherFootprintsIsLaidWhereThisOnePresses) {
+  MaterialFlow flow = level(51);
+  press(flow, 45, 45, 80);
+  flow.uncover();  // nobody has deposited it
+  press_one_end(flow, 24, {{0.0, 0.0}, {1.0, 0.0}, 0.01}, 1000);
+  flow.deposit();
+  EXPECT_EQ(volume(flow), 0);
+  EXPECT_EQ(flow.height(flow.index(34, 11)), 0);
+  MaterialFlow none_of_its_own = level(51);
+  press(none_of_its_own, 45, 45, 56 * 4);
+  none_of_its_own.uncover();
+  press_one_end(none_of_its_own, 24, {{0.0, 0.0}, {1.0, 0.0}, 0.01}, 0);
+  none_of_its_own.deposit();
+  EXPECT_EQ(volume(none_of_its_own), 0);
+  EXPECT_GT(none_of_its_own.height(none_of_its_own.index(34, 11)), 0) << "in equal parts";
 }
 
 TEST(MaterialFlow, TwoFootprintsDoNotSetDownUnderEachOther) {

@@ -349,6 +349,51 @@ TEST(SoilBedTest, WhatIsPushedAsideDoesNotFillTheRut) {
   EXPECT_GT(highest, 0.002);
 }
 
+// What a belt presses with its rear end comes up beside that end, and not in front of its nose.
+TEST(SoilBedTest, WhatATiltedBeltPressesStaysAtItsEnd) {
+  for (const double heading_deg : {0.0, 30.0}) {
+    SoilOptions options;
+    options.avalanches = false;
+    SoilBed bed(HeightField::flat(1.0, 0.01), soil_preset("viper"), options);
+    Footprint belt = Footprint::track(0.0925, 0.03, 0.03);
+    ContactMemory memory;
+    FootprintMotion motion;
+    motion.mass_kg = std::numeric_limits<double>::infinity();
+    motion.velocity.z() = -0.005;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() =
+        (Eigen::AngleAxisd(heading_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(-0.2, Eigen::Vector3d::UnitY()))  // nose up
+            .toRotationMatrix();
+    const Eigen::Vector2d ahead = pose.linear().col(0).head<2>().normalized();
+    constexpr double kDepth_m = 0.01;
+    double depth_m = 0.0;
+    while (depth_m < kDepth_m) {
+      depth_m -= motion.velocity.z() * kStep_s;
+      pose.translation().z() = 0.03 + 0.0925 * std::sin(0.2) - depth_m;
+      belt.set_pose(pose);
+      bed.press(belt, motion, kStep_s, memory);
+      bed.end_step();
+    }
+    double raised = 0.0;
+    double raised_ahead = 0.0;
+    double sunk_ahead = 0.0;
+    for (int iy = 0; iy < bed.surface().ny(); ++iy) {
+      for (int ix = 0; ix < bed.surface().nx(); ++ix) {
+        const double height = bed.surface().node(ix, iy);
+        const bool in_front =
+            Eigen::Vector2d(bed.surface().node_x(ix), bed.surface().node_y(iy)).dot(ahead) > 0.0;
+        raised += std::max(0.0, height);
+        if (in_front) raised_ahead += std::max(0.0, height);
+        if (in_front) sunk_ahead -= std::min(0.0, height);
+      }
+    }
+    EXPECT_GT(raised, 0.0);
+    EXPECT_EQ(sunk_ahead, 0.0) << "its front half hangs in the air";
+    EXPECT_LT(raised_ahead, 0.05 * raised) << heading_deg;
+  }
+}
+
 TEST(SoilPowerTableTest, IsThePowerAtAnyDepth) {
   for (const double exponent : {0.5, 0.793, 1.1, 1.6}) {
     const PowerTable table(exponent);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/physics/soil/footprint_path.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
 namespace screed {
@@ -150,6 +151,24 @@ TEST(SoilPath, EndsWhereATurnLeavesIt) {
     EXPECT_NEAR(wheel.path().travel_m, std::sqrt(kWidth_m * 0.5 / 5.0), 1e-12);
     wheel.move({0.0, 0.1, 0.0});  // turns on the spot
     EXPECT_EQ(wheel.path().travel_m, 0.0);
+  }
+}
+
+// What has pitched by b lies in other axes than it came in: a straight path in its own is wrong by
+// s b at s behind it. Of a pitch on the way, what came before it counts less and less.
+TEST(SoilPath, EndsWhereTheBodyHasPitchedAgainstIt) {
+  for (const double rate : {-2.0, 2.0}) {
+    MovedWheel wheel;
+    wheel.move({0.5, 0.0, 0.01}, 400);
+    ASSERT_NEAR(wheel.path().travel_m, 2.0 * kRadius_m, 1e-12);
+    wheel.omega.y() = rate;
+    wheel.move({0.0, 0.0, 0.0}, 10);  // rocks on the spot
+    EXPECT_NEAR(wheel.path().bend_rad, rate * 10 * kStep_s, 1e-12);
+    EXPECT_NEAR(wheel.path().travel_m, kPathError_m / 0.02, 1e-12);
+    wheel.omega.y() = 0.0;
+    wheel.move({0.5, 0.0, 0.0}, 1200);  // ten times its length
+    EXPECT_NEAR(wheel.path().bend_rad, 0.0, 1e-5);
+    EXPECT_NEAR(wheel.path().travel_m, 2.0 * kRadius_m, 1e-12);
   }
 }
 

@@ -1,0 +1,20 @@
+// A robot in the middle of a drive: what it takes to go on from there.
+#pragma once
+
+#include <array>
+
+#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/standin/planar_pose.h"
+
+namespace screed {
+
+struct DrivingState {
+  PlanarPose pose;
+  FrameMotion last;         ///< of the last frame
+  FrameMotion before_last;  ///< and of the one before
+  std::array<double, 2> track_speed_m_per_s{};
+  std::array<double, 2> shaft_angle_rad{};
+  Battery battery;
+};
+
+}  // namespace screed
