@@ -28,6 +28,17 @@ SESSIONS ?= $(wildcard host_sim/data/experiments/sessions/*.ini)
 sessions: $(SCREED)  ## record the thesis' training sessions into out/sessions (SESSIONS='FILE...' ARGS='--frames 800')
 	@$(SCREED) record $(SESSIONS) --out $(OUT)/sessions $(ARGS)
 
+# ---- the stand-in beside recorded drives ----------------------------------------------------------------------------------------
+
+STANDIN := host_sim/data/experiments/sessions/standin/standin
+STANDIN_OUT := $(OUT)/sessions/standin$(if $(FRAMES),-$(FRAMES))
+.PHONY: standin-check
+standin-check: $(SCREED)  ## record drives and judge the stand-in beside them (5 minutes; ROWS='c_*': those of the choice; short: FRAMES=6000)
+	@$(SCREED) record $(STANDIN).ini --table $(STANDIN).csv --rows '$(or $(ROWS),e_*)' --missing --out $(STANDIN_OUT) \
+	   $(if $(FRAMES),--frames $(FRAMES))
+	@for drive in tracks firmware ; do $(SCREED) nn rollout $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001 --drive $$drive $(ARGS) ; done
+	@$(SCREED) nn ground $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001
+
 # ---- V3, and what tracks do to the ground --------------------------------------------------------------------------------------
 
 V3 := host_sim/data/experiments/sessions/v3/v3
@@ -37,8 +48,7 @@ v3-sessions: $(SCREED)
 	@$(SCREED) record $(V3).ini --table $(V3).csv --missing --out $(V3_OUT) $(if $(FRAMES),--frames $(FRAMES))
 surrogate-v3: v3-sessions  ## record V3's sessions, train it, drive it beside the physics (two hours; short: FRAMES=800 ARGS='--steps 20')
 	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(V3_OUT) --out $(OUT)/v3.json $(ARGS)
-	@$(SCREED) nn rollout $(V3_OUT)/e_*-0001 --model $(OUT)/v3.json --fit $(V3_OUT)/t_viper-0001 \
-	   --fit $(V3_OUT)/t_dry_sand-0001 --fit $(V3_OUT)/t_clay-0001 --out $(OUT)/rollouts
+	@$(SCREED) nn rollout $(V3_OUT)/e_*-0001 --model $(OUT)/v3.json --out $(OUT)/rollouts
 terrain-tracks: v3-sessions  ## train what tracks do to the ground of the surrogate world (short: FRAMES=800 ARGS='--generations 1 --seconds 2')
 	@$(SCREED) terrain-net train-tracks $(V3_OUT)/t_*-0001 --out $(OUT)/terrain_tracks.json $(ARGS) \
 	   --test $(V3_OUT)/e_ding_2011_b-0001 --test $(V3_OUT)/e_lete_sand_b-0001

@@ -46,7 +46,8 @@ void extend_path(const Footprint& footprint, const Eigen::Vector3d& displacement
   const double sunk = std::max(0.0, -displacement.dot(axes.col(2)));
   const double length = footprint.half().x() + footprint.radius();
   const double share = std::abs(along) / length;
-  path.bend_rad = share < 1.0 ? path.bend_rad + turned.y() - share * path.bend_rad : 0.0;
+  const double pitched = footprint.is_wheel() ? 0.0 : turned.y();
+  path.bend_rad = share < 1.0 ? path.bend_rad + pitched - share * path.bend_rad : 0.0;
   const double unbent = unbent_length(path);
   path.travel_m = std::clamp(path.travel_m, -unbent, unbent);
   if (along * path.travel_m < 0.0) {

@@ -23,7 +23,7 @@ inline constexpr double kPathError_m = 2e-4;
 /// in a turn, as radius R of the path, no further than where the straight path leaves the curved
 /// one by half the width w: s^2 / (2 R) = w / 2. A footprint that has pitched, as over a crest,
 /// lies in other axes than those that it came in: the past tells no further back than where they
-/// part by kPathError_m.
+/// part by kPathError_m. A wheel is round however it pitches.
 ///
 /// What the footprint sinks by beyond |s|, standing or slipping on the spot, brings it down to
 /// where it had been lower on its path: the far end of the path comes up by that until it is level

@@ -190,6 +190,30 @@ void print_ranges(const std::vector<nn::SessionRollouts>& all,
   }
 }
 
+/// By how much the first is nearer to the recording than each of the others, from the same starts:
+/// median of the differences and its 95 % range over sessions.
+void print_paired(const std::vector<nn::SessionRollouts>& all,
+                  const std::vector<nn::SurrogateFactory>& surrogates, bool straight) {
+  const std::size_t distance = nn::kRolloutDistances_m.size() - 1;
+  for (std::size_t i = 1; i < surrogates.size(); ++i) {
+    std::vector<std::vector<double>> by_session;
+    std::vector<double> values;
+    for (const nn::SessionRollouts& session : all) {
+      const Column own = column_of({session}, 0, distance, straight);
+      Column column = column_of({session}, i, distance, straight);
+      if (column.place.empty()) continue;
+      for (std::size_t k = 0; k < column.place.size(); ++k) column.place[k] -= own.place[k];
+      by_session.push_back(column.place);
+      values.insert(values.end(), column.place.begin(), column.place.end());
+    }
+    if (values.empty()) continue;
+    const std::array<double, 2> range = range_of(by_session, 0.5);
+    std::printf("  %s nearer than %s: median %.2f%% (%.2f to %.2f) of the distance\n",
+                surrogates[0].name.c_str(), surrogates[i].name.c_str(), quantile(values, 0.5),
+                range[0], range[1]);
+  }
+}
+
 /// How far one stand-in leads from another: distance of the robots at the end of every rollout's
 /// way, in per cent of it.
 void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t one,
@@ -323,7 +347,10 @@ int run_rollout(const RolloutArguments& arguments) {
   if (all.size() > 1) {
     std::printf("\nall sessions\n");
     for (const bool straight : {true, false}) print_table(all, surrogates, straight);
-    for (const bool straight : {true, false}) print_ranges(all, surrogates, straight);
+    for (const bool straight : {true, false}) {
+      print_ranges(all, surrogates, straight);
+      print_paired(all, surrogates, straight);
+    }
   }
   std::printf("\n");
   for (const std::size_t floating : floats) {

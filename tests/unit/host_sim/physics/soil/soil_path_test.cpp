@@ -18,8 +18,9 @@ constexpr double kStep_s = 0.001;
 /// A wheel in the soil that is moved as the test wants.
 class MovedWheel {
  public:
-  explicit MovedWheel(const SoilOptions& options = {})
-      : bed_(HeightField(61, 61, 0.005, true), soil_preset("lete_sand"), options) {
+  explicit MovedWheel(const SoilOptions& options = {},
+                      const Footprint& shape = Footprint::wheel(kRadius_m, kWidth_m))
+      : bed_(HeightField(61, 61, 0.005, true), soil_preset("lete_sand"), options), wheel_(shape) {
     pose.translation().z() = kRadius_m - 0.02;
   }
   void move(const Eigen::Vector3d& velocity, int steps = 1) {
@@ -42,7 +43,7 @@ class MovedWheel {
 
  private:
   SoilBed bed_;
-  Footprint wheel_ = Footprint::wheel(kRadius_m, kWidth_m);
+  Footprint wheel_;
 };
 
 /// The mean gradient after so many steps of one gradient, each of this length.
@@ -156,20 +157,27 @@ TEST(SoilPath, EndsWhereATurnLeavesIt) {
 
 // What has pitched by b lies in other axes than it came in: a straight path in its own is wrong by
 // s b at s behind it. Of a pitch on the way, what came before it counts less and less.
-TEST(SoilPath, EndsWhereTheBodyHasPitchedAgainstIt) {
+TEST(SoilPath, EndsWhereABeltHasPitchedAgainstIt) {
+  constexpr double kHalf_m = 0.05;
+  constexpr double kLength_m = 2.0 * (kHalf_m + kRadius_m);
   for (const double rate : {-2.0, 2.0}) {
-    MovedWheel wheel;
-    wheel.move({0.5, 0.0, 0.01}, 400);
-    ASSERT_NEAR(wheel.path().travel_m, 2.0 * kRadius_m, 1e-12);
-    wheel.omega.y() = rate;
-    wheel.move({0.0, 0.0, 0.0}, 10);  // rocks on the spot
-    EXPECT_NEAR(wheel.path().bend_rad, rate * 10 * kStep_s, 1e-12);
-    EXPECT_NEAR(wheel.path().travel_m, kPathError_m / 0.02, 1e-12);
-    wheel.omega.y() = 0.0;
-    wheel.move({0.5, 0.0, 0.0}, 1200);  // ten times its length
-    EXPECT_NEAR(wheel.path().bend_rad, 0.0, 1e-5);
-    EXPECT_NEAR(wheel.path().travel_m, 2.0 * kRadius_m, 1e-12);
+    MovedWheel belt({}, Footprint::track(kHalf_m, kRadius_m, kWidth_m));
+    belt.move({0.5, 0.0, 0.0}, 600);
+    ASSERT_NEAR(belt.path().travel_m, kLength_m, 1e-12);
+    belt.omega.y() = rate;
+    belt.move({0.0, 0.0, 0.0}, 10);  // rocks on the spot
+    EXPECT_NEAR(belt.path().bend_rad, rate * 10 * kStep_s, 1e-12);
+    EXPECT_NEAR(belt.path().travel_m, kPathError_m / 0.02, 1e-12);
+    belt.omega.y() = 0.0;
+    belt.move({0.5, 0.0, 0.0}, 3000);  // many times its length
+    EXPECT_NEAR(belt.path().bend_rad, 0.0, 1e-5);
+    EXPECT_NEAR(belt.path().travel_m, kLength_m, 1e-12);
   }
+  MovedWheel wheel;  // is as round as before
+  wheel.move({0.5, 0.0, 0.0}, 400);
+  wheel.omega.y() = 2.0;
+  wheel.move({0.0, 0.0, 0.0}, 10);
+  EXPECT_NEAR(wheel.path().travel_m, 2.0 * kRadius_m, 1e-12);
 }
 
 // A wheel that has come up on its way stands on nothing until it has sunk by that: then the soil
