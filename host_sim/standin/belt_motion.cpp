@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / kTickRate_hz;
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which rolling resists in full
-constexpr double kLeastContact_m = 0.002;       // of a patch: what touches less is as much
+constexpr double kMinContact_m = 0.002;         // of a patch: what touches less is as much
 
 // std::hypot guards against overflows that there are none of, and takes ten times as long.
 double length_of(double x, double y) {
@@ -102,7 +102,7 @@ void BeltMotion::carry(std::array<Patch, kPatches>& belt, double speed) const {
       continue;  // before contact begins, or after its end
     }
     // From the middle of what touches of the patch before, or from where contact begins.
-    const double way = std::max(kLeastContact_m, 0.5 * (before_m + patch.touching_m));
+    const double way = std::max(kMinContact_m, 0.5 * (before_m + patch.touching_m));
     before_m = patch.touching_m;
     const double share =
         std::min(1.0, kFrame_s * fitted_rate(std::abs(speed) / way, patch.slip * per_modulus_));

@@ -48,8 +48,10 @@ TEST_F(StandIn, ItsGroundBecomesWhatTheRecordedOneBecame) {
 
 TEST_F(StandIn, ItsRolloutsStandBesideBaselinesOfTheVeryDrive) {
   const std::string drive = recorded("c_viper_straight");
-  for (const std::string how : {"tracks", "firmware"}) {
-    const Result result = run("nn rollout " + drive + " --drive " + how);
+  for (const char* how : {"tracks", "firmware"}) {
+    std::string command = "nn rollout ";
+    command.append(drive).append(" --drive ").append(how);
+    const Result result = run(command);
     ASSERT_EQ(result.exit_code, 0) << result.err;
     for (const char* name : {"stand-in", "no slip", "constant slip", "slip by slope",
                              "rotation centres", "centres and slope"}) {

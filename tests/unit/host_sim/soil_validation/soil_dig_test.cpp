@@ -56,7 +56,7 @@ TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
   expect_raised(2.9, kCharge, charge);
   expect_sunk(2.5, kCharge, charge);
   EXPECT_LT(charge.deepest_m, 0.0012);  // nowhere deeper than particles
-  EXPECT_GT(charge.distance_m, 0.5);  // it comes over the mound
+  EXPECT_GT(charge.distance_m, 0.5);    // it comes over the mound
 }
 
 // Volume times the way along the slip. Gravel's drag share was fitted to the 60 % slip; strokes on

@@ -74,11 +74,11 @@ TEST(BeltGround, AStraightRutIsAsDeepAsTheBeltsStand) {
       PlanarPose pose{-0.6 * std::cos(heading_rad), -0.6 * std::sin(heading_rad) + aside_m,
                       heading_rad};
       ground.place(0, pose);
-      const double way_m = 1.2;
+      const double distance_m = 1.2;
       constexpr int kStrides = 120;
       for (int i = 0; i < kStrides; ++i) {
         BeltStride stride;
-        stride.motion.forward_m = way_m / kStrides;
+        stride.motion.forward_m = distance_m / kStrides;
         pose.move(stride.motion);
         stride.pose = pose;
         ground.press(0, stride);
@@ -87,7 +87,7 @@ TEST(BeltGround, AStraightRutIsAsDeepAsTheBeltsStand) {
       const double edge = ground.surface().spacing_m();
       const double volume =
           static_cast<double>(ground.balance().compacted) * kHeightUnit_m * edge * edge;
-      const double area = 2.0 * tracks.width_m * (way_m + 2.0 * tracks.half_length_m);
+      const double area = 2.0 * tracks.width_m * (distance_m + 2.0 * tracks.half_length_m);
       const double depth = 0.5 * (ground.sinkage_m(0, 0) + ground.sinkage_m(0, 1));
       EXPECT_NEAR(volume / area, depth, 0.2 * depth) << aside_m << " m, " << heading_rad;
     }
