@@ -7,6 +7,7 @@
 #include "hal/sample.h"
 #include "host_sim/leveling/robot_scale.h"
 #include "host_sim/physics/terrain/low_pass.h"
+#include "host_sim/physics/terrain/terrain_change.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/height_export.h"
@@ -29,15 +30,6 @@ HeightField change_of(const HeightField& before, const HeightField& after) {
     }
   }
   return change;
-}
-
-double lowered_cm3(const HeightField& change) {
-  std::int64_t sum = 0;
-  for (int iy = 0; iy < change.ny(); ++iy) {
-    for (int ix = 0; ix < change.nx(); ++ix) sum -= std::min(0, change.node(ix, iy));
-  }
-  const double cell_m2 = change.spacing_m() * change.spacing_m();
-  return kCubicCentimetres * static_cast<double>(sum) * kHeightUnit_m * cell_m2;
 }
 
 double robot_scale_rms_mm(const HeightField& field) {
@@ -88,8 +80,8 @@ GroundCheck check_ground(const std::filesystem::path& session_folder, double sec
   check.driven_s = static_cast<double>(end - begin - 1) / kTickRate_hz;
   check.change_mm = robot_scale_rms_mm(real);
   check.error_mm = robot_scale_rms_mm(change_of(real, standin));
-  check.moved_cm3 = lowered_cm3(real);
-  check.standin_moved_cm3 = lowered_cm3(standin);
+  check.moved_cm3 = kCubicCentimetres * terrain_change(before, after).cut_m3;
+  check.standin_moved_cm3 = kCubicCentimetres * terrain_change(before, plant.terrain()).cut_m3;
   check.volume_error = plant.volume_balance().error() - volume_before;
   return check;
 }
