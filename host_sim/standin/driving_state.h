@@ -10,8 +10,7 @@ namespace screed {
 
 struct DrivingState {
   PlanarPose pose;
-  FrameMotion last;         ///< of the last frame
-  FrameMotion before_last;  ///< and of the one before
+  FrameMotion last;  ///< of the last frame
   std::array<double, 2> track_speed_m_per_s{};
   std::array<double, 2> shaft_angle_rad{};
   Battery battery;

@@ -3,14 +3,11 @@
 // of 10 ms.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
-
-#include "host_sim/physics/soil/soil_parameters.h"
 
 namespace screed::nn {
 
@@ -18,18 +15,8 @@ enum class MotionSignal : std::uint8_t {
   kForward1,
   kSideways1,
   kTurn1,
-  kForward2,
-  kSideways2,
-  kTurn2,
   kTrackLeft,
   kTrackRight,
-  kTrackLeft1,
-  kTrackRight1,
-  kTrackLeft2,
-  kTrackRight2,
-  kForwardSettling,
-  kSidewaysSettling,
-  kTurnSettling,
   kWheelLeft,
   kWheelRight,
   kPitch,
@@ -40,14 +27,8 @@ enum class MotionSignal : std::uint8_t {
   kLean,
   kSlide,
   kPivot,
-  kSoilStiffness,
-  kSoilExponent,
-  kSoilCohesion,
-  kSoilFriction,
-  kSoilShear,
-  kSoilSinkage,
 };
-inline constexpr std::size_t kMotionSignals = 31;
+inline constexpr std::size_t kMotionSignals = 15;
 
 struct MotionSignalInfo {
   MotionSignal signal;
@@ -59,11 +40,6 @@ struct MotionSignalInfo {
 /// Every signal, in the order of the enumeration.
 std::span<const MotionSignalInfo> motion_signals();
 std::optional<MotionSignal> motion_signal_named(std::string_view name);
-
-inline constexpr std::size_t kSoilSignals = 6;
-inline constexpr MotionSignal kFirstSoilSignal = MotionSignal::kSoilStiffness;
-/// A soil as networks see it: kSoilSignals numbers from kFirstSoilSignal on.
-std::array<double, kSoilSignals> soil_signals(const SoilParameters& soil);
 
 constexpr std::size_t row_of(MotionSignal signal) {
   return static_cast<std::size_t>(signal);

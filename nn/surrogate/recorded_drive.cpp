@@ -62,7 +62,6 @@ DrivingState RecordedDrive::state(std::uint64_t row, double counts_per_turn) con
   DrivingState state;
   state.pose = poses[row];
   state.last = motions[row];
-  state.before_last = motions[row - 1];
   state.track_speed_m_per_s = {frame.track_left, frame.track_right};
   const auto angle = [&](std::uint16_t count) {
     return (count + 0.5) / counts_per_turn * 2.0 * std::numbers::pi;

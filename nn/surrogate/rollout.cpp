@@ -1,9 +1,7 @@
 #include "nn/surrogate/rollout.h"
 
 #include <algorithm>
-#include <optional>
 
-#include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/session/height_export.h"
@@ -11,17 +9,13 @@
 #include "host_sim/standin/standin_plant.h"
 #include "nn/surrogate/recorded_drive.h"
 #include "nn/surrogate/rollout_robot.h"
-#include "nn/terrain/sinkage_replay.h"
 
 namespace screed::nn {
 namespace {
 
 Rollout by_tracks(const RecordedDrive& recording, std::uint64_t start, std::uint64_t end,
                   const HeightField& ground, Surrogate robot) {
-  const SimFrame& now = recording.frames[start];
-  robot.set_soil(0, recording.soil);
-  robot.set_pose(0, recording.poses[start], recording.motions[start], recording.motions[start - 1]);
-  robot.set_tracks(0, now.track_left, now.track_right);
+  robot.set_pose(0, recording.poses[start], recording.motions[start]);
   RolloutChecker checker(recording, start);
   for (std::uint64_t row = start + 1; row < end; ++row) {
     const SimFrame& frame = recording.frames[row];
@@ -71,14 +65,6 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
   result.source = info.experiment_name;
   result.by_surrogate.resize(surrogates.size());
   RolloutRobot robot(info, recording.experiment);
-  std::optional<DriveStrides> strides;
-  std::optional<SinkageReplay> pressed;
-  if (options.bearing != nullptr) {
-    if (options.drive == RolloutDrive::kTracks) {
-      throw InputError("rollouts: deformable ground needs --drive firmware");
-    }
-    pressed.emplace(strides.emplace(session_folder));
-  }
   const std::uint64_t rows = recording.frames.size();
   const std::uint64_t begin = recording.first + 2;
   std::uint64_t next = begin;
@@ -93,8 +79,6 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
     // A start from which not even the first distance is travelled gives no error.
     if (recording.distances[end - 1] - recording.distances[row] < kRolloutDistances_m[0]) continue;
     const HeightField ground = field_of(recording.session.heights_after(row + 1));
-    std::optional<HeightField> sinkage;
-    if (pressed.has_value()) sinkage = pressed->after(strides->ended_before(row + 1)).sinkage();
     for (std::size_t i = 0; i < surrogates.size(); ++i) {
       report_progress(options.progress, "rolling out", row * surrogates.size() + (end - row) * i,
                       rows * surrogates.size());
@@ -114,7 +98,6 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
             by_tracks(recording, row, end, ground, surrogates[i].robot()));
       } else {
         SurrogatePlant plant(ground, model, plant_options, surrogates[i].robot());
-        if (sinkage.has_value()) plant.enable_deformation(options.bearing, &*sinkage);
         result.by_surrogate[i].push_back(by_firmware(recording, row, end, plant, robot));
       }
     }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,15 +40,12 @@ struct RolloutOptions {
   /// the last of the distances, so that no frame is driven twice.
   std::size_t starts = 0;
   std::uint64_t max_frames = 40000;  ///< of a rollout: 400 s, more than 10 m take
-  /// The tracks deform the terrain, by this network; null: it stays as it was at the start.
-  /// Of RolloutDrive::kFirmware alone.
-  std::shared_ptr<const BearingCapacityNetwork> bearing;
   /// Of the task "rolling out" over a session, after every rollout; may be empty.
   TaskProgress progress;
 };
 
-/// Throws InputError for a session that cannot be followed (nn/surrogate/motion_series.h), and when
-/// terrain is to deform below tracks that no firmware drives.
+/// The stand-in changes its ground; below what else is rolled out it stays as it was at the start.
+/// Throws InputError for a session that cannot be followed (nn/surrogate/motion_series.h).
 SessionRollouts roll_out(const std::filesystem::path& session_folder,
                          const std::vector<SurrogateFactory>& surrogates,
                          const RolloutOptions& options);

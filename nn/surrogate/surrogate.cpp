@@ -10,7 +10,6 @@
 namespace screed::nn {
 namespace {
 
-constexpr double kFrame_s = 0.01;
 constexpr double kActivationOfOne = 32768.0;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFloorBias = 65536.0;  // makes what is rounded towards zero positive
@@ -42,11 +41,6 @@ Support support_at(const HeightField& ground, const SupportGeometry& geometry, d
   return support_on(height, geometry, x_m, y_m, cos_heading, sin_heading);
 }
 
-FrameMotion SkidKinematics::motion(double left_m_per_s, double right_m_per_s) const {
-  return {0.5 * (left_m_per_s + right_m_per_s) * speed_share * kFrame_s, 0.0,
-          (right_m_per_s - left_m_per_s) / tread_m * kFrame_s};
-}
-
 Surrogate::Surrogate(const TrackKinematics& kinematics, const SupportGeometry& geometry,
                      std::size_t robots)
     : geometry_(geometry),
@@ -63,7 +57,7 @@ Surrogate::Surrogate(const TrackKinematics& kinematics, const SupportGeometry& g
 
 Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::size_t robots,
                      Arithmetic arithmetic, std::optional<BatchKernel> kernel)
-    : Surrogate(SkidKinematics{}, geometry, robots) {
+    : Surrogate(TrackKinematics{}, geometry, robots) {
   kinematics_.reset();
   arithmetic_ = arithmetic;
   std::size_t max_inputs = 0;
@@ -143,17 +137,13 @@ Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::s
   out_.resize(max_outputs * robots_);
 }
 
-void Surrogate::set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last,
-                         const FrameMotion& before_last) {
+void Surrogate::set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last) {
   x_[robot] = pose.x_m;
   y_[robot] = pose.y_m;
   heading_[robot] = pose.heading_rad;
   row(MotionSignal::kForward1)[robot] = last.forward_m;
   row(MotionSignal::kSideways1)[robot] = last.sideways_m;
   row(MotionSignal::kTurn1)[robot] = last.turn_rad;
-  row(MotionSignal::kForward2)[robot] = before_last.forward_m;
-  row(MotionSignal::kSideways2)[robot] = before_last.sideways_m;
-  row(MotionSignal::kTurn2)[robot] = before_last.turn_rad;
   for (Network& network : networks_) {
     for (InputPreprocessing& stages : network.stages) stages.reset(robot);
   }
@@ -167,22 +157,6 @@ void Surrogate::displace(std::size_t robot, double x_m, double y_m) {
   y_[robot] += y_m;
   row(MotionSignal::kForward1)[robot] += c * x_m + s * y_m;
   row(MotionSignal::kSideways1)[robot] += c * y_m - s * x_m;
-}
-
-void Surrogate::set_soil(std::size_t robot, const SoilParameters& soil) {
-  const std::array<double, kSoilSignals> values = soil_signals(soil);
-  for (std::size_t i = 0; i < kSoilSignals; ++i) {
-    signals_[(row_of(kFirstSoilSignal) + i) * robots_ + robot] = values.at(i);
-  }
-}
-
-void Surrogate::set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s) {
-  for (const MotionSignal left : {MotionSignal::kTrackLeft, MotionSignal::kTrackLeft1}) {
-    row(left)[robot] = left_m_per_s;
-  }
-  for (const MotionSignal right : {MotionSignal::kTrackRight, MotionSignal::kTrackRight1}) {
-    row(right)[robot] = right_m_per_s;
-  }
 }
 
 void Surrogate::update_slope(const HeightField& ground) {
@@ -275,14 +249,21 @@ void Surrogate::predict_float(const Network& network) {
   }
 }
 
+/// What is not driven stands: at rest a network's answer is nearly, but not quite nothing.
+void Surrogate::hold_standing() {
+  constexpr double kStanding_m_per_s = 1e-3;
+  const double* left = row(MotionSignal::kTrackLeft);
+  const double* right = row(MotionSignal::kTrackRight);
+  for (std::size_t i = 0; i < robots_; ++i) {
+    if (std::max(std::abs(left[i]), std::abs(right[i])) >= kStanding_m_per_s) continue;
+    for (std::vector<double>& values : motion_) values[i] = 0.0;
+  }
+}
+
 void Surrogate::move() {
-  const auto shift = [&](MotionSignal last, MotionSignal before, const std::vector<double>& now) {
-    std::copy_n(row(last), robots_, row(before));
-    std::copy_n(now.data(), robots_, row(last));
-  };
-  shift(MotionSignal::kForward1, MotionSignal::kForward2, motion_[0]);
-  shift(MotionSignal::kSideways1, MotionSignal::kSideways2, motion_[1]);
-  shift(MotionSignal::kTurn1, MotionSignal::kTurn2, motion_[2]);
+  std::copy_n(motion_[0].data(), robots_, row(MotionSignal::kForward1));
+  std::copy_n(motion_[1].data(), robots_, row(MotionSignal::kSideways1));
+  std::copy_n(motion_[2].data(), robots_, row(MotionSignal::kTurn1));
   for (std::size_t i = 0; i < robots_; ++i) {
     PlanarPose pose{x_[i], y_[i], heading_[i]};
     pose.move({motion_[0][i], motion_[1][i], motion_[2][i]});
@@ -294,35 +275,11 @@ void Surrogate::move() {
 
 void Surrogate::update_tracks(std::span<const double> left_m_per_s,
                               std::span<const double> right_m_per_s) {
-  std::copy_n(row(MotionSignal::kTrackLeft1), 2 * robots_, row(MotionSignal::kTrackLeft2));
-  std::copy_n(row(MotionSignal::kTrackLeft), 2 * robots_, row(MotionSignal::kTrackLeft1));
   std::copy_n(left_m_per_s.data(), robots_, row(MotionSignal::kTrackLeft));
   std::copy_n(right_m_per_s.data(), robots_, row(MotionSignal::kTrackRight));
   const double* tracks = row(MotionSignal::kTrackLeft);
   double* wheels = row(MotionSignal::kWheelLeft);
   for (std::size_t i = 0; i < 2 * robots_; ++i) wheels[i] = tracks[i] / geometry_.wheel_radius_m;
-}
-
-void Surrogate::update_settling() {
-  const double* left = row(MotionSignal::kTrackLeft);
-  const double* right = row(MotionSignal::kTrackRight);
-  const double* left1 = row(MotionSignal::kTrackLeft1);
-  const double* right1 = row(MotionSignal::kTrackRight1);
-  const double* left2 = row(MotionSignal::kTrackLeft2);
-  const double* right2 = row(MotionSignal::kTrackRight2);
-  const double* last = row(MotionSignal::kForward1);
-  const double* before = row(MotionSignal::kForward2);
-  double* to = row(MotionSignal::kForwardSettling);
-  for (std::size_t i = 0; i < robots_; ++i) {
-    const FrameMotion now = kNominalSkid.motion(left[i], right[i]);
-    const FrameMotion now1 = kNominalSkid.motion(left1[i], right1[i]);
-    const FrameMotion now2 = kNominalSkid.motion(left2[i], right2[i]);
-    const std::size_t side = robots_ + i;
-    const std::size_t turn = 2 * robots_ + i;
-    to[i] = settling(last[i], before[i], now.forward_m, now1.forward_m, now2.forward_m);
-    to[side] = settling(last[side], before[side], 0.0, 0.0, 0.0);
-    to[turn] = settling(last[turn], before[turn], now.turn_rad, now1.turn_rad, now2.turn_rad);
-  }
 }
 
 void Surrogate::update_products() {
@@ -343,7 +300,6 @@ void Surrogate::update_products() {
 }
 
 void Surrogate::predict() {
-  update_settling();
   if (products_wanted_) update_products();
   if (kinematics_.has_value()) {
     for (std::size_t i = 0; i < robots_; ++i) {
@@ -363,6 +319,7 @@ void Surrogate::predict() {
       predict_integer(network);
     }
   }
+  if (!networks_.empty()) hold_standing();
   move();
 }
 

@@ -4,6 +4,7 @@
 // A frame is 10 ms. Pitch and roll come from the height map under the tracks, the network outputs
 // the displacements forward and sideways and the turn, and these move the robot's pose:
 //   x += forward cos(theta + turn/2) - sideways sin(theta + turn/2), y likewise, theta += turn.
+// A robot whose tracks stand stands, whatever the network says.
 // All arithmetic up to the network's outputs is exact, so any number of robots give the same bits
 // one by one and together.
 #pragma once
@@ -29,31 +30,6 @@ namespace screed::nn {
 Support support_at(const HeightField& ground, const SupportGeometry& geometry, double x_m,
                    double y_m, double cos_heading, double sin_heading);
 
-/// Motion from track speeds by two constants.
-struct SkidKinematics {
-  double speed_share = 1.0;  ///< of the tracks' mean speed
-  double tread_m = 0.127;    ///< that turns as much as the robot does
-
-  FrameMotion motion(double left_m_per_s, double right_m_per_s) const;
-};
-
-/// What tracks on soil do more or less whatever the soil, and how a robot that does otherwise
-/// returns to it: in an oscillation on its elastic ground contact that dies out within a tenth of a
-/// second. With d the motion less that of kNominalSkid, d(t) = kSettlingLast d(t-1) +
-/// kSettlingBeforeLast d(t-2). A network that adds to it cannot run away, and one that adds nothing
-/// is still right in the mean.
-inline constexpr SkidKinematics kNominalSkid = {0.96, 0.275};
-inline constexpr double kSettlingLast = 1.7;
-inline constexpr double kSettlingBeforeLast = -0.75;
-
-/// The next value of one of the three motions by that, from those of the last two frames and of
-/// kNominalSkid in the three.
-constexpr double settling(double last, double before_last, double skid, double skid_last,
-                          double skid_before_last) {
-  return skid + kSettlingLast * (last - skid_last) +
-         kSettlingBeforeLast * (before_last - skid_before_last);
-}
-
 class Surrogate {
  public:
   enum class Arithmetic : std::uint8_t {
@@ -68,19 +44,13 @@ class Surrogate {
             std::optional<BatchKernel> kernel = std::nullopt);
   /// No network: these constants move the robots.
   Surrogate(const TrackKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots);
-  Surrogate(const SkidKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots)
-      : Surrogate(skid_kinematics(kinematics.speed_share, kinematics.tread_m), geometry, robots) {}
 
   std::size_t robots() const { return robots_; }
 
-  /// Puts a robot somewhere with what it has just done: the last frame's motion and the one before.
-  void set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last = {},
-                const FrameMotion& before_last = {});
+  /// Puts a robot somewhere with what it has just done: the last frame's motion.
+  void set_pose(std::size_t robot, const PlanarPose& pose, const FrameMotion& last = {});
   /// Something else moves a robot by this in the frame that has just ended.
   void displace(std::size_t robot, double x_m, double y_m);
-  void set_soil(std::size_t robot, const SoilParameters& soil);
-  /// The speeds of its tracks before the first frame.
-  void set_tracks(std::size_t robot, double left_m_per_s, double right_m_per_s);
 
   /// One frame of all robots; the speeds their tracks have at its end, a number a robot. Robots do
   /// not interact.
@@ -127,7 +97,6 @@ class Surrogate {
   double* row(MotionSignal signal) { return &signals_[row_of(signal) * robots_]; }
   const double* row(MotionSignal signal) const { return &signals_[row_of(signal) * robots_]; }
   void update_tracks(std::span<const double> left_m_per_s, std::span<const double> right_m_per_s);
-  void update_settling();
   void update_products();
   void update_slope(const HeightField& ground);
   void predict();
@@ -135,6 +104,7 @@ class Surrogate {
   void predict_integer(const Network& network);
   void predict_float(const Network& network);
   void store_output(const Channel& channel, const std::int16_t* activations);
+  void hold_standing();
   void move();
 
   SupportGeometry geometry_;

@@ -45,22 +45,12 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
 SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
                                const PlantOptions& options, Surrogate robot)
     : ground_(std::move(terrain)),
-      tracks_(track_geometry(model)),
       imu_position_(Eigen::Vector3d::Zero()),
       robot_(std::move(robot)),
       shafts_{DriveShaft(options.vehicle.motor, 1, kTurnedInertia_kg_m2),
               DriveShaft(options.vehicle.motor, 1, kTurnedInertia_kg_m2)},
       battery_(options.battery),
       vehicle_(*this) {
-  if (!options.soil.has_value()) {
-    throw InputError(
-        "the surrogate world knows soil alone: [map] model = scm, or another --hal than surrogate");
-  }
-  if (!options.vehicle.tracks || options.vehicle.track_model != TrackModel::kBelt) {
-    throw InputError(
-        "the surrogate world knows tracks alone: [vehicle] tracks = true and track_model = belt, "
-        "or another --hal than surrogate");
-  }
   if (!options.further_starts.empty()) {
     throw InputError("[robots] count = " + std::to_string(1 + options.further_starts.size()) +
                      ": networks move 1; several robots run without --model");
@@ -77,29 +67,15 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
   const int imu = model.body_index("Imu");
   if (imu >= 0) imu_position_ = model.bodies[static_cast<size_t>(imu)].pose.translation();
 
-  soil_ = *options.soil;
-  robot_.set_soil(0, soil_);
   DrivingState start;
   start.pose = {options.start.x_m, options.start.y_m, options.start.attitude.heading};
   start.battery = options.battery;
   set_state(start);
-  check_between_walls(bounds_of(ground()), outline(), {options.start.x_m, options.start.y_m});
+  check_between_walls(bounds_of(ground_), outline(), {options.start.x_m, options.start.y_m});
 }
 
-void SurrogatePlant::enable_deformation(std::shared_ptr<const BearingCapacityNetwork> network,
-                                        const HeightField* sinkage) {
-  bearing_ = std::move(network);
-  if (soil_model_) return;
-  soil_model_ = sinkage != nullptr
-                    ? std::make_unique<TrackSoilModel>(ground_, *sinkage, soil_, tracks_)
-                    : std::make_unique<TrackSoilModel>(ground_, soil_, tracks_);
-  ground_ = HeightField::flat(1.0, 0.5);
-}
-
-/// A stride's displacements in the robot's axes at its end. A robot that stands has pressed what it
-/// stands on.
-void SurrogatePlant::deform_terrain() {
-  constexpr std::uint64_t kStandingStrides = 10;
+/// Its displacements in the robot's axes at its end. What stands still changes nothing.
+void SurrogatePlant::end_stride() {
   constexpr double kStill = 1e-6;  // m, rad
   const PlanarPose pose = robot_.pose(0);
   const double c = std::cos(pose.heading_rad);
@@ -114,29 +90,32 @@ void SurrogatePlant::deform_terrain() {
   stride.sideways_m = c * dy - s * dx;
   stride.turn_rad = pose.heading_rad - stride_begin_.heading_rad;
   stride.track_m = stride_tracks_m_;
+  stride.v_left = shafts_[0].omega_rad_per_s();
+  stride.v_right = shafts_[1].omega_rad_per_s();
+  stride.pitch = now_.attitude.pitch;
+  stride.roll = now_.attitude.roll;
+  begin_stride(pose);
+  const bool still = std::abs(stride.forward_m) + std::abs(stride.sideways_m) < kStill &&
+                     std::abs(stride.turn_rad) < kStill &&
+                     std::abs(stride.track_m[0]) + std::abs(stride.track_m[1]) < kStill;
+  if (!still) ground_change_(ground_, stride);
+}
+
+void SurrogatePlant::begin_stride(const PlanarPose& pose) {
   stride_begin_ = pose;
   stride_tracks_m_ = {};
   stride_frames_ = 0;
-  const bool still = std::abs(stride.forward_m) + std::abs(stride.sideways_m) < kStill &&
-                     std::abs(stride.turn_rad) < kStill;
-  still_strides_ = still ? still_strides_ + 1 : 0;
-  if (still_strides_ > kStandingStrides) return;
-  soil_model_->step(stride, bearing_.get());
 }
 
 void SurrogatePlant::set_state(const DrivingState& state) {
-  robot_.set_pose(0, state.pose, state.last, state.before_last);
-  robot_.set_tracks(0, state.track_speed_m_per_s[kLeft], state.track_speed_m_per_s[kRight]);
+  robot_.set_pose(0, state.pose, state.last);
   for (const Side side : {kLeft, kRight}) {
     const auto i = static_cast<size_t>(side);
     shafts_[i].spin(state.track_speed_m_per_s[i] / geometry_.wheel_radius_m);
     angle_offset_rad_[i] = state.shaft_angle_rad[i] - shafts_[i].angle_rad();
   }
   battery_ = state.battery;
-  stride_begin_ = state.pose;
-  stride_tracks_m_ = {};
-  stride_frames_ = 0;
-  still_strides_ = 0;
+  begin_stride(state.pose);
   now_ = pose_on_terrain();
   before_ = now_;
   const double c = std::cos(state.pose.heading_rad);
@@ -147,9 +126,9 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   imu_velocity_before_ = velocity_;
   rate_body_ << 0.0, 0.0, state.last.turn_rad / kFrame_s;
   wrap_counts_ = {0, 0};
-  if (ground().wrap()) {
-    wrap_counts_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
-                    beds_off(now_.place.y(), ground().y_max() - ground().y_min())};
+  if (ground_.wrap()) {
+    wrap_counts_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
+                    beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
   }
 }
 
@@ -185,7 +164,7 @@ void SurrogatePlant::step(const std::array<double, 2>& duty_ratio) {
 
 SurrogatePlant::BodyPose SurrogatePlant::pose_on_terrain() const {
   const PlanarPose pose = robot_.pose(0);
-  const Support support = support_at(ground(), geometry_, pose.x_m, pose.y_m,
+  const Support support = support_at(ground_, geometry_, pose.x_m, pose.y_m,
                                      std::cos(pose.heading_rad), std::sin(pose.heading_rad));
   return {{support.roll, support.pitch, pose.heading_rad},
           {pose.x_m, pose.y_m, support.height_m + standing_height_m_}};
@@ -211,7 +190,7 @@ Eigen::AlignedBox2d SurrogatePlant::outline() const {
 }
 
 void SurrogatePlant::stop_at_walls() {
-  const Eigen::Vector2d back = out_of_walls(bounds_of(ground()), outline());
+  const Eigen::Vector2d back = out_of_walls(bounds_of(ground_), outline());
   if (!back.isZero(0.0)) robot_.displace(0, back.x(), back.y());
 }
 
@@ -222,12 +201,12 @@ void SurrogatePlant::end_frame() {
   }
   const double left = vehicle_.track_speed_m_per_s(kLeft);
   const double right = vehicle_.track_speed_m_per_s(kRight);
-  robot_.step(ground(), {&left, 1}, {&right, 1});
+  robot_.step(ground_, {&left, 1}, {&right, 1});
   stop_at_walls();
-  if (soil_model_) {
+  if (ground_change_) {
     stride_tracks_m_[kLeft] += left * kFrame_s;
     stride_tracks_m_[kRight] += right * kFrame_s;
-    if (++stride_frames_ == kStrideFrames) deform_terrain();
+    if (++stride_frames_ == kStrideFrames) end_stride();
   }
 
   before_ = now_;
@@ -244,9 +223,9 @@ void SurrogatePlant::end_frame() {
   velocity_ = (now_.place - before_.place) / kFrame_s;
   imu_velocity_before_ = imu_velocity_;
   imu_velocity_ = velocity_ + (to - from) * imu_position_ / kFrame_s;
-  if (ground().wrap()) {
-    wrap_counts_ = {beds_off(now_.place.x(), ground().x_max() - ground().x_min()),
-                    beds_off(now_.place.y(), ground().y_max() - ground().y_min())};
+  if (ground_.wrap()) {
+    wrap_counts_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
+                    beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
   }
 }
 
@@ -280,7 +259,7 @@ ChassisState SurrogatePlant::Body::chassis() const {
   ChassisState state;
   state.pose.linear() = rotation_from(plant_.now_.attitude);
   state.pose.translation() = plant_.now_.place;
-  const HeightField& ground = plant_.ground();
+  const HeightField& ground = plant_.ground_;
   if (ground.wrap()) {
     state.pose.translation().x() -=
         static_cast<double>(plant_.wrap_counts_[0]) * (ground.x_max() - ground.x_min());

@@ -2,14 +2,13 @@
 // are, below them tracks whose motion the network turns into the robot's. The firmware, its sensors
 // and its radio notice nothing.
 //
-// The terrain supports and inclines the robot. With a bearing-capacity network (nn/terrain) the
-// tracks deform it, a stride of five frames at a time; without one it stays as it is.
+// The terrain supports and inclines the robot. With a network of the terrain (nn/terrain) the
+// wheels change it, a stride of five frames at a time; without one it stays as it is.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 
 #include "host_sim/physics/vehicle/assembly.h"
@@ -18,25 +17,22 @@
 #include "host_sim/physics/world/plant.h"
 #include "host_sim/standin/driving_state.h"
 #include "nn/surrogate/surrogate.h"
-#include "nn/terrain/track_soil_model.h"
+#include "nn/terrain/terrain_network.h"
 
 namespace screed::nn {
 
 class SurrogatePlant : public Environment {
  public:
-  /// Of the options those of the physics do not count. Throws InputError when the ground is not
-  /// soil, the robot has no tracks or stands in a wall, or the model cannot be used here.
+  /// Of the options those of the physics do not count. Throws InputError when there are several
+  /// robots or one stands in a wall, or the model cannot be used here.
   SurrogatePlant(HeightField terrain, const Assembly& model, const PlantOptions& options,
                  const Model& network);
   /// The same with another surrogate, of one robot.
   SurrogatePlant(HeightField terrain, const Assembly& model, const PlantOptions& options,
                  Surrogate robot);
 
-  /// From now on the tracks deform the terrain, by this network or, when it is null, in closed
-  /// form. `sinkage`: by how much earlier passes did, where that is known
-  /// (TrackSoilModel::sinkage).
-  void enable_deformation(std::shared_ptr<const BearingCapacityNetwork> network,
-                          const HeightField* sinkage = nullptr);
+  /// From now on this changes the ground, stride by stride.
+  void change_ground_by(GroundChange change) { ground_change_ = std::move(change); }
 
   /// Goes on from there.
   void set_state(const DrivingState& state);
@@ -48,15 +44,13 @@ class SurrogatePlant : public Environment {
   int steps_per_tick() const override { return kStepsPerTick; }
   uint64_t steps() const override { return steps_; }
   double time_s() const override;
-  const HeightField& terrain() const override { return ground(); }
-  bool is_deformable() const override { return true; }
+  const HeightField& terrain() const override { return ground_; }
+  bool is_deformable() const override { return static_cast<bool>(ground_change_); }
   const VehicleState& vehicle() const override { return vehicle_; }
   const std::array<int64_t, 2>& wrap_counts() const override { return wrap_counts_; }
   Eigen::Vector3d unwrapped_position() const override;
   const Battery& battery() const override { return battery_; }
 
-  /// The terrain below the tracks; null while it does not deform.
-  const TrackSoilModel* soil_model() const { return soil_model_.get(); }
   /// Where the robot is, positions as travelled.
   PlanarPose pose() const { return robot_.pose(0); }
 
@@ -95,18 +89,14 @@ class SurrogatePlant : public Environment {
   void stop_at_walls();
   BodyPose pose_on_terrain() const;
   void set_at_rest();
-  const HeightField& ground() const { return soil_model_ ? soil_model_->surface() : ground_; }
-  void deform_terrain();
+  void begin_stride(const PlanarPose& pose);
+  void end_stride();
 
-  HeightField ground_;  ///< unless pressed_ holds it
-  SoilParameters soil_;
-  TrackGeometry tracks_;
-  std::unique_ptr<TrackSoilModel> soil_model_;
-  std::shared_ptr<const BearingCapacityNetwork> bearing_;
-  PlanarPose stride_begin_;  ///< since the ground was last pressed
+  HeightField ground_;
+  GroundChange ground_change_;
+  PlanarPose stride_begin_;
   std::array<double, 2> stride_tracks_m_{};
   std::uint64_t stride_frames_ = 0;
-  std::uint64_t still_strides_ = 0;
   SupportGeometry geometry_;
   double standing_height_m_ = 0.0;
   double tread_m_ = 0.0;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
@@ -13,14 +12,6 @@
 #include "host_sim/run/simulation/simulation.h"
 
 namespace screed::nn {
-std::array<WheelPosition, 4> wheel_positions(const Assembly& robot) {
-  std::array<WheelPosition, 4> positions;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const AssemblyWheel& wheel = robot.wheels[i % 2][i / 2];
-    positions[i] = {wheel.centre.x(), wheel.centre.y(), wheel.radius_m, i < 2};
-  }
-  return positions;
-}
 
 DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_file(run)) {
   if (!session_.has_heights()) {
@@ -31,8 +22,6 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
   robot_ = robot_model(setup, session_.info().board_name);
   wheels_ = wheel_positions(robot_);
   tracks_ = setup.experiment.vehicle.tracks;
-  on_soil_ = setup.experiment.map.is_soil();
-  if (on_soil_) soil_ = make_soil(read_experiment(run / "experiment.ini"));
   const double tick_s = 1.0 / session_.info().tick_rate_hz;
   std::vector<SimFrame> frames(session_.frames());
   constexpr std::size_t kBlock = 1024;
@@ -56,7 +45,6 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
     const SimFrame& end = frames[begin + kStrideFrames - 1];
     stride.x_m = end.x;
     stride.y_m = end.y;
-    stride.z_m = end.z;
     stride.yaw_rad = end.yaw;
     stride.forward_m = std::cos(end.yaw) * dx + std::sin(end.yaw) * dy;
     stride.sideways_m = -std::sin(end.yaw) * dx + std::cos(end.yaw) * dy;

@@ -8,41 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/session/session_reader.h"
+#include "nn/terrain/stride.h"
 
 namespace screed::nn {
-
-/// Frames of a stride: 50 ms, in which the robot comes about as far as a cell of the ground.
-inline constexpr std::uint64_t kStrideFrames = 5;
-inline constexpr double kStrideRate_hz = 100.0 / kStrideFrames;
-
-/// Where a wheel stands under the robot, m: x forward, y left.
-struct WheelPosition {
-  double x = 0.0;
-  double y = 0.0;
-  double radius_m = 0.0;
-  bool front = false;
-};
-/// Front left, front right, rear left, rear right.
-std::array<WheelPosition, 4> wheel_positions(const Assembly& robot);
-
-struct Stride {
-  double x_m = 0.0;  ///< at its end, on the bed
-  double y_m = 0.0;
-  double z_m = 0.0;
-  double yaw_rad = 0.0;
-  double forward_m = 0.0;  ///< during it, in the robot's axes at its end
-  double sideways_m = 0.0;
-  double turn_rad = 0.0;
-  std::array<double, 2> track_m{};  ///< travel of the wheels' surfaces, left and right
-  double v_left = 0.0;              ///< Table 5.1, at its end: rad/s, rad
-  double v_right = 0.0;
-  double pitch = 0.0;
-  double roll = 0.0;
-};
 
 class DriveStrides {
  public:
@@ -50,16 +21,9 @@ class DriveStrides {
   explicit DriveStrides(const std::filesystem::path& run);
 
   std::size_t size() const { return strides_.size(); }
-  /// Whole strides that have ended before a row of the session.
-  std::size_t ended_before(std::uint64_t row) const {
-    return row < first_frame_ ? 0 : static_cast<std::size_t>((row - first_frame_) / kStrideFrames);
-  }
   const Stride& operator[](std::size_t i) const { return strides_[i]; }
   const std::array<WheelPosition, 4>& wheels() const { return wheels_; }
   const Assembly& robot() const { return robot_; }
-  /// Meaningless where on_soil() is false.
-  const SoilParameters& soil() const { return soil_; }
-  bool on_soil() const { return on_soil_; }
   bool tracks() const { return tracks_; }
   const std::string& name() const { return session_.info().experiment_name; }
 
@@ -74,8 +38,6 @@ class DriveStrides {
   SessionReader session_;
   std::uint64_t first_frame_ = 0;  ///< the robot stands until here
   Assembly robot_;
-  SoilParameters soil_;
-  bool on_soil_ = false;
   bool tracks_ = false;
   std::array<WheelPosition, 4> wheels_{};
   std::vector<Stride> strides_;

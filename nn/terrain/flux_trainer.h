@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "nn/terrain/drive_strides.h"
 #include "nn/terrain/flux_network.h"
 
 namespace screed::nn {

@@ -3,8 +3,12 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "host_sim/core/atomic_file.h"
+#include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "nn/training/parameter_update.h"
 
@@ -14,6 +18,7 @@ namespace {
 using Columns = Eigen::MatrixXf;  // a column an example
 using Vector = Eigen::VectorXf;
 
+constexpr const char* kFormat = "screed-window-1";
 constexpr std::size_t kBatch = 32;
 constexpr double kRate = 0.001;
 constexpr double kL2 = 0.0001;      // thesis 6.3.1
@@ -243,6 +248,30 @@ WindowNetwork::WindowNetwork(const std::vector<const DriveStrides*>& drives, std
   const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_rows = matrix;
   matrix_.assign(by_rows.data(), by_rows.data() + by_rows.size());
   constant_.assign(constant.data(), constant.data() + constant.size());
+}
+
+WindowNetwork WindowNetwork::read(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  const auto fail = [&] { return InputError(file.string() + ": is not a window network"); };
+  if (json.is_discarded() || !json.is_object() || json.value("format", "") != kFormat) throw fail();
+  try {
+    WindowNetwork network;
+    network.matrix_ = json.at("matrix").get<std::vector<float>>();
+    network.constant_ = json.at("constant").get<std::vector<float>>();
+    if (network.matrix_.size() != kCells * kInputs || network.constant_.size() != kCells) {
+      throw fail();
+    }
+    return network;
+  } catch (const nlohmann::json::exception&) {
+    throw fail();
+  }
+}
+
+void WindowNetwork::write(const std::filesystem::path& file) const {
+  const nlohmann::ordered_json json = {
+      {"format", kFormat}, {"matrix", matrix_}, {"constant", constant_}};
+  write_file(file, json.dump() + "\n");
 }
 
 void WindowNetwork::apply(HeightField& ground, const Stride& stride,

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <vector>
@@ -29,14 +30,23 @@ class WindowNetwork {
   /// Trained on every stride of the drives: Adam, batches of 32. What the layers come to.
   WindowNetwork(const std::vector<const DriveStrides*>& drives, std::size_t epochs,
                 std::uint64_t seed, const std::function<void(std::size_t, double)>& progress);
+  /// Throws InputError when the file is no such network.
+  static WindowNetwork read(const std::filesystem::path& file);
+  /// Some 12 MB.
+  void write(const std::filesystem::path& file) const;
 
   /// Changes the ground, and `last`: kCells numbers, what it changed in the stride before in units
   /// of kOutput_m; zeros at first.
   void apply(HeightField& ground, const Stride& stride, std::vector<float>& last) const;
 
   static void add_motion(const Stride& stride, std::span<float> inputs);
+  /// kCells rows of kInputs, and a number a row.
+  const std::vector<float>& matrix() const { return matrix_; }
+  const std::vector<float>& constant() const { return constant_; }
 
  private:
+  WindowNetwork() = default;
+
   std::vector<float> matrix_;  ///< a row an output
   std::vector<float> constant_;
 };

@@ -38,19 +38,3 @@ standin-check: $(SCREED)  ## record drives and judge the stand-in beside them (5
 	   $(if $(FRAMES),--frames $(FRAMES))
 	@for drive in tracks firmware ; do $(SCREED) nn rollout $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001 --drive $$drive $(ARGS) ; done
 	@$(SCREED) nn ground $(STANDIN_OUT)/$(or $(ROWS),e_*)-0001
-
-# ---- V3, and what tracks do to the ground --------------------------------------------------------------------------------------
-
-V3 := host_sim/data/experiments/sessions/v3/v3
-V3_OUT := $(OUT)/sessions/v3$(if $(FRAMES),-$(FRAMES))
-.PHONY: v3-sessions surrogate-v3 terrain-tracks
-v3-sessions: $(SCREED)
-	@$(SCREED) record $(V3).ini --table $(V3).csv --missing --out $(V3_OUT) $(if $(FRAMES),--frames $(FRAMES))
-surrogate-v3: v3-sessions  ## record V3's sessions, train it, drive it beside the physics (two hours; short: FRAMES=800 ARGS='--steps 20')
-	@$(SCREED) nn motion nn/configurations/v3.json --sessions $(V3_OUT) --out $(OUT)/v3.json $(ARGS)
-	@$(SCREED) nn rollout $(V3_OUT)/e_*-0001 --model $(OUT)/v3.json --out $(OUT)/rollouts
-terrain-tracks: v3-sessions  ## train what tracks do to the ground of the surrogate world (short: FRAMES=800 ARGS='--generations 1 --seconds 2')
-	@$(SCREED) terrain-net train-tracks $(V3_OUT)/t_*-0001 --out $(OUT)/terrain_tracks.json $(ARGS) \
-	   --test $(V3_OUT)/e_ding_2011_b-0001 --test $(V3_OUT)/e_lete_sand_b-0001
-	@$(SCREED) terrain-net compare $(OUT)/terrain_tracks.json $(V3_OUT)/e_ding_2011_b-0001 $(V3_OUT)/e_lete_sand_b-0001 \
-	   --from $(if $(FRAMES),2,10) --pictures $(OUT)/terrain

@@ -33,7 +33,7 @@ mkdir "$tree/elsewhere"
 cd "$tree/elsewhere" || exit 1
 
 check 'an experiment of its own' "$screed" sim moved_drive --duration 1 --quiet --out native
-check 'a model of its own' "$screed" sim soft_bed --hal surrogate --model "$data/models/v3.json" --duration 1 --quiet --out surrogate
+check 'a model of its own' "$screed" sim soft_bed --hal surrogate --model "$data/models/v2_products.json" --duration 1 --quiet --out surrogate
 check 'a robot of its own' "$screed" sim four_wheels --duration 1 --quiet --out wheeled
 check 'a session' "$screed" replay native
 check 'a page of it' "$screed" report native

@@ -192,7 +192,7 @@ TEST_F(SeveralRobots, ASectionOfARobotIsForThatOneAlone) {
 TEST_F(SeveralRobots, WhatCannotBeRunIsRefusedByOneLine) {
   write_bed();
   expect_refused("--set robots.count=2 --set map.model=scm --hal surrogate --model '" +
-                     std::string(kDataFolder) + "/../../nn/models/v3.json'",
+                     std::string(kDataFolder) + "/../../nn/models/v2_products.json'",
                  "networks move 1");
   expect_refused("--set robots.count=2 --set robots.spacing=0.1", "stand in one another");
   expect_refused("--set robots.count=65", "1..64");

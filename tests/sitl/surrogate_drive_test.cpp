@@ -6,12 +6,15 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/session/session_reader.h"
-#include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
+#include "nn/terrain/terrain_network.h"
 #include "tests/sitl/program.h"
 #include "tests/sitl/test_drive.h"
 
@@ -27,10 +30,11 @@ WorldOptions on_soil() {
   return options;
 }
 
-std::unique_ptr<nn::SurrogatePlant> plant_of(HeightField ground, const WorldOptions& options,
-                                             const nn::SkidKinematics& kinematics = {}) {
-  return std::make_unique<nn::SurrogatePlant>(std::move(ground), rover5(), options,
-                                              nn::Surrogate(kinematics, nn::SupportGeometry{}, 1));
+/// Tracks that do not slip.
+std::unique_ptr<nn::SurrogatePlant> plant_of(HeightField ground, const WorldOptions& options) {
+  return std::make_unique<nn::SurrogatePlant>(
+      std::move(ground), rover5(), options,
+      nn::Surrogate(nn::skid_kinematics(1.0, 0.127), nn::SupportGeometry{}, 1));
 }
 
 struct SurrogateDrive {
@@ -131,13 +135,17 @@ TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {
   EXPECT_EQ((drive.place() - begin).norm(), 0.0);
 }
 
-/// Ten minutes in circles on a bed without end, with deformable soil.
+/// The network of the thesis' second version that drives best, and the one of the terrain.
+const std::string kModels = data_folders().models.string();
+
+/// Ten minutes in circles on a bed without end, whose ground the wheels change.
 HeightField driven_ground(const HeightField& bed) {
-  WorldOptions options = on_soil();
+  WorldOptions options;
+  options.vehicle.tracks = false;
   options.drive = DriveCommand{0.12, 9.0};
   auto plant = plant_of(bed, options);
-  plant->enable_deformation(std::make_shared<const nn::BearingCapacityNetwork>(
-      nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file())));
+  plant->change_ground_by(
+      nn::read_terrain_network(kModels + "/terrain_flux.json").change(rover5()));
   const nn::SurrogatePlant& world_plant = *plant;
   World world(std::move(plant), kBoard, options, nullptr);
   Robot robot(kBoard, drive_parameters(), credentials_of(test_key()));
@@ -148,8 +156,7 @@ HeightField driven_ground(const HeightField& bed) {
     world.apply(output);
   }
   EXPECT_EQ(robot.supervisor().faults(), 0);
-  EXPECT_EQ(world_plant.terrain().height_sum() + world_plant.soil_model()->in_transit(),
-            bed.height_sum());
+  EXPECT_EQ(world_plant.terrain().height_sum(), bed.height_sum());
   return world_plant.terrain();
 }
 
@@ -167,37 +174,43 @@ TEST(SurrogateDrive, TenMinutesOfRutsKeepTheVolumeAndTheBits) {
   EXPECT_GT(changed, 2000U);
 }
 
-TEST(SurrogateDrive, PitchAndRollComeFromTheRuttedGround) {
-  WorldOptions options = on_soil();
-  options.soil = soil_preset("soft");
+// The change gets the strides of the drive, and the robot stands on what it leaves.
+TEST(SurrogateDrive, TheGroundChangesStrideByStrideAndBearsTheRobot) {
+  WorldOptions options;
+  options.vehicle.tracks = false;
   auto plant = plant_of(HeightField::flat(4.0, 0.01), options);
-  plant->enable_deformation(nullptr);
-  const double before = plant->vehicle().chassis().pose.translation().z();
-  for (int i = 0; i < 2000; ++i) plant->step({0.4, -0.4});
-  double deviation = 0.0;
-  for (int iy = 0; iy < plant->terrain().ny(); ++iy) {
-    for (int ix = 0; ix < plant->terrain().nx(); ++ix) {
-      deviation = std::max(deviation, plant->terrain().node(ix, iy) * kHeightUnit_m);
+  constexpr auto kMillimetre = static_cast<Height>(0.001 / kHeightUnit_m);
+  std::vector<nn::Stride> strides;
+  plant->change_ground_by([&](HeightField& ground, const nn::Stride& stride) {
+    strides.push_back(stride);
+    for (int iy = 0; iy < ground.ny(); ++iy) {
+      for (int ix = 0; ix < ground.nx(); ++ix)
+        ground.set_node(ix, iy, ground.node(ix, iy) - kMillimetre);
     }
-  }
-  EXPECT_GT(deviation, 0.001);  // what tracks turning on the spot heap up
-  EXPECT_NE(plant->vehicle().chassis().pose.translation().z(), before);
-}
-
-TEST(SurrogateDrive, OnlyTracksOnSoil) {
-  WorldOptions rigid = on_soil();
-  rigid.soil.reset();
-  EXPECT_THROW(plant_of(HeightField::flat(2.0, 0.1), rigid), InputError);
-  WorldOptions wheels = on_soil();
-  wheels.vehicle.tracks = false;
-  EXPECT_THROW(plant_of(HeightField::flat(2.0, 0.1), wheels), InputError);
+  });
+  const double before = plant->vehicle().chassis().pose.translation().z();
+  for (int i = 0; i < 1000; ++i) plant->step({0.0, 0.0});
+  EXPECT_TRUE(strides.empty()) << "what stands changes nothing";
+  const double speed = [&] {
+    for (int i = 0; i < 1000; ++i) plant->step({0.4, 0.5});
+    return plant->vehicle().track_speed_m_per_s(kLeft);
+  }();
+  ASSERT_EQ(strides.size(), 20U);
+  const nn::Stride& last = strides.back();
+  EXPECT_NEAR(last.track_m[kLeft], 0.05 * speed, 0.05 * 0.05 * speed);
+  EXPECT_NEAR(last.forward_m, 0.5 * (last.track_m[kLeft] + last.track_m[kRight]), 1e-5);
+  EXPECT_NEAR(last.turn_rad, (last.track_m[kRight] - last.track_m[kLeft]) / 0.127, 1e-6);
+  EXPECT_NEAR(last.v_left * 0.03, speed, 1e-9);
+  EXPECT_EQ(last.x_m, plant->pose().x_m);
+  EXPECT_EQ(last.yaw_rad, plant->pose().heading_rad);
+  EXPECT_NEAR(plant->vehicle().chassis().pose.translation().z(), before - 0.020, 0.002);
 }
 
 class Surrogate : public testing::Program {
  protected:
   /// A network in place of the closed form.
-  const std::string network_ =
-      " --hal surrogate --model '" + nn::default_model_file().string() + "' ";
+  const std::string network_ = " --hal surrogate --model '" + kModels + "/v2_products.json' ";
+  const std::string fluxes_ = " --terrain-net '" + kModels + "/terrain_flux.json' ";
 };
 
 TEST_F(Surrogate, RunsRecordsAndReplaysAndTheSameSeedGivesTheSameHash) {
@@ -216,10 +229,10 @@ TEST_F(Surrogate, RunsRecordsAndReplaysAndTheSameSeedGivesTheSameHash) {
 
 TEST_F(Surrogate, RutsAppearAreRecordedAndCanBeLeftOut) {
   write("e.ini",
-        "[map]\nmodel = scm\nsize = 4\n[soil]\npreset = soft\ncell = 0.02\n[experiment]\n"
-        "name = e\nalgorithm = drive\nduration = 14\n");
-  ASSERT_EQ(run("sim e.ini" + network_ + "--heights --quiet --out ruts").exit_code, 0);
-  ASSERT_EQ(run("sim e.ini" + network_ + "--heights --no-ruts --quiet --out none").exit_code, 0);
+        "[vehicle]\ntracks = false\n[map]\nmodel = scm\nsize = 4\n[soil]\ncell = 0.01\n"
+        "[experiment]\nname = e\nalgorithm = drive\nduration = 14\n");
+  ASSERT_EQ(run("sim e.ini" + network_ + fluxes_ + "--heights --quiet --out ruts").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini" + network_ + "--heights --quiet --out none").exit_code, 0);
   const SessionReader ruts(root_ / "ruts" / "session.h5");
   const SessionReader none(root_ / "none" / "session.h5");
   EXPECT_GT(ruts.height_changes(), 1000U);
@@ -234,14 +247,41 @@ TEST_F(Surrogate, RutsAppearAreRecordedAndCanBeLeftOut) {
   EXPECT_EQ(run("replay ruts").exit_code, 0);
 }
 
-TEST_F(Surrogate, RefusesRigidGroundAndAForeignModel) {
+// The wheels of the thesis' sessions, and the ways that they drove.
+TEST_F(Surrogate, TheNetworksOfTheThesisDriveAsTheirWheelsTurn) {
+  write("e.ini",
+        "[vehicle]\ntracks = false\n[map]\nsize = 8\n[experiment]\nname = e\n"
+        "algorithm = drive\nduration = 16\n[drive]\nspeed = 0.15\n");
+  for (const char* model : {"v1", "v2_tuned", "v2_products", "v2_forward"}) {
+    const testing::Result result = run("sim e.ini --hal surrogate --model '" + kModels + "/" +
+                                       model + ".json' --quiet --out " + model);
+    ASSERT_EQ(result.exit_code, 0) << model << result.err;
+    const SessionReader session(root_ / model / "session.h5");
+    std::vector<SimFrame> frames(session.frames());
+    session.read(0, std::span(frames));
+    double distance = 0.0;
+    double wheels = 0.0;
+    double turn = 0.0;
+    for (const SimFrame& frame : frames) {
+      distance += std::hypot(frame.delta_x, frame.delta_y);
+      wheels += 0.5 * 0.01 * (frame.track_left + frame.track_right);
+      turn += frame.delta_theta;
+    }
+    EXPECT_GT(wheels, 1.0) << model;
+    EXPECT_LT(distance, 1.05 * wheels) << model;
+    EXPECT_GT(distance, 0.6 * wheels) << model << ": wheels slip, and networks settle";
+    EXPECT_NEAR(turn, 0.0, 0.3) << model << ": the firmware keeps its heading";
+  }
+}
+
+TEST_F(Surrogate, RefusesWhatItCannotRun) {
   write("e.ini", "[experiment]\nname = e\nduration = 1\n");
   expect_refused(run("sim e.ini --hal surrogate"), 2, {"soil", "scm"});
   expect_refused(run("sim e.ini --model x.json"), 2, {"--model", "--hal surrogate"});
-  expect_refused(run("sim e.ini --no-ruts"), 2, {"--no-ruts", "--hal surrogate"});
-  expect_refused(run("sim e.ini --hal surrogate --no-ruts"), 2, {"--no-ruts", "--model"});
-  expect_refused(run("sim e.ini" + network_), 2, {"soil", "scm"});
-  expect_refused(run("sim e.ini" + network_ + "--soil-model e.ini"), 2, {"e.ini"});
+  expect_refused(run("sim e.ini" + fluxes_), 2, {"--terrain-net", "--hal surrogate"});
+  expect_refused(run("sim e.ini --hal surrogate" + fluxes_), 2, {"--terrain-net", "--model"});
+  expect_refused(run("sim e.ini" + network_ + fluxes_), 2, {"wheels", "tracks = false"});
+  expect_refused(run("sim e.ini" + network_ + "--terrain-net e.ini"), 2, {"e.ini"});
 }
 
 }  // namespace

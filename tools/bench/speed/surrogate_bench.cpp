@@ -5,11 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/random.h"
+#include "host_sim/run/experiment/robot_model.h"
 #include "nn/model/model_file.h"
-#include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate.h"
-#include "nn/terrain/track_soil_model.h"
+#include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/terrain_network.h"
 #include "tools/bench/require.h"
 
 namespace screed {
@@ -19,7 +21,7 @@ namespace {
 void surrogate_frame(benchmark::State& state) {
   constexpr double kMoves = 1e-4;  // m and rad a frame
   const auto robots = static_cast<std::size_t>(state.range(0));
-  const nn::Model model = nn::read_model(nn::default_model_file());
+  const nn::Model model = nn::read_model(data_folders().models / "v2_products.json");
   const HeightField ground = HeightField::from_function(
       512, 512, 0.02, true,
       [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });
@@ -30,7 +32,6 @@ void surrogate_frame(benchmark::State& state) {
   for (std::size_t i = 0; i < robots; ++i) {
     surrogate.set_pose(
         i, {random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-3.0, 3.0)});
-    surrogate.set_soil(i, soil_preset("viper"));
     left.push_back(random.uniform(0.05, 0.2));
     right.push_back(random.uniform(0.05, 0.2));
   }
@@ -50,16 +51,19 @@ void surrogate_frame(benchmark::State& state) {
 }
 BENCHMARK(surrogate_frame)->Arg(1)->Arg(32)->Arg(1024);
 
-/// The same with deformable terrain below one robot: a stride of five frames at a time.
+/// What the terrain network does to the ground below one robot on wheels, a stride of five frames
+/// at a time.
 void surrogate_ruts(benchmark::State& state) {
   constexpr double kStride_m = 0.0075;
   constexpr double kTurn_rad = 0.003;
-  const nn::BearingCapacityNetwork network =
-      nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file());
-  const HeightField ground = HeightField::from_function(
+  const Experiment experiment;
+  const nn::GroundChange change =
+      nn::read_terrain_network(data_folders().models / "terrain_flux.json")
+          .change(make_robot_model(experiment, kDefaultBoard));
+  const HeightField before = HeightField::from_function(
       2048, 2048, 0.005, true,
       [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });
-  nn::TrackSoilModel pressed(ground, soil_preset("ding_2011"), TrackGeometry{});
+  HeightField ground = before;
   nn::Stride stride;
   stride.forward_m = kStride_m;
   stride.turn_rad = kTurn_rad;
@@ -68,9 +72,9 @@ void surrogate_ruts(benchmark::State& state) {
     stride.yaw_rad += kTurn_rad;
     stride.x_m += std::cos(stride.yaw_rad) * kStride_m;
     stride.y_m += std::sin(stride.yaw_rad) * kStride_m;
-    pressed.step(stride, &network);
+    change(ground, stride);
   }
-  require(state, pressed.sinkage().height_sum() > 0, "the soil does not deform");
+  require(state, nn::compare(before, ground, ground).moved_cm3 > 0.0, "the soil does not move");
   state.counters["s_per_robot_frame"] =
       benchmark::Counter(static_cast<double>(state.iterations() * nn::kStrideFrames),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

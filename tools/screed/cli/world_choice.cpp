@@ -1,29 +1,28 @@
 // From the user's words to options of a simulation.
 #include "tools/screed/cli/world_choice.h"
 
-#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/standin/standin_plant.h"
 #include "nn/model/model_file.h"
-#include "nn/surrogate/default_model.h"
 #include "nn/surrogate/surrogate_plant.h"
+#include "nn/terrain/terrain_network.h"
 
 namespace screed {
 namespace {
 
 EnvironmentFactory networks_world(const WorldChoice& choice) {
   const auto model = std::make_shared<const nn::Model>(nn::read_model(*choice.model));
-  std::shared_ptr<const nn::BearingCapacityNetwork> bearing;
-  if (!choice.no_ruts) {
-    bearing = std::make_shared<const nn::BearingCapacityNetwork>(nn::BearingCapacityNetwork::read(
-        choice.soil_model.has_value() ? std::filesystem::path(*choice.soil_model)
-                                      : nn::default_bearing_capacity_file()));
-  }
-  return [model, bearing](HeightField terrain, const Assembly& robot, const PlantOptions& plant) {
+  std::optional<nn::TerrainNetwork> ground;
+  if (choice.terrain_net.has_value()) ground = nn::read_terrain_network(*choice.terrain_net);
+  return [model, ground](HeightField terrain, const Assembly& robot, const PlantOptions& plant) {
+    if (ground.has_value() && plant.vehicle.tracks) {
+      throw InputError("--terrain-net knows wheels alone: [vehicle] tracks = false");
+    }
     auto world = std::make_unique<nn::SurrogatePlant>(std::move(terrain), robot, plant, *model);
-    if (bearing) world->enable_deformation(bearing);
+    if (ground.has_value()) world->change_ground_by(ground->change(robot));
     return world;
   };
 }
@@ -47,8 +46,8 @@ void choose_world(const WorldChoice& choice, SimulationOptions& options) {
   }
   if (choice.model.has_value()) {
     options.environment = networks_world(choice);
-  } else if (choice.soil_model.has_value() || choice.no_ruts) {
-    throw InputError("--soil-model and --no-ruts need --hal surrogate with --model");
+  } else if (choice.terrain_net.has_value()) {
+    throw InputError("--terrain-net needs --hal surrogate with --model");
   } else if (choice.hal == "surrogate") {
     options.environment = stand_in;
     options.least_cell_m = kStandInCell_m;

@@ -12,10 +12,9 @@ namespace screed {
 struct WorldChoice {
   std::string hal = "native";  ///< native, mcu or surrogate
   std::optional<std::string> board;
-  std::optional<std::string> elf;         ///< for mcu; else the one of `make firmware`
-  std::optional<std::string> model;       ///< for surrogate; else the installed one
-  std::optional<std::string> soil_model;  ///< for surrogate; else the installed one
-  bool no_ruts = false;                   ///< for surrogate: the terrain stays rigid
+  std::optional<std::string> elf;          ///< for mcu; else the one of `make firmware`
+  std::optional<std::string> model;        ///< for surrogate: of a network in place of the stand-in
+  std::optional<std::string> terrain_net;  ///< with model: what changes the ground
 };
 
 /// Sets board, image and environment. Throws InputError for an unknown board, a model that cannot

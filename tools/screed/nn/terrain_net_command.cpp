@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -13,11 +12,10 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"
-#include "nn/terrain/bearing_capacity_trainer.h"
 #include "nn/terrain/flux_network.h"
 #include "nn/terrain/flux_trainer.h"
-#include "nn/terrain/sinkage_replay.h"
 #include "nn/terrain/terrain_comparison.h"
+#include "nn/terrain/terrain_network.h"
 #include "nn/terrain/window_network.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
@@ -33,29 +31,18 @@ namespace fs = std::filesystem;
 
 struct TrainOptions {
   std::vector<std::string> runs;
-  std::string out = "flux.json";
+  std::string kind = "flux";
+  std::string out = "terrain.json";
   std::size_t hidden = 32;
   std::size_t every = 3;
   std::size_t epochs = 10;
   std::uint64_t seed = 1;
 };
 
-struct TrainTracksOptions {
-  std::vector<std::string> runs;
-  std::vector<std::string> test;
-  std::string out = "tracks.json";
-  std::size_t hidden = 4;
-  std::size_t segments = 4;
-  double seconds = 10.0;
-  std::size_t generations = 75;
-  std::uint64_t seed = 1;
-};
-
 struct CompareOptions {
   std::string network;
+  std::vector<std::string> beside;
   std::vector<std::string> runs;
-  std::vector<std::string> window;
-  std::size_t epochs = 10;
   double from = 0.0;
   double seconds = 40.0;
   std::string pictures;
@@ -65,7 +52,21 @@ void print_epoch(std::size_t epoch, double mse_mm2) {
   std::cerr << "epoch " << epoch + 1 << ": " << mse_mm2 << " mm^2\n";
 }
 
+/// The thesis' network, reduced, on every stride.
+int train_window(const TrainOptions& options) {
+  std::vector<std::unique_ptr<nn::DriveStrides>> drives;
+  std::vector<const nn::DriveStrides*> pointers;
+  for (const std::string& run : options.runs) {
+    drives.push_back(std::make_unique<nn::DriveStrides>(run));
+    pointers.push_back(drives.back().get());
+  }
+  nn::WindowNetwork(pointers, options.epochs, options.seed, print_epoch).write(options.out);
+  std::cout << options.out << "\n";
+  return 0;
+}
+
 int run_train(const TrainOptions& options) {
+  if (options.kind == "window") return train_window(options);
   nn::FluxExamples examples;
   for (const std::string& run : options.runs) {
     add_examples(nn::DriveStrides(run), options.every, examples);
@@ -82,52 +83,6 @@ int run_train(const TrainOptions& options) {
   train(network, examples, options.epochs, options.seed, print_epoch);
   network.write(options.out);
   std::cout << options.out << "\n";
-  return 0;
-}
-
-using Segments = std::vector<std::vector<nn::DriveSegment>>;
-
-Segments segments_of(const std::vector<std::string>& runs, const TrainTracksOptions& options) {
-  Segments drives;
-  for (const std::string& run : runs) {
-    drives.push_back(nn::segments_of(nn::DriveStrides(run), options.segments, options.seconds));
-  }
-  return drives;
-}
-
-/// The middle one of each drive's errors: in some segments a robot rocks, and nobody can tell.
-void print_errors(const std::vector<std::string>& runs, const Segments& drives,
-                  const nn::BearingCapacityNetwork& network) {
-  const auto middle = [](const std::vector<nn::DriveSegment>& segments,
-                         const nn::BearingCapacityNetwork* by) {
-    std::vector<double> shares;
-    shares.reserve(segments.size());
-    for (const nn::DriveSegment& segment : segments) shares.push_back(relative_error(segment, by));
-    std::sort(shares.begin(), shares.end());
-    return 0.5 * (shares[(shares.size() - 1) / 2] + shares[shares.size() / 2]);
-  };
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (drives[i].empty()) continue;
-    std::printf("  %-40s %8.3f %8.3f\n", fs::path(runs[i]).filename().c_str(),
-                middle(drives[i], nullptr), middle(drives[i], &network));
-  }
-}
-
-int run_train_tracks(const TrainTracksOptions& options) {
-  const Segments drives = segments_of(options.runs, options);
-  const Segments tests = segments_of(options.test, options);
-  nn::BearingCapacityNetwork network(options.hidden, options.seed);
-  std::cerr << network.weights().size() << " weights\n";
-  train(network, drives, options.generations, options.seed,
-        [](std::size_t generation, double error) {
-          std::cerr << "generation " << generation + 1 << ": " << error << "\n";
-        });
-  network.write(options.out);
-  std::printf("%s\nsquared error over that of no change at all, median of the segments\n",
-              options.out.c_str());
-  std::printf("  %-40s %8s %8s\n", "", "closed", "network");
-  print_errors(options.runs, drives, network);
-  print_errors(options.test, tests, network);
   return 0;
 }
 
@@ -196,44 +151,18 @@ void draw_changes(const fs::path& file, const HeightField& before,
   canvas.write_png(file);
 }
 
-/// One of the two that `compare` takes.
-struct AnyNetwork {
-  std::string file;
-  std::shared_ptr<const nn::FluxNetwork> wheels;
-  std::shared_ptr<const nn::BearingCapacityNetwork> tracks;
-};
-
-AnyNetwork read_network(const std::string& file) {
-  AnyNetwork network{file, nullptr, nullptr};
-  try {
-    network.wheels = std::make_shared<const nn::FluxNetwork>(nn::FluxNetwork::read(file));
-    return network;
-  } catch (const InputError&) {  // then it may be the other kind
-  }
-  try {
-    network.tracks =
-        std::make_shared<const nn::BearingCapacityNetwork>(nn::BearingCapacityNetwork::read(file));
-    return network;
-  } catch (const InputError&) {
-    throw InputError(file + ": is neither a network of `train` (wheels) nor one of `train-tracks`");
-  }
-}
-
 /// A terrain that a network changes along a drive.
 struct Prediction {
   std::string name;
-  std::function<void(std::size_t stride)> step;
-  std::function<const HeightField&()> ground;
+  nn::GroundChange change;
+  HeightField ground;
 };
 
-void compare_on(const std::string& run, const CompareOptions& options, const AnyNetwork& any,
-                const nn::WindowNetwork* window, TaskBar& bar) {
+void compare_on(const std::string& run, const CompareOptions& options,
+                const std::vector<nn::TerrainNetwork>& networks, TaskBar& bar) {
   const TaskProgress progress = bar.progress();
   const nn::DriveStrides drive(run);
-  if (drive.tracks() ? any.tracks == nullptr : any.wheels == nullptr) {
-    throw InputError(any.file + ": is a network of " + (drive.tracks() ? "wheels; " : "tracks; ") +
-                     run + (drive.tracks() ? " was driven on tracks" : " was driven on wheels"));
-  }
+  if (drive.tracks()) throw InputError(run + ": was driven on tracks; allowed are runs on wheels");
   const auto begin =
       std::min(drive.size(), static_cast<std::size_t>(options.from * nn::kStrideRate_hz));
   const std::size_t end = std::min(
@@ -246,51 +175,15 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
   const HeightField real = drive.terrain_after(end);
 
   std::vector<Prediction> all;
-  const auto add_tracks = [&](const std::string& name,
-                              const std::shared_ptr<nn::TrackSoilModel>& on,
-                              const std::function<void(nn::TrackSoilModel&, std::size_t)>& step) {
-    all.push_back({name, [on, step](std::size_t i) { step(*on, i); },
-                   [on]() -> const HeightField& { return on->surface(); }});
-  };
-  if (drive.tracks()) {
-    const auto& network = any.tracks;
-    nn::SinkageReplay pressed(drive);
-    const nn::TrackSoilModel& as_it_was = pressed.after(begin, progress);
-    const auto fresh = [&] { return std::make_shared<nn::TrackSoilModel>(as_it_was); };
-    add_tracks("even depth", fresh(),
-               [&](nn::TrackSoilModel& on, std::size_t i) { on.step_evenly(drive[i]); });
-    add_tracks("closed", fresh(),
-               [&](nn::TrackSoilModel& on, std::size_t i) { on.step(drive[i], nullptr); });
-    add_tracks("network", fresh(), [&, network](nn::TrackSoilModel& on, std::size_t i) {
-      on.step(drive[i], network.get());
-    });
-    const TrackGeometry tracks = track_geometry(drive.robot());
-    add_tracks("true stance", fresh(), [&, tracks](nn::TrackSoilModel& on, std::size_t i) {
-      on.step_at(drive[i], track_plane_of(tracks, drive[i]));
-    });
-  } else {
-    const auto& network = any.wheels;
-    const auto ground = std::make_shared<HeightField>(before);
-    all.push_back({"fluxes",
-                   [&drive, network, ground](std::size_t i) {
-                     network->apply(*ground, drive.wheels(), drive[i]);
-                   },
-                   [ground]() -> const HeightField& { return *ground; }});
+  all.reserve(networks.size());
+  for (const nn::TerrainNetwork& network : networks) {
+    all.push_back({network.kind, network.change(drive.robot()), before});
   }
-  if (window != nullptr) {
-    const auto ground = std::make_shared<HeightField>(before);
-    const auto last = std::make_shared<std::vector<float>>(nn::WindowNetwork::kCells);
-    all.push_back(
-        {"window",
-         [&drive, window, ground, last](std::size_t i) { window->apply(*ground, drive[i], *last); },
-         [ground]() -> const HeightField& { return *ground; }});
-  }
-
   std::vector<nn::Stride> path;
   for (std::size_t i = begin; i < end; ++i) {
     report_progress(progress, "predicting", i - begin, end - begin);
     path.push_back(drive[i]);
-    for (const Prediction& one : all) one.step(i);
+    for (Prediction& one : all) one.change(one.ground, drive[i]);
   }
   bar.clear();
   const nn::TerrainComparison c = nn::compare(before, real, real);
@@ -300,34 +193,24 @@ void compare_on(const std::string& run, const CompareOptions& options, const Any
               "volume cm3", "volume units", "ruts");
   print_row("recorded", before, real, real, path);
   print_row("no change", before, real, before, path);
-  for (const Prediction& one : all) print_row(one.name, before, real, one.ground(), path);
+  for (const Prediction& one : all) print_row(one.name, before, real, one.ground, path);
   if (options.pictures.empty()) return;
   fs::create_directories(options.pictures);
   std::vector<std::pair<std::string, const HeightField*>> grounds = {{"recorded", &real}};
-  for (const Prediction& one : all) {
-    if (one.name != "true stance") grounds.emplace_back(one.name, &one.ground());
-  }
+  for (const Prediction& one : all) grounds.emplace_back(one.name, &one.ground);
   draw_changes(fs::path(options.pictures) / (fs::path(run).filename().string() + ".png"), before,
                grounds, path);
 }
 
 int run_compare(const CompareOptions& options) {
-  const AnyNetwork network = read_network(options.network);
-  std::unique_ptr<nn::WindowNetwork> window;
-  if (!options.window.empty()) {
-    std::vector<std::unique_ptr<nn::DriveStrides>> drives;
-    std::vector<const nn::DriveStrides*> pointers;
-    for (const std::string& run : options.window) {
-      drives.push_back(std::make_unique<nn::DriveStrides>(run));
-      pointers.push_back(drives.back().get());
-    }
-    constexpr std::uint64_t kSeed = 1;
-    window = std::make_unique<nn::WindowNetwork>(pointers, options.epochs, kSeed, print_epoch);
+  std::vector<nn::TerrainNetwork> networks = {nn::read_terrain_network(options.network)};
+  for (const std::string& file : options.beside) {
+    networks.push_back(nn::read_terrain_network(file));
   }
   const CatchInterrupts signals;
   for (const std::string& run : options.runs) {
     TaskBar bar(false, fs::path(run).filename().string() + ": ");
-    compare_on(run, options, network, window.get(), bar);
+    compare_on(run, options, networks, bar);
   }
   return 0;
 }
@@ -336,66 +219,41 @@ int run_compare(const CompareOptions& options) {
 
 void register_terrain_net_command(CLI::App& root, Program& program) {
   CLI::App* command = root.add_subcommand("terrain-net",
-                                          "Train and compare networks that predict how wheels and "
-                                          "tracks deform the terrain (thesis 6.3.1)");
+                                          "Train and compare networks that predict how wheels "
+                                          "deform the terrain (thesis 6.3.1)");
   command->require_subcommand(1);
 
   const auto train = std::make_shared<TrainOptions>();
   CLI::App* train_command =
-      command->add_subcommand("train", "Train a flux network on recorded runs with wheels");
+      command->add_subcommand("train", "Train a network on recorded runs with wheels");
   train_command->add_option("RUN", train->runs, "Runs with recorded heights")->required();
+  train_command
+      ->add_option("--kind", train->kind,
+                   "flux: soil that moves between cells below each wheel; window: the thesis' "
+                   "network, reduced")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"flux", "window"}));
   train_command->add_option("--out", train->out, "Network file to write")
       ->type_name("FILE")
       ->capture_default_str();
-  add_number(*train_command, "--hidden", train->hidden, "Number of nodes of the hidden layer",
+  add_number(*train_command, "--hidden", train->hidden, "flux: number of nodes of the hidden layer",
              {1, 512});
-  add_number(*train_command, "--every", train->every, "Use every n-th stride as an example",
+  add_number(*train_command, "--every", train->every, "flux: use every n-th stride as an example",
              {1, 1000});
   add_number(*train_command, "--epochs", train->epochs, "Number of epochs", {1, 1e6});
   add_number(*train_command, "--seed", train->seed, "Seed of the training", kSeedRange);
   train_command->callback(
       [train, &program] { program.action = [train] { return run_train(*train); }; });
 
-  const auto tracks = std::make_shared<TrainTracksOptions>();
-  CLI::App* tracks_command = command->add_subcommand(
-      "train-tracks", "Train a bearing-capacity network for tracks on recorded runs on soil");
-  tracks_command->add_option("RUN", tracks->runs, "Runs with recorded heights")->required();
-  tracks_command->add_option("--test", tracks->test, "Run to test the network on")
-      ->type_name("FOLDER")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  tracks_command->add_option("--out", tracks->out, "Network file to write")
-      ->type_name("FILE")
-      ->capture_default_str();
-  add_number(*tracks_command, "--hidden", tracks->hidden, "Number of nodes of the hidden layer",
-             {1, 256});
-  add_number(*tracks_command, "--segments", tracks->segments, "Number of segments of each run",
-             {1, 1000});
-  add_number(*tracks_command, "--seconds", tracks->seconds, "Duration of each segment [s]",
-             {0.5, 1000.0});
-  add_number(*tracks_command, "--generations", tracks->generations, "Number of generations",
-             {1, 1e6});
-  add_number(*tracks_command, "--seed", tracks->seed, "Seed of the training", kSeedRange);
-  tracks_command->callback(
-      [tracks, &program] { program.action = [tracks] { return run_train_tracks(*tracks); }; });
-
   const auto compared = std::make_shared<CompareOptions>();
   CLI::App* compare_command = command->add_subcommand(
       "compare", "Compare terrain deformed by networks with recorded drives");
-  compare_command
-      ->add_option(
-          "NETWORK", compared->network,
-          "Network file: of train for runs with wheels, of train-tracks for runs with tracks")
-      ->required();
+  compare_command->add_option("NETWORK", compared->network, "Network file of train")->required();
   compare_command->add_option("RUN", compared->runs, "Runs to compare with")->required();
-  compare_command
-      ->add_option("--window", compared->window,
-                   "Also train the thesis' network on this run and compare it")
-      ->type_name("FOLDER")
+  compare_command->add_option("--beside", compared->beside, "Another network file to compare")
+      ->type_name("FILE")
       ->type_size(1)
       ->allow_extra_args(false);
-  add_number(*compare_command, "--epochs", compared->epochs, "Number of epochs of that training",
-             {1, 1e6});
   add_number(*compare_command, "--from", compared->from,
              "Time to skip at the start of each run [s]", {0.0, 1e6});
   add_number(*compare_command, "--seconds", compared->seconds,

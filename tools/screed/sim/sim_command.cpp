@@ -305,13 +305,10 @@ void register_sim_command(CLI::App& root, Program& program) {
                    "Motion network for --hal surrogate (default: none, the closed form)")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--soil-model", arguments->world.soil_model,
-          "Network of the soil below the tracks for --model (default: the installed model)")
+      ->add_option("--terrain-net", arguments->world.terrain_net,
+                   "Network that changes the ground below wheels with --model (default: none, it "
+                   "stays as it is)")
       ->type_name("FILE");
-  command
-      ->add_flag("--no-ruts", arguments->world.no_ruts, "Keep the terrain undeformed with --model")
-      ->excludes("--soil-model");
   command
       ->add_option("--can", arguments->can,
                    "Publish the radio's frames on this CAN interface and receive commands from "

@@ -35,6 +35,12 @@ struct MadeUpDrive {
 
 /// Bits of a metre: sums of any number of such distances are exact.
 inline constexpr double kExact_m = 1.0 / 128.0;
+inline constexpr double kTread_m = 0.127;
+
+/// Of tracks that turn the robot less than half as much as tracks that do not slip.
+inline TrackKinematics skid_of(double speed_share) {
+  return skid_kinematics(speed_share, 0.275);
+}
 
 inline HeightMap map_of(const HeightField& field) {
   HeightMap map;
@@ -77,7 +83,7 @@ inline void record(const fs::path& folder, const MadeUpDrive& drive) {
       frame.delta_x = drive.distance_m * std::cos(middle);
       frame.delta_y = drive.distance_m * std::sin(middle);
       frame.delta_theta = drive.turn_rad;
-      const double apart = 0.5 * SkidKinematics{}.tread_m * drive.turn_rad;
+      const double apart = 0.5 * kTread_m * drive.turn_rad;
       frame.track_left = (drive.distance_m - apart) * 100.0;
       frame.track_right = (drive.distance_m + apart) * 100.0;
       frame.angular = drive.angular;

@@ -124,8 +124,6 @@ TEST(RolloutRecording, TheStateIsThatAtTheRowsEnd) {
   EXPECT_NEAR(state.pose.heading_rad, 0.01, 1e-15);
   EXPECT_NEAR(state.last.forward_m, 0.02, 1e-6);
   EXPECT_NEAR(state.last.turn_rad, 0.01, 1e-15);
-  EXPECT_NEAR(state.before_last.forward_m, 0.019, 1e-15);
-  EXPECT_EQ(state.before_last.turn_rad, 0.0);
   EXPECT_EQ(state.track_speed_m_per_s[0], 0.01 * 20.0);
   EXPECT_EQ(state.track_speed_m_per_s[1], -0.02 * 20.0);
   constexpr double kTurn = 2.0 * std::numbers::pi;

@@ -14,7 +14,7 @@ namespace screed::nn {
 namespace {
 
 const Surrogate& skidding() {
-  static const Surrogate robot(kNominalSkid, SupportGeometry{}, 1);
+  static const Surrogate robot(skid_of(0.96), SupportGeometry{}, 1);
   return robot;
 }
 
@@ -22,7 +22,7 @@ const Surrogate& skidding() {
 struct Session {
   explicit Session(const std::string& more = "", const std::string& board = kDefaultBoard) {
     const TempFolder folder;
-    record_surrogate(folder.path() / "run", skidding(), 720, more, {}, board);
+    record_surrogate(folder.path() / "run", skidding(), 720, more, board);
     const SessionReader reader(folder.path() / "run" / "session.h5");
     info = reader.info();
     experiment = read_experiment(folder.path() / "run" / "experiment.ini");

@@ -18,7 +18,6 @@ namespace screed::nn {
 /// at, five seconds until it begins included. `more` are further lines of the experiment.
 inline void record_surrogate(const fs::path& folder, const Surrogate& driven, std::size_t rows,
                              const std::string& more = "",
-                             const std::shared_ptr<const BearingCapacityNetwork>& bearing = {},
                              const std::string& board = kDefaultBoard) {
   fs::create_directories(folder);
   write_text(folder / "experiment.ini",
@@ -28,9 +27,7 @@ inline void record_surrogate(const fs::path& folder, const Surrogate& driven, st
   const Experiment experiment = read_experiment(folder / "experiment.ini");
   const auto environment = [&](HeightField terrain, const Assembly& model,
                                const PlantOptions& options) {
-    auto plant = std::make_unique<SurrogatePlant>(std::move(terrain), model, options, driven);
-    if (bearing) plant->enable_deformation(bearing);
-    return plant;
+    return std::make_unique<SurrogatePlant>(std::move(terrain), model, options, driven);
   };
   const auto world = make_world(experiment, nullptr, {.board = board, .environment = environment});
   SessionInfo info;

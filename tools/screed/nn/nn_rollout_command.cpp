@@ -1,5 +1,4 @@
-// `screed nn motion|rollout|divergence`: networks of motion are trained, and driven beside the
-// physics.
+// `screed nn rollout|divergence`: what stands in for the physics is driven beside it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +6,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +13,8 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/core/random.h"
+#include "host_sim/standin/track_geometry.h"
 #include "nn/model/model_file.h"
-#include "nn/surrogate/default_model.h"
-#include "nn/surrogate/motion_configuration.h"
 #include "nn/surrogate/rollout.h"
 #include "nn/surrogate/slip_law.h"
 #include "tools/screed/cli/command.h"
@@ -32,63 +29,12 @@ namespace fs = std::filesystem;
 
 constexpr double kPercent = 100.0;
 constexpr double kDegrees = 57.29577951308232;
-constexpr std::size_t kProgressSteps = 250;
-
-struct MotionArguments {
-  std::string configuration;
-  std::string sessions = "out/sessions";
-  std::string out;
-  std::optional<std::uint64_t> steps;
-};
-
-void print_r2(const char* what, const std::array<double, 3>& r2) {
-  std::printf("  %-34s %10.4f %10.4f %10.4f\n", what, r2[0], r2[1], r2[2]);
-}
-
-int run_motion(const MotionArguments& arguments) {
-  nn::MotionConfiguration configuration = nn::read_motion_configuration(arguments.configuration);
-  if (arguments.steps.has_value()) configuration.training.steps = *arguments.steps;
-  const std::vector<nn::MotionSeries> train =
-      nn::read_motion_sessions(arguments.sessions, configuration.train);
-  const std::vector<nn::MotionSeries> test =
-      nn::read_motion_sessions(arguments.sessions, configuration.test);
-  std::size_t frames = 0;
-  for (const nn::MotionSeries& one : train) frames += one.frames.size();
-  std::printf("%s: %zu sessions, %zu frames\n", configuration.name.c_str(), train.size(), frames);
-
-  nn::MotionTrainer trainer(configuration.training);
-  double loss = 0.0;
-  ProgressBar bar(std::cerr);
-  for (std::size_t step = 1; step <= configuration.training.steps; ++step) {
-    loss += trainer.step(train) / kProgressSteps;
-    bar.show_share(static_cast<double>(step) / static_cast<double>(configuration.training.steps),
-                   "training");
-    if (step % kProgressSteps == 0) {
-      bar.clear();
-      std::printf("  step %6zu   mean loss %.5f\n", step, loss);
-      std::fflush(stdout);
-      loss = 0.0;
-    }
-  }
-  bar.clear();
-  const nn::Model model = nn::motion_model(configuration, trainer, train);
-  nn::write_model(arguments.out, model);
-  std::printf("\n  %-34s %10s %10s %10s\n", "R2 of one frame, unsmoothed", "forward", "sideways",
-              "turn");
-  for (const nn::MotionSeries& one : test) {
-    print_r2(one.source.c_str(), nn::one_frame_r2(model, one));
-    print_r2("  as in the frame before", nn::unchanged_r2(one));
-  }
-  std::printf("\n  model         %s\n", arguments.out.c_str());
-  return 0;
-}
 
 struct RolloutArguments {
   std::vector<std::string> sessions;
   std::vector<std::string> models;
   std::size_t starts = 0;
   std::string drive = "firmware";
-  bool ruts = false;
   std::string out;
 };
 
@@ -302,10 +248,6 @@ int run_rollout(const RolloutArguments& arguments) {
   options.starts = arguments.starts;
   options.drive =
       arguments.drive == "tracks" ? nn::RolloutDrive::kTracks : nn::RolloutDrive::kFirmware;
-  if (arguments.ruts) {
-    options.bearing = std::make_shared<const nn::BearingCapacityNetwork>(
-        nn::BearingCapacityNetwork::read(nn::default_bearing_capacity_file()));
-  }
   std::vector<nn::SurrogateFactory> surrogates = {{"stand-in", {}}};
   const std::size_t baselines = surrogates.size();
   const std::vector<nn::SurrogateFactory> first = baselines_of({});
@@ -389,24 +331,7 @@ int run_divergence(const DivergenceArguments& arguments) {
 
 }  // namespace
 
-void register_nn_motion_command(CLI::App& nn, Program& program) {
-  auto motion = std::make_shared<MotionArguments>();
-  CLI::App* motion_command =
-      nn.add_subcommand("motion", "Train a motion network on its own predictions");
-  motion_command
-      ->add_option("CONFIGURATION", motion->configuration, "Training configuration (JSON)")
-      ->required();
-  motion_command->add_option("--sessions", motion->sessions, "Folder with the recorded sessions")
-      ->type_name("FOLDER")
-      ->capture_default_str();
-  add_number(*motion_command, "--steps", motion->steps,
-             "Number of training steps; overrides the configuration", {1, 1e7});
-  motion_command->add_option("--out", motion->out, "Model file to write")
-      ->type_name("FILE")
-      ->required();
-  motion_command->callback(
-      [motion, &program] { program.action = [motion] { return run_motion(*motion); }; });
-
+void register_nn_rollout_command(CLI::App& nn, Program& program) {
   auto rollout = std::make_shared<RolloutArguments>();
   CLI::App* rollout_command = nn.add_subcommand(
       "rollout", "Compare the stand-in's motion, and that of networks, with recorded physics");
@@ -419,10 +344,6 @@ void register_nn_motion_command(CLI::App& nn, Program& program) {
              "Number of rollouts per session, spread evenly; 0: each begins where the previous one "
              "ends",
              {0, 100000});
-  rollout_command->add_flag(
-      "--ruts", rollout->ruts,
-      "Deform the terrain below the surrogates' tracks, as screed sim --model "
-      "does; otherwise it stays as at the start");
   rollout_command
       ->add_option("--drive", rollout->drive,
                    "Input of the rollout: firmware: the firmware drives and measures the predicted "
