@@ -42,7 +42,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   }
   Json losses = Json::array();
   for (const EpochLoss& loss : checkpoint.result.losses) {
-    losses.push_back({loss.training, loss.test});
+    losses.push_back({loss.training, loss.choice});
   }
   const Json root = {{"format", "screed-training"},
                      {"training", checkpoint.training},

@@ -141,14 +141,20 @@ std::vector<TestSession> tests_of(const JsonValue& list) {
 }
 
 TrainingConfiguration configuration_of(const JsonValue& root) {
-  root.only({"name", "about", "seed", "train", "test", "stages", "run_time", "training", "networks",
-             "thesis"});
+  root.only({"name", "about", "seed", "train", "choice", "test", "stages", "run_time", "training",
+             "networks", "thesis"});
   TrainingConfiguration configuration;
   configuration.name = root.at("name").text();
   if (root.has("about")) configuration.about = root.at("about").text();
   if (root.has("seed")) configuration.seed = root.at("seed").unsigned_integer();
   configuration.train = texts(root.at("train"));
+  configuration.choice = root.at("choice").text();
   configuration.test = tests_of(root.at("test"));
+  for (const TestSession& test : configuration.test) {
+    if (test.session == configuration.choice) {
+      root.at("choice").refuse("is a test as well; what chooses is no test");
+    }
+  }
   configuration.stages = read_preprocessing_stages(root.at("stages"));
   if (std::none_of(configuration.stages.begin(), configuration.stages.end(),
                    [](const PreprocessingStage& stage) { return stage.stage == "normalise"; })) {

@@ -49,8 +49,9 @@ struct NetworkConfiguration {
   double l2 = 0.0;          ///< l2 x sum of squared weights is added to the loss
   std::size_t batch = 32;   ///< 0: all frames at once
   std::size_t epochs = 25;
-  std::size_t patience = 0;  ///< epochs without a better test error after which it stops; 0: never
-  bool keep_best = false;    ///< the epoch with the least test error, not the last one
+  std::size_t patience =
+      0;  ///< epochs without a better error of the choice after which it stops; 0: never
+  bool keep_best = false;  ///< the epoch with the least error of the choice, not the last one
 
   std::string name() const;  ///< of its outputs
   /// The feature that the only output is trained on: its difference to the baseline, if any.
@@ -75,7 +76,9 @@ struct TrainingConfiguration {
   std::string about;
   std::uint64_t seed = 1;
   std::vector<std::string> train;  ///< names of sessions
-  std::vector<TestSession> test;   ///< the first decides which epoch is best
+  /// The session by whose error an epoch, a seed or a form is chosen: no test decides anything.
+  std::string choice;
+  std::vector<TestSession> test;
   std::vector<PreprocessingStage> stages;
   std::vector<std::string> run_time;  ///< names of those stages that a running world applies too
   std::vector<NetworkConfiguration> networks;

@@ -227,14 +227,14 @@ std::vector<fs::path> draw_losses(const TrainingConfiguration& configuration,
     chart.x_label = "epoch";
     chart.y_label = "mean squared error [normalised]";
     ChartSeries training{"training", {}, false};
-    ChartSeries test{"test", {}, false};
+    ChartSeries choice{"choice", {}, false};
     const std::size_t every = std::max<std::size_t>(1, networks[i].losses.size() / kMaxPoints);
     for (std::size_t epoch = 0; epoch < networks[i].losses.size(); epoch += every) {
       const auto x = static_cast<double>(epoch + 1);
       training.points.push_back({x, networks[i].losses[epoch].training});
-      test.points.push_back({x, networks[i].losses[epoch].test});
+      choice.points.push_back({x, networks[i].losses[epoch].choice});
     }
-    chart.series = {training, test};
+    chart.series = {training, choice};
     files.push_back(write_both(folder, "loss_" + name, chart));
   }
   return files;

@@ -112,6 +112,8 @@ PreparedData prepare(const TrainingConfiguration& configuration, const fs::path&
     data.preprocessing.apply(
         table, rounds ? Preprocessing::Extent::kAll : Preprocessing::Extent::kNotRounded);
   }
+  data.choice = read_features(find_session(sessions, configuration.choice), features);
+  data.preprocessing.apply(data.choice, Preprocessing::Extent::kAll);
   data.tests = tests_of(configuration, data.preprocessing, sessions, progress);
   data.hash = hash_of(data.training);
   return data;

@@ -25,7 +25,8 @@ struct PreparedData {
   /// The training sessions as a running world shows them to the network: not rounded, where
   /// rounding is no stage of run time. Integers are chosen for these.
   std::vector<FeatureTable> running;
-  std::vector<TestTable> tests;     ///< the first: the first test session as trained
+  FeatureTable choice;  ///< as trained
+  std::vector<TestTable> tests;
   std::size_t training_frames = 0;  ///< before outliers went
   std::string hash;                 ///< over the training examples
 };

@@ -18,8 +18,12 @@ surrogate: $(SCREED)  ## train, evaluate and export the networks of the thesis (
 	  $(SCREED) nn train nn/configurations/$$model.json --sessions $(OUT)/sessions --out $(OUT)/nn/$$model $(ARGS) ; \
 	  $(SCREED) nn eval $(OUT)/nn/$$model/model.json nn/configurations/$$model.json --sessions $(OUT)/sessions \
 	    --out $(OUT)/nn/$$model/charts > $(OUT)/nn/$$model/evaluation.txt ; \
+	  $(SCREED) nn eval $(OUT)/nn/$$model/model.json nn/configurations/$$model.json --sessions $(OUT)/sessions \
+	    --markdown > $(OUT)/nn/$$model/evaluation.md ; \
 	  $(SCREED) nn check $(OUT)/nn/$$model/model.json --vectors 100000 ; \
 	  $(SCREED) nn export $(OUT)/nn/$$model/model.json --header $(OUT)/nn/$$model/model.h ; done
+	@{ cat nn/training/results_head.txt ; for model in $(MODELS) ; do cat $(OUT)/nn/$$model/evaluation.md ; echo ; done ; } > $(OUT)/nn/results.md
+	@echo "tables in $(OUT)/nn/results.md"
 
 # ---- the thesis' sessions alone ------------------------------------------------------------------------------------------------
 

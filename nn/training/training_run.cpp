@@ -63,7 +63,7 @@ class Course {
     std::vector<const FeatureTable*> tables;
     for (const FeatureTable& table : data.training) tables.push_back(&table);
     training_ = examples_of(tables, network.inputs, learned_outputs(network));
-    test_ = examples_of({&data.tests.front().table}, network.inputs, learned_outputs(network));
+    choice_ = examples_of({&data.choice}, network.inputs, learned_outputs(network));
     if (options.checkpoints) {
       file_ = *options.checkpoints / (network.name() + ".checkpoint.json");
       if (options.resume && fs::exists(*file_)) resume();
@@ -81,11 +81,11 @@ class Course {
     const auto stop = [this] { return options_.stop != nullptr && options_.stop->load(); };
     if (!trainer_.train_epoch(training_, stop)) return std::nullopt;
     std::vector<FloatLayer> layers = trainer_.folded();
-    result_.losses.push_back({loss_of(layers, training_), loss_of(layers, test_)});
+    result_.losses.push_back({loss_of(layers, training_), loss_of(layers, choice_)});
     const std::size_t epoch = result_.losses.size();
-    const bool better = result_.losses.back().test < best_loss_;
+    const bool better = result_.losses.back().choice < best_loss_;
     if (better) {
-      best_loss_ = result_.losses.back().test;
+      best_loss_ = result_.losses.back().choice;
       best_epoch_ = epoch;
     }
     if (better || !network_.keep_best) {
@@ -95,9 +95,9 @@ class Course {
     const std::size_t interval = std::max<std::size_t>(1, network_.epochs / kCheckpoints);
     if (file_ && (epoch % interval == 0 || done())) save();
     char note[160];
-    std::snprintf(note, sizeof note, "%s: epoch %zu, error %.5f, on the test %.5f",
+    std::snprintf(note, sizeof note, "%s: epoch %zu, error %.5f, on the choice %.5f",
                   network_.name().c_str(), epoch, result_.losses.back().training,
-                  result_.losses.back().test);
+                  result_.losses.back().choice);
     return std::string(note);
   }
 
@@ -123,8 +123,8 @@ class Course {
     trainer_.restore(checkpoint.state);
     result_ = std::move(checkpoint.result);
     for (std::size_t i = 0; i < result_.losses.size(); ++i) {
-      if (result_.losses[i].test < best_loss_) {
-        best_loss_ = result_.losses[i].test;
+      if (result_.losses[i].choice < best_loss_) {
+        best_loss_ = result_.losses[i].choice;
         best_epoch_ = i + 1;
       }
     }
@@ -135,7 +135,7 @@ class Course {
   NetworkTrainer trainer_;
   std::string identity_;
   Examples training_;
-  Examples test_;
+  Examples choice_;
   std::optional<fs::path> file_;
   TrainedNetwork result_;
   double best_loss_ = 1e300;

@@ -16,7 +16,7 @@ namespace screed::nn {
 /// Mean squared errors after an epoch.
 struct EpochLoss {
   double training = 0.0;
-  double test = 0.0;  ///< on the first test session, as trained
+  double choice = 0.0;  ///< on the session of the choice, as trained
 };
 
 struct TrainedNetwork {

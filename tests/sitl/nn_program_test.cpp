@@ -1,5 +1,6 @@
 // `screed nn` as a user meets it: sessions in, a model and a header out.
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "host_sim/run/session/session_reader.h"
 #include "nn/model/model_file.h"
@@ -20,13 +21,14 @@ class NnProgram : public Program {
           "frames = 800\n");
     ASSERT_EQ(run("record drive.ini --out s/drive").exit_code, 0);
     ASSERT_EQ(run("record drive.ini --out s/other --seed 9").exit_code, 0);
+    ASSERT_EQ(run("record drive.ini --out s/third --seed 10").exit_code, 0);
     write("small.json", configuration());
   }
 
   static std::string configuration() {
     return R"({
       // comments are allowed
-      "name": "small", "train": ["drive"], "test": [{"label": "B", "session": "other"}],
+      "name": "small", "train": ["drive"], "choice": "third", "test": [{"label": "B", "session": "other"}],
       "stages": [{"stage": "remove_far", "feature": "delta_x", "sigmas": 8}, {"stage": "normalise"},
                  {"stage": "mean", "width": 25}, {"stage": "quantise", "step": 0.2}],
       "run_time": ["mean"],
@@ -185,6 +187,39 @@ TEST_F(NnProgram, RefusesWhatIsWrongInOneLine) {
   refused("\"delta_x\"", "\"delta_up\"", {"'delta_up' is not known"});
   expect_refused(run("nn show small.json"), 2, {"small.json: is no network model"});
   expect_refused(run("nn train small.json --sessions none --out m"), 2, {"no session drive"});
+}
+
+// No test decides anything: the epoch that is kept is the one with the least error of the choice.
+TEST_F(NnProgram, TheChoiceDecidesAndIsNoTest) {
+  write("best.json",
+        replaced(configuration(), "\"epochs\": 6", "\"epochs\": 40, \"keep\": \"best\""));
+  const Result trained = run("nn train best.json --sessions s --out m");
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  std::istringstream table(read(root_ / "m/loss_delta_theta.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "epoch,training,choice");
+  double least = 1e9;
+  std::string best;
+  while (std::getline(table, line)) {
+    const double error = std::stod(line.substr(line.rfind(',') + 1));
+    if (error < least) {
+      least = error;
+      best = line.substr(0, line.find(','));
+    }
+  }
+  EXPECT_NE(trained.out.find("delta_theta: error of the choice (third) "), std::string::npos)
+      << trained.out;
+  EXPECT_NE(trained.out.find(", epoch " + best + "\n"), std::string::npos) << trained.out;
+  write("test.json", replaced(configuration(), "\"third\"", "\"other\""));
+  expect_refused(run("nn train test.json --sessions s --out n"), 2,
+                 {"test.json", "choice", "test"});
+  write("none.json", replaced(configuration(), "\"choice\": \"third\", ", ""));
+  expect_refused(run("nn train none.json --sessions s --out n"), 2, {"none.json", "choice"});
+  const Result page = run("nn eval m/model.json best.json --sessions s --markdown");
+  ASSERT_EQ(page.exit_code, 0) << page.err;
+  EXPECT_EQ(page.out.rfind("## small\n", 0), 0U) << page.out;
+  EXPECT_NE(page.out.find("| `delta_theta` | B | as trained |"), std::string::npos) << page.out;
 }
 
 }  // namespace

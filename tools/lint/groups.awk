@@ -43,7 +43,7 @@ function read_source(    line, inside, alias, aliases, included, parts, count, i
   alone[source] = 0
   while ((getline line < source) > 0) {
     if (line ~ /^#include / && included[line]++) alone[source] = 1
-    if (line ~ /^#include "generated\/commands.h"/) alone[source] = 1
+    if (line ~ /^#include "commands.h"/) alone[source] = 1
     # Code for several instruction sets, inside the namespace where it is included.
     if (line ~ /^#include ".*\.inc"/) {
       split(line, parts, "\"")

@@ -7,13 +7,13 @@
 #include <memory>
 #include <vector>
 
-#include "boards/a_star_32u4/board.h"
-#include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
+#include "host_sim/standin/standin_plant.h"
 #include "paths.h"
 #include "tools/bench/require.h"
+#include "tools/bench/speed/timed_drive.h"
 
 namespace screed {
 namespace {
@@ -21,44 +21,6 @@ namespace {
 Experiment first_drive() {
   return read_experiment(std::filesystem::path(kDataFolder) / "experiments" / "first_drive.ini");
 }
-
-/// A world with its robot, which is running.
-class Drive {
- public:
-  Drive()
-      : experiment_(first_drive()),
-        world_(make_world(experiment_, nullptr)),
-        robot_(kBoard, experiment_.parameters, credentials_of(experiment_)) {
-    constexpr uint64_t kLongestStart = 20U * uint64_t{kTickRate_hz};
-    while (!is_running(robot_)) {
-      if (world_->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
-      tick();
-    }
-  }
-
-  static bool is_running(const Robot& robot) {
-    return robot.supervisor().state() == RobotState::kRunning;
-  }
-
-  void tick() {
-    world_->advance();
-    robot_.tick(world_->sample(), output_);
-    world_->apply(output_);
-  }
-
-  bool is_over() const {
-    return static_cast<double>(world_->ticks()) >= experiment_.experiment.duration_s * kTickRate_hz;
-  }
-  const Robot& robot() const { return robot_; }
-  /// Of the last tick.
-  const SensorSample& sample() const { return world_->sample(); }
-
- private:
-  Experiment experiment_;
-  std::unique_ptr<World> world_;
-  Robot robot_;
-  RobotOutput output_{};
-};
 
 /// A robot that has begun to drive, and the samples of the minute that follows.
 struct RecordedDrive {
@@ -68,7 +30,7 @@ struct RecordedDrive {
 
 const RecordedDrive& recorded_drive() {
   static const RecordedDrive recorded = [] {
-    Drive drive;
+    TimedDrive drive(first_drive());
     RecordedDrive result{drive.robot(), {}};
     for (int i = 0; i < 60 * kTickRate_hz; ++i) {
       drive.tick();
@@ -94,32 +56,47 @@ void firmware_tick(benchmark::State& state) {
     benchmark::DoNotOptimize(output);
     if (++next < recorded.samples.size()) continue;
     state.PauseTiming();
-    if (!require(state, Drive::is_running(robot), kDoesNotRun)) break;
+    if (!require(state, TimedDrive::is_running(robot), kDoesNotRun)) break;
     robot = recorded.robot;
     next = 0;
     state.ResumeTiming();
   }
-  require(state, Drive::is_running(robot), kDoesNotRun);
+  require(state, TimedDrive::is_running(robot), kDoesNotRun);
 }
 BENCHMARK(firmware_tick);
 
-/// One control tick of the world with the running robot in it: ten physics steps of 1 ms, sensors,
-/// radio, firmware.
-void world_tick(benchmark::State& state) {
-  auto drive = std::make_unique<Drive>();
+Experiment on_soil(double cell_m) {
+  Experiment experiment = first_drive();
+  experiment.map.model = "scm";
+  experiment.soil.cell_m = cell_m;
+  return experiment;
+}
+
+WorldChoice stand_in() {
+  WorldChoice choice;
+  choice.hal = "surrogate";
+  return choice;
+}
+
+/// One control tick of a world with the running robot in it: ten steps of 1 ms, sensors, radio,
+/// firmware.
+void world_tick(benchmark::State& state, const Experiment& experiment, const WorldChoice& choice) {
+  auto drive = std::make_unique<TimedDrive>(experiment, choice);
   while (state.KeepRunning()) {
     drive->tick();
     if (!drive->is_over()) continue;
     state.PauseTiming();
-    if (!require(state, Drive::is_running(drive->robot()), kDoesNotRun)) break;
-    drive = std::make_unique<Drive>();
+    if (!require(state, TimedDrive::is_running(drive->robot()), kDoesNotRun)) break;
+    drive = std::make_unique<TimedDrive>(experiment, choice);
     state.ResumeTiming();
   }
-  require(state, Drive::is_running(drive->robot()), kDoesNotRun);
+  require(state, TimedDrive::is_running(drive->robot()), kDoesNotRun);
   state.counters["real_time_factor"] = benchmark::Counter(
       static_cast<double>(state.iterations()) / kTickRate_hz, benchmark::Counter::kIsRate);
 }
-BENCHMARK(world_tick);
+BENCHMARK_CAPTURE(world_tick, rigid, first_drive(), WorldChoice{});
+BENCHMARK_CAPTURE(world_tick, soil, on_soil(0.01), WorldChoice{});
+BENCHMARK_CAPTURE(world_tick, stand_in, on_soil(kStandInCell_m), stand_in());
 
 /// `screed sim` as the user runs it: 300 s with session, telemetry log, tables and pictures.
 /// real_time_factor counts the loop with recording, as the program prints it;

@@ -21,7 +21,7 @@ namespace {
 void surrogate_frame(benchmark::State& state) {
   constexpr double kMoves = 1e-4;  // m and rad a frame
   const auto robots = static_cast<std::size_t>(state.range(0));
-  const nn::Model model = nn::read_model(data_folders().models / "v2_products.json");
+  const nn::Model model = nn::read_model(data_folders().models / "v2_forward.json");
   const HeightField ground = HeightField::from_function(
       512, 512, 0.02, true,
       [](double x, double y) { return 0.05 * std::sin(x * 1.2) * std::cos(y * 1.9); });

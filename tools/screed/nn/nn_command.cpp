@@ -37,6 +37,7 @@ struct NnArguments {
   std::size_t vectors = 1'000'000;
   bool resume = false;
   bool json = false;
+  bool markdown = false;
   bool pictures = true;
 };
 
@@ -116,11 +117,11 @@ int run_preprocess(const NnArguments& arguments) {
 // ---- train
 
 void write_losses(const fs::path& file, const nn::TrainedNetwork& network) {
-  std::string text = "epoch,training,test\n";
+  std::string text = "epoch,training,choice\n";
   char line[80];
   for (std::size_t i = 0; i < network.losses.size(); ++i) {
     std::snprintf(line, sizeof line, "%zu,%.9g,%.9g\n", i + 1, network.losses[i].training,
-                  network.losses[i].test);
+                  network.losses[i].choice);
     text += line;
   }
   write_file(file, text);
@@ -158,9 +159,18 @@ int run_train(const NnArguments& arguments) {
   if (arguments.pictures) nn::draw_losses(configuration, networks, folder);
   const nn::Evaluation evaluation = nn::evaluate(model, data.tests, tasks.progress());
   tasks.clear();
-  std::cout << (arguments.json ? evaluation_json(evaluation)
-                               : evaluation_text(evaluation, configuration));
-  if (!arguments.json) std::printf("\nmodel in %s\n", file.c_str());
+  if (arguments.json) {
+    std::cout << evaluation_json(evaluation);
+    return 0;
+  }
+  std::cout << evaluation_text(evaluation, configuration) << "\n";
+  for (std::size_t i = 0; i < networks.size(); ++i) {
+    const std::size_t epoch = networks[i].kept_epoch;
+    std::printf("%s: error of the choice (%s) %.6f, epoch %zu\n",
+                configuration.networks[i].name().c_str(), configuration.choice.c_str(),
+                networks[i].losses[epoch - 1].choice, epoch);
+  }
+  std::printf("model in %s\n", file.c_str());
   return 0;
 }
 
@@ -204,9 +214,10 @@ int run_eval(const NnArguments& arguments) {
       nn::prepare_tests(configuration, model, arguments.sessions, bar.progress());
   const nn::Evaluation evaluation = nn::evaluate(model, tests, bar.progress());
   bar.clear();
-  std::cout << (arguments.json ? evaluation_json(evaluation)
-                               : evaluation_text(evaluation, configuration));
-  if (arguments.pictures) {
+  std::cout << (arguments.json       ? evaluation_json(evaluation)
+                : arguments.markdown ? evaluation_markdown(evaluation, configuration)
+                                     : evaluation_text(evaluation, configuration));
+  if (arguments.pictures && !arguments.markdown) {
     MadeFolders folders;
     const fs::path folder = folders.make(out_folder(arguments, configuration.name));
     const std::vector<fs::path> files = nn::draw_evaluation(model, tests, folder, bar.progress());
@@ -358,6 +369,9 @@ void register_nn_command(CLI::App& root, Program& program) {
   configuration(eval);
   folder(eval);
   json(eval);
+  eval->add_flag("--markdown", arguments->markdown,
+                 "Print the tables as a section of a page in Markdown, and draw nothing")
+      ->excludes("--json");
 
   CLI::App* header = add("export", "Export a model as a C++ header for the robot", run_export);
   model(header);

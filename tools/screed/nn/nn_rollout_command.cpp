@@ -13,6 +13,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/core/random.h"
+#include "host_sim/run/experiment/experiment.h"
 #include "host_sim/standin/track_geometry.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/rollout.h"
@@ -182,10 +183,8 @@ void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t o
     std::printf("  %s: no distance was driven\n", what.c_str());
     return;
   }
-  std::printf(
-      "  %s: median %.4f %%, p90 %.4f %% of the distance\
-",
-      what.c_str(), quantile(divergence, 0.5), quantile(divergence, 0.9));
+  std::printf("  %s: median %.4f %%, p90 %.4f %% of the distance\n", what.c_str(),
+              quantile(divergence, 0.5), quantile(divergence, 0.9));
 }
 
 /// The model in floating point with one part in 10^9 on its outputs. How far that leads tells which
@@ -243,12 +242,28 @@ std::vector<nn::SurrogateFactory> baselines_of(const std::vector<nn::MotionSerie
   return baselines;
 }
 
+/// Whether the recorded robots had tracks; all or none of them.
+bool on_tracks(const std::vector<std::string>& sessions) {
+  const auto tracks = [](const std::string& session) {
+    return read_experiment(fs::path(session) / "experiment.ini").vehicle.tracks;
+  };
+  for (const std::string& session : sessions) {
+    if (tracks(session) == tracks(sessions.front())) continue;
+    throw InputError(session + ": [vehicle] tracks differs from that of " + sessions.front() +
+                     "; allowed are sessions on tracks, or sessions on wheels");
+  }
+  return tracks(sessions.front());
+}
+
 int run_rollout(const RolloutArguments& arguments) {
   nn::RolloutOptions options;
   options.starts = arguments.starts;
   options.drive =
       arguments.drive == "tracks" ? nn::RolloutDrive::kTracks : nn::RolloutDrive::kFirmware;
-  std::vector<nn::SurrogateFactory> surrogates = {{"stand-in", {}}};
+  // The stand-in knows tracks alone.
+  const bool stand_in = on_tracks(arguments.sessions);
+  std::vector<nn::SurrogateFactory> surrogates;
+  if (stand_in) surrogates.push_back({"stand-in", {}});
   const std::size_t baselines = surrogates.size();
   const std::vector<nn::SurrogateFactory> first = baselines_of({});
   surrogates.insert(surrogates.end(), first.begin(), first.end());
@@ -291,7 +306,7 @@ int run_rollout(const RolloutArguments& arguments) {
     for (const bool straight : {true, false}) print_table(all, surrogates, straight);
     for (const bool straight : {true, false}) {
       print_ranges(all, surrogates, straight);
-      print_paired(all, surrogates, straight);
+      if (stand_in) print_paired(all, surrogates, straight);
     }
   }
   std::printf("\n");

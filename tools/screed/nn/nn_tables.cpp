@@ -46,6 +46,32 @@ std::string evaluation_text(const nn::Evaluation& evaluation,
   return text;
 }
 
+std::string evaluation_markdown(const nn::Evaluation& evaluation,
+                                const nn::TrainingConfiguration& configuration) {
+  std::string text =
+      line("## %s\n\n%s\n\n", configuration.name.c_str(), configuration.about.c_str()) +
+      "| output | test | data | frames | MSE | R² | thesis: MSE | R² | integers off |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const nn::Score& score : evaluation.scores) {
+    const nn::ThesisFigure* thesis = figure_for(configuration, score);
+    text += line("| `%s` | %s | %s | %zu | %.4f | %.4f |", score.output.c_str(), score.test.c_str(),
+                 score.form.c_str(), score.frames, score.mse, score.r2);
+    text += thesis != nullptr && score.form == "as trained"
+                ? line(" %.4f | %.4f |", thesis->mse, thesis->r2)
+                : std::string(" | |");
+    text += line(" %.5f |\n", score.quantisation);
+  }
+  if (evaluation.ranks.empty()) return text;
+  text +=
+      "\n| rank correlation (Spearman) | test | data | recorded | network |\n"
+      "| --- | --- | --- | --- | --- |\n";
+  for (const nn::RankScore& rank : evaluation.ranks) {
+    text += line("| %s | %s | %s | %.4f | %.4f |\n", rank.pair.c_str(), rank.test.c_str(),
+                 rank.form.c_str(), rank.recorded, rank.predicted);
+  }
+  return text;
+}
+
 std::string evaluation_json(const nn::Evaluation& evaluation) {
   nlohmann::ordered_json scores = nlohmann::ordered_json::array();
   for (const nn::Score& score : evaluation.scores) {
