@@ -36,7 +36,7 @@ TEST(RolloutPicture, ShowsPathsAndBothDeviationsOfEachPrediction) {
   picture.title = "session";
   picture.physics = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}};
   picture.predictions = {{"no slip", {{0.0, 0.0, 0.0}, {1.1, 0.0, 0.0}, {2.2, 0.1, 0.1}}},
-                         {"V3", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}}};
+                         {"network", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}}};
   const std::string svg = rollout_svg(picture);
   const auto count = [&svg](const std::string& what) {
     int found = 0;
