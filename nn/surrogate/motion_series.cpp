@@ -7,7 +7,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/session_reader.h"
-#include "host_sim/run/simulation/simulation.h"
+#include "nn/surrogate/support.h"
 
 namespace screed::nn {
 namespace {
@@ -57,21 +57,17 @@ MotionSeries read_motion_series(const std::filesystem::path& session_folder) {
   const Experiment experiment = read_experiment(session_folder / "experiment.ini");
   if (!experiment.map.is_soil()) {
     throw InputError(session_folder.string() + ": [map] model = " + experiment.map.model +
-                     "; a network of motion learns from scm alone");
+                     "; allowed is scm");
   }
   if (!session.has_heights()) {
     throw InputError(session_folder.string() +
                      ": no heights were recorded; screed record records them");
   }
   MotionSeries series;
-  series.source = session.info().experiment_name;
-  series.content_hash = session.content_hash();
-  series.soil = make_soil(experiment);
-
   const SupportGeometry geometry;
   std::vector<SimFrame> rows;
   std::optional<SimFrame> before;
-  PlanarPose pose;
+  double heading_rad = 0.0;
   for (std::uint64_t begin = 0; begin < session.frames(); begin += kBlockRows) {
     rows.resize(std::min(kBlockRows, session.frames() - begin));
     session.read(begin, rows);
@@ -80,26 +76,22 @@ MotionSeries read_motion_series(const std::filesystem::path& session_folder) {
       if (now.leveling_state == static_cast<std::int32_t>(LevelingState::kTrainingDrive) &&
           before.has_value()) {
         const std::uint64_t tick = begin + i;
-        if (series.frames.empty()) {
-          series.first = tick;
-          pose = {before->x, before->y, before->yaw};
-        }
+        if (series.empty()) heading_rad = before->yaw;
         const Support support =
             support_on(MapHeights(session.heights_after(tick)), geometry, before->x, before->y,
                        std::cos(before->yaw), std::sin(before->yaw));
-        const double middle = pose.heading_rad + 0.5 * now.delta_theta;
+        const double middle = heading_rad + 0.5 * now.delta_theta;
         const double c = std::cos(middle);
         const double s = std::sin(middle);
         const FrameMotion motion{now.delta_x * c + now.delta_y * s,
                                  now.delta_y * c - now.delta_x * s, now.delta_theta};
-        pose.move(motion);
-        series.frames.push_back(
-            {motion, now.track_left, now.track_right, support.pitch, support.roll, pose});
+        heading_rad += now.delta_theta;
+        series.push_back({motion, now.track_left, now.track_right, support.pitch, support.roll});
       }
       before = now;
     }
   }
-  if (series.frames.empty()) {
+  if (series.empty()) {
     throw InputError(session_folder.string() + ": Algorithm 5 drove no frame of it");
   }
   return series;

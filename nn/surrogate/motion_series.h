@@ -1,14 +1,10 @@
-// What a recorded session says of its robot's motion, frame by frame: the material that networks of
-// motion learn from and that rollouts are compared with.
+// What a recorded session says of its robot's motion, frame by frame: what baselines are fitted to.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
-#include "host_sim/physics/soil/soil_parameters.h"
-#include "nn/surrogate/surrogate.h"
+#include "host_sim/standin/planar_pose.h"
 
 namespace screed::nn {
 
@@ -18,16 +14,9 @@ struct MotionFrame {
   double track_right_m_per_s;
   double pitch;  ///< of the ground at its beginning, as the surrogate world sees it
   double roll;
-  PlanarPose pose;  ///< at its end; places as travelled, beyond the bed's edges
 };
 
-struct MotionSeries {
-  std::string source;        ///< name of the session
-  std::string content_hash;  ///< of the session
-  SoilParameters soil;
-  std::uint64_t first = 0;  ///< row of the session that frames[0] is
-  std::vector<MotionFrame> frames;
-};
+using MotionSeries = std::vector<MotionFrame>;
 
 /// The frames that Algorithm 5 drove. Throws InputError, naming the folder, for a session that
 /// cannot be read, has no such frames, no recorded heights, or ground of another kind than soil.

@@ -54,7 +54,7 @@ TrackKinematics fitted_kinematics(SlipLaw law, std::span<const MotionSeries> ser
   squares.setZero();
   products.setZero();
   for (const MotionSeries& one : series) {
-    for (const MotionFrame& frame : one.frames) {
+    for (const MotionFrame& frame : one) {
       const TrackInputs inputs = track_inputs(frame.track_left_m_per_s, frame.track_right_m_per_s,
                                               frame.pitch, frame.roll);
       const FrameMotion& m = frame.motion;

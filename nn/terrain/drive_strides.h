@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "host_sim/physics/terrain/height_field.h"
@@ -25,7 +25,6 @@ class DriveStrides {
   const std::array<WheelPosition, 4>& wheels() const { return wheels_; }
   const Assembly& robot() const { return robot_; }
   bool tracks() const { return tracks_; }
-  const std::string& name() const { return session_.info().experiment_name; }
 
   /// The ground before the first stride.
   HeightField initial_terrain() const;

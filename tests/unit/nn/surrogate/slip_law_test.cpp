@@ -21,7 +21,7 @@ MotionSeries driven_by(const TrackKinematics& kinematics) {
     frame.roll = 0.2 * std::cos(0.05 * i);
     frame.motion = kinematics.motion(frame.track_left_m_per_s, frame.track_right_m_per_s,
                                      frame.pitch, frame.roll);
-    series.frames.push_back(frame);
+    series.push_back(frame);
   }
   return series;
 }
@@ -64,7 +64,7 @@ TEST(SlipLaw, EachFindsItsOwnConstantsAgain) {
 // One who has more constants is nowhere worse on the drive that it is fitted to.
 TEST(SlipLaw, TheSquaresAreTheLessTheMoreConstantsThereAre) {
   MotionSeries drive = driven_by(skid_kinematics(0.9, 0.25));
-  for (MotionFrame& frame : drive.frames) {
+  for (MotionFrame& frame : drive) {
     const double speed = 0.5 * (frame.track_left_m_per_s + frame.track_right_m_per_s);
     frame.motion.forward_m -= 0.005 * std::abs(speed) * frame.pitch;
     frame.motion.forward_m += 0.001 * speed * speed;
@@ -72,7 +72,7 @@ TEST(SlipLaw, TheSquaresAreTheLessTheMoreConstantsThereAre) {
   const auto squares = [&](SlipLaw law) {
     const TrackKinematics fitted = fitted_kinematics(law, {&drive, 1});
     double sum = 0.0;
-    for (const MotionFrame& frame : drive.frames) {
+    for (const MotionFrame& frame : drive) {
       const FrameMotion motion = fitted.motion(frame.track_left_m_per_s, frame.track_right_m_per_s,
                                                frame.pitch, frame.roll);
       sum += std::pow(motion.forward_m - frame.motion.forward_m, 2);
@@ -87,7 +87,7 @@ TEST(SlipLaw, TheSquaresAreTheLessTheMoreConstantsThereAre) {
 // A drive straight ahead says nothing of turns: no constant is made up for them.
 TEST(SlipLaw, WhatADriveDoesNotTellIsLeftOut) {
   MotionSeries drive = driven_by(skid_kinematics(0.9, 0.25));
-  for (MotionFrame& frame : drive.frames) {
+  for (MotionFrame& frame : drive) {
     frame.track_right_m_per_s = frame.track_left_m_per_s;
     frame.motion = {0.009 * frame.track_left_m_per_s, 0.0, 0.0};
   }
