@@ -1,6 +1,6 @@
 // What a robot is driven in when a network stands in for the physics: motors and battery as they
-// are, below them tracks whose motion the network turns into the robot's. The firmware, its sensors
-// and its radio notice nothing.
+// are, below them tracks or wheels whose motion the network turns into the robot's. The firmware,
+// its sensors and its radio notice nothing.
 //
 // The terrain supports and inclines the robot. With a network of the terrain (nn/terrain) the
 // wheels change it, a stride of five frames at a time; without one it stays as it is.
@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/drive_shaft.h"

@@ -40,14 +40,11 @@ class WindowNetwork {
   void apply(HeightField& ground, const Stride& stride, std::vector<float>& last) const;
 
   static void add_motion(const Stride& stride, std::span<float> inputs);
-  /// kCells rows of kInputs, and a number a row.
-  const std::vector<float>& matrix() const { return matrix_; }
-  const std::vector<float>& constant() const { return constant_; }
 
  private:
   WindowNetwork() = default;
 
-  std::vector<float> matrix_;  ///< a row an output
+  std::vector<float> matrix_;  ///< kCells rows of kInputs
   std::vector<float> constant_;
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/data_folders.h"
 #include "paths.h"
 #include "tests/sitl/program.h"
 
@@ -63,6 +64,22 @@ TEST_F(StandIn, ItsRolloutsStandBesideBaselinesOfTheVeryDrive) {
     EXPECT_GT(std::stoi(found[1]), 0) << result.out;
     EXPECT_LT(std::stod(found[2]), 10.0) << result.out;
   }
+}
+
+// The stand-in drives no wheels: there a network stands beside the baselines.
+TEST_F(StandIn, ItIsLeftOutBesideWheels) {
+  const std::string sessions = std::string(kDataFolder) + "/experiments/sessions/";
+  ASSERT_EQ(run("record '" + sessions + "v2_a1.ini' --frames 3000 --quiet --out wheels").exit_code,
+            0);
+  const Result result = run("nn rollout wheels --drive tracks --model '" +
+                            (data_folders().models / "v2.json").string() + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out.find("stand-in"), std::string::npos) << result.out;
+  for (const char* name : {"no slip", "centres and slope", "v2 ", "v2, floating"}) {
+    EXPECT_NE(result.out.find(name), std::string::npos) << name << "\n" << result.out;
+  }
+  expect_refused(run("nn rollout wheels " + recorded("c_viper_straight")), 2,
+                 {"[vehicle] tracks", "wheels"});
 }
 
 TEST_F(StandIn, ADriveThatCannotBeFollowedIsRefusedInOneLine) {

@@ -2,6 +2,8 @@
 #include <sstream>
 #include <string>
 
+#include "host_sim/core/data_folders.h"
+#include "host_sim/run/session/session_reader.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -32,6 +34,28 @@ TEST_F(TerrainNet, LearnsFromARunAndIsComparedWithIt) {
   figures >> error >> outside >> moved >> volume >> units;
   EXPECT_GT(moved, 0.0) << compared.out;
   EXPECT_EQ(units, 0) << compared.out;
+}
+
+// The thesis' network is trained, kept, compared beside the other, and changes a running world.
+TEST_F(TerrainNet, TheWindowNetworkIsKeptComparedAndDriven) {
+  write("e.ini",
+        "[vehicle]\ntracks = false\n[experiment]\nname = small\nduration = 9\nalgorithm = drive\n"
+        "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n[drive]\nspeed = 0.1\n");
+  ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  ASSERT_EQ(run("terrain-net train run --out f.json --epochs 1 --hidden 4").exit_code, 0);
+  const Result learned = run("terrain-net train run --kind window --out w.json --epochs 2");
+  ASSERT_EQ(learned.exit_code, 0) << learned.err;
+  EXPECT_NE(learned.err.find("epoch 2: "), std::string::npos) << learned.err;
+  const Result compared = run("terrain-net compare f.json run --beside w.json");
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  EXPECT_LT(compared.out.find("fluxes"), compared.out.find("window")) << compared.out;
+  EXPECT_NE(compared.out.find("window"), std::string::npos) << compared.out;
+  const std::string model = (data_folders().models / "v2.json").string();
+  const std::string world = "sim e.ini --quiet --heights --hal surrogate --model '" + model + "'";
+  ASSERT_EQ(run(world + " --terrain-net w.json --out changed").exit_code, 0);
+  EXPECT_GT(SessionReader(root_ / "changed" / "session.h5").height_changes(), 0U);
+  write("broken.json", R"({"format": "screed-window-1", "matrix": [1], "constant": []})");
+  expect_refused(run(world + " --terrain-net broken.json --out none"), 2, {"broken.json"});
 }
 
 TEST_F(TerrainNet, AComparisonIsStoppedAtOnce) {

@@ -2,6 +2,7 @@
 // sensors, without recording: V1's tracks on particles that never move, V2's wheels on soil that
 // they change. The argument: the side of the terrain as a multiple of the one that was trained on.
 #include <benchmark/benchmark.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string>
