@@ -22,6 +22,27 @@ constexpr std::size_t kMaxExact = 200;
 constexpr Interval kNoInterval{std::numeric_limits<double>::quiet_NaN(),
                                std::numeric_limits<double>::quiet_NaN()};
 
+/// A mean that rounding does not carry beyond what it is of: of equal values it is that value.
+class MeanBetween {
+ public:
+  void add(double value) {
+    sum_ += value;
+    ++count_;
+    least_ = std::min(least_, value);
+    greatest_ = std::max(greatest_, value);
+  }
+  /// Of NaN it is NaN, which std::clamp() would not have to keep.
+  double value() const {
+    return std::min(std::max(sum_ / static_cast<double>(count_), least_), greatest_);
+  }
+
+ private:
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+  double least_ = std::numeric_limits<double>::infinity();
+  double greatest_ = -std::numeric_limits<double>::infinity();
+};
+
 double normal_share_below(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
@@ -139,7 +160,9 @@ double normal_p(const std::vector<int>& ranks, int rising) {
 
 double mean_of(const std::vector<double>& values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  MeanBetween mean;
+  for (const double value : values) mean.add(value);
+  return mean.value();
 }
 
 Interval bootstrap_mean_interval(const std::vector<double>& values) {
@@ -147,9 +170,9 @@ Interval bootstrap_mean_interval(const std::vector<double>& values) {
   if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); }))
     return {values.front(), values.front()};
   return bootstrap_interval(values.size(), [&values](const std::vector<std::size_t>& chosen) {
-    double sum = 0.0;
-    for (const std::size_t one : chosen) sum += values[one];
-    return sum / static_cast<double>(chosen.size());
+    MeanBetween mean;
+    for (const std::size_t one : chosen) mean.add(values[one]);
+    return mean.value();
   });
 }
 

@@ -68,6 +68,16 @@ TEST(PairedStatistics, OfTooFewOrEqualValuesTheIntervalSaysSo) {
   EXPECT_EQ(bootstrap_mean_interval({2.5, 2.5, 2.5}).high, 2.5);
 }
 
+TEST(PairedStatistics, MeansAndTheirIntervalsLieBetweenTheValuesToTheBit) {
+  // The sum of five times the greatest, by five, is one bit more than it.
+  const double greatest = 15.003904621516016;
+  const Interval interval =
+      bootstrap_mean_interval({greatest, greatest, 13.18738245173786, greatest, greatest});
+  EXPECT_EQ(interval.high, greatest);
+  EXPECT_GE(interval.low, 13.18738245173786);
+  EXPECT_EQ(mean_of({greatest, greatest, greatest, greatest, greatest}), greatest);
+}
+
 TEST(PairedStatistics, WilcoxonsTestIsSciPys) {
   // scipy.stats.wilcoxon(values, mode='exact'): 10 of 78 fall.
   const SignedRank result = signed_rank(kEven);
