@@ -16,10 +16,11 @@ uint8_t hex_digit(uint8_t value) {
 }
 
 uint8_t hex_value(uint8_t digit) {
-  if (digit >= '0' && digit <= '9') return static_cast<uint8_t>(digit - '0');
-  if (digit >= 'A' && digit <= 'F') return static_cast<uint8_t>(digit - 'A' + 10);
-  if (digit >= 'a' && digit <= 'f') return static_cast<uint8_t>(digit - 'a' + 10);
-  return kNotHex;
+  const auto decimal = static_cast<uint8_t>(digit - '0');
+  if (decimal < 10) return decimal;
+  // Small letters and capitals differ in one bit.
+  const auto letter = static_cast<uint8_t>((digit | 0x20U) - 'a');
+  return letter < 6 ? static_cast<uint8_t>(letter + 10) : kNotHex;
 }
 
 }  // namespace

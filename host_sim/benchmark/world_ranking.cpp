@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <utility>
 
 #include "host_sim/benchmark/benchmark_file.h"
 #include "host_sim/benchmark/run_column.h"
+#include "host_sim/core/random.h"
 
 namespace screed {
 namespace {
@@ -53,6 +56,33 @@ SeedMean mean_of_cell(const Change& change, std::size_t first,
   return {values.size(), mean_of(values), bootstrap_mean_interval(values)};
 }
 
+std::vector<double> means_of_reference(const Change& change, const std::vector<Pair>& pairs,
+                                       std::size_t count, const std::vector<std::size_t>& seeds) {
+  std::vector<double> means;
+  means.reserve(pairs.size());
+  for (const Pair& pair : pairs) means.push_back(mean_at(change, pair.reference * count, seeds));
+  return means;
+}
+
+double tau_of_halves(const Change& change, const std::vector<Pair>& pairs, std::size_t count,
+                     std::vector<std::size_t> seeds) {
+  constexpr int kHalves = 1000;
+  if (seeds.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  WorldRandom random(1, "halves of beds");
+  const auto half = static_cast<std::ptrdiff_t>(seeds.size() / 2);
+  double sum = 0.0;
+  for (int i = 0; i < kHalves; ++i) {
+    for (std::size_t k = seeds.size() - 1; k > 0; --k) {
+      const std::size_t other = (random.next() * std::uint64_t{k + 1}) >> 32U;
+      std::swap(seeds[k], seeds[other]);
+    }
+    sum +=
+        kendall_tau(means_of_reference(change, pairs, count, {seeds.begin(), seeds.begin() + half}),
+                    means_of_reference(change, pairs, count, {seeds.begin() + half, seeds.end()}));
+  }
+  return sum / kHalves;
+}
+
 WorldRanking ranking_of(const CampaignPlan& plan, const Change& change,
                         const std::vector<Pair>& pairs) {
   const std::size_t count = plan.seed_count();
@@ -88,6 +118,7 @@ WorldRanking ranking_of(const CampaignPlan& plan, const Change& change,
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   ranking.tau.mean = tau(all);
   ranking.tau.interval = bootstrap_percentiles(seeds.size(), tau);
+  ranking.reference_halves = tau_of_halves(change, pairs, count, seeds);
   return ranking;
 }
 

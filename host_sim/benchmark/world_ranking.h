@@ -2,6 +2,7 @@
 // far their rates agree: the benchmark's runs, course by course, in both worlds on the same beds.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct WorldRanking {
   std::vector<std::string> course;  ///< levels of kCourseFactors; empty: all courses together
   std::vector<RankedEntry> entries;
   SeedMean tau;  ///< `count`: beds that have a value of every entry in both worlds
+  /// How well the reference repeats its own order: tau between its means over a half of the beds
+  /// and over the other half, mean over 1,000 random halves of a fixed seed. NaN of fewer than two
+  /// beds. Where it is low, entries differ by less than beds do, and no world can order them well.
+  double reference_halves = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Of each further world, each course, then all courses together where there are several. Nothing

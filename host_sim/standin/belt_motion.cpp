@@ -62,10 +62,31 @@ BeltShear& BeltShear::operator+=(const BeltShear& more) {
   return *this;
 }
 
-/// matrix * motion = sum, of forward and sideways speed and rate of turn.
+/// matrix * motion = sum, of forward and sideways speed and rate of turn. The matrix is symmetric
+/// and positive definite; forward and sideways are not coupled.
 struct BeltMotion::System {
-  Eigen::Matrix3d matrix;
-  Eigen::Vector3d sum;
+  double forward, left, turn;      ///< of the diagonal
+  double forward_turn, left_turn;  ///< beside it
+  double sum_forward, sum_left, sum_turn;
+
+  void add(double to_forward, double to_left, double to_turn) {
+    sum_forward += to_forward;
+    sum_left += to_left;
+    sum_turn += to_turn;
+  }
+  /// By Cholesky's decomposition, written out: Eigen's for any size takes twice as long for three.
+  Eigen::Vector3d motion() const {
+    const double l00 = std::sqrt(forward);
+    const double l20 = forward_turn / l00;
+    const double l11 = std::sqrt(left);
+    const double l21 = left_turn / l11;
+    const double l22 = std::sqrt(turn - (l20 * l20 + l21 * l21));
+    const double y0 = sum_forward / l00;
+    const double y1 = sum_left / l11;
+    const double y2 = (sum_turn - (l20 * y0 + l21 * y1)) / l22;
+    const double z2 = y2 / l22;
+    return {(y0 - l20 * z2) / l00, (y1 - l21 * z2) / l11, z2};
+  }
 };
 
 BeltMotion::BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, const BeltFit& fit)
@@ -130,12 +151,12 @@ void BeltMotion::shear_patch(Patch& patch, double y, double speed, System& syste
   const double ks = kFrame_s * across * patch.per_slip;
   const double forward = along * patch.forward + k * speed;
   const double left = across * patch.left;
-  system.sum += Eigen::Vector3d(forward, left, left * x - forward * y);
-  system.matrix(0, 0) += k;
-  system.matrix(0, 2) -= k * y;
-  system.matrix(1, 1) += ks;
-  system.matrix(1, 2) += ks * x;
-  system.matrix(2, 2) += k * y * y + ks * x * x;
+  system.add(forward, left, left * x - forward * y);
+  system.forward += k;
+  system.forward_turn -= k * y;
+  system.left += ks;
+  system.left_turn += ks * x;
+  system.turn += k * y * y + ks * x * x;
 }
 
 BeltShear BeltMotion::finish(std::array<Patch, kPatches>& belt, double y, double speed) const {
@@ -179,7 +200,7 @@ void BeltMotion::shear_belts(const std::array<double, 2>& speeds, const BeltSupp
     }
     const double rolling = kFrame_s * fit_.rolling * load *
                            std::clamp((forward_ - turn_ * y) / kRollingSpeed_m_per_s, -1.0, 1.0);
-    system.sum -= rolling * Eigen::Vector3d(1.0, 0.0, -y);
+    system.add(-rolling, 0.0, rolling * y);
   }
 }
 
@@ -196,18 +217,15 @@ void BeltMotion::finish_belts(const std::array<double, 2>& speeds) {
 FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
                              const Eigen::Vector3d& push) {
   const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
-  System system;
-  system.matrix = Eigen::Vector3d(mass_kg_, mass_kg_, inertia_kg_m2_).asDiagonal();
+  System system{mass_kg_, mass_kg_, inertia_kg_m2_, 0.0, 0.0, 0.0, 0.0, 0.0};
   // The body turns, its axes with it.
-  system.sum << mass_kg_ * (forward_ + kFrame_s * turn_ * left_),
-      mass_kg_ * (left_ - kFrame_s * turn_ * forward_), inertia_kg_m2_ * turn_;
-  system.sum -=
-      kFrame_s * weight_on(support, mass_kg_) * Eigen::Vector3d(support.forward, support.left, 0.0);
-  system.sum += kFrame_s * push;
+  system.add(mass_kg_ * (forward_ + kFrame_s * turn_ * left_),
+             mass_kg_ * (left_ - kFrame_s * turn_ * forward_), inertia_kg_m2_ * turn_);
+  const double downhill = kFrame_s * weight_on(support, mass_kg_);
+  system.add(-downhill * support.forward, -downhill * support.left, 0.0);
+  system.add(kFrame_s * push[0], kFrame_s * push[1], kFrame_s * push[2]);
   shear_belts(speeds, support, system);
-  system.matrix(2, 0) = system.matrix(0, 2);
-  system.matrix(2, 1) = system.matrix(1, 2);
-  const Eigen::Vector3d motion = system.matrix.llt().solve(system.sum);
+  const Eigen::Vector3d motion = system.motion();
   forward_ = motion[0];
   left_ = motion[1];
   turn_ = motion[2];
@@ -219,9 +237,7 @@ FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const Be
 void BeltMotion::follow(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
                         const FrameMotion& motion) {
   const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
-  System unused;
-  unused.matrix.setZero();
-  unused.sum.setZero();
+  System unused{};
   set_motion(motion, support);
   shear_belts(speeds, support, unused);
   finish_belts(speeds);

@@ -110,8 +110,8 @@ void StandInRobot::end_frame() {
             part(plane_.left, to.left)};
   const BodyPose before = now_;
   now_ = body_pose();
-  const Eigen::Matrix3d from = rotation_from(before.attitude);
-  const Eigen::Matrix3d now = rotation_from(now_.attitude);
+  const Eigen::Matrix3d& from = before.rotation;
+  const Eigen::Matrix3d& now = now_.rotation;
   const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * now));
   rate_body_ = turned.angle() / kFrame_s * turned.axis();
   velocity_ = (now_.place - before.place) / kFrame_s;
@@ -143,9 +143,11 @@ Eigen::Vector2d StandInRobot::velocity_at(const Eigen::Vector2d& place) const {
 StandInRobot::BodyPose StandInRobot::body_pose() const {
   const double pitch = std::atan(plane_.forward);
   const double roll = std::atan(plane_.left * std::cos(pitch));
-  return {{roll, pitch, pose_.heading_rad},
+  const Attitude attitude{roll, pitch, pose_.heading_rad};
+  return {attitude,
           {pose_.x_m, pose_.y_m,
-           plane_.height_m + kind_.tracks.below_m * std::cos(pitch) * std::cos(roll)}};
+           plane_.height_m + kind_.tracks.below_m * std::cos(pitch) * std::cos(roll)},
+          rotation_from(attitude)};
 }
 
 void StandInRobot::set_at_rest() {
@@ -165,7 +167,7 @@ void StandInRobot::count_wraps() {
 
 ImuTruth StandInRobot::motion() const {
   ImuTruth truth;
-  truth.body_to_world = rotation_from(now_.attitude);
+  truth.body_to_world = now_.rotation;
   truth.mean_rate_rad_per_s = rate_body_;
   truth.mean_specific_force =
       truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kFrame_s +
@@ -178,12 +180,13 @@ void StandInRobot::lay_on_side() {
   on_side_ = true;
   now_.attitude.roll = -std::numbers::pi / 2.0;
   now_.attitude.pitch = 0.0;
+  now_.rotation = rotation_from(now_.attitude);
   set_at_rest();
 }
 
 ChassisState StandInRobot::chassis() const {
   ChassisState state;
-  state.pose.linear() = rotation_from(now_.attitude);
+  state.pose.linear() = now_.rotation;
   state.pose.translation() = now_.place;
   const HeightField& ground = ground_.surface();
   if (ground.wrap()) {
@@ -225,7 +228,7 @@ double StandInRobot::sinkage_m(Side side) const {
 
 double StandInRobot::ground_speed_m_per_s(Side side) const {
   const double arm = side == kLeft ? kind_.tracks.half_tread_m : -kind_.tracks.half_tread_m;
-  return rotation_from(now_.attitude).col(0).dot(velocity_) - rate_body_.z() * arm;
+  return now_.rotation.col(0).dot(velocity_) - rate_body_.z() * arm;
 }
 
 }  // namespace screed

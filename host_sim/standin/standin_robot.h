@@ -89,6 +89,8 @@ class StandInRobot final : public RobotView, public VehicleState {
   struct BodyPose {
     Attitude attitude{};
     Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the origin, as travelled
+    /// Of the attitude, worked out once: much asks for it in every frame.
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   };
   BodyPose body_pose() const;
   void set_at_rest();

@@ -12,28 +12,69 @@ namespace {
 using BlockFunction = void (*)(const BlockLayer*, std::size_t, const std::int16_t*, std::int16_t*,
                                std::size_t);
 
+using OneFunction = void (*)(const LaneLayer*, std::size_t, const std::int16_t*, std::int16_t*,
+                             std::size_t);
+
 struct Block {
   BlockFunction run;
+  OneFunction run_one;
   std::size_t robots;
 };
+
+// So many robots, one after another, take about as long as a block.
+constexpr std::size_t kFewRobots = 4;
 
 constexpr std::size_t kMaxRobots = kAvx512Robots;
 
 Block block_of(BatchKernel kernel) {
-  return kernel == BatchKernel::kAvx512 ? Block{run_block_avx512, kAvx512Robots}
-                                        : Block{run_block_avx2, kAvx2Robots};
+  return kernel == BatchKernel::kAvx512 ? Block{run_block_avx512, run_one_avx512, kAvx512Robots}
+                                        : Block{run_block_avx2, run_one_avx2, kAvx2Robots};
+}
+
+std::int32_t weight_pair(const IntegerLayer& layer, std::size_t node, std::size_t input) {
+  const std::int16_t* weight = &layer.weights[node * layer.inputs + input];
+  const auto lower = static_cast<std::uint16_t>(weight[0]);
+  const auto upper = static_cast<std::uint16_t>(input + 1 < layer.inputs ? weight[1] : 0);
+  return static_cast<std::int32_t>(std::uint32_t{lower} | std::uint32_t{upper} << 16);
 }
 
 BlockLayer in_pairs(const IntegerLayer& layer) {
   BlockLayer result{layer.inputs, layer.outputs, 16 - layer.gain_shift, layer.linear,
                     {},           layer.bias};
   for (std::size_t node = 0; node < layer.outputs; ++node) {
+    for (std::size_t i = 0; i < layer.inputs; i += 2)
+      result.weight_pairs.push_back(weight_pair(layer, node, i));
+  }
+  return result;
+}
+
+/// Of a group of nodes in the order in which a register of so many narrows two registers of sums:
+/// four of each in turn.
+std::vector<std::size_t> order_of_sums(std::size_t lanes) {
+  std::vector<std::size_t> order;
+  for (const std::size_t half : {0U, 4U}) {
+    for (std::size_t eight = 0; eight < lanes; eight += 8) {
+      for (std::size_t i = 0; i < 4; ++i) order.push_back(eight + half + i);
+    }
+  }
+  return order;
+}
+
+LaneLayer in_lanes(const IntegerLayer& layer, std::size_t lanes) {
+  const std::size_t groups = (layer.outputs + lanes - 1) / lanes;
+  LaneLayer result{
+      layer.inputs, static_cast<int>(groups), 16 - layer.gain_shift, layer.linear, {}, {}};
+  const std::vector<std::size_t> order = order_of_sums(lanes);
+  for (std::size_t group = 0; group < groups; ++group) {
+    const auto append = [&](std::vector<std::int32_t>& to, const auto& value_of_node) {
+      for (const std::size_t place : order) {
+        const std::size_t node = group * lanes + place;
+        to.push_back(node < layer.outputs ? value_of_node(node) : 0);
+      }
+    };
+    append(result.bias, [&](std::size_t node) { return layer.bias[node]; });
     for (std::size_t i = 0; i < layer.inputs; i += 2) {
-      const std::int16_t* weight = &layer.weights[node * layer.inputs + i];
-      const auto lower = static_cast<std::uint16_t>(weight[0]);
-      const auto upper = static_cast<std::uint16_t>(i + 1 < layer.inputs ? weight[1] : 0);
-      result.weight_pairs.push_back(
-          static_cast<std::int32_t>(std::uint32_t{lower} | std::uint32_t{upper} << 16));
+      append(result.weight_pairs, [&](std::size_t node) { return weight_pair(layer, node, i); });
     }
   }
   return result;
@@ -70,7 +111,10 @@ BatchNetwork::BatchNetwork(const IntegerNetwork& network, BatchKernel kernel)
   if (std::find(present.begin(), present.end(), kernel) == present.end()) {
     throw InputError(std::string("network: this processor has no ") + batch_kernel_name(kernel));
   }
-  for (const IntegerLayer& layer : network.layers()) layers_.push_back(in_pairs(layer));
+  for (const IntegerLayer& layer : network.layers()) {
+    layers_.push_back(in_pairs(layer));
+    lane_layers_.push_back(in_lanes(layer, block_of(kernel).robots));
+  }
 }
 
 void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t robots,
@@ -90,13 +134,25 @@ void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t ro
   for (; robot + block.robots <= robots; robot += block.robots) {
     block.run(layers_.data(), layers_.size(), in + robot, out + robot, stride);
   }
-  if (robot == robots) return;
-  // The robots that do not fill a block, in a block of their own.
-  std::array<std::int16_t, kMaxInputs * kMaxRobots> from{};
+  if (robots - robot <= kFewRobots) {
+    std::array<std::int16_t, kMaxInputs> from;
+    std::array<std::int16_t, kMaxInputs> to;
+    for (; robot < robots; ++robot) {
+      for (std::size_t i = 0; i < inputs(); ++i) from[i] = in[i * stride + robot];
+      block.run_one(lane_layers_.data(), lane_layers_.size(), from.data(), to.data(), outputs());
+      for (std::size_t i = 0; i < outputs(); ++i) out[i * stride + robot] = to[i];
+    }
+    return;
+  }
+  // The robots that do not fill a block, in a block of their own. The widest network's would take
+  // longer to clear than a small one to run.
+  std::array<std::int16_t, kMaxInputs * kMaxRobots> from;
   std::array<std::int16_t, kMaxInputs * kMaxRobots> to;
   const std::size_t rest = robots - robot;
   for (std::size_t i = 0; i < inputs(); ++i) {
-    std::copy_n(in + i * stride + robot, rest, &from[i * block.robots]);
+    std::int16_t* const to_block = &from[i * block.robots];
+    std::fill(std::copy_n(in + i * stride + robot, rest, to_block), to_block + block.robots,
+              std::int16_t{0});
   }
   block.run(layers_.data(), layers_.size(), from.data(), to.data(), block.robots);
   for (std::size_t i = 0; i < outputs(); ++i) {

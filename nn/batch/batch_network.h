@@ -37,6 +37,7 @@ class BatchNetwork {
   IntegerNetwork network_;
   BatchKernel kernel_;
   std::vector<BlockLayer> layers_;
+  std::vector<LaneLayer> lane_layers_;
 };
 
 }  // namespace screed::nn

@@ -1,4 +1,4 @@
-// 16 robots a block, with AVX2.
+// 16 robots a block, or one, with AVX2.
 #include <immintrin.h>
 
 #include "nn/batch/block_kernel.h"
@@ -13,6 +13,9 @@ namespace {
 using Vector = __m256i;
 
 SCREED_NN_TARGET inline Vector load(const int16_t* from) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i_u*>(from));
+}
+SCREED_NN_TARGET inline Vector load_sums(const int32_t* from) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i_u*>(from));
 }
 SCREED_NN_TARGET inline void store(int16_t* to, Vector v) {
@@ -65,6 +68,11 @@ SCREED_NN_TARGET inline Vector tanh_q15(Vector z) {
 SCREED_NN_TARGET void run_block_avx2(const BlockLayer* layers, size_t count, const int16_t* in,
                                      int16_t* out, size_t stride) {
   all_layers(layers, count, in, out, stride);
+}
+
+SCREED_NN_TARGET void run_one_avx2(const LaneLayer* layers, size_t count, const int16_t* in,
+                                   int16_t* out, size_t outputs) {
+  all_layers_of_one(layers, count, in, out, outputs);
 }
 
 }  // namespace screed::nn

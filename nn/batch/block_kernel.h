@@ -1,5 +1,5 @@
-// The seam between BatchNetwork and the kernels that compute a block of robots with the vector
-// instructions of a processor. A kernel's file includes nothing of the standard library's
+// The seam between BatchNetwork and the kernels that compute a block of robots, or one, with the
+// vector instructions of a processor. A kernel's file includes nothing of the standard library's
 // templates, so no code for a newer processor can reach the rest of the program.
 #pragma once
 
@@ -21,6 +21,19 @@ struct BlockLayer {
   std::vector<int32_t> bias;          ///< outputs
 };
 
+/// The same for one robot alone, whose nodes lie beside each other in a register: with the others
+/// of a block idle it would take ten times as long. A register of 16-bit numbers holds a group of
+/// nodes; their sums are two registers, as pairs_low and pairs_high (block_layers.inc) would leave
+/// them. Nodes that are not there have weights of 0.
+struct LaneLayer {
+  int inputs;
+  int groups;
+  int shift;
+  bool linear;
+  std::vector<int32_t> weight_pairs;  ///< groups x ceil(inputs / 2) x (low, high)
+  std::vector<int32_t> bias;          ///< groups x (low, high)
+};
+
 constexpr int kMaxLayerWidth = 255;
 
 // One block: kAvx2Robots or kAvx512Robots robots through all layers. Number i of robot r is
@@ -31,5 +44,11 @@ void run_block_avx2(const BlockLayer* layers, size_t count, const int16_t* in, i
                     size_t stride);
 void run_block_avx512(const BlockLayer* layers, size_t count, const int16_t* in, int16_t* out,
                       size_t stride);
+
+// One robot: its number i is in[i]; out[0..outputs).
+void run_one_avx2(const LaneLayer* layers, size_t count, const int16_t* in, int16_t* out,
+                  size_t outputs);
+void run_one_avx512(const LaneLayer* layers, size_t count, const int16_t* in, int16_t* out,
+                    size_t outputs);
 
 }  // namespace screed::nn

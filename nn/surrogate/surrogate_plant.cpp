@@ -116,7 +116,9 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   }
   battery_ = state.battery;
   begin_stride(state.pose);
-  now_ = pose_on_terrain();
+  find_support();
+  turn_to({support_.roll, support_.pitch, state.pose.heading_rad});
+  now_.place = {state.pose.x_m, state.pose.y_m, support_.height_m + standing_height_m_};
   before_ = now_;
   const double c = std::cos(state.pose.heading_rad);
   const double s = std::sin(state.pose.heading_rad);
@@ -132,17 +134,18 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   }
 }
 
-double SurrogatePlant::resistance(Side side) const {
+std::array<double, 2> SurrogatePlant::resistance() const {
   const double weight = 0.5 * mass_kg_ * kGravity_m_per_s2;
-  const double speed = vehicle_.track_speed_m_per_s(side);
-  const double turn =
-      (vehicle_.track_speed_m_per_s(kRight) - vehicle_.track_speed_m_per_s(kLeft)) / tread_m_;
-  const double against_turn = side == kRight ? 1.0 : -1.0;
-  const double force =
-      weight *
-      (std::sin(now_.attitude.pitch) + kRollingShare * std::tanh(speed / kRollingSpeed_m_per_s) +
-       kTurningShare * against_turn * std::tanh(turn / kTurningRate_rad_per_s));
-  return force * geometry_.wheel_radius_m;
+  const double left = vehicle_.track_speed_m_per_s(kLeft);
+  const double right = vehicle_.track_speed_m_per_s(kRight);
+  const double turn = (right - left) / tread_m_;
+  const double against_turn = kTurningShare * std::tanh(turn / kTurningRate_rad_per_s);
+  const auto torque = [&](double speed, double turning) {
+    const double force =
+        weight * (sin_pitch_ + kRollingShare * std::tanh(speed / kRollingSpeed_m_per_s) + turning);
+    return force * geometry_.wheel_radius_m;
+  };
+  return {torque(left, -against_turn), torque(right, against_turn)};
 }
 
 void SurrogatePlant::step(const std::array<double, 2>& duty_ratio) {
@@ -152,22 +155,26 @@ void SurrogatePlant::step(const std::array<double, 2>& duty_ratio) {
     const auto i = static_cast<size_t>(side);
     current += std::max(0.0, duty_ratio[i] * shafts_[i].current_a());
   }
-  const std::array<double, 2> torque = {-resistance(kLeft), -resistance(kRight)};
+  const std::array<double, 2> against = resistance();
   for (size_t i = 0; i < shafts_.size(); ++i) {
     // On a slope a braked track stands: what the ground takes is friction as well.
-    shafts_[i].step(duty_ratio[i] * battery_.terminal_v, on_side_ ? 0.0 : torque[i], kStep_s);
+    shafts_[i].step(duty_ratio[i] * battery_.terminal_v, on_side_ ? 0.0 : -against[i], kStep_s);
   }
   battery_.step(current, kStep_s);
   ++steps_;
   if (steps_ % kStepsPerTick == 0) end_frame();
 }
 
-SurrogatePlant::BodyPose SurrogatePlant::pose_on_terrain() const {
+void SurrogatePlant::find_support() {
   const PlanarPose pose = robot_.pose(0);
-  const Support support = support_at(ground_, geometry_, pose.x_m, pose.y_m,
-                                     std::cos(pose.heading_rad), std::sin(pose.heading_rad));
-  return {{support.roll, support.pitch, pose.heading_rad},
-          {pose.x_m, pose.y_m, support.height_m + standing_height_m_}};
+  support_ = support_at(ground_, geometry_, pose.x_m, pose.y_m, std::cos(pose.heading_rad),
+                        std::sin(pose.heading_rad));
+}
+
+void SurrogatePlant::turn_to(const Attitude& attitude) {
+  now_.attitude = attitude;
+  now_.rotation = rotation_from(attitude);
+  sin_pitch_ = std::sin(attitude.pitch);
 }
 
 void SurrogatePlant::set_at_rest() {
@@ -201,7 +208,7 @@ void SurrogatePlant::end_frame() {
   }
   const double left = vehicle_.track_speed_m_per_s(kLeft);
   const double right = vehicle_.track_speed_m_per_s(kRight);
-  robot_.step(ground_, {&left, 1}, {&right, 1});
+  robot_.step_on_slope(support_.pitch, support_.roll, {&left, 1}, {&right, 1});
   stop_at_walls();
   if (ground_change_) {
     stride_tracks_m_[kLeft] += left * kFrame_s;
@@ -210,14 +217,16 @@ void SurrogatePlant::end_frame() {
   }
 
   before_ = now_;
-  now_ = pose_on_terrain();
+  find_support();
+  const PlanarPose pose = robot_.pose(0);
   const auto part = [](double from, double to) { return from + kPoseSmoothing * (to - from); };
-  now_.attitude.pitch = part(before_.attitude.pitch, now_.attitude.pitch);
-  now_.attitude.roll = part(before_.attitude.roll, now_.attitude.roll);
-  now_.place.z() = part(before_.place.z(), now_.place.z());
+  turn_to({part(before_.attitude.roll, support_.roll), part(before_.attitude.pitch, support_.pitch),
+           pose.heading_rad});
+  now_.place = {pose.x_m, pose.y_m,
+                part(before_.place.z(), support_.height_m + standing_height_m_)};
 
-  const Eigen::Matrix3d from = rotation_from(before_.attitude);
-  const Eigen::Matrix3d to = rotation_from(now_.attitude);
+  const Eigen::Matrix3d& from = before_.rotation;
+  const Eigen::Matrix3d& to = now_.rotation;
   const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * to));
   rate_body_ = turned.angle() / kFrame_s * turned.axis();
   velocity_ = (now_.place - before_.place) / kFrame_s;
@@ -235,7 +244,7 @@ double SurrogatePlant::time_s() const {
 
 ImuTruth SurrogatePlant::motion() const {
   ImuTruth truth;
-  truth.body_to_world = rotation_from(now_.attitude);
+  truth.body_to_world = now_.rotation;
   truth.mean_rate_rad_per_s = rate_body_;
   truth.mean_specific_force =
       truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kFrame_s +
@@ -246,8 +255,7 @@ ImuTruth SurrogatePlant::motion() const {
 
 void SurrogatePlant::lay_on_side() {
   on_side_ = true;
-  now_.attitude.roll = -std::numbers::pi / 2.0;
-  now_.attitude.pitch = 0.0;
+  turn_to({-std::numbers::pi / 2.0, 0.0, now_.attitude.heading});
   set_at_rest();
 }
 
@@ -257,7 +265,7 @@ Eigen::Vector3d SurrogatePlant::unwrapped_position() const {
 
 ChassisState SurrogatePlant::Body::chassis() const {
   ChassisState state;
-  state.pose.linear() = rotation_from(plant_.now_.attitude);
+  state.pose.linear() = plant_.now_.rotation;
   state.pose.translation() = plant_.now_.place;
   const HeightField& ground = plant_.ground_;
   if (ground.wrap()) {
@@ -289,9 +297,8 @@ double SurrogatePlant::Body::load_n(Side /*side*/) const {
   return plant_.on_side_ ? 0.0 : 0.5 * plant_.mass_kg_ * kGravity_m_per_s2;
 }
 double SurrogatePlant::Body::ground_speed_m_per_s(Side side) const {
-  const Eigen::Matrix3d rotation = rotation_from(plant_.now_.attitude);
   const double arm = (side == kLeft ? 0.5 : -0.5) * plant_.tread_m_;
-  return rotation.col(0).dot(plant_.velocity_) - plant_.rate_body_.z() * arm;
+  return plant_.now_.rotation.col(0).dot(plant_.velocity_) - plant_.rate_body_.z() * arm;
 }
 
 }  // namespace screed::nn

@@ -62,6 +62,8 @@ class SurrogatePlant : public Environment {
   struct BodyPose {
     Attitude attitude{};
     Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of Body's origin, as travelled
+    /// Of the attitude, worked out once: much asks for it in every frame.
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   };
 
   class Body : public VehicleState {
@@ -80,15 +82,17 @@ class SurrogatePlant : public Environment {
     const SurrogatePlant& plant_;
   };
 
-  /// The ground's push against a track, as a torque on its shaft.
-  double resistance(Side side) const;
+  /// The ground's push against each track, as torques on their shafts.
+  std::array<double, 2> resistance() const;
   void end_frame();
   /// The rectangle round the robot from above.
   Eigen::AlignedBox2d outline() const;
   /// A wall stops what of the frame's motion leads into it, and nothing else: it does not turn the
   /// robot and has no friction.
   void stop_at_walls();
-  BodyPose pose_on_terrain() const;
+  /// Of the ground as it is now below the robot's pose; the next frame begins on it.
+  void find_support();
+  void turn_to(const Attitude& attitude);
   void set_at_rest();
   void begin_stride(const PlanarPose& pose);
   void end_stride();
@@ -113,7 +117,9 @@ class SurrogatePlant : public Environment {
   uint64_t steps_ = 0;
   std::array<int64_t, 2> wrap_counts_ = {0, 0};
 
+  Support support_{};
   BodyPose now_;
+  double sin_pitch_ = 0.0;  ///< of now_
   BodyPose before_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();      ///< of Body's origin
   Eigen::Vector3d imu_velocity_ = Eigen::Vector3d::Zero();  ///< over the last frame

@@ -47,14 +47,26 @@ double packet_loss_at(double distance_m, double range_m, size_t bytes) {
   return packet_loss(kSnrAtRange * std::pow(range_m / distance_m, kPathLossExponent), bytes);
 }
 
+void RadioLink::end_packet_after_pause(double now_us) {
+  const double pause_end_us = sender_free_us_ + options_.pause_characters * character_us();
+  if (!packet_.empty() && now_us >= pause_end_us) end_packet(pause_end_us);
+}
+
 void RadioLink::send(uint64_t now_us, std::span<const uint8_t> bytes) {
-  const double pause_us = options_.pause_characters * character_us();
+  if (bytes.empty()) return;
   const auto now = static_cast<double>(now_us);
-  for (const uint8_t byte : bytes) {
-    if (!packet_.empty() && now >= sender_free_us_ + pause_us)
-      end_packet(sender_free_us_ + pause_us);
-    sender_free_us_ = std::max(sender_free_us_, now) + character_us();
-    packet_.push_back(byte);
+  end_packet_after_pause(now);
+  // From here on the line is busy: no pause ends a packet between these bytes.
+  sender_free_us_ = std::max(sender_free_us_, now);
+  const double step_us = character_us();
+  while (!bytes.empty()) {
+    const size_t room =
+        options_.packet_bytes > packet_.size() ? options_.packet_bytes - packet_.size() : 1;
+    const std::span<const uint8_t> fits = bytes.first(std::min(room, bytes.size()));
+    // Added up, not multiplied: the same times however the bytes are handed over.
+    for (size_t i = 0; i < fits.size(); ++i) sender_free_us_ += step_us;
+    packet_.insert(packet_.end(), fits.begin(), fits.end());
+    bytes = bytes.subspan(fits.size());
     if (packet_.size() >= options_.packet_bytes) end_packet(sender_free_us_);
   }
 }
@@ -82,35 +94,47 @@ void RadioLink::end_packet(double end_us) {
 }
 
 void RadioLink::deliver(double arrival_us) {
+  // Nothing that was taken is kept: the first half, when it is, or all of it.
+  if (2 * next_ >= bytes_.size()) {
+    const auto taken = static_cast<std::ptrdiff_t>(next_);
+    bytes_.erase(bytes_.begin(), bytes_.begin() + taken);
+    arrivals_us_.erase(arrivals_us_.begin(), arrivals_us_.begin() + taken);
+    next_ = 0;
+  }
+  const size_t begin = bytes_.size();
+  bytes_.insert(bytes_.end(), packet_.begin(), packet_.end());
+  if (options_.bit_errors > 0.0) flip_bits(std::span(bytes_).subspan(begin));
   receiver_free_us_ = std::max(receiver_free_us_, arrival_us);
-  for (uint8_t byte : packet_) {
-    for (unsigned bit = 0; options_.bit_errors > 0.0 && bit < 8; ++bit) {
+  arrivals_us_.resize(bytes_.size());
+  const double step_us = character_us();
+  for (size_t i = begin; i < bytes_.size(); ++i) {
+    receiver_free_us_ += step_us;
+    arrivals_us_[i] = static_cast<uint64_t>(receiver_free_us_);
+  }
+}
+
+void RadioLink::flip_bits(std::span<uint8_t> bytes) {
+  for (uint8_t& byte : bytes) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
       if (random_.uniform() >= options_.bit_errors) continue;
       byte = static_cast<uint8_t>(byte ^ (1U << bit));
       ++counts_.wrong_bits;
     }
-    receiver_free_us_ += character_us();
-    in_flight_.push_back({static_cast<uint64_t>(receiver_free_us_), byte});
   }
 }
 
-std::vector<uint8_t> RadioLink::receive(uint64_t now_us, size_t max_bytes) {
-  std::vector<uint8_t> bytes;
-  while (bytes.size() < max_bytes) {
-    const std::optional<Byte> byte = receive_byte(now_us);
-    if (!byte.has_value()) break;
-    bytes.push_back(byte->value);
-  }
-  return bytes;
+std::span<const uint8_t> RadioLink::receive(uint64_t now_us, size_t max_bytes) {
+  end_packet_after_pause(static_cast<double>(now_us));
+  const size_t begin = next_;
+  const size_t end = begin + std::min(max_bytes, bytes_.size() - begin);
+  while (next_ < end && arrivals_us_[next_] <= now_us) ++next_;
+  return std::span(bytes_).subspan(begin, next_ - begin);
 }
 
 std::optional<RadioLink::Byte> RadioLink::receive_byte(uint64_t now_us) {
-  const double pause_end_us = sender_free_us_ + options_.pause_characters * character_us();
-  if (!packet_.empty() && static_cast<double>(now_us) >= pause_end_us) end_packet(pause_end_us);
-  if (in_flight_.empty() || in_flight_.front().arrives_us > now_us) return std::nullopt;
-  const Byte byte = in_flight_.front();
-  in_flight_.pop_front();
-  return byte;
+  const size_t at = next_;
+  if (receive(now_us, 1).empty()) return std::nullopt;
+  return Byte{arrivals_us_[at], bytes_[at]};
 }
 
 }  // namespace screed

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -47,8 +46,8 @@ class RadioLink {
   /// Hands bytes to the sending module, one after another from now on. Times rise.
   void send(uint64_t now_us, std::span<const uint8_t> bytes);
 
-  /// Takes what has arrived by now, at most `max_bytes` bytes, in order.
-  std::vector<uint8_t> receive(uint64_t now_us, size_t max_bytes);
+  /// Takes what has arrived by now, at most `max_bytes` bytes, in order. Holds until the next call.
+  std::span<const uint8_t> receive(uint64_t now_us, size_t max_bytes);
 
   struct Byte {
     uint64_t arrives_us;
@@ -71,7 +70,9 @@ class RadioLink {
  private:
   double character_us() const { return 1e6 / options_.bytes_per_s; }
   void end_packet(double end_us);
+  void end_packet_after_pause(double now_us);
   void deliver(double arrival_us);
+  void flip_bits(std::span<uint8_t> bytes);
 
   RadioOptions options_;
   WorldRandom random_;
@@ -79,7 +80,11 @@ class RadioLink {
   std::vector<uint8_t> packet_;    ///< being collected in the sending module
   double sender_free_us_ = 0.0;    ///< when the sender's line has carried everything so far
   double receiver_free_us_ = 0.0;  ///< likewise the receiver's
-  std::deque<Byte> in_flight_;
+  // What is on its way: bytes from next_ on, and when each arrives. Every tick of every robot goes
+  // through here, so bytes lie in one piece and are handed out where they lie.
+  std::vector<uint8_t> bytes_;
+  std::vector<uint64_t> arrivals_us_;
+  size_t next_ = 0;
   Counts counts_;
 };
 

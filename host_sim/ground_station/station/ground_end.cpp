@@ -13,7 +13,7 @@ void GroundEnd::tick(uint64_t now_us, GroundStation& station, RadioLink& uplink,
     uplink.send(now_us, bytes);
   }
   if (!handed_over_) uplink.send(now_us, station.transmit(now_us));
-  const std::vector<uint8_t> arrived = downlink.receive(now_us, SIZE_MAX);
+  const std::span<const uint8_t> arrived = downlink.receive(now_us, SIZE_MAX);
   station.receive(now_us, arrived);
   if (port_ != nullptr) port_->send(arrived);
 }

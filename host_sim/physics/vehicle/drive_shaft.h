@@ -32,6 +32,8 @@ class DriveShaft {
   GearMotor motor_;
   int motors_;
   double inertia_;
+  double gain_;      ///< torque on a shaft that stands, N m per V
+  double friction_;  ///< N m
   double omega_ = 0.0;
   double angle_ = 0.0;
   double current_ = 0.0;

@@ -3,19 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <span>
 
 #include "host_sim/devices/sensors/calibration_motion.h"
 
 namespace screed {
 
 void NativeRobot::begin_tick(uint64_t tick) {
+  end_of_tick_steps_ = robot().steps() + static_cast<uint64_t>(robot().steps_per_tick());
   devices().execute_events(tick, robot());
 }
 
 // The ground station sends before the robot receives.
 void NativeRobot::end_step() {
-  if (!at_end_of_tick()) return;
+  if (robot().steps() != end_of_tick_steps_) return;
   measure();
   devices().exchange_radio(world_us(), robot());
   receive_radio();
@@ -39,7 +40,7 @@ void NativeRobot::measure() {
 }
 
 void NativeRobot::receive_radio() {
-  const std::vector<uint8_t> arrived = devices().uplink().receive(world_us(), kRadioInCapacity);
+  const std::span<const uint8_t> arrived = devices().uplink().receive(world_us(), kRadioInCapacity);
   sample_.radio_in_count = static_cast<uint8_t>(arrived.size());
   std::fill(std::copy(arrived.begin(), arrived.end(), sample_.radio_in),
             sample_.radio_in + kRadioInCapacity, static_cast<uint8_t>(0));

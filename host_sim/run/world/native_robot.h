@@ -34,6 +34,7 @@ class NativeRobot : public RobotController {
 
   BoardConstants board_;
   bool calibration_motion_;
+  uint64_t end_of_tick_steps_ = 0;  ///< the plant's, with which the tick ends
   SensorSample sample_{};
   DutyRatio duty_ratio_{0.0, 0.0};
 };

@@ -43,10 +43,6 @@ class RobotController {
     return steps * kTickPeriod_us / static_cast<uint64_t>(robot_.steps_per_tick());
   }
   uint64_t world_us() const { return us_at(robot_.steps()); }
-  /// Whether a control tick of the world ends with the last step.
-  bool at_end_of_tick() const {
-    return robot_.steps() % static_cast<uint64_t>(robot_.steps_per_tick()) == 0;
-  }
 
  private:
   RobotView& robot_;

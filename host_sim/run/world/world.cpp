@@ -52,7 +52,7 @@ World::World(std::unique_ptr<Environment> plant, const BoardConstants& board,
 }
 
 bool World::at_end_of_tick() const {
-  return plant_->steps() % static_cast<uint64_t>(plant_->steps_per_tick()) == 0;
+  return plant_->steps() == ticks_ * static_cast<uint64_t>(plant_->steps_per_tick());
 }
 
 void World::step() {

@@ -137,6 +137,8 @@ void print_ranking(const WorldRanking& ranking) {
   std::printf("%s: %s orders the entries as %s with Kendall's tau %s, %zu beds\n",
               course_text(ranking).c_str(), ranking.other.c_str(), ranking.reference.c_str(),
               with_interval(ranking.tau, 1, 2).c_str(), ranking.tau.count);
+  std::printf("  (%s itself, a half of the beds beside the other: %.2f)\n",
+              ranking.reference.c_str(), ranking.reference_halves);
   if (ranking.course.empty()) return;
   std::printf("  %-16s %-26s %-26s %s\n", "entry, relief [%]", ranking.reference.c_str(),
               ranking.other.c_str(), "rate");
@@ -154,9 +156,10 @@ Json json_of(const WorldRanking& ranking) {
                        {ranking.reference, json_of(entry.reference)},
                        {ranking.other, json_of(entry.other)}});
   }
-  return {{"ranking", ranking.other},    {"reference", ranking.reference},
-          {"course", ranking.course},    {"beds", ranking.tau.count},
-          {"tau", json_of(ranking.tau)}, {"entries", std::move(entries)}};
+  return {{"ranking", ranking.other},     {"reference", ranking.reference},
+          {"course", ranking.course},     {"beds", ranking.tau.count},
+          {"tau", json_of(ranking.tau)},  {"reference_halves", ranking.reference_halves},
+          {"entries", std::move(entries)}};
 }
 
 /// Entries by name, or files of entries, which are added.

@@ -65,6 +65,32 @@ TEST(WorldRanking, ComparesTheOrderOfEachCourseAndOfAll) {
   EXPECT_NEAR(rankings[2].tau.mean, 9.0 / 15.0, 1e-12);  // 12 of 15 pairs agree
 }
 
+TEST(WorldRanking, SaysHowWellTheReferenceRepeatsItself) {
+  // The same on all beds; what the other world does has no part in it.
+  ValueTable table = runs({-0.1, -0.2, -0.5, -0.01, -0.02, -0.03,  //
+                           -0.1, -0.3, -0.4, -0.03, -0.02, -0.01});
+  EXPECT_NEAR(rank_worlds(plan({"physics", "stand_in"}), table)[0].reference_halves, 1.0, 1e-12);
+  // On gravel walk and spin change places on two of four beds. Two of three halves have a bed of
+  // each kind, in which the two are alike: the other pairs agree. In the third they stand the other
+  // way round: two pairs of three agree.
+  const std::vector<double> walk = {-0.1, -0.1, -0.3, -0.3};
+  const std::vector<double> spin = {-0.3, -0.3, -0.1, -0.1};
+  ValueTable swapped;
+  const auto add = [&](double change) {
+    swapped.add_row();
+    swapped.set("terrain_before.relief_m", 0.01);
+    swapped.set("terrain_after.relief_m", 0.01 * (1.0 + change));
+  };
+  for (int cell = 0; cell < 12; ++cell) {
+    for (std::size_t bed = 0; bed < 4; ++bed) {
+      add(cell == 0 ? walk[bed] : cell == 1 ? spin[bed] : cell == 2 ? -0.5 : -0.01 * cell);
+    }
+  }
+  const auto rankings = rank_worlds(plan({"physics", "stand_in"}), swapped);
+  EXPECT_NEAR(rankings[0].reference_halves, (2.0 * 1.0 + 1.0 / 3.0) / 3.0, 0.05);
+  EXPECT_NEAR(rankings[1].reference_halves, 1.0, 1e-12);
+}
+
 TEST(WorldRanking, LeavesOutBedsWithoutAValue) {
   ValueTable table = runs({-0.1, -0.2, -0.5, -0.01, -0.02, -0.03,  //
                            -0.1, -0.3, -0.4, -0.01, -0.02, -0.03});

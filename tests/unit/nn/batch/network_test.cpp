@@ -217,13 +217,13 @@ class Batch : public ::testing::TestWithParam<BatchKernel> {};
 TEST_P(Batch, GivesTheBitsOfTheScalarArithmetic) {
   WorldRandom random(3, "network");
   const std::vector<std::vector<std::size_t>> shapes = {
-      {4, 20, 1}, {4, 7, 7, 7, 2}, {1, 1}, {5, 33, 3}, {255, 2}, {3, 255, 255, 1}};
+      {4, 20, 1}, {4, 7, 7, 7, 2}, {1, 1}, {5, 33, 3}, {255, 2}, {3, 255, 255, 1}, {4, 31, 64}};
   for (const std::vector<std::size_t>& shape : shapes) {
     for (const double greatest : {0.5, 8.0}) {
       const IntegerNetwork network =
           quantise(random_network(random, shape, greatest, shape.size() % 2 == 0));
       const BatchNetwork batch(network, GetParam());
-      for (const std::size_t robots : {1U, 15U, 16U, 32U, 77U}) {
+      for (const std::size_t robots : {1U, 3U, 15U, 16U, 32U, 77U}) {
         const std::size_t stride = robots + 3;
         std::vector<std::int16_t> in(stride * network.inputs());
         for (std::int16_t& value : in) {

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace screed {
 namespace {
@@ -137,7 +139,8 @@ TEST(RadioLink, BitsAreWrongAtTheirRate) {
   int wrong = 0;
   for (int i = 0; i < kBytes / 100; ++i) {
     link.send(static_cast<uint64_t>(i) * 1000, bytes(100));
-    const std::vector<uint8_t> arrived = link.receive(static_cast<uint64_t>(i) * 1000 + 999, 1000);
+    const std::span<const uint8_t> arrived =
+        link.receive(static_cast<uint64_t>(i) * 1000 + 999, 1000);
     ASSERT_EQ(arrived.size(), 100U);
     for (size_t k = 0; k < 100; ++k) {
       wrong += __builtin_popcount(static_cast<unsigned>(arrived[k] ^ static_cast<uint8_t>(k)));
@@ -158,7 +161,7 @@ TEST(RadioLink, PacketsAreDoubledAtTheirRate) {
   for (int i = 0; i < kPackets; ++i) {
     const auto now = static_cast<uint64_t>(i) * 10000;
     link.send(now, bytes(10));
-    const std::vector<uint8_t> got = link.receive(now + 9999, SIZE_MAX);
+    const std::span<const uint8_t> got = link.receive(now + 9999, SIZE_MAX);
     if (got.empty()) continue;
     ++arrived;
     if (got.size() != 20) continue;
@@ -213,7 +216,8 @@ TEST(RadioLink, ChanceIsRepeatable) {
     for (uint64_t i = 0; i < 200; ++i) {
       one.send(i * 1000, bytes(5));
       two.send(i * 1000, bytes(5));
-      ASSERT_EQ(one.receive(i * 1000 + 999, 100), two.receive(i * 1000 + 999, 100));
+      ASSERT_TRUE(
+          std::ranges::equal(one.receive(i * 1000 + 999, 100), two.receive(i * 1000 + 999, 100)));
     }
   }
 }

@@ -337,7 +337,8 @@ class GroundEndTest : public ::testing::Test {
   std::vector<uint8_t> tick() {
     end_.tick(now_us_, station_, uplink_, downlink_);
     now_us_ += 10000;
-    return uplink_.receive(now_us_, SIZE_MAX);
+    const std::span<const uint8_t> arrived = uplink_.receive(now_us_, SIZE_MAX);
+    return {arrived.begin(), arrived.end()};
   }
   static std::vector<uint8_t> heartbeat_line(bool right) {
     CanFrame frame{kIdGroundHeartbeat, 6, {}};
