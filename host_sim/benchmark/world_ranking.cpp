@@ -70,17 +70,20 @@ double tau_of_halves(const Change& change, const std::vector<Pair>& pairs, std::
   if (seeds.size() < 2) return std::numeric_limits<double>::quiet_NaN();
   WorldRandom random(1, "halves of beds");
   const auto half = static_cast<std::ptrdiff_t>(seeds.size() / 2);
-  double sum = 0.0;
+  std::vector<double> taus;
+  taus.reserve(kHalves);
   for (int i = 0; i < kHalves; ++i) {
     for (std::size_t k = seeds.size() - 1; k > 0; --k) {
       const std::size_t other = (random.next() * std::uint64_t{k + 1}) >> 32U;
       std::swap(seeds[k], seeds[other]);
     }
-    sum +=
-        kendall_tau(means_of_reference(change, pairs, count, {seeds.begin(), seeds.begin() + half}),
-                    means_of_reference(change, pairs, count, {seeds.begin() + half, seeds.end()}));
+    const auto middle = seeds.begin() + half;
+    const double tau =
+        kendall_tau(means_of_reference(change, pairs, count, {seeds.begin(), middle}),
+                    means_of_reference(change, pairs, count, {middle, seeds.end()}));
+    if (std::isfinite(tau)) taus.push_back(tau);
   }
-  return sum / kHalves;
+  return mean_of(taus);
 }
 
 WorldRanking ranking_of(const CampaignPlan& plan, const Change& change,

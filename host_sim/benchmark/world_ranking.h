@@ -28,8 +28,9 @@ struct WorldRanking {
   std::vector<RankedEntry> entries;
   SeedMean tau;  ///< `count`: beds that have a value of every entry in both worlds
   /// How well the reference repeats its own order: tau between its means over a half of the beds
-  /// and over the other half, mean over 1,000 random halves of a fixed seed. NaN of fewer than two
-  /// beds. Where it is low, entries differ by less than beds do, and no world can order them well.
+  /// and over the other half, mean over 1,000 random halves of a fixed seed that order anything.
+  /// NaN where none does. Where it is low, entries differ by little beside what beds do. It is no
+  /// bound of `tau`, which is of all beds, and of the same ones in both worlds.
   double reference_halves = std::numeric_limits<double>::quiet_NaN();
 };
 

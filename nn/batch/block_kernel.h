@@ -22,9 +22,9 @@ struct BlockLayer {
 };
 
 /// The same for one robot alone, whose nodes lie beside each other in a register: with the others
-/// of a block idle it would take ten times as long. A register of 16-bit numbers holds a group of
-/// nodes; their sums are two registers, as pairs_low and pairs_high (block_layers.inc) would leave
-/// them. Nodes that are not there have weights of 0.
+/// of a block idle it would take several times as long. A register of 16-bit numbers holds a group
+/// of nodes; their sums are two registers, as pairs_low and pairs_high (block_layers.inc) would
+/// leave them. Nodes that are not there have weights of 0.
 struct LaneLayer {
   int inputs;
   int groups;

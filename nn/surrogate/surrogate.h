@@ -61,6 +61,7 @@ class Surrogate {
   void step_on_slope(double pitch, double roll, std::span<const double> left_m_per_s,
                      std::span<const double> right_m_per_s);
 
+  const SupportGeometry& geometry() const { return geometry_; }
   PlanarPose pose(std::size_t robot) const { return {x_[robot], y_[robot], heading_[robot]}; }
   /// Of the last frame.
   FrameMotion motion(std::size_t robot) const {

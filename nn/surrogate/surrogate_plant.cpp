@@ -45,6 +45,7 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
 SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
                                const PlantOptions& options, Surrogate robot)
     : ground_(std::move(terrain)),
+      geometry_(robot.geometry()),
       imu_position_(Eigen::Vector3d::Zero()),
       robot_(std::move(robot)),
       shafts_{DriveShaft(options.vehicle.motor, 1, kTurnedInertia_kg_m2),

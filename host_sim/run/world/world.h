@@ -32,8 +32,8 @@ class World {
   World(HeightField terrain, const Assembly& model, const BoardConstants& board,
         const WorldOptions& options, std::ostream* telemetry_log,
         const ControllerFactory& first = nullptr);
-  /// The same with the robots in another kind of environment; of the options only those count that
-  /// are not the plant's.
+  /// The same with the robots in another kind of environment, which nobody has stepped yet; of the
+  /// options only those count that are not the plant's.
   World(std::unique_ptr<Environment> plant, const BoardConstants& board,
         const WorldOptions& options, std::ostream* telemetry_log,
         const ControllerFactory& first = nullptr);

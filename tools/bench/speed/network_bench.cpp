@@ -64,12 +64,33 @@ void ours_scalar(benchmark::State& state, bool deep) {
   per_robot(state, 1);
 }
 
-void ours_batched(benchmark::State& state, bool deep, BatchKernel kernel) {
+bool has_kernel(benchmark::State& state, BatchKernel kernel) {
   const std::vector<BatchKernel> kernels = batch_kernels();
-  if (std::find(kernels.begin(), kernels.end(), kernel) == kernels.end()) {
-    state.SkipWithError("this processor does not have it");
-    return;
+  const bool has = std::find(kernels.begin(), kernels.end(), kernel) != kernels.end();
+  if (!has) state.SkipWithError("this processor does not have it");
+  return has;
+}
+
+/// One robot, whose next input waits for its last output.
+void ours_alone(benchmark::State& state, bool deep, BatchKernel kernel) {
+  if (!has_kernel(state, kernel)) return;
+  const IntegerNetwork scalar = quantise(layers(deep));
+  const BatchNetwork network(scalar, kernel);
+  std::vector<std::int16_t> in = {1000, -2000, 3000, -4000};
+  std::vector<std::int16_t> out(1);
+  while (state.KeepRunning()) {
+    network.run(in.data(), out.data(), 1, 1);
+    in[0] = static_cast<std::int16_t>(in[0] ^ out[0]);
   }
+  in[0] = static_cast<std::int16_t>(in[0] ^ out[0]);  // as it was the last time
+  std::vector<std::int16_t> expected(1);
+  scalar.run(in, expected);
+  require(state, out[0] == expected[0], "a robot alone gets other bits");
+  per_robot(state, 1);
+}
+
+void ours_batched(benchmark::State& state, bool deep, BatchKernel kernel) {
+  if (!has_kernel(state, kernel)) return;
   const IntegerNetwork scalar = quantise(layers(deep));
   const BatchNetwork network(scalar, kernel);
   WorldRandom random(2, "bench");
@@ -176,6 +197,8 @@ void eigen_float_batched(benchmark::State& state, bool deep) {
 }
 
 BENCHMARK_CAPTURE(ours_scalar, v1_4_20_1, false);
+BENCHMARK_CAPTURE(ours_alone, v1_4_20_1_avx2, false, BatchKernel::kAvx2);
+BENCHMARK_CAPTURE(ours_alone, v1_4_20_1_avx512, false, BatchKernel::kAvx512);
 BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx2, false, BatchKernel::kAvx2);
 BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx512, false, BatchKernel::kAvx512);
 BENCHMARK_CAPTURE(tiny_dnn_float, v1_4_20_1, false);
@@ -183,6 +206,8 @@ BENCHMARK_CAPTURE(fann_fixed, v1_4_20_1, false);
 BENCHMARK_CAPTURE(eigen_float, v1_4_20_1, false);
 BENCHMARK_CAPTURE(eigen_float_batched, v1_4_20_1, false);
 BENCHMARK_CAPTURE(ours_scalar, v2_13x7, true);
+BENCHMARK_CAPTURE(ours_alone, v2_13x7_avx2, true, BatchKernel::kAvx2);
+BENCHMARK_CAPTURE(ours_alone, v2_13x7_avx512, true, BatchKernel::kAvx512);
 BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx2, true, BatchKernel::kAvx2);
 BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx512, true, BatchKernel::kAvx512);
 BENCHMARK_CAPTURE(tiny_dnn_float, v2_13x7, true);

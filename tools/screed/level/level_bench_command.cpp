@@ -137,8 +137,10 @@ void print_ranking(const WorldRanking& ranking) {
   std::printf("%s: %s orders the entries as %s with Kendall's tau %s, %zu beds\n",
               course_text(ranking).c_str(), ranking.other.c_str(), ranking.reference.c_str(),
               with_interval(ranking.tau, 1, 2).c_str(), ranking.tau.count);
-  std::printf("  (%s itself, a half of the beds beside the other: %.2f)\n",
-              ranking.reference.c_str(), ranking.reference_halves);
+  if (std::isfinite(ranking.reference_halves)) {
+    std::printf("  (%s itself, a half of the beds beside the other: %.2f)\n",
+                ranking.reference.c_str(), ranking.reference_halves);
+  }
   if (ranking.course.empty()) return;
   std::printf("  %-16s %-26s %-26s %s\n", "entry, relief [%]", ranking.reference.c_str(),
               ranking.other.c_str(), "rate");

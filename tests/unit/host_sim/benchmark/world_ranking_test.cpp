@@ -89,6 +89,9 @@ TEST(WorldRanking, SaysHowWellTheReferenceRepeatsItself) {
   const auto rankings = rank_worlds(plan({"physics", "stand_in"}), swapped);
   EXPECT_NEAR(rankings[0].reference_halves, (2.0 * 1.0 + 1.0 / 3.0) / 3.0, 0.05);
   EXPECT_NEAR(rankings[1].reference_halves, 1.0, 1e-12);
+  // Entries that are all alike order nothing.
+  const ValueTable alike = runs(std::vector<double>(12, -0.1));
+  EXPECT_TRUE(std::isnan(rank_worlds(plan({"physics", "stand_in"}), alike)[0].reference_halves));
 }
 
 TEST(WorldRanking, LeavesOutBedsWithoutAValue) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace screed {
@@ -54,6 +55,36 @@ TEST(RadioLink, OrderAndContentAreKept) {
     for (const uint8_t byte : link.receive(now, 3)) all.push_back(byte);
   }
   EXPECT_EQ(all, bytes(150));
+}
+
+TEST(RadioLink, BytesComeOneByOneAsTheyComeTogether) {
+  // Packets that end while some of the one before has been taken, and while none is left.
+  RadioOptions options = instant();
+  options.bytes_per_s = 1000.0;
+  RadioLink together(1, "test", options);
+  RadioLink single(1, "test", options);
+  std::vector<uint8_t> all;
+  uint8_t next = 0;
+  for (uint64_t now = 0; now < 400000; now += 1000) {
+    if (now % 9000 == 0) {
+      const std::vector<uint8_t> packet = bytes(1 + now / 9000 % 7, next);
+      next = static_cast<uint8_t>(next + packet.size());
+      together.send(now, packet);
+      for (const uint8_t byte : packet) single.send(now, {&byte, 1});
+    }
+    const std::span<const uint8_t> arrived = together.receive(now, SIZE_MAX);
+    for (const uint8_t byte : arrived) {
+      const std::optional<RadioLink::Byte> one = single.receive_byte(now);
+      ASSERT_TRUE(one.has_value()) << now;
+      EXPECT_EQ(one->value, byte);
+      EXPECT_LE(one->arrives_us, now);
+      EXPECT_GT(one->arrives_us + 1000, now);
+      all.push_back(byte);
+    }
+    ASSERT_FALSE(single.receive_byte(now).has_value()) << now;
+  }
+  ASSERT_GT(all.size(), 100U);
+  EXPECT_EQ(all, bytes(all.size()));
 }
 
 TEST(RadioLink, TheThroughputIsThatOfTheSerialLine) {
