@@ -46,12 +46,21 @@ void thesis_frame(benchmark::State& state, const char* session, const std::strin
   state.counters["s_per_frame"] =
       benchmark::Counter(static_cast<double>(state.iterations() * kFrames),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  // Of all threads together.
+  state.counters["frames_per_s"] = benchmark::Counter(
+      static_cast<double>(state.iterations() * kFrames), benchmark::Counter::kIsRate);
 }
 void sizes(benchmark::internal::Benchmark* one) {
   one->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 }
 BENCHMARK_CAPTURE(thesis_frame, v1_physics, "v1_test", "", "")->Apply(sizes);
 BENCHMARK_CAPTURE(thesis_frame, v1_network, "v1_test", "v1.json", "")->Apply(sizes);
+/// A world on each of two processors.
+BENCHMARK_CAPTURE(thesis_frame, v1_network_twice, "v1_test", "v1.json", "")
+    ->Arg(1)
+    ->Threads(2)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(thesis_frame, v2_physics, "v2_b_test", "", "")->Apply(sizes);
 BENCHMARK_CAPTURE(thesis_frame, v2_network, "v2_b_test", "v2.json", "")->Apply(sizes);
 BENCHMARK_CAPTURE(thesis_frame, v2_network_and_ground, "v2_b_test", "v2.json", "terrain_flux.json")
