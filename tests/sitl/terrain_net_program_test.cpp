@@ -9,13 +9,22 @@
 namespace screed::testing {
 namespace {
 
-class TerrainNet : public Program {};
+class TerrainNet : public Program {
+ protected:
+  /// A drive on wheels over soft soil into `run`; `e.ini` stays.
+  void record_run(int duration_s) {
+    write("e.ini",
+          "[vehicle]\ntracks = false\n"
+          "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n"
+          "[drive]\nspeed = 0.1\n"
+          "[experiment]\nname = small\nalgorithm = drive\nduration = " +
+              std::to_string(duration_s) + "\n");
+    ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  }
+};
 
 TEST_F(TerrainNet, LearnsFromARunAndIsComparedWithIt) {
-  write("e.ini",
-        "[vehicle]\ntracks = false\n[experiment]\nname = small\nduration = 9\nalgorithm = drive\n"
-        "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n[drive]\nspeed = 0.1\n");
-  ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(record_run(9));
   const Result learned = run("terrain-net train run --out n.json --every 4 --epochs 2 --hidden 4");
   ASSERT_EQ(learned.exit_code, 0) << learned.err;
   EXPECT_NE(learned.err.find("epoch 2: "), std::string::npos) << learned.err;
@@ -38,10 +47,7 @@ TEST_F(TerrainNet, LearnsFromARunAndIsComparedWithIt) {
 
 // The thesis' network is trained, kept, compared beside the other, and changes a running world.
 TEST_F(TerrainNet, TheWindowNetworkIsKeptComparedAndDriven) {
-  write("e.ini",
-        "[vehicle]\ntracks = false\n[experiment]\nname = small\nduration = 9\nalgorithm = drive\n"
-        "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n[drive]\nspeed = 0.1\n");
-  ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(record_run(9));
   ASSERT_EQ(run("terrain-net train run --out f.json --epochs 1 --hidden 4").exit_code, 0);
   const Result learned = run("terrain-net train run --kind window --out w.json --epochs 2");
   ASSERT_EQ(learned.exit_code, 0) << learned.err;
@@ -59,10 +65,7 @@ TEST_F(TerrainNet, TheWindowNetworkIsKeptComparedAndDriven) {
 }
 
 TEST_F(TerrainNet, AComparisonIsStoppedAtOnce) {
-  write("e.ini",
-        "[vehicle]\ntracks = false\n[experiment]\nname = small\nduration = 7\nalgorithm = drive\n"
-        "[map]\nsize = 1\nmodel = scm\n[soil]\npreset = soft\ncell = 0.01\n[drive]\nspeed = 0.1\n");
-  ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(record_run(7));
   ASSERT_EQ(run("terrain-net train run --out n.json --epochs 1 --hidden 4").exit_code, 0);
   std::string runs;
   for (int i = 0; i < 1000; ++i) runs += " run";

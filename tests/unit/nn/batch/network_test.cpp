@@ -223,7 +223,7 @@ TEST_P(Batch, GivesTheBitsOfTheScalarArithmetic) {
       const IntegerNetwork network =
           quantise(random_network(random, shape, greatest, shape.size() % 2 == 0));
       const BatchNetwork batch(network, GetParam());
-      for (const std::size_t robots : {1U, 4U, 5U, 15U, 16U, 17U, 35U, 36U, 77U}) {
+      for (const std::size_t robots : {1U, 3U, 4U, 15U, 16U, 17U, 35U, 36U, 77U}) {
         const std::size_t stride = robots + 3;
         std::vector<std::int16_t> in(stride * network.inputs());
         for (std::int16_t& value : in) {
