@@ -62,6 +62,14 @@ void take_suite_entry(const Benchmark& benchmark, const IniEntry& entry, Benchma
   if (entry.key == "seeds") {
     if (!parse_number(entry.value, suite.seeds) || suite.seeds == 0)
       refuse_value(where, entry.value, "an integer, 1 or more");
+  } else if (entry.key == "test_seeds") {
+    suite.test_seeds = parse_seeds(entry.value, where);
+    for (const std::uint64_t seed : suite.test_seeds) {
+      if (std::find(benchmark.test_seeds.begin(), benchmark.test_seeds.end(), seed) !=
+          benchmark.test_seeds.end())
+        continue;
+      refuse_value(where, entry.value, "seeds of [benchmark] test_seeds");
+    }
   } else if (entry.key == "duration") {
     double duration_s = 0.0;
     if (!parse_number(entry.value, duration_s) || !(duration_s > 0.0))
@@ -70,7 +78,7 @@ void take_suite_entry(const Benchmark& benchmark, const IniEntry& entry, Benchma
   } else if (std::find(factors.begin(), factors.end(), entry.key) != factors.end()) {
     suite.levels[entry.key] = levels_in(benchmark, entry.key, entry.value, where);
   } else {
-    throw InputError(where + ": unknown key; known are seeds, duration, " + name_list(factors));
+    throw InputError(where + ": unknown key; known are seeds, test_seeds, duration, " + name_list(factors));
   }
 }
 
@@ -241,8 +249,10 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
                               const std::string& value) {
     entries.push_back({section, key, value, 0});
   };
+  const std::vector<std::uint64_t>& test_seeds =
+      suite->second.test_seeds.empty() ? benchmark.test_seeds : suite->second.test_seeds;
   const std::vector<std::uint64_t>& seeds =
-      choice.training ? benchmark.training_seeds : benchmark.test_seeds;
+      choice.training ? benchmark.training_seeds : test_seeds;
   const std::size_t wanted = choice.seeds.value_or(suite->second.seeds);
   if (wanted == 0 || wanted > seeds.size())
     throw InputError("--seeds " + std::to_string(wanted) + ": allowed are 1 to " +

@@ -272,12 +272,12 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
       0.5 * std::sqrt(12.0 * std::max(0.0, square / cells - along * along) + cell_area_);
   patch.half_width = 0.5 * tracks_.width_m;
   patch.band = tracks_.width_m;
-  const double layer = fit_.digging * soil_.drag_depth_m / kHeightUnit_m;
-  dig_remainder_ += layer * shear.length_m * tracks_.width_m / cell_area_;
+  const double layer = soil_.drag_depth_m / kHeightUnit_m;
+  dig_remainder_ += fit_.digging * layer * shear.length_m * tracks_.width_m / cell_area_;
   const Eigen::Vector2d fall = -(plane.forward * forward + plane.left * left);
   const Eigen::Vector2d downhill = shear.length_m / std::max(tan_repose_, fall.norm()) * fall;
   const Eigen::Vector2d dragged = shear.forward_m * forward + shear.left_m * left;
-  patch.carried = layer * cells * (downhill - soil_.drag_share * dragged);
+  patch.carried = layer * cells * (fit_.downhill * downhill - soil_.drag_share * dragged);
   const auto units = static_cast<std::int64_t>(dig_remainder_);
   dig_remainder_ -= static_cast<double>(units);
   flow_.dig(patch, units);
