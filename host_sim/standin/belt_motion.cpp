@@ -15,11 +15,9 @@ namespace {
 constexpr double kFrame_s = 1.0 / kTickRate_hz;
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which rolling resists in full
 constexpr double kMinContact_m = 0.002;         // of a patch: what touches less is as much
-
-// std::hypot guards against overflows that there are none of, and takes ten times as long.
-double length_of(double x, double y) {
-  return std::sqrt(x * x + y * y);
-}
+constexpr double kMinCarrying_per_s = 1e-12;    // of a belt that stands
+constexpr double kTouching_m = 1e-9;            // what touches less does not
+constexpr double kMinSpeed_m_per_s = 1e-12;     // of a belt that goes somewhere
 
 double along_slope(double slope) {
   return std::sqrt(1.0 + slope * slope);
@@ -32,11 +30,23 @@ double weight_on(const BeltSupport& support, double mass_kg) {
 }
 
 /// What is carried along at this rate, 1/s, from one patch to the next, while it wears off at that
-/// one: the rate at which an upwind difference is right in the steady state.
-double fitted_rate(double carrying, double wearing) {
-  if (carrying <= 0.0) return 0.0;
-  const double a = wearing / carrying;
-  return a < 1e-6 ? carrying : wearing / std::expm1(a);
+/// one: the rate at which an upwind difference is right in the steady state, a / (exp(a) - 1) of
+/// carrying with a = wearing / carrying. By x coth(x) - x with x = a / 2 and the fourth fraction of
+/// Lambert's for coth: within 0.005.
+BothBelts fitted_rate(const BothBelts& carrying, const BothBelts& wearing) {
+  const BothBelts x = 0.5 * wearing / carrying.max(kMinCarrying_per_s);
+  const BothBelts q = x.square();
+  const BothBelts x_coth = 1.0 + q * (315.0 + 14.0 * q) / (945.0 + q * (105.0 + q));
+  return carrying * (x_coth - x).max(0.0);
+}
+
+/// Of one place along both belts.
+BothBelts both(const std::array<std::array<double, kBeltPatches>, 2>& belts, std::size_t patch) {
+  return {belts[0][patch], belts[1][patch]};
+}
+
+BothBelts both(const std::array<double, 2>& belts) {
+  return {belts[0], belts[1]};
 }
 
 }  // namespace
@@ -65,27 +75,27 @@ BeltShear& BeltShear::operator+=(const BeltShear& more) {
 /// matrix * motion = sum, of forward and sideways speed and rate of turn. The matrix is symmetric
 /// and positive definite; forward and sideways are not coupled.
 struct BeltMotion::System {
-  double forward, left, turn;      ///< of the diagonal
-  double forward_turn, left_turn;  ///< beside it
-  double sum_forward, sum_left, sum_turn;
+  double forward = 0.0;  // of the diagonal
+  double left = 0.0;
+  double turn = 0.0;
+  double forward_turn = 0.0;  // beside it
+  double left_turn = 0.0;
+  double sum_forward = 0.0;
+  double sum_left = 0.0;
+  double sum_turn = 0.0;
 
   void add(double to_forward, double to_left, double to_turn) {
     sum_forward += to_forward;
     sum_left += to_left;
     sum_turn += to_turn;
   }
-  /// By Cholesky's decomposition, written out: Eigen's for any size takes twice as long for three.
+  /// By elimination of forward and sideways.
   Eigen::Vector3d motion() const {
-    const double l00 = std::sqrt(forward);
-    const double l20 = forward_turn / l00;
-    const double l11 = std::sqrt(left);
-    const double l21 = left_turn / l11;
-    const double l22 = std::sqrt(turn - (l20 * l20 + l21 * l21));
-    const double y0 = sum_forward / l00;
-    const double y1 = sum_left / l11;
-    const double y2 = (sum_turn - (l20 * y0 + l21 * y1)) / l22;
-    const double z2 = y2 / l22;
-    return {(y0 - l20 * z2) / l00, (y1 - l21 * z2) / l11, z2};
+    const double turn_forward = forward_turn / forward;
+    const double turn_left = left_turn / left;
+    const double rate = (sum_turn - turn_forward * sum_forward - turn_left * sum_left) /
+                        (turn - turn_forward * forward_turn - turn_left * left_turn);
+    return {sum_forward / forward - turn_forward * rate, sum_left / left - turn_left * rate, rate};
   }
 };
 
@@ -93,15 +103,13 @@ BeltMotion::BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, 
     : fit_(fit),
       mass_kg_(tracks.mass_kg),
       inertia_kg_m2_(tracks.yaw_inertia_kg_m2),
-      half_tread_m_(tracks.half_tread_m),
-      patch_m_(2.0 * tracks.half_length_m / kPatches),
+      middle_(tracks.half_tread_m, -tracks.half_tread_m),
+      patch_m_(2.0 * tracks.half_length_m / kBeltPatches),
       cohesion_pa_(soil.cohesion_pa),
       tan_friction_(std::tan(soil.friction_deg * std::numbers::pi / 180.0)),
       per_modulus_(1.0 / soil.shear_modulus_m) {
-  for (auto& belt : patches_) {
-    for (std::size_t i = 0; i < kPatches; ++i) {
-      belt[i].x = patch_m_ * (0.5 * (kPatches - 1) - static_cast<double>(i));
-    }
+  for (std::size_t i = 0; i < kBeltPatches; ++i) {
+    patches_[i].x = patch_m_ * (0.5 * (kBeltPatches - 1) - static_cast<double>(i));
   }
 }
 
@@ -111,136 +119,152 @@ void BeltMotion::set_motion(const FrameMotion& motion, const BeltSupport& suppor
   turn_ = motion.turn_rad / kFrame_s;
 }
 
-/// What is mobilised travels with the belt, from its leading end on; the soil ahead is fresh.
-void BeltMotion::carry(std::array<Patch, kPatches>& belt, double speed) const {
-  double forward = 0.0;
-  double left = 0.0;
-  double before_m = 0.0;  // what touches of the patch before
-  for (std::size_t k = 0; k < kPatches; ++k) {
-    Patch& patch = belt[speed >= 0.0 ? k : kPatches - 1 - k];
-    if (patch.touching_m <= 0.0) {
-      patch.forward = patch.left = 0.0;
-      continue;  // before contact begins, or after its end
-    }
+/// What is mobilised travels with the belt, from its leading end on; the soil ahead is fresh, and a
+/// patch that does not touch has nothing.
+void BeltMotion::carry(const BeltSupport& support) {
+  const BothBelts front = both(support.front);
+  const BothBelts rear = both(support.rear);
+  // The patch before each one, seen the way the belt goes, is the one to the front of it, or the
+  // one to its rear. Beside the ends nothing touches.
+  struct Before {
+    BothBelts touching_m = BothBelts::Zero();
+    BothBelts forward = BothBelts::Zero();
+    BothBelts left = BothBelts::Zero();
+  };
+  std::array<Before, kBeltPatches + 2> before;
+  for (std::size_t i = 0; i < kBeltPatches; ++i) {
+    Patch& patch = patches_[i];
+    patch.touching_m =
+        (front.min(patch.x + 0.5 * patch_m_) - rear.max(patch.x - 0.5 * patch_m_)).max(0.0);
+    patch.touches = (patch.touching_m / kTouching_m).min(1.0);
+    patch.forward *= patch.touches;
+    patch.left *= patch.touches;
+    before[i + 1] = {patch.touching_m, patch.forward, patch.left};
+  }
+  const BothBelts speed = speeds_.abs();
+  const BothBelts from_front = 0.5 + 0.5 * speeds_ / speed.max(kMinSpeed_m_per_s);
+  const BothBelts from_rear = 1.0 - from_front;
+  for (std::size_t i = 0; i < kBeltPatches; ++i) {
+    Patch& patch = patches_[i];
+    const Before& to_front = before[i];
+    const Before& to_rear = before[i + 2];
     // From the middle of what touches of the patch before, or from where contact begins.
-    const double way = std::max(kMinContact_m, 0.5 * (before_m + patch.touching_m));
-    before_m = patch.touching_m;
-    const double share =
-        std::min(1.0, kFrame_s * fitted_rate(std::abs(speed) / way, patch.slip * per_modulus_));
-    const double forward_before = patch.forward;
-    const double left_before = patch.left;
-    patch.forward += share * (forward - patch.forward);
-    patch.left += share * (left - patch.left);
-    forward = forward_before;
-    left = left_before;
+    const BothBelts touching_before =
+        from_front * to_front.touching_m + from_rear * to_rear.touching_m;
+    const BothBelts way = (0.5 * (touching_before + patch.touching_m)).max(kMinContact_m);
+    const BothBelts share =
+        (kFrame_s * fitted_rate(speed / way, patch.slip * per_modulus_)).min(1.0) * patch.touches;
+    patch.forward +=
+        share * (from_front * to_front.forward + from_rear * to_rear.forward - patch.forward);
+    patch.left += share * (from_front * to_front.left + from_rear * to_rear.left - patch.left);
   }
 }
 
-/// The patch's force at the end of the frame: strength (m + per_slip dt slip'), where slip' is what
-/// the motion at the end makes it. How fast m wears off comes from the motion before.
-void BeltMotion::shear_patch(Patch& patch, double y, double speed, System& system) const {
-  const double x = patch.x;
-  patch.slip = length_of(speed - forward_ + turn_ * y, left_ + turn_ * x);
-  const double kept = 1.0 / (1.0 + kFrame_s * patch.slip * per_modulus_);
-  patch.forward *= kept;
-  patch.left *= kept;
-  patch.per_slip = kept * per_modulus_;
-  const double along = kFrame_s * patch.strength;
-  const double across = fit_.sideways * along;
-  const double k = kFrame_s * along * patch.per_slip;
-  const double ks = kFrame_s * across * patch.per_slip;
-  const double forward = along * patch.forward + k * speed;
-  const double left = across * patch.left;
-  system.add(forward, left, left * x - forward * y);
-  system.forward += k;
-  system.forward_turn -= k * y;
-  system.left += ks;
-  system.left_turn += ks * x;
-  system.turn += k * y * y + ks * x * x;
-}
-
-BeltShear BeltMotion::finish(std::array<Patch, kPatches>& belt, double y, double speed) const {
-  BeltShear shear;
-  const double along = kFrame_s * (speed - forward_ + turn_ * y);
-  for (std::size_t i = 0; i < kPatches; ++i) {
-    Patch& patch = belt[i];
-    const double across = -kFrame_s * (left_ + turn_ * patch.x);
-    patch.forward += patch.per_slip * along;
-    patch.left += patch.per_slip * across;
-    const double mobilised = length_of(patch.forward, patch.left);
-    shear.patch_m[i] = mobilised * length_of(along, across);
-    shear.forward_m += mobilised * along / kPatches;
-    shear.left_m += mobilised * across / kPatches;
-    shear.length_m += shear.patch_m[i] / kPatches;
-  }
-  shear.slid_m = std::abs(along);
-  shear.moved_m = kFrame_s * std::max(std::abs(speed), std::abs(forward_ - turn_ * y));
-  return shear;
-}
-
-/// What the soil below both belts, and rolling, does to the robot.
-void BeltMotion::shear_belts(const std::array<double, 2>& speeds, const BeltSupport& support,
-                             System& system) {
+/// Both belts' force at the end of the frame: strength (m + per_slip dt slip'), where slip' is what
+/// the motion at the end makes it, and rolling. How fast m wears off comes from the motion before.
+void BeltMotion::shear(const BeltSupport& support, System& system) {
   const double weight = weight_on(support, mass_kg_);
-  for (std::size_t side = 0; side < 2; ++side) {
-    auto& belt = patches_[side];
-    const double y = middle(side);
-    for (std::size_t i = 0; i < kPatches; ++i) {
-      const double front = std::min(support.front[side], belt[i].x + 0.5 * patch_m_);
-      const double rear = std::max(support.rear[side], belt[i].x - 0.5 * patch_m_);
-      belt[i].touching_m = std::max(0.0, front - rear);
-    }
-    carry(belt, speeds[side]);
-    double load = 0.0;
-    for (std::size_t i = 0; i < kPatches; ++i) {
-      const double carries = weight * support.load[side][i];
-      load += carries;
-      belt[i].strength = cohesion_pa_ * support.area[side][i] + carries * tan_friction_;
-      shear_patch(belt[i], y, speeds[side], system);
-    }
-    const double rolling = kFrame_s * fit_.rolling * load *
-                           std::clamp((forward_ - turn_ * y) / kRollingSpeed_m_per_s, -1.0, 1.0);
-    system.add(-rolling, 0.0, rolling * y);
+  const BothBelts along_slip = speeds_ - forward_ + turn_ * middle_;
+  BothBelts load = BothBelts::Zero();
+  BothBelts forward = BothBelts::Zero();  // forces times the frame
+  BothBelts stiffness = BothBelts::Zero();
+  for (std::size_t i = 0; i < kBeltPatches; ++i) {
+    Patch& patch = patches_[i];
+    const BothBelts carries = weight * both(support.load, i);
+    load += carries;
+    patch.strength = cohesion_pa_ * both(support.area, i) + carries * tan_friction_;
+    const double across_slip = left_ + turn_ * patch.x;
+    patch.slip = (along_slip.square() + across_slip * across_slip).sqrt();
+    const BothBelts kept = 1.0 / (1.0 + kFrame_s * per_modulus_ * patch.slip);
+    patch.forward *= kept;
+    patch.left *= kept;
+    patch.per_slip = kept * per_modulus_;
+    const BothBelts along = kFrame_s * patch.strength;
+    const BothBelts across = fit_.sideways * along;
+    const BothBelts k = kFrame_s * along * patch.per_slip;
+    forward += along * patch.forward + k * speeds_;
+    stiffness += k;
+    const double left = (across * patch.left).sum();
+    const double ks = (kFrame_s * across * patch.per_slip).sum();
+    system.add(0.0, left, left * patch.x);
+    system.left += ks;
+    system.left_turn += ks * patch.x;
+    system.turn += ks * patch.x * patch.x;
   }
+  forward -= kFrame_s * fit_.rolling * load *
+             ((forward_ - turn_ * middle_) / kRollingSpeed_m_per_s).max(-1.0).min(1.0);
+  system.add(forward.sum(), 0.0, -(forward * middle_).sum());
+  system.forward += stiffness.sum();
+  system.forward_turn -= (stiffness * middle_).sum();
+  system.turn += (stiffness * middle_.square()).sum();
 }
 
-void BeltMotion::finish_belts(const std::array<double, 2>& speeds) {
-  for (std::size_t side = 0; side < 2; ++side) {
-    shear_[side] = finish(patches_[side], middle(side), speeds[side]);
-    traction_n_[side] = 0.0;
-    for (const Patch& patch : patches_[side]) {
-      traction_n_[side] += patch.strength * patch.forward;
+/// What the motion at the end of the frame has mobilised.
+void BeltMotion::finish() {
+  const BothBelts along = kFrame_s * (speeds_ - forward_ + turn_ * middle_);
+  BothBelts traction = BothBelts::Zero();
+  for (Patch& patch : patches_) {
+    patch.forward += patch.per_slip * along;
+    patch.left -= patch.per_slip * (kFrame_s * (left_ + turn_ * patch.x));
+    traction += patch.strength * patch.forward;
+  }
+  traction_n_ = {traction[0], traction[1]};
+}
+
+std::array<BeltShear, 2> BeltMotion::shear() const {
+  const BothBelts along = kFrame_s * (speeds_ - forward_ + turn_ * middle_);
+  const BothBelts slid = along.abs();
+  const BothBelts moved = kFrame_s * speeds_.abs().max((forward_ - turn_ * middle_).abs());
+  std::array<BeltShear, 2> belts;
+  for (std::size_t i = 0; i < kBeltPatches; ++i) {
+    const Patch& patch = patches_[i];
+    const double across = -kFrame_s * (left_ + turn_ * patch.x);
+    const BothBelts mobilised = (patch.forward.square() + patch.left.square()).sqrt();
+    const BothBelts length = mobilised * (along.square() + across * across).sqrt();
+    for (const Eigen::Index side : {0, 1}) {
+      BeltShear& belt = belts[static_cast<std::size_t>(side)];
+      belt.patch_m[i] = length[side];
+      belt.forward_m += mobilised[side] * along[side] / kBeltPatches;
+      belt.left_m += mobilised[side] * across / kBeltPatches;
+      belt.length_m += length[side] / kBeltPatches;
+      belt.slid_m = slid[side];
+      belt.moved_m = moved[side];
     }
   }
+  return belts;
 }
 
 FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
                              const Eigen::Vector3d& push) {
-  const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
-  System system{mass_kg_, mass_kg_, inertia_kg_m2_, 0.0, 0.0, 0.0, 0.0, 0.0};
+  speeds_ = {left_m_per_s, right_m_per_s};
+  System system;
+  system.forward = system.left = mass_kg_;
+  system.turn = inertia_kg_m2_;
   // The body turns, its axes with it.
   system.add(mass_kg_ * (forward_ + kFrame_s * turn_ * left_),
              mass_kg_ * (left_ - kFrame_s * turn_ * forward_), inertia_kg_m2_ * turn_);
   const double downhill = kFrame_s * weight_on(support, mass_kg_);
   system.add(-downhill * support.forward, -downhill * support.left, 0.0);
   system.add(kFrame_s * push[0], kFrame_s * push[1], kFrame_s * push[2]);
-  shear_belts(speeds, support, system);
+  carry(support);
+  shear(support, system);
   const Eigen::Vector3d motion = system.motion();
   forward_ = motion[0];
   left_ = motion[1];
   turn_ = motion[2];
-  finish_belts(speeds);
+  finish();
   return {kFrame_s * forward_ / along_slope(support.forward),
           kFrame_s * left_ / along_slope(support.left), kFrame_s * turn_};
 }
 
 void BeltMotion::follow(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
                         const FrameMotion& motion) {
-  const std::array<double, 2> speeds = {left_m_per_s, right_m_per_s};
-  System unused{};
+  speeds_ = {left_m_per_s, right_m_per_s};
+  System unused;
   set_motion(motion, support);
-  shear_belts(speeds, support, unused);
-  finish_belts(speeds);
+  carry(support);
+  shear(support, unused);
+  finish();
 }
 
 }  // namespace screed

@@ -29,6 +29,9 @@ namespace screed {
 
 inline constexpr std::size_t kBeltPatches = 3;  // of a belt, from the front to the rear
 
+/// A number of the left belt and one of the right: the processor computes both at once.
+using BothBelts = Eigen::Array2d;
+
 /// How a robot stands: slopes of the plane of its belts (rise over run, nose and left side up), and
 /// what each patch carries and touches, left belt first.
 struct BeltSupport {
@@ -71,8 +74,8 @@ class BeltMotion {
   void follow(double left_m_per_s, double right_m_per_s, const BeltSupport& support,
               const FrameMotion& motion);
 
-  /// Of the last frame, left and right.
-  const std::array<BeltShear, 2>& shear() const { return shear_; }
+  /// Of the last frame, left and right. Computed here, for grounds that are dug.
+  std::array<BeltShear, 2> shear() const;
   /// Forward on each belt in the last frame, N: what its shaft feels.
   const std::array<double, 2>& traction_n() const { return traction_n_; }
 
@@ -80,38 +83,35 @@ class BeltMotion {
   void set_motion(const FrameMotion& motion, const BeltSupport& support);
 
  private:
-  static constexpr std::size_t kPatches = kBeltPatches;
-  struct Patch {
-    double x = 0.0;           // of its middle, from the robot's, m
-    double touching_m = 0.0;  // of its length, from what touches first to what touches last
-    double forward = 0.0;     // mobilised
-    double left = 0.0;
-    double slip = 0.0;      // in the last frame, m/s
-    double strength = 0.0;  // in this frame, N
-    double per_slip = 0.0;  // mobilised in this frame by its slip, 1/m
+  struct Patch {                               // the same place along both belts
+    double x = 0.0;                            // of its middle, from the robot's, m
+    BothBelts touching_m = BothBelts::Zero();  // of its length, from what touches first to last
+    BothBelts touches = BothBelts::Zero();     // 1, or 0 where nothing does
+    BothBelts forward = BothBelts::Zero();     // mobilised
+    BothBelts left = BothBelts::Zero();
+    BothBelts slip = BothBelts::Zero();      // in the last frame, m/s
+    BothBelts strength = BothBelts::Zero();  // in this frame, N
+    BothBelts per_slip = BothBelts::Zero();  // mobilised in this frame by its slip, 1/m
   };
   struct System;
 
-  double middle(std::size_t side) const { return side == 0 ? half_tread_m_ : -half_tread_m_; }
-  void shear_belts(const std::array<double, 2>& speeds, const BeltSupport& support, System& system);
-  void finish_belts(const std::array<double, 2>& speeds);
-  void carry(std::array<Patch, kPatches>& belt, double speed) const;
-  void shear_patch(Patch& patch, double y, double speed, System& system) const;
-  BeltShear finish(std::array<Patch, kPatches>& belt, double y, double speed) const;
+  void carry(const BeltSupport& support);
+  void shear(const BeltSupport& support, System& system);
+  void finish();
 
   BeltFit fit_;
   double mass_kg_;
   double inertia_kg_m2_;
-  double half_tread_m_;
-  double patch_m_;  // its length
+  BothBelts middle_;  // to the left of the robot's, m
+  double patch_m_;    // its length
   double cohesion_pa_;
   double tan_friction_;
   double per_modulus_;
   double forward_ = 0.0;  // along the slope, m/s
   double left_ = 0.0;
-  double turn_ = 0.0;  // rad/s
-  std::array<std::array<Patch, kPatches>, 2> patches_{};
-  std::array<BeltShear, 2> shear_{};
+  double turn_ = 0.0;                     // rad/s
+  BothBelts speeds_ = BothBelts::Zero();  // of the belts' surfaces, m/s
+  std::array<Patch, kBeltPatches> patches_{};
   std::array<double, 2> traction_n_{};
 };
 

@@ -78,6 +78,27 @@ TEST_F(BenchmarkFile, ASuiteShortensAndTrainingBedsAreOthers) {
             std::string::npos);
 }
 
+TEST_F(BenchmarkFile, ASuiteMayNameWhichOfTheTestBedsAreIts) {
+  const std::string text = kSmall;
+  const Benchmark benchmark = read(text + "test_seeds = 103..104\n");
+  const auto seeds = [&](const BenchmarkChoice& choice) {
+    return make_plan(benchmark_campaign(benchmark, choice), "1").settings.seeds;
+  };
+  using Seeds = std::vector<std::uint64_t>;
+  EXPECT_EQ(seeds({.suite = "short", .seeds = 2}), (Seeds{103, 104}));
+  EXPECT_EQ(seeds({.suite = "all"}), (Seeds{101, 102}));
+  EXPECT_EQ(seeds({.suite = "short", .training = true, .seeds = 2}), (Seeds{1, 2}));
+  EXPECT_NE(refusal([&] {
+              benchmark_campaign(benchmark, {.suite = "short", .seeds = 3});
+            }).find("allowed are 1 to 2"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
+              read(text + "test_seeds = 104..105\n");
+            }).find("[suite short] test_seeds = '104..105' is not allowed; expected seeds of "
+                    "[benchmark] test_seeds"),
+            std::string::npos);
+}
+
 TEST_F(BenchmarkFile, AStrangersEntryIsAnExperimentFile) {
   Benchmark benchmark = read(kSmall);
   const auto mine = folder_.path() / "mine.ini";

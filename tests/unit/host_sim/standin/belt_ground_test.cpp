@@ -185,10 +185,10 @@ double carried(const BeltGround& ground, const HeightField& before) {
 }
 
 TEST(BeltGround, SlipCarriesSoilDownhillAndWithTheBelt) {
-  BeltFit fit;
-  fit.digging = 1.0;
   const TrackGeometry tracks;
-  const auto dig = [&](double slope_deg, double drag_share) {
+  const auto dig = [&](double slope_deg, double drag_share, double downhill) {
+    BeltFit fit;
+    fit.downhill = downhill;
     SoilParameters soil = digging(0.002);
     soil.drag_share = drag_share;
     BeltGround ground(HeightField::ramp(1.0, 0.02, slope_deg), soil, tracks, 1, fit);
@@ -207,9 +207,14 @@ TEST(BeltGround, SlipCarriesSoilDownhillAndWithTheBelt) {
     return carried(ground, before) / (0.002 * 0.02 * area);
   };
   // Of the layer's volume times the slip: tan(slope) / tan(repose) downhill, the drag's share back.
-  EXPECT_NEAR(dig(0.0, 0.0), 0.0, 0.1);
-  EXPECT_NEAR(dig(10.0, 0.0), -std::tan(10.0 / 57.29578) / std::tan(30.0 / 57.29578), 0.12);
-  EXPECT_NEAR(dig(0.0, 0.6), -0.6, 0.15);
+  const double slope = std::tan(10.0 / 57.29578) / std::tan(30.0 / 57.29578);
+  EXPECT_NEAR(dig(0.0, 0.0, 1.0), 0.0, 0.1);
+  EXPECT_NEAR(dig(10.0, 0.0, 1.0), -slope, 0.12);
+  EXPECT_NEAR(dig(0.0, 0.6, 1.0), -0.6, 0.15);
+  // The fitted number is of what gravity carries alone; what is pressed comes up downhill, too.
+  const double pressed = dig(10.0, 0.0, 0.0);
+  EXPECT_NEAR((dig(10.0, 0.0, 0.4) - pressed) / (dig(10.0, 0.0, 1.0) - pressed), 0.4, 0.02);
+  EXPECT_EQ(dig(0.0, 0.6, 0.4), dig(0.0, 0.6, 1.0));
 }
 
 }  // namespace
