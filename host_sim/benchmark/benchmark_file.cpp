@@ -78,7 +78,8 @@ void take_suite_entry(const Benchmark& benchmark, const IniEntry& entry, Benchma
   } else if (std::find(factors.begin(), factors.end(), entry.key) != factors.end()) {
     suite.levels[entry.key] = levels_in(benchmark, entry.key, entry.value, where);
   } else {
-    throw InputError(where + ": unknown key; known are seeds, test_seeds, duration, " + name_list(factors));
+    throw InputError(where + ": unknown key; known are seeds, test_seeds, duration, " +
+                     name_list(factors));
   }
 }
 
@@ -251,8 +252,7 @@ CampaignFile benchmark_campaign(const Benchmark& benchmark, const BenchmarkChoic
   };
   const std::vector<std::uint64_t>& test_seeds =
       suite->second.test_seeds.empty() ? benchmark.test_seeds : suite->second.test_seeds;
-  const std::vector<std::uint64_t>& seeds =
-      choice.training ? benchmark.training_seeds : test_seeds;
+  const std::vector<std::uint64_t>& seeds = choice.training ? benchmark.training_seeds : test_seeds;
   const std::size_t wanted = choice.seeds.value_or(suite->second.seeds);
   if (wanted == 0 || wanted > seeds.size())
     throw InputError("--seeds " + std::to_string(wanted) + ": allowed are 1 to " +

@@ -29,7 +29,7 @@ inline constexpr const char* kEntryFactor = "entry";
 struct BenchmarkSuite {
   /// Levels by the factor's name. Without entries: all of the benchmark.
   std::map<std::string, std::vector<std::string>> levels;
-  std::size_t seeds = 1;             ///< the first so many of the set of beds
+  std::size_t seeds = 1;  ///< the first so many of the set of beds
   /// Those of the benchmark's test beds that it runs on. Empty: all.
   std::vector<std::uint64_t> test_seeds;
   std::optional<double> duration_s;  ///< in place of that of [robots ...]

@@ -92,10 +92,9 @@ TEST_F(BenchmarkFile, ASuiteMayNameWhichOfTheTestBedsAreIts) {
               benchmark_campaign(benchmark, {.suite = "short", .seeds = 3});
             }).find("allowed are 1 to 2"),
             std::string::npos);
-  EXPECT_NE(refusal([&] {
-              read(text + "test_seeds = 104..105\n");
-            }).find("[suite short] test_seeds = '104..105' is not allowed; expected seeds of "
-                    "[benchmark] test_seeds"),
+  EXPECT_NE(refusal([&] { read(text + "test_seeds = 104..105\n"); })
+                .find("[suite short] test_seeds = '104..105' is not allowed; expected seeds of "
+                      "[benchmark] test_seeds"),
             std::string::npos);
 }
 
