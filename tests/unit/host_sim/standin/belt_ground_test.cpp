@@ -153,7 +153,7 @@ TEST(BeltGround, AtRestNothingChanges) {
 
 TEST(BeltGround, SlipDigsALayerAsWideAsTheBelts) {
   BeltFit fit;
-  fit.digging = 1.0;
+  fit.digging = 1.3;
   const TrackGeometry tracks;
   SoilParameters soil = digging(0.002);
   soil.compaction = 1.0;  // what is dug is gone, and booked
@@ -168,7 +168,7 @@ TEST(BeltGround, SlipDigsALayerAsWideAsTheBelts) {
   const double edge = ground.surface().spacing_m();
   const double volume =
       static_cast<double>(ground.balance().compacted - before) * kHeightUnit_m * edge * edge;
-  const double expected = 2.0 * soil.drag_depth_m * kSlip_m * tracks.width_m;
+  const double expected = fit.digging * 2.0 * soil.drag_depth_m * kSlip_m * tracks.width_m;
   EXPECT_NEAR(volume, expected, 0.01 * expected);
 }
 

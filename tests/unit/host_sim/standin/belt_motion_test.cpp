@@ -145,7 +145,77 @@ TEST_F(BeltMotionTest, ReversesWithoutUnwindingItsSlip) {
     belts.step(-0.2, -0.2, level_support(tracks));
     way += belts.shear()[0].slid_m;
   }
+  EXPECT_GT(way, 0.0);
   EXPECT_LT(way, 4.0 * soil.shear_modulus_m);
+}
+
+// Where a belt slips evenly, what is mobilised below a patch is Janosi and Hanamoto's of the way
+// from the leading end to its middle.
+TEST_F(BeltMotionTest, IsExactWhereABeltSlipsEvenly) {
+  const double patch_m = 2.0 * tracks.half_length_m / kBeltPatches;
+  for (const double modulus_m : {0.05, 0.02}) {
+    soil.shear_modulus_m = modulus_m;
+    for (const double speed : {0.2, -0.2}) {
+      BeltMotion held(tracks, soil);
+      for (int i = 0; i < 1000; ++i) held.follow(speed, speed, level_support(tracks), {});
+      EXPECT_DOUBLE_EQ(held.shear()[0].moved_m, 0.2 * kFrame_s);
+      double mobilised = 0.0;
+      for (std::size_t i = 0; i < kBeltPatches; ++i) {
+        const double way = (static_cast<double>(i) + 0.5) * patch_m;
+        mobilised += (1.0 - std::exp(-way / modulus_m)) / kBeltPatches;
+      }
+      for (const double traction : held.traction_n()) {
+        EXPECT_NEAR(traction, std::copysign(0.5 * strength_n() * mobilised, speed),
+                    1e-3 * strength_n())
+            << modulus_m;
+      }
+    }
+  }
+}
+
+// A frame's forces change the robot's motion as Newton says: forward, and about its middle, where
+// the soil bears it in one place of each belt. What pulls sideways there follows from the motion.
+TEST_F(BeltMotionTest, ForcesAreWhatTheMotionChangesBy) {
+  BeltFit fit;
+  fit.rolling = 0.0;
+  BeltSupport support = level_support(tracks);
+  support.load = {{{0.7, 0.0, 0.0}, {0.3, 0.0, 0.0}}};
+  const double ahead = 2.0 * tracks.half_length_m / kBeltPatches;
+  BeltMotion driven(tracks, soil, fit);
+  FrameMotion before;
+  for (int i = 0; i < 40; ++i) {
+    const FrameMotion after = driven.step(0.2, 0.05, support);
+    const double forward = after.forward_m / kFrame_s;
+    const double left = after.sideways_m / kFrame_s;
+    const double turn = after.turn_rad / kFrame_s;
+    const double forward_before = before.forward_m / kFrame_s;
+    const double left_before = before.sideways_m / kFrame_s;
+    const double turn_before = before.turn_rad / kFrame_s;
+    const auto [of_left, of_right] = driven.traction_n();
+    EXPECT_NEAR(
+        tracks.mass_kg * ((forward - forward_before) / kFrame_s - turn_before * left_before),
+        of_left + of_right, 1e-9);
+    const double sideways =
+        tracks.mass_kg * ((left - left_before) / kFrame_s + turn_before * forward_before);
+    EXPECT_NEAR(tracks.yaw_inertia_kg_m2 * (turn - turn_before) / kFrame_s,
+                (of_right - of_left) * tracks.half_tread_m + sideways * ahead, 1e-9);
+    before = after;
+  }
+  EXPECT_GT(std::abs(before.turn_rad), 0.0);
+}
+
+TEST_F(BeltMotionTest, WhatDoesNotTouchKeepsNothing) {
+  BeltSupport on_a_crest = level_support(tracks);
+  on_a_crest.front = {0.01, 0.01};
+  on_a_crest.rear = {-0.01, -0.01};
+  const FrameMotion aside{0.0, 1e-3, 0.0};
+  BeltMotion after(tracks, soil);
+  for (int i = 0; i < 100; ++i) after.follow(0.0, 0.0, on_a_crest, aside);
+  after.follow(0.0, 0.0, level_support(tracks), aside);
+  // Two frames of shear at most: that in which it does not touch any more, and this one.
+  EXPECT_LT(after.shear()[0].patch_m[0], 2e-3 / soil.shear_modulus_m * 1e-3);
+  EXPECT_GT(after.shear()[0].patch_m[1], 0.9e-3);
+  EXPECT_LT(after.shear()[0].left_m, -0.3e-3) << "against the way that the robot goes";
 }
 
 }  // namespace
