@@ -19,7 +19,7 @@ struct KnownRun {
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
     {"first_drive", "--duration 60", "6bc3c3a57a401eac108d267b19f14690"},
     {"soft_bed", "--duration 6", "ca6cc6e6aff80474a4a917cd19620a9b"},
-    {"soft_bed", "--hal surrogate --duration 10", "9d398168974fc9d65ca5f5e598fef622"},
+    {"soft_bed", "--hal surrogate --duration 10", "165c9b6cbff069f6905364163a94cfae"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",

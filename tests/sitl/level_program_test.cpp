@@ -65,7 +65,7 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
         read(shipped / "leveling.ini") +
             "\n[suite worlds]\nworld = physics, stand_in\nsize = small\nbed = rough\n"
             "soil = gravel\nrobots = one\nposition = fixes\n"
-            "entry = nobody, strokes\nseeds = 2\nduration = 400\n");
+            "entry = nobody, strokes\nseeds = 2\nduration = 1800\n");
   const Result result = run(
       "level bench --suite worlds --benchmark leveling.ini --training --workers 2 --quiet --json "
       "--against nobody --out b");
