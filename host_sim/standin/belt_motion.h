@@ -103,7 +103,7 @@ class BeltMotion {
   double mass_kg_;
   double inertia_kg_m2_;
   BothBelts middle_;  // to the left of the robot's, m
-  double patch_m_;    // its length
+  double patch_m_;    // length of a patch
   double cohesion_pa_;
   double tan_friction_;
   double per_modulus_;
