@@ -81,8 +81,8 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
   const auto physics = strokes["physics"]["mean"].get<double>();
   const auto stand_in = strokes["stand_in"]["mean"].get<double>();
   EXPECT_LT(physics, -0.03);
-  EXPECT_GT(stand_in / physics, 0.5);
-  EXPECT_LT(stand_in / physics, 2.0);
+  EXPECT_GT(stand_in / physics, 0.75);
+  EXPECT_LT(stand_in / physics, 1.25);
   EXPECT_NEAR(ranking["entries"][0]["stand_in"]["mean"].get<double>(), 0.0, 1e-3);
 }
 
