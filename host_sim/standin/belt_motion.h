@@ -7,7 +7,7 @@
 // slips in one direction, and right at reversals as well (shear_field.h):
 //   dm/dt = (slip - |slip| m) / K - |belt| dm/dx
 // along the belt by exponential fitting, which is exact where it slips evenly (D. L. Scharfetter,
-// H. K. Gummel, IEEE Transactions on Electron Devices 16, 1969; its function within 0.005), and with
+// H. K. Gummel, IEEE Transactions on Electron Devices 16, 1969; here within 0.005), and with
 //   slip  = velocity of the belt's surface, seen from the ground, backward and to the right
 //   force = (c A + W tan phi) m,  across the belt times BeltFit::sideways
 // Gravity pulls down the slope, rolling resists. A frame is one implicit step, stable however stiff
