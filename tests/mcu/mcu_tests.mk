@@ -6,6 +6,10 @@
 MCU_TESTS := $(B)/tests/mcu_tests
 MCU_TEST_SOURCES := $(wildcard tests/mcu/*.cpp)
 MCU_TEST_OBJECTS := $(call objects,$(MCU_TEST_SOURCES))
+MCU_LONG_SOURCES := $(wildcard tests/long/mcu/*.cpp)
+MCU_LONG_OBJECTS := $(call objects,$(MCU_LONG_SOURCES))
+# With the bench and the like, which tests of both programs use.
+MCU_LONG_PARTS := $(MCU_LONG_OBJECTS) $(filter-out %_test.o,$(MCU_TEST_OBJECTS))
 TESTS += $(MCU_TESTS)
 
 # An image: its main program and what it uses of the firmware's core.
@@ -27,7 +31,7 @@ $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
 	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
 
-$(MCU_TEST_OBJECTS): $(B)/tests/mcu/%.o: tests/mcu/%.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
+$(MCU_TEST_OBJECTS) $(MCU_LONG_OBJECTS): $(B)/%.o: %.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags $(HEADERS_FLAGS) $(SET_FLAGS) -MMD -MP -c $< -o $@

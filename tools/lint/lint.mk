@@ -3,7 +3,7 @@
 CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' | LC_ALL=C sort)
 # clang does not know what watchdog.cpp and reset_cause.cpp are made of: instructions of avr-libc's wdt.h, a naked function in C++.
 AVR_TIDY_SOURCES := $(filter-out hal/avr/watchdog.cpp hal/avr/reset_cause.cpp,$(call sources,hal/avr))
-HOST_TIDY_SOURCES := $(sort $(ALL_HOST_SOURCES) $(MCU_TEST_SOURCES))
+HOST_TIDY_SOURCES := $(sort $(ALL_HOST_SOURCES) $(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES))
 
 # Checks of a moment come first; then clang-tidy over sources whose object, flags or checks changed since they were last found clean,
 # as many at a time as go together.

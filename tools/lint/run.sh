@@ -16,7 +16,7 @@ flags_of() {
   case $1 in
     firmware/* | nn/infer/*) echo firmware ;;
     hal/avr/*) echo avr ;;
-    tests/mcu/*) echo mcu_tests ;;
+    tests/mcu/* | tests/long/mcu/*) echo mcu_tests ;;
     tests/*) echo tests ;;
     *) echo lint ;;
   esac
