@@ -27,7 +27,7 @@ ASAN_UNIT += footprint grid_world kernels material_digging material_flow particl
 ASAN_MCU := board_parts chips quadrature screed_image
 
 ASAN_UNIT_SOURCES := $(foreach name,$(ASAN_UNIT),$(filter %/$(name)_test.cpp,$(UNIT_SOURCES))) tests/unit/allocations.cpp
-ASAN_MCU_OBJECTS := $(filter-out %_test.o,$(MCU_TEST_OBJECTS)) $(ASAN_MCU:%=$(B)/tests/mcu/%_test.o)
+ASAN_MCU_SOURCES := $(ASAN_MCU:%=tests/mcu/%_test.cpp)
 ASAN_MISSING := $(strip $(foreach name,$(ASAN_UNIT) $(ASAN_MCU),$(if $(filter %/$(name)_test.cpp,$(UNIT_SOURCES) $(MCU_TEST_SOURCES)),,$(name))))
 ifneq ($(ASAN_MISSING),)
 $(error tests/asan.mk: no such test: $(ASAN_MISSING))
@@ -41,9 +41,12 @@ $(B)/libasan_tested.a: $(call objects,$(ASAN_LIBRARY_SOURCES))
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(B)/tests/asan_unit_tests: $(call objects,$(ASAN_UNIT_SOURCES) $(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) \
+$(eval $(call in_groups,ASAN_UNIT,$(ASAN_UNIT_SOURCES)))
+$(eval $(call in_groups,ASAN_MCU,$(ASAN_MCU_SOURCES),@$(B)/tests/mcu.flags))
+$(ASAN_MCU_GROUP_OBJECTS): $(B)/tests/mcu.flags
+$(B)/tests/asan_unit_tests: $(ASAN_UNIT_OBJECTS) $(call objects,$(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) \
                             $(B)/libasan_tested.a $(B)/libavr_tools.a $(B)/link.flags
-$(B)/tests/asan_mcu_tests: $(ASAN_MCU_OBJECTS) $(B)/libasan_tested.a $(B)/libavr_tools.a $(B)/link.flags
+$(B)/tests/asan_mcu_tests: $(ASAN_MCU_OBJECTS) $(MCU_BENCH) $(B)/libasan_tested.a $(B)/libavr_tools.a $(B)/link.flags
 ASAN_TESTS := $(B)/tests/asan_unit_tests $(if $(filter yes,$(MCU)),$(B)/tests/asan_mcu_tests)
 $(ASAN_TESTS):
 	$(call link,$(TEST_LIBRARIES))

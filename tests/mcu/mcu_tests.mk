@@ -5,11 +5,13 @@
 
 MCU_TESTS := $(B)/tests/mcu_tests
 MCU_TEST_SOURCES := $(wildcard tests/mcu/*.cpp)
-MCU_TEST_OBJECTS := $(call objects,$(MCU_TEST_SOURCES))
 MCU_LONG_SOURCES := $(wildcard tests/long/mcu/*.cpp)
-MCU_LONG_OBJECTS := $(call objects,$(MCU_LONG_SOURCES))
-# With the bench and the like, which tests of both programs use.
-MCU_LONG_PARTS := $(MCU_LONG_OBJECTS) $(filter-out %_test.o,$(MCU_TEST_OBJECTS))
+$(eval $(call in_groups,MCU,$(MCU_TEST_SOURCES),@$(B)/tests/mcu.flags))
+$(eval $(call in_groups,MCU_LONG,$(MCU_LONG_SOURCES),@$(B)/tests/mcu.flags))
+$(MCU_GROUP_OBJECTS) $(MCU_LONG_GROUP_OBJECTS): $(B)/tests/mcu.flags
+# The bench and the like, which tests of both programs use.
+MCU_BENCH := $(call objects,$(MCU_ALONE))
+MCU_LONG_PARTS := $(MCU_LONG_OBJECTS) $(MCU_BENCH)
 TESTS += $(MCU_TESTS)
 
 # An image: its main program and what it uses of the firmware's core.
@@ -31,10 +33,10 @@ $(B)/tests/mcu.flags: FORCE
 	@mkdir -p $(@D)
 	@echo "-Iboards/$(BOARD) -DSCREED_IMAGE_FOLDER='\"$(abspath $(FIRMWARE_BUILD))\"' -DSCREED_WIRING='\"$(abspath boards/$(BOARD)/wiring.ini)\"'" | $(WRITE_CHANGED)
 
-$(MCU_TEST_OBJECTS) $(MCU_LONG_OBJECTS): $(B)/%.o: %.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
+$(call objects,$(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES)): $(B)/%.o: %.cpp $(B)/host.flags $(B)/tests/mcu.flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
 	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags $(HEADERS_FLAGS) $(SET_FLAGS) -MMD -MP -c $< -o $@
 
-$(MCU_TESTS): $(MCU_TEST_OBJECTS) $(LIBRARY) $(B)/libavr_tools.a $(B)/link.flags
+$(MCU_TESTS): $(MCU_OBJECTS) $(LIBRARY) $(B)/libavr_tools.a $(B)/link.flags
 	$(call link,$(TEST_LIBRARIES))

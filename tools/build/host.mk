@@ -120,7 +120,7 @@ else ifneq ($(HEADERS),no)
 $(error HEADERS=$(HEADERS): yes or no)
 endif
 # Tests are compiled once and run once: half of their time is the compiler's.
-SET_FLAGS_test := $(if $(filter release,$(BUILD)),-O1)
+SET_FLAGS_test := $(if $(filter release,$(BUILD)),-O0)
 SET_FLAGS = $(SET_FLAGS_$(HEADER_SET))
 
 # Named without .gch on a command line, for which both compilers want the header itself beside it.

@@ -32,7 +32,7 @@ $(error BOARD=$(BOARD): no folder boards/$(BOARD) with a board.mk; there are: $(
 endif
 
 # Sources below folders, at any depth: $(call sources,FOLDER...).
-sources = $(shell find $(1) -name '*.cpp' | LC_ALL=C sort)
+sources = $(if $(strip $(1)),$(shell find $(1) -name '*.cpp' | LC_ALL=C sort))
 objects = $(patsubst %.cpp,$(B)/%.o,$(1))
 
 .PHONY: FORCE

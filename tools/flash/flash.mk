@@ -44,11 +44,12 @@ monitor: $(SCREED_FLASH)  ## serial monitor on the board (PORT=/dev/ttyACM0)
 FLASH_TESTS := $(B)/tests/flash_tests
 FLASH_TEST_SOURCES := $(call sources,tests/flash)
 TESTS += $(FLASH_TESTS)
+$(eval $(call in_groups,FLASH,$(FLASH_TEST_SOURCES)))
 $(eval $(call with_headers,test,$(FLASH_TEST_SOURCES)))
 TEST_IMAGES += $(SCREED_FLASH) $(FIRMWARE_BUILD)/screed.hex
 test: export SCREED_FLASH_PROGRAM := $(abspath $(SCREED_FLASH))
 test: export SCREED_FLASH_IMAGE := $(abspath $(FIRMWARE_BUILD))/screed.hex
 
-$(FLASH_TESTS): $(call objects,$(FLASH_TEST_SOURCES) $(filter-out tools/flash/main.cpp,$(FLASH_SOURCES)))
+$(FLASH_TESTS): $(FLASH_OBJECTS) $(call objects,$(filter-out tools/flash/main.cpp,$(FLASH_SOURCES)))
 	@echo "  LINK $@"
 	@$(CXX) $(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $^ -pthread $(TEST_LIBRARIES) -o $@

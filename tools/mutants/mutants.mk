@@ -22,7 +22,7 @@ mutants: $(MUTANTS) $(B)/tests/unit_tests $(B)/tests/sitl_tests $(SCREED) \
 	@mkdir -p $(MUTANTS_WORK)
 	@cp $(B)/tools/mutants/mutant_switch.o $(B)/tools/mutants/reach_listener.o $(MUTANTS_WORK)
 	@echo $(CORE_SOURCES) > $(MUTANTS_WORK)/firmware.sources
-	@echo $(UNIT_TESTS_PARTS) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) > $(MUTANTS_WORK)/unit_tests.link
-	@echo $(call objects,$(SITL_SOURCES)) $(LIBRARY) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) > $(MUTANTS_WORK)/sitl_tests.link
+	@echo $(UNIT_OBJECTS) $(TESTED) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) > $(MUTANTS_WORK)/unit_tests.link
+	@echo $(SITL_OBJECTS) $(LIBRARY) -Wl,--as-needed @$(B)/link.flags $$(pkg-config --libs $(TEST_PACKAGES)) > $(MUTANTS_WORK)/sitl_tests.link
 	@echo $(B)/tools/screed/main.o $(LIBRARY) -Wl,--as-needed @$(B)/link.flags > $(MUTANTS_WORK)/screed.link
 	@$(MUTANTS) --build $(B) --work $(MUTANTS_WORK) --jobs $(shell nproc) $(ARGS)
