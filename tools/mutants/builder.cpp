@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 
-#include "tools/mutants/process.h"
 #include "tools/mutants/tables.h"
 
 namespace screed::mutants {
@@ -27,8 +27,8 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-bool is_header(const std::string& source) {
-  return source.ends_with(".h");
+bool contains(const std::vector<std::string>& list, const std::string& word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
 }
 
 /// Numbers of the lines of `file` that the compiler's complaints name, and the names that it
@@ -53,92 +53,165 @@ void complaints_of(const std::string& said, const std::string& file, std::set<st
   }
 }
 
+/// Whether the word stands in one of these lines.
+bool is_named(const std::string& word, const std::string& text,
+              const std::set<std::size_t>& lines) {
+  const std::regex pattern("\\b" + word + "\\b");
+  std::size_t number = 0;
+  for (const std::string& line : lines_of(text)) {
+    if (lines.contains(++number) && std::regex_search(line, pattern)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
+Unit unit_of(const std::string& notes) {
+  Unit unit;
+  std::string rule = notes;
+  for (std::size_t at = rule.find("\\\n"); at != std::string::npos; at = rule.find("\\\n")) {
+    rule.replace(at, 2, " ");
+  }
+  // The rules behind it, one for every header, let make do without them.
+  const std::vector<std::string> words = words_of(rule.substr(0, rule.find('\n')));
+  if (words.size() < 2 || !words[0].ends_with(":")) return unit;
+  unit.object = words[0].substr(0, words[0].size() - 1);
+  unit.source = words[1];
+  unit.included.assign(words.begin() + 1, words.end());
+  return unit;
+}
+
 Builder::Builder(fs::path build, fs::path work, bool unit_only)
-    : build_(std::move(build)), work_(std::move(work)), programs_{"unit_tests"} {
-  if (!unit_only) programs_.insert(programs_.end(), {"sitl_tests", "screed"});
+    : build_(std::move(build)), work_(std::move(work)) {
   for (const std::string& source : words_of(read_file(work_ / "firmware.sources"))) {
     firmware_.insert(source);
   }
+  for (const std::string& object : words_of(read_file(work_ / "library.objects"))) {
+    library_.insert(object);
+  }
+  read_programs(unit_only);
+  read_units();
 }
 
-std::vector<std::string> Builder::units_of(const std::string& source) const {
-  if (!is_header(source)) return {source};
-  std::vector<std::string> units;
-  for (const auto& entry : fs::recursive_directory_iterator(build_)) {
-    if (entry.path().extension() != ".d") continue;
-    const std::vector<std::string> words = words_of(read_file(entry.path()));
-    if (std::find(words.begin(), words.end(), source) == words.end()) continue;
-    std::string unit =
-        fs::path(entry.path().lexically_relative(build_)).replace_extension(".cpp").string();
-    if (fs::exists(unit)) units.push_back(unit);
+void Builder::read_programs(bool unit_only) {
+  for (const auto& entry : fs::directory_iterator(work_)) {
+    if (entry.path().extension() != ".link") continue;
+    const std::string program = entry.path().stem();
+    arguments_[program] = words_of(read_file(entry.path()));
+    if (program.ends_with("_tests") && (!unit_only || program == "unit_tests"))
+      programs_.push_back(program);
   }
-  std::sort(units.begin(), units.end());
+  // The quickest tests first.
+  std::stable_partition(programs_.begin(), programs_.end(),
+                        [](const std::string& program) { return program == "unit_tests"; });
+  if (!unit_only) programs_.emplace_back("screed");
+  for (const char* program : {"unit_tests", "screed"}) {
+    if (arguments_.contains(program)) continue;
+    throw std::runtime_error((work_ / program).string() + ".link is missing: use `make mutants`");
+  }
+}
+
+void Builder::read_units() {
+  std::set<std::string> objects = library_;
+  for (const std::string& program : programs_) {
+    for (const std::string& word : arguments_.at(program)) {
+      if (!word.ends_with(".o") && !word.ends_with(".a")) continue;
+      if (!fs::exists(word)) {
+        throw std::runtime_error(word + ", of which " + program + " is linked, is not built");
+      }
+      if (word.ends_with(".o")) objects.insert(word);
+    }
+  }
+  for (const std::string& object : objects) {
+    const fs::path notes = fs::path(object).replace_extension(".d");
+    if (!fs::exists(object) || !fs::exists(notes)) {
+      throw std::runtime_error(object + ", of which the tests are linked, or its .d is not built");
+    }
+    newest_ = std::max(newest_, fs::last_write_time(object));
+    units_.push_back(unit_of(read_file(notes)));
+    if (units_.back().object == object) continue;
+    throw std::runtime_error(notes.string() + " does not say what " + object + " is made of");
+  }
+}
+
+std::vector<Unit> Builder::units_of(const std::string& source) const {
+  std::vector<Unit> units;
+  std::copy_if(units_.begin(), units_.end(), std::back_inserter(units),
+               [&](const Unit& unit) { return contains(unit.included, source); });
+  if (units.empty()) throw std::runtime_error("no object of the tests is made of " + source);
   return units;
 }
 
-Objects Builder::compile(const std::string& source, const std::string& text, const fs::path& folder,
+Objects Builder::compile(const Unit& unit, const fs::path& folder, const fs::path& object,
                          const std::vector<std::string>& options) const {
-  write_file(folder / source, text);
-  Objects result{true, "", {}};
-  for (const std::string& unit : units_of(source)) {
-    const std::string object = fs::path(folder / unit).replace_extension(".o").string();
-    fs::create_directories(fs::path(object).parent_path());
-    const std::string flags = firmware_.contains(unit) ? "firmware.flags" : "host.flags";
-    std::vector<std::string> command{"g++", "-I" + folder.string(),
-                                     "@" + (build_ / flags).string()};
-    for (const char* option : {"-w", "-fno-diagnostics-show-caret", "-fmax-errors=0", "-include",
-                               "tools/mutants/mutant_switch.h"}) {
-      command.emplace_back(option);
-    }
-    command.insert(command.end(), options.begin(), options.end());
-    const std::string copy = is_header(source) ? unit : (folder / source).string();
-    command.insert(command.end(), {"-c", copy, "-o", object});
-    Ended ended = run(command, {{"LC_ALL", "C"}}, 0.0, folder / "compiler.txt");
-    if (!ended.good && ended.said.find("internal compiler error") != std::string::npos) {
-      // GCC 12 breaks off where vectors of numbers are chosen by switches.
-      command.emplace_back("-O0");
-      ended = run(command, {{"LC_ALL", "C"}}, 0.0, folder / "compiler.txt");
-    }
-    if (!ended.good) return {false, ended.said, {}};
-    result.objects.emplace_back(fs::path(build_ / unit).replace_extension(".o").string(), object);
+  fs::create_directories(object.parent_path());
+  const bool is_firmware =
+      std::any_of(unit.included.begin(), unit.included.end(),
+                  [&](const std::string& file) { return firmware_.contains(file); });
+  std::vector<std::string> command{
+      "g++", "-I" + folder.string(),
+      "@" + (build_ / (is_firmware ? "firmware.flags" : "host.flags")).string()};
+  for (const char* option : {"-w", "-fno-diagnostics-show-caret", "-fmax-errors=0", "-include",
+                             "tools/mutants/mutant_switch.h"}) {
+    command.emplace_back(option);
   }
-  return result;
+  command.insert(command.end(), options.begin(), options.end());
+  // A header, or a source that is compiled with others, is found in the folder by the compiler.
+  const fs::path copy = folder / unit.source;
+  command.insert(command.end(),
+                 {"-c", fs::exists(copy) ? copy.string() : unit.source, "-o", object.string()});
+  const fs::path output = fs::path(object).replace_extension(".txt");
+  Ended ended = run(command, {{"LC_ALL", "C"}}, 0.0, output);
+  if (!ended.good && ended.said.find("internal compiler error") != std::string::npos) {
+    // GCC 12 breaks off where vectors of numbers are chosen by switches.
+    command.emplace_back("-O0");
+    ended = run(command, {{"LC_ALL", "C"}}, 0.0, output);
+  }
+  if (!ended.good) return {false, ended.said, {}};
+  return {true, "", {{unit.object, object.string()}}};
 }
 
-bool Builder::link(const std::string& program, const std::vector<Objects>& objects,
-                   const fs::path& result) const {
+Objects Builder::compile(const std::string& source, const std::string& text,
+                         const fs::path& folder) const {
+  write_file(folder / source, text);
+  Objects all{true, "", {}};
+  for (const Unit& unit : units_of(source)) {
+    const Objects one = compile(unit, folder, folder / unit.object, {});
+    if (!one.compiled) return one;
+    all.objects.push_back(one.objects.front());
+  }
+  return all;
+}
+
+Ended Builder::link(const std::string& program, const Objects& mutated,
+                    const fs::path& result) const {
+  fs::create_directories(result.parent_path());
   std::vector<std::string> command{"g++"};
   if (run({"ld.lld", "--version"}, {}, 0.0, result.string() + ".txt").good) {
     command.emplace_back("-fuse-ld=lld");
   }
-  std::vector<std::string> arguments = words_of(read_file(work_ / (program + ".link")));
-  for (const Objects& mutated : objects) {
-    for (const auto& [original, object] : mutated.objects) {
-      const auto at = std::find(arguments.begin(), arguments.end(), original);
-      if (at != arguments.end()) {
-        *at = object;
-      } else if (original.find("/tests/") == std::string::npos && !original.ends_with("main.o")) {
-        command.push_back(object);  // before the library, which then does not add its own
-      }
+  std::vector<std::string> arguments = arguments_.at(program);
+  for (const auto& [original, object] : mutated.objects) {
+    const auto at = std::find(arguments.begin(), arguments.end(), original);
+    if (at != arguments.end()) {
+      *at = object;
+    } else if (library_.contains(original)) {
+      command.push_back(object);  // before the library, which then does not add its own
     }
   }
   command.push_back((work_ / "mutant_switch.o").string());
   if (program != "screed") command.push_back((work_ / "reach_listener.o").string());
   command.insert(command.end(), arguments.begin(), arguments.end());
   command.insert(command.end(), {"-o", result.string()});
-  fs::create_directories(result.parent_path());
-  return run(command, {}, 0.0, result.string() + ".txt").good;
+  return run(command, {}, 0.0, result.string() + ".txt");
 }
 
 Objects Builder::compile_switches(const std::string& source, const Mutations& mutations,
                                   const fs::path& folder, std::set<std::size_t>& alone,
-                                  std::set<std::string>& kept, std::string& text) const {
+                                  std::set<std::string>& kept) const {
   const std::string original = read_file(source);
   for (;;) {
-    text = with_switches(original, mutations, alone, kept);
-    Objects objects = compile(source, text, folder, {});
+    Objects objects = compile(source, with_switches(original, mutations, alone, kept), folder);
     if (objects.compiled) return objects;
     std::set<std::size_t> lines;
     std::set<std::string> names;
@@ -167,6 +240,12 @@ Objects Builder::compile_switches(const std::string& source, const Mutations& mu
       }
       if (alone.size() + kept.size() != known) break;
     }
+    // Sizes of arrays and the like: no message names the constants in them.
+    if (alone.size() + kept.size() == known) {
+      for (const Constant& constant : mutations.constants) {
+        if (is_named(constant.name, original, lines)) kept.insert(constant.name);
+      }
+    }
     if (alone.size() + kept.size() == known) {
       // Not understood: nothing is switched.
       std::fprintf(stderr, "mutants: %s has no switches: %s\n", source.c_str(),
@@ -175,17 +254,6 @@ Objects Builder::compile_switches(const std::string& source, const Mutations& mu
       for (std::size_t i = 0; i < mutations.sites.size(); ++i) alone.insert(i);
     }
   }
-}
-
-fs::file_time_type Builder::newest_program() const {
-  fs::file_time_type newest{};
-  for (const std::string& program : programs_) {
-    for (const std::string& word : words_of(read_file(work_ / (program + ".link")))) {
-      if ((word.ends_with(".o") || word.ends_with(".a")) && fs::exists(word))
-        newest = std::max(newest, fs::last_write_time(word));
-    }
-  }
-  return newest;
 }
 
 }  // namespace screed::mutants

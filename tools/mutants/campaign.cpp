@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -16,17 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls `what` with 0 to count - 1 and the number of the thread.
+/// Calls `what` with 0 to count - 1 and the number of the thread. Throws what one of them threw.
 void in_parallel(std::size_t count, std::size_t jobs,
                  const std::function<void(std::size_t, std::size_t)>& what) {
   std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr error;
   std::vector<std::thread> threads;
   for (std::size_t job = 0; job < jobs; ++job) {
     threads.emplace_back([&, job] {
-      for (std::size_t i = next++; i < count; i = next++) what(i, job);
+      try {
+        for (std::size_t i = next++; i < count; i = next++) what(i, job);
+      } catch (...) {
+        next = count;
+        const std::scoped_lock lock(mutex);
+        error = std::current_exception();
+      }
     });
   }
   for (std::thread& thread : threads) thread.join();
+  if (error) std::rethrow_exception(error);
 }
 
 std::string folder_name(std::string source) {
@@ -38,70 +48,26 @@ std::string folder_name(std::string source) {
 
 Campaign::Campaign(Options options)
     : options_(std::move(options)),
-      builder_(options_.build, options_.work, options_.unit_only),
-      equivalents_(read_equivalents("tools/mutants/equivalent.txt")) {
-  read_subjects();
+      begin_(std::chrono::steady_clock::now()),
+      builder_(options_.build, options_.work, options_.unit_only) {
+  std::size_t first = 0;
+  for (Subject& subject :
+       read_subjects("tools/mutants/targets.txt", "tools/mutants/equivalent.txt")) {
+    if (!chosen(subject.target)) continue;
+    subject.first = first;
+    first += subject.candidates.size();
+    subject.folder = options_.work / folder_name(subject.target.source);
+    draw_sample(subject, options_.sample != 0 ? options_.sample : subject.target.sample,
+                options_.seed);
+    subjects_.push_back(std::move(subject));
+  }
+  if (subjects_.empty()) throw std::runtime_error("no row of targets.txt has a name like --file");
+  mutants_ = first;
   std::ifstream in(options_.work / "results.txt");
   for (std::string line; std::getline(in, line);) {
     const std::size_t second = line.find(' ', line.find(' ') + 1);
     if (second != std::string::npos) results_[line.substr(0, second)] = line.substr(second + 1);
   }
-}
-
-void Campaign::read_subjects() {
-  std::size_t first = 0;
-  std::set<std::size_t> used;
-  for (const Target& target : read_targets("tools/mutants/targets.txt", fs::current_path())) {
-    Subject subject;
-    subject.target = target;
-    subject.text = read_file(target.source);
-    subject.mutations = find_mutations(subject.text);
-    subject.first = first;
-    subject.folder = options_.work / folder_name(target.source);
-    for (std::size_t i = 0; i < subject.mutations.sites.size(); ++i) {
-      const Site& site = subject.mutations.sites[i];
-      for (const Mutant& mutant : site.mutants) {
-        ++first;
-        Candidate candidate{i,  first - subject.first, mutant, change_of(subject.text, mutant.edit),
-                            "", Fate::kUnknown,        ""};
-        candidate.id = std::to_string(candidate.change.line) + ":" +
-                       std::to_string(candidate.change.column) + ":" + mutant.name;
-        if (const Equivalent* entry = equivalent(equivalents_, target.source, candidate.change)) {
-          candidate.fate = Fate::kEquivalent;
-          candidate.detail = entry->reason;
-          used.insert(entry->line);
-        }
-        subject.candidates.push_back(std::move(candidate));
-      }
-    }
-    if (!chosen(target)) {
-      first = subject.first;
-      continue;
-    }
-    draw_sample(subject);
-    subjects_.push_back(std::move(subject));
-  }
-  for (const Equivalent& entry : equivalents_) {
-    if (used.contains(entry.line)) continue;
-    throw std::runtime_error("tools/mutants/equivalent.txt:" + std::to_string(entry.line) +
-                             ": no such mutant of " + entry.file + " any more");
-  }
-}
-
-// By the order of a hash, so that the sample of a longer list contains that of a shorter one.
-void Campaign::draw_sample(Subject& subject) const {
-  const std::size_t size = options_.sample != 0 ? options_.sample : subject.target.sample;
-  std::vector<Candidate>& all = subject.candidates;
-  if (size == 0 || all.size() <= size) return;
-  const auto order = [&](const Candidate& candidate) {
-    return hash(std::to_string(options_.seed) + candidate.change.before + candidate.change.after +
-                candidate.id);
-  };
-  std::sort(all.begin(), all.end(),
-            [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
-  all.resize(size);
-  std::sort(all.begin(), all.end(),
-            [](const Candidate& a, const Candidate& b) { return a.number < b.number; });
 }
 
 bool Campaign::chosen(const Target& target) const {
@@ -115,8 +81,7 @@ void Campaign::build_switches(Subject& subject) const {
   // What the compiler made of it without mutants stands for all that it includes.
   std::string key = with_switches(subject.text, subject.mutations, {}, {}) +
                     read_file("tools/mutants/mutant_switch.h");
-  const fs::path object = fs::path(options_.build / subject.target.source).replace_extension(".o");
-  if (fs::exists(object)) key += read_file(object);
+  for (const Unit& unit : builder_.units_of(subject.target.source)) key += read_file(unit.object);
   key = hash(key);
   const fs::path notes = subject.folder / "switches.txt";
   if (fs::exists(notes)) {
@@ -136,14 +101,11 @@ void Campaign::build_switches(Subject& subject) const {
         }
       }
       subject.objects.compiled = true;
-      subject.switched =
-          with_switches(subject.text, subject.mutations, subject.alone, subject.kept);
       return;
     }
   }
-  subject.objects =
-      builder_.compile_switches(subject.target.source, subject.mutations, subject.folder,
-                                subject.alone, subject.kept, subject.switched);
+  subject.objects = builder_.compile_switches(subject.target.source, subject.mutations,
+                                              subject.folder, subject.alone, subject.kept);
   if (!subject.objects.compiled) {
     throw std::runtime_error(subject.target.source + " does not compile\n" + subject.objects.said);
   }
@@ -157,50 +119,73 @@ void Campaign::build_switches(Subject& subject) const {
   for (const std::string& program : builder_.programs()) fs::remove(subject.folder / program);
 }
 
-void Campaign::find_reach() {
+void Campaign::link(const std::string& program, const Objects& objects,
+                    const fs::path& folder) const {
+  const Ended linked = builder_.link(program, objects, folder / program);
+  if (linked.good) return;
+  throw std::runtime_error((folder / program).string() + " does not link\n" + linked.said);
+}
+
+/// The programs that note which mutants a test reaches; they hold all sources with their switches.
+/// Returns what they are made of, hashed.
+std::string Campaign::build_reach(const fs::path& folder) const {
+  // All copies in one folder, since an object may be made of several of them.
+  const fs::path sources = folder / "sources";
+  fs::remove_all(sources);
   std::string all;
-  for (const Subject& subject : subjects_) all += subject.switched;
-  const std::string key = hash(all);
-  const fs::path folder = options_.work / "reach";
+  std::map<std::string, std::pair<Unit, std::string>> units;  // with the copies in it, by object
+  for (const Subject& subject : subjects_) {
+    const std::string text =
+        with_switches(subject.text, subject.mutations, subject.alone, subject.kept, subject.first);
+    write_file(sources / subject.target.source, text);
+    all += text;
+    for (const Unit& unit : builder_.units_of(subject.target.source)) {
+      auto& [of_object, copies] = units[unit.object];
+      of_object = unit;
+      copies += text;
+    }
+  }
+  const std::string key = hash(all + read_file("tools/mutants/mutant_switch.h"));
   const bool built =
       fs::exists(folder / "key.txt") && read_file(folder / "key.txt") == key &&
       std::all_of(builder_.programs().begin(), builder_.programs().end(),
                   [&](const std::string& program) {
                     return fs::exists(folder / program) &&
-                           fs::last_write_time(folder / program) > builder_.newest_program();
+                           fs::last_write_time(folder / program) > builder_.newest_object();
                   });
-  if (!built) {
-    std::vector<Objects> objects(subjects_.size());
-    in_parallel(subjects_.size(), options_.jobs, [&](std::size_t i, std::size_t) {
-      // Those of the campaign before, when they are of the same text, place and objects.
-      const Subject& subject = subjects_[i];
-      const fs::path at = folder / folder_name(subject.target.source);
-      const std::string stamp =
-          std::to_string(subject.first) + " " + read_file(subject.folder / "switches.txt");
-      if (fs::exists(at / "stamp.txt") && read_file(at / "stamp.txt") == stamp) {
-        objects[i] = {true, "", {}};
-        for (const auto& [original, mutated] : subject.objects.objects) {
-          objects[i].objects.emplace_back(
-              original, (at / fs::path(mutated).lexically_relative(subject.folder)).string());
-        }
-        return;
-      }
-      objects[i] =
-          builder_.compile(subject.target.source, subject.switched, at,
-                           {"-DMUTANTS_REACH", "-DMUTANTS_FIRST=" + std::to_string(subject.first)});
-      write_file(at / "stamp.txt", stamp);
-    });
-    for (const std::string& program : builder_.programs()) {
-      if (!builder_.link(program, objects, folder / program)) {
-        throw std::runtime_error((folder / program).string() + " does not link");
-      }
+  if (built) return key;
+  std::vector<const std::pair<Unit, std::string>*> list;
+  for (const auto& [object, unit] : units) list.push_back(&unit);
+  std::vector<Objects> objects(list.size());
+  in_parallel(list.size(), options_.jobs, [&](std::size_t i, std::size_t) {
+    // That of the campaign before, when it is made of the same.
+    const auto& [unit, copies] = *list[i];
+    const fs::path object = folder / unit.object;
+    const fs::path stamp = object.string() + ".stamp";
+    const std::string made_of = hash(copies + read_file(unit.object));
+    if (fs::exists(stamp) && read_file(stamp) == made_of) {
+      objects[i] = {true, "", {{unit.object, object.string()}}};
+      return;
     }
-    write_file(folder / "key.txt", key);
+    fs::remove(stamp);
+    objects[i] = builder_.compile(unit, sources, object, {"-DMUTANTS_REACH"});
+    if (objects[i].compiled) write_file(stamp, made_of);
+  });
+  Objects together{true, "", {}};
+  for (const Objects& one : objects) {
+    if (!one.compiled) throw std::runtime_error("switches do not compile together\n" + one.said);
+    together.objects.push_back(one.objects.front());
   }
-  const Subject& last = subjects_.back();
-  const std::size_t mutants = last.first + last.candidates.size() + last.mutations.sites.size() * 3;
+  for (const std::string& program : builder_.programs()) link(program, together, folder);
+  write_file(folder / "key.txt", key);
+  return key;
+}
+
+void Campaign::find_reach() {
+  const fs::path folder = options_.work / "reach";
+  const std::string key = build_reach(folder);
   tests_ = mutants::find_reach(folder, builder_.programs(), options_.work / "reach.txt", key,
-                               mutants, options_.jobs, options_.tests);
+                               mutants_, options_.jobs, options_.tests);
   if (options_.longest_s > 0.0) {
     const std::size_t before = tests_.size();
     std::erase_if(tests_,
@@ -208,7 +193,7 @@ void Campaign::find_reach() {
     std::fprintf(stderr, "mutants: %zu tests of more than %g s are left out (--longest)\n",
                  before - tests_.size(), options_.longest_s);
   }
-  reached_by_.assign(mutants + 1, {});
+  reached_by_.assign(mutants_ + 1, {});
   for (const TestCase& test : tests_) {
     test_of_name_[test.name] = &test;
     for (const std::size_t id : test.reached) {
@@ -218,20 +203,18 @@ void Campaign::find_reach() {
 }
 
 void Campaign::link_all() {
-  const fs::file_time_type newest = builder_.newest_program();
   std::vector<std::pair<const Subject*, std::string>> missing;
   for (const Subject& subject : subjects_) {
     for (const std::string& program : builder_.programs()) {
       const fs::path result = subject.folder / program;
-      const bool there = fs::exists(result) && fs::last_write_time(result) > newest;
+      const bool there =
+          fs::exists(result) && fs::last_write_time(result) > builder_.newest_object();
       if (!there) missing.emplace_back(&subject, program);
     }
   }
   in_parallel(missing.size(), options_.jobs, [&](std::size_t i, std::size_t) {
     const auto& [subject, program] = missing[i];
-    if (!builder_.link(program, {subject->objects}, subject->folder / program)) {
-      throw std::runtime_error((subject->folder / program).string() + " does not link");
-    }
+    link(program, subject->objects, subject->folder);
   });
 }
 
@@ -320,18 +303,20 @@ Fate Campaign::decide_alone(const Subject& subject, const Candidate& candidate,
                             const std::vector<const TestCase*>& tests, std::size_t job,
                             std::string& by) const {
   const fs::path folder = options_.work / ("alone." + std::to_string(job));
-  const Objects objects = builder_.compile(
-      subject.target.source, with_edit(subject.text, candidate.mutant.edit), folder, {});
+  fs::remove_all(folder);  // no copies of other sources
+  const Objects objects = builder_.compile(subject.target.source,
+                                           with_edit(subject.text, candidate.mutant.edit), folder);
   if (!objects.compiled) return Fate::kInvalid;
   for (const std::string& program : builder_.programs()) {
     std::vector<const TestCase*> part;
     std::copy_if(tests.begin(), tests.end(), std::back_inserter(part),
                  [&](const TestCase* test) { return test->program == program; });
-    // The tests of the programs run the other one.
     if (part.empty()) continue;
-    if (!builder_.link(program, {objects}, folder / program)) return Fate::kInvalid;
-    if (program == "sitl_tests" && !builder_.link("screed", {objects}, folder / "screed"))
+    if (!builder_.link(program, objects, folder / program).good) return Fate::kInvalid;
+    // Others than unit tests run it.
+    if (program != "unit_tests" && !builder_.link("screed", objects, folder / "screed").good) {
       return Fate::kInvalid;
+    }
     const Verdict verdict =
         TestRun(folder, options_.work / ("job." + std::to_string(job)))(part, 0);
     by = verdict.by;
@@ -431,6 +416,10 @@ bool Campaign::report() const {
   std::printf("%-44s %6s %6s %8s %10s %7s %8s %7s\n%s", "file", "mutants", "killed", "survived",
               "equivalent", "invalid", "killed", "bound", table.c_str());
   if (table.find('*') != std::string::npos) std::printf("* a sample, seed %u\n", options_.seed);
+  const auto time =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin_);
+  std::printf("%zu sources in %ld min %ld s\n", subjects_.size(),
+              static_cast<long>(time.count() / 60), static_cast<long>(time.count() % 60));
   return good;
 }
 

@@ -2,6 +2,7 @@
 // keeps what came out in a file, so that the next campaign does only what is missing.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -9,7 +10,7 @@
 #include <vector>
 
 #include "tools/mutants/builder.h"
-#include "tools/mutants/tables.h"
+#include "tools/mutants/subjects.h"
 #include "tools/mutants/tests_of_build.h"
 
 namespace screed::mutants {
@@ -27,33 +28,6 @@ struct Options {
   double longest_s = 1.5;   ///< without the tests that take longer, processor time; 0: all
 };
 
-enum class Fate { kUnknown, kKilled, kSurvived, kInvalid, kEquivalent };
-
-/// A mutant of a file of the table.
-struct Candidate {
-  std::size_t site;
-  std::size_t number;  ///< in its file, from 1
-  Mutant mutant;
-  Change change;
-  std::string id;  ///< "line:column:operator"
-  Fate fate = Fate::kUnknown;
-  std::string detail;  ///< the test that kills it, or the reason why none can
-};
-
-struct Subject {
-  Target target;
-  std::string text;
-  Mutations mutations;
-  std::vector<Candidate> candidates;
-  std::size_t first = 0;  ///< its number 0 among those of all files
-  // What is built of it:
-  std::filesystem::path folder;
-  Objects objects{};
-  std::string switched;
-  std::set<std::size_t> alone;
-  std::set<std::string> kept;
-};
-
 class Campaign {
  public:
   explicit Campaign(Options options);
@@ -63,9 +37,10 @@ class Campaign {
 
  private:
   bool chosen(const Target& target) const;
-  void read_subjects();
-  void draw_sample(Subject& subject) const;
   void build_switches(Subject& subject) const;
+  void link(const std::string& program, const Objects& objects,
+            const std::filesystem::path& folder) const;
+  std::string build_reach(const std::filesystem::path& folder) const;
   void find_reach();
   void link_all();
   /// The tests that may notice a mutant, the quickest first, unit tests before the others.
@@ -78,9 +53,10 @@ class Campaign {
                     std::string& by) const;
 
   Options options_;
+  std::chrono::steady_clock::time_point begin_;
   Builder builder_;
-  std::vector<Equivalent> equivalents_;
   std::vector<Subject> subjects_;
+  std::size_t mutants_ = 0;  // of all subjects
   std::vector<TestCase> tests_;
   std::map<std::string, const TestCase*> test_of_name_;
   std::vector<std::vector<const TestCase*>> reached_by_;  // by number among all files

@@ -22,7 +22,7 @@ namespace {
 
 inline bool on(int id) {
 #ifdef MUTANTS_REACH
-  if (id > 0) reached[MUTANTS_FIRST + id] = 1;
+  if (id > 0) reached[id] = 1;
   return false;
 #else
   return id == alive;

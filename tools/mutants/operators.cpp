@@ -399,7 +399,8 @@ std::string with_edit(std::string_view source, const Edit& edit) {
 }
 
 std::string with_switches(std::string_view source, const Mutations& mutations,
-                          const std::set<std::size_t>& alone, const std::set<std::string>& kept) {
+                          const std::set<std::size_t>& alone, const std::set<std::string>& kept,
+                          std::size_t first) {
   // At one place first what closes, the inner first; then what opens, the outer first; then what
   // stands for the token.
   struct Event {
@@ -417,17 +418,16 @@ std::string with_switches(std::string_view source, const Mutations& mutations,
     const Site& site = mutations.sites[i];
     if (alone.contains(i) || kept.contains(site.constant)) continue;
     switched.insert(site.constant);
+    const std::size_t number = first + site.first_number;
     for (const Wrap& wrap : site.wraps) {
       ++order;
-      const std::size_t first = site.first_number;
       events.push_back(
-          {wrap.begin, 1, SIZE_MAX - wrap.end, order, 0, numbered(wrap.before, first)});
+          {wrap.begin, 1, SIZE_MAX - wrap.end, order, 0, numbered(wrap.before, number)});
       events.push_back(
-          {wrap.end, 0, SIZE_MAX - wrap.begin, -order, 0, numbered(wrap.behind, first)});
+          {wrap.end, 0, SIZE_MAX - wrap.begin, -order, 0, numbered(wrap.behind, number)});
     }
     for (const Edit& edit : site.replacements) {
-      events.push_back(
-          {edit.begin, 2, 0, 0, edit.end - edit.begin, numbered(edit.text, site.first_number)});
+      events.push_back({edit.begin, 2, 0, 0, edit.end - edit.begin, numbered(edit.text, number)});
     }
   }
   for (const Constant& constant : mutations.constants) {

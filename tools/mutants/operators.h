@@ -59,9 +59,11 @@ Mutations find_mutations(std::string_view source);
 std::string with_edit(std::string_view source, const Edit& edit);
 
 /// The source with the switches of all sites but the `alone` ones; the constants named in `kept`
-/// stay constexpr, and the sites in them are left alone too. As many lines as the source.
+/// stay constexpr, and the sites in them are left alone too. As many lines as the source. `first`
+/// is added to the mutants' numbers.
 std::string with_switches(std::string_view source, const Mutations& mutations,
-                          const std::set<std::size_t>& alone, const std::set<std::string>& kept);
+                          const std::set<std::size_t>& alone, const std::set<std::string>& kept,
+                          std::size_t first = 0);
 
 /// The number's text with other values.
 std::vector<std::string> other_numbers(std::string_view number);

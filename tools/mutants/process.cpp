@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,6 +22,7 @@ namespace {
 constexpr rlim_t kMaxMemory = rlim_t{6} << 30;
 constexpr rlim_t kLargestFile = rlim_t{1} << 30;
 constexpr std::streamoff kKeptBytes = 200'000;
+constexpr double kSomeTime_s = 0.05;
 
 void limit(int resource, rlim_t value) {
   const rlimit both{value, value};
@@ -54,6 +56,13 @@ void limit(int resource, rlim_t value) {
   _exit(127);
 }
 
+double processor_time_s(pid_t process) {
+  clockid_t clock = 0;
+  timespec time{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0.0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 std::string end_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = in.tellg();
@@ -77,11 +86,16 @@ Ended run(const std::vector<std::string>& command,
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
   } else {
-    // What sleeps for ever uses no processor time.
-    const auto latest =
-        std::chrono::steady_clock::now() + std::chrono::duration<double>(30.0 + 20.0 * limit_s);
+    // What sleeps for ever uses no processor time; what waits for a processor gets some.
+    const std::chrono::duration<double> patience(30.0 + 20.0 * limit_s);
+    auto latest = std::chrono::steady_clock::now() + patience;
+    double used_s = 0.0;
     auto pause = std::chrono::microseconds(500);
     while (waitpid(child, &status, WNOHANG) == 0) {
+      if (const double now_s = processor_time_s(child); now_s > used_s + kSomeTime_s) {
+        used_s = now_s;
+        latest = std::chrono::steady_clock::now() + patience;
+      }
       if (std::chrono::steady_clock::now() > latest) {
         hung = true;
         kill(-child, SIGKILL);

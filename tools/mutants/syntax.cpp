@@ -170,10 +170,11 @@ bool Syntax::is_expression(std::size_t i) const {
   if (is_one_of(text(i), {"++", "--", "*", "("})) return true;
   if (is_one_of(text(i), {"throw", "break", "continue", "delete"})) return true;
   if (text(i) == "return") return text(i + 1) == ";";
-  if (is_one_of(text(i), {"if",        "for",   "while",    "switch",   "do",      "else",
-                          "try",       "case",  "default",  "using",    "typedef", "static_assert",
-                          "constexpr", "const", "auto",     "static",   "struct",  "class",
-                          "enum",      "goto",  "template", "unsigned", "extern",  "catch"})) {
+  if (is_one_of(text(i), {"if",       "for",           "while",     "switch",  "do",
+                          "else",     "try",           "case",      "default", "using",
+                          "typedef",  "static_assert", "constexpr", "const",   "auto",
+                          "static",   "struct",        "class",     "enum",    "goto",
+                          "template", "unsigned",      "extern",    "catch",   "alignas"})) {
     return false;
   }
   if (tokens_[i].kind != TokenKind::kWord) return false;

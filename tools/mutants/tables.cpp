@@ -2,6 +2,7 @@
 
 #include <glob.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -66,7 +67,13 @@ std::vector<Target> read_targets(const std::filesystem::path& table,
     if (files.empty()) throw wrong(table, number, pattern + ": no such file");
     for (const std::string& file : files) {
       target.source = file;
-      targets.push_back(target);
+      const auto at = std::find_if(targets.begin(), targets.end(),
+                                   [&](const Target& before) { return before.source == file; });
+      if (at != targets.end()) {
+        *at = target;
+      } else {
+        targets.push_back(target);
+      }
     }
   }
   return targets;

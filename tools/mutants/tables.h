@@ -25,8 +25,8 @@ struct Equivalent {
   std::size_t line;  ///< of the table
 };
 
-/// Lines "GLOB BOUND [sample=N] [tests=FILTER]"; # begins a comment. Throws std::runtime_error with
-/// file and line.
+/// Lines "GLOB BOUND [sample=N] [tests=FILTER]", of which the last one of a source holds; # begins
+/// a comment. Throws std::runtime_error with file and line.
 std::vector<Target> read_targets(const std::filesystem::path& table,
                                  const std::filesystem::path& root);
 

@@ -182,7 +182,7 @@ std::vector<TestCase> find_reach(const fs::path& folder, const std::vector<std::
       // Every so many tests, of one program at a time.
       for (std::size_t begin = job * kReachPart; begin < unknown.size();
            begin += jobs * kReachPart) {
-        for (const char* program : {"unit_tests", "sitl_tests"}) {
+        for (const std::string& program : programs) {
           std::string names;
           std::map<std::string, std::string> of_test;
           for (std::size_t i = begin; i < std::min(begin + kReachPart, unknown.size()); ++i) {

@@ -11,7 +11,7 @@
 namespace screed::mutants {
 
 struct TestCase {
-  std::string program;  ///< unit_tests or sitl_tests
+  std::string program;  ///< unit_tests or another one
   std::string name;
   double cpu_ms = 0.0;
   std::string file_hash;          ///< of the source that it stands in

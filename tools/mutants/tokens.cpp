@@ -1,6 +1,7 @@
 // A lexer for what the mutation operators need.
 #include "tools/mutants/tokens.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 
@@ -38,7 +39,30 @@ std::size_t behind_raw_text(std::string_view source, std::size_t quote) {
   return end == std::string_view::npos ? source.size() : end + close.size();
 }
 
-/// Behind the comment or preprocessor line at `at`; `at` when there is none.
+std::size_t line_end(std::string_view source, std::size_t at) {
+  while (at < source.size() && source[at] != '\n') {
+    if (source[at] == '\\') ++at;
+    ++at;
+  }
+  return std::min(at, source.size());
+}
+
+/// The line that ends the branch which begins at `at`: #else, #elif or #endif.
+std::size_t branch_end(std::string_view source, std::size_t at) {
+  int depth = 0;
+  const auto next_line = [&] { return source.find_first_not_of(" \n", line_end(source, at)); };
+  for (at = next_line(); at != std::string_view::npos; at = next_line()) {
+    if (source[at] != '#') continue;
+    const std::string_view word = source.substr(at + 1, 5);
+    if (depth == 0 && (word.starts_with("el") || word == "endif")) return at;
+    if (word.starts_with("if")) ++depth;
+    if (word == "endif") --depth;
+  }
+  return source.size();
+}
+
+/// Behind the comment or preprocessor line at `at`, and behind what only the microcontroller's
+/// compiler sees; `at` when there is none.
 std::size_t behind_ignored(std::string_view source, std::size_t at, bool line_start) {
   if (source.substr(at, 2) == "//") return std::min(source.find('\n', at), source.size());
   if (source.substr(at, 2) == "/*") {
@@ -46,11 +70,8 @@ std::size_t behind_ignored(std::string_view source, std::size_t at, bool line_st
     return end == std::string_view::npos ? source.size() : end + 2;
   }
   if (!line_start || source[at] != '#') return at;
-  while (at < source.size() && source[at] != '\n') {
-    if (source[at] == '\\') ++at;
-    ++at;
-  }
-  return std::min(at, source.size());
+  return source.substr(at).starts_with("#ifdef __AVR__\n") ? branch_end(source, at)
+                                                           : line_end(source, at);
 }
 
 std::size_t behind_number(std::string_view source, std::size_t at) {

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tests/temp_folder.h"
+#include "tools/mutants/builder.h"
 #include "tools/mutants/operators.h"
+#include "tools/mutants/subjects.h"
 #include "tools/mutants/tables.h"
 #include "tools/mutants/tests_of_build.h"
 
@@ -90,6 +93,15 @@ TEST(MutantOperators, LeaveCommentsTextsIncludesAndTypesAlone) {
   EXPECT_EQ(mutants_of("std::array<int, 3> a; int b[4];"), nothing);
 }
 
+TEST(MutantOperators, LeaveAloneWhatOnlyTheMicrocontrollerSees) {
+  EXPECT_EQ(mutants_of("\n#ifdef __AVR__\n\n#if A\na = b;\n#else\na = 2;\n#endif\n"
+                       "a = 3;\n#else\n++a;\n#endif\n")
+                .size(),
+            2U);
+  EXPECT_EQ(mutants_of("\n#ifdef __AVR__\na = 3;\n#endif\n++a;").size(), 2U);
+  EXPECT_EQ(mutants_of("\n#ifdef OTHER\n++a;\n#endif\n").size(), 2U);
+}
+
 TEST(MutantSwitches, StandInOneTextThatKeepsItsLines) {
   const std::string source = "constexpr int kA = 5;\nbool f(int a) {\n  return a < kA;\n}\n";
   const Mutations mutations = find_mutations(source);
@@ -97,6 +109,8 @@ TEST(MutantSwitches, StandInOneTextThatKeepsItsLines) {
             "const int kA = (::mutants::on(1) ? 4 : ::mutants::on(2) ? 6 : 5);\nbool f(int a) {\n"
             "  return a < ::mutants::Less{3} < kA;\n}\n");
   EXPECT_EQ(with_switches(source, mutations, {1}, {"kA"}), source);
+  EXPECT_EQ(with_switches(source, mutations, {}, {"kA"}, 100),
+            "constexpr int kA = 5;\nbool f(int a) {\n  return a < ::mutants::Less{103} < kA;\n}\n");
 }
 
 TEST(MutantSwitches, NestAsTheirExpressionsDo) {
@@ -148,10 +162,50 @@ TEST(MutantTables, ATargetsPatternStandsForAllItsFiles) {
   EXPECT_EQ(targets[1].bound, 85.0);
   EXPECT_EQ(targets[1].sample, 7U);
   EXPECT_EQ(targets[1].tests, "Soil*");
+  write_text(table, "*.cpp 85 sample=7\na.cpp 95\n");
+  ASSERT_EQ(read_targets(table, folder.path()).size(), 2U);
+  EXPECT_EQ(read_targets(table, folder.path())[0].bound, 95.0) << "the last row of a source";
+  EXPECT_EQ(read_targets(table, folder.path())[0].sample, 0U);
   write_text(table, "c.cpp 85\n");
   EXPECT_THROW(read_targets(table, folder.path()), std::runtime_error);
   write_text(table, "a.cpp 120\n");
   EXPECT_THROW(read_targets(table, folder.path()), std::runtime_error);
+}
+
+/// Below `folder`, at any depth.
+std::vector<std::string> sources_below(const std::string& folder) {
+  std::vector<std::string> sources;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() == ".cpp") sources.push_back(entry.path().string());
+  }
+  return sources;
+}
+
+// A row that names nothing and an entry without a mutant end `make mutants` before its first one.
+TEST(MutantTables, OfTheTreeNameWhatThereIs) {
+  EXPECT_NO_THROW(read_subjects("tools/mutants/targets.txt", "tools/mutants/equivalent.txt"));
+  std::vector<std::string> named;
+  for (const Target& target : read_targets("tools/mutants/targets.txt", ".")) {
+    named.push_back(target.source);
+    EXPECT_GE(target.bound, 85.0) << target.source;
+    const std::string folder = target.source.substr(0, target.source.find('/'));
+    EXPECT_TRUE(folder == "firmware" || folder == "host_sim" || folder == "nn" ||
+                target.source.starts_with("hal/host/"))
+        << target.source << " is not in the library of the tests";
+  }
+  for (const char* folder : {"firmware", "hal/host"}) {
+    for (const std::string& source : sources_below(folder)) {
+      EXPECT_NE(std::find(named.begin(), named.end(), source), named.end()) << source;
+    }
+  }
+}
+
+TEST(MutantUnits, AreWhatTheCompilersNotesSay) {
+  const Unit one = unit_of("b/a.o: \\\n a.cpp a.h \\\n c.h\na.h:\nc.h:\n");
+  EXPECT_EQ(one.object, "b/a.o");
+  EXPECT_EQ(one.source, "a.cpp");
+  EXPECT_EQ(one.included, (std::vector<std::string>{"a.cpp", "a.h", "c.h"}));
+  EXPECT_EQ(unit_of("").object, "");
 }
 
 TEST(MutantTests, TheTestThatFailedIsNotTheSkippedOneBehindIt) {
