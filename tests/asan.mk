@@ -18,7 +18,7 @@ ASAN_UNIT := command command_gate command_key command_session corruption e2e gro
   parameter_store parameters radio_link robot robot_downlink robot_history siphash slcan supervisor supervisor_fault telemetry track_slip
 # Files: logs, schemas, experiments, images, meshes, robots, sessions, models, listings of an image.
 ASAN_UNIT += attitude_command avr_indirect_calls avr_order avr_stack board_table candump_log content_hash decode experiment grey_image half_written \
-  header_export height_field height_series ini_file mesh model_file network picture run_folder schema schema_compiler session session_csv \
+  header_export height_field height_series ini_file json mesh model_file network picture run_folder schema schema_compiler session session_csv \
   session_damage session_failure session_hash session_replay urdf urdf_refusal urdf_roles wheel_rim
 # Grids that a position indexes.
 ASAN_UNIT += footprint grid_world kernels material_digging material_flow particle_motion soil_bed soil_cells shear_field soil_dig \
@@ -36,13 +36,14 @@ endif
 # The library without what none of these tests links: training, the surrogate, calibration, most subcommands, windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
   link/plot_signals.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp cli/progress_bar.cpp cli/task_bar.cpp)
-ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/% host_sim/ground_station/calibration/%,$(LIBRARY_SOURCES))
-$(B)/libasan_tested.a: $(call objects,$(ASAN_LIBRARY_SOURCES))
+ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/% host_sim/ground_station/calibration/%,$(LIBRARY_SOURCES))
+$(eval $(call in_groups,ASAN_LIBRARY,$(filter-out $(CORE_SOURCES),$(ASAN_LIBRARY_SOURCES)),host))
+$(B)/libasan_tested.a: $(call objects,$(CORE_SOURCES)) $(ASAN_LIBRARY_OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(eval $(call in_groups,ASAN_UNIT,$(ASAN_UNIT_SOURCES)))
-$(eval $(call in_groups,ASAN_MCU,$(ASAN_MCU_SOURCES),@$(B)/tests/mcu.flags))
+$(eval $(call in_groups,ASAN_UNIT,$(ASAN_UNIT_SOURCES),test))
+$(eval $(call in_groups,ASAN_MCU,$(ASAN_MCU_SOURCES),test,@$(B)/tests/mcu.flags))
 $(ASAN_MCU_GROUP_OBJECTS): $(B)/tests/mcu.flags
 $(B)/tests/asan_unit_tests: $(ASAN_UNIT_OBJECTS) $(call objects,$(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) \
                             $(B)/libasan_tested.a $(B)/libavr_tools.a $(B)/link.flags

@@ -123,7 +123,7 @@ AVR_TOOL_SOURCES := $(filter-out %/main.cpp,$(call sources,tools/avr/stack) $(ca
 $(B)/libavr_tools.a: $(call objects,$(AVR_TOOL_SOURCES))
 	@rm -f $@
 	@ar rcs $@ $^
-$(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_tools.a $(LIBRARY) $(B)/link.flags
+$(B)/avr_stack: $(B)/tools/avr/stack/main.o $(B)/libavr_tools.a $(COMMAND_LINE) $(B)/link.flags
 	$(call link)
 
 # Changes only when compiler or flags do, and then everything is built anew.

@@ -5,7 +5,6 @@
 
 #include <deque>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/task_progress.h"

@@ -2,12 +2,12 @@
 #include "host_sim/campaign/campaign_merge.h"
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
+#include "host_sim/core/json.h"
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/run/experiment/experiment_keys.h"
 
@@ -15,10 +15,9 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "screed-campaign-results";
-constexpr uint64_t kFormatVersion = 1;
+constexpr const char* kResultsFormat = "screed-campaign-results";
+constexpr uint64_t kResultsFormatVersion = 1;
 
 struct Tables {
   ValueTable runs;
@@ -107,8 +106,8 @@ void write_hdf5(const CampaignPlan& plan, const CampaignCount& count, const Tabl
               "cannot set the file format");
     h5::Handle hdf5(H5Fcreate(file.partial().c_str(), H5F_ACC_TRUNC, options.get(), access.get()),
                     H5Fclose, "cannot create it");
-    h5::write_attribute(hdf5.get(), "format", std::string(kFormat));
-    h5::write_attribute(hdf5.get(), "format_version", kFormatVersion);
+    h5::write_attribute(hdf5.get(), "format", std::string(kResultsFormat));
+    h5::write_attribute(hdf5.get(), "format_version", kResultsFormatVersion);
     h5::write_attribute(hdf5.get(), "name", plan.settings.name);
     h5::write_attribute(hdf5.get(), "program_version", plan.version);
     h5::write_attribute(hdf5.get(), "runs", uint64_t{count.runs});

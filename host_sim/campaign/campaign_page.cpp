@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -16,14 +15,13 @@
 #include "host_sim/campaign/cell_curves.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/intervals.h"
+#include "host_sim/core/json.h"
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/render/report/page_file.h"
 #include "version.h"
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The first of them that a campaign has is shown first.
 constexpr std::array<const char*, 2> kFirstMetrics = {"leveling.progress",
@@ -358,8 +356,7 @@ std::string campaign_page(const CampaignPlan& plan, const CampaignCount& count,
       plan.settings.keep == CampaignKeep::kSession
           ? "A run's number leads to its folder, or to its page where `screed report` has made one."
           : "The folders of the runs were not kept (keep = session keeps them).";
-  return page.document(options.built_page,
-                       facts.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return page.document(options.built_page, facts.dump(-1, Json::BadText::kReplace));
 }
 
 }  // namespace screed

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/engine/file_hash.h"
 
@@ -16,10 +16,9 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "screed-campaign";
-constexpr int kFormatVersion = 1;
+constexpr const char* kPlanFormat = "screed-campaign";
+constexpr int kPlanFormatVersion = 1;
 /// Part of every identity: raised when the same experiment is to count as another run.
 constexpr const char* kIdentityRules = "screed campaign run 1";
 
@@ -262,8 +261,8 @@ std::string plan_text(const CampaignPlan& plan) {
   Json factors = Json::array();
   for (const CampaignFactor& factor : plan.factors) factors.push_back(json_of(factor));
   const Json json = {
-      {"format", kFormat},
-      {"format_version", kFormatVersion},
+      {"format", kPlanFormat},
+      {"format_version", kPlanFormatVersion},
       {"version", plan.version},
       {"settings", json_of(plan.settings)},
       {"experiment",
@@ -279,10 +278,10 @@ std::string plan_text(const CampaignPlan& plan) {
 CampaignPlan read_plan(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string() + ": no such file: this is no folder of a campaign");
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object() || json.value("format", "") != kFormat)
+  const Json json = Json::parse_or_null(stream);
+  if (!json.is_object() || json.value("format", "") != kPlanFormat)
     throw InputError(file.string() + ": is not the plan of a campaign, or is damaged");
-  if (json.value("format_version", 0) != kFormatVersion)
+  if (json.value("format_version", 0) != kPlanFormatVersion)
     throw InputError(file.string() + ": is of another version of Screed");
   CampaignPlan plan;
   try {
@@ -295,7 +294,7 @@ CampaignPlan read_plan(const fs::path& file) {
     plan.cells = json.at("cells").get<std::vector<std::vector<std::string>>>();
     plan.durations_s = json.at("durations_s").get<std::vector<double>>();
     plan.ids = json.at("ids").get<std::vector<std::string>>();
-  } catch (const Json::exception&) {
+  } catch (const JsonError&) {
     throw InputError(file.string() + ": the plan of the campaign is damaged");
   }
   if (plan.settings.seeds.empty() || plan.ids.size() != plan.run_count() ||

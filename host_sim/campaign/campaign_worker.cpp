@@ -6,12 +6,12 @@
 #include <chrono>
 #include <filesystem>
 #include <istream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/scratch_folder.h"
 #include "host_sim/engine/task_worker.h"
 #include "host_sim/run/simulation/simulation.h"
@@ -20,7 +20,6 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTrial_s = 1.0;  ///< of the clock, in the run's loop
@@ -164,7 +163,7 @@ RunCost parse_cost(const std::string& text) {
     const Json json = Json::parse(text);
     return {json.at("setup_s").get<double>(), json.at("per_second_s").get<double>(),
             json.at("finish_s").get<double>()};
-  } catch (const Json::exception&) {
+  } catch (const JsonError&) {
     throw RunError("a worker said of a trial '" + text + "'");
   }
 }

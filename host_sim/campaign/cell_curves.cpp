@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 5> kShown = {"progress", "relief", "rough
 /// One figure of one run over time: where it was measured, times rising.
 using RunCurve = std::vector<std::pair<double, double>>;
 
-const ValueTable::ValueColumn* column_of(const ValueTable& table, std::string_view name) {
+const ValueTable::ValueColumn* find_column(const ValueTable& table, std::string_view name) {
   const auto found =
       std::find_if(table.columns().begin(), table.columns().end(),
                    [name](const ValueTable::ValueColumn& column) { return column.name == name; });
@@ -26,8 +26,8 @@ const ValueTable::ValueColumn* column_of(const ValueTable& table, std::string_vi
 /// By run.
 std::vector<RunCurve> run_curves(const CampaignPlan& plan, const ValueTable& table,
                                  const ValueTable::ValueColumn& column) {
-  const ValueTable::ValueColumn& runs = *column_of(table, "run");
-  const ValueTable::ValueColumn& times = *column_of(table, "time");
+  const ValueTable::ValueColumn& runs = *find_column(table, "run");
+  const ValueTable::ValueColumn& times = *find_column(table, "time");
   std::vector<RunCurve> curves(plan.run_count());
   for (std::size_t row = 0; row < column.values.size(); ++row) {
     if (!column.values[row].is_number()) continue;
@@ -79,7 +79,7 @@ std::vector<std::vector<SeedMean>> means_of_cells(const CampaignPlan& plan,
 std::vector<CellCurve> cell_curves(const CampaignPlan& plan, const ValueTable& curves) {
   std::vector<CellCurve> shown;
   for (const std::string_view name : kShown) {
-    const ValueTable::ValueColumn* const column = column_of(curves, name);
+    const ValueTable::ValueColumn* const column = find_column(curves, name);
     if (column == nullptr) continue;
     const std::vector<RunCurve> of_runs = run_curves(plan, curves, *column);
     std::vector<double> times_s = common_times(of_runs);

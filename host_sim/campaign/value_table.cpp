@@ -19,19 +19,19 @@ std::string cell_text(const TableValue& value) {
   if (value.is_null()) return "";
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
   if (!value.is_string()) return value.dump();
-  const auto& text = value.get_ref<const std::string&>();
+  const std::string& text = value.text();
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }
 
-bool is_text_list(const nlohmann::ordered_json& json) {
+bool is_text_list(const Json& json) {
   return json.is_array() && std::all_of(json.begin(), json.end(),
                                         [](const auto& element) { return element.is_string(); });
 }
 
-std::string joined(const nlohmann::ordered_json& texts) {
+std::string joined(const Json& texts) {
   std::string all;
   for (const auto& text : texts) all += (all.empty() ? "" : "; ") + text.get<std::string>();
   return all;
@@ -129,9 +129,8 @@ bool ValueTable::has(const std::string& column) const {
   return known != numbers_.end() && columns_[known->second].values.size() == rows_;
 }
 
-void ValueTable::set_all(const nlohmann::ordered_json& object, const std::string& prefix) {
-  for (const auto& [name, value] : object.items()) {
-    const std::string column = prefix + name;
+void ValueTable::set_all(const Json& object, const std::string& prefix) {
+  const auto set_one = [&](const std::string& column, const Json& value) {
     if (is_text_list(value)) {
       if (!has(column)) set(column, joined(value));
     } else if (value.is_structured()) {
@@ -139,6 +138,11 @@ void ValueTable::set_all(const nlohmann::ordered_json& object, const std::string
     } else if (!has(column)) {
       set(column, TableValue(value));
     }
+  };
+  if (object.is_array()) {
+    for (size_t i = 0; i < object.size(); ++i) set_one(prefix + std::to_string(i), object[i]);
+  } else {
+    for (const auto& [name, value] : object.items()) set_one(prefix + name, value);
   }
 }
 

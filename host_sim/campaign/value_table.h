@@ -7,14 +7,15 @@
 
 #include <cstddef>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "host_sim/core/json.h"
 
 namespace screed {
 
 /// A number, a text, a truth value or null.
-using TableValue = nlohmann::json;
+using TableValue = Json;
 
 class ValueTable {
  public:
@@ -30,7 +31,7 @@ class ValueTable {
   /// Sets the values of a JSON object under its members' names: those of an inner object as
   /// `outer.inner`, those of a list as `outer.0`, a list of texts as one text with "; " between
   /// them. Columns that the row has already stay as they are.
-  void set_all(const nlohmann::ordered_json& object, const std::string& prefix = "");
+  void set_all(const Json& object, const std::string& prefix = "");
 
   size_t rows() const { return rows_; }
   /// In the order in which they were first set.

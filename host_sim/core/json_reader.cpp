@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "host_sim/core/errors.h"
@@ -28,25 +27,23 @@ std::string in_digits(double value) {
 }
 
 /// The value as it stands in the file, cut where it is long.
-std::string shown(const nlohmann::json& value) {
-  std::string text =
-      value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 40);
-  return text;
+std::string shown(const Json& value) {
+  return value.dump(-1, Json::BadText::kReplace).substr(0, 40);
 }
 
 }  // namespace
 
-nlohmann::json read_json_text(const std::string& text, const std::string& name) {
+Json read_json_text(const std::string& text, const std::string& name) {
   try {
-    return nlohmann::json::parse(text, nullptr, true, true);
-  } catch (const nlohmann::json::parse_error& error) {
+    return Json::parse(text, true);
+  } catch (const JsonSyntaxError& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     throw InputError(name + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
                      ": is no JSON");
   }
 }
 
-nlohmann::json read_json_file(const std::filesystem::path& file) {
+Json read_json_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
@@ -56,17 +53,17 @@ nlohmann::json read_json_file(const std::filesystem::path& file) {
   return read_json_text(text.str(), file.string());
 }
 
-JsonValue::JsonValue(const nlohmann::json& value, std::string file)
+JsonValue::JsonValue(const Json& value, std::string file)
     : value_(&value), file_(std::move(file)) {}
 
-JsonValue::JsonValue(const nlohmann::json& value, std::string file, std::string path)
+JsonValue::JsonValue(const Json& value, std::string file, std::string path)
     : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
 
 void JsonValue::refuse(const std::string& what) const {
   throw InputError(file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what);
 }
 
-const nlohmann::json& JsonValue::object() const {
+const Json& JsonValue::object() const {
   if (!value_->is_object()) refuse(shown(*value_) + "; allowed is an object");
   return *value_;
 }
@@ -80,19 +77,13 @@ void JsonValue::only(std::initializer_list<std::string_view> allowed) const {
 }
 
 bool JsonValue::has(std::string_view name) const {
-  return object().contains(std::string(name));
+  return object().contains(name);
 }
 
 JsonValue JsonValue::at(std::string_view name) const {
-  const auto found = object().find(std::string(name));
-  if (found == value_->end()) refuse("'" + std::string(name) + "' is missing");
+  const Json* const found = object().find(name);
+  if (found == nullptr) refuse("'" + std::string(name) + "' is missing");
   return {*found, file_, path_.empty() ? std::string(name) : path_ + "." + std::string(name)};
-}
-
-std::vector<std::string> JsonValue::names() const {
-  std::vector<std::string> found;
-  for (const auto& [name, value] : object().items()) found.push_back(name);
-  return found;
 }
 
 std::vector<JsonValue> JsonValue::list(std::size_t minimum, std::size_t maximum) const {
@@ -106,7 +97,7 @@ std::vector<JsonValue> JsonValue::list(std::size_t minimum, std::size_t maximum)
   }
   std::vector<JsonValue> values;
   values.reserve(value_->size());
-  for (const nlohmann::json& value : *value_) {
+  for (const Json& value : *value_) {
     values.push_back({value, file_, path_ + "[" + std::to_string(values.size()) + "]"});
   }
   return values;
@@ -114,7 +105,7 @@ std::vector<JsonValue> JsonValue::list(std::size_t minimum, std::size_t maximum)
 
 std::string JsonValue::text() const {
   if (!value_->is_string()) refuse(shown(*value_) + "; allowed is a text");
-  return value_->get<std::string>();
+  return value_->text();
 }
 
 std::string JsonValue::one_of(std::initializer_list<std::string_view> allowed) const {

@@ -5,26 +5,27 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
-#include <set>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "host_sim/core/json.h"
 
 namespace screed {
 
 /// Reads a file as JSON; comments // and /* */ are allowed. Throws InputError, "<file>: ...", for a
 /// file that does not exist, cannot be read, or is no JSON.
-nlohmann::json read_json_file(const std::filesystem::path& file);
+Json read_json_file(const std::filesystem::path& file);
 /// The same from a text; messages call it `name`.
-nlohmann::json read_json_text(const std::string& text, const std::string& name);
+Json read_json_text(const std::string& text, const std::string& name);
 
 /// A value in a JSON document, with its place. Every function throws InputError, "<file>: <path>:
 /// ..., allowed is ...", for a value of another kind or beyond its range. The document must outlive
 /// it.
 class JsonValue {
  public:
-  JsonValue(const nlohmann::json& value, std::string file);
+  JsonValue(const Json& value, std::string file);
 
   const std::string& path() const { return path_; }
 
@@ -33,7 +34,6 @@ class JsonValue {
   void only(std::initializer_list<std::string_view> names) const;
   bool has(std::string_view name) const;
   JsonValue at(std::string_view name) const;
-  std::vector<std::string> names() const;
 
   // Of a list.
   /// Its values; refuses a list with fewer than `minimum` or more than `maximum` of them.
@@ -52,10 +52,10 @@ class JsonValue {
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
-  JsonValue(const nlohmann::json& value, std::string file, std::string path);
-  const nlohmann::json& object() const;
+  JsonValue(const Json& value, std::string file, std::string path);
+  const Json& object() const;
 
-  const nlohmann::json* value_;
+  const Json* value_;
   std::string file_;
   std::string path_;  ///< "networks[0].layers[2].bias"; empty: the document
 };

@@ -4,18 +4,16 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/result_store.h"
 #include "host_sim/engine/task_worker.h"
 #include "host_sim/engine/worker_pool.h"
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// After so many failures one behind the other the cause is not in the tasks: a full disk, a
 /// missing file.

@@ -5,19 +5,18 @@
 #include <chrono>
 #include <ctime>
 #include <istream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/host.h"
 #include "host_sim/engine/result_store.h"
 
 namespace screed {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kExecuteWord = "run";
@@ -38,7 +37,7 @@ std::string time_text(std::time_t time) {
 
 /// In one line; a path in a message need not be UTF-8.
 std::string one_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json.dump(-1, Json::BadText::kReplace);
 }
 
 std::string number(double value) {
@@ -138,9 +137,11 @@ std::string trial_request(size_t task) {
 }
 
 std::string answer_text(const WorkerAnswer& answer) {
+  Json failures = Json::array();
+  for (const auto& [task, why] : answer.failures) failures.push_back({task, why});
   return one_line({{"kind", kKinds[static_cast<size_t>(answer.kind)]},
                    {"message", answer.message},
-                   {"failures", answer.failures},
+                   {"failures", failures},
                    {"trial", answer.trial},
                    {"seconds", answer.seconds},
                    {"memory_mb", answer.memory_mb}});
@@ -152,13 +153,14 @@ WorkerAnswer parse_answer(const std::string& text) {
     const Json json = Json::parse(text);
     const auto kind = json.at("kind").get<std::string>();
     answer.message = json.at("message").get<std::string>();
-    answer.failures = json.at("failures").get<decltype(answer.failures)>();
+    for (const Json& failure : json.at("failures"))
+      answer.failures.emplace_back(failure.at(0).get<size_t>(), failure.at(1).text());
     answer.trial = json.at("trial").get<std::string>();
     answer.seconds = json.at("seconds").get<double>();
     answer.memory_mb = json.at("memory_mb").get<double>();
     for (const auto one : {WorkerAnswer::Kind::kDone, WorkerAnswer::Kind::kTried})
       if (kind == kKinds[static_cast<size_t>(one)]) answer.kind = one;
-  } catch (const Json::exception&) {
+  } catch (const JsonError&) {
     answer = {};
     answer.message = "a worker answered '" + text + "'";
   }

@@ -10,8 +10,8 @@
 namespace screed {
 namespace {
 
-constexpr const char* kFormat = "screed grid run";
-constexpr uint64_t kFormatVersion = 1;
+constexpr const char* kRecordingFormat = "screed grid run";
+constexpr uint64_t kRecordingFormatVersion = 1;
 constexpr uint64_t kChunkCycles = 1024;
 
 h5::Handle simple_space(std::initializer_list<hsize_t> size) {
@@ -140,8 +140,8 @@ GridRecorder::GridRecorder(const std::filesystem::path& path, const GridRun& run
         h5::Handle(H5Fcreate(f.place.partial().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                    H5Fclose, "cannot create the file");
     const hid_t id = f.file.get();
-    h5::write_attribute(id, "format", std::string(kFormat));
-    h5::write_attribute(id, "format_version", kFormatVersion);
+    h5::write_attribute(id, "format", std::string(kRecordingFormat));
+    h5::write_attribute(id, "format_version", kRecordingFormatVersion);
     h5::write_attribute(id, "program_version", program_version);
     for (const auto& [name, value] : describe(run.config())) {
       h5::write_attribute(id, name.c_str(), value);
@@ -185,13 +185,13 @@ GridReplay::GridReplay(const std::filesystem::path& path) : path_(path) {
     const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
                           "cannot be read as HDF5");
     if (!h5::has_attribute(file.get(), "format") ||
-        h5::read_string(file.get(), "format") != kFormat) {
+        h5::read_string(file.get(), "format") != kRecordingFormat) {
       refuse("is not a recording of `screed grid --record`");
     }
     if (const uint64_t version = h5::read_uint64(file.get(), "format_version");
-        version != kFormatVersion) {
+        version != kRecordingFormatVersion) {
       refuse("has format version " + std::to_string(version) + "; this program reads " +
-             std::to_string(kFormatVersion));
+             std::to_string(kRecordingFormatVersion));
     }
     for (const auto& [name, unused] : describe(GridConfig())) {
       values_.emplace_back(name, h5::read_string(file.get(), name.c_str()));

@@ -2,11 +2,11 @@
 #include "host_sim/grid/grid_sweep_plan.h"
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/file_hash.h"
 #include "host_sim/grid/grid_run.h"
 
@@ -14,10 +14,9 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "screed-grid-sweep";
-constexpr int kFormatVersion = 1;
+constexpr const char* kPlanFormat = "screed-grid-sweep";
+constexpr int kPlanFormatVersion = 1;
 /// Part of every identity: raised when the same configuration is to count as another run.
 constexpr const char* kIdentityRules = "screed grid run 1";
 
@@ -61,7 +60,11 @@ void for_each_value(Config& config, Visit visit) {
 
 template <class Value>
 Json json_of(const Value& value) {
-  return value;
+  if constexpr (std::is_enum_v<Value>) {
+    return static_cast<int>(value);
+  } else {
+    return value;
+  }
 }
 Json json_of(const fs::path& path) {
   return path.string();
@@ -123,7 +126,7 @@ std::string identity_of(const GridConfig& config, const std::string& version) {
   hash.add(version);
   try {
     hash.add(json_of_config(with_defaults(config)).dump());
-  } catch (const Json::exception&) {
+  } catch (const JsonError&) {
     throw InputError("grid: terrain = " + config.image.string() +
                      "; many runs need a name of the image in UTF-8");
   }
@@ -135,8 +138,8 @@ std::string sweep_plan_text(const SweepPlan& plan) {
   Json points = Json::array();
   for (size_t i = 0; i < plan.points.size(); ++i)
     points.push_back({{"id", plan.ids[i]}, {"config", json_of_config(plan.points[i])}});
-  const Json json = {{"format", kFormat},
-                     {"format_version", kFormatVersion},
+  const Json json = {{"format", kPlanFormat},
+                     {"format_version", kPlanFormatVersion},
                      {"version", plan.version},
                      {"points", points}};
   return json.dump(1) + "\n";
@@ -145,10 +148,10 @@ std::string sweep_plan_text(const SweepPlan& plan) {
 SweepPlan read_sweep_plan(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string() + ": no such file: this is no folder of a sweep");
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object() || json.value("format", "") != kFormat)
+  const Json json = Json::parse_or_null(stream);
+  if (!json.is_object() || json.value("format", "") != kPlanFormat)
     throw InputError(file.string() + ": is not the plan of a sweep, or is damaged");
-  if (json.value("format_version", 0) != kFormatVersion)
+  if (json.value("format_version", 0) != kPlanFormatVersion)
     throw InputError(file.string() + ": is of another version of Screed");
   SweepPlan plan;
   try {
@@ -157,7 +160,7 @@ SweepPlan read_sweep_plan(const fs::path& file) {
       plan.ids.push_back(point.at("id").get<std::string>());
       plan.points.push_back(config_of_json(point.at("config")));
     }
-  } catch (const Json::exception&) {
+  } catch (const JsonError&) {
     throw InputError(file.string() + ": the plan of the sweep is damaged");
   }
   if (plan.points.empty()) throw InputError(file.string() + ": the plan has no points");

@@ -6,24 +6,42 @@
 #include "host_sim/physics/terrain/terrain_statistics.h"
 
 namespace screed {
+namespace {
 
-LevelingPoint LevelingMeter::measure(const HeightField& surface, const LevelingCost& cost,
-                                     bool with_transport) {
-  const RobotScaleFigures robot_scale = robot_scale_figures(surface, flat_deg_);
-  LevelingPoint point;
+void set_cost(const LevelingCost& cost, LevelingPoint& point) {
   point.time = cost.time_s;
-  point.relief = robot_scale.relief_m;
-  point.roughness = robot_scale.roughness_m;
-  point.robot_scale_flatness = robot_scale.flatness;
-  point.flatness = flatness(surface, flat_deg_);
-  point.height_deviation = height_deviation_m(surface);
   point.distance = cost.distance_m;
   point.energy = cost.energy_j;
   point.slip = cost.traversability.slip;
   point.stuck = cost.traversability.stuck;
   point.tilted = cost.traversability.tilted;
   point.off_site = cost.traversability.off_site;
+}
+
+}  // namespace
+
+LevelingPoint LevelingMeter::measure(const HeightField& surface, const LevelingCost& cost,
+                                     bool with_transport) {
+  const RobotScaleFigures robot_scale = robot_scale_figures(surface, flat_deg_);
+  LevelingPoint point;
+  point.relief = robot_scale.relief_m;
+  point.roughness = robot_scale.roughness_m;
+  point.robot_scale_flatness = robot_scale.flatness;
+  point.flatness = flatness(surface, flat_deg_);
+  point.height_deviation = height_deviation_m(surface);
+  set_cost(cost, point);
   if (with_transport) add_transport(surface, point);
+  return point;
+}
+
+LevelingPoint LevelingMeter::unchanged(const LevelingPoint& earlier, const LevelingCost& cost) {
+  LevelingPoint point;
+  point.relief = earlier.relief;
+  point.roughness = earlier.roughness;
+  point.robot_scale_flatness = earlier.robot_scale_flatness;
+  point.flatness = earlier.flatness;
+  point.height_deviation = earlier.height_deviation;
+  set_cost(cost, point);
   return point;
 }
 

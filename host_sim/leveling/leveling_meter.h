@@ -26,6 +26,8 @@ class LevelingMeter {
   /// surface that is measured with them are the start, from which progress counts; on a level start
   /// progress is not a number.
   LevelingPoint measure(const HeightField& surface, const LevelingCost& cost, bool with_transport);
+  /// A point without transport of a surface that is as it was when `earlier` was measured.
+  static LevelingPoint unchanged(const LevelingPoint& earlier, const LevelingCost& cost);
 
  private:
   void add_transport(const HeightField& surface, LevelingPoint& point);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "host_sim/core/constants.h"
 
 namespace screed {
 namespace {
@@ -10,7 +11,6 @@ namespace {
 constexpr double kMinTrackSpeed = 0.03;  ///< of tracks that run, m/s
 constexpr double kStuckShare = 0.2;
 constexpr double kWindow_s = 1.0;
-constexpr double kTick_s = 1.0 / kTickRate_hz;
 
 double sign(double value) {
   return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;

@@ -12,12 +12,12 @@ namespace screed {
 namespace {
 
 constexpr double kRay_m = 0.005;
-constexpr double kMargin_m = 0.13;  // of the bed around the plate
+constexpr double kBedMargin_m = 0.13;  // of the bed around the plate
 constexpr std::array kPressures_pa = {1e3, 2e3, 3e3, 5e3, 8e3, 12e3, 16e3, 20e3};
 constexpr double kDown_m_per_s = 0.01;
 constexpr double kUp_m_per_s = 0.004;
 constexpr double kAway_m_per_s = 0.02;
-constexpr double kThickness_m = 0.02;
+constexpr double kParticlePlateThickness_m = 0.02;
 constexpr double kAverage = 0.02;  // share of a step in the mean force
 constexpr int kRestSteps = 400;
 constexpr double kDamping_per_s = 20.0;  // of the block's way up and down
@@ -39,7 +39,7 @@ ParticleBed bed_of(const ParticlePlateTest& test, int number, const TaskProgress
   options.material = test.particle;
   options.ray_spacing_m = kRay_m;
   options.seed = test.seed + static_cast<uint64_t>(number);
-  const double size = std::max(test.length_m, test.width_m) + 2.0 * kMargin_m;
+  const double size = std::max(test.length_m, test.width_m) + 2.0 * kBedMargin_m;
   const int nodes = 2 * static_cast<int>(std::ceil(0.5 * size / kRay_m)) + 1;
   return {HeightField::from_function(nodes, nodes, kRay_m, false,
                                      [&](double, double) { return test.depth_m; }),
@@ -102,13 +102,13 @@ std::vector<ParticlePlatePoint> press_particles(const ParticlePlateTest& test,
     const HeightField before = bed.surface();
     const double top = highest_below(before, test) + 0.5 * test.particle.radius_m;
     const double dt = bed.longest_step_s();
-    Footprint plate = Footprint::box({test.length_m, test.width_m, kThickness_m});
+    Footprint plate = Footprint::box({test.length_m, test.width_m, kParticlePlateThickness_m});
     double height = top;
     double pressure = 0.0;
     const auto step = [&](double speed) {
       height += speed * dt;
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-      pose.translation() << 0.0, 0.0, height + 0.5 * kThickness_m;
+      pose.translation() << 0.0, 0.0, height + 0.5 * kParticlePlateThickness_m;
       plate.set_pose(pose);
       FootprintMotion motion;
       motion.velocity.z() = speed;

@@ -11,7 +11,7 @@
 namespace screed {
 namespace {
 
-constexpr double kThickness_m = 0.02;
+constexpr double kPlateThickness_m = 0.02;
 
 void check(const PlateTest& test) {
   check_range("plate", "length", test.length_m, 0.005, 1.0);
@@ -38,8 +38,8 @@ std::vector<PlatePoint> press_plate(const PlateTest& test) {
       std::hypot(test.length_m, test.width_m) + 2.0 * std::hypot(test.offset_x_m, test.offset_y_m);
   const int nodes = 2 * static_cast<int>(std::ceil(0.5 * reach / test.cell_m)) + 9;
   SoilBed bed(HeightField(nodes, nodes, test.cell_m, false), test.soil, test.options);
-  Footprint plate = test.round ? Footprint::disc(0.5 * test.length_m, kThickness_m)
-                               : Footprint::box({test.length_m, test.width_m, kThickness_m});
+  Footprint plate = test.round ? Footprint::disc(0.5 * test.length_m, kPlateThickness_m)
+                               : Footprint::box({test.length_m, test.width_m, kPlateThickness_m});
   const double area = test.round ? 0.25 * std::numbers::pi * test.length_m * test.length_m
                                  : test.length_m * test.width_m;
   ContactMemory memory;
@@ -57,7 +57,7 @@ std::vector<PlatePoint> press_plate(const PlateTest& test) {
     motion.velocity.z() = std::copysign(test.speed_m_per_s, -travel);
     for (int i = 1; i <= steps; ++i) {
       const double depth = begin + travel * i / steps;
-      pose.translation() << test.offset_x_m, test.offset_y_m, 0.5 * kThickness_m - depth;
+      pose.translation() << test.offset_x_m, test.offset_y_m, 0.5 * kPlateThickness_m - depth;
       plate.set_pose(pose);
       const TerrainReaction reaction = bed.press(plate, motion, test.step_s, memory);
       bed.end_step();

@@ -1,5 +1,6 @@
 // A collapsing tower.
 #include "host_sim/soil_validation/repose_pile.h"
+#include "host_sim/core/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@
 
 namespace screed {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Chord of the flank from the pile's middle outwards along (dx, dy).
 double flank_deg(const HeightField& surface, const ReposeTest& test, double dx, double dy) {

@@ -1,9 +1,9 @@
 // Integrals along the contact of a wheel.
 #include "host_sim/soil_validation/wheel_limit.h"
+#include "host_sim/core/constants.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "host_sim/core/errors.h"
@@ -15,7 +15,6 @@ namespace screed {
 namespace {
 
 constexpr int kSlices = 1000;  // along the contact; doubling it moves no figure by 1e-5 of itself
-constexpr double kDegree = std::numbers::pi / 180.0;
 // Of a locked wheel: its rim has slid over the soil for ever.
 constexpr double kForEver = 1e6;
 

@@ -7,12 +7,11 @@
 #include <numbers>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {
-
-constexpr double kFrame_s = 1.0 / kTickRate_hz;
 constexpr double kRollingSpeed_m_per_s = 0.01;  // at which rolling resists in full
 constexpr double kMinContact_m = 0.002;         // of a patch: what touches less is as much
 constexpr double kMinCarrying_per_s = 1e-12;    // of a belt that stands
@@ -114,9 +113,9 @@ BeltMotion::BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, 
 }
 
 void BeltMotion::set_motion(const FrameMotion& motion, const BeltSupport& support) {
-  forward_ = motion.forward_m / kFrame_s * along_slope(support.forward);
-  left_ = motion.sideways_m / kFrame_s * along_slope(support.left);
-  turn_ = motion.turn_rad / kFrame_s;
+  forward_ = motion.forward_m / kTick_s * along_slope(support.forward);
+  left_ = motion.sideways_m / kTick_s * along_slope(support.left);
+  turn_ = motion.turn_rad / kTick_s;
 }
 
 /// What is mobilised travels with the belt, from its leading end on; the soil ahead is fresh, and a
@@ -153,7 +152,7 @@ void BeltMotion::carry(const BeltSupport& support) {
         from_front * to_front.touching_m + from_rear * to_rear.touching_m;
     const BothBelts way = (0.5 * (touching_before + patch.touching_m)).max(kMinContact_m);
     const BothBelts share =
-        (kFrame_s * fitted_rate(speed / way, patch.slip * per_modulus_)).min(1.0) * patch.touches;
+        (kTick_s * fitted_rate(speed / way, patch.slip * per_modulus_)).min(1.0) * patch.touches;
     patch.forward +=
         share * (from_front * to_front.forward + from_rear * to_rear.forward - patch.forward);
     patch.left += share * (from_front * to_front.left + from_rear * to_rear.left - patch.left);
@@ -175,23 +174,23 @@ void BeltMotion::shear(const BeltSupport& support, System& system) {
     patch.strength = cohesion_pa_ * both(support.area, i) + carries * tan_friction_;
     const double across_slip = left_ + turn_ * patch.x;
     patch.slip = (along_slip.square() + across_slip * across_slip).sqrt();
-    const BothBelts kept = 1.0 / (1.0 + kFrame_s * per_modulus_ * patch.slip);
+    const BothBelts kept = 1.0 / (1.0 + kTick_s * per_modulus_ * patch.slip);
     patch.forward *= kept;
     patch.left *= kept;
     patch.per_slip = kept * per_modulus_;
-    const BothBelts along = kFrame_s * patch.strength;
+    const BothBelts along = kTick_s * patch.strength;
     const BothBelts across = fit_.sideways * along;
-    const BothBelts k = kFrame_s * along * patch.per_slip;
+    const BothBelts k = kTick_s * along * patch.per_slip;
     forward += along * patch.forward + k * speeds_;
     stiffness += k;
     const double left = (across * patch.left).sum();
-    const double ks = (kFrame_s * across * patch.per_slip).sum();
+    const double ks = (kTick_s * across * patch.per_slip).sum();
     system.add(0.0, left, left * patch.x);
     system.left += ks;
     system.left_turn += ks * patch.x;
     system.turn += ks * patch.x * patch.x;
   }
-  forward -= kFrame_s * fit_.rolling * load *
+  forward -= kTick_s * fit_.rolling * load *
              ((forward_ - turn_ * middle_) / kRollingSpeed_m_per_s).max(-1.0).min(1.0);
   system.add(forward.sum(), 0.0, -(forward * middle_).sum());
   system.forward += stiffness.sum();
@@ -201,24 +200,24 @@ void BeltMotion::shear(const BeltSupport& support, System& system) {
 
 /// What the motion at the end of the frame has mobilised.
 void BeltMotion::finish() {
-  const BothBelts along = kFrame_s * (speeds_ - forward_ + turn_ * middle_);
+  const BothBelts along = kTick_s * (speeds_ - forward_ + turn_ * middle_);
   BothBelts traction = BothBelts::Zero();
   for (Patch& patch : patches_) {
     patch.forward += patch.per_slip * along;
-    patch.left -= patch.per_slip * (kFrame_s * (left_ + turn_ * patch.x));
+    patch.left -= patch.per_slip * (kTick_s * (left_ + turn_ * patch.x));
     traction += patch.strength * patch.forward;
   }
   traction_n_ = {traction[0], traction[1]};
 }
 
 std::array<BeltShear, 2> BeltMotion::shear() const {
-  const BothBelts along = kFrame_s * (speeds_ - forward_ + turn_ * middle_);
+  const BothBelts along = kTick_s * (speeds_ - forward_ + turn_ * middle_);
   const BothBelts slid = along.abs();
-  const BothBelts moved = kFrame_s * speeds_.abs().max((forward_ - turn_ * middle_).abs());
+  const BothBelts moved = kTick_s * speeds_.abs().max((forward_ - turn_ * middle_).abs());
   std::array<BeltShear, 2> belts;
   for (std::size_t i = 0; i < kBeltPatches; ++i) {
     const Patch& patch = patches_[i];
-    const double across = -kFrame_s * (left_ + turn_ * patch.x);
+    const double across = -kTick_s * (left_ + turn_ * patch.x);
     const BothBelts mobilised = (patch.forward.square() + patch.left.square()).sqrt();
     const BothBelts length = mobilised * (along.square() + across * across).sqrt();
     for (const Eigen::Index side : {0, 1}) {
@@ -241,11 +240,11 @@ FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const Be
   system.forward = system.left = mass_kg_;
   system.turn = inertia_kg_m2_;
   // The body turns, its axes with it.
-  system.add(mass_kg_ * (forward_ + kFrame_s * turn_ * left_),
-             mass_kg_ * (left_ - kFrame_s * turn_ * forward_), inertia_kg_m2_ * turn_);
-  const double downhill = kFrame_s * weight_on(support, mass_kg_);
+  system.add(mass_kg_ * (forward_ + kTick_s * turn_ * left_),
+             mass_kg_ * (left_ - kTick_s * turn_ * forward_), inertia_kg_m2_ * turn_);
+  const double downhill = kTick_s * weight_on(support, mass_kg_);
   system.add(-downhill * support.forward, -downhill * support.left, 0.0);
-  system.add(kFrame_s * push[0], kFrame_s * push[1], kFrame_s * push[2]);
+  system.add(kTick_s * push[0], kTick_s * push[1], kTick_s * push[2]);
   carry(support);
   shear(support, system);
   const Eigen::Vector3d motion = system.motion();
@@ -253,8 +252,8 @@ FrameMotion BeltMotion::step(double left_m_per_s, double right_m_per_s, const Be
   left_ = motion[1];
   turn_ = motion[2];
   finish();
-  return {kFrame_s * forward_ / along_slope(support.forward),
-          kFrame_s * left_ / along_slope(support.left), kFrame_s * turn_};
+  return {kTick_s * forward_ / along_slope(support.forward),
+          kTick_s * left_ / along_slope(support.left), kTick_s * turn_};
 }
 
 void BeltMotion::follow(double left_m_per_s, double right_m_per_s, const BeltSupport& support,

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
@@ -18,8 +19,6 @@
 
 namespace screed {
 namespace {
-
-constexpr double kFrame_s = 1.0 / kTickRate_hz;
 // As stiff and as damped as a frame of 10 ms allows for a robot of a kilogram.
 constexpr double kContact_n_per_m = 2000.0;
 constexpr double kContact_n_s_per_m = 40.0;
@@ -176,7 +175,7 @@ void StandInPlant::step(const DutyRatio& duty_ratio) {
 
 void StandInPlant::step_all(std::span<const DutyRatio> duty_ratios) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    robots_[i]->step_motors(duty_ratios[i], kFrame_s / kStepsPerTick);
+    robots_[i]->step_motors(duty_ratios[i], kTick_s / kStepsPerTick);
   }
   if (++steps_ % kStepsPerTick == 0) end_frame();
 }

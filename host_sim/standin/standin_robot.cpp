@@ -5,12 +5,11 @@
 #include <numbers>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
 namespace {
-
-constexpr double kFrame_s = 1.0 / kTickRate_hz;
 // Of wheels and belt, and what of the robot's mass a belt feels when it speeds up.
 constexpr double kTurnedInertia_kg_m2 = 1.8e-4;
 // Strides are five frames apart: share of the way to the belts' new plane that the body makes in
@@ -59,9 +58,9 @@ void StandInRobot::set_state(const DrivingState& state) {
   belts_.set_motion(motion_, ground_.support(number_));
   stride_ = BeltStrideRecorder(pose_);
   now_ = body_pose();
-  velocity_ << heading() * Eigen::Vector2d(motion_.forward_m, motion_.sideways_m) / kFrame_s, 0.0;
+  velocity_ << heading() * Eigen::Vector2d(motion_.forward_m, motion_.sideways_m) / kTick_s, 0.0;
   imu_velocity_ = imu_velocity_before_ = velocity_;
-  rate_body_ << 0.0, 0.0, motion_.turn_rad / kFrame_s;
+  rate_body_ << 0.0, 0.0, motion_.turn_rad / kTick_s;
   count_wraps();
 }
 
@@ -113,10 +112,10 @@ void StandInRobot::end_frame() {
   const Eigen::Matrix3d& from = before.rotation;
   const Eigen::Matrix3d& now = now_.rotation;
   const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * now));
-  rate_body_ = turned.angle() / kFrame_s * turned.axis();
-  velocity_ = (now_.place - before.place) / kFrame_s;
+  rate_body_ = turned.angle() / kTick_s * turned.axis();
+  velocity_ = (now_.place - before.place) / kTick_s;
   imu_velocity_before_ = imu_velocity_;
-  imu_velocity_ = velocity_ + (now - from) * kind_.imu / kFrame_s;
+  imu_velocity_ = velocity_ + (now - from) * kind_.imu / kTick_s;
   count_wraps();
 }
 
@@ -137,7 +136,7 @@ std::array<Eigen::Vector2d, 4> StandInRobot::corners() const {
 
 Eigen::Vector2d StandInRobot::velocity_at(const Eigen::Vector2d& place) const {
   const Eigen::Vector2d arm = place - middle();
-  return velocity_.head<2>() + motion_.turn_rad / kFrame_s * Eigen::Vector2d(-arm.y(), arm.x());
+  return velocity_.head<2>() + motion_.turn_rad / kTick_s * Eigen::Vector2d(-arm.y(), arm.x());
 }
 
 StandInRobot::BodyPose StandInRobot::body_pose() const {
@@ -170,7 +169,7 @@ ImuTruth StandInRobot::motion() const {
   truth.body_to_world = now_.rotation;
   truth.mean_rate_rad_per_s = rate_body_;
   truth.mean_specific_force =
-      truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kFrame_s +
+      truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kTick_s +
                                          kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
   truth.altitude_m = now_.place.z();
   return truth;

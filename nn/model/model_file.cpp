@@ -1,20 +1,19 @@
 // A list of numbers is written on one line, so that a model's difference to another can be read.
 #include "nn/model/model_file.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/json_reader.h"
 #include "host_sim/core/random.h"
 
 namespace screed::nn {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "screed-network-model";
 constexpr std::size_t kMaxNetworks = 64;
@@ -239,11 +238,13 @@ Json network_json(const ModelNetwork& network) {
   return result;
 }
 
+/// Holds no list, on no level.
 bool is_flat(const Json& value) {
-  for (const auto& element : value) {
-    if (element.is_array() || (element.is_object() && !is_flat(element))) return false;
-  }
-  return true;
+  const auto fits = [](const Json& inner) { return !inner.is_array() && is_flat(inner); };
+  if (value.is_array()) return std::all_of(value.begin(), value.end(), fits);
+  if (!value.is_object()) return true;
+  return std::all_of(value.items().begin(), value.items().end(),
+                     [&](const Json::Member& member) { return fits(member.value); });
 }
 
 /// Like dump(2), but with innermost lists and objects, and golden vectors, on one line.
@@ -256,11 +257,21 @@ void put(std::string& text, const Json& value, const std::string& indent) {
   const std::string inner = indent + " ";
   text += value.is_array() ? "[" : "{";
   bool first = true;
-  for (const auto& [name, element] : value.items()) {
+  const auto begin_line = [&] {
     text += (first ? "\n" : ",\n") + inner;
-    if (value.is_object()) text += Json(name).dump() + ": ";
-    put(text, element, inner);
     first = false;
+  };
+  if (value.is_array()) {
+    for (const Json& element : value) {
+      begin_line();
+      put(text, element, inner);
+    }
+  } else {
+    for (const auto& [name, element] : value.items()) {
+      begin_line();
+      text += Json(name).dump() + ": ";
+      put(text, element, inner);
+    }
   }
   text += "\n" + indent + (value.is_array() ? "]" : "}");
 }
@@ -288,12 +299,12 @@ std::vector<GoldenVector> golden_vectors(const IntegerNetwork& network, std::siz
 }
 
 Model parse_model(const std::string& text, const std::string& name) {
-  const nlohmann::json json = read_json_text(text, name);
+  const Json json = read_json_text(text, name);
   return model_of(JsonValue(json, name));
 }
 
 Model read_model(const std::filesystem::path& file) {
-  const nlohmann::json json = read_json_file(file);
+  const Json json = read_json_file(file);
   return model_of(JsonValue(json, file.string()));
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDrive_s = 14.0;  ///< until the alarm, at most
 constexpr std::size_t kHalfSecond = kTickRate_hz / 2;
-constexpr std::uint64_t kReportTicks = kTickRate_hz / 5;
+constexpr std::uint64_t kEscapeReportTicks = kTickRate_hz / 5;
 constexpr double kAngleUnitsPerDegree = 65536.0 / 360.0;
 
 /// The oracle's hands on the motors: the robot's drive control with other commands.
@@ -90,7 +90,7 @@ Trial run_trial(const StuckScenario& scenario, const Parameters& parameters,
   Eigen::Vector2d alarm_position = Eigen::Vector2d::Zero();
   const double after_s = manoeuvre == nullptr ? kEscapeTime_s : kManoeuvreTime_s;
   while (world->time_s() < (trial.stuck ? trial.alarm_s + after_s : kDrive_s)) {
-    if (world->ticks() % kReportTicks == 0) report_progress(progress, "driving", 0.0);
+    if (world->ticks() % kEscapeReportTicks == 0) report_progress(progress, "driving", 0.0);
     world->advance();
     robot.tick(world->sample(), output);
     const Eigen::Vector2d position = world->plant().unwrapped_position().head<2>();

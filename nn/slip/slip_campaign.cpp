@@ -10,7 +10,7 @@ namespace screed::nn {
 namespace {
 
 constexpr double kTrapped_s = 14.0;
-constexpr std::size_t kShareWindow = kTickRate_hz / 2;
+constexpr std::size_t kAlarmShareWindow = kTickRate_hz / 2;
 
 void add_drive(SlipFigures& figures, const SlipDrive& drive) {
   const TrueMotion motion(drive);
@@ -18,7 +18,7 @@ void add_drive(SlipFigures& figures, const SlipDrive& drive) {
   replay(drive, [&](std::size_t i, const SlipWatch& it, const ReplayedTick& what) {
     watch.push_back({what.evaluated, it.stuck()});
     if (!what.concluded || !drive.ticks[i].running) return;
-    const auto forward = motion.forward_share(i > kShareWindow ? i - kShareWindow : 0, i);
+    const auto forward = motion.forward_share(i > kAlarmShareWindow ? i - kAlarmShareWindow : 0, i);
     const double said = it.travel_share() / 255.0;
     figures.share.add(said, forward.share, forward.belts_m);
     figures.share_by_ground[drive.ground].add(said, forward.share, forward.belts_m);

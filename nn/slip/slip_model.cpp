@@ -1,8 +1,6 @@
 // A JSON file with a row of integers on a line.
 #include "nn/slip/slip_model.h"
 
-#include <nlohmann/json.hpp>
-
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/json_reader.h"
 
@@ -37,7 +35,7 @@ std::string text_of(const SlipModel& model, std::size_t begin, std::size_t count
 }  // namespace
 
 SlipModel read_slip_model(const std::filesystem::path& file) {
-  const nlohmann::json json = read_json_file(file);
+  const Json json = read_json_file(file);
   const JsonValue root(json, file.string());
   root.at("format").one_of({kFormat});
   root.at("format_version").integer(kVersion, kVersion);

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include "host_sim/core/constants.h"
 
 namespace screed::nn {
-namespace {
-
-constexpr double kFrame_s = 0.01;
-
-}  // namespace
+namespace {}  // namespace
 
 void StandardDeviation::add(double value) {
   count_ += 1.0;
@@ -31,8 +28,8 @@ RolloutChecker::RolloutChecker(const RecordedDrive& recording, std::uint64_t sta
 void RolloutChecker::add_row(std::uint64_t row, const PlanarPose& pose) {
   if ((row - rollout_.start) % kPathFrames == 0) rollout_.path.push_back(pose);
   if (recording_.frames[row].angular != 0.0) straight_ = false;
-  yaw_rates_.add((pose.heading_rad - heading_rad_) / kFrame_s);
-  recorded_yaw_rates_.add(recording_.motions[row].turn_rad / kFrame_s);
+  yaw_rates_.add((pose.heading_rad - heading_rad_) / kTick_s);
+  recorded_yaw_rates_.add(recording_.motions[row].turn_rad / kTick_s);
   heading_rad_ = pose.heading_rad;
   const double distance = recording_.distances[row] - recording_.distances[rollout_.start];
   while (next_ < kRolloutDistances_m.size() && distance >= kRolloutDistances_m.at(next_)) {

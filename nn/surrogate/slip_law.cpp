@@ -3,11 +3,10 @@
 #include <Eigen/Dense>
 #include <array>
 #include <vector>
+#include "host_sim/core/constants.h"
 
 namespace screed::nn {
 namespace {
-
-constexpr double kFrame_s = 0.01;
 
 TrackInputs only(TrackInput input) {
   return TrackInputs::Unit(static_cast<int>(input));
@@ -59,7 +58,7 @@ TrackKinematics fitted_kinematics(SlipLaw law, std::span<const MotionSeries> ser
                                               frame.pitch, frame.roll);
       const FrameMotion& m = frame.motion;
       squares += inputs * inputs.transpose();
-      products += inputs * Eigen::RowVector3d(m.forward_m, m.sideways_m, m.turn_rad) / kFrame_s;
+      products += inputs * Eigen::RowVector3d(m.forward_m, m.sideways_m, m.turn_rad) / kTick_s;
     }
   }
   TrackKinematics fitted;

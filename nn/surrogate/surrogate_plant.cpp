@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
@@ -14,8 +15,6 @@
 
 namespace screed::nn {
 namespace {
-
-constexpr double kFrame_s = 1.0 / kTickRate_hz;
 // Fitted to motor currents on four soils (docs/networks.md): what the ground takes from a track, as
 // shares of the weight it carries, while driving and while the robot is turned on the spot.
 constexpr double kRollingShare = 0.03;
@@ -123,11 +122,11 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   before_ = now_;
   const double c = std::cos(state.pose.heading_rad);
   const double s = std::sin(state.pose.heading_rad);
-  velocity_ << (state.last.forward_m * c - state.last.sideways_m * s) / kFrame_s,
-      (state.last.forward_m * s + state.last.sideways_m * c) / kFrame_s, 0.0;
+  velocity_ << (state.last.forward_m * c - state.last.sideways_m * s) / kTick_s,
+      (state.last.forward_m * s + state.last.sideways_m * c) / kTick_s, 0.0;
   imu_velocity_ = velocity_;
   imu_velocity_before_ = velocity_;
-  rate_body_ << 0.0, 0.0, state.last.turn_rad / kFrame_s;
+  rate_body_ << 0.0, 0.0, state.last.turn_rad / kTick_s;
   wrap_counts_ = {0, 0};
   if (ground_.wrap()) {
     wrap_counts_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
@@ -150,7 +149,7 @@ std::array<double, 2> SurrogatePlant::resistance() const {
 }
 
 void SurrogatePlant::step(const std::array<double, 2>& duty_ratio) {
-  constexpr double kStep_s = kFrame_s / kStepsPerTick;
+  constexpr double kStep_s = kTick_s / kStepsPerTick;
   double current = 0.0;
   for (const Side side : {kLeft, kRight}) {
     const auto i = static_cast<size_t>(side);
@@ -212,8 +211,8 @@ void SurrogatePlant::end_frame() {
   robot_.step_on_slope(support_.pitch, support_.roll, {&left, 1}, {&right, 1});
   stop_at_walls();
   if (ground_change_) {
-    stride_tracks_m_[kLeft] += left * kFrame_s;
-    stride_tracks_m_[kRight] += right * kFrame_s;
+    stride_tracks_m_[kLeft] += left * kTick_s;
+    stride_tracks_m_[kRight] += right * kTick_s;
     if (++stride_frames_ == kStrideFrames) end_stride();
   }
 
@@ -229,10 +228,10 @@ void SurrogatePlant::end_frame() {
   const Eigen::Matrix3d& from = before_.rotation;
   const Eigen::Matrix3d& to = now_.rotation;
   const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * to));
-  rate_body_ = turned.angle() / kFrame_s * turned.axis();
-  velocity_ = (now_.place - before_.place) / kFrame_s;
+  rate_body_ = turned.angle() / kTick_s * turned.axis();
+  velocity_ = (now_.place - before_.place) / kTick_s;
   imu_velocity_before_ = imu_velocity_;
-  imu_velocity_ = velocity_ + (to - from) * imu_position_ / kFrame_s;
+  imu_velocity_ = velocity_ + (to - from) * imu_position_ / kTick_s;
   if (ground_.wrap()) {
     wrap_counts_ = {beds_off(now_.place.x(), ground_.x_max() - ground_.x_min()),
                     beds_off(now_.place.y(), ground_.y_max() - ground_.y_min())};
@@ -248,7 +247,7 @@ ImuTruth SurrogatePlant::motion() const {
   truth.body_to_world = now_.rotation;
   truth.mean_rate_rad_per_s = rate_body_;
   truth.mean_specific_force =
-      truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kFrame_s +
+      truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kTick_s +
                                          kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
   truth.altitude_m = now_.place.z();
   return truth;

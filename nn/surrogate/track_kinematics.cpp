@@ -1,13 +1,10 @@
 #include "nn/surrogate/track_kinematics.h"
 
 #include <cmath>
+#include "host_sim/core/constants.h"
 
 namespace screed::nn {
-namespace {
-
-constexpr double kFrame_s = 0.01;
-
-}  // namespace
+namespace {}  // namespace
 
 TrackInputs track_inputs(double left_m_per_s, double right_m_per_s, double pitch, double roll) {
   const double mean = 0.5 * (left_m_per_s + right_m_per_s);
@@ -19,7 +16,7 @@ TrackInputs track_inputs(double left_m_per_s, double right_m_per_s, double pitch
 FrameMotion TrackKinematics::motion(double left_m_per_s, double right_m_per_s, double pitch,
                                     double roll) const {
   const Eigen::Vector3d moved =
-      kFrame_s * per_second * track_inputs(left_m_per_s, right_m_per_s, pitch, roll);
+      kTick_s * per_second * track_inputs(left_m_per_s, right_m_per_s, pitch, roll);
   return {moved.x(), moved.y(), moved.z()};
 }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/random.h"
 
 namespace screed::nn {
@@ -223,9 +223,9 @@ void FluxNetwork::apply(HeightField& ground, const std::array<WheelPosition, 4>&
 
 FluxNetwork FluxNetwork::read(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  const Json json = Json::parse_or_null(stream);
   const auto fail = [&] { return InputError(file.string() + ": is not a network of the terrain"); };
-  if (json.is_discarded() || !json.is_object() || json.value("format", "") != "screed-flux-2") {
+  if (!json.is_object() || json.value("format", "") != "screed-flux-2") {
     throw fail();
   }
   try {
@@ -238,18 +238,18 @@ FluxNetwork FluxNetwork::read(const std::filesystem::path& file) {
     network.first_ = first;
     network.second_ = second;
     return network;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const JsonError&) {
     throw fail();
   }
 }
 
 void FluxNetwork::write(const std::filesystem::path& file) const {
-  const nlohmann::ordered_json json = {{"format", "screed-flux-2"},
-                                       {"cells", {kCellsX, kCellsY}},
-                                       {"reach", {kReachX, kReachY}},
-                                       {"hidden", hidden_},
-                                       {"first", first_},
-                                       {"second", second_}};
+  const Json json = {{"format", "screed-flux-2"},
+                     {"cells", {kCellsX, kCellsY}},
+                     {"reach", {kReachX, kReachY}},
+                     {"hidden", hidden_},
+                     {"first", first_},
+                     {"second", second_}};
   write_file(file, json.dump() + "\n");
 }
 

@@ -15,9 +15,9 @@ namespace {
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Columns = Eigen::MatrixXf;  // a column an example
 
-constexpr std::size_t kBatch = 16;
-constexpr double kRate = 0.003;
-constexpr double kL2 = 1e-6;
+constexpr std::size_t kFluxBatch = 16;
+constexpr double kFluxRate = 0.003;
+constexpr double kFluxL2 = 1e-6;
 
 Eigen::Index index(std::size_t value) {
   return static_cast<Eigen::Index>(value);
@@ -65,22 +65,22 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
   UpdateState first_state;
   UpdateState second_state;
   // A column a cell of an example.
-  Columns x(kInputs + 1, index(kBatch * kCells));
+  Columns x(kInputs + 1, index(kFluxBatch * kCells));
   Columns nodes(hidden + 1, x.cols());
   Columns flux_error(2, x.cols());
   x.row(kInputs).setOnes();
   nodes.row(hidden).setOnes();
-  std::vector<float> error(kBatch * kCells);
+  std::vector<float> error(kFluxBatch * kCells);
   for (std::size_t epoch = 0; epoch < epochs; ++epoch) {
     for (std::size_t i = order.size(); i > 1; --i) {
       std::swap(order[i - 1], order[random.next() % i]);
     }
     const double rate =
-        kRate * std::pow(0.1, static_cast<double>(epoch) / static_cast<double>(epochs));
+        kFluxRate * std::pow(0.1, static_cast<double>(epoch) / static_cast<double>(epochs));
     double squares = 0.0;
     std::size_t batches = 0;
-    for (std::size_t at = 0; at + kBatch <= order.size(); at += kBatch, ++batches) {
-      for (std::size_t b = 0; b < kBatch; ++b) {
+    for (std::size_t at = 0; at + kFluxBatch <= order.size(); at += kFluxBatch, ++batches) {
+      for (std::size_t b = 0; b < kFluxBatch; ++b) {
         const std::size_t row = order[at + b];
         const std::span<const float> observation(
             &examples.observations[row * FluxNetwork::kObservation], FluxNetwork::kObservation);
@@ -95,7 +95,7 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
       const Eigen::Map<const Matrix> second(network.second().data(), 2, hidden + 1);
       nodes.topRows(hidden) = (first * x).array().tanh().matrix();
       const Columns fluxes = second * nodes;
-      for (std::size_t b = 0; b < kBatch; ++b) {
+      for (std::size_t b = 0; b < kFluxBatch; ++b) {
         const std::size_t base = b * kCells;
         for (std::size_t flux = 0; flux < FluxNetwork::kFluxes; ++flux) {
           const FluxCells sides = cells_of(flux);
@@ -106,10 +106,10 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
       }
       for (float& value : error) {
         squares += static_cast<double>(value) * static_cast<double>(value);
-        value *= 2.0F / static_cast<float>(kBatch);
+        value *= 2.0F / static_cast<float>(kFluxBatch);
       }
       flux_error.setZero();
-      for (std::size_t b = 0; b < kBatch; ++b) {
+      for (std::size_t b = 0; b < kFluxBatch; ++b) {
         const std::size_t base = b * kCells;
         for (std::size_t flux = 0; flux < FluxNetwork::kFluxes; ++flux) {
           const FluxCells sides = cells_of(flux);
@@ -125,13 +125,13 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
       const auto span_of = [](const Matrix& matrix) {
         return std::span<const float>(matrix.data(), static_cast<std::size_t>(matrix.size()));
       };
-      update_parameters(OptimiserKind::kAdam, rate, kL2, span_of(second_gradient), network.second(),
-                        second_state);
-      update_parameters(OptimiserKind::kAdam, rate, kL2, span_of(first_gradient), network.first(),
-                        first_state);
+      update_parameters(OptimiserKind::kAdam, rate, kFluxL2, span_of(second_gradient),
+                        network.second(), second_state);
+      update_parameters(OptimiserKind::kAdam, rate, kFluxL2, span_of(first_gradient),
+                        network.first(), first_state);
     }
     constexpr double kOutput_mm = FluxNetwork::kOutput_m * 1e3;
-    const auto cells = static_cast<double>(batches * kBatch * kCells);
+    const auto cells = static_cast<double>(batches * kFluxBatch * kCells);
     if (progress) progress(epoch, squares / cells * kOutput_mm * kOutput_mm);
   }
 }

@@ -4,11 +4,11 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/random.h"
 #include "nn/training/parameter_update.h"
 
@@ -252,9 +252,9 @@ WindowNetwork::WindowNetwork(const std::vector<const DriveStrides*>& drives, std
 
 WindowNetwork WindowNetwork::read(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  const Json json = Json::parse_or_null(stream);
   const auto fail = [&] { return InputError(file.string() + ": is not a window network"); };
-  if (json.is_discarded() || !json.is_object() || json.value("format", "") != kFormat) throw fail();
+  if (!json.is_object() || json.value("format", "") != kFormat) throw fail();
   try {
     WindowNetwork network;
     network.matrix_ = json.at("matrix").get<std::vector<float>>();
@@ -263,14 +263,13 @@ WindowNetwork WindowNetwork::read(const std::filesystem::path& file) {
       throw fail();
     }
     return network;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const JsonError&) {
     throw fail();
   }
 }
 
 void WindowNetwork::write(const std::filesystem::path& file) const {
-  const nlohmann::ordered_json json = {
-      {"format", kFormat}, {"matrix", matrix_}, {"constant", constant_}};
+  const Json json = {{"format", kFormat}, {"matrix", matrix_}, {"constant", constant_}};
   write_file(file, json.dump() + "\n");
 }
 

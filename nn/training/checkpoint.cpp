@@ -2,14 +2,12 @@
 #include "nn/training/checkpoint.h"
 
 #include <cfloat>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/atomic_file.h"
+#include "host_sim/core/json.h"
 
 namespace screed::nn {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <class T>
 std::vector<T> numbers(const JsonValue& list) {
@@ -56,7 +54,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file) {
-  const nlohmann::json json = read_json_file(file);
+  const Json json = read_json_file(file);
   const JsonValue root(json, file.string());
   root.at("format").one_of({"screed-training"});
   Checkpoint checkpoint;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
@@ -223,7 +222,7 @@ std::vector<std::string> TrainingConfiguration::features() const {
 
 TrainingConfiguration parse_training_configuration(const std::string& text,
                                                    const std::string& name) {
-  const nlohmann::json json = read_json_text(text, name);
+  const Json json = read_json_text(text, name);
   TrainingConfiguration configuration = configuration_of(JsonValue(json, name));
   configuration.text = text;
   return configuration;

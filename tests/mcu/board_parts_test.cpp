@@ -28,7 +28,7 @@ constexpr std::uint8_t kPorf = 1;
 constexpr std::uint8_t kExtrf = 2;
 constexpr std::uint8_t kBorf = 4;
 
-class BoardParts : public testing::Test {
+class BoardParts : public ::testing::Test {
  protected:
   BoardParts() : board_(kScreedImage, read_wiring(kWiring)), mcu_(board_.mcu), usb_(mcu_) {}
 

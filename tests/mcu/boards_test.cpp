@@ -11,7 +11,7 @@
 namespace screed::mcu {
 namespace {
 
-class EachBoard : public testing::TestWithParam<std::string> {
+class EachBoard : public ::testing::TestWithParam<std::string> {
  protected:
   EachBoard() : board_(image_of(GetParam()), wiring_of(GetParam())) {
     board_.set_encoder(kLeft, 0);
@@ -117,7 +117,7 @@ TEST_P(EachBoard, TurnsLeftWithTheRightTrackForward) {
   EXPECT_GT(board_.motor_duty_ratio(kRight), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, EachBoard, testing::ValuesIn(board_names()),
+INSTANTIATE_TEST_SUITE_P(Boards, EachBoard, ::testing::ValuesIn(board_names()),
                          [](const auto& it) { return it.param; });
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace screed::mcu {
 namespace {
 
-class Chips : public testing::Test {
+class Chips : public ::testing::Test {
  protected:
   Chips() : mcu_(kGoldenImage), bus_(mcu_), accel_mag_(bus_), gyro_(bus_), baro_(bus_) {}
 
@@ -161,7 +161,7 @@ TEST(WiringFile, SaysWhatIsWrongAndWhere) {
     const std::size_t at = text.find(it.from);
     ASSERT_NE(at, std::string::npos) << it.from;
     text.replace(at, std::string(it.from).size(), it.to);
-    const std::string path = testing::TempDir() + "screed_wiring_test.ini";
+    const std::string path = ::testing::TempDir() + "screed_wiring_test.ini";
     std::ofstream(path) << text;
     try {
       read_wiring(path);

@@ -6,8 +6,8 @@
 MCU_TESTS := $(B)/tests/mcu_tests
 MCU_TEST_SOURCES := $(wildcard tests/mcu/*.cpp)
 MCU_LONG_SOURCES := $(wildcard tests/long/mcu/*.cpp)
-$(eval $(call in_groups,MCU,$(MCU_TEST_SOURCES),@$(B)/tests/mcu.flags))
-$(eval $(call in_groups,MCU_LONG,$(MCU_LONG_SOURCES),@$(B)/tests/mcu.flags))
+$(eval $(call in_groups,MCU,$(MCU_TEST_SOURCES),test,@$(B)/tests/mcu.flags))
+$(eval $(call in_groups,MCU_LONG,$(MCU_LONG_SOURCES),test,@$(B)/tests/mcu.flags))
 $(MCU_GROUP_OBJECTS) $(MCU_LONG_GROUP_OBJECTS): $(B)/tests/mcu.flags
 # The bench and the like, which tests of both programs use.
 MCU_BENCH := $(call objects,$(MCU_ALONE))
@@ -39,4 +39,4 @@ $(call objects,$(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES)): $(B)/%.o: %.cpp $(B)/ho
 	@$(CXX) @$(B)/host.flags @$(B)/tests/mcu.flags $(HEADERS_FLAGS) $(SET_FLAGS) -MMD -MP -c $< -o $@
 
 $(MCU_TESTS): $(MCU_OBJECTS) $(LIBRARY) $(B)/libavr_tools.a $(B)/link.flags
-	$(call link,$(TEST_LIBRARIES))
+	$(call link_tests)

@@ -20,7 +20,7 @@ std::uint8_t index_of(std::int16_t Parameters::*field) {
   return static_cast<std::uint8_t>(std::find(values, values + kParameterCount, 12345) - values);
 }
 
-class ParameterEeprom : public testing::Test {
+class ParameterEeprom : public ::testing::Test {
  protected:
   ParameterEeprom() : usb_(bench_.mcu) {
     bench_.ground_station = true;

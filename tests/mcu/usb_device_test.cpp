@@ -21,7 +21,7 @@ constexpr std::uint8_t kDevice = 1;
 constexpr std::uint8_t kConfiguration = 2;
 constexpr std::uint8_t kString = 3;
 
-class UsbDevice : public testing::Test {
+class UsbDevice : public ::testing::Test {
  protected:
   UsbDevice() : board_(kScreedImage, read_wiring(kWiring)), mcu_(board_.mcu), usb_(mcu_) {
     mcu_.run_ms(50);

@@ -13,7 +13,7 @@ sim() {
   "$SCREED_PROGRAM" sim "$@" --quiet > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }
 # Walls and two sides of different length; terrain that repeats; stones.
-sim soft_bed --duration 20 --set map.size=1.5 --set soil.cell=0.01 --out "$work/walled"
-sim soft_bed --duration 20 --set map.size=1.0 --set soil.cell=0.01 --set map.edges=wrap --set soil.preset=gravel --out "$work/wrapped"
-sim gravel_bed --duration 5 --set map.size=0.8 --out "$work/stones"
+sim soft_bed --no-pictures --duration 20 --set map.size=1.5 --set soil.cell=0.01 --out "$work/walled"
+sim soft_bed --no-pictures --duration 20 --set map.size=1.0 --set soil.cell=0.01 --set map.edges=wrap --set soil.preset=gravel --out "$work/wrapped"
+sim gravel_bed --no-pictures --duration 5 --set map.size=0.8 --out "$work/stones"
 $python tests/python/leveling_metrics_test.py "$work"/{walled,wrapped,stones}/session.h5

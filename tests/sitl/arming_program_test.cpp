@@ -1,6 +1,6 @@
 // What the summary of a run says of a robot that could not be armed.
-#include <nlohmann/json.hpp>
 
+#include "host_sim/core/json.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -38,24 +38,24 @@ TEST_F(Arming, TheSummarySaysWhatPreventedIt) {
       {"", "running", {}},
   };
   for (const Case& it : cases) {
-    const Result result = run(std::string("sim e.ini --json ") + it.arguments);
+    const Result result = run(std::string("sim e.ini --no-pictures --json ") + it.arguments);
     ASSERT_EQ(result.exit_code, 0) << it.arguments << ": " << result.err;
-    const auto summary = nlohmann::json::parse(result.out);
+    const auto summary = Json::parse(result.out);
     EXPECT_EQ(summary["state"].get<std::string>(), it.state) << it.arguments;
     EXPECT_EQ(summary["cannot_be_armed"].get<Sentences>(), it.obstacles) << it.arguments;
   }
 }
 
 TEST_F(Arming, TheTableHasALineForEachReason) {
-  const Result low = run("sim e.ini --duration 4 --set parameters.battery_low=9000");
+  const Result low = run("sim e.ini --no-pictures --duration 4 --set parameters.battery_low=9000");
   EXPECT_EQ(low.exit_code, 0) << low.err;
   EXPECT_NE(low.out.find("  cannot be armed:           battery 8.08 V below battery_low 9.00 V\n"
                          "                             start-up needs 4.5 s at rest, 0.5 s left\n"),
             std::string::npos)
       << low.out;
-  const Result well = run("sim e.ini");
+  const Result well = run("sim e.ini --no-pictures");
   EXPECT_EQ(well.out.find("be armed"), std::string::npos) << well.out;
-  const Result idle = run("sim e.ini --set radio.ground_station=false");
+  const Result idle = run("sim e.ini --no-pictures --set radio.ground_station=false");
   EXPECT_NE(idle.out.find("  can be armed                        yes\n"), std::string::npos)
       << idle.out;
 }

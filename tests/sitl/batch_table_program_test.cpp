@@ -1,13 +1,11 @@
 // Batches from a table, as a user meets them: `screed record FILE --table CSV` and what it leaves
 // out when it is run again.
-#include <nlohmann/json.hpp>
 
+#include "host_sim/core/json.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
 namespace {
-
-using Json = nlohmann::json;
 
 class BatchTable : public Program {
  protected:
@@ -20,17 +18,17 @@ class BatchTable : public Program {
   }
   bool exists(const std::string& path) const { return std::filesystem::exists(root_ / path); }
   std::string hash_of(const std::string& folder) const {
-    return Json::parse(run("session info --json " + folder).out)["content_hash"];
+    return Json::parse(run("session info --json " + folder).out)["content_hash"].text();
   }
 };
 
 TEST_F(BatchTable, ARowIsTheSessionOfAFileWithItsValues) {
-  const Result result = run("record level.ini --table level.csv --out sets --quiet");
+  const Result result = run("record level.ini --table level.csv --out sets --quiet --no-pictures");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   write("b.ini",
         "[vehicle]\nh = 90\n[map]\nsize = 4\n[experiment]\nname = b_1\nframes = 8\nseed = 7\n"
         "[parameters]\nrandom_seed = 7\n");
-  ASSERT_EQ(run("record b.ini --out b --quiet").exit_code, 0);
+  ASSERT_EQ(run("record b.ini --out b --quiet --no-pictures").exit_code, 0);
   EXPECT_EQ(hash_of("sets/b_1-0001"), hash_of("b"));
   EXPECT_EQ(read(root_ / "sets/b_1-0001/experiment.ini"), read(root_ / "b/experiment.ini"));
   EXPECT_TRUE(exists("sets/a_1-0001/session.h5"));
@@ -38,7 +36,7 @@ TEST_F(BatchTable, ARowIsTheSessionOfAFileWithItsValues) {
 }
 
 TEST_F(BatchTable, MissingRunsAreMadeAndOthersStay) {
-  const std::string command = "record level.ini --table level.csv --out sets --json ";
+  const std::string command = "record level.ini --no-pictures --table level.csv --out sets --json ";
   // One row alone goes into the folder as well, and is a list of one.
   const Result first = run(command + "--rows 'b*'");
   ASSERT_EQ(first.exit_code, 0) << first.err;
@@ -59,7 +57,8 @@ TEST_F(BatchTable, MissingRunsAreMadeAndOthersStay) {
 }
 
 TEST_F(BatchTable, MissingTellsWhatIsNotTheRunThatIsAskedFor) {
-  const std::string command = "record level.ini --table level.csv --missing --out sets --quiet ";
+  const std::string command =
+      "record level.ini --table level.csv --missing --out sets --quiet --no-pictures ";
   ASSERT_EQ(run(command).exit_code, 0);
   const std::string summary = "sets/a_1-0001/summary.json";
   Json ended = Json::parse(read(root_ / summary));
@@ -84,8 +83,8 @@ TEST_F(BatchTable, MissingTellsWhatIsNotTheRunThatIsAskedFor) {
 }
 
 TEST_F(BatchTable, SimulationsTakeTablesToo) {
-  const Result result =
-      run("sim level.ini --table level.csv --rows a_1 --duration 0.1 --out sims --quiet");
+  const Result result = run(
+      "sim level.ini --table level.csv --rows a_1 --duration 0.1 --out sims --quiet --no-pictures");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(exists("sims/a_1-0001/session.h5"));
 }

@@ -1,7 +1,7 @@
 // Robot models of one's own, as a user brings them: checked, driven, drawn.
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "host_sim/core/json.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tests/ros_robot.h"
 #include "tests/sitl/program.h"
@@ -9,20 +9,18 @@
 namespace screed::testing {
 namespace {
 
-using nlohmann::json;
-
 class ModelProgram : public Program {
  protected:
-  json checked(const std::string& arguments) const {
+  Json checked(const std::string& arguments) const {
     const Result result = run("model check " + arguments + " --json");
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    return result.exit_code == 0 ? json::parse(result.out) : json();
+    return result.exit_code == 0 ? Json::parse(result.out) : Json();
   }
   /// How far an experiment's robot came to the east, m.
   double driven(const std::string& vehicle) const {
     write("e.ini", "[vehicle]\ntracks = false\n" + vehicle +
                        "\n[experiment]\nalgorithm = drive\nduration = 12\n[drive]\nspeed = 0.1\n");
-    const Result result = run("sim e.ini --quiet --out run");
+    const Result result = run("sim e.ini --quiet --no-pictures --out run");
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const SessionReader session(root_ / "run" / "session.h5");
     SimFrame frame;
@@ -39,7 +37,7 @@ TEST_F(ModelProgram, TheTemplateIsFoundByNameAndHasNoWarnings) {
         "wheelbase       180.0 mm", "rear_right_wheel_link", "collision cylinder", "no warnings"}) {
     EXPECT_NE(text.out.find(part), std::string::npos) << part << " in:\n" << text.out;
   }
-  const json model = checked("four_wheels");
+  const Json model = checked("four_wheels");
   EXPECT_EQ(model["imu"]["link"], "imu_link");
   EXPECT_TRUE(model["warnings"].empty());
   ASSERT_EQ(model["wheels"].size(), 4U);
@@ -57,7 +55,7 @@ TEST_F(ModelProgram, ExperimentsAreFoundByNameAsWell) {
 TEST_F(ModelProgram, TheTemplatesExperimentDrives) {
   const Result result = run("sim four_wheels --duration 11 --quiet --json --out run");
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json summary = json::parse(read(root_ / "run" / "summary.json"));
+  const Json summary = Json::parse(read(root_ / "run" / "summary.json"));
   EXPECT_GT(summary["distance_m"].get<double>(), 0.2) << summary.dump(1);
   EXPECT_GT(std::filesystem::file_size(root_ / "run" / "terrain_after.png"), 5000U);
 }
@@ -119,7 +117,7 @@ TEST_F(ModelProgram, ARecordedRunFindsItsModelAboveItAndHere) {
   std::filesystem::create_directories(root_ / "mine");
   write("mine/own.urdf", urdf_of({}));
   write("mine/e.ini", "[vehicle]\nmodel = own.urdf\ntracks = false\n[experiment]\nduration = 1\n");
-  const Result sim = run("sim mine/e.ini --quiet --heights --out mine/runs/r");
+  const Result sim = run("sim mine/e.ini --quiet --no-pictures --heights --out mine/runs/r");
   ASSERT_EQ(sim.exit_code, 0) << sim.err;
   const Result above = run("render mine/runs/r --pov-only");
   EXPECT_EQ(above.exit_code, 0) << above.err;

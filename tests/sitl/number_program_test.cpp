@@ -23,7 +23,7 @@ class Numbers : public Program {
 };
 
 TEST_F(Numbers, WhatOnceCrashedOrHungIsOneLine) {
-  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out r").exit_code, 0);
   ASSERT_EQ(run("view r --screenshot whole.png").exit_code, 0);
   const std::set<std::string> before = files();
   struct Case {
@@ -77,8 +77,10 @@ TEST_F(Numbers, OfTheMessageNameTheSubcommandWhoseHelpSaysMore) {
 }
 
 TEST_F(Numbers, ADurationIsThatOfTheRun) {
-  ASSERT_EQ(run("sim e.ini --quiet --duration 0.25 --seed 18446744073709551615 --out r").exit_code,
-            0);
+  ASSERT_EQ(
+      run("sim e.ini --quiet --no-pictures --duration 0.25 --seed 18446744073709551615 --out r")
+          .exit_code,
+      0);
   const Result info = run("session info r --json");
   EXPECT_NE(info.out.find("\"frames\": 25"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("18446744073709551615"), std::string::npos) << info.out;

@@ -1,16 +1,14 @@
 // What `screed sim` says about the outcome of a run: table, JSON, pictures.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 class Outcome : public Program {
  protected:
@@ -27,7 +25,7 @@ class Outcome : public Program {
 
 TEST_F(Outcome, JsonSaysWhichRunItWas) {
   write_spin();
-  const Result result = run("sim spin.ini --json --out here");
+  const Result result = run("sim spin.ini --no-pictures --json --out here");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   Json printed = Json::parse(result.out);
   EXPECT_EQ(printed["run_folder"], "here");
@@ -43,14 +41,14 @@ TEST_F(Outcome, JsonSaysWhichRunItWas) {
 
   printed.erase("run_folder");
   EXPECT_EQ(printed.dump(2) + "\n", read(root_ / "here" / "summary.json"));
-  ASSERT_EQ(run("sim spin.ini --quiet --out sub/there").exit_code, 0);
+  ASSERT_EQ(run("sim spin.ini --quiet --no-pictures --out sub/there").exit_code, 0);
   EXPECT_EQ(read(root_ / "here" / "summary.json"), read(root_ / "sub" / "there" / "summary.json"));
 }
 
 TEST_F(Outcome, SeveralRunsEachNameTheirFolder) {
   write_spin();
   write("flat.ini", "[experiment]\nname = flat\nduration = 1\n");
-  const Result result = run("sim spin.ini flat.ini --json --out both --duration 1");
+  const Result result = run("sim spin.ini flat.ini --no-pictures --json --out both --duration 1");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json runs = Json::parse(result.out);
   ASSERT_EQ(runs.size(), 2U);
@@ -84,7 +82,7 @@ TEST_F(Outcome, ASpinDigsAndTheSummarySaysHowMuch) {
 
 TEST_F(Outcome, TheLevelingCurveIsInTheSummaryTheSessionAndItsCsv) {
   write_spin("[metrics]\ninterval = 2.5\ntransport_interval = 5\n");
-  const Result result = run("sim spin.ini --out r");
+  const Result result = run("sim spin.ini --no-pictures --out r");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const char* words : {"flat at robot scale", "transport to level ground", "time stuck"}) {
     EXPECT_NE(result.out.find(words), std::string::npos) << words << " in: " << result.out;
@@ -113,7 +111,7 @@ TEST_F(Outcome, TheLevelingCurveIsInTheSummaryTheSessionAndItsCsv) {
 
 TEST_F(Outcome, MeasuringMoreOftenChangesNothingElse) {
   write_spin();
-  const std::string arguments = "sim spin.ini --json --duration 3";
+  const std::string arguments = "sim spin.ini --no-pictures --json --duration 3";
   const Json rare = Json::parse(run(arguments + " --out a").out);
   const Json often = Json::parse(run(arguments + " --set metrics.interval=0.1 --out b").out);
   EXPECT_EQ(rare["leveling"], often["leveling"]);
@@ -121,6 +119,23 @@ TEST_F(Outcome, MeasuringMoreOftenChangesNothingElse) {
   EXPECT_EQ(read(root_ / "a" / "frames.csv"), read(root_ / "b" / "frames.csv"));
   const Json defaults = Json::parse(run(arguments + " --set metrics.interval=30 --out c").out);
   EXPECT_EQ(defaults["content_hash"], rare["content_hash"]);
+}
+
+TEST_F(Outcome, WithoutPicturesIsTheSameRunAndThePicturesComeLater) {
+  write_spin();
+  const auto hash = [this](const std::string& arguments) {
+    const Result result = run("sim spin.ini --duration 1 --json " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out)["content_hash"].get<std::string>();
+  };
+  EXPECT_EQ(hash("--out drawn"), hash("--no-pictures --out plain"));
+  ASSERT_EQ(run("session export plain --pictures --out later").exit_code, 0);
+  for (const char* file :
+       {"terrain_before.png", "terrain_after.png", "terrain_change.png", "leveling.png"}) {
+    EXPECT_FALSE(std::filesystem::exists(root_ / "plain" / file)) << file;
+    EXPECT_TRUE(read(root_ / "drawn" / file) == read(root_ / "later" / "pictures" / file)) << file;
+  }
+  EXPECT_EQ(read(root_ / "drawn" / "summary.json"), read(root_ / "plain" / "summary.json"));
 }
 
 TEST_F(Outcome, RigidGroundHasNoPictureOfItsChange) {
@@ -141,7 +156,7 @@ TEST_F(Outcome, ARampOfTheLimitIsFlatAndASteeperOneIsNot) {
     const auto flatness_before = [&](const std::string& ramp) {
       write("ramp.ini", "[experiment]\nduration = 0.1\n[map]\nsize = 1\nmodel = " +
                             std::string(model) + "\nramp = " + ramp + "\n");
-      const Result result = run("sim ramp.ini --json");
+      const Result result = run("sim ramp.ini --no-pictures --json");
       EXPECT_EQ(result.exit_code, 0) << result.err;
       return Json::parse(result.out)["terrain_before"]["flatness"].get<double>();
     };

@@ -2,11 +2,11 @@
 // virtual serial port, and against experiments.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -17,16 +17,17 @@ class ParamProgram : public Program {
   /// Runs shell lines beside a simulated robot at the port `radio`, disarmed: it takes parameters.
   /// $screed is the program. The exit code is that of the last line.
   Result with_robot(const std::string& lines) const {
-    write("lines.sh",
-          "screed=$1\n"
-          "mkfifo said\n"
-          "\"$screed\" sim first_drive --pty radio --duration 600 --out robot --quiet "
-          "> /dev/null 2> said &\n"
-          "sim=$!\n"
-          "exec 3< said\n"
-          "read -r line <&3\n"  // said when the port is there
-          "\"$screed\" send --pty radio disarm > /dev/null || exit 99\n" +
-              lines + "status=$?\nkill -INT $sim\nwait $sim\nexit $status\n");
+    write(
+        "lines.sh",
+        "screed=$1\n"
+        "mkfifo said\n"
+        "\"$screed\" sim first_drive --pty radio --duration 600 --out robot --quiet --no-pictures "
+        "> /dev/null 2> said &\n"
+        "sim=$!\n"
+        "exec 3< said\n"
+        "read -r line <&3\n"  // said when the port is there
+        "\"$screed\" send --pty radio disarm > /dev/null || exit 99\n" +
+            lines + "status=$?\nkill -INT $sim\nwait $sim\nexit $status\n");
     return run("", "bash lines.sh");
   }
   static size_t lines_in(const std::string& text) {
@@ -45,7 +46,7 @@ TEST_F(ParamProgram, ReadsAndSetsByNameAndInWords) {
       "climb_threshold = 5 deg\nalgorithm = hill_sensing\n"
       "climb_threshold = 7.5 deg: done\nalgorithm = spin_on_peak: done\n";
   ASSERT_EQ(result.out.substr(0, words.size()), words) << result.out;
-  const auto json = nlohmann::json::parse(result.out.substr(words.size()));
+  const auto json = Json::parse(result.out.substr(words.size()));
   EXPECT_EQ(json[0]["name"], "climb_threshold");
   EXPECT_EQ(json[0]["value"], 750);
   EXPECT_EQ(json[0]["text"], "7.5 deg");
@@ -77,7 +78,7 @@ TEST_F(ParamProgram, LoadsWhatDiffersInAnOrderThatTheRobotTakes) {
   EXPECT_EQ(result.err, "");
   // The dump is an experiment, and holds what was set.
   EXPECT_EQ(run("param diff fast.ini --experiment dump.ini").exit_code, 0);
-  EXPECT_EQ(run("sim dump.ini --duration 1 --quiet --out drive").exit_code, 0);
+  EXPECT_EQ(run("sim dump.ini --duration 1 --quiet --no-pictures --out drive").exit_code, 0);
   EXPECT_EQ(run("param diff dump.ini --experiment drive/experiment.ini").exit_code, 0);
 }
 
@@ -107,7 +108,7 @@ TEST_F(ParamProgram, ListAndDumpOfAnExperimentNeedNoRobot) {
   const Result list = run("param list");
   EXPECT_EQ(list.exit_code, 0);
   EXPECT_NE(list.out.find("1 to 45 deg; default: 5 deg"), std::string::npos) << list.out;
-  EXPECT_EQ(nlohmann::json::parse(run("param list --json").out).size(), lines_in(list.out) / 2);
+  EXPECT_EQ(Json::parse(run("param list --json").out).size(), lines_in(list.out) / 2);
   write("slow.ini", "[experiment]\nalgorithm = spin_on_peak\n[parameters]\nclimb_speed = 90\n");
   const Result dump = run("param dump --experiment slow.ini");
   EXPECT_EQ(dump.exit_code, 0);
@@ -151,11 +152,11 @@ TEST_F(ParamProgram, CommandsAndAnswersAreJsonForPrograms) {
       "$screed send --pty radio disarm --json; echo \"exit $?,\"\n"
       "$screed send --pty radio drive 0.1 -5 --json; echo \"exit $?,\"\n"
       "$screed send --pty radio estop --json; echo \"exit $?\"\n");
-  std::vector<nlohmann::json> said;
+  std::vector<Json> said;
   std::istringstream out(result.out);
   for (std::string line, object; std::getline(out, line);) {
     if (line.rfind("exit", 0) == 0) {
-      said.push_back(nlohmann::json::parse(object));
+      said.push_back(Json::parse(object));
       said.back()["exit"] = std::stoi(line.substr(5));
       object.clear();
     } else {
@@ -163,23 +164,22 @@ TEST_F(ParamProgram, CommandsAndAnswersAreJsonForPrograms) {
     }
   }
   ASSERT_EQ(said.size(), 3U) << result.out << result.err;
-  const nlohmann::json null = nullptr;
-  EXPECT_EQ(said[0], (nlohmann::json{{"command", "disarm"},
-                                     {"robot", 1},
-                                     {"done", true},
-                                     {"answer", "done"},
-                                     {"reason", null},
-                                     {"exit", 0}}));
-  EXPECT_EQ(said[1], (nlohmann::json{{"command", "drive"},
-                                     {"speed_m_per_s", 0.1},
-                                     {"yaw_rate_deg_per_s", -5.0},
-                                     {"robot", 1},
-                                     {"done", false},
-                                     {"answer", "wrong_state"},
-                                     {"reason", "disarmed; arm first: screed send arm"},
-                                     {"exit", 1}}));
-  EXPECT_EQ(said[2],
-            (nlohmann::json{{"command", "estop"}, {"robot", 1}, {"done", true}, {"exit", 0}}));
+  const Json null = nullptr;
+  EXPECT_EQ(said[0], (Json{{"command", "disarm"},
+                           {"robot", 1},
+                           {"done", true},
+                           {"answer", "done"},
+                           {"reason", null},
+                           {"exit", 0}}));
+  EXPECT_EQ(said[1], (Json{{"command", "drive"},
+                           {"speed_m_per_s", 0.1},
+                           {"yaw_rate_deg_per_s", -5.0},
+                           {"robot", 1},
+                           {"done", false},
+                           {"answer", "wrong_state"},
+                           {"reason", "disarmed; arm first: screed send arm"},
+                           {"exit", 1}}));
+  EXPECT_EQ(said[2], (Json{{"command", "estop"}, {"robot", 1}, {"done", true}, {"exit", 0}}));
 }
 
 TEST_F(ParamProgram, ANewKeyIsMadeOnceThereIsARobotToTakeIt) {

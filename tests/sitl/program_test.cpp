@@ -41,7 +41,7 @@ std::string urdf(const std::string& body_name, const std::string& inertia,
 
 TEST_F(Program, RunsAndReplays) {
   write("e.ini", kShort);
-  const Result sim = run("sim e.ini --quiet");
+  const Result sim = run("sim e.ini --quiet --no-pictures");
   EXPECT_EQ(sim.exit_code, 0) << sim.err;
   EXPECT_NE(sim.out.find("out/experiment-0001 "), std::string::npos) << sim.out;
   const Result replay = run("replay out/experiment-0001");
@@ -53,7 +53,7 @@ TEST_F(Program, RunsAndReplays) {
 TEST_F(Program, AModelOfOnesOwnDrives) {
   write("own.urdf", urdf("Body", "0.01"));
   write("e.ini", std::string(kShort) + "[vehicle]\nmodel = own.urdf\n");
-  EXPECT_EQ(run("sim e.ini --quiet").exit_code, 0);
+  EXPECT_EQ(run("sim e.ini --quiet --no-pictures").exit_code, 0);
 }
 
 TEST_F(Program, DocsHaveTheKeysAsTheyAre) {
@@ -105,7 +105,7 @@ TEST_F(Program, ListsEverySubcommandByName) {
 
 TEST_F(Program, ShowsATable) {
   write("e.ini", kShort);
-  const Result sim = run("sim e.ini");
+  const Result sim = run("sim e.ini --no-pictures");
   for (const char* part : {"simulated time", "distance driven", "energy", "mean slope",
                            "real-time factor", "content hash"}) {
     EXPECT_NE(sim.out.find(part), std::string::npos) << part;

@@ -21,7 +21,7 @@ class Render : public Program {
     write("e.ini",
           "[experiment]\nduration = 2\nalgorithm = drive\n[map]\nsize = 1\nmodel = scm\n[soil]\n"
           "cell = 0.02\n");
-    ASSERT_EQ(run("sim e.ini --quiet --out run").exit_code, 0);
+    ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out run").exit_code, 0);
     std::filesystem::create_directories(root_ / "bin");
   }
 
@@ -165,7 +165,7 @@ TEST_F(Render, ParticlesAreRoundAndWhereTheRunLeftThem) {
   write("g.ini",
         "[experiment]\nduration = 6.5\nalgorithm = drive\n[map]\nsize = 0.4\nmodel = "
         "particles\nparticle_radius = 0.02\n[particles]\ndepth = 0.06\n");
-  ASSERT_EQ(run("sim g.ini --quiet --out gravel").exit_code, 0);
+  ASSERT_EQ(run("sim g.ini --quiet --no-pictures --out gravel").exit_code, 0);
   const auto spheres = [this](const std::string& options) {
     const Result result = render("gravel --out g.png --no-path --pov-only " + options);
     EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -13,7 +13,7 @@ class Report : public Program {
     Program::SetUp();
     write("e.ini",
           "[experiment]\nduration = 1\n[map]\nsize = 1\nmodel = scm\n[soil]\ncell = 0.02\n");
-    const Result result = run("sim e.ini --quiet --out one");
+    const Result result = run("sim e.ini --quiet --no-pictures --out one");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   }
 };

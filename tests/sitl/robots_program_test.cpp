@@ -3,19 +3,17 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "paths.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 class SeveralRobots : public Program {
  protected:
@@ -42,8 +40,8 @@ class SeveralRobots : public Program {
 
 TEST_F(SeveralRobots, TheSameRunTwiceIsTheSameInEveryFile) {
   write_bed("[soil]\npreset = lete_sand\ncell = 0.01\n[robots]\ncount = 3\nspacing = 0.4\n", "scm");
-  run_bed("--out one");
-  run_bed("--out two");
+  run_bed("--no-pictures --out one");
+  run_bed("--no-pictures --out two");
   for (const std::filesystem::path robot : {".", "robot_1", "robot_2"}) {
     for (const char* const file : {"session.h5", "frames.csv", "telemetry.log"}) {
       const std::string content = read(root_ / "one" / robot / file);
@@ -57,7 +55,7 @@ TEST_F(SeveralRobots, TheSameRunTwiceIsTheSameInEveryFile) {
 
 TEST_F(SeveralRobots, SummaryHasEachOneAndTotals) {
   write_bed("[robots]\ncount = 3\nspacing = 0.4\n");
-  run_bed("--out run");
+  run_bed("--no-pictures --out run");
   const Json summary = Json::parse(read_run("run/summary.json"));
   ASSERT_EQ(summary["robots"].size(), 3U);
   double distance_m = 0.0;
@@ -78,9 +76,9 @@ TEST_F(SeveralRobots, SummaryHasEachOneAndTotals) {
 
 TEST_F(SeveralRobots, TheFirstOneDrivesAsAloneUntilItMeetsAnother) {
   write_bed();
-  run_bed("--out alone --set vehicle.x=-0.4");
+  run_bed("--no-pictures --out alone --set vehicle.x=-0.4");
   run_bed(
-      "--out both --set robots.count=2 --set 'robots.placement=list' "
+      "--no-pictures --out both --set robots.count=2 --set 'robots.placement=list' "
       "--set 'robots.places=-0.4 0 0, 0.5 0 90'");
   EXPECT_EQ(read_run("alone/frames.csv"), read_run("both/frames.csv"));
   EXPECT_NE(read_run("both/frames.csv"), read_run("both/robot_1/frames.csv"));
@@ -89,7 +87,7 @@ TEST_F(SeveralRobots, TheFirstOneDrivesAsAloneUntilItMeetsAnother) {
 
 TEST_F(SeveralRobots, ReplayIsOfAllOfThemOrOfOne) {
   write_bed("[robots]\ncount = 2\nspacing = 0.4\n");
-  run_bed("--out run");
+  run_bed("--no-pictures --out run");
   const Result all = run("replay run");
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_NE(all.out.find("robot 0: 800 ticks replayed, outputs identical"), std::string::npos)
@@ -125,14 +123,16 @@ TEST_F(SeveralRobots, PicturesSceneAndReportShowAllOfThem) {
   ASSERT_EQ(run("view run --screenshot all_view.png --at 8").exit_code, 0);
   ASSERT_EQ(run("view run/session.h5 --screenshot one_view.png --at 8").exit_code, 0);
   EXPECT_NE(read_run("all_view.png"), read_run("one_view.png"));
-  ASSERT_EQ(run("sim bed.ini --quiet --out live --screenshot live_view.png").exit_code, 0);
+  ASSERT_EQ(
+      run("sim bed.ini --quiet --no-pictures --out live --screenshot live_view.png").exit_code, 0);
   EXPECT_GT(read_run("live_view.png").size(), 1000U);
 }
 
 TEST_F(SeveralRobots, PlacesAreThoseOfThePlacement) {
   write_bed("[robots]\ncount = 4\nspacing = 0.6\n");
   const auto starts = [&](const std::string& options) {
-    const Result result = run("sim bed.ini --quiet --duration 0.1 --out run " + options);
+    const Result result =
+        run("sim bed.ini --quiet --no-pictures --duration 0.1 --out run " + options);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     std::vector<std::array<double, 2>> places;
     for (const std::filesystem::path robot : {".", "robot_1", "robot_2", "robot_3"}) {
@@ -169,11 +169,11 @@ TEST_F(SeveralRobots, PlacesAreThoseOfThePlacement) {
 
 TEST_F(SeveralRobots, ASectionOfARobotIsForThatOneAlone) {
   write_bed("[robots]\ncount = 3\nspacing = 0.6\n");
-  run_bed("--out plain");
+  run_bed("--no-pictures --out plain");
   write_bed(
       "[robots]\ncount = 3\nspacing = 0.6\n"
       "[robot_1]\nspeed = 0.1\n[robot_2]\nalgorithm = hill_sensing\n");
-  run_bed("--out own");
+  run_bed("--no-pictures --out own");
   EXPECT_EQ(read_run("plain/frames.csv"), read_run("own/frames.csv"));
   const Json plain = Json::parse(read_run("plain/summary.json"));
   const Json own = Json::parse(read_run("own/summary.json"));
@@ -184,7 +184,7 @@ TEST_F(SeveralRobots, ASectionOfARobotIsForThatOneAlone) {
   }
   EXPECT_EQ(run("replay own").exit_code, 0);
   // The folder's experiment gives the same again.
-  const Result again = run("sim own/experiment.ini --quiet --json --out again");
+  const Result again = run("sim own/experiment.ini --quiet --no-pictures --json --out again");
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(Json::parse(again.out)["content_hash"], own["content_hash"]);
 }

@@ -29,7 +29,7 @@ TEST_F(RunEnds, OneThatASignalEndsIsWholeAndTheProgramNamesTheSignal) {
           "until [ \"$(find " + out +
               ".partial -name session.h5 -size +100k)\" ] || ! [ -e /proc/$1/fd/1 ]; do :; "
               "done 2> /dev/null\n");
-    const Result result = run(std::string("sim e.ini --quiet --out ") + it.signal +
+    const Result result = run(std::string("sim e.ini --quiet --no-pictures --out ") + it.signal +
                               " & pid=$!; sh begun $pid; kill -" + it.signal + " $pid; wait $pid");
     EXPECT_EQ(result.exit_code, it.exit_code) << it.signal << ": " << result.err;
     EXPECT_FALSE(exists(out + ".partial")) << it.signal;
@@ -42,7 +42,7 @@ TEST_F(RunEnds, OneThatASignalEndsIsWholeAndTheProgramNamesTheSignal) {
 
 TEST_F(RunEnds, OnRigidGroundToWhereTheRobotLeavesTheBed) {
   write_drive(1.0, 60.0);
-  const Result result = run("sim e.ini --quiet --out r");
+  const Result result = run("sim e.ini --quiet --no-pictures --out r");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("note: e ended after "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find(" s: the robot left the bed\n"), std::string::npos) << result.err;
@@ -55,7 +55,7 @@ TEST_F(RunEnds, EachOfSeveralThatLeftTheBedIsNamed) {
   write_drive(1.0, 60.0);
   const std::string text = read(root_ / "e.ini");
   write("f.ini", "[experiment]\nname = f\n" + text.substr(text.find("algorithm")));
-  const Result result = run("sim e.ini f.ini --quiet --out both");
+  const Result result = run("sim e.ini f.ini --quiet --no-pictures --out both");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("note: e ended after "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("note: f ended after "), std::string::npos) << result.err;
@@ -63,7 +63,7 @@ TEST_F(RunEnds, EachOfSeveralThatLeftTheBedIsNamed) {
 
 TEST_F(RunEnds, AFolderOfTheNameDoesNotHideAnExperimentThatComesAlong) {
   std::filesystem::create_directories(root_ / "first_drive");
-  const Result result = run("sim first_drive --quiet --duration 0.1 --out r");
+  const Result result = run("sim first_drive --quiet --no-pictures --duration 0.1 --out r");
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
@@ -84,7 +84,7 @@ TEST_F(RunEnds, WithItsSessionWhereTheDiskIsFullForTheTable) {
 
 TEST_F(RunEnds, ARefusedExportLeavesNoFolder) {
   write_drive(1.0, 0.1);
-  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out r").exit_code, 0);
   const Result result = run("session export r --csv --all --out a/b", "trap '' XFSZ; ulimit -f 0;");
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_FALSE(exists("a"));
@@ -94,7 +94,7 @@ TEST_F(RunEnds, ARefusedExportLeavesNoFolder) {
 
 TEST_F(RunEnds, AtItsTimeWithNothingToSay) {
   write_drive(1.0, 0.5);
-  const Result result = run("sim e.ini --quiet --out r");
+  const Result result = run("sim e.ini --quiet --no-pictures --out r");
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
 }

@@ -1,7 +1,7 @@
 // `screed session compare` as a user meets it.
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "host_sim/core/json.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/session/session_writer.h"
 #include "tests/sitl/program.h"
@@ -19,13 +19,13 @@ class SessionCompare : public Program {
     record("one", "");
   }
   void record(const std::string& name, const std::string& options) const {
-    const Result result = run("sim e.ini --quiet --out " + name + " " + options);
+    const Result result = run("sim e.ini --quiet --no-pictures --out " + name + " " + options);
     ASSERT_EQ(result.exit_code, 0) << result.err;
   }
-  nlohmann::json compare(const std::string& arguments) const {
+  Json compare(const std::string& arguments) const {
     const Result result = run("session compare " + arguments + " --json");
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    return nlohmann::json::parse(result.out, nullptr, false);
+    return Json::parse_or_null(result.out);
   }
   bool exists(const char* name) const { return std::filesystem::exists(root_ / name); }
 };
@@ -36,7 +36,7 @@ TEST_F(SessionCompare, TheSameRunTwiceIsIdentical) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out.substr(0, 10), "identical\n");
   EXPECT_EQ(read(root_ / "compare.png").substr(1, 3), "PNG");
-  const nlohmann::json json = compare("one again --no-picture");
+  const Json json = compare("one again --no-picture");
   EXPECT_EQ(json["identical"], true);
   EXPECT_TRUE(json["first_difference"].is_null());
   EXPECT_TRUE(json["picture"].is_null());
@@ -44,7 +44,7 @@ TEST_F(SessionCompare, TheSameRunTwiceIsIdentical) {
 
 TEST_F(SessionCompare, AnotherSeedDiffersFromItsFirstTick) {
   record("seed", "--seed 2");
-  const nlohmann::json json = compare("one seed --out p.png");
+  const Json json = compare("one seed --out p.png");
   EXPECT_EQ(json["identical"], false);
   EXPECT_EQ(json["configuration"][0]["key"], "experiment.seed");
   EXPECT_EQ(json["configuration"][0]["a"], "1");
@@ -63,7 +63,7 @@ TEST_F(SessionCompare, AnotherSeedDiffersFromItsFirstTick) {
 
 TEST_F(SessionCompare, AShorterRunIsTheBeginningOfALongerOne) {
   record("short", "--duration 1");
-  const nlohmann::json json = compare("one short --no-picture");
+  const Json json = compare("one short --no-picture");
   EXPECT_TRUE(json["first_difference"].is_null()) << json["first_difference"];
   EXPECT_EQ(json["common_ticks"], 100);
   EXPECT_EQ(json["identical"], false);
@@ -73,8 +73,8 @@ TEST_F(SessionCompare, AShorterRunIsTheBeginningOfALongerOne) {
 
 TEST_F(SessionCompare, AnotherGridIsSaidAndDrawnWithoutADifferenceOfTerrain) {
   record("coarse", "--set soil.cell=0.025");
-  const nlohmann::json json = compare("one coarse");
-  const std::string why = json["terrain"]["not_compared"];
+  const Json json = compare("one coarse");
+  const std::string why = json["terrain"]["not_compared"].text();
   EXPECT_NE(why.find("0.02 m"), std::string::npos) << why;
   EXPECT_NE(why.find("0.025 m"), std::string::npos) << why;
   EXPECT_TRUE(exists("compare.png"));

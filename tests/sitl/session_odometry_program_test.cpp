@@ -3,12 +3,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "firmware/robot/supervisor.h"
+#include "host_sim/core/json.h"
 #include "host_sim/run/comparison/odometry_errors.h"
 #include "host_sim/run/session/session_reader.h"
 #include "tests/sitl/program.h"
@@ -19,7 +19,7 @@ namespace {
 class SessionOdometry : public Program {};
 
 TEST_F(SessionOdometry, TheFirstLegIsTheFirmwaresOwnPosition) {
-  const Result run_result = run("sim first_drive --duration 60 --quiet --out run");
+  const Result run_result = run("sim first_drive --duration 60 --quiet --no-pictures --out run");
   ASSERT_EQ(run_result.exit_code, 0) << run_result.err;
   const std::filesystem::path file = root_ / "run/session.h5";
   const std::vector<OdometryLeg> legs = odometry_legs(file, 1.5);
@@ -54,10 +54,10 @@ TEST_F(SessionOdometry, TheFirstLegIsTheFirmwaresOwnPosition) {
 }
 
 TEST_F(SessionOdometry, PrintsJsonAndRefusesWhatItCannotJudge) {
-  ASSERT_EQ(run("sim first_drive --duration 15 --quiet --out run").exit_code, 0);
+  ASSERT_EQ(run("sim first_drive --duration 15 --quiet --no-pictures --out run").exit_code, 0);
   const Result result = run("session odometry run run/session.h5 --length 0.4 --json");
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
+  const auto json = Json::parse(result.out);
   EXPECT_EQ(json["legs"].get<int>() % 2, 0) << "twice the same run";
   EXPECT_GT(json["legs"].get<int>(), 0);
   EXPECT_EQ(json["errors"].size(), 3U);

@@ -26,8 +26,9 @@ class Simulation : public ::testing::Test {
                         {"experiment.duration=8", "parameters.climb_threshold=300"});
   }
 
-  SimulationSummary run(const std::string& name) {
+  SimulationSummary run(const std::string& name, bool pictures = false) {
     SimulationOptions options;
+    options.pictures = pictures;
     options.out = root_ / name;
     return run_simulation(experiment_, options);
   }
@@ -44,8 +45,8 @@ class Simulation : public ::testing::Test {
 };
 
 TEST_F(Simulation, SameSeedSameBytesOtherSeedOtherBytes) {
-  const SimulationSummary first = run("first");
-  const SimulationSummary second = run("second");
+  const SimulationSummary first = run("first", true);
+  const SimulationSummary second = run("second", true);
   EXPECT_EQ(first.content_hash, second.content_hash);
   EXPECT_EQ(content(root_ / "first" / "frames.csv"), content(root_ / "second" / "frames.csv"));
   EXPECT_EQ(content(root_ / "first" / "telemetry.log"),
@@ -58,7 +59,7 @@ TEST_F(Simulation, SameSeedSameBytesOtherSeedOtherBytes) {
 }
 
 TEST_F(Simulation, LeavesARunFolderThatReplays) {
-  const SimulationSummary summary = run("run");
+  const SimulationSummary summary = run("run", true);
   for (const char* file : {"session.h5", "frames.csv", "telemetry.log", "terrain_before.png",
                            "terrain_after.png", "experiment.ini", "summary.json"}) {
     EXPECT_GT(std::filesystem::file_size(root_ / "run" / file), 0u) << file;

@@ -1,19 +1,19 @@
 // `screed soil wheel` as a user meets it: limits of several slip angles, measurements of one's own.
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "host_sim/core/json.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
 namespace {
 
-nlohmann::json results_of(const std::string& out) {
-  return nlohmann::json::parse(out).at("results");
+Json results_of(const std::string& out) {
+  return Json::parse(out).at("results");
 }
 
-double value_of(const nlohmann::json& results, const std::string& where, const char* name) {
-  for (const nlohmann::json& line : results) {
+double value_of(const Json& results, const std::string& where, const char* name) {
+  for (const Json& line : results) {
     if (line.at("where") == where && line.at("name") == name) return line.at("value").get<double>();
   }
   ADD_FAILURE() << "no " << name << " at " << where;
@@ -24,8 +24,8 @@ TEST_F(Program, SoilWheelGivesTheLimitAlone) {
   const Result run_ =
       run("soil wheel --limit-only --slip-angle 0,30 --slip -0.5,0.2 --charts out --json");
   ASSERT_EQ(run_.exit_code, 0) << run_.err;
-  EXPECT_EQ(nlohmann::json::parse(run_.out).at("test"), "wheel_limit");
-  const nlohmann::json limits = results_of(run_.out);
+  EXPECT_EQ(Json::parse(run_.out).at("test"), "wheel_limit");
+  const Json limits = results_of(run_.out);
   for (const char* chart : {"sinkage", "pull", "side_force"}) {
     const std::string svg = read(root_ / "out" / (std::string("soil_limit_") + chart + ".svg"));
     EXPECT_NE(svg.find(">limit, 0 deg<"), std::string::npos) << chart;
@@ -36,7 +36,7 @@ TEST_F(Program, SoilWheelGivesTheLimitAlone) {
   const Result engine = run("soil wheel --slip-angle 30 --slip 0.2 --duration 0.5 --json");
   ASSERT_EQ(engine.exit_code, 0) << engine.err;
   int compared = 0;
-  for (const nlohmann::json& line : results_of(engine.out)) {
+  for (const Json& line : results_of(engine.out)) {
     if (!line.contains("limit") || line.at("name") == "volume_error") continue;
     const std::string name = line.at("name").get<std::string>();
     EXPECT_EQ(line.at("where"), "slip 0.2") << "one slip angle is not named";

@@ -19,7 +19,7 @@ class StandIn : public Program {
     const std::string folder = std::string(kDataFolder) + "/experiments/sessions/standin";
     const Result result =
         run("record '" + folder + "/standin.ini' --table '" + folder + "/standin.csv' --rows " +
-            row + " --frames 6000 --missing --quiet --out drives");
+            row + " --frames 6000 --missing --quiet --no-pictures --out drives");
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return "drives/" + row + "-0001";
   }
@@ -69,8 +69,10 @@ TEST_F(StandIn, ItsRolloutsStandBesideBaselinesOfTheVeryDrive) {
 // The stand-in drives no wheels: there a network stands beside the baselines.
 TEST_F(StandIn, ItIsLeftOutBesideWheels) {
   const std::string sessions = std::string(kDataFolder) + "/experiments/sessions/";
-  ASSERT_EQ(run("record '" + sessions + "v2_a1.ini' --frames 3000 --quiet --out wheels").exit_code,
-            0);
+  ASSERT_EQ(
+      run("record '" + sessions + "v2_a1.ini' --frames 3000 --quiet --no-pictures --out wheels")
+          .exit_code,
+      0);
   const Result result = run("nn rollout wheels --drive tracks --model '" +
                             (data_folders().models / "v2.json").string() + "'");
   ASSERT_EQ(result.exit_code, 0) << result.err;

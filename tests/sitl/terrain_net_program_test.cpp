@@ -19,7 +19,7 @@ class TerrainNet : public Program {
           "[drive]\nspeed = 0.1\n"
           "[experiment]\nname = small\nalgorithm = drive\nduration = " +
               std::to_string(duration_s) + "\n");
-    ASSERT_EQ(run("sim e.ini --quiet --heights --out run").exit_code, 0);
+    ASSERT_EQ(run("sim e.ini --quiet --no-pictures --heights --out run").exit_code, 0);
   }
 };
 
@@ -57,7 +57,8 @@ TEST_F(TerrainNet, TheWindowNetworkIsKeptComparedAndDriven) {
   EXPECT_LT(compared.out.find("fluxes"), compared.out.find("window")) << compared.out;
   EXPECT_NE(compared.out.find("window"), std::string::npos) << compared.out;
   const std::string model = (data_folders().models / "v2.json").string();
-  const std::string world = "sim e.ini --quiet --heights --hal surrogate --model '" + model + "'";
+  const std::string world =
+      "sim e.ini --quiet --no-pictures --heights --hal surrogate --model '" + model + "'";
   ASSERT_EQ(run(world + " --terrain-net w.json --out changed").exit_code, 0);
   EXPECT_GT(SessionReader(root_ / "changed" / "session.h5").height_changes(), 0U);
   write("broken.json", R"({"format": "screed-window-1", "matrix": [1], "constant": []})");
@@ -76,7 +77,7 @@ TEST_F(TerrainNet, AComparisonIsStoppedAtOnce) {
 
 TEST_F(TerrainNet, WhatIsWrongIsSaidInOneLine) {
   write("e.ini", "[experiment]\nduration = 0.1\n[map]\nsize = 1\n");
-  ASSERT_EQ(run("sim e.ini --quiet --out run").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out run").exit_code, 0);
   const Result no_heights = run("terrain-net train run");
   EXPECT_EQ(no_heights.exit_code, 2);
   EXPECT_NE(no_heights.err.find("heights were not recorded"), std::string::npos) << no_heights.err;

@@ -59,13 +59,14 @@ TEST_F(View, ARunThatIsWatchedIsTheRunThatNobodyWatched) {
 
 TEST_F(View, PicturesNeedNoScreen) {
   const Result result =
-      run("sim e.ini --quiet --out r --screenshot p.png --at 1.5 --shading slope --size 700x500",
+      run("sim e.ini --quiet --no-pictures --out r --screenshot p.png --at 1.5 --shading slope "
+          "--size 700x500",
           "SDL_VIDEODRIVER=none");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(png_size(root_ / "p.png"), (std::pair<int, int>(700, 500)));
   // The run goes on to its end, and the recording shows the same moment.
   EXPECT_EQ(SessionReader(root_ / "r" / "session.h5").frames(), 300U);
-  ASSERT_EQ(run("sim e.ini --quiet --heights --out h").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --heights --out h").exit_code, 0);
   ASSERT_EQ(run("view h --screenshot q.png --at 1.5").exit_code, 0);
   ASSERT_EQ(run("view h --screenshot end.png").exit_code, 0);
   EXPECT_NE(read(root_ / "q.png"), read(root_ / "end.png"));
@@ -76,9 +77,10 @@ TEST_F(View, PicturesNeedNoScreen) {
 TEST_F(View, TheKeyboardDrivesOverTheRadio) {
   write("hills.ini",
         "[experiment]\nname = hills\nduration = 12\nalgorithm = hill_sensing\n[map]\nsize = 3\n");
-  ASSERT_EQ(run("sim hills.ini --quiet --out alone").exit_code, 0);
+  ASSERT_EQ(run("sim hills.ini --quiet --no-pictures --out alone").exit_code, 0);
   const Result driven =
-      run("sim hills.ini --quiet --out driven --key-script Up@6-30 --key-script Left@9-10");
+      run("sim hills.ini --quiet --no-pictures --out driven --key-script Up@6-30 --key-script "
+          "Left@9-10");
   ASSERT_EQ(driven.exit_code, 0) << driven.err;
   EXPECT_NE(hash("driven"), hash("alone"));
   const SimFrame frame = last_frame("driven");
@@ -90,7 +92,8 @@ TEST_F(View, TheKeyboardDrivesOverTheRadio) {
 
   // And hands back.
   const Result returned =
-      run("sim hills.ini --quiet --out returned --key-script Up@6-8 --key-script Backspace@8");
+      run("sim hills.ini --quiet --no-pictures --out returned --key-script Up@6-8 --key-script "
+          "Backspace@8");
   ASSERT_EQ(returned.exit_code, 0) << returned.err;
   EXPECT_EQ(last_frame("returned").leveling_state, 1);  // walk
   EXPECT_EQ(last_frame("returned").state, 2);           // running
@@ -99,34 +102,37 @@ TEST_F(View, TheKeyboardDrivesOverTheRadio) {
 TEST_F(View, TheEmergencyStopNeedsNoTakingOver) {
   write("hills.ini",
         "[experiment]\nname = hills\nduration = 12\nalgorithm = hill_sensing\n[map]\nsize = 3\n");
-  ASSERT_EQ(run("sim hills.ini --quiet --out stopped --key-script Space@7").exit_code, 0);
+  ASSERT_EQ(run("sim hills.ini --quiet --no-pictures --out stopped --key-script Space@7").exit_code,
+            0);
   EXPECT_EQ(last_frame("stopped").state, 4);  // fault
   EXPECT_EQ(last_frame("stopped").faults, Fault::kEmergencyStop);
   EXPECT_NEAR(last_frame("stopped").velocity_x, 0.0, 0.005);
 
   // Nothing but C starts the robot again.
-  ASSERT_EQ(run("sim hills.ini --quiet --out held --key-script Space@7 --key-script Up@8-30 "
+  ASSERT_EQ(run("sim hills.ini --quiet --no-pictures --out held --key-script Space@7 --key-script "
+                "Up@8-30 "
                 "--key-script Backspace@9")
                 .exit_code,
             0);
   EXPECT_EQ(last_frame("held").state, 4);
   ASSERT_EQ(
-      run("sim hills.ini --quiet --out cleared --key-script Space@7 --key-script C@8").exit_code,
+      run("sim hills.ini --quiet --no-pictures --out cleared --key-script Space@7 --key-script C@8")
+          .exit_code,
       0);
   EXPECT_EQ(last_frame("cleared").state, 2);           // running
   EXPECT_EQ(last_frame("cleared").leveling_state, 1);  // walk
 }
 
 TEST_F(View, ClosingTheWindowEndsTheRunAndSavesIt) {
-  const Result result =
-      on_dummy("sim e.ini --quiet --out r --view --frames 1000 --key-script q@1 --heights");
+  const Result result = on_dummy(
+      "sim e.ini --quiet --no-pictures --out r --view --frames 1000 --key-script q@1 --heights");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(SessionReader(root_ / "r" / "session.h5").frames(), 100U);
   EXPECT_TRUE(SessionReader(root_ / "r" / "session.h5").complete());
 }
 
 TEST_F(View, ARecordedRunIsPlayedAndFilmed) {
-  ASSERT_EQ(run("sim e.ini --quiet --heights --out r").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --heights --out r").exit_code, 0);
   const Result played = on_dummy(
       "view r --frames 90 --key-script Right@0.5 --key-script 3@1 --key-script Space@2 "
       "--key-script Home@1.7");
@@ -158,7 +164,7 @@ TEST_F(View, WhatIsWrongIsSaidInOneLine) {
 
 TEST_F(View, WithoutAScreenThereIsNoWindowAndPicturesAreDrawn) {
   const std::string none = "env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER";
-  ASSERT_EQ(run("sim e.ini --quiet --out ../r", none).exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out ../r", none).exit_code, 0);
   expect_refused(run("view ../r", none), 2,
                  {"no screen", "DISPLAY is not set, WAYLAND_DISPLAY is not set", "--frames-dir"});
   expect_refused(run("view ../r", none + " DISPLAY=:7654"), 2, {"DISPLAY=:7654 leads to none"});
@@ -169,12 +175,12 @@ TEST_F(View, WithoutAScreenThereIsNoWindowAndPicturesAreDrawn) {
   EXPECT_EQ(png_size(root_ / "p.png"), (std::pair<int, int>(1280, 800)));
   EXPECT_EQ(run("view ../r --frames-dir film --speed 8", none).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(root_ / "film" / "frame_000009.png"));
-  EXPECT_EQ(run("sim e.ini --quiet --screenshot q.png --out s", none).exit_code, 0);
+  EXPECT_EQ(run("sim e.ini --quiet --no-pictures --screenshot q.png --out s", none).exit_code, 0);
   EXPECT_EQ(png_size(root_ / "q.png"), (std::pair<int, int>(1280, 800)));
 }
 
 TEST_F(View, AnInvisibleWindowIsSaid) {
-  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out r").exit_code, 0);
   const Result played = on_dummy("view r --frames 3");
   EXPECT_EQ(played.exit_code, 0);
   EXPECT_EQ(played.err.rfind("note: SDL_VIDEODRIVER=dummy: the window is invisible\n", 0), 0U)
@@ -183,7 +189,7 @@ TEST_F(View, AnInvisibleWindowIsSaid) {
 
 TEST_F(View, CtrlCEndsAFilmAndRemovesItsFrames) {
   write("long.ini", "[experiment]\nduration = 40\nalgorithm = drive\n[map]\nsize = 9\n");
-  ASSERT_EQ(run("sim long.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("sim long.ini --quiet --no-pictures --out r").exit_code, 0);
   std::filesystem::create_directory(root_ / "mine");
   write("mine/notes.txt", "x");
   for (const std::string folder : {"deep/film", "mine"}) {
@@ -205,7 +211,7 @@ TEST_F(View, PicturesThatCannotBeAreRefusedBeforeTheRun) {
   expect_refused(run("sim e.ini --screenshot x.jpg"), 2, {"--screenshot", "x.jpg", ".png"});
   expect_refused(run("sim e.ini --screenshot no/p.png"), 2, {"--screenshot", "no"});
   expect_refused(run("sim e.ini --screenshot p.png --at 3.5"), 2, {"--at = 3.5", "3.00 s", "0 to"});
-  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out r").exit_code, 0);
   expect_refused(run("view r --screenshot x.jpg"), 2, {"--screenshot", "x.jpg", ".png"});
   expect_refused(run("view r --screenshot p.png --at 3.5"), 2, {"--at = 3.5", "r lasts 3.00 s"});
   EXPECT_FALSE(std::filesystem::exists(root_ / "p.png"));
@@ -248,7 +254,7 @@ TEST_F(View, TheRunIsReadBeforeAScreenIsLookedFor) {
 }
 
 TEST_F(View, FramesOfTwoFilmsDoNotMix) {
-  ASSERT_EQ(run("sim e.ini --quiet --out r").exit_code, 0);
+  ASSERT_EQ(run("sim e.ini --quiet --no-pictures --out r").exit_code, 0);
   ASSERT_EQ(run("view r --frames-dir film --speed 8 --size 480x360").exit_code, 0);
   const std::string first = read(root_ / "film" / "frame_000001.png");
   expect_refused(run("view r --frames-dir film --speed 32 --size 480x360 --shading slope"), 2,

@@ -7,8 +7,8 @@ export LC_ALL=C
 declare -A file_of subcommands
 for file in "$@"; do
   name=$(basename "$file" _command.cpp)
-  grep -q "^void register_${name}_command(CLI::App&" "$file" || {
-    echo "$file: defines no void register_${name}_command(CLI::App& ..., Program& ...)" >&2
+  grep -q "^void register_${name}_command(Command&" "$file" || {
+    echo "$file: defines no void register_${name}_command(Command& ..., Program& ...)" >&2
     exit 1
   }
   [ -z "${file_of[$name]:-}" ] || {
@@ -32,10 +32,10 @@ echo '#pragma once'
 echo '#include "tools/screed/cli/command.h"'
 echo 'namespace screed {'
 for name in $names; do
-  echo "void register_${name}_command(CLI::App& parent, Program& program);"
+  echo "void register_${name}_command(Command& parent, Program& program);"
 done
 for group in $(printf '%s\n' "${!subcommands[@]}" | sort); do
-  echo "inline void register_${group}_subcommands(CLI::App& parent, Program& program) {"
+  echo "inline void register_${group}_subcommands(Command& parent, Program& program) {"
   for name in ${subcommands[$group]}; do echo "  register_${name}_command(parent, program);"; done
   echo '}'
 done

@@ -1,6 +1,6 @@
 # The host program build/<BUILD>/screed: its sources, flags, generated headers and library. Included by the top Makefile.
 #
-# Needs options.mk and schema.mk. Gives LIBRARY, SCREED, LIBRARY_SOURCES, GENERATED, the rules that make objects, and $(link).
+# Needs options.mk and schema.mk. Gives LIBRARY, COMMAND_LINE, SCREED, LIBRARY_SOURCES, GENERATED, the rules that make objects, and $(link).
 
 DATA_DIR := $(CURDIR)/host_sim/data
 BOARDS_DIR := $(CURDIR)/boards
@@ -24,11 +24,14 @@ ifeq ($(LEFT_OUT_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
 HOST_SOURCES := $(filter-out $(CORE_SOURCES) $(LEFT_OUT_$(MCU)),$(call sources,hal/host host_sim nn))
+# What every program's command line is read with; the smaller programs link it without the library.
+COMMAND_LINE_SOURCES := $(call sources,tools/command_line)
 PROGRAM_SOURCES := $(filter-out tools/screed/main.cpp,$(call sources,tools/screed))
 # A subcommand is one file.
 COMMAND_SOURCES := $(filter %_command.cpp,$(PROGRAM_SOURCES))
-LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(PROGRAM_SOURCES)
+LIBRARY_SOURCES := $(CORE_SOURCES) $(HOST_SOURCES) $(COMMAND_LINE_SOURCES) $(PROGRAM_SOURCES)
 LIBRARY := $(B)/libscreed.a
+COMMAND_LINE := $(B)/libcommand_line.a
 SCREED := $(B)/screed
 
 # ---- flags, in response files: objects are rebuilt when they change, and pkg-config runs once ----------------------------------
@@ -63,7 +66,8 @@ $(B)/link.flags: FORCE
 	   echo "-lpagmo -lboost_serialization -ltbb $(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
 
 # Libraries whose headers are known to single files.
-TINY_DNN_OBJECTS := $(patsubst %.cpp,$(B)/%.o,$(shell grep -rl '"nn/training/tiny_dnn.h"' --include='*.cpp' nn tools tests))
+TINY_DNN_SOURCES := $(shell grep -rl '"nn/training/tiny_dnn.h"' --include='*.cpp' nn tools tests)
+TINY_DNN_OBJECTS := $(call objects,$(TINY_DNN_SOURCES))
 $(TINY_DNN_OBJECTS): EXTRA_FLAGS = -idirafter $(B)/tiny_dnn
 $(TINY_DNN_OBJECTS): | $(B)/tiny_dnn/third_party/stb
 # tiny-dnn looks for stb in a folder of its own sources, which Debian's package leaves out.
@@ -71,10 +75,11 @@ $(B)/tiny_dnn/third_party/stb:
 	@mkdir -p $(@D)
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
-$(B)/host_sim/render/chart/svg_png.o: EXTRA_FLAGS = $(RSVG_FLAGS)
+RSVG_SOURCES := host_sim/render/chart/svg_png.cpp
+$(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
 SDL_FLAGS = $(shell $(call package_flags,sdl2))
-$(addprefix $(B)/,tools/screed/viewer/window.o tools/screed/viewer/gamepad_input.o tests/unit/tools/screed/viewer/gamepad_input_test.o): \
-  EXTRA_FLAGS = $(SDL_FLAGS)
+SDL_SOURCES := tools/screed/viewer/window.cpp tools/screed/viewer/gamepad_input.cpp tests/unit/tools/screed/viewer/gamepad_input_test.cpp
+$(call objects,$(SDL_SOURCES)): EXTRA_FLAGS = $(SDL_FLAGS)
 
 # ---- generated headers: what the program knows of its surroundings; only files that include them depend on them ----------------
 
@@ -119,19 +124,60 @@ endef
 else ifneq ($(HEADERS),no)
 $(error HEADERS=$(HEADERS): yes or no)
 endif
-# Tests are compiled once and run once: half of their time is the compiler's.
-SET_FLAGS_test := $(if $(filter release,$(BUILD)),-O0)
+# A release is compiled with -O2 where it computes, and more quickly where it does not: what runs once in a run, and tests. A compiled
+# header brings along the level that it was compiled with.
+ifeq ($(BUILD),release)
+SET_FLAGS_cold := -O1
+SET_FLAGS_test := -O0
+endif
 SET_FLAGS = $(SET_FLAGS_$(HEADER_SET))
+COLD_SOURCES := $(COMMAND_LINE_SOURCES) $(PROGRAM_SOURCES) $(filter $(addsuffix /%,$(addprefix host_sim/,campaign engine benchmark search soil_validation \
+  ground_station/link ground_station/station ground_station/calibration run/experiment run/report run/comparison \
+  render/chart render/report physics/vehicle/urdf)),$(HOST_SOURCES))
 
 # Named without .gch on a command line, for which both compilers want the header itself beside it.
-$(B)/headers/%.h.gch: HEADER_SET = $*
-$(B)/headers/%.h.gch: tools/build/headers/%.h $(B)/host.flags
+define headers_of_set
+$(B)/headers/$(1).h.gch: HEADER_SET = $(1)
+$(B)/headers/$(1).h.gch: tools/build/headers/$(2).h $(B)/host.flags
+	@mkdir -p $$(@D)
+	@echo "  CXX  $$< $$(SET_FLAGS)"
+	@cp $$< $$(@:.gch=)
+	@$$(CXX) @$(B)/host.flags $$(SET_FLAGS) $(if $(findstring clang,$(CXX)),-fpch-instantiate-templates) -x c++-header $$< -o $$@
+endef
+$(eval $(call headers_of_set,host,host))
+$(eval $(call headers_of_set,cold,host))
+$(eval $(call headers_of_set,test,test))
+
+# ---- groups: neighbouring sources are compiled as one, since they share most of what they include -----------------------------------
+
+# Kernels for several instruction sets give the same names; what mutation testing changes is compiled again and again; some need flags of
+# their own.
+ALONE := tools/command_line/% $(addsuffix /%,host_sim/physics/kernels host_sim/physics/particles nn/batch) \
+         $(shell sed -nE 's/^((host_sim|nn)[^ ]*\.cpp) .*/\1/p' tools/mutants/targets.txt) \
+         $(TINY_DNN_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
+# $(call in_groups,SET,SOURCES,HEADERS,FLAGS): SET_OBJECTS are the objects of all of them. Tests' helpers, which are no *_test.cpp, stay
+# alone.
+define in_groups
+$(call with_headers,$(3),$(2))
+$(1)_ALONE := $(filter $(ALONE),$(2)) $(filter tests/%,$(filter-out %_test.cpp,$(2)))
+$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $$($(1)_ALONE),$(2)) | awk -f tools/build/groups.awk)
+$(1)_GROUP_OBJECTS := $$(foreach group,$$($(1)_GROUPS),$(B)/groups/$(1)/$$(firstword $$(subst :, ,$$(group))).o)
+$(1)_OBJECTS := $$($(1)_GROUP_OBJECTS) $$(call objects,$$($(1)_ALONE))
+$$($(1)_GROUP_OBJECTS): HEADER_SET = $(3)
+$$($(1)_GROUP_OBJECTS): GROUP_FLAGS = $(4)
+$$($(1)_GROUP_OBJECTS): $(if $(filter yes,$(HEADERS)),$(B)/headers/$(3).h.gch)
+$$(foreach group,$$($(1)_GROUPS),$$(eval $(B)/groups/$(1)/$$(subst :,.cpp: ,$$(subst $$(comma), ,$$(group)))))
+endef
+comma := ,
+$(B)/groups/%.cpp: tools/build/group.awk FORCE
 	@mkdir -p $(@D)
-	@echo "  CXX  $<"
-	@cp $< $(@:.gch=)
-	@$(CXX) @$(B)/host.flags $(SET_FLAGS) $(if $(findstring clang,$(CXX)),-fpch-instantiate-templates) -x c++-header $< -o $@
-$(eval $(call with_headers,host,$(HOST_SOURCES)))
-$(eval $(call with_headers,command,$(PROGRAM_SOURCES)))
+	@awk -f tools/build/group.awk $(filter-out %.awk FORCE,$^) | $(WRITE_CHANGED)
+$(B)/groups/%.o: $(B)/groups/%.cpp $(B)/host.flags | $(GENERATED)
+	@echo "  CXX  $(notdir $*)"
+	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) -Wno-subobject-linkage $(SET_FLAGS) -MMD -MP -c $< -o $@
+
+$(eval $(call in_groups,HOT,$(filter-out $(COLD_SOURCES),$(HOST_SOURCES)),host))
+$(eval $(call in_groups,COLD,$(COLD_SOURCES),cold))
 
 # ---- objects, library, program -------------------------------------------------------------------------------------------------
 
@@ -150,9 +196,13 @@ define link
 	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $(1) -o $@
 endef
 
-$(LIBRARY): $(call objects,$(LIBRARY_SOURCES)) $(B)/link.flags
+LIBRARY_OBJECTS := $(call objects,$(CORE_SOURCES)) $(HOT_OBJECTS) $(COLD_OBJECTS)
+$(LIBRARY): $(LIBRARY_OBJECTS) $(B)/link.flags
 	@rm -f $@
 	@ar rcs $@ $(filter %.o,$^)
+$(COMMAND_LINE): $(call objects,$(COMMAND_LINE_SOURCES))
+	@rm -f $@
+	@ar rcs $@ $^
 $(SCREED): $(B)/tools/screed/main.o $(LIBRARY) $(B)/link.flags
 	$(call link)
 

@@ -23,7 +23,7 @@ FLASH_BOARD = --sketch-usb $(BOARD_USB_VID:0x%=%):$(BOARD_USB_PID:0x%=%) \
   --bootloader-usb $(BOARD_USB_VID:0x%=%):$(BOARD_BOOTLOADER_USB_PID:0x%=%) $(if $(PORT),--port '$(PORT)')
 
 .PHONY: flash fuses monitor
-$(SCREED_FLASH): $(call objects,$(FLASH_SOURCES))
+$(SCREED_FLASH): $(call objects,$(FLASH_SOURCES)) $(COMMAND_LINE)
 	@echo "  LINK $@"
 	@$(CXX) $(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $^ -pthread -o $@
 
@@ -44,8 +44,7 @@ monitor: $(SCREED_FLASH)  ## serial monitor on the board (PORT=/dev/ttyACM0)
 FLASH_TESTS := $(B)/tests/flash_tests
 FLASH_TEST_SOURCES := $(call sources,tests/flash)
 TESTS += $(FLASH_TESTS)
-$(eval $(call in_groups,FLASH,$(FLASH_TEST_SOURCES)))
-$(eval $(call with_headers,test,$(FLASH_TEST_SOURCES)))
+$(eval $(call in_groups,FLASH,$(FLASH_TEST_SOURCES),test))
 TEST_IMAGES += $(SCREED_FLASH) $(FIRMWARE_BUILD)/screed.hex
 test: export SCREED_FLASH_PROGRAM := $(abspath $(SCREED_FLASH))
 test: export SCREED_FLASH_IMAGE := $(abspath $(FIRMWARE_BUILD))/screed.hex

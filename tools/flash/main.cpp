@@ -1,18 +1,16 @@
 // screed_flash: brings an image onto the robot's board over USB, and checks the board's fuses. A
 // program of its own, not a part of `screed`: it needs neither the simulator nor its libraries, so
 // a machine beside the robot builds it in seconds.
-#include <CLI/CLI.hpp>
-
 #include <iostream>
 #include <string>
 
 #include "host_sim/core/errors.h"
+#include "tools/command_line/program.h"
 #include "tools/flash/avrdude.h"
 #include "tools/flash/board_port.h"
 #include "tools/flash/clock.h"
 #include "tools/flash/fuses.h"
 #include "tools/flash/usb_serial.h"
-#include "tools/screed/cli/program.h"
 
 namespace {
 
@@ -118,36 +116,35 @@ void fuses(const Options& options) {
   compare_fuses(wanted, flash::read_fuses(avrdude));
 }
 
-void add_usb_options(CLI::App& command, Options& options) {
+void add_usb_options(screed::Command& command, Options& options) {
   command
       .add_option("--sketch-usb", options.sketch_usb, "USB id of the board while its sketch runs")
-      ->capture_default_str();
+      ->show_default();
   command
       .add_option("--bootloader-usb", options.bootloader_usb, "USB id of the board's bootloader")
-      ->capture_default_str();
+      ->show_default();
   command.add_option("--port", options.port, "Serial port (default: search for the board on USB)");
   command.add_option("--sys", options.roots.sys, "Directory of the kernel's devices")
-      ->capture_default_str();
-  command.add_option("--dev", options.roots.dev, "Directory of the device files")
-      ->capture_default_str();
+      ->show_default();
+  command.add_option("--dev", options.roots.dev, "Directory of the device files")->show_default();
 }
 
-void add_avrdude_options(CLI::App& command, Options& options) {
+void add_avrdude_options(screed::Command& command, Options& options) {
   add_usb_options(command, options);
   command.add_option("--mcu", options.avrdude.mcu, "avrdude's name of the microcontroller")
       ->required();
   command.add_option("--avrdude", options.avrdude.program, "Path of the avrdude program")
-      ->capture_default_str();
+      ->show_default();
   command
       .add_option("--idle-timeout", options.idle_timeout_s,
                   "Time without output after which avrdude is terminated [s]")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+      ->range(0.1, 600.0)
+      ->show_default();
   command
       .add_option("--touch-wait", options.touch_s,
                   "Time to wait for the bootloader after each 1200 baud touch [s]")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+      ->range(0.1, 600.0)
+      ->show_default();
   command.add_flag("--verbose", options.avrdude.show_output, "Show avrdude's output");
 }
 
@@ -155,8 +152,7 @@ void add_avrdude_options(CLI::App& command, Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Flashes the robot's board over USB", "screed_flash");
-  app.require_subcommand(1);
+  screed::Command app("Flashes the robot's board over USB", "screed_flash");
 
   auto* write = app.add_subcommand(
       "write", "Find the board, start its bootloader, write and verify an image");
@@ -169,23 +165,22 @@ int main(int argc, char** argv) {
   auto* fuse =
       app.add_subcommand("fuses", "Print the board's fuses, or compare them with given values");
   add_avrdude_options(*fuse, options);
-  fuse->add_option("--low", options.low, "Expected low fuse byte (hexadecimal)")
-      ->capture_default_str();
-  fuse->add_option("--high", options.high, "Expected high fuse byte (hexadecimal)")
-      ->capture_default_str();
+  fuse->add_option("--low", options.low, "Expected low fuse byte (hexadecimal)")->show_default();
+  fuse->add_option("--high", options.high, "Expected high fuse byte (hexadecimal)")->show_default();
   fuse->add_option("--extended", options.extended, "Expected extended fuse byte (hexadecimal)")
-      ->capture_default_str();
-  fuse->add_option("--lock", options.lock, "Expected lock byte (hexadecimal)")
-      ->capture_default_str();
+      ->show_default();
+  fuse->add_option("--lock", options.lock, "Expected lock byte (hexadecimal)")->show_default();
   fuse->add_option("--programmer", options.avrdude.programmer,
                    "avrdude's name of an ISP programmer, or avr109 for the bootloader");
   fuse->add_flag("--write", options.write_fuses, "Write the fuses before comparing");
 
+  void (*action)(const Options&) = nullptr;
+  write->callback([&] { action = write_image; });
+  port->callback([&] { action = print_port; });
+  fuse->callback([&] { action = fuses; });
   return screed::run_program(app, argc, argv, [&] {
     options.avrdude.idle_timeout = milliseconds(options.idle_timeout_s);
-    if (*write) write_image(options);
-    if (*port) print_port(options);
-    if (*fuse) fuses(options);
+    action(options);
     return 0;
   });
 }

@@ -3,15 +3,42 @@
 CPP_FILES := $(shell find firmware hal host_sim nn tools tests boards -name '*.cpp' -o -name '*.h' | LC_ALL=C sort)
 # clang does not know what watchdog.cpp and reset_cause.cpp are made of: instructions of avr-libc's wdt.h, a naked function in C++.
 AVR_TIDY_SOURCES := $(filter-out hal/avr/watchdog.cpp hal/avr/reset_cause.cpp,$(call sources,hal/avr))
-HOST_TIDY_SOURCES := $(sort $(ALL_HOST_SOURCES) $(MCU_TEST_SOURCES) $(MCU_LONG_SOURCES))
 
-# Checks of a moment come first; then clang-tidy over sources whose object, flags or checks changed since they were last found clean,
-# as many at a time as go together.
-.PHONY: lint check-format check-includes check-words check-root check-one-source check-links format
-lint: check-root check-format check-includes check-words check-one-source check-links check-telemetry-page $(call objects,$(HOST_TIDY_SOURCES)) $(B)/lint.flags $(B)/mcu_tests.flags $(B)/avr.flags \
-      $(FIRMWARE_BUILD)/generated/build_info.h  ## formatting, layers, words, static analysis
-	@tools/lint/run.sh $(B) $(HOST_TIDY_SOURCES) $(AVR_TIDY_SOURCES)
-	@echo "lint: $(words $(HOST_TIDY_SOURCES) $(AVR_TIDY_SOURCES)) sources clean"
+# clang-tidy looks at some thirty sources at a time (tools/lint/units.awk), again when one of their objects is new.
+# $(call tidy_set,SET,SOURCES ALONE AND GROUPS,FLAGS,CHECKS): SET_TIDY are the stamps.
+define tidy_set
+$(1)_UNITS := $$(shell printf '%s\n' $(2) | awk -v build=$(B) -v folder=$(B)/groups/$(1) -f tools/lint/units.awk)
+$(1)_TIDY := $$(foreach unit,$$($(1)_UNITS),$(B)/tidy/$(1)/$$(subst /,-,$$(basename $$(firstword $$(subst $$(comma), ,$$(lastword $$(subst :, ,$$(unit))))))).tidy)
+$$(foreach unit,$$($(1)_UNITS),$$(eval $$(call tidy_unit,$(B)/tidy/$(1)/$$(subst /,-,$$(basename $$(firstword $$(subst $$(comma), ,$$(lastword $$(subst :, ,$$(unit))))))).tidy,$$(subst $$(comma), ,$$(firstword $$(subst :, ,$$(unit)))),$$(subst $$(comma), ,$$(lastword $$(subst :, ,$$(unit)))),$(3),$(4))))
+endef
+define tidy_unit
+$(1): $(2) $(B)/$(4).flags .clang-tidy tools/lint/tidy.sh tools/lint/paste.awk
+	@tools/lint/tidy.sh $$@ $(B)/$(4).flags '$(5)' $(3)
+endef
+# Tests are straight-line code with small indices: without the analyser and without the widening of products.
+TEST_CHECKS := -clang-analyzer-*$(comma)-bugprone-implicit-widening-of-multiplication-result
+OTHER_SOURCES := $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants)
+$(eval $(call tidy_set,CORE,$(CORE_SOURCES),firmware))
+$(eval $(call tidy_set,HOT,$(HOT_GROUPS) $(HOT_ALONE),lint))
+$(eval $(call tidy_set,COLD,$(COLD_GROUPS) $(COLD_ALONE) tools/screed/main.cpp,lint))
+$(eval $(call tidy_set,OTHER,$(OTHER_SOURCES),lint))
+TIDY := $(CORE_TIDY) $(HOT_TIDY) $(COLD_TIDY) $(OTHER_TIDY)
+define tidy_tests
+$(call tidy_set,$(1),$($(1)_GROUPS) $($(1)_ALONE),$(2),$$(TEST_CHECKS))
+TIDY += $$($(1)_TIDY)
+endef
+$(foreach set,UNIT SITL LONG FLASH,$(eval $(call tidy_tests,$(set),lint)))
+$(foreach set,MCU MCU_LONG,$(eval $(call tidy_tests,$(set),mcu_tests)))
+# What has no object of the host: one by one.
+AVR_TIDY := $(AVR_TIDY_SOURCES:%.cpp=$(B)/tidy/%.tidy)
+$(AVR_TIDY): $(B)/tidy/%.tidy: %.cpp $(FIRMWARE_BUILD)/%.o $(B)/avr.flags .clang-tidy
+	@tools/lint/tidy.sh $@ $(B)/avr.flags '' $<
+
+# Checks of a moment come first.
+.PHONY: lint check check-format check-includes check-words check-root check-one-source check-links format
+check: check-root check-format check-includes check-words check-one-source check-links check-telemetry-page  ## formatting, layers, words, links: the checks of seconds
+lint: check $(TIDY) $(AVR_TIDY)  ## the same and static analysis
+	@echo "lint: clean"
 check-root:
 	@tools/lint/check_root.sh
 check-format:
@@ -39,7 +66,3 @@ $(B)/avr.flags: FORCE
 	@mkdir -p $(@D)
 	@echo "--target=avr -mmcu=$(BOARD_MCU) -Os -D__HAS_DELAY_CYCLES=1 -std=c++14 -DF_CPU=$(BOARD_CLOCK_HZ)UL -D__STDC_LIMIT_MACROS -D__STDC_CONSTANT_MACROS \
 	  $(AVR_INCLUDES) -isystem /usr/lib/avr/include -isystem $(ARDUINO_CORE) -isystem $(ARDUINO_VARIANT)" | $(WRITE_CHANGED)
-
-# One of them.
-$(B)/%.tidy: %.cpp $(B)/%.o $(B)/firmware.flags $(B)/lint.flags .clang-tidy
-	@tools/lint/run.sh $(B) $<

@@ -1,7 +1,7 @@
 // `screed`, the one host program.
+#include "tools/command_line/program.h"
 #include "tools/screed/cli/command_line.h"
 #include "tools/screed/cli/interrupt.h"
-#include "tools/screed/cli/program.h"
 #include "version.h"
 
 int main(int argc, char** argv) {

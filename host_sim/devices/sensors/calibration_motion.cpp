@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
@@ -59,7 +60,6 @@ Quaterniond attitude_at(double time_s) {
 }  // namespace
 
 ImuTruth calibration_motion(double time_s) {
-  constexpr double kTick_s = 1.0 / kTickRate_hz;
   const Quaterniond before = attitude_at(time_s - kTick_s);
   const Quaterniond after = attitude_at(time_s);
   const AngleAxisd turn(before.conjugate() * after);

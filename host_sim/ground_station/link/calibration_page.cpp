@@ -9,7 +9,7 @@ namespace screed {
 namespace {
 
 constexpr double kSilent_s = 1.0;
-constexpr int kCurveHeight = 9;
+constexpr int kMagnetCurveHeight = 9;
 constexpr double kCurve_s = 60.0;
 
 bool lost(const CalibrationPageInput& input) {
@@ -75,7 +75,7 @@ void draw_calibration(TextCanvas& page, const CalibrationPageInput& input) {
                   std::floor(collector.mag_coverage() * 100.0), collector.mag_samples().size());
     page.text_within(2, y++, page.width() - 2, text, old ? CellStyle::kDim : CellStyle::kNormal);
   }
-  const int height = std::min(kCurveHeight, footer - y - 2);
+  const int height = std::min(kMagnetCurveHeight, footer - y - 2);
   if (height >= 3) draw_field(page, y, height, input);
   if (footer > 0) {
     const bool cut = room < positions || height < 3;

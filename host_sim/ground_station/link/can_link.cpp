@@ -21,7 +21,7 @@
 namespace screed {
 namespace {
 
-constexpr std::chrono::milliseconds kLookAgain{250};
+constexpr std::chrono::milliseconds kCanLookAgain{250};
 /// What a burst may pile up while this program draws its screen.
 constexpr int kReceiveBuffer = 1 << 20;
 
@@ -139,9 +139,9 @@ void CanLink::look_at_interface() {
 }
 
 void CanLink::receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) {
-  if (std::chrono::steady_clock::now() - looked_at_ >= kLookAgain) look_at_interface();
+  if (std::chrono::steady_clock::now() - looked_at_ >= kCanLookAgain) look_at_interface();
   if (index_ == 0) {
-    std::this_thread::sleep_for(std::min(wait, kLookAgain));
+    std::this_thread::sleep_for(std::min(wait, kCanLookAgain));
     return;
   }
   if (wait_readable(socket_.get(), wait) != Readiness::kNothing) read_frames(frames);

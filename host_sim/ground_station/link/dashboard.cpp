@@ -16,12 +16,6 @@ constexpr int kBarWidth = 11;
 constexpr int kCurveHeight = 5;
 constexpr int kAxis = 10;
 
-std::string number(const char* pattern, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 std::string clock_text(uint64_t time_us) {
   const auto seconds = static_cast<unsigned long long>(time_us / 1'000'000U % 86400U);
   char text[24];

@@ -16,12 +16,6 @@ namespace {
 
 constexpr uint64_t kOld_us = 1'000'000;
 
-std::string number(const char* pattern, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 /// Makes rows of one robot at one time. A row belongs to the message that carries its value.
 class RowMaker {
  public:
@@ -176,6 +170,12 @@ DashboardGroup fault_group(const DashboardInput& input, const RobotHistory& robo
 }
 
 }  // namespace
+
+std::string number(const char* pattern, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
 
 bool link_lost(const DashboardInput& input, const RobotHistory& robot) {
   return !input.link.up || input.now_us > robot.last_us() + kOld_us;

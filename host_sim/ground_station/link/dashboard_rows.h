@@ -32,6 +32,9 @@ struct DashboardGroup {
   std::vector<DashboardRow> rows;
 };
 
+/// A value as printf writes it.
+std::string number(const char* pattern, double value);
+
 /// Nothing has come from the robot for a second, or the link is down: everything shown is history.
 bool link_lost(const DashboardInput& input, const RobotHistory& robot);
 

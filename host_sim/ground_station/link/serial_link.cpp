@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kLookAgain{500};
+constexpr std::chrono::milliseconds kSerialLookAgain{500};
 
 speed_t speed_of(int baud) {
   switch (baud) {
@@ -125,9 +125,9 @@ void SerialLink::look_for_port() {
 
 void SerialLink::receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) {
   if (!port_.is_open()) {
-    if (std::chrono::steady_clock::now() - looked_at_ >= kLookAgain) look_for_port();
+    if (std::chrono::steady_clock::now() - looked_at_ >= kSerialLookAgain) look_for_port();
     if (!port_.is_open()) {
-      std::this_thread::sleep_for(std::min(wait, kLookAgain));
+      std::this_thread::sleep_for(std::min(wait, kSerialLookAgain));
       return;
     }
   }

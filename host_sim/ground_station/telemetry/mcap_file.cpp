@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 
 namespace screed {
 namespace {
@@ -56,10 +56,10 @@ uint32_t crc32_of(const std::string& bytes) {
 }
 
 std::string json_schema(const MessageInfo& message) {
-  nlohmann::ordered_json properties = nlohmann::ordered_json::object();
+  Json properties = Json::object();
   for (const SignalInfo& signal : message.signals) {
     if (signal.role != SignalRole::kData) continue;
-    nlohmann::ordered_json property;
+    Json property;
     property["type"] = signal.flags[0] != '\0' ? "boolean"
                        : signal.values.empty() ? "number"
                                                : "string";
@@ -70,10 +70,10 @@ std::string json_schema(const MessageInfo& message) {
     if (!description.empty()) property["description"] = description;
     properties[signal.name] = property;
   }
-  return nlohmann::ordered_json{{"title", std::string("screed.") + message.title},
-                                {"description", message.comment},
-                                {"type", "object"},
-                                {"properties", properties}}
+  return Json{{"title", std::string("screed.") + message.title},
+              {"description", message.comment},
+              {"type", "object"},
+              {"properties", properties}}
       .dump();
 }
 

@@ -1,18 +1,17 @@
 // Deformable soil on a grid: a step of it. soil_cells.cpp has what lies under a footprint,
 // soil_reaction.cpp how it yields there.
 #include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/core/constants.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "host_sim/physics/soil/footprint_path.h"
 
 namespace screed {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 // Greatest E A dt^2 / mass, A the touched area, of a long footprint that the solver does not tilt:
 // its pitch feels E as an explicit spring, which is stable up to 4.
 constexpr double kStableStiffness = 0.3;

@@ -39,7 +39,11 @@ void write_grey16_png(const std::filesystem::path& path, int width, int height,
 void write_grey8_bmp(const std::filesystem::path& path, int width, int height,
                      std::span<const uint16_t> samples);
 
-/// Writes an 8-bit RGB PNG from width * height * 3 bytes, row 0 = top. Otherwise as above.
+/// The bytes of an 8-bit RGB PNG of width * height * 3 bytes, row 0 = top. Throws RunError when
+/// they cannot be made.
+std::vector<uint8_t> rgb_png(int width, int height, std::span<const uint8_t> rgb);
+
+/// The same as a file. Otherwise as above.
 void write_rgb_png(const std::filesystem::path& path, int width, int height,
                    std::span<const uint8_t> rgb);
 

@@ -136,7 +136,19 @@ class HeightField {
   /// edge too, when the coordinate rounds outwards) the gradient across the edge is 0. Coordinates
   /// that are no numbers, or with wrap more than 1e9 beds away, are read as the south-west
   /// corner's.
-  [[nodiscard]] SurfacePoint at(double x, double y) const;
+  [[nodiscard]] SurfacePoint at(double x, double y) const { return at(along_x(x), along_y(y)); }
+
+  /// A place along one axis: between nodes `low` and `high`, `fraction` of the way.
+  struct AxisPosition {
+    size_t low;
+    size_t high;
+    double fraction;
+    double gradient_scale;  // units a node to rise over run; 0 outside
+  };
+  /// at() in two steps, for code that looks at many places of a row or a column: the same bits.
+  [[nodiscard]] AxisPosition along_x(double x) const { return locate(x, x_axis_); }
+  [[nodiscard]] AxisPosition along_y(double y) const { return locate(y, y_axis_); }
+  [[nodiscard]] SurfacePoint at(const AxisPosition& u, const AxisPosition& v) const;
 
   /// Whether (x, y) is on the bed (with wrap: on its central copy).
   [[nodiscard]] bool inside(double x, double y) const {
@@ -163,13 +175,6 @@ class HeightField {
     double begin_m;        // the west or south edge
     double last;           // nodes - 1
     double beds_per_node;  // 1 / nodes
-  };
-  /// A place along one axis: between nodes `low` and `high`, `fraction` of the way.
-  struct AxisPosition {
-    size_t low;
-    size_t high;
-    double fraction;
-    double gradient_scale;  // units a node to rise over run; 0 outside
   };
 
   [[nodiscard]] int cells_along(int nodes) const { return wrap_ ? nodes : nodes - 1; }
@@ -225,9 +230,7 @@ inline HeightField::AxisPosition HeightField::locate_wrapped(double node, const 
   return {static_cast<size_t>(low), static_cast<size_t>(high), within - low, gradient_scale_};
 }
 
-inline SurfacePoint HeightField::at(double x, double y) const {
-  const AxisPosition u = locate(x, x_axis_);
-  const AxisPosition v = locate(y, y_axis_);
+inline SurfacePoint HeightField::at(const AxisPosition& u, const AxisPosition& v) const {
   const Height* south = heights_.data() + v.low * static_cast<size_t>(x_axis_.nodes);
   const Height* north = heights_.data() + v.high * static_cast<size_t>(x_axis_.nodes);
   // In doubles a difference of heights cannot overflow and is exact.

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kPitch_m = 0.010;  // of the links, about
 constexpr int kRows = 2;            // of contact points: the outer and the inner edge of the shoes
-constexpr double kSinkIn_m = 0.0004;
+constexpr double kChainSinkIn_m = 0.0004;
 constexpr double kCarryingPins = 6;  // on level ground: three under each wheel
-constexpr double kDampingRatio = 0.7;
+constexpr double kChainDampingRatio = 0.7;
 
 // Between pin and wheel. The teeth are as soft as the light rear wheel allows, whose own motion is
 // a step behind the pins'.
@@ -80,10 +80,10 @@ ChainTrack::ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& 
 
   const double carrying = kRows * kCarryingPins;
   law_.friction = friction;
-  law_.stiffness = load.weight_n / (kSinkIn_m * carrying);
+  law_.stiffness = load.weight_n / (kChainSinkIn_m * carrying);
   // All shoes of the lower run damp, however little they carry.
   const double touching = kRows * (2.0 * half_length_ / pitch);
-  law_.damping = 2.0 * kDampingRatio * std::sqrt(law_.stiffness * load.mass_kg / touching) *
+  law_.damping = 2.0 * kChainDampingRatio * std::sqrt(law_.stiffness * load.mass_kg / touching) *
                  std::sqrt(carrying / touching);
 
   shoes_.assign(rest_.size(),

@@ -12,7 +12,7 @@ namespace {
 
 // Of two robots, by their reduced mass, critically damped: a push of 20 N presses two of 1.4 kg
 // 0.7 mm together, an impact at 0.5 m/s some 0.9 mm.
-constexpr double kFrequency_rad_per_s = 200.0;
+constexpr double kRobotFrequency_rad_per_s = 200.0;
 // Robots that are put into one another part without a bang.
 constexpr double kDeepest_m = 0.02;
 constexpr double kPi = std::numbers::pi;
@@ -130,8 +130,8 @@ void RobotContact::push(const Touch& touch, double dt) const {
   const Side solid(*touch.solid, touch.at, touch.solid_drive, touch.solid_along);
   const double share = touch.depth / total_depth_;
   const double reduced_kg = 1.0 / (1.0 / touch.pointed->robot_kg + 1.0 / touch.solid->robot_kg);
-  const double stiffness = reduced_kg * kFrequency_rad_per_s * kFrequency_rad_per_s;
-  const double damping = 2.0 * reduced_kg * kFrequency_rad_per_s;
+  const double stiffness = reduced_kg * kRobotFrequency_rad_per_s * kRobotFrequency_rad_per_s;
+  const double damping = 2.0 * reduced_kg * kRobotFrequency_rad_per_s;
   const double gain = dt * (damping + dt * stiffness);
 
   const double speed = touch.normal.dot(point.velocity() - solid.velocity());

@@ -8,7 +8,7 @@ namespace screed {
 namespace {
 
 // Of the whole robot on one point, critically damped: at 1 m/s it goes 1.2 mm into a wall.
-constexpr double kFrequency_rad_per_s = 300.0;
+constexpr double kWallFrequency_rad_per_s = 300.0;
 constexpr double kSliding = 1.0 - 1e-9;  // share of Coulomb's limit
 constexpr int kMaxSweeps = 60;
 constexpr double kTolerance_m_per_s = 1e-7;  // of the whole robot, by one impulse in a sweep
@@ -62,8 +62,8 @@ void WallContact::add_point(const Eigen::Vector3d& at, const Eigen::Vector3d& al
 
 void WallContact::close(double friction, double robot_kg) {
   friction_ = friction;
-  stiffness_ = robot_kg * kFrequency_rad_per_s * kFrequency_rad_per_s;
-  damping_ = 2.0 * robot_kg * kFrequency_rad_per_s;
+  stiffness_ = robot_kg * kWallFrequency_rad_per_s * kWallFrequency_rad_per_s;
+  damping_ = 2.0 * robot_kg * kWallFrequency_rad_per_s;
   tolerance_ = robot_kg * kTolerance_m_per_s;
   reach_ = 0.0;
   for (const Point& point : points_) reach_ = std::max(reach_, point.at.norm());

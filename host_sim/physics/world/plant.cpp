@@ -6,13 +6,12 @@
 #include <string>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
 namespace {
-
-constexpr double kTick_s = 1.0 / kTickRate_hz;
 // The motion of chassis and wheels enters a chain a step late (chain_track.h).
 constexpr double kLongestChainStep_s = 0.001;
 

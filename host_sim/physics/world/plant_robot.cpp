@@ -7,14 +7,13 @@
 #include <string>
 
 #include "hal/sample.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
 namespace {
-
-constexpr double kTick_s = 1.0 / kTickRate_hz;
 
 Eigen::Vector3d imu_position(const Assembly& model) {
   const int imu = model.imu;

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/render/chart/chart_axis.h"
 #include "host_sim/render/chart/chart_series.h"
-#include "host_sim/render/chart/svg_png.h"
 
 namespace screed {
 namespace {
 
-constexpr double kTitle_px = 26.0;
+constexpr double kMapTitle_px = 26.0;
 constexpr double kLeft_px = 62.0;
 constexpr double kRight_px = 16.0;
 constexpr double kColorBar_px = 58.0;
@@ -110,7 +110,7 @@ void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box) {
   }
   const double legend_width = box.width - kLeft_px - kRight_px;
   const double legend_px = legend_height_px(legend, legend_width);
-  const double top = box.top + kTitle_px + 12.0 + legend_px;
+  const double top = box.top + kMapTitle_px + 12.0 + legend_px;
   const double scale_px = map.scale.has_value() ? kColorBar_px + 14.0 : 0.0;
   const double bottom = box.top + box.height - level_axis_height_px("east [m]") - scale_px;
   const double width_m = ranges.x.high - ranges.x.low;
@@ -121,7 +121,7 @@ void draw_path_map(Svg& svg, const PathMap& map, const PixelBox& box) {
 
   svg.text({plot.left, box.top + 20.0}, svg_fitted(map.title, 14.0, legend_width + 8.0),
            {.size_px = 14.0, .bold = true});
-  draw_legend(svg, legend, plot.left, box.top + kTitle_px + 4.0, legend_width);
+  draw_legend(svg, legend, plot.left, box.top + kMapTitle_px + 4.0, legend_width);
 
   const ChartAxis x = tight_axis(ranges.x, 0.0, plot.left, plot.left + plot.width);
   ChartAxis y = tight_axis(ranges.y, 0.0, 0.0, plot.height);

@@ -6,12 +6,13 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <cstring>
+#include <cstdint>
 #include <memory>
+#include <span>
 
-#include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/grey_image.h"
+#include "host_sim/render/picture/color_map.h"
 
 namespace screed {
 namespace {
@@ -27,17 +28,6 @@ struct Release {
   if (error != nullptr) what += std::string(": ") + error->message;
   g_clear_error(&error);
   throw RunError(what);
-}
-
-cairo_status_t put(void* stream, const unsigned char* bytes, unsigned int size) {
-  const bool taken = std::fwrite(bytes, 1, size, static_cast<std::FILE*>(stream)) == size;
-  return taken ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
-cairo_status_t append(void* bytes, const unsigned char* more, unsigned int size) {
-  auto& all = *static_cast<std::vector<std::uint8_t>*>(bytes);
-  all.insert(all.end(), more, more + size);
-  return CAIRO_STATUS_SUCCESS;
 }
 
 }  // namespace
@@ -61,36 +51,17 @@ void write_svg_as_png(const std::filesystem::path& path, const std::string& svg,
   if (rsvg_handle_render_document(picture.get(), cairo.get(), &all, &error) == 0) {
     fail(path, error);
   }
-  AtomicFile file(path);
-  const cairo_status_t status =
-      cairo_surface_write_to_png_stream(surface.get(), put, file.stream());
+  const cairo_status_t status = cairo_status(cairo.get());
   if (status != CAIRO_STATUS_SUCCESS) {
-    throw RunError(path.string() + ": cannot be written: " + cairo_status_to_string(status));
+    throw RunError(path.string() +
+                   ": the picture cannot be drawn: " + cairo_status_to_string(status));
   }
-  file.commit();
-}
-
-std::vector<std::uint8_t> rgb_png(int width, int height, std::span<const std::uint8_t> rgb) {
-  const std::unique_ptr<cairo_surface_t, Release> surface(
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
-  unsigned char* const pixels = cairo_image_surface_get_data(surface.get());
-  if (pixels == nullptr) throw RunError("a picture has no memory");
-  const int stride = cairo_image_surface_get_stride(surface.get());
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) {
-      const std::uint8_t* const from = &rgb[3 * (static_cast<std::size_t>(row) * width + column)];
-      const std::uint32_t color =
-          std::uint32_t{from[0]} << 16U | std::uint32_t{from[1]} << 8U | std::uint32_t{from[2]};
-      std::memcpy(pixels + static_cast<std::ptrdiff_t>(row) * stride + std::ptrdiff_t{4} * column,
-                  &color, sizeof color);
-    }
-  }
-  cairo_surface_mark_dirty(surface.get());
-  std::vector<std::uint8_t> png;
-  if (cairo_surface_write_to_png_stream(surface.get(), append, &png) != CAIRO_STATUS_SUCCESS) {
-    throw RunError("a picture cannot be encoded");
-  }
-  return png;
+  cairo_surface_flush(surface.get());
+  // Rows of 32-bit pixels are never padded.
+  const std::span pixels(
+      reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface.get())),
+      static_cast<std::size_t>(all.width) * static_cast<std::size_t>(all.height));
+  write_rgb_png(path, static_cast<int>(all.width), static_cast<int>(all.height), bytes_of(pixels));
 }
 
 }  // namespace screed

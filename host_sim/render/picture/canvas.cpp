@@ -3,6 +3,7 @@
 
 #include <cairo/cairo.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -48,6 +49,13 @@ struct Canvas::Cairo {
   void fill(Color color) const {
     use(color);
     cairo_fill(context);
+  }
+  std::span<uint32_t> pixels() const {
+    cairo_surface_flush(surface);
+    // Rows of 32-bit pixels are never padded.
+    return {reinterpret_cast<uint32_t*>(cairo_image_surface_get_data(surface)),
+            static_cast<size_t>(cairo_image_surface_get_width(surface)) *
+                static_cast<size_t>(cairo_image_surface_get_height(surface))};
   }
   void choose_font(const TextStyle& style) const {
     cairo_select_font_face(context, "sans", CAIRO_FONT_SLANT_NORMAL,
@@ -136,25 +144,13 @@ double Canvas::text_width(const std::string& words, const TextStyle& style) {
   return extents.x_advance;
 }
 
-void Canvas::set_row(int x, int y, std::span<const Color> colors) {
-  const auto channel = [](double value) {
-    return static_cast<uint32_t>(std::lround(std::fmin(std::fmax(value, 0.0), 1.0) * 255.0));
-  };
-  cairo_surface_flush(cairo_->surface);
-  unsigned char* row = cairo_image_surface_get_data(cairo_->surface) +
-                       static_cast<ptrdiff_t>(y) * cairo_image_surface_get_stride(cairo_->surface);
-  uint32_t* pixel = reinterpret_cast<uint32_t*>(row) + x;
-  for (const Color& color : colors) {
-    *pixel++ = (channel(color.red) << 16) | (channel(color.green) << 8) | channel(color.blue);
-  }
-  cairo_surface_mark_dirty(cairo_->surface);
+void Canvas::set_row(int x, int y, std::span<const uint32_t> colors) {
+  std::copy(colors.begin(), colors.end(), pixels().data() + static_cast<ptrdiff_t>(y) * width_ + x);
+  release_pixels();
 }
 
 std::span<uint32_t> Canvas::pixels() {
-  cairo_surface_flush(cairo_->surface);
-  // Rows of 32-bit pixels are never padded.
-  return {reinterpret_cast<uint32_t*>(cairo_image_surface_get_data(cairo_->surface)),
-          static_cast<size_t>(width_) * static_cast<size_t>(height_)};
+  return cairo_->pixels();
 }
 
 void Canvas::release_pixels() {
@@ -176,20 +172,7 @@ std::vector<uint8_t> Canvas::rgb() const {
     throw RunError(std::string("picture cannot be drawn: ") + cairo_status_to_string(status) +
                    " (is a font installed, for instance fonts-dejavu-core?)");
   }
-  cairo_surface_flush(cairo_->surface);
-  const unsigned char* data = cairo_image_surface_get_data(cairo_->surface);
-  const int stride = cairo_image_surface_get_stride(cairo_->surface);
-  std::vector<uint8_t> bytes;
-  bytes.reserve(static_cast<size_t>(width_) * static_cast<size_t>(height_) * 3);
-  for (int y = 0; y < height_; ++y) {
-    const auto* row = reinterpret_cast<const uint32_t*>(data + static_cast<ptrdiff_t>(y) * stride);
-    for (int x = 0; x < width_; ++x) {
-      bytes.push_back(static_cast<uint8_t>(row[x] >> 16));
-      bytes.push_back(static_cast<uint8_t>(row[x] >> 8));
-      bytes.push_back(static_cast<uint8_t>(row[x]));
-    }
-  }
-  return bytes;
+  return bytes_of(cairo_->pixels());
 }
 
 void Canvas::write_png(const std::filesystem::path& path) const {

@@ -57,8 +57,8 @@ class Canvas {
   void text(Pixel anchor, const std::string& words, const TextStyle& style);
   [[nodiscard]] double text_width(const std::string& words, const TextStyle& style);
 
-  /// Sets opaque pixels from (x, y) to the right; all must be on the canvas.
-  void set_row(int x, int y, std::span<const Color> colors);
+  /// Sets opaque pixels, 0x00RRGGBB, from (x, y) to the right; all must be on the canvas.
+  void set_row(int x, int y, std::span<const uint32_t> colors);
 
   /// For code that draws pixel by pixel: 0x00RRGGBB, row by row from the top, width() a row; good
   /// until the next call of anything else. release_pixels() when done with them.

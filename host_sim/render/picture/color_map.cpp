@@ -81,7 +81,26 @@ constexpr std::array<Color, kCategoryColors> kCategories = {{
     {0.600, 0.800, 0.250},  // lime
 }};
 
+uint32_t byte_of(double component) {
+  return static_cast<uint32_t>(std::lround(std::clamp(component, 0.0, 1.0) * 255.0));
+}
+
 }  // namespace
+
+uint32_t pixel_of(Color color) {
+  return (byte_of(color.red) << 16) | (byte_of(color.green) << 8) | byte_of(color.blue);
+}
+
+std::vector<uint8_t> bytes_of(std::span<const uint32_t> pixels) {
+  std::vector<uint8_t> bytes(3 * pixels.size());
+  uint8_t* byte = bytes.data();
+  for (const uint32_t pixel : pixels) {
+    *byte++ = static_cast<uint8_t>(pixel >> 16);
+    *byte++ = static_cast<uint8_t>(pixel >> 8);
+    *byte++ = static_cast<uint8_t>(pixel);
+  }
+  return bytes;
+}
 
 Color height_color(double t) {
   return along(kHeightAnchors, t);

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace screed {
 
@@ -13,6 +16,11 @@ struct Color {
   double blue = 0.0;
   double alpha = 1.0;
 };
+
+/// 0x00RRGGBB, each component rounded to 8 bits, without the opacity.
+uint32_t pixel_of(Color color);
+/// Red, green and blue of each pixel.
+std::vector<uint8_t> bytes_of(std::span<const uint32_t> pixels);
 
 /// Of the walls of a bed.
 inline constexpr Color kBoards{0.66, 0.50, 0.32};

@@ -10,7 +10,7 @@ namespace screed {
 namespace {
 
 constexpr Color kCasing{1.0, 1.0, 1.0, 0.92};
-constexpr Color kInk{0.13, 0.15, 0.17};
+constexpr Color kPathInk{0.13, 0.15, 0.17};
 constexpr Color kArrow{0.62, 0.65, 0.68};
 constexpr double kPathWidth_px = 4.0;
 constexpr double kCasingWidth_px = 7.5;
@@ -96,8 +96,9 @@ void draw_robot(Canvas& canvas, const MapFrame& frame, const RobotOutline& robot
     canvas.polygon(corners(gear, rim_m), kCasing);
   }
   canvas.polygon(corners(hull, 0.0), {0.95, 0.96, 0.97});
-  canvas.polygon_outline(corners(hull, 0.0), 1.5, kInk);
-  for (const RobotPlate& gear : robot.shape.running_gear) canvas.polygon(corners(gear, 0.0), kInk);
+  canvas.polygon_outline(corners(hull, 0.0), 1.5, kPathInk);
+  for (const RobotPlate& gear : robot.shape.running_gear)
+    canvas.polygon(corners(gear, 0.0), kPathInk);
   // As parts of half the hull's length and width.
   const auto on_hull = [&](double forward, double left) {
     return pixel(0.5 * ((hull.front + hull.back) + forward * (hull.front - hull.back)),
@@ -111,7 +112,7 @@ void draw_robot(Canvas& canvas, const MapFrame& frame, const RobotOutline& robot
 }  // namespace
 
 void draw_path_start(Canvas& canvas, Pixel at, double radius_px) {
-  canvas.circle(at, radius_px + 2.0, kInk);
+  canvas.circle(at, radius_px + 2.0, kPathInk);
   canvas.circle(at, radius_px, {1.0, 1.0, 1.0});
 }
 
@@ -120,7 +121,7 @@ void draw_path_end(Canvas& canvas, Pixel at, double radius_px) {
     return PixelBox{at.x - half, at.y - half, 2.0 * half, 2.0 * half};
   };
   canvas.rectangle(square(radius_px + 0.5), {1.0, 1.0, 1.0});
-  canvas.rectangle(square(radius_px - 1.5), kInk);
+  canvas.rectangle(square(radius_px - 1.5), kPathInk);
 }
 
 void draw_path_overlay(Canvas& canvas, const MapFrame& frame, bool wrap,
@@ -162,10 +163,10 @@ void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& op
   constexpr double kSample_px = 28.0;
   Pixel row = frame.legend();
   const auto name = [&](const std::string& text) {
-    canvas.text({row.x + kSample_px + 12.0, row.y + 5.0}, text, {.color = kInk});
+    canvas.text({row.x + kSample_px + 12.0, row.y + 5.0}, text, {.color = kPathInk});
     row.y += kLegendRow_px;
   };
-  canvas.text(row, "Driven path", {.color = kInk, .bold = true});
+  canvas.text(row, "Driven path", {.color = kPathInk, .bold = true});
   row.y += kLegendRow_px;
   for (const size_t state : states_on_paths(options)) {
     canvas.line(std::array<Pixel, 2>{{{row.x + 2.0, row.y}, {row.x + kSample_px - 2.0, row.y}}},

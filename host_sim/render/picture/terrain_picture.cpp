@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/terrain_change.h"
@@ -10,7 +11,6 @@
 #include "host_sim/render/picture/canvas.h"
 #include "host_sim/render/picture/map_frame.h"
 #include "host_sim/render/picture/path_overlay.h"
-#include "host_sim/render/picture/relief.h"
 #include "host_sim/render/picture/state_color.h"
 
 namespace screed {
@@ -65,54 +65,23 @@ void check(const PictureOptions& options) {
   }
 }
 
-/// Central difference over two cells: smooth where the bilinear gradient jumps from cell to cell.
-Relief smooth_gradient(const HeightField& field, double x, double y) {
-  const double reach = field.spacing_m();
-  const auto low = [&](double at, double edge) {
-    return field.wrap() ? at - reach : std::max(at - reach, edge);
-  };
-  const auto high = [&](double at, double edge) {
-    return field.wrap() ? at + reach : std::min(at + reach, edge);
-  };
-  const double west = low(x, field.x_min());
-  const double east = high(x, field.x_max());
-  const double south = low(y, field.y_min());
-  const double north = high(y, field.y_max());
-  return {(field.at(east, y).height - field.at(west, y).height) / (east - west),
-          (field.at(x, north).height - field.at(x, south).height) / (north - south)};
-}
-
-Color shaded(Color color, double brightness, double strength) {
-  const double factor = 1.0 + strength * (brightness - 1.0);
-  return {color.red * factor, color.green * factor, color.blue * factor};
-}
-
-/// How much of a pixel a contour line covers, 0..1, for lines at multiples of `interval`.
-double contour_cover(double height, const Relief& slope, double interval, double metres_per_pixel) {
-  constexpr double kHalfWidth_px = 0.5;
-  const double rise_per_pixel = std::hypot(slope.x, slope.y) * metres_per_pixel;
-  if (rise_per_pixel < 1e-4 * interval) return 0.0;  // level ground is no line
-  const double distance_px =
-      std::abs(height - std::round(height / interval) * interval) / rise_per_pixel;
-  return std::clamp(kHalfWidth_px + 0.5 - distance_px, 0.0, 1.0);
-}
-
-/// Calls color(x, y) for the middle of every pixel of the map and paints it.
-template <typename ColorAt>
-void paint_map(Canvas& canvas, const MapFrame& frame, const ColorAt& color) {
+/// The middles of the map's pixels.
+PixelGrid grid_of(const MapFrame& frame) {
   const PixelBox& map = frame.map();
-  const int left = static_cast<int>(map.left);
-  const int top = static_cast<int>(map.top);
-  std::vector<Color> colors(static_cast<size_t>(map.width));
-  for (int row = top; row < top + static_cast<int>(map.height); ++row) {
-    const double y = frame.y_at(row + 0.5);
-    double pixel_x = left + 0.5;
-    for (Color& target : colors) {
-      target = color(frame.x_at(pixel_x), y);
-      pixel_x += 1.0;
-    }
-    canvas.set_row(left, row, colors);
-  }
+  PixelGrid grid;
+  grid.metres_per_pixel = 1.0 / frame.pixels_per_metre();
+  const auto columns = static_cast<int>(std::ceil(map.width - 0.5));
+  const auto rows = static_cast<int>(std::ceil(map.height - 0.5));
+  for (int i = 0; i < columns; ++i) grid.x_m.push_back(frame.x_at(map.left + 0.5 + i));
+  for (int j = 0; j < rows; ++j) grid.y_m.push_back(frame.y_at(map.top + 0.5 + j));
+  return grid;
+}
+
+void put_map(Canvas& canvas, const MapFrame& frame, std::span<const uint32_t> pixels) {
+  const auto width = static_cast<size_t>(frame.map().width);
+  int row = static_cast<int>(frame.map().top);
+  for (; !pixels.empty(); pixels = pixels.subspan(width))
+    canvas.set_row(static_cast<int>(frame.map().left), row++, pixels.first(width));
 }
 
 std::string millimetres(double metres) {
@@ -138,48 +107,24 @@ std::string figures(const TerrainChange& change) {
          depth(change.deepest_fill_m) + " high";
 }
 
-/// The colours and contour lines of a height map.
-struct HeightScale {
-  double low_m;
-  double high_m;
-  Ticks contours;
-
-  [[nodiscard]] Color color(double height_m) const {
-    return height_color((height_m - low_m) / (high_m - low_m));
-  }
-};
-
-HeightScale height_scale(const HeightRange& range) {
+HeightColors height_scale(const HeightRange& range) {
   constexpr double kMinRange_m = 0.001;  // level ground still gets a colour bar
   constexpr int kMaxContours = 14;
   const double high = std::max(range.high_m, range.low_m + kMinRange_m);
   return {range.low_m, high, round_ticks(range.low_m, high, kMaxContours)};
 }
 
-HeightScale height_scale(const TerrainStatistics& s, const PictureOptions& options) {
+HeightColors height_scale(const TerrainStatistics& s, const PictureOptions& options) {
   return height_scale(options.heights.value_or(HeightRange{s.lowest_m, s.highest_m}));
 }
 
-/// The ground at a place, with light and contour lines.
-Color height_map_color(const HeightField& field, const HeightScale& heights, double x, double y,
-                       double metres_per_pixel) {
-  constexpr double kExaggeration = 1.6;
-  constexpr double kShadeStrength = 0.75;
-  constexpr double kContourStrength = 0.22;
-  const double height = field.at(x, y).height;
-  const Relief slope = smooth_gradient(field, x, y);
-  const double ink =
-      kContourStrength * contour_cover(height, slope, heights.contours.step, metres_per_pixel);
-  return shaded(heights.color(height), light(slope, kExaggeration) * (1.0 - ink), kShadeStrength);
-}
-
-ColorScale color_scale(const HeightScale& heights) {
+ColorScale color_scale(const HeightColors& heights) {
   return {heights.low_m * kMillimetres, heights.high_m * kMillimetres, "height (mm)",
           [heights](double mm) { return heights.color(mm / kMillimetres); }};
 }
 
 std::string subtitle_of(const HeightField& field, const TerrainStatistics& s,
-                        const HeightScale& scale, const PictureOptions& options) {
+                        const HeightColors& scale, const PictureOptions& options) {
   std::string line = options.subtitle.empty() ? figures(field, s) : options.subtitle;
   const Ticks& contours = scale.contours;
   const double first_line = std::ceil(s.lowest_m / contours.step) * contours.step;
@@ -209,9 +154,13 @@ void finish(Canvas& canvas, MapFrame& frame, const ColorScale& scale, BedEdge ed
 }  // namespace
 
 HeightRange common_range(const HeightField& one, const HeightField& other) {
-  const TerrainStatistics first = terrain_statistics(one);
-  const TerrainStatistics second = terrain_statistics(other);
-  return {std::min(first.lowest_m, second.lowest_m), std::max(first.highest_m, second.highest_m)};
+  const auto nodes = [](const HeightField& field) {
+    return std::span(field.heights(),
+                     static_cast<size_t>(field.nx()) * static_cast<size_t>(field.ny()));
+  };
+  const auto [low, high] = std::ranges::minmax(nodes(one));
+  const auto [other_low, other_high] = std::ranges::minmax(nodes(other));
+  return {std::min(low, other_low) * kHeightUnit_m, std::max(high, other_high) * kHeightUnit_m};
 }
 
 std::string height_map_subtitle(const HeightField& field, const PictureOptions& options) {
@@ -220,44 +169,40 @@ std::string height_map_subtitle(const HeightField& field, const PictureOptions& 
   return subtitle_of(field, statistics, height_scale(statistics, options), options);
 }
 
-Canvas draw_height_map(const HeightField& field, const PictureOptions& options) {
+Canvas draw_height_map(const HeightField& field, const PictureOptions& options,
+                       HeightPainter& painter) {
   check(options);
   Canvas canvas(options.width_px, options.height_px, kPaper);
   MapFrame frame(canvas, ground_of(field), legend_height_px(options));
 
   const TerrainStatistics statistics = terrain_statistics(field);
-  const HeightScale heights = height_scale(statistics, options);
-  const double metres_per_pixel = 1.0 / frame.pixels_per_metre();
-  paint_map(canvas, frame, [&](double x, double y) {
-    return height_map_color(field, heights, x, y, metres_per_pixel);
-  });
+  const HeightColors heights = height_scale(statistics, options);
+  put_map(canvas, frame, painter.paint(field, grid_of(frame), heights));
   finish(canvas, frame, color_scale(heights), field.edge(),
          subtitle_of(field, statistics, heights, options), options);
   return canvas;
 }
 
-MapImage height_map_image(const HeightField& field, const HeightRange& range, int side_px) {
+Canvas draw_height_map(const HeightField& field, const PictureOptions& options) {
+  HeightPainter painter;
+  return draw_height_map(field, options, painter);
+}
+
+MapImage height_map_image(const HeightField& field, const HeightRange& range, int side_px,
+                          HeightPainter& painter) {
   require_side("side_px", side_px, 1);
   MapImage image{ground_of(field), 0, 0, {}};
   const double width_m = image.ground.x_max - image.ground.x_min;
   const double height_m = image.ground.y_max - image.ground.y_min;
-  const double metres_per_pixel = std::max(width_m, height_m) / side_px;
-  image.width = std::max(1, static_cast<int>(std::lround(width_m / metres_per_pixel)));
-  image.height = std::max(1, static_cast<int>(std::lround(height_m / metres_per_pixel)));
-  image.rgb.reserve(std::size_t{3} * static_cast<std::size_t>(image.width) *
-                    static_cast<std::size_t>(image.height));
-  const HeightScale heights = height_scale(range);
-  for (int row = 0; row < image.height; ++row) {
-    const double y = image.ground.y_max - (row + 0.5) * height_m / image.height;
-    for (int column = 0; column < image.width; ++column) {
-      const double x = image.ground.x_min + (column + 0.5) * width_m / image.width;
-      const Color color = height_map_color(field, heights, x, y, metres_per_pixel);
-      for (const double part : {color.red, color.green, color.blue}) {
-        image.rgb.push_back(
-            static_cast<std::uint8_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255.0)));
-      }
-    }
-  }
+  PixelGrid grid;
+  grid.metres_per_pixel = std::max(width_m, height_m) / side_px;
+  image.width = std::max(1, static_cast<int>(std::lround(width_m / grid.metres_per_pixel)));
+  image.height = std::max(1, static_cast<int>(std::lround(height_m / grid.metres_per_pixel)));
+  for (int column = 0; column < image.width; ++column)
+    grid.x_m.push_back(image.ground.x_min + (column + 0.5) * width_m / image.width);
+  for (int row = 0; row < image.height; ++row)
+    grid.y_m.push_back(image.ground.y_max - (row + 0.5) * height_m / image.height);
+  image.rgb = bytes_of(painter.paint(field, grid, height_scale(range)));
   return image;
 }
 
@@ -277,13 +222,7 @@ Canvas draw_difference(const HeightField& before, const HeightField& after,
   const double step = round_ticks(0.0, largest, 5).step;
   largest = std::ceil(largest / step) * step;  // the colour bar ends on a round number
 
-  paint_map(canvas, frame, [&](double x, double y) {
-    constexpr double kExaggeration = 1.2;
-    constexpr double kShadeStrength = 0.3;
-    const double rise = after.at(x, y).height - before.at(x, y).height;
-    return shaded(difference_color(rise / largest),
-                  light(smooth_gradient(after, x, y), kExaggeration), kShadeStrength);
-  });
+  put_map(canvas, frame, paint_difference(grid_of(frame), before, after, largest));
   const ColorScale scale{-largest * kMillimetres, largest * kMillimetres, "change of height (mm)",
                          [&](double mm) { return difference_color(mm / kMillimetres / largest); }};
   finish(canvas, frame, scale, after.edge(),
@@ -292,8 +231,8 @@ Canvas draw_difference(const HeightField& before, const HeightField& after,
 }
 
 void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
-                              const PictureOptions& options) {
-  draw_height_map(field, options).write_png(path);
+                              const PictureOptions& options, HeightPainter& painter) {
+  draw_height_map(field, options, painter).write_png(path);
 }
 
 void write_difference_picture(const std::filesystem::path& path, const HeightField& before,

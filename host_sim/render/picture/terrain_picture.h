@@ -8,6 +8,7 @@
 
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/render/picture/canvas.h"
+#include "host_sim/render/picture/ground_painter.h"
 #include "host_sim/render/picture/map_image.h"
 #include "host_sim/render/picture/robot_shape.h"
 
@@ -66,11 +67,15 @@ std::string height_map_subtitle(const HeightField& field, const PictureOptions& 
 /// bar in mm, and path, robot and legend where given. On wrapped terrain a path may jump by a bed.
 /// Throws InputError for options out of range (a path's state without a name, a place or a height
 /// that is no number, heights upside down).
+/// A painter that is kept for several maps of one bed paints only what differs.
+Canvas draw_height_map(const HeightField& field, const PictureOptions& options,
+                       HeightPainter& painter);
 Canvas draw_height_map(const HeightField& field, const PictureOptions& options);
 
 /// The same map alone: heights in colour, light and contour lines. Its larger side has so many
 /// pixels, 1 to 8000, else InputError.
-MapImage height_map_image(const HeightField& field, const HeightRange& heights, int side_px);
+MapImage height_map_image(const HeightField& field, const HeightRange& heights, int side_px,
+                          HeightPainter& painter);
 
 /// What the colours of such a map mean, mm.
 ColorScale height_color_scale(const HeightRange& heights);
@@ -83,7 +88,7 @@ Canvas draw_difference(const HeightField& before, const HeightField& after,
 /// The same as PNG files. Throw RunError as well, when the file cannot be written. Same input, same
 /// bytes.
 void write_height_map_picture(const std::filesystem::path& path, const HeightField& field,
-                              const PictureOptions& options);
+                              const PictureOptions& options, HeightPainter& painter);
 void write_difference_picture(const std::filesystem::path& path, const HeightField& before,
                               const HeightField& after, const PictureOptions& options);
 

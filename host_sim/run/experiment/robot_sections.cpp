@@ -40,7 +40,7 @@ ExperimentKey own_key(size_t robot, size_t index) {
   return key;
 }
 
-std::vector<std::vector<ExperimentKey>> make_keys() {
+std::vector<std::vector<ExperimentKey>> make_robot_keys() {
   std::vector<std::vector<ExperimentKey>> of_robots(kMaxRobots);
   for (size_t robot = 0; robot < kMaxRobots; ++robot) {
     for (size_t i = 0; i < experiment_keys().size(); ++i) {
@@ -69,7 +69,7 @@ std::optional<size_t> robot_of_section(const std::string& section) {
 }
 
 const std::vector<ExperimentKey>& robot_section_keys(size_t robot) {
-  static const std::vector<std::vector<ExperimentKey>> table = make_keys();
+  static const std::vector<std::vector<ExperimentKey>> table = make_robot_keys();
   return table.at(robot);
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,6 @@
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // What the changes of the terrain may take, deflated: 2.7 MB as text.
 constexpr std::size_t kMaxStepBytes = 2'000'000;

@@ -2,14 +2,11 @@
 #include "host_sim/run/report/page_track.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/simulation/names.h"
 
 namespace screed {
-
-using Json = nlohmann::ordered_json;
 
 void PageTrack::add(std::uint64_t row, const SimFrame& frame) {
   if (!std::isfinite(frame.x) || !std::isfinite(frame.y) || !std::isfinite(frame.z)) return;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "host_sim/core/sim_frame.h"
 #include "host_sim/render/report/page_file.h"
 
@@ -20,7 +20,7 @@ class PageTrack {
   /// Adds the blocks `block`-rows (row of the session, uint32), -places (x, y, z in m, float) and
   /// -states (leveling state, uint32). Names them, and the points at which the robot has crossed
   /// the edge of a bed that repeats: no line leads to these.
-  nlohmann::ordered_json finish(PageFile& page, const std::string& block) const;
+  Json finish(PageFile& page, const std::string& block) const;
 
  private:
   struct Point {
@@ -44,7 +44,7 @@ class PageEvents {
   void add(const SimFrame& frame);
   /// Sets "leveling" and "supervisor" (lists of [begin s, end s, state]), "supervisor_states"
   /// (names by number) and "events" (time and text) of the object.
-  void finish(nlohmann::ordered_json& json) const;
+  void finish(Json& json) const;
 
  private:
   struct Band {

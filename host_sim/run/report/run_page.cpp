@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/display_units.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/record.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/render/picture/state_color.h"
@@ -28,8 +28,6 @@
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kBlockRows = 1024;
 constexpr std::uint64_t kMaxStops = 900;
@@ -317,22 +315,23 @@ Json identity_of(std::span<const SessionReader> sessions, const RunPageOptions& 
   const SessionReader& session = sessions.front();
   const SessionInfo& info = session.info();
   const RunSetup setup = setup_of(info, {});
-  const auto fact = [](const char* name, Json value) {
-    return Json{{"name", name}, {"value", std::move(value)}};
+  Json list = Json::array();
+  const auto add = [&list](const char* name, Json value) {
+    list.push_back({{"name", name}, {"value", std::move(value)}});
   };
-  Json list = {fact("Run", options.name),
-               fact("Experiment", info.experiment_name),
-               fact("Algorithm", setup.experiment.experiment.algorithm),
-               fact("Terrain", setup.experiment.map.model),
-               fact("Board", info.board_name),
-               fact("Seed of the world", std::to_string(info.seed)),
-               fact("Seed of the drive", std::to_string(info.parameters.random_seed)),
-               fact("Ticks", std::to_string(session.frames()) + " at " +
-                                 std::to_string(info.tick_rate_hz) + " Hz"),
-               fact("Program of the run", info.program_version),
-               fact("Program of this page", SCREED_VERSION),
-               fact("Content hash", hash_of(sessions))};
-  if (!setup.soil.empty()) list.insert(list.begin() + 4, fact("Soil", setup.soil));
+  add("Run", options.name);
+  add("Experiment", info.experiment_name);
+  add("Algorithm", setup.experiment.experiment.algorithm);
+  add("Terrain", setup.experiment.map.model);
+  if (!setup.soil.empty()) add("Soil", setup.soil);
+  add("Board", info.board_name);
+  add("Seed of the world", std::to_string(info.seed));
+  add("Seed of the drive", std::to_string(info.parameters.random_seed));
+  add("Ticks",
+      std::to_string(session.frames()) + " at " + std::to_string(info.tick_rate_hz) + " Hz");
+  add("Program of the run", info.program_version);
+  add("Program of this page", SCREED_VERSION);
+  add("Content hash", hash_of(sessions));
   return list;
 }
 
@@ -367,8 +366,7 @@ std::string run_page(std::span<const SessionReader> sessions, const RunPageOptio
   facts["parameters"] = parameters_of(session);
   facts["configuration"] = configuration_of(session);
   // A name of a folder need not be UTF-8; JSON must.
-  return page.document(options.built_page,
-                       facts.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return page.document(options.built_page, facts.dump(-1, Json::BadText::kReplace));
 }
 
 }  // namespace screed

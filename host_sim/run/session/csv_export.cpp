@@ -17,7 +17,7 @@
 namespace screed {
 namespace {
 
-constexpr std::uint64_t kBlockRows = 1024;
+constexpr std::uint64_t kCsvBlockRows = 1024;
 constexpr std::size_t kNumberChars = 32;  // longest shortest double is 24 characters
 
 std::string header(std::span<const Column> columns, bool numbered) {
@@ -61,10 +61,10 @@ void write_rows(const SessionReader& session, std::span<const Column> columns,
                 const TaskProgress& progress) {
   file.write(header(columns, numbered));
   std::vector<SimFrame> frames;
-  std::vector<char> text(kBlockRows * (columns.size() + 1) * (kNumberChars + 1));
-  for (std::uint64_t done = 0; done < range.count; done += kBlockRows) {
+  std::vector<char> text(kCsvBlockRows * (columns.size() + 1) * (kNumberChars + 1));
+  for (std::uint64_t done = 0; done < range.count; done += kCsvBlockRows) {
     report_progress(progress, "exporting a table", done, range.count);
-    frames.resize(std::min(kBlockRows, range.count - done));
+    frames.resize(std::min(kCsvBlockRows, range.count - done));
     session.read(range.first + done, std::span(frames));
     char* cursor = text.data();
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -132,8 +132,8 @@ FrameRange training_frames(const SessionReader& session) {
   FrameRange range;
   std::vector<SimFrame> frames;
   bool begun = false;
-  for (std::uint64_t first = 0; first < session.frames(); first += kBlockRows) {
-    frames.resize(std::min(kBlockRows, session.frames() - first));
+  for (std::uint64_t first = 0; first < session.frames(); first += kCsvBlockRows) {
+    frames.resize(std::min(kCsvBlockRows, session.frames() - first));
     session.read(first, std::span(frames));
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].leveling_state !=

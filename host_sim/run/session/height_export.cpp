@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/partial_folder.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/render/picture/terrain_picture.h"
@@ -109,7 +109,7 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
 
   HeightExport done;
   done.scale = {black * geometry.unit_m, (black + span) * geometry.unit_m};
-  nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+  Json frames = Json::array();
   std::vector<std::uint16_t> samples(std::size_t{geometry.nx} * geometry.ny);
   const ExportProgress told{progress, "exporting heights"};
   PartialFolder partial(folder);
@@ -128,18 +128,17 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
     frames.push_back({{"frame", frame}, {"file", name}});
   });
 
-  const nlohmann::ordered_json json = {
-      {"meaning", "height in m = black_m + sample * (white_m - black_m) / 65535"},
-      {"black_m", done.scale.black_m},
-      {"white_m", done.scale.white_m},
-      {"m_per_sample_step", span * geometry.unit_m / kWhite},
-      {"m_per_pixel", geometry.spacing_m},
-      {"west_m", geometry.origin_x_m},
-      {"south_m", geometry.origin_y_m},
-      {"top_row", "north"},
-      {"wrap", geometry.wrap},
-      {"walls", geometry.walls},
-      {"frames", frames}};
+  const Json json = {{"meaning", "height in m = black_m + sample * (white_m - black_m) / 65535"},
+                     {"black_m", done.scale.black_m},
+                     {"white_m", done.scale.white_m},
+                     {"m_per_sample_step", span * geometry.unit_m / kWhite},
+                     {"m_per_pixel", geometry.spacing_m},
+                     {"west_m", geometry.origin_x_m},
+                     {"south_m", geometry.origin_y_m},
+                     {"top_row", "north"},
+                     {"wrap", geometry.wrap},
+                     {"walls", geometry.walls},
+                     {"frames", frames}};
   write_file(partial.partial() / "scale.json", json.dump(1) + "\n");
   partial.commit();
   return done;
@@ -160,6 +159,7 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
   options.further_robots.resize(further.size());
   const ExportProgress told{progress, "exporting pictures"};
   PartialFolder partial(folder);
+  HeightPainter painter;
   for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
     path.go_to(frame, series.shape, options.path, options.robot);
     for (std::size_t i = 0; i < further.size(); ++i) {
@@ -170,7 +170,7 @@ std::vector<fs::path> export_pictures(const SessionReader& session, const FrameR
     const std::string name = numbered("picture", frame);
     const HeightField terrain = field_of(map);
     write_height_map_picture(partial.partial() / name,
-                             series.surface ? series.surface(terrain) : terrain, options);
+                             series.surface ? series.surface(terrain) : terrain, options, painter);
     files.push_back(folder / name);
   });
   partial.commit();

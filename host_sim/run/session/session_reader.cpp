@@ -106,10 +106,10 @@ SessionInfo read_info(hid_t file, std::vector<std::string>& missing_parameters) 
 }
 
 /// One table of the file, and where its rows have what this program knows.
-class Table {
+class StoredTable {
  public:
   /// A column may be missing only when `optional`; a column of another kind never passes.
-  Table(hid_t file, const layout::TableLayout& table, bool optional)
+  StoredTable(hid_t file, const layout::TableLayout& table, bool optional)
       : name_(table.dataset), row_bytes_(row_bytes(table.columns)) {
     if (!h5::has_link(file, name_)) throw Hdf5Failure("table '" + name() + "' is missing");
     dataset_ = {H5Dopen2(file, name_, H5P_DEFAULT), H5Dclose, name_};
@@ -284,7 +284,7 @@ class SessionReader::Impl {
   const std::vector<std::string>& missing_parameters() const { return missing_parameters_; }
 
   template <std::size_t kBytes, class Row>
-  void read(const Table& table, std::uint64_t first, std::span<Row> rows) const {
+  void read(const StoredTable& table, std::uint64_t first, std::span<Row> rows) const {
     if (first > rows_ || rows.size() > rows_ - first) {
       throw std::out_of_range("a session was read behind its last row");
     }
@@ -295,9 +295,9 @@ class SessionReader::Impl {
     }
   }
 
-  const Table& frame_table() const { return frames_; }
-  const Table& sample_table() const { return samples_; }
-  const Table& output_table() const { return outputs_; }
+  const StoredTable& frame_table() const { return frames_; }
+  const StoredTable& sample_table() const { return samples_; }
+  const StoredTable& output_table() const { return outputs_; }
 
   std::optional<HeightMap> terrain(const char* name) const {
     if (!h5::has_link(file_.get(), layout::kTerrainGroup)) return std::nullopt;
@@ -317,7 +317,7 @@ class SessionReader::Impl {
 
   std::vector<LevelingPoint> leveling() const {
     if (!h5::has_link(file_.get(), layout::kLevelingTable.dataset)) return {};
-    const Table table(file_.get(), layout::kLevelingTable, true);
+    const StoredTable table(file_.get(), layout::kLevelingTable, true);
     constexpr std::uint64_t kAtStartAndEnd = 2;
     if (table.rows() > rows_ + kAtStartAndEnd)
       throw Hdf5Failure("the leveling curve has more points than the run has ticks");
@@ -370,9 +370,9 @@ class SessionReader::Impl {
   std::vector<std::string> missing_columns_;
   std::vector<std::string> missing_parameters_;
   SessionInfo info_;
-  Table frames_;
-  Table samples_;
-  Table outputs_;
+  StoredTable frames_;
+  StoredTable samples_;
+  StoredTable outputs_;
   std::optional<HeightSeriesReader> heights_;
   std::uint64_t rows_ = 0;
   std::string hash_;

@@ -21,11 +21,11 @@ namespace screed {
 namespace {
 
 /// A growing table and the rows that wait to be written.
-class Table {
+class GrowingTable {
  public:
   /// block_rows: as many rows wait at most, and are one chunk of the file.
-  Table(hid_t file, const layout::TableLayout& table,
-        std::size_t block_rows = SessionWriter::kBlockRows)
+  GrowingTable(hid_t file, const layout::TableLayout& table,
+               std::size_t block_rows = SessionWriter::kBlockRows)
       : name_(table.dataset),
         row_bytes_(row_bytes(table.columns)),
         type_(layout::row_type(table.columns)),
@@ -262,10 +262,10 @@ class SessionWriter::Impl {
   std::filesystem::path path_;
   h5::Handle file_;
   h5::Handle terrain_;
-  Table frames_;
-  Table samples_;
-  Table outputs_;
-  std::optional<Table> leveling_;
+  GrowingTable frames_;
+  GrowingTable samples_;
+  GrowingTable outputs_;
+  std::optional<GrowingTable> leveling_;
   std::uint64_t leveling_points_ = 0;
   std::optional<HeightSeriesWriter> heights_;
   SessionHash hash_;

@@ -71,11 +71,13 @@ void LevelingMonitor::on_tick(std::span<const SimFrame> frames, double distance_
   next_s_ = next_after(time_s, interval_s_);
   const bool with_transport = deformable_ && time_s >= next_transport_s_ - kRounding_s;
   if (with_transport) next_transport_s_ = next_after(time_s, transport_interval_s_);
-  sink(measure(terrain(), with_transport));
+  sink(deformable_ ? measure(terrain(), with_transport)
+                   : LevelingMeter::unchanged(outcome_.before, cost()));
 }
 
 void LevelingMonitor::end(const HeightField& after, const Sink& sink) {
-  outcome_.after = measure(after, deformable_);
+  outcome_.after =
+      deformable_ ? measure(after, true) : LevelingMeter::unchanged(outcome_.before, cost());
   sink(outcome_.after);
 }
 
@@ -84,11 +86,15 @@ bool LevelingMonitor::on_bed(const SimFrame& frame) const {
          (std::abs(frame.x) <= 0.5 * bounds_.width_m && std::abs(frame.y) <= 0.5 * bounds_.depth_m);
 }
 
-LevelingPoint LevelingMonitor::measure(const HeightField& terrain, bool with_transport) {
+LevelingCost LevelingMonitor::cost() const {
   LevelingCost cost = cost_;
   cost.traversability = mean_shares(traversability_);
-  if (!measure_.is_filtered()) return meter_.measure(terrain, cost, with_transport);
-  return meter_.measure(measure_.surface(terrain), cost, with_transport);
+  return cost;
+}
+
+LevelingPoint LevelingMonitor::measure(const HeightField& terrain, bool with_transport) {
+  if (!measure_.is_filtered()) return meter_.measure(terrain, cost(), with_transport);
+  return meter_.measure(measure_.surface(terrain), cost(), with_transport);
 }
 
 }  // namespace screed

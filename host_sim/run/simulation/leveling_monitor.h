@@ -19,8 +19,8 @@ struct LevelingOutcome {
   LevelingPoint after;
 };
 
-/// Points are due at the start, at whole multiples of [metrics] interval and at the end. On terrain
-/// that cannot deform none has a transport.
+/// Points are due at the start, at whole multiples of [metrics] interval and at the end. Terrain
+/// that cannot deform is measured once, and no point of it has a transport.
 class LevelingMonitor {
  public:
   /// Is given each point once, in the order of time.
@@ -46,6 +46,7 @@ class LevelingMonitor {
 
  private:
   bool on_bed(const SimFrame& frame) const;
+  LevelingCost cost() const;
   LevelingPoint measure(const HeightField& terrain, bool with_transport);
 
   TerrainMeasure measure_;
@@ -57,7 +58,7 @@ class LevelingMonitor {
   double next_s_;
   double next_transport_s_;
   BedBounds bounds_{};
-  LevelingCost cost_;  ///< without the shares
+  LevelingCost cost_;  ///< without the shares, see cost()
   LevelingOutcome outcome_;
 };
 

@@ -32,10 +32,11 @@ std::string change_text(double before, double after) {
   return text + " (" + (change > 0.0 ? "+" : "") + number_text(change, 0) + " %)";
 }
 
-PathMap map_of(const std::string& title, const HeightField& field, const HeightRange& heights) {
+PathMap map_of(const std::string& title, const HeightField& field, const HeightRange& heights,
+               HeightPainter& painter) {
   PathMap map;
   map.title = title;
-  map.image = height_map_image(field, heights, kImageSide_px);
+  map.image = height_map_image(field, heights, kImageSide_px, painter);
   map.scale = height_color_scale(heights);
   return map;
 }
@@ -88,9 +89,11 @@ std::string leveling_svg(const std::string& title, const HeightField& before,
                change_text(points.front().roughness, points.back().roughness),
            {.size_px = 13.0, .color = kChartFaintInk});
   const HeightRange heights = common_range(before, after);
+  HeightPainter painter;
   constexpr double kBelow_px = kHeight_px - kHead_px - 8.0;
-  draw_path_map(svg, map_of("before", before, heights), {4.0, kHead_px, kMap_px, kBelow_px});
-  draw_path_map(svg, map_of("after", after, heights),
+  draw_path_map(svg, map_of("before", before, heights, painter),
+                {4.0, kHead_px, kMap_px, kBelow_px});
+  draw_path_map(svg, map_of("after", after, heights, painter),
                 {4.0 + kMap_px, kHead_px, kMap_px, kBelow_px});
   constexpr double kRight_px = 4.0 + 2.0 * kMap_px + 8.0;
   draw_stacked_chart(svg, curves(points),

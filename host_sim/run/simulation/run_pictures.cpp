@@ -24,11 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr double kDrawnSides = 20.0;  ///< of the bed: the longest path that is drawn
 
-bool has_changed(const RunSurfaces& terrain) {
-  const TerrainChange change = terrain_change(terrain.before, terrain.after);
-  return change.cut_m3 != 0.0 || change.fill_m3 != 0.0;
-}
-
 DrivenRun driven_run(const SessionReader& session, const std::optional<RobotShape>& shape) {
   constexpr std::uint64_t kBlockRows = 1024;
   std::vector<PathPoint> path;
@@ -79,7 +74,8 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
       std::to_string(std::lround(run.time_s)) + " s of " + experiment.experiment.algorithm;
   std::vector<fs::path> files;
   PictureOptions options;
-  if (experiment.map.is_soil() || experiment.map.of_particles() || has_changed(terrain)) {
+  if (experiment.map.is_soil() || experiment.map.of_particles() ||
+      !terrain_change(terrain.before, terrain.after).is_none()) {
     // Without the path, which would hide the tracks below it.
     options.title = name + ": change by " + what;
     files.push_back(folder / "terrain_change.png");
@@ -94,7 +90,8 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
   options.heights = common_range(terrain.before, terrain.after);
   options.title = name + ": before";
   files.push_back(folder / "terrain_before.png");
-  write_height_map_picture(files.back(), terrain.before, options);
+  HeightPainter painter;
+  write_height_map_picture(files.back(), terrain.before, options, painter);
 
   options.title = name + ": after " + what;
   const int cells_x = terrain.after.cells_x();
@@ -114,7 +111,7 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
   if (!options.paths_from_start)
     options.title += ", path of the last " + std::to_string(std::lround(drawn_m)) + " m";
   files.push_back(folder / "terrain_after.png");
-  write_height_map_picture(files.back(), terrain.after, options);
+  write_height_map_picture(files.back(), terrain.after, options, painter);
   return files;
 }
 

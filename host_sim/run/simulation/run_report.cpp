@@ -2,7 +2,6 @@
 #include "host_sim/run/simulation/run_report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/run/simulation/names.h"
@@ -10,17 +9,16 @@
 namespace screed {
 namespace {
 
-nlohmann::ordered_json json_of(const RunIdentity& run) {
-  nlohmann::ordered_json json = {
-      {"name", run.experiment}, {"algorithm", run.algorithm}, {"seed", run.seed}};
-  nlohmann::ordered_json& world = json["world"];
+Json json_of(const RunIdentity& run) {
+  Json json = {{"name", run.experiment}, {"algorithm", run.algorithm}, {"seed", run.seed}};
+  Json& world = json["world"];
   world = {{"hal", run.hal}, {"board", run.board}, {"terrain", run.terrain}, {"soil", nullptr}};
   if (run.soil.has_value()) world["soil"] = *run.soil;
   json["version"] = run.version;
   return json;
 }
 
-nlohmann::ordered_json json_of(const TerrainFigures& terrain) {
+Json json_of(const TerrainFigures& terrain) {
   const TerrainStatistics& heights = terrain.heights;
   return {{"lowest_m", heights.lowest_m},
           {"highest_m", heights.highest_m},
@@ -37,7 +35,7 @@ nlohmann::ordered_json json_of(const TerrainFigures& terrain) {
 }
 
 /// What is not a number becomes null.
-nlohmann::ordered_json json_of(const LevelingOutcome& leveling) {
+Json json_of(const LevelingOutcome& leveling) {
   const LevelingPoint& before = leveling.before;
   const LevelingPoint& after = leveling.after;
   return {{"progress", after.progress},
@@ -53,8 +51,8 @@ nlohmann::ordered_json json_of(const LevelingOutcome& leveling) {
           {"off_site", after.off_site}};
 }
 
-nlohmann::ordered_json json_of(const CycleReport& cycles) {
-  nlohmann::ordered_json interrupts;
+Json json_of(const CycleReport& cycles) {
+  Json interrupts;
   for (const CycleReport::Interrupt& it : cycles.interrupts) {
     interrupts[it.name] = {{"count", it.count},
                            {"longest_cycles", it.longest_cycles},
@@ -75,7 +73,7 @@ nlohmann::ordered_json json_of(const CycleReport& cycles) {
           {"interrupts", interrupts}};
 }
 
-nlohmann::ordered_json json_of(const RobotSummary& robot) {
+Json json_of(const RobotSummary& robot) {
   return {{"content_hash", robot.content_hash},
           {"left_bed", robot.left_bed},
           {"distance_m", robot.distance_m},
@@ -91,8 +89,8 @@ nlohmann::ordered_json json_of(const RobotSummary& robot) {
           {"telemetry_share", robot.telemetry_share}};
 }
 
-nlohmann::ordered_json json_of(const SimulationSummary& summary) {
-  nlohmann::ordered_json json = json_of(summary.identity);
+Json json_of(const SimulationSummary& summary) {
+  Json json = json_of(summary.identity);
   json.update({
       {"content_hash", summary.content_hash},
       {"stopped_early", summary.stopped_early()},
@@ -123,7 +121,7 @@ nlohmann::ordered_json json_of(const SimulationSummary& summary) {
 
 }  // namespace
 
-nlohmann::ordered_json json_of(const TerrainChange& change) {
+Json json_of(const TerrainChange& change) {
   return {{"moved_m3", change.moved_m3()},
           {"cut_m3", change.cut_m3},
           {"fill_m3", change.fill_m3},
@@ -161,7 +159,7 @@ std::string summary_json(const SimulationSummary& summary) {
 }
 
 std::string summary_json_with_folder(const SimulationSummary& summary) {
-  nlohmann::ordered_json json = {{"run_folder", summary.folder.string()}};
+  Json json = {{"run_folder", summary.folder.string()}};
   json.update(json_of(summary));
   return json.dump(2) + "\n";
 }

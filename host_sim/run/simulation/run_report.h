@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "host_sim/devices/mcu/cycle_report.h"
 #include "host_sim/run/simulation/leveling_monitor.h"
 #include "host_sim/run/simulation/stop_condition.h"
@@ -78,7 +78,7 @@ struct SimulationSummary : RobotSummary {
 };
 
 /// moved_m3, cut_m3, fill_m3, deepest_cut_m, deepest_fill_m.
-nlohmann::ordered_json json_of(const TerrainChange& change);
+Json json_of(const TerrainChange& change);
 
 /// The summary as JSON, as written to summary.json: what is part of the result, so neither wall
 /// time nor folders. Same run, same bytes, in whatever folder.

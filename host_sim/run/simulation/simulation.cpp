@@ -69,9 +69,11 @@ Experiment as_run(Experiment experiment, const SimulationOptions& options) {
 }
 
 /// As the experiment lays it out: the session begins with it, and the figures before the run are
-/// its. The robot has settled into plant.terrain() already. Particles lie as they fell.
+/// its. The robot has settled into plant.terrain() already, where that can deform. Particles lie as
+/// they fell.
 HeightField terrain_before(const Experiment& experiment, const Environment& plant) {
-  return experiment.map.of_particles() ? plant.terrain() : make_terrain(experiment);
+  return experiment.map.of_particles() || !plant.is_deformable() ? plant.terrain()
+                                                                 : make_terrain(experiment);
 }
 
 /// Why the robot could not be armed at the end of the run, from its own telemetry; its limits are
@@ -227,8 +229,9 @@ SimulationSummary run_simulation(const Experiment& asked, const SimulationOption
   summary.training_frames = stop.training_frames();
   summary.height_changes = recorder.height_changes();
   const RunSurfaces surfaces{measure.surface(before), measure.surface(plant.terrain())};
-  summary.terrain = measure.outcome(surfaces.before, surfaces.after);
   summary.leveling = leveling.outcome();
+  summary.terrain = TerrainMeasure::outcome(surfaces.before, surfaces.after,
+                                            summary.leveling.before, summary.leveling.after);
 
   try {
     files.write_summary(summary_json(summary));

@@ -11,6 +11,10 @@ TerrainFigures figures_of(const HeightField& surface, double flat_deg) {
           robot_scale_figures(surface, flat_deg)};
 }
 
+TerrainFigures figures_of(const TerrainStatistics& statistics, const LevelingPoint& point) {
+  return {statistics, point.flatness, {point.relief, point.roughness, point.robot_scale_flatness}};
+}
+
 }  // namespace
 
 TerrainMeasure::TerrainMeasure(const Experiment& experiment)
@@ -29,6 +33,14 @@ double TerrainMeasure::flatness(const HeightField& terrain) const {
 TerrainOutcome TerrainMeasure::outcome(const HeightField& before, const HeightField& after) const {
   return {figures_of(before, flat_deg_), figures_of(after, flat_deg_),
           terrain_change(before, after)};
+}
+
+TerrainOutcome TerrainMeasure::outcome(const HeightField& before, const HeightField& after,
+                                       const LevelingPoint& first, const LevelingPoint& last) {
+  const TerrainChange change = terrain_change(before, after);
+  const TerrainStatistics statistics = terrain_statistics(before);
+  return {figures_of(statistics, first),
+          figures_of(change.is_none() ? statistics : terrain_statistics(after), last), change};
 }
 
 }  // namespace screed

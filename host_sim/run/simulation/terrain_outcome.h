@@ -1,6 +1,7 @@
 // What a run did to its terrain: how the surface is measured, and what comes of it.
 #pragma once
 
+#include "host_sim/leveling/leveling_point.h"
 #include "host_sim/leveling/robot_scale.h"
 #include "host_sim/physics/terrain/height_field.h"
 #include "host_sim/physics/terrain/terrain_change.h"
@@ -42,6 +43,10 @@ class TerrainMeasure {
   double flatness(const HeightField& terrain) const;
   /// The figures of two surfaces, each from surface().
   TerrainOutcome outcome(const HeightField& before, const HeightField& after) const;
+  /// The same of surfaces that have been measured already, as the first and the last point of a
+  /// leveling curve.
+  static TerrainOutcome outcome(const HeightField& before, const HeightField& after,
+                                const LevelingPoint& first, const LevelingPoint& last);
 
  private:
   double grain_m_ = 0.0;  ///< 0: no particles

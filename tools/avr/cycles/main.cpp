@@ -1,7 +1,5 @@
 // avr_cycles: how long the longest control tick of an image takes, and its interrupts, measured
 // cycle by cycle in the simulator while the robot boots, is armed and drives.
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,7 +13,7 @@
 #include "host_sim/devices/mcu/board.h"
 #include "host_sim/devices/mcu/wiring.h"
 #include "host_sim/ground_station/station/command_signer.h"
-#include "tools/screed/cli/program.h"
+#include "tools/command_line/program.h"
 
 namespace {
 
@@ -107,12 +105,12 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Cycles of the longest control tick of an AVR image, in the simulator",
-               "avr_cycles");
+  screed::Command app("Cycles of the longest control tick of an AVR image, in the simulator",
+                      "avr_cycles");
   app.add_option("image", options.image, "ELF file of the image")->required();
   app.add_option("wiring", options.wiring, "Wiring of the board (boards/<board>/wiring.ini)")
       ->required();
   app.add_option("--budget", options.budget, "Budget of the longest control tick [cycles]")
-      ->capture_default_str();
+      ->show_default();
   return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

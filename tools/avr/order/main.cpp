@@ -3,8 +3,6 @@
 //
 // Reads the linker's map and the disassembly of an image, and prints the sections of its functions,
 // one a line, for the linker script of hal/avr/firmware.mk.
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -13,7 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "tools/avr/order/image_calls.h"
 #include "tools/avr/order/order_search.h"
-#include "tools/screed/cli/program.h"
+#include "tools/command_line/program.h"
 
 namespace {
 
@@ -50,12 +48,11 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Order of an image's functions with few long calls", "avr_order");
+  screed::Command app("Order of an image's functions with few long calls", "avr_order");
   app.add_option("map", options.map, "Map of the linker")->required();
   app.add_option("disassembly", options.disassembly, "Output of avr-objdump -d")->required();
   app.add_option("--searches", options.searches, "Searches, of which the best counts")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--moves", options.moves, "Orders tried in each")
-      ->check(CLI::Range(1, 100'000'000));
+      ->range(1, 1000);
+  app.add_option("--moves", options.moves, "Orders tried in each")->range(1, 100'000'000);
   return screed::run_program(app, argc, argv, [&] { return run(options); });
 }

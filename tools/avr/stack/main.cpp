@@ -1,6 +1,4 @@
 // avr_stack: flash, RAM and worst-case stack of a linked AVR image against its budget.
-#include <CLI/CLI.hpp>
-
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -12,7 +10,7 @@
 #include "tools/avr/stack/image_size.h"
 #include "tools/avr/stack/indirect_calls.h"
 #include "tools/avr/stack/stack_analysis.h"
-#include "tools/screed/cli/program.h"
+#include "tools/command_line/program.h"
 
 namespace {
 
@@ -111,24 +109,23 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Worst-case stack and memory budget of a linked AVR image", "avr_stack");
+  screed::Command app("Worst-case stack and memory budget of a linked AVR image", "avr_stack");
   app.add_option("disassembly", options.disassembly, "Output of avr-objdump -d; -: standard input")
       ->required();
   app.add_option("--indirect-calls", options.indirect_calls,
                  "File with the targets of indirect calls, a line each: FUNCTION -> TARGET | "
                  "TARGET (or never)");
   app.add_option("--sizes", options.sizes, "Output of avr-size -A; also checks the memory budgets");
-  app.add_option("--flash-budget", options.flash_budget, "Flash budget [bytes]")
-      ->capture_default_str();
+  app.add_option("--flash-budget", options.flash_budget, "Flash budget [bytes]")->show_default();
   app.add_option("--ram-budget", options.ram_budget,
                  "RAM budget of static data and stack together [bytes]")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--flash-spare", options.flash_spare,
                  "Part of the flash budget that must stay free [bytes]")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--ram-spare", options.ram_spare,
                  "Part of the RAM budget that must stay free [bytes]")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--free-word", options.free_word,
                  "Address of two bytes of RAM that neither variables nor stack may reach");
   return screed::run_program(app, argc, argv, [&] { return run(options); });

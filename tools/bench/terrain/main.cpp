@@ -2,21 +2,20 @@
 // charts.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/render/chart/line_chart.h"
 #include "tools/bench/terrain/terrain_bench.h"
-#include "tools/screed/cli/program.h"
+#include "tools/command_line/program.h"
 
 namespace {
 
@@ -48,13 +47,13 @@ void print_measurement(const Options& options) {
                                              options.frames, options.seconds)
           : terrain_bench::measure(options.bed, options.set, options.threads, options.frames,
                                    options.seconds);
-  std::printf("%s\n", nlohmann::json({{"frames", m.frames},
-                                      {"wall_ms", m.wall_ms},
-                                      {"processor_ms", m.processor_ms},
-                                      {"fastest_ms", m.fastest_ms},
-                                      {"memory_mb", m.memory_mb},
-                                      {"elements", m.elements},
-                                      {"awake", m.awake}})
+  std::printf("%s\n", Json({{"frames", m.frames},
+                            {"wall_ms", m.wall_ms},
+                            {"processor_ms", m.processor_ms},
+                            {"fastest_ms", m.fastest_ms},
+                            {"memory_mb", m.memory_mb},
+                            {"elements", m.elements},
+                            {"awake", m.awake}})
                           .dump()
                           .c_str());
 }
@@ -74,9 +73,15 @@ Measurement measure_in_child(const Case& bench, const std::string& bed, const Op
   while (std::fgets(part.data(), part.size(), child) != nullptr) said += part.data();
   const int status = pclose(child);
   if (status != 0) throw RunError("a case failed: " + command);
-  const auto json = nlohmann::json::parse(said);
-  return Measurement{json["frames"],    json["wall_ms"],  json["processor_ms"], json["fastest_ms"],
-                     json["memory_mb"], json["elements"], json["awake"]};
+  const auto json = Json::parse(said);
+  const auto number = [&](const char* name) { return json.at(name).get<double>(); };
+  return Measurement{json.at("frames").get<std::uint64_t>(),
+                     number("wall_ms"),
+                     number("processor_ms"),
+                     number("fastest_ms"),
+                     number("memory_mb"),
+                     json.at("elements").get<std::uint64_t>(),
+                     number("awake")};
 }
 
 void print_head() {
@@ -211,24 +216,24 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Time and memory of a frame on every terrain: thesis figures 5.6 to 5.9 again",
-               "terrain_bench");
+  Command app("Time and memory of a frame on every terrain: thesis figures 5.6 to 5.9 again",
+              "terrain_bench");
   app.add_option("--out", options.out, "Output folder for the table and the charts")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--frames", options.frames, "Number of frames to time per case")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+      ->range(1, 1000000)
+      ->show_default();
   app.add_option("--seconds", options.seconds, "Maximum time to measure per case [s]")
-      ->check(CLI::Range(0.1, 36000.0))
-      ->capture_default_str();
+      ->range(0.1, 36000.0)
+      ->show_default();
   app.add_option("--bed", options.bed,
                  "Measure a single case in this process: its experiment file");
   app.add_option("--set", options.set, "Override a key of that case: section.key=value")
-      ->allow_extra_args(false);
+      ->one_value_each();
   app.add_flag("--all-awake", options.all_awake,
                "Without a robot, all particles of that case awake");
   app.add_option("--threads", options.threads,
                  "Number of threads in that case: a world each, or of the bed with --all-awake")
-      ->check(CLI::Range(1, 64));
+      ->range(1, 64);
   return run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -1,14 +1,36 @@
-// What most sources of the library include, compiled once (tools/build/host.mk). No source includes
+// What most sources of the host include, compiled once (tools/build/host.mk). No source includes
 // it: each names what it uses.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iostream>
+#include <limits>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <numbers>
+#include <numeric>
 #include <optional>
+#include <random>
+#include <set>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+#include <variant>
 #include <vector>

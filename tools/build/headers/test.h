@@ -2,15 +2,4 @@
 // what it uses.
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
+#include "tools/build/headers/host.h"

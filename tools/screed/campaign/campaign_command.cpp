@@ -4,10 +4,9 @@
 
 namespace screed {
 
-void register_campaign_command(CLI::App& root, Program& program) {
-  CLI::App* campaign =
+void register_campaign_command(Command& root, Program& program) {
+  Command* campaign =
       root.add_subcommand("campaign", "Run an experiment many times with other values and seeds");
-  campaign->require_subcommand(1);
   register_campaign_subcommands(*campaign, program);
 }
 

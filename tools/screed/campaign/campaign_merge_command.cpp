@@ -2,24 +2,24 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
 namespace {
 
-struct Arguments {
+struct MergeArguments {
   std::string folder;
   bool incomplete = false;
   bool json = false;
 };
 
-int run_merge(const Arguments& arguments) {
+int run_merge(const MergeArguments& arguments) {
   const CampaignFolder folder{arguments.folder};
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
@@ -32,11 +32,11 @@ int run_merge(const Arguments& arguments) {
   }
   merge_results(plan, results, folder);
   if (arguments.json) {
-    std::cout << nlohmann::ordered_json({{"folder", arguments.folder},
-                                         {"runs", count.runs},
-                                         {"done", count.done},
-                                         {"failed", count.failed},
-                                         {"missing", count.missing()}})
+    std::cout << Json({{"folder", arguments.folder},
+                       {"runs", count.runs},
+                       {"done", count.done},
+                       {"failed", count.failed},
+                       {"missing", count.missing()}})
                      .dump(2)
               << "\n";
   } else {
@@ -48,9 +48,9 @@ int run_merge(const Arguments& arguments) {
 
 }  // namespace
 
-void register_campaign_merge_command(CLI::App& campaign, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = campaign.add_subcommand(
+void register_campaign_merge_command(Command& campaign, Program& program) {
+  auto arguments = std::make_shared<MergeArguments>();
+  Command* command = campaign.add_subcommand(
       "merge", "Write the results of a campaign as HDF5 and CSV, one row per run");
   command->add_option("FOLDER", arguments->folder, "Folder of the campaign")->required();
   command->add_flag("--incomplete", arguments->incomplete,

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -14,6 +13,7 @@
 #include <system_error>
 
 #include "host_sim/campaign/campaign_file.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/worker_pool.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
@@ -23,12 +23,11 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr double kSecondsPerHour = 3600.0;
 constexpr size_t kLevelsShown = 6;
 
-struct Arguments {
+struct PlanArguments {
   CampaignChoice campaign;
   bool list_keys = false;
   bool no_trial = false;
@@ -135,7 +134,7 @@ Json json_of(const CampaignPlan& plan, const std::optional<Cost>& cost) {
   return json;
 }
 
-int run_plan(const Arguments& arguments, const std::string& version) {
+int run_plan(const PlanArguments& arguments, const std::string& version) {
   catch_interrupts();
   const CampaignPlan plan = choose_campaign(arguments.campaign, version).plan;
   std::optional<Cost> cost;
@@ -150,9 +149,9 @@ int run_plan(const Arguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_campaign_plan_command(CLI::App& campaign, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
+void register_campaign_plan_command(Command& campaign, Program& program) {
+  auto arguments = std::make_shared<PlanArguments>();
+  Command* command =
       campaign.add_subcommand("plan", "Show what a campaign would run and what that costs");
   command->add_option("FILE", arguments->campaign.file, "Campaign file (INI), or its folder");
   command->add_flag("--no-trial", arguments->no_trial, "Do not try runs; the cost is not shown");
@@ -168,7 +167,7 @@ void register_campaign_plan_command(CLI::App& campaign, Program& program) {
       };
       return;
     }
-    if (arguments->campaign.file.empty()) throw CLI::RequiredError("FILE");
+    if (arguments->campaign.file.empty()) throw UsageError("FILE is required");
     program.action = [arguments, version = program.version] {
       return run_plan(*arguments, version);
     };

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
@@ -18,10 +18,9 @@
 namespace screed {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-struct Arguments {
+struct RunArguments {
   CampaignChoice campaign;
   std::optional<int> workers;
   std::optional<std::string> shard;
@@ -43,14 +42,14 @@ Json json_of(const ChosenCampaign& campaign, const CampaignCount& count,
 }
 
 /// The task of a job array, beside others on this machine and elsewhere.
-CampaignJob shard_job(const Arguments& arguments, const ChosenCampaign& campaign) {
+CampaignJob shard_job(const RunArguments& arguments, const ChosenCampaign& campaign) {
   CampaignJob job;
   job.trial = kept_trial(campaign.plan, campaign.folder);
   job.runs = read_shard(*arguments.shard, campaign.plan);
   return job;
 }
 
-int run_run(const Arguments& arguments, const std::string& version) {
+int run_run(const RunArguments& arguments, const std::string& version) {
   catch_interrupts();
   const Clock::time_point begin = Clock::now();
   const ChosenCampaign campaign = choose_campaign(arguments.campaign, version);
@@ -82,9 +81,9 @@ int run_run(const Arguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_campaign_run_command(CLI::App& campaign, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = campaign.add_subcommand(
+void register_campaign_run_command(Command& campaign, Program& program) {
+  auto arguments = std::make_shared<RunArguments>();
+  Command* command = campaign.add_subcommand(
       "run", "Execute what is missing of a campaign; interrupted, the same command goes on");
   command->add_option("FILE", arguments->campaign.file, "Campaign file (INI), or its folder")
       ->required();

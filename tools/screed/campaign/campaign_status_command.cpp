@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/campaign/slurm.h"
 #include "tools/screed/cli/command.h"
@@ -16,11 +16,9 @@
 namespace screed {
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr size_t kFailedRunsShown = 10;
 
-constexpr size_t kFailuresShown = 10;
-
-struct Arguments {
+struct StatusArguments {
   std::string folder;
   bool json = false;
 };
@@ -62,7 +60,7 @@ void print_jobs(const CampaignFolder& folder) {
   }
 }
 
-int run_status(const Arguments& arguments) {
+int run_status(const StatusArguments& arguments) {
   const CampaignFolder folder{arguments.folder};
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
@@ -74,19 +72,19 @@ int run_status(const Arguments& arguments) {
     return 0;
   }
   std::printf("%s: %s\n", plan.settings.name.c_str(), count.text().c_str());
-  for (size_t i = 0; i < std::min(failures.size(), kFailuresShown); ++i)
+  for (size_t i = 0; i < std::min(failures.size(), kFailedRunsShown); ++i)
     std::printf("  run %zu  %s\n", failures[i].run, failures[i].error.c_str());
-  if (failures.size() > kFailuresShown)
-    std::printf("  and %zu failed runs more\n", failures.size() - kFailuresShown);
+  if (failures.size() > kFailedRunsShown)
+    std::printf("  and %zu failed runs more\n", failures.size() - kFailedRunsShown);
   print_jobs(folder);
   return 0;
 }
 
 }  // namespace
 
-void register_campaign_status_command(CLI::App& campaign, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
+void register_campaign_status_command(Command& campaign, Program& program) {
+  auto arguments = std::make_shared<StatusArguments>();
+  Command* command =
       campaign.add_subcommand("status", "Show how far a campaign is and which runs failed");
   command->add_option("FOLDER", arguments->folder, "Folder of the campaign")->required();
   command->add_flag("--json", arguments->json, "Print JSON");

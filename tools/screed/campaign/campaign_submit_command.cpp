@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -30,11 +29,11 @@ namespace fs = std::filesystem;
 constexpr double kTask_s =
     600.0;  ///< that a task shall take: long beside Slurm's own second or two
 constexpr int kMaxShard = 500;
-constexpr double kMemoryMargin = 1.5;
+constexpr double kSlurmMemoryMargin = 1.5;
 constexpr double kBaseMemory_mb = 100.0;  ///< of the process that starts the worker
 constexpr double kTimeFactor = 3.0;       ///< nodes differ
 
-struct Arguments {
+struct SubmitArguments {
   CampaignChoice campaign;
   bool slurm = false;
   bool dry_run = false;
@@ -102,14 +101,14 @@ std::string shards_text(const Shards& shards) {
   return text;
 }
 
-std::string script_text(const Arguments& arguments, const ChosenCampaign& campaign,
+std::string script_text(const SubmitArguments& arguments, const ChosenCampaign& campaign,
                         const Shards& shards, const CampaignTrial& trial, const fs::path& folder) {
   const CampaignPlan& plan = campaign.plan;
   double limit_s = 0.0;
   for (const std::vector<size_t>& shard : shards)
     limit_s = std::max(limit_s, shard_limit_s(plan, shard, trial));
   const double memory_mb =
-      kBaseMemory_mb + plan.settings.memory_mb.value_or(kMemoryMargin * trial.memory_mb);
+      kBaseMemory_mb + plan.settings.memory_mb.value_or(kSlurmMemoryMargin * trial.memory_mb);
   std::string text =
       "#!/bin/bash\n# Tasks of a campaign: each executes what is missing of its "
       "shard. Made by `screed campaign submit`.\n";
@@ -156,7 +155,7 @@ void refuse_while_active(const CampaignFolder& folder) {
   }
 }
 
-int run_submit(const Arguments& arguments, const std::string& version) {
+int run_submit(const SubmitArguments& arguments, const std::string& version) {
   if (!arguments.slurm) throw InputError("submit needs --slurm, the one kind of cluster it knows");
   catch_interrupts();
   const ChosenCampaign campaign = choose_campaign(arguments.campaign, version);
@@ -192,9 +191,9 @@ int run_submit(const Arguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_campaign_submit_command(CLI::App& campaign, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = campaign.add_subcommand(
+void register_campaign_submit_command(Command& campaign, Program& program) {
+  auto arguments = std::make_shared<SubmitArguments>();
+  Command* command = campaign.add_subcommand(
       "submit", "Submit what is missing of a campaign to a cluster as a job array");
   command->add_option("FILE", arguments->campaign.file, "Campaign file (INI), or its folder")
       ->required();
@@ -207,8 +206,7 @@ void register_campaign_submit_command(CLI::App& campaign, Program& program) {
       ->add_option("--option", arguments->options,
                    "An option for sbatch, such as --option=--partition=long; may be repeated")
       ->type_name("OPTION")
-      ->type_size(1)
-      ->allow_extra_args(false);
+      ->one_value_each();
   command->add_flag("--dry-run", arguments->dry_run, "Write the script and do not submit it");
   command
       ->add_option("--as-version", arguments->campaign.as_version,

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/host.h"
 #include "host_sim/engine/worker_pool.h"
 #include "host_sim/run/experiment/experiment_keys.h"
@@ -24,7 +24,6 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -106,7 +105,7 @@ EngineOptions engine_options(const CampaignFolder& folder) {
 }
 
 std::optional<CampaignTrial> kept_trial(const CampaignPlan& plan, const CampaignFolder& folder) {
-  const Json json = Json::parse(read_text(folder.trial()), nullptr, false);
+  const Json json = Json::parse_or_null(read_text(folder.trial()));
   if (!json.is_object() || json.value("key", Json()) != trial_key(plan)) return std::nullopt;
   CampaignTrial trial;
   trial.host = json.value("host", "");

@@ -33,12 +33,12 @@ OptionsOfWorld make_options(const std::string& version) {
   };
 }
 
-struct Arguments {
+struct WorkerArguments {
   std::string folder;
   bool is_grid = false;
 };
 
-int run_worker(const Arguments& arguments, const std::string& version) {
+int run_worker(const WorkerArguments& arguments, const std::string& version) {
   // Standard output is for answers alone, whatever a library prints.
   const int answers = dup(STDOUT_FILENO);
   if (answers < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
@@ -58,9 +58,9 @@ int run_worker(const Arguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_campaign_worker_command(CLI::App& campaign, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
+void register_campaign_worker_command(Command& campaign, Program& program) {
+  auto arguments = std::make_shared<WorkerArguments>();
+  Command* command =
       campaign.add_subcommand("worker", "Execute runs for `screed campaign run` and `screed grid`");
   command->add_option("FOLDER", arguments->folder, "Folder of a campaign or sweep")->required();
   command->add_flag("--grid", arguments->is_grid, "The folder is that of a sweep of `screed grid`");

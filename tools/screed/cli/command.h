@@ -2,7 +2,7 @@
 //
 // A subcommand is one file below tools/screed, NAME_command.cpp. It defines
 //
-//   void register_NAME_command(CLI::App& parent, Program& program);
+//   void register_NAME_command(Command& parent, Program& program);
 //
 // which adds the subcommand to `parent` and, in its callback, sets `program.action` to what is to
 // be run after parsing. tools/build/commands.sh lists the files in the generated commands.h, by
@@ -10,9 +10,10 @@
 // register_GROUP_subcommands(); the others belong to `screed` itself.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+
+#include "tools/command_line/command.h"
 
 namespace screed {
 

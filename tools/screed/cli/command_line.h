@@ -2,7 +2,6 @@
 // it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "commands.h"
@@ -10,14 +9,13 @@
 namespace screed {
 
 struct CommandLine {
-  CLI::App app{"Screed: firmware for a terrain-leveling robot, and its simulation twin", "screed"};
+  Command app{"Screed: firmware for a terrain-leveling robot, and its simulation twin", "screed"};
   Program program;
 
   /// `version` is recorded in sessions; `version_text` is what --version prints.
   CommandLine(const std::string& version, const std::string& version_text) : program{version, {}} {
-    app.set_help_flag("-h,--help", "Show this help and exit");
+    app.option("--help")->help_text("Show this help and exit");
     app.set_version_flag("--version", version_text, "Show version, commit and date, and exit");
-    app.require_subcommand(1);
     register_screed_subcommands(app, program);
   }
   CommandLine(const CommandLine&) = delete;

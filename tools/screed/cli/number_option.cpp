@@ -2,7 +2,6 @@
 #include "tools/screed/cli/number_option.h"
 
 #include <cmath>
-#include <memory>
 
 namespace screed {
 namespace {
@@ -71,31 +70,21 @@ bool NumberRange::contains(double value) const {
 
 namespace number_option {
 
-void refuse(const CLI::Option& option, const std::string& text, const Description& description) {
-  throw CLI::ValidationError(option.get_name() + " " + quoted(text), allowed_text(description));
-}
-
-CLI::Option* add(CLI::App& app, const Description& description, const std::function<void()>& begin,
-                 const Take& take, const std::function<std::string()>& shown) {
-  // Known only when it has been added.
-  const auto option = std::make_shared<CLI::Option*>(nullptr);
-  const auto read = [=](const CLI::results_t& texts) {
+Option* add(Command& command, const Description& description, const std::function<void()>& begin,
+            const Take& take, const std::string& shown) {
+  const Option::Reader read = [=](const Option& option, const std::vector<std::string>& texts) {
     begin();
     for (const std::string& text : texts) {
       for (const std::string& one : description.several ? split(text) : std::vector{text}) {
-        if (!take(one)) refuse(**option, one, description);
+        if (!take(one))
+          throw UsageError(option.name() + " " + quoted(one) + ": " + allowed_text(description));
       }
     }
-    return true;
   };
-  *option = app.add_option(description.name, read, description.help, false, shown);
-  CLI::Option* const added = *option;
-  // As option_words.h takes it apart.
-  added->capture_default_str();
+  Option* const added = command.add_option(description.name, read, description.help);
   added->type_name((description.whole ? "INTEGER:" : "NUMBER:") + short_text(description));
-  if (description.several) {
-    added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
-  }
+  added->show_default(shown);
+  if (description.several) added->expected(1, -1)->one_value_each();
   return added;
 }
 

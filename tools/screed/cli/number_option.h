@@ -2,7 +2,6 @@
 // nothing else need expect nan, inf, an empty text or a count beyond all memory.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "tools/command_line/command.h"
 #include "tools/screed/cli/number_text.h"
 
 namespace screed {
@@ -55,17 +55,13 @@ struct Description {
   bool several;  ///< as 1,2,3 and by saying the option again
 };
 
-/// Throws CLI::ValidationError: "NAME TEXT: allowed are ...".
-[[noreturn]] void refuse(const CLI::Option& option, const std::string& text,
-                         const Description& description);
-
 /// Takes the text of one number; false when it is none, or out of range.
 using Take = std::function<bool(const std::string& text)>;
 
-/// `begin` is called before the first number of a command line; `shown` gives the present value,
-/// which is the default, for the help; "" for none.
-CLI::Option* add(CLI::App& app, const Description& description, const std::function<void()>& begin,
-                 const Take& take, const std::function<std::string()>& shown);
+/// `begin` is called before the first number of a command line; `shown` is the default, for the
+/// help; "" for none.
+Option* add(Command& command, const Description& description, const std::function<void()>& begin,
+            const Take& take, const std::string& shown);
 
 template <class T>
 std::string shown_number(const T& value) {
@@ -83,8 +79,8 @@ std::string shown_number(const T& value) {
 /// numbers are wanted, or out of range ends the parsing with one line that names the option and
 /// says what is allowed; the help says the range as well.
 template <class Value>
-CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value,
-                        const std::string& help, const NumberRange& range) {
+Option* add_number(Command& command, const std::string& name, Value& value, const std::string& help,
+                   const NumberRange& range) {
   using Kind = number_option::Element<Value>;
   using T = typename Kind::Type;
   static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
@@ -100,19 +96,17 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Value& value,
     }
     return true;
   };
-  const auto shown = [&value]() -> std::string {
-    if constexpr (Kind::kSeveral) {
-      std::string all;
-      for (const T& one : value) all += (all.empty() ? "" : ",") + number_option::shown_number(one);
-      return all;
-    } else if constexpr (std::is_same_v<Value, std::optional<T>>) {
-      return value.has_value() ? number_option::shown_number(*value) : "";
-    } else {
-      return number_option::shown_number(value);
-    }
-  };
-  return number_option::add(app, {name, help, range, std::is_integral_v<T>, Kind::kSeveral}, begin,
-                            take, shown);
+  std::string shown;
+  if constexpr (Kind::kSeveral) {
+    for (const T& one : value)
+      shown += (shown.empty() ? "" : ",") + number_option::shown_number(one);
+  } else if constexpr (std::is_same_v<Value, std::optional<T>>) {
+    if (value.has_value()) shown = number_option::shown_number(*value);
+  } else {
+    shown = number_option::shown_number(value);
+  }
+  return number_option::add(command, {name, help, range, std::is_integral_v<T>, Kind::kSeveral},
+                            begin, take, shown);
 }
 
 }  // namespace screed

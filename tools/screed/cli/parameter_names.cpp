@@ -11,8 +11,8 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/ground_station/telemetry/schema.h"
+#include "tools/command_line/suggestion.h"
 #include "tools/screed/cli/number_text.h"
-#include "tools/screed/cli/suggestion.h"
 
 namespace screed {
 namespace {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 
 namespace screed {
 namespace {
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 bool ended_early(const fs::path& run) {
   std::ifstream file(run / "summary.json");
-  const auto summary = nlohmann::json::parse(file, nullptr, false);
+  const auto summary = Json::parse_or_null(file);
   return summary.is_object() && summary.value("stopped_early", false);
 }
 

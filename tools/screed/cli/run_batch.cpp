@@ -85,10 +85,10 @@ SimulationSummary run_one(const Experiment& experiment, SimulationOptions option
 
 }  // namespace
 
-void add_batch_options(CLI::App& command, BatchArguments& arguments) {
+void add_batch_options(Command& command, BatchArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Experiment files (INI), run one after the other, each in its own world");
-  CLI::Option* table =
+  Option* table =
       command
           .add_option("--table", arguments.table,
                       "CSV table with one experiment per row; FILE holds the common keys")
@@ -97,20 +97,20 @@ void add_batch_options(CLI::App& command, BatchArguments& arguments) {
       .add_option("--rows", arguments.rows,
                   "Run only the rows that match this name pattern, e.g. 'e_*'")
       ->type_name("PATTERN")
-      ->type_size(1)
-      ->allow_extra_args(false)
+      ->one_value_each()
       ->needs(table);
   command.add_flag("--missing", arguments.missing,
                    "Skip experiments whose run folder (NAME-0001) already exists");
   command.add_option("--set", arguments.sets, "Override a key: section.key=value")
       ->type_name("KEY=VALUE")
-      ->type_size(1)
-      ->allow_extra_args(false);
+      ->one_value_each();
   command
       .add_option("--out", arguments.out,
                   "Run folder, must not exist yet; with several files, --table or --missing the "
                   "parent folder of the run folders")
       ->type_name("FOLDER");
+  command.add_flag("--no-pictures", arguments.no_pictures,
+                   "Draw no pictures; `screed session export --pictures` draws them later");
   command.add_flag("--quiet", arguments.quiet,
                    "Show no progress; print only run folder and content hash");
   command.add_flag("--json", arguments.json, "Print the summary as JSON");
@@ -122,6 +122,7 @@ void run_batch(const BatchArguments& arguments, const std::vector<std::string>& 
   all.insert(all.end(), overrides.begin(), overrides.end());
   const std::vector<Experiment> experiments = read_all(arguments, all);
   const bool several = arguments.several();
+  options.pictures = !arguments.no_pictures;
   options.stop = &interrupted();
   catch_interrupts();
   if (several) {

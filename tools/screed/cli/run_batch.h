@@ -2,11 +2,11 @@
 // about them, and running one after the other.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+#include "tools/command_line/command.h"
 
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/simulation.h"
@@ -20,6 +20,7 @@ struct BatchArguments {
   bool missing = false;              ///< leave out what has a run already
   std::vector<std::string> sets;
   std::optional<std::string> out;
+  bool no_pictures = false;
   bool quiet = false;
   bool json = false;
 
@@ -27,8 +28,8 @@ struct BatchArguments {
   bool several() const { return files.size() > 1 || table.has_value() || missing; }
 };
 
-/// FILE..., --table, --rows, --missing, --set, --out, --quiet and --json.
-void add_batch_options(CLI::App& command, BatchArguments& arguments);
+/// FILE..., --table, --rows, --missing, --set, --out, --no-pictures, --quiet and --json.
+void add_batch_options(Command& command, BatchArguments& arguments);
 
 /// Called after each run.
 using Report = std::function<void(const Experiment&, const SimulationSummary&)>;

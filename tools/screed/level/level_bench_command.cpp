@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -16,6 +15,7 @@
 #include "host_sim/benchmark/world_ranking.h"
 #include "host_sim/campaign/campaign_merge.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "tools/screed/campaign/campaign_work.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
@@ -25,9 +25,8 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct BenchArguments {
   std::vector<std::string> entries;
   std::string suite = "core";
   bool quick = false;
@@ -175,7 +174,7 @@ std::vector<std::string> chosen_entries(const std::vector<std::string>& words,
   return names;
 }
 
-ChosenCampaign choose(const Arguments& arguments, const std::string& version) {
+ChosenCampaign choose(const BenchArguments& arguments, const std::string& version) {
   Benchmark benchmark =
       read_benchmark(arguments.file.has_value() ? fs::path(*arguments.file) : benchmark_path());
   BenchmarkChoice choice;
@@ -196,7 +195,7 @@ ChosenCampaign choose(const Arguments& arguments, const std::string& version) {
   return chosen;
 }
 
-int run_bench(const Arguments& arguments, const std::string& version) {
+int run_bench(const BenchArguments& arguments, const std::string& version) {
   catch_interrupts();
   const ChosenCampaign campaign = choose(arguments, version);
   const CampaignPlan& plan = campaign.plan;
@@ -239,9 +238,9 @@ int run_bench(const Arguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_level_bench_command(CLI::App& level, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = level.add_subcommand(
+void register_level_bench_command(Command& level, Program& program) {
+  auto arguments = std::make_shared<BenchArguments>();
+  Command* command = level.add_subcommand(
       "bench", "Run the leveling benchmark; interrupted, the same command goes on");
   command
       ->add_option("ENTRY", arguments->entries,
@@ -250,14 +249,14 @@ void register_level_bench_command(CLI::App& level, Program& program) {
       ->expected(0, -1);
   command->add_option("--suite", arguments->suite, "Which beds, sizes, soils and robots")
       ->type_name("NAME")
-      ->capture_default_str();
+      ->show_default();
   command->add_flag("--quick", arguments->quick, "The suite quick: minutes, not hours");
   command->add_flag("--training", arguments->training,
                     "On the training beds; nothing is chosen on the test beds");
   command
       ->add_option("--against", arguments->against, "The entry that the others are compared with")
       ->type_name("ENTRY")
-      ->capture_default_str();
+      ->show_default();
   add_number(*command, "--seeds", arguments->seeds,
              "How many beds of each kind (default: as the suite says)", {1, 1e6});
   command->add_option("--benchmark", arguments->file, "Another benchmark's file")

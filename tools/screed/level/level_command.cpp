@@ -4,9 +4,8 @@
 
 namespace screed {
 
-void register_level_command(CLI::App& root, Program& program) {
-  CLI::App* level = root.add_subcommand("level", "Measure how well algorithms level");
-  level->require_subcommand(1);
+void register_level_command(Command& root, Program& program) {
+  Command* level = root.add_subcommand("level", "Measure how well algorithms level");
   register_level_subcommands(*level, program);
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct EvolveArguments {
   std::string file;
   std::optional<std::string> benchmark;
   std::optional<std::string> out;
@@ -36,7 +36,7 @@ struct Arguments {
 struct Stopped {};
 
 /// One campaign, to its end.
-std::vector<EntryScore> run_task(const Arguments& arguments, const std::string& version,
+std::vector<EntryScore> run_task(const EvolveArguments& arguments, const std::string& version,
                                  const fs::path& out, const EvolutionFile& file,
                                  const Benchmark& benchmark, const EvolutionTask& task) {
   ChosenCampaign campaign;
@@ -113,7 +113,7 @@ void print_verification(const Evolution& evolution, const EvolutionFile& file) {
   }
 }
 
-int run_evolve(const Arguments& arguments, const std::string& version) {
+int run_evolve(const EvolveArguments& arguments, const std::string& version) {
   catch_interrupts();
   const EvolutionFile file = read_evolution_file(arguments.file);
   const Benchmark benchmark = read_benchmark(
@@ -153,9 +153,9 @@ int run_evolve(const Arguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_level_evolve_command(CLI::App& level, Program& program) {
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = level.add_subcommand(
+void register_level_evolve_command(Command& level, Program& program) {
+  auto arguments = std::make_shared<EvolveArguments>();
+  Command* command = level.add_subcommand(
       "evolve",
       "Search parameters of a leveling algorithm, verify the best; interrupted, the same command "
       "goes on");

@@ -11,13 +11,13 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string_view>
 
 #include "firmware/estimation/attitude.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "tools/screed/cli/command.h"
 
 namespace screed {
@@ -222,17 +222,17 @@ void print_table(const std::vector<AttitudeScore>& scores, const AttitudeScore& 
 
 void print_json(const std::vector<AttitudeScore>& scores, const AttitudeScore& mean,
                 std::ostream& out) {
-  nlohmann::json files = nlohmann::json::array();
+  Json files = Json::array();
   for (const AttitudeScore& score : scores) {
     files.push_back({{"file", score.file},
-                     {"samples", score.samples},
+                     {"rms_heading_deg", score.rms_heading_deg},
                      {"rms_inclination_deg", score.rms_inclination_deg},
-                     {"rms_heading_deg", score.rms_heading_deg}});
+                     {"samples", score.samples}});
   }
-  const nlohmann::json whole = {{"files", files},
-                                {"mean",
-                                 {{"rms_inclination_deg", mean.rms_inclination_deg},
-                                  {"rms_heading_deg", mean.rms_heading_deg}}}};
+  const Json whole = {{"files", files},
+                      {"mean",
+                       {{"rms_heading_deg", mean.rms_heading_deg},
+                        {"rms_inclination_deg", mean.rms_inclination_deg}}}};
   out << whole.dump(2) << '\n';
 }
 
@@ -281,13 +281,13 @@ int run_attitude(const std::vector<std::string>& files, bool json, std::ostream&
   return 0;
 }
 
-void register_attitude_command(CLI::App& root, Program& program) {
+void register_attitude_command(Command& root, Program& program) {
   struct Options {
     std::vector<std::string> files;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = root.add_subcommand(
+  Command* command = root.add_subcommand(
       "attitude",
       "Run the attitude estimator over recordings with an optical reference and print its errors");
   command->add_option("FILES", options->files, "CSV recordings (format: docs/attitude.md)")

@@ -26,8 +26,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPump{50};
-constexpr uint64_t kAnswerTimeout_us = 5'000'000;
+constexpr milliseconds kCalibrationPump{50};
+constexpr uint64_t kCalibrationTimeout_us = 5'000'000;
 constexpr uint64_t kPutDown_us = 180'000'000;
 constexpr double kGyro_dps = 0.070;
 constexpr double kAccel_mg = 0.244;
@@ -91,10 +91,10 @@ class Calibration {
   }
 
   void meet() {
-    const uint64_t end_us = wall_clock_us() + kAnswerTimeout_us;
+    const uint64_t end_us = wall_clock_us() + kCalibrationTimeout_us;
     while (wall_clock_us() < end_us && !session_.ready()) {
       stop_if_interrupted("waiting for the robot");
-      session_.pump(kPump);
+      session_.pump(kCalibrationPump);
     }
     if (!link_->status().up) throw RunError(link_->name() + ": " + link_->status().text);
     if (!session_.ready()) throw RunError(link_->name() + ": " + not_heard_text(fleet_, session_));
@@ -104,7 +104,7 @@ class Calibration {
     std::string said;
     double said_coverage = 0.0;
     while (!over() && !collector_.complete()) {
-      session_.pump(kPump);
+      session_.pump(kCalibrationPump);
       const std::string advice = collector_.advice();
       const double covered = collector_.mag_coverage();
       if (advice == said && covered < said_coverage + 0.1) continue;
@@ -118,7 +118,7 @@ class Calibration {
   void collect_on_screen() {
     TerminalScreen screen;
     while (!over() && !collector_.complete()) {
-      session_.pump(kPump);
+      session_.pump(kCalibrationPump);
       while (const std::optional<int> key = screen.key()) {
         given_up_ = given_up_ || *key == 'q';
       }
@@ -145,7 +145,7 @@ class Calibration {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     while (poll(&input, 1, 0) <= 0) {
       stop_if_interrupted("calibrating; nothing was changed");
-      session_.pump(kPump);
+      session_.pump(kCalibrationPump);
     }
     std::string answer;
     return std::getline(std::cin, answer) && !answer.empty() &&
@@ -210,7 +210,7 @@ class Calibration {
 
   void pump_interruptible() {
     stop_if_interrupted("waiting until the robot is disarmed");
-    session_.pump(kPump);
+    session_.pump(kCalibrationPump);
   }
 
   const CalibrateArguments& arguments_;
@@ -226,11 +226,11 @@ class Calibration {
 
 }  // namespace
 
-void register_calibrate_command(CLI::App& root, Program& program) {
+void register_calibrate_command(Command& root, Program& program) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = root.add_subcommand("calibrate",
-                                          "Calibrate a robot's IMU from six positions and a turn "
-                                          "in all directions, and store the result");
+  Command* command = root.add_subcommand("calibrate",
+                                         "Calibrate a robot's IMU from six positions and a turn "
+                                         "in all directions, and store the result");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
   command->add_flag("--plain", arguments->plain,

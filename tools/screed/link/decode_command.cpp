@@ -51,9 +51,9 @@ int run_decode(const DecodeOptions& options, std::ostream& out, std::ostream& er
   return decoder.statistics().damaged() > 0 ? 1 : 0;
 }
 
-void register_decode_command(CLI::App& root, Program& program) {
+void register_decode_command(Command& root, Program& program) {
   const auto options = std::make_shared<DecodeOptions>();
-  CLI::App* command = root.add_subcommand(
+  Command* command = root.add_subcommand(
       "decode", "Convert a radio log to CSV tables or to an MCAP file for Foxglove");
   command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
       ->required();
@@ -68,7 +68,7 @@ void register_decode_command(CLI::App& root, Program& program) {
   command->add_flag("--numbers", options->numbers, "Write named values as numbers (CSV)");
   command->add_option("--board", options->board, "Board of the robots (CSV)")
       ->type_name("NAME")
-      ->capture_default_str();
+      ->show_default();
   command->callback([options, &program] {
     program.action = [options] { return run_decode(*options, std::cout, std::cerr); };
   });

@@ -146,8 +146,8 @@ bool provision_key(const std::string& port, const GetKey& get_key) {
                        get_key);
 }
 
-void register_key_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_key_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "key", "Create the key that signs commands, and provision a robot with it over USB");
   const auto arguments = std::make_shared<Arguments>();
   command

@@ -37,7 +37,7 @@ int links_named(const LinkArguments& arguments) {
          int{arguments.pty.has_value()};
 }
 
-void add_link_options(CLI::App& command, LinkArguments& arguments) {
+void add_link_options(Command& command, LinkArguments& arguments) {
   command
       .add_option("--port", arguments.port, "Serial port of the radio module, e.g. /dev/ttyUSB0")
       ->type_name("DEVICE");
@@ -55,7 +55,7 @@ void add_link_options(CLI::App& command, LinkArguments& arguments) {
                    "Remember this link and the key file for calls that name no link");
 }
 
-void add_key_option(CLI::App& command, LinkArguments& arguments) {
+void add_key_option(Command& command, LinkArguments& arguments) {
   command
       .add_option("--key", arguments.key,
                   "File with the robot's command key (default: the remembered link's, or the test "

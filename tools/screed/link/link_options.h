@@ -1,10 +1,10 @@
 // The options of every subcommand that talks to a robot: which link, which key.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
+#include "tools/command_line/command.h"
 
 #include "host_sim/ground_station/link/link.h"
 #include "host_sim/ground_station/station/command_key.h"
@@ -29,8 +29,8 @@ struct LinkArguments {
 /// How many of port, can and pty are there; one is right.
 int links_named(const LinkArguments& arguments);
 
-void add_link_options(CLI::App& command, LinkArguments& arguments);
-void add_key_option(CLI::App& command, LinkArguments& arguments);
+void add_link_options(Command& command, LinkArguments& arguments);
+void add_key_option(Command& command, LinkArguments& arguments);
 
 /// Opens the one link that was asked for, or else the remembered one (remembered_link.h), which it
 /// says on standard error; with --remember it is remembered once it is open. Throws InputError when

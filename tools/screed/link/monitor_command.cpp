@@ -28,9 +28,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPump{50};
+constexpr milliseconds kMonitorPump{50};
 constexpr uint64_t kPlainPeriod_us = 1'000'000;
-constexpr uint64_t kAnswerTimeout_us = 5'000'000;
+constexpr uint64_t kMonitorTimeout_us = 5'000'000;
 constexpr int kTabKey = '\t';
 
 struct MonitorArguments {
@@ -86,7 +86,7 @@ class Monitor {
     if (arguments_.duration_s > 0.0)
       return static_cast<double>(passed_us) >= arguments_.duration_s * 1e6;
     // One report: a second after the first word, but no waiting for ever.
-    return arguments_.once && (passed_us >= kAnswerTimeout_us ||
+    return arguments_.once && (passed_us >= kMonitorTimeout_us ||
                                (heard_us_ != 0 && wall_clock_us() >= heard_us_ + kPlainPeriod_us));
   }
 
@@ -133,7 +133,7 @@ class Monitor {
     uint64_t due_us = begin_us_ + kPlainPeriod_us;
     std::string link_text;  // the first one is said as well: from then on nothing is missed
     while (!over()) {
-      session_.pump(kPump);
+      session_.pump(kMonitorPump);
       if (!arguments_.once && link_->status().text != link_text) {
         link_text = link_->status().text;
         std::cout << "link " << link_->name() << " is " << link_text << std::endl;
@@ -150,7 +150,7 @@ class Monitor {
     bool quit = false;
     std::string link_text = link_->status().text;
     while (!quit && !over()) {
-      session_.pump(kPump);
+      session_.pump(kMonitorPump);
       if (link_->status().text != link_text) {
         link_text = link_->status().text;
         note(link_->status().up ? CellStyle::kGood : CellStyle::kAlarm, "link: " + link_text);
@@ -272,10 +272,10 @@ class Monitor {
 
 }  // namespace
 
-void register_monitor_command(CLI::App& root, Program& program) {
+void register_monitor_command(Command& root, Program& program) {
   auto arguments = std::make_shared<MonitorArguments>();
   arguments->curves = {"attitude.pitch", "leveling.speed", "gyro_raw.z"};
-  CLI::App* command = root.add_subcommand(
+  Command* command = root.add_subcommand(
       "monitor", "Show a robot's telemetry live and send it heartbeats as its ground station");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
@@ -287,7 +287,7 @@ void register_monitor_command(CLI::App& root, Program& program) {
       ->delimiter(',');
   command->add_option("--board", arguments->board, "Board of the robots, for the slip of tracks")
       ->type_name("NAME")
-      ->capture_default_str();
+      ->show_default();
   add_number(
       *command, "--cells", arguments->cells,
       "NiMH cells of the robot's battery in series, for its charge in per cent; 0: not shown "

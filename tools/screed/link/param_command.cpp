@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +13,11 @@
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/parameter_names.h"
 #include "tools/screed/cli/progress_bar.h"
-#include "tools/screed/cli/suggested_words.h"
 #include "tools/screed/link/parameter_file.h"
 #include "tools/screed/link/robot_session.h"
 
@@ -49,8 +48,8 @@ const char* name_of(uint16_t index) {
 }
 
 /// What programs read of a value.
-nlohmann::ordered_json json_of(const ParameterValue& value) {
-  nlohmann::ordered_json json;
+Json json_of(const ParameterValue& value) {
+  Json json;
   json["name"] = name_of(value.index);
   json["value"] = value.value;
   json["text"] = parameter_text(value.index, value.value);
@@ -81,13 +80,13 @@ Parameters read_all(RobotSession& robot) {
 }
 
 int list(const ParamArguments& arguments) {
-  nlohmann::ordered_json json;
+  Json json;
   std::size_t width = 0;
   for (const std::string& name : parameter_names()) width = std::max(width, name.size());
   for (const ParameterValue& value : all_parameters({})) {
     const ParameterInfo& info = kParameterTable[value.index];
     if (arguments.json) {
-      nlohmann::ordered_json row = {{"name", info.name}};
+      Json row = {{"name", info.name}};
       row["default"] = value.value;
       row["min"] = info.min;
       row["max"] = info.max;
@@ -111,7 +110,7 @@ int get(const ParamArguments& arguments) {
   ParamRobot robot(arguments);
   const std::vector<ParameterValue> values =
       indices.empty() ? all_parameters(read_all(robot)) : read_from(robot, indices);
-  nlohmann::ordered_json json;
+  Json json;
   for (const ParameterValue& value : values) {
     if (arguments.json) {
       json.push_back(json_of(value));
@@ -184,10 +183,10 @@ int diff(const ParamArguments& arguments) {
   const std::vector<ParameterValue> values = read_parameter_file(arguments.file);
   const std::vector<ParameterValue> others = others_of(arguments, values);
   const std::string other = arguments.experiment.value_or("the robot");
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  Json json = Json::array();
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] == others[i]) continue;
-    nlohmann::ordered_json row = {{"name", name_of(values[i].index)}};
+    Json row = {{"name", name_of(values[i].index)}};
     row["file"] = json_of(values[i])["text"];
     row["other"] = json_of(others[i])["text"];
     json.push_back(row);
@@ -229,27 +228,25 @@ int load(const ParamArguments& arguments) {
 
 }  // namespace
 
-void register_param_command(CLI::App& root, Program& program) {
+void register_param_command(Command& root, Program& program) {
   auto arguments = std::make_shared<ParamArguments>();
-  CLI::App* command =
+  Command* command =
       root.add_subcommand("param", "Parameters of a robot: list, get, set, dump, compare, load");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
-  command->require_subcommand(1);
   command->fallthrough();
   const auto add = [&](const char* name, const char* help, int (*run)(const ParamArguments&)) {
-    CLI::App* sub = command->add_subcommand(name, help);
+    Command* sub = command->add_subcommand(name, help);
     sub->fallthrough();
     sub->callback([arguments, &program, run] {
       program.action = [arguments, run] { return run(*arguments); };
     });
     return sub;
   };
-  const auto json = [&](CLI::App* sub) {
+  const auto json = [&](Command* sub) {
     sub->add_flag("--json", arguments->json, "Print the result as JSON, values as in the table");
   };
-  const CLI::Validator names = suggested_words(parameter_names());
-  const auto file = [&](CLI::App* sub) {
+  const auto file = [&](Command* sub) {
     sub->add_option("FILE", arguments->file,
                     "Parameter file of screed param dump, or any experiment")
         ->type_name("FILE")
@@ -258,23 +255,23 @@ void register_param_command(CLI::App& root, Program& program) {
 
   json(add("list", "List all parameters: meaning, range and default; needs no robot", list));
 
-  CLI::App* of_get = add("get", "Print parameters of the robot", get);
+  Command* of_get = add("get", "Print parameters of the robot", get);
   of_get
       ->add_option("NAME", arguments->names,
                    "Names of the parameters, see screed param list (default: all)")
-      ->check(names);
+      ->suggest(parameter_names());
   json(of_get);
 
-  CLI::App* of_set = add("set", "Set a parameter and store it in the robot", set);
+  Command* of_set = add("set", "Set a parameter and store it in the robot", set);
   of_set->add_option("NAME", arguments->name, "Name of the parameter, see screed param list")
       ->required()
-      ->check(names);
+      ->suggest(parameter_names());
   of_set
       ->add_option("VALUE", arguments->value,
                    "New value, as get prints it: 5, '5 deg', spin_on_peak")
       ->required();
 
-  CLI::App* of_dump = add("dump", "Print all parameters as a file for load and for sim", dump);
+  Command* of_dump = add("dump", "Print all parameters as a file for load and for sim", dump);
   of_dump
       ->add_option("--experiment", arguments->experiment,
                    "Parameters of this experiment instead of a robot")
@@ -282,16 +279,16 @@ void register_param_command(CLI::App& root, Program& program) {
   of_dump->add_option("--out", arguments->out, "File to write (default: standard output)")
       ->type_name("FILE");
 
-  CLI::App* of_diff = add("diff",
-                          "Compare the parameters that FILE names with the robot's; exit code 1 "
-                          "when they differ",
-                          [](const ParamArguments& given) {
-                            try {
-                              return diff(given);
-                            } catch (const RunError& error) {
-                              throw InputError(error.what());
-                            }
-                          });
+  Command* of_diff = add("diff",
+                         "Compare the parameters that FILE names with the robot's; exit code 1 "
+                         "when they differ",
+                         [](const ParamArguments& given) {
+                           try {
+                             return diff(given);
+                           } catch (const RunError& error) {
+                             throw InputError(error.what());
+                           }
+                         });
   file(of_diff);
   of_diff
       ->add_option("--experiment", arguments->experiment,

@@ -144,9 +144,9 @@ int run_plot(const PlotOptions& options, std::ostream& err) {
   return 0;
 }
 
-void register_plot_command(CLI::App& root, Program& program) {
+void register_plot_command(Command& root, Program& program) {
   const auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = root.add_subcommand(
+  Command* command = root.add_subcommand(
       "plot", "Plot signals of a radio log over time: a panel for each unit, states as bands");
   command->add_option("LOG", options->log, "Log as written by candump -L; -: standard input")
       ->required();
@@ -160,13 +160,11 @@ void register_plot_command(CLI::App& root, Program& program) {
       ->required();
   add_number(*command, "--robot", options->robot, "Plot one robot only", {1, 15});
   add_number(*command, "--from", options->from_s, "Start, after the log's first message [s]",
-             {0.0, 1e9})
-      ->capture_default_str();
+             {0.0, 1e9});
   add_number(*command, "--to", options->to_s, "End, after the log's first message [s]", {0.0, 1e9});
   add_number(*command, "--width", options->width_px,
              "Width of the SVG [px]; a PNG has twice as many",
-             {kMinChartWidth_px, kMaxChartSide_px})
-      ->capture_default_str();
+             {kMinChartWidth_px, kMaxChartSide_px});
   add_number(*command, "--height", options->height_px,
              "Height of the SVG [px]; a PNG has twice as many (default: what the panels need)",
              {kMinChartHeight_px, kMaxChartSide_px});

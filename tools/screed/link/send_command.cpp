@@ -3,10 +3,10 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "host_sim/core/json.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
@@ -15,8 +15,6 @@
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct SendArguments {
   LinkArguments link;
@@ -64,7 +62,7 @@ int send_command(const SendArguments& arguments, CommandOp op, uint32_t argument
   if (arguments.json) {
     print_json(sent, robot, answer);
   } else {
-    robot.say(sent["command"], answer);
+    robot.say(sent["command"].text(), answer);
   }
   if (!answer.has_value() || !answer->done()) return 1;
   if (arguments.hold) robot.hold();
@@ -90,17 +88,16 @@ int send_emergency_stop(const SendArguments& arguments) {
 
 }  // namespace
 
-void register_send_command(CLI::App& root, Program& program) {
+void register_send_command(Command& root, Program& program) {
   auto arguments = std::make_shared<SendArguments>();
-  CLI::App* command = root.add_subcommand("send", "Send a robot a command and print its answer");
+  Command* command = root.add_subcommand("send", "Send a robot a command and print its answer");
   add_link_options(*command, arguments->link);
   add_key_option(*command, arguments->link);
   command->add_flag("--hold", arguments->hold,
                     "Keep sending heartbeats after the command, until Ctrl-C");
   command->add_flag("--json", arguments->json, "Print command and answer as JSON");
-  command->require_subcommand(1);
   command->fallthrough();
-  const auto on = [&program](CLI::App* what, const std::function<int()>& act) {
+  const auto on = [&program](Command* what, const std::function<int()>& act) {
     what->fallthrough();
     what->callback([&program, act] { program.action = act; });
   };
@@ -112,7 +109,7 @@ void register_send_command(CLI::App& root, Program& program) {
   on(command->add_subcommand("estop", "Stop immediately (emergency stop); needs no key"),
      [arguments] { return send_emergency_stop(*arguments); });
 
-  CLI::App* drive = command->add_subcommand("drive", "Drive, with the algorithm \"drive\" running");
+  Command* drive = command->add_subcommand("drive", "Drive, with the algorithm \"drive\" running");
   add_number(*drive, "SPEED", arguments->speed_m_per_s, "Speed [m/s]", {-2.0, 2.0})->required();
   add_number(*drive, "YAW_RATE", arguments->yaw_rate_deg_per_s,
              "Yaw rate, counter-clockwise [deg/s]", {-200.0, 200.0});

@@ -6,7 +6,7 @@ namespace {
 
 /// The walk over the words so far: which subcommand, and whether an option's value is due. Bash
 /// hands over --option=value as three words.
-constexpr const char* kWalk = R"(
+constexpr const char* kBashWalk = R"(
 _screed() {
   local path=screed option= place=0 kind= i word
   local commands options valued
@@ -112,7 +112,8 @@ std::string bash_completion(const CommandNode& root) {
   });
   return "# Completion of screed for bash; made by `screed completion bash`.\n\n"
          "_screed_at() {\n  case $1 in\n" +
-         words + "  esac\n}\n\n_screed_kind() {\n  case $1 in\n" + kinds + "  esac\n}\n" + kWalk;
+         words + "  esac\n}\n\n_screed_kind() {\n  case $1 in\n" + kinds + "  esac\n}\n" +
+         kBashWalk;
 }
 
 }  // namespace screed

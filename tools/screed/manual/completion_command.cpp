@@ -8,13 +8,13 @@
 
 namespace screed {
 
-void register_completion_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_completion_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "completion", "Print a script that completes screed's command line in a shell");
   const auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "The shell, as in: source <(screed completion bash)")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+      ->one_of({"bash", "zsh", "fish"});
   command->callback([shell, &root, &program] {
     program.action = [shell, &root] {
       const CommandNode tree = command_tree(root);

@@ -14,7 +14,7 @@ std::string in_quotes(const std::string& text) {
 }
 
 /// Which subcommand the words so far have come to; true when it is that of the argument.
-constexpr const char* kWalk = R"(
+constexpr const char* kFishWalk = R"(
 function __screed_at
     set -l path screed
     set -l value_due 0
@@ -91,7 +91,7 @@ std::string fish_completion(const CommandNode& root) {
   });
   return "# Completion of screed for fish; made by `screed completion fish`.\n\n" +
          function_of("__screed_valued", valued) + "\n" +
-         function_of("__screed_is_command", commands) + kWalk + lines;
+         function_of("__screed_is_command", commands) + kFishWalk + lines;
 }
 
 }  // namespace screed

@@ -8,8 +8,8 @@
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "tools/command_line/suggestion.h"
 #include "tools/screed/cli/command.h"
-#include "tools/screed/cli/suggestion.h"
 #include "tools/screed/manual/roff_page.h"
 
 namespace screed {
@@ -42,11 +42,11 @@ void write_all(const CommandNode& root, const std::string& version,
 
 }  // namespace
 
-void register_manual_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_manual_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "manual", "Print the man page of screed or of a subcommand: screed manual sim | man -l -");
   const auto arguments = std::make_shared<ManualArguments>();
-  CLI::Option* of_one =
+  Option* of_one =
       command->add_option("SUBCOMMAND", arguments->subcommand, "Its page (default: screed's own)");
   command->add_option("--out", arguments->out, "Write all pages to this folder")
       ->type_name("FOLDER")

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/screed/cli/command_tree.h"
+#include "tools/command_line/command_tree.h"
 
 namespace screed {
 

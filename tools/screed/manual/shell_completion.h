@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "tools/screed/cli/command_tree.h"
+#include "tools/command_line/command_tree.h"
 
 namespace screed {
 

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "commands.h"
@@ -312,44 +311,43 @@ int run_features() {
 
 }  // namespace
 
-void register_nn_command(CLI::App& root, Program& program) {
+void register_nn_command(Command& root, Program& program) {
   auto arguments = std::make_shared<NnArguments>();
-  CLI::App* nn = root.add_subcommand("nn", "Train, evaluate and export networks");
-  nn->require_subcommand(1);
+  Command* nn = root.add_subcommand("nn", "Train, evaluate and export networks");
   const auto add = [&](const char* name, const char* help, int (*run)(const NnArguments&)) {
-    CLI::App* command = nn->add_subcommand(name, help);
+    Command* command = nn->add_subcommand(name, help);
     command->callback(
         [arguments, run, &program] { program.action = [=] { return run(*arguments); }; });
     return command;
   };
-  const auto configuration = [&](CLI::App* command) {
+  const auto configuration = [&](Command* command) {
     command
         ->add_option("CONFIGURATION", arguments->configuration,
                      "Training configuration (nn/configurations/*.json)")
         ->required();
     command->add_option("--sessions", arguments->sessions, "Folder with the recorded sessions")
         ->type_name("FOLDER")
-        ->capture_default_str();
+        ->show_default();
   };
-  const auto model = [&](CLI::App* command) {
+  const auto model = [&](Command* command) {
     command->add_option("MODEL", arguments->model, "Trained model (nn/models/*.json)")->required();
   };
-  const auto folder = [&](CLI::App* command) {
+  const auto folder = [&](Command* command) {
     command->add_option("--out", arguments->out, "Output folder (default: out/nn/NAME)")
         ->type_name("FOLDER");
   };
-  const auto json = [&](CLI::App* command) {
+  const auto json = [&](Command* command) {
     command->add_flag("--json", arguments->json, "Print results as JSON");
     command->add_flag("!--no-pictures", arguments->pictures, "Draw no charts");
   };
 
-  CLI::App* preprocess =
+  Command* preprocess =
       add("preprocess", "Convert sessions to training tables: outliers, normalisation, smoothing",
           run_preprocess);
   configuration(preprocess);
   folder(preprocess);
 
-  CLI::App* train = add("train", "Train the networks of a configuration", run_train);
+  Command* train = add("train", "Train the networks of a configuration", run_train);
   configuration(train);
   folder(train);
   add_number(*train, "--epochs", arguments->epochs, "Number of epochs; overrides the configuration",
@@ -359,14 +357,14 @@ void register_nn_command(CLI::App& root, Program& program) {
                   "Resume from the checkpoints in the output folder");
   json(train);
 
-  CLI::App* quantise =
+  Command* quantise =
       add("quantise", "Quantise a trained model again, from its training data", run_quantise);
   model(quantise);
   configuration(quantise);
   quantise->add_option("--out", arguments->out, "Model file to write (default: MODEL)")
       ->type_name("FILE");
 
-  CLI::App* eval =
+  Command* eval =
       add("eval", "Evaluate a model: the thesis' tables 6.1 to 6.3, and charts", run_eval);
   model(eval);
   configuration(eval);
@@ -374,22 +372,22 @@ void register_nn_command(CLI::App& root, Program& program) {
   json(eval);
   eval->add_flag("--markdown", arguments->markdown,
                  "Print the tables as a section of a page in Markdown, and draw nothing")
-      ->excludes("--json");
+      ->excludes(eval->option("--json"));
 
-  CLI::App* header = add("export", "Export a model as a C++ header for the robot", run_export);
+  Command* header = add("export", "Export a model as a C++ header for the robot", run_export);
   model(header);
   header->add_option("--header", arguments->out, "Header file to write (default: standard output)")
       ->type_name("FILE");
 
   model(add("show", "Describe a model", run_show));
 
-  CLI::App* check =
+  Command* check =
       add("check", "Compare scalar and SIMD inference on random and edge-case vectors", run_check);
   model(check);
   add_number(*check, "--vectors", arguments->vectors, "Number of vectors", kCountRange);
   add_number(*check, "--seed", arguments->seed, "Seed of the vectors", kSeedRange);
 
-  CLI::App* features = nn->add_subcommand("features", "List all features and preprocessing stages");
+  Command* features = nn->add_subcommand("features", "List all features and preprocessing stages");
   features->callback([&program] { program.action = [] { return run_features(); }; });
 
   register_nn_subcommands(*nn, program);

@@ -7,11 +7,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
 
 #include "host_sim/core/intervals.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/quantile.h"
 #include "nn/slip/escape_run.h"
 #include "tools/screed/cli/command.h"
@@ -133,7 +133,7 @@ void print_manoeuvres(const std::vector<nn::EscapeResult>& results) {
   }
 }
 
-nlohmann::ordered_json json_of(const Counts& c) {
+Json json_of(const Counts& c) {
   const Interval interval = wilson(c.escaped, c.recoverable);
   return {{"stuck", c.stuck},
           {"out_without_escape", c.alone},
@@ -146,16 +146,19 @@ nlohmann::ordered_json json_of(const Counts& c) {
 }
 
 void print_json(const EscapeArguments& arguments, const Figures& figures) {
-  nlohmann::ordered_json traps;
+  Json traps;
   for (const auto& [trap, counts] : figures.by_trap) traps[trap] = json_of(counts);
-  const nlohmann::ordered_json json = {{"first_seed", arguments.seed},
-                                       {"runs", arguments.runs},
-                                       {"all", json_of(figures.all)},
-                                       {"traps", traps},
-                                       {"backed_off_before_the_alarm", figures.backed_off},
-                                       {"time_median_s", quantile(figures.times_s, 0.5)},
-                                       {"time_p95_s", quantile(figures.times_s, 0.95)},
-                                       {"not_out", figures.failed}};
+  Json backed_off = Json::object();
+  for (const auto& [trap, count] : figures.backed_off) backed_off[trap] = count;
+
+  const Json json = {{"first_seed", arguments.seed},
+                     {"runs", arguments.runs},
+                     {"all", json_of(figures.all)},
+                     {"traps", traps},
+                     {"backed_off_before_the_alarm", backed_off},
+                     {"time_median_s", quantile(figures.times_s, 0.5)},
+                     {"time_p95_s", quantile(figures.times_s, 0.95)},
+                     {"not_out", figures.failed}};
   std::cout << json.dump(2) << "\n";
 }
 
@@ -207,9 +210,9 @@ int run_escape(const EscapeArguments& arguments) {
 
 }  // namespace
 
-void register_nn_escape_command(CLI::App& nn, Program& program) {
+void register_nn_escape_command(Command& nn, Program& program) {
   auto arguments = std::make_shared<EscapeArguments>();
-  CLI::App* command = nn.add_subcommand(
+  Command* command = nn.add_subcommand(
       "escape", "Evaluate how the robot gets itself out of traps, against the best manoeuvre");
   add_number(*command, "--seed", arguments->seed,
              "Seed of the first drive; each further drive adds 1", kSeedRange);

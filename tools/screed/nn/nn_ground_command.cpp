@@ -49,9 +49,9 @@ int run_ground(const GroundArguments& arguments) {
 
 }  // namespace
 
-void register_nn_ground_command(CLI::App& nn, Program& program) {
+void register_nn_ground_command(Command& nn, Program& program) {
   auto ground = std::make_shared<GroundArguments>();
-  CLI::App* command = nn.add_subcommand(
+  Command* command = nn.add_subcommand(
       "ground", "Compare the ground that the stand-in leaves below recorded drives");
   command->add_option("SESSION", ground->sessions, "Run folders of screed record")->required();
   add_number(*command, "--seconds", ground->seconds, "How long to follow each drive [s]",

@@ -346,9 +346,9 @@ int run_divergence(const DivergenceArguments& arguments) {
 
 }  // namespace
 
-void register_nn_rollout_command(CLI::App& nn, Program& program) {
+void register_nn_rollout_command(Command& nn, Program& program) {
   auto rollout = std::make_shared<RolloutArguments>();
-  CLI::App* rollout_command = nn.add_subcommand(
+  Command* rollout_command = nn.add_subcommand(
       "rollout", "Compare the stand-in's motion, and that of networks, with recorded physics");
   rollout_command->add_option("SESSION", rollout->sessions, "Run folders of screed record")
       ->required();
@@ -363,8 +363,8 @@ void register_nn_rollout_command(CLI::App& nn, Program& program) {
       ->add_option("--drive", rollout->drive,
                    "Input of the rollout: firmware: the firmware drives and measures the predicted "
                    "motion; tracks: recorded track motion")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"firmware", "tracks"}));
+      ->show_default()
+      ->one_of({"firmware", "tracks"});
   rollout_command
       ->add_option("--out", rollout->out,
                    "Output folder for pictures of some rollouts: paths, and deviation "
@@ -374,7 +374,7 @@ void register_nn_rollout_command(CLI::App& nn, Program& program) {
       [rollout, &program] { program.action = [rollout] { return run_rollout(*rollout); }; });
 
   auto divergence = std::make_shared<DivergenceArguments>();
-  CLI::App* divergence_command = nn.add_subcommand(
+  Command* divergence_command = nn.add_subcommand(
       "divergence", "Measure how far pairs of recorded sessions diverge: physics against physics");
   divergence_command
       ->add_option("SESSION", divergence->sessions, "Run folders of screed record, in pairs")

@@ -85,13 +85,12 @@ int export_header(const SlipArguments& arguments) {
 
 }  // namespace
 
-void register_nn_slip_command(CLI::App& nn, Program& program) {
-  CLI::App* slip = nn.add_subcommand(
+void register_nn_slip_command(Command& nn, Program& program) {
+  Command* slip = nn.add_subcommand(
       "slip", "Train the network of the robot's slip watch and choose its threshold");
-  slip->require_subcommand(1);
   const auto add = [&](const char* name, const char* description, auto action, bool drives) {
     auto arguments = std::make_shared<SlipArguments>();
-    CLI::App* command = slip->add_subcommand(name, description);
+    Command* command = slip->add_subcommand(name, description);
     if (drives) add_campaign_options(*command, *arguments);
     command->callback([arguments, action, &program] {
       program.action = [arguments, action] { return action(*arguments); };

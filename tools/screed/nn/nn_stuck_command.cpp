@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/intervals.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/quantile.h"
 #include "nn/slip/slip_campaign.h"
 #include "tools/screed/cli/command.h"
@@ -80,7 +80,7 @@ void print(const SlipFigures& figures) {
   std::printf("\n");
 }
 
-nlohmann::ordered_json json_of(const StuckCounts& counts) {
+Json json_of(const StuckCounts& counts) {
   const Interval detected = wilson(counts.detected, counts.dug_in);
   const Interval alarms = poisson(counts.false_alarms);
   return {{"trapped", counts.trapped},      {"dug_in", counts.dug_in},
@@ -90,7 +90,7 @@ nlohmann::ordered_json json_of(const StuckCounts& counts) {
           {"false_alarms_low", alarms.low}, {"false_alarms_high", alarms.high}};
 }
 
-nlohmann::ordered_json json_of(const ShareError& error) {
+Json json_of(const ShareError& error) {
   return {{"true_mean", error.true_mean()},
           {"mean_error", error.mean()},
           {"rms", error.rms()},
@@ -99,12 +99,12 @@ nlohmann::ordered_json json_of(const ShareError& error) {
 }
 
 void print_json(const StuckArguments& arguments, const SlipFigures& figures) {
-  nlohmann::ordered_json json = {{"first_seed", arguments.campaign.seed},
-                                 {"all", json_of(figures.all)},
-                                 {"delay_median_s", quantile(figures.delays_s, 0.5)},
-                                 {"delay_p95_s", quantile(figures.delays_s, 0.95)},
-                                 {"travel_share", json_of(figures.share)},
-                                 {"missed_seeds", figures.missed}};
+  Json json = {{"first_seed", arguments.campaign.seed},
+               {"all", json_of(figures.all)},
+               {"delay_median_s", quantile(figures.delays_s, 0.5)},
+               {"delay_p95_s", quantile(figures.delays_s, 0.95)},
+               {"travel_share", json_of(figures.share)},
+               {"missed_seeds", figures.missed}};
   for (const auto& [trap, counts] : figures.by_trap) json["traps"][trap] = json_of(counts);
   for (const auto& [ground, counts] : figures.by_ground) json["grounds"][ground] = json_of(counts);
   for (const auto& [ground, error] : figures.share_by_ground)
@@ -132,17 +132,17 @@ int run_stuck(const StuckArguments& arguments) {
 
 }  // namespace
 
-void register_nn_stuck_command(CLI::App& nn, Program& program) {
+void register_nn_stuck_command(Command& nn, Program& program) {
   auto arguments = std::make_shared<StuckArguments>();
   arguments->campaign.trapped = 100;
   arguments->campaign.free = 100;
-  CLI::App* command = nn.add_subcommand(
+  Command* command = nn.add_subcommand(
       "stuck", "Evaluate the robot's slip watch in seeded drives with and without traps");
   add_campaign_options(*command, *arguments);
   command
       ->add_option("--experiment", arguments->experiment,
                    "Print the experiment of the first seed: trapped, free or ordinary")
-      ->check(CLI::IsMember({"trapped", "free", "ordinary"}));
+      ->one_of({"trapped", "free", "ordinary"});
   command->add_flag("--json", arguments->json, "Print results as JSON");
   command->callback(
       [arguments, &program] { program.action = [arguments] { return run_stuck(*arguments); }; });

@@ -2,7 +2,8 @@
 #include "tools/screed/nn/nn_tables.h"
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
+
+#include "host_sim/core/json.h"
 
 namespace screed {
 namespace {
@@ -73,7 +74,7 @@ std::string evaluation_markdown(const nn::Evaluation& evaluation,
 }
 
 std::string evaluation_json(const nn::Evaluation& evaluation) {
-  nlohmann::ordered_json scores = nlohmann::ordered_json::array();
+  Json scores = Json::array();
   for (const nn::Score& score : evaluation.scores) {
     scores.push_back({{"output", score.output},
                       {"test", score.test},
@@ -84,7 +85,7 @@ std::string evaluation_json(const nn::Evaluation& evaluation) {
                       {"explained", score.explained},
                       {"integers_off", score.quantisation}});
   }
-  nlohmann::ordered_json ranks = nlohmann::ordered_json::array();
+  Json ranks = Json::array();
   for (const nn::RankScore& rank : evaluation.ranks) {
     ranks.push_back({{"pair", rank.pair},
                      {"test", rank.test},
@@ -92,7 +93,7 @@ std::string evaluation_json(const nn::Evaluation& evaluation) {
                      {"recorded", rank.recorded},
                      {"predicted", rank.predicted}});
   }
-  const nlohmann::ordered_json root = {{"scores", scores}, {"spearman", ranks}};
+  const Json root = {{"scores", scores}, {"spearman", ranks}};
   return root.dump(2) + "\n";
 }
 

@@ -5,7 +5,7 @@
 
 namespace screed {
 
-void add_campaign_options(CLI::App& command, SlipCampaignArguments& arguments) {
+void add_campaign_options(Command& command, SlipCampaignArguments& arguments) {
   nn::SlipCampaign& campaign = arguments.campaign;
   constexpr NumberRange kDrives{0, 100000};
   add_number(command, "--seed", campaign.seed,

@@ -13,7 +13,7 @@ struct SlipCampaignArguments {
   bool quiet = false;
 };
 
-void add_campaign_options(CLI::App& command, SlipCampaignArguments& arguments);
+void add_campaign_options(Command& command, SlipCampaignArguments& arguments);
 
 /// The drives, with a bar of progress.
 std::vector<nn::SlipDrive> run_campaign(const SlipCampaignArguments& arguments);

@@ -217,25 +217,24 @@ int run_compare(const CompareOptions& options) {
 
 }  // namespace
 
-void register_terrain_net_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand("terrain-net",
-                                          "Train and compare networks that predict how wheels "
-                                          "deform the terrain (thesis 6.3.1)");
-  command->require_subcommand(1);
+void register_terrain_net_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand("terrain-net",
+                                         "Train and compare networks that predict how wheels "
+                                         "deform the terrain (thesis 6.3.1)");
 
   const auto train = std::make_shared<TrainOptions>();
-  CLI::App* train_command =
+  Command* train_command =
       command->add_subcommand("train", "Train a network on recorded runs with wheels");
   train_command->add_option("RUN", train->runs, "Runs with recorded heights")->required();
   train_command
       ->add_option("--kind", train->kind,
                    "flux: soil that moves between cells below each wheel; window: the thesis' "
                    "network, reduced")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"flux", "window"}));
+      ->show_default()
+      ->one_of({"flux", "window"});
   train_command->add_option("--out", train->out, "Network file to write")
       ->type_name("FILE")
-      ->capture_default_str();
+      ->show_default();
   add_number(*train_command, "--hidden", train->hidden, "flux: number of nodes of the hidden layer",
              {1, 512});
   add_number(*train_command, "--every", train->every, "flux: use every n-th stride as an example",
@@ -246,14 +245,13 @@ void register_terrain_net_command(CLI::App& root, Program& program) {
       [train, &program] { program.action = [train] { return run_train(*train); }; });
 
   const auto compared = std::make_shared<CompareOptions>();
-  CLI::App* compare_command = command->add_subcommand(
+  Command* compare_command = command->add_subcommand(
       "compare", "Compare terrain deformed by networks with recorded drives");
   compare_command->add_option("NETWORK", compared->network, "Network file of train")->required();
   compare_command->add_option("RUN", compared->runs, "Runs to compare with")->required();
   compare_command->add_option("--beside", compared->beside, "Another network file to compare")
       ->type_name("FILE")
-      ->type_size(1)
-      ->allow_extra_args(false);
+      ->one_value_each();
   add_number(*compare_command, "--from", compared->from,
              "Time to skip at the start of each run [s]", {0.0, 1e6});
   add_number(*compare_command, "--seconds", compared->seconds,

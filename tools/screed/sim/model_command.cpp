@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/physics/vehicle/model_report.h"
 #include "host_sim/run/experiment/board_table.h"
@@ -24,12 +24,11 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr double kMilli = 1e3;
 constexpr const char* kCorners[2][2] = {{"front left", "rear left"}, {"front right", "rear right"}};
 
-struct Arguments {
+struct ModelArguments {
   std::string file;
   std::string board = kDefaultBoard;
   std::string chassis_link;
@@ -82,7 +81,7 @@ void read_named(const std::string& name, const std::string& board, CheckedModel&
 }
 
 /// A URDF file, an experiment that names one, or a robot or experiment that comes with Screed.
-CheckedModel read_model(const Arguments& arguments) {
+CheckedModel read_model(const ModelArguments& arguments) {
   CheckedModel model;
   const fs::path given(arguments.file);
   if (given.extension() == ".ini") {
@@ -237,11 +236,11 @@ void print(const CheckedModel& model) {
                           : (std::to_string(r.warnings.size()) + " warnings").c_str());
 }
 
-int run_check(const Arguments& arguments) {
+int run_check(const ModelArguments& arguments) {
   CheckedModel model = read_model(arguments);
   compare_with_board(arguments.board, model);
   if (arguments.json) {
-    std::cout << describe(model).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    std::cout << describe(model).dump(2, Json::BadText::kReplace) << "\n";
   } else {
     print(model);
   }
@@ -250,19 +249,17 @@ int run_check(const Arguments& arguments) {
 
 }  // namespace
 
-void register_model_command(CLI::App& root, Program& program) {
-  CLI::App* model = root.add_subcommand("model", "Check a robot model (URDF)");
-  model->require_subcommand(1);
-  CLI::App* command = model->add_subcommand(
+void register_model_command(Command& root, Program& program) {
+  Command* model = root.add_subcommand("model", "Check a robot model (URDF)");
+  Command* command = model->add_subcommand(
       "check", "Print what is found in a robot model: chassis, mass, wheels, what is doubtful");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ModelArguments>();
   command
       ->add_option("FILE", arguments->file,
                    "URDF file, experiment that names one, or robot or experiment that comes with "
                    "Screed")
       ->required();
-  command->add_option("--board", arguments->board, "Board that drives the robot")
-      ->capture_default_str();
+  command->add_option("--board", arguments->board, "Board that drives the robot")->show_default();
   command->add_option("--chassis-link", arguments->chassis_link,
                       "Link of the chassis (default: Body, base_link or the root)");
   command->add_option("--wheel-links", arguments->wheel_links,

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/parity.h"
@@ -22,7 +22,7 @@
 namespace screed {
 namespace {
 
-struct Arguments {
+struct ParityArguments {
   std::string file;
   std::string board = kDefaultBoard;
   std::optional<std::string> elf;
@@ -32,8 +32,8 @@ struct Arguments {
   bool json = false;
 };
 
-void print_json(const Arguments& arguments, const ParityResult& result, double factor) {
-  nlohmann::ordered_json json;
+void print_json(const ParityArguments& arguments, const ParityResult& result, double factor) {
+  Json json;
   json["experiment"] = arguments.file;
   json["board"] = arguments.board;
   json["ticks"] = result.ticks;
@@ -49,10 +49,10 @@ void print_json(const Arguments& arguments, const ParityResult& result, double f
   json["simulated_s"] = result.simulated_s;
   json["real_time_factor"] = factor;
   // A path need not be UTF-8; JSON must.
-  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
 }
 
-void print_text(const Arguments& arguments, const ParityResult& result, double factor) {
+void print_text(const ParityArguments& arguments, const ParityResult& result, double factor) {
   std::printf("%s on %s: %llu ticks (%llu driving), %llu bytes compared, %llu differ\n",
               arguments.file.c_str(), arguments.board.c_str(),
               static_cast<unsigned long long>(result.ticks),
@@ -67,7 +67,7 @@ void print_text(const Arguments& arguments, const ParityResult& result, double f
   std::printf("%.1f s simulated, real-time factor %.1f\n", result.simulated_s, factor);
 }
 
-int run_parity_command(const Arguments& arguments) {
+int run_parity_command(const ParityArguments& arguments) {
   const Experiment experiment = read_experiment(arguments.file, arguments.sets);
   const std::vector<RobotSettings> robots = robot_settings(experiment, arguments.board);
   const bool quiet = arguments.quiet || arguments.json;
@@ -104,13 +104,13 @@ int run_parity_command(const Arguments& arguments) {
 
 }  // namespace
 
-void register_parity_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_parity_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "parity",
       "Run the flash image in a simulated world and compare every output byte "
       "with the firmware compiled for this machine. Of several robots the first is the "
       "image");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ParityArguments>();
   command->add_option("FILE", arguments->file, "Experiment file (INI)")->required();
   command->add_option("--board", arguments->board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
@@ -120,8 +120,7 @@ void register_parity_command(CLI::App& root, Program& program) {
              {0.01, 10000.0});
   command->add_option("--set", arguments->sets, "Override a key: section.key=value")
       ->type_name("KEY=VALUE")
-      ->type_size(1)
-      ->allow_extra_args(false);
+      ->one_value_each();
   command->add_flag("--quiet", arguments->quiet, "Show no progress");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->callback([arguments, &program] {

@@ -84,11 +84,11 @@ int run_record(const RecordArguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_record_command(CLI::App& root, Program& program) {
+void register_record_command(Command& root, Program& program) {
   auto arguments = std::make_shared<RecordArguments>();
-  CLI::App* command = root.add_subcommand("record",
-                                          "Record training sessions: run the training drive "
-                                          "(Algorithm 5) and record the height map of every frame");
+  Command* command = root.add_subcommand("record",
+                                         "Record training sessions: run the training drive "
+                                         "(Algorithm 5) and record the height map of every frame");
   add_batch_options(*command, arguments->runs);
   add_number(
       *command, "--seed", arguments->seed,
@@ -99,7 +99,7 @@ void register_record_command(CLI::App& root, Program& program) {
              {.low = 8, .high = kMaxFrames, .multiple_of = 8});
   command->add_flag("--csv", arguments->csv, "Also write frames.csv");
   command->callback([arguments, &program] {
-    if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
+    if (arguments->runs.files.empty()) throw UsageError("FILE is required");
     program.action = [arguments, version = program.version] {
       return run_record(*arguments, version);
     };

@@ -13,7 +13,7 @@
 namespace screed {
 namespace {
 
-struct Options {
+struct RenderOptions {
   std::string run;
   std::string camera = "front";
   std::string out;
@@ -25,7 +25,7 @@ struct Options {
 };
 
 /// In the run's own folder, under the number of the frame.
-std::filesystem::path default_picture(const Options& options) {
+std::filesystem::path default_picture(const RenderOptions& options) {
   std::error_code error;
   const std::filesystem::path run = options.run;
   const std::filesystem::path folder =
@@ -35,7 +35,7 @@ std::filesystem::path default_picture(const Options& options) {
   return folder / ("frame_" + frame + ".png");
 }
 
-int run_render(Options options) {
+int run_render(RenderOptions options) {
   options.scene.camera = camera_orbit(options.camera);
   options.scene.path = !options.no_path;
   options.scene.tint = !options.no_tint;
@@ -63,10 +63,10 @@ int run_render(Options options) {
 
 }  // namespace
 
-void register_render_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_render_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "render", "Render one frame of a recorded run as a ray-traced picture (needs povray)");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RenderOptions>();
   command->add_option("RUN", options->run, "Run folder or session.h5")->required();
   add_number(*command, "--frame", options->scene.frame,
              "Frame to render, from 0; negative counts from the end (default: the last)",
@@ -76,17 +76,15 @@ void register_render_command(CLI::App& root, Program& program) {
                    "Output picture, .png or .jpg (default: RUN/frame_N.png); the scene, .pov, "
                    "and its images are written beside it")
       ->type_name("FILE");
-  add_number(*command, "--width", options->scene.width_px, "Width of the picture [px]", {16, 8000})
-      ->capture_default_str();
+  add_number(*command, "--width", options->scene.width_px, "Width of the picture [px]", {16, 8000});
   add_number(*command, "--height", options->scene.height_px, "Height of the picture [px]",
-             {16, 8000})
-      ->capture_default_str();
+             {16, 8000});
   command
       ->add_option("--camera", options->camera,
                    "Camera: front, back, side, above, bed, or AZIMUTH,ELEVATION,DISTANCE round the "
                    "robot [degrees from its nose, degrees above the horizon, m]")
       ->type_name("VIEW")
-      ->capture_default_str();
+      ->show_default();
   command->add_option("--model", options->model, "URDF of the robot (default: the experiment's)")
       ->type_name("FILE");
   command->add_flag("--no-path", options->no_path, "Do not draw the driven path");

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "host_sim/core/json.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/command.h"
@@ -15,13 +15,13 @@
 namespace screed {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string run;
   bool json = false;
 };
 
-nlohmann::ordered_json json_of(const std::string& run, const ReplayResult& result) {
-  nlohmann::ordered_json json;
+Json json_of(const std::string& run, const ReplayResult& result) {
+  Json json;
   json["run"] = run;
   json["ticks"] = result.ticks;
   json["identical"] = !result.first_difference_tick;
@@ -39,12 +39,12 @@ nlohmann::ordered_json json_of(const std::string& run, const ReplayResult& resul
 
 /// The first robot of a run, with the others, if there are any, as a list.
 void print_json(const std::string& run, const std::vector<ReplayResult>& results) {
-  nlohmann::ordered_json json = json_of(run, results.front());
+  Json json = json_of(run, results.front());
   for (size_t i = 1; i < results.size(); ++i) {
     json["further_robots"].push_back(json_of(folder_of_robot(run, i).string(), results[i]));
   }
   // A path need not be UTF-8; JSON must.
-  std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  std::cout << json.dump(-1, Json::BadText::kReplace) << "\n";
 }
 
 void print_text(const std::string& of, const ReplayResult& result) {
@@ -67,7 +67,7 @@ void print_notes(const std::string& of, const ReplayResult& result) {
   }
 }
 
-int run_replay(const Options& options) {
+int run_replay(const ReplayOptions& options) {
   const std::vector<std::filesystem::path> files = session_files(options.run);
   std::vector<ReplayResult> results;
   bool identical = true;
@@ -86,10 +86,10 @@ int run_replay(const Options& options) {
 
 }  // namespace
 
-void register_replay_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_replay_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "replay", "Feed a recorded run to the firmware again and compare its outputs byte for byte");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   command->add_option("RUN", options->run, "Run folder or session.h5")->required();
   command->add_flag("--json", options->json, "Print the result as JSON");
   command->callback(

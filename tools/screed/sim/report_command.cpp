@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportOptions {
   std::string of;  ///< run or campaign
   std::string out;
   std::optional<std::string> metric;
@@ -43,7 +43,7 @@ fs::path built_page() {
 }
 
 /// The page's own path, or the one beside what it reports. Throws InputError.
-fs::path page_path(const Options& options, const fs::path& folder) {
+fs::path page_path(const ReportOptions& options, const fs::path& folder) {
   fs::path out = options.out.empty() ? folder / "report.html" : fs::path(options.out);
   if (out.extension() != ".html")
     throw InputError("--out " + options.out + ": the name ends in .html");
@@ -67,7 +67,7 @@ std::optional<Assembly> robot_of(const SessionReader& session, const fs::path& f
   }
 }
 
-int report_run(const Options& options) {
+int report_run(const ReportOptions& options) {
   if (options.metric || options.baseline || options.incomplete)
     throw InputError("--metric, --baseline, --incomplete: of campaigns, and " + options.of +
                      " is none");
@@ -88,7 +88,7 @@ int report_run(const Options& options) {
   return write_page(out, text);
 }
 
-int report_campaign(const Options& options, const CampaignFolder& folder) {
+int report_campaign(const ReportOptions& options, const CampaignFolder& folder) {
   const fs::path out = page_path(options, folder.path);
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
@@ -107,19 +107,19 @@ int report_campaign(const Options& options, const CampaignFolder& folder) {
                                        curve_table(plan, results), folder, page));
 }
 
-int run_report(const Options& options) {
+int run_report(const ReportOptions& options) {
   const CampaignFolder campaign{options.of};
   return fs::exists(campaign.plan()) ? report_campaign(options, campaign) : report_run(options);
 }
 
 }  // namespace
 
-void register_report_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand(
+void register_report_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand(
       "report",
       "Write a recorded run or a campaign as one HTML page: terrain over time, path, curves, "
       "figures; means, differences, ranks");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   command->add_option("RUN", options->of, "Run folder, session.h5, or folder of a campaign")
       ->required();
   command

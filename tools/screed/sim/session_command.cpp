@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/core/made_folders.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/csv_export.h"
@@ -30,7 +30,6 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
   std::string run;
@@ -124,7 +123,7 @@ int run_info(const InfoArguments& arguments) {
   const Json json = describe(file, session);
   if (arguments.json) {
     // A path need not be UTF-8; JSON must.
-    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
   } else {
     print_info(json);
   }
@@ -254,18 +253,17 @@ int run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-void register_session_command(CLI::App& root, Program& program) {
-  CLI::App* session = root.add_subcommand("session", "Inspect, export or compare recorded runs");
-  session->require_subcommand(1);
+void register_session_command(Command& root, Program& program) {
+  Command* session = root.add_subcommand("session", "Inspect, export or compare recorded runs");
 
   auto info = std::make_shared<InfoArguments>();
-  CLI::App* info_command = session->add_subcommand("info", "Show the content of a session");
+  Command* info_command = session->add_subcommand("info", "Show the content of a session");
   info_command->add_option("RUN", info->run, "Run folder or session file")->required();
   info_command->add_flag("--json", info->json, "Print JSON");
   info_command->callback([info, &program] { program.action = [info] { return run_info(*info); }; });
 
   auto exported = std::make_shared<ExportArguments>();
-  CLI::App* command = session->add_subcommand("export", "Export tables, height maps and pictures");
+  Command* command = session->add_subcommand("export", "Export tables, height maps and pictures");
   command->add_option("RUN", exported->run, "Run folder or session file")->required();
   command->add_flag("--csv", exported->csv,
                     "Export thesis Table 5.1 as CSV, with units in the header");

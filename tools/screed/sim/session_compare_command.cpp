@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "host_sim/core/display_units.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/run/comparison/comparison_picture.h"
 #include "host_sim/run/comparison/session_comparison.h"
 #include "host_sim/run/session/run_folder.h"
@@ -21,7 +21,6 @@ namespace screed {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
   std::array<std::string, 2> runs;
@@ -224,7 +223,7 @@ int run_compare(const CompareArguments& arguments) {
     Json json = to_json(comparison, arguments);
     json["picture"] = arguments.no_picture ? Json() : Json(arguments.out);
     // A path need not be UTF-8; JSON must.
-    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    std::cout << json.dump(2, Json::BadText::kReplace) << "\n";
   } else {
     print_text(comparison, arguments);
     if (!arguments.no_picture) std::printf("picture        %s\n", arguments.out.c_str());
@@ -234,16 +233,16 @@ int run_compare(const CompareArguments& arguments) {
 
 }  // namespace
 
-void register_session_compare_command(CLI::App& session, Program& program) {
+void register_session_compare_command(Command& session, Program& program) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* command = session.add_subcommand(
+  Command* command = session.add_subcommand(
       "compare", "Compare two runs: configuration, ticks, paths, terrain and ends");
   command->add_option("A", arguments->runs[0], "Run folder or session file")->required();
   command->add_option("B", arguments->runs[1], "Run folder or session file")->required();
-  CLI::Option* out =
+  Option* out =
       command->add_option("--out", arguments->out, "Output picture, .png; replaced where it exists")
           ->type_name("FILE")
-          ->capture_default_str();
+          ->show_default();
   command->add_flag("--no-picture", arguments->no_picture, "Print the comparison alone")
       ->excludes(out);
   command->add_flag("--json", arguments->json, "Print JSON");

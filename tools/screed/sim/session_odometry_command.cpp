@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/run/comparison/odometry_errors.h"
 #include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/command.h"
@@ -15,8 +15,6 @@
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct OdometryArguments {
   std::vector<std::string> runs;
@@ -78,9 +76,9 @@ int run_odometry(const OdometryArguments& arguments) {
 
 }  // namespace
 
-void register_session_odometry_command(CLI::App& session, Program& program) {
+void register_session_odometry_command(Command& session, Program& program) {
   auto arguments = std::make_shared<OdometryArguments>();
-  CLI::App* command = session.add_subcommand(
+  Command* command = session.add_subcommand(
       "odometry", "Compare dead reckoning with the truth, over all legs of one or more runs");
   command->add_option("RUN", arguments->runs, "Run folders or session files")->required();
   add_number(*command, "--length", arguments->length_m, "Length of a leg along the true path [m]",

@@ -277,9 +277,9 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
 
 }  // namespace
 
-void register_sim_command(CLI::App& root, Program& program) {
+void register_sim_command(Command& root, Program& program) {
   auto arguments = std::make_shared<SimArguments>();
-  CLI::App* command =
+  Command* command =
       root.add_subcommand("sim", "Run an experiment: the firmware drives in a simulated world");
   add_batch_options(*command, arguments->runs);
   add_number(*command, "--seed", arguments->seed, "Seed of the world; overrides [experiment] seed",
@@ -292,8 +292,8 @@ void register_sim_command(CLI::App& root, Program& program) {
                    "under a cycle-accurate simulation of the microcontroller, of several robots in "
                    "the first; surrogate: native, with a closed form or a network (--model) in "
                    "place of the physics")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"native", "mcu", "surrogate"}));
+      ->show_default()
+      ->one_of({"native", "mcu", "surrogate"});
   command->add_option("--board", arguments->world.board,
                       std::string("Board: a folder in boards/ (default: ") + kDefaultBoard + ")");
   command
@@ -338,7 +338,7 @@ void register_sim_command(CLI::App& root, Program& program) {
       };
       return;
     }
-    if (arguments->runs.files.empty()) throw CLI::RequiredError("FILE");
+    if (arguments->runs.files.empty()) throw UsageError("FILE is required");
     program.action = [arguments, version = program.version] {
       return run_sim(*arguments, version);
     };

@@ -3,9 +3,8 @@
 
 namespace screed {
 
-void register_soil_command(CLI::App& root, Program& program) {
-  CLI::App* command = root.add_subcommand("soil", "Run reference tests of the deformable soil");
-  command->require_subcommand(1);
+void register_soil_command(Command& root, Program& program) {
+  Command* command = root.add_subcommand("soil", "Run reference tests of the deformable soil");
   register_soil_subcommands(*command, program);
 }
 

@@ -67,10 +67,10 @@ void print_table(const std::string& heading, const char* limit_name,
   }
 }
 
-nlohmann::json to_json(const std::vector<SoilLine>& lines) {
-  nlohmann::json all = nlohmann::json::array();
+Json to_json(const std::vector<SoilLine>& lines) {
+  Json all = Json::array();
   for (const SoilLine& line : lines) {
-    nlohmann::json one = {{"where", line.where}, {"name", line.name}, {"value", line.value}};
+    Json one = {{"where", line.where}, {"name", line.name}, {"value", line.value}};
     if (line.limit) one["limit"] = *line.limit;
     if (line.peer) one["chrono"] = *line.peer;
     all.push_back(one);
@@ -122,9 +122,9 @@ bool SoilArguments::as_peer() const {
   return preset == "viper" && step_s == 1e-3 && overrides.empty();
 }
 
-void add_soil_options(CLI::App& command, SoilArguments& common, const SoilGridRanges& ranges) {
+void add_soil_options(Command& command, SoilArguments& common, const SoilGridRanges& ranges) {
   command.add_option("--soil", common.preset, "Soil preset: " + name_list(soil_preset_names()))
-      ->capture_default_str();
+      ->show_default();
   for (const SoilParameterInfo& parameter : kSoilParameters) {
     add_number(command, parameter.option, common.overrides.*parameter.override_member,
                option_help(parameter), {parameter.min, parameter.max});
@@ -132,7 +132,7 @@ void add_soil_options(CLI::App& command, SoilArguments& common, const SoilGridRa
   command
       .add_option("--normal-stress", common.normal_stress,
                   "Direction of the normal stress: radial or vertical")
-      ->capture_default_str();
+      ->show_default();
   command.add_flag(
       "--bulldozing,!--no-bulldozing", common.bulldozing,
       "Push sunk material aside; otherwise compact it" + by_default(common.bulldozing));
@@ -148,26 +148,29 @@ void add_soil_options(CLI::App& command, SoilArguments& common, const SoilGridRa
   command.add_flag("--json", common.json, "Print JSON");
 }
 
-nlohmann::json soil_json(const SoilArguments& common) {
+Json soil_json(const SoilArguments& common) {
   const SoilParameters soil = common.soil();
-  nlohmann::json json = {{"name", soil.name},
-                         {"normal_stress", common.normal_stress},
-                         {"bulldozing", common.bulldozing},
-                         {"avalanches", common.avalanches},
-                         {"follow_slopes", common.follow_slopes},
-                         {"cell_m", common.cell_m},
-                         {"step_s", common.step_s}};
+  Json json = {{"name", soil.name},
+               {"normal_stress", common.normal_stress},
+               {"bulldozing", common.bulldozing},
+               {"avalanches", common.avalanches},
+               {"follow_slopes", common.follow_slopes},
+               {"cell_m", common.cell_m},
+               {"step_s", common.step_s}};
   for (const SoilParameterInfo& parameter : kSoilParameters)
     json[parameter.member_name] = soil.*parameter.member;
   return json;
 }
 
+void print_sorted(Json json) {
+  json.sort_members();
+  std::cout << json.dump(2) << "\n";
+}
+
 int finish(const SoilArguments& common, const char* test, const std::string& heading,
            const char* limit_name, const std::vector<SoilLine>& lines) {
   if (common.json) {
-    const nlohmann::json out = {
-        {"test", test}, {"soil", soil_json(common)}, {"results", to_json(lines)}};
-    std::cout << out.dump(2) << "\n";
+    print_sorted({{"test", test}, {"soil", soil_json(common)}, {"results", to_json(lines)}});
   } else {
     print_table(heading, limit_name, lines);
   }

@@ -2,13 +2,13 @@
 // shown beside what they should be.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+#include "tools/command_line/command.h"
 
+#include "host_sim/core/json.h"
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "tools/screed/cli/number_option.h"
@@ -63,13 +63,15 @@ struct SoilGridRanges {
   NumberRange step_s = {1e-5, 0.02};
 };
 
-void add_soil_options(CLI::App& command, SoilArguments& arguments,
+void add_soil_options(Command& command, SoilArguments& arguments,
                       const SoilGridRanges& ranges = {});
 
 void print_table(const std::string& heading, const char* limit_name,
                  const std::vector<SoilLine>& lines);
-nlohmann::json to_json(const std::vector<SoilLine>& lines);
-nlohmann::json soil_json(const SoilArguments& arguments);
+Json to_json(const std::vector<SoilLine>& lines);
+Json soil_json(const SoilArguments& arguments);
+/// Prints JSON, members in the order of their names.
+void print_sorted(Json json);
 /// Prints table or JSON; the exit code.
 int finish(const SoilArguments& arguments, const char* test, const std::string& heading,
            const char* limit_name, const std::vector<SoilLine>& lines);

@@ -135,9 +135,9 @@ int run_dig(DigArguments a) {
 
 }  // namespace
 
-void register_soil_dig_command(CLI::App& soil, Program& program) {
+void register_soil_dig_command(Command& soil, Program& program) {
   const auto a = std::make_shared<DigArguments>();
-  CLI::App* command = soil.add_subcommand(
+  Command* command = soil.add_subcommand(
       "dig", "Let a tracked robot dig: moved volume, depth, distribution of the material");
   a->common.bulldozing = a->common.avalanches = true;
   a->common.preset = "gravel";
@@ -146,9 +146,8 @@ void register_soil_dig_command(CLI::App& soil, Program& program) {
   command
       ->add_option("--manoeuvre", a->manoeuvre,
                    "Manoeuvre: spin, charge (a mound of 20 degrees), slip or strokes")
-      ->capture_default_str();
-  command->add_option("--ground", a->ground, "Terrain model: scm or particles")
-      ->capture_default_str();
+      ->show_default();
+  command->add_option("--ground", a->ground, "Terrain model: scm or particles")->show_default();
   add_number(*command, "--particle-radius", a->test.particle.radius_m, "Particle radius [m]",
              {0.002, 0.1});
   add_number(*command, "--particle-friction", a->test.particle.friction,

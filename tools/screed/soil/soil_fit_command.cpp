@@ -64,23 +64,23 @@ MeanErrors mean_errors(const SoilFit& fit, const SoilMeasurements& measured) {
 }
 
 void print_json(const SoilFit& fit, const MeanErrors& mean) {
-  nlohmann::json parameters = nlohmann::json::array();
+  Json parameters = Json::array();
   for (const FittedParameter& p : fit.parameters) {
-    nlohmann::json one = {{"key", p.key}, {"start", p.start}, {"value", p.value}};
+    Json one = {{"key", p.key}, {"start", p.start}, {"value", p.value}};
     one["at_bound"] = p.at_bound;
     if (std::isfinite(p.standard_error)) one["standard_error"] = p.standard_error;
     parameters.push_back(one);
   }
-  nlohmann::json out = {{"parameters", parameters},
-                        {"spread", fit.spread},
-                        {"measurements", fit.residuals},
-                        {"evaluations", fit.evaluations}};
+  Json out = {{"parameters", parameters},
+              {"spread", fit.spread},
+              {"measurements", fit.residuals},
+              {"evaluations", fit.evaluations}};
   if (mean.wheels > 0) {
     out["mean_error"] = {{"pull_over_load", mean.pull},
                          {"side_over_load", mean.side},
                          {"sinkage_relative", mean.sinkage}};
   }
-  std::cout << out.dump(2) << "\n";
+  print_sorted(std::move(out));
 }
 
 void print_fit(const SoilFit& fit, const SoilMeasurements& measured, const MeanErrors& mean) {
@@ -135,9 +135,9 @@ int run_fit(const FitArguments& a) {
 
 }  // namespace
 
-void register_soil_fit_command(CLI::App& soil, Program& program) {
+void register_soil_fit_command(Command& soil, Program& program) {
   const auto a = std::make_shared<FitArguments>();
-  CLI::App* command =
+  Command* command =
       soil.add_subcommand("fit", "Fit a soil's parameters to tests of wheels or plates");
   command->add_option("FILE", a->file, "CSV of measurements (docs/soil.md has the columns)")
       ->required()
@@ -153,7 +153,7 @@ void register_soil_fit_command(CLI::App& soil, Program& program) {
       ->type_name("CASE");
   command
       ->add_option("--soil", a->preset, "Begin with this soil: " + name_list(soil_preset_names()))
-      ->capture_default_str();
+      ->show_default();
   for (const SoilParameterInfo& parameter : kSoilParameters) {
     add_number(*command, parameter.option, a->overrides.*parameter.override_member,
                option_help(parameter), {parameter.min, parameter.max});

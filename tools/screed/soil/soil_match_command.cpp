@@ -49,9 +49,9 @@ int run_match(const MatchArguments& a) {
 
 }  // namespace
 
-void register_soil_match_command(CLI::App& soil, Program& program) {
+void register_soil_match_command(Command& soil, Program& program) {
   const auto a = std::make_shared<MatchArguments>();
-  CLI::App* command = soil.add_subcommand(
+  Command* command = soil.add_subcommand(
       "match", "Identify the soil parameters of a particle bed: press a plate, drag a block");
   a->common.preset = "gravel";
   add_soil_options(*command, a->common);

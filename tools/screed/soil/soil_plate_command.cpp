@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/random.h"
 #include "host_sim/render/chart/line_chart.h"
 #include "host_sim/soil_validation/check_range.h"
@@ -16,8 +17,6 @@
 
 namespace screed {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct PlateArguments {
   SoilArguments common;
@@ -141,9 +140,9 @@ int run_plate(PlateArguments a) {
 
 }  // namespace
 
-void register_soil_plate_command(CLI::App& soil, Program& program) {
+void register_soil_plate_command(Command& soil, Program& program) {
   const auto a = std::make_shared<PlateArguments>();
-  CLI::App* command =
+  Command* command =
       soil.add_subcommand("plate", "Press a plate into soil and compare with Bekker's law");
   add_soil_options(*command, a->common, {.step_s = {1e-5, 0.1}});
   command->add_flag("--round", a->test.round, "Press a disc; --length is its diameter");

@@ -34,9 +34,9 @@ int run_repose(ReposeArguments a) {
 
 }  // namespace
 
-void register_soil_repose_command(CLI::App& soil, Program& program) {
+void register_soil_repose_command(Command& soil, Program& program) {
   const auto a = std::make_shared<ReposeArguments>();
-  CLI::App* command =
+  Command* command =
       soil.add_subcommand("repose", "Let a column of soil collapse to its angle of repose");
   add_soil_options(*command, a->common);
   add_number(*command, "--size", a->test.size_m, "Side length of the bed [m]", {0.1, 10.0});

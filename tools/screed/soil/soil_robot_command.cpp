@@ -105,12 +105,11 @@ int run_robot(const RobotArguments& a) {
         {"settled", "volume_error", static_cast<double>(bed.balance().error()), "%.0f", 0.0});
   }
   if (a.common.json) {
-    const nlohmann::json out = {{"test", "robot"},
-                                {"soil", soil_json(a.common)},
-                                {"steps", steps},
-                                {"heights_hash", hash},
-                                {"results", to_json(lines)}};
-    std::cout << out.dump(2) << "\n";
+    print_sorted({{"test", "robot"},
+                  {"soil", soil_json(a.common)},
+                  {"steps", steps},
+                  {"heights_hash", hash},
+                  {"results", to_json(lines)}});
     return 0;
   }
   print_table(soil.name + text(", robot on a bed of %g m", a.size_m) +
@@ -123,9 +122,9 @@ int run_robot(const RobotArguments& a) {
 
 }  // namespace
 
-void register_soil_robot_command(CLI::App& soil, Program& program) {
+void register_soil_robot_command(Command& soil, Program& program) {
   const auto a = std::make_shared<RobotArguments>();
-  CLI::App* command =
+  Command* command =
       soil.add_subcommand("robot", "Drive a four-wheeled body: CPU time per step, volume balance");
   add_soil_options(*command, a->common);
   add_number(*command, "--size", a->size_m, "Side length of the bed [m]", {0.5, 20.0});

@@ -3,8 +3,8 @@
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <numbers>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/soil_validation/soil_measurements.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
@@ -16,8 +16,6 @@
 
 namespace screed {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct WheelArguments {
   SoilArguments common;
@@ -240,9 +238,9 @@ int run_wheel_command(WheelArguments a) {
 
 }  // namespace
 
-void register_soil_wheel_command(CLI::App& soil, Program& program) {
+void register_soil_wheel_command(Command& soil, Program& program) {
   const auto a = std::make_shared<WheelArguments>();
-  CLI::App* command = soil.add_subcommand(
+  Command* command = soil.add_subcommand(
       "wheel",
       "Roll a wheel at imposed slip and compare with the limit of an infinitely fine grid");
   add_soil_options(*command, a->common);
@@ -263,27 +261,27 @@ void register_soil_wheel_command(CLI::App& soil, Program& program) {
              "Angle of travel to the left of the wheel's plane [deg]; several with commas between "
              "them",
              {-80.0, 80.0});
-  CLI::Option* limit_only = command->add_flag(
-      "--limit-only", a->limit_only, "Compute the limit alone, in an instant; roll no wheel");
+  Option* limit_only = command->add_flag("--limit-only", a->limit_only,
+                                         "Compute the limit alone, in an instant; roll no wheel");
   add_number(*command, "--rim-friction", a->rim_friction_deg,
              "Angle of friction between rim and soil [deg]; 90: rough, soil shears on soil",
              {0.0, 90.0});
   add_number(*command, "--rim-adhesion", a->test.wheel.adhesion_pa,
              "Adhesion of soil to the rim [Pa]", {0.0, 1e7});
-  CLI::Option* measured =
+  Option* measured =
       command
           ->add_option("--measured", a->measured,
                        "Compare with measurements: a CSV file (default: Ding et al. 2011)")
           ->type_name("FILE");
   measured->expected(0, 1)->excludes(limit_only);
   command->add_option("--case", a->cases, "Use the rows whose case begins with this text")
-      ->capture_default_str()
+      ->show_default()
       ->type_name("CASE");
   command->add_option("--charts", a->common.charts, "Output folder for SVG charts")
       ->type_name("FOLDER");
   command->callback([a, measured, &program] {
     program.action = [a, measured] {
-      if (measured->count() > 0 && a->measured.empty()) {
+      if (measured->given() && a->measured.empty()) {
         a->measured = (data_folders().data / "soil" / "single_wheel_ding2011.csv").string();
       }
       return run_wheel_command(*a);

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "host_sim/core/constants.h"
 #include "host_sim/soil_validation/wheel_trials.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// What a chart shows, of a computed and of a measured wheel.
 struct Quantity {

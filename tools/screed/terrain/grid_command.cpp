@@ -8,13 +8,13 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <vector>
 
 #include "host_sim/core/atomic_file.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
 #include "host_sim/grid/grid_run.h"
@@ -175,15 +175,15 @@ std::string percent(double share) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const GridConfig& config) {
-  nlohmann::ordered_json json;
+Json json_of(const GridConfig& config) {
+  Json json;
   for (const auto& [name, value] : describe(config)) json[name] = value;
   return json;
 }
 
-void print_json(const nlohmann::ordered_json& json) {
+void print_json(const Json& json) {
   // A path need not be UTF-8; JSON must.
-  std::cout << json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  std::cout << json.dump(-1, Json::BadText::kReplace) << "\n";
 }
 
 void print_run(const GridRun& run, bool json) {
@@ -425,7 +425,7 @@ void print_points(const std::vector<SweepPoint>& points,
 
 void print_points_json(const std::vector<SweepPoint>& points,
                        const std::vector<std::vector<GridResult>>& results) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  Json json = Json::array();
   for (size_t i = 0; i < points.size(); ++i) {
     const Summary cycles = cycles_of(results[i]);
     const Summary units = units_of(results[i]);
@@ -499,15 +499,15 @@ int run_command(GridOptions options, bool runs_given, const std::string& version
 
 }  // namespace
 
-void register_grid_command(CLI::App& root, Program& program) {
+void register_grid_command(Command& root, Program& program) {
   const auto options = std::make_shared<GridOptions>();
   GridConfig& config = options->config;
-  CLI::App* command = root.add_subcommand(
+  Command* command = root.add_subcommand(
       "grid", "Run leveling agents on a grid of stacks (thesis 4.2), once or many times");
   command
       ->add_option("--algorithm", options->algorithm,
                    "Algorithm: probabilistic, threshold, memetic-1, memetic-2, patient or forager")
-      ->capture_default_str();
+      ->show_default();
   add_number(*command, "--seed", config.seed, "Seed of the first run; each further run adds 1",
              kSeedRange);
   add_number(*command, "--agents", config.agents, "Number of agents",
@@ -515,7 +515,7 @@ void register_grid_command(CLI::App& root, Program& program) {
   command->add_option("--size", options->size,
                       "Grid size [cells]: one number for a square, or WIDTHxHEIGHT");
   command->add_option("--border", options->border, "Border of the grid: walls or torus")
-      ->capture_default_str();
+      ->show_default();
   command->add_option("--terrain", config.image, "Grey image used as terrain (default: noise)")
       ->type_name("FILE");
   add_number(*command, "--white", config.white, "Height of a white pixel [units]",
@@ -526,7 +526,7 @@ void register_grid_command(CLI::App& root, Program& program) {
   add_number(*command, "--lattice", config.noise.lattice, "Lattice spacing of the noise [cells]",
              {0.5, 1e6});
   command->add_option("--stop", options->stop, "Stop criterion: level, gradient or deviation")
-      ->capture_default_str();
+      ->show_default();
   add_number(*command, "--epsilon", options->epsilon,
              "Threshold of the stop criterion [units] (level 1, gradient 1.5, deviation 0.5)",
              {0.0, kMaxStackHeight});
@@ -550,7 +550,7 @@ void register_grid_command(CLI::App& root, Program& program) {
   command
       ->add_option("--fitness-base", options->fitness_base,
                    "Operations counted by the fitness: executed or attempted (memetic)")
-      ->capture_default_str();
+      ->show_default();
   add_number(*command, "--chromosomes", config.chromosomes, "Chromosomes per agent (memetic-2)",
              {1, MemeticAgent::kMaxChromosomes});
   add_number(*command, "--repetitions", config.repetitions,
@@ -570,9 +570,8 @@ void register_grid_command(CLI::App& root, Program& program) {
   command->add_option("--turn-back", options->turn_back,
                       "Turn back after an operation: yes or no (patient no, forager yes)");
 
-  CLI::Option* runs =
-      add_number(*command, "--runs", options->runs,
-                 "Number of runs, on all cores; with --figure: per point", {1, 1e7});
+  Option* runs = add_number(*command, "--runs", options->runs,
+                            "Number of runs, on all cores; with --figure: per point", {1, 1e7});
   add_number(*command, "--workers,--threads", options->workers,
              "Worker processes of many runs; 0: one per core; results do not depend on it",
              {0, 1024});
@@ -601,7 +600,7 @@ void register_grid_command(CLI::App& root, Program& program) {
   command->add_flag("--json", options->json, "Print results as JSON");
   command->callback([options, runs, &program] {
     program.action = [options, runs, version = program.version] {
-      return run_command(*options, runs->count() > 0, version);
+      return run_command(*options, runs->given(), version);
     };
   });
 }

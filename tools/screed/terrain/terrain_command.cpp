@@ -31,10 +31,9 @@ int generate(const std::string& file, const NoiseTerrainOptions& options) {
 
 }  // namespace
 
-void register_terrain_command(CLI::App& root, Program& program) {
-  CLI::App* terrain = root.add_subcommand("terrain", "Generate height maps");
-  terrain->require_subcommand(1);
-  CLI::App* command = terrain->add_subcommand(
+void register_terrain_command(Command& root, Program& program) {
+  Command* terrain = root.add_subcommand("terrain", "Generate height maps");
+  Command* command = terrain->add_subcommand(
       "generate", "Generate a tileable height map of seeded noise, for [map] edges = wrap");
   auto file = std::make_shared<std::string>();
   auto options = std::make_shared<NoiseTerrainOptions>();

@@ -32,8 +32,8 @@ int run_view(const Options& options) {
 
 }  // namespace
 
-void register_view_command(CLI::App& root, Program& program) {
-  CLI::App* command =
+void register_view_command(Command& root, Program& program) {
+  Command* command =
       root.add_subcommand("view", "View a recorded run from above: play it, scrub through it");
   const auto options = std::make_shared<Options>();
   command->add_option("RUN", options->run, "Run folder or session.h5")->required();

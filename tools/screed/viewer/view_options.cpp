@@ -78,7 +78,7 @@ void check_frames_folder(const std::string& folder) {
 
 }  // namespace
 
-void add_view_options(CLI::App& command, ViewArguments& arguments) {
+void add_view_options(Command& command, ViewArguments& arguments) {
   const char* const kGroup = "Viewer";
   add_number(command, "--speed", arguments.speed,
              "Speed [simulated s / s]; 0: as fast as possible (default: 1)",
@@ -99,8 +99,8 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
       ->group(kGroup);
   command.add_option("--shading", arguments.shading, "Initial colouring of the terrain")
       ->group(kGroup)
-      ->check(CLI::IsMember({"height", "slope", "change"}))
-      ->capture_default_str();
+      ->one_of({"height", "slope", "change"})
+      ->show_default();
   add_number(command, "--span", arguments.span_m, "Initial width of the view [m]", {0.05, 1000.0})
       ->group(kGroup);
   command.add_flag("--follow", arguments.follow, "Keep the robot in the centre")->group(kGroup);
@@ -119,8 +119,7 @@ void add_view_options(CLI::App& command, ViewArguments& arguments) {
                   "Scripted key press, KEY@SECONDS or KEY@FROM-TO [simulated s], e.g. Up@3-5; may "
                   "be repeated")
       ->group(kGroup)
-      ->type_size(1)
-      ->allow_extra_args(false);
+      ->one_value_each();
 }
 
 std::optional<viewer::ViewerOptions> viewer_options(const ViewArguments& arguments, bool window) {

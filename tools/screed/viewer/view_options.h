@@ -1,10 +1,10 @@
 // What the user may say about pictures of a run: for `screed sim` and `screed view`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+#include "tools/command_line/command.h"
 
 #include "tools/screed/viewer/viewer_display.h"
 
@@ -23,7 +23,7 @@ struct ViewArguments {
   std::vector<std::string> key_script;
 };
 
-void add_view_options(CLI::App& command, ViewArguments& arguments);
+void add_view_options(Command& command, ViewArguments& arguments);
 
 /// What they come to; nothing when there is neither a window nor a picture to be made. Without
 /// `window` pictures are drawn without one. Throws InputError.

@@ -12,8 +12,6 @@
 namespace screed {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 ValueTable table_of(const std::vector<Json>& rows) {
   ValueTable table;
   for (const Json& row : rows) {

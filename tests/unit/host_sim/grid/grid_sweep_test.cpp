@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/engine/task_worker.h"
 #include "host_sim/grid/grid_figures.h"
 #include "host_sim/grid/grid_recording.h"
@@ -214,7 +214,7 @@ TEST(GridResult, IsReadBack) {
   const std::string text = result_text(result);
   EXPECT_EQ(parse_result(text), result);
   EXPECT_EQ(parse_result(result_text({})), GridResult());
-  EXPECT_EQ(nlohmann::json::parse(text)["cycles"], 18446744073709551615U);
+  EXPECT_EQ(Json::parse(text)["cycles"], 18446744073709551615U);
   for (const std::string& bad : {std::string(), std::string("{}"), text.substr(0, 40)})
     EXPECT_THROW(parse_result(bad), RunError) << bad;
 }

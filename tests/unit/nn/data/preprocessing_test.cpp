@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "nn/data/features.h"
 
 namespace screed::nn {
@@ -22,7 +22,7 @@ FeatureTable table_of(const std::string& name, std::vector<double> values) {
 }
 
 Preprocessing stages_of(const std::string& json) {
-  const nlohmann::json list = nlohmann::json::parse(json);
+  const Json list = Json::parse(json);
   return Preprocessing(read_preprocessing_stages(JsonValue(list, "stages.json")));
 }
 

@@ -80,7 +80,7 @@ TEST(ParticleMotion, SlidesIffTheSlopeLeavesTheFrictionCone) {
       ParticleOptions options = on_slope(share * friction);
       options.material.friction = friction;
       options.material.rolling = 5.0;
-      ParticleBed bed({{0.0, 0.0, resting(options)}}, box(10.0), 0.1, options);
+      ParticleBed bed({{0.0, 0.0, resting(options)}}, box(4.0), 0.1, options);
       run(bed, 0.5);
       const double begin = bed.velocity(0).x();
       if (share < 1.0) {
@@ -104,7 +104,7 @@ TEST(ParticleMotion, RollsAndSlipsDownASlopeAsASphereDoes) {
     ParticleOptions options = on_slope(tangent);
     options.material.friction = 0.3;
     options.material.rolling = 0.0;
-    ParticleBed bed({{-4.0, 0.0, resting(options)}}, box(10.0), 0.1, options);
+    ParticleBed bed({{-1.5, 0.0, resting(options)}}, box(4.0), 0.1, options);
     run(bed, 0.25);
     const double begin = bed.velocity(0).x();
     const double turning = bed.angular_velocity(0).y();

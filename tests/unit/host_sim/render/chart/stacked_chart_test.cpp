@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/render/chart/path_map.h"
-#include "host_sim/render/chart/svg_png.h"
 
 namespace screed {
 namespace {

@@ -39,6 +39,11 @@ RobotShape tracked_robot() {
   return shape;
 }
 
+void write_picture(const fs::path& path, const HeightField& field, const PictureOptions& options) {
+  HeightPainter painter;
+  write_height_map_picture(path, field, options, painter);
+}
+
 PictureOptions small_picture() {
   PictureOptions options;
   options.width_px = 800;
@@ -121,7 +126,7 @@ TEST(CanvasTest, DrawsWhereItIsTold) {
   Canvas canvas(60, 40, {1.0, 1.0, 1.0});
   canvas.rectangle({10.0, 5.0, 20.0, 10.0}, {1.0, 0.0, 0.0});
   canvas.circle({45.0, 30.0}, 5.0, {0.0, 0.0, 1.0});
-  canvas.set_row(0, 39, std::vector<Color>(3, Color{0.0, 1.0, 0.0}));
+  canvas.set_row(0, 39, std::vector<uint32_t>(3, pixel_of({0.0, 1.0, 0.0})));
   EXPECT_EQ(pixel(canvas, {10, 5}).green, 0.0);
   EXPECT_EQ(pixel(canvas, {9, 5}).green, 1.0);
   EXPECT_EQ(pixel(canvas, {29, 14}).green, 0.0);
@@ -166,8 +171,8 @@ TEST(MapFrameTest, IsTrueToScaleWithNorthUp) {
 
 TEST_F(PictureTest, SameInputGivesTheSameBytes) {
   const HeightField field = HeightField::ramp(1.5, 0.02, 10.0);
-  write_height_map_picture(folder_ / "a.png", field, small_picture());
-  write_height_map_picture(folder_ / "b.png", field, small_picture());
+  write_picture(folder_ / "a.png", field, small_picture());
+  write_picture(folder_ / "b.png", field, small_picture());
   EXPECT_GT(read_text(folder_ / "a.png").size(), 5000U);
   EXPECT_EQ(read_text(folder_ / "a.png"), read_text(folder_ / "b.png"));
 }
@@ -175,7 +180,7 @@ TEST_F(PictureTest, SameInputGivesTheSameBytes) {
 TEST_F(PictureTest, EveryPartChangesThePicture) {
   const HeightField field = HeightField::ramp(1.5, 0.02, 10.0);
   const auto drawn = [&](const PictureOptions& options) {
-    write_height_map_picture(folder_ / "picture.png", field, options);
+    write_picture(folder_ / "picture.png", field, options);
     return read_text(folder_ / "picture.png");
   };
   const std::string whole = drawn(small_picture());
@@ -198,7 +203,7 @@ TEST_F(PictureTest, EveryPartChangesThePicture) {
 
 TEST_F(PictureTest, DrawsLevelGround) {
   EXPECT_NO_THROW(
-      write_height_map_picture(folder_ / "flat.png", HeightField::flat(1.5, 0.1), small_picture()));
+      write_picture(folder_ / "flat.png", HeightField::flat(1.5, 0.1), small_picture()));
 }
 
 TEST(PathOverlayTest, AJumpOverTheSeamIsDrawnOnlyWithoutWrap) {
@@ -313,7 +318,7 @@ TEST_F(PictureTest, DifferenceNeedsTheSameGrid) {
 TEST_F(PictureTest, RefusesWrongOptions) {
   const HeightField field = HeightField::flat(1.5, 0.1);
   const auto refused = [&](const PictureOptions& options) {
-    EXPECT_THROW(write_height_map_picture(folder_ / "no.png", field, options), InputError);
+    EXPECT_THROW(write_picture(folder_ / "no.png", field, options), InputError);
     EXPECT_FALSE(fs::exists(folder_ / "no.png"));
   };
   PictureOptions options = small_picture();
@@ -343,9 +348,9 @@ TEST_F(PictureTest, RefusesWrongOptions) {
 
 TEST_F(PictureTest, SaysWhatCannotBeWritten) {
   std::ofstream(folder_ / "file") << "x";
-  EXPECT_THROW(write_height_map_picture(folder_ / "file" / "a.png", HeightField::flat(1.5, 0.1),
-                                        small_picture()),
-               RunError);
+  EXPECT_THROW(
+      write_picture(folder_ / "file" / "a.png", HeightField::flat(1.5, 0.1), small_picture()),
+      RunError);
 }
 
 }  // namespace

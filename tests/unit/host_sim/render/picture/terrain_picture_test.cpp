@@ -83,7 +83,8 @@ TEST(HeightMapImage, HasTheColoursOfThePictureAndItsNorthOnTop) {
   const HeightField field = HeightField::from_function(
       51, 101, 0.01, false, [](double /*x*/, double y) { return y > 0.0 ? 0.04 : -0.02; });
   const HeightRange heights{-0.03, 0.05};
-  const MapImage image = height_map_image(field, heights, 200);
+  HeightPainter painter;
+  const MapImage image = height_map_image(field, heights, 200, painter);
   EXPECT_EQ(image.width, 100);
   EXPECT_EQ(image.height, 200);
   ASSERT_EQ(image.rgb.size(), 3U * 100U * 200U);
@@ -99,7 +100,7 @@ TEST(HeightMapImage, HasTheColoursOfThePictureAndItsNorthOnTop) {
   EXPECT_DOUBLE_EQ(scale.low, -30.0);
   EXPECT_DOUBLE_EQ(scale.high, 50.0);
   EXPECT_LT(distance(scale.color(40.0), color_at(50, 20)), kRounding);
-  EXPECT_THROW(height_map_image(field, heights, 0), InputError);
+  EXPECT_THROW(height_map_image(field, heights, 0, painter), InputError);
 }
 
 TEST(HeightMapPicture, SaysHowFarItsContourLinesAreApart) {

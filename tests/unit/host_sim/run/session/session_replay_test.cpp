@@ -6,6 +6,7 @@
 #include "host_sim/core/content_hash.h"
 #include "host_sim/run/session/replay.h"
 #include "tests/unit/host_sim/run/session/session_fixture.h"
+#include "tools/command_line/parser.h"
 
 namespace screed {
 namespace {
@@ -99,12 +100,12 @@ struct CommandResult {
 };
 
 CommandResult replay_command(const std::vector<std::string>& arguments) {
-  CLI::App app;
+  Command app;
   Program program;
   register_replay_command(app, program);
-  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
-  reversed.emplace_back("replay");
-  app.parse(reversed);
+  std::vector<std::string> words = {"replay"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  parse(app, words);
   CommandResult result;
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
@@ -170,7 +171,7 @@ TEST_F(SessionTest, TheReplayCommandNotesEditedAndUnfinishedRuns) {
 TEST_F(SessionTest, TheReplayCommandRefusesWrongInput) {
   EXPECT_EQ(replay_command({(base_ / "missing").string()}).status, 2);
   EXPECT_EQ(replay_command({base_.string()}).status, 2);  // a folder without a session
-  EXPECT_THROW(replay_command({}), CLI::RequiredError);
+  EXPECT_EQ(message_of<UsageError>([] { replay_command({}); }), "RUN is required");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::size_t count(const std::string& text, const std::string& what) {
   return found;
 }
 
-class LevelingPicture : public testing::Test {
+class LevelingPicture : public ::testing::Test {
  protected:
   std::string svg() const { return leveling_svg("bed: 60 s", before_, after_, points_); }
 

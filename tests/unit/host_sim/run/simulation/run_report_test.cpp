@@ -3,12 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include "host_sim/core/json.h"
 
 namespace screed {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Every number another one, so that none can stand in another's place.
 SimulationSummary summary() {
@@ -117,7 +115,7 @@ TEST(RunReport, TerrainThatIsNoSoilNamesNone) {
 
 TEST(RunReport, NamesTheFolderOnlyToWhomStartedTheRun) {
   Json with_folder = Json::parse(summary_json_with_folder(summary()));
-  EXPECT_EQ(with_folder.begin().key(), "run_folder");
+  EXPECT_EQ(with_folder.items().front().name, "run_folder");
   EXPECT_EQ(with_folder["run_folder"], "out/hill-0001");
   with_folder.erase("run_folder");
   EXPECT_EQ(with_folder.dump(2) + "\n", summary_json(summary()));

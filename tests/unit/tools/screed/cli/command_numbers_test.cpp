@@ -11,43 +11,39 @@
 #include <vector>
 
 #include "tests/temp_folder.h"
+#include "tools/command_line/command_tree.h"
+#include "tools/command_line/program.h"
 #include "tools/screed/cli/command_line.h"
 #include "tools/screed/cli/number_option.h"
-#include "tools/screed/cli/option_words.h"
-#include "tools/screed/cli/program.h"
 
 namespace screed {
 namespace {
 
 struct OptionPlace {
   std::vector<std::string> path;  ///< of subcommands
-  const CLI::Option* option;
+  const Option* option;
 
   std::string text() const {
     std::string all = "screed";
     for (const std::string& name : path) all += " " + name;
-    return all + " " + option->get_name();
+    return all + " " + option->name();
   }
 };
 
 /// In the order of their registration.
-std::vector<OptionPlace> every_option(CLI::App& app) {
+std::vector<OptionPlace> every_option(Command& app) {
   std::vector<OptionPlace> places;
-  const std::function<void(CLI::App*, const std::vector<std::string>&)> walk =
-      [&](CLI::App* at, const std::vector<std::string>& path) {
-        for (const CLI::Option* option : at->get_options()) places.push_back({path, option});
-        for (CLI::App* below : at->get_subcommands({})) {
+  const std::function<void(Command*, const std::vector<std::string>&)> walk =
+      [&](Command* at, const std::vector<std::string>& path) {
+        for (const auto& option : at->options()) places.push_back({path, option.get()});
+        for (const auto& below : at->subcommands()) {
           std::vector<std::string> longer = path;
-          longer.push_back(below->get_name());
-          walk(below, longer);
+          longer.push_back(below->name());
+          walk(below.get(), longer);
         }
       };
   walk(&app, {});
   return places;
-}
-
-bool is_flag(const CLI::Option& option) {
-  return option.get_items_expected_max() == 0;
 }
 
 struct Limits {
@@ -58,12 +54,13 @@ struct Limits {
 
 /// From the words of the help, "0.01 to 1000" or "0 or 1 to 10" or "1 or more": what a user sees is
 /// what is tested.
-std::optional<Limits> limits_of(const CLI::Option& option) {
+std::optional<Limits> limits_of(const Option& option) {
   static const std::regex form("(?:0 or )?([^ ]+) to ([^ ]+)");
   static const std::regex open_form("([^ ]+) or more");
   const OptionWords words = words_of(option);
-  const bool whole = option.get_type_name().rfind("INTEGER:", 0) == 0;
-  if (!whole && option.get_type_name().rfind("NUMBER:", 0) != 0) return std::nullopt;
+  if (!std::holds_alternative<Option::Reader>(option.spec().target)) return std::nullopt;
+  const bool whole = words.value == "INTEGER";
+  if (!whole && words.value != "NUMBER") return std::nullopt;
   std::smatch match;
   if (std::regex_match(words.range, match, open_form))
     return Limits{whole, finite_number<double>(match.str(1)).value(), kSeedRange.high};
@@ -86,21 +83,21 @@ Ending ending_of(CommandLine& line, const std::vector<std::string>& arguments) {
   pointers.reserve(texts.size());
   for (std::string& text : texts) pointers.push_back(text.data());
   bool ran = false;
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   const int code =
       run_program(line.app, static_cast<int>(pointers.size()), pointers.data(), [&ran] {
         ran = true;
         return 0;
       });
-  return {code, ran, testing::internal::GetCapturedStderr()};
+  return {code, ran, ::testing::internal::GetCapturedStderr()};
 }
 
 std::vector<std::string> with_value(const OptionPlace& place, const std::string& value) {
   std::vector<std::string> arguments = place.path;
-  arguments.push_back(place.option->get_positional() ? "--" : place.option->get_name());
+  arguments.push_back(place.option->is_argument() ? "--" : place.option->name());
   // A positional of numbers alone may stand behind others.
   const std::string first = "0";
-  if (place.option->get_name() == "YAW_RATE") arguments.push_back(first);
+  if (place.option->name() == "YAW_RATE") arguments.push_back(first);
   arguments.push_back(value);
   return arguments;
 }
@@ -132,7 +129,7 @@ TEST(CommandNumbers, EveryOneRefusesWhatIsNoNumberOfItsRange) {
       EXPECT_FALSE(ending.ran);
       EXPECT_EQ(std::count(ending.err.begin(), ending.err.end(), '\n'), 1) << ending.err;
       EXPECT_LT(ending.err.size(), 200U) << ending.err;
-      EXPECT_EQ(ending.err.rfind("screed: " + place.option->get_name() + " ", 0), 0U) << ending.err;
+      EXPECT_EQ(ending.err.rfind("screed: " + place.option->name() + " ", 0), 0U) << ending.err;
       EXPECT_NE(ending.err.find(": allowed are "), std::string::npos) << ending.err;
     }
   }
@@ -155,23 +152,23 @@ TEST(CommandNumbers, EveryOneTakesTheEndsOfItsRange) {
   }
 }
 
-/// Whether CLI11 reads it as a number by itself, with any check or none.
-bool is_unchecked_number(const CLI::Option& option) {
-  static const std::regex numeric("\\bU?INT\\b|FLOAT|BOOLEAN|COMPLEX|NUMBER");
-  return !is_flag(option) && !limits_of(option) &&
-         std::regex_search(option.get_type_name(), numeric);
+/// Whether the parser reads it as a number by itself, with any check or none.
+bool is_unchecked_number(const Option& option) {
+  static const std::regex numeric("INTEGER|NUMBER");
+  return !option.is_flag() && !limits_of(option) &&
+         std::regex_search(words_of(option).value, numeric);
 }
 
 TEST(CommandNumbers, AnOptionWithoutARangeIsNoticed) {
-  CLI::App app;
+  Command app;
   double real = 0.0;
-  std::optional<std::uint64_t> count;
+  std::optional<unsigned> count;
   std::vector<int> several;
   std::string text;
   bool flag = false;
   EXPECT_TRUE(is_unchecked_number(*app.add_option("--a", real)));
-  EXPECT_TRUE(is_unchecked_number(*app.add_option("--b", real)->check(CLI::Range(0.0, 1.0))));
-  EXPECT_TRUE(is_unchecked_number(*app.add_option("--c", count)->check(CLI::PositiveNumber)));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--b", real)->range(0.0, 1.0)));
+  EXPECT_TRUE(is_unchecked_number(*app.add_option("--c", count)->positive()));
   EXPECT_TRUE(is_unchecked_number(*app.add_option("--d", several)->delimiter(',')));
   EXPECT_FALSE(is_unchecked_number(*app.add_option("--e", text)));
   EXPECT_FALSE(is_unchecked_number(*app.add_flag("--f", flag)));
@@ -183,7 +180,7 @@ TEST(CommandNumbers, NoneIsWithoutARange) {
   CommandLine line("1.2.3", "screed 1.2.3");
   for (const OptionPlace& place : every_option(line.app)) {
     EXPECT_FALSE(is_unchecked_number(*place.option))
-        << place.text() << " is a " << place.option->get_type_name()
+        << place.text() << " is a " << words_of(*place.option).value
         << ": use add_number() of tools/screed/cli/number_option.h";
   }
 }
@@ -199,11 +196,11 @@ TEST(CommandNumbers, NoneIsHiddenInAText) {
   static const std::regex section("\\[(map|experiment|parameters|soil)\\]");
   CommandLine line("1.2.3", "screed 1.2.3");
   for (const OptionPlace& place : every_option(line.app)) {
-    if (is_flag(*place.option) || limits_of(*place.option)) continue;
+    if (place.option->is_flag() || limits_of(*place.option)) continue;
     if (own_form.count(place.text()) > 0) continue;
-    const std::string help = std::regex_replace(place.option->get_description(), section, "");
+    const std::string help = std::regex_replace(place.option->spec().help, section, "");
     EXPECT_FALSE(std::regex_search(help, sounds_numeric))
-        << place.text() << ": \"" << place.option->get_description()
+        << place.text() << ": \"" << place.option->spec().help
         << "\": is it a number? then add_number(), else say so here";
   }
 }

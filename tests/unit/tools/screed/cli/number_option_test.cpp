@@ -3,25 +3,25 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/screed/cli/option_words.h"
+#include "tools/command_line/command_tree.h"
+#include "tools/command_line/parser.h"
 
 namespace screed {
 namespace {
 
 /// What the parser says about these arguments; "" when it takes them.
-std::string refusal(CLI::App& app, std::vector<std::string> arguments) {
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+std::string refusal(Command& app, const std::vector<std::string>& arguments) {
   try {
-    app.parse(std::move(arguments));
+    parse(app, arguments);
     return "";
-  } catch (const CLI::ParseError& error) {
+  } catch (const UsageError& error) {
     return error.what();
   }
 }
 
 template <class Value>
 std::string refusal(const std::string& text, const NumberRange& range) {
-  CLI::App app;
+  Command app;
   Value value{};
   add_number(app, "--x", value, "", range);
   return refusal(app, {"--x", text});
@@ -29,7 +29,7 @@ std::string refusal(const std::string& text, const NumberRange& range) {
 
 template <class Value>
 Value taken(const std::string& text, const NumberRange& range) {
-  CLI::App app;
+  Command app;
   Value value{};
   add_number(app, "--x", value, "", range);
   EXPECT_EQ(refusal(app, {"--x", text}), "") << text;
@@ -37,8 +37,8 @@ Value taken(const std::string& text, const NumberRange& range) {
 }
 
 /// The option in the help: value and details.
-std::string shown(const CLI::App& app) {
-  const OptionWords words = words_of(*app.get_option("--x"));
+std::string shown(const Command& app) {
+  const OptionWords words = words_of(*app.option("--x"));
   return words.value + " " + details(words);
 }
 
@@ -95,7 +95,7 @@ TEST(NumberOption, WholeNumbersCanGoInSteps) {
 }
 
 TEST(NumberOption, SeveralReplaceTheDefaults) {
-  CLI::App app;
+  Command app;
   std::vector<double> values = {7.0, 8.0};
   add_number(app, "--x", values, "", {-1.0, 10.0});
   EXPECT_EQ(shown(app), "NUMBER (-1 to 10; may be repeated; default: 7,8)");
@@ -107,19 +107,19 @@ TEST(NumberOption, SeveralReplaceTheDefaults) {
 }
 
 TEST(NumberOption, HelpShowsRangeAndDefault) {
-  CLI::App app;
+  Command app;
   double value = 0.25;
   add_number(app, "--x", value, "", {0.0001, 1e6});
   EXPECT_EQ(shown(app), "NUMBER (0.0001 to 1000000; default: 0.25)");
 
-  CLI::App other;
+  Command other;
   std::optional<int> count;
   add_number(other, "--x", count, "", {.low = 1, .high = 9, .or_zero = true});
   EXPECT_EQ(shown(other), "INTEGER (0 or 1 to 9)");
 }
 
 TEST(NumberOption, NamesPositionalsAndShortOptions) {
-  CLI::App app;
+  Command app;
   int value = 0;
   double other = 0.0;
   add_number(app, "COUNT", value, "", {1, 2});

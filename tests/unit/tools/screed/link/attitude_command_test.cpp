@@ -6,13 +6,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <system_error>
 
 #include "commands.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
+#include "tools/command_line/parser.h"
 
 namespace screed {
 namespace {
@@ -90,7 +91,7 @@ TEST_F(AttitudeCommand, JsonMeanIsTheMeanOverFiles) {
   const std::string other = write(kHeader + kRow);
   std::ostringstream out;
   EXPECT_EQ(run_attitude({kExcerpt, other}, true, out), 0);
-  const nlohmann::json result = nlohmann::json::parse(out.str());
+  const Json result = Json::parse(out.str());
   ASSERT_EQ(result["files"].size(), 2U);
   EXPECT_EQ(result["files"][0]["file"], kExcerpt);
   EXPECT_EQ(result["files"][1]["samples"], 1);
@@ -101,18 +102,23 @@ TEST_F(AttitudeCommand, JsonMeanIsTheMeanOverFiles) {
 }
 
 TEST_F(AttitudeCommand, CallbackSetsTheAction) {
-  CLI::App root;
+  Command root;
   Program program;
   register_attitude_command(root, program);
-  root.parse("attitude --json " + kExcerpt);
+  parse(root, {"attitude", "--json", kExcerpt});
   ASSERT_TRUE(program.action);
   ::testing::internal::CaptureStdout();
   EXPECT_EQ(program.action(), 0);
-  EXPECT_TRUE(nlohmann::json::accept(::testing::internal::GetCapturedStdout()));
+  EXPECT_NO_THROW(Json::parse(::testing::internal::GetCapturedStdout()));
 
-  CLI::App without_files;
+  Command without_files;
   register_attitude_command(without_files, program);
-  EXPECT_THROW(without_files.parse("attitude"), CLI::RequiredError);
+  try {
+    parse(without_files, {"attitude"});
+    FAIL() << "no file is named";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "FILES is required");
+  }
 }
 
 TEST_F(AttitudeCommand, MissingFile) {

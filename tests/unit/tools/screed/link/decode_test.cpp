@@ -7,12 +7,12 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "firmware/protocol/e2e.h"
 #include "firmware/protocol/messages.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/json.h"
 #include "host_sim/ground_station/telemetry/log_decoder.h"
 #include "tests/temp_folder.h"
 #include "tools/screed/link/decode_command.h"
@@ -291,7 +291,7 @@ TEST_F(Decode, McapHoldsTheMessagesAndItsOwnIndex) {
   ASSERT_EQ(inner.size(), 6U);
   EXPECT_EQ(inner[0].first, 3);
   const std::string& schema = inner[0].second;
-  const nlohmann::json json = nlohmann::json::parse(schema.substr(schema.find('{')));
+  const Json json = Json::parse(schema.substr(schema.find('{')));
   EXPECT_EQ(json["properties"]["pitch"]["type"], "number");
   EXPECT_EQ(json["properties"]["pitch"]["description"], "deg; nose up is positive");
   EXPECT_NE(inner[1].second.find("/robot1/attitude"), std::string::npos);

@@ -1,16 +1,18 @@
 // Options and JSON of `screed soil` against the table of soil parameters.
 #include <gtest/gtest.h>
 
+#include "tools/command_line/command_tree.h"
+#include "tools/command_line/parser.h"
 #include "tools/screed/soil/soil_common.h"
 
 namespace screed {
 namespace {
 
-SoilArguments parsed(const std::string& arguments) {
-  CLI::App command;
+SoilArguments parsed(const std::vector<std::string>& words) {
+  Command command;
   SoilArguments soil;
   add_soil_options(command, soil);
-  command.parse(arguments);
+  parse(command, words);
   return soil;
 }
 
@@ -18,10 +20,10 @@ TEST(SoilOptions, EachSetsItsParameterAndShowsInTheJson) {
   for (const SoilParameterInfo& changed : kSoilParameters) {
     SCOPED_TRACE(changed.option);
     const SoilArguments arguments =
-        parsed(std::string("--soil clay ") + changed.option + " " + std::to_string(changed.max));
+        parsed({"--soil", "clay", changed.option, std::to_string(changed.max)});
     const SoilParameters soil = arguments.soil();
     EXPECT_EQ(soil.name, "clay, changed");
-    const nlohmann::json json = soil_json(arguments);
+    const Json json = soil_json(arguments);
     for (const SoilParameterInfo& parameter : kSoilParameters) {
       const double expected =
           &parameter == &changed ? changed.max : soil_preset("clay").*parameter.member;
@@ -32,24 +34,27 @@ TEST(SoilOptions, EachSetsItsParameterAndShowsInTheJson) {
 }
 
 TEST(SoilOptions, WithoutThemTheSoilIsThePreset) {
-  const SoilArguments arguments = parsed("");
+  const SoilArguments arguments = parsed({});
   EXPECT_EQ(arguments.soil().name, "viper");
   EXPECT_TRUE(arguments.as_peer());
-  EXPECT_FALSE(parsed("--repose 31").as_peer());
-  EXPECT_FALSE(parsed("--soil clay").as_peer());
+  EXPECT_FALSE(parsed({"--repose", "31"}).as_peer());
+  EXPECT_FALSE(parsed({"--soil", "clay"}).as_peer());
 }
 
 TEST(SoilOptions, HelpSaysSymbolUnitAndRange) {
-  CLI::App command;
+  Command command;
   SoilArguments soil;
   add_soil_options(command, soil);
-  EXPECT_EQ(command.get_option("--repose")->get_type_name(), "NUMBER:1 to 60");
-  EXPECT_EQ(command.get_option("--elastic")->get_type_name(), "NUMBER:10000 to 1e+12");
-  EXPECT_EQ(command.get_option("--repose")->get_description(), "Angle of repose [deg]");
-  EXPECT_EQ(command.get_option("--elastic")->get_description(), "Stiffness of unloading E [Pa/m]");
-  EXPECT_EQ(command.get_option("--k-phi")->get_description(),
+  const auto words = [&](const char* name) { return words_of(*command.option(name)); };
+  EXPECT_EQ(words("--repose").value, "NUMBER");
+  EXPECT_EQ(words("--repose").range, "1 to 60");
+  EXPECT_EQ(words("--elastic").value, "NUMBER");
+  EXPECT_EQ(words("--elastic").range, "10000 to 1e+12");
+  EXPECT_EQ(words("--repose").help, "Angle of repose [deg]");
+  EXPECT_EQ(words("--elastic").help, "Stiffness of unloading E [Pa/m]");
+  EXPECT_EQ(words("--k-phi").help,
             "Bekker's frictional modulus [N/m^(n+2)]; left out: the preset's");
-  EXPECT_EQ(command.get_option("--slip-sinkage")->get_description(), "Growth of n with slip");
+  EXPECT_EQ(words("--slip-sinkage").help, "Growth of n with slip");
 }
 
 }  // namespace
