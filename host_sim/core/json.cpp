@@ -237,7 +237,7 @@ std::partial_ordering operator<=>(const Json& a, const Json& b) {
 }
 
 bool operator==(const Json& a, const Json& b) {
-  if (a.is_number() && b.is_number()) return (a <=> b) == 0;
+  if (a.is_number() && b.is_number()) return std::is_eq(a <=> b);
   if (a.kind_ != b.kind_) return false;
   switch (a.kind_) {
     case Json::Kind::kBoolean:

@@ -78,6 +78,7 @@ bool says_all(const std::string& help, const std::vector<std::string>& words) {
 
 std::vector<std::string> names_of(const std::vector<const Option*>& options) {
   std::vector<std::string> names;
+  names.reserve(options.size());
   for (const Option* option : options) names.push_back(option->name());
   std::sort(names.begin(), names.end());
   return names;

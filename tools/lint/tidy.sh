@@ -7,7 +7,7 @@ shift 3
 
 tidy() {
   # shellcheck disable=SC2046  # the flags are words
-  clang-tidy --quiet --checks="$checks" "$1" -- $(cat "$flags") > "$stamp.log" 2>&1
+  clang-tidy --quiet --checks="$checks${2:-}" "$1" -- $(cat "$flags") > "$stamp.log" 2>&1
 }
 # Findings, with the places in the pasted text (if there is one) as places in the sources.
 show() {
@@ -36,7 +36,8 @@ look_at() {
   # shellcheck disable=SC2046
   if clang++ -fsyntax-only -w -ferror-limit=1 $(cat "$flags") "$stamp.cpp" 2> /dev/null; then
     echo "  TIDY $1 and $(($# - 1)) more"
-    tidy "$stamp.cpp" || { show; return 1; }
+    # What one source defines, a header of a later one declares: redundant in the pasted text alone.
+    tidy "$stamp.cpp" ,-readability-redundant-declaration || { show; return 1; }
     return 0
   fi
   look_at "${@:1:$# / 2}" || status=1
