@@ -376,7 +376,7 @@ GridConfig smaller(GridAlgorithm algorithm, double mean) {
 }
 
 TEST(GridFigures, BothCurvesOfAlgorithm1AreUShaped) {
-  constexpr int kRuns = 15;
+  constexpr int kRuns = 60;
   const auto constant = [](double p) {
     GridConfig config = smaller(GridAlgorithm::kProbabilistic, 6.5);
     config.p_pick_up = config.p_deposit = p;
@@ -396,7 +396,7 @@ TEST(GridFigures, BothCurvesOfAlgorithm1AreUShaped) {
 }
 
 TEST(GridFigures, MemeticAlgorithmsTradeCyclesForUnits) {
-  constexpr int kRuns = 15;
+  constexpr int kRuns = 30;
   const Means one = means(smaller(GridAlgorithm::kProbabilistic, 6.5), kRuns);
   GridConfig slow = smaller(GridAlgorithm::kMemetic1, 6.5);
   slow.max_cycles = 1'000'000;

@@ -15,12 +15,14 @@
 #include "host_sim/soil_validation/repose_pile.h"
 #include "host_sim/soil_validation/soil_robot.h"
 #include "paths.h"
+#include "tests/sanitizers.h"
 #include "tests/unit/allocations.h"
 
 namespace screed {
 namespace {
 
 constexpr double kStep_s = 1e-3;
+constexpr int kDrivenSteps = testing::kSanitized ? 5000 : 20000;
 
 HeightField waves(double size_m, double cell_m, double relief_m, bool wrap) {
   const int nodes = static_cast<int>(std::lround(size_m / cell_m)) + (wrap ? 0 : 1);
@@ -41,8 +43,8 @@ TEST(SoilBedTest, VolumeIsExactWhileDriving) {
       SoilBed bed(waves(1.5, 0.01, 0.04, wrap), soil);
       const int64_t before = bed.balance().now;
       SoilRobot robot(bed, {}, 0.2, 0.1);
-      for (int i = 0; i < 5000; ++i) {
-        // Ahead, then a spin in place, and ahead again.
+      for (int i = 0; i < kDrivenSteps; ++i) {
+        // Ahead, then a spin in place, again and again.
         const bool spin = i % 4000 >= 3000;
         robot.step(spin ? -0.2 : 0.2, 0.2, kStep_s);
         ASSERT_GE(bed.balance().in_transit, 0) << i;
@@ -132,11 +134,11 @@ double forgotten_excess_units(const SoilBed& bed) {
 // drive has more to slide than it has time for.
 TEST(SoilBedTest, SlopesStayBelowTheAngleOfReposeWhileDriving) {
   for (const char* name : {"viper", "gravel"}) {
-    SoilBed bed(waves(0.8, 0.01, 0.04, true), soil_preset(name));
+    SoilBed bed(waves(1.0, 0.01, 0.04, true), soil_preset(name));
     bed.relax_slopes();
     SoilRobot robot(bed, {}, 0.2, 0.1);
-    for (int i = 0; i < 1000; ++i) {
-      robot.step(i < 700 ? 0.2 : -0.2, 0.2, kStep_s);
+    for (int i = 0; i < 2000; ++i) {
+      robot.step(i % 1000 < 700 ? 0.2 : -0.2, 0.2, kStep_s);
       ASSERT_EQ(bed.slopes_left(), 0U) << name << ", step " << i;
       ASSERT_LE(forgotten_excess_units(bed), 1.0) << name << ", step " << i;
     }
