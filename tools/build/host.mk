@@ -147,6 +147,7 @@ endef
 $(eval $(call headers_of_set,host,host))
 $(eval $(call headers_of_set,cold,host))
 $(eval $(call headers_of_set,test,test))
+$(B)/headers/test.h.gch: tools/build/headers/host.h
 
 # ---- groups: neighbouring sources are compiled as one, since they share most of what they include -----------------------------------
 
@@ -174,7 +175,7 @@ $(B)/groups/%.cpp: tools/build/group.awk FORCE
 	@awk -f tools/build/group.awk $(filter-out %.awk FORCE,$^) | $(WRITE_CHANGED)
 $(B)/groups/%.o: $(B)/groups/%.cpp $(B)/host.flags | $(GENERATED)
 	@echo "  CXX  $(notdir $*)"
-	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) -Wno-subobject-linkage $(SET_FLAGS) -MMD -MP -c $< -o $@
+	@$(CXX) @$(B)/host.flags $(GROUP_FLAGS) $(HEADERS_FLAGS) $(if $(findstring clang,$(CXX)),,-Wno-subobject-linkage) $(SET_FLAGS) -MMD -MP -c $< -o $@
 
 $(eval $(call in_groups,HOT,$(filter-out $(COLD_SOURCES),$(HOST_SOURCES)),host))
 $(eval $(call in_groups,COLD,$(COLD_SOURCES),cold))
