@@ -117,7 +117,7 @@ void Builder::read_units() {
     for (const std::string& word : arguments_.at(program)) {
       if (!word.ends_with(".o") && !word.ends_with(".a")) continue;
       if (!fs::exists(word)) {
-        throw std::runtime_error(word + ", of which " + program + " is linked, is not built");
+        throw std::runtime_error(program + " is linked of what is not built: " + word);
       }
       if (word.ends_with(".o")) objects.insert(word);
     }
@@ -176,7 +176,7 @@ Objects Builder::compile(const std::string& source, const std::string& text,
   write_file(folder / source, text);
   Objects all{true, "", {}};
   for (const Unit& unit : units_of(source)) {
-    const Objects one = compile(unit, folder, folder / unit.object, {});
+    Objects one = compile(unit, folder, folder / unit.object, {});
     if (!one.compiled) return one;
     all.objects.push_back(one.objects.front());
   }

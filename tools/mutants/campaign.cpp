@@ -145,7 +145,7 @@ std::string Campaign::build_reach(const fs::path& folder) const {
       copies += text;
     }
   }
-  const std::string key = hash(all + read_file("tools/mutants/mutant_switch.h"));
+  std::string key = hash(all + read_file("tools/mutants/mutant_switch.h"));
   const bool built =
       fs::exists(folder / "key.txt") && read_file(folder / "key.txt") == key &&
       std::all_of(builder_.programs().begin(), builder_.programs().end(),
@@ -155,6 +155,7 @@ std::string Campaign::build_reach(const fs::path& folder) const {
                   });
   if (built) return key;
   std::vector<const std::pair<Unit, std::string>*> list;
+  list.reserve(units.size());
   for (const auto& [object, unit] : units) list.push_back(&unit);
   std::vector<Objects> objects(list.size());
   in_parallel(list.size(), options_.jobs, [&](std::size_t i, std::size_t) {
