@@ -31,7 +31,7 @@ std::string seconds_text(double seconds) {
   return text.str();
 }
 
-class Slot {
+class WorkerSlot {
  public:
   bool has_worker() const { return worker_ != nullptr; }
   bool is_busy() const { return job_.has_value(); }
@@ -87,12 +87,12 @@ class Slot {
 };
 
 /// Waits until a worker has said something, or a tick.
-void wait_for_any(const std::vector<Slot>& slots) {
+void wait_for_any(const std::vector<WorkerSlot>& slots) {
   std::vector<pollfd> ready;
-  for (const Slot& slot : slots)
+  for (const WorkerSlot& slot : slots)
     if (slot.has_worker()) ready.push_back({slot.descriptor(), POLLIN, 0});
   Clock::time_point until = Clock::now() + kTick;
-  for (const Slot& slot : slots)
+  for (const WorkerSlot& slot : slots)
     if (slot.is_busy()) until = std::min(until, slot.deadline());
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
   static_cast<void>(poll(ready.data(), ready.size(), static_cast<int>(std::max<int64_t>(left, 0))));
@@ -101,21 +101,21 @@ void wait_for_any(const std::vector<Slot>& slots) {
 }  // namespace
 
 void run_pool(const PoolOptions& options, const PoolHandler& handler) {
-  std::vector<Slot> slots(static_cast<size_t>(std::max(1, options.workers)));
+  std::vector<WorkerSlot> slots(static_cast<size_t>(std::max(1, options.workers)));
   const auto stopped = [&] { return options.stop != nullptr && *options.stop; };
   while (!stopped()) {
-    for (Slot& slot : slots) {
+    for (WorkerSlot& slot : slots) {
       if (slot.is_busy()) continue;
       std::optional<PoolJob> job = handler.next();
       if (!job.has_value()) break;
       slot.start(options, std::move(*job));
     }
-    if (std::none_of(slots.begin(), slots.end(), [](const Slot& s) { return s.is_busy(); })) {
-      for (Slot& slot : slots) slot.dismiss();
+    if (std::none_of(slots.begin(), slots.end(), [](const WorkerSlot& s) { return s.is_busy(); })) {
+      for (WorkerSlot& slot : slots) slot.dismiss();
       return;
     }
     wait_for_any(slots);
-    for (Slot& slot : slots) {
+    for (WorkerSlot& slot : slots) {
       if (slot.has_worker()) slot.look(handler);
       if (slot.has_worker()) slot.end_if_late(handler);
     }

@@ -64,7 +64,7 @@ IntegerLayer finest(const FloatLayer& layer, std::size_t number) {
   throw InputError(name + ": weights are too large for 16 bits at any scale");
 }
 
-using Matrix = Eigen::MatrixXd;
+using Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// What pulls a fitted weight back to the trained one, as a share of the inputs' mean square:
@@ -75,11 +75,11 @@ constexpr double kPull = 1e-4;
 /// The node's weights on steps of `step` and its bias, for the least mean square of (weights inputs
 /// + bias - wanted) share over the columns of `inputs`, the last row of which is 1. One weight
 /// after the other is rounded, and those that are still free make up for it.
-Vector fitted_node(const Matrix& inputs, const Vector& wanted, const Vector& share,
+Vector fitted_node(const MatrixXd& inputs, const Vector& wanted, const Vector& share,
                    const Vector& trained, double step) {
   const Eigen::Index count = trained.size() - 1;
-  const Matrix felt = inputs * share.asDiagonal();
-  Matrix squares = felt * felt.transpose() / static_cast<double>(inputs.cols());
+  const MatrixXd felt = inputs * share.asDiagonal();
+  MatrixXd squares = felt * felt.transpose() / static_cast<double>(inputs.cols());
   const Vector missing = share.cwiseProduct(wanted - inputs.transpose() * trained);
   const Vector slope = felt * missing / static_cast<double>(inputs.cols());
   const double pull = kPull * (squares.trace() / static_cast<double>(count + 1)) + 1e-12;
@@ -102,10 +102,10 @@ Vector fitted_node(const Matrix& inputs, const Vector& wanted, const Vector& sha
 
 /// A layer whose inputs are `seen` in integers and whose sums should be those of `wanted`, both a
 /// column a row of the data.
-IntegerLayer fitted(const FloatLayer& layer, const IntegerLayer& plain, const Matrix& seen,
-                    const Matrix& wanted) {
-  Matrix inputs(seen.rows() + 1, seen.cols());
-  inputs << seen, Matrix::Ones(1, seen.cols());
+IntegerLayer fitted(const FloatLayer& layer, const IntegerLayer& plain, const MatrixXd& seen,
+                    const MatrixXd& wanted) {
+  MatrixXd inputs(seen.rows() + 1, seen.cols());
+  inputs << seen, MatrixXd::Ones(1, seen.cols());
   const double step =
       std::ldexp(1.0 / (layer.linear ? kLinearGain : 1.0), plain.gain_shift - kWeightOfOne);
   FloatLayer result = layer;
@@ -130,9 +130,9 @@ IntegerLayer fitted(const FloatLayer& layer, const IntegerLayer& plain, const Ma
 }
 
 /// What a layer makes of activations, as values.
-Matrix outputs_of(const IntegerLayer& layer, const Matrix& seen) {
+MatrixXd outputs_of(const IntegerLayer& layer, const MatrixXd& seen) {
   const IntegerNetwork network({layer});
-  Matrix result(static_cast<Eigen::Index>(network.outputs()), seen.cols());
+  MatrixXd result(static_cast<Eigen::Index>(network.outputs()), seen.cols());
   std::vector<std::int16_t> in(network.inputs());
   std::vector<std::int16_t> out(network.outputs());
   for (Eigen::Index column = 0; column < seen.cols(); ++column) {
@@ -179,8 +179,9 @@ IntegerNetwork quantise(const std::vector<FloatLayer>& network, std::span<const 
   const Eigen::Index count = static_cast<Eigen::Index>(rows.size()) / inputs;
   if (count == 0) return plain;
   // The same rows as floating point sees them, and as integers do.
-  Matrix values = Eigen::Map<const Matrix>(rows.data(), inputs, count).cwiseMin(1.0).cwiseMax(-1.0);
-  Matrix seen = values.unaryExpr([](double value) { return to_value(to_activation(value)); });
+  MatrixXd values =
+      Eigen::Map<const MatrixXd>(rows.data(), inputs, count).cwiseMin(1.0).cwiseMax(-1.0);
+  MatrixXd seen = values.unaryExpr([](double value) { return to_value(to_activation(value)); });
   std::vector<IntegerLayer> layers;
   layers.reserve(network.size());
   for (const FloatLayer& layer : network) {
@@ -188,12 +189,13 @@ IntegerNetwork quantise(const std::vector<FloatLayer>& network, std::span<const 
     const Eigen::Map<const RowMajor> weights(layer.weights.data(),
                                              static_cast<Eigen::Index>(layer.outputs),
                                              static_cast<Eigen::Index>(layer.inputs));
-    Matrix sums = weights * values;
+    MatrixXd sums = weights * values;
     sums.colwise() +=
         Eigen::Map<const Vector>(layer.bias.data(), static_cast<Eigen::Index>(layer.outputs));
     layers.push_back(fitted(layer, plain.layers()[layers.size()], seen, sums));
     seen = outputs_of(layers.back(), seen);
-    values = layer.linear ? Matrix(sums.cwiseMin(1.0).cwiseMax(-1.0)) : Matrix(sums.array().tanh());
+    values =
+        layer.linear ? MatrixXd(sums.cwiseMin(1.0).cwiseMax(-1.0)) : MatrixXd(sums.array().tanh());
   }
   return IntegerNetwork(std::move(layers));
 }

@@ -17,7 +17,7 @@ FNR == 1 {
   space = FILENAME
   gsub(/[^A-Za-z0-9]/, "_", space)
 }
-again[FILENAME] == 1 && FILENAME ~ /^tests\// { next }
+again[FILENAME] == 1 && FILENAME ~ /^tests\/.*_test\.cpp$/ { next }
 again[FILENAME] == 1 {
   if (/^namespace \{$/) inside = 1
   else if (/^}  \/\/ namespace$/) inside = 0
@@ -28,10 +28,11 @@ again[FILENAME] == 1 {
   next
 }
 FNR == 1 { print "#line 1 \"" FILENAME "\"" }
+/^int main\(/ { sub(/main/, "main_" space) }
 /^#include / && ($2 in included) && included[$2] != FILENAME { print ""; next }
 /^#include / { included[$2] = FILENAME }
-FILENAME ~ /^tests\// && /^namespace \{$/ { print "namespace { namespace " space " {"; next }
-FILENAME ~ /^tests\// && /^}  \/\/ namespace$/ { print "} }"; next }
+FILENAME ~ /^tests\/.*_test\.cpp$/ && /^namespace \{$/ { print "namespace { namespace " space " {"; next }
+FILENAME ~ /^tests\/.*_test\.cpp$/ && /^}  \/\/ namespace$/ { print "} }"; next }
 /^namespace / && !opened {
   opened = 1
   for (key in own) {

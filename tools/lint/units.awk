@@ -1,5 +1,5 @@
 # Sources that clang-tidy looks at together: from words GROUP:SOURCE,SOURCE,... of tools/build/groups.awk, and SOURCE for one that is
-# compiled alone, makes words OBJECT,OBJECT:SOURCE,SOURCE of up to some thirty sources; `folder` is that of the groups' objects.
+# compiled alone, makes words OBJECT,OBJECT:SOURCE,SOURCE of up to some sixty sources; `folder` is that of the groups' objects.
 function finish() { if (size) print objects ":" sources; size = 0; objects = sources = "" }
 {
   count = 1
@@ -16,5 +16,5 @@ function finish() { if (size) print objects ":" sources; size = 0; objects = sou
   sources = sources (size ? "," : "") members
   size += count
 }
-BEGIN { most = 32 }
+BEGIN { most = 64 }
 END { finish() }

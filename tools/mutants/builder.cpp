@@ -27,7 +27,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-bool contains(const std::vector<std::string>& list, const std::string& word) {
+bool lists(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
@@ -137,7 +137,7 @@ void Builder::read_units() {
 std::vector<Unit> Builder::units_of(const std::string& source) const {
   std::vector<Unit> units;
   std::copy_if(units_.begin(), units_.end(), std::back_inserter(units),
-               [&](const Unit& unit) { return contains(unit.included, source); });
+               [&](const Unit& unit) { return lists(unit.included, source); });
   if (units.empty()) throw std::runtime_error("no object of the tests is made of " + source);
   return units;
 }

@@ -10,7 +10,7 @@
 
 namespace {
 
-int run(const screed::mutants::Options& options) {
+int run_campaign(const screed::mutants::Options& options) {
   setpriority(PRIO_PROCESS, 0, 19);
   try {
     screed::mutants::Campaign campaign(options);
@@ -41,5 +41,5 @@ int main(int argc, char** argv) {
                  "without the tests that take longer, s of processor time; 0: all")
       ->range(0.0, 3600.0)
       ->show_default();
-  return screed::run_program(app, argc, argv, [&] { return run(options); });
+  return screed::run_program(app, argc, argv, [&] { return run_campaign(options); });
 }

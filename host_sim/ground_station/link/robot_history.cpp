@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kMaxEvents = 100;
 /// Robots of one link; beyond it addresses are noise.
-constexpr size_t kMaxRobots = 64;
+constexpr size_t kMaxHistories = 64;
 constexpr int kCounterModulus = 16;
 
 const SignalInfo* with_role(const MessageInfo& message, SignalRole role) {
@@ -207,7 +207,7 @@ RobotHistory* FleetView::add_frame(const LinkFrame& frame) {
     return nullptr;
   }
   const RobotKey key{frame.source.has_value() ? frame.source->address : 0, node_of(frame.frame.id)};
-  if (robots_.size() >= kMaxRobots && !robots_.contains(key)) return nullptr;
+  if (robots_.size() >= kMaxHistories && !robots_.contains(key)) return nullptr;
   RobotHistory& robot = robots_[key];
   robot.add_frame(frame, message);
   return &robot;

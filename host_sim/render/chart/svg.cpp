@@ -53,7 +53,7 @@ std::string hex(Color color) {
 }
 
 /// ` name="value"`.
-std::string attribute(const char* name, const std::string& value) {
+std::string svg_attribute(const char* name, const std::string& value) {
   std::string text = " ";
   text += name;
   text += "=\"";
@@ -62,18 +62,19 @@ std::string attribute(const char* name, const std::string& value) {
   return text;
 }
 
-std::string attribute(const char* name, double value) {
-  return attribute(name, number(value));
+std::string svg_attribute(const char* name, double value) {
+  return svg_attribute(name, number(value));
 }
 
 /// Where a box lies.
 std::string placed(const PixelBox& box) {
-  return attribute("x", box.left) + attribute("y", box.top) + attribute("width", box.width) +
-         attribute("height", box.height);
+  return svg_attribute("x", box.left) + svg_attribute("y", box.top) +
+         svg_attribute("width", box.width) + svg_attribute("height", box.height);
 }
 
 std::string circle(Pixel at, double radius_px) {
-  return "<circle" + attribute("cx", at.x) + attribute("cy", at.y) + attribute("r", radius_px);
+  return "<circle" + svg_attribute("cx", at.x) + svg_attribute("cy", at.y) +
+         svg_attribute("r", radius_px);
 }
 
 bool continues_letter(char c) {
@@ -103,24 +104,24 @@ std::string svg_fitted(const std::string& words, double size_px, double width_px
 }
 
 Svg::Svg(int width_px, int height_px) {
-  out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", width_px) +
-         attribute("height", height_px) +
-         attribute("viewBox", "0 0 " + number(width_px) + " " + number(height_px)) +
-         attribute("font-family", "'DejaVu Sans', Verdana, Arial, sans-serif") +
+  out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + svg_attribute("width", width_px) +
+         svg_attribute("height", height_px) +
+         svg_attribute("viewBox", "0 0 " + number(width_px) + " " + number(height_px)) +
+         svg_attribute("font-family", "'DejaVu Sans', Verdana, Arial, sans-serif") +
          ">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
 }
 
 void Svg::line(Pixel from, Pixel to, Color color, double width_px) {
-  out_ += "<line" + attribute("x1", from.x) + attribute("y1", from.y) + attribute("x2", to.x) +
-          attribute("y2", to.y) + attribute("stroke", hex(color)) +
-          attribute("stroke-width", width_px) + "/>\n";
+  out_ += "<line" + svg_attribute("x1", from.x) + svg_attribute("y1", from.y) +
+          svg_attribute("x2", to.x) + svg_attribute("y2", to.y) +
+          svg_attribute("stroke", hex(color)) + svg_attribute("stroke-width", width_px) + "/>\n";
 }
 
 void Svg::polyline(const std::vector<Pixel>& points, Color color, double width_px, bool dashed) {
-  out_ += "<polyline fill=\"none\"" + attribute("stroke", hex(color)) +
-          attribute("stroke-width", width_px) +
+  out_ += "<polyline fill=\"none\"" + svg_attribute("stroke", hex(color)) +
+          svg_attribute("stroke-width", width_px) +
           " stroke-linejoin=\"round\" stroke-linecap=\"round\"";
-  if (dashed) out_ += attribute("stroke-dasharray", "7 6");
+  if (dashed) out_ += svg_attribute("stroke-dasharray", "7 6");
   out_ += " points=\"";
   for (const Pixel& point : points) {
     out_ += number(point.x);
@@ -133,39 +134,39 @@ void Svg::polyline(const std::vector<Pixel>& points, Color color, double width_p
 }
 
 void Svg::marker(Pixel at, double radius_px, Color color) {
-  out_ += circle(at, radius_px) + attribute("fill", hex(color)) +
+  out_ += circle(at, radius_px) + svg_attribute("fill", hex(color)) +
           " stroke=\"#ffffff\" stroke-width=\"1.2\"/>\n";
 }
 
 void Svg::small_dot(Pixel at, Color color) {
-  out_ += circle(at, 1.6) + attribute("fill", hex(color)) + " fill-opacity=\"0.45\"/>\n";
+  out_ += circle(at, 1.6) + svg_attribute("fill", hex(color)) + " fill-opacity=\"0.45\"/>\n";
 }
 
 void Svg::ring(Pixel at, double radius_px, Color color) {
-  out_ += circle(at, radius_px) + " fill=\"#ffffff\"" + attribute("stroke", hex(color)) +
+  out_ += circle(at, radius_px) + " fill=\"#ffffff\"" + svg_attribute("stroke", hex(color)) +
           " stroke-width=\"2.4\"/>\n";
 }
 
 void Svg::rectangle(const PixelBox& box, Color fill, double round_px) {
-  out_ += "<rect" + placed(box) + attribute("fill", hex(fill));
-  if (round_px > 0.0) out_ += attribute("rx", round_px);
+  out_ += "<rect" + placed(box) + svg_attribute("fill", hex(fill));
+  if (round_px > 0.0) out_ += svg_attribute("rx", round_px);
   out_ += "/>\n";
 }
 
 void Svg::frame(const PixelBox& box, Color color, double width_px) {
-  out_ += "<rect" + placed(box) + " fill=\"none\"" + attribute("stroke", hex(color)) +
-          attribute("stroke-width", width_px) + "/>\n";
+  out_ += "<rect" + placed(box) + " fill=\"none\"" + svg_attribute("stroke", hex(color)) +
+          svg_attribute("stroke-width", width_px) + "/>\n";
 }
 
 void Svg::text(Pixel at, const std::string& words, const SvgTextStyle& style) {
   if (words.empty()) return;
   constexpr const char* kAnchors[] = {"start", "middle", "end"};
-  out_ += "<text" + attribute("x", at.x) + attribute("y", at.y) +
-          attribute("font-size", style.size_px) + attribute("fill", hex(style.color)) +
-          attribute("text-anchor", kAnchors[static_cast<int>(style.anchor)]);
-  if (style.bold) out_ += attribute("font-weight", "bold");
+  out_ += "<text" + svg_attribute("x", at.x) + svg_attribute("y", at.y) +
+          svg_attribute("font-size", style.size_px) + svg_attribute("fill", hex(style.color)) +
+          svg_attribute("text-anchor", kAnchors[static_cast<int>(style.anchor)]);
+  if (style.bold) out_ += svg_attribute("font-weight", "bold");
   if (style.upwards) {
-    out_ += attribute("transform", "rotate(-90 " + number(at.x) + " " + number(at.y) + ")");
+    out_ += svg_attribute("transform", "rotate(-90 " + number(at.x) + " " + number(at.y) + ")");
   }
   out_ += ">" + escaped(words) + "</text>\n";
 }
@@ -177,8 +178,8 @@ void Svg::image(const PixelBox& box, std::span<const std::uint8_t> png) {
 
 void Svg::begin_clip(const PixelBox& box) {
   const std::string id = "clip" + std::to_string(++clips_);
-  out_ += "<clipPath" + attribute("id", id) + "><rect" + placed(box) + "/></clipPath>\n<g" +
-          attribute("clip-path", "url(#" + id + ")") + ">\n";
+  out_ += "<clipPath" + svg_attribute("id", id) + "><rect" + placed(box) + "/></clipPath>\n<g" +
+          svg_attribute("clip-path", "url(#" + id + ")") + ">\n";
 }
 
 void Svg::end_clip() {

@@ -20,13 +20,13 @@ constexpr size_t kNamesInMessage = 6;
 
 using KeyName = std::pair<std::string, std::string>;  // section, key
 
-struct Column {
+struct TableColumn {
   std::string heading;
   std::vector<KeyName> keys;
 };
 
 struct Headings {
-  std::vector<Column> columns;
+  std::vector<TableColumn> columns;
   size_t name_column = 0;
   int line = 0;
 };
@@ -53,8 +53,8 @@ KeyName parse_key_name(std::string name, const std::string& where) {
 }
 
 /// The keys that a heading names: section.key, several of them joined by +.
-Column parse_heading(const std::string& heading, const std::string& where) {
-  Column column{heading, {}};
+TableColumn parse_heading(const std::string& heading, const std::string& where) {
+  TableColumn column{heading, {}};
   for (size_t begin = 0; begin <= heading.size();) {
     const size_t end = std::min(heading.find('+', begin), heading.size());
     column.keys.push_back(parse_key_name(heading.substr(begin, end - begin), where));
@@ -63,7 +63,7 @@ Column parse_heading(const std::string& heading, const std::string& where) {
   return column;
 }
 
-void add_unique(const Column& column, std::set<KeyName>& seen, const std::string& where) {
+void add_unique(const TableColumn& column, std::set<KeyName>& seen, const std::string& where) {
   for (const KeyName& key : column.keys) {
     if (seen.insert(key).second) continue;
     std::string message = where;

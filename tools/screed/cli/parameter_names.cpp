@@ -43,7 +43,7 @@ std::span<const ValueInfo> value_names_of(const ParameterInfo& info) {
   return find_signal("leveling.algorithm").signal->values;
 }
 
-std::string number_text(double value) {
+std::string scaled_text(double value) {
   constexpr int kDigits = 10;  // hides what 0.07 * 3 has behind 0.21
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.*g", kDigits, value);
@@ -104,7 +104,7 @@ std::string parameter_text(uint16_t index, int32_t value) {
   }
   const Unit unit = unit_of(info);
   const std::string number =
-      unit.is_scaled() ? number_text(value * unit.scale) : std::to_string(value);
+      unit.is_scaled() ? scaled_text(value * unit.scale) : std::to_string(value);
   return unit.name.empty() ? number : number + " " + unit.name;
 }
 
@@ -119,7 +119,7 @@ std::string parameter_range(uint16_t index) {
     return name_list(names, " or ");
   }
   const Unit unit = unit_of(info);
-  const std::string low = unit.is_scaled() ? number_text(info.min * unit.scale)
+  const std::string low = unit.is_scaled() ? scaled_text(info.min * unit.scale)
                                            : "whole numbers " + std::to_string(info.min);
   return low + " to " + parameter_text(index, info.max);
 }

@@ -40,7 +40,7 @@ double finite(double value) {
   return std::isfinite(value) ? value : 0.0;
 }
 
-void place(RobotMarker& robot, const SimFrame& frame) {
+void move_to(RobotMarker& robot, const SimFrame& frame) {
   robot.x_m = finite(frame.x);
   robot.y_m = finite(frame.y);
   robot.heading_rad = finite(frame.yaw);
@@ -84,7 +84,7 @@ TrailPoint trail_point(const SimFrame& frame) {
 }
 
 void place_robot(FurtherRobot& robot, const SimFrame& frame) {
-  place(robot.robot, frame);
+  move_to(robot.robot, frame);
   robot.state = trail_point(frame).state;
 }
 
@@ -189,7 +189,7 @@ void ViewerDisplay::show_leveling() {
 }
 
 void ViewerDisplay::set_frame(const SimFrame& frame) {
-  place(robot_, frame);
+  move_to(robot_, frame);
   status_.time_s = frame.time;
   show_leveling();
   // A training drive lasts for its frames, and some seconds before them.
