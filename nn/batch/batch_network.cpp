@@ -25,7 +25,7 @@ struct Block {
 // with AVX2 (networks of 4-20-1 and of 13 layers).
 constexpr std::size_t kFewRobots = 3;
 
-constexpr std::size_t kMostRobots = kAvx512Robots;
+constexpr std::size_t kMaxBlockRobots = kAvx512Robots;
 
 Block block_of(BatchKernel kernel) {
   return kernel == BatchKernel::kAvx512 ? Block{run_block_avx512, run_one_avx512, kAvx512Robots}
@@ -147,8 +147,8 @@ void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t ro
   }
   // The robots that do not fill a block, in a block of their own. The widest network's would take
   // longer to clear than a small one to run.
-  std::array<std::int16_t, kMaxInputs * kMostRobots> from;
-  std::array<std::int16_t, kMaxInputs * kMostRobots> to;
+  std::array<std::int16_t, kMaxInputs * kMaxBlockRobots> from;
+  std::array<std::int16_t, kMaxInputs * kMaxBlockRobots> to;
   const std::size_t rest = robots - robot;
   for (std::size_t i = 0; i < inputs(); ++i) {
     std::int16_t* const to_block = &from[i * block.robots];
