@@ -58,11 +58,9 @@ check-links:
 format:  ## clang-format over the tree
 	clang-format -i $(CPP_FILES)
 # Without -Werror: compilers' warnings are the build's, by its compiler. (With the analyser among its checks clang-tidy takes no
-# notice of it anyway.) The analyser gives up a function after 4,000 steps, which is where four fifths of its time go otherwise: what shows
-# in long functions of many branches alone is not found. Firmware is looked at to the end.
+# notice of it anyway.)
 $(B)/lint.flags: $(B)/host.flags | $(B)/tiny_dnn/third_party/stb
-	@echo "$$(sed 's/-Werror//' $<) -idirafter $(B)/tiny_dnn $(RSVG_FLAGS) $(SDL_FLAGS) \
-	  -Xclang -analyzer-config -Xclang max-nodes=4000" > $@
+	@echo "$$(sed 's/-Werror//' $<) -idirafter $(B)/tiny_dnn $(RSVG_FLAGS) $(SDL_FLAGS)" > $@
 # Flags are taken as they stand, by no shell: without the quotes that keep the others from one.
 $(B)/mcu_tests.flags: $(B)/lint.flags $(B)/tests/mcu.flags
 	@cat $^ | tr -d "'" > $@

@@ -5,9 +5,16 @@ set -uo pipefail
 stamp=$1 flags=$2 checks=$3
 shift 3
 
+# The analyser gives up a function after so many steps: most of its time would go into what lies beyond, long functions of many branches.
+# Firmware is looked at to the end.
+steps=4000
+case $flags in */firmware.flags | */avr.flags) steps=225000 ;; esac
+deep=()
+for word in -Xclang -analyzer-config -Xclang "max-nodes=$steps"; do deep+=("--extra-arg=$word"); done
+
 tidy() {
   # shellcheck disable=SC2046  # the flags are words
-  clang-tidy --quiet --checks="$checks${2:-}" "$1" -- $(cat "$flags") > "$stamp.log" 2>&1
+  clang-tidy --quiet "${deep[@]}" --checks="$checks${2:-}" "$1" -- $(cat "$flags") > "$stamp.log" 2>&1
 }
 # Findings, with the places in the pasted text (if there is one) as places in the sources.
 show() {

@@ -116,9 +116,7 @@ void Builder::read_units() {
   for (const std::string& program : programs_) {
     for (const std::string& word : arguments_.at(program)) {
       if (!word.ends_with(".o") && !word.ends_with(".a")) continue;
-      if (!fs::exists(word)) {
-        throw std::runtime_error(program + " is linked of what is not built: " + word);
-      }
+      if (!fs::exists(word)) throw std::runtime_error("not built: " + word);
       if (word.ends_with(".o")) objects.insert(word);
     }
   }
