@@ -1,4 +1,5 @@
 // `screed terrain-net` as a user meets it, on a drive of a few seconds.
+// Long: trains a network and drives with it.
 #include <sstream>
 #include <string>
 

@@ -1,5 +1,6 @@
 // `screed param` and the remembered link as a user meets them: against a simulated robot on a
 // virtual serial port, and against experiments.
+// Long: a simulated robot answers over a port in real time.
 #include <gtest/gtest.h>
 
 #include <sstream>

@@ -1,5 +1,6 @@
 // The slip of both tracks that `screed decode` computes from a robot's telemetry, against that of
 // the simulated robot on loose ground.
+// Long: whole runs on loose ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // Robots between the walls of a bed, on every terrain: they stay in, whatever they try.
+// Long: each gear against walls of each terrain.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Closed loop on soil: the tracks' springy hold on the ground must not swing with the firmware's
 // loops, a robot keeps its heading, and one that stands must come to rest.
+// Long: robots drive for minutes on soil.
 #include <gtest/gtest.h>
 
 #include <cmath>
