@@ -81,7 +81,7 @@ void add_run(const CampaignPlan& plan, const ResultIndex& results, size_t run, T
     tables.runs.set("error", result.value("error", ""));
     return;
   }
-  if (const auto curve = result.find("curve"); curve != result.end()) {
+  if (const Json* curve = result.find("curve"); curve != nullptr) {
     add_curve(run, *curve, tables.curves);
     result.erase("curve");
   }
