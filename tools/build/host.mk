@@ -156,12 +156,12 @@ $(B)/headers/test.h.gch: tools/build/headers/host.h
 ALONE := tools/command_line/% $(addsuffix /%,host_sim/physics/kernels host_sim/physics/particles nn/batch) \
          $(shell sed -nE 's/^((host_sim|nn)[^ ]*\.cpp) .*/\1/p' tools/mutants/targets.txt) \
          $(TINY_DNN_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
-# $(call in_groups,SET,SOURCES,HEADERS,FLAGS): SET_OBJECTS are the objects of all of them. Tests' helpers, which are no *_test.cpp, stay
-# alone.
+# $(call in_groups,SET,SOURCES,HEADERS,FLAGS,ALL): SET_OBJECTS are the objects of all of them. Tests' helpers, which are no *_test.cpp, stay
+# alone. Where SOURCES are a part of ALL, their groups are parts of its groups.
 define in_groups
 $(call with_headers,$(3),$(2))
 $(1)_ALONE := $(filter $(ALONE),$(2)) $(filter tests/%,$(filter-out %_test.cpp,$(2)))
-$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $$($(1)_ALONE),$(2)) | awk -f tools/build/groups.awk)
+$(1)_GROUPS := $$(shell printf '%s\n' $$(filter-out $(ALONE) $$($(1)_ALONE),$(or $(5),$(2))) | awk -v only="$(if $(5),$(2))" -f tools/build/groups.awk)
 $(1)_GROUP_OBJECTS := $$(foreach group,$$($(1)_GROUPS),$(B)/groups/$(1)/$$(firstword $$(subst :, ,$$(group))).o)
 $(1)_OBJECTS := $$($(1)_GROUP_OBJECTS) $$(call objects,$$($(1)_ALONE))
 $$($(1)_GROUP_OBJECTS): HEADER_SET = $(3)
