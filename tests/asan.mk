@@ -33,10 +33,10 @@ ifneq ($(ASAN_MISSING),)
 $(error tests/asan.mk: no such test: $(ASAN_MISSING))
 endif
 
-# The library without what none of these tests links: training, the surrogate, calibration, most subcommands, windows.
+# The library without what none of these tests links: training, the surrogate, most subcommands, windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
   link/plot_signals.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp cli/progress_bar.cpp cli/task_bar.cpp)
-ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/% host_sim/ground_station/calibration/%,$(LIBRARY_SOURCES))
+ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/%,$(LIBRARY_SOURCES))
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))
 $(eval $(call in_groups,ASAN_HOT,$(filter $(HOT_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(HOT_SOURCES)))
 $(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(COLD_SOURCES)))
