@@ -53,7 +53,7 @@ test-long: $(SCREED) $(LONG_TESTS) $$(TEST_IMAGES)  ## build and run those that 
 .PHONY: test-file test-tutorial
 test-file: $(SCREED) $(B)/tests/test_file  ## build and run single tests (TEST='tests/unit/firmware/leveling/*_test.cpp')
 	@SCREED_PROGRAM=$(abspath $(SCREED)) $(B)/tests/test_file $(ARGS)
-$(B)/tests/test_file: $(call objects,$(wildcard $(TEST))) $(TESTED) $(B)/link.flags FORCE
+$(B)/tests/test_file: $(call objects,$(wildcard $(TEST)) $(filter-out %_test.cpp,$(UNIT_SOURCES))) $(TESTED) $(B)/link.flags FORCE
 	$(if $(wildcard $(TEST)),,$(error TEST='FILE...' names sources of tests; there is none of the name '$(TEST)'))
 	$(call link_tests)
 test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md, from top to bottom, in a copy of the tree
