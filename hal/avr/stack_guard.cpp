@@ -4,7 +4,7 @@
 #include <avr/io.h>
 
 // Set by the linker: the first byte behind the variables.
-extern "C" uint8_t __heap_start;  // NOLINT(bugprone-reserved-identifier)
+extern "C" uint8_t __heap_start;
 
 namespace screed {
 namespace avr {

@@ -193,7 +193,7 @@ struct Json::Member {
 class Json::Item {
  public:
   template <class T>
-  // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): constrained to what a Json is made of
+  // Constrained to what a Json is made of: else it would stand in for the copy constructor.
   requires std::constructible_from<Json, T> Item(T&& value) : value_(std::forward<T>(value)) {}
   Item(std::initializer_list<Item> items) : value_(items) {}
 

@@ -65,7 +65,7 @@ IntegerLayer finest(const FloatLayer& layer, std::size_t number) {
 }
 
 using Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
+using Eigen::VectorXd;
 
 /// What pulls a fitted weight back to the trained one, as a share of the inputs' mean square:
 /// inputs that nearly always move together must not bring about weights that are far off for
@@ -75,17 +75,17 @@ constexpr double kPull = 1e-4;
 /// The node's weights on steps of `step` and its bias, for the least mean square of (weights inputs
 /// + bias - wanted) share over the columns of `inputs`, the last row of which is 1. One weight
 /// after the other is rounded, and those that are still free make up for it.
-Vector fitted_node(const MatrixXd& inputs, const Vector& wanted, const Vector& share,
-                   const Vector& trained, double step) {
+VectorXd fitted_node(const MatrixXd& inputs, const VectorXd& wanted, const VectorXd& share,
+                     const VectorXd& trained, double step) {
   const Eigen::Index count = trained.size() - 1;
   const MatrixXd felt = inputs * share.asDiagonal();
   MatrixXd squares = felt * felt.transpose() / static_cast<double>(inputs.cols());
-  const Vector missing = share.cwiseProduct(wanted - inputs.transpose() * trained);
-  const Vector slope = felt * missing / static_cast<double>(inputs.cols());
+  const VectorXd missing = share.cwiseProduct(wanted - inputs.transpose() * trained);
+  const VectorXd slope = felt * missing / static_cast<double>(inputs.cols());
   const double pull = kPull * (squares.trace() / static_cast<double>(count + 1)) + 1e-12;
   squares.diagonal().array() += pull;
   squares(count, count) -= pull * (1.0 - 1e-6);  // a bias is free
-  Vector node = trained + squares.partialPivLu().solve(slope);
+  VectorXd node = trained + squares.partialPivLu().solve(slope);
   const double most = step * std::numeric_limits<std::int16_t>::max();
   for (Eigen::Index i = 0; i < count; ++i) {
     const double rounded = std::clamp(step * std::nearbyint(node(i) / step), -most, most);
@@ -94,7 +94,7 @@ Vector fitted_node(const MatrixXd& inputs, const Vector& wanted, const Vector& s
     const Eigen::Index free = count - i;
     node.tail(free) -= squares.bottomRightCorner(free, free)
                            .partialPivLu()
-                           .solve(Vector(squares.col(i).tail(free))) *
+                           .solve(VectorXd(squares.col(i).tail(free))) *
                        off;
   }
   return node;
@@ -110,16 +110,16 @@ IntegerLayer fitted(const FloatLayer& layer, const IntegerLayer& plain, const Ma
       std::ldexp(1.0 / (layer.linear ? kLinearGain : 1.0), plain.gain_shift - kWeightOfOne);
   FloatLayer result = layer;
   for (std::size_t node = 0; node < layer.outputs; ++node) {
-    Vector trained(inputs.rows());
+    VectorXd trained(inputs.rows());
     for (std::size_t i = 0; i < layer.inputs; ++i) {
       trained(static_cast<Eigen::Index>(i)) = layer.weights[node * layer.inputs + i];
     }
     trained(inputs.rows() - 1) = layer.bias[node];
-    const Vector sums = wanted.row(static_cast<Eigen::Index>(node)).transpose();
+    const VectorXd sums = wanted.row(static_cast<Eigen::Index>(node)).transpose();
     // What a change of the sum is to the result.
-    const Vector share =
-        layer.linear ? Vector::Ones(sums.size()) : Vector(1.0 - sums.array().tanh().square());
-    const Vector found = fitted_node(inputs, sums, share, trained, step);
+    const VectorXd share =
+        layer.linear ? VectorXd::Ones(sums.size()) : VectorXd(1.0 - sums.array().tanh().square());
+    const VectorXd found = fitted_node(inputs, sums, share, trained, step);
     for (std::size_t i = 0; i < layer.inputs; ++i) {
       result.weights[node * layer.inputs + i] = found(static_cast<Eigen::Index>(i));
     }
@@ -191,7 +191,7 @@ IntegerNetwork quantise(const std::vector<FloatLayer>& network, std::span<const 
                                              static_cast<Eigen::Index>(layer.inputs));
     MatrixXd sums = weights * values;
     sums.colwise() +=
-        Eigen::Map<const Vector>(layer.bias.data(), static_cast<Eigen::Index>(layer.outputs));
+        Eigen::Map<const VectorXd>(layer.bias.data(), static_cast<Eigen::Index>(layer.outputs));
     layers.push_back(fitted(layer, plain.layers()[layers.size()], seen, sums));
     seen = outputs_of(layers.back(), seen);
     values =

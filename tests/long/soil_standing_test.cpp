@@ -1,6 +1,6 @@
 // A robot that nobody drives stays where it stands on a slope below the ground's friction angle,
 // whatever its heading: on tracks and on wheels, on soil and on particles.
-// Long: forty slopes and headings on soil and on particles.
+// Long: dozens of slopes and headings, on soil and on particles.
 #include <gtest/gtest.h>
 
 #include <array>

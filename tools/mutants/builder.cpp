@@ -27,6 +27,10 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+[[noreturn]] void refuse_unbuilt(const std::string& object, const std::string& program) {
+  throw std::runtime_error(object + ", of which " + program + " is linked, is not built");
+}
+
 bool lists(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
@@ -116,7 +120,7 @@ void Builder::read_units() {
   for (const std::string& program : programs_) {
     for (const std::string& word : arguments_.at(program)) {
       if (!word.ends_with(".o") && !word.ends_with(".a")) continue;
-      if (!fs::exists(word)) throw std::runtime_error("not built: " + word);
+      if (!fs::exists(word)) refuse_unbuilt(word, program);
       if (word.ends_with(".o")) objects.insert(word);
     }
   }

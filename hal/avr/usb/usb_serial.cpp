@@ -23,7 +23,7 @@ namespace screed {
 namespace avr {
 namespace {
 
-using namespace usb;  // NOLINT(google-build-using-namespace)
+using namespace usb;
 
 constexpr uint32_t kTouchBaud = 1200;
 // Where the bootloader looks for its key, and what it is (Caterina).
@@ -266,7 +266,6 @@ void forget_host() {
 void start_bootloader() {
   set_next_reset_cause(ResetCause::kUpload);
   cli();
-  // NOLINTNEXTLINE(performance-no-int-to-ptr)
   *reinterpret_cast<volatile uint16_t*>(kBootKeyAddress) = kBootKey;
   watchdog_reset_now();
 }

@@ -40,7 +40,7 @@ struct SimavrAllocates {
 #ifdef SCREED_LEAK_CHECKER
   __lsan::ScopedDisabler disabler;
 #else
-  SimavrAllocates() {}  // NOLINT(modernize-use-equals-default): else the object counts as unused
+  SimavrAllocates() {}  // not = default: else the object counts as unused
 #endif
 };
 
@@ -242,7 +242,7 @@ Mcu::Mcu(const std::string& elf_path, std::uint16_t static_ram) : hooks_(new Hoo
 
 Mcu::~Mcu() {
   avr_terminate(avr_);
-  std::free(avr_);  // NOLINT(cppcoreguidelines-no-malloc): simavr made it so
+  std::free(avr_);  // simavr made it so
 }
 
 void Mcu::load(const std::string& elf_path) {
@@ -257,12 +257,11 @@ void Mcu::load(const std::string& elf_path) {
   avr_load_firmware(avr_, &image);
   avr_->frequency = static_cast<std::uint32_t>(kClock_hz);
   avr_->vcc = avr_->avcc = avr_->aref = kSupply_mv;
-  // NOLINTBEGIN(cppcoreguidelines-no-malloc): simavr allocated them so.
+  // simavr allocated them so.
   for (std::uint32_t i = 0; i < image.symbolcount; ++i) std::free(image.symbol[i]);
   std::free(static_cast<void*>(image.symbol));
   std::free(image.flash);
   std::free(image.eeprom);
-  // NOLINTEND(cppcoreguidelines-no-malloc)
 }
 
 // ---- running

@@ -91,9 +91,8 @@ class RobotHistory {
 struct RobotKey {
   uint64_t address = 0;
   uint8_t node = 1;
-  // clang-tidy 14 takes the comparison with 0 inside for a null pointer.
-  auto operator<=>(const RobotKey&) const = default;  // NOLINT(modernize-use-nullptr)
-  std::string text() const;                           ///< "robot 1", "robot 1 at 0013A20040522BAA"
+  auto operator<=>(const RobotKey&) const = default;
+  std::string text() const;  ///< "robot 1", "robot 1 at 0013A20040522BAA"
 };
 
 /// All robots heard on a link.

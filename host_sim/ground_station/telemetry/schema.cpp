@@ -13,7 +13,7 @@
 namespace screed {
 namespace {
 
-using namespace schema_tables;  // NOLINT(google-build-using-namespace): made for this file alone
+using namespace schema_tables;  // made for this file alone
 
 /// The message of every id, as its place in the table plus 1.
 constexpr std::array<uint8_t, 2048> kById = [] {

@@ -18,7 +18,7 @@
 
 namespace screed {
 
-using namespace urdf_parts;  // NOLINT(google-build-using-namespace)
+using namespace urdf_parts;
 
 namespace {
 
