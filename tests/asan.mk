@@ -39,7 +39,7 @@ ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode
 ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/%,$(LIBRARY_SOURCES))
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))
 $(eval $(call in_groups,ASAN_HOT,$(filter $(HOT_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(HOT_SOURCES)))
-$(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(COLD_SOURCES)))
+$(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),cold,,$(COLD_SOURCES)))
 $(B)/libasan_tested.a: $(call objects,$(CORE_SOURCES)) $(ASAN_HOT_OBJECTS) $(ASAN_COLD_OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
@@ -55,7 +55,8 @@ $(ASAN_TESTS):
 	$(call link,$(TEST_LIBRARIES))
 
 # Figures of whole runs, half of the time of all: they go through the code that the others of their files go through.
-ASAN_LONG := GridFigures.*:SoilDigTest.MovesAsMuchAsAmongParticles
+ASAN_LONG := GridFigures.*:SoilDigTest.MovesAsMuchAsAmongParticles:SoilDigTest.ALongSpinFindsGroundThatIsDense
+ASAN_LONG := $(ASAN_LONG):SoilDigTest.ASpinOnASlopeCarriesMaterialDownhill:SoilDigTest.SlipCarriesAsFarAsAmongParticles
 ASAN_IMAGES := $(addprefix $(FIRMWARE_BUILD)/,screed.elf screed.lst screed.size golden.elf)
 asan-tests: $(ASAN_TESTS) $(if $(filter yes,$(MCU)),$(ASAN_IMAGES))
 	@GTEST_FILTER='-$(ASAN_LONG)' tests/run.sh $(ASAN_TESTS)

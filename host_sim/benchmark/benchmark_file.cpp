@@ -24,11 +24,6 @@ using Levels = std::map<std::string, std::vector<IniEntry>>;
 /// They go where they are told, and level nothing.
 constexpr const char* kNoEntries[] = {"drive", "training_drive"};
 
-std::string place(const fs::path& path, const IniEntry& entry) {
-  return path.string() + ":" + std::to_string(entry.line) + ": [" + entry.section + "] " +
-         entry.key;
-}
-
 std::vector<std::string> factor_names() {
   std::vector<std::string> names = {kWorldFactor};
   names.insert(names.end(), std::begin(kCourseFactors), std::end(kCourseFactors));

@@ -25,8 +25,7 @@ class Reader {
   explicit Reader(fs::path path) { file_.path = std::move(path); }
 
   void take(const IniEntry& entry) {
-    const std::string where = file_.path.string() + ":" + std::to_string(entry.line) + ": [" +
-                              entry.section + "] " + entry.key;
+    const std::string where = place(file_.path, entry);
     if (entry.section == "evolution") {
       take_setting(entry, where);
     } else if (entry.section == "search") {

@@ -198,13 +198,8 @@ std::string setting_rows(const char* section, const Setting<Target> (&settings)[
   return text;
 }
 
-std::string place(const fs::path& path, int line) {
+std::string line_place(const fs::path& path, int line) {
   return path.string() + ":" + std::to_string(line);
-}
-
-/// The place of an entry: "leveling.ini:7: [grid] soil.preset".
-std::string place(const fs::path& path, const IniEntry& entry) {
-  return place(path, entry.line) + ": [" + entry.section + "] " + entry.key;
 }
 
 /// A factor whose levels have sections of their own: its name is no key of an experiment.
@@ -265,7 +260,7 @@ std::vector<CampaignFactor> read_samples(const std::vector<IniEntry>& entries, c
     sampled.push_back(sampled_of(entry, where));
   }
   if (entries.empty()) return {};
-  const std::string whole = place(path, entries.front().line) + ": [" + section + "]";
+  const std::string whole = line_place(path, entries.front().line) + ": [" + section + "]";
   if (sampling.count == 0) throw InputError(whole + " has no count, the number of samples");
   if (sampled.empty())
     throw InputError(whole + " has no range, such as soil.drag_depth = 0.001..0.004");
@@ -319,7 +314,7 @@ void check_unique(const CampaignFile& campaign) {
           const auto same = std::find_if(seen.begin(), seen.end(),
                                          [&](const auto& other) { return other.first == key; });
           if (same != seen.end())
-            throw InputError(place(campaign.path, entry.line) + ": [" + factor.heading + " " +
+            throw InputError(line_place(campaign.path, entry.line) + ": [" + factor.heading + " " +
                              name + "] " + key.text() + " has its values from " + same->second +
                              " already");
         }
@@ -341,7 +336,7 @@ void take_entry(Reading& reading, const IniEntry& entry) {
   const std::string where = place(path, entry);
   if (entry.section == "campaign") {
     if (!take_setting(kSettings, reading, entry, where))
-      throw InputError(place(path, entry.line) + ": unknown key '" + entry.key +
+      throw InputError(line_place(path, entry.line) + ": unknown key '" + entry.key +
                        "' in [campaign]; known are " + setting_names(kSettings));
   } else if (entry.section == "set") {
     reading.campaign.fixed.push_back(
@@ -357,7 +352,7 @@ void take_entry(Reading& reading, const IniEntry& entry) {
     std::string known;
     for (const char* section : kSections)
       known.append(known.empty() ? "[" : ", [").append(section).append("]");
-    throw InputError(place(path, entry.line) +
+    throw InputError(line_place(path, entry.line) +
                      (entry.section.empty() ? ": key '" + entry.key + "' before the first section"
                                             : ": unknown section [" + entry.section + "]") +
                      "; known are " + known + ", and of a factor with named levels [FACTOR LEVEL]");
@@ -387,7 +382,7 @@ void take_levels(Reading& reading) {
   }
   for (const auto& [name, entries] : reading.levels) {
     if (used.contains(name)) continue;
-    throw InputError(place(campaign.path, entries.front().line) + ": [" + name.first + " " +
+    throw InputError(line_place(campaign.path, entries.front().line) + ": [" + name.first + " " +
                      name.second + "] is the level of no factor; expected " + name.second +
                      " among the values of " + name.first + " in [grid] or [list]");
   }
@@ -448,7 +443,7 @@ CampaignFile make_campaign_file(const fs::path& path, const std::vector<IniEntry
                      "expected " +
                      kSettings[0].allowed);
   if (!random.empty() && !hypercube.empty())
-    throw InputError(place(path, hypercube.front().line) +
+    throw InputError(line_place(path, hypercube.front().line) +
                      ": [latin_hypercube] beside [random]; a campaign has one of them");
   campaign.experiment = read_base(path, reading.base);
   campaign.samples = random.empty() ? read_samples(hypercube, path, "latin_hypercube")

@@ -15,6 +15,9 @@ struct IniEntry {
   int line = 0;       ///< 1-based; 0 for an entry from the command line
 };
 
+/// Where an entry stands, for messages: "leveling.ini:7: [grid] soil.preset".
+std::string place(const std::filesystem::path& path, const IniEntry& entry);
+
 /// Reads a file: [sections], key = value, comments after ; or #. Throws InputError, naming file and
 /// line, for a missing file, a line that is neither of these, and a key that is given twice.
 std::vector<IniEntry> read_ini_file(const std::filesystem::path& path);

@@ -14,9 +14,11 @@ git ls-files -z --cached --others --exclude-standard | while IFS= read -rd '' fi
   if [ -e "$file" ]; then printf '%s\0' "$file"; fi
 done | tar -c --null -T - | tar -x -C "$folder/screed"
 # Tests and other kinds of builds are not needed.
-if [ -d build ]; then
-  tar -c --exclude='build/*/tests' --exclude=build/asan --exclude=build/debug --exclude=build/mutants build | tar -x -C "$folder/screed"
-fi
+for built in build/generated build/schema build/report build/firmware build/release; do
+  if [ -d $built ]; then
+    tar -c --exclude='build/*/tests' --exclude='build/*/groups/'{UNIT,SITL,MCU,LONG} $built | tar -x -C "$folder/screed"
+  fi
+done
 
 # Each line of the page becomes a line of the script, so that line numbers are the same.
 awk '/^```/ { in_block = !in_block && $0 == "```sh"; print ""; next } { print in_block ? $0 : "" }' "$page" > "$folder/commands.sh"

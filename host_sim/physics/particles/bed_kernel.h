@@ -64,8 +64,8 @@ struct alignas(32) WallRow {
   double normal[4];   ///< unit length, into the bed
   double nearest[4];  ///< a centre's least distance along the normal; what is beyond is lifted
 };
-constexpr size_t kWalls = 5;         ///< the floor, then west, east, south, north
-constexpr int32_t kNoWall = kWalls;  ///< one that nothing touches
+constexpr size_t kBedWalls = 5;         ///< the floor, then west, east, south, north
+constexpr int32_t kNoWall = kBedWalls;  ///< one that nothing touches
 
 /// What all contacts and particles have in common in a step.
 struct alignas(64) StepConstants {
@@ -75,7 +75,7 @@ struct alignas(64) StepConstants {
   double kept[8];       ///< share of the motion that drag leaves; 1 for what is no motion
   double per_push[8];   ///< dt / mass, dt / inertia; 0 for what is none
   double pull[8];       ///< dt times gravity
-  WallRow walls[kWalls + 1];
+  WallRow walls[kBedWalls + 1];
   LawConstants<float> law;
   float dt;
   float diameter;

@@ -282,7 +282,7 @@ void ContactGroups::find_walls(size_t number, const BedParticles& particles,
   group.walls.clear(base_of(number), kNoWall);
   group.walls_to_recall.clear();
   Before before(group.walls_before);
-  const size_t walls = extent_.periodic ? 1 : kWalls;
+  const size_t walls = extent_.periodic ? 1 : kBedWalls;
   for (const int32_t particle : group.awake) {
     const Eigen::Vector3d at = particles.at(particle);
     before.go_to(particle);

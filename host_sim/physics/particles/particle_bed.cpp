@@ -202,7 +202,7 @@ void ParticleBed::set_constants(double dt) {
     c.pull[axis] = dt * options_.gravity[axis];
   }
   c.kept[3] = c.kept[7] = 1.0;
-  for (size_t wall = 0; wall < kWalls; ++wall) {
+  for (size_t wall = 0; wall < kBedWalls; ++wall) {
     const double normal = wall_distance(extent_, wall, Eigen::Vector3d::Ones()) -
                           wall_distance(extent_, wall, Eigen::Vector3d::Zero());
     const size_t axis = wall == 0 ? 2 : (wall - 1) / 2;

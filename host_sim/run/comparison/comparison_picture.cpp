@@ -252,9 +252,9 @@ std::string verdict(const SessionComparison& comparison) {
 
 void draw_head(Svg& svg, const SessionComparison& comparison,
                const std::array<std::string, 2>& labels) {
-  constexpr double kLeft_px = 24.0;
+  constexpr double kHeadLeft_px = 24.0;
   double y = 30.0;
-  svg.text({kLeft_px, y}, svg_fitted(verdict(comparison), 17.0, kWidth_px - 2.0 * kLeft_px),
+  svg.text({kHeadLeft_px, y}, svg_fitted(verdict(comparison), 17.0, kWidth_px - 2.0 * kHeadLeft_px),
            {.size_px = 17.0, .bold = true});
   for (std::size_t i = 0; i < 2; ++i) {
     const ComparedRun& run = comparison.runs[i];
@@ -263,10 +263,10 @@ void draw_head(Svg& svg, const SessionComparison& comparison,
     std::snprintf(facts, sizeof facts, ", %s, seed %llu, %.2f s, ends %s", run.name.c_str(),
                   static_cast<unsigned long long>(run.seed), run.end.time_s,
                   run.frames > 0 ? run.end.state.c_str() : "before the first tick");
-    svg.rectangle({kLeft_px, y - 11.0, 13.0, 13.0}, kRunColors[i], 2.0);
-    svg.text({kLeft_px + 20.0, y},
+    svg.rectangle({kHeadLeft_px, y - 11.0, 13.0, 13.0}, kRunColors[i], 2.0);
+    svg.text({kHeadLeft_px + 20.0, y},
              svg_fitted(std::string(kRunNames[i]) + ": " + labels[i] + facts, 13.0,
-                        kWidth_px - 3.0 * kLeft_px),
+                        kWidth_px - 3.0 * kHeadLeft_px),
              {.size_px = 13.0});
   }
 }

@@ -301,7 +301,7 @@ TEST(Footprint, ReachBelowHoldsWhatIsBelow) {
     Poses poses(5);
     double slack = 0.0;
     int tested = 0;
-    for (int trial = 0; trial < 40; ++trial) {
+    for (int trial = 0; trial < 12; ++trial) {
       body.footprint.set_pose(poses.pose(0.6));
       const Footprint& f = body.footprint;
       const Eigen::Vector3d centre = f.pose().translation();
