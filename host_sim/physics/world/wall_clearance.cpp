@@ -10,14 +10,14 @@
 namespace screed {
 namespace {
 
-std::string millimetres(double metres) {
+std::string to_millimetre(double metres) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3f", metres);
   return text.data();
 }
 
 std::string area(const Eigen::Vector2d& size) {
-  return millimetres(size.x()) + " m x " + millimetres(size.y()) + " m";
+  return to_millimetre(size.x()) + " m x " + to_millimetre(size.y()) + " m";
 }
 
 }  // namespace
@@ -41,9 +41,10 @@ void check_between_walls(const BedBounds& bed, const Eigen::AlignedBox2d& outlin
                      " is too small for a robot of " + area(outline.sizes()) + " at this heading");
   }
   const auto range = [&](Eigen::Index axis) {
-    return millimetres(low[axis]) + ".." + millimetres(high[axis]) + " m";
+    return to_millimetre(low[axis]) + ".." + to_millimetre(high[axis]) + " m";
   };
-  throw InputError("[vehicle] x = " + millimetres(start.x()) + ", y = " + millimetres(start.y()) +
+  throw InputError("[vehicle] x = " + to_millimetre(start.x()) +
+                   ", y = " + to_millimetre(start.y()) +
                    " m puts the robot into a wall of the bed; it takes " + area(outline.sizes()) +
                    " at this heading: allowed are x " + range(0) + " and y " + range(1));
 }
