@@ -11,8 +11,15 @@ export function startBrowser() {
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     headless: true,
     protocolTimeout: patience_ms,
-    args: ['--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
+    // A page behind another goes on as well.
+    args: ['--disable-backgrounding-occluded-windows', '--disable-renderer-backgrounding', '--disable-background-timer-throttling',
+      '--no-sandbox', '--disable-dev-shm-usage', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb'],
   });
+}
+
+/// Until `condition` holds in the page. Looks every so often: a browser that is busy may draw no frame, on which it would look otherwise.
+export function waitFor(page, condition, ...values) {
+  return page.waitForFunction(condition, { timeout: patience_ms, polling: 50 }, ...values);
 }
 
 /// { page, complaints }: the page once it stands; complaints grow with console errors, warnings and requests for anything but the file.
@@ -31,6 +38,6 @@ export async function openReport(browser, file, { scheme = 'light', width = 1280
   await page.setViewport({ width, height });
   await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: scheme }]);
   await page.goto(url, { timeout: patience_ms });
-  await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes', { timeout: patience_ms });
+  await waitFor(page, () => document.documentElement.dataset.ready === 'yes');
   return { page, complaints };
 }

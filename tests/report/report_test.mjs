@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { openReport, startBrowser } from './browser.mjs';
+import { openReport, startBrowser, waitFor } from './browser.mjs';
 
 const [program, folder] = process.argv.slice(2);
 const key = '00112233445566778899aabbccddeeff';
@@ -169,7 +169,7 @@ const tests = {
     for (const metric of ['energy_j', 'terrain_after.relief_m']) {
       const { metrics } = await facts(page);
       await page.select('select[aria-label=Metric]', String(metrics.findIndex((it) => it.name === metric)));
-      await page.waitForFunction((name) => document.querySelector('[data-metric]')?.dataset.metric === name && document.querySelector('[data-name="cell 5"]') !== null, {}, metric);
+      await waitFor(page, (name) => document.querySelector('[data-metric]')?.dataset.metric === name && document.querySelector('[data-name="cell 5"]') !== null, metric);
       for (let cell = 0; cell < 6; ++cell) {
         const of = (at) => runs.filter((run) => Number(run.cell) === at).map((run) => Number(run[metric]));
         const shown = await page.$eval(`tr[data-name="cell ${cell}"]`, (row) => ({ text: row.textContent, numbers: [...row.querySelectorAll('td[data-value]')].map((it) => Number(it.dataset.value)),
@@ -192,7 +192,7 @@ const tests = {
     assert.ok(curves.length >= 4, 'progress, relief, roughness, flat share');
     for (const name of ['relief', 'progress']) {
       await page.select('select[aria-label=Curve]', String(curves.findIndex((it) => it.name === name)));
-      await page.waitForFunction((wanted) => document.querySelector('[data-curve]')?.dataset.curve === wanted, {}, name);
+      await waitFor(page, (wanted) => document.querySelector("[data-curve]")?.dataset.curve === wanted, name);
       const end = Math.max(...readTable('soils', 'curves.csv').map((point) => Number(point.time)));
       for (let cell = 0; cell < 6; ++cell) {
         const values = readTable('soils', 'curves.csv').filter((point) => Math.floor(Number(point.run) / 5) === cell && Number(point.time) === end).map((point) => Number(point[name]));

@@ -61,7 +61,7 @@ void write_svg_as_png(const std::filesystem::path& path, const std::string& svg,
   const std::span pixels(
       reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface.get())),
       static_cast<std::size_t>(all.width) * static_cast<std::size_t>(all.height));
-  write_rgb_png(path, static_cast<int>(all.width), static_cast<int>(all.height), bytes_of(pixels));
+  write_rgb_png(path, static_cast<int>(all.width), static_cast<int>(all.height), rgb_bytes(pixels));
 }
 
 }  // namespace screed

@@ -172,7 +172,7 @@ std::vector<uint8_t> Canvas::rgb() const {
     throw RunError(std::string("picture cannot be drawn: ") + cairo_status_to_string(status) +
                    " (is a font installed, for instance fonts-dejavu-core?)");
   }
-  return bytes_of(cairo_->pixels());
+  return rgb_bytes(cairo_->pixels());
 }
 
 void Canvas::write_png(const std::filesystem::path& path) const {

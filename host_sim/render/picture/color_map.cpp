@@ -91,7 +91,7 @@ uint32_t pixel_of(Color color) {
   return (byte_of(color.red) << 16) | (byte_of(color.green) << 8) | byte_of(color.blue);
 }
 
-std::vector<uint8_t> bytes_of(std::span<const uint32_t> pixels) {
+std::vector<uint8_t> rgb_bytes(std::span<const uint32_t> pixels) {
   std::vector<uint8_t> bytes(3 * pixels.size());
   uint8_t* byte = bytes.data();
   for (const uint32_t pixel : pixels) {

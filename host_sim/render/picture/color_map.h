@@ -20,7 +20,7 @@ struct Color {
 /// 0x00RRGGBB, each component rounded to 8 bits, without the opacity.
 uint32_t pixel_of(Color color);
 /// Red, green and blue of each pixel.
-std::vector<uint8_t> bytes_of(std::span<const uint32_t> pixels);
+std::vector<uint8_t> rgb_bytes(std::span<const uint32_t> pixels);
 
 /// Of the walls of a bed.
 inline constexpr Color kBoards{0.66, 0.50, 0.32};

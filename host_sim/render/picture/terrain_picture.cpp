@@ -202,7 +202,7 @@ MapImage height_map_image(const HeightField& field, const HeightRange& range, in
     grid.x_m.push_back(image.ground.x_min + (column + 0.5) * width_m / image.width);
   for (int row = 0; row < image.height; ++row)
     grid.y_m.push_back(image.ground.y_max - (row + 0.5) * height_m / image.height);
-  image.rgb = bytes_of(painter.paint(field, grid, height_scale(range)));
+  image.rgb = rgb_bytes(painter.paint(field, grid, height_scale(range)));
   return image;
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kMark = "<!-- data -->";
 
 template <class T>
-std::span<const std::uint8_t> bytes_of(std::span<const T> numbers) {
+std::span<const std::uint8_t> raw_bytes(std::span<const T> numbers) {
   static_assert(std::endian::native == std::endian::little, "the page reads little endian");
   // std::uint8_t may alias any type.
   return {reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size_bytes()};
@@ -56,15 +56,15 @@ void PageFile::add_block(const std::string& name, std::span<const std::uint8_t> 
 }
 
 void PageFile::add_numbers(const std::string& name, std::span<const float> numbers) {
-  add_block(name, bytes_of(numbers));
+  add_block(name, raw_bytes(numbers));
 }
 
 void PageFile::add_numbers(const std::string& name, std::span<const double> numbers) {
-  add_block(name, bytes_of(numbers));
+  add_block(name, raw_bytes(numbers));
 }
 
 void PageFile::add_numbers(const std::string& name, std::span<const std::uint32_t> numbers) {
-  add_block(name, bytes_of(numbers));
+  add_block(name, raw_bytes(numbers));
 }
 
 std::string PageFile::document(const std::filesystem::path& built_page,
