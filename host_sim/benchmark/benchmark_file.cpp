@@ -52,7 +52,7 @@ std::vector<std::string> levels_in(const Benchmark& benchmark, const std::string
 }
 
 void take_suite_entry(const Benchmark& benchmark, const IniEntry& entry, BenchmarkSuite& suite) {
-  const std::string where = place(benchmark.path, entry);
+  const std::string where = entry_place(benchmark.path, entry);
   const std::vector<std::string> factors = factor_names();
   if (entry.key == "seeds") {
     if (!parse_number(entry.value, suite.seeds) || suite.seeds == 0)
@@ -79,7 +79,7 @@ void take_suite_entry(const Benchmark& benchmark, const IniEntry& entry, Benchma
 }
 
 void take_benchmark_entry(const IniEntry& entry, Benchmark& benchmark) {
-  const std::string where = place(benchmark.path, entry);
+  const std::string where = entry_place(benchmark.path, entry);
   if (entry.key == "version") {
     if (!parse_number(entry.value, benchmark.version) || benchmark.version < 1)
       refuse_value(where, entry.value, "an integer, 1 or more");
@@ -151,7 +151,7 @@ void check_entry(const Benchmark& benchmark, const fs::path& file,
       }
     }
     if (!decided) continue;
-    throw InputError(place(file, entry) +
+    throw InputError(entry_place(file, entry) +
                      ": is not an entry's to say; allowed are [experiment] algorithm and those "
                      "[parameters] that no course of the benchmark decides");
   }
@@ -196,7 +196,7 @@ Benchmark read_benchmark(const fs::path& path) {
     } else if (!name.empty() && std::find(factors.begin(), factors.end(), kind) != factors.end()) {
       std::vector<IniEntry>& level = benchmark.levels[kind][name];
       if (kind == kEntryFactor && level.empty()) benchmark.entries.push_back(name);
-      level.push_back(experiment_entry(kind, entry, place(path, entry)));
+      level.push_back(experiment_entry(kind, entry, entry_place(path, entry)));
     } else {
       throw InputError(
           path.string() + ":" + std::to_string(entry.line) + ": unknown section [" + entry.section +
@@ -226,7 +226,7 @@ std::string add_entry(const fs::path& file, Benchmark& benchmark) {
     throw InputError(file.string() + ": the benchmark has an entry " + name +
                      " already; expected a file of another name");
   for (const IniEntry& entry : entries)
-    find_experiment_key(entry.section, entry.key, place(file, entry));
+    find_experiment_key(entry.section, entry.key, entry_place(file, entry));
   known[name] = std::move(entries);
   benchmark.entries.push_back(name);
   return name;

@@ -25,7 +25,7 @@ class Reader {
   explicit Reader(fs::path path) { file_.path = std::move(path); }
 
   void take(const IniEntry& entry) {
-    const std::string where = place(file_.path, entry);
+    const std::string where = entry_place(file_.path, entry);
     if (entry.section == "evolution") {
       take_setting(entry, where);
     } else if (entry.section == "search") {

@@ -255,7 +255,7 @@ std::vector<CampaignFactor> read_samples(const std::vector<IniEntry>& entries, c
   Sampling sampling;
   std::vector<SampledKeys> sampled;
   for (const IniEntry& entry : entries) {
-    const std::string where = place(path, entry);
+    const std::string where = entry_place(path, entry);
     if (take_setting(kSamplingSettings, sampling, entry, where)) continue;
     sampled.push_back(sampled_of(entry, where));
   }
@@ -333,7 +333,7 @@ ExperimentFile read_base(const fs::path& path, const std::string& name) {
 
 void take_entry(Reading& reading, const IniEntry& entry) {
   const fs::path& path = reading.campaign.path;
-  const std::string where = place(path, entry);
+  const std::string where = entry_place(path, entry);
   if (entry.section == "campaign") {
     if (!take_setting(kSettings, reading, entry, where))
       throw InputError(line_place(path, entry.line) + ": unknown key '" + entry.key +

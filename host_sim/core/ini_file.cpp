@@ -128,7 +128,7 @@ IniEntry parse_override(const std::string& text) {
   return entry;
 }
 
-std::string place(const std::filesystem::path& path, const IniEntry& entry) {
+std::string entry_place(const std::filesystem::path& path, const IniEntry& entry) {
   return path.string() + ":" + std::to_string(entry.line) + ": [" + entry.section + "] " +
          entry.key;
 }

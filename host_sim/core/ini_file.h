@@ -16,7 +16,7 @@ struct IniEntry {
 };
 
 /// Where an entry stands, for messages: "leveling.ini:7: [grid] soil.preset".
-std::string place(const std::filesystem::path& path, const IniEntry& entry);
+std::string entry_place(const std::filesystem::path& path, const IniEntry& entry);
 
 /// Reads a file: [sections], key = value, comments after ; or #. Throws InputError, naming file and
 /// line, for a missing file, a line that is neither of these, and a key that is given twice.

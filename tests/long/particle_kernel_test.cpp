@@ -11,7 +11,7 @@
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/terrain/footprint.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
-#include "tests/unit/host_sim/physics/particles/fingerprint.h"
+#include "tests/unit/host_sim/physics/particles/test_bed.h"
 
 namespace screed {
 namespace {

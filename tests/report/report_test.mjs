@@ -192,7 +192,7 @@ const tests = {
     assert.ok(curves.length >= 4, 'progress, relief, roughness, flat share');
     for (const name of ['relief', 'progress']) {
       await page.select('select[aria-label=Curve]', String(curves.findIndex((it) => it.name === name)));
-      await waitFor(page, (wanted) => document.querySelector("[data-curve]")?.dataset.curve === wanted, name);
+      await waitFor(page, (wanted) => document.querySelector('[data-curve]')?.dataset.curve === wanted, name);
       const end = Math.max(...readTable('soils', 'curves.csv').map((point) => Number(point.time)));
       for (let cell = 0; cell < 6; ++cell) {
         const values = readTable('soils', 'curves.csv').filter((point) => Math.floor(Number(point.run) / 5) === cell && Number(point.time) === end).map((point) => Number(point[name]));

@@ -38,9 +38,9 @@ SCREED := $(B)/screed
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wnon-virtual-dtor \
             -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
-# -ffp-contract=off: the same bits with and without fused multiply-add.
-# GCC clears away what it no longer needs only when it has half a gigabyte of it: a tenth of its time.
+# GCC collects what it no longer needs only when it holds half a gigabyte: collecting is a tenth of its time.
 GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
+# -ffp-contract=off: the same bits with and without fused multiply-add.
 COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I. -I$(BUILD_ROOT)/generated
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
@@ -128,7 +128,7 @@ $(error HEADERS=$(HEADERS): yes or no)
 endif
 # A release is compiled with -O2 where it computes, and more quickly where it does not: what runs once in a run, and tests. A compiled
 # header brings along the level that it was compiled with.
-# Under the sanitizers, which take their time to compile what they watch, both without optimising.
+# Under the sanitizers, where compiling takes longest, neither is optimised.
 SET_FLAGS_cold := $(if $(filter release,$(BUILD)),-O1,-O0)
 SET_FLAGS_test := -O0
 SET_FLAGS = $(SET_FLAGS_$(HEADER_SET))
@@ -158,7 +158,7 @@ ALONE := tools/command_line/% $(addsuffix /%,host_sim/physics/kernels host_sim/p
          $(shell sed -nE 's/^((host_sim|nn)[^ ]*\.cpp) .*/\1/p' tools/mutants/targets.txt) \
          $(TINY_DNN_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
 # Sources a group, at most. Larger ones save less where the compiler optimises, and who changes one source waits for all of its group.
-GROUP_host := $(if $(filter release,$(BUILD)),8,16)
+GROUP_host := 8
 GROUP_cold := 16
 GROUP_test := 24
 # $(call in_groups,SET,SOURCES,HEADERS,FLAGS,ALL): SET_OBJECTS are the objects of all of them. Tests' helpers, which are no *_test.cpp, stay

@@ -15,7 +15,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/solid_contact.h"
 #include "tests/unit/allocations.h"
-#include "tests/unit/host_sim/physics/particles/fingerprint.h"
+#include "tests/unit/host_sim/physics/particles/test_bed.h"
 
 namespace screed {
 namespace {

@@ -10,7 +10,7 @@
 #include "host_sim/physics/particles/particle_bed.h"
 #include "host_sim/physics/particles/thread_team.h"
 #include "tests/unit/allocations.h"
-#include "tests/unit/host_sim/physics/particles/fingerprint.h"
+#include "tests/unit/host_sim/physics/particles/test_bed.h"
 
 namespace screed {
 namespace {
