@@ -18,37 +18,6 @@ I2cChip& chip_of(ImageDrive& drive, uint8_t bit) {
   return *board.baro;
 }
 
-/// What the health message says of the chips.
-int failing_chips(const ImageDrive& drive) {
-  const std::vector<std::uint8_t> health = drive.last_frame(kIdHealth);
-  // The other flag of this byte: the robot starts up.
-  constexpr int kChips = ChipBit::kAccelMagChip | ChipBit::kGyroChip | ChipBit::kBaroChip;
-  return health.size() == 7 ? health[2] & kChips : -1;
-}
-
-// 13
-TEST(Fault, DataLineHeldLowForFiveSecondsStopsTheRobot) {
-  ImageDrive drive;
-  drive.set_off();
-  drive.world.board().bus.hold_data();
-  const std::optional<double> stopped = drive.ms_until_stop();
-  ASSERT_TRUE(stopped.has_value());
-  EXPECT_LE(*stopped, 100.0);
-  drive.run(5.0);
-  EXPECT_FALSE(drive.powered());
-  EXPECT_EQ(drive.report().state, RobotState::kFault);
-  EXPECT_NE(drive.report().faults & (kChipFaults | Fault::kImuSilent), 0);
-  EXPECT_EQ(failing_chips(drive), ChipBit::kAccelMagChip | ChipBit::kGyroChip | ChipBit::kBaroChip);
-  drive.expect_punctual();
-  // The bus comes back, and with it the numbers; the fault stays latched.
-  drive.world.board().bus.release_data();
-  drive.run(1.0);
-  EXPECT_EQ(failing_chips(drive), 0);
-  EXPECT_NE(drive.sample.fresh & kFreshGyro, 0);
-  EXPECT_EQ(drive.report().state, RobotState::kFault);
-  EXPECT_FALSE(drive.powered());
-}
-
 // 13
 TEST(Fault, ADeviceInTheMiddleOfAByteIsClockedFreeWithin25Ms) {
   ImageDrive drive;
@@ -76,7 +45,7 @@ TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
       ASSERT_FALSE(drive.powered());
     }
     EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
-    EXPECT_EQ(failing_chips(drive), bit) << "says which chip";
+    EXPECT_EQ(drive.failing_chips(), bit) << "says which chip";
     drive.expect_punctual();
     const std::vector<std::uint8_t> ack = drive.last_frame(kIdCommandAck);
     ASSERT_EQ(ack.size(), message::CommandAck::kSize);
@@ -91,10 +60,10 @@ TEST(Fault, ABarometerThatFailsIsReportedAndStopsNothing) {
   drive.run(2.0);
   EXPECT_TRUE(drive.powered());
   EXPECT_EQ(drive.report().state, RobotState::kRunning);
-  EXPECT_EQ(failing_chips(drive), ChipBit::kBaroChip);
+  EXPECT_EQ(drive.failing_chips(), ChipBit::kBaroChip);
   drive.world.board().baro->present = true;
   drive.run(2.0);
-  EXPECT_EQ(failing_chips(drive), 0);
+  EXPECT_EQ(drive.failing_chips(), 0);
   drive.expect_punctual();
 }
 
@@ -110,7 +79,7 @@ TEST(Fault, AChipThatVanishesStopsTheRobotWithin100Ms) {
     drive.run(1.0);
     EXPECT_EQ(drive.report().state, RobotState::kFault);
     EXPECT_EQ(drive.report().faults & kChipFaults, bit << 8);
-    EXPECT_EQ(failing_chips(drive), bit);
+    EXPECT_EQ(drive.failing_chips(), bit);
     drive.expect_punctual();
   }
 }
@@ -122,40 +91,8 @@ TEST(Fault, AChipThatLosesItsSettingsStopsTheRobotAndIsConfiguredAgain) {
   EXPECT_TRUE(drive.ms_until_stop().has_value());
   drive.run(1.0);
   EXPECT_NE(drive.report().faults & Fault::kGyroChip, 0);
-  EXPECT_EQ(failing_chips(drive), 0);
+  EXPECT_EQ(drive.failing_chips(), 0);
   EXPECT_NE(drive.sample.fresh & kFreshGyro, 0);
-}
-
-struct Broken {
-  Side side;
-  bool a;
-  bool b;
-  double speed_m_per_s;
-};
-
-// 21
-TEST(Fault, ABrokenEncoderStopsTheRobotWithin200Ms) {
-  for (const Broken& broken : {Broken{kLeft, true, false, 0.15}, Broken{kLeft, false, true, 0.15},
-                               Broken{kRight, true, false, 0.15}, Broken{kRight, false, true, 0.15},
-                               Broken{kLeft, true, false, 0.25}, Broken{kRight, false, true, 0.08},
-                               Broken{kLeft, true, true, 0.15}, Broken{kRight, true, true, 0.25}}) {
-    ImageDrive drive(1, broken.speed_m_per_s);
-    drive.set_off();
-    Board& board = drive.world.board();
-    if (broken.a) board.break_encoder_wire(broken.side, 0);
-    if (broken.b) board.break_encoder_wire(broken.side, 1);
-    const std::optional<double> stopped = drive.ms_until_stop();
-    ASSERT_TRUE(stopped.has_value());
-    EXPECT_LE(*stopped, 200.0) << (broken.side == kLeft ? "left " : "right ") << broken.a
-                               << broken.b << " at " << broken.speed_m_per_s;
-    drive.run(1.0);
-    const std::uint16_t of_side = broken.side == kLeft ? Fault::kEncoderLeft | Fault::kStallLeft
-                                                       : Fault::kEncoderRight | Fault::kStallRight;
-    EXPECT_EQ(drive.report().state, RobotState::kFault);
-    EXPECT_NE(drive.report().faults & of_side, 0);
-    EXPECT_EQ(drive.report().faults & ~of_side, 0) << "the other track is well";
-    drive.expect_punctual();
-  }
 }
 
 // 7

@@ -81,6 +81,13 @@ class ImageDrive {
     }
     return bytes;
   }
+  /// What the health message says of the chips.
+  int failing_chips() const {
+    const std::vector<std::uint8_t> health = last_frame(kIdHealth);
+    // The other flag of this byte: the robot starts up.
+    constexpr int kChips = ChipBit::kAccelMagChip | ChipBit::kGyroChip | ChipBit::kBaroChip;
+    return health.size() == 7 ? health[2] & kChips : -1;
+  }
   /// The tick never missed its deadline, and kept to its budget.
   void expect_punctual() const {
     const CycleReport cycles = world.cycles();

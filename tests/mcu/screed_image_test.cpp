@@ -136,8 +136,8 @@ TEST(ScreedImage, KeepsItsTickWhileTheBusHangs) {
   bench.run_ms(100);
   EXPECT_EQ(bench.mcu.word(kOcr1a), 0);
   EXPECT_EQ(bench.mcu.word(kOcr1b), 0);
-  bench.run_ms(4900);
-  EXPECT_EQ(bench.frames(kIdHeartbeat).size(), 25U);
+  bench.run_ms(900);
+  EXPECT_EQ(bench.frames(kIdHeartbeat).size(), 5U);
   expect_healthy(bench);
 }
 

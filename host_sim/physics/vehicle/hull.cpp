@@ -116,8 +116,8 @@ void Hull::reset_contacts() {
   box_memories_.assign(boxes_.size(), ContactMemory{});
 }
 
-void Hull::stand_on(const HeightField& hard, const CarrierMotion& motion, double dt,
-                    Wrench& wrench) {
+[[gnu::flatten]] void Hull::stand_on(const HeightField& hard, const CarrierMotion& motion,
+                                     double dt, Wrench& wrench) {
   const double ceiling =
       hard.max_height_within(motion.origin.x(), motion.origin.y(), reach_) - motion.origin.z();
   const Eigen::RowVector3d upwards = motion.rotation.row(2);

@@ -103,22 +103,29 @@ void RunningGear::carry_bristles(double speed, double dt) {
   const double share = std::min(1.0, std::abs(speed) * dt / spacing_);
   if (share == 0.0) return;
   const size_t row_points = points_.size() / static_cast<size_t>(rows_);
+  const bool forward = speed > 0.0;
   carried_.swap(bristles_);
   for (size_t row = 0; row < static_cast<size_t>(rows_); ++row) {
-    const size_t begin = row * row_points;
+    const size_t first = row * row_points;
+    const size_t last = first + row_points - 1;
+    size_t before = forward ? last : first;
+    bool before_was_bent = bent_[before] != 0;
     for (size_t i = 0; i < row_points; ++i) {
-      const size_t before = begin + (speed > 0.0 ? (i == 0 ? row_points - 1 : i - 1)
-                                                 : (i + 1 == row_points ? 0 : i + 1));
-      const size_t here = begin + i;
-      if ((bent_[here] | bent_[before]) == 0) continue;  // both zero, in both buffers
-      bristles_[here] = carried_[here] + share * (carried_[before] - carried_[here]);
-      bent_[here] = 1;
+      const size_t here = forward ? first + i : last - i;
+      const bool was_bent = bent_[here] != 0;
+      if (was_bent || before_was_bent) {  // else both are zero, in both buffers
+        bristles_[here] = carried_[here] + share * (carried_[before] - carried_[here]);
+        bent_[here] = 1;
+      }
+      before = here;
+      before_was_bent = was_bent;
     }
   }
 }
 
-double RunningGear::stand_on(const HeightField& hard, const CarrierMotion& carrier, double speed,
-                             double dt, Wrench& wrench) {
+// Of the 200 points of a robot each makes a handful of calls otherwise, a third of a rigid step.
+[[gnu::flatten]] double RunningGear::stand_on(const HeightField& hard, const CarrierMotion& carrier,
+                                              double speed, double dt, Wrench& wrench) {
   carry_bristles(speed, dt);
   double along_surface = 0.0;
   TerrainContact contact;

@@ -376,7 +376,7 @@ GridConfig smaller(GridAlgorithm algorithm, double mean) {
 }
 
 TEST(GridFigures, BothCurvesOfAlgorithm1AreUShaped) {
-  constexpr int kRuns = 60;
+  constexpr int kRuns = 24;
   const auto constant = [](double p) {
     GridConfig config = smaller(GridAlgorithm::kProbabilistic, 6.5);
     config.p_pick_up = config.p_deposit = p;

@@ -87,6 +87,16 @@ TEST(SoilMeasuredTest, TheLimitIsCmusSmoothWheel) {
   }
 }
 
+/// Of CMU's smooth wheel straight ahead the first trial of each slip.
+std::vector<MeasuredWheel> one_trial_of_each_slip() {
+  std::vector<MeasuredWheel> first;
+  for (const MeasuredWheel& row : rows("single_wheel_cmu2022.csv", "cmu2022_smooth_0_")) {
+    const bool again = !first.empty() && std::abs(first.back().wheel.slip - row.wheel.slip) < 0.05;
+    if (!again) first.push_back(row);
+  }
+  return first;
+}
+
 // The engine, at one trial of each slip; required as of the limit.
 TEST(SoilMeasuredTest, TheEngineIsCmusSmoothWheel) {
   const auto engine = [&](const MeasuredWheel& row) {
@@ -105,11 +115,7 @@ TEST(SoilMeasuredTest, TheEngineIsCmusSmoothWheel) {
     reaction.sinkage_m = pass.sinkage_m;
     return reaction;
   };
-  std::vector<MeasuredWheel> first;
-  for (const MeasuredWheel& row : rows("single_wheel_cmu2022.csv", "cmu2022_smooth_0_")) {
-    const bool again = !first.empty() && std::abs(first.back().wheel.slip - row.wheel.slip) < 0.05;
-    if (!again) first.push_back(row);
-  }
+  const std::vector<MeasuredWheel> first = one_trial_of_each_slip();
   ASSERT_EQ(first.size(), 9U);
   const Errors ahead = mean_errors(first, -0.25, 0.95, engine);
   EXPECT_LT(ahead.pull, 0.04);
@@ -125,7 +131,7 @@ TEST(SoilFitTest, FindsWhatMadeTheFigures) {
   SoilFitProblem problem;
   problem.soil = soil_preset("cmu_2022");
   problem.rim = kCmuRim;
-  problem.measured.wheels = rows("single_wheel_cmu2022.csv", "cmu2022_smooth_0_");
+  problem.measured.wheels = one_trial_of_each_slip();
   for (MeasuredWheel& row : problem.measured.wheels) {
     const WheelReaction r = predicted_wheel(row.wheel, problem.soil, problem.rim);
     row.drawbar_pull_n = r.drawbar_pull_n;

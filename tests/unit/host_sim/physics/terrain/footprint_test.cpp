@@ -252,7 +252,7 @@ std::vector<Eigen::Vector3d> points_of(const Body& body) {
   const double beyond = f.kind() == Footprint::Kind::kTrack ? f.radius() : 0.0;
   const Eigen::Vector3d half(f.half().x() + beyond, f.half().y(), f.half().z() + beyond);
   std::vector<Eigen::Vector3d> points;
-  constexpr int kSteps = 48;
+  constexpr int kSteps = 32;
   for (int i = -kSteps; i <= kSteps; ++i) {
     for (int k = -kSteps; k <= kSteps; ++k) {
       for (const double y : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
