@@ -213,6 +213,8 @@ TEST(SlipWatchInputs, EvidenceAndShareAreThoseOfTheNetworksAnswers) {
   std::array<int16_t, kSlipOutputs> outputs{};
   double evidence = 0.0;
   int asked = 0;
+  int none = 0;
+  int all = 0;
   for (int i = 0; i < 20000; ++i) {
     const Tick tick = drive.next();
     const bool half_done = watch.half_done();
@@ -234,12 +236,16 @@ TEST(SlipWatchInputs, EvidenceAndShareAreThoseOfTheNetworksAnswers) {
       nn::gated_update(kShape, nn::model_slip::parameters, values.data(), candidates.data(),
                        states.data(), outputs.data());
       evidence += ((outputs[0] + 32768.0) - evidence) / 4.0;
-      ASSERT_NEAR(watch.travel_share(), std::clamp(outputs[1] / 16.0, 0.0, 255.0), 1.0) << i;
+      ASSERT_EQ(watch.travel_share(), std::clamp(std::floor(outputs[1] / 16.0), 0.0, 255.0)) << i;
+      none += watch.travel_share() == 0 ? 1 : 0;
+      all += watch.travel_share() == 255 ? 1 : 0;
       ++asked;
     }
     ASSERT_NEAR(watch.evidence(), evidence, 16.0) << i;
   }
   EXPECT_GT(asked, 3000);
+  EXPECT_GT(none, 0);
+  EXPECT_GT(all, 0);
 }
 
 }  // namespace

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "firmware/estimation/slip_model.h"
 #include "nn/slip/slip_model.h"
@@ -58,6 +62,49 @@ struct Drive {
   }
 };
 constexpr Drive::Feeling kStands = {0.0, 0, 0.0, 0};
+
+/// A tick by the units of the sensors, for what a single unit decides.
+struct Measured {
+  int16_t left = 1000;  ///< 0.1 mm/s
+  int16_t right = 1000;
+  int16_t left_effort = 0;  ///< duty
+  int16_t right_effort = 0;
+  int16_t pitch_rate = 0;  ///< counts
+  int16_t ahead = 0;       ///< counts of the accelerometer
+  int16_t up = 0;
+  int16_t sin_pitch_q14 = 0;
+
+  static Measured straight_on(int speed_dmm_per_s) {
+    Measured it;
+    it.left = static_cast<int16_t>(speed_dmm_per_s);
+    it.right = it.left;
+    return it;
+  }
+  /// The speed that the robot loses in this tick while its tracks go on, in two counts over a tick,
+  /// 0.048 mm/s.
+  Measured losing(int units) const {
+    Measured it = *this;
+    it.ahead = static_cast<int16_t>(-2 * units);
+    return it;
+  }
+  TrackMotion left_track() const { return {left, left_effort}; }
+  TrackMotion right_track() const { return {right, right_effort}; }
+};
+
+void tick(SlipWatch& watch, const Measured& it, bool classify_now = true) {
+  const int16_t gyro[] = {0, it.pitch_rate, 0};
+  const int16_t accel[] = {it.ahead, 0, it.up};
+  watch.tick(it.left_track(), it.right_track(), gyro, accel, it.sin_pitch_q14, 0, classify_now);
+}
+void pass_over(SlipWatch& watch, const Measured& it) {
+  watch.pass_over(it.left_track(), it.right_track());
+}
+/// A watch that knows the belts' speed and has felt nothing yet.
+SlipWatch watch_at(const Measured& it) {
+  SlipWatch watch(kTread_mm);
+  pass_over(watch, it);
+  return watch;
+}
 
 TEST(SlipWatch, TracksThatStandTellNothing) {
   Drive drive;
@@ -194,6 +241,267 @@ TEST(SlipWatch, ACollisionIsSpeedLostAtOnce) {
   EXPECT_TRUE(drive.watch.collided()) << "remembered for 2.5 s";
   drive.go(150.0, 0.2, {0.0, 60, 0.0, 0});
   EXPECT_FALSE(drive.watch.collided());
+}
+
+// A unit of 0.048 mm/s for each 0.1 mm/s of the belts: nearly half of their speed.
+TEST(SlipWatch, ACollisionTakesHalfOfTheSpeedToTheUnit) {
+  const auto collides = [](int speed_dmm_per_s, int units) {
+    const Measured driving = Measured::straight_on(speed_dmm_per_s);
+    SlipWatch watch = watch_at(driving);
+    tick(watch, driving.losing(units));
+    return watch.collided();
+  };
+  for (const int speed : {500, 1000, 2000, -1000}) {
+    const int sign = speed < 0 ? -1 : 1;
+    EXPECT_TRUE(collides(speed, sign * std::abs(speed))) << speed;
+    EXPECT_FALSE(collides(speed, sign * (std::abs(speed) - 1))) << speed;
+  }
+  EXPECT_TRUE(collides(500, 7000)) << "50 mm/s";
+  EXPECT_FALSE(collides(498, 7000)) << "slower, it tells nothing";
+}
+
+TEST(SlipWatch, OfWhatATickLosesNoMoreThan8000UnitsCount) {
+  for (const int units : {8000, 9000, 16000}) {
+    SlipWatch slower = watch_at(Measured::straight_on(8000));
+    tick(slower, Measured::straight_on(8000).losing(units));
+    EXPECT_TRUE(slower.collided()) << units;
+    SlipWatch faster = watch_at(Measured::straight_on(8004));
+    tick(faster, Measured::straight_on(8004).losing(units));
+    EXPECT_FALSE(faster.collided()) << units;
+  }
+}
+
+// A quarter of what was lost is forgotten in each tick, rounded down.
+TEST(SlipWatch, WhatWasLostInTheTicksBeforeBelongsToACollision) {
+  const Measured driving = Measured::straight_on(500);
+  const auto collides = [&](std::initializer_list<int> losses) {
+    SlipWatch watch = watch_at(driving);
+    for (const int units : losses) tick(watch, driving.losing(units));
+    return watch.collided();
+  };
+  EXPECT_TRUE(collides({3, 497})) << "less than four are not forgotten yet";
+  EXPECT_FALSE(collides({3, 496}));
+  EXPECT_TRUE(collides({400, 200}));
+  EXPECT_FALSE(collides({400, 199}));
+  EXPECT_TRUE(collides({-400, 820})) << "gained, then lost";
+  EXPECT_FALSE(collides({-400, 780}));
+
+  SlipWatch slowly = watch_at(driving);
+  SlipWatch quickly = watch_at(driving);
+  for (int i = 0; i < 30; ++i) {
+    tick(slowly, driving.losing(120));
+    ASSERT_FALSE(slowly.collided()) << "four times that is not half of the speed, tick " << i;
+    tick(quickly, driving.losing(150));
+  }
+  EXPECT_TRUE(quickly.collided());
+}
+
+TEST(SlipWatch, WhereTheTracksSlipOnPurposeNothingIsStuckAndNothingTravels) {
+  Drive drive;
+  drive.go(0.0, 5.0, kStands);
+  drive.go(150.0, 3.0, {});
+  drive.go(150.0, 0.05, {0.0, 60, 3.0, 0});
+  drive.go(150.0, 2.0, {0.0, 60, 0.0, 0});
+  SlipWatch& watch = drive.watch;
+  tick(watch, Measured::straight_on(1500));  // the first half of a step
+  ASSERT_TRUE(watch.half_done());
+  ASSERT_TRUE(watch.stuck());
+  ASSERT_TRUE(watch.slips());
+  ASSERT_TRUE(watch.collided());
+  const auto states = [&] {
+    return std::vector<int>(watch.network_inputs() + kSlipInputs,
+                            watch.network_inputs() + kSlipInputs + kSlipUnits);
+  };
+  const std::vector<int> nothing(kSlipUnits, 0);
+  ASSERT_NE(states(), nothing);
+
+  pass_over(watch, Measured::straight_on(1500));
+  EXPECT_FALSE(watch.stuck());
+  EXPECT_FALSE(watch.slips());
+  EXPECT_EQ(watch.evidence(), 0);
+  EXPECT_FALSE(watch.collided());
+  EXPECT_FALSE(watch.half_done());
+  EXPECT_EQ(watch.travel_share(), 0);
+  EXPECT_EQ(states(), nothing) << "of the network";
+  tick(watch, Measured::straight_on(1500));
+  EXPECT_TRUE(watch.half_done()) << "begins a step";
+  for (int input = 0; input < 3; ++input) EXPECT_NEAR(watch.network_inputs()[input], 0, 1) << input;
+}
+
+TEST(SlipWatch, WhereTheTracksSlipOnPurposeNothingTravelsEvenIfAllDidBefore) {
+  Drive drive;
+  drive.go(0.0, 5.0, kStands);
+  drive.go(150.0, 3.0, {});
+  ASSERT_GT(drive.watch.travel_share(), 192);
+  pass_over(drive.watch, Measured::straight_on(1500));
+  EXPECT_EQ(drive.watch.travel_share(), 0);
+}
+
+TEST(SlipWatch, WhereTheTracksSlipOnPurposeCollisionsAreForgottenToo) {
+  const Measured driving = Measured::straight_on(500);
+  SlipWatch watch = watch_at(driving);
+  tick(watch, driving.losing(900));
+  ASSERT_TRUE(watch.collided());
+  pass_over(watch, driving);
+  tick(watch, driving.losing(450));
+  EXPECT_FALSE(watch.collided()) << "nothing is left of what was lost before";
+  pass_over(watch, driving);
+  tick(watch, driving.losing(550));
+  EXPECT_TRUE(watch.collided());
+}
+
+// So that what the belts did meanwhile is not taken for a loss: each track may have its own speed.
+TEST(SlipWatch, WhereTheTracksSlipOnPurposeTheirSpeedIsStillFollowed) {
+  for (const auto& [left, right] : std::initializer_list<std::pair<int16_t, int16_t>>{
+           {1600, 800}, {800, 1600}, {-1600, 400}, {2000, 2000}}) {
+    Measured it;
+    it.left = left;
+    it.right = right;
+    SlipWatch watch = watch_at(it);
+    tick(watch, it);
+    for (int input = 0; input < 3; ++input) {
+      EXPECT_EQ(watch.network_inputs()[input], 0) << left << " " << right << " input " << input;
+    }
+    EXPECT_FALSE(watch.collided()) << left << " " << right;
+  }
+}
+
+// With tracks of 51.2 mm/s an input's unit is four of 0.1 mm/s, or eight of what is lost in a tick.
+TEST(SlipWatch, WhatIsForgottenLeavesNothingToTheLossesAfterIt) {
+  const Measured driving = Measured::straight_on(512);
+  for (const auto& [units, input] : std::initializer_list<std::pair<int, int>>{
+           {7, 0}, {8, 1}, {15, 1}, {16, 2}, {-8, -1}, {0, 0}}) {
+    SlipWatch watch = watch_at(driving.losing(100));
+    tick(watch, driving.losing(units));
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(watch.network_inputs()[i], input) << units << " " << i;
+  }
+}
+
+TEST(SlipWatch, TheNetworkIsAskedFrom35MillimetresASecond) {
+  SlipWatch watch(kTread_mm);
+  tick(watch, Measured::straight_on(349));
+  EXPECT_FALSE(watch.half_done());
+  EXPECT_EQ(watch.travel_share(), 255);
+  tick(watch, Measured::straight_on(350));
+  EXPECT_TRUE(watch.half_done());
+  tick(watch, Measured::straight_on(350), false);
+  EXPECT_TRUE(watch.half_done()) << "not asked in this tick";
+  tick(watch, Measured::straight_on(348));
+  EXPECT_FALSE(watch.half_done()) << "a step that was begun is given up";
+  EXPECT_EQ(watch.evidence(), 0);
+  tick(watch, Measured::straight_on(-350));
+  EXPECT_TRUE(watch.half_done()) << "and one begins anew";
+}
+
+TEST(SlipWatch, ARobotThatTurnsOnTheSpotDrivesAhead) {
+  Measured turning;
+  turning.left = -1000;
+  turning.right = 1000;
+  turning.sin_pitch_q14 = 6400;
+  SlipWatch watch = watch_at(turning);
+  tick(watch, turning);
+  EXPECT_EQ(watch.network_inputs()[6], 100) << "nose up";
+  turning.left = -1004;
+  tick(watch, turning);
+  tick(watch, turning);
+  EXPECT_EQ(watch.network_inputs()[6], -100) << "the belts go back";
+}
+
+// Both tracks' duty, no more than 2000 of it, over eight ticks.
+TEST(SlipWatch, EffortIsLimitedBeforeItIsSmoothed) {
+  for (const int16_t each : std::initializer_list<int16_t>{1000, 1001, 1125, 8000}) {
+    SlipWatch watch(kTread_mm);
+    Measured it;
+    it.left_effort = each;
+    it.right_effort = each;
+    tick(watch, it, false);
+    it.left_effort = -750;
+    it.right_effort = -750;
+    tick(watch, it);
+    EXPECT_EQ(watch.network_inputs()[7], (2000 - 2000 / 8 - 1500) / 8) << each;
+  }
+}
+
+// 32 log2(counts / 1024), here of the first tick's counts: straight lines between the powers of
+// two.
+TEST(SlipWatch, VibrationIsALogarithmOfStraightLines) {
+  const std::initializer_list<std::pair<int16_t, int>> expected = {
+      {0, -128},  {1, -128},  {55, -128}, {57, -128},  {63, -128},  {64, -128}, {68, -126},
+      {71, -125}, {72, -124}, {96, -112}, {112, -104}, {120, -100}, {127, -97}, {128, -96},
+      {136, -94}, {143, -93}, {192, -80}, {240, -68},  {250, -66}};
+  for (const auto& [counts, logarithm] : expected) {
+    for (const int sign : {1, -1}) {
+      Measured it;
+      it.pitch_rate = static_cast<int16_t>(sign * counts);
+      it.ahead = it.pitch_rate;
+      it.up = it.pitch_rate;
+      SlipWatch watch = watch_at(it);
+      tick(watch, it);
+      for (int input = 8; input <= 10; ++input) {
+        EXPECT_EQ(watch.network_inputs()[input], logarithm) << sign * counts << " input " << input;
+      }
+    }
+  }
+}
+
+/// A watch whose evidence a step has just brought to this number: a robot digs itself in and comes
+/// free again, and what it feels in one of its steps is changed until the number is met.
+std::optional<SlipWatch> watch_with_evidence(int evidence, bool stuck_before) {
+  Drive drive;
+  drive.go(0.0, 5.0, kStands);
+  drive.go(150.0, 1.0, {});
+  if (drive.watch.half_done()) drive.go(150.0, 0.02, {});
+  for (int step = 0; step < 1000; ++step) {
+    const bool dug_in = step % 40 < 20;
+    drive.go(150.0, 0.04,
+             {dug_in ? 0.0 : 1.0, static_cast<int16_t>(dug_in ? 60 : 12), dug_in ? 0.3 : -0.3, 0});
+    if (drive.watch.stuck() != stuck_before) continue;
+    if (std::abs(drive.watch.evidence() - evidence) > 6000) continue;
+    Measured best = Measured::straight_on(1500);
+    best.up = 4098;
+    int least = INT_MAX;
+    for (int i = 0; i < 300; ++i) {
+      const auto changed = [&](int16_t value) {
+        const auto reach = static_cast<int>(1U << drive.random() % 10U);
+        return static_cast<int16_t>(value + (drive.random() % 2U == 0 ? reach : -reach));
+      };
+      Measured it = best;
+      it.left = changed(it.left);
+      it.right = changed(it.right);
+      it.left_effort = changed(it.left_effort);
+      it.pitch_rate = changed(it.pitch_rate);
+      it.ahead = changed(it.ahead);
+      it.up = changed(it.up);
+      it.sin_pitch_q14 = changed(it.sin_pitch_q14);
+      SlipWatch watch = drive.watch;
+      tick(watch, it);
+      tick(watch, it);
+      const int distance = std::abs(watch.evidence() - evidence);
+      if (distance == 0) return watch;
+      if (distance > least) continue;
+      least = distance;
+      best = it;
+    }
+  }
+  return std::nullopt;
+}
+
+TEST(SlipWatch, TheModelsThresholdsThemselvesCount) {
+  using nn::model_slip::kFreeEvidence;
+  using nn::model_slip::kSlipEvidence;
+  using nn::model_slip::kStuckEvidence;
+  for (const int below : {0, 1}) {
+    const std::optional<SlipWatch> slipping = watch_with_evidence(kSlipEvidence - below, false);
+    ASSERT_TRUE(slipping.has_value());
+    EXPECT_EQ(slipping->slips(), below == 0);
+    EXPECT_FALSE(slipping->stuck());
+    const std::optional<SlipWatch> digging = watch_with_evidence(kStuckEvidence - below, false);
+    ASSERT_TRUE(digging.has_value());
+    EXPECT_EQ(digging->stuck(), below == 0);
+    const std::optional<SlipWatch> coming_free = watch_with_evidence(kFreeEvidence - below, true);
+    ASSERT_TRUE(coming_free.has_value());
+    EXPECT_EQ(coming_free->stuck(), below == 0) << "not free yet";
+  }
 }
 
 TEST(SlipWatch, ATurnThatTheGyroDoesNotSeeIsNone) {

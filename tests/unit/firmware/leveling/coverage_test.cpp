@@ -48,7 +48,7 @@ TEST(Coverage, LeavesNoStripOfItsSquareOut) {
   Leveling leveling(coverage_parameters(kHalf_mm, 200));
   leveling.start();
   Point point;
-  std::vector<int> covered(kCells * kCells, 0);
+  std::vector<int> covered(size_t{kCells} * kCells, 0);
   double farthest = 0.0;
   for (int tick = 0; tick < 240 * kTickRate_hz; ++tick) {
     point.tick(leveling);
@@ -113,6 +113,64 @@ TEST(Coverage, ASquareNarrowerThanTheSpacingIsOneLine) {
     ASSERT_LT(std::abs(point.y), 150.0);
     ASSERT_LT(std::abs(point.x), 300.0);
   }
+}
+
+/// A robot that is put anywhere and faces east.
+class CoverageByHand : public ::testing::Test {
+ protected:
+  MotionCommand at(int x, int y) {
+    LevelingInput input{};
+    input.place.mm[kX] = static_cast<int16_t>(x);
+    input.place.mm[kY] = static_cast<int16_t>(y);
+    return coverage_.tick(input, behaviour_);
+  }
+  /// It drives straight on there, so this is its line; eastward positive.
+  void expect_line(int y, int way) {
+    const MotionCommand on_it = at(0, y);
+    EXPECT_EQ(on_it.yaw_rate, 0) << y;
+    EXPECT_EQ(on_it.speed_mm_per_s, 160 * way) << y;
+    // To the left of it, it steers back to the right, and that is to the left on its way backwards.
+    EXPECT_LT(at(0, y + 10).yaw_rate * way, 0) << y;
+    EXPECT_GT(at(0, y - 10).yaw_rate * way, 0) << y;
+  }
+
+  Coverage coverage_{coverage_parameters(400, 200)};
+  Behaviour behaviour_{coverage_parameters(400, 200)};
+};
+
+TEST_F(CoverageByHand, GoesToAndFroBetweenTheEdgesOfTheSquareTheLastLinesOnThem) {
+  int way = 1;
+  for (const int line : {0, 200, 400, 200, 0, -200, -400, -200, 0, 200, 400, 200}) {
+    expect_line(line, way);
+    at(401 * way, line);
+    way = -way;
+  }
+}
+
+TEST_F(CoverageByHand, ALineEndsBeyondTheEdge) {
+  at(400, 0);
+  expect_line(0, 1);
+  at(401, 0);
+  expect_line(200, -1);
+  at(401, 200);
+  at(-400, 200);
+  expect_line(200, -1);
+  at(-401, 200);
+  expect_line(400, 1);
+}
+
+TEST_F(CoverageByHand, SteersForAPoint80mmAhead) {
+  constexpr double kDegree = 65536.0 / 360.0;
+  EXPECT_NEAR(at(0, -40).yaw_rate / kDegree, 2 * 26.565, 0.1);  // atan(40 / 80), twice a second
+  EXPECT_NEAR(at(0, 20).yaw_rate / kDegree, -2 * 14.036, 0.1);
+  at(401, 0);
+  EXPECT_NEAR(at(0, 160).yaw_rate / kDegree, -2 * 26.565, 0.1);
+}
+
+TEST_F(CoverageByHand, AnEscapeEndsALine) {
+  at(0, 0);
+  behaviour_.enter_or_stay(LevelingState::kEscape, {0, 0});
+  expect_line(200, -1);
 }
 
 }  // namespace

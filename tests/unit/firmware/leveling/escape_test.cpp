@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -183,6 +185,102 @@ TEST(Escape, NoAttemptsIsNoEscapeAndNoFault) {
   }
 }
 
+/// A motion that lasts: mm/s, degrees/s to the left, ticks.
+using Lasting = std::array<int, 3>;
+
+/// What one attempt does, whose first tick is stuck.
+std::vector<Lasting> motions_of_attempt(Escape& escape, bool backwards = false,
+                                        bool homewards = false) {
+  std::vector<Lasting> motions;
+  for (bool stuck = true; escape.tick(stuck, backwards, homewards) && motions.size() < 100;
+       stuck = false) {
+    const MotionCommand motion = escape.motion();
+    const auto turn = static_cast<int>(std::lround(motion.yaw_rate * 360.0 / 65536.0));
+    if (motions.empty() || motions.back()[0] != motion.speed_mm_per_s || motions.back()[1] != turn)
+      motions.push_back({motion.speed_mm_per_s, turn, 0});
+    ++motions.back()[2];
+  }
+  return motions;
+}
+
+/// That motion and another one in turn, so many of each, before the others.
+void put_first(std::vector<Lasting>& motions, int times, const Lasting& one, const Lasting& other) {
+  for (int i = 0; i < times; ++i) motions.insert(motions.begin(), {one, other});
+}
+
+/// What docs/algorithms.md says of an attempt, counted from 1.
+std::vector<Lasting> documented(int attempt) {
+  const int left = attempt % 2 == 1 ? 1 : -1;
+  std::vector<Lasting> motions{{-200, 0, 148}, {0, 59 * left, 148}, {0, 0, 40}};
+  if (attempt % 4 == 2) put_first(motions, 8, {-250, 0, 48}, {250, 0, 48});
+  if (attempt % 4 == 3) put_first(motions, 4, {-100, 59 * left, 48}, {-100, -59 * left, 48});
+  if (attempt % 4 == 0) put_first(motions, 5, {-250, 0, 80}, {250, 0, 80});
+  return motions;
+}
+
+TEST(Escape, BacksOffRocksAndAlternatesTheTracksTurningLeftAndRightInTurn) {
+  Escape escape(escape_parameters(20));
+  for (int attempt = 1; attempt <= 9; ++attempt)
+    EXPECT_EQ(motions_of_attempt(escape), documented(attempt)) << attempt;
+}
+
+TEST(Escape, OnItsWayHomeItBacksOffForHalfAsLongAndThenLeadsOn) {
+  Escape escape(escape_parameters(20));
+  for (int attempt = 1; attempt <= 6; ++attempt) {
+    std::vector<Lasting> expected = documented(attempt);
+    const size_t last = expected.size() - 1;
+    expected[last - 2][2] = 72;
+    expected[last - 1][2] = 72;
+    if (attempt % 4 != 1)
+      for (Lasting& motion : expected) motion[0] = -motion[0];
+    EXPECT_EQ(motions_of_attempt(escape, false, true), expected) << attempt;
+  }
+}
+
+TEST(Escape, FreeForTenSecondsItHasAllAttemptsAgainAndNotBefore) {
+  for (const int free : {999, 1000}) {
+    Escape escape(escape_parameters(1));
+    attempt(escape);
+    for (int tick = 0; tick < free; ++tick) ASSERT_FALSE(escape.tick(false));
+    EXPECT_EQ(escape.tick(true), free == 1000);
+    EXPECT_EQ(escape.gave_up(), free == 999);
+  }
+}
+
+// Each of the attempts gives it ten seconds to come free.
+TEST(Escape, TheAttemptsCountFromTheEndOfTheLast) {
+  Escape escape(escape_parameters(2));
+  attempt(escape);
+  for (int tick = 0; tick < 900; ++tick) ASSERT_FALSE(escape.tick(false));
+  attempt(escape);
+  for (int tick = 0; tick < 900; ++tick) ASSERT_FALSE(escape.tick(false));
+  EXPECT_FALSE(escape.tick(true));
+  EXPECT_TRUE(escape.gave_up());
+}
+
+// Nobody runs on with the fault stuck; one that did would be free again at its first free tick.
+TEST(Escape, HasGivenUpForAsLongAsItIsStuck) {
+  Escape escape(escape_parameters(1));
+  attempt(escape);
+  for (int tick = 0; tick < 2000; ++tick) {
+    ASSERT_FALSE(escape.tick(true));
+    ASSERT_TRUE(escape.gave_up());
+  }
+  EXPECT_FALSE(escape.tick(false));
+  EXPECT_TRUE(escape.tick(true));
+}
+
+TEST(Escape, ARunThatBeginsEndsTheMotion) {
+  Escape escape(escape_parameters(6));
+  for (const int meanwhile : {1, 100, 200, 310}) {
+    for (int tick = 0; tick < meanwhile; ++tick) ASSERT_TRUE(escape.tick(true));
+    escape.start();
+    EXPECT_FALSE(escape.tick(false)) << meanwhile;
+    EXPECT_EQ(motions_of_attempt(escape), documented(1)) << meanwhile;
+    escape.start();
+  }
+}
+
 LevelingInput stuck_input(bool stuck, int16_t x_mm = 0) {
   LevelingInput input{};
   input.stuck = stuck;
@@ -220,6 +318,28 @@ TEST(LevelingEscape, TheSiteFenceGoesOnAfterIt) {
     leveling.tick(stuck_input(false, 1100));
   }
   EXPECT_EQ(leveling.state(), LevelingState::kReturn);
+}
+
+TEST(LevelingEscape, BacksOffForHalfAsLongOnTheWayBackToTheSiteOnly) {
+  for (const int x_mm : {900, 1100}) {
+    Parameters parameters;
+    parameters.site_radius = 1000;
+    Leveling leveling(parameters);
+    leveling.start();
+    leveling.tick(stuck_input(false, static_cast<int16_t>(x_mm)));
+    ASSERT_EQ(leveling.state() == LevelingState::kReturn, x_mm > 1000);
+    int back = 0;
+    int turns = 0;
+    for (bool stuck = true; stuck || leveling.state() == LevelingState::kEscape; stuck = false) {
+      const MotionCommand motion = leveling.tick(stuck_input(stuck, static_cast<int16_t>(x_mm)));
+      ASSERT_LT(back + turns, 1000);
+      if (leveling.state() != LevelingState::kEscape) break;
+      if (motion.speed_mm_per_s < 0) ++back;
+      if (motion.yaw_rate != 0) ++turns;
+    }
+    EXPECT_EQ(back, x_mm > 1000 ? 72 : 148);
+    EXPECT_EQ(turns, x_mm > 1000 ? 72 : 148);
+  }
 }
 
 // Seeking walls it is stuck at one again and again: each is the first attempt.

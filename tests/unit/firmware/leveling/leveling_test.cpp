@@ -304,5 +304,24 @@ TEST(Leveling, ATrainingDriveIsDrivenToItsEnd) {
   EXPECT_EQ(leveling.tick({0, 0, {{0, 0}, {0, 0}}, {0, 0}}).speed_mm_per_s, 0);
 }
 
+// A value that the parameter cannot have; the supervisor refuses it as well.
+TEST(Leveling, AnAlgorithmThatThereIsNotStandsAndDoesNothingElse) {
+  Parameters parameters;
+  parameters.algorithm = 99;
+  parameters.site_radius = 1000;
+  Leveling leveling(parameters);
+  leveling.start();
+  LevelingInput input{};
+  input.stuck = true;
+  input.drive = {100, 500};
+  input.place.mm[kX] = 2000;
+  for (int tick = 0; tick < 10; ++tick) {
+    const MotionCommand motion = leveling.tick(input);
+    EXPECT_EQ(motion.speed_mm_per_s, 0);
+    EXPECT_EQ(motion.yaw_rate, 0);
+    EXPECT_EQ(leveling.state(), LevelingState::kIdle);
+  }
+}
+
 }  // namespace
 }  // namespace screed

@@ -174,5 +174,291 @@ TEST_F(StrokesOnAPlane, StopsWhereTheSlopeIsGone) {
   EXPECT_NEAR(ticks, 1600, 40);
 }
 
+/// A robot that is held at a place, on a slope as told; it does not turn either.
+class StrokesHeld : public ::testing::Test {
+ protected:
+  static Parameters parameters() {
+    Parameters parameters;
+    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
+    parameters.site_x = kHalf_mm;
+    parameters.site_y = kHalf_mm;
+    return parameters;
+  }
+
+  void begin_anew() {
+    strokes_ = Strokes{parameters()};
+    behaviour_ = Behaviour{parameters()};
+    input_ = {};
+  }
+  /// Uphill is so far to the left of where it faces.
+  void lean(double slope_deg, double uphill_deg) {
+    input_.pitch = units(slope_deg * std::cos(uphill_deg * kDegree));
+    input_.roll = units(slope_deg * std::sin(uphill_deg * kDegree));
+  }
+  static Angle units(double degrees) {
+    return static_cast<Angle>(std::lround(degrees * kDegree * kAngleUnits));
+  }
+  void tick() { motion_ = strokes_.tick(input_, behaviour_); }
+  void ticks(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+  /// It falls with every journey that ends and rises with every work that begins.
+  int ticks_until_the_limit_changes() {
+    const Angle before = strokes_.limit();
+    int count = 0;
+    while (strokes_.limit() == before && count < 3000) {
+      tick();
+      ++count;
+    }
+    return count;
+  }
+  int ticks_until_it_strokes() {
+    int count = 0;
+    while (!strokes_now() && count < 3000) {
+      tick();
+      ++count;
+    }
+    return count;
+  }
+  /// From the present one on, which strokes.
+  int ticks_of_the_work() {
+    int count = 0;
+    while (strokes_now() && count < 3000) {
+      tick();
+      ++count;
+    }
+    return count;
+  }
+  /// Would its journey end there?
+  bool arrives_at(int x, int y) const {
+    Strokes strokes = strokes_;
+    Behaviour behaviour = behaviour_;
+    LevelingInput input = input_;
+    input.place.mm[kX] = static_cast<int16_t>(x);
+    input.place.mm[kY] = static_cast<int16_t>(y);
+    strokes.tick(input, behaviour);
+    return strokes.limit() < strokes_.limit();
+  }
+  bool strokes_now() const { return behaviour_.state() == LevelingState::kStroke; }
+  double limit_deg() const { return strokes_.limit() / kAngleUnits / kDegree; }
+  double turn_deg_per_s() const { return motion_.yaw_rate / kAngleUnits / kDegree; }
+
+  Strokes strokes_{parameters()};
+  Behaviour behaviour_{parameters()};
+  LevelingInput input_{};
+  MotionCommand motion_{};
+};
+
+TEST_F(StrokesHeld, AJourneyEndsAfterTwelveSecondsAndTheLimitFallsByAnEighth) {
+  EXPECT_NEAR(limit_deg(), 8.0, 0.01);
+  for (const double expected : {7.0, 6.125, 5.359}) {
+    EXPECT_EQ(ticks_until_the_limit_changes(), 12 * kTickRate_hz);
+    EXPECT_NEAR(limit_deg(), expected, 0.02);
+  }
+}
+
+TEST_F(StrokesHeld, ANewOneHasAJourneyBeforeItsFirstTick) {
+  behaviour_.enter_or_stay(LevelingState::kWalk, {0, 0});
+  EXPECT_EQ(ticks_until_the_limit_changes(), 12 * kTickRate_hz);
+}
+
+TEST_F(StrokesHeld, ArrivesWithin40mmOfAPlaceThatIs115mmFromAWall) {
+  for (int journey = 0; journey < 8; ++journey) {
+    behaviour_.enter_or_stay(LevelingState::kReturn, {0, 0});
+    tick();
+    int x = -675;
+    int y = -675;
+    while (!arrives_at(x, y) && y <= 675) {
+      x += 75;
+      if (x <= 675) continue;
+      x = -675;
+      y += 75;
+    }
+    ASSERT_TRUE(arrives_at(x, y)) << journey;
+    while (arrives_at(x - 1, y)) --x;
+    while (arrives_at(x, y - 1)) --y;
+    x += 39;
+    y += 39;
+    EXPECT_EQ(std::max(std::abs(x), std::abs(y)), kHalf_mm - 115) << journey;
+    for (const int away : {-39, 39}) {
+      EXPECT_TRUE(arrives_at(x + away, y)) << journey;
+      EXPECT_TRUE(arrives_at(x, y + away)) << journey;
+    }
+    for (const int away : {-200, -40, 40, 200}) {
+      EXPECT_FALSE(arrives_at(x + away, y)) << journey;
+      EXPECT_FALSE(arrives_at(x, y + away)) << journey;
+    }
+  }
+}
+
+TEST_F(StrokesHeld, TravelsForHalfASecondBeforeItWorks) {
+  lean(20.0, 0.0);
+  EXPECT_EQ(ticks_until_it_strokes(), kTickRate_hz / 2 + 1);
+}
+
+TEST_F(StrokesHeld, TheSlopeIsThatOfTheLast16Ticks) {
+  for (const double uphill_deg : {0.0, 90.0, 180.0}) {
+    begin_anew();
+    ticks(100);
+    lean(16.0, uphill_deg);
+    EXPECT_NEAR(ticks_until_the_limit_changes(), 11, 1) << uphill_deg;  // 16 ln(16 / (16 - 8))
+  }
+}
+
+TEST_F(StrokesHeld, ASlopeCountsWhicheverWayItLies) {
+  for (const double uphill_deg : {0.0, 45.0, 90.0, 120.0, 180.0, -150.0, -90.0, -30.0}) {
+    begin_anew();
+    lean(7.8, uphill_deg);
+    ticks(400);
+    EXPECT_NEAR(limit_deg(), 8.0, 0.01) << uphill_deg;
+    lean(8.3, uphill_deg);
+    ticks(400);
+    EXPECT_NEAR(limit_deg(), 8.5, 0.01) << "a sixteenth more: " << uphill_deg;
+  }
+}
+
+TEST_F(StrokesHeld, TheLimitItselfIsNotWorthIt) {
+  input_.pitch = static_cast<Angle>(-strokes_.limit());
+  ticks(400);
+  EXPECT_NEAR(limit_deg(), 8.0, 0.01);
+  --input_.pitch;
+  tick();
+  EXPECT_NEAR(limit_deg(), 8.5, 0.01);
+}
+
+TEST_F(StrokesHeld, TurnsTheShorterWayByTwiceTheAngleASecond) {
+  struct Case {
+    double uphill_deg;
+    double turn_deg_per_s;
+  };
+  for (const Case& one :
+       {Case{20, 40}, Case{-30, -60}, Case{60, 90}, Case{-80, -90},      // to face uphill
+        Case{160, -40}, Case{-150, 60}, Case{110, -90}, Case{-130, 90},  // to face downhill
+        Case{90, 90}, Case{-90, -90}}) {                                 // as short: uphill
+    begin_anew();
+    lean(20.0, one.uphill_deg);
+    EXPECT_EQ(ticks_until_the_limit_changes(), 51);
+    EXPECT_EQ(behaviour_.state(), LevelingState::kWalk) << one.uphill_deg;
+    EXPECT_EQ(motion_.speed_mm_per_s, 0) << one.uphill_deg;
+    EXPECT_NEAR(turn_deg_per_s(), one.turn_deg_per_s, 0.5) << one.uphill_deg;
+  }
+}
+
+TEST_F(StrokesHeld, FacesTheSlopeWithinTenDegrees) {
+  for (const double straight : {0.0, 180.0}) {
+    for (const int side : {-1, 1}) {
+      begin_anew();
+      lean(20.0, straight + 9.6 * side);
+      ticks(51);
+      EXPECT_TRUE(strokes_now()) << straight << " " << side;
+      begin_anew();
+      lean(20.0, straight + 10.5 * side);
+      ticks(100);
+      EXPECT_FALSE(strokes_now()) << straight << " " << side;
+      EXPECT_NEAR(limit_deg(), 8.5, 0.01) << "it turns";
+    }
+  }
+}
+
+TEST_F(StrokesHeld, JustTenDegreesAsideItTurnsOn) {
+  Angle roll = 0;
+  while (angle_difference(atan2_angle(roll, -12000), INT16_MIN) < angle_from_centidegrees(1000))
+    --roll;
+  ASSERT_EQ(angle_difference(atan2_angle(roll, -12000), INT16_MIN), angle_from_centidegrees(1000));
+  input_.roll = roll;
+  input_.pitch = -8000;  // 15 degrees aside
+  ticks(60);
+  input_.pitch = -12000;
+  ticks(200);
+  EXPECT_FALSE(strokes_now());
+  EXPECT_NEAR(turn_deg_per_s(), 20.0, 0.05);
+  input_.roll = static_cast<Angle>(roll + 20);
+  ticks(20);
+  EXPECT_TRUE(strokes_now());
+}
+
+// What it does not come to face is worked on all the same: one time to and fro, if there is no
+// slope along it.
+TEST_F(StrokesHeld, TurnsForThreeSecondsAtMost) {
+  lean(20.0, 90.0);
+  ASSERT_EQ(ticks_until_the_limit_changes(), 51);
+  EXPECT_EQ(ticks_until_it_strokes(), 3 * kTickRate_hz);
+  EXPECT_EQ(motion_.speed_mm_per_s, -30);
+  EXPECT_EQ(ticks_of_the_work(), 42);
+}
+
+TEST_F(StrokesHeld, WorksFor16SecondsAndToTheEndOfACycleForwardsAsBackwards) {
+  for (const int uphill : {1, -1}) {
+    begin_anew();
+    lean(20.0, uphill > 0 ? 0.0 : 180.0);
+    for (int work = 0; work < 2; ++work) {
+      EXPECT_EQ(ticks_until_it_strokes(), work == 0 ? 51 : 50) << "from its last motion on";
+      EXPECT_EQ(motion_.speed_mm_per_s, -30 * uphill);
+      int forwards = 0;
+      int count = 0;
+      while (strokes_now() && count < 3000) {
+        EXPECT_EQ(motion_.yaw_rate, 0);
+        forwards += motion_.speed_mm_per_s == 250 * uphill ? 1 : 0;
+        ++count;
+        tick();
+      }
+      EXPECT_EQ(count, 39 * 42);
+      EXPECT_EQ(forwards, 39 * 24);
+      EXPECT_EQ(behaviour_.state(), LevelingState::kWalk);
+      EXPECT_EQ(motion_.speed_mm_per_s, 0);
+      EXPECT_EQ(motion_.yaw_rate, 0);
+      tick();
+    }
+  }
+}
+
+TEST_F(StrokesHeld, AWorkEndsBelowHalfOfTheLimit) {
+  for (const double straight : {0.0, 180.0}) {
+    for (const double share : {0.45, 0.55, 0.9}) {
+      begin_anew();
+      lean(20.0, straight);
+      ticks_until_it_strokes();
+      lean(share * limit_deg(), straight);
+      const int work = ticks_of_the_work();
+      if (share < 0.5) {
+        EXPECT_LT(work, 3 * 42) << straight;
+        EXPECT_EQ(work % 42, 0) << straight;
+      } else {
+        EXPECT_EQ(work, 39 * 42) << straight << " " << share;
+      }
+    }
+  }
+}
+
+TEST_F(StrokesHeld, HalfOfTheLimitIsWorthGoingOn) {
+  for (const int below : {0, 1}) {
+    begin_anew();
+    lean(20.0, 0.0);
+    ticks_until_it_strokes();
+    input_.pitch = static_cast<Angle>(strokes_.limit() / 2 - below);
+    if (below == 0) {
+      EXPECT_EQ(ticks_of_the_work(), 39 * 42);
+    } else {
+      EXPECT_LT(ticks_of_the_work(), 8 * 42);
+    }
+  }
+}
+
+TEST_F(StrokesHeld, AnEscapeEndsTheWorkAndAJourneyBegins) {
+  lean(20.0, 0.0);
+  ticks_until_it_strokes();
+  ticks(100);
+  ASSERT_TRUE(strokes_now());
+  behaviour_.enter_or_stay(LevelingState::kEscape, {0, 0});
+  tick();
+  EXPECT_EQ(behaviour_.state(), LevelingState::kWalk);
+  EXPECT_EQ(ticks_until_it_strokes(), 50);
+  // The time of a journey begins anew as well.
+  begin_anew();
+  ticks(1100);
+  behaviour_.enter_or_stay(LevelingState::kReturn, {0, 0});
+  EXPECT_EQ(ticks_until_the_limit_changes(), 12 * kTickRate_hz);
+}
+
 }  // namespace
 }  // namespace screed

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "firmware/parameters/algorithms_in_build.h"
 #include "firmware/parameters/parameter_table.h"
 
 namespace screed {
@@ -41,13 +42,27 @@ TEST(Parameters, EachIsCheckedAtBothEnds) {
   }
 }
 
+TEST(Parameters, EveryAlgorithmOfTheBuildIsAllowedAndNoOther) {
+  for (int number = -1; number <= 16; ++number) {
+    Parameters parameters;
+    parameters.algorithm = static_cast<int16_t>(number);
+    const bool there_is = number >= 0 && number <= message::kLevelingAlgorithmMax &&
+                          algorithm_in_build(static_cast<int16_t>(number));
+    EXPECT_EQ(parameters.valid(), there_is) << number;
+  }
+}
+
 TEST(Parameters, OrderedPairs) {
   Parameters speeds;
   speeds.walk_speed_min = static_cast<int16_t>(speeds.walk_speed_max + 1);
   EXPECT_FALSE(speeds.valid());
+  speeds.walk_speed_min = speeds.walk_speed_max;
+  EXPECT_TRUE(speeds.valid()) << "legs of one speed";
   Parameters legs;
   legs.walk_leg_min = static_cast<int16_t>(legs.walk_leg_max + 1);
   EXPECT_FALSE(legs.valid());
+  legs.walk_leg_min = legs.walk_leg_max;
+  EXPECT_TRUE(legs.valid()) << "legs of one length";
 }
 
 TEST(Parameters, TheTableNamesEachFieldOnceAndCoversTheStruct) {

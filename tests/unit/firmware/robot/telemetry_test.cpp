@@ -15,6 +15,8 @@ namespace {
 
 struct Downlink {
   std::map<uint16_t, std::vector<CanFrame>> frames;
+  std::map<uint16_t, std::vector<int>> ticks;  ///< in which they were sent
+  std::vector<uint16_t> order;                 ///< ids
   int bytes = 0;
   int most_in_a_tick = 0;
 };
@@ -47,13 +49,15 @@ class TelemetryTest : public ::testing::Test {
         if (!parser.feed(output.radio_out[i], frame)) continue;
         EXPECT_TRUE(e2e_check(frame.id, frame.data, frame.size));
         downlink.frames[frame.id].push_back(frame);
+        downlink.ticks[frame.id].push_back(tick);
+        downlink.order.push_back(frame.id);
       }
     }
     EXPECT_EQ(parser.rejected(), 0);
     return downlink;
   }
-  void acknowledge(RequestResult result) {
-    telemetry_.queue(frame_of(message::CommandAck{static_cast<uint8_t>(CommandOp::kArm), 7,
+  void acknowledge(RequestResult result, uint8_t freshness = 7) {
+    telemetry_.queue(frame_of(message::CommandAck{static_cast<uint8_t>(CommandOp::kArm), freshness,
                                                   static_cast<uint8_t>(result), 0x1234}));
   }
   /// The payload of the first frame of an id.
@@ -101,6 +105,42 @@ TEST_F(TelemetryTest, RatesAreExactlyTheSchedulesAndTheLoadIsBelowHalf) {
   EXPECT_LE(downlink.bytes, 5760 * 10 / 2);
 }
 
+// Spread over the first 65 ticks; packets go in every second tick, so what is due in an odd one
+// goes in the next.
+TEST_F(TelemetryTest, EachMessageStartsInItsOwnTickAndKeepsItsPeriod) {
+  const std::map<uint16_t, int> first_due = {
+      {kIdHeartbeat, 0}, {kIdAttitude, 1}, {kIdEncoders, 2}, {kIdMotors, 3}, {kIdLeveling, 4},
+      {kIdOdometry, 6},  {kIdAccelRaw, 8}, {kIdGyroRaw, 9},  {kIdPower, 14}, {kIdMagRaw, 24},
+      {kIdBaro, 34},     {kIdHealth, 44},  {kIdLink, 54},    {kIdTime, 64},  {kIdPosition, 19},
+  };
+  const Downlink downlink = run(300);
+  ASSERT_EQ(downlink.ticks.size(), first_due.size());
+  for (const auto& [id, rate] : rates()) {
+    const std::vector<int>& ticks = downlink.ticks.at(id);
+    for (size_t i = 0; i < ticks.size(); ++i) {
+      const int due = first_due.at(id) + static_cast<int>(i * 100 / rate);
+      EXPECT_EQ(ticks[i], due + due % 2) << std::hex << id;
+    }
+  }
+}
+
+TEST_F(TelemetryTest, APacketHasTheImportantFirst) {
+  run(8);
+  const Downlink downlink = run(1);
+  EXPECT_EQ(downlink.order, (std::vector<uint16_t>{kIdEncoders, kIdMotors, kIdAccelRaw}));
+}
+
+TEST_F(TelemetryTest, AliveCountersStartAtZero) {
+  acknowledge(RequestResult::kDone);
+  telemetry_.queue(frame_of(message::ParamValue{}));
+  telemetry_.queue(frame_of(message::Event{}));
+  const Downlink downlink = run(100);
+  EXPECT_EQ(downlink.frames.size(), kTelemetryMessages + 3U);
+  for (const auto& [id, frames] : downlink.frames) {
+    EXPECT_EQ(frames.front().data[1] & 0x0F, 0) << std::hex << id;
+  }
+}
+
 TEST_F(TelemetryTest, AnswersDelayButDoNotDisplace) {
   run(3);
   const Downlink downlink = run(10000, 10);
@@ -140,6 +180,36 @@ TEST_F(TelemetryTest, PacketsAreWholeLinesAtMostFourAndThenTheLineIsIdle) {
   EXPECT_EQ(most, 4);
 }
 
+TEST_F(TelemetryTest, APacketHoldsFourOfTheLongestLines) {
+  run(1000);  // leaves budget
+  for (int i = 0; i < 4; ++i) telemetry_.queue(frame_of(message::Event{}));
+  const Downlink downlink = run(2);
+  EXPECT_EQ(downlink.bytes, 4 * kSlcanLineMax);
+  EXPECT_EQ(downlink.order, std::vector<uint16_t>(4, kIdEvent));
+}
+
+// The line that takes the last of the budget goes, one for which a byte is missing waits.
+TEST_F(TelemetryTest, WhatWaitsIsSentAsLongAsTheBudgetHasALine) {
+  int budget = 0;
+  bool to_the_last = false;
+  for (int tick = 0; tick < 200; ++tick) {
+    for (int i = 0; i < 4; ++i) acknowledge(RequestResult::kDone);  // there is always one waiting
+    if (!telemetry_.is_packet_tick()) {
+      EXPECT_EQ(run(1).bytes, 0);
+      continue;
+    }
+    budget += Telemetry::kPacketBudget;
+    const Downlink downlink = run(1);
+    for (const uint16_t id : downlink.order) {
+      EXPECT_GE(budget, kSlcanLineMax) << tick;
+      to_the_last = to_the_last || budget == kSlcanLineMax;
+      budget -= 6 + 2 * downlink.frames.at(id).front().size;
+    }
+    EXPECT_TRUE(budget < kSlcanLineMax || downlink.order.size() == 4) << tick;
+  }
+  EXPECT_TRUE(to_the_last);
+}
+
 TEST_F(TelemetryTest, CountersRiseByOne) {
   const Downlink downlink = run(1000, 50);
   for (const auto& [id, frames] : downlink.frames) {
@@ -161,6 +231,20 @@ TEST_F(TelemetryTest, AnAcknowledgementIsSentOnceInTheNextTick) {
   EXPECT_EQ(ack.result, static_cast<uint8_t>(message::CommandAckResult::kFaultPresent));
   EXPECT_EQ(ack.detail, 0x1234);
   EXPECT_EQ(run(100).frames.count(kIdCommandAck), 0U);
+}
+
+TEST_F(TelemetryTest, FourAnswersWaitAtMostAndLaterOnesAreDropped) {
+  for (uint8_t i = 1; i <= 6; ++i) acknowledge(RequestResult::kDone, i);
+  const Downlink downlink = run(20);
+  const std::vector<CanFrame>& acks = downlink.frames.at(kIdCommandAck);
+  ASSERT_EQ(acks.size(), 4U);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(message::CommandAck::unpack(acks[i].data).freshness, i + 1);
+  }
+  acknowledge(RequestResult::kDone, 9);
+  const Downlink later = run(4);
+  ASSERT_EQ(later.frames.count(kIdCommandAck), 1U);
+  EXPECT_EQ(message::CommandAck::unpack(later.frames.at(kIdCommandAck).front().data).freshness, 9);
 }
 
 TEST_F(TelemetryTest, Heartbeat) {
@@ -189,7 +273,7 @@ TEST_F(TelemetryTest, LinkAndTime) {
   uplink_.rejected_frames = 201;
   view_.rejected_commands = 202;
   uplink_.ground_time_ms = 4321;
-  for (const int heard : {5, 3, 0, 9}) {  // heartbeats since the last message
+  for (const int heard : {5, 4, 3, 0, 6, 9}) {  // heartbeats since the last message
     uplink_.ground_heartbeats = static_cast<uint8_t>(uplink_.ground_heartbeats + heard);
     downlink_ = run(100);
     const auto link = message::Link::unpack(downlink_.frames[kIdLink].front().data);
@@ -232,6 +316,28 @@ TEST_F(TelemetryTest, TheLongestTickIsThatSinceTheLastMessage) {
   EXPECT_EQ(message::Health::unpack(frames[1].data).longest_tick, 100);
 }
 
+TEST_F(TelemetryTest, HealthOfTheParts) {
+  using Conditions = message::HealthConditions;
+  sample_.reset_cause = static_cast<uint8_t>(message::HealthResetCause::kWatchdog);
+  sample_.bus_errors = 200;
+  sample_.radio_errors = 201;
+  sample_.chips_failing = Conditions::kGyroChip | Conditions::kBaroChip;
+  view_.starting = true;
+  auto health = message::Health::unpack(downlink_of(kIdHealth).data);
+  EXPECT_EQ(health.reset_cause, 2);
+  EXPECT_EQ(health.i2c_errors, 200);
+  EXPECT_EQ(health.uart_errors, 201);
+  EXPECT_EQ(health.conditions,
+            Conditions::kGyroChip | Conditions::kBaroChip | Conditions::kStarting);
+  EXPECT_EQ(health.longest_tick, 0);
+  sample_.chips_failing = 0;
+  view_.starting = false;
+  view_.mag_disturbed = true;
+  health = message::Health::unpack(downlink_of(kIdHealth).data);
+  EXPECT_EQ(health.conditions, Conditions::kMagDisturbed);
+  EXPECT_EQ(health.longest_tick, 0) << "still nothing took a time";
+}
+
 TEST_F(TelemetryTest, AttitudeAndOdometry) {
   robot_.angles = {INT16_MIN, 8192, -1, 0, 0};  // 65536 a turn
   robot_.place = {{-32767, 32767}, {0, 0}};
@@ -256,6 +362,8 @@ TEST_F(TelemetryTest, Leveling) {
   EXPECT_EQ(get_s16(at + 2), -123);
   EXPECT_EQ(get_s16(at + 4), 9000);
   EXPECT_EQ(header_bits(kIdLeveling), 3);
+  view_.peaks = 0x2FF;
+  EXPECT_EQ(payload(kIdLeveling)[1], 0xFF);
 }
 
 TEST_F(TelemetryTest, EncodersAndMotors) {
@@ -302,8 +410,13 @@ TEST_F(TelemetryTest, PowerAndLoad) {
   const uint8_t* at = payload(kIdPower);
   EXPECT_EQ(get_u16(at), 7312);
   EXPECT_EQ(at[2], 43);
-  sample_.last_tick_us = UINT16_MAX;
-  EXPECT_EQ(payload(kIdPower)[2], 255);
+  // Per cent of a tick, rounded down; 255 stands for all above as well.
+  const std::map<uint16_t, int> loads = {{99, 0},      {100, 1},     {25499, 254},
+                                         {25500, 255}, {25600, 255}, {UINT16_MAX, 255}};
+  for (const auto& [time_us, load] : loads) {
+    sample_.last_tick_us = time_us;
+    EXPECT_EQ(payload(kIdPower)[2], load) << time_us;
+  }
 }
 
 // As the sensor says it: temperature 42.5 degC + raw / 480, pressure without its last four bits,

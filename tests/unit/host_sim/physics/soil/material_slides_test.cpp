@@ -1,0 +1,138 @@
+// Slopes that slide: at the edges of fields of all sizes, across seams, in small portions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "tests/unit/host_sim/physics/soil/level_material.h"
+
+namespace screed {
+namespace {
+
+Height steepest_stable(double distance_m) {
+  return static_cast<Height>(
+      std::floor(std::tan(kRepose_deg * M_PI / 180.0) * distance_m / kHeightUnit_m));
+}
+
+/// A field without wrap-around, or with it, on which one node is raised: settled.
+MaterialFlow settled_peak(int nx, int ny, bool wrap, int ix, int iy, Height units) {
+  HeightField surface(nx, ny, kSpacing_m, wrap);
+  surface.set_node(ix, iy, units);
+  MaterialFlow flow(std::move(surface), kRepose_deg);
+  flow.enqueue_all();
+  while (flow.slide(1000000) > 0) {
+  }
+  return flow;
+}
+
+/// The steepest slope beyond the stable one between any neighbours, units.
+Height beyond_stable(const MaterialFlow& flow) {
+  Height most = 0;
+  for (int iy = 0; iy < flow.surface().ny(); ++iy) {
+    for (int ix = 0; ix < flow.surface().nx(); ++ix) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int64_t beside = flow.node_at(ix + dx, iy + dy);
+          if (beside < 0) continue;
+          const double distance_m = kSpacing_m * (dx != 0 && dy != 0 ? std::sqrt(2.0) : 1.0);
+          const Height fall =
+              flow.height(flow.index(ix, iy)) - flow.height(static_cast<size_t>(beside));
+          most = std::max(most, fall - steepest_stable(distance_m));
+        }
+      }
+    }
+  }
+  return most;
+}
+
+TEST(MaterialSlides, FieldsOfAllSizesSettleToTheirEdges) {
+  const Height peak = 6 * steepest_stable(kSpacing_m);
+  for (const bool wrap : {false, true}) {
+    for (int ny = 2; ny <= 12; ++ny) {
+      for (int nx = 2; nx <= 12; ++nx) {
+        for (const int ix : {0, nx / 2, nx - 1}) {
+          const MaterialFlow flow = settled_peak(nx, ny, wrap, ix, ny - 1, peak);
+          ASSERT_EQ(volume(flow), peak) << nx << " " << ny << " " << ix;
+          ASSERT_LE(beyond_stable(flow), 1) << nx << " " << ny << " " << ix;
+          ASSERT_EQ(flow.queued(), 0U);
+        }
+      }
+    }
+  }
+}
+
+TEST(MaterialSlides, AFieldThatRepeatsSettlesAcrossItsSeamAsInItsMiddle) {
+  const Height peak = 5 * steepest_stable(kSpacing_m);
+  HeightField surface(16, 12, kSpacing_m, true);
+  surface.set_node(0, 0, peak);
+  HeightField same(16, 12, kSpacing_m, true);
+  same.set_node(8, 6, peak);
+  MaterialFlow at_seam(std::move(surface), kRepose_deg);
+  MaterialFlow in_middle(std::move(same), kRepose_deg);
+  for (const auto& [flow, ix, iy] : {std::tuple{&at_seam, 0, 0}, std::tuple{&in_middle, 8, 6}}) {
+    flow->cover(flow->index(ix, iy), ix, iy);
+    flow->uncover();
+    while (flow->slide(1000000) > 0) {
+    }
+  }
+  for (int iy = 0; iy < 12; ++iy) {
+    for (int ix = 0; ix < 16; ++ix) {
+      EXPECT_EQ(at_seam.height(at_seam.node_on(ix - 8, iy - 6)),
+                in_middle.height(in_middle.index(ix, iy)))
+          << ix << " " << iy;
+    }
+  }
+}
+
+TEST(MaterialSlides, TheCornerTakesWhatSlidesAlongTheEdge) {
+  HeightField surface(5, 5, kSpacing_m, false);
+  surface.set_node(1, 0, 10 * steepest_stable(kSpacing_m));
+  MaterialFlow flow(std::move(surface), kRepose_deg);
+  flow.cover(flow.index(1, 0), 1, 0);
+  flow.uncover();
+  EXPECT_EQ(flow.slide(1), 5) << "a node at the edge has five neighbours";
+  EXPECT_GT(flow.height(flow.index(0, 0)), 0);
+}
+
+TEST(MaterialSlides, SlidingInPortionsEndsAsSlidingAtOnce) {
+  const Height peak = 20 * steepest_stable(kSpacing_m);
+  const MaterialFlow at_once = settled_peak(21, 21, false, 10, 10, peak);
+  for (const int64_t portion : {1, 2, 7, 100}) {
+    HeightField surface(21, 21, kSpacing_m, false);
+    surface.set_node(10, 10, peak);
+    MaterialFlow flow(std::move(surface), kRepose_deg);
+    flow.enqueue_all();
+    for (int step = 0; flow.queued() > 0; ++step) {
+      ASSERT_LT(step, 1000000);
+      if (flow.slide(portion) == 0) break;
+    }
+    EXPECT_EQ(flow.queued(), 0U) << portion;
+    for (size_t node = 0; node < flow.nodes(); ++node) {
+      ASSERT_EQ(flow.height(node), at_once.height(node)) << portion << ": " << node;
+      ASSERT_FALSE(flow.is_queued(node)) << portion << ": " << node;
+    }
+  }
+}
+
+TEST(MaterialSlides, WithoutAnyMoveWhatIsToSlideWaits) {
+  MaterialFlow flow = settled_peak(21, 21, false, 10, 10, 20 * steepest_stable(kSpacing_m));
+  flow.begin_sunk(flow.index(2, 2), 1000000);
+  EXPECT_EQ(flow.slide(0), 0);
+  EXPECT_EQ(flow.queued(), 1U);
+  EXPECT_EQ(flow.slide(1), 8) << "the slopes of the hole";
+}
+
+TEST(MaterialSlides, ANodeThatWaitsAlreadyDoesNotWaitTwice) {
+  MaterialFlow flow = level(5);
+  flow.begin_sunk(flow.index(2, 2), 10);
+  ASSERT_EQ(flow.queued(), 1U);
+  flow.enqueue_all();
+  EXPECT_EQ(flow.queued(), 25U);
+  flow.enqueue_all();
+  EXPECT_EQ(flow.queued(), 25U);
+}
+
+}  // namespace
+}  // namespace screed
