@@ -70,7 +70,7 @@ TEST_F(StandIn, ItsRolloutsStandBesideBaselinesOfTheVeryDrive) {
 TEST_F(StandIn, ItIsLeftOutBesideWheels) {
   const std::string sessions = std::string(kDataFolder) + "/experiments/sessions/";
   ASSERT_EQ(
-      run("record '" + sessions + "v2_a1.ini' --frames 1500 --quiet --no-pictures --out wheels")
+      run("record '" + sessions + "v2_a1.ini' --frames 1600 --quiet --no-pictures --out wheels")
           .exit_code,
       0);
   const Result result = run("nn rollout wheels --drive tracks --model '" +
