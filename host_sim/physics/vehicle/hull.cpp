@@ -116,6 +116,7 @@ void Hull::reset_contacts() {
   box_memories_.assign(boxes_.size(), ContactMemory{});
 }
 
+// Without calls in its loop, as RunningGear::stand_on.
 [[gnu::flatten]] void Hull::stand_on(const HeightField& hard, const CarrierMotion& motion,
                                      double dt, Wrench& wrench) {
   const double ceiling =

@@ -123,7 +123,8 @@ void RunningGear::carry_bristles(double speed, double dt) {
   }
 }
 
-// Of the 200 points of a robot each makes a handful of calls otherwise, a third of a rigid step.
+// Flattened: otherwise each of a robot's 200 points makes a handful of calls, a tenth of a rigid
+// step.
 [[gnu::flatten]] double RunningGear::stand_on(const HeightField& hard, const CarrierMotion& carrier,
                                               double speed, double dt, Wrench& wrench) {
   carry_bristles(speed, dt);

@@ -1,6 +1,8 @@
 // A level field of loose material and what tests of it need.
 #pragma once
 
+#include <cmath>
+
 #include "host_sim/physics/soil/material_flow.h"
 
 namespace screed {
@@ -10,6 +12,12 @@ inline constexpr double kRepose_deg = 30.0;
 
 inline MaterialFlow level(int nodes = 21, bool wrap = false, const Compaction& compaction = {}) {
   return {HeightField(nodes, nodes, kSpacing_m, wrap), kRepose_deg, compaction};
+}
+
+/// The greatest stable difference in height between neighbours, in units.
+inline Height stable(double distance_m) {
+  return static_cast<Height>(
+      std::floor(std::tan(kRepose_deg * M_PI / 180.0) * distance_m / kHeightUnit_m));
 }
 
 inline int64_t volume(const MaterialFlow& flow) {

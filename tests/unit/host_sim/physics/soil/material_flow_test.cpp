@@ -367,12 +367,6 @@ TEST(MaterialFlow, ANodeIsFoundAcrossTheEdgeOfAFieldThatRepeatsAndNotOfOneThatDo
 
 // ---- slopes
 
-/// The greatest stable difference in height between neighbours, in units.
-Height stable(double distance_m) {
-  return static_cast<Height>(
-      std::floor(std::tan(kRepose_deg * M_PI / 180.0) * distance_m / kHeightUnit_m));
-}
-
 /// A level field with one node raised; all slopes are to be looked at, or that node's alone.
 MaterialFlow with_peak(Height units, bool all = true) {
   HeightField surface(21, 21, kSpacing_m, false);

@@ -11,11 +11,6 @@
 namespace screed {
 namespace {
 
-Height steepest_stable(double distance_m) {
-  return static_cast<Height>(
-      std::floor(std::tan(kRepose_deg * M_PI / 180.0) * distance_m / kHeightUnit_m));
-}
-
 /// A field without wrap-around, or with it, on which one node is raised: settled.
 MaterialFlow settled_peak(int nx, int ny, bool wrap, int ix, int iy, Height units) {
   HeightField surface(nx, ny, kSpacing_m, wrap);
@@ -39,7 +34,7 @@ Height beyond_stable(const MaterialFlow& flow) {
           const double distance_m = kSpacing_m * (dx != 0 && dy != 0 ? std::sqrt(2.0) : 1.0);
           const Height fall =
               flow.height(flow.index(ix, iy)) - flow.height(static_cast<size_t>(beside));
-          most = std::max(most, fall - steepest_stable(distance_m));
+          most = std::max(most, fall - stable(distance_m));
         }
       }
     }
@@ -48,7 +43,7 @@ Height beyond_stable(const MaterialFlow& flow) {
 }
 
 TEST(MaterialSlides, FieldsOfAllSizesSettleToTheirEdges) {
-  const Height peak = 6 * steepest_stable(kSpacing_m);
+  const Height peak = 6 * stable(kSpacing_m);
   for (const bool wrap : {false, true}) {
     for (int ny = 2; ny <= 12; ++ny) {
       for (int nx = 2; nx <= 12; ++nx) {
@@ -64,7 +59,7 @@ TEST(MaterialSlides, FieldsOfAllSizesSettleToTheirEdges) {
 }
 
 TEST(MaterialSlides, AFieldThatRepeatsSettlesAcrossItsSeamAsInItsMiddle) {
-  const Height peak = 5 * steepest_stable(kSpacing_m);
+  const Height peak = 5 * stable(kSpacing_m);
   HeightField surface(16, 12, kSpacing_m, true);
   surface.set_node(0, 0, peak);
   HeightField same(16, 12, kSpacing_m, true);
@@ -88,7 +83,7 @@ TEST(MaterialSlides, AFieldThatRepeatsSettlesAcrossItsSeamAsInItsMiddle) {
 
 TEST(MaterialSlides, TheCornerTakesWhatSlidesAlongTheEdge) {
   HeightField surface(5, 5, kSpacing_m, false);
-  surface.set_node(1, 0, 10 * steepest_stable(kSpacing_m));
+  surface.set_node(1, 0, 10 * stable(kSpacing_m));
   MaterialFlow flow(std::move(surface), kRepose_deg);
   flow.cover(flow.index(1, 0), 1, 0);
   flow.uncover();
@@ -97,7 +92,7 @@ TEST(MaterialSlides, TheCornerTakesWhatSlidesAlongTheEdge) {
 }
 
 TEST(MaterialSlides, SlidingInPortionsEndsAsSlidingAtOnce) {
-  const Height peak = 20 * steepest_stable(kSpacing_m);
+  const Height peak = 20 * stable(kSpacing_m);
   const MaterialFlow at_once = settled_peak(21, 21, false, 10, 10, peak);
   for (const int64_t portion : {1, 2, 7, 100}) {
     HeightField surface(21, 21, kSpacing_m, false);
@@ -117,7 +112,7 @@ TEST(MaterialSlides, SlidingInPortionsEndsAsSlidingAtOnce) {
 }
 
 TEST(MaterialSlides, WithoutAnyMoveWhatIsToSlideWaits) {
-  MaterialFlow flow = settled_peak(21, 21, false, 10, 10, 20 * steepest_stable(kSpacing_m));
+  MaterialFlow flow = settled_peak(21, 21, false, 10, 10, 20 * stable(kSpacing_m));
   flow.begin_sunk(flow.index(2, 2), 1000000);
   EXPECT_EQ(flow.slide(0), 0);
   EXPECT_EQ(flow.queued(), 1U);
