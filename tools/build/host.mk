@@ -44,7 +44,7 @@ GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
 COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I. -I$(BUILD_ROOT)/generated
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
-TEST_PACKAGES := gtest_main
+TEST_PACKAGES := gtest_main mpfr
 BENCH_PACKAGES := benchmark
 # Headers of these are known to single files.
 LINK_PACKAGES := zlib librsvg-2.0 sdl2
