@@ -60,9 +60,6 @@ $(ASAN_TESTS):
 # through.
 ASAN_LONG := GridFigures.*:SoilDigTest.MovesAsMuchAsAmongParticles:SoilDigTest.ALongSpinFindsGroundThatIsDense
 ASAN_LONG := $(ASAN_LONG):SoilDigTest.ASpinOnASlopeCarriesMaterialDownhill:SoilDigTest.SlipCarriesAsFarAsAmongParticles
-ASAN_LONG := $(ASAN_LONG):SoilDigTest.BothBeltsRaiseTheSame:SoilDigTest.TheGridDoesNotMatter
-ASAN_LONG := $(ASAN_LONG):SoilBedTest.SlopesStayBelowTheAngleOfReposeWhileDriving:SoilBedTest.TheWheeledRoverIsStableOnStiffSoilAtLongSteps
-ASAN_LONG := $(ASAN_LONG):SoilShearTest.OneWayIsJanosiAndHanamotos
 ASAN_LONG := $(ASAN_LONG):Footprint.ReachHoldsTheBody:Footprint.ReachBelow*:Footprint.LowestAtRim*
 ASAN_IMAGES := $(addprefix $(FIRMWARE_BUILD)/,screed.elf screed.lst screed.size golden.elf)
 asan-tests: $(ASAN_TESTS) $(if $(filter yes,$(MCU)),$(ASAN_IMAGES))

@@ -15,7 +15,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr uint64_t kSignBit = uint64_t{1} << 63;
-constexpr uint64_t kOneBits = 0x3ff0000000000000;
 constexpr double kToWhole = 0x1.8p52;  // added and taken away again, rounds to a whole number
 
 uint64_t bits_of(double x) {
@@ -471,7 +470,7 @@ uint64_t product_hi(uint64_t a, uint64_t b) {
 Reduced reduce_large(double x) {
   const uint64_t bits = bits_of(x);
   const uint64_t significand = (bits & 0xfffffffffffff) | (uint64_t{1} << 52);
-  // x = significand * 2^exponent. Digits of 2 / pi before this one give whole turns.
+  // x = significand * 2^exponent. Digits of 2 / pi before `first` give whole turns.
   const int exponent = static_cast<int>((bits >> 52) & 0x7ff) - 1075;
   const int first = exponent - 2 < 0 ? 0 : exponent - 2;
   const auto word = [first](int i) {
@@ -479,8 +478,7 @@ Reduced reduce_large(double x) {
     const uint64_t* at = kTwoOverPiBits + first / 64 + i;
     return shift == 0 ? at[0] : (at[0] << shift) | (at[1] >> (64 - shift));
   };
-  // The product's digits from 2^(1 - missing) on, where `missing` digits of 2 / pi would stand
-  // before its first.
+  // The product of three words with the significand, without its uppermost word.
   uint64_t digits[3];
   const uint64_t w0 = word(0), w1 = word(1), w2 = word(2);
   digits[2] = w2 * significand;
@@ -488,13 +486,11 @@ Reduced reduce_large(double x) {
   digits[1] = w1 * significand + carry2;
   const uint64_t carry1 = product_hi(w1, significand) + (digits[1] < carry2 ? 1 : 0);
   digits[0] = w0 * significand + carry1;
-  // digits[0] * 2^-64 ... is x * 2 / pi in units of 2^(exponent - first): 4, or less where the
-  // exponent is below 2.
+  // It begins with the last two digits before the point, or, where the exponent is below 2,
+  // `missing` digits further down: those stand at the end of the uppermost word.
   const int missing = 2 - (exponent - first);
   uint64_t hi = digits[0], lo = digits[1], last = digits[2];
   if (missing > 0) {
-    // The units are 2^-missing of 4: the digits before them are those of the product above
-    // digits[0].
     const uint64_t above = product_hi(w0, significand) + (digits[0] < carry1 ? 1 : 0);
     last = (last >> missing) | (lo << (64 - missing));
     lo = (lo >> missing) | (hi << (64 - missing));
@@ -504,7 +500,7 @@ Reduced reduce_large(double x) {
   hi = (hi << 2) | (lo >> 62);
   lo = (lo << 2) | (last >> 62);
   last <<= 2;
-  bool negative = (bits & kSignBit) != 0;
+  const bool negative = (bits & kSignBit) != 0;
   const bool up = (hi >> 63) != 0;  // to the next quarter
   if (up) {
     ++quarters;
@@ -717,13 +713,13 @@ double acos(double x) {
 }
 
 double atan(double x) {
-  return std::isnan(x) ? x : atan2(x, 1.0);
+  return atan2(x, 1.0);
 }
 
 double atan2(double y, double x) {
   if (std::isnan(x) || std::isnan(y)) return kNan;
-  double up = std::abs(y);
-  double ahead = std::abs(x);
+  const double up = std::abs(y);
+  const double ahead = std::abs(x);
   Sum angle{};
   if (up == 0.0 || ahead == kInfinity) {
     angle = {up == kInfinity ? 0.5 * kHalfPi.hi : 0.0, 0.0};

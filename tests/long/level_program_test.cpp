@@ -64,7 +64,7 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
         read(shipped / "leveling.ini") +
             "\n[suite worlds]\nworld = physics, stand_in\nsize = small\nbed = rough\n"
             "soil = gravel\nrobots = one\nposition = fixes\n"
-            "entry = nobody, strokes\nseeds = 1\nduration = 1800\n");
+            "entry = nobody, strokes\nseeds = 2\nduration = 1800\n");
   const Result result = run(
       "level bench --suite worlds --benchmark leveling.ini --training --workers 2 --quiet --json "
       "--against nobody --out b");
@@ -74,7 +74,7 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
   const Json& ranking = tables[2];
   EXPECT_EQ(ranking["ranking"], "stand_in");
   EXPECT_EQ(ranking["reference"], "physics");
-  EXPECT_EQ(ranking["beds"], 1);
+  EXPECT_EQ(ranking["beds"], 2);
   EXPECT_EQ(ranking["tau"]["mean"], 1.0);
   const Json& strokes = ranking["entries"][1];
   const auto physics = strokes["physics"]["mean"].get<double>();
