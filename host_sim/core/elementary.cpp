@@ -270,8 +270,9 @@ struct Logarithm {
   double hi;
   double lo;
 };
-// 128 intervals from kLeast to twice it; 1 lies inside of the one whose reciprocal is 1.
-constexpr uint64_t kLeastBits = 0x3fe6955500000000;
+// 128 intervals, from the number of these bits (0.706) to twice it; 1 lies inside of the one whose
+// reciprocal is 1.
+constexpr uint64_t kMinBits = 0x3fe6955500000000;
 constexpr Logarithm kLogarithms[128] = {
     {0x1.69be8p+0, -0x1.620ed6447ap-2, -0x1.5f9d91f6c952p-47},
     {0x1.67c22p+0, -0x1.5c6bccd3c5p-2, 0x1.1cfa0055f9c96p-44},
@@ -409,7 +410,7 @@ constexpr double kLn2Lo = 0x1.ef35793c7673p-45;
 /// `exponent` added to its exponent; but for some 2^-66 of it.
 Sum log_of(double x, int64_t exponent) {
   const uint64_t bits = bits_of(x);
-  const uint64_t above = bits - kLeastBits;
+  const uint64_t above = bits - kMinBits;
   const double significand = from_bits(bits - (above & (uint64_t{0xfff} << 52)));
   const Logarithm& at = kLogarithms[(above >> 45) & 127];
   const auto power = static_cast<double>((static_cast<int64_t>(above) >> 52) + exponent);

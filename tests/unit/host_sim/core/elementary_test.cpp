@@ -27,9 +27,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeast = std::numeric_limits<double>::denorm_min();
-constexpr double kLeastNormal = std::numeric_limits<double>::min();
-constexpr double kMost = std::numeric_limits<double>::max();
+constexpr double kMinSubnormal = std::numeric_limits<double>::denorm_min();
+constexpr double kMinNormal = std::numeric_limits<double>::min();
+constexpr double kMax = std::numeric_limits<double>::max();
 
 /// Digits of the reference: enough that rounding it once more is as good as rounding the exact
 /// value.
@@ -235,10 +235,10 @@ TEST(Elementary, OfTwoNumbersLikewise) {
 const std::vector<double>& special_values() {
   static const std::vector<double> values = [] {
     std::vector<double> positive = {0.0,
-                                    kLeast,
-                                    3.0 * kLeast,
-                                    kLeastNormal,
-                                    std::nextafter(kLeastNormal, 0.0),
+                                    kMinSubnormal,
+                                    3.0 * kMinSubnormal,
+                                    kMinNormal,
+                                    std::nextafter(kMinNormal, 0.0),
                                     0x1p-600,
                                     0x1p-60,
                                     0.25,
@@ -260,7 +260,7 @@ const std::vector<double>& special_values() {
                                     0x1p53,
                                     1e22,
                                     0x1p600,
-                                    kMost,
+                                    kMax,
                                     kInfinity,
                                     0.25 * std::numbers::pi,
                                     0.5 * std::numbers::pi,
