@@ -40,8 +40,11 @@ ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out to
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))
 $(eval $(call in_groups,ASAN_HOT,$(filter $(HOT_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(HOT_SOURCES)))
 $(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),cold,,$(COLD_SOURCES)))
-# Of an inline function that several have compiled the linker takes the first it meets: those that are optimised stand before the tests.
-ASAN_OPTIMISED := $(call objects,$(CORE_SOURCES)) $(ASAN_HOT_OBJECTS)
+# Compiling takes longer than the tests: of what computes, what stands alone is optimised (soil, kernels, particles), groups are not.
+$(ASAN_HOT_GROUP_OBJECTS): HEADER_SET = cold
+$(ASAN_HOT_GROUP_OBJECTS): $(if $(filter yes,$(HEADERS)),$(B)/headers/cold.h.gch)
+# Of an inline function that several have compiled the linker takes the first it meets: those that are optimised stand first.
+ASAN_OPTIMISED := $(call objects,$(CORE_SOURCES) $(ASAN_HOT_ALONE)) $(ASAN_HOT_GROUP_OBJECTS)
 $(B)/libasan_cold.a: $(ASAN_COLD_OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^

@@ -39,15 +39,15 @@ struct RolloutArguments {
   std::string out;
 };
 
-struct Column {
+struct RolloutColumn {
   std::vector<double> place;
   std::vector<double> heading;
 };
 
 /// Errors of all rollouts of a stand-in after one of the ways: of straight ways, or of others.
-Column column_of(const std::vector<nn::SessionRollouts>& all, std::size_t surrogate,
+RolloutColumn column_of(const std::vector<nn::SessionRollouts>& all, std::size_t surrogate,
                  std::size_t distance, bool straight) {
-  Column column;
+  RolloutColumn column;
   for (const nn::SessionRollouts& session : all) {
     for (const nn::Rollout& rollout : session.by_surrogate[surrogate]) {
       const nn::RolloutCheck& check = rollout.checks.at(distance);
@@ -71,7 +71,7 @@ void print_table(const std::vector<nn::SessionRollouts>& all,
   for (std::size_t i = 0; i < surrogates.size(); ++i) {
     std::printf("  %-24s", surrogates[i].name.c_str());
     for (std::size_t distance = 0; distance < nn::kRolloutDistances_m.size(); ++distance) {
-      const Column column = column_of(all, i, distance, straight);
+      const RolloutColumn column = column_of(all, i, distance, straight);
       if (column.place.empty()) {
         std::printf(" | %4d %7s %7s %7s", 0, "-", "-", "-");
         continue;
@@ -115,7 +115,7 @@ void print_ranges(const std::vector<nn::SessionRollouts>& all,
     std::vector<double> wags;
     std::vector<double> real;
     for (const nn::SessionRollouts& session : all) {
-      const Column column = column_of({session}, i, distance, straight);
+      const RolloutColumn column = column_of({session}, i, distance, straight);
       if (!column.place.empty()) by_session.push_back(column.place);
       values.insert(values.end(), column.place.begin(), column.place.end());
       for (const nn::Rollout& rollout : session.by_surrogate[i]) {
@@ -146,8 +146,8 @@ void print_paired(const std::vector<nn::SessionRollouts>& all,
     std::vector<std::vector<double>> by_session;
     std::vector<double> values;
     for (const nn::SessionRollouts& session : all) {
-      const Column own = column_of({session}, 0, distance, straight);
-      Column column = column_of({session}, i, distance, straight);
+      const RolloutColumn own = column_of({session}, 0, distance, straight);
+      RolloutColumn column = column_of({session}, i, distance, straight);
       if (column.place.empty()) continue;
       for (std::size_t k = 0; k < column.place.size(); ++k) column.place[k] -= own.place[k];
       by_session.push_back(column.place);
