@@ -46,7 +46,7 @@ struct RolloutColumn {
 
 /// Errors of all rollouts of a stand-in after one of the ways: of straight ways, or of others.
 RolloutColumn column_of(const std::vector<nn::SessionRollouts>& all, std::size_t surrogate,
-                 std::size_t distance, bool straight) {
+                        std::size_t distance, bool straight) {
   RolloutColumn column;
   for (const nn::SessionRollouts& session : all) {
     for (const nn::Rollout& rollout : session.by_surrogate[surrogate]) {
