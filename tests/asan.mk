@@ -33,13 +33,18 @@ ifneq ($(ASAN_MISSING),)
 $(error tests/asan.mk: no such test: $(ASAN_MISSING))
 endif
 
-# The library without what none of these tests links: training, the surrogate, most subcommands, windows.
+# The library without what none of these tests links: training, the surrogate, fits, campaigns, most subcommands, windows.
 ASAN_COMMANDS := $(addprefix tools/screed/,link/attitude_command.cpp link/decode_command.cpp link/key_command.cpp link/plot_command.cpp \
   link/plot_signals.cpp sim/replay_command.cpp cli/interrupt.cpp cli/number_option.cpp cli/number_text.cpp cli/progress_bar.cpp cli/task_bar.cpp)
-ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out tools/% nn/training/% nn/terrain/% nn/surrogate/% nn/slip/% nn/data/%,$(LIBRARY_SOURCES))
+ASAN_LEFT_OUT := $(addprefix nn/,training/% terrain/% surrogate/% slip/% data/%) \
+  $(addprefix host_sim/,search/% benchmark/% campaign/% \
+  soil_validation/soil_fit.cpp soil_validation/wheel_%.cpp soil_validation/plate_press.cpp soil_validation/particle_plate.cpp)
+ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out tools/% $(ASAN_LEFT_OUT),$(LIBRARY_SOURCES))
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))
 $(eval $(call in_groups,ASAN_HOT,$(filter $(HOT_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(HOT_SOURCES)))
 $(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),cold,,$(COLD_SOURCES)))
+# What stands beside the library is read with its headers.
+$(eval $(call with_headers,cold,$(call sources,tools/avr tools/schema tools/bench/telemetry)))
 # Compiling takes longer than the tests: of what computes, what stands alone is optimised (soil, kernels, particles), groups are not.
 $(ASAN_HOT_GROUP_OBJECTS): HEADER_SET = cold
 $(ASAN_HOT_GROUP_OBJECTS): $(if $(filter yes,$(HEADERS)),$(B)/headers/cold.h.gch)

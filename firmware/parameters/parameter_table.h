@@ -2,7 +2,6 @@
 // and listings. Not for the MCU image, which has no room for the strings.
 #pragma once
 
-#include "firmware/parameters/algorithms_in_build.h"
 #include "firmware/parameters/parameters.h"
 
 namespace screed {
@@ -17,11 +16,8 @@ struct ParameterInfo {
   int16_t Parameters::*field;
 };
 
-constexpr ParameterInfo kParameterTable[] = {
-#define SCREED_INFO(name, unit, min, max, value, meaning) \
-  {#name, unit, min, max, value, meaning, &Parameters::name},
-    SCREED_PARAMETERS(SCREED_INFO)
-#undef SCREED_INFO
-};
+/// In the order of the struct. Defined in parameters.cpp, so that texts and ranges, which grow with
+/// the algorithms, are compiled once.
+extern const ParameterInfo kParameterTable[sizeof(Parameters) / sizeof(int16_t)];
 
 }  // namespace screed

@@ -1,8 +1,9 @@
 // The range check of the parameters, over a table: comparisons written out are three times as
-// long.
+// long. And the hosts' table.
 #include "firmware/parameters/parameters.h"
 
 #include "firmware/parameters/algorithms_in_build.h"
+#include "firmware/parameters/parameter_table.h"
 #include "hal/program_memory.h"
 
 namespace screed {
@@ -37,6 +38,15 @@ constexpr bool kOneGap = bits_of(kGaps) == 1;
 constexpr int16_t kGap = bits_of(static_cast<uint16_t>(kGaps - 1U));
 
 }  // namespace
+
+#ifndef __AVR__
+const ParameterInfo kParameterTable[kCount] = {
+#define SCREED_INFO(name, unit, min, max, value, meaning) \
+  {#name, unit, min, max, value, meaning, &Parameters::name},
+    SCREED_PARAMETERS(SCREED_INFO)
+#undef SCREED_INFO
+};
+#endif
 
 bool Parameters::valid() const {
   const auto* value = reinterpret_cast<const int16_t*>(this);

@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "firmware/robot/robot.h"
 #include "host_sim/core/task_progress.h"
 #include "host_sim/run/world/world.h"
 #include "nn/slip/stuck_scenario.h"
+
+namespace screed {
+class Robot;
+}
 
 namespace screed::nn {
 

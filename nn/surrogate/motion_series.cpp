@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/session_reader.h"
 #include "nn/surrogate/support.h"
+#include "schema/values.h"
 
 namespace screed::nn {
 namespace {
@@ -73,7 +73,7 @@ MotionSeries read_motion_series(const std::filesystem::path& session_folder) {
     session.read(begin, rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const SimFrame& now = rows[i];
-      if (now.leveling_state == static_cast<std::int32_t>(LevelingState::kTrainingDrive) &&
+      if (now.leveling_state == static_cast<std::int32_t>(message::LevelingState::kTrainingDrive) &&
           before.has_value()) {
         const std::uint64_t tick = begin + i;
         if (series.empty()) heading_rad = before->yaw;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/world/world_setup.h"
+#include "schema/values.h"
 
 namespace screed::nn {
 namespace {
@@ -28,7 +28,8 @@ RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
   session.read(0, std::span(frames));
   session.read(0, std::span(samples));
   while (first < frames.size() &&
-         frames[first].leveling_state != static_cast<std::int32_t>(LevelingState::kTrainingDrive)) {
+         frames[first].leveling_state !=
+             static_cast<std::int32_t>(message::LevelingState::kTrainingDrive)) {
     ++first;
   }
   if (first + 3 >= frames.size()) {

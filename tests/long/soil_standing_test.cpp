@@ -86,7 +86,7 @@ TEST(SoilStanding, StaysOnItsWheels) {
       WorldOptions options = standing_on(slope_deg, heading_deg);
       options.vehicle.tracks = false;
       options.soil = preset.soil;
-      EXPECT_LT(creep_m_per_minute(HeightField::ramp(2.0, 0.005, slope_deg), options, 10.0),
+      EXPECT_LT(creep_m_per_minute(HeightField::ramp(2.0, 0.005, slope_deg), options, 5.0),
                 kMaxCreep_m_per_minute)
           << preset.soil.name << ", slope " << slope_deg << ", heading " << heading_deg;
     }

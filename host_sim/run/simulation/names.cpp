@@ -18,7 +18,7 @@ const char* state_name(RobotState state) {
   return name_of(signal, static_cast<int64_t>(state));
 }
 
-const char* leveling_state_name(LevelingState state) {
+const char* leveling_state_name(message::LevelingState state) {
   static const SignalInfo& signal = *find_signal("leveling.state").signal;
   return name_of(signal, static_cast<int64_t>(state));
 }
@@ -27,7 +27,7 @@ std::vector<std::string> leveling_state_names() {
   std::vector<std::string> names;
   names.reserve(kLevelingStates);
   for (size_t state = 0; state < kLevelingStates; ++state) {
-    names.emplace_back(leveling_state_name(static_cast<LevelingState>(state)));
+    names.emplace_back(leveling_state_name(static_cast<message::LevelingState>(state)));
   }
   return names;
 }

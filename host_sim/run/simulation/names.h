@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/leveling/leveling.h"
 #include "firmware/robot/supervisor.h"
+#include "schema/values.h"
 
 namespace screed {
 
@@ -17,7 +17,7 @@ inline constexpr std::size_t kLevelingStates = message::kLevelingStateMax + 1U;
 
 /// The name of a state; "unknown" for a number that has none.
 const char* state_name(RobotState state);
-const char* leveling_state_name(LevelingState state);
+const char* leveling_state_name(message::LevelingState state);
 /// The names of all of them, by number.
 std::vector<std::string> leveling_state_names();
 /// The names of the set fault bits, or "none".

@@ -46,10 +46,11 @@ StopCondition::StopCondition(const Experiment& experiment, const std::atomic<boo
       duration_s_(experiment.experiment.duration_s),
       stop_(stop) {}
 
-void StopCondition::count_tick(RobotState state, LevelingState leveling) {
+void StopCondition::count_tick(RobotState state, message::LevelingState leveling) {
   ++ticks_;
   fault_ = state == RobotState::kFault;
-  if (leveling == LevelingState::kTrainingDrive && state == RobotState::kRunning) ++driven_;
+  if (leveling == message::LevelingState::kTrainingDrive && state == RobotState::kRunning)
+    ++driven_;
 }
 
 bool StopCondition::done() const {

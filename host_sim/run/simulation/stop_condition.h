@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "firmware/leveling/leveling.h"
 #include "firmware/robot/supervisor.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "schema/values.h"
 
 namespace screed {
 
@@ -36,7 +36,7 @@ class StopCondition {
   StopCondition(const Experiment& experiment, const std::atomic<bool>* stop);
 
   /// Counts one control tick, with the robot's states after it.
-  void count_tick(RobotState state, LevelingState leveling);
+  void count_tick(RobotState state, message::LevelingState leveling);
 
   /// The run has lasted as long as it was to: the training drive (Algorithm 5) has driven all its
   /// frames, or idled for too long beside them; any other algorithm has had its duration.

@@ -8,11 +8,13 @@
 #include "firmware/protocol/messages.h"
 #include "hal/sample.h"
 #include "host_sim/ground_station/telemetry/schema.h"
+#include "schema/class_values.h"
 #include "tools/screed/cli/parameter_names.h"
 
 namespace screed::viewer {
 namespace {
 
+constexpr int kDriveAlgorithm = static_cast<int>(message::LevelingAlgorithm::kDrive);
 constexpr uint64_t kCommandTicks = kTickRate_hz / 4;
 constexpr uint64_t kStopRepeatTicks = kTickRate_hz / 5;
 
@@ -103,6 +105,10 @@ void KeyboardDriver::clear_fault() {
   if (!session_.has_value() || stopping_ || state_ != RobotState::kFault) return;
   if (!wanted_.has_value()) wanted_ = first_algorithm_;
   clear_ = true;
+}
+
+bool KeyboardDriver::drives() const {
+  return wanted_.has_value() && *wanted_ == kDriveAlgorithm;
 }
 
 std::string KeyboardDriver::description() const {

@@ -15,7 +15,6 @@
 #include "host_sim/ground_station/station/ground_port.h"
 #include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/ground_station/telemetry/latest_telemetry.h"
-#include "schema/class_values.h"
 #include "tools/screed/viewer/subtitle.h"
 
 namespace screed::viewer {
@@ -38,7 +37,7 @@ class KeyboardDriver : public GroundPort, private Link {
   /// emergency_stop().
   void clear_fault();
 
-  bool drives() const { return wanted_.has_value() && *wanted_ == kDriveAlgorithm; }
+  bool drives() const;
   /// One line for the user; empty while there is nothing to say.
   std::string description() const;
   /// Who moves the robot, as far as the radio tells.
@@ -48,8 +47,6 @@ class KeyboardDriver : public GroundPort, private Link {
   std::vector<uint8_t> receive() override;
 
  private:
-  static constexpr int kDriveAlgorithm = static_cast<int>(message::LevelingAlgorithm::kDrive);
-
   void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override;
   bool send(const CanFrame& frame) override;
   const LinkStatus& status() const override { return status_; }

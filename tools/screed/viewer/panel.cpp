@@ -134,7 +134,8 @@ void add_head(Rows& rows, const Status& s) {
   const auto state = static_cast<RobotState>(s.state);
   std::string words = state_name(state);
   if (state == RobotState::kRunning) {
-    words += std::string(": ") + leveling_state_name(static_cast<LevelingState>(s.leveling_state));
+    words += std::string(": ") +
+             leveling_state_name(static_cast<message::LevelingState>(s.leveling_state));
   }
   rows.add(kAlways, 30.0, words, {.size_px = 16.0, .color = kPaleInk, .bold = true}).dot =
       robot_state_color(s.state);
@@ -203,7 +204,7 @@ void add_path(Rows& rows, const Status& s) {
   for (size_t state = 0; state < kLevelingStates; ++state) {
     if ((s.states_seen >> state & 1U) == 0) continue;
     const bool now = static_cast<int>(state) == s.leveling_state;
-    rows.add(kChangeOrPath, 20.0, leveling_state_name(static_cast<LevelingState>(state)),
+    rows.add(kChangeOrPath, 20.0, leveling_state_name(static_cast<message::LevelingState>(state)),
              {.size_px = kText_px, .color = now ? kPaleInk : kFaintInk, .bold = now})
         .swatch = state_color(state);
   }

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <thread>
 
-#include "firmware/leveling/leveling.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/session/height_export.h"
 #include "host_sim/run/session/robot_sessions.h"
+#include "schema/values.h"
 #include "tools/screed/cli/interrupt.h"
 
 namespace screed::viewer {
@@ -119,7 +119,7 @@ void RecordedViewer::go_to(double time_s) {
   Driver driver;
   driver.replay = true;
   driver.algorithm = algorithm_;
-  if (now.leveling_state == static_cast<int32_t>(LevelingState::kDrive))
+  if (now.leveling_state == static_cast<int32_t>(message::LevelingState::kDrive))
     driver.kind = Driver::Kind::kUnknownStation;
   display_->set_driver(driver);
   show_terrain_after(ticks);

@@ -18,7 +18,8 @@ TEST(Names, StatesAndFaultsAreCalledWhatTheSchemaCallsThem) {
         if (path == "HEARTBEAT.state") {
           EXPECT_EQ(state_name(static_cast<RobotState>(value.value)), value.name);
         } else if (path == "LEVELING.state") {
-          EXPECT_EQ(leveling_state_name(static_cast<LevelingState>(value.value)), value.name);
+          EXPECT_EQ(leveling_state_name(static_cast<message::LevelingState>(value.value)),
+                    value.name);
           EXPECT_LT(static_cast<size_t>(value.value), kLevelingStates);
           ++states;
         }
@@ -30,7 +31,7 @@ TEST(Names, StatesAndFaultsAreCalledWhatTheSchemaCallsThem) {
 
 TEST(Names, WhatHasNoNameIsUnknown) {
   EXPECT_STREQ(state_name(static_cast<RobotState>(7)), "unknown");
-  EXPECT_STREQ(leveling_state_name(static_cast<LevelingState>(15)), "unknown");
+  EXPECT_STREQ(leveling_state_name(static_cast<message::LevelingState>(15)), "unknown");
 }
 
 TEST(Names, FaultsAreListedInTheirOrder) {

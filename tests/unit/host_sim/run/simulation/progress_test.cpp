@@ -24,7 +24,7 @@ struct Told {
     Progress progress([this](const SimulationProgress& one) { all.push_back(one); },
                       TerrainMeasure(experiment), half);
     for (int tick = 1; tick <= ticks; ++tick) {
-      stop.count_tick(RobotState::kRunning, LevelingState::kWalk);
+      stop.count_tick(RobotState::kRunning, message::LevelingState::kWalk);
       progress.on_tick(stop, tick * 0.01, plant);
     }
   }

@@ -24,15 +24,15 @@ Experiment training_drive(uint32_t frames) {
 }
 
 void count(StopCondition& stop, int ticks, RobotState state,
-           LevelingState leveling = LevelingState::kTrainingDrive) {
+           message::LevelingState leveling = message::LevelingState::kTrainingDrive) {
   for (int i = 0; i < ticks; ++i) stop.count_tick(state, leveling);
 }
 
 TEST(StopCondition, EndsWithTheLastTickOfTheDuration) {
   StopCondition stop(lasting(0.05), nullptr);
-  count(stop, 4, RobotState::kRunning, LevelingState::kWalk);
+  count(stop, 4, RobotState::kRunning, message::LevelingState::kWalk);
   EXPECT_EQ(stop.reason(false), std::nullopt);
-  count(stop, 1, RobotState::kRunning, LevelingState::kWalk);
+  count(stop, 1, RobotState::kRunning, message::LevelingState::kWalk);
   EXPECT_EQ(stop.reason(false), RunEnd::kDone);
   EXPECT_EQ(stop.ticks(), 5U);
   EXPECT_EQ(stop.training_frames(), 0U);
@@ -42,7 +42,7 @@ TEST(StopCondition, EndsWithTheLastTickOfTheDuration) {
 TEST(StopCondition, ATrainingDriveCountsOnlyTheFramesItDrives) {
   StopCondition stop(training_drive(3), nullptr);
   count(stop, 50, RobotState::kArmed);
-  count(stop, 1, RobotState::kRunning, LevelingState::kIdle);
+  count(stop, 1, RobotState::kRunning, message::LevelingState::kIdle);
   count(stop, 2, RobotState::kRunning);
   EXPECT_EQ(stop.training_frames(), 2U);
   EXPECT_DOUBLE_EQ(stop.counted_s(0.53), 0.02);
@@ -69,7 +69,7 @@ TEST(StopCondition, AFaultEndsATrainingDriveAndNoOtherRun) {
   EXPECT_FALSE(training.done());
 
   StopCondition other(lasting(10.0), nullptr);
-  count(other, 1, RobotState::kFault, LevelingState::kWalk);
+  count(other, 1, RobotState::kFault, message::LevelingState::kWalk);
   EXPECT_EQ(other.reason(false), std::nullopt);
 }
 

@@ -77,7 +77,7 @@ Status full_status() {
   status.duration_s = 36000.0;
   status.pace = "\u00d7 0.25";
   status.state = static_cast<int>(RobotState::kRunning);
-  status.leveling_state = static_cast<int>(LevelingState::kTrainingDrive);
+  status.leveling_state = static_cast<int>(message::LevelingState::kTrainingDrive);
   status.states_seen = (1U << kLevelingStates) - 1U;
   status.faults = 0x0102;
   status.motion = {-0.25, -6.2, -0.25, -6.2, -1.5, -1.5, -3.1, -10.0, -10.0, 0.1234, 12.55};
