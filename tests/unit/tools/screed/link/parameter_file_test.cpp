@@ -6,6 +6,7 @@
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
+#include "schema/class_values.h"
 #include "tests/temp_folder.h"
 #include "tools/screed/cli/parameter_names.h"
 
