@@ -43,7 +43,7 @@ ASAN_LIBRARY_SOURCES := $(ASAN_COMMANDS) $(COMMAND_LINE_SOURCES) $(filter-out to
 HOT_SOURCES := $(filter-out $(COLD_SOURCES),$(HOST_SOURCES))
 $(eval $(call in_groups,ASAN_HOT,$(filter $(HOT_SOURCES),$(ASAN_LIBRARY_SOURCES)),host,,$(HOT_SOURCES)))
 $(eval $(call in_groups,ASAN_COLD,$(filter $(COLD_SOURCES),$(ASAN_LIBRARY_SOURCES)),cold,,$(COLD_SOURCES)))
-# What stands beside the library is read with its headers.
+# Tools that these tests link beside the library: with the same compiled headers.
 $(eval $(call with_headers,cold,$(call sources,tools/avr tools/schema tools/bench/telemetry)))
 # Compiling takes longer than the tests: of what computes, what stands alone is optimised (soil, kernels, particles), groups are not.
 $(ASAN_HOT_GROUP_OBJECTS): HEADER_SET = cold

@@ -2,7 +2,8 @@
 //
 // The table is a macro so that the struct, its defaults, its range check and the host's listing
 // (names, documentation, experiment files) are made from the same lines and cannot drift apart.
-// Text stays out of the MCU image: only code that asks for parameter_table.h pays for it.
+// Text stays out of the MCU image: parameters.cpp has the table of parameter_table.h on hosts
+// alone.
 #pragma once
 
 #include <stdint.h>
