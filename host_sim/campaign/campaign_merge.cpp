@@ -2,6 +2,7 @@
 #include "host_sim/campaign/campaign_merge.h"
 
 #include <array>
+#include <map>
 #include <numeric>
 
 #include "host_sim/core/atomic_file.h"
@@ -10,6 +11,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/leveling/leveling_point.h"
 #include "host_sim/run/experiment/experiment_keys.h"
+#include "host_sim/run/session/arithmetic.h"
 
 namespace screed {
 namespace {
@@ -23,6 +25,7 @@ struct Tables {
   ValueTable runs;
   ValueTable curves;
   ValueTable provenance;
+  std::map<std::string, size_t> arithmetics;  ///< runs of each
 };
 
 /// A number where the text is one.
@@ -76,7 +79,9 @@ void add_run(const CampaignPlan& plan, const ResultIndex& results, size_t run, T
   if (!results.done(id) && !results.failed(id)) return;
   const StoredResult stored = results.read(id);
   Json result = Json::parse(stored.result);
-  tables.provenance.set_all(Json::parse(stored.provenance));
+  const Json provenance = Json::parse(stored.provenance);
+  tables.provenance.set_all(provenance);
+  ++tables.arithmetics[provenance.value("arithmetic", kUnnamedArithmetic)];
   if (stored.status == ResultStatus::kFailed) {
     tables.runs.set("error", result.value("error", ""));
     return;
@@ -158,13 +163,14 @@ ValueTable curve_table(const CampaignPlan& plan, const ResultIndex& results) {
   return tables_of(plan, results).curves;
 }
 
-void merge_results(const CampaignPlan& plan, const ResultIndex& results,
-                   const CampaignFolder& folder) {
-  const Tables tables = tables_of(plan, results);
+std::map<std::string, size_t> merge_results(const CampaignPlan& plan, const ResultIndex& results,
+                                            const CampaignFolder& folder) {
+  Tables tables = tables_of(plan, results);
   write_hdf5(plan, count_results(plan, results), tables, folder.path / "campaign.h5");
   write_file(folder.path / "runs.csv", tables.runs.csv());
   if (tables.curves.rows() > 0) write_file(folder.path / "curves.csv", tables.curves.csv());
   write_file(folder.path / "provenance.csv", tables.provenance.csv());
+  return tables.arithmetics;
 }
 
 }  // namespace screed

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,14 @@ ValueTable curve_table(const CampaignPlan& plan, const ResultIndex& results);
 
 /// Writes into the folder, each file complete or not at all:
 ///   runs.csv        a row a run: run, id, cell, seed, status, error, factors, figures of its
-///   summary curves.csv      a row a point of a leveling curve, where they are kept campaign.h5 the
-///   same as datasets, one a column, in the groups runs and curves provenance.csv  a row a run:
-///   version, host, begin, duration, attempt; differs from time to time
-/// Throws RunError when a file cannot be written.
-void merge_results(const CampaignPlan& plan, const ResultIndex& results,
-                   const CampaignFolder& folder);
+///                   summary
+///   curves.csv      a row a point of a leveling curve, where they are kept
+///   campaign.h5     the same as datasets, one a column, in the groups runs and curves
+///   provenance.csv  a row a run: version, arithmetic, host, begin, duration, attempt; differs from
+///                   time to time
+/// Answers how many runs each arithmetic made (arithmetic.h). Throws RunError when a file cannot be
+/// written.
+std::map<std::string, size_t> merge_results(const CampaignPlan& plan, const ResultIndex& results,
+                                            const CampaignFolder& folder);
 
 }  // namespace screed

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "host_sim/run/experiment/csv_file.h"
@@ -122,7 +123,7 @@ std::vector<std::vector<double>> latin_hypercube_sample(std::size_t count, std::
 std::string value_in_range(const SampleRange& range, double share, uint64_t multiple_of) {
   const auto at = [&](double low, double high) {
     if (!range.logarithmic) return low + (high - low) * share;
-    return low * std::exp(share * std::log(high / low));
+    return low * portable::exp(share * portable::log(high / low));
   };
   if (multiple_of == 0) return six_digits(at(range.low, range.high));
   const auto step = static_cast<double>(multiple_of);

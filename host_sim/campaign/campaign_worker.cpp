@@ -14,6 +14,7 @@
 #include "host_sim/core/json.h"
 #include "host_sim/engine/scratch_folder.h"
 #include "host_sim/engine/task_worker.h"
+#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/simulation/simulation.h"
 
 namespace screed {
@@ -172,7 +173,8 @@ void serve_campaign(const CampaignFolder& folder, const std::string& program_ver
                     const OptionsOfWorld& options_of_world, std::istream& requests,
                     const std::function<void(const std::string&)>& answer) {
   CampaignExecutor executor(folder, options_of_world);
-  serve_tasks(executor, folder.results(), program_version, requests, answer);
+  serve_tasks(executor, folder.results(),
+              {{"version", program_version}, {"arithmetic", arithmetic()}}, requests, answer);
 }
 
 }  // namespace screed

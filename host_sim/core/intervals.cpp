@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/quantile.h"
 
 namespace screed {
@@ -26,7 +27,8 @@ Interval wilson(int hits, int all) {
 
 Interval poisson(int count) {
   const auto end = [](double n, double z) {
-    return n <= 0.0 ? 0.0 : n * std::pow(1.0 - 1.0 / (9.0 * n) + z / (3.0 * std::sqrt(n)), 3.0);
+    return n <= 0.0 ? 0.0
+                    : n * portable::pow(1.0 - 1.0 / (9.0 * n) + z / (3.0 * std::sqrt(n)), 3.0);
   };
   return {end(count, -kNormal95), end(count + 1.0, kNormal95)};
 }
@@ -38,7 +40,9 @@ Interval median_interval(const std::vector<double>& values) {
 
 Interval mean_square_interval(double degrees) {
   const double part = 2.0 / (9.0 * degrees);
-  const auto end = [part](double z) { return std::pow(1.0 - part + z * std::sqrt(part), 3.0); };
+  const auto end = [part](double z) {
+    return portable::pow(1.0 - part + z * std::sqrt(part), 3.0);
+  };
   return {end(-kNormal95), end(kNormal95)};
 }
 

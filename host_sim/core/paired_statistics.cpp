@@ -9,6 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/core/random.h"
 
@@ -88,7 +89,7 @@ double acceleration(std::size_t count, const FigureOfPairs& statistic) {
     squares += d * d;
     cubes += d * d * d;
   }
-  return cubes / (6.0 * std::pow(squares, 1.5));
+  return cubes / (6.0 * portable::pow(squares, 1.5));
 }
 
 /// BCa, of a figure that is not the same for all samples.

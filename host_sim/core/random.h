@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 
 class WorldRandom {
@@ -51,7 +53,7 @@ class WorldRandom {
       v = uniform(-1.0, 1.0);
       s = u * u + v * v;
     } while (s >= 1.0 || s == 0.0);
-    const double factor = std::sqrt(-2.0 * std::log(s) / s);
+    const double factor = std::sqrt(-2.0 * portable::log(s) / s);
     spare_ = v * factor;
     has_spare_ = true;
     return u * factor;

@@ -46,9 +46,10 @@ std::string number(double value) {
 
 class Worker {
  public:
-  Worker(TaskExecutor& executor, std::filesystem::path results, std::string version)
+  Worker(TaskExecutor& executor, std::filesystem::path results, Json origin)
       : executor_(executor), results_(std::move(results)) {
-    origin_ = one_line({{"version", std::move(version)}, {"host", host_name()}});
+    origin["host"] = host_name();
+    origin_ = one_line(origin);
     origin_.pop_back();  // the object's end
   }
 
@@ -167,10 +168,9 @@ WorkerAnswer parse_answer(const std::string& text) {
   return answer;
 }
 
-void serve_tasks(TaskExecutor& executor, const std::filesystem::path& results,
-                 const std::string& program_version, std::istream& requests,
-                 const std::function<void(const std::string&)>& answer) {
-  Worker worker(executor, results, program_version);
+void serve_tasks(TaskExecutor& executor, const std::filesystem::path& results, const Json& origin,
+                 std::istream& requests, const std::function<void(const std::string&)>& answer) {
+  Worker worker(executor, results, origin);
   for (std::string request; std::getline(requests, request);)
     answer(answer_text(worker.answer(request)));
 }

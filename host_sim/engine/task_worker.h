@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "host_sim/core/json.h"
+
 namespace screed {
 
 /// What tasks are, for one kind of them. They are numbered from 0.
@@ -53,9 +55,8 @@ std::string answer_text(const WorkerAnswer& answer);
 WorkerAnswer parse_answer(const std::string& text);
 
 /// Answers requests until `requests` ends. Results go into files of the folder `results`, each as
-/// soon as its task has ended, with what is said of its origin.
-void serve_tasks(TaskExecutor& executor, const std::filesystem::path& results,
-                 const std::string& program_version, std::istream& requests,
-                 const std::function<void(const std::string&)>& answer);
+/// soon as its task has ended, with `origin`, the host and the time.
+void serve_tasks(TaskExecutor& executor, const std::filesystem::path& results, const Json& origin,
+                 std::istream& requests, const std::function<void(const std::string&)>& answer);
 
 }  // namespace screed

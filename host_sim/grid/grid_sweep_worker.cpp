@@ -72,7 +72,7 @@ GridResult parse_result(const std::string& text) {
 void serve_sweep(const SweepFolder& folder, const std::string& program_version,
                  std::istream& requests, const std::function<void(const std::string&)>& answer) {
   SweepExecutor executor(folder);
-  serve_tasks(executor, folder.results(), program_version, requests, answer);
+  serve_tasks(executor, folder.results(), {{"version", program_version}}, requests, answer);
 }
 
 }  // namespace screed

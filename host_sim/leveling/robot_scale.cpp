@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "host_sim/core/display_units.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/low_pass.h"
 #include "host_sim/physics/terrain/terrain_statistics.h"
@@ -53,7 +54,7 @@ RobotScaleFigures robot_scale_figures(const HeightField& field, double flat_deg)
     roughness += rest * rest;
   }
   const auto count = static_cast<double>(heights.low_m.size());
-  const double limit = std::tan(flat_deg / kDegPerRad) + gradient_rounding(field);
+  const double limit = portable::tan(flat_deg / kDegPerRad) + gradient_rounding(field);
   return {std::sqrt(relief / count), std::sqrt(roughness / count),
           share_within(heights, field, limit)};
 }

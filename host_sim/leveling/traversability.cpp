@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 
 namespace screed {
 namespace {
@@ -44,11 +45,12 @@ bool TraversabilityMeter::is_stuck(const SimFrame& frame) {
 
 void TraversabilityMeter::on_tick(const SimFrame& frame, bool on_bed) {
   if (is_stuck(frame)) ++stuck_;
-  if (std::cos(frame.pitch) * std::cos(frame.roll) < std::cos(limits_.tilt_rad)) ++tilted_;
+  if (portable::cos(frame.pitch) * portable::cos(frame.roll) < portable::cos(limits_.tilt_rad))
+    ++tilted_;
   east_m_ += frame.delta_x;
   north_m_ += frame.delta_y;
   const bool outside =
-      limits_.site_radius_m > 0.0 && std::hypot(east_m_, north_m_) > limits_.site_radius_m;
+      limits_.site_radius_m > 0.0 && portable::hypot(east_m_, north_m_) > limits_.site_radius_m;
   if (outside || !on_bed) ++off_site_;
   if (faster_track(frame) >= kMinTrackSpeed) {
     ++running_;

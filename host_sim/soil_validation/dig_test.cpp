@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/soil_validation/check_range.h"
@@ -50,9 +51,9 @@ HeightField ground_before(const DigTest& test, double floor_m) {
   const int nodes = static_cast<int>(std::lround(test.size_m / test.cell_m)) + 1;
   const bool mound = test.manoeuvre == Manoeuvre::kCharge;
   return HeightField::from_function(nodes, nodes, test.cell_m, false, [&](double x, double y) {
-    if (!mound) return floor_m + x * std::tan(test.slope_deg * std::numbers::pi / 180.0);
-    const double flank = kMound_m / std::tan(kMoundSlope_rad);
-    const double out = std::max(0.0, std::hypot(x - 0.12, y) - 0.06);
+    if (!mound) return floor_m + x * portable::tan(test.slope_deg * std::numbers::pi / 180.0);
+    const double flank = kMound_m / portable::tan(kMoundSlope_rad);
+    const double out = std::max(0.0, portable::hypot(x - 0.12, y) - 0.06);
     return floor_m + kMound_m * std::max(0.0, 1.0 - out / flank);
   });
 }
@@ -202,7 +203,7 @@ void measure(DigResult& result) {
       const double rise =
           (static_cast<double>(result.after.node(ix, iy)) - field.node(ix, iy)) * kHeightUnit_m;
       const double dx = field.node_x(ix) - result.end_x_m;
-      const double away = std::hypot(dx, field.node_y(iy) - result.end_y_m);
+      const double away = portable::hypot(dx, field.node_y(iy) - result.end_y_m);
       result.highest_m = std::max(result.highest_m, rise);
       result.deepest_m = std::max(result.deepest_m, -rise);
       const double volume = std::abs(rise) * area;
@@ -271,7 +272,7 @@ DigResult drive(const DigTest& test, DiggingRobot& robot, double dt, Terrain& be
     result.time_s += dt;
     const Eigen::Vector3d place = robot.position();
     result.pitch_rad =
-        std::max(result.pitch_rad, std::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
+        std::max(result.pitch_rad, portable::asin(std::clamp(robot.rotation()(2, 0), -1.0, 1.0)));
     if (std::max(std::abs(place.x()), std::abs(place.y())) > edge + 0.01) break;
   }
   result.after = averaged(bed.surface());

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -71,8 +73,8 @@ MovedVolume standard_error(std::span<const RiseMap> maps, double area_m2) {
   }
   MovedVolume squares;
   for (const MovedVolume& one : without) {
-    squares.raised_m3 += std::pow(one.raised_m3 - mean.raised_m3, 2);
-    squares.sunk_m3 += std::pow(one.sunk_m3 - mean.sunk_m3, 2);
+    squares.raised_m3 += portable::pow(one.raised_m3 - mean.raised_m3, 2);
+    squares.sunk_m3 += portable::pow(one.sunk_m3 - mean.sunk_m3, 2);
   }
   const double factor = (count_of_maps - 1.0) / count_of_maps;
   return {std::sqrt(factor * squares.raised_m3), std::sqrt(factor * squares.sunk_m3)};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/soil_validation/check_range.h"
 
@@ -182,7 +183,7 @@ ParticleDrag drag_over_particles(const ParticlePlateTest& test, const TaskProgre
     drag.friction = std::max(drag.friction, friction.at(i));
   }
   // Between the middles of the bins; before the first, from nothing.
-  const double sought = (1.0 - std::exp(-1.0)) * drag.friction;
+  const double sought = (1.0 - portable::exp(-1.0)) * drag.friction;
   double last = 0.0;
   double last_distance = 0.0;
   for (size_t i = 0; i < kBins; ++i) {

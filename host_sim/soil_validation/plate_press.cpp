@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
+#include "host_sim/core/rotation.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {
@@ -28,14 +30,14 @@ double bekker_pressure(const PlateTest& test, double depth_m) {
   if (depth_m <= 0.0) return 0.0;
   const double b = test.round ? 0.5 * test.length_m : std::min(test.length_m, test.width_m);
   const double bekker = test.soil.k_c / b + test.soil.k_phi;
-  return std::min(bekker * std::pow(depth_m, test.soil.exponent),
+  return std::min(bekker * portable::pow(depth_m, test.soil.exponent),
                   test.soil.elastic_pa_per_m * depth_m);
 }
 
 std::vector<PlatePoint> press_plate(const PlateTest& test) {
   check(test);
-  const double reach =
-      std::hypot(test.length_m, test.width_m) + 2.0 * std::hypot(test.offset_x_m, test.offset_y_m);
+  const double reach = portable::hypot(test.length_m, test.width_m) +
+                       2.0 * portable::hypot(test.offset_x_m, test.offset_y_m);
   const int nodes = 2 * static_cast<int>(std::ceil(0.5 * reach / test.cell_m)) + 9;
   SoilBed bed(HeightField(nodes, nodes, test.cell_m, false), test.soil, test.options);
   Footprint plate = test.round ? Footprint::disc(0.5 * test.length_m, kPlateThickness_m)
@@ -46,7 +48,7 @@ std::vector<PlatePoint> press_plate(const PlateTest& test) {
   FootprintMotion motion;
   motion.mass_kg = std::numeric_limits<double>::infinity();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(test.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  pose.linear() = rotation_about(Eigen::Vector3d::UnitZ(), test.yaw_rad).toRotationMatrix();
 
   std::vector<PlatePoint> run;
   double begin = 0.0;

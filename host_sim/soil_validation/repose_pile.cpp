@@ -1,6 +1,7 @@
 // A collapsing tower.
 #include "host_sim/soil_validation/repose_pile.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,7 @@ double flank_deg(const HeightField& surface, const ReposeTest& test, double dx, 
     if (height >= 0.75 * top) high = distance;
     if (height >= 0.25 * top) low = distance;
   }
-  return std::atan2(0.5 * top, low - high) / kDegree;
+  return portable::atan2(0.5 * top, low - high) / kDegree;
 }
 
 void tap(SoilBed& bed, const ReposeTest& test) {
@@ -59,7 +60,7 @@ ReposeResult collapse(const ReposeTest& test) {
       dx = std::remainder(dx, nodes * test.cell_m);
       dy = std::remainder(dy, nodes * test.cell_m);
     }
-    return std::hypot(dx, dy) <= test.radius_m ? test.height_m : 0.0;
+    return portable::hypot(dx, dy) <= test.radius_m ? test.height_m : 0.0;
   };
   SoilBed bed(HeightField::from_function(nodes, nodes, test.cell_m, test.wrap, tower), test.soil);
   const int64_t before = bed.surface().height_sum();
@@ -74,7 +75,7 @@ ReposeResult collapse(const ReposeTest& test) {
 }
 
 double repose_excess_units(const HeightField& surface, double repose_deg) {
-  const double straight = std::tan(repose_deg * kDegree) * surface.spacing_m() / kHeightUnit_m;
+  const double straight = portable::tan(repose_deg * kDegree) * surface.spacing_m() / kHeightUnit_m;
   double worst = -std::numeric_limits<double>::infinity();
   for (int iy = 0; iy < surface.ny(); ++iy) {
     for (int ix = 0; ix < surface.nx(); ++ix) {

@@ -10,6 +10,7 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <unsupported/Eigen/NumericalDiff>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/soil_validation/plate_press.h"
 
@@ -30,23 +31,25 @@ class Bounded {
   Bounded(double low, double high) : low_(low), high_(high) {
     logarithmic_ = high_ > 1e3 * std::max(low_, 1e-3);
     if (!logarithmic_) return;
-    low_ = std::log(std::max(low_, 1e-3));
-    high_ = std::log(high_);
+    low_ = portable::log(std::max(low_, 1e-3));
+    high_ = portable::log(high_);
   }
   double variable(double value) const {
-    const double v = logarithmic_ ? std::log(std::max(value, 1e-3)) : value;
+    const double v = logarithmic_ ? portable::log(std::max(value, 1e-3)) : value;
     // Not at a bound itself, where the sine is flat.
-    return std::asin(std::clamp(2.0 * (v - low_) / (high_ - low_) - 1.0, -0.98, 0.98));
+    return portable::asin(std::clamp(2.0 * (v - low_) / (high_ - low_) - 1.0, -0.98, 0.98));
   }
   double value(double variable) const {
-    const double v = low_ + 0.5 * (high_ - low_) * (1.0 + std::sin(variable));
-    return logarithmic_ ? std::exp(v) : v;
+    const double v = low_ + 0.5 * (high_ - low_) * (1.0 + portable::sin(variable));
+    return logarithmic_ ? portable::exp(v) : v;
   }
   double slope(double variable) const {
-    const double d = 0.5 * (high_ - low_) * std::cos(variable);
+    const double d = 0.5 * (high_ - low_) * portable::cos(variable);
     return logarithmic_ ? d * value(variable) : d;
   }
-  bool at_bound(double variable) const { return 1.0 - std::abs(std::sin(variable)) < kAtBound; }
+  bool at_bound(double variable) const {
+    return 1.0 - std::abs(portable::sin(variable)) < kAtBound;
+  }
 
  private:
   double low_;
@@ -62,7 +65,7 @@ struct Free {
 };
 
 double error_of_force(double value, double scale) {
-  return std::hypot(kForceShareOfLoad * scale, kShareOfValue * value);
+  return portable::hypot(kForceShareOfLoad * scale, kShareOfValue * value);
 }
 
 class Residuals {

@@ -1,6 +1,7 @@
 // Integrals along the contact of a wheel.
 #include "host_sim/soil_validation/wheel_limit.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,11 +27,11 @@ class Contact {
         passive_(soil),
         radial_(normal_stress == NormalStress::kRadial),
         exponent_(soil.exponent + soil.slip_sinkage * std::abs(wheel.slip)),
-        tan_friction_(std::tan(soil.friction_deg * kDegree)),
+        tan_friction_(portable::tan(soil.friction_deg * kDegree)),
         // Speeds ahead and to the left over that of the rim; a locked rim's is 1 / kForEver.
         ahead_over_rim_(wheel.slip >= 0.0 ? 1.0 - wheel.slip
                                           : 1.0 / std::max(1.0 + wheel.slip, 1.0 / kForEver)),
-        left_over_rim_(ahead_over_rim_ * std::tan(wheel.slip_angle_rad)) {}
+        left_over_rim_(ahead_over_rim_ * portable::tan(wheel.slip_angle_rad)) {}
 
   /// Vertical force of the soil at this sinkage, and what comes with it.
   double load(double sinkage, WheelReaction& reaction) const {
@@ -38,8 +39,8 @@ class Contact {
     const Shape shape = shape_at(sinkage);
     reaction = {};
     reaction.sinkage_m = sinkage;
-    reaction.contact_front_m = r * std::sin(shape.entry);
-    reaction.contact_rear_m = r * std::sin(-shape.exit);
+    reaction.contact_front_m = r * portable::sin(shape.entry);
+    reaction.contact_rear_m = r * portable::sin(-shape.exit);
     const double deepest = going_down(shape.bekker, sinkage);
     reaction.rut_m = shape.shaped ? wheel_.rut_m + (sinkage - wheel_.rut_m) *
                                                        (1.0 - soil_.exit_angle * soil_.exit_angle)
@@ -52,12 +53,11 @@ class Contact {
     ShearState beside;  // of the soil beside it
     for (int i = 0; i < kSlices; ++i) {
       const double theta = shape.entry - (i + 0.5) * slice;
-      const double sin = std::sin(theta);
-      const double cos = std::cos(theta);
+      const auto [sin, cos] = portable::sine_cosine(theta);
       // While the rim turns by a slice. Positive: it slides ahead over the soil, or to the left.
       const double ahead = radial_ ? ahead_over_rim_ * cos - 1.0 : ahead_over_rim_ - cos;
       shear.slide(0.5 * ahead * per_k, 0.5 * left_over_rim_ * per_k);
-      beside.slide(0.0, 0.5 * std::tan(wheel_.slip_angle_rad) * per_k);
+      beside.slide(0.0, 0.5 * portable::tan(wheel_.slip_angle_rad) * per_k);
       const double depth = sinkage - r * (1.0 - cos);
       const double pressure = pressure_at(shape, sinkage, theta);
       const double strength =
@@ -82,7 +82,7 @@ class Contact {
             area / wheel_.width_m * passive_.resistance(std::max(0.0, depth)) * beside.across;
       }
       shear.slide(0.5 * ahead * per_k, 0.5 * left_over_rim_ * per_k);
-      beside.slide(0.0, 0.5 * std::tan(wheel_.slip_angle_rad) * per_k);
+      beside.slide(0.0, 0.5 * portable::tan(wheel_.slip_angle_rad) * per_k);
     }
     return vertical;
   }
@@ -108,7 +108,8 @@ class Contact {
     // The touched rectangle's shorter side is Bekker's b, and its length ends where the elastic
     // part is used up: a fixed point, reached in a few turns.
     for (int i = 0; i < (shape.shaped ? 1 : 30); ++i) {
-      const double b = std::min(wheel_.width_m, r * (std::sin(shape.entry) - std::sin(shape.exit)));
+      const double b =
+          std::min(wheel_.width_m, r * (portable::sin(shape.entry) - portable::sin(shape.exit)));
       shape.bekker = soil_.k_phi + soil_.k_c / std::max(b, 1e-3);
       if (shape.shaped) continue;
       const double rise = going_down(shape.bekker, sinkage) / soil_.elastic_pa_per_m;
@@ -119,23 +120,23 @@ class Contact {
   double pressure_at(const Shape& shape, double sinkage, double theta) const {
     const double r = wheel_.radius_m;
     if (!shape.shaped) {
-      if (theta > 0.0) return going_down(shape.bekker, sinkage - r * (1.0 - std::cos(theta)));
+      if (theta > 0.0) return going_down(shape.bekker, sinkage - r * (1.0 - portable::cos(theta)));
       return std::max(0.0, going_down(shape.bekker, sinkage) -
-                               soil_.elastic_pa_per_m * r * (1.0 - std::cos(theta)));
+                               soil_.elastic_pa_per_m * r * (1.0 - portable::cos(theta)));
     }
     const double ahead = theta >= shape.middle
                              ? theta
                              : shape.entry - (theta - shape.exit) * (shape.entry - shape.middle) /
                                                  (shape.middle - shape.exit);
-    return going_down(shape.bekker, sinkage - r * (1.0 - std::cos(ahead)));
+    return going_down(shape.bekker, sinkage - r * (1.0 - portable::cos(ahead)));
   }
   /// From the lowest point to where the rim is higher by `rise`.
-  double angle(double rise) const { return std::acos(1.0 - rise / wheel_.radius_m); }
+  double angle(double rise) const { return portable::acos(1.0 - rise / wheel_.radius_m); }
   /// On the way down: Bekker's law, never stiffer than the soil's own elasticity, which is what
   /// begins at the floor of a rut.
   double going_down(double bekker, double depth) const {
     if (depth <= wheel_.rut_m) return 0.0;
-    return std::min(bekker * std::pow(depth, exponent_),
+    return std::min(bekker * portable::pow(depth, exponent_),
                     soil_.elastic_pa_per_m * (depth - wheel_.rut_m));
   }
 

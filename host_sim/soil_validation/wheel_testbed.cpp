@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/core/rotation.h"
 #include "host_sim/soil_validation/check_range.h"
 
 namespace screed {
@@ -32,9 +34,9 @@ HeightField bed_under(const WheelTest& test) {
                         2.0 * (test.wheel.radius_m + kMargin_m) +
                         4.0 * test.wheel.radius_m * (test.passes - 1);
   const double width = test.wheel.width_m + 2.0 * (kMargin_m + std::abs(test.offset_m)) +
-                       std::abs(std::tan(test.wheel.slip_angle_rad)) * length;
-  const double cos = std::abs(std::cos(test.yaw_rad));
-  const double sin = std::abs(std::sin(test.yaw_rad));
+                       std::abs(portable::tan(test.wheel.slip_angle_rad)) * length;
+  const double cos = std::abs(portable::cos(test.yaw_rad));
+  const double sin = std::abs(portable::sin(test.yaw_rad));
   const auto nodes = [&](double extent) {
     return 2 * static_cast<int>(std::ceil(0.5 * extent / test.cell_m)) + 3;
   };
@@ -47,7 +49,7 @@ class Testbed {
       : test_(test),
         bed_(bed_under(test), test.soil, test.options),
         wheel_(Footprint::wheel(test.wheel.radius_m, test.wheel.width_m)) {
-    axes_ = Eigen::AngleAxisd(test.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    axes_ = rotation_about(Eigen::Vector3d::UnitZ(), test.yaw_rad).toRotationMatrix();
   }
 
   /// `after`: passes that come after it. Each rolls two radii further than the next one, which so
@@ -67,7 +69,7 @@ class Testbed {
                                                    : test_.speed_m_per_s * (1.0 + test_.wheel.slip);
     motion.soil_friction = test_.wheel.friction;
     motion.adhesion_pa = test_.wheel.adhesion_pa;
-    const double aside = std::tan(test_.wheel.slip_angle_rad);
+    const double aside = portable::tan(test_.wheel.slip_angle_rad);
     double height =
         bed_.surface().at(begin * axes_(0, 0), begin * axes_(1, 0)).height + radius + 1e-4;
     double rising = 0.0;
@@ -118,8 +120,9 @@ class Testbed {
     for (int i = 0; i < kPlaces; ++i) {
       const double along = from + (to - from) * (i + 0.5) / kPlaces;
       const Eigen::Vector3d place =
-          axes_ * Eigen::Vector3d(
-                      along, test_.offset_m + std::tan(test_.wheel.slip_angle_rad) * along, 0.0);
+          axes_ *
+          Eigen::Vector3d(along, test_.offset_m + portable::tan(test_.wheel.slip_angle_rad) * along,
+                          0.0);
       sum -= bed_.surface().at(place.x(), place.y()).height;
     }
     return sum / kPlaces;

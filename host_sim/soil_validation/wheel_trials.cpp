@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -62,7 +64,7 @@ std::optional<TrialMean> mean_of_trials(const std::vector<MeasuredWheel>& rows,
   if (mean.trials == 1) return mean;
   double squares = 0.0;
   for (const std::size_t row : trials.rows) {
-    if (rows[row].*value) squares += std::pow(*(rows[row].*value) - mean.value, 2.0);
+    if (rows[row].*value) squares += portable::pow(*(rows[row].*value) - mean.value, 2.0);
   }
   mean.error = std::max(mean.error, std::sqrt(squares / (static_cast<double>(mean.trials) - 1.0)));
   return mean;

@@ -1,13 +1,15 @@
 // Standing, sinking, digging.
 #include "host_sim/standin/belt_ground.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "hal/sample.h"
+#include "host_sim/core/cholesky.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
@@ -48,10 +50,10 @@ BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
       volume_before_(surface.height_sum()),
       cell_area_(surface.spacing_m() * surface.spacing_m()),
       bekker_(soil.k_c / tracks.width_m + soil.k_phi),
-      unloading_pa_per_m_(std::min(
-          soil.elastic_pa_per_m,
-          fit.unloading * kPressure_pa / std::pow(kPressure_pa / bekker_, 1.0 / soil.exponent))),
-      tan_repose_(std::tan(soil.repose_deg * std::numbers::pi / 180.0)),
+      unloading_pa_per_m_(std::min(soil.elastic_pa_per_m,
+                                   fit.unloading * kPressure_pa /
+                                       portable::pow(kPressure_pa / bekker_, 1.0 / soil.exponent))),
+      tan_repose_(portable::tan(soil.repose_deg * std::numbers::pi / 180.0)),
       histories_(flow_.nodes()),
       stances_(robots) {
   check_soil(soil);
@@ -72,8 +74,7 @@ std::size_t BeltGround::patch_of(double x) const {
 void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
   const HeightField& field = flow_.surface();
   const double edge = field.spacing_m();
-  const double c = std::cos(stride.pose.heading_rad);
-  const double s = std::sin(stride.pose.heading_rad);
+  const auto [s, c] = portable::sine_cosine(stride.pose.heading_rad);
   const double across_edge = edge * (std::abs(c) + std::abs(s));
   const double along = tracks_.half_length_m + tracks_.radius_m;
   const double across = 0.5 * (tracks_.width_m + across_edge);
@@ -191,7 +192,7 @@ TrackPlane BeltGround::find_equilibrium(const TrackPlane& from, double accelerat
     const std::array<double, 6>& k = soil.stiffness;
     Eigen::Matrix3d matrix;
     matrix << k[0] + 1.0, k[1], k[2], k[1], k[3] + 0.01, k[4], k[2], k[4], k[5] + 0.01;
-    const Eigen::Vector3d newton = -matrix.llt().solve(gradient);
+    const Eigen::Vector3d newton = -solve_positive(matrix, gradient);
     const double begin = gradient.dot(newton);
     if (!(begin < 0.0)) break;
     constexpr double kMaxStep_m = 0.01;
@@ -220,8 +221,7 @@ TrackPlane BeltGround::find_equilibrium(const TrackPlane& from, double accelerat
 
 /// The cells of a belt are pressed to its depth, but for what springs back.
 void BeltGround::compact(const BeltStride& stride, std::size_t side) {
-  const double c = std::cos(stride.pose.heading_rad);
-  const double s = std::sin(stride.pose.heading_rad);
+  const auto [s, c] = portable::sine_cosine(stride.pose.heading_rad);
   const double ahead =
       (stride.motion.forward_m - stride.motion.turn_rad * middle(side)) / kStride_s;
   const double left = stride.motion.sideways_m / kStride_s;
@@ -260,8 +260,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
   }
   if (cells <= 0.0) return;
   along /= cells;
-  const double c = std::cos(stride.pose.heading_rad);
-  const double s = std::sin(stride.pose.heading_rad);
+  const auto [s, c] = portable::sine_cosine(stride.pose.heading_rad);
   const Eigen::Vector2d forward(c, s);
   const Eigen::Vector2d left(-s, c);
   DugPatch patch;

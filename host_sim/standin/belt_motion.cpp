@@ -8,6 +8,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
@@ -105,7 +106,7 @@ BeltMotion::BeltMotion(const TrackGeometry& tracks, const SoilParameters& soil, 
       middle_(tracks.half_tread_m, -tracks.half_tread_m),
       patch_m_(2.0 * tracks.half_length_m / kBeltPatches),
       cohesion_pa_(soil.cohesion_pa),
-      tan_friction_(std::tan(soil.friction_deg * std::numbers::pi / 180.0)),
+      tan_friction_(portable::tan(soil.friction_deg * std::numbers::pi / 180.0)),
       per_modulus_(1.0 / soil.shear_modulus_m) {
   for (std::size_t i = 0; i < kBeltPatches; ++i) {
     patches_[i].x = patch_m_ * (0.5 * (kBeltPatches - 1) - static_cast<double>(i));

@@ -80,9 +80,9 @@ std::optional<Overlap> overlap(const StandInRobot& robot, const StandInRobot& ot
   auto others = other.corners();
   for (Eigen::Vector2d& corner : others) corner += copy;
   Overlap least{Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity(), {}};
-  for (const Eigen::Rotation2Dd& turned : {robot.heading(), other.heading()}) {
+  for (const Eigen::Matrix2d& turned : {robot.heading(), other.heading()}) {
     for (const int axis : {0, 1}) {
-      const Eigen::Vector2d along = turned * Eigen::Vector2d::Unit(axis);
+      const Eigen::Vector2d along = turned.col(axis);
       const auto reach = [&along](const std::array<Eigen::Vector2d, 4>& corners) {
         const auto [low, high] = std::minmax({corners[0].dot(along), corners[1].dot(along),
                                               corners[2].dot(along), corners[3].dot(along)});
@@ -103,7 +103,7 @@ std::optional<Overlap> overlap(const StandInRobot& robot, const StandInRobot& ot
   const auto add = [&](const std::array<Eigen::Vector2d, 4>& corners, const StandInRobot& in,
                        const Eigen::Vector2d& middle) {
     for (const Eigen::Vector2d& corner : corners) {
-      if (!in.outline().contains(Eigen::Vector2d(in.heading().inverse() * (corner - middle)))) {
+      if (!in.outline().contains(Eigen::Vector2d(in.heading().transpose() * (corner - middle)))) {
         continue;
       }
       sum += corner;

@@ -6,6 +6,7 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
@@ -111,8 +112,7 @@ void StandInRobot::end_frame() {
   now_ = body_pose();
   const Eigen::Matrix3d& from = before.rotation;
   const Eigen::Matrix3d& now = now_.rotation;
-  const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * now));
-  rate_body_ = turned.angle() / kTick_s * turned.axis();
+  rate_body_ = rotation_vector(Eigen::Quaterniond(from.transpose() * now)) / kTick_s;
   velocity_ = (now_.place - before.place) / kTick_s;
   imu_velocity_before_ = imu_velocity_;
   imu_velocity_ = velocity_ + (now - from) * kind_.imu / kTick_s;
@@ -121,12 +121,12 @@ void StandInRobot::end_frame() {
 
 void StandInRobot::push(const Eigen::Vector2d& at, const Eigen::Vector2d& force) {
   const Eigen::Vector2d arm = at - middle();
-  const Eigen::Vector2d own = heading().inverse() * force;
+  const Eigen::Vector2d own = heading().transpose() * force;
   push_ += Eigen::Vector3d(own.x(), own.y(), arm.x() * force.y() - arm.y() * force.x());
 }
 
 std::array<Eigen::Vector2d, 4> StandInRobot::corners() const {
-  const Eigen::Rotation2Dd turned = heading();
+  const Eigen::Matrix2d turned = heading();
   const auto corner = [&](Eigen::AlignedBox2d::CornerType which) {
     return Eigen::Vector2d(turned * kind_.outline.corner(which) + middle());
   };
@@ -140,12 +140,13 @@ Eigen::Vector2d StandInRobot::velocity_at(const Eigen::Vector2d& place) const {
 }
 
 StandInRobot::BodyPose StandInRobot::body_pose() const {
-  const double pitch = std::atan(plane_.forward);
-  const double roll = std::atan(plane_.left * std::cos(pitch));
+  const double pitch = portable::atan(plane_.forward);
+  const double cos_pitch = portable::cos(pitch);
+  const double roll = portable::atan(plane_.left * cos_pitch);
   const Attitude attitude{roll, pitch, pose_.heading_rad};
   return {attitude,
           {pose_.x_m, pose_.y_m,
-           plane_.height_m + kind_.tracks.below_m * std::cos(pitch) * std::cos(roll)},
+           plane_.height_m + kind_.tracks.below_m * cos_pitch * portable::cos(roll)},
           rotation_from(attitude)};
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "host_sim/core/rotation.h"
 #include "host_sim/physics/vehicle/drive_shaft.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/environment.h"
@@ -55,7 +56,7 @@ class StandInRobot final : public RobotView, public VehicleState {
   void push(const Eigen::Vector2d& at, const Eigen::Vector2d& force);
   Eigen::Vector2d middle() const { return {pose_.x_m, pose_.y_m}; }
   /// To the world's axes.
-  Eigen::Rotation2Dd heading() const { return Eigen::Rotation2Dd(pose_.heading_rad); }
+  Eigen::Matrix2d heading() const { return rotation_by(pose_.heading_rad); }
   const Eigen::AlignedBox2d& outline() const { return kind_.outline; }
   std::array<Eigen::Vector2d, 4> corners() const;
   /// Of the body there, m/s.

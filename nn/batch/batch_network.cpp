@@ -27,9 +27,13 @@ constexpr std::size_t kFewRobots = 3;
 
 constexpr std::size_t kMaxBlockRobots = kAvx512Robots;
 
-Block block_of(BatchKernel kernel) {
-  return kernel == BatchKernel::kAvx512 ? Block{run_block_avx512, run_one_avx512, kAvx512Robots}
-                                        : Block{run_block_avx2, run_one_avx2, kAvx2Robots};
+/// The baseline computes one robot after the other, by nn/infer.
+Block block_of([[maybe_unused]] InstructionSet set) {
+#ifdef __x86_64__
+  if (set == InstructionSet::kAvx512) return {run_block_avx512, run_one_avx512, kAvx512Robots};
+  if (set == InstructionSet::kAvx2) return {run_block_avx2, run_one_avx2, kAvx2Robots};
+#endif
+  return {nullptr, nullptr, 1};
 }
 
 std::int32_t weight_pair(const IntegerLayer& layer, std::size_t node, std::size_t input) {
@@ -83,44 +87,26 @@ LaneLayer in_lanes(const IntegerLayer& layer, std::size_t lanes) {
 
 }  // namespace
 
-const char* batch_kernel_name(BatchKernel kernel) {
-  switch (kernel) {
-    case BatchKernel::kAvx512:
-      return "AVX-512";
-    case BatchKernel::kAvx2:
-      return "AVX2";
-    default:
-      return "scalar";
-  }
-}
-
-std::vector<BatchKernel> batch_kernels() {
-  std::vector<BatchKernel> kernels = {BatchKernel::kScalar};
-  if (__builtin_cpu_supports("avx2")) kernels.push_back(BatchKernel::kAvx2);
-  if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vnni")) {
-    kernels.push_back(BatchKernel::kAvx512);
-  }
-  return kernels;
-}
-
 BatchNetwork::BatchNetwork(const IntegerNetwork& network)
-    : BatchNetwork(network, batch_kernels().back()) {}
+    : BatchNetwork(network, instruction_sets().back()) {}
 
-BatchNetwork::BatchNetwork(const IntegerNetwork& network, BatchKernel kernel)
-    : network_(network), kernel_(kernel) {
-  const std::vector<BatchKernel> present = batch_kernels();
-  if (std::find(present.begin(), present.end(), kernel) == present.end()) {
-    throw InputError(std::string("network: this processor has no ") + batch_kernel_name(kernel));
+BatchNetwork::BatchNetwork(const IntegerNetwork& network, InstructionSet set)
+    : network_(network), set_(set) {
+  const std::vector<InstructionSet>& present = instruction_sets();
+  if (std::find(present.begin(), present.end(), set) == present.end()) {
+    throw InputError(std::string("network: this processor has no ") + name_of(set));
   }
   for (const IntegerLayer& layer : network.layers()) {
+    if (set == InstructionSet::kBaseline) break;
     layers_.push_back(in_pairs(layer));
-    lane_layers_.push_back(in_lanes(layer, block_of(kernel).robots));
+    lane_layers_.push_back(in_lanes(layer, block_of(set).robots));
   }
 }
 
 void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t robots,
                        std::size_t stride) const {
-  if (kernel_ == BatchKernel::kScalar) {
+  const Block block = block_of(set_);
+  if (block.run == nullptr) {
     std::array<std::int16_t, kMaxInputs> from;
     std::array<std::int16_t, kMaxInputs> to;
     for (std::size_t robot = 0; robot < robots; ++robot) {
@@ -130,7 +116,6 @@ void BatchNetwork::run(const std::int16_t* in, std::int16_t* out, std::size_t ro
     }
     return;
   }
-  const Block block = block_of(kernel_);
   std::size_t robot = 0;
   for (; robot + block.robots <= robots; robot += block.robots) {
     block.run(layers_.data(), layers_.size(), in + robot, out + robot, stride);

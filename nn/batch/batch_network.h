@@ -6,28 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/core/lanes/instruction_set.h"
 #include "nn/batch/block_kernel.h"
 #include "nn/model/integer_network.h"
 
 namespace screed::nn {
 
-/// How a block of robots is computed; all give the same bits.
-enum class BatchKernel : std::uint8_t { kScalar, kAvx2, kAvx512 };
-
-const char* batch_kernel_name(BatchKernel kernel);
-/// The kernels that this processor has, slowest first.
-std::vector<BatchKernel> batch_kernels();
-
 class BatchNetwork {
  public:
-  /// Takes the fastest kernel of this processor.
+  /// With the best instructions of this processor; all give the same bits.
   explicit BatchNetwork(const IntegerNetwork& network);
-  /// Throws InputError when this processor does not have the kernel.
-  BatchNetwork(const IntegerNetwork& network, BatchKernel kernel);
+  /// Throws InputError when this processor does not have them.
+  BatchNetwork(const IntegerNetwork& network, InstructionSet set);
 
   std::size_t inputs() const { return network_.inputs(); }
   std::size_t outputs() const { return network_.outputs(); }
-  BatchKernel kernel() const { return kernel_; }
+  InstructionSet instructions() const { return set_; }
 
   /// Robot r's input i is in[i * stride + r], its output j becomes out[j * stride + r], for r below
   /// robots, which is at most stride. in and out must not overlap. Allocates nothing.
@@ -35,7 +29,7 @@ class BatchNetwork {
 
  private:
   IntegerNetwork network_;
-  BatchKernel kernel_;
+  InstructionSet set_;
   std::vector<BlockLayer> layers_;
   std::vector<LaneLayer> lane_layers_;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 
 namespace screed::nn {
@@ -35,7 +36,7 @@ constexpr Feature kFeatures[] = {
     {"roll", "rad", "left side up positive", 1, [](const FrameWindow& w) { return w.now().roll; }},
     // and outputs
     {"v", "m/frame", "distance in the plane, never negative", 1,
-     [](const FrameWindow& w) { return std::hypot(w.now().delta_x, w.now().delta_y); }},
+     [](const FrameWindow& w) { return portable::hypot(w.now().delta_x, w.now().delta_y); }},
     {"delta_theta", "rad/frame", "change of heading", 1,
      [](const FrameWindow& w) { return w.now().delta_theta; }},
     {"delta_x", "m/frame", "displacement to the east", 1,
@@ -48,13 +49,13 @@ constexpr Feature kFeatures[] = {
      [](const FrameWindow& w) { return w.now().angular; }},
     {"forward", "m/frame", "displacement along the heading", 1,
      [](const FrameWindow& w) {
-       const double yaw = middle_yaw(w.now());
-       return w.now().delta_x * std::cos(yaw) + w.now().delta_y * std::sin(yaw);
+       const auto [sine, cosine] = portable::sine_cosine(middle_yaw(w.now()));
+       return w.now().delta_x * cosine + w.now().delta_y * sine;
      }},
     {"sideways", "m/frame", "displacement to the left of the heading", 1,
      [](const FrameWindow& w) {
-       const double yaw = middle_yaw(w.now());
-       return w.now().delta_y * std::cos(yaw) - w.now().delta_x * std::sin(yaw);
+       const auto [sine, cosine] = portable::sine_cosine(middle_yaw(w.now()));
+       return w.now().delta_y * cosine - w.now().delta_x * sine;
      }},
     // Products and absolute values, to be formed before a stage smooths: a mean over several
     // headings on a
@@ -64,19 +65,19 @@ constexpr Feature kFeatures[] = {
     {"spin", "rad/s", "absolute value of the wheels' difference, as commanded", 1,
      [](const FrameWindow& w) { return std::abs(wheel_difference(w.now())); }},
     {"climb", "rad/s", "slope along the heading times the wheels' mean: > 0 uphill", 1,
-     [](const FrameWindow& w) { return std::sin(w.now().pitch) * mean_wheel(w.now()); }},
+     [](const FrameWindow& w) { return portable::sin(w.now().pitch) * mean_wheel(w.now()); }},
     {"lean", "rad/s", "slope across times the wheels' difference", 1,
-     [](const FrameWindow& w) { return std::sin(w.now().roll) * wheel_difference(w.now()); }},
+     [](const FrameWindow& w) { return portable::sin(w.now().roll) * wheel_difference(w.now()); }},
     {"slide", "rad/s", "slope across times the wheels' mean", 1,
-     [](const FrameWindow& w) { return std::sin(w.now().roll) * mean_wheel(w.now()); }},
+     [](const FrameWindow& w) { return portable::sin(w.now().roll) * mean_wheel(w.now()); }},
     {"pivot", "rad/s", "slope along the heading times the wheels' difference", 1,
-     [](const FrameWindow& w) { return std::sin(w.now().pitch) * wheel_difference(w.now()); }},
+     [](const FrameWindow& w) { return portable::sin(w.now().pitch) * wheel_difference(w.now()); }},
     {"tilt", "1", "sine of the slope, whatever its direction", 1,
      [](const FrameWindow& w) {
-       return std::hypot(std::sin(w.now().pitch), std::sin(w.now().roll));
+       return portable::hypot(portable::sin(w.now().pitch), portable::sin(w.now().roll));
      }},
     {"bank", "1", "absolute value of the sine of the roll", 1,
-     [](const FrameWindow& w) { return std::abs(std::sin(w.now().roll)); }},
+     [](const FrameWindow& w) { return std::abs(portable::sin(w.now().roll)); }},
     // Gyro rates; not available in the surrogate world.
     {"yaw_rate", "rad/s", "absolute value, about the chassis' upward axis", 1,
      [](const FrameWindow& w) { return std::abs(w.now().rate_z); }},
@@ -89,7 +90,7 @@ constexpr Feature kFeatures[] = {
     {"whirl", "rad2/s2", "square of yaw_rate", 1,
      [](const FrameWindow& w) { return w.now().rate_z * w.now().rate_z; }},
     {"banked_turn", "rad/s", "bank times yaw_rate", 1,
-     [](const FrameWindow& w) { return std::abs(std::sin(w.now().roll) * w.now().rate_z); }},
+     [](const FrameWindow& w) { return std::abs(portable::sin(w.now().roll) * w.now().rate_z); }},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/session/session_reader.h"
@@ -79,10 +80,9 @@ MotionSeries read_motion_series(const std::filesystem::path& session_folder) {
         if (series.empty()) heading_rad = before->yaw;
         const Support support =
             support_on(MapHeights(session.heights_after(tick)), geometry, before->x, before->y,
-                       std::cos(before->yaw), std::sin(before->yaw));
+                       portable::cos(before->yaw), portable::sin(before->yaw));
         const double middle = heading_rad + 0.5 * now.delta_theta;
-        const double c = std::cos(middle);
-        const double s = std::sin(middle);
+        const auto [s, c] = portable::sine_cosine(middle);
         const FrameMotion motion{now.delta_x * c + now.delta_y * s,
                                  now.delta_y * c - now.delta_x * s, now.delta_theta};
         heading_rad += now.delta_theta;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/world/world_setup.h"
 #include "schema/values.h"
@@ -39,13 +40,12 @@ RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
   double distance_m = 0.0;
   for (const SimFrame& frame : frames) {
     const double middle = pose.heading_rad + 0.5 * frame.delta_theta;
-    const double c = std::cos(middle);
-    const double s = std::sin(middle);
+    const auto [s, c] = portable::sine_cosine(middle);
     motions.push_back({frame.delta_x * c + frame.delta_y * s, frame.delta_y * c - frame.delta_x * s,
                        frame.delta_theta});
     pose.move(motions.back());
     poses.push_back(pose);
-    distance_m += std::hypot(frame.delta_x, frame.delta_y);
+    distance_m += portable::hypot(frame.delta_x, frame.delta_y);
     distances.push_back(distance_m);
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 
 namespace screed::nn {
 namespace {}  // namespace
@@ -36,7 +37,7 @@ void RolloutChecker::add_row(std::uint64_t row, const PlanarPose& pose) {
     const PlanarPose& real = recording_.poses[row];
     rollout_.checks.at(next_) = {
         true, straight_,
-        std::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m) / kRolloutDistances_m.at(next_),
+        portable::hypot(pose.x_m - real.x_m, pose.y_m - real.y_m) / kRolloutDistances_m.at(next_),
         std::abs(pose.heading_rad - real.heading_rad)};
     ++next_;
   }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed::nn {
 
 /// Where the tracks stand, from the robot's origin; the Rover 5's.
@@ -34,8 +36,8 @@ Support support_on(const Height& height, const SupportGeometry& geometry, double
   const double along = (front_left + front_right) - (rear_left + rear_right);
   const double across = (front_left + rear_left) - (front_right + rear_right);
   return {0.25 * ((front_left + rear_left) + (front_right + rear_right)),
-          std::atan(along / (4.0 * geometry.half_length_m)),
-          std::atan(across / (4.0 * geometry.half_tread_m))};
+          portable::atan(along / (4.0 * geometry.half_length_m)),
+          portable::atan(across / (4.0 * geometry.half_tread_m))};
 }
 
 }  // namespace screed::nn

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 
 namespace screed::nn {
@@ -56,7 +57,7 @@ Surrogate::Surrogate(const TrackKinematics& kinematics, const SupportGeometry& g
               std::vector<double>(robots)} {}
 
 Surrogate::Surrogate(const Model& model, const SupportGeometry& geometry, std::size_t robots,
-                     Arithmetic arithmetic, std::optional<BatchKernel> kernel)
+                     Arithmetic arithmetic, std::optional<InstructionSet> kernel)
     : Surrogate(TrackKinematics{}, geometry, robots) {
   kinematics_.reset();
   arithmetic_ = arithmetic;
@@ -151,8 +152,7 @@ void Surrogate::set_pose(std::size_t robot, const PlanarPose& pose, const FrameM
 
 void Surrogate::displace(std::size_t robot, double x_m, double y_m) {
   const double middle = heading_[robot] - 0.5 * row(MotionSignal::kTurn1)[robot];
-  const double c = std::cos(middle);
-  const double s = std::sin(middle);
+  const auto [s, c] = portable::sine_cosine(middle);
   x_[robot] += x_m;
   y_[robot] += y_m;
   row(MotionSignal::kForward1)[robot] += c * x_m + s * y_m;
@@ -163,8 +163,9 @@ void Surrogate::update_slope(const HeightField& ground) {
   double* pitch = row(MotionSignal::kPitch);
   double* roll = row(MotionSignal::kRoll);
   for (std::size_t i = 0; i < robots_; ++i) {
-    cos_[i] = std::cos(heading_[i]);
-    sin_[i] = std::sin(heading_[i]);
+    const auto [sine, cosine] = portable::sine_cosine(heading_[i]);
+    cos_[i] = cosine;
+    sin_[i] = sine;
     const Support support = support_at(ground, geometry_, x_[i], y_[i], cos_[i], sin_[i]);
     pitch[i] = support.pitch;
     roll[i] = support.roll;
@@ -288,8 +289,8 @@ void Surrogate::update_products() {
   for (std::size_t i = 0; i < robots_; ++i) {
     const double mean = 0.5 * (left[i] + right[i]);
     const double difference = right[i] - left[i];
-    const double along = std::sin(row(MotionSignal::kPitch)[i]);
-    const double across = std::sin(row(MotionSignal::kRoll)[i]);
+    const double along = portable::sin(row(MotionSignal::kPitch)[i]);
+    const double across = portable::sin(row(MotionSignal::kRoll)[i]);
     row(MotionSignal::kSpeed)[i] = std::abs(mean);
     row(MotionSignal::kSpin)[i] = std::abs(difference);
     row(MotionSignal::kClimb)[i] = along * mean;

@@ -41,7 +41,7 @@ class Surrogate {
   /// in floating point is asked for and not in the model.
   Surrogate(const Model& model, const SupportGeometry& geometry, std::size_t robots,
             Arithmetic arithmetic = Arithmetic::kInteger,
-            std::optional<BatchKernel> kernel = std::nullopt);
+            std::optional<InstructionSet> kernel = std::nullopt);
   /// No network: these constants move the robots.
   Surrogate(const TrackKinematics& kinematics, const SupportGeometry& geometry, std::size_t robots);
 

@@ -7,8 +7,10 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
+#include "host_sim/core/rotation.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/physics/world/wall_clearance.h"
@@ -78,8 +80,7 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
 void SurrogatePlant::end_stride() {
   constexpr double kStill = 1e-6;  // m, rad
   const PlanarPose pose = robot_.pose(0);
-  const double c = std::cos(pose.heading_rad);
-  const double s = std::sin(pose.heading_rad);
+  const auto [s, c] = portable::sine_cosine(pose.heading_rad);
   const double dx = pose.x_m - stride_begin_.x_m;
   const double dy = pose.y_m - stride_begin_.y_m;
   Stride stride;
@@ -120,8 +121,7 @@ void SurrogatePlant::set_state(const DrivingState& state) {
   turn_to({support_.roll, support_.pitch, state.pose.heading_rad});
   now_.place = {state.pose.x_m, state.pose.y_m, support_.height_m + standing_height_m_};
   before_ = now_;
-  const double c = std::cos(state.pose.heading_rad);
-  const double s = std::sin(state.pose.heading_rad);
+  const auto [s, c] = portable::sine_cosine(state.pose.heading_rad);
   velocity_ << (state.last.forward_m * c - state.last.sideways_m * s) / kTick_s,
       (state.last.forward_m * s + state.last.sideways_m * c) / kTick_s, 0.0;
   imu_velocity_ = velocity_;
@@ -139,10 +139,11 @@ std::array<double, 2> SurrogatePlant::resistance() const {
   const double left = vehicle_.track_speed_m_per_s(kLeft);
   const double right = vehicle_.track_speed_m_per_s(kRight);
   const double turn = (right - left) / tread_m_;
-  const double against_turn = kTurningShare * std::tanh(turn / kTurningRate_rad_per_s);
+  const double against_turn = kTurningShare * portable::tanh(turn / kTurningRate_rad_per_s);
   const auto torque = [&](double speed, double turning) {
     const double force =
-        weight * (sin_pitch_ + kRollingShare * std::tanh(speed / kRollingSpeed_m_per_s) + turning);
+        weight *
+        (sin_pitch_ + kRollingShare * portable::tanh(speed / kRollingSpeed_m_per_s) + turning);
     return force * geometry_.wheel_radius_m;
   };
   return {torque(left, -against_turn), torque(right, against_turn)};
@@ -167,14 +168,14 @@ void SurrogatePlant::step(const std::array<double, 2>& duty_ratio) {
 
 void SurrogatePlant::find_support() {
   const PlanarPose pose = robot_.pose(0);
-  support_ = support_at(ground_, geometry_, pose.x_m, pose.y_m, std::cos(pose.heading_rad),
-                        std::sin(pose.heading_rad));
+  const auto [s, c] = portable::sine_cosine(pose.heading_rad);
+  support_ = support_at(ground_, geometry_, pose.x_m, pose.y_m, c, s);
 }
 
 void SurrogatePlant::turn_to(const Attitude& attitude) {
   now_.attitude = attitude;
   now_.rotation = rotation_from(attitude);
-  sin_pitch_ = std::sin(attitude.pitch);
+  sin_pitch_ = portable::sin(attitude.pitch);
 }
 
 void SurrogatePlant::set_at_rest() {
@@ -187,7 +188,7 @@ void SurrogatePlant::set_at_rest() {
 
 Eigen::AlignedBox2d SurrogatePlant::outline() const {
   const PlanarPose pose = robot_.pose(0);
-  const Eigen::Rotation2Dd turned(pose.heading_rad);
+  const Eigen::Matrix2d turned = rotation_by(pose.heading_rad);
   Eigen::AlignedBox2d box;
   for (const auto corner : {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
                             Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
@@ -227,8 +228,7 @@ void SurrogatePlant::end_frame() {
 
   const Eigen::Matrix3d& from = before_.rotation;
   const Eigen::Matrix3d& to = now_.rotation;
-  const Eigen::AngleAxisd turned(Eigen::Matrix3d(from.transpose() * to));
-  rate_body_ = turned.angle() / kTick_s * turned.axis();
+  rate_body_ = rotation_vector(Eigen::Quaterniond(from.transpose() * to)) / kTick_s;
   velocity_ = (now_.place - before_.place) / kTick_s;
   imu_velocity_before_ = imu_velocity_;
   imu_velocity_ = velocity_ + (to - from) * imu_position_ / kTick_s;

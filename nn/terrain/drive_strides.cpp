@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/experiment/run_setup.h"
@@ -46,8 +47,9 @@ DriveStrides::DriveStrides(const std::filesystem::path& run) : session_(session_
     stride.x_m = end.x;
     stride.y_m = end.y;
     stride.yaw_rad = end.yaw;
-    stride.forward_m = std::cos(end.yaw) * dx + std::sin(end.yaw) * dy;
-    stride.sideways_m = -std::sin(end.yaw) * dx + std::cos(end.yaw) * dy;
+    const auto [sine, cosine] = portable::sine_cosine(end.yaw);
+    stride.forward_m = cosine * dx + sine * dy;
+    stride.sideways_m = -sine * dx + cosine * dy;
     stride.v_left = end.v_left;
     stride.v_right = end.v_right;
     stride.pitch = end.pitch;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "host_sim/core/atomic_file.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/core/random.h"
@@ -88,8 +89,8 @@ std::array<double, 2> FluxNetwork::Patch::cell(int ix, int iy) const {
 
 FluxNetwork::Patch FluxNetwork::patch_under(const WheelPosition& wheel, const Stride& stride) {
   Patch patch{};
-  patch.cos_yaw = std::cos(stride.yaw_rad);
-  patch.sin_yaw = std::sin(stride.yaw_rad);
+  patch.cos_yaw = portable::cos(stride.yaw_rad);
+  patch.sin_yaw = portable::sin(stride.yaw_rad);
   patch.x_m = stride.x_m + patch.cos_yaw * wheel.x - patch.sin_yaw * wheel.y;
   patch.y_m = stride.y_m + patch.sin_yaw * wheel.x + patch.cos_yaw * wheel.y;
   patch.mirrored = wheel.y < 0.0;
@@ -112,8 +113,8 @@ FluxNetwork::WheelSupport FluxNetwork::wheel_support(const HeightField& ground,
         wheel_support.height_m[i] += ground.at(x, y).height / 9.0;
       }
     }
-    over[i] = wheel_support.height_m[i] - wheels[i].x * std::tan(stride.pitch) -
-              wheels[i].y * std::tan(stride.roll);
+    over[i] = wheel_support.height_m[i] - wheels[i].x * portable::tan(stride.pitch) -
+              wheels[i].y * portable::tan(stride.roll);
   }
   std::array<double, 4> sorted = over;
   std::sort(sorted.begin(), sorted.end());
@@ -125,8 +126,8 @@ FluxNetwork::WheelSupport FluxNetwork::wheel_support(const HeightField& ground,
 void FluxNetwork::observe(const HeightField& ground, const Patch& patch, const WheelPosition& wheel,
                           double height_m, double support_m, const Stride& stride,
                           std::span<float> observation) {
-  const double slope_x = std::tan(stride.pitch);
-  const double slope_y = std::tan(stride.roll);
+  const double slope_x = portable::tan(stride.pitch);
+  const double slope_y = portable::tan(stride.roll);
   const double side = patch.mirrored ? -1.0 : 1.0;
   const auto bounded = [](double value) {
     return std::clamp(static_cast<float>(value), -kMaxAbsInput, kMaxAbsInput);
@@ -184,7 +185,7 @@ void FluxNetwork::evaluate(std::span<const float> observation, std::span<float> 
         const float* row = &first_[node * (kInputs + 1)];
         float sum = row[kInputs];
         for (std::size_t i = 0; i < kInputs; ++i) sum += row[i] * inputs[i];
-        const float active = std::tanh(sum);
+        const float active = static_cast<float>(portable::tanh(sum));
         forward += second_[node] * active;
         left += second_[hidden_ + 1 + node] * active;
       }

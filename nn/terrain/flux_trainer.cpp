@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/random.h"
 #include "nn/training/parameter_update.h"
 
@@ -76,7 +77,7 @@ void train(FluxNetwork& network, const FluxExamples& examples, std::size_t epoch
       std::swap(order[i - 1], order[random.next() % i]);
     }
     const double rate =
-        kFluxRate * std::pow(0.1, static_cast<double>(epoch) / static_cast<double>(epochs));
+        kFluxRate * portable::pow(0.1, static_cast<double>(epoch) / static_cast<double>(epochs));
     double squares = 0.0;
     std::size_t batches = 0;
     for (std::size_t at = 0; at + kFluxBatch <= order.size(); at += kFluxBatch, ++batches) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed::nn {
 namespace {
 
@@ -88,8 +90,7 @@ RutCount count_ruts(const HeightField& before, const HeightField& after,
     if (at_m < kEnds_m || at_m > length - kEnds_m || std::abs(stride.turn_rad) > kMaxTurn_rad) {
       continue;
     }
-    const double cosine = std::cos(stride.yaw_rad);
-    const double sine = std::sin(stride.yaw_rad);
+    const auto [sine, cosine] = portable::sine_cosine(stride.yaw_rad);
     std::vector<double> section;
     const int half = static_cast<int>(kHalfWidth_m / kStep_m);
     for (int i = -half; i <= half; ++i) {

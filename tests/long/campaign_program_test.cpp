@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host_sim/core/json.h"
+#include "host_sim/engine/result_store.h"
 #include "tests/sitl/background.h"
 #include "tests/sitl/program.h"
 
@@ -276,6 +277,29 @@ TEST_F(Campaign, ADamagedResultIsRunAgain) {
   EXPECT_EQ(read(root_ / "out/study/runs.csv") + read(root_ / "out/study/curves.csv") +
                 read(root_ / "out/study/campaign.h5"),
             bytes);
+}
+
+TEST_F(Campaign, RunsOfTwoArithmeticsAreNamed) {
+  write_campaign("seeds = 1..2\n");
+  run_json("run study.ini --workers 1");
+  EXPECT_EQ(run("campaign merge out/study").err, "");
+  const fs::path folder = root_ / "out/study/results";
+  std::vector<StoredResult> results;
+  const ResultIndex index(folder);
+  for (const auto& [id, place] : index.places()) results.push_back(index.read(id));
+  fs::remove_all(folder);
+  std::string& provenance = results.front().provenance;
+  const std::string ours = R"("arithmetic":"portable 1")";
+  ASSERT_NE(provenance.find(ours), std::string::npos) << provenance;
+  provenance.replace(provenance.find(ours), ours.size(), R"("arithmetic":"other")");
+  {
+    ResultWriter writer(folder);
+    for (const StoredResult& result : results) writer.append(result);
+  }
+  const Result merge = run("campaign merge out/study");
+  EXPECT_EQ(merge.exit_code, 0);
+  EXPECT_EQ(lines(merge.err), 1U) << merge.err;
+  EXPECT_NE(merge.err.find("1 with 'other', 1 with 'portable 1'"), std::string::npos) << merge.err;
 }
 
 TEST_F(Campaign, AFullDiskLosesNothingFinished) {

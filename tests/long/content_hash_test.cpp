@@ -18,14 +18,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "6bc3c3a57a401eac108d267b19f14690"},
-    {"soft_bed", "--duration 6", "ca6cc6e6aff80474a4a917cd19620a9b"},
-    {"soft_bed", "--hal surrogate --duration 10", "165c9b6cbff069f6905364163a94cfae"},
+    {"first_drive", "--duration 60", "75e4a62b6b92d553de41d58d57bf1251"},
+    {"soft_bed", "--duration 6", "4105976e9374cd1cc5d84bb5822a3a67"},
+    {"soft_bed", "--hal surrogate --duration 10", "9f24d52de867b6afbbbd0466a4134732"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "5cf5b8290c08b01b7420f05de835b2c2"},
-    {"gravel_bed", "--duration 1", "1bd120185594137da9caf4893e8d0bbd"},
+     "c0e427fd6981e897599fdc32b6823410"},
+    {"gravel_bed", "--duration 1", "62bdea03487b1ea040539b943e0c168f"},
 }};
 
 class ContentHash : public Program {};
@@ -48,7 +48,7 @@ TEST_F(ContentHash, OfABedUnderTheRobotIsTheSame) {
       "--left 0.1 --right 0.2 --drag-depth 0.001");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(Json::parse(result.out)["heights_hash"].get<std::string>(),
-            "2af6c25eb145905ad11c001f5fbe1582");
+            "c6b2c753aa7a1978966c8b88fe7d436b");
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
   const auto physics = strokes["physics"]["mean"].get<double>();
   const auto stand_in = strokes["stand_in"]["mean"].get<double>();
   EXPECT_LT(physics, -0.03);
-  EXPECT_GT(stand_in / physics, 0.75);
+  // 0.76 of it over eight beds; of two beds, 0.1 more or less.
+  EXPECT_GT(stand_in / physics, 0.6);
   EXPECT_LT(stand_in / physics, 1.25);
   EXPECT_NEAR(ranking["entries"][0]["stand_in"]["mean"].get<double>(), 0.0, 1e-3);
 }
@@ -140,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "ad3adfd72a1c0c2e609838f5a6c9871c", "63437a543cdae49e33f8b427540086e1",
-                "f9213759bde69688720fee0e9b7b9e5d", "501b3de3de7ea67f24a2fc439ffc0a9a",
-                "bd3e3b1e228a9d56ca338f9b457d8b2c", "9033c64d51993e6ca47361de3fca4e32"}));
+                "8c2b40a1aa55b4eb348cfafcf55a67d1", "f4b4f6adf281beca16f405cc4b194d53",
+                "ba2f49fb3fc01217a1e85dbe2941c262", "dac55f3847d70074f906e026ef926e60",
+                "5349537cbcf4175b40dc496b137b955e", "e08d072ad4357012f2bdfdba7c846166"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

@@ -23,7 +23,9 @@ LEFT_OUT_no := $(SIMAVR_SOURCES)
 ifeq ($(LEFT_OUT_$(MCU)),)
 $(error MCU=$(MCU): yes or no)
 endif
-HOST_SOURCES := $(filter-out $(CORE_SOURCES) $(LEFT_OUT_$(MCU)),$(call sources,hal/host host_sim nn))
+# Kernels in instructions of x86 alone; other processors compute with the baseline's, which have the same bits.
+LEFT_OUT_HERE := $(if $(filter x86_64,$(MACHINE)),,%avx2.cpp %avx512.cpp)
+HOST_SOURCES := $(filter-out $(CORE_SOURCES) $(LEFT_OUT_$(MCU)) $(LEFT_OUT_HERE),$(call sources,hal/host host_sim nn))
 # What every program's command line is read with; the smaller programs link it without the library.
 COMMAND_LINE_SOURCES := $(call sources,tools/command_line)
 PROGRAM_SOURCES := $(filter-out tools/screed/main.cpp,$(call sources,tools/screed))
@@ -40,8 +42,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wno
             -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough -Werror
 # GCC collects what it no longer needs only when it holds half a gigabyte: collecting is a tenth of its time.
 GCC_HEAP = $(if $(findstring clang,$(CXX)),,--param=ggc-min-heapsize=524288)
-# -ffp-contract=off: the same bits with and without fused multiply-add.
-COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -fno-math-errno -I. -I$(BUILD_ROOT)/generated
+# The same bits on every processor: no fused multiply-add, and Eigen adds in no order of its vector code.
+COMMON_FLAGS = $(OPTIMISE_$(BUILD)) $(WARNINGS) -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. -I$(BUILD_ROOT)/generated
 
 PACKAGES := eigen3 ode urdfdom tinyxml assimp hdf5 libpng stb cairo inih CLI11 nlohmann_json libxxhash ncursesw
 TEST_PACKAGES := gtest_main mpfr
@@ -55,16 +57,23 @@ package_flags = pkg-config --cflags $(1) | sed 's/-I/-idirafter /g; s/-pthread//
 # Writes standard input to the target where it differs from what is there.
 WRITE_CHANGED = cat > $@.new && { cmp -s $@.new $@ && rm $@.new || mv $@.new $@ ; }
 
-$(B)/host.flags: FORCE
+$(B)/host.flags: FORCE | $(SYSROOT)
 	@mkdir -p $(@D)
 	@{ echo "-std=c++20 $(GCC_HEAP) $(COMMON_FLAGS) -I$(B)/generated" ; \
 	   $(call package_flags,$(PACKAGES) $(TEST_PACKAGES) $(BENCH_PACKAGES)) ; } | $(WRITE_CHANGED)
 $(B)/firmware.flags: FORCE
 	@mkdir -p $(@D)
 	@echo "-std=c++14 $(COMMON_FLAGS)" | $(WRITE_CHANGED)
-$(B)/link.flags: FORCE
+ODE_FOLDER := $(BUILD_ROOT)/ode_$(MACHINE)
+# Elsewhere than on x86-64 Debian's ODE has fused multiply-add.
+ODE := $(if $(filter x86_64,$(MACHINE)),,$(ODE_FOLDER)/lib/libode.a)
+$(ODE_FOLDER)/lib/libode.a: tools/arm64/debian.sh | $(SYSROOT)
+	@echo "  GET  source of ODE"
+	@tools/arm64/debian.sh ode $(ODE_FOLDER) $(MACHINE)-linux-gnu
+	@touch $@
+$(B)/link.flags: FORCE | $(ODE)
 	@mkdir -p $(@D)
-	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
+	@{ echo "$(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $(if $(ODE),-L$(dir $(ODE)))" ; pkg-config --libs $(PACKAGES) $(LINK_PACKAGES) ; \
 	   echo "-lpagmo -lboost_serialization -ltbb $(if $(filter yes,$(MCU)),-lsimavr)" ; } | $(WRITE_CHANGED)
 
 # Libraries whose headers are known to single files.
@@ -76,6 +85,10 @@ $(TINY_DNN_OBJECTS): | $(B)/tiny_dnn/third_party/stb
 $(B)/tiny_dnn/third_party/stb:
 	@mkdir -p $(@D)
 	@ln -sfn "$$(pkg-config --variable=includedir stb)" $@
+# Large matrices on which no world's bits depend: Eigen with its vector code, by another name, since a linker takes one of two that are
+# called alike.
+VECTOR_SOURCES := nn/training/predict.cpp nn/terrain/flux_trainer.cpp nn/terrain/window_network.cpp tools/bench/speed/network_bench.cpp
+$(call objects,$(VECTOR_SOURCES)): EXTRA_FLAGS += -UEIGEN_DONT_VECTORIZE -DEigen=EigenVectorised
 RSVG_FLAGS = $(shell $(call package_flags,librsvg-2.0))
 RSVG_SOURCES := host_sim/render/chart/svg_png.cpp
 $(call objects,$(RSVG_SOURCES)): EXTRA_FLAGS = $(RSVG_FLAGS)
@@ -156,7 +169,7 @@ $(B)/headers/test.h.gch: tools/build/headers/host.h
 # their own.
 ALONE := tools/command_line/% $(addsuffix /%,host_sim/physics/kernels host_sim/physics/particles nn/batch) \
          $(shell sed -nE 's/^((host_sim|nn)[^ ]*\.cpp) .*/\1/p' tools/mutants/targets.txt) \
-         $(TINY_DNN_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
+         $(TINY_DNN_SOURCES) $(VECTOR_SOURCES) $(RSVG_SOURCES) $(SDL_SOURCES)
 # Sources a group, at most. Larger ones save less where the compiler optimises, and who changes one source waits for all of its group.
 GROUP_host := 8
 GROUP_cold := 16
@@ -200,6 +213,7 @@ $(B)/%.o: %.cpp $(B)/host.flags | $(GENERATED)
 define link
 	@echo "  LINK $@"
 	@$(CXX) $(filter %.o %.a,$^) -Wl,--as-needed @$(B)/link.flags $(1) -o $@
+	$(call runnable,$@)
 endef
 
 LIBRARY_OBJECTS := $(call objects,$(CORE_SOURCES)) $(HOT_OBJECTS) $(COLD_OBJECTS)

@@ -2,29 +2,18 @@
 // for tests. All give the same bits: they round each operation by itself and sum in one order.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace screed {
 
+/// kBaseline: what every processor has. kAvx512: with VNNI.
 enum class InstructionSet : uint8_t { kBaseline, kAvx2, kAvx512 };
 
-/// Those that this processor has, the best one last.
-inline std::vector<InstructionSet> instruction_sets() {
-  std::vector<InstructionSet> sets = {InstructionSet::kBaseline};
-  if (__builtin_cpu_supports("avx2")) sets.push_back(InstructionSet::kAvx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl")) {
-    sets.push_back(InstructionSet::kAvx512);
-  }
-  return sets;
-}
+/// Those that this processor has, the best one last; not beyond the one that the environment's
+/// SCREED_INSTRUCTIONS names. Throws InputError when it names none.
+const std::vector<InstructionSet>& instruction_sets();
 
-constexpr const char* name_of(InstructionSet set) {
-  constexpr std::array<const char*, 3> kNames = {"baseline", "AVX2", "AVX-512"};
-  return kNames[static_cast<size_t>(set)];
-}
+const char* name_of(InstructionSet set);
 
 }  // namespace screed

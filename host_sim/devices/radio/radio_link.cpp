@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -18,14 +20,14 @@ double bit_error_rate(double snr) {
   double binomial = 16.0;  // C(16, k), here of k = 1
   for (int k = 2; k <= 16; ++k) {
     binomial = binomial * (17 - k) / k;
-    sum += (k % 2 == 0 ? 1.0 : -1.0) * binomial * std::exp(20.0 * snr * (1.0 / k - 1.0));
+    sum += (k % 2 == 0 ? 1.0 : -1.0) * binomial * portable::exp(20.0 * snr * (1.0 / k - 1.0));
   }
   return std::clamp(sum * 8.0 / 15.0 / 16.0, 0.0, 0.5);
 }
 
 double packet_loss(double snr, size_t bytes) {
   const auto bits = static_cast<double>(8 * (bytes + kFrameOverhead));
-  return 1.0 - std::pow(1.0 - bit_error_rate(snr), bits);
+  return 1.0 - portable::pow(1.0 - bit_error_rate(snr), bits);
 }
 
 /// The ratio at which half of the full packets are lost.
@@ -44,7 +46,7 @@ double snr_at_range() {
 double packet_loss_at(double distance_m, double range_m, size_t bytes) {
   static const double kSnrAtRange = snr_at_range();
   if (distance_m <= 0.0) return 0.0;
-  return packet_loss(kSnrAtRange * std::pow(range_m / distance_m, kPathLossExponent), bytes);
+  return packet_loss(kSnrAtRange * portable::pow(range_m / distance_m, kPathLossExponent), bytes);
 }
 
 void RadioLink::end_packet_after_pause(double now_us) {

@@ -7,12 +7,13 @@
 
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
+#include "host_sim/core/rotation.h"
 
 namespace screed {
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
@@ -29,11 +30,11 @@ constexpr double kTumblePitch = 360.0 / kTumble_s * kHalfTurn / 180.0;
 const std::array<Quaterniond, 8>& positions() {
   static const std::array<Quaterniond, 8> kHeld = {
       Quaterniond::Identity(),
-      Quaterniond(AngleAxisd(-kHalfTurn / 2.0, Vector3d::UnitY())),
-      Quaterniond(AngleAxisd(kHalfTurn / 2.0, Vector3d::UnitY())),
-      Quaterniond(AngleAxisd(kHalfTurn / 2.0, Vector3d::UnitX())),
-      Quaterniond(AngleAxisd(-kHalfTurn / 2.0, Vector3d::UnitX())),
-      Quaterniond(AngleAxisd(0.98 * kHalfTurn, Vector3d::UnitX())),
+      rotation_about(Vector3d::UnitY(), -kHalfTurn / 2.0),
+      rotation_about(Vector3d::UnitY(), kHalfTurn / 2.0),
+      rotation_about(Vector3d::UnitX(), kHalfTurn / 2.0),
+      rotation_about(Vector3d::UnitX(), -kHalfTurn / 2.0),
+      rotation_about(Vector3d::UnitX(), 0.98 * kHalfTurn),
       Quaterniond::Identity(),
       Quaterniond::Identity()};
   return kHeld;
@@ -46,15 +47,18 @@ Quaterniond attitude_at(double time_s) {
       time_s - kCalibrationMotionPeriod_s * std::floor(time_s / kCalibrationMotionPeriod_s);
   const double tumble_s = t - 8 * kStep_s;
   if (tumble_s >= 0.0) {
-    return Quaterniond(AngleAxisd(kTumbleYaw * tumble_s, Vector3d::UnitZ()) *
-                       AngleAxisd(kTumblePitch * tumble_s, Vector3d::UnitY()));
+    return rotation_about(Vector3d::UnitZ(), kTumbleYaw * tumble_s) *
+           rotation_about(Vector3d::UnitY(), kTumblePitch * tumble_s);
   }
   const auto step = static_cast<size_t>(t / kStep_s);
   const double turning_s = t - static_cast<double>(step) * kStep_s - kHold_s;
   const Quaterniond& now = positions().at(step);
   if (turning_s <= 0.0) return now;
-  const double share = 0.5 - 0.5 * std::cos(kHalfTurn * turning_s / kTurn_s);
-  return now.slerp(share, positions().at(std::min<size_t>(step + 1, 7)));
+  const double share = 0.5 - 0.5 * portable::cos(kHalfTurn * turning_s / kTurn_s);
+  const Quaterniond& next = positions().at(std::min<size_t>(step + 1, 7));
+  const Vector3d turn = rotation_vector(now.conjugate() * next);
+  const double angle_rad = turn.norm();
+  return angle_rad == 0.0 ? now : now * rotation_about(turn / angle_rad, share * angle_rad);
 }
 
 }  // namespace
@@ -62,9 +66,8 @@ Quaterniond attitude_at(double time_s) {
 ImuTruth calibration_motion(double time_s) {
   const Quaterniond before = attitude_at(time_s - kTick_s);
   const Quaterniond after = attitude_at(time_s);
-  const AngleAxisd turn(before.conjugate() * after);
   ImuTruth truth;
-  truth.mean_rate_rad_per_s = turn.axis() * (turn.angle() / kTick_s);
+  truth.mean_rate_rad_per_s = rotation_vector(before.conjugate() * after) / kTick_s;
   truth.mean_specific_force = after.conjugate() * Vector3d(0.0, 0.0, kGravity_m_per_s2);
   truth.body_to_world = after.toRotationMatrix();
   truth.altitude_m = 0.5;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
@@ -59,7 +60,8 @@ ImuModel::ImuModel(uint64_t seed, const ImuErrors& errors)
 Eigen::Vector3d ImuModel::earth_field_gauss() {
   constexpr double kField_gauss = 0.52;
   constexpr double kInclination = 68.0 * std::numbers::pi / 180.0;
-  return {0.0, kField_gauss * std::cos(kInclination), -kField_gauss * std::sin(kInclination)};
+  return {0.0, kField_gauss * portable::cos(kInclination),
+          -kField_gauss * portable::sin(kInclination)};
 }
 
 Eigen::Vector3d ImuModel::gyro_dps(const ImuTruth& truth) {

@@ -2,6 +2,7 @@
 #include <immintrin.h>
 #include <math.h>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/kernel_sets.h"
 #include "host_sim/physics/kernels/kernels.h"
 

@@ -1,7 +1,7 @@
-// The kernels for every x86-64 processor.
-#include <immintrin.h>
+// The kernels for every processor.
 #include <math.h>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/kernel_sets.h"
 #include "host_sim/physics/kernels/kernels.h"
 

@@ -5,15 +5,11 @@
 
 namespace screed {
 
-const Kernels& kernels_for(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::kAvx512:
-      return avx512_kernels();
-    case InstructionSet::kAvx2:
-      return avx2_kernels();
-    case InstructionSet::kBaseline:
-      break;
-  }
+const Kernels& kernels_for([[maybe_unused]] InstructionSet set) {
+#ifdef __x86_64__
+  if (set == InstructionSet::kAvx512) return avx512_kernels();
+  if (set == InstructionSet::kAvx2) return avx2_kernels();
+#endif
   return baseline_kernels();
 }
 

@@ -2,15 +2,11 @@
 
 namespace screed {
 
-const BedFunctions& bed_functions(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::kAvx512:
-      return kAvx512BedFunctions;
-    case InstructionSet::kAvx2:
-      return kAvx2BedFunctions;
-    case InstructionSet::kBaseline:
-      break;
-  }
+const BedFunctions& bed_functions([[maybe_unused]] InstructionSet set) {
+#ifdef __x86_64__
+  if (set == InstructionSet::kAvx512) return kAvx512BedFunctions;
+  if (set == InstructionSet::kAvx2) return kAvx2BedFunctions;
+#endif
   return kScalarBedFunctions;
 }
 

@@ -7,8 +7,13 @@ namespace {
 
 constexpr int kLooks = 20000;
 
+/// Gives the core's other thread its turn, where it has one.
 void relax() {
+#if defined(__x86_64__)
   __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  __asm__ volatile("yield");
+#endif
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <limits>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -42,7 +44,7 @@ uint32_t mixed(uint32_t x) {
 MaterialFlow::MaterialFlow(HeightField surface, double repose_deg, const Compaction& compaction)
     : surface_(std::move(surface)), compaction_(compaction) {
   const double slope =
-      std::tan(repose_deg * std::numbers::pi / 180.0) * surface_.spacing_m() / kHeightUnit_m;
+      portable::tan(repose_deg * std::numbers::pi / 180.0) * surface_.spacing_m() / kHeightUnit_m;
   limit_straight_ = static_cast<Height>(std::floor(slope));
   limit_diagonal_ = static_cast<Height>(std::floor(slope * std::numbers::sqrt2));
   const size_t count = static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny());
@@ -266,7 +268,7 @@ void MaterialFlow::drop_rut(const ActiveFootprint& footprint, size_t end) {
 /// recursions, from either end.
 void MaterialFlow::weigh_ring(const ActiveFootprint& footprint, size_t end_pressed) {
   const double spacing = surface_.spacing_m();
-  const double decay = std::exp(-spacing / std::max(spacing, footprint.patch.reach));
+  const double decay = portable::exp(-spacing / std::max(spacing, footprint.patch.reach));
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
   // From one of the ring's nodes on: the same bits wherever on the grid a footprint stands.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 
@@ -24,9 +25,9 @@ class PassivePressure {
     if (soil.density_kg_per_m3 <= 0.0) return;
     const double friction = soil.friction_deg * std::numbers::pi / 180.0;
     const double plane = 0.25 * std::numbers::pi - 0.5 * friction;
-    const double cot = 1.0 / std::tan(plane);
-    const double d1 = cot + std::tan(plane + friction);
-    const double d2 = cot + cot * cot * std::tan(friction);
+    const double cot = 1.0 / portable::tan(plane);
+    const double d1 = cot + portable::tan(plane + friction);
+    const double d2 = cot + cot * cot * portable::tan(friction);
     at_surface_ = d1 * soil.cohesion_pa;
     per_depth_ = d1 * d2 * soil.density_kg_per_m3 * kGravity_m_per_s2;
   }

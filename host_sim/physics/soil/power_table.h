@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/kernels.h"
 
 namespace screed {
@@ -20,7 +21,7 @@ class PowerTable {
     double low_power = 0.0;
     for (int64_t i = 0; i < kLines; ++i) {
       const double high = std::bit_cast<double>((kFirst + i) << kDropped);
-      const double high_power = std::pow(high, exponent);
+      const double high_power = portable::pow(high, exponent);
       Line& line = lines_[static_cast<size_t>(i)];
       line.slope = (high_power - low_power) / (high - low);
       line.offset = high_power - line.slope * high;

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/cholesky.h"
 #include "host_sim/core/gravity.h"
 
 namespace screed {
@@ -79,7 +80,7 @@ int solve_sinking(const PressingBody& body, double dt, std::span<SpringBlock> sp
   int evaluations = 0;
   while (evaluations < kMaxEvaluations) {
     const Eigen::Matrix3d hessian = mass_per_dt2 + at.stiffness;
-    const Eigen::Vector3d direction = -hessian.llt().solve(gradient);
+    const Eigen::Vector3d direction = -solve_positive(hessian, gradient);
     const double initial_slope = gradient.dot(direction);
     if (!(initial_slope < 0.0)) break;
     // Along the direction the energy's slope rises; a full step that overshoots is taken back to

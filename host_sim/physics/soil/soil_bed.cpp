@@ -2,6 +2,7 @@
 // soil_reaction.cpp how it yields there.
 #include "host_sim/physics/soil/soil_bed.h"
 #include "host_sim/core/constants.h"
+#include "host_sim/core/elementary.h"
 
 #include <algorithm>
 #include <cassert>
@@ -38,8 +39,8 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
       flow_(std::move(surface), soil.repose_deg,
             options.bulldozing ? Compaction{soil.compaction, soil.compaction_depth_m}
                                : Compaction{1.0, 0.0}),
-      tan_friction_(std::tan(soil.friction_deg * kDegree)),
-      tan_repose_(std::tan(soil.repose_deg * kDegree)),
+      tan_friction_(portable::tan(soil.friction_deg * kDegree)),
+      tan_repose_(portable::tan(soil.repose_deg * kDegree)),
       passive_(soil) {
   check_soil(soil);
   const double spacing = flow_.surface().spacing_m();

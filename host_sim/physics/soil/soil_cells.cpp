@@ -27,6 +27,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/triple.h"
 #include "host_sim/physics/soil/soil_bed.h"
 
@@ -145,9 +146,9 @@ WheelStress SoilBed::wheel_stress(const FootprintContact& contact, Law& law) {
                          lattices_[group.lattice].x.size(), law.cell, per_radius, sums);
   }
   if (sums.weight <= 0.0) return {};
-  const double entry = std::acos(std::clamp(sums.cosine / sums.weight, -1.0, 1.0));
-  const double rolled =
-      std::min(1.0, std::abs(memory.path.travel_m) * per_radius / std::max(std::sin(entry), 0.05));
+  const double entry = portable::acos(std::clamp(sums.cosine / sums.weight, -1.0, 1.0));
+  const double rolled = std::min(
+      1.0, std::abs(memory.path.travel_m) * per_radius / std::max(portable::sin(entry), 0.05));
   return {soil_, footprint.radius(), entry, memory.slip, rolled};
 }
 
@@ -165,7 +166,7 @@ void SoilBed::find_extent(const Footprint& footprint, const CellSums& sums, Rang
   const double ahead = to_path.dot(footprint.pose().linear().col(0));
   const double up = to_path.dot(footprint.pose().linear().col(2));
   const double sense = ahead < 0.0 ? -1.0 : 1.0;
-  const double lowest = sense * radius * std::atan2(up, std::abs(ahead));
+  const double lowest = sense * radius * portable::atan2(up, std::abs(ahead));
   const double entry = lowest + sense * radius * stress.entry_rad();
   (sense > 0.0 ? range.front : range.rear) = entry;
   if (stress.shaped()) {

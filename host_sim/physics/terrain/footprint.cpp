@@ -25,6 +25,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/triple.h"
 
 namespace screed {
@@ -103,7 +104,7 @@ double Footprint::reach_down() const {
 
 double Footprint::radius_from_above() const {
   const Eigen::Vector3d reach = world_reach();
-  return std::hypot(reach.x(), reach.y());
+  return portable::hypot(reach.x(), reach.y());
 }
 
 double Footprint::narrow() const {
@@ -296,7 +297,7 @@ void Footprint::disc_surface(double edge, FootprintSamples& samples, size_t firs
     const double dy = samples.y[i] - pose_.translation().y();
     const Eigen::Vector3d local = dx * to_local_.col(0) + dy * to_local_.col(1);
     const double t = (side * half_.z() - local.z()) / up_.z();
-    const double distance = std::hypot(local.x() + t * up_.x(), local.y() + t * up_.y());
+    const double distance = portable::hypot(local.x() + t * up_.x(), local.y() + t * up_.y());
     samples.share[i] = edge_share(radius_ - distance, edge);
     samples.height[i] = samples.passed[i] = pose_.translation().z() + t;
     samples.slope_x[i] = normal.x() / normal.z();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/terrain/double2.h"
 
 namespace screed {
@@ -19,7 +20,7 @@ std::vector<double> gaussian_weights(double sigma) {
   weights.reserve(static_cast<size_t>(reach) + 1);
   double sum = 0.0;
   for (int k = 0; k <= reach; ++k) {
-    weights.push_back(std::exp(-0.5 * (k / sigma) * (k / sigma)));
+    weights.push_back(portable::exp(-0.5 * (k / sigma) * (k / sigma)));
     sum += k == 0 ? weights.back() : 2.0 * weights.back();
   }
   for (double& weight : weights) weight /= sum;

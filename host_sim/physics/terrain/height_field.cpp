@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/gaussian_filter.h"
 
@@ -44,7 +45,7 @@ void require_nodes(int nx, int ny) {
 }
 
 double tan_deg(double angle_deg) {
-  return std::tan(angle_deg * std::numbers::pi / 180.0);
+  return portable::tan(angle_deg * std::numbers::pi / 180.0);
 }
 
 int nodes_along(double size_m, double spacing_m) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 
@@ -25,8 +26,9 @@ struct WaveAlong {
   WaveAlong(int wave, int nodes, int cells) {
     for (int i = 0; i < nodes; ++i) {
       const double angle = kTurn * static_cast<double>(wave * i % cells) / cells;
-      cosine.push_back(std::cos(angle));
-      sine.push_back(std::sin(angle));
+      const auto [s, c] = portable::sine_cosine(angle);
+      cosine.push_back(c);
+      sine.push_back(s);
     }
   }
   std::vector<double> cosine;
@@ -47,13 +49,13 @@ void add_spectrum(const ReliefOptions& options, const HeightField& field, Height
   for (int ky = 0; ky <= most_y; ++ky) {
     const WaveAlong y(ky, field.ny(), field.cells_y());
     for (int kx = ky == 0 ? 1 : -most_x; kx <= most_x; ++kx) {
-      const double number = std::hypot(kx / width, ky / depth);
+      const double number = portable::hypot(kx / width, ky / depth);
       // Drawn whether it is in the band or not: a wave stays itself when the band is another.
       const double a = random.normal();
       const double b = random.normal();
       if (number * options.shortest_wave_m > 1.0 + 1e-9) continue;
       if (number * options.longest_wave_m < 1.0 - 1e-9) continue;
-      const double amplitude = std::pow(number, -0.5 * (options.exponent + 1.0));
+      const double amplitude = portable::pow(number, -0.5 * (options.exponent + 1.0));
       const WaveAlong x(kx, field.nx(), field.cells_x());
       for (size_t iy = 0; iy < ny; ++iy) {
         const double in_phase = amplitude * (a * y.cosine[iy] + b * y.sine[iy]);
@@ -85,7 +87,7 @@ double apart(double difference, double side, bool wrap) {
 
 void add_mounds(const ReliefOptions& options, const HeightField& field, Heights& heights) {
   WorldRandom random(options.seed, "relief mounds");
-  const double slope = std::tan(options.mound_slope_deg * kRadPerDeg);
+  const double slope = portable::tan(options.mound_slope_deg * kRadPerDeg);
   const double width = field.x_max() - field.x_min();
   const double depth = field.y_max() - field.y_min();
   const auto nx = static_cast<size_t>(field.nx());
@@ -98,7 +100,7 @@ void add_mounds(const ReliefOptions& options, const HeightField& field, Heights&
       for (int ix = 0; ix < field.nx(); ++ix) {
         const double east = apart(field.node_x(ix) - x, width, field.wrap());
         heights[static_cast<size_t>(iy) * nx + static_cast<size_t>(ix)] +=
-            std::max(0.0, top - slope * std::hypot(east, north));
+            std::max(0.0, top - slope * portable::hypot(east, north));
       }
     }
   }
@@ -109,7 +111,7 @@ void add_mounds(const ReliefOptions& options, const HeightField& field, Heights&
 class TrenchProfile {
  public:
   explicit TrenchProfile(const ReliefOptions& options)
-      : slope_(std::tan(options.trench_slope_deg * kRadPerDeg)),
+      : slope_(portable::tan(options.trench_slope_deg * kRadPerDeg)),
         half_floor_(0.5 * options.trench_width_m),
         depth_(options.trench_depth_m),
         // A bank is a triangle of this height on the ground, and as large as half of the trench.
@@ -138,11 +140,11 @@ void add_trench(const ReliefOptions& options, const HeightField& field, Heights&
   const double x = random.uniform(-0.125, 0.125) * width;
   const double y = random.uniform(-0.125, 0.125) * depth;
   const TrenchProfile profile(options);
+  const auto [sine, cosine] = portable::sine_cosine(direction);
   const auto nx = static_cast<size_t>(field.nx());
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
-      const double across = (field.node_y(iy) - y) * std::cos(direction) -
-                            (field.node_x(ix) - x) * std::sin(direction);
+      const double across = (field.node_y(iy) - y) * cosine - (field.node_x(ix) - x) * sine;
       heights[static_cast<size_t>(iy) * nx + static_cast<size_t>(ix)] += profile.at(across);
     }
   }

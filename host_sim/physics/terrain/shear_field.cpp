@@ -11,6 +11,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/triple.h"
 #include "host_sim/physics/terrain/shear_law.h"
 
@@ -31,7 +32,7 @@ double RunContour::length_m() const {
 double RunContour::along(double ahead_m) const {
   const double beyond = std::abs(ahead_m) - half_m;
   if (beyond <= 0.0 || radius_m <= 0.0) return ahead_m;
-  const double arc = radius_m * std::asin(std::min(1.0, beyond / radius_m));
+  const double arc = radius_m * portable::asin(std::min(1.0, beyond / radius_m));
   return std::copysign(half_m + arc, ahead_m);
 }
 

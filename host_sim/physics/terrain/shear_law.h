@@ -13,12 +13,14 @@
 
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 
 /// 1 - exp(-x), x >= 0: x is mostly small, and there Pade's fraction of second order is within
 /// 2e-8.
 inline double fading(double x) {
-  return x < 0.1 ? 12.0 * x / (12.0 + x * (6.0 + x)) : 1.0 - std::exp(-x);
+  return x < 0.1 ? 12.0 * x / (12.0 + x * (6.0 + x)) : 1.0 - portable::exp(-x);
 }
 
 /// Of one place of the surface. Vectors point along the surface and across it, in the direction in

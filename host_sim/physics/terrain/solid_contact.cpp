@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -28,7 +30,7 @@ SolidContact on_prism(const Eigen::Vector3d& point, const Outline& outline, int 
     contact.distance = beyond;
     contact.normal = end;
   } else {  // beyond the rim
-    contact.distance = std::hypot(outline.distance, beyond);
+    contact.distance = portable::hypot(outline.distance, beyond);
     contact.normal = (outline.distance * outline.out + beyond * end) / contact.distance;
   }
   contact.surface = point - contact.distance * contact.normal;
@@ -39,7 +41,7 @@ SolidContact on_prism(const Eigen::Vector3d& point, const Outline& outline, int 
 SolidContact on_track(const Footprint& solid, const Eigen::Vector3d& point) {
   const double run = solid.half().x();
   const double dx = point.x() - std::clamp(point.x(), -run, run);
-  const double size = std::hypot(dx, point.z());
+  const double size = portable::hypot(dx, point.z());
   Outline outline{size - solid.radius(), Eigen::Vector3d::UnitZ()};
   if (size > 0.0) outline.out = Eigen::Vector3d(dx, 0.0, point.z()) / size;
   SolidContact contact = on_prism(point, outline, 1, solid.half().y());
@@ -50,7 +52,7 @@ SolidContact on_track(const Footprint& solid, const Eigen::Vector3d& point) {
 }
 
 SolidContact on_disc(const Footprint& solid, const Eigen::Vector3d& point) {
-  const double size = std::hypot(point.x(), point.y());
+  const double size = portable::hypot(point.x(), point.y());
   Outline outline{size - solid.radius(), Eigen::Vector3d::UnitX()};
   if (size > 0.0) outline.out = Eigen::Vector3d(point.x(), point.y(), 0.0) / size;
   return on_prism(point, outline, 2, solid.half().z());

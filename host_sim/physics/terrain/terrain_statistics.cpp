@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
@@ -15,7 +16,7 @@ namespace {
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 double slope_deg(double gradient) {
-  return std::atan(gradient) * kDegreesPerRadian;
+  return portable::atan(gradient) * kDegreesPerRadian;
 }
 
 /// |grad f| at the centre of every cell, row by row.
@@ -96,7 +97,7 @@ double flatness(const HeightField& field, double epsilon_deg) {
     message << "flatness: epsilon_deg = " << epsilon_deg << "; allowed: 0 to 89";
     throw InputError(message.str());
   }
-  const double epsilon = std::tan(epsilon_deg / kDegreesPerRadian) + gradient_rounding(field);
+  const double epsilon = portable::tan(epsilon_deg / kDegreesPerRadian) + gradient_rounding(field);
   const std::vector<double> gradients = centre_gradients(field);
   const auto level = std::count_if(gradients.begin(), gradients.end(),
                                    [epsilon](double gradient) { return gradient <= epsilon; });

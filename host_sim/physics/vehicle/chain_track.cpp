@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
@@ -57,17 +58,19 @@ ChainTrack::ChainTrack(const RunningGearGeometry& geometry, const ChainOptions& 
     distance -= 2.0 * half_length_;
     const double half_turn = std::numbers::pi * radius;
     if (distance < half_turn) {
-      return {half_length_ + r * std::sin(distance / radius), r * std::cos(distance / radius)};
+      return {half_length_ + r * portable::sin(distance / radius),
+              r * portable::cos(distance / radius)};
     }
     distance -= half_turn;
     if (distance < 2.0 * half_length_) return {half_length_ - distance, -r};
     distance -= 2.0 * half_length_;
-    return {-half_length_ - r * std::sin(distance / radius), -r * std::cos(distance / radius)};
+    return {-half_length_ - r * portable::sin(distance / radius),
+            -r * portable::cos(distance / radius)};
   };
   // The middles of the links lie on the wheels, pressed on by the tension.
   const double pitch = loop / links;
   const double pressed = options.tension_n * pitch / radius / kWheelStiffness;
-  const double pins_at = (radius - pressed) / std::cos(0.5 * pitch / radius);
+  const double pins_at = (radius - pressed) / portable::cos(0.5 * pitch / radius);
   double length = 0.0;
   for (int i = 0; i < links; ++i) {
     rest_.push_back(on_loop(i * pitch, pins_at));
@@ -147,7 +150,7 @@ double ChainTrack::farthest_from_loop_m() const {
   double farthest = 0.0;
   for (const Vector2& pin : position_) {
     const double beyond = std::abs(pin.x()) - half_length_;
-    const double from_line = beyond > 0.0 ? std::hypot(beyond, pin.y()) : std::abs(pin.y());
+    const double from_line = beyond > 0.0 ? portable::hypot(beyond, pin.y()) : std::abs(pin.y());
     farthest = std::max(farthest, std::abs(from_line - geometry_.radius));
   }
   return farthest;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <variant>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 
@@ -44,8 +45,8 @@ void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose,
     for (int i = 0; i < kAround; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kAround;
       for (const double end : {-0.5, 0.5}) {
-        points.emplace_back(at * Eigen::Vector3d(cylinder->radius * std::cos(angle),
-                                                 cylinder->radius * std::sin(angle),
+        points.emplace_back(at * Eigen::Vector3d(cylinder->radius * portable::cos(angle),
+                                                 cylinder->radius * portable::sin(angle),
                                                  end * cylinder->length));
       }
     }
@@ -57,8 +58,9 @@ void add_hull_points(const Shape& shape, const Eigen::Isometry3d& pose,
       const int count = ring == 0 || ring == kRings ? 1 : kAround;
       for (int i = 0; i < count; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / kAround;
-        const Eigen::Vector3d direction(std::sin(polar) * std::cos(angle),
-                                        std::sin(polar) * std::sin(angle), -std::cos(polar));
+        const Eigen::Vector3d direction(portable::sin(polar) * portable::cos(angle),
+                                        portable::sin(polar) * portable::sin(angle),
+                                        -portable::cos(polar));
         points.emplace_back(at * (sphere->radius * direction));
       }
     }

@@ -3,7 +3,33 @@
 
 #include <mutex>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/gravity.h"
+
+// ODE and the reader of URDF call these: defined in the program, they come before the C library's,
+// whose bits depend on the processor.
+extern "C" {
+double sin(double x) noexcept {
+  return screed::portable::sin(x);
+}
+double cos(double x) noexcept {
+  return screed::portable::cos(x);
+}
+void sincos(double x, double* sine, double* cosine) noexcept {
+  const auto both = screed::portable::sine_cosine(x);
+  *sine = both.sine;
+  *cosine = both.cosine;
+}
+double asin(double x) noexcept {
+  return screed::portable::asin(x);
+}
+double acos(double x) noexcept {
+  return screed::portable::acos(x);
+}
+double atan2(double y, double x) noexcept {
+  return screed::portable::atan2(y, x);
+}
+}
 
 namespace screed {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/physics/terrain/solid_contact.h"
 
 namespace screed {
@@ -68,8 +69,9 @@ std::vector<BodyPoint> middle_of(const RunningGearGeometry& gear, size_t drive) 
   std::vector<BodyPoint> points;
   for (int i = 0; i < 2 * arc; ++i) {  // from the top, forwards and down
     const double angle = (i + 0.5) * kPi / arc;
-    const Eigen::Vector3d out = std::sin(angle) * forward + std::cos(angle) * up;
-    const Eigen::Vector3d along = std::cos(angle) * forward - std::sin(angle) * up;
+    const auto [sine, cosine] = portable::sine_cosine(angle);
+    const Eigen::Vector3d out = sine * forward + cosine * up;
+    const Eigen::Vector3d along = cosine * forward - sine * up;
     const Eigen::Vector3d& axle = i < arc ? gear.front : gear.rear;
     points.push_back({axle + gear.radius * out, along, drive, gear.radius});
   }

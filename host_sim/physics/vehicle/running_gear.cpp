@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -54,8 +56,9 @@ RunningGear::RunningGear(const RunningGearGeometry& geometry, double friction, c
       for (int i = 0; i < half_points; ++i) {
         const double angle =
             start_rad + (i + 0.5) * std::numbers::pi / half_points;  // from top, forwards
-        const Eigen::Vector3d out = std::sin(angle) * forward + std::cos(angle) * up;
-        const Eigen::Vector3d along = std::cos(angle) * forward - std::sin(angle) * up;
+        const auto [sine, cosine] = portable::sine_cosine(angle);
+        const Eigen::Vector3d out = sine * forward + cosine * up;
+        const Eigen::Vector3d along = cosine * forward - sine * up;
         add_point(axle + side + radius * out, out, along);
       }
     };

@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 
 namespace screed {
@@ -44,7 +45,7 @@ const Shape* first_of(const std::vector<Shape>& shapes) {
 WheelRim rim_of_cylinder(const Shape& shape, const Eigen::Vector3d& axle) {
   const auto& cylinder = std::get<Cylinder>(shape.geometry);
   const double along = std::abs(axle.dot(shape.pose.linear().col(2)));
-  const double tilt_deg = std::acos(std::min(1.0, along)) * 180.0 / std::numbers::pi;
+  const double tilt_deg = portable::acos(std::min(1.0, along)) * 180.0 / std::numbers::pi;
   if (tilt_deg > kMaxTilt_deg) {
     throw InputError("has a cylinder that lies " + number(tilt_deg, "%.0f") +
                      " degrees off the axle: URDF's cylinders lie along z of their <origin>, which "

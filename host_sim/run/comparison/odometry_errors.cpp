@@ -11,6 +11,7 @@
 #include "firmware/estimation/position_estimate.h"
 #include "firmware/math/units.h"
 #include "firmware/robot/robot.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/session_reader.h"
@@ -112,7 +113,7 @@ class CurrentLeg {
         0.5 * m_per_count_ * (std::abs(sensed.counts.left) + std::abs(sensed.counts.right));
     x_m_ += frame.delta_x;
     y_m_ += frame.delta_y;
-    path_m_ += std::hypot(frame.delta_x, frame.delta_y);
+    path_m_ += portable::hypot(frame.delta_x, frame.delta_y);
   }
 
   /// The true path so far.
@@ -124,7 +125,7 @@ class CurrentLeg {
       const Place place = reckoners_[way].place();
       const double error_x = place.mm[kX] * 1e-3 - x_m_;
       const double error_y = place.mm[kY] * 1e-3 - y_m_;
-      leg.error_m[way] = std::hypot(error_x, error_y);
+      leg.error_m[way] = portable::hypot(error_x, error_y);
       if (static_cast<Reckoning>(way) != Reckoning::kFirmware) continue;
       const double sigma_x = (place.sigma[kX] + 0.5) * kSigmaUnit_m;
       const double sigma_y = (place.sigma[kY] + 0.5) * kSigmaUnit_m;

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
 #include "host_sim/core/record.h"
@@ -123,7 +124,7 @@ void read_trace(const SessionReader& session, const Bed& bed, ComparedRun& run) 
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const SimFrame& frame = frames[i];
       if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
-        run.end.distance_m += std::hypot(frame.delta_x, frame.delta_y);
+        run.end.distance_m += portable::hypot(frame.delta_x, frame.delta_y);
       }
       if ((first + i) % every != 0 && first + i + 1 != count) continue;
       run.trace.push_back({frame.time, frame.x, frame.y, frame.battery, frame.leveling_state,
@@ -199,7 +200,8 @@ void compare_ticks(const SessionReader& a, const SessionReader& b, const std::ar
       const SimFrame& frame_b = block_b.frames.row(i);
       const Travelled at_a = beds[0].travelled(frame_a);
       const Travelled at_b = beds[1].travelled(frame_b);
-      const DeviationPoint point{frame_a.time, std::hypot(at_b.x_m - at_a.x_m, at_b.y_m - at_a.y_m),
+      const DeviationPoint point{frame_a.time,
+                                 portable::hypot(at_b.x_m - at_a.x_m, at_b.y_m - at_a.y_m),
                                  std::remainder(frame_b.yaw - frame_a.yaw, 2.0 * std::numbers::pi)};
       if (!result.summary.has_value()) result.summary = {point, point, point};
       DeviationSummary& summary = *result.summary;

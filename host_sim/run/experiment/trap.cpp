@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
+
 namespace screed {
 namespace {
 
@@ -47,7 +49,7 @@ constexpr TrapKind kTraps[] = {
      }},
     {"slope",
      [](const TrapPosition& position, double distance, double size) {
-       return std::tan(size * std::numbers::pi / 180.0) *
+       return portable::tan(size * std::numbers::pi / 180.0) *
               std::clamp(position.around - distance, 0.0, kSlopeLength_m);
      }},
     {"trench", [](const TrapPosition& position, double distance,
@@ -83,14 +85,14 @@ std::vector<std::string> trap_kinds() {
 void set_trap(const Experiment& experiment, HeightField& field) {
   const TrapKind* const trap = trap_named(experiment.trap.kind);
   if (trap == nullptr || trap == std::begin(kTraps)) return;
-  const double heading = experiment.vehicle.heading_deg * std::numbers::pi / 180.0;
+  const auto [sine, cosine] =
+      portable::sine_cosine(experiment.vehicle.heading_deg * std::numbers::pi / 180.0);
   for (int iy = 0; iy < field.ny(); ++iy) {
     for (int ix = 0; ix < field.nx(); ++ix) {
       const double east = field.node_x(ix) - experiment.vehicle.x_m;
       const double north = field.node_y(iy) - experiment.vehicle.y_m;
-      const TrapPosition position = {std::hypot(east, north),
-                                     east * std::cos(heading) + north * std::sin(heading),
-                                     north * std::cos(heading) - east * std::sin(heading)};
+      const TrapPosition position = {portable::hypot(east, north), east * cosine + north * sine,
+                                     north * cosine - east * sine};
       const double height =
           trap->height(position, experiment.trap.distance_m, experiment.trap.size);
       if (height == 0.0) continue;

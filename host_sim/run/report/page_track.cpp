@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/ground_station/telemetry/schema.h"
 #include "host_sim/run/simulation/names.h"
 
@@ -13,7 +14,7 @@ void PageTrack::add(std::uint64_t row, const SimFrame& frame) {
   if (!points_.empty()) {
     const Point& last = points_.back();
     const bool same_bed = last.beds_x == frame.beds_x && last.beds_y == frame.beds_y;
-    if (same_bed && std::hypot(frame.x - last.x, frame.y - last.y) < spacing_m_) return;
+    if (same_bed && portable::hypot(frame.x - last.x, frame.y - last.y) < spacing_m_) return;
   }
   points_.push_back({static_cast<std::uint32_t>(row), frame.x, frame.y, frame.z,
                      static_cast<std::uint32_t>(frame.leveling_state), frame.beds_x, frame.beds_y});

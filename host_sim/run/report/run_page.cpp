@@ -13,6 +13,7 @@
 #include "firmware/parameters/parameter_table.h"
 #include "host_sim/core/content_hash.h"
 #include "host_sim/core/display_units.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/json.h"
 #include "host_sim/core/record.h"
@@ -232,7 +233,7 @@ Json add_robot(PageFile& page, const SessionReader& session, std::span<const std
       track.add(row, frame);
       events.add(frame);
       if (std::isfinite(frame.delta_x) && std::isfinite(frame.delta_y)) {
-        distance_m += std::hypot(frame.delta_x, frame.delta_y);
+        distance_m += portable::hypot(frame.delta_x, frame.delta_y);
       }
       if (next_stop < stops.size() && stops[next_stop] == row) {
         rows.add(frame);

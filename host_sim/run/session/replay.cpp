@@ -38,6 +38,7 @@ ReplayResult replay_session(const std::filesystem::path& session_file,
   const SessionInfo& info = session.info();
 
   ReplayResult result;
+  result.arithmetic = info.arithmetic;
   result.complete = session.complete();
   result.unchanged = !result.complete || !session.missing_columns().empty() ||
                      session.compute_content_hash() == session.content_hash();

@@ -14,6 +14,7 @@ namespace screed {
 
 struct SessionInfo {
   std::string program_version;  ///< not part of the content hash
+  std::string arithmetic;       ///< of the world (arithmetic.h); not part of it either
   std::string experiment_name;  ///< not part of the content hash
   /// the whole INI text that was in force, overrides applied; any size, no NUL byte
   std::string experiment_text;

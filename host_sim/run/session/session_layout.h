@@ -21,6 +21,7 @@ inline constexpr std::uint64_t kFormatVersion = 1;
 inline constexpr char kFormatAttribute[] = "format";
 inline constexpr char kVersionAttribute[] = "format_version";
 inline constexpr char kProgramAttribute[] = "program_version";
+inline constexpr char kArithmeticAttribute[] = "arithmetic";
 inline constexpr char kExperimentNameAttribute[] = "experiment_name";
 inline constexpr char kExperimentTextAttribute[] = "experiment_text";
 inline constexpr char kSeedAttribute[] = "seed";

@@ -12,6 +12,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
+#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/session/height_series.h"
 #include "host_sim/run/session/session_hash.h"
 #include "host_sim/run/session/session_layout.h"
@@ -72,6 +73,9 @@ T narrow(std::int64_t value, const char* name) {
 SessionInfo read_info(hid_t file, std::vector<std::string>& missing_parameters) {
   SessionInfo info;
   info.program_version = h5::read_string(file, layout::kProgramAttribute);
+  info.arithmetic = h5::has_attribute(file, layout::kArithmeticAttribute)
+                        ? h5::read_string(file, layout::kArithmeticAttribute)
+                        : kUnnamedArithmetic;
   info.experiment_name = h5::read_string(file, layout::kExperimentNameAttribute);
   info.experiment_text = h5::read_string(file, layout::kExperimentTextAttribute);
   info.seed = h5::read_uint64(file, layout::kSeedAttribute);

@@ -99,6 +99,7 @@ void write_info(hid_t file, const SessionInfo& info) {
   h5::write_attribute(file, layout::kFormatAttribute, std::string(layout::kFormat));
   h5::write_attribute(file, layout::kVersionAttribute, layout::kFormatVersion);
   h5::write_attribute(file, layout::kProgramAttribute, info.program_version);
+  h5::write_attribute(file, layout::kArithmeticAttribute, info.arithmetic);
   h5::write_attribute(file, layout::kExperimentNameAttribute, info.experiment_name);
   h5::write_attribute(file, layout::kExperimentTextAttribute, info.experiment_text);
   h5::write_attribute(file, layout::kSeedAttribute, info.seed);

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/render/chart/svg_png.h"
 #include "host_sim/run/experiment/run_setup.h"
@@ -58,7 +59,7 @@ std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double 
     if (first < path.size()) {
       const PathPoint& behind = path[first];
       const PathPoint& point = path[first - 1];
-      const double step_m = std::hypot(behind.x_m - point.x_m, behind.y_m - point.y_m);
+      const double step_m = portable::hypot(behind.x_m - point.x_m, behind.y_m - point.y_m);
       if (step_m <= 0.5 * bed_m) length += step_m;
       if (length > length_m) break;
     }

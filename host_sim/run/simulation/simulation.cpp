@@ -15,6 +15,7 @@
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/render/picture/robot_shape.h"
 #include "host_sim/run/experiment/robot_model.h"
+#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/simulation/names.h"
 #include "host_sim/run/simulation/run_files.h"
 #include "host_sim/run/simulation/run_loop.h"
@@ -29,6 +30,7 @@ SessionInfo session_info(const Experiment& experiment, const SimulationOptions& 
                          const RobotSettings& robot) {
   SessionInfo info;
   info.program_version = options.program_version;
+  info.arithmetic = arithmetic();
   info.experiment_name = experiment.experiment.name;
   info.experiment_text = experiment.text();
   info.seed = experiment.experiment.seed;

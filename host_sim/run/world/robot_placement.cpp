@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/random.h"
 #include "host_sim/run/experiment/experiment_keys.h"
@@ -29,11 +30,12 @@ std::vector<RobotPlace> grid(const RobotsSection& robots, const RobotPlace& cent
 }
 
 std::vector<RobotPlace> ring(const RobotsSection& robots, const RobotPlace& centre) {
-  const double radius = 0.5 * robots.spacing_m / std::sin(std::numbers::pi / robots.count);
+  const double radius = 0.5 * robots.spacing_m / portable::sin(std::numbers::pi / robots.count);
   std::vector<RobotPlace> places;
   for (uint32_t i = 0; i < robots.count; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / robots.count;
-    places.push_back({centre.x_m + radius * std::cos(angle), centre.y_m + radius * std::sin(angle),
+    places.push_back({centre.x_m + radius * portable::cos(angle),
+                      centre.y_m + radius * portable::sin(angle),
                       centre.heading_deg + angle * 180.0 / std::numbers::pi});
   }
   return places;
@@ -47,7 +49,7 @@ double distance(const RobotPlace& a, const RobotPlace& b, const HeightField& ter
     dx = std::remainder(dx, terrain.x_max() - terrain.x_min());
     dy = std::remainder(dy, terrain.y_max() - terrain.y_min());
   }
-  return std::hypot(dx, dy);
+  return portable::hypot(dx, dy);
 }
 
 bool is_free(const RobotPlace& place, const std::vector<RobotPlace>& taken, double spacing_m,

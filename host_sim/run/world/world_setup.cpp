@@ -10,6 +10,7 @@
 #include <string>
 #include <system_error>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/grey_image.h"
 #include "host_sim/run/experiment/robot_model.h"
@@ -54,7 +55,7 @@ HeightField untrapped_terrain(const Experiment& experiment) {
   const auto& map = experiment.map;
   const bool soft = map.is_soil();
   if (map.filename.empty() && map.of_particles()) {
-    const double rise = std::tan(map.ramp_deg * kRadPerDeg);
+    const double rise = portable::tan(map.ramp_deg * kRadPerDeg);
     const int nodes = kLevelCells + 1;
     return HeightField::from_function(nodes, nodes, map.size_m / (nodes - (map.wrap() ? 0 : 1)),
                                       map.wrap(), [&](double x, double /*y*/) {

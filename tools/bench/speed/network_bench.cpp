@@ -64,15 +64,15 @@ void ours_scalar(benchmark::State& state, bool deep) {
   per_robot(state, 1);
 }
 
-bool has_kernel(benchmark::State& state, BatchKernel kernel) {
-  const std::vector<BatchKernel> kernels = batch_kernels();
+bool has_kernel(benchmark::State& state, InstructionSet kernel) {
+  const std::vector<InstructionSet>& kernels = instruction_sets();
   const bool has = std::find(kernels.begin(), kernels.end(), kernel) != kernels.end();
   if (!has) state.SkipWithError("this processor does not have it");
   return has;
 }
 
 /// One robot, whose next input waits for its last output.
-void ours_alone(benchmark::State& state, bool deep, BatchKernel kernel) {
+void ours_alone(benchmark::State& state, bool deep, InstructionSet kernel) {
   if (!has_kernel(state, kernel)) return;
   const IntegerNetwork scalar = quantise(layers(deep));
   const BatchNetwork network(scalar, kernel);
@@ -89,7 +89,7 @@ void ours_alone(benchmark::State& state, bool deep, BatchKernel kernel) {
   per_robot(state, 1);
 }
 
-void ours_batched(benchmark::State& state, bool deep, BatchKernel kernel) {
+void ours_batched(benchmark::State& state, bool deep, InstructionSet kernel) {
   if (!has_kernel(state, kernel)) return;
   const IntegerNetwork scalar = quantise(layers(deep));
   const BatchNetwork network(scalar, kernel);
@@ -197,19 +197,19 @@ void eigen_float_batched(benchmark::State& state, bool deep) {
 }
 
 BENCHMARK_CAPTURE(ours_scalar, v1_4_20_1, false);
-BENCHMARK_CAPTURE(ours_alone, v1_4_20_1_avx2, false, BatchKernel::kAvx2);
-BENCHMARK_CAPTURE(ours_alone, v1_4_20_1_avx512, false, BatchKernel::kAvx512);
-BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx2, false, BatchKernel::kAvx2);
-BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx512, false, BatchKernel::kAvx512);
+BENCHMARK_CAPTURE(ours_alone, v1_4_20_1_avx2, false, InstructionSet::kAvx2);
+BENCHMARK_CAPTURE(ours_alone, v1_4_20_1_avx512, false, InstructionSet::kAvx512);
+BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx2, false, InstructionSet::kAvx2);
+BENCHMARK_CAPTURE(ours_batched, v1_4_20_1_avx512, false, InstructionSet::kAvx512);
 BENCHMARK_CAPTURE(tiny_dnn_float, v1_4_20_1, false);
 BENCHMARK_CAPTURE(fann_fixed, v1_4_20_1, false);
 BENCHMARK_CAPTURE(eigen_float, v1_4_20_1, false);
 BENCHMARK_CAPTURE(eigen_float_batched, v1_4_20_1, false);
 BENCHMARK_CAPTURE(ours_scalar, v2_13x7, true);
-BENCHMARK_CAPTURE(ours_alone, v2_13x7_avx2, true, BatchKernel::kAvx2);
-BENCHMARK_CAPTURE(ours_alone, v2_13x7_avx512, true, BatchKernel::kAvx512);
-BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx2, true, BatchKernel::kAvx2);
-BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx512, true, BatchKernel::kAvx512);
+BENCHMARK_CAPTURE(ours_alone, v2_13x7_avx2, true, InstructionSet::kAvx2);
+BENCHMARK_CAPTURE(ours_alone, v2_13x7_avx512, true, InstructionSet::kAvx512);
+BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx2, true, InstructionSet::kAvx2);
+BENCHMARK_CAPTURE(ours_batched, v2_13x7_avx512, true, InstructionSet::kAvx512);
 BENCHMARK_CAPTURE(tiny_dnn_float, v2_13x7, true);
 BENCHMARK_CAPTURE(fann_fixed, v2_13x7, true);
 BENCHMARK_CAPTURE(eigen_float, v2_13x7, true);

@@ -30,7 +30,7 @@ int run_merge(const MergeArguments& arguments) {
                      "; statistics of an incomplete campaign mislead: run the rest, or say "
                      "--incomplete");
   }
-  merge_results(plan, results, folder);
+  merge_and_note(plan, results, folder);
   if (arguments.json) {
     std::cout << Json({{"folder", arguments.folder},
                        {"runs", count.runs},

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -93,6 +94,17 @@ void note_odd_results(const CampaignPlan& plan, const ResultIndex& results) {
   for (const std::string& note :
        results.oddities([&known](const std::string& id) { return known.contains(id); }))
     std::cerr << "note: " << note << "\n";
+}
+
+void merge_and_note(const CampaignPlan& plan, const ResultIndex& results,
+                    const CampaignFolder& folder) {
+  const std::map<std::string, size_t> arithmetics = merge_results(plan, results, folder);
+  if (arithmetics.size() < 2) return;
+  std::string list;
+  for (const auto& [name, runs] : arithmetics)
+    list += (list.empty() ? "" : ", ") + std::to_string(runs) + " with '" + name + "'";
+  std::cerr << "note: " << folder.path.string()
+            << ": runs of several arithmetics, whose bits differ: " << list << "\n";
 }
 
 EngineOptions engine_options(const CampaignFolder& folder) {

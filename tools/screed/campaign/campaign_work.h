@@ -44,6 +44,9 @@ void save_plan(const CampaignPlan& plan, const CampaignFolder& folder);
 /// Says on standard error what is odd about the stored results: damaged lines, results of another
 /// version or other values.
 void note_odd_results(const CampaignPlan& plan, const ResultIndex& results);
+/// merge_results(). Says on standard error when the runs are of several arithmetics.
+void merge_and_note(const CampaignPlan& plan, const ResultIndex& results,
+                    const CampaignFolder& folder);
 
 EngineOptions engine_options(const CampaignFolder& folder);
 

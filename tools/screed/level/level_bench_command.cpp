@@ -211,7 +211,7 @@ int run_bench(const BenchArguments& arguments, const std::string& version) {
   if (!outcome.stopped.empty()) throw RunError(outcome.stopped);
 
   const ResultIndex results(campaign.folder.results());
-  merge_results(plan, results, campaign.folder);
+  merge_and_note(plan, results, campaign.folder);
   const ValueTable runs = run_table(plan, results);
   const std::vector<CourseScore> courses =
       score_benchmark(plan, runs, curve_table(plan, results), arguments.against);

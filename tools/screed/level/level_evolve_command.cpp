@@ -50,7 +50,7 @@ std::vector<EntryScore> run_task(const EvolveArguments& arguments, const std::st
   if (interrupted()) throw Stopped{};
   if (!outcome.stopped.empty()) throw RunError(outcome.stopped);
   const ResultIndex results(campaign.folder.results());
-  merge_results(campaign.plan, results, campaign.folder);
+  merge_and_note(campaign.plan, results, campaign.folder);
   return score_benchmark(campaign.plan, run_table(campaign.plan, results), {}, task.against)
       .at(0)
       .entries;

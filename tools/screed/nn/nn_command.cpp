@@ -265,9 +265,9 @@ int run_check(const NnArguments& arguments) {
     std::vector<std::int16_t> alone_out(outputs);
     std::string kernels;
     std::vector<nn::BatchNetwork> batches;
-    for (const nn::BatchKernel kernel : nn::batch_kernels()) {
+    for (const InstructionSet kernel : instruction_sets()) {
       batches.emplace_back(network.network, kernel);
-      kernels += std::string(kernels.empty() ? "" : ", ") + nn::batch_kernel_name(kernel);
+      kernels += std::string(kernels.empty() ? "" : ", ") + name_of(kernel);
     }
     ProgressBar bar(std::cerr);
     for (std::size_t done = 0; done < arguments.vectors; done += kBlock) {
@@ -283,7 +283,7 @@ int run_check(const NnArguments& arguments) {
           batch.run(one_in.data(), alone_out.data(), 1, 1);
           for (std::size_t i = 0; i < outputs; ++i) {
             if (one_out[i] == out[i * kBlock + row] && one_out[i] == alone_out[i]) continue;
-            throw RunError(model.name + ": " + nn::batch_kernel_name(batch.kernel()) +
+            throw RunError(model.name + ": " + name_of(batch.instructions()) +
                            " differs from a layer at a time in vector " +
                            std::to_string(done + row));
           }

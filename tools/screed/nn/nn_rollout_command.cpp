@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host_sim/core/atomic_file.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/quantile.h"
 #include "host_sim/core/random.h"
@@ -172,11 +173,11 @@ void print_divergence(const std::vector<nn::SessionRollouts>& all, std::size_t o
       const auto& b = session.by_surrogate[other][i].path;
       double distance = 0.0;
       for (std::size_t k = 1; k < a.size(); ++k) {
-        distance += std::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
+        distance += portable::hypot(a[k].x_m - a[k - 1].x_m, a[k].y_m - a[k - 1].y_m);
       }
-      divergence.push_back(kPercent *
-                           std::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) /
-                           distance);
+      divergence.push_back(
+          kPercent * portable::hypot(a.back().x_m - b.back().x_m, a.back().y_m - b.back().y_m) /
+          distance);
     }
   }
   if (divergence.empty()) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host_sim/core/json.h"
+#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/session/replay.h"
 #include "host_sim/run/session/run_folder.h"
 #include "tools/screed/cli/command.h"
@@ -61,6 +62,11 @@ void print_notes(const std::string& of, const ReplayResult& result) {
   if (!result.complete) {
     std::cerr << "note: " << of
               << "the recorded run did not end; only its saved ticks were replayed\n";
+  }
+  if (result.arithmetic != arithmetic()) {
+    std::cerr << "note: " << of << "the world was computed with arithmetic '" << result.arithmetic
+              << "', not this program's '" << arithmetic()
+              << "': its experiment run again gives other bits\n";
   }
   if (!result.unchanged) {
     std::cerr << "note: " << of << "the session does not have the content it was saved with\n";

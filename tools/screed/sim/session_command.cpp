@@ -57,6 +57,7 @@ Json describe(const fs::path& file, const SessionReader& session) {
   json["bytes"] = fs::file_size(file);
   json["experiment"] = info.experiment_name;
   json["program_version"] = info.program_version;
+  json["arithmetic"] = info.arithmetic;
   json["board"] = info.board_name;
   json["seed"] = info.seed;
   json["random_seed"] = info.parameters.random_seed;
@@ -94,6 +95,7 @@ void print_info(const Json& json) {
   row("size", size);
   row("experiment", text("experiment"));
   row("program", text("program_version"));
+  row("arithmetic", text("arithmetic"));
   row("board", text("board"));
   row("seed", text("seed") + ", of the drive " + text("random_seed"));
   row("frames", text("frames") + " (" + text("duration_s") + " s)");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/core/name_list.h"
 #include "host_sim/soil_validation/soil_fit.h"
 #include "tools/screed/cli/command.h"
@@ -29,7 +30,7 @@ struct FitArguments {
 
 double tangent_of(double friction_deg) {
   return friction_deg >= 90.0 ? std::numeric_limits<double>::infinity()
-                              : std::tan(friction_deg * std::numbers::pi / 180.0);
+                              : portable::tan(friction_deg * std::numbers::pi / 180.0);
 }
 
 /// Mean errors of the wheels, as docs state them: forces over the load, sinkage over its value.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/soil_validation/particle_plate.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/number_option.h"
@@ -23,7 +24,7 @@ int run_match(const MatchArguments& a) {
   for (const ParticlePlatePoint& point : press_particles(a.test, bar.progress())) {
     const std::string where = text("plate, %g kPa", point.pressure_pa / kMilli);
     const double bekker = soil.k_c / std::min(a.test.length_m, a.test.width_m) + soil.k_phi;
-    const double depth = std::pow(point.pressure_pa / bekker, 1.0 / soil.exponent);
+    const double depth = portable::pow(point.pressure_pa / bekker, 1.0 / soil.exponent);
     lines.push_back({where, "depth_mm", point.depth_m() * kMilli, "%.2f",
                      std::max(depth, point.pressure_pa / soil.elastic_pa_per_m) * kMilli,
                      SoilLine::Error::kRelative});
@@ -37,7 +38,7 @@ int run_match(const MatchArguments& a) {
   const ParticleDrag drag = drag_over_particles(a.test, bar.progress());
   bar.clear();
   constexpr double kDegrees = 57.29577951308232;
-  lines.push_back({"block", "friction_deg", std::atan(drag.friction) * kDegrees, "%.1f",
+  lines.push_back({"block", "friction_deg", portable::atan(drag.friction) * kDegrees, "%.1f",
                    soil.friction_deg, SoilLine::Error::kNone});
   lines.push_back({"block", "shear_modulus_mm", drag.shear_displacement_m * kMilli, "%.2f",
                    soil.shear_modulus_m * kMilli, SoilLine::Error::kNone});

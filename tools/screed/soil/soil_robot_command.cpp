@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "host_sim/core/elementary.h"
 #include "host_sim/soil_validation/check_range.h"
 #include "host_sim/soil_validation/repose_pile.h"
 #include "host_sim/soil_validation/soil_robot.h"
@@ -54,7 +55,7 @@ int run_robot(const RobotArguments& a) {
   const double period = nodes * a.common.cell_m;
   const auto waves = [&](double x, double y) {
     const double k = 2.0 * std::numbers::pi / period;
-    return 0.5 * a.relief_m * (std::sin(2.0 * k * x) * std::cos(3.0 * k * y));
+    return 0.5 * a.relief_m * (portable::sin(2.0 * k * x) * portable::cos(3.0 * k * y));
   };
   const SoilParameters soil = a.common.soil();
   SoilBed bed(HeightField::from_function(nodes, nodes, a.common.cell_m, a.wrap, waves), soil,
@@ -87,7 +88,7 @@ int run_robot(const RobotArguments& a) {
       {"", "mean_load_n", load / timed, "%.4f"},
       {"", "lower_by_mm", (level - place.z()) * kMilli, "%.3f"},
       {"", "distance_m", distance, "%.4f"},
-      {"", "away_m", std::hypot(place.x() - a.x_m, place.y() - a.y_m), "%.4f"},
+      {"", "away_m", portable::hypot(place.x() - a.x_m, place.y() - a.y_m), "%.4f"},
       {"", "speed_m_per_s", robot.velocity().dot(robot.rotation().col(0)), "%.4f"},
       {"", "volume_error", static_cast<double>(bed.balance().error()), "%.0f", 0.0},
       {"", "volume_in_transit", static_cast<double>(bed.balance().in_transit), "%.0f"},

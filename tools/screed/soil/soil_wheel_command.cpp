@@ -6,6 +6,7 @@
 
 #include "host_sim/core/constants.h"
 #include "host_sim/core/data_folders.h"
+#include "host_sim/core/elementary.h"
 #include "host_sim/soil_validation/soil_measurements.h"
 #include "host_sim/soil_validation/wheel_testbed.h"
 #include "tools/screed/cli/command.h"
@@ -196,7 +197,7 @@ int run_wheel_command(WheelArguments a) {
   a.test.step_s = a.common.step_s;
   a.test.yaw_rad = a.yaw_deg * kDegree;
   a.test.wheel.friction = a.rim_friction_deg >= 90.0 ? std::numeric_limits<double>::infinity()
-                                                     : std::tan(a.rim_friction_deg * kDegree);
+                                                     : portable::tan(a.rim_friction_deg * kDegree);
   if (!a.measured.empty()) return run_measured(a);
   const bool several = a.slip_angles_deg.size() > 1;
   const auto runs = static_cast<double>(a.slip_angles_deg.size() * a.slips.size());

@@ -36,11 +36,11 @@ std::filesystem::path mesh_path(const std::filesystem::path& urdf_file, std::str
   return urdf_file.parent_path() / name;
 }
 
-Shape to_shape(const urdf::Pose& origin, const urdf::Geometry& geometry,
+Shape to_shape(const TiXmlElement& xml, const urdf::Geometry& geometry,
                const std::filesystem::path& urdf_file, const LinkElement& link,
                const Diagnostic& diagnostic) {
   Shape shape;
-  shape.pose = to_eigen(origin);
+  shape.pose = origin_of(xml);
   if (geometry.type == urdf::Geometry::BOX) {
     shape.geometry = Box{to_eigen(dynamic_cast<const urdf::Box&>(geometry).dim)};
   } else if (geometry.type == urdf::Geometry::CYLINDER) {
@@ -63,7 +63,7 @@ Inertia to_inertia(const urdf::Inertial& inertial, const LinkElement& link,
                    const Diagnostic& diagnostic) {
   Inertia inertia;
   inertia.mass = inertial.mass;
-  inertia.pose = to_eigen(inertial.origin);
+  inertia.pose = origin_of(*link.xml->FirstChildElement("inertial"));
   inertia.tensor << inertial.ixx, inertial.ixy, inertial.ixz,  //
       inertial.ixy, inertial.iyy, inertial.iyz,                //
       inertial.ixz, inertial.iyz, inertial.izz;
@@ -94,12 +94,15 @@ AssemblyBody to_body(const LinkElement& element, const urdf::Link& link,
   AssemblyBody body;
   body.name = element.name;
   if (link.inertial) body.inertia = to_inertia(*link.inertial, element, diagnostic);
+  const TiXmlElement* xml = element.xml->FirstChildElement("collision");
   for (const urdf::CollisionSharedPtr& item : link.collision_array) {
-    body.collision.push_back(
-        to_shape(item->origin, *item->geometry, urdf_file, element, diagnostic));
+    body.collision.push_back(to_shape(*xml, *item->geometry, urdf_file, element, diagnostic));
+    xml = xml->NextSiblingElement("collision");
   }
+  xml = element.xml->FirstChildElement("visual");
   for (const urdf::VisualSharedPtr& item : link.visual_array) {
-    body.visual.push_back(to_shape(item->origin, *item->geometry, urdf_file, element, diagnostic));
+    body.visual.push_back(to_shape(*xml, *item->geometry, urdf_file, element, diagnostic));
+    xml = xml->NextSiblingElement("visual");
   }
   return body;
 }

@@ -20,7 +20,7 @@ constexpr int kDeepestNesting = 100;
 // Names and values of a file end up in messages, whatever they contain.
 std::string one_line(std::string text) {
   std::replace_if(
-      text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
   return text;
 }
 

@@ -6,6 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "host_sim/core/elementary.h"
+#include "host_sim/core/rotation.h"
+
 namespace screed::urdf_parts {
 namespace {
 
@@ -41,7 +44,7 @@ bool in_range(const JointData& joint, double angle_rad) {
 JointData to_joint(const JointElement& element, const urdf::Joint& joint,
                    const Diagnostic& diagnostic) {
   JointData data;
-  data.origin = to_eigen(joint.parent_to_joint_origin_transform);
+  data.origin = origin_of(*element.xml);
   data.axis = joint_axis(element, diagnostic);
   if (element.type != "fixed") data.kind = AssemblyJoint::Kind::Revolute;
   if (!joint.limits) return data;
@@ -84,7 +87,7 @@ std::vector<Eigen::Isometry3d> link_poses(const Outline& outline, int chassis,
          j = outline.links[at(outline.joints[at(j)].parent)].parent_joint) {
       const JointData& joint = joints[at(j)];
       Eigen::Isometry3d step = joint.origin;
-      if (joint.held_at_rad) step.rotate(Eigen::AngleAxisd(*joint.held_at_rad, *joint.axis));
+      if (joint.held_at_rad) step.rotate(rotation_about(*joint.axis, *joint.held_at_rad));
       pose = step * pose;
     }
     return pose;
@@ -128,7 +131,7 @@ void set_leg_angle(double angle_rad, const Outline& outline, int chassis,
     const Eigen::Vector3d reach = poses[at(wheel)].translation() - leg.translation();
     // A turn about +y moves +x towards -z: it lowers the end of a leg that points forward and lifts
     // one that points back.
-    const double now_rad = std::atan2(-reach.z(), std::abs(reach.x()));
+    const double now_rad = portable::atan2(-reach.z(), std::abs(reach.x()));
     const double sense = (reach.x() < 0.0 ? -1.0 : 1.0) * (axis_y < 0.0 ? -1.0 : 1.0);
     const double turn_rad = sense * (angle_rad - now_rad);
     if (!in_range(joint, turn_rad)) {

@@ -6,6 +6,9 @@
 
 #include <mutex>
 #include <string>
+#include <vector>
+
+#include "host_sim/core/rotation.h"
 
 namespace screed::urdf_parts {
 namespace {
@@ -81,12 +84,20 @@ Eigen::Vector3d to_eigen(const urdf::Vector3& v) {
   return {v.x, v.y, v.z};
 }
 
-Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
-  const urdf::Rotation& q = pose.rotation;
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-  result.translation() = to_eigen(pose.position);
-  return result;
+Eigen::Isometry3d origin_of(const TiXmlElement& element) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const TiXmlElement* const origin = element.FirstChildElement("origin");
+  if (origin == nullptr) return pose;
+  const std::vector<double> place = parse_numbers(attribute(*origin, "xyz"));
+  const std::vector<double> angles = parse_numbers(attribute(*origin, "rpy"));
+  if (!place.empty()) pose.translation() = Eigen::Vector3d(place[0], place[1], place[2]);
+  if (!angles.empty()) {
+    pose.linear() = (rotation_about(Eigen::Vector3d::UnitZ(), angles[2]) *
+                     rotation_about(Eigen::Vector3d::UnitY(), angles[1]) *
+                     rotation_about(Eigen::Vector3d::UnitX(), angles[0]))
+                        .toRotationMatrix();
+  }
+  return pose;
 }
 
 }  // namespace screed::urdf_parts

@@ -16,6 +16,8 @@ namespace screed::urdf_parts {
 urdf::ModelInterfaceSharedPtr parse_model(const TiXmlDocument& xml, const Diagnostic& diagnostic);
 
 Eigen::Vector3d to_eigen(const urdf::Vector3& v);
-Eigen::Isometry3d to_eigen(const urdf::Pose& pose);
+/// The pose of an element's <origin>, by its own numbers: urdfdom turns angles into a quaternion
+/// whose bits depend on how it was compiled.
+Eigen::Isometry3d origin_of(const TiXmlElement& element);
 
 }  // namespace screed::urdf_parts

@@ -31,7 +31,7 @@ std::vector<WorkerAnswer> serve(TaskExecutor& executor, const std::filesystem::p
                                 const std::string& requests) {
   std::istringstream stream(requests);
   std::vector<WorkerAnswer> answers;
-  serve_tasks(executor, results, "1.2.3", stream,
+  serve_tasks(executor, results, {{"version", "1.2.3"}, {"arithmetic", "round"}}, stream,
               [&](const std::string& text) { answers.push_back(parse_answer(text)); });
   return answers;
 }
@@ -82,7 +82,8 @@ TEST(TaskWorker, StoresEachTaskOfARequest) {
   EXPECT_EQ(results.read("square-9").result, "81");
   EXPECT_TRUE(results.failed("square-3"));
   const std::string provenance = results.read("square-4").provenance;
-  for (const char* part : {R"("version":"1.2.3")", R"("attempt":2)", R"("processor_seconds":)"})
+  for (const char* part : {R"("version":"1.2.3")", R"("arithmetic":"round")", R"("attempt":2)",
+                           R"("processor_seconds":)"})
     EXPECT_NE(provenance.find(part), std::string::npos) << provenance;
 }
 

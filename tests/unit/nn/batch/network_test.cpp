@@ -212,7 +212,7 @@ TEST(Network, WhatCannotBeRepresentedIsRefusedWithItsLayer) {
             "network: layer 1: dimensions do not fit together; allowed is 1 to 255 a side");
 }
 
-class Batch : public ::testing::TestWithParam<BatchKernel> {};
+class Batch : public ::testing::TestWithParam<InstructionSet> {};
 
 TEST_P(Batch, GivesTheBitsOfTheScalarArithmetic) {
   WorldRandom random(3, "network");
@@ -249,7 +249,7 @@ TEST_P(Batch, GivesTheBitsOfTheScalarArithmetic) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryKernel, Batch, ::testing::ValuesIn(batch_kernels()));
+INSTANTIATE_TEST_SUITE_P(EveryKernel, Batch, ::testing::ValuesIn(instruction_sets()));
 
 }  // namespace
 }  // namespace screed::nn

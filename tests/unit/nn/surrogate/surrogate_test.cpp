@@ -194,21 +194,21 @@ TEST(Surrogate, ManyRobotsGiveTheBitsOfOne) {
   std::vector<PlanarPose> alone;
   for (std::size_t i = 0; i < kRobots; ++i) {
     Surrogate robot(model, SupportGeometry{}, 1, Surrogate::Arithmetic::kInteger,
-                    BatchKernel::kScalar);
+                    InstructionSet::kBaseline);
     robot.set_pose(0, places[i]);
     for (int frame = 0; frame < kFrames; ++frame) {
       robot.step(ground, {&left[i], 1}, {&right[i], 1});
     }
     alone.push_back(robot.pose(0));
   }
-  for (const BatchKernel kernel : batch_kernels()) {
+  for (const InstructionSet kernel : instruction_sets()) {
     Surrogate robots(model, SupportGeometry{}, kRobots, Surrogate::Arithmetic::kInteger, kernel);
     for (std::size_t i = 0; i < kRobots; ++i) {
       robots.set_pose(i, places[i]);
     }
     for (int frame = 0; frame < kFrames; ++frame) robots.step(ground, left, right);
     for (std::size_t i = 0; i < kRobots; ++i) {
-      ASSERT_EQ(robots.pose(i).x_m, alone[i].x_m) << batch_kernel_name(kernel) << " " << i;
+      ASSERT_EQ(robots.pose(i).x_m, alone[i].x_m) << name_of(kernel) << " " << i;
       ASSERT_EQ(robots.pose(i).y_m, alone[i].y_m);
       ASSERT_EQ(robots.pose(i).heading_rad, alone[i].heading_rad);
     }

@@ -14,6 +14,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/hdf5_handle.h"
 #include "host_sim/core/record.h"
+#include "host_sim/run/session/arithmetic.h"
 #include "host_sim/run/session/session_reader.h"
 #include "host_sim/run/session/session_writer.h"
 #include "tests/temp_folder.h"
@@ -56,6 +57,7 @@ struct Recording {
 inline Recording random_run(std::size_t ticks, std::uint64_t seed = 1) {
   Recording run;
   run.info.program_version = "1.2.3";
+  run.info.arithmetic = arithmetic();
   run.info.experiment_name = "hill";
   run.info.experiment_text = "[experiment]\nseed = 7\n# gr\xC3\xBC\xC3\x9F dich\n";
   run.info.seed = 0xFEDCBA9876543210U;

@@ -75,6 +75,7 @@ TEST_F(SessionTest, EverythingComesBack) {
 
   const SessionInfo& info = reader.info();
   EXPECT_EQ(info.program_version, run.info.program_version);
+  EXPECT_EQ(info.arithmetic, run.info.arithmetic);
   EXPECT_EQ(info.experiment_name, run.info.experiment_name);
   EXPECT_EQ(info.experiment_text, run.info.experiment_text);
   EXPECT_EQ(info.seed, run.info.seed);
