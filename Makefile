@@ -13,6 +13,7 @@ MAKEFLAGS += --no-builtin-rules
 DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
 PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
+                 $(if $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt) \
                  $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt) \
                  $(if $(filter test-slurm,$(MAKECMDGOALS)),tests/slurm/debian-packages.txt) \
                  $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt) \
@@ -58,5 +59,5 @@ include tests/asan.mk
 include tools/mutants/mutants.mk
 include nn/training/training.mk
 include tools/lint/lint.mk
--include $(shell find $(BUILD_ROOT) -name '*.d' 2> /dev/null)
+-include $(shell find $(BUILD_ROOT) -name sysroot -prune -o -name '*.d' -print 2> /dev/null)
 endif

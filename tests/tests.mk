@@ -28,6 +28,7 @@ define link_tests
 	@echo "  LINK $@"
 	@$(CXX) -Wl,--whole-archive $(LIBRARY) -Wl,--no-whole-archive $(filter-out $(LIBRARY),$(filter %.o %.a,$^)) -Wl,--as-needed \
 	  @$(B)/link.flags $(TEST_LIBRARIES) -o $@
+	$(call runnable,$@)
 endef
 # What tests are linked with.
 TESTED := $(call objects,$(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_tools.a $(B)/libmutants.a

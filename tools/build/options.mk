@@ -21,9 +21,16 @@ VERSION := $(firstword $(VERSION_WORDS))$(if $(filter-out unknown,$(COMMIT)),+$(
 OPTIMISE_release := -O2 -DNDEBUG
 OPTIMISE_debug := -O0 -g
 OPTIMISE_asan := -O1 -gline-tables-only -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+OPTIMISE_arm64 := $(OPTIMISE_release)
 ifeq ($(OPTIMISE_$(BUILD)),)
-$(error BUILD=$(BUILD): release, debug or asan)
+$(error BUILD=$(BUILD): release, debug, asan or arm64)
 endif
+# The compiler of programs that the build itself runs.
+HERE_CXX := $(CXX)
+ifeq ($(BUILD),arm64)
+include tools/arm64/arm64.mk
+endif
+MACHINE := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine)))
 
 # A board is a folder with a board.mk.
 BOARDS := $(patsubst boards/%/board.mk,%,$(sort $(wildcard boards/*/board.mk)))

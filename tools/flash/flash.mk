@@ -26,6 +26,7 @@ FLASH_BOARD = --sketch-usb $(BOARD_USB_VID:0x%=%):$(BOARD_USB_PID:0x%=%) \
 $(SCREED_FLASH): $(call objects,$(FLASH_SOURCES)) $(COMMAND_LINE)
 	@echo "  LINK $@"
 	@$(CXX) $(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $^ -pthread -o $@
+	$(call runnable,$@)
 
 # `firmware` also checks the budget: an image that reaches into the bootloader is not flashed.
 flash: $(SCREED_FLASH) firmware  ## build it and bring it onto the board (BOARD=NAME PORT=/dev/ttyACM0)
@@ -52,3 +53,4 @@ test: export SCREED_FLASH_IMAGE := $(abspath $(FIRMWARE_BUILD))/screed.hex
 $(FLASH_TESTS): $(FLASH_OBJECTS) $(call objects,$(filter-out tools/flash/main.cpp,$(FLASH_SOURCES)))
 	@echo "  LINK $@"
 	@$(CXX) $(filter -fsanitize%,$(OPTIMISE_$(BUILD))) $^ -pthread $(TEST_LIBRARIES) -o $@
+	$(call runnable,$@)

@@ -14,6 +14,7 @@ $(B)/libmutants.a: $(call objects,$(MUTANTS_LIBRARY_SOURCES))
 $(MUTANTS): $(B)/tools/mutants/main.o $(B)/libmutants.a $(COMMAND_LINE)
 	@echo "  LINK $@"
 	@$(CXX) $^ -pthread -o $@
+	$(call runnable,$@)
 
 # What the tool compiles and links mutants with: for each program the arguments of the linker, and what its library is made of.
 MUTANTS_LINK = -Wl,--as-needed @$(B)/link.flags

@@ -21,9 +21,9 @@ SCHEMA_HEADERS := $(FIRMWARE_SCHEMA_HEADERS) $(GENERATED_FOLDER)/schema/tables.h
 $(BUILD_ROOT)/schema/%.o: %.cpp tools/schema/schema.mk
 	@mkdir -p $(@D)
 	@echo "  CXX  $<"
-	@$(CXX) -std=c++20 -O1 $(WARNINGS) -I. -MMD -MP -c $< -o $@
+	@$(HERE_CXX) -std=c++20 -O1 $(WARNINGS) -I. -MMD -MP -c $< -o $@
 $(SCHEMA_COMPILER): $(SCHEMA_OBJECTS)
-	@$(CXX) $^ -o $@.$$$$ && mv $@.$$$$ $@
+	@$(HERE_CXX) $^ -o $@.$$$$ && mv $@.$$$$ $@
 
 # The stamp is new when the compiler has run; the headers only when they changed.
 $(GENERATED_FOLDER)/schema.stamp: $(SCHEMA) $(SCHEMA_COMPILER)

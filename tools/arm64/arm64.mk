@@ -1,0 +1,19 @@
+# A program for 64-bit Arm, made and run on another machine: `make test BUILD=arm64`. Included by options.mk for that kind of build.
+#
+# A cross compiler with Debian's packages for arm64 below build/sysroot; what is linked runs here by qemu-user.
+
+SYSROOT := $(abspath $(BUILD_ROOT))/sysroot/root
+CXX := aarch64-linux-gnu-g++ --sysroot=$(SYSROOT)
+export PKG_CONFIG_SYSROOT_DIR := $(SYSROOT)
+export PKG_CONFIG_LIBDIR := $(SYSROOT)/usr/lib/aarch64-linux-gnu/pkgconfig:$(SYSROOT)/usr/share/pkgconfig
+# $(call runnable,PROGRAM): PROGRAM becomes PROGRAM.elf and a script that runs it.
+define runnable
+@mv $(1) $(1).elf
+@printf '#!/bin/sh\nexec qemu-aarch64 -L $(SYSROOT) "$$0.elf" "$$@"\n' > $(1)
+@chmod +x $(1)
+endef
+
+$(SYSROOT): tools/arm64/debian.sh tools/debian-packages.txt
+	@echo "  GET  packages for arm64"
+	@tools/arm64/debian.sh sysroot $(BUILD_ROOT)/sysroot tools/debian-packages.txt
+	@touch $@
