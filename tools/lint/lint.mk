@@ -53,6 +53,7 @@ check-words:
 check-one-source:
 	@tools/lint/one_source.sh
 	@tools/lint/one_class.sh
+	@tools/lint/own_functions.sh
 check-links:
 	@tools/lint/check_links.sh
 format:  ## clang-format over the tree
