@@ -17,6 +17,7 @@ own_apt() {
   : > "$folder/apt/status"
   local file
   for file in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
+    [ -e "$file" ] || continue
     case $file in
       *.list) sed -nE "s/^deb /$2 /p" "$file" > "$folder/apt/sources/$(basename "$file")" ;;
       *.sources) sed -E "s/^Types:.*/Types: $2/" "$file" > "$folder/apt/sources/$(basename "$file")" ;;
@@ -46,13 +47,11 @@ case $what in
     rm -rf "$folder/root"
     mkdir "$folder/root"
     for package in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$package" "$folder/root"; done
-    # Links by name from the root would lead out of here; some are made only when a package is set up.
+    # Links by name from the root would lead out of here. HDF5's is made only when the package is set up.
     find "$folder/root" -type l -lname '/*' -printf '%p %l\n' | while read -r link to; do
       ln -sfn "$(realpath -m --relative-to="$(dirname "$link")" "$folder/root$to")" "$link"
     done
-    libraries=$folder/root/usr/lib/aarch64-linux-gnu
-    ln -s hdf5-serial.pc "$libraries/pkgconfig/hdf5.pc"
-    for library in blas lapack; do ln -s $library/lib$library.so.3 "$libraries/lib$library.so.3"; done
+    ln -s hdf5-serial.pc "$folder/root/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
     rm -r "$folder/apt"
     ;;
   ode)
@@ -63,7 +62,7 @@ case $what in
     tar xf "$folder"/source/ode_*.orig.tar.* -C "$folder/source" --strip-components=1
     cd "$folder/source"
     { ./configure --host="$1" --prefix="$folder" --enable-double-precision --disable-shared --disable-demos --with-trimesh=none \
-        CFLAGS='-O2 -fPIC' CXXFLAGS='-O2 -fPIC -ffp-contract=off' && make -j"$(nproc)" && make install; } > "$folder/log" 2>&1 ||
+        CFLAGS='-O2 -fPIC -ffp-contract=off' CXXFLAGS='-O2 -fPIC -ffp-contract=off' && make -j"$(nproc)" && make install; } > "$folder/log" 2>&1 ||
       { tail -n 20 "$folder/log" >&2; exit 1; }
     rm -r "$folder/source" "$folder/apt"
     ;;
