@@ -56,7 +56,8 @@ class LevelBench : public Program {
   }
 };
 
-// One table of both worlds, and how far they order the entries alike.
+// One table of both worlds, and how far they order the entries alike. Minutes: over fewer beds
+// their means scatter by more than the bounds leave.
 TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
   const std::filesystem::path shipped = std::filesystem::path(kDataFolder) / "benchmark";
   std::filesystem::copy(shipped / "bed.ini", root_ / "bed.ini");
@@ -64,7 +65,7 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
         read(shipped / "leveling.ini") +
             "\n[suite worlds]\nworld = physics, stand_in\nsize = small\nbed = rough\n"
             "soil = gravel\nrobots = one\nposition = fixes\n"
-            "entry = nobody, strokes\nseeds = 2\nduration = 1800\n");
+            "entry = nobody, strokes\nseeds = 8\nduration = 1800\n");
   const Result result = run(
       "level bench --suite worlds --benchmark leveling.ini --training --workers 2 --quiet --json "
       "--against nobody --out b");
@@ -74,14 +75,13 @@ TEST_F(LevelBench, TheStandInLevelsAsThePhysicsDoes) {
   const Json& ranking = tables[2];
   EXPECT_EQ(ranking["ranking"], "stand_in");
   EXPECT_EQ(ranking["reference"], "physics");
-  EXPECT_EQ(ranking["beds"], 2);
+  EXPECT_EQ(ranking["beds"], 8);
   EXPECT_EQ(ranking["tau"]["mean"], 1.0);
   const Json& strokes = ranking["entries"][1];
   const auto physics = strokes["physics"]["mean"].get<double>();
   const auto stand_in = strokes["stand_in"]["mean"].get<double>();
   EXPECT_LT(physics, -0.03);
-  // 0.76 of it over eight beds; of two beds, 0.1 more or less.
-  EXPECT_GT(stand_in / physics, 0.6);
+  EXPECT_GT(stand_in / physics, 0.75);
   EXPECT_LT(stand_in / physics, 1.25);
   EXPECT_NEAR(ranking["entries"][0]["stand_in"]["mean"].get<double>(), 0.0, 1e-3);
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/core/rotation.h"
+#include "host_sim/physics/vehicle/vehicle_state.h"
 
 namespace screed::urdf_parts {
 namespace {
@@ -91,12 +91,8 @@ Eigen::Isometry3d origin_of(const TiXmlElement& element) {
   const std::vector<double> place = parse_numbers(attribute(*origin, "xyz"));
   const std::vector<double> angles = parse_numbers(attribute(*origin, "rpy"));
   if (!place.empty()) pose.translation() = Eigen::Vector3d(place[0], place[1], place[2]);
-  if (!angles.empty()) {
-    pose.linear() = (rotation_about(Eigen::Vector3d::UnitZ(), angles[2]) *
-                     rotation_about(Eigen::Vector3d::UnitY(), angles[1]) *
-                     rotation_about(Eigen::Vector3d::UnitX(), angles[0]))
-                        .toRotationMatrix();
-  }
+  // A turn about y, which points left, lowers the nose.
+  if (!angles.empty()) pose.linear() = rotation_from({angles[0], -angles[1], angles[2]});
   return pose;
 }
 
