@@ -57,8 +57,7 @@ BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
       histories_(flow_.nodes()),
       stances_(robots) {
   check_soil(soil);
-  const auto last = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
-  for (int i = 0; i <= last; ++i) powers_.emplace_back(soil.exponent + i * kExponentStep);
+  powers_ = power_tables(soil.exponent, kExponentStep, soil.slip_sinkage);
 }
 
 VolumeBalance BeltGround::balance() const {
@@ -136,8 +135,8 @@ void BeltGround::find_bearing(const BeltStride& stride, Stance& stance) {
                               (shear.slid_m / shear.moved_m - stance.slip.at(side));
     }
     const double more = soil_.slip_sinkage * std::clamp(stance.slip.at(side), 0.0, 1.0);
-    const PowerTable* const power = &powers_[std::min(
-        powers_.size() - 1, static_cast<std::size_t>(std::lround(more / kExponentStep)))];
+    const PowerTable* const power = &(*powers_)[std::min(
+        powers_->size() - 1, static_cast<std::size_t>(std::lround(more / kExponentStep)))];
     for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
       Cell& cell = cells_[i];
       cell.power = power;

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -128,7 +129,7 @@ class BeltGround {
   MaterialFlow flow_;
   /// Of Bekker's exponent, as slip-sinkage makes it grow.
   static constexpr double kExponentStep = 0.02;
-  std::vector<PowerTable> powers_;
+  std::shared_ptr<const PowerTables> powers_;
   std::int64_t volume_before_;
   double cell_area_;
   double bekker_;

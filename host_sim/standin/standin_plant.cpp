@@ -13,8 +13,7 @@
 #include "hal/sample.h"
 #include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
-#include "host_sim/physics/vehicle/ode_world.h"
-#include "host_sim/physics/vehicle/vehicle.h"
+#include "host_sim/physics/vehicle/vehicle_parts.h"
 #include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed {
@@ -46,9 +45,7 @@ StandInKind kind_of(const Assembly& model, const PlantOptions& options) {
   kind.tracks = track_geometry(model);
   kind.motor = options.vehicle.motor;
   kind.battery = options.battery;
-  // Bodies that are never stepped: their measures are wanted.
-  OdeWorld world;
-  kind.outline = Vehicle(world, model, options.vehicle).outline();
+  kind.outline = VehicleParts(model, options.vehicle).outline_at_rest();
   const int imu = model.body_index("Imu");
   if (imu >= 0) kind.imu = model.bodies[static_cast<std::size_t>(imu)].pose.translation();
   return kind;

@@ -12,7 +12,7 @@
 
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/world/environment.h"
-#include "host_sim/physics/world/plant.h"
+#include "host_sim/physics/world/plant_options.h"
 #include "host_sim/standin/belt_fit.h"
 #include "host_sim/standin/belt_ground.h"
 #include "host_sim/standin/standin_robot.h"

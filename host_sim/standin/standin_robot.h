@@ -11,7 +11,7 @@
 #include "host_sim/physics/vehicle/drive_shaft.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/environment.h"
-#include "host_sim/physics/world/plant.h"
+#include "host_sim/physics/world/plant_options.h"
 #include "host_sim/standin/belt_ground.h"
 #include "host_sim/standin/belt_motion.h"
 #include "host_sim/standin/driving_state.h"

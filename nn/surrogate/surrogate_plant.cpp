@@ -11,8 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
 #include "host_sim/core/rotation.h"
-#include "host_sim/physics/vehicle/ode_world.h"
-#include "host_sim/physics/vehicle/vehicle.h"
+#include "host_sim/physics/vehicle/vehicle_parts.h"
 #include "host_sim/physics/world/wall_clearance.h"
 
 namespace screed::nn {
@@ -57,14 +56,12 @@ SurrogatePlant::SurrogatePlant(HeightField terrain, const Assembly& model,
     throw InputError("[robots] count = " + std::to_string(1 + options.further_starts.size()) +
                      ": networks move 1; several robots run without --model");
   }
-  // Bodies that are never stepped: their measures are wanted.
-  OdeWorld world;
-  const Vehicle bodies(world, model, options.vehicle);
+  const VehicleParts bodies(model, options.vehicle);
   const HeightField level = HeightField::flat(1.0, 0.5);
   standing_height_m_ = bodies.resting_height(level, 0.0, 0.0, Eigen::Matrix3d::Identity());
   tread_m_ = bodies.tread_m();
   mass_kg_ = bodies.mass_kg();
-  body_outline_ = bodies.outline();
+  body_outline_ = bodies.outline_at_rest();
   geometry_.wheel_radius_m = bodies.wheel_radius_m(kLeft);
   const int imu = model.body_index("Imu");
   if (imu >= 0) imu_position_ = model.bodies[static_cast<size_t>(imu)].pose.translation();

@@ -15,7 +15,7 @@
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/physics/vehicle/drive_shaft.h"
 #include "host_sim/physics/world/environment.h"
-#include "host_sim/physics/world/plant.h"
+#include "host_sim/physics/world/plant_options.h"
 #include "host_sim/standin/driving_state.h"
 #include "nn/surrogate/surrogate.h"
 #include "nn/terrain/terrain_network.h"

@@ -11,8 +11,9 @@ namespace {
 
 /// Of the air: preamble, start, length, addresses, checksum (IEEE 802.15.4-2006, 6.3 and 7.2).
 constexpr size_t kFrameOverhead = 6 + 11;
-constexpr size_t kFullPacket = 100;
 constexpr double kPathLossExponent = 3.0;
+/// Signal to noise at the range: half of the packets of 100 bytes are lost (packet_loss() below).
+constexpr double kSnrAtRange = 0.84092874812320639;
 
 /// IEEE 802.15.4-2006, equation E.1: bit error rate at a signal to noise ratio.
 double bit_error_rate(double snr) {
@@ -30,21 +31,9 @@ double packet_loss(double snr, size_t bytes) {
   return 1.0 - portable::pow(1.0 - bit_error_rate(snr), bits);
 }
 
-/// The ratio at which half of the full packets are lost.
-double snr_at_range() {
-  double low = 0.0;
-  double high = 10.0;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (packet_loss(middle, kFullPacket) > 0.5 ? low : high) = middle;
-  }
-  return low;
-}
-
 }  // namespace
 
 double packet_loss_at(double distance_m, double range_m, size_t bytes) {
-  static const double kSnrAtRange = snr_at_range();
   if (distance_m <= 0.0) return 0.0;
   return packet_loss(kSnrAtRange * portable::pow(range_m / distance_m, kPathLossExponent), bytes);
 }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "host_sim/core/elementary.h"
 #include "host_sim/physics/kernels/kernels.h"
 
 namespace screed {
@@ -16,19 +15,7 @@ namespace screed {
 /// 1.1). Below 60 nm a straight line to 0, above 1 m the last one goes on.
 class PowerTable {
  public:
-  explicit PowerTable(double exponent) : exponent_(exponent), lines_(kLines) {
-    double low = 0.0;
-    double low_power = 0.0;
-    for (int64_t i = 0; i < kLines; ++i) {
-      const double high = std::bit_cast<double>((kFirst + i) << kDropped);
-      const double high_power = portable::pow(high, exponent);
-      Line& line = lines_[static_cast<size_t>(i)];
-      line.slope = (high_power - low_power) / (high - low);
-      line.offset = high_power - line.slope * high;
-      low = high;
-      low_power = high_power;
-    }
-  }
+  explicit PowerTable(double exponent);
 
   double exponent() const { return exponent_; }
   /// For kernels: the same lines; as long as the table lives.
@@ -57,5 +44,12 @@ class PowerTable {
   double exponent_;
   std::vector<Line> lines_;
 };
+
+using PowerTables = std::vector<PowerTable>;
+
+/// Of n, n + step and so on, to n + most_more or just above it: how slip-sinkage raises Bekker's
+/// exponent. All worlds of a process that ask for the same share them (a table has 12 kB); the last
+/// one to go takes them along. May be called from any thread.
+std::shared_ptr<const PowerTables> power_tables(double n, double step, double most_more);
 
 }  // namespace screed

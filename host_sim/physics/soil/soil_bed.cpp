@@ -63,8 +63,7 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
   }
   volume_before_ = flow_.surface().height_sum();
   histories_.resize(flow_.nodes());
-  const auto last_table = static_cast<int>(std::ceil(soil.slip_sinkage / kExponentStep));
-  for (int i = 0; i <= last_table; ++i) tables_.emplace_back(soil.exponent + i * kExponentStep);
+  tables_ = power_tables(soil.exponent, kExponentStep, soil.slip_sinkage);
 }
 
 VolumeBalance SoilBed::balance() const {

@@ -17,6 +17,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -158,7 +159,7 @@ class SoilBed final : public Terrain {
   MaterialFlow flow_;
   /// Of Bekker's exponent, finer than anybody knows it.
   static constexpr double kExponentStep = 0.005;
-  std::vector<PowerTable> tables_;  // of n, and of what slip-sinkage makes of it
+  std::shared_ptr<const PowerTables> tables_;  // of n, and of what slip-sinkage makes of it
   double tan_friction_;
   double tan_repose_;
   double cell_area_;

@@ -50,7 +50,7 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
   // Slip-sinkage raises the exponent.
   const double exponent_index =
       std::min(std::abs(memory.slip), 1.0) * soil_.slip_sinkage / kExponentStep;
-  const PowerTable& table = tables_[static_cast<size_t>(std::lround(exponent_index))];
+  const PowerTable& table = (*tables_)[static_cast<size_t>(std::lround(exponent_index))];
   // The patch of the last step decides this step's b; at the first touch the body itself does.
   const double b =
       memory.patch_b_m > 0.0 ? std::max(memory.patch_b_m, kMinPatch_m) : footprint.narrow();

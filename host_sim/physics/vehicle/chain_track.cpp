@@ -9,7 +9,6 @@
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
-#include "host_sim/physics/vehicle/ode_world.h"
 
 namespace screed {
 namespace {

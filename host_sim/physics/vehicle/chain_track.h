@@ -22,18 +22,12 @@
 #include "host_sim/physics/vehicle/chain_solver.h"
 #include "host_sim/physics/vehicle/running_gear.h"
 #include "host_sim/physics/vehicle/terrain_contact.h"
+#include "host_sim/physics/vehicle/vehicle_options.h"
 
 namespace screed {
 
 /// Of the shoes, inwards from the pins: the solid that loose elements meet.
 inline constexpr double kChainShoeThickness_m = 0.008;
-
-struct ChainOptions {
-  int links = 0;             ///< of each side; 0: as many as make links of about 10 mm
-  double tension_n = 10.0;   ///< of the chain at rest on its wheels
-  double mass_kg = 0.06;     ///< of one side, taken from the mass of its wheels
-  double stiffness_n = 1e4;  ///< tension that would stretch it to twice its length
-};
 
 class ChainTrack {
  public:

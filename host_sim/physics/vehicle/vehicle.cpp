@@ -13,15 +13,51 @@ constexpr double kChainMobilityFactor = 2.0;
 
 }  // namespace
 
+Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options)
+    : VehicleParts(assembly, options) {
+  add_bodies(world);
+  place(Eigen::Isometry3d::Identity());
+  add_hinges(world, assembly);
+}
+
+void Vehicle::add_bodies(OdeWorld& world) {
+  for (const Carrier& carrier : carriers_) {
+    const Eigen::Matrix3d& tensor = carrier.inertia;
+    dMass mass;
+    dMassSetParameters(&mass, carrier.mass, 0, 0, 0, tensor(0, 0), tensor(1, 1), tensor(2, 2),
+                       tensor(0, 1), tensor(0, 2), tensor(1, 2));
+    bodies_.push_back(dBodyCreate(world.id()));
+    dBodySetMass(bodies_.back(), &mass);
+  }
+}
+
+void Vehicle::add_hinges(OdeWorld& world, const Assembly& assembly) {
+  for (const AssemblyJoint& joint : assembly.joints) {
+    const size_t parent = carrier_of_body_[static_cast<size_t>(joint.parent)];
+    const size_t child = carrier_of_body_[static_cast<size_t>(joint.child)];
+    if (parent == child) continue;  // fixed, or a wheel
+    dJointID hinge = dJointCreateHinge(world.id(), nullptr);
+    dJointAttach(hinge, bodies_[child], bodies_[parent]);
+    const Eigen::Vector3d anchor = joint.pose.translation();
+    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+    dJointSetHingeAxis(hinge, joint.axis.x(), joint.axis.y(), joint.axis.z());
+    if (joint.limited) {
+      dJointSetHingeParam(hinge, dParamLoStop, joint.lower_rad);
+      dJointSetHingeParam(hinge, dParamHiStop, joint.upper_rad);
+    }
+  }
+}
+
 void Vehicle::place(const Eigen::Isometry3d& pose) {
   dMatrix3 rotation;
   to_ode(pose.linear(), rotation);
-  for (Carrier& carrier : carriers_) {
+  for (size_t i = 0; i < carriers_.size(); ++i) {
+    Carrier& carrier = carriers_[i];
     const Eigen::Vector3d at = pose * carrier.rest_pose.translation();
-    dBodySetPosition(carrier.body, at.x(), at.y(), at.z());
-    dBodySetRotation(carrier.body, rotation);
-    dBodySetLinearVel(carrier.body, 0, 0, 0);
-    dBodySetAngularVel(carrier.body, 0, 0, 0);
+    dBodySetPosition(bodies_[i], at.x(), at.y(), at.z());
+    dBodySetRotation(bodies_[i], rotation);
+    dBodySetLinearVel(bodies_[i], 0, 0, 0);
+    dBodySetAngularVel(bodies_[i], 0, 0, 0);
     carrier.hull.reset_contacts();
     carrier.walls.reset_contacts();
     carrier.memory = {};
@@ -32,40 +68,20 @@ void Vehicle::place(const Eigen::Isometry3d& pose) {
 }
 
 void Vehicle::shift(double dx_m, double dy_m) {
-  for (const Carrier& carrier : carriers_) {
-    const dReal* at = dBodyGetPosition(carrier.body);
-    dBodySetPosition(carrier.body, at[0] + dx_m, at[1] + dy_m, at[2]);
+  for (const dBodyID body : bodies_) {
+    const dReal* at = dBodyGetPosition(body);
+    dBodySetPosition(body, at[0] + dx_m, at[1] + dy_m, at[2]);
   }
-}
-
-double Vehicle::resting_height(const HeightField& terrain, double x, double y,
-                               const Eigen::Matrix3d& rotation) const {
-  double height = -std::numeric_limits<double>::infinity();
-  const auto rest_on = [&](const Carrier& carrier, const Eigen::Vector3d& point) {
-    const Eigen::Vector3d at = rotation * (carrier.rest_pose * point);
-    height = std::max(height, terrain.at(x + at.x(), y + at.y()).height - at.z());
-  };
-  for (const Carrier& carrier : carriers_) {
-    for (const Eigen::Vector3d& point : carrier.hull.points()) rest_on(carrier, point);
-  }
-  for (const Unit& unit : units_) {
-    for (const Eigen::Vector3d& point : unit.gear.points()) rest_on(carriers_[unit.carrier], point);
-  }
-  for (const Chain& chain : chains_) {
-    for (const Eigen::Vector3d& point : chain.track.points()) {
-      rest_on(carriers_[chain.carrier], point);
-    }
-  }
-  return height;
 }
 
 Eigen::AlignedBox2d Vehicle::outline() const {
   Eigen::AlignedBox2d box;
-  for (const Carrier& carrier : carriers_) {
-    const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
-    const Eigen::Vector3d origin = to_eigen(dBodyGetPosition(carrier.body));
-    for (size_t i = 0; i < carrier.walls.points(); ++i) {
-      const Eigen::Vector3d at = origin + rotation * carrier.walls.point(i);
+  for (size_t c = 0; c < carriers_.size(); ++c) {
+    const WallContact& walls = carriers_[c].walls;
+    const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(bodies_[c]));
+    const Eigen::Vector3d origin = to_eigen(dBodyGetPosition(bodies_[c]));
+    for (size_t i = 0; i < walls.points(); ++i) {
+      const Eigen::Vector3d at = origin + rotation * walls.point(i);
       box.extend(Eigen::Vector2d(at.head<2>()));
     }
   }
@@ -185,7 +201,7 @@ ChainTrack::WheelRates Vehicle::wheel_rates(const Chain& chain) const {
 }
 
 CarrierMotion Vehicle::motion_of(size_t carrier) const {
-  const dBodyID body = carriers_[carrier].body;
+  const dBodyID body = bodies_[carrier];
   CarrierMotion motion;
   motion.origin = to_eigen(dBodyGetPosition(body));
   motion.rotation = rotation_to_eigen(dBodyGetRotation(body));
@@ -213,7 +229,7 @@ void Vehicle::list_shaft_drives() {
 }
 
 void Vehicle::add_wrench(size_t carrier, const Wrench& wrench) {
-  const dBodyID body = carriers_[carrier].body;
+  const dBodyID body = bodies_[carrier];
   dBodyAddForce(body, wrench.force.x(), wrench.force.y(), wrench.force.z());
   dBodyAddTorque(body, wrench.torque.x(), wrench.torque.y(), wrench.torque.z());
 }
@@ -232,11 +248,11 @@ RobotBody Vehicle::robot_body(size_t carrier, const Eigen::Vector3d& offset, Wre
           wrench};
 }
 
-bool Vehicle::within_reach(double gap_m, const Carrier& one, const Carrier& other,
-                           const Eigen::Vector3d& to_other) {
-  const Eigen::Vector3d apart =
-      to_eigen(dBodyGetPosition(other.body)) + to_other - to_eigen(dBodyGetPosition(one.body));
-  const double reach = one.reach + other.reach + gap_m;
+bool Vehicle::within_reach(double gap_m, size_t mine, const Vehicle& other, size_t theirs,
+                           const Eigen::Vector3d& to_other) const {
+  const Eigen::Vector3d apart = to_eigen(dBodyGetPosition(other.bodies_[theirs])) + to_other -
+                                to_eigen(dBodyGetPosition(bodies_[mine]));
+  const double reach = carriers_[mine].reach + other.carriers_[theirs].reach + gap_m;
   return apart.squaredNorm() < reach * reach;
 }
 
@@ -245,8 +261,7 @@ void Vehicle::visit_near(double gap_m, Vehicle& other, const Eigen::Vector3d& to
                          Visit visit) {
   for (size_t mine = 0; mine < carriers_.size(); ++mine) {
     for (size_t theirs = 0; theirs < other.carriers_.size(); ++theirs) {
-      if (within_reach(gap_m, carriers_[mine], other.carriers_[theirs], to_other))
-        visit(mine, theirs);
+      if (within_reach(gap_m, mine, other, theirs, to_other)) visit(mine, theirs);
     }
   }
 }
@@ -296,14 +311,14 @@ void Vehicle::apply_forces(Terrain& terrain, const std::array<double, 2>& motor_
 }
 
 ChassisState Vehicle::chassis() const {
-  const Carrier& carrier = carriers_[chassis_carrier_];
+  const dBodyID body = bodies_[chassis_carrier_];
   ChassisState state;
-  const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
-  const Eigen::Vector3d omega = to_eigen(dBodyGetAngularVel(carrier.body));
-  const Eigen::Vector3d offset = rotation * carrier.rest_pose.translation();
+  const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(body));
+  const Eigen::Vector3d omega = to_eigen(dBodyGetAngularVel(body));
+  const Eigen::Vector3d offset = rotation * carriers_[chassis_carrier_].rest_pose.translation();
   state.pose.linear() = rotation;
-  state.pose.translation() = to_eigen(dBodyGetPosition(carrier.body)) - offset;
-  state.velocity = to_eigen(dBodyGetLinearVel(carrier.body)) - omega.cross(offset);
+  state.pose.translation() = to_eigen(dBodyGetPosition(body)) - offset;
+  state.velocity = to_eigen(dBodyGetLinearVel(body)) - omega.cross(offset);
   state.omega_body = rotation.transpose() * omega;
   return state;
 }
@@ -315,7 +330,7 @@ double Vehicle::shaft_angle_rad(Side side) const {
   return shaft_of(side).angle_rad();
 }
 double Vehicle::wheel_radius_m(Side side) const {
-  return of(side).radius;
+  return VehicleParts::wheel_radius_m(side);
 }
 
 const ChainTrack* Vehicle::chain(Side side) const {
@@ -347,11 +362,11 @@ double Vehicle::sinkage_m(Side side) const {
 }
 
 double Vehicle::ground_speed_m_per_s(Side side) const {
-  const Carrier& carrier = carriers_[of(side).carrier];
-  const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(carrier.body));
+  const dBodyID body = bodies_[of(side).carrier];
+  const Eigen::Matrix3d rotation = rotation_to_eigen(dBodyGetRotation(body));
   const Eigen::Vector3d arm = rotation * of(side).centre;
-  const Eigen::Vector3d velocity = to_eigen(dBodyGetLinearVel(carrier.body)) +
-                                   to_eigen(dBodyGetAngularVel(carrier.body)).cross(arm);
+  const Eigen::Vector3d velocity =
+      to_eigen(dBodyGetLinearVel(body)) + to_eigen(dBodyGetAngularVel(body)).cross(arm);
   return rotation.col(0).dot(velocity);
 }
 

@@ -7,40 +7,20 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/assembly.h"
-#include "host_sim/physics/vehicle/gear_motor.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/robot_contact.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/physics/world/environment.h"
 #include "host_sim/physics/world/imu_truth.h"
+#include "host_sim/physics/world/plant_options.h"
 #include "host_sim/physics/world/plant_robot.h"
-#include "host_sim/physics/world/terrain_factory.h"
 
 namespace screed {
-
-struct StartPose {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  /// Of the chassis' origin; without it the robot is placed on the terrain and settles.
-  std::optional<double> z_m;
-  Attitude attitude = {0.0, 0.0, 0.0};
-};
-
-struct PlantOptions : TerrainOptions {
-  double physics_step_s = 0.001;  ///< divides the control tick of 10 ms
-  StartPose start;
-  /// Of robots of the same kind beside the first one; z_m as the first one has it, given or not.
-  std::vector<StartPose> further_starts;
-  double robot_friction = 0.5;  ///< Coulomb coefficient between robots
-  VehicleOptions vehicle;
-  Battery battery;
-};
 
 class Plant : public Environment {
  public:

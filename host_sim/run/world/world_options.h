@@ -13,7 +13,7 @@
 #include "host_sim/ground_station/station/ground_port.h"
 #include "host_sim/ground_station/station/ground_station.h"
 #include "host_sim/ground_station/station/position_fixes.h"
-#include "host_sim/physics/world/plant.h"
+#include "host_sim/physics/world/plant_options.h"
 
 namespace screed {
 

@@ -207,7 +207,7 @@ TEST(RadioLink, PacketsAreDoubledAtTheirRate) {
 
 TEST(RadioLink, DistanceLosesPacketsAsTheStandardSays) {
   // Half of the full packets at the range, and shorter ones are lost less often.
-  EXPECT_NEAR(packet_loss_at(50.0, 50.0, 100), 0.5, 1e-9);
+  EXPECT_NEAR(packet_loss_at(50.0, 50.0, 100), 0.5, 1e-13);
   const double shorter = packet_loss_at(50.0, 50.0, 22);
   // Independent bits: (1 - p)^(8 (n + 17)) of both lengths belong together.
   EXPECT_NEAR(std::pow(1.0 - shorter, 117.0 / 39.0), 0.5, 1e-9);

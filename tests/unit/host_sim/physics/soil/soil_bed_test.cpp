@@ -413,5 +413,15 @@ TEST(SoilPowerTableTest, IsThePowerAtAnyDepth) {
   }
 }
 
+TEST(SoilPowerTableTest, WorldsOfOneSoilShareTheirTables) {
+  const auto tables = power_tables(0.793, 0.02, 0.05);
+  ASSERT_EQ(tables->size(), 4U);  // the last one just above 0.843
+  EXPECT_EQ(tables->at(3).exponent(), 0.793 + 3 * 0.02);
+  EXPECT_EQ(power_tables(0.793, 0.02, 0.05), tables);
+  EXPECT_NE(power_tables(0.794, 0.02, 0.05), tables);
+  EXPECT_NE(power_tables(0.793, 0.01, 0.05), tables);
+  EXPECT_EQ(power_tables(0.793, 0.02, 0.5)->size(), 26U);
+}
+
 }  // namespace
 }  // namespace screed

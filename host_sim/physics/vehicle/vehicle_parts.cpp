@@ -1,12 +1,12 @@
-// How an assembly becomes a vehicle: which bodies are one, what carries the wheels, which shafts
-// turn them.
+// Which bodies are one, what carries the wheels, which shafts turn them.
+#include "host_sim/physics/vehicle/vehicle_parts.h"
+
 #include <algorithm>
 #include <limits>
 #include <string>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
-#include "host_sim/physics/vehicle/vehicle.h"
 
 namespace screed {
 namespace {
@@ -32,8 +32,7 @@ Assembly without_chains(Assembly assembly, double chain_kg) {
 
 }  // namespace
 
-Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions& options)
-    : world_(world) {
+VehicleParts::VehicleParts(const Assembly& assembly, const VehicleOptions& options) {
   std::vector<bool> is_wheel(assembly.bodies.size());
   for (size_t i = 0; i < assembly.bodies.size(); ++i)
     is_wheel[i] = assembly.is_wheel(static_cast<int>(i));
@@ -49,21 +48,19 @@ Vehicle::Vehicle(OdeWorld& world, const Assembly& assembly, const VehicleOptions
     const Assembly without = without_chains(assembly, options.chain.mass_kg);
     mass_ = 2.0 * options.chain.mass_kg;
     add_carriers(without, is_wheel, options);
-    add_hinges(without);
     add_running_gear(without, options);
     add_wall_points(options);
     add_hull_surface();
     return;
   }
   add_carriers(assembly, is_wheel, options);
-  add_hinges(assembly);
   add_running_gear(assembly, options);
   add_wall_points(options);
   add_hull_surface();
 }
 
-void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
-                           const VehicleOptions& options) {
+void VehicleParts::add_carriers(const Assembly& assembly, const std::vector<bool>& is_wheel,
+                                const VehicleOptions& options) {
   constexpr size_t kNone = std::numeric_limits<size_t>::max();
   carrier_of_body_.assign(assembly.bodies.size(), kNone);
   std::vector<std::vector<int>> groups;
@@ -99,11 +96,6 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
     carrier.rest_pose.translation() = inertia.pose.translation();
     const Eigen::Matrix3d axes = inertia.pose.linear();
     const Eigen::Matrix3d tensor = axes * inertia.tensor * axes.transpose();
-    carrier.body = dBodyCreate(world_.id());
-    dMass mass;
-    dMassSetParameters(&mass, inertia.mass, 0, 0, 0, tensor(0, 0), tensor(1, 1), tensor(2, 2),
-                       tensor(0, 1), tensor(0, 2), tensor(1, 2));
-    dBodySetMass(carrier.body, &mass);
     for (const int member : group) {
       const AssemblyBody& body = assembly.bodies[static_cast<size_t>(member)];
       if (is_wheel[static_cast<size_t>(member)]) continue;
@@ -114,31 +106,14 @@ void Vehicle::add_carriers(const Assembly& assembly, const std::vector<bool>& is
     }
     carrier.hull.close(options.chassis_friction, mass_);
     carrier.mass = inertia.mass;
+    carrier.inertia = tensor;
     carrier.inverse_inertia = tensor.inverse();
     carriers_.push_back(std::move(carrier));
   }
   chassis_carrier_ = carrier_of_body_[static_cast<size_t>(assembly.chassis)];
-  place(Eigen::Isometry3d::Identity());
 }
 
-void Vehicle::add_hinges(const Assembly& assembly) {
-  for (const AssemblyJoint& joint : assembly.joints) {
-    const size_t parent = carrier_of_body_[static_cast<size_t>(joint.parent)];
-    const size_t child = carrier_of_body_[static_cast<size_t>(joint.child)];
-    if (parent == child) continue;  // fixed, or a wheel
-    dJointID hinge = dJointCreateHinge(world_.id(), nullptr);
-    dJointAttach(hinge, carriers_[child].body, carriers_[parent].body);
-    const Eigen::Vector3d anchor = joint.pose.translation();
-    dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
-    dJointSetHingeAxis(hinge, joint.axis.x(), joint.axis.y(), joint.axis.z());
-    if (joint.limited) {
-      dJointSetHingeParam(hinge, dParamLoStop, joint.lower_rad);
-      dJointSetHingeParam(hinge, dParamHiStop, joint.upper_rad);
-    }
-  }
-}
-
-void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& options) {
+void VehicleParts::add_running_gear(const Assembly& assembly, const VehicleOptions& options) {
   struct Wheel {
     size_t carrier;
     Eigen::Vector3d centre;  // from the carrier's centre of mass
@@ -218,7 +193,7 @@ void Vehicle::add_running_gear(const Assembly& assembly, const VehicleOptions& o
   tread_ = side_y[kLeft] - side_y[kRight];
 }
 
-void Vehicle::add_wall_points(const VehicleOptions& options) {
+void VehicleParts::add_wall_points(const VehicleOptions& options) {
   for (Carrier& carrier : carriers_) {
     for (const Eigen::Vector3d& point : carrier.hull.points()) carrier.walls.add_point(point);
   }
@@ -240,13 +215,13 @@ void Vehicle::add_wall_points(const VehicleOptions& options) {
   for (Carrier& carrier : carriers_) carrier.walls.close(options.wall_friction, mass_);
 }
 
-void Vehicle::add_gear_surface(size_t carrier, const RunningGearGeometry& gear, size_t drive) {
+void VehicleParts::add_gear_surface(size_t carrier, const RunningGearGeometry& gear, size_t drive) {
   Carrier& of = carriers_[carrier];
   of.solids.push_back(solid_of(gear, drive));
   for (const BodyPoint& point : middle_of(gear, drive)) of.points.push_back(point);
 }
 
-void Vehicle::add_hull_surface() {
+void VehicleParts::add_hull_surface() {
   for (Carrier& carrier : carriers_) {
     for (size_t i = 0; i < carrier.walls.points(); ++i)
       carrier.points.push_back(carrier.walls.body_point(i));
@@ -259,6 +234,38 @@ void Vehicle::add_hull_surface() {
                                                   solid.shape.half().norm() + solid.shape.radius());
     }
   }
+}
+
+double VehicleParts::resting_height(const HeightField& terrain, double x, double y,
+                                    const Eigen::Matrix3d& rotation) const {
+  double height = -std::numeric_limits<double>::infinity();
+  const auto rest_on = [&](const Carrier& carrier, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d at = rotation * (carrier.rest_pose * point);
+    height = std::max(height, terrain.at(x + at.x(), y + at.y()).height - at.z());
+  };
+  for (const Carrier& carrier : carriers_) {
+    for (const Eigen::Vector3d& point : carrier.hull.points()) rest_on(carrier, point);
+  }
+  for (const Unit& unit : units_) {
+    for (const Eigen::Vector3d& point : unit.gear.points()) rest_on(carriers_[unit.carrier], point);
+  }
+  for (const Chain& chain : chains_) {
+    for (const Eigen::Vector3d& point : chain.track.points()) {
+      rest_on(carriers_[chain.carrier], point);
+    }
+  }
+  return height;
+}
+
+Eigen::AlignedBox2d VehicleParts::outline_at_rest() const {
+  Eigen::AlignedBox2d box;
+  for (const Carrier& carrier : carriers_) {
+    for (size_t i = 0; i < carrier.walls.points(); ++i) {
+      const Eigen::Vector3d at = carrier.rest_pose.translation() + carrier.walls.point(i);
+      box.extend(Eigen::Vector2d(at.head<2>()));
+    }
+  }
+  return box;
 }
 
 }  // namespace screed
