@@ -13,7 +13,7 @@ MAKEFLAGS += --no-builtin-rules
 DEPS ?= yes
 # Lists of Debian packages: what everything needs, and what single targets need beside it.
 PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECMDGOALS))$(filter asan,$(BUILD)),tests/fuzz/debian-packages.txt) \
-                 $(if $(filter arm64,$(BUILD)),tools/arm64/debian-packages.txt) \
+                 $(if $(filter arm64,$(BUILD))$(filter test-portable test-processors,$(MAKECMDGOALS)),tools/arm64/debian-packages.txt) \
                  $(if $(filter test-can,$(MAKECMDGOALS)),tests/can/debian-packages.txt) \
                  $(if $(filter test-slurm,$(MAKECMDGOALS)),tests/slurm/debian-packages.txt) \
                  $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt) \
@@ -54,6 +54,8 @@ include tests/fuzz/fuzz.mk
 include tests/can/can.mk
 include tests/slurm/slurm.mk
 include tests/python/python.mk
+include tests/portable/portable.mk
+include tests/processors/processors.mk
 include tests/report/report_tests.mk
 include tests/asan.mk
 include tools/mutants/mutants.mk

@@ -40,7 +40,7 @@ $(LONG_TESTS): $(LONG_OBJECTS) $(MCU_LONG_PARTS) $(TESTED) $(B)/link.flags
 	$(call link_tests)
 
 # Every host source that is compiled with the host's flags or the firmware's: what lint and clangd look at.
-ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants tests/unit tests/sitl tests/flash) $(LONG_SOURCES)
+ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants tests/unit tests/sitl tests/flash tests/portable) $(LONG_SOURCES)
 
 # Expanded twice: later parts add their tests.
 .SECONDEXPANSION:

@@ -17,7 +17,7 @@ $(1): $(2) $(B)/$(4).flags .clang-tidy tools/lint/tidy.sh tools/lint/paste.awk
 endef
 # Tests are straight-line code with small indices: without the analyser and without the widening of products.
 TEST_CHECKS := -clang-analyzer-*$(comma)-bugprone-implicit-widening-of-multiplication-result
-OTHER_SOURCES := $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants)
+OTHER_SOURCES := $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants tests/portable)
 $(eval $(call tidy_set,CORE,$(CORE_SOURCES),firmware))
 # What gives its lanes the same names as another of them goes alone.
 LANES := $(wildcard host_sim/physics/kernels/avx*.cpp host_sim/physics/kernels/baseline.cpp host_sim/physics/particles/bed_kernel_*.cpp)
