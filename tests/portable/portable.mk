@@ -5,20 +5,20 @@
 PORTABLE := $(BUILD_ROOT)/portable
 PORTABLE_CXX := aarch64-linux-gnu-g++ -std=c++20 -O2 $(WARNINGS) -Wno-psabi -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. \
   -I$(BUILD_ROOT)/generated -idirafter /usr/include/eigen3
-# A folder is compiled as one, but for kernels, which give names alike.
+# A folder is compiled as one, but for the kernel of spheres, whose helpers are called as some of its neighbours.
 PORTABLE_SOURCES := tests/portable/worlds.cpp $(wildcard host_sim/standin/*.cpp host_sim/physics/soil/*.cpp host_sim/physics/terrain/*.cpp) \
   $(wildcard host_sim/physics/vehicle/*.cpp host_sim/physics/kernels/*.cpp host_sim/physics/particles/*.cpp) host_sim/core/elementary.cpp \
   host_sim/core/lanes/instruction_set.cpp host_sim/physics/world/terrain_factory.cpp host_sim/physics/world/wall_clearance.cpp
 PORTABLE_SOURCES := $(filter-out %avx2.cpp %avx512.cpp %/grey_image.cpp %/ode_world.cpp %/vehicle.cpp %/model_report.cpp,$(PORTABLE_SOURCES))
-PORTABLE_ALONE := $(filter host_sim/core/% host_sim/physics/kernels/% host_sim/physics/particles/%,$(PORTABLE_SOURCES))
-PORTABLE_FOLDERS := $(sort $(dir $(filter-out $(PORTABLE_ALONE),$(PORTABLE_SOURCES))))
-PORTABLE_OBJECTS := $(PORTABLE_ALONE:%.cpp=$(PORTABLE)/%.o) $(PORTABLE_FOLDERS:%/=$(PORTABLE)/%/all.o)
+PORTABLE_ALONE := $(filter %/bed_kernel_scalar.cpp,$(PORTABLE_SOURCES))
+PORTABLE_TOGETHER := $(filter-out $(PORTABLE_ALONE),$(PORTABLE_SOURCES))
+PORTABLE_OBJECTS := $(PORTABLE_ALONE:%.cpp=$(PORTABLE)/%.o) $(patsubst %/,$(PORTABLE)/%/all.o,$(sort $(dir $(PORTABLE_TOGETHER))))
 
 $(PORTABLE)/%.o: %.cpp | $(SCHEMA_HEADERS)
 	@mkdir -p $(@D)
 	@echo "  CXX  $< for arm64"
 	@$(PORTABLE_CXX) -MMD -MP -c $< -o $@
-$(PORTABLE)/%/all.o: $$(filter $$(wildcard $$*/*.cpp),$(PORTABLE_SOURCES)) | $(SCHEMA_HEADERS)
+$(PORTABLE)/%/all.o: $$(filter $$(wildcard $$*/*.cpp),$(PORTABLE_TOGETHER)) | $(SCHEMA_HEADERS)
 	@mkdir -p $(@D)
 	@printf '#include "%s"\n' $^ > $(@D)/all.cpp
 	@echo "  CXX  $* for arm64"
