@@ -2,8 +2,8 @@
 // additions, multiplications, divisions and square roots alone, in one order. For what a run's
 // bytes depend on.
 //
-// Special values as in C (annex F), without errno and floating-point exceptions. The error is below
-// one unit in the last place, of tan() below 1.1; docs/determinism.md has what was found of each.
+// Special values as in C (annex F), without errno and floating-point exceptions. The greatest
+// error found is below one unit in the last place, of tan() 1.03; docs/determinism.md has each.
 #pragma once
 
 namespace screed::portable {

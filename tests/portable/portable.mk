@@ -3,8 +3,7 @@
 # What runs anywhere: soil, particles, the stand-in, and what these are made of. No ODE, no library but the compiler's.
 
 PORTABLE := $(BUILD_ROOT)/portable
-PORTABLE_CXX := aarch64-linux-gnu-g++ -std=c++20 -O2 $(WARNINGS) -Wno-psabi -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fno-math-errno -I. \
-  -I$(BUILD_ROOT)/generated -idirafter /usr/include/eigen3
+PORTABLE_CXX := aarch64-linux-gnu-g++ -std=c++20 $(COMMON_FLAGS) -Wno-psabi -idirafter /usr/include/eigen3
 # A folder is compiled as one, but for the kernel of spheres, whose helpers are called as some of its neighbours.
 PORTABLE_SOURCES := tests/portable/worlds.cpp $(wildcard host_sim/standin/*.cpp host_sim/physics/soil/*.cpp host_sim/physics/terrain/*.cpp) \
   $(wildcard host_sim/physics/vehicle/*.cpp host_sim/physics/kernels/*.cpp host_sim/physics/particles/*.cpp) host_sim/core/elementary.cpp \

@@ -18,7 +18,7 @@
 namespace screed {
 namespace {
 
-/// Of bits, by FNV-1a.
+/// Of bits, by FNV-1a: the hash of sessions (core/content_hash.h) needs a library.
 class Hash {
  public:
   void add(uint64_t bits) { value_ = (value_ ^ bits) * 0x100000001B3U; }

@@ -81,7 +81,7 @@ for way in here "${order[@]}"; do
   begin=$SECONDS
   for run in "${runs[@]}"; do
     left_out "$run" && { echo "$way: $run left out, since its workers would not be emulated"; continue; }
-    if ! got=$($run); then
+    if ! got=$($run) || [ -z "$got" ]; then
       failed=$((failed + 1))
       printf '%s: %s fails: %s\n' "$way" "$run" "$got"
     elif [ "$way" = here ]; then

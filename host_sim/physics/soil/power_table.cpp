@@ -1,3 +1,4 @@
+// Makes tables of powers, and shares them between worlds.
 #include "host_sim/physics/soil/power_table.h"
 
 #include <cmath>

@@ -82,18 +82,18 @@ struct FunctionOfTwo {
 };
 
 const std::array kFunctions = {
-    Function{"exp", portable::exp, mpfr_exp, 0.6, -746.0, 710.0, -60.0, 10.0},
+    Function{"exp", portable::exp, mpfr_exp, 0.57, -746.0, 710.0, -60.0, 10.0},
     Function{"log", portable::log, mpfr_log, 0.51, 0.0, 3.0, -1074.0, 1024.0},
-    Function{"sin", portable::sin, mpfr_sin, 0.85, -10.0, 10.0, -60.0, 1024.0},
-    Function{"cos", portable::cos, mpfr_cos, 0.85, -10.0, 10.0, -60.0, 1024.0},
-    Function{"tan", portable::tan, mpfr_tan, 1.1, -10.0, 10.0, -60.0, 1024.0},
+    Function{"sin", portable::sin, mpfr_sin, 0.8, -10.0, 10.0, -60.0, 1024.0},
+    Function{"cos", portable::cos, mpfr_cos, 0.81, -10.0, 10.0, -60.0, 1024.0},
+    Function{"tan", portable::tan, mpfr_tan, 1.03, -10.0, 10.0, -60.0, 1024.0},
     Function{"asin", portable::asin, mpfr_asin, 0.95, -1.0, 1.0, -60.0, 0.0},
-    Function{"acos", portable::acos, mpfr_acos, 0.95, -1.0, 1.0, -60.0, 0.0},
+    Function{"acos", portable::acos, mpfr_acos, 0.93, -1.0, 1.0, -60.0, 0.0},
     Function{"atan", portable::atan, mpfr_atan, 0.9, -2.0, 2.0, -1074.0, 1024.0},
     Function{"tanh", portable::tanh, mpfr_tanh, 0.65, -2.0, 2.0, -1074.0, 6.0},
 };
 const std::array kFunctionsOfTwo = {
-    FunctionOfTwo{"pow", portable::pow, mpfr_pow, 0.6},
+    FunctionOfTwo{"pow", portable::pow, mpfr_pow, 0.56},
     FunctionOfTwo{"atan2", portable::atan2, mpfr_atan2, 0.95},
     FunctionOfTwo{"hypot", portable::hypot, mpfr_hypot, 0.76},
 };
