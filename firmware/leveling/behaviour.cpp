@@ -14,6 +14,7 @@ Behaviour::Behaviour(const Parameters& parameters)
 void Behaviour::start() {
   state_ = LevelingState::kIdle;
   ticks_in_state_ = 0;
+  backwards_ = false;
 }
 
 void Behaviour::enter_or_stay(LevelingState next) {
@@ -36,36 +37,52 @@ MotionCommand Behaviour::enter_or_stay(LevelingState state, MotionCommand motion
   return motion;
 }
 
-SCREED_OUT_OF_LINE bool Behaviour::uphill(Angle pitch) const {
-  Angle limit = angle_from_centidegrees(parameters_.climb_threshold);
-  if (state_ == LevelingState::kClimb) limit = static_cast<Angle>(limit - hysteresis());
-  return pitch > limit;
+SCREED_OUT_OF_LINE bool Behaviour::uphill(const LevelingInput& input) const {
+  int16_t limit = parameters_.climb_threshold;
+  if (state_ == LevelingState::kClimb)
+    limit = static_cast<int16_t>(limit - parameters_.climb_hysteresis);
+  return ahead(input.pitch) > angle_from_centidegrees(limit);
+}
+
+Angle Behaviour::ahead(Angle angle) const {
+  return backwards_ ? static_cast<Angle>(-angle) : angle;
+}
+
+MotionCommand Behaviour::motion_ahead(MotionCommand motion) const {
+  motion.speed_mm_per_s = ahead(motion.speed_mm_per_s);
+  return motion;
 }
 
 MotionCommand Behaviour::walk() {
   enter_or_stay(LevelingState::kWalk);
-  return walk_.tick();
+  return motion_ahead(walk_.tick());
 }
 
 // The slope vector in the robot's axes is (pitch, roll): angles stand in for tangents, which turns
 // it by less than 4 degrees on slopes up to 25. On a plateau it is noise.
 MotionCommand Behaviour::climb(const LevelingInput& input) {
   enter_or_stay(LevelingState::kClimb);
-  if (parameters_.climb_turn == 0 || !uphill(input.pitch)) return {parameters_.climb_speed, 0};
-  const Angle steepest = atan2_angle(input.roll, input.pitch);
-  return {parameters_.climb_speed,
-          limit_i16(mul_i16(parameters_.climb_turn, steepest), kMaxTurnRate)};
+  MotionCommand motion = {parameters_.climb_speed, 0};
+  if (parameters_.climb_turn != 0 && uphill(input)) {
+    const Angle steepest = atan2_angle(ahead(input.roll), ahead(input.pitch));
+    motion.yaw_rate = limit_i16(mul_i16(parameters_.climb_turn, steepest), kMaxTurnRate);
+  }
+  return motion_ahead(motion);
 }
 
-bool Behaviour::update_return(const LevelingInput& input) {
+bool Behaviour::return_to_site(const LevelingInput& input, MotionCommand& motion) {
   // A spin stays where it is.
-  return state_ != LevelingState::kSpin && fence_.update(input.place);
-}
-
-MotionCommand Behaviour::return_to_site(const LevelingInput& input) {
-  return enter_or_stay(LevelingState::kReturn,
-                       fence_.steer(static_cast<int16_t>(-input.place.mm[kX]),
-                                    static_cast<int16_t>(-input.place.mm[kY]), input.heading));
+  if (state_ == LevelingState::kSpin || !fence_.update(input.place)) return false;
+  // To the middle: the robot seen from there, half a turn on.
+  motion = fence_.steer(input.place.mm[kX], input.place.mm[kY],
+                        static_cast<Angle>(input.heading ^ INT16_MIN));
+  if (motion.speed_mm_per_s != 0) {
+    const bool backwards = motion.speed_mm_per_s < 0;
+    backwards_ = backwards;
+    if (backwards == input.backwards) return false;
+  }
+  enter_or_stay(LevelingState::kReturn);
+  return true;
 }
 
 }  // namespace screed

@@ -67,11 +67,16 @@ class Behaviour {
   /// again after a parameter change; a climb cut off by a stop does not count.
   uint16_t peaks() const { return peaks_; }
 
-  /// The pitch is that of an incline worth climbing. A climb goes on until the pitch has fallen
-  /// below the threshold by the hysteresis.
-  bool uphill(Angle pitch) const;
-  /// The pitch is that of a decline.
-  bool downhill(Angle pitch) const { return pitch < static_cast<Angle>(-hysteresis()); }
+  // Walk and climb go forwards or backwards: a robot that backed in at the fence, where a turn
+  // would dig in, goes on backwards until it drives in forwards. Up and down are seen that way.
+
+  /// The way ahead is an incline worth climbing. A climb goes on until the pitch has fallen below
+  /// the threshold by the hysteresis.
+  bool uphill(const LevelingInput& input) const;
+  /// The way ahead is a decline.
+  bool downhill(const LevelingInput& input) const {
+    return ahead(input.pitch) < static_cast<Angle>(-hysteresis());
+  }
 
   /// A leg of the random walk; a new one where the walk begins.
   MotionCommand walk();
@@ -89,15 +94,21 @@ class Behaviour {
   // For Leveling.
   /// The state begins anew: a run starts.
   void start();
-  /// The robot has to drive back to the site.
-  bool update_return(const LevelingInput& input);
-  MotionCommand return_to_site(const LevelingInput& input);
+  /// Returns true while the robot has to drive back to its site, by `motion`: outside, unless it
+  /// drives inwards already. Then walk and climb go on in the direction in which it came back.
+  bool return_to_site(const LevelingInput& input, MotionCommand& motion);
+  /// It is outside the site, on its way back or not.
+  bool outside() const { return fence_.outside(); }
 
  private:
   /// Counts the tick in its state, and begins the state where it is another than in the tick
   /// before.
   void enter_or_stay(LevelingState next);
 
+  /// Of a pitch or roll: as it is for a robot that faces where it goes.
+  SCREED_OUT_OF_LINE Angle ahead(Angle angle) const;
+  /// A motion, that way.
+  MotionCommand motion_ahead(MotionCommand motion) const;
   Angle hysteresis() const { return angle_from_centidegrees(parameters_.climb_hysteresis); }
 
   Kept<Parameters> parameters_;
@@ -106,6 +117,7 @@ class Behaviour {
   LevelingState state_ = LevelingState::kIdle;
   uint16_t ticks_in_state_ = 0;
   uint16_t peaks_ = 0;
+  bool backwards_ = false;  ///< walk and climb go so
 };
 
 }  // namespace screed

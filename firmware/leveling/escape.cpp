@@ -62,13 +62,13 @@ void Escape::begin_step() {
   if ((attempt_ & 1U) == 0) turn = static_cast<uint8_t>(-turn);
   motion_.yaw_rate = static_cast<YawRate>(static_cast<int8_t>(turn) * 256);
   uint8_t time = read_program_u8(step + 2);
-  // On its way home a robot that is stuck again and again would leave the site, and turned by more
-  // than 45 degrees it would turn back on the spot (site_fence.cpp) and dig in there.
-  if (homewards_ && way_ == 0) time = static_cast<uint8_t>(time >> 1);
+  // Outside a robot that is stuck again and again would get farther away, and turned by more than
+  // 45 degrees it would turn back on the spot (site_fence.cpp) and dig in there.
+  if (outside_ && way_ == 0) time = static_cast<uint8_t>(time >> 1);
   ticks_left_ = static_cast<uint16_t>(time * 4U);
 }
 
-bool Escape::tick(bool stuck, bool backwards, bool homewards) {
+bool Escape::tick(bool stuck, bool backwards, bool outside) {
   gave_up_ = false;
   if (ticks_left_ != 0) --ticks_left_;
   uint8_t next_way = 0;  // loose, perhaps: out of there
@@ -82,9 +82,9 @@ bool Escape::tick(bool stuck, bool backwards, bool homewards) {
       return false;
     }
     next_way = attempt_ & kLastWay;
-    // On its way home it backs off once. What else it tries leads on, or it would leave the site.
-    mirrored_ = backwards != (homewards && next_way != 0);
-    homewards_ = homewards;
+    // Outside it backs off once. What else it tries leads on, inwards.
+    mirrored_ = backwards != (outside && next_way != 0);
+    outside_ = outside;
     ++attempt_;
   } else {
     if (ticks_left_ != 0) return true;

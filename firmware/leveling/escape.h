@@ -3,8 +3,8 @@
 // The robot is stuck when the slip watch says so. Each such report is an attempt. The first goes
 // back, since what lies there was passable, and turns away, so that the algorithm goes on
 // elsewhere. The next ones rock or alternate the tracks before that; left and right in turn. For a
-// robot that drove backwards all of it is mirrored. Where it drove back to its site it goes half as
-// far, and all attempts but the first kind lead on instead of back: it would leave the site. Each
+// robot that drove backwards all of it is mirrored. Outside its site it goes half as far, and all
+// attempts but the first kind lead on instead of back, since it drives inwards there. Each
 // attempt ends with the tracks at rest: then the slip watch forgets what was. A robot that is free
 // for 10 s has all attempts again; one that is stuck after the last has given up.
 //
@@ -27,8 +27,8 @@ class Escape {
   void start();
 
   /// One tick of a robot that runs. Returns true while the manoeuvre drives, with motion().
-  /// backwards: it was told to drive so before; homewards: back to its site.
-  SCREED_OUT_OF_LINE bool tick(bool stuck, bool backwards = false, bool homewards = false);
+  /// backwards: it was told to drive so before; outside: of its site.
+  SCREED_OUT_OF_LINE bool tick(bool stuck, bool backwards = false, bool outside = false);
   const MotionCommand& motion() const { return motion_; }
   /// Stuck, and no attempt is left: in this tick.
   bool gave_up() const { return gave_up_; }
@@ -44,7 +44,7 @@ class Escape {
   uint8_t way_ = 0;          ///< to come loose
   uint8_t steps_left_ = 0;   ///< of that way; 0: does not drive
   bool mirrored_ = false;    ///< it drove backwards into where it is stuck
-  bool homewards_ = false;   ///< it drove back to its site
+  bool outside_ = false;     ///< it drove back to its site
   bool gave_up_ = false;
 };
 

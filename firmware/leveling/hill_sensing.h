@@ -11,7 +11,7 @@ class HillSensing : public AlgorithmDefaults {
   explicit HillSensing(const Parameters& /*parameters*/) {}
 
   MotionCommand tick(const LevelingInput& input, Behaviour& behaviour) {
-    return behaviour.uphill(input.pitch) ? behaviour.climb(input) : behaviour.walk();
+    return behaviour.uphill(input) ? behaviour.climb(input) : behaviour.walk();
   }
 };
 

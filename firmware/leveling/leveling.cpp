@@ -27,7 +27,7 @@ Leveling::Leveling(const Parameters& parameters)
 
 MotionCommand Leveling::tick(const LevelingInput& input) {
   if (keeps_to_site(algorithm_)) {
-    if (escape_.tick(input.stuck, input.backwards, behaviour_.state() == LevelingState::kReturn)) {
+    if (escape_.tick(input.stuck, input.backwards, behaviour_.outside())) {
       return behaviour_.enter_or_stay(LevelingState::kEscape, escape_.motion());
     }
     if (search_.update(input.place)) {
@@ -35,7 +35,8 @@ MotionCommand Leveling::tick(const LevelingInput& input) {
           LevelingState::kSeekWall,
           behaviour_.steer(search_.east(), search_.north(), input.heading));
     }
-    if (behaviour_.update_return(input)) return behaviour_.return_to_site(input);
+    MotionCommand motion;
+    if (behaviour_.return_to_site(input, motion)) return motion;
   }
   switch (algorithm_) {
 #define SCREED_TICK(number, name, Name) \

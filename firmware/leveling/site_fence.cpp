@@ -17,12 +17,11 @@ uint32_t squares(int16_t x, int16_t y) {
 SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
   if (parameters_.site_radius == 0) return false;
   const uint8_t sigma = place.sigma[kX] > place.sigma[kY] ? place.sigma[kX] : place.sigma[kY];
-  auto radius = static_cast<int16_t>(parameters_.site_radius - 2 * 4 * sigma);
+  auto radius = static_cast<int16_t>(parameters_.site_radius - 4 * sigma);
   const int16_t least = asr_i16(parameters_.site_radius, 1);
   if (radius < least) radius = least;
-  if (returning_) radius = static_cast<int16_t>(radius - asr_i16(radius, 2));
-  returning_ = squares(place.mm[kX], place.mm[kY]) > squares(radius, 0);
-  return returning_;
+  outside_ = squares(place.mm[kX], place.mm[kY]) > squares(radius, 0);
+  return outside_;
 }
 
 MotionCommand SiteFence::steer(int16_t east_mm, int16_t north_mm, Angle heading) const {

@@ -1,6 +1,6 @@
 // Keeps a robot that has no map on its site: outside a circle around the start it turns and drives
-// back. The circle shrinks as the robot knows less where it is, by twice the standard deviation
-// (95 % along a line), down to half of its radius.
+// back. The circle shrinks as the robot knows less where it is, by the standard deviation of the
+// worse axis, down to half of its radius.
 #pragma once
 
 #include <stdint.h>
@@ -19,9 +19,10 @@ class SiteFence {
   /// way back.
   explicit SiteFence(const Parameters& parameters) : parameters_(parameters) {}
 
-  /// Looks at the position. Returns true while the robot has to drive back: from the moment it
-  /// leaves the circle until it is well inside (three quarters of the radius) again.
+  /// Looks at the position. Returns whether the robot is outside the circle.
   bool update(const Place& place);
+  /// It was at the last update.
+  bool outside() const { return outside_; }
 
   /// The motion towards the point so far east and north of the robot, backwards where it lies
   /// behind: on loose ground turning digs in. Turns on the spot while it lies aside, drives as soon
@@ -30,7 +31,7 @@ class SiteFence {
 
  private:
   Kept<Parameters> parameters_;
-  bool returning_ = false;
+  bool outside_ = false;
 };
 
 }  // namespace screed

@@ -23,14 +23,14 @@ MotionCommand SpinOnPeak::tick(const LevelingInput& input, Behaviour& behaviour)
     case LevelingState::kSpin:
       return behaviour.ticks_in_state() < spin_ticks_ ? spin(behaviour) : behaviour.walk();
     case LevelingState::kClimb:
-      if (behaviour.downhill(input.pitch)) {
+      if (behaviour.downhill(input)) {
         spin_left_ = !spin_left_;
         return spin(behaviour);
       }
-      if (behaviour.uphill(input.pitch)) behaviour.restart_time();
+      if (behaviour.uphill(input)) behaviour.restart_time();
       return behaviour.ticks_in_state() < kPlateauTicks ? behaviour.climb(input) : behaviour.walk();
     default:
-      return behaviour.uphill(input.pitch) ? behaviour.climb(input) : behaviour.walk();
+      return behaviour.uphill(input) ? behaviour.climb(input) : behaviour.walk();
   }
 }
 

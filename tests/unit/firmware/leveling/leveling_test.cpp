@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <optional>
 
 namespace screed {
@@ -25,7 +26,15 @@ class Walker {
   explicit Walker(const Parameters& parameters) : leveling(parameters) { leveling.start(); }
 
   LevelingState tick(double pitch_deg) {
-    motion = leveling.tick({degrees(pitch_deg), 0, {{x_mm, 0}, {0, 0}}, drive});
+    LevelingInput input{};
+    input.pitch = degrees(pitch_deg);
+    input.roll = degrees(roll_deg);
+    input.heading = degrees(heading_deg);
+    input.place.mm[kX] = x_mm;
+    input.drive = drive;
+    input.stuck = stuck;
+    input.backwards = motion.speed_mm_per_s < 0;
+    motion = leveling.tick(input);
     return leveling.state();
   }
   /// Number of ticks, this one included, for which the state stays the same at this pitch.
@@ -39,6 +48,9 @@ class Walker {
   MotionCommand motion = {0, 0};
   MotionCommand drive = {0, 0};
   int16_t x_mm = 0;
+  double heading_deg = 0.0;
+  double roll_deg = 0.0;
+  bool stuck = false;
 };
 
 TEST(HillSensing, ClimbsAboveTheThresholdAndWalksBelow) {
@@ -178,20 +190,94 @@ TEST(RandomWalk, WalksOverHillsAsWell) {
   EXPECT_EQ(walker.leveling.peaks(), 0);
 }
 
-TEST(Leveling, OutsideTheFenceItReturns) {
+/// At the fence in the east, facing east, in the tick in which it is told to back in.
+Walker at_the_fence(Parameters parameters) {
+  parameters.site_radius = 1000;
+  Walker walker(parameters);
+  walker.tick(0.0);
+  EXPECT_GT(walker.motion.speed_mm_per_s, 0);
+  walker.x_mm = 1001;
+  EXPECT_EQ(walker.tick(20.0), LevelingState::kReturn) << "not even a hill keeps it out there";
+  EXPECT_EQ(walker.motion.speed_mm_per_s, -parameters.walk_speed_max);
+  return walker;
+}
+
+// Backwards, since a turn digs in: it does not face the fence again and again.
+TEST(Leveling, AtTheFenceItTurnsRoundAndWalksAcrossTheSite) {
   for (const LevelingAlgorithm algorithm :
-       {LevelingAlgorithm::kHillSensing, LevelingAlgorithm::kSpinOnPeak}) {
-    Parameters parameters = parameters_of(algorithm);
-    parameters.site_radius = 1000;
-    Walker walker(parameters);
-    walker.tick(0.0);
-    walker.x_mm = 1001;
-    EXPECT_EQ(walker.tick(20.0), LevelingState::kReturn);  // not even a hill keeps it out there
-    walker.x_mm = 800;
-    EXPECT_EQ(walker.tick(20.0), LevelingState::kReturn);
-    walker.x_mm = 700;
-    EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+       {LevelingAlgorithm::kRandomWalk, LevelingAlgorithm::kHillSensing,
+        LevelingAlgorithm::kSpinOnPeak}) {
+    const Parameters parameters = parameters_of(algorithm);
+    Walker walker = at_the_fence(parameters);
+    for (const int16_t x_mm : std::initializer_list<int16_t>{1010, 1001, 990, 0, -1000}) {
+      walker.x_mm = x_mm;
+      ASSERT_EQ(walker.tick(0.0), LevelingState::kWalk) << x_mm;
+      EXPECT_LE(walker.motion.speed_mm_per_s, -parameters.walk_speed_min);
+      EXPECT_GE(walker.motion.speed_mm_per_s, -parameters.walk_speed_max);
+    }
+    // At the other side it drives on forwards.
+    walker.x_mm = -1001;
+    ASSERT_EQ(walker.tick(0.0), LevelingState::kReturn);
+    EXPECT_EQ(walker.motion.speed_mm_per_s, parameters.walk_speed_max);
+    ASSERT_EQ(walker.tick(0.0), LevelingState::kWalk);
+    EXPECT_GE(walker.motion.speed_mm_per_s, parameters.walk_speed_min);
   }
+}
+
+TEST(Leveling, OutsideItWalksInwardsAlone) {
+  Walker walker = at_the_fence(parameters_of(LevelingAlgorithm::kRandomWalk));
+  ASSERT_EQ(walker.tick(0.0), LevelingState::kWalk);
+  walker.heading_deg = 44.0;
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+  walker.heading_deg = 46.0;
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kReturn);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, 0) << "turns on the spot";
+  EXPECT_LT(walker.motion.yaw_rate, 0);
+  walker.heading_deg = 180.0;
+  EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+  EXPECT_GT(walker.motion.speed_mm_per_s, 0) << "forwards by now";
+}
+
+// Where its tail leads, a hill is where the tail rises.
+TEST(Leveling, ARobotThatWalksBackwardsClimbsBackwards) {
+  Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
+  parameters.climb_turn = 1;
+  Walker walker = at_the_fence(parameters);
+  walker.x_mm = 0;
+  EXPECT_EQ(walker.tick(20.0), LevelingState::kWalk);
+  walker.roll_deg = 10.0;
+  EXPECT_EQ(walker.tick(-10.0), LevelingState::kClimb);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, -parameters.climb_speed);
+  // The ascent lies behind on the left: clockwise the tail turns there.
+  EXPECT_NEAR(walker.motion.yaw_rate * 360.0 / 65536.0, -45.0, 0.1);
+  EXPECT_EQ(walker.tick(2.0), LevelingState::kSpin);
+  EXPECT_EQ(walker.leveling.peaks(), 1);
+}
+
+TEST(Leveling, ARunBeginsForwards) {
+  Walker walker = at_the_fence(parameters_of(LevelingAlgorithm::kRandomWalk));
+  walker.x_mm = 0;
+  walker.leveling.start();
+  walker.tick(0.0);
+  EXPECT_GT(walker.motion.speed_mm_per_s, 0);
+}
+
+// It would leave the site, were it to back off as far as inside.
+TEST(Leveling, StuckOutsideTheSiteItBacksOffHalfAsFar) {
+  const auto ticks_backed_off = [](int16_t x_mm) {
+    Walker walker = at_the_fence(parameters_of(LevelingAlgorithm::kRandomWalk));
+    walker.x_mm = x_mm;
+    EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
+    walker.stuck = true;
+    int ticks = 0;
+    while (walker.tick(0.0) == LevelingState::kEscape && walker.motion.speed_mm_per_s > 0) {
+      walker.stuck = false;
+      ++ticks;
+    }
+    return ticks;
+  };
+  EXPECT_EQ(ticks_backed_off(900), 148);
+  EXPECT_EQ(ticks_backed_off(1001), 72);
 }
 
 TEST(Leveling, AClimbCutShortByTheFenceIsNoPeak) {

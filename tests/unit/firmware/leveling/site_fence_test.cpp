@@ -1,4 +1,4 @@
-// The fence: when it calls back, and that its motion leads home.
+// The fence: where it stands, and that its motion leads home.
 #include "firmware/leveling/site_fence.h"
 
 #include <gtest/gtest.h>
@@ -22,15 +22,15 @@ Place at(int x_mm, int y_mm) {
   return {{static_cast<int16_t>(x_mm), static_cast<int16_t>(y_mm)}, {0, 0}};
 }
 
-TEST(SiteFence, CallsBackAtTheRadiusAndLetsGoAtThreeQuarters) {
+TEST(SiteFence, EndsAtTheRadius) {
   SiteFence fence(site(1000));
   EXPECT_FALSE(fence.update(at(0, 0)));
   EXPECT_FALSE(fence.update(at(600, -800)));  // exactly on the circle
+  EXPECT_FALSE(fence.outside());
   EXPECT_TRUE(fence.update(at(601, -800)));
-  EXPECT_TRUE(fence.update(at(600, -790)));
-  EXPECT_TRUE(fence.update(at(0, 751)));
-  EXPECT_FALSE(fence.update(at(0, 750)));
-  EXPECT_FALSE(fence.update(at(0, 999)));
+  EXPECT_TRUE(fence.outside());
+  EXPECT_FALSE(fence.update(at(0, 1000)));
+  EXPECT_FALSE(fence.outside());
   EXPECT_TRUE(fence.update(at(-1001, 0)));
 }
 
@@ -51,23 +51,20 @@ TEST(SiteFence, SeesTheFarthestPlaces) {
   }
 }
 
-// The circle is smaller by twice the deviation of the worse axis, and by half at most.
-TEST(SiteFence, TurnsBackEarlierTheLessItKnows) {
-  const auto turns_back_at = [](uint8_t sigma_x, uint8_t sigma_y) {
+// The circle is smaller by the deviation of the worse axis, and by half at most.
+TEST(SiteFence, IsNearerTheLessTheRobotKnows) {
+  const auto ends_at = [](uint8_t sigma_x, uint8_t sigma_y) {
     for (int16_t x = 0;; ++x) {
       SiteFence fence(site(1000));
       if (fence.update({{x, 0}, {sigma_x, sigma_y}})) return x;
     }
   };
-  EXPECT_EQ(turns_back_at(0, 0), 1001);
-  EXPECT_EQ(turns_back_at(10, 0), 921) << "40 mm";
-  EXPECT_EQ(turns_back_at(3, 25), 801) << "100 mm";
-  EXPECT_EQ(turns_back_at(100, 0), 501) << "400 mm";
-  EXPECT_EQ(turns_back_at(255, 255), 501);
-  SiteFence fence(site(1000));
-  EXPECT_TRUE(fence.update({{900, 0}, {25, 25}}));
-  EXPECT_TRUE(fence.update({{601, 0}, {25, 25}}));
-  EXPECT_FALSE(fence.update({{600, 0}, {25, 25}})) << "three quarters of 800 mm";
+  EXPECT_EQ(ends_at(0, 0), 1001);
+  EXPECT_EQ(ends_at(10, 0), 961) << "40 mm";
+  EXPECT_EQ(ends_at(3, 25), 901) << "100 mm";
+  EXPECT_EQ(ends_at(100, 0), 601) << "400 mm";
+  EXPECT_EQ(ends_at(150, 0), 501) << "600 mm";
+  EXPECT_EQ(ends_at(255, 255), 501);
 }
 
 // On loose ground a turn on the spot digs in: it is as short as it can be.
@@ -125,8 +122,8 @@ TEST(SiteFence, LeadsHomeFromEverywhere) {
         ASSERT_LT(std::hypot(x, y), 1150.0);
         ++ticks;
       }
-      // 0.35 m at 0.1 m/s and a quarter turn at up to 60 degrees/s.
-      ASSERT_LT(ticks, 600) << degrees << " " << heading_degrees;
+      // 0.1 m at 0.1 m/s and a quarter turn at up to 60 degrees/s.
+      ASSERT_LT(ticks, 350) << degrees << " " << heading_degrees;
     }
   }
 }
