@@ -231,7 +231,8 @@ RequestResult Robot::execute(const uint8_t* data) {
 }
 
 void Robot::fix_position(const DriveArgument& place_cm) {
-  // Who sends them has left out what is false.
+  // Who sends them has left out what is false. The first one says where the robot was put.
+  if (!located_) position_.forget();
   position_.measure(kX, static_cast<int16_t>(place_cm.speed_mm_per_s * 10), parameters_.fix_sigma,
                     0);
   position_.measure(kY, static_cast<int16_t>(place_cm.turn_ddeg_per_s * 10), parameters_.fix_sigma,

@@ -5,7 +5,7 @@
 //   p NN       one parameter               p NN VVVV  changes the draft
 //   d          the draft becomes the defaults
 //   w          writes the draft; it holds from the next start on
-//   r          restarts, unless the motors have power
+//   r          stops the motors and restarts
 //   k          is there a key (0, 1), the robot's id, number of this start
 //   kKEYID     stores a key: 32 hexadecimal digits, 2 of the robot's id; it holds from the next
 //              start on, and is never shown
@@ -22,7 +22,6 @@
 #include "firmware/protocol/slcan.h"
 #include "hal/avr/buttons.h"
 #include "hal/avr/credential_eeprom.h"
-#include "hal/avr/motors.h"
 #include "hal/avr/parameter_eeprom.h"
 #include "hal/avr/radio_uart.h"
 #include "hal/avr/reset_cause.h"
@@ -151,7 +150,7 @@ __attribute__((noinline)) bool execute() {
       if (!parameter_save()) return false;
       break;
     case 'r':
-      if (motors_powered() || parameter_saving()) return false;
+      if (parameter_saving()) return false;
       set_next_reset_cause(ResetCause::kRequested);
       watchdog_reset_now();
     default:

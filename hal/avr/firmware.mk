@@ -60,8 +60,8 @@ ifdef NODE
 AVR_FLAGS += -DSCREED_NODE=$(NODE)
 endif
 # make firmware LEVELING=NAME: the image whose default algorithm is that one; it has no other but `drive`, unless LEAVE_OUT says so.
-ifdef LEVELING
 ALGORITHM_NUMBERS := $(shell sed -nE 's/^VAL_ [0-9]+ algorithm //p' $(SCHEMA) | sed -E 's/([0-9]+) "(\w+)"/\2=\1/g; s/;//')
+ifdef LEVELING
 ALGORITHMS := $(foreach it,$(ALGORITHM_NUMBERS),$(firstword $(subst =, ,$(it))))
 ifneq ($(filter $(LEVELING),$(filter-out drive,$(ALGORITHMS))) 1,$(LEVELING) $(words $(LEVELING)))
 $(error LEVELING=$(LEVELING): one of $(filter-out drive,$(ALGORITHMS)))
@@ -95,8 +95,8 @@ ARDUINO_FLAGS := -DARDUINO=10819 -DARDUINO_AVR_A_STAR_32U4 -DARDUINO_ARCH_AVR \
   -DUSB_VID=$(BOARD_USB_VID) -DUSB_PID=$(BOARD_USB_PID) -DUSB_MANUFACTURER='"$(BOARD_USB_MANUFACTURER)"' \
   -DUSB_PRODUCT='"$(BOARD_USB_PRODUCT)"' -I$(ARDUINO_CORE) -I$(ARDUINO_VARIANT)
 
-.PHONY: firmware size firmware-budget function-order
-firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget  ## build the image for the robot (BOARD=NAME, a folder in boards/)
+.PHONY: firmware size firmware-budget firmware-algorithms function-order
+firmware: $(FIRMWARE_BUILD)/screed.hex firmware-budget firmware-algorithms  ## build the image for the robot (BOARD=NAME, a folder in boards/)
 
 # What the analysis cannot see with USB=core: targets of indirect calls. Its "never" lines hold as long as the core's serial line is
 # the only object with virtual functions. The image without the core has neither.
@@ -111,6 +111,13 @@ firmware-budget: $(FIRMWARE_BUILD)/screed.lst $(FIRMWARE_BUILD)/screed.size $(B)
 	@$(B)/avr_stack $(FIRMWARE_BUILD)/screed.lst --sizes $(FIRMWARE_BUILD)/screed.size \
 	  $(STACK_OPTIONS_$(USB)) --flash-budget $(FLASH_BUDGET) --flash-spare $(FLASH_SPARE_$(USB)) \
 	  --ram-budget $(RAM_BUDGET) --ram-spare $(RAM_SPARE)
+
+# The ELF file lists them, a bit each (hal/avr/hal.cpp).
+firmware-algorithms: $(FIRMWARE_ELF)
+	@bits=$$($(AVR_OBJCOPY) -O binary --set-section-flags .screed.algorithms=alloc -j .screed.algorithms $< /dev/stdout | od -An -tu2) ; \
+	  has="" ; for it in $(ALGORITHM_NUMBERS) ; do [ $$(( bits >> $${it#*=} & 1 )) -eq 0 ] || has="$$has $${it%=*}" ; done ; \
+	  echo "leveling algorithms       $${has# }" ; \
+	  case "$$has" in *strokes*) ;; *) echo "  strokes, which levels best, is in the image of LEVELING=strokes" ;; esac
 
 # Bytes of each module; longest tick and interrupts, measured in the simulator while the robot drives.
 size: firmware-budget $(FIRMWARE_ELF) $(B)/avr_cycles  ## flash by modules, RAM, stack, longest tick of that image, their reserve

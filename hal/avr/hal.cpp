@@ -5,6 +5,7 @@
 #include <avr/io.h>
 
 #include "board.h"
+#include "firmware/parameters/algorithms_in_build.h"
 #include "firmware/parameters/parameters.h"
 #include "hal/avr/battery.h"
 #include "hal/avr/buttons.h"
@@ -24,6 +25,16 @@
 #include "hal/avr/watchdog.h"
 
 namespace screed {
+namespace avr {
+
+/// The leveling algorithms of this image, a bit each, for tools that read its ELF file. The section
+/// has no flags ("" before the assembler's comment): nothing of it is flashed.
+extern const uint16_t image_algorithms;
+__attribute__((used, section(".screed.algorithms,\"\",@progbits;")))
+const uint16_t image_algorithms = kAlgorithmsInBuild;
+
+}  // namespace avr
+
 namespace hal {
 
 void init() {

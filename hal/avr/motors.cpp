@@ -63,10 +63,6 @@ void motors_off() {
   }
 }
 
-bool motors_powered() {
-  return LEFT_DUTY_REGISTER != 0 || RIGHT_DUTY_REGISTER != 0;
-}
-
 void motors_drive(int16_t left, int16_t right) {
   const Drive left_drive = drive_from(left);
   const Drive right_drive = drive_from(right);

@@ -12,9 +12,6 @@ void motors_init();
 /// Duty -kDutyMax..kDutyMax, positive forward; limited to that range.
 void motors_drive(int16_t left, int16_t right);
 
-/// A motor has duty.
-bool motors_powered();
-
 /// Duty 0 on both at once. May be called from an interrupt.
 void motors_off();
 

@@ -7,6 +7,7 @@
 #include "firmware/robot/supervisor.h"
 #include "schema/class_values.h"
 #include "tests/mcu/bench.h"
+#include "tests/mcu/usb_host.h"
 
 namespace screed::mcu {
 namespace {
@@ -68,6 +69,30 @@ TEST(ScreedImage, RunsToAnyCycleAndNotPastIt) {
   }
   // An instruction of four cycles, or the response to an interrupt out of sleep.
   EXPECT_LT(furthest, 20U);
+}
+
+// The watchdog resets 16 ms after it was told to, in simavr up to 120: as long as that the motors
+// have none of the duty that they had.
+TEST(ScreedImage, ARestartFromTheConsoleStopsTheMotorsFirst) {
+  Bench bench;
+  UsbHost usb(bench.mcu);
+  bench.run_ms(50);
+  ASSERT_TRUE(usb.plug_in());
+  ASSERT_TRUE(usb.set_line(115200, true));
+  set_off(bench);
+  ASSERT_GT(bench.left_duty(), 0);
+  ASSERT_TRUE(usb.send("r\n"));
+  double off_ms = 0.0;  // since when
+  for (int i = 0; i < 2000 && bench.mcu.starts() == 1; ++i) {
+    if (bench.left_duty() != 0 || bench.right_duty() != 0) off_ms = bench.mcu.time_ms();
+    bench.mcu.run_ms(0.1);
+  }
+  EXPECT_EQ(bench.mcu.starts(), 2);
+  EXPECT_GT(bench.mcu.time_ms() - off_ms, 10.0);
+  bench.run_ms(1000);
+  EXPECT_EQ(bench.left_duty(), 0);
+  EXPECT_EQ(bench.right_duty(), 0);
+  EXPECT_EQ(state_of(bench.last_frame(kIdHeartbeat)), RobotState::kDisarmed);
 }
 
 TEST(ScreedImage, ConfiguresAndReadsTheSensors) {

@@ -10,6 +10,8 @@ extern "C" {
 #include <simavr/sim_elf.h>
 }
 
+#include <elf.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
@@ -17,6 +19,8 @@ extern "C" {
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 
 #include "host_sim/core/errors.h"
 
@@ -94,6 +98,31 @@ void check_elf(const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<std::uint16_t> image_algorithms(const std::string& elf_path) {
+  check_elf(elf_path);
+  std::ifstream file(elf_path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto read = [&](std::size_t offset, auto value) {
+    if (offset > bytes.size() || bytes.size() - offset < sizeof value)
+      throw InputError(elf_path + ": the image is incomplete");
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+  };
+  const auto header = read(0, Elf32_Ehdr());
+  const auto section = [&](std::size_t number) {
+    return read(header.e_shoff + number * sizeof(Elf32_Shdr), Elf32_Shdr());
+  };
+  const std::size_t names = section(header.e_shstrndx).sh_offset;
+  const std::string_view wanted(".screed.algorithms\0", 19);
+  for (std::size_t i = 0; i < header.e_shnum; ++i) {
+    const Elf32_Shdr it = section(i);
+    const std::size_t name = names + it.sh_name;
+    if (name < bytes.size() && std::string_view(bytes).substr(name, wanted.size()) == wanted)
+      return read(it.sh_offset, std::uint16_t());
+  }
+  return std::nullopt;
+}
 
 std::string vector_name(std::uint8_t vector) {
   static constexpr const char* kNames[kVectors] = {

@@ -50,6 +50,10 @@ constexpr std::uint8_t kTwiVector = 36;
 /// "PCINT0" and so on; "vector 12" for those without a common name.
 std::string vector_name(std::uint8_t vector);
 
+/// The leveling algorithms that an image lists, a bit each (hal/avr/hal.cpp); nothing for one that
+/// lists none. Throws InputError for a file that is no image.
+std::optional<std::uint16_t> image_algorithms(const std::string& elf_path);
+
 /// A pin of the package by its port.
 struct PinName {
   char port = '\0';  ///< 'B'..'F'

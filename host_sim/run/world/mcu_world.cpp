@@ -5,6 +5,8 @@
 
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/devices/mcu/mcu.h"
+#include "host_sim/run/experiment/sections/experiment_section.h"
 
 namespace screed::mcu {
 namespace {
@@ -58,6 +60,23 @@ const RobotOutput& McuWorld::run_to_output() {
 }  // namespace screed::mcu
 
 namespace screed {
+namespace {
+
+/// The robot would refuse to be armed, and its shadow on this machine would not.
+void check_algorithm(const CoSimulationOptions& options) {
+  const std::optional<std::uint16_t> in_image = mcu::image_algorithms(options.elf);
+  const std::int16_t wanted = options.parameters.algorithm;
+  if (!in_image.has_value() || (*in_image >> wanted & 1) != 0) return;
+  const std::vector<std::string> names = algorithm_names();
+  std::string has;
+  for (size_t i = 0; i < names.size(); ++i)
+    if ((*in_image >> i & 1) != 0) has += (has.empty() ? "" : ", ") + names[i];
+  const std::string& name = names.at(static_cast<size_t>(wanted));
+  throw InputError(options.elf + ": the image has no algorithm " + name + ", only " + has +
+                   "; make firmware LEVELING=" + name + " builds one that has it, for --elf");
+}
+
+}  // namespace
 
 std::unique_ptr<CoSimulation> make_co_simulation(HeightField terrain, const Assembly& model,
                                                  const CoSimulationOptions& options,
@@ -66,6 +85,7 @@ std::unique_ptr<CoSimulation> make_co_simulation(HeightField terrain, const Asse
   if (!std::filesystem::exists(options.elf, error)) {
     throw InputError(options.elf + ": no such image; run make firmware BOARD=" + options.board);
   }
+  check_algorithm(options);
   return std::make_unique<mcu::McuWorld>(std::move(terrain), model, options, telemetry_log);
 }
 

@@ -210,6 +210,13 @@ TEST_F(McuProgram, SaysWhatIsMissing) {
   refused("sim " + first_drive() + " --elf none.elf", "--hal mcu");
   refused("sim " + first_drive() + " --hal cloud", "--hal");
   refused("parity " + first_drive() + " --board unheard_of", kDefaultBoard);
+  // Of the image, before anything runs: what it lacks, what it has, and the cure.
+  const std::string lacks =
+      "the image has no algorithm strokes, only drive, hill_sensing, "
+      "spin_on_peak, random_walk, coverage; make firmware LEVELING=strokes";
+  const std::string strokes = first_drive() + image() + " --set experiment.algorithm=strokes";
+  refused("sim --hal mcu " + strokes, lacks);
+  refused("parity " + strokes, lacks);
 }
 
 TEST_F(McuProgram, StopsWhileParticlesAreLaid) {
