@@ -16,6 +16,8 @@ void set_cost(const LevelingCost& cost, LevelingPoint& point) {
   point.stuck = cost.traversability.stuck;
   point.tilted = cost.traversability.tilted;
   point.off_site = cost.traversability.off_site;
+  point.returning = cost.traversability.returning;
+  point.visited = cost.traversability.visited;
 }
 
 }  // namespace
@@ -24,6 +26,7 @@ LevelingPoint LevelingMeter::measure(const HeightField& surface, const LevelingC
                                      bool with_transport) {
   const RobotScaleFigures robot_scale = robot_scale_figures(surface, flat_deg_);
   LevelingPoint point;
+  point.level_deviation = robot_scale.level_deviation_m;
   point.relief = robot_scale.relief_m;
   point.roughness = robot_scale.roughness_m;
   point.robot_scale_flatness = robot_scale.flatness;
@@ -36,6 +39,7 @@ LevelingPoint LevelingMeter::measure(const HeightField& surface, const LevelingC
 
 LevelingPoint LevelingMeter::unchanged(const LevelingPoint& earlier, const LevelingCost& cost) {
   LevelingPoint point;
+  point.level_deviation = earlier.level_deviation;
   point.relief = earlier.relief;
   point.roughness = earlier.roughness;
   point.robot_scale_flatness = earlier.robot_scale_flatness;

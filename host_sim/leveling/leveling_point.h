@@ -15,6 +15,7 @@
 //  name                  unit        meaning
 #define SCREED_LEVELING_COLUMNS(X) \
   X(time,                 "s",        "simulated time") \
+  X(level_deviation,            "m",        "U: RMS of the heights about level, after a Gaussian low-pass of 50 mm") \
   X(relief,               "m",        "R: RMS of the heights above their mean plane, after a Gaussian low-pass of 50 mm") \
   X(roughness,            "m",        "Q: RMS of what the low-pass takes away") \
   X(robot_scale_flatness, "1",        "F: share of cells whose slope after the low-pass is within the limit") \
@@ -30,7 +31,9 @@
   X(slip,                 "1",        "mean magnitude of the tracks' slip while they run") \
   X(stuck,                "1",        "share of the time so far in which the tracks ran and the robot did not travel") \
   X(tilted,               "1",        "share of the time so far with the chassis inclined past tilt_limit") \
-  X(off_site,             "1",        "share of the time so far outside site_radius or beyond the edge of the bed")
+  X(off_site,             "1",        "share of the time so far outside site_radius or beyond the edge of the bed") \
+  X(returning,            "1",        "share of the time so far in which the algorithm drove back to its site") \
+  X(visited,              "1",        "share of the site that the robot has come over so far")
 // clang-format on
 
 namespace screed {

@@ -1,6 +1,7 @@
-// One low-pass serves all three figures.
+// One low-pass serves all figures.
 #include "host_sim/leveling/robot_scale.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -45,17 +46,29 @@ RobotScaleFigures robot_scale_figures(const HeightField& field, double flat_deg)
     throw InputError(message.str());
   }
   const FilteredHeights heights = filter_heights(field, kRobotScale_m);
+  double surface = 0.0;
+  double surface_squared = 0.0;
   double relief = 0.0;
   double roughness = 0.0;
-  for (size_t node = 0; node < heights.low_m.size(); ++node) {
-    const double low = heights.low_m[node];
-    const double rest = heights.heights_m[node] - low;
-    relief += low * low;
-    roughness += rest * rest;
+  size_t node = 0;
+  for (int iy = 0; iy < field.ny(); ++iy) {
+    for (int ix = 0; ix < field.nx(); ++ix, ++node) {
+      const double low = heights.low_m[node];
+      const double rest = heights.heights_m[node] - low;
+      // Above the middle of the bed, which its mean height is near: next to nothing cancels.
+      const double above =
+          low + heights.plane.slope_x * field.node_x(ix) + heights.plane.slope_y * field.node_y(iy);
+      surface += above;
+      surface_squared += above * above;
+      relief += low * low;
+      roughness += rest * rest;
+    }
   }
   const auto count = static_cast<double>(heights.low_m.size());
+  const double mean = surface / count;
   const double limit = portable::tan(flat_deg / kDegPerRad) + gradient_rounding(field);
-  return {std::sqrt(relief / count), std::sqrt(roughness / count),
+  return {std::sqrt(std::max(0.0, surface_squared / count - mean * mean)),
+          std::sqrt(relief / count), std::sqrt(roughness / count),
           share_within(heights, field, limit)};
 }
 

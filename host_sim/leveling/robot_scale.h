@@ -9,9 +9,11 @@ namespace screed {
 /// Standard deviation of the low-pass that parts relief from roughness: half the robot's width, m.
 inline constexpr double kRobotScale_m = 0.05;
 
-/// Root mean squares over the nodes of the heights above the mean plane (low_pass.h), and the
-/// slopes of the low-passed surface with its plane.
+/// Root mean squares over the nodes of the heights above the mean plane (low_pass.h), and of the
+/// low-passed surface with its plane the heights about their mean and the slopes.
 struct RobotScaleFigures {
+  double level_deviation_m =
+      0.0;                   ///< U: of what a low-pass of kRobotScale_m leaves, with its plane
   double relief_m = 0.0;     ///< R: of what a low-pass of kRobotScale_m leaves
   double roughness_m = 0.0;  ///< Q: of what it takes away: ruts, ridges, single stones
   double flatness = 0.0;     ///< F: share of cells whose low-passed slope is within the limit, 0..1

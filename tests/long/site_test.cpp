@@ -89,5 +89,23 @@ TEST_F(Beds, AreRunWithoutLeavingThem) {
   }
 }
 
+// Nor does it help to stay: the robot goes everywhere, comes to peaks, and does not spend its time
+// at the fence.
+TEST_F(Beds, AreWorkedAllOver) {
+  int number = 0;
+  for (const std::string name :
+       {"first_drive --duration 400",
+        "first_drive --duration 400 --set experiment.algorithm=spin_on_peak",
+        "open_bed --duration 120"}) {
+    const Result result =
+        run("sim " + name + " --quiet --no-pictures --json --out w" + std::to_string(++number));
+    ASSERT_EQ(result.exit_code, 0) << name << ": " << result.err;
+    const auto summary = Json::parse(result.out);
+    EXPECT_GT(summary["leveling"]["visited"].get<double>(), 0.8) << name;
+    EXPECT_LT(summary["leveling"]["returning"].get<double>(), 0.1) << name;
+    EXPECT_GT(summary["peaks"].get<int>(), 3) << name;
+  }
+}
+
 }  // namespace
 }  // namespace screed::testing

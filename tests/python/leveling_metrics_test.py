@@ -7,6 +7,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 from scipy.optimize import linprog
 from scipy.sparse import coo_matrix
+from scipy.spatial import cKDTree
 
 SIGMA_M = 0.05
 BLOCKS = 24
@@ -93,6 +94,7 @@ class Surface:
         plane, low = self.low_pass(SIGMA_M)
         w1, bound, w2 = self.transport()
         return {
+            "level_deviation": (plane + low).std(),
             "relief": np.sqrt(np.mean(low**2)),
             "roughness": np.sqrt(np.mean((self.heights - plane - low) ** 2)),
             "robot_scale_flatness": self.flatness(plane + low, limit_deg),
@@ -127,10 +129,27 @@ def shares(frames, tread_m, limits):
         "stuck": np.sum((driven >= 0.03) & (travelled < 0.2 * driven)) / len(frames),
         "tilted": np.mean(inclined > np.radians(limits["tilt_limit"] / 100)),
         "off_site": np.mean(away > limits["site_radius"] / 1000) if limits["site_radius"] > 0 else 0.0,
+        "returning": np.mean((frames["state"] == 2) & (frames["leveling_state"] == 4)),
         "slip": slip[running].mean() if running.any() else 0.0,
         "energy": frames["energy"][-1],
         "time": frames["time"][-1],
     }
+
+
+def visited(frames, reach_m, radius_m, bed):
+    """Share of the site's squares of 50 mm whose centres came under the robot; not a number where the site has no edge."""
+    if bed.wrap and radius_m == 0:
+        return np.nan
+    start = np.array([frames["x"][0] - frames["delta_x"][0], frames["y"][0] - frames["delta_y"][0]])
+    half = np.array(bed.heights.shape[::-1]) - 1
+    half = np.full(2, np.inf) if bed.wrap else half * bed.spacing / 2
+    reach = radius_m if radius_m > 0 else np.inf
+    low, high = np.maximum(-half - start, -reach), np.minimum(half - start, reach)
+    east, north = (l + 0.05 * (np.arange(np.floor((h - l) / 0.05 + 1e-6)) + 0.5) for l, h in zip(low, high))
+    centres = np.column_stack([c.ravel() for c in np.meshgrid(east, north)])
+    centres = centres[np.hypot(*centres.T) <= reach]
+    path = np.column_stack([np.cumsum(frames["delta_x"]), np.cumsum(frames["delta_y"])])[::10]
+    return np.mean(cKDTree(path).query(centres)[0] <= reach_m)
 
 
 def check(name, got, expected, relative, absolute=1e-12):
@@ -156,6 +175,8 @@ for path in sys.argv[1:]:
         for name, value in shares(session["frames"][:], tread, limits).items():
             # A sum within rounding of a limit may count or not.
             check(f"{path}: {name}", curve[-1][name], value, 1e-9, 1.01 / len(session["frames"]) if name == "stuck" else 1e-12)
+        part = visited(session["frames"][:], tread / 2, limits["site_radius"] / 1000, Surface(session["terrain"]["before"], 0.0))
+        assert np.isclose(curve[-1]["visited"], part, atol=0.002, equal_nan=True), (path, curve[-1]["visited"], part)
         print(f"{path}: {len(curve)} points; T {first * 1e3:.4f} -> {last * 1e3:.4f} L m, R {surfaces[0]['relief'] * 1e3:.3f} -> "
               f"{surfaces[1]['relief'] * 1e3:.3f} mm, stuck {curve[-1]['stuck']:.3f}")
 print(f"{len(sys.argv) - 1} sessions: every metric as SciPy has it")

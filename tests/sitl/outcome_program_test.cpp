@@ -73,8 +73,8 @@ TEST_F(Outcome, ASpinDigsAndTheSummarySaysHowMuch) {
   EXPECT_EQ(summary["terrain_before"]["roughness_m"], 0.0);
   EXPECT_GT(summary["terrain_after"]["roughness_m"].get<double>(), 1e-5);
   EXPECT_GT(summary["terrain_after"]["relief_m"].get<double>(), 1e-5);
-  for (const char* words :
-       {"relief at robot scale", "roughness", "cut", "fill", "moved", "flat (up to 5 deg)"}) {
+  for (const char* words : {"height about level", "relief at robot scale", "roughness", "cut",
+                            "fill", "moved", "flat cells, up to 5 deg"}) {
     EXPECT_NE(result.out.find(words), std::string::npos) << words << " in: " << result.out;
   }
   EXPECT_TRUE(std::filesystem::exists(root_ / "r" / "terrain_change.png"));
@@ -99,8 +99,8 @@ TEST_F(Outcome, TheLevelingCurveIsInTheSummaryTheSessionAndItsCsv) {
   std::vector<std::string> rows;
   for (std::string line; std::getline(lines, line);) rows.push_back(line);
   ASSERT_EQ(rows.size(), 6U) << "header, start, three points, end: " << csv;
-  EXPECT_TRUE(rows[0].starts_with("time [s],relief [m],")) << rows[0];
-  EXPECT_TRUE(rows[1].starts_with("0,0,0,1,1,0,0,0,0,nan,nan,0,0,")) << rows[1];
+  EXPECT_TRUE(rows[0].starts_with("time [s],level_deviation [m],relief [m],")) << rows[0];
+  EXPECT_TRUE(rows[1].starts_with("0,0,0,0,1,1,0,0,0,0,nan,nan,0,0,")) << rows[1];
   EXPECT_TRUE(rows[2].starts_with("2.5")) << rows[2];
   EXPECT_NE(rows[2].find(",nan,nan,nan,nan,nan,"), std::string::npos) << rows[2];
   EXPECT_EQ(rows[3].find(",nan,nan,nan,nan,nan,"), std::string::npos) << rows[3];

@@ -44,7 +44,7 @@ TEST_F(RunEnds, OnRigidGroundToWhereTheRobotLeavesTheBed) {
   write_drive(1.0, 60.0);
   const Result result = run("sim e.ini --quiet --no-pictures --out r");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("note: e ended after "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("note: e: ended after "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find(" s: the robot left the bed\n"), std::string::npos) << result.err;
   const std::string summary = read(root_ / "r" / "summary.json");
   EXPECT_NE(summary.find("\"left_bed\": true"), std::string::npos) << summary;
@@ -57,8 +57,29 @@ TEST_F(RunEnds, EachOfSeveralThatLeftTheBedIsNamed) {
   write("f.ini", "[experiment]\nname = f\n" + text.substr(text.find("algorithm")));
   const Result result = run("sim e.ini f.ini --quiet --no-pictures --out both");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("note: e ended after "), std::string::npos) << result.err;
-  EXPECT_NE(result.err.find("note: f ended after "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("note: e: ended after "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("note: f: ended after "), std::string::npos) << result.err;
+}
+
+// The last line says why, and the exit code that something is wrong.
+TEST_F(RunEnds, ARobotThatNeverRanIsAFailure) {
+  write_drive(5.0, 12.0);
+  const std::string never = "sim e.ini --quiet --no-pictures --set parameters.battery_low=12000";
+  const Result result = run(never + " --out r");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.err.starts_with("note: e: the robot never ran: battery ")) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_EQ(run(never + " --duration 9 --out s").exit_code, 0) << "it had no time to";
+  EXPECT_EQ(run(never + " --set radio.ground_station=false --out n").exit_code, 0)
+      << "nobody told it to";
+}
+
+TEST_F(RunEnds, ARobotThatAFaultStopsIsAFailure) {
+  write_drive(5.0, 12.0);
+  const Result result =
+      run("sim e.ini --quiet --no-pictures --set experiment.lay_on_side_at=8 --out r");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "note: e: the robot is stopped by a fault: tilt\n");
 }
 
 TEST_F(RunEnds, AFolderOfTheNameDoesNotHideAnExperimentThatComesAlong) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "schema/class_values.h"
+
 namespace screed {
 namespace {
 
@@ -13,7 +15,12 @@ constexpr double kRounding_s = 1e-6;  ///< of times that are sums of steps
 TraversabilityLimits limits_of(const Experiment& experiment, double tread_m) {
   constexpr double kRadPerCentidegree = std::numbers::pi / 18000.0;
   return {0.5 * tread_m, experiment.parameters.tilt_limit * kRadPerCentidegree,
-          experiment.parameters.site_radius * 1e-3};
+          experiment.parameters.site_radius * 1e-3, BedBounds{}};
+}
+
+bool returns_to_site(const SimFrame& frame) {
+  return frame.state == static_cast<int>(message::HeartbeatState::kRunning) &&
+         frame.leveling_state == static_cast<int>(message::LevelingState::kReturn);
 }
 
 /// The first whole multiple of the interval behind this time; never for an interval of 0.
@@ -24,17 +31,22 @@ double next_after(double time_s, double interval_s) {
 
 Traversability mean_shares(const std::vector<TraversabilityMeter>& robots) {
   Traversability mean;
+  mean.visited = 0.0;
   for (const TraversabilityMeter& robot : robots) {
     const Traversability shares = robot.shares();
     mean.stuck += shares.stuck;
     mean.tilted += shares.tilted;
     mean.off_site += shares.off_site;
+    mean.returning += shares.returning;
+    mean.visited += shares.visited;
     mean.slip += shares.slip;
   }
   const auto count = static_cast<double>(robots.size());
   mean.stuck /= count;
   mean.tilted /= count;
   mean.off_site /= count;
+  mean.returning /= count;
+  mean.visited /= count;
   mean.slip /= count;
   return mean;
 }
@@ -44,7 +56,8 @@ Traversability mean_shares(const std::vector<TraversabilityMeter>& robots) {
 LevelingMonitor::LevelingMonitor(const Experiment& experiment, double tread_m, bool deformable)
     : measure_(experiment),
       meter_(measure_.flat_deg()),
-      traversability_(experiment.robots.count, TraversabilityMeter(limits_of(experiment, tread_m))),
+      robots_(experiment.robots.count),
+      limits_(limits_of(experiment, tread_m)),
       interval_s_(experiment.metrics.interval_s),
       transport_interval_s_(experiment.metrics.transport_interval_s),
       deformable_(deformable),
@@ -52,7 +65,8 @@ LevelingMonitor::LevelingMonitor(const Experiment& experiment, double tread_m, b
       next_transport_s_(next_after(0.0, transport_interval_s_)) {}
 
 void LevelingMonitor::begin(const HeightField& before, const Sink& sink) {
-  bounds_ = bounds_of(before);
+  limits_.bed = bounds_of(before);
+  traversability_.assign(robots_, TraversabilityMeter(limits_));
   outcome_.before = measure(before, deformable_);
   sink(outcome_.before);
 }
@@ -61,7 +75,7 @@ void LevelingMonitor::on_tick(std::span<const SimFrame> frames, double distance_
                               const Surface& terrain, const Sink& sink) {
   cost_.energy_j = 0.0;
   for (size_t i = 0; i < frames.size(); ++i) {
-    traversability_[i].on_tick(frames[i], on_bed(frames[i]));
+    traversability_[i].on_tick(frames[i], returns_to_site(frames[i]));
     cost_.energy_j += frames[i].energy;
   }
   const double time_s = frames.front().time;
@@ -79,11 +93,6 @@ void LevelingMonitor::end(const HeightField& after, const Sink& sink) {
   outcome_.after =
       deformable_ ? measure(after, true) : LevelingMeter::unchanged(outcome_.before, cost());
   sink(outcome_.after);
-}
-
-bool LevelingMonitor::on_bed(const SimFrame& frame) const {
-  return bounds_.edge == BedEdge::kWrapped ||
-         (std::abs(frame.x) <= 0.5 * bounds_.width_m && std::abs(frame.y) <= 0.5 * bounds_.depth_m);
 }
 
 LevelingCost LevelingMonitor::cost() const {

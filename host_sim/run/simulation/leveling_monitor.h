@@ -45,19 +45,19 @@ class LevelingMonitor {
   const LevelingOutcome& outcome() const { return outcome_; }
 
  private:
-  bool on_bed(const SimFrame& frame) const;
   LevelingCost cost() const;
   LevelingPoint measure(const HeightField& terrain, bool with_transport);
 
   TerrainMeasure measure_;
   LevelingMeter meter_;
-  std::vector<TraversabilityMeter> traversability_;  ///< of each robot
+  size_t robots_;
+  TraversabilityLimits limits_;
+  std::vector<TraversabilityMeter> traversability_;  ///< of each robot, from begin() on
   double interval_s_;
   double transport_interval_s_;
   bool deformable_;
   double next_s_;
   double next_transport_s_;
-  BedBounds bounds_{};
   LevelingCost cost_;  ///< without the shares, see cost()
   LevelingOutcome outcome_;
 };

@@ -1,4 +1,4 @@
-// When to look at the ground, and when to tell.
+// When to tell.
 #include "host_sim/run/simulation/progress.h"
 
 #include "hal/sample.h"
@@ -7,19 +7,18 @@ namespace screed {
 namespace {
 
 constexpr uint64_t kProgressTicks = kTickRate_hz / 10;
-constexpr uint64_t kFlatnessTicks =
-    5U * uint64_t{kTickRate_hz};  // a look at the whole bed costs milliseconds
 
 }  // namespace
 
-void Progress::on_tick(const StopCondition& stop, double time_s, const Environment& plant) {
+void Progress::on_leveling(const LevelingPoint& point) {
+  now_m_ = point.level_deviation;
+  if (!before_m_.has_value()) before_m_ = now_m_;
+}
+
+void Progress::on_tick(const StopCondition& stop, double time_s) const {
   if (!callback_) return;
-  if (plant.is_deformable() && stop.ticks() % kFlatnessTicks == 0) {
-    flatness_ = measure_.flatness(plant.terrain());
-  }
-  if (stop.ticks() % kProgressTicks == 0 || stop.done()) {
-    callback_({stop.counted_s(time_s), stop.duration_s(), flatness_});
-  }
+  if (stop.ticks() % kProgressTicks == 0 || stop.done())
+    callback_({stop.counted_s(time_s), stop.duration_s(), before_m_.value_or(0.0), now_m_});
 }
 
 }  // namespace screed

@@ -49,6 +49,7 @@ void RunLoop::on_sample(size_t robot, const SensorSample& sample) {
   // The shadow answers before the robot does: a frame shows what they think of this sample.
   watched.parity.tick(sample);
   watched.frame = watched.frames.record(plant_.robot(robot), watched.parity.shadow());
+  watched.ran = watched.ran || watched.parity.shadow().supervisor().running();
   // A bed of particles casts thousands of rays for its surface: it is asked for where it is needed.
   SessionRecorder& recorder = robots_[robot].recorder;
   if (recorder.records_heights()) recorder.observe_terrain(plant_.terrain());
@@ -66,7 +67,7 @@ void RunLoop::end_tick() {
   const WatchedRobot& first = robots_[0].robot;
   const Robot& shadow = first.parity.shadow();
   stop_.count_tick(shadow.supervisor().state(), shadow.leveling().state());
-  progress_.on_tick(stop_, first.frame.time, plant_);
+  progress_.on_tick(stop_, first.frame.time);
   double distance_m = 0.0;
   for (size_t i = 0; i < robots_.size(); ++i) {
     frames_[i] = robots_[i].robot.frame;
@@ -84,6 +85,7 @@ void RunLoop::end_tick() {
 
 void RunLoop::on_leveling(const LevelingPoint& point) {
   robots_[0].recorder.record_leveling(point);
+  progress_.on_leveling(point);
   if (observer_ != nullptr) observer_->on_leveling(point);
 }
 

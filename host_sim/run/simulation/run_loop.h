@@ -39,6 +39,7 @@ struct WatchedRobot {
   /// World at the sample, robot after the shadow's answer: made in on_sample(), written in
   /// on_output().
   SimFrame frame;
+  bool ran = false;  ///< was in the state running, at any time
 };
 
 /// A robot and the session that it is recorded in.

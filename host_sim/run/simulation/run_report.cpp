@@ -2,12 +2,15 @@
 #include "host_sim/run/simulation/run_report.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "host_sim/core/content_hash.h"
 #include "host_sim/run/simulation/names.h"
 
 namespace screed {
 namespace {
+
+constexpr double kStartTime_s = 10.0;  ///< attitude and battery are known after 5 s
 
 Json json_of(const RunIdentity& run) {
   Json json = {{"name", run.experiment}, {"algorithm", run.algorithm}, {"seed", run.seed}};
@@ -29,6 +32,7 @@ Json json_of(const TerrainFigures& terrain) {
           {"p95_slope_deg", heights.p95_slope_deg},
           {"steepest_slope_deg", heights.steepest_slope_deg},
           {"flatness", terrain.flatness},
+          {"level_deviation_m", terrain.robot_scale.level_deviation_m},
           {"relief_m", terrain.robot_scale.relief_m},
           {"roughness_m", terrain.robot_scale.roughness_m},
           {"robot_scale_flatness", terrain.robot_scale.flatness}};
@@ -48,7 +52,9 @@ Json json_of(const LevelingOutcome& leveling) {
           {"slip", after.slip},
           {"stuck", after.stuck},
           {"tilted", after.tilted},
-          {"off_site", after.off_site}};
+          {"off_site", after.off_site},
+          {"returning", after.returning},
+          {"visited", after.visited}};
 }
 
 Json json_of(const CycleReport& cycles) {
@@ -120,6 +126,35 @@ Json json_of(const SimulationSummary& summary) {
 }
 
 }  // namespace
+
+std::optional<std::string> shortfall_of(const SimulationSummary& summary) {
+  if (summary.end == RunEnd::kStopped) return std::nullopt;
+  if (summary.stopped_early()) {
+    char after[32];
+    std::snprintf(after, sizeof after, "ended after %.1f s: ", summary.time_s);
+    return std::string(after) + end_text(summary.end);
+  }
+  const bool several = !summary.robots.empty();
+  const std::vector<RobotSummary> one = {summary};
+  const std::vector<RobotSummary>& robots = several ? summary.robots : one;
+  for (size_t i = 0; i < robots.size(); ++i) {
+    const RobotSummary& robot = robots[i];
+    const std::string name = several ? "robot " + std::to_string(i) : "the robot";
+    if (robot.state == state_name(RobotState::kFault) && robot.faults != Fault::kEmergencyStop)
+      return name + " is stopped by a fault: " + fault_names(robot.faults);
+    if (summary.ordered && !robot.ran && summary.time_s >= kStartTime_s) {
+      std::string text = name + " never ran: ";
+      if (robot.cannot_be_armed.empty()) text.append("it is ").append(robot.state);
+      const char* between = "";
+      for (const std::string& obstacle : robot.cannot_be_armed) {
+        text.append(between).append(obstacle);
+        between = "; ";
+      }
+      return text;
+    }
+  }
+  return std::nullopt;
+}
 
 Json json_of(const TerrainChange& change) {
   return {{"moved_m3", change.moved_m3()},

@@ -35,6 +35,7 @@ struct RobotSummary {
   double energy_j = 0.0;
   double battery_v = 0.0;
   int peaks = 0;
+  bool ran = false;     ///< was in the state running at any time
   std::string state;    ///< of the supervisor at the end
   uint16_t faults = 0;  ///< latched
   /// Why the robot could not be armed at the end, in words; empty in other states than disarmed and
@@ -66,6 +67,7 @@ struct SimulationSummary : RobotSummary {
   double time_s = 0.0;
   /// of the loop alone: building the world and writing pictures do not count
   double wall_s = 0.0;
+  bool ordered = true;  ///< the ground station was to arm and start the robots
   TerrainOutcome terrain;
   LevelingOutcome leveling;
   /// folders of interrupted runs that were passed over
@@ -76,6 +78,11 @@ struct SimulationSummary : RobotSummary {
   bool stopped_early() const { return end != RunEnd::kDone; }
   double real_time_factor() const { return wall_s > 0.0 ? time_s / wall_s : 0.0; }
 };
+
+/// What the robots did not do that their experiment orders, in words: one left the bed, is stopped
+/// by a fault, or never ran though the ground station had 10 s to arm and start it. Nothing for a
+/// run that was told to stop, or robots that only an emergency stop holds: somebody wanted that.
+std::optional<std::string> shortfall_of(const SimulationSummary& summary);
 
 /// moved_m3, cut_m3, fill_m3, deepest_cut_m, deepest_fill_m.
 Json json_of(const TerrainChange& change);

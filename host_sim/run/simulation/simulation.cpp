@@ -146,6 +146,7 @@ RobotSummary report_robot(const RunWorld& world, size_t number, const WatchedRob
   summary.energy_j = view.battery().energy_j;
   summary.battery_v = view.battery().terminal_v;
   summary.peaks = shadow.leveling().peaks();
+  summary.ran = robot.ran;
   summary.state = state_name(shadow.supervisor().state());
   summary.faults = shadow.supervisor().faults();
   summary.cannot_be_armed = obstacles_of(robot, view.time_s());
@@ -208,7 +209,7 @@ SimulationSummary run_simulation(const Experiment& asked, const SimulationOption
   const TerrainMeasure measure(experiment);
 
   StopCondition stop(experiment, options.stop);
-  Progress progress(options.progress, measure, before);
+  Progress progress(options.progress);
   WallClock clock;
   Pacer pacer(clock, options.realtime);
   LevelingMonitor leveling(experiment, world.robot_settings().board.tread_mm * 1e-3,
@@ -229,6 +230,7 @@ SimulationSummary run_simulation(const Experiment& asked, const SimulationOption
   summary.time_s = plant.time_s();
   summary.cycles = world.cycles();
   summary.training_frames = stop.training_frames();
+  summary.ordered = experiment.radio.ground_station;
   summary.height_changes = recorder.height_changes();
   const RunSurfaces surfaces{measure.surface(before), measure.surface(plant.terrain())};
   summary.leveling = leveling.outcome();

@@ -12,7 +12,9 @@ TerrainFigures figures_of(const HeightField& surface, double flat_deg) {
 }
 
 TerrainFigures figures_of(const TerrainStatistics& statistics, const LevelingPoint& point) {
-  return {statistics, point.flatness, {point.relief, point.roughness, point.robot_scale_flatness}};
+  return {statistics,
+          point.flatness,
+          {point.level_deviation, point.relief, point.roughness, point.robot_scale_flatness}};
 }
 
 }  // namespace
@@ -23,11 +25,6 @@ TerrainMeasure::TerrainMeasure(const Experiment& experiment)
 
 HeightField TerrainMeasure::surface(const HeightField& terrain) const {
   return is_filtered() ? low_passed(terrain, grain_m_) : terrain;
-}
-
-double TerrainMeasure::flatness(const HeightField& terrain) const {
-  return is_filtered() ? screed::flatness(surface(terrain), flat_deg_)
-                       : screed::flatness(terrain, flat_deg_);
 }
 
 TerrainOutcome TerrainMeasure::outcome(const HeightField& before, const HeightField& after) const {

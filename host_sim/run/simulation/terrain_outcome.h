@@ -24,7 +24,7 @@ struct TerrainOutcome {
   TerrainChange change;
 };
 
-/// How the terrain of an experiment is measured, for its summary, its pictures and its progress.
+/// How the terrain of an experiment is measured, for its summary and its pictures.
 class TerrainMeasure {
  public:
   /// Of a terrain without particles, flat up to 5 degrees.
@@ -39,8 +39,6 @@ class TerrainMeasure {
   bool is_filtered() const { return grain_m_ > 0.0; }
   /// Slope up to which a cell is flat.
   double flat_deg() const { return flat_deg_; }
-  /// The share of flat cells of surface(terrain).
-  double flatness(const HeightField& terrain) const;
   /// The figures of two surfaces, each from surface().
   TerrainOutcome outcome(const HeightField& before, const HeightField& after) const;
   /// The same of surfaces that have been measured already, as the first and the last point of a

@@ -44,4 +44,23 @@ std::string factor_text(double value) {
   return text.data();
 }
 
+std::string change_text(double before, double after) {
+  if (before == 0.0) return after > 0.0 ? "worse" : "";
+  std::array<char, 64> text{};
+  const double percent = std::round((after / before - 1.0) * 1000.0) / 10.0;
+  if (percent == 0.0) return "";
+  std::snprintf(text.data(), text.size(), "%+.1f %% %s", percent,
+                percent < 0.0 ? "better" : "worse");
+  return text.data();
+}
+
+std::string share_change_text(double before, double after) {
+  std::array<char, 64> text{};
+  const double points = std::round((after - before) * 1000.0) / 10.0;
+  if (points == 0.0) return "";
+  std::snprintf(text.data(), text.size(), "%+.1f points %s", points,
+                points > 0.0 ? "better" : "worse");
+  return text.data();
+}
+
 }  // namespace screed

@@ -8,6 +8,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment_table.h"
 #include "tools/screed/cli/interrupt.h"
+#include "tools/screed/cli/number_text.h"
 #include "tools/screed/cli/progress_bar.h"
 #include "tools/screed/cli/recorded_runs.h"
 #include "tools/screed/cli/task_bar.h"
@@ -69,9 +70,13 @@ SimulationSummary run_one(const Experiment& experiment, SimulationOptions option
     bar.emplace(std::cerr);
     options.progress = [&](const SimulationProgress& progress) {
       setup_bar.clear();
-      char flat[32];
-      std::snprintf(flat, sizeof flat, "flat %.1f %%", progress.flatness * 100.0);
-      bar->show(progress.time_s, progress.duration_s, label + flat);
+      const double before_m = progress.level_deviation_before_m;
+      const double now_m = progress.level_deviation_m;
+      char text[48];
+      std::snprintf(text, sizeof text, "off level %.1f mm", now_m * 1e3);
+      std::string note = label + text;
+      if (now_m != before_m) note += ", " + change_text(before_m, now_m);
+      bar->show(progress.time_s, progress.duration_s, note);
     };
   }
   SimulationSummary summary = run_simulation(experiment, options);

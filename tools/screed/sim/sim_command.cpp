@@ -45,8 +45,11 @@ struct Watching {
   std::unique_ptr<viewer::LiveViewer> viewer;
 };
 
-void print_row(const char* name, const std::string& before, const std::string& after) {
-  std::printf("  %-26s %12s %12s\n", name, before.c_str(), after.c_str());
+void print_row(const char* name, const std::string& before, const std::string& after,
+               const std::string& change) {
+  std::printf("  %-26s %12s", name, before.c_str());
+  if (!after.empty()) std::printf(" %12s", after.c_str());
+  std::printf("%s%s\n", change.empty() ? "" : "  ", change.c_str());
 }
 
 std::string format(const char* pattern, double value) {
@@ -82,59 +85,63 @@ void print_cycles(const CycleReport& c) {
   }
 }
 
-void print_terrain(const TerrainOutcome& terrain, double flatness_deg) {
+/// What counts first: level, then flat to a robot, then single cells, which tracks roughen.
+void print_terrain(const TerrainOutcome& terrain, const LevelingOutcome& leveling,
+                   double flatness_deg) {
   const TerrainFigures& before = terrain.before;
   const TerrainFigures& after = terrain.after;
-  const auto degrees = [](double value) { return format("%.2f deg", value); };
   const auto millimetres = [](double metres) { return format("%.1f mm", metres * 1e3); };
   const auto percent = [](double share) { return format("%.1f %%", share * 100.0); };
   const auto litres = [](double m3) { return format("%.3f L", m3 * 1e3); };
-  print_row("terrain", "before", "after");
-  print_row("mean slope", degrees(before.heights.mean_slope_deg),
-            degrees(after.heights.mean_slope_deg));
-  print_row("RMS slope", degrees(before.heights.rms_slope_deg),
-            degrees(after.heights.rms_slope_deg));
-  print_row("95 % of slopes below", degrees(before.heights.p95_slope_deg),
-            degrees(after.heights.p95_slope_deg));
-  print_row("steepest slope", degrees(before.heights.steepest_slope_deg),
-            degrees(after.heights.steepest_slope_deg));
-  print_row(("flat (up to " + format("%g", flatness_deg) + " deg)").c_str(),
-            percent(before.flatness), percent(after.flatness));
-  print_row("height deviation", millimetres(before.heights.height_deviation_m),
-            millimetres(after.heights.height_deviation_m));
-  print_row("relief at robot scale", millimetres(before.robot_scale.relief_m),
-            millimetres(after.robot_scale.relief_m));
-  print_row("roughness", millimetres(before.robot_scale.roughness_m),
-            millimetres(after.robot_scale.roughness_m));
-  print_row("flat at robot scale", percent(before.robot_scale.flatness),
-            percent(after.robot_scale.flatness));
+  const auto height = [&](const char* name, double was, double is) {
+    print_row(name, millimetres(was), millimetres(is), change_text(was, is));
+  };
+  const auto slope = [](const char* name, double was, double is) {
+    print_row(name, format("%.2f deg", was), format("%.2f deg", is), change_text(was, is));
+  };
+  const auto share = [&](const char* name, double was, double is) {
+    print_row(name, percent(was), percent(is), share_change_text(was, is));
+  };
+  const RobotScaleFigures& was = before.robot_scale;
+  const RobotScaleFigures& is = after.robot_scale;
+  print_row("terrain", "before", "after", "");
+  height("height about level", was.level_deviation_m, is.level_deviation_m);
+  if (!std::isnan(leveling.after.transport)) {
+    const auto litre_metres = [](double m4) { return format("%.3f L m", m4 * 1e3); };
+    print_row("transport to level ground", litre_metres(leveling.before.transport),
+              litre_metres(leveling.after.transport),
+              change_text(leveling.before.transport, leveling.after.transport));
+  }
+  share("flat at robot scale", was.flatness, is.flatness);
+  height("relief at robot scale", was.relief_m, is.relief_m);
+  height("roughness", was.roughness_m, is.roughness_m);
+  share(("flat cells, up to " + format("%g", flatness_deg) + " deg").c_str(), before.flatness,
+        after.flatness);
+  slope("mean slope of cells", before.heights.mean_slope_deg, after.heights.mean_slope_deg);
+  slope("RMS slope of cells", before.heights.rms_slope_deg, after.heights.rms_slope_deg);
+  slope("95 % of cells below", before.heights.p95_slope_deg, after.heights.p95_slope_deg);
+  slope("steepest cell", before.heights.steepest_slope_deg, after.heights.steepest_slope_deg);
   const TerrainChange& change = terrain.change;
   if (change.cut_m3 == 0.0 && change.fill_m3 == 0.0) return;  // rigid ground
-  std::printf("\n  %-26s %12s %12s\n", "change of terrain", "volume", "deepest");
-  print_row("cut", litres(change.cut_m3), millimetres(change.deepest_cut_m));
-  print_row("fill", litres(change.fill_m3), millimetres(change.deepest_fill_m));
-  std::printf("  %-26s %12s\n", "moved", litres(change.moved_m3()).c_str());
+  std::printf("\n");
+  print_row("change of terrain", "volume", "deepest", "");
+  print_row("cut", litres(change.cut_m3), millimetres(change.deepest_cut_m), "");
+  print_row("fill", litres(change.fill_m3), millimetres(change.deepest_fill_m), "");
+  print_row("moved", litres(change.moved_m3()), "", "");
 }
 
-/// What levelling would still take, what was gained for what, and what kept the robot from its
-/// work.
-void print_leveling(const LevelingOutcome& leveling) {
-  const LevelingPoint& before = leveling.before;
-  const LevelingPoint& after = leveling.after;
+/// What was gained for what, and how the robot used its time and its site.
+void print_work(const LevelingPoint& after) {
   const auto percent = [](double share) { return format("%.1f %%", share * 100.0); };
   const auto row = [](const char* name, const std::string& value) {
-    std::printf("  %-26s %12s\n", name, value.c_str());
+    print_row(name, value, "", "");
   };
   std::printf("\n");
-  if (!std::isnan(after.transport)) {
-    const auto litre_metres = [](double m4) { return format("%.3f L m", m4 * 1e3); };
-    print_row("transport to level ground", litre_metres(before.transport),
-              litre_metres(after.transport));
-  }
-  if (!std::isnan(after.progress)) row("progress", format("%.2f %%", after.progress * 100.0));
   if (!std::isnan(after.transport_per_joule))
     row("transport per energy", format("%.4f cm3 m/J", after.transport_per_joule * 1e6));
   row("slip", percent(after.slip));
+  if (!std::isnan(after.visited)) row("visited of the site", percent(after.visited));
+  row("time on the way back", percent(after.returning));
   row("time stuck", percent(after.stuck));
   row("time tilted", percent(after.tilted));
   row("time off the site", percent(after.off_site));
@@ -183,21 +190,12 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
               static_cast<unsigned long long>(s.telemetry_frames));
   std::printf("  %-26s %12s\n", "real-time factor", factor_text(s.real_time_factor()).c_str());
   std::printf("\n");
-  print_terrain(s.terrain, experiment.experiment.flatness_deg);
-  print_leveling(s.leveling);
+  print_terrain(s.terrain, s.leveling, experiment.experiment.flatness_deg);
+  print_work(s.leveling.after);
   print_robots(s.robots);
   if (s.cycles.has_value()) print_cycles(*s.cycles);
   std::printf("\n  run folder    %s\n  content hash  %s\n", s.folder.c_str(),
               s.content_hash.c_str());
-}
-
-/// Whether something in the world ended the run before its time; says so. One that the user ended
-/// has done what it was told.
-bool did_not_reach_its_end(const Experiment& experiment, const SimulationSummary& summary) {
-  if (!summary.stopped_early() || summary.end == RunEnd::kStopped) return false;
-  std::cerr << "note: " << experiment.experiment.name << " ended after "
-            << format("%.1f s", summary.time_s) << ": " << end_text(summary.end) << "\n";
-  return true;
 }
 
 int run_sim(const SimArguments& arguments, const std::string& version) {
@@ -246,16 +244,16 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
   };
 
   std::vector<SimulationSummary> summaries;
-  bool failed = false;
+  std::vector<std::string> failures;
   run_batch(
       arguments.runs, overrides, options,
       [&](const Experiment& experiment, const SimulationSummary& summary) {
         summaries.push_back(summary);
-        if (did_not_reach_its_end(experiment, summary)) failed = true;
+        if (const auto shortfall = shortfall_of(summary); shortfall.has_value())
+          failures.push_back("note: " + experiment.experiment.name + ": " + *shortfall);
         if (watching.viewer && !watching.viewer->failure().empty()) {
-          std::cerr << "screed: " << watching.viewer->failure() << "; the run is saved, in "
-                    << summary.folder.string() << "\n";
-          failed = true;
+          failures.push_back("screed: " + watching.viewer->failure() + "; the run is saved, in " +
+                             summary.folder.string());
         }
         if (arguments.runs.json) return;
         if (!arguments.runs.quiet) {
@@ -266,13 +264,14 @@ int run_sim(const SimArguments& arguments, const std::string& version) {
       },
       prepare);
   if (arguments.runs.json) std::cout << json_of(summaries, several);
+  std::cout << std::flush;
+  for (const std::string& failure : failures) std::cerr << failure << "\n";
   if (watching.viewer) {
-    std::cout << std::flush;
     if (!several) watching.viewer->hold("The run has ended and is saved. Q closes the window.");
     if (view->frames.has_value()) std::cerr << watching.viewer->times().text() << "\n";
   }
   if (const int code = interrupted_exit_code(); code != 0) return code;
-  return failed ? 1 : 0;
+  return failures.empty() ? 0 : 1;
 }
 
 }  // namespace

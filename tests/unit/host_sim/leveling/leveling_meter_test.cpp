@@ -21,7 +21,7 @@ LevelingCost cost(double time_s, double energy_j) {
   cost.time_s = time_s;
   cost.distance_m = 2.5;
   cost.energy_j = energy_j;
-  cost.traversability = {0.125, 0.25, 0.375, 0.5};
+  cost.traversability = {0.125, 0.25, 0.375, 0.0625, 0.75, 0.5};
   return cost;
 }
 
@@ -53,6 +53,8 @@ TEST(LevelingMeter, WithoutTransportTheRestIsThere) {
   EXPECT_EQ(point.stuck, 0.125);
   EXPECT_EQ(point.tilted, 0.25);
   EXPECT_EQ(point.off_site, 0.375);
+  EXPECT_EQ(point.returning, 0.0625);
+  EXPECT_EQ(point.visited, 0.75);
   EXPECT_EQ(point.slip, 0.5);
   EXPECT_GT(point.relief, 0.01);
   EXPECT_GT(point.robot_scale_flatness, point.flatness);

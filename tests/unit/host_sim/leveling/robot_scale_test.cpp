@@ -34,6 +34,23 @@ TEST(RobotScale, PartsAWaveByItsLength) {
   }
 }
 
+// A plane of slope s over a length L: s L / sqrt(12); what is no plane adds in squares.
+TEST(RobotScale, ASlantIsNoReliefAndNotLevel) {
+  constexpr double kSlope = 0.05;
+  constexpr double kAmplitude_m = 0.02;
+  const HeightField slant =
+      HeightField::from_function(201, 101, 0.01, false, [&](double x, double y) {
+        return 3.0 + kSlope * x + kAmplitude_m * std::cos(2.0 * pi * y / 0.5);
+      });
+  const RobotScaleFigures figures = robot_scale_figures(slant, kFlat_deg);
+  const double plane = kSlope * 2.0 / std::sqrt(12.0);
+  const double wave = kAmplitude_m / std::sqrt(2.0) * gain(0.5);
+  EXPECT_NEAR(figures.relief_m, wave, 0.01 * wave);
+  EXPECT_NEAR(figures.level_deviation_m, std::hypot(plane, wave), 0.01 * plane);
+  const HeightField level = HeightField::flat(1.0, 0.01);
+  EXPECT_EQ(robot_scale_figures(level, kFlat_deg).level_deviation_m, 0.0);
+}
+
 TEST(RobotScale, AWaveIsFlatAroundItsCrestsAndTroughs) {
   // Slope of the low-passed wave: A g k sin(k x), within tan(limit) on 2/pi asin(tan(limit) / A g
   // k) of its length.

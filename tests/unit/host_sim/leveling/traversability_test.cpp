@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace screed {
 namespace {
 
-constexpr TraversabilityLimits kLimits{0.1, 0.5, 2.0};
+constexpr BedBounds kEndless{0.0, 0.0, BedEdge::kWrapped};
+constexpr TraversabilityLimits kLimits{0.1, 0.5, 2.0, kEndless};
 
 /// Both tracks at this speed, the chassis forwards at that.
 SimFrame driving(double tracks, double chassis) {
@@ -19,8 +23,27 @@ SimFrame driving(double tracks, double chassis) {
   return frame;
 }
 
-void drive(TraversabilityMeter& meter, const SimFrame& frame, int ticks, bool on_bed = true) {
-  for (int i = 0; i < ticks; ++i) meter.on_tick(frame, on_bed);
+void drive(TraversabilityMeter& meter, const SimFrame& frame, int ticks) {
+  for (int i = 0; i < ticks; ++i) meter.on_tick(frame);
+}
+
+/// With the middle of the robot there.
+SimFrame at(double x, double y) {
+  SimFrame frame;
+  frame.x = x;
+  frame.y = y;
+  return frame;
+}
+
+/// In ticks of 10 mm.
+void drive_east(TraversabilityMeter& meter, double from_x, double y, double length_m) {
+  SimFrame frame;
+  frame.delta_x = 0.01;
+  for (int tick = 1; tick <= std::lround(length_m / 0.01); ++tick) {
+    frame.x = from_x + 0.01 * tick;
+    frame.y = y;
+    meter.on_tick(frame);
+  }
 }
 
 TEST(Traversability, NothingYetIsNoShare) {
@@ -111,11 +134,57 @@ TEST(Traversability, CountsTimeOutsideTheCircleAndOffTheBed) {
   frame.delta_y = 0.04;
   drive(meter, frame, 50);  // 2.5 m: the last ten beyond 2 m
   EXPECT_NEAR(meter.shares().off_site, 10.0 / 50.0, 0.021);
-  TraversabilityMeter without({0.1, 0.5, 0.0});
+  TraversabilityMeter without({0.1, 0.5, 0.0, kEndless});
   drive(without, frame, 50);
   EXPECT_EQ(without.shares().off_site, 0.0);
-  drive(without, frame, 50, false);
-  EXPECT_EQ(without.shares().off_site, 0.5);
+  TraversabilityMeter on_bed({0.1, 0.5, 0.0, {2.0, 1.0, BedEdge::kOpen}});
+  for (const SimFrame& place : {at(0.0, 0.0), at(0.99, 0.49), at(-1.01, 0.0), at(0.0, 0.51)})
+    drive(on_bed, place, 1);
+  EXPECT_EQ(on_bed.shares().off_site, 0.5);
+}
+
+// A strip 0.2 m wide: four squares, and the round end of it.
+TEST(SiteCoverage, IsTheStripUnderTheRobot) {
+  TraversabilityMeter meter({0.1, 0.5, 0.0, {2.0, 1.0, BedEdge::kWalled}});
+  drive_east(meter, -1.0, 0.0, 2.0);
+  EXPECT_NEAR(meter.shares().visited, 4.0 * 40.0 / (20.0 * 40.0), 0.001);
+  drive_east(meter, -1.0, 0.0, 2.0);
+  EXPECT_NEAR(meter.shares().visited, 0.2, 0.001) << "the same again";
+}
+
+TEST(SiteCoverage, OfACircleRoundTheStartWhereverThatLies) {
+  for (const double start_x : {0.0, 2.0}) {
+    TraversabilityMeter meter({0.1, 0.5, 0.5, {10.0, 10.0, BedEdge::kOpen}});
+    drive_east(meter, start_x, 1.0, 1.0);
+    // Half of a strip across: 2 (r^2 asin(w/r) + w sqrt(r^2 - w^2)) / 2, and a cap behind the
+    // start.
+    const double strip = 0.25 * std::asin(0.2) + 0.1 * std::sqrt(0.24);
+    const double cap = 0.5 * std::numbers::pi * 0.01;
+    EXPECT_NEAR(meter.shares().visited, (strip + cap) / (std::numbers::pi * 0.25), 0.02) << start_x;
+  }
+}
+
+TEST(SiteCoverage, WhatLiesBeyondTheBedIsNoSite) {
+  TraversabilityMeter meter({2.0, 0.5, 5.0, {2.0, 2.0, BedEdge::kWalled}});
+  drive(meter, at(0.0, 0.0), 1);
+  EXPECT_EQ(meter.shares().visited, 1.0);
+}
+
+TEST(SiteCoverage, AnEndlessSiteHasNoShare) {
+  TraversabilityMeter meter({0.1, 0.5, 0.0, kEndless});
+  drive(meter, at(0.0, 0.0), 1);
+  EXPECT_TRUE(std::isnan(meter.shares().visited));
+}
+
+TEST(SiteCoverage, GoesOnOverTheEdgeOfABedThatRepeats) {
+  TraversabilityMeter meter({0.1, 0.5, 0.3, {1.0, 1.0, BedEdge::kWrapped}});
+  SimFrame frame = at(0.45, 0.0);
+  drive(meter, frame, 1);
+  const double before = meter.shares().visited;
+  frame.x = -0.45;
+  frame.delta_x = 0.01;
+  drive(meter, frame, 10);  // one in ten is looked at
+  EXPECT_GT(meter.shares().visited, before);
 }
 
 TEST(Traversability, SlipIsThatOfRunningTracks) {

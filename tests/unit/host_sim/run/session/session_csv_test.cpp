@@ -61,11 +61,11 @@ TEST_F(SessionTest, CsvOfTheLevelingCurve) {
   std::istringstream csv(read_text(base_ / "leveling.csv"));
   std::string line;
   std::getline(csv, line);
-  EXPECT_TRUE(line.starts_with("time [s],relief [m],roughness [m],")) << line;
+  EXPECT_TRUE(line.starts_with("time [s],level_deviation [m],relief [m],roughness [m],")) << line;
   EXPECT_NE(line.find(",transport [m3 m],"), std::string::npos) << line;
   std::getline(csv, line);
-  EXPECT_TRUE(line.starts_with("30,0.0125,nan,")) << line;
-  EXPECT_TRUE(line.ends_with(",nan,0.25")) << line;
+  EXPECT_TRUE(line.starts_with("30,nan,0.0125,nan,")) << line;
+  EXPECT_TRUE(line.ends_with(",nan,0.25,nan,nan")) << line;
   std::getline(csv, line);
   EXPECT_TRUE(line.starts_with("nan,nan,")) << line;
   EXPECT_FALSE(std::getline(csv, line));

@@ -8,7 +8,9 @@
 #include <numbers>
 #include <vector>
 
+#include "firmware/robot/supervisor.h"
 #include "host_sim/physics/terrain/low_pass.h"
+#include "schema/values.h"
 
 namespace screed {
 namespace {
@@ -58,6 +60,25 @@ class LevelingMonitorTest : public ::testing::Test {
   std::vector<LevelingPoint> points_;
   LevelingMonitor::Sink sink_ = [this](const LevelingPoint& point) { points_.push_back(point); };
 };
+
+TEST_F(LevelingMonitorTest, CountsTimeOnTheWayBackOfARobotThatRuns) {
+  LevelingMonitor monitor(experiment_, kTread_m, true);
+  monitor.begin(terrain_, sink_);
+  SimFrame frame;
+  const auto drive = [&](RobotState state, message::LevelingState activity, int ticks) {
+    frame.state = static_cast<int>(state);
+    frame.leveling_state = static_cast<int>(activity);
+    for (int i = 0; i < ticks; ++i) {
+      frame.time += 0.01;
+      monitor.on_tick({&frame, 1}, 0.0, now_, sink_);
+    }
+  };
+  drive(RobotState::kRunning, message::LevelingState::kWalk, 50);
+  drive(RobotState::kRunning, message::LevelingState::kReturn, 30);
+  drive(RobotState::kFault, message::LevelingState::kReturn, 20);
+  monitor.end(terrain_, sink_);
+  EXPECT_DOUBLE_EQ(points_.back().returning, 0.3);
+}
 
 TEST_F(LevelingMonitorTest, MeasuresAtTheStartAtMultiplesAndAtTheEnd) {
   experiment_.metrics.interval_s = 0.5;

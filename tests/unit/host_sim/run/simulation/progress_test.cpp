@@ -5,55 +5,35 @@
 
 #include <vector>
 
-#include "tests/unit/host_sim/run/rover5_plant.h"
-
 namespace screed {
 namespace {
 
-struct Told {
-  /// So many ticks of a run of `duration_s` on this ground, which was half flat before.
-  Told(double duration_s, int ticks, const Environment& plant) {
-    Experiment experiment;
-    experiment.experiment.duration_s = duration_s;
-    StopCondition stop(experiment, nullptr);
-    HeightField half(5, 2, 0.1, false);
-    for (int iy : {0, 1}) {
-      half.set_node(3, iy, 1 << 20);
-      half.set_node(4, iy, 1 << 21);
-    }
-    Progress progress([this](const SimulationProgress& one) { all.push_back(one); },
-                      TerrainMeasure(experiment), half);
-    for (int tick = 1; tick <= ticks; ++tick) {
-      stop.count_tick(RobotState::kRunning, message::LevelingState::kWalk);
-      progress.on_tick(stop, tick * 0.01, plant);
-    }
-  }
-
-  std::vector<SimulationProgress> all;
-};
+LevelingPoint off_level_by(double metres) {
+  LevelingPoint point;
+  point.level_deviation = metres;
+  return point;
+}
 
 TEST(Progress, TellsTenTimesASecondAndAtTheEnd) {
-  const Plant rigid(HeightField::flat(2.0, 0.05), rover5(), held_at(0.0, 0.0));
-  const Told told(0.25, 25, rigid);
-  ASSERT_EQ(told.all.size(), 3U);
-  EXPECT_DOUBLE_EQ(told.all[0].time_s, 0.1);
-  EXPECT_DOUBLE_EQ(told.all[1].time_s, 0.2);
-  EXPECT_DOUBLE_EQ(told.all[2].time_s, 0.25);
-  EXPECT_DOUBLE_EQ(told.all[2].duration_s, 0.25);
-}
-
-TEST(Progress, LooksAtLooseGroundEveryFiveSeconds) {
-  const Plant soil(HeightField::flat(2.0, 0.05), rover5(), on_soil(held_at(0.0, 0.0)));
-  const Told told(6.0, 510, soil);
-  ASSERT_EQ(told.all.size(), 51U);
-  EXPECT_DOUBLE_EQ(told.all[48].flatness, 0.5);
-  EXPECT_DOUBLE_EQ(told.all[49].flatness, 1.0);
-  EXPECT_DOUBLE_EQ(told.all[50].flatness, 1.0);
-}
-
-TEST(Progress, RigidGroundStaysAsItWas) {
-  const Plant rigid(HeightField::flat(2.0, 0.05), rover5(), held_at(0.0, 0.0));
-  EXPECT_DOUBLE_EQ(Told(6.0, 510, rigid).all.back().flatness, 0.5);
+  Experiment experiment;
+  experiment.experiment.duration_s = 0.25;
+  StopCondition stop(experiment, nullptr);
+  std::vector<SimulationProgress> told;
+  Progress progress([&](const SimulationProgress& one) { told.push_back(one); });
+  progress.on_leveling(off_level_by(0.02));
+  for (int tick = 1; tick <= 25; ++tick) {
+    if (tick == 15) progress.on_leveling(off_level_by(0.01));
+    stop.count_tick(RobotState::kRunning, message::LevelingState::kWalk);
+    progress.on_tick(stop, tick * 0.01);
+  }
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_DOUBLE_EQ(told[0].time_s, 0.1);
+  EXPECT_DOUBLE_EQ(told[1].time_s, 0.2);
+  EXPECT_DOUBLE_EQ(told[2].time_s, 0.25);
+  EXPECT_DOUBLE_EQ(told[2].duration_s, 0.25);
+  EXPECT_EQ(told[0].level_deviation_m, 0.02);
+  EXPECT_EQ(told[2].level_deviation_m, 0.01);
+  for (const SimulationProgress& one : told) EXPECT_EQ(one.level_deviation_before_m, 0.02);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ class RunLoopTest : public ::testing::Test {
     recorder_ = std::make_unique<SessionRecorder>(session_, SessionInfo{},
                                                   world_->plant().terrain(), std::nullopt);
     StopCondition stop(experiment, &stop_);
-    Progress progress({}, TerrainMeasure(experiment), world_->plant().terrain());
+    Progress progress({});
     Pacer pacer(clock_, true);
     LevelingMonitor leveling(experiment, 0.2, false);
     RunLoop loop(*world_,

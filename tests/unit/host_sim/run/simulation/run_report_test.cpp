@@ -40,7 +40,7 @@ SimulationSummary summary() {
   s.terrain.before.heights.p95_slope_deg = 37.5;
   s.terrain.before.heights.steepest_slope_deg = 38.5;
   s.terrain.before.flatness = 0.5;
-  s.terrain.before.robot_scale = {39.5, 40.5, 0.625};
+  s.terrain.before.robot_scale = {29.5, 39.5, 40.5, 0.625};
   s.terrain.after = s.terrain.before;
   s.terrain.after.heights.mean_slope_deg = 45.5;
   s.terrain.after.flatness = 0.75;
@@ -57,6 +57,8 @@ SimulationSummary summary() {
   s.leveling.after.stuck = 0.0625;
   s.leveling.after.tilted = 0.03125;
   s.leveling.after.off_site = 0.015625;
+  s.leveling.after.returning = 0.0078125;
+  s.leveling.after.visited = 0.75;
   return s;
 }
 
@@ -68,13 +70,66 @@ TEST(Summary, OnlyARunThatIsDoneWasNotStoppedEarly) {
   }
 }
 
+/// Of a run of 60 s in which the robot ran.
+SimulationSummary good_run() {
+  SimulationSummary s;
+  s.time_s = 60.0;
+  s.ran = true;
+  s.state = "running";
+  return s;
+}
+
+TEST(Shortfall, IsWhatTheExperimentOrdersAndTheRobotDidNot) {
+  EXPECT_EQ(shortfall_of(good_run()), std::nullopt);
+  SimulationSummary s = good_run();
+  s.end = RunEnd::kLeftBed;
+  EXPECT_EQ(shortfall_of(s), "ended after 60.0 s: the robot left the bed");
+  s = good_run();
+  s.state = "fault";
+  s.faults = Fault::kTilt | Fault::kStuck;
+  EXPECT_EQ(shortfall_of(s), "the robot is stopped by a fault: tilt, stuck");
+  s = good_run();
+  s.ran = false;
+  s.state = "disarmed";
+  EXPECT_EQ(shortfall_of(s), "the robot never ran: it is disarmed");
+  s.cannot_be_armed = {"this", "that"};
+  EXPECT_EQ(shortfall_of(s), "the robot never ran: this; that");
+}
+
+TEST(Shortfall, IsNoneWhereNobodyOrderedOrSomebodyStoppedIt) {
+  SimulationSummary s = good_run();
+  s.ran = false;
+  s.time_s = 9.9;
+  EXPECT_EQ(shortfall_of(s), std::nullopt) << "it had no time to";
+  s.time_s = 60.0;
+  s.ordered = false;
+  EXPECT_EQ(shortfall_of(s), std::nullopt);
+  s = good_run();
+  s.ran = false;
+  s.end = RunEnd::kStopped;
+  EXPECT_EQ(shortfall_of(s), std::nullopt);
+  s = good_run();
+  s.state = "fault";
+  s.faults = Fault::kEmergencyStop;
+  EXPECT_EQ(shortfall_of(s), std::nullopt);
+}
+
+TEST(Shortfall, NamesTheRobotOfSeveral) {
+  SimulationSummary s = good_run();
+  s.robots = {good_run(), good_run()};
+  EXPECT_EQ(shortfall_of(s), std::nullopt);
+  s.robots[1].ran = false;
+  s.robots[1].state = "ready";
+  EXPECT_EQ(shortfall_of(s), "robot 1 never ran: it is ready");
+}
+
 TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
   const std::string terrain =
       R"("lowest_m": 31.5, "highest_m": 32.5, "mean_height_m": 33.5, "height_deviation_m": 34.5,)";
   const std::string slopes =
       R"("rms_slope_deg": 36.5, "p95_slope_deg": 37.5, "steepest_slope_deg": 38.5,)";
   const std::string robot_scale =
-      R"("relief_m": 39.5, "roughness_m": 40.5, "robot_scale_flatness": 0.625})";
+      R"("level_deviation_m": 29.5, "relief_m": 39.5, "roughness_m": 40.5, "robot_scale_flatness": 0.625})";
   const Json expected =
       Json::parse(R"({"name": "hill", "algorithm": "spin_on_peak", "seed": 7,
       "world": {"hal": "native", "board": "a_star_32u4", "terrain": "scm", "soil": "viper"},
@@ -95,7 +150,8 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
                   "transport_after_m4": 63.5, "transport_error_m4": 2.5,
                   "squared_transport_before_m5": 62.5, "squared_transport_after_m5": 64.5,
                   "transport_per_joule_m4": 65.5, "slip": 0.125, "stuck": 0.0625,
-                  "tilted": 0.03125, "off_site": 0.015625}})");
+                  "tilted": 0.03125, "off_site": 0.015625,
+                  "returning": 0.0078125, "visited": 0.75}})");
   EXPECT_EQ(summary_json(summary()), expected.dump(2) + "\n");
 }
 

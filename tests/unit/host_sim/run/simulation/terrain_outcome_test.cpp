@@ -38,9 +38,8 @@ TEST(TerrainMeasure, SingleStonesAreNoSlopes) {
   const HeightField surface = measure.surface(bed);
   const TerrainStatistics heights = terrain_statistics(surface);
   EXPECT_NEAR(heights.mean_slope_deg, 3.0, 0.2);
-  EXPECT_GT(measure.flatness(bed), 0.99);
-  EXPECT_EQ(measure.flatness(bed), flatness(surface, 5.0));
-  EXPECT_EQ(measure.outcome(surface, surface).after.flatness, measure.flatness(bed));
+  EXPECT_GT(flatness(surface, 5.0), 0.99);
+  EXPECT_EQ(measure.outcome(surface, surface).after.flatness, flatness(surface, 5.0));
 }
 
 TEST(TerrainMeasure, TakesOtherTerrainAsItIs) {
@@ -49,7 +48,6 @@ TEST(TerrainMeasure, TakesOtherTerrainAsItIs) {
     const TerrainMeasure measure(on(model));
     EXPECT_EQ(terrain_change(bed, measure.surface(bed)).cut_m3, 0.0) << model;
     EXPECT_EQ(terrain_change(bed, measure.surface(bed)).fill_m3, 0.0) << model;
-    EXPECT_EQ(measure.flatness(bed), flatness(bed, 5.0)) << model;
   }
 }
 
