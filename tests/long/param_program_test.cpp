@@ -8,29 +8,13 @@
 #include <vector>
 
 #include "host_sim/core/json.h"
-#include "tests/sitl/program.h"
+#include "tests/long/robot_at_port.h"
 
 namespace screed::testing {
 namespace {
 
-class ParamProgram : public Program {
+class ParamProgram : public RobotAtPort {
  protected:
-  /// Runs shell lines beside a simulated robot at the port `radio`, disarmed: it takes parameters.
-  /// $screed is the program. The exit code is that of the last line.
-  Result with_robot(const std::string& lines) const {
-    write(
-        "lines.sh",
-        "screed=$1\n"
-        "mkfifo said\n"
-        "\"$screed\" sim first_drive --pty radio --duration 600 --out robot --quiet --no-pictures "
-        "> /dev/null 2> said &\n"
-        "sim=$!\n"
-        "exec 3< said\n"
-        "read -r line <&3\n"  // said when the port is there
-        "\"$screed\" send --pty radio disarm > /dev/null || exit 99\n" +
-            lines + "status=$?\nkill -INT $sim\nwait $sim\nexit $status\n");
-    return run("", "bash lines.sh");
-  }
   static size_t lines_in(const std::string& text) {
     return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
   }

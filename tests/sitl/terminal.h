@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <poll.h>
 #include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,6 +33,7 @@ class Terminal {
     child_ = forkpty(&terminal_, nullptr, nullptr, &size);
     if (child_ < 0) throw std::runtime_error("no terminal");
     if (child_ > 0) return;
+    setenv("TERM", "xterm", 1);
     if (!path.empty()) setenv("PATH", path.c_str(), 1);
     if (chdir(folder.c_str()) == 0) execv(arguments.front(), arguments.data());
     _exit(127);
@@ -49,6 +52,22 @@ class Terminal {
   bool wait_for(const std::string& text) {
     while (screen_.find(text) == std::string::npos) {
       if (!read_some()) return false;
+    }
+    return true;
+  }
+  /// Presses these keys.
+  void type(const std::string& keys) const {
+    if (write(terminal_, keys.data(), keys.size()) != static_cast<ssize_t>(keys.size()))
+      throw std::runtime_error("the terminal takes no keys");
+  }
+  /// Holds a key down, which then repeats itself as a keyboard's does, or none, until it holds.
+  /// False when the program ended before.
+  bool hold_until(const std::string& key, const std::function<bool()>& holds) {
+    constexpr int kRepeat_ms = 30;
+    while (!holds()) {
+      type(key);
+      pollfd drawn{terminal_, POLLIN, 0};
+      if (poll(&drawn, 1, kRepeat_ms) > 0 && !read_some()) return false;
     }
     return true;
   }

@@ -68,6 +68,8 @@ std::string wrong_state_text(CommandOp op, const LatestTelemetry& robot, Command
     case CommandOp::kClear:
       return now + "; there is no fault to clear";
     case CommandOp::kDrive:
+      if (robot.text("leveling.algorithm") == "drive")
+        return "it was not running yet, and is now; send it again";
       return now + " the algorithm '" + robot.text("leveling.algorithm") +
              "'; set the parameter algorithm to drive first";
     default:

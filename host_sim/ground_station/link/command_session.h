@@ -58,6 +58,8 @@ class CommandSession {
   void start_write(uint16_t index, int32_t value);
   /// A command is on its way.
   bool waiting() const { return waiting_; }
+  /// A command that still waits is not repeated any more; the robot may have done it.
+  void give_up() { waiting_ = false; }
   /// The answer to the command started last, once; nothing while waiting, or when none came.
   std::optional<CommandAnswer> take_answer();
 

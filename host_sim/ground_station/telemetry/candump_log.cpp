@@ -125,6 +125,21 @@ void CandumpReader::Closer::operator()(std::FILE* file) const {
   if (file != stdin) std::fclose(file);
 }
 
+CandumpWriter::CandumpWriter(const std::string& path, const std::string& link)
+    : path_(path),
+      interface_(std::filesystem::path(link).filename()),
+      file_(path, std::ios::app | std::ios::binary) {
+  if (!file_) throw InputError(path + ": cannot be written");
+}
+
+void CandumpWriter::add(uint64_t time_us, const CanFrame& frame) {
+  file_ << candump_line(time_us, interface_, frame) << std::flush;
+}
+
+void CandumpWriter::check() const {
+  if (!file_) throw RunError(path_ + ": cannot be written completely; is the disk full?");
+}
+
 CandumpReader::CandumpReader(const std::string& path)
     : CandumpReader(path, path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {}
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -34,6 +35,23 @@ enum class LineKind : uint8_t {
 
 /// Reads one line, without its end. `frame` is written when it is one.
 LineKind parse_candump_line(std::string_view line, LoggedFrame& frame);
+
+/// Appends to a log, frame by frame: whatever ends the program, the log has what it heard.
+class CandumpWriter {
+ public:
+  /// link: the port or interface that frames come from, in the log by its last name: "ttyUSB0".
+  /// Throws InputError when the file cannot be written.
+  CandumpWriter(const std::string& path, const std::string& link);
+
+  void add(uint64_t time_us, const CanFrame& frame);
+  /// Throws RunError when not all could be written.
+  void check() const;
+
+ private:
+  std::string path_;
+  std::string interface_;
+  std::ofstream file_;
+};
 
 /// Reads a log of any size and content, line by line.
 class CandumpReader {

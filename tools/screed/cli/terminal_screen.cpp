@@ -74,7 +74,24 @@ void TerminalScreen::show(const TextCanvas& page) {
 
 std::optional<int> TerminalScreen::key() {
   const int pressed = getch();
-  return pressed == ERR ? std::nullopt : std::optional(pressed);
+  switch (pressed) {
+    case ERR:
+      return std::nullopt;
+    case KEY_UP:
+      return kTerminalUp;
+    case KEY_DOWN:
+      return kTerminalDown;
+    case KEY_LEFT:
+      return kTerminalLeft;
+    case KEY_RIGHT:
+      return kTerminalRight;
+    case KEY_BACKSPACE:
+    case '\b':
+    case 127:
+      return kTerminalBackspace;
+    default:
+      return pressed;
+  }
 }
 
 }  // namespace screed

@@ -7,6 +7,15 @@
 
 namespace screed {
 
+/// Keys that are no characters.
+enum TerminalKey : int {
+  kTerminalUp = 0x110000,
+  kTerminalDown,
+  kTerminalLeft,
+  kTerminalRight,
+  kTerminalBackspace
+};
+
 class TerminalScreen {
  public:
   /// Takes the terminal over until destroyed. Throws InputError when there is none.
@@ -18,7 +27,8 @@ class TerminalScreen {
   /// An empty page of the terminal's present size.
   TextCanvas page() const;
   void show(const TextCanvas& page);
-  /// The next key pressed; never waits.
+  /// The next key pressed, a character or a TerminalKey; never waits. A terminal says nothing of
+  /// keys that are let go: one that is held down comes again and again.
   std::optional<int> key();
 };
 

@@ -6,6 +6,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/can_link.h"
 #include "host_sim/ground_station/link/serial_link.h"
+#include "host_sim/ground_station/link/shared_link.h"
 #include "tools/screed/link/remembered_link.h"
 
 namespace screed {
@@ -27,7 +28,9 @@ std::unique_ptr<Link> open(const LinkArguments& link) {
   SerialOptions options;
   if (link.baud.has_value()) options.baud = *link.baud;
   if (link.api.value_or(0) != 0) options.api = static_cast<XbeeApiMode>(*link.api);
-  return std::make_unique<SerialLink>(link.port.has_value() ? *link.port : *link.pty, options);
+  const std::string& device = link.port.has_value() ? *link.port : *link.pty;
+  return std::make_unique<SharedLink>(
+      device, [device, options] { return std::make_unique<SerialLink>(device, options); });
 }
 
 }  // namespace

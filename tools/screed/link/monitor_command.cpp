@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -60,10 +59,7 @@ class Monitor {
         board_(board_constants_of(arguments.board)),
         begin_us_(wall_clock_us()) {
     for (const std::string& path : curves_) find_signal(path);
-    if (arguments.log.has_value()) {
-      log_.open(*arguments.log, std::ios::app);
-      if (!log_) throw InputError(*arguments.log + ": cannot be written");
-    }
+    if (arguments.log.has_value()) log_.emplace(*arguments.log, link_->name());
   }
 
   int run() {
@@ -73,9 +69,7 @@ class Monitor {
     } else {
       run_screen();
     }
-    log_.flush();
-    if (arguments_.log.has_value() && !log_)
-      throw RunError(*arguments_.log + ": cannot be written completely; is the disk full?");
+    if (log_.has_value()) log_->check();
     return fleet_.robots().empty() ? 1 : 0;
   }
 
@@ -91,18 +85,11 @@ class Monitor {
   }
 
   void on_frame(const LinkFrame& frame) {
-    if (log_.is_open()) log_ << candump_line(frame.time_us, interface_name(), frame.frame);
+    if (log_.has_value()) log_->add(frame.time_us, frame.frame);
     RobotHistory* const robot = fleet_.add_frame(frame);
     if (robot != nullptr && heard_us_ == 0) heard_us_ = wall_clock_us();
     if (robot != nullptr && !fleet_.robots().contains(robot_))
       robot_ = fleet_.robots().begin()->first;
-  }
-
-  /// In a log a serial port is an interface of its last name: "ttyUSB0".
-  std::string interface_name() const {
-    const std::string& name = link_->name();
-    const size_t slash = name.rfind('/');
-    return slash == std::string::npos ? name : name.substr(slash + 1);
   }
 
   DashboardInput input() const {
@@ -256,7 +243,7 @@ class Monitor {
 
   const MonitorArguments& arguments_;
   std::unique_ptr<Link> link_;
-  std::ofstream log_;
+  std::optional<CandumpWriter> log_;
   FleetView fleet_;
   RobotKey robot_;
   CommandSession session_;

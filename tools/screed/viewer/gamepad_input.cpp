@@ -126,6 +126,13 @@ class GamepadInput::Impl {
 GamepadInput::GamepadInput() : impl_(std::make_unique<Impl>()) {}
 GamepadInput::~GamepadInput() = default;
 
+std::vector<InputEvent> GamepadInput::poll() {
+  std::vector<InputEvent> events;
+  SDL_Event event;
+  while (SDL_PollEvent(&event) != 0) convert(event, events);
+  return events;
+}
+
 void GamepadInput::convert(const SDL_Event& event, std::vector<InputEvent>& events) {
   impl_->convert(event, events);
 }

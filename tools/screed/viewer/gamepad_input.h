@@ -20,6 +20,8 @@ class GamepadInput {
   GamepadInput& operator=(const GamepadInput&) = delete;
   ~GamepadInput();
 
+  /// What happened since the last call, for a program without a window.
+  std::vector<InputEvent> poll();
   /// Adds what the event means to `events`; nothing when it is none of a gamepad.
   void convert(const SDL_Event& event, std::vector<InputEvent>& events);
 

@@ -84,5 +84,15 @@ TEST_F(AnswerText, OfEveryResultIsASentence) {
   EXPECT_EQ(text(CommandOp::kArm, static_cast<Result>(77)), "refused: reason 77");
 }
 
+// The refusal was on its way when the robot said that it runs.
+TEST_F(AnswerText, OfARobotThatDrivesByNowSaysSo) {
+  message::Leveling leveling{};
+  leveling.algorithm = static_cast<uint8_t>(message::LevelingAlgorithm::kDrive);
+  say(leveling);
+  say(heartbeat(State::kRunning, 0));
+  EXPECT_EQ(text(CommandOp::kDrive, Result::kWrongState),
+            "refused: it was not running yet, and is now; send it again");
+}
+
 }  // namespace
 }  // namespace screed
