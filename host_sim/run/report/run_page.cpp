@@ -97,10 +97,9 @@ const std::vector<PanelInfo>& panels() {
 /// The curves of one robot, on their way through the frames.
 class Curves {
  public:
-  Curves(std::uint64_t ticks, const std::vector<std::string>& missing) : sampling_(ticks) {
+  explicit Curves(std::uint64_t ticks) : sampling_(ticks) {
     for (const PanelInfo& panel : panels()) {
       for (const CurveInfo& curve : panel.curves) {
-        if (std::find(missing.begin(), missing.end(), curve.column) != missing.end()) continue;
         taken_.push_back({&panel, &curve, CurveSampler(sampling_)});
       }
     }
@@ -117,6 +116,10 @@ class Curves {
     Json list = Json::array();
     const PanelInfo* last = nullptr;
     for (Taken& it : taken_) {
+      const std::vector<float> samples = it.sampler.samples();
+      // Sessions of older programs and those of telemetry logs do not have all quantities.
+      if (std::ranges::none_of(samples, [](float sample) { return std::isfinite(sample); }))
+        continue;
       if (it.panel != last) {
         list.push_back({{"title", it.panel->title},
                         {"unit", it.panel->unit},
@@ -125,7 +128,6 @@ class Curves {
       }
       last = it.panel;
       const std::string block = prefix + it.curve->column;
-      const std::vector<float> samples = it.sampler.samples();
       page.add_numbers(block, std::span<const float>(samples));
       list.back()["series"].push_back({{"label", it.curve->label},
                                        {"column", it.curve->column},
@@ -215,7 +217,7 @@ Json boxes_of(const Assembly& robot, bool tracks) {
 Json add_robot(PageFile& page, const SessionReader& session, std::span<const std::uint64_t> stops,
                const std::string& prefix, const TaskProgress& progress) {
   const double tick_s = 1.0 / session.info().tick_rate_hz;
-  Curves curves(session.frames(), session.missing_columns());
+  Curves curves(session.frames());
   StopRows rows;
   PageTrack track;
   PageEvents events;

@@ -15,8 +15,10 @@
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/engine/result_store.h"
+#include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/run_setup.h"
 #include "host_sim/run/report/run_page.h"
+#include "host_sim/run/scene/log_session.h"
 #include "host_sim/run/session/robot_sessions.h"
 #include "host_sim/run/session/run_folder.h"
 #include "host_sim/run/session/session_reader.h"
@@ -35,6 +37,7 @@ struct ReportOptions {
   std::optional<std::string> metric;
   std::optional<std::uint64_t> baseline;
   bool incomplete = false;
+  std::string board = kDefaultBoard;
   bool quiet = false;
 };
 
@@ -42,9 +45,9 @@ fs::path built_page() {
   return data_folders().report / "page.html";
 }
 
-/// The page's own path, or the one beside what it reports. Throws InputError.
-fs::path page_path(const ReportOptions& options, const fs::path& folder) {
-  fs::path out = options.out.empty() ? folder / "report.html" : fs::path(options.out);
+/// The page's own path, or the one that is meant when none is named. Throws InputError.
+fs::path page_path(const ReportOptions& options, const fs::path& usual) {
+  fs::path out = options.out.empty() ? usual : fs::path(options.out);
   if (out.extension() != ".html")
     throw InputError("--out " + options.out + ": the name ends in .html");
   return out;
@@ -71,10 +74,12 @@ int report_run(const ReportOptions& options) {
   if (options.metric || options.baseline || options.incomplete)
     throw InputError("--metric, --baseline, --incomplete: of campaigns, and " + options.of +
                      " is none");
-  const fs::path file = session_file(options.of);
+  const ShownRun run(options.of, options.board);
+  const fs::path file = run.is_log() ? fs::path(options.of) : session_file(options.of);
   const fs::path folder = fs::absolute(file).parent_path();
-  const fs::path out = page_path(options, folder);
-  const std::vector<SessionReader> sessions = open_robots(options.of);
+  const fs::path out = page_path(
+      options, run.is_log() ? fs::path(file).replace_extension(".html") : folder / "report.html");
+  const std::vector<SessionReader> sessions = open_robots(run.path());
   const SessionReader& session = sessions.front();
   if (!session.complete()) std::cerr << "note: the recorded run did not end\n";
   TaskBar bar(options.quiet);
@@ -89,7 +94,7 @@ int report_run(const ReportOptions& options) {
 }
 
 int report_campaign(const ReportOptions& options, const CampaignFolder& folder) {
-  const fs::path out = page_path(options, folder.path);
+  const fs::path out = page_path(options, folder.path / "report.html");
   const CampaignPlan plan = read_plan(folder.plan());
   const ResultIndex results(folder.results());
   const CampaignCount count = count_results(plan, results);
@@ -117,14 +122,18 @@ int run_report(const ReportOptions& options) {
 void register_report_command(Command& root, Program& program) {
   Command* command = root.add_subcommand(
       "report",
-      "Write a recorded run or a campaign as one HTML page: terrain over time, path, curves, "
-      "figures; means, differences, ranks");
+      "Write a recorded run, a robot's telemetry log or a campaign as one HTML page: terrain over "
+      "time, path, curves, figures; means, differences, ranks");
   const auto options = std::make_shared<ReportOptions>();
-  command->add_option("RUN", options->of, "Run folder, session.h5, or folder of a campaign")
+  command
+      ->add_option("RUN", options->of,
+                   "Run folder, session.h5, log as written by candump -L, or folder of a campaign")
       ->required();
   command
-      ->add_option("--out", options->out,
-                   "Output page, .html; replaced where it exists (default: RUN/report.html)")
+      ->add_option(
+          "--out", options->out,
+          "Output page, .html; replaced where it exists (default: report.html in the folder, of a "
+          "log the page beside it")
       ->type_name("FILE");
   command
       ->add_option("--metric", options->metric,
@@ -134,6 +143,9 @@ void register_report_command(Command& root, Program& program) {
              "Cell that the others of a campaign are compared with (default: 0)", {0, 1e6});
   command->add_flag("--incomplete", options->incomplete,
                     "Report a campaign although runs are missing; the page says so");
+  command->add_option("--board", options->board, "Board of the robots of a log")
+      ->type_name("NAME")
+      ->show_default();
   command->add_flag("--quiet", options->quiet, "Show no progress");
   command->callback(
       [options, &program] { program.action = [options] { return run_report(*options); }; });
