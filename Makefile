@@ -18,6 +18,7 @@ PACKAGE_LISTS := tools/debian-packages.txt $(if $(filter fuzz test-asan,$(MAKECM
                  $(if $(filter test-slurm,$(MAKECMDGOALS)),tests/slurm/debian-packages.txt) \
                  $(if $(filter test-python,$(MAKECMDGOALS)),tests/python/debian-packages.txt) \
                  $(if $(filter test-report,$(MAKECMDGOALS)),tests/report/debian-packages.txt) \
+                 $(if $(filter camera test-camera,$(MAKECMDGOALS)),tools/camera/debian-packages.txt) \
                  $(if $(shell command -v npm),,$(if $(filter build report-page install test-install test-report,$(MAKECMDGOALS)),tools/report/debian-packages.txt))
 BUILD_FILES := Makefile $(sort $(wildcard tools/build/*.mk hal/avr/*.mk nn/*/*.mk tests/*.mk tests/*/*.mk tools/*/*.mk tools/*/*/*.mk))
 
@@ -55,6 +56,7 @@ include tests/can/can.mk
 include tests/slurm/slurm.mk
 include tests/python/python.mk
 include tests/portable/portable.mk
+include tools/camera/camera.mk
 include tests/processors/processors.mk
 include tests/report/report_tests.mk
 include tests/asan.mk
