@@ -90,10 +90,10 @@ std::string marker_in_scene(int number, double side_m, const cv::Matx33d& axes,
   const double metres_per_px = side_m / 600.0;
   std::snprintf(
       text, sizeof text,
-      "box { <-350,-350,-3>, <350,350,0> pigment { image_map { png \"markers.png\" } "
-      "scale <3600,800,1> translate <%d,-400,0> } finish { ambient 0.1 diffuse 0.8 } scale %.8f "
+      "box { <-450,-450,-3>, <450,450,0> pigment { image_map { png \"markers.png\" } "
+      "scale <4500,900,1> translate <%d,-450,0> } finish { ambient 0.1 diffuse 0.8 } scale %.8f "
       "matrix <%.8f,%.8f,%.8f, %.8f,%.8f,%.8f, %.8f,%.8f,%.8f, %.8f,%.8f,%.8f> }\n",
-      -(400 + 700 * number), metres_per_px, axes(0, 0), axes(1, 0), axes(2, 0), axes(0, 1),
+      -(450 + 900 * number), metres_per_px, axes(0, 0), axes(1, 0), axes(2, 0), axes(0, 1),
       axes(1, 1), axes(2, 1), axes(0, 2), axes(1, 2), axes(2, 2), at[0], at[1], at[2]);
   return text;
 }
@@ -132,7 +132,7 @@ class SiteCamera : public RobotAtPort {
   void write_frame(const SimFrame& frame, size_t row, int number) const {
     const std::string name = "see_0" + std::to_string(number);
     ASSERT_EQ(run("render r --pov-only --no-path --quiet --frame " + std::to_string(row) +
-                  " --out " + name + ".pov")
+                  " --out " + name + ".png")
                   .exit_code,
               0);
     std::string scene = read(root_ / (name + ".pov"));
@@ -144,7 +144,7 @@ class SiteCamera : public RobotAtPort {
     // Not quite above the middle, nor quite upright.
     file << "camera { location <0,0,0> direction <0,0,-1> up <0," << kHeight_px / 1000.0
          << ",0> right <" << kWidth_px / 1000.0
-         << ",0,0> rotate <4,-3,8> translate <-0.15,0.1,3.2> }\n";
+         << ",0,0> rotate <3,-2,5> translate <-0.1,-0.1,3.8> }\n";
     const cv::Matx33d upright = cv::Matx33d::eye();
     for (int corner = 1; corner <= 4; ++corner) {
       const double x = corner == 2 || corner == 3 ? 0.5 : -0.5;
@@ -158,7 +158,6 @@ class SiteCamera : public RobotAtPort {
     file << marker_in_scene(0, kSide_m, marker, at);
     file.close();
     ASSERT_TRUE(file.good());
-    // Wider than what the lens shows of it, which bends inwards.
     const std::string povray = "cd '" + root_.string() + "' && povray +I" + name +
                                ".pov +Ostraight.png +W" + std::to_string(kWidth_px) + " +H" +
                                std::to_string(kHeight_px) + " -D +A0.3 > /dev/null 2> povray.txt";

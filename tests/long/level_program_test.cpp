@@ -141,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "8c2b40a1aa55b4eb348cfafcf55a67d1", "f4b4f6adf281beca16f405cc4b194d53",
-                "ba2f49fb3fc01217a1e85dbe2941c262", "dac55f3847d70074f906e026ef926e60",
-                "5349537cbcf4175b40dc496b137b955e", "e08d072ad4357012f2bdfdba7c846166"}));
+                "e1a22ee5f7368d4a7dd734719237dfbc", "d1474bcebe374f12a6f84a2d8e34cc11",
+                "6e2167870233f18bd6dbc4c90790d608", "ae235ed6bba18718f80b557de038f189",
+                "8b5d8187544395554099ec4be517f6a1", "f0d6387739bc95a1bd248730cb1eadf9"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

@@ -59,16 +59,17 @@ cv::VideoCapture open_source(const std::string& source) {
   return capture;
 }
 
+/// Tiles side by side. The white round a marker is part of it: what refines the corners to parts of
+/// a pixel must not meet another edge.
 int write_markers(const std::string& out) {
-  constexpr int kSide_px = 600;
-  constexpr int kQuiet_px = 100;  // a marker needs white round it
-  cv::Mat sheet(kSide_px + 2 * kQuiet_px, (kCorners + 1) * (kSide_px + kQuiet_px) + kQuiet_px,
-                CV_8U, cv::Scalar(255));
+  constexpr int kBlack_px = 600;
+  constexpr int kWhite_px = 150;
+  constexpr int kTile_px = kBlack_px + 2 * kWhite_px;
+  cv::Mat sheet(kTile_px, (kCorners + 1) * kTile_px, CV_8U, cv::Scalar(255));
   for (int id = 0; id <= kCorners; ++id) {
     cv::Mat marker;
-    cv::aruco::drawMarker(dictionary(), id, kSide_px, marker);
-    marker.copyTo(
-        sheet(cv::Rect(kQuiet_px + id * (kSide_px + kQuiet_px), kQuiet_px, kSide_px, kSide_px)));
+    cv::aruco::drawMarker(dictionary(), id, kBlack_px, marker);
+    marker.copyTo(sheet(cv::Rect(id * kTile_px + kWhite_px, kWhite_px, kBlack_px, kBlack_px)));
   }
   if (!cv::imwrite(out, sheet)) throw InputError(out + ": cannot be written");
   return 0;
@@ -121,7 +122,7 @@ int calibrate(const CalibrateArguments& arguments) {
     std::cerr << "\r" << seen.size() << " of " << kMaxViews << " views of the chessboard"
               << std::flush;
   }
-  std::cerr << "\n";
+  if (!seen.empty()) std::cerr << "\n";
   if (seen.size() < kMinViews) {
     throw InputError(arguments.source + ": " + std::to_string(seen.size()) +
                      " different views of a chessboard of " + std::to_string(inner.width) + " x " +
