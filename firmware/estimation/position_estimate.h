@@ -39,8 +39,6 @@ class PositionEstimate : private PositionState {
 
   /// At the origin for sure.
   void reset();
-  /// It may be anywhere: the next measurement says where.
-  void forget() { variance_[0] = variance_[1] = INT32_MAX; }
 
   /// One tick: counts of both tracks since the last tick (within kMaxTrackCounts), heading and
   /// pitch now; share: of the tracks' travel that moves the robot, 255: all of it.

@@ -17,10 +17,10 @@ uint32_t squares(int16_t x, int16_t y) {
 SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
   if (parameters_.site_radius == 0) return false;
   const uint8_t sigma = place.sigma[kX] > place.sigma[kY] ? place.sigma[kX] : place.sigma[kY];
+  const int16_t half = asr_i16(parameters_.site_radius, 1);
   auto radius = static_cast<int16_t>(parameters_.site_radius - 4 * sigma);
-  const int16_t least = asr_i16(parameters_.site_radius, 1);
-  if (radius < least) radius = least;
-  outside_ = squares(place.mm[kX], place.mm[kY]) > squares(radius, 0);
+  if (radius < half) radius = half;
+  outside_ = squares(place.mm[kX], place.mm[kY]) > static_cast<uint32_t>(mul_i16(radius, radius));
   return outside_;
 }
 
@@ -34,7 +34,8 @@ MotionCommand SiteFence::steer(int16_t east_mm, int16_t north_mm, Angle heading)
   }
   if (static_cast<uint16_t>(error + kAhead) >= 2 * kAhead) speed = 0;
   // Two turns of the error a second, as fast as the robot turns well: time constant 0.5 s.
-  return {speed, limit_i16(static_cast<int32_t>(static_cast<Angle>(error)) * 2, kMaxTurnRate)};
+  const int16_t half = clamp_i16(static_cast<Angle>(error), -kMaxTurnRate / 2, kMaxTurnRate / 2);
+  return {speed, static_cast<YawRate>(half * 2)};
 }
 
 }  // namespace screed

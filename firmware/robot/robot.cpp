@@ -231,12 +231,13 @@ RequestResult Robot::execute(const uint8_t* data) {
 }
 
 void Robot::fix_position(const DriveArgument& place_cm) {
-  // Who sends them has left out what is false. The first one says where the robot was put.
-  if (!located_) position_.forget();
+  // Who sends them has left out what is false. The first one tells where the robot was put: where
+  // that is not where it believes to be, it doubts both, and takes the second.
+  const uint8_t gate = located_ ? 0 : 1;
   position_.measure(kX, static_cast<int16_t>(place_cm.speed_mm_per_s * 10), parameters_.fix_sigma,
-                    0);
+                    gate);
   position_.measure(kY, static_cast<int16_t>(place_cm.turn_ddeg_per_s * 10), parameters_.fix_sigma,
-                    0);
+                    gate);
   located_ = true;
 }
 

@@ -218,11 +218,12 @@ TEST_F(SiteCamera, SeesTheRobotOfARenderedRunAndTellsIt) {
   EXPECT_LT(greatest, 0.03) << "as the robot's parameter fix_sigma has it";
 
   // The last of them, to a robot that stands and believes itself elsewhere.
-  const Result told =
-      with_robot("'" + camera_ + "' track see_05.png" + site + " | $screed fix --pty radio\n",
-                 "--set fixes.period=0");
+  const Result told = with_robot("'" + camera_ + "' track see_05.png" + site +
+                                     " > fix\ncat fix fix fix fix > fixes\n"
+                                     "$screed fix --pty radio fixes\n",
+                                 "--set fixes.period=0");
   ASSERT_EQ(told.exit_code, 0) << told.out << told.err;
-  EXPECT_NE(told.out.find("1 fixes taken by robot 1"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("4 fixes taken by robot 1"), std::string::npos) << told.out;
   const SessionReader robot(root_ / "robot/session.h5");
   SimFrame last;
   robot.read(robot.frames() - 1, std::span(&last, 1));

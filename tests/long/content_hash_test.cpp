@@ -18,7 +18,7 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "7e94f4c202e4730fc73c34bc8e24ec86"},
+    {"first_drive", "--duration 60", "b3e60fc4e580e2536f7eae1a0a086698"},
     {"soft_bed", "--duration 6", "4105976e9374cd1cc5d84bb5822a3a67"},
     {"soft_bed", "--hal surrogate --duration 10", "9f24d52de867b6afbbbd0466a4134732"},
     {"soft_bed",

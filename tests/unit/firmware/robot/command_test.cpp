@@ -421,19 +421,22 @@ TEST(Run, TheFenceLiesRoundThePlaceWhereItBegan) {
   EXPECT_NE(robot.robot.leveling().state(), LevelingState::kReturn);
 }
 
-// The first one says where the robot was put down, whatever it believed.
+// Where the first one contradicts what the robot believes, it doubts both, and the second says
+// where it was put.
 TEST(PositionFix, TellsTheRobotWhereItIs) {
   Parameters parameters;
   parameters.fix_sigma = 30;
   TestRobot robot = ready_robot(parameters);
-  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {120, -85})),
-            RequestResult::kDone);
-  EXPECT_NEAR(robot.robot.position().mm(kX), 1200, 5);
-  EXPECT_NEAR(robot.robot.position().mm(kY), -850, 5);
-  // The next one at rest is as good as the first.
+  const DriveArgument far{120, -85};
+  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, far)), RequestResult::kDone);
+  EXPECT_EQ(robot.robot.position().mm(kX), 0);
+  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, far)), RequestResult::kDone);
+  EXPECT_NEAR(robot.robot.position().mm(kX), 1200, 20);
+  EXPECT_NEAR(robot.robot.position().mm(kY), -850, 15);
+  // The next one at rest is as good as that.
   ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {130, -85})),
             RequestResult::kDone);
-  EXPECT_NEAR(robot.robot.position().mm(kX), 1250, 5);
+  EXPECT_NEAR(robot.robot.position().mm(kX), 1242, 10);
   for (int i = 0; i < 6000; ++i) {  // until it does not know that well any more
     robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
     robot.sample.encoder_right = static_cast<uint16_t>(robot.sample.encoder_right - 5);
@@ -458,8 +461,10 @@ TEST(PositionFix, ARunBeginsWhereTheFixesSay) {
     robot.tick();
   }
   robot.run(50);
-  ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {100, 0})),
-            RequestResult::kDone);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, {100, 0})),
+              RequestResult::kDone);
+  }
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
   robot.run(5);
