@@ -130,6 +130,23 @@ TEST_F(GroundTools, AWrongFixIsNamedByItsLine) {
   }
 }
 
+// Each signs with the next number: none spoils another's.
+TEST_F(GroundTools, FixesAndCommandsGoBesideEachOther) {
+  const Result result = with_robot(
+      "$screed monitor --pty radio --plain > seen.txt & monitor=$!\n"
+      "for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do echo 0.5 0.5; done > fixes\n"
+      "$screed fix --pty radio fixes & fix=$!\n"
+      "for i in 1 2 3 4 5 6; do\n"
+      "  $screed param get --pty radio climb_threshold > got.txt || exit 90\n"
+      "done\n"
+      "wait $fix || exit 91\n"
+      "kill -INT $monitor; wait $monitor\n",
+      "--set fixes.period=0");
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_NE(result.out.find("20 fixes taken by robot 1, 0 without an answer"), std::string::npos)
+      << result.out;
+}
+
 // One holds the port, the others are its guests; the one is the ground station, and what it keeps
 // alive the others may command.
 TEST_F(GroundTools, SeveralProgramsShareThePort) {

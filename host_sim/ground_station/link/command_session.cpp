@@ -71,7 +71,10 @@ void CommandSession::start(CommandOp op, uint32_t argument) {
 }
 
 void CommandSession::send_command() {
-  if (!command_.has_value()) command_ = signer_.sign(op_, argument_);
+  if (!command_.has_value()) {
+    command_ = signer_.sign(op_, argument_);
+    signed_ = signer_.counter();
+  }
   if (staged_.has_value()) send_protected(*staged_, stage_counter_);
   link_.send(*command_);
 }
@@ -85,8 +88,17 @@ void CommandSession::handle_frame(const CanFrame& frame) {
   }
   if (id != kIdCommandAck || !waiting_ || !command_.has_value()) return;
   const auto ack = message::CommandAck::unpack(frame.data);
-  if (ack.op != command_->data[0] || ack.freshness != command_->data[kCommandFreshnessOffset])
-    return;
+  const bool same_number = ack.freshness == command_->data[kCommandFreshnessOffset];
+  const bool is_own = same_number && ack.op == command_->data[0];
+  const bool bad_mac = static_cast<Result>(ack.result) == Result::kBadMac;
+  // Where somebody else's command with this number, or a later one, was taken, this one never is.
+  const bool late = is_own ? bad_mac && ack.detail >= signed_
+                           : (same_number && !bad_mac) || signer_.counter() > signed_;
+  if (late) {
+    command_.reset();
+    repeat_due_us_ = 0;
+  }
+  if (late || !is_own) return;
   answer_ = {ack.op, ack.result, ack.detail};
   waiting_ = false;
 }

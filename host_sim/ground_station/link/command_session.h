@@ -95,6 +95,7 @@ class CommandSession {
   CommandOp op_{};
   uint32_t argument_ = 0;
   std::optional<CanFrame> command_;  ///< as signed; nothing before the first heartbeat
+  uint16_t signed_ = 0;              ///< the counter in it
   std::optional<CanFrame> staged_;   ///< goes before each repetition of the command
   int attempts_ = 0;
   uint64_t repeat_due_us_ = 0;

@@ -20,10 +20,8 @@ constexpr uint64_t kCommand_us = 250'000;
 constexpr uint64_t kStopRepeat_us = 200'000;
 
 uint32_t drive_argument(const DriveCommand& command) {
-  uint8_t bytes[3];
-  put_drive_argument(bytes, {static_cast<int16_t>(std::lround(command.speed_m_per_s * 1000.0)),
-                             static_cast<int16_t>(std::lround(command.yaw_rate_deg_per_s * 10.0))});
-  return bytes[0] | static_cast<uint32_t>(bytes[1]) << 8U | static_cast<uint32_t>(bytes[2]) << 16U;
+  return command_argument({static_cast<int16_t>(std::lround(command.speed_m_per_s * 1000.0)),
+                           static_cast<int16_t>(std::lround(command.yaw_rate_deg_per_s * 10.0))});
 }
 
 uint16_t algorithm_parameter() {

@@ -15,6 +15,7 @@
 
 #include "firmware/protocol/messages.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/ground_station/telemetry/schema.h"
 
 namespace screed {
 namespace {
@@ -24,6 +25,9 @@ constexpr std::chrono::milliseconds kSlice{10};
 constexpr std::chrono::milliseconds kLookAgain{500};
 // A robot takes a ground station for lost after as long.
 constexpr uint64_t kHeartbeatLost_us = 500'000;
+// An answer takes a tenth of that by cable or a good radio.
+constexpr uint64_t kAnswerLost_us = 300'000;
+constexpr int kOwner = -1;
 constexpr int kMaxGuests = 16;
 constexpr int kMaxTries = 100;
 
@@ -120,6 +124,11 @@ bool is_heartbeat(const CanFrame& frame) {
   return frame.id == kIdGroundHeartbeat;
 }
 
+/// Of whichever robot.
+bool is_message(const CanFrame& frame, uint16_t id_of_node_1) {
+  return find_message(frame.id) == find_message(id_of_node_1);
+}
+
 }  // namespace
 
 SharedLink::SharedLink(const std::filesystem::path& device, Open open)
@@ -187,6 +196,8 @@ void SharedLink::serve(const std::vector<LinkFrame>& frames, size_t first) {
   FileDescriptor guest(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (guest.is_open() && is_this_user(guest.get()) && put(guest.get(), packet_of(own_->status())))
     guests_.push_back({std::move(guest), 0});
+  for (size_t i = first; i < frames.size(); ++i)
+    if (is_message(frames[i].frame, kIdCommandAck)) command_us_ = 0;
   const bool news = told_ != own_->status().text;
   if (news) told_ = own_->status().text;
   std::erase_if(guests_, [&](Guest& it) {
@@ -195,6 +206,15 @@ void SharedLink::serve(const std::vector<LinkFrame>& frames, size_t first) {
       if (!put(it.socket.get(), packet_of(frames[i]))) return true;
     return !take_from(it);
   });
+}
+
+bool SharedLink::may_pass(const CanFrame& frame, int from) {
+  if (!is_message(frame, kIdCommand)) return true;
+  const uint64_t now_us = wall_clock_us();
+  if (now_us < command_us_ + kAnswerLost_us && commander_ != from) return false;
+  commander_ = from;
+  command_us_ = now_us;
+  return true;
 }
 
 bool SharedLink::take_from(Guest& guest) {
@@ -213,7 +233,7 @@ bool SharedLink::take_from(Guest& guest) {
       if (other || lives(heartbeat_us_)) continue;
       guest.heartbeat_us = now_us;
     }
-    own_->send(packet.frame);
+    if (may_pass(packet.frame, guest.socket.get())) own_->send(packet.frame);
   }
 }
 
@@ -256,7 +276,7 @@ void SharedLink::receive_as_guest(std::chrono::milliseconds wait, std::vector<Li
 bool SharedLink::send(const CanFrame& frame) {
   if (own_) {
     if (is_heartbeat(frame)) heartbeat_us_ = wall_clock_us();
-    return own_->send(frame);
+    return may_pass(frame, kOwner) ? own_->send(frame) : true;
   }
   Packet packet;
   packet.frame = frame;

@@ -3,7 +3,8 @@
 //
 // Everybody hears every frame. Everybody may send, but one program alone is the robot's ground
 // station, the owner if it sends heartbeats, else the first that does: heartbeats of the others are
-// dropped, since their counters would contradict one another.
+// dropped, since their counters would contradict one another. Likewise a COMMAND is dropped while
+// somebody else's waits for its answer: CommandSession hears that answer and signs it anew.
 #pragma once
 
 #include <chrono>
@@ -48,6 +49,8 @@ class SharedLink : public Link {
   void serve(const std::vector<LinkFrame>& frames, size_t first);
   /// False: the guest has gone.
   bool take_from(Guest& guest);
+  /// From the owner, or the guest of this socket: it may go out now.
+  bool may_pass(const CanFrame& frame, int from);
   void receive_as_guest(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames);
 
   std::string name_;
@@ -59,6 +62,8 @@ class SharedLink : public Link {
   FileDescriptor listener_;
   std::vector<Guest> guests_;
   uint64_t heartbeat_us_ = 0;  ///< when this program sent one
+  int commander_ = 0;          ///< whose COMMAND waits for its answer: as `from`
+  uint64_t command_us_ = 0;    ///< since when; 0: none does
   std::string told_;           ///< text of the status that guests know
 
   // Of a guest.

@@ -5,6 +5,7 @@
 
 #include "firmware/security/command_mac.h"
 #include "host_sim/core/errors.h"
+#include "schema/class_values.h"
 
 namespace screed {
 namespace {
@@ -13,9 +14,30 @@ namespace {
 // because nothing got through, begins again where the robot is.
 constexpr int kMaxAhead = 200;
 
+/// The robot has taken the command, whatever came of it.
+bool was_taken(message::CommandAckResult result) {
+  using Result = message::CommandAckResult;
+  return result != Result::kNoKey && result != Result::kBadMac && result != Result::kLockedOut &&
+         result != Result::kUsedUp;
+}
+
 }  // namespace
 
+uint32_t command_argument(const DriveArgument& argument) {
+  uint8_t bytes[3];
+  put_drive_argument(bytes, argument);
+  return static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16);
+}
+
 void CommandSigner::handle_frame(const CanFrame& frame) {
+  if (frame.id == id_of_node(kIdCommandAck, node()) && ready()) {
+    const auto ack = message::CommandAck::unpack(frame.data);
+    const auto ahead = static_cast<uint8_t>(ack.freshness - (counter_ & 0xFFU));
+    const bool is_newer = ahead != 0 && ahead < 128;
+    if (is_newer && was_taken(static_cast<message::CommandAckResult>(ack.result)))
+      counter_ = static_cast<uint16_t>(counter_ + ahead);
+    return;
+  }
   if (frame.id != id_of_node(kIdHeartbeat, node()) || frame.size != message::Heartbeat::kSize)
     return;
   const auto heartbeat = message::Heartbeat::unpack(frame.data);
@@ -47,9 +69,7 @@ CanFrame CommandSigner::sign(CommandOp op, uint32_t argument) {
 }
 
 CanFrame CommandSigner::sign(CommandOp op, const DriveArgument& argument) {
-  uint8_t bytes[3];
-  put_drive_argument(bytes, argument);
-  return sign(op, static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16));
+  return sign(op, command_argument(argument));
 }
 
 }  // namespace screed

@@ -16,6 +16,9 @@
 
 namespace screed {
 
+/// The 24 bits of a command whose argument is that of a drive or a position fix.
+uint32_t command_argument(const DriveArgument& argument);
+
 class CommandSigner {
  public:
   explicit CommandSigner(const CommandKey& key) : key_(key) {}
@@ -23,7 +26,8 @@ class CommandSigner {
   /// The node of the robot that has the key.
   uint8_t node() const { return node_of_robot(key_.robot_id); }
 
-  /// Takes a frame whose protection was found right. What is no heartbeat of the robot is ignored.
+  /// Takes a frame whose protection was found right: heartbeats of the robot, and its answers,
+  /// which also tell what others have commanded. All else is ignored.
   void handle_frame(const CanFrame& frame);
 
   /// A heartbeat was heard: number of the robot's start and its counter are known.

@@ -115,9 +115,8 @@ class RobotTrace {
     } else if (name == "ENCODERS") {
       add_counts(message::Encoders::unpack(data.data()), time_us);
     }
-    std::uint64_t bits = 0;
-    for (std::size_t i = data.size(); i-- > 0;) bits = bits << 8U | data[i];
-    if (const auto slip = slip_estimate_.add(time_us, it.message, bits); slip.has_value())
+    const auto slip = slip_estimate_.add(time_us, it.message, message_bits(data.data()));
+    if (slip.has_value())
       add(slip_, time_us, {slip->left.value_or(kUnknown), slip->right.value_or(kUnknown)});
   }
 

@@ -28,6 +28,7 @@
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/file_descriptor.h"
 #include "host_sim/ground_station/link/robot_history.h"
+#include "schema/class_values.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
@@ -78,6 +79,13 @@ std::optional<Fix> parse_fix(const std::string& line, const std::string& where) 
   if (numbers.size() == 3 && numbers[2] < 0.0)
     throw InputError(where + ": a negative standard deviation");
   return Fix{numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0.0};
+}
+
+/// A later fix may be taken.
+bool is_passing(const CommandAnswer& answer) {
+  const auto result = static_cast<message::CommandAckResult>(answer.result);
+  return result == message::CommandAckResult::kBusy ||
+         result == message::CommandAckResult::kLockedOut;
 }
 
 /// Where fixes come from. Of a file each one counts, of anything else the newest.
@@ -186,7 +194,7 @@ class FixSender {
     session_.give_up();
     sent_us_.reset();
     const std::optional<CommandAnswer> answer = session_.take_answer();
-    if (!answer.has_value()) {
+    if (!answer.has_value() || is_passing(*answer)) {
       ++unanswered_;
     } else if (answer->done()) {
       ++taken_;
@@ -203,11 +211,9 @@ class FixSender {
       ++uncertain_;
       return;
     }
-    uint8_t bytes[3];
-    put_drive_argument(bytes, {static_cast<int16_t>(std::lround(fix->x_m * 100.0)),
-                               static_cast<int16_t>(std::lround(fix->y_m * 100.0))});
     session_.start(CommandOp::kPositionFix,
-                   static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16));
+                   command_argument({static_cast<int16_t>(std::lround(fix->x_m * 100.0)),
+                                     static_cast<int16_t>(std::lround(fix->y_m * 100.0))}));
     sent_us_ = now_us;
     next_us_ = now_us + kFixPeriod_us;
   }

@@ -84,9 +84,7 @@ class DriveSummary {
       last_v_ = volts;
       battery_v_.add(volts);
     }
-    const auto bytes = frame_bytes(it.frame.frame);
-    uint64_t bits = 0;
-    for (size_t i = bytes.size(); i-- > 0;) bits = bits << 8U | bytes[i];
+    const uint64_t bits = message_bits(frame_bytes(it.frame.frame).data());
     if (const auto slip = slip_.add(now_us, it.message, bits); slip.has_value()) {
       if (slip->left.has_value()) slip_left_.add(std::abs(*slip->left));
       if (slip->right.has_value()) slip_right_.add(std::abs(*slip->right));

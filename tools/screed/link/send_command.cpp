@@ -117,10 +117,7 @@ void register_send_command(Command& root, Program& program) {
     const DriveArgument argument = {
         static_cast<int16_t>(std::lround(arguments->speed_m_per_s * 1000.0)),
         static_cast<int16_t>(std::lround(arguments->yaw_rate_deg_per_s * 10.0))};
-    uint8_t bytes[3];
-    put_drive_argument(bytes, argument);
-    return send_command(*arguments, CommandOp::kDrive,
-                        static_cast<uint32_t>(bytes[0] | bytes[1] << 8 | bytes[2] << 16),
+    return send_command(*arguments, CommandOp::kDrive, command_argument(argument),
                         {{"command", "drive"},
                          {"speed_m_per_s", arguments->speed_m_per_s},
                          {"yaw_rate_deg_per_s", arguments->yaw_rate_deg_per_s}});

@@ -49,6 +49,7 @@ class FakeRobot : public Link {
     ack.op = frame.data[0];
     ack.freshness = frame.data[4];
     ack.result = static_cast<uint8_t>(result_);
+    if (result_ == Result::kBadMac) ack.detail = gate_.counter();
     say(ack);
     return true;
   }
@@ -200,6 +201,43 @@ TEST_F(CommandSessionTest, ALostCommandIsRepeatedAndDoneOnce) {
   EXPECT_TRUE(answer->done());
   EXPECT_EQ(robot_.done, 1);
   EXPECT_GT(robot_.sent_with(kIdCommand), 1U);
+}
+
+// Another ground station has the key too, and both sign with the next number.
+TEST_F(CommandSessionTest, WhereSomebodyElseWasFasterItIsSignedAnew) {
+  CommandSigner other(test_key());
+  bool commanded = false;
+  CommandSession session(robot_, {test_key(), true,
+                                  [&](const LinkFrame& frame) {
+                                    other.handle_frame(frame.frame);
+                                    if (commanded || !other.ready()) return;
+                                    commanded = true;
+                                    robot_.send(other.sign(CommandOp::kDisarm));
+                                  },
+                                  [this] { return robot_.now_us; }});
+  const auto answer = session.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(answer->op, static_cast<uint8_t>(CommandOp::kArm));
+  EXPECT_EQ(robot_.done, 2);
+  EXPECT_EQ(robot_.sent_with(kIdCommand), 3U) << "of its own two: in vain, and anew";
+}
+
+// Its answers say which numbers are gone, five times as soon as its heartbeats.
+TEST_F(CommandSessionTest, WhatOthersCommandedIsHeardOfTheRobotsAnswers) {
+  session_.pump(std::chrono::milliseconds(20));
+  CommandSigner other(test_key());
+  while (!other.ready()) {
+    std::vector<LinkFrame> frames;
+    robot_.receive(std::chrono::milliseconds(20), frames);
+    for (const LinkFrame& frame : frames) other.handle_frame(frame.frame);
+  }
+  for (int i = 0; i < 3; ++i) robot_.send(other.sign(CommandOp::kDisarm));
+  robot_.silent = true;
+  const auto answer = session_.run(CommandOp::kArm);
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_TRUE(answer->done());
+  EXPECT_EQ(robot_.sent_with(kIdCommand), 4U);
 }
 
 TEST_F(CommandSessionTest, SilenceEndsAfterAWhile) {

@@ -135,6 +135,30 @@ TEST_F(SharedLinkTest, EverybodyMaySendAndOneIsTheGroundStation) {
   EXPECT_EQ(wire_.sent[1].data[0], 4) << "the heartbeat of the third is dropped";
 }
 
+// Both are signed with one number: the robot would take the second for a forged one.
+TEST_F(SharedLinkTest, ACommandPassesWhenThatOfAnotherIsAnswered) {
+  Owner owner(device_, wire_);
+  const auto second = guest();
+  const auto third = guest();
+  EXPECT_TRUE(second->send(frame_with(kIdCommand, 1)));
+  wait_for_sent(1);
+  EXPECT_TRUE(third->send(frame_with(kIdCommand, 2)));
+  EXPECT_TRUE(third->send(frame_with(kIdParamStage, 3)));
+  wait_for_sent(2);
+  EXPECT_TRUE(second->send(frame_with(kIdCommand, 1)));
+  wait_for_sent(3);
+  {
+    const std::lock_guard lock(wire_.mutex);
+    wire_.arriving.push_back({1234, frame_with(kIdCommandAck, 1), std::nullopt});
+  }
+  std::vector<LinkFrame> frames;
+  while (frames.empty()) third->receive(milliseconds(100), frames);
+  EXPECT_TRUE(third->send(frame_with(kIdCommand, 2)));
+  wait_for_sent(4);
+  const int expected[] = {1, 3, 1, 2};
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(wire_.sent[i].data[0], expected[i]) << i;
+}
+
 TEST_F(SharedLinkTest, WhenTheOwnerEndsAnotherTakesItsPlace) {
   auto owner = std::make_unique<Owner>(device_, wire_);
   const auto second = guest();
