@@ -34,6 +34,10 @@ void buttons_init() {
   ButtonAPin::set();  // pull-up
 }
 
+bool button_a_held() {
+  return !ButtonAPin::is_high();
+}
+
 uint8_t buttons_read() {
   uint8_t held = ButtonAPin::is_high() ? 0 : kButtonA;
   // The Arduino core's USB interrupts write to the same pins (its "TX" and "RX" LEDs).

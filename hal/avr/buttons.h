@@ -14,6 +14,8 @@ void buttons_init();
 /// let go for 3 us. A contact bounces for a few milliseconds: ask once a tick, and take what two
 /// answers agree on.
 uint8_t buttons_read();
+/// A alone.
+bool button_a_held();
 
 }  // namespace avr
 }  // namespace screed

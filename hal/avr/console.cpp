@@ -1,17 +1,19 @@
 // A line console on the USB serial line. Numbers are hexadecimal, as in the lines of the radio: two
-// digits, or four of a parameter's value (two's complement). Blanks do not matter.
+// digits, or four. Blanks do not matter.
 //
-//   v          version, board, health      p          all parameters, one a line: number, value
-//   p NN       one parameter               p NN VVVV  changes the draft
-//   d          the draft becomes the defaults
-//   w          writes the draft; it holds from the next start on
+//   v          version, board, health
+//   d          stores the default parameters; they hold from the next start on
 //   r          stops the motors and restarts
 //   k          is there a key (0, 1), the robot's id, number of this start
 //   kKEYID     stores a key: 32 hexadecimal digits, 2 of the robot's id; it holds from the next
 //              start on, and is never shown
+//   ml, mr     turns the left or right motor forwards at a fifth of the duty, for a second as long
+//   as
+//              button A is held, of a robot whose motors are off
+//   O          the lines of the radio come by USB as well, until C (SLCAN: open, close)
+//   t...       a line of the radio, as if it had come by radio
 //
-// Numbers are those of the table in firmware/parameters/parameters.h, from 0. Anything else is
-// answered with "?".
+// Anything else is answered with "?".
 #include "hal/avr/console.h"
 
 #include <avr/io.h>
@@ -28,6 +30,7 @@
 #include "hal/avr/stack_guard.h"
 #include "hal/avr/usb_serial.h"
 #include "hal/avr/watchdog.h"
+#include "hal/sample.h"
 
 namespace screed {
 namespace avr {
@@ -36,13 +39,19 @@ namespace {
 constexpr uint8_t kInSize = 1 + 2 * kKeySize + 1;
 constexpr uint8_t kOutSize = 50;
 constexpr uint8_t kBytesPerStep = 16;
+constexpr uint8_t kMirrored = kRadioOutCapacity / 2;  // the next tick has no lines
 
 struct State {
   uint8_t in[kInSize];
   uint8_t in_count;  // kInSize: the line was too long
   uint8_t out[kOutSize];
   uint8_t out_count;
-  uint8_t to_list;  // parameters that are still to be printed
+  bool radio_line;  // what comes is one, up to its end
+  bool mirror;      // the radio's lines go out here as well
+  const uint8_t* lines;
+  uint8_t lines_left;
+  uint8_t test_ticks;
+  uint8_t test_motor;
 };
 State state;
 
@@ -71,33 +80,11 @@ __attribute__((noinline)) void print_word(uint16_t value) {
   print_byte(static_cast<uint8_t>(value & 0xFFU));
 }
 
-int16_t* draft_value(uint8_t index) {
-  return reinterpret_cast<int16_t*>(&parameter_draft()) + index;
-}
-
-void print_parameter(uint8_t index) {
-  print('p');
-  print_number(index);
-  print_word(static_cast<uint16_t>(*draft_value(index)));
-}
-
-bool parameter_command() {
-  if (state.in_count == 1) {
-    state.to_list = kParameterCount;
-    return true;
-  }
-  uint8_t index = 0;
-  if ((state.in_count != 3 && state.in_count != 7) || !slcan_byte(state.in + 1, index) ||
-      index >= kParameterCount) {
-    return false;
-  }
-  if (state.in_count == 7) {
-    uint8_t high = 0;
-    uint8_t low = 0;
-    if (!slcan_byte(state.in + 3, high) || !slcan_byte(state.in + 5, low)) return false;
-    *draft_value(index) = static_cast<int16_t>(static_cast<uint16_t>(high) << 8 | low);
-  }
-  print_parameter(index);
+bool motor_command() {
+  const uint8_t side = state.in[1];
+  if (state.in_count != 2 || (side != 'l' && side != 'r')) return false;
+  state.test_motor = side;
+  state.test_ticks = kTickRate_hz;
   return true;
 }
 
@@ -136,19 +123,20 @@ void print_health() {
 /// False: not understood, or not possible now.
 __attribute__((noinline)) bool execute() {
   const uint8_t command = state.in[0];
-  if (command == 'p') return parameter_command();
   if (command == 'k') return key_command();
+  if (command == 'm') return motor_command();
   if (state.in_count != 1) return false;
   switch (command) {
     case 'v':
       print_health();
       return true;
     case 'd':
-      parameter_draft_defaults();
+      if (!parameter_save_defaults()) return false;
       break;
-    case 'w':
-      if (!parameter_save()) return false;
-      break;
+    case 'O':
+    case 'C':
+      state.mirror = command == 'O';
+      return true;
     case 'r':
       if (parameter_saving()) return false;
       set_next_reset_cause(ResetCause::kRequested);
@@ -170,23 +158,42 @@ void end_line() {
 
 }  // namespace
 
+uint8_t console_tested_motor() {
+  return state.test_ticks != 0 && button_a_held() ? state.test_motor : 0;
+}
+
+void console_mirror(const uint8_t* lines, uint8_t count) {
+  if (count == 0 || !state.mirror) return;
+  state.lines = lines;
+  state.lines_left = count;
+}
+
 void console_step() {
-  if (state.out_count == 0 && state.to_list != 0) {
-    print_parameter(static_cast<uint8_t>(kParameterCount - state.to_list));
-    --state.to_list;
-    print('\n');
-  }
+  if (state.test_ticks != 0) --state.test_ticks;
   if (state.out_count != 0) {
     if (usb_serial_put(state.out, state.out_count)) state.out_count = 0;
     return;
   }
+  if (state.lines_left != 0) {
+    const uint8_t count = state.lines_left < kMirrored ? state.lines_left : kMirrored;
+    if (usb_serial_put(state.lines, count)) {
+      state.lines += count;
+      state.lines_left = static_cast<uint8_t>(state.lines_left - count);
+    }
+  }
   uint8_t byte = 0;
   for (uint8_t i = 0; i < kBytesPerStep && usb_serial_get(byte); ++i) {
-    if (byte == '\r' || byte == '\n') {
+    if (state.in_count == 0 && byte == 't') state.radio_line = true;
+    const bool end = byte == '\r' || byte == '\n';
+    if (state.radio_line) {
+      radio_uart_inject(byte);
+      state.radio_line = !end;
+    } else if (end) {
       end_line();
       return;
+    } else if (byte != ' ' && state.in_count < kInSize) {
+      state.in[state.in_count++] = byte;
     }
-    if (byte != ' ' && state.in_count < kInSize) state.in[state.in_count++] = byte;
   }
 }
 

@@ -36,6 +36,11 @@ const uint16_t image_algorithms = kAlgorithmsInBuild;
 }  // namespace avr
 
 namespace hal {
+namespace {
+
+constexpr int16_t kTestDuty = 80;  // of a motor alone, of 400
+
+}  // namespace
 
 void init() {
   // On the Arduino core USB is attached by now. With hal/avr/arduino's init() interrupts are off; a
@@ -47,7 +52,7 @@ void init() {
   avr::reset_cause_init();
   avr::parameter_eeprom_init();
   avr::credential_eeprom_init();
-  avr::emit_marker(avr::kMarkerStart, &avr::parameter_draft());
+  avr::emit_marker(avr::kMarkerStart, &avr::parameters_of_start());
   avr::buttons_init();
   avr::leds_init();
   avr::encoders_init();
@@ -65,7 +70,7 @@ const BoardConstants& board_constants() {
 }
 
 const Parameters& parameters() {
-  return avr::parameter_draft();
+  return avr::parameters_of_start();
 }
 
 const Credentials& credentials() {
@@ -107,9 +112,17 @@ __attribute__((noinline)) void read_sensors(SensorSample& sample) {
 }
 
 void write_outputs(const RobotOutput& output) {
-  avr::motors_drive(output.duty_left, output.duty_right);
+  int16_t left = output.duty_left;
+  int16_t right = output.duty_right;
+  if ((left | right) == 0) {
+    const uint8_t tested = avr::console_tested_motor();
+    if (tested == 'l') left = kTestDuty;
+    if (tested == 'r') right = kTestDuty;
+  }
+  avr::motors_drive(left, right);
   avr::leds_write(output.leds);
   avr::radio_uart_write(output.radio_out, output.radio_out_count);
+  avr::console_mirror(output.radio_out, output.radio_out_count);
   if (output.store_parameter != 0) {
     avr::parameter_store(output.store_parameter, output.store_value);
   }

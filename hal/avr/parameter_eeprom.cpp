@@ -18,7 +18,6 @@ union LateParameters {
   Parameters value;
   constexpr LateParameters() : bytes() {}
 };
-LateParameters draft;
 LateParameters in_force;  // what the robot drives with: of this start, and remote changes since
 
 /// A copy whose values can be looked at.
@@ -52,6 +51,10 @@ void put(Parameters& parameters, uint8_t number, int16_t value) {
   reinterpret_cast<int16_t*>(&parameters)[number - 1] = value;
 }
 
+__attribute__((noinline)) void take_defaults() {
+  memcpy_P(&copy.parts.values, &kDefaults, sizeof(kDefaults));
+}
+
 /// Begins to write copy.
 void begin_save() {
   seal_copy(state.next_sequence, copy.bytes);
@@ -76,34 +79,29 @@ void parameter_eeprom_init() {
   state.has_good_copy = choice.state == StoreState::kStored;
   state.next_copy = choice.next_copy;
   state.next_sequence = choice.next_sequence;
-  parameter_draft_defaults();
   if (choice.state == StoreState::kStored) {
     read_copy(choice.copy);
-    draft.value = copy.parts.values;
+  } else {
+    take_defaults();
   }
-  copy.parts.values = draft.value;
-  in_force.value = draft.value;
+  in_force.value = copy.parts.values;
 }
 
 StoreState parameter_store_state() {
   return state.store;
 }
-Parameters& parameter_draft() {
-  return draft.value;
-}
-__attribute__((noinline)) void parameter_draft_defaults() {
-  memcpy_P(draft.bytes, &kDefaults, sizeof(kDefaults));
+const Parameters& parameters_of_start() {
+  return in_force.value;
 }
 
-bool parameter_save() {
-  if (parameter_saving() || !parameter_draft().valid()) return false;
-  copy.parts.values = draft.value;
+bool parameter_save_defaults() {
+  if (parameter_saving()) return false;
+  take_defaults();
   begin_save();
   return true;
 }
 
 void parameter_store(uint8_t number, int16_t value) {
-  put(draft.value, number, value);
   put(in_force.value, number, value);
   state.pending = number;
   state.pending_value = value;

@@ -11,16 +11,15 @@ void parameter_eeprom_init();
 
 StoreState parameter_store_state();
 
-/// What a save writes. Begins as what was stored, or the defaults: the parameters of this start.
-Parameters& parameter_draft();
-void parameter_draft_defaults();
+/// Of this start: what was stored, or the defaults.
+const Parameters& parameters_of_start();
 
-/// Begins to write the draft, one byte a tick; the new parameters hold from the next start on.
-/// False when the draft is out of its range, or a write is under way.
-bool parameter_save();
-/// Stores one parameter, by its number in the table, from 1, among those that are stored; of the
-/// draft nothing else. Begins once nothing else is being written. Others of the robot must not
-/// contradict it. At most one in 1.5 s.
+/// Begins to write the defaults, one byte a tick; they hold from the next start on. False when a
+/// write is under way.
+bool parameter_save_defaults();
+/// Stores one parameter, by its number in the table, from 1, among those that are stored. Begins
+/// once nothing else is being written. Others of the robot must not contradict it. At most one in
+/// 1.5 s.
 void parameter_store(uint8_t number, int16_t value);
 /// The EEPROM is being written, by this or by others.
 bool parameter_saving();

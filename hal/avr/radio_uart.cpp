@@ -45,6 +45,12 @@ void radio_uart_init() {
   UCSR1B = _BV(RXCIE1) | _BV(RXEN1) | _BV(TXEN1);
 }
 
+void radio_uart_inject(uint8_t byte) {
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    if (state.in.room() != 0) state.in.put(byte);
+  }
+}
+
 uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity) {
   uint8_t count = 0;
   while (count < capacity && state.in.used() > 0) bytes[count++] = state.in.get();

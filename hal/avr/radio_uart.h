@@ -12,6 +12,9 @@ void radio_uart_init();
 /// bytes the hardware lost, are gone and counted.
 uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity);
 
+/// As if the byte had come by radio.
+void radio_uart_inject(uint8_t byte);
+
 /// Sends bytes from where they are, in the background: they must stay as they are until then, 174
 /// us each. What is still being sent is cut off. Never waits.
 void radio_uart_write(const uint8_t* bytes, uint8_t count);

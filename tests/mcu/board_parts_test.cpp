@@ -105,14 +105,11 @@ TEST_F(BoardParts, EntersTheBootloaderWhenTheLineIsClosedAt1200Baud) {
 TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
   mcu_.run_ms(50);
   open_console();
-  ASSERT_NE(ask("p 02"), "");
-  // The line stays open, the list of parameters is asked for again and again, and nobody fetches.
+  // The line stays open, the radio's lines are asked for, and nobody fetches them.
+  usb_.send("O\n");
   mcu_.clear_load();
   const double begin_ms = mcu_.time_ms();
-  for (int i = 0; i < 5; ++i) {
-    usb_.send("p\n");
-    usb_.run_ms(200);
-  }
+  usb_.run_ms(1000);
   usb_.pull_out();
   mcu_.run_ms(1000);
   EXPECT_EQ(mcu_.starts(), 1);
@@ -120,63 +117,73 @@ TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
   EXPECT_LT(mcu_.longest_tick(), kClock_hz / kTickRate_hz + 1500);
 }
 
-/// As the console writes numbers.
-std::string hex(std::size_t value, int digits) {
-  char text[8];
-  std::snprintf(text, sizeof text, "%0*zX", digits, value);
-  return text;
-}
-
-/// The number by which the console knows a parameter.
-std::size_t index_of(const std::string& name) {
-  const auto* const at = std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
-                                      [&](const ParameterInfo& info) { return name == info.name; });
-  return static_cast<std::size_t>(at - std::begin(kParameterTable));
-}
-
-TEST_F(BoardParts, ChangesAndSavesParameters) {
+TEST_F(BoardParts, StoresTheDefaultsAndRestarts) {
+  Parameters parameters;
+  parameters.climb_threshold = 750;
+  write_copy(0, encoded(parameters, 7));
   mcu_.run_ms(50);
   open_console();
-  const std::string threshold = "p " + hex(index_of("climb_threshold"), 2);
-  EXPECT_EQ(ask(threshold), threshold + " 01F4\n");
-  EXPECT_EQ(ask(threshold + " 02EE"), threshold + " 02EE\n");
-  EXPECT_EQ(ask("w", 2500), "ok\n");
-  for (const std::uint8_t index :
-       {std::uint8_t{0}, std::uint8_t{1}}) {  // a blank store gets both copies
-    const ParameterCopy copy = read_copy(index);
-    ASSERT_EQ(check_copy(copy), CopyState::kGood) << int{index};
-    Parameters stored;
-    decode_parameters(copy, stored);
-    EXPECT_EQ(stored.climb_threshold, 750);
-  }
-  EXPECT_EQ(ask(threshold + "0320"), threshold + " 0320\n");
-  EXPECT_EQ(ask("w", 1000), "ok\n");
-  EXPECT_EQ(copy_sequence(read_copy(0)), 1) << "the older copy is replaced";
-  EXPECT_EQ(copy_sequence(read_copy(1)), 0);
-  EXPECT_EQ(ask("d"), "ok\n");
-  EXPECT_EQ(ask(threshold), threshold + " 01F4\n");
+  EXPECT_EQ(ask("d", 1500), "ok\n");
+  Parameters stored;
+  decode_parameters(read_copy(1), stored);
+  EXPECT_EQ(stored.climb_threshold, Parameters().climb_threshold);
+  EXPECT_EQ(copy_sequence(read_copy(1)), 8);
   usb_.send("r\n");
   usb_.pull_out();
   mcu_.run_ms(200);
   EXPECT_EQ(mcu_.starts(), 2);
   open_console();
-  EXPECT_EQ(ask(threshold), threshold + " 0320\n");
   EXPECT_EQ(cause(), static_cast<int>(ResetCause::kRequested));
 }
 
 TEST_F(BoardParts, RefusesNonsenseOnTheConsole) {
   mcu_.run_ms(50);
   open_console();
-  const std::string beyond = "p " + hex(kParameterCount, 2);
-  for (const std::string& line :
-       std::vector<std::string>{"x", beyond, "p -1", "p 2", "p 02 7", "p 02 007x", "p x", "ww",
-                                "p 02 0003 4", "pppppppppppppppppppppppppppppppppppppppppp"}) {
+  for (const std::string& line : std::vector<std::string>{
+           "x", "p", "dd", "w", "v1", "kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk"})
     EXPECT_EQ(ask(line), "?\n") << line;
-  }
-  const std::string threshold = "p " + hex(index_of("climb_threshold"), 2) + " 7D00";
-  EXPECT_EQ(ask(threshold), threshold + "\n") << "a draft may be anything";
-  EXPECT_EQ(ask("w"), "?\n") << "but not be written";
   EXPECT_EQ(check_copy(read_copy(0)), CopyState::kBlank);
+}
+
+// As slcand or `screed monitor --port` ask for it. What a cable carries is what the radio carries.
+TEST_F(BoardParts, CarriesTheRadiosLinesByUsb) {
+  mcu_.run_ms(50);
+  open_console();
+  EXPECT_EQ(usb_.listen_ms(300), "") << "nobody has asked";
+  usb_.send("\rC\rS6\rO\r");
+  usb_.listen_ms(100);
+  const auto before = static_cast<std::ptrdiff_t>(mcu_.sent().size());
+  const std::string by_cable = usb_.listen_ms(1000);
+  const std::vector<std::uint8_t> by_radio(mcu_.sent().begin() + before, mcu_.sent().end());
+  const std::vector<CanFrame> frames = frames_in({by_cable.begin(), by_cable.end()});
+  const std::vector<CanFrame> sent = frames_in(by_radio);
+  ASSERT_GT(frames.size(), 80U);
+  EXPECT_NEAR(static_cast<double>(frames.size()), static_cast<double>(sent.size()), 6.0);
+  const auto same = std::search(sent.begin(), sent.end(), frames.begin() + 8, frames.begin() + 40,
+                                [](const CanFrame& a, const CanFrame& b) {
+                                  return a.id == b.id && std::equal(a.data, a.data + 8, b.data);
+                                });
+  EXPECT_NE(same, sent.end()) << "the same ones in the same order";
+  usb_.send("C\r");
+  usb_.listen_ms(100);
+  EXPECT_EQ(usb_.listen_ms(300), "");
+}
+
+TEST_F(BoardParts, TakesALineByUsbAsOneOfTheRadio) {
+  mcu_.run_ms(50);
+  open_console();
+  GroundLines ground;
+  for (int i = 0; i < 5; ++i) {
+    const std::vector<std::uint8_t> line = ground.heartbeat(static_cast<std::uint32_t>(i) * 200);
+    usb_.send(std::string(line.begin(), line.end()));
+    usb_.listen_ms(200);
+  }
+  const std::vector<CanFrame> frames = frames_in(mcu_.sent());
+  const auto alive = std::find_if(frames.rbegin(), frames.rend(),
+                                  [](const CanFrame& it) { return it.id == kIdHeartbeat; });
+  ASSERT_NE(alive, frames.rend());
+  EXPECT_EQ(message::Heartbeat::unpack(alive->data).link_alive, 1);
+  EXPECT_EQ(ask("k"), "k 00 FF 0001\n") << "the console goes on";
 }
 
 TEST_F(BoardParts, StoredParametersAreInForce) {

@@ -1,7 +1,11 @@
 // What a ground station sends and receives.
 #include "tests/mcu/ground_lines.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "firmware/math/crc16.h"
+#include "firmware/parameters/parameter_table.h"
 #include "firmware/protocol/e2e.h"
 
 namespace screed::mcu {
@@ -31,7 +35,12 @@ std::vector<std::uint8_t> GroundLines::command(CommandOp op, DriveArgument argum
   return line_of(signer_.sign(op, argument));
 }
 
-std::vector<std::uint8_t> GroundLines::parameter(std::uint8_t index, std::int16_t value) {
+std::vector<std::uint8_t> GroundLines::parameter(std::int16_t Parameters::*field,
+                                                 std::int16_t value) {
+  const auto* const info =
+      std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
+                   [field](const ParameterInfo& it) { return it.field == field; });
+  const auto index = static_cast<std::uint8_t>(info - kParameterTable);
   CanFrame stage = frame_of(message::ParamStage{index, value});
   e2e_protect(stage.id, stage_counter_, stage.data, stage.size);
   stage_counter_ = static_cast<std::uint8_t>((stage_counter_ + 1) & 0x0F);

@@ -1,9 +1,8 @@
-// Two ways to store parameters meet in the EEPROM: a draft on the USB console, and commands by
+// Two ways to store parameters meet in the EEPROM: the defaults by the USB console, and commands by
 // radio.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 #include "firmware/parameters/parameter_store.h"
@@ -12,13 +11,6 @@
 
 namespace screed::mcu {
 namespace {
-
-std::uint8_t index_of(std::int16_t Parameters::*field) {
-  Parameters parameters{};
-  parameters.*field = 12345;
-  const auto* const values = reinterpret_cast<const std::int16_t*>(&parameters);
-  return static_cast<std::uint8_t>(std::find(values, values + kParameterCount, 12345) - values);
-}
 
 class ParameterEeprom : public ::testing::Test {
  protected:
@@ -32,11 +24,10 @@ class ParameterEeprom : public ::testing::Test {
     usb_.send(line + "\n");
     return usb_.listen_ms(60);
   }
-  void draft(std::int16_t Parameters::*field, int value) {
-    char line[16];
-    std::snprintf(line, sizeof line, "p %02zX %04X", static_cast<std::size_t>(index_of(field)),
-                  static_cast<unsigned>(value) & 0xFFFFU);
-    EXPECT_EQ(ask(line), std::string(line) + "\n");
+  /// By radio.
+  void change(std::int16_t Parameters::*field, std::int16_t value) {
+    bench_.set_parameter(field, value);
+    bench_.run_ms(2500);
   }
   /// Of the newest copy.
   Parameters stored() const {
@@ -57,45 +48,35 @@ class ParameterEeprom : public ::testing::Test {
   UsbHost usb_;
 };
 
-TEST_F(ParameterEeprom, ARemoteChangeStoresNothingElseOfTheDraft) {
-  draft(&Parameters::climb_threshold, 750);
-  bench_.set_parameter(index_of(&Parameters::stall_time), 220);
-  bench_.run_ms(2500);
-  EXPECT_EQ(stored().stall_time, 220);
-  EXPECT_EQ(stored().climb_threshold, Parameters{}.climb_threshold);
-  // The draft has both, and `w` stores both.
-  EXPECT_EQ(ask("w"), "ok\n");
-  bench_.run_ms(1000);
-  EXPECT_EQ(stored().stall_time, 220);
+TEST_F(ParameterEeprom, TheDefaultsComeBackForTheNextStart) {
+  change(&Parameters::climb_threshold, 750);
   EXPECT_EQ(stored().climb_threshold, 750);
-}
-
-TEST_F(ParameterEeprom, ARemoteChangeIsStoredWhateverTheDraftSays) {
-  draft(&Parameters::climb_threshold, 32000);  // out of its range
-  bench_.set_parameter(index_of(&Parameters::stall_time), 220);
-  bench_.run_ms(2000);
-  EXPECT_EQ(stored().stall_time, 220);
+  EXPECT_EQ(ask("d"), "ok\n");
+  bench_.run_ms(1000);
   EXPECT_EQ(stored().climb_threshold, Parameters{}.climb_threshold);
 }
 
 TEST_F(ParameterEeprom, ARemoteChangeWaitsForASaveThatIsUnderWay) {
-  draft(&Parameters::climb_threshold, 750);
-  EXPECT_EQ(ask("w"), "ok\n");
-  bench_.set_parameter(index_of(&Parameters::stall_time), 220);
+  change(&Parameters::climb_threshold, 750);
+  EXPECT_EQ(ask("d"), "ok\n");
+  EXPECT_EQ(ask("d"), "?\n") << "one at a time";
+  bench_.set_parameter(&Parameters::stall_time, 220);
   bench_.run_ms(3500);
   EXPECT_EQ(stored().stall_time, 220);
-  EXPECT_EQ(stored().climb_threshold, 750);
+  EXPECT_EQ(stored().climb_threshold, Parameters{}.climb_threshold);
 }
 
-// Saved for the next start, but at odds with what the robot drives with and changes now.
+// The defaults are saved for the next start, but at odds with what the robot drives with and
+// changes now.
 TEST_F(ParameterEeprom, WhatTheRobotDrivesWithComesBeforeWhatContradictsIt) {
-  draft(&Parameters::walk_speed_max, 70);
-  EXPECT_EQ(ask("w"), "ok\n");
+  change(&Parameters::walk_speed_max, 240);
+  change(&Parameters::walk_speed_min, 200);
+  EXPECT_EQ(ask("d"), "ok\n");
   bench_.run_ms(2000);
-  bench_.set_parameter(index_of(&Parameters::walk_speed_min), 100);
-  bench_.run_ms(2000);
-  EXPECT_EQ(stored().walk_speed_min, 100);
   EXPECT_EQ(stored().walk_speed_max, Parameters{}.walk_speed_max);
+  change(&Parameters::walk_speed_min, 210);
+  EXPECT_EQ(stored().walk_speed_min, 210);
+  EXPECT_EQ(stored().walk_speed_max, 240);
 }
 
 }  // namespace

@@ -21,6 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kSerialLookAgain{500};
+// As slcand sends them. By radio robots ignore them.
+constexpr std::string_view kSlcanOpen = "\rO\r";
+constexpr std::string_view kSlcanClose = "\rC\r";
 
 speed_t speed_of(int baud) {
   switch (baud) {
@@ -98,6 +101,7 @@ void SerialLink::open_port(const fs::path& device) {
   lasting_name_ = lasting_name_of(device, options_.by_id);
   status_.up = true;
   status_.text = "up";
+  send_text(kSlcanOpen);
 }
 
 void SerialLink::lost(const char* why) {
@@ -180,13 +184,8 @@ void SerialLink::take_lines(std::span<const uint8_t> bytes, uint64_t now_us,
   }
 }
 
-bool SerialLink::send(const CanFrame& frame) {
-  uint8_t line[kSlcanLineMax];
-  const std::span<const uint8_t> text(line, slcan_encode(frame, line));
-  std::vector<uint8_t> bytes(text.begin(), text.end());
-  if (options_.api.has_value())
-    bytes = encode_xbee(broadcast_request(text, heard_type_), *options_.api);
-  // A line is taken whole or not at all: part of one would spoil the next.
+// A line is taken whole or not at all: part of one would spoil the next.
+bool SerialLink::write_whole(std::span<const uint8_t> bytes) {
   size_t done = 0;
   for (int attempt = 0; port_.is_open() && done < bytes.size() && attempt < 50; ++attempt) {
     const ssize_t count = write(port_.get(), bytes.data() + done, bytes.size() - done);
@@ -198,12 +197,28 @@ bool SerialLink::send(const CanFrame& frame) {
       lost("gone; waiting for it to come back");
     }
   }
-  if (done == bytes.size()) {
-    ++status_.sent;
-    return true;
-  }
-  ++status_.not_sent;
-  return false;
+  return done == bytes.size();
+}
+
+bool SerialLink::send(const CanFrame& frame) {
+  uint8_t line[kSlcanLineMax];
+  const std::span<const uint8_t> text(line, slcan_encode(frame, line));
+  const bool sent =
+      options_.api.has_value()
+          ? write_whole(encode_xbee(broadcast_request(text, heard_type_), *options_.api))
+          : write_whole(text);
+  ++(sent ? status_.sent : status_.not_sent);
+  return sent;
+}
+
+bool SerialLink::send_text(std::string_view text) {
+  return !options_.api.has_value() &&
+         write_whole({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+// Of a board's USB the lines of the radio have to be asked for, and end with whoever asked.
+SerialLink::~SerialLink() {
+  send_text(kSlcanClose);
 }
 
 }  // namespace screed

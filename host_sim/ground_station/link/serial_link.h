@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "host_sim/ground_station/link/file_descriptor.h"
 #include "host_sim/ground_station/link/link.h"
@@ -31,13 +32,17 @@ class SerialLink : public Link {
   /// Opens the port. Throws InputError when there is none of this name or it is no terminal, or the
   /// baud rate is unknown; RunError when it may not be opened or another program holds it.
   SerialLink(const std::filesystem::path& device, const SerialOptions& options);
+  ~SerialLink() override;
 
   void receive(std::chrono::milliseconds wait, std::vector<LinkFrame>& frames) override;
   bool send(const CanFrame& frame) override;
+  /// Text for the console of a board whose USB the port is. False when it was not taken.
+  bool send_text(std::string_view text);
   const LinkStatus& status() const override { return status_; }
   const std::string& name() const override { return name_; }
 
  private:
+  bool write_whole(std::span<const uint8_t> bytes);
   void open_port(const std::filesystem::path& device);
   void lost(const char* why);
   void look_for_port();

@@ -106,10 +106,13 @@ TEST_F(LinkTest, LinesThatNobodyReadsInTimeAreLostWhole) {
 
 TEST_F(LinkTest, FramesGoOutAsLines) {
   PseudoTerminal device(folder_ / "radio");
-  SerialLink link(folder_ / "radio", {});
-  EXPECT_TRUE(link.send({0x110, 2, {0x12, 0xAB}}));
+  std::optional<SerialLink> link(std::in_place, folder_ / "radio", SerialOptions{});
+  EXPECT_EQ(device.read(), text("\rO\r")) << "SLCAN's open, which a board on USB waits for";
+  EXPECT_TRUE(link->send({0x110, 2, {0x12, 0xAB}}));
   EXPECT_EQ(device.read(), text("t110212AB\r"));
-  EXPECT_EQ(link.status().sent, 1U);
+  EXPECT_EQ(link->status().sent, 1U);
+  link.reset();
+  EXPECT_EQ(device.read(), text("\rC\r"));
 }
 
 TEST_F(LinkTest, AStickThatIsPulledAndPutBackGoesOn) {
