@@ -6,7 +6,7 @@
 //   integral   += ki T error                       ki = yaw_ki / 256; within kYawCorrectionLimit
 //   correction  = kp error + integral              kp = yaw_kp / 256; within kYawCorrectionLimit
 //   wanted      = speed -+ tread / 2 (command.yaw_rate + correction)     left -, right +
-//   targets     = wanted, as far as accel_limit T (step_mm_per_s_) lets them change
+//   targets     = wanted, as far as accel_limit T lets them change
 //   duty        = track_speed_control.h, each side
 // Kinematics: thesis 5.1.2. Loop: PI behind a first-order filter, as in K. J. Astrom, T. Hagglund,
 // PID Controllers, 1995. Rates are in angle units (65536 a turn) a second, the integral has 8 more
@@ -35,11 +35,7 @@ SCREED_OUT_OF_LINE int16_t approach(int16_t value, int16_t target, int16_t step)
 
 DriveControl::DriveControl(const BoardConstants& board, const Parameters& parameters)
     : full_speed_mm_per_s_(static_cast<int16_t>(board.full_speed_mm_per_s)),
-      step_mm_per_s_(
-          static_cast<int16_t>(static_cast<uint16_t>(parameters.accel_limit + kTickRate_hz - 1) /
-                               static_cast<uint16_t>(kTickRate_hz))),
-      yaw_kp_(parameters.yaw_kp),
-      yaw_ki_(parameters.yaw_ki),
+      parameters_(parameters),
       kinematics_(board.tread_mm),
       left_(board, parameters),
       right_(left_) {}
@@ -68,9 +64,9 @@ SCREED_OUT_OF_LINE int32_t DriveControl::corrected_yaw_rate(const MotionCommand&
   // they owe they make up for once they can, as far as kYawCorrectionLimit lets it grow (30 degrees
   // with the default gain). ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096,
   // shifted in two parts to fit 32 bits.
-  const int32_t step = asr(asr(mul_i16(yaw_ki_, error), 4) * 41, 8);
+  const int32_t step = asr(asr(mul_i16(parameters_.yaw_ki, error), 4) * 41, 8);
   yaw_integral_q8_ = limit_i32(yaw_integral_q8_ + step, kYawIntegralLimit_q8);
-  const int32_t correction = asr(mul_i16(yaw_kp_, error), 8) + asr(yaw_integral_q8_, 8);
+  const int32_t correction = asr(mul_i16(parameters_.yaw_kp, error), 8) + asr(yaw_integral_q8_, 8);
   // In 32 bits: the sum of two numbers of 16 does not fit the AVR's int.
   return static_cast<int32_t>(command.yaw_rate) + limit_i16(correction, kYawCorrectionLimit);
 }
@@ -85,7 +81,12 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
         kinematics_.tracks(command.speed_mm_per_s, corrected_yaw_rate(command, measured.yaw_rate),
                            full_speed_mm_per_s_);
   }
-  const int16_t step = at_once ? INT16_MAX : step_mm_per_s_;
+  // Rounded up: the least limit still moves.
+  const int16_t step =
+      at_once
+          ? INT16_MAX
+          : static_cast<int16_t>(static_cast<uint16_t>(parameters_.accel_limit + kTickRate_hz - 1) /
+                                 static_cast<uint16_t>(kTickRate_hz));
   targets_.left = approach(targets_.left, wanted.left, step);
   targets_.right = approach(targets_.right, wanted.right, step);
   return {left_.tick(targets_.left, measured.counts_left, measured.battery_mv),

@@ -7,11 +7,11 @@
 // Its proportional part is 0 by default: soft ground swings with it.
 #pragma once
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "firmware/control/kinematics.h"
 #include "firmware/control/track_speed_control.h"
+#include "firmware/parameters/kept.h"
 
 namespace screed {
 
@@ -31,9 +31,12 @@ class DriveControl {
  public:
   DriveControl(const BoardConstants& board, const Parameters& parameters);
 
-  /// Builds one anew in its place. Assigned, it would be built in the main loop's stack frame
-  /// first, and what lies there beyond 63 bytes costs flash wherever it is used.
-  static void* operator new(size_t /*size*/, void* place) noexcept { return place; }
+  /// Live parameters (parameters.h), at any time.
+  void take(const Parameters& parameters) {
+    keep(parameters_, parameters);
+    left_.take(parameters);
+    right_.take(parameters);
+  }
 
   /// Drives: one tick towards `command`; `at_once`: without the limit of acceleration.
   DriveOutput tick(const MotionCommand& command, const DriveMeasurement& measured,
@@ -58,9 +61,7 @@ class DriveControl {
   int32_t yaw_integral_q8_ = 0;  ///< angle units/s
   int16_t yaw_error_ = 0;        ///< with a lag, angle units/s
   int16_t full_speed_mm_per_s_;
-  int16_t step_mm_per_s_;  ///< greatest change of a target in one tick
-  int16_t yaw_kp_;
-  int16_t yaw_ki_;
+  Kept<Parameters> parameters_;
   SkidSteer kinematics_;
   TrackSpeedControl left_;
   TrackSpeedControl right_;

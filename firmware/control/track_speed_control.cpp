@@ -34,8 +34,7 @@ TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Paramete
     : TrackSpeedMemory(),
       count_um_q4_(board.count_um_q4),
       nominal_mv_(board.motor_nominal_mv),
-      kp_(parameters.speed_kp),
-      ki_(parameters.speed_ki),
+      parameters_(parameters),
       feed_forward_q8_(static_cast<int16_t>(
           quotient_u16(static_cast<uint32_t>(kDutyMax) * 256, board.full_speed_mm_per_s))) {}
 
@@ -90,7 +89,7 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
       nominal_q4 *
       static_cast<int32_t>(quotient_u16(static_cast<uint32_t>(nominal_mv_) << 6, supply_mv));
   // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
-  const int32_t proportional_q8 = asr(mul_i16(kp_, error) * 102, 6);
+  const int32_t proportional_q8 = asr(mul_i16(parameters_.speed_kp, error) * 102, 6);
   const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);
 
   // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
@@ -99,8 +98,8 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
   const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
                           (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
   if (!pushes_out) {
-    integral_q16_ =
-        limit_i32(integral_q16_ + asr(mul_i16(ki_, error) * 131, 5), kIntegralLimit_q16);
+    integral_q16_ = limit_i32(integral_q16_ + asr(mul_i16(parameters_.speed_ki, error) * 131, 5),
+                              kIntegralLimit_q16);
   }
   const int16_t duty = limit_i16(without_integral + asr(integral_q16_, 16), kDutyMax);
   motion_.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));

@@ -12,6 +12,7 @@
 
 #include "firmware/control/track_motion.h"
 #include "firmware/parameters/board_constants.h"
+#include "firmware/parameters/kept.h"
 #include "firmware/parameters/parameters.h"
 
 namespace screed {
@@ -31,6 +32,9 @@ class TrackSpeedControl : private TrackSpeedMemory {
  public:
   TrackSpeedControl(const BoardConstants& board, const Parameters& parameters);
 
+  /// Live parameters (parameters.h), at any time.
+  void take(const Parameters& parameters) { keep(parameters_, parameters); }
+
   /// One tick. target: track speed, mm/s; counts: encoder counts since the last tick; battery_mv:
   /// for the feed-forward. Returns the duty, -400..400. A target of 0 with the track at rest gives
   /// duty 0: the driver brakes.
@@ -49,8 +53,7 @@ class TrackSpeedControl : private TrackSpeedMemory {
 
   uint16_t count_um_q4_;
   uint16_t nominal_mv_;
-  int16_t kp_;
-  int16_t ki_;
+  Kept<Parameters> parameters_;
   int16_t feed_forward_q8_;  ///< duty per mm/s at the nominal voltage
 };
 

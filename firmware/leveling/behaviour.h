@@ -53,6 +53,8 @@ struct AlgorithmDefaults {
   /// Outside the site the robot drives back, unless it spins, and a stuck robot gets itself out
   /// (escape.h); the algorithm is not asked meanwhile.
   static constexpr bool kKeepsToSite = true;
+  /// Live parameters (parameters.h) that it keeps.
+  void take(const Parameters& /*parameters*/) {}
 };
 
 class Behaviour {
@@ -92,6 +94,11 @@ class Behaviour {
   MotionCommand enter_or_stay(LevelingState state, MotionCommand motion);
 
   // For Leveling.
+  void take(const Parameters& parameters) {
+    keep(parameters_, parameters);
+    walk_.take(parameters);
+    fence_.take(parameters);
+  }
   /// The state begins anew: a run starts.
   void start();
   /// Returns true while the robot has to drive back to its site, by `motion`: outside, unless it

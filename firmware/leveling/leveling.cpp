@@ -25,6 +25,14 @@ Leveling::Leveling(const Parameters& parameters)
 {
 }
 
+void Leveling::take(const Parameters& parameters) {
+  behaviour_.take(parameters);
+  search_.take(parameters);
+#define SCREED_TAKE(number, name, Name) name##_.take(parameters);
+  SCREED_LEVELING_ALGORITHM(SCREED_TAKE)
+#undef SCREED_TAKE
+}
+
 MotionCommand Leveling::tick(const LevelingInput& input) {
   if (keeps_to_site(algorithm_)) {
     if (escape_.tick(input.stuck, input.backwards, behaviour_.outside())) {

@@ -26,6 +26,7 @@ class Slot<Algorithm, false> {
  public:
   explicit Slot(const Parameters& /*parameters*/) {}
   MotionCommand tick(const LevelingInput& /*input*/, Behaviour& /*behaviour*/) { return {0, 0}; }
+  void take(const Parameters& /*parameters*/) {}
 };
 
 class Leveling {
@@ -42,6 +43,9 @@ class Leveling {
     behaviour_.start();
     escape_.start();
   }
+
+  /// Live parameters (parameters.h), at any time.
+  void take(const Parameters& parameters);
 
   /// One tick of the selected algorithm.
   MotionCommand tick(const LevelingInput& input);

@@ -20,6 +20,7 @@ namespace screed {
 class PeakMemory : public AlgorithmDefaults {
  public:
   explicit PeakMemory(const Parameters& parameters);
+  void take(const Parameters& parameters) { keep(parameters_, parameters); }
 
   MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
 

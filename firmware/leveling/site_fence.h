@@ -18,6 +18,8 @@ class SiteFence {
   /// site_radius: of the circle around the start; 0 switches the fence off. walk_speed_max: on the
   /// way back.
   explicit SiteFence(const Parameters& parameters) : parameters_(parameters) {}
+  /// Live parameters (parameters.h), at any time.
+  void take(const Parameters& parameters) { keep(parameters_, parameters); }
 
   /// Looks at the position. Returns whether the robot is outside the circle.
   bool update(const Place& place);

@@ -37,6 +37,7 @@ struct StrokesMemory {
 class Strokes : public AlgorithmDefaults, private StrokesMemory {
  public:
   explicit Strokes(const Parameters& parameters);
+  void take(const Parameters& parameters) { keep(parameters_, parameters); }
 
   MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
 

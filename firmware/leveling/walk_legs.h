@@ -16,6 +16,8 @@ namespace screed {
 class WalkLegs {
  public:
   explicit WalkLegs(const Parameters& parameters);
+  /// Live parameters (parameters.h), at any time.
+  void take(const Parameters& parameters) { keep(parameters_, parameters); }
 
   /// Draws a new leg at the next tick.
   void restart() { ticks_left_ = 0; }

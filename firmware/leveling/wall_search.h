@@ -20,6 +20,8 @@ enum class LostAction : uint8_t { kStop, kSeekWall };
 class WallSearch {
  public:
   explicit WallSearch(const Parameters& parameters) : parameters_(parameters) {}
+  /// Live parameters (parameters.h), at any time.
+  void take(const Parameters& parameters) { keep(parameters_, parameters); }
 
   /// One tick. Returns true while the robot is to drive towards (east, north).
   bool update(const Place& place);

@@ -13,4 +13,15 @@ template <class T>
 using Kept = T;
 #endif
 
+#ifdef __AVR__
+template <class T>
+inline void keep(const T& /*kept*/, const T& /*now*/) {}
+#else
+/// What changes at the place it was given from is taken again where it is a copy.
+template <class T>
+inline void keep(T& kept, const T& now) {
+  kept = now;
+}
+#endif
+
 }  // namespace screed

@@ -9,11 +9,24 @@
 namespace screed {
 namespace {
 
-// Flash is scarce and the least value small, or the greatest one with the other sign: a byte says
-// which.
-constexpr uint8_t kSymmetric = UINT8_MAX;
-constexpr uint8_t packed_min(int16_t min) {
-  return min < 0 ? kSymmetric : static_cast<uint8_t>(min);
+// Flash is scarce and the least value small, or the greatest one with the other sign: seven bits
+// say which, and the eighth whether the parameter changes while the robot runs.
+constexpr uint8_t kSymmetric = 0x7F;
+constexpr uint8_t kLive = 0x80;
+
+enum Number : uint8_t {
+#define SCREED_NUMBER(name, unit, min, max, value, meaning) k_##name,
+  SCREED_PARAMETERS(SCREED_NUMBER)
+#undef SCREED_NUMBER
+};
+constexpr bool is_live(Number number) {
+#define SCREED_LIVE(name) || number == k_##name
+  return false SCREED_LIVE_PARAMETERS(SCREED_LIVE);
+#undef SCREED_LIVE
+}
+constexpr uint8_t packed_min(Number number, int16_t min) {
+  return static_cast<uint8_t>((is_live(number) ? kLive : 0) |
+                              (min < 0 ? kSymmetric : static_cast<uint8_t>(min)));
 }
 #define SCREED_FITS(name, unit, min, max, value, meaning) \
   static_assert((min) == -(max) || ((min) >= 0 && (min) < kSymmetric), "least value of " #name);
@@ -25,7 +38,7 @@ struct Range {
   int16_t max;
 };
 const Range kRanges[] SCREED_PROGRAM_MEMORY = {
-#define SCREED_RANGE(name, unit, min, max, value, meaning) {packed_min(min), max},
+#define SCREED_RANGE(name, unit, min, max, value, meaning) {packed_min(k_##name, min), max},
     SCREED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
 };
@@ -48,10 +61,14 @@ const ParameterInfo kParameterTable[kCount] = {
 };
 #endif
 
+bool changes_while_running(uint8_t number) {
+  return (read_program_u8(&kRanges[number].min) & kLive) != 0;
+}
+
 bool Parameters::valid() const {
   const auto* value = reinterpret_cast<const int16_t*>(this);
   for (const Range* range = kRanges; range != kRanges + kCount; ++range, ++value) {
-    int16_t min = read_program_u8(&range->min);
+    int16_t min = read_program_u8(&range->min) & kSymmetric;
     const int16_t max = read_program_i16(&range->max);
     if (min == kSymmetric) min = static_cast<int16_t>(-max);
     if (*value < min || *value > max) return false;

@@ -66,6 +66,15 @@
   X(stroke_up,              "ms",         20,  1000,    240, "strokes: time uphill; longer, by what the robot slides down") \
   X(stroke_ease,            "0.1 m/s^2",   1,   500,     30, "strokes: change of the commanded speed into the downhill way; uphill it is at once, as 500 is") \
   X(stroke_time,            "ms",        100, 30000,  16000, "strokes: longest work at one place")
+
+/// Those that a robot also takes while it is armed or runs: gains and thresholds that are looked up
+/// anew in every tick, whatever they were before. All others shape what is under way.
+#define SCREED_LIVE_PARAMETERS(X) \
+  X(climb_threshold) X(climb_hysteresis) X(climb_speed) X(climb_turn) \
+  X(walk_speed_min) X(walk_speed_max) X(walk_yaw_rate_max) X(walk_leg_min) X(walk_leg_max) \
+  X(lost_sigma) X(lost_action) X(fix_sigma) \
+  X(speed_kp) X(speed_ki) X(accel_limit) X(yaw_kp) X(yaw_ki) \
+  X(tilt_limit) X(battery_low) X(stall_time) X(stuck_time)
 // clang-format on
 
 namespace screed {
@@ -87,5 +96,9 @@ struct Parameters {
   /// True when every value lies in its range; a robot with any other parameters refuses to arm.
   bool valid() const;
 };
+
+/// Whether a robot takes this parameter, by its number in the table from 0, while it is armed or
+/// runs; of a number behind the table anything.
+bool changes_while_running(uint8_t number);
 
 }  // namespace screed

@@ -59,8 +59,8 @@ Robot::Robot(const BoardConstants& board, const Parameters& parameters,
       board_(board),
       parameters_(parameters),
       supervisor_(parameters_intact),
-      leveling_(parameters),
-      drive_(board, parameters),
+      leveling_(parameters_),
+      drive_(board, parameters_),
       slip_watch_(board.tread_mm),
       telemetry_(credentials.robot_id),
       gate_(credentials),
@@ -255,7 +255,8 @@ RequestResult Robot::send_parameter(uint16_t index) {
 // of index and value. For one index, a CRC-16 maps each 16-bit value to its own CRC: only the
 // intended value passes.
 RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
-  if (supervisor_.state() != RobotState::kDisarmed) return RequestResult::kWrongState;
+  const bool disarmed = supervisor_.state() == RobotState::kDisarmed;
+  if (!disarmed && !changes_while_running(index)) return RequestResult::kWrongState;
   if (store_ticks_ != 0) return RequestResult::kBusy;
   const int32_t value = get_s32(staged_ + 2);
   const auto value_16 = static_cast<int16_t>(value);
@@ -270,8 +271,9 @@ RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
     parameter = before;
     return RequestResult::kBadArgument;
   }
-  new (&leveling_) Leveling(parameters_);
-  new (&drive_) DriveControl(board_, parameters_);
+  if (disarmed) new (&leveling_) Leveling(parameters_);
+  leveling_.take(parameters_);
+  drive_.take(parameters_);
   store_parameter_ = static_cast<uint8_t>(index + 1U);
   store_value_ = value_16;
   store_ticks_ = static_cast<uint8_t>(kStoreTicks);

@@ -1,6 +1,6 @@
 // A scripted mission as a sequence of samples: what a robot would measure while it waits, is armed,
-// walks over hills, hears garbage, loses its gyro and falls on its side, and at last reads
-// nonsense. Made up, not simulated: it only has to lead the code everywhere.
+// walks over hills, is given other parameters, hears garbage, loses its gyro and falls on its side,
+// and at last reads nonsense. Made up, not simulated: it only has to lead the code everywhere.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,9 @@ namespace screed::mcu {
 class Mission {
  public:
   static constexpr int kTicks = 2700;
+  static constexpr std::int16_t kWalkSpeedMax = 90;
+  static constexpr std::int16_t kAccelLimit = 200;
+  static constexpr std::int16_t kClimbThreshold = 300;
 
   SensorSample next() {
     const int tick = tick_++;
@@ -80,6 +83,10 @@ class Mission {
     if (tick % 10 == 0) add(ground_.heartbeat(static_cast<std::uint32_t>(tick) * 10U));
     if (tick == 450) add(ground_.command(CommandOp::kArm));
     if (tick == 460) add(ground_.command(CommandOp::kRun));
+    // While it runs, of each part that keeps parameters one.
+    if (tick == 701) add(ground_.parameter(&Parameters::walk_speed_max, kWalkSpeedMax));
+    if (tick == 961) add(ground_.parameter(&Parameters::accel_limit, kAccelLimit));
+    if (tick == 1211) add(ground_.parameter(&Parameters::climb_threshold, kClimbThreshold));
     if (tick == 1500) add(ground_.command(CommandOp::kStop));
     if (tick == 1520) add(ground_.command(CommandOp::kDrive, {100, -300}));
     if (tick == 1600) add(ground_.command(CommandOp::kRun));

@@ -56,9 +56,10 @@ void list_parameters(std::vector<ExperimentKey>& keys) {
   for (const ParameterInfo& info : kParameterTable) {
     // Said in [experiment], by its name.
     if (info.field == &Parameters::algorithm) continue;
+    const auto number = static_cast<uint8_t>(&info - kParameterTable);
     keys.push_back({"parameters", info.name, info.unit,
                     "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max),
-                    info.meaning,
+                    info.meaning + std::string(changes_while_running(number) ? "; live" : ""),
                     [info](Experiment& e, const std::string& text) {
                       int16_t value = 0;
                       if (!parse_number(text, value) || value < info.min || value > info.max)

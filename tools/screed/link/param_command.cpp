@@ -85,6 +85,7 @@ int list(const ParamArguments& arguments) {
   for (const std::string& name : parameter_names()) width = std::max(width, name.size());
   for (const ParameterValue& value : all_parameters({})) {
     const ParameterInfo& info = kParameterTable[value.index];
+    const bool live = changes_while_running(static_cast<uint8_t>(value.index));
     if (arguments.json) {
       Json row = {{"name", info.name}};
       row["default"] = value.value;
@@ -92,13 +93,15 @@ int list(const ParamArguments& arguments) {
       row["max"] = info.max;
       row["unit"] = info.unit;
       row["meaning"] = info.meaning;
+      row["live"] = live;
       json.push_back(row);
       continue;
     }
     const std::string name = info.name;
     std::cout << name << std::string(width + 2 - name.size(), ' ') << info.meaning << "\n"
               << std::string(width + 2, ' ') << parameter_range(value.index)
-              << "; default: " << parameter_text(value.index, value.value) << "\n";
+              << "; default: " << parameter_text(value.index, value.value) << (live ? "; live" : "")
+              << "\n";
   }
   if (arguments.json) std::cout << json.dump(2) << "\n";
   return 0;
@@ -253,7 +256,10 @@ void register_param_command(Command& root, Program& program) {
         ->required();
   };
 
-  json(add("list", "List all parameters: meaning, range and default; needs no robot", list));
+  json(add("list",
+           "List all parameters: meaning, range, default, and which change while a robot runs "
+           "(live); needs no robot",
+           list));
 
   Command* of_get = add("get", "Print parameters of the robot", get);
   of_get

@@ -1,16 +1,18 @@
 // Commands through the whole core: who may, when, and what the robot answers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
 #include "firmware/math/crc16.h"
 #include "firmware/parameters/parameter_store.h"
+#include "firmware/parameters/parameter_table.h"
 #include "tests/unit/test_robot.h"
 
 namespace screed {
@@ -341,16 +343,72 @@ TEST(RadioParameters, WhatIsNotStagedOrOutOfRangeIsRefused) {
   EXPECT_EQ(robot.robot.parameters().speed_kp, 30);
 }
 
-TEST(RadioParameters, OnlyOfADisarmedRobotAndOneAtATime) {
+TEST(RadioParameters, OneAtATime) {
   TestRobot robot = ready_robot();
   EXPECT_EQ(commit(robot, kSpeedKp, 30), RequestResult::kDone);
   EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kBusy);
   robot.run(240);
   EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kDone);
-  robot.run(240);
-  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
-  EXPECT_EQ(commit(robot, kSpeedKp, 32), RequestResult::kWrongState);
   EXPECT_EQ(robot.robot.parameters().speed_kp, 31);
+}
+
+TEST(RadioParameters, AnArmedRobotTakesTheLiveOnesAlone) {
+  TestRobot robot = ready_robot();
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  int live = 0;
+  for (uint8_t number = 0; number < kParameterCount; ++number) {
+    const ParameterInfo& info = kParameterTable[number];
+    live += changes_while_running(number) ? 1 : 0;
+    const RequestResult expected =
+        changes_while_running(number) ? RequestResult::kDone : RequestResult::kWrongState;
+    EXPECT_EQ(commit(robot, number, info.default_value), expected) << info.name;
+    robot.run(240);
+  }
+  EXPECT_EQ(robot.state(), RobotState::kArmed);
+  EXPECT_EQ(live, 21);
+  EXPECT_FALSE(changes_while_running(kAlgorithm));
+}
+
+// Each part of the core that keeps parameters takes the new ones, in the next tick.
+TEST(RadioParameters, ARunningRobotDrivesByThem) {
+  Parameters walks;
+  walks.algorithm = static_cast<int16_t>(LevelingAlgorithm::kHillSensing);
+  walks.walk_leg_max = walks.walk_leg_min;
+  // What carries this robot neither turns nor pushes it.
+  walks.walk_yaw_rate_max = 0;
+  walks.escape_attempts = 0;
+  TestRobot robot = ready_robot(walks);
+  ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
+  ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
+  const auto asked = [&] {
+    const TrackSpeeds& targets = robot.robot.drive().targets();
+    return (targets.left + targets.right) / 2;
+  };
+  const auto set = [&](int16_t Parameters::*field, int16_t value) {
+    const auto info = std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
+                                   [&](const ParameterInfo& it) { return it.field == field; });
+    EXPECT_EQ(commit(robot, static_cast<uint8_t>(info - kParameterTable), value),
+              RequestResult::kDone);
+  };
+  set(&Parameters::walk_speed_max, 90);
+  robot.run(240);
+  set(&Parameters::walk_speed_min, 90);
+  robot.run(240);
+  EXPECT_NEAR(asked(), 90, 2) << "the legs of the walk";
+  set(&Parameters::accel_limit, 50);
+  robot.run(240);
+  set(&Parameters::walk_speed_max, 250);
+  robot.run(240);
+  set(&Parameters::walk_speed_min, 250);
+  int before = asked();
+  const int slow = before;
+  for (int i = 0; i < 400; ++i) {
+    robot.run(1);
+    EXPECT_LE(std::abs(asked() - before), 1) << "the drive's acceleration";
+    before = asked();
+  }
+  EXPECT_GT(asked(), 240) << "from " << slow;
+  EXPECT_EQ(robot.state(), RobotState::kRunning);
 }
 
 TEST(RadioParameters, NoOtherStagedValueFitsACommit) {
