@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/battery.h"
 #include "host_sim/standin/planar_pose.h"
 
 namespace screed {

@@ -6,16 +6,11 @@
 
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/world/world_setup.h"
 #include "schema/values.h"
 
 namespace screed::nn {
-namespace {
-
-constexpr double kMeanVoltage = 7.5;  // from energy to charge
-
-}  // namespace
-
 RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
     : session(folder / "session.h5"), experiment(read_experiment(folder / "experiment.ini")) {
   if (!experiment.map.is_soil() || !session.has_heights()) {
@@ -24,6 +19,7 @@ RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
                      "record makes it");
   }
   soil = make_soil(experiment);
+  battery = make_battery(experiment, session.info().board_name);
   frames.resize(session.frames());
   samples.resize(session.frames());
   session.read(0, std::span(frames));
@@ -38,6 +34,8 @@ RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
   }
   PlanarPose pose{frames[0].x, frames[0].y, frames[0].yaw};
   double distance_m = 0.0;
+  double charge_c = 0.0;
+  double energy_j = 0.0;
   for (const SimFrame& frame : frames) {
     const double middle = pose.heading_rad + 0.5 * frame.delta_theta;
     const auto [s, c] = portable::sine_cosine(middle);
@@ -47,6 +45,9 @@ RecordedDrive::RecordedDrive(const std::filesystem::path& folder)
     poses.push_back(pose);
     distance_m += portable::hypot(frame.delta_x, frame.delta_y);
     distances.push_back(distance_m);
+    if (frame.battery > 0.0) charge_c += (frame.energy - energy_j) / frame.battery;
+    energy_j = frame.energy;
+    drawn_c.push_back(charge_c);
   }
 }
 
@@ -68,8 +69,9 @@ DrivingState RecordedDrive::state(std::uint64_t row, double counts_per_turn) con
     return (count + 0.5) / counts_per_turn * 2.0 * std::numbers::pi;
   };
   state.shaft_angle_rad = {angle(samples[row].encoder_left), angle(samples[row].encoder_right)};
+  state.battery = battery;
   state.battery.terminal_v = frame.battery;
-  state.battery.drawn_c = frame.energy / kMeanVoltage;
+  state.battery.drawn_c += drawn_c[row];
   state.battery.energy_j = frame.energy;
   return state;
 }

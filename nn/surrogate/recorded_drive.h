@@ -17,12 +17,14 @@ struct RecordedDrive {
   SessionReader session;
   Experiment experiment;
   SoilParameters soil;
+  Battery battery;  ///< as the run began with it
   std::vector<SimFrame> frames;
   std::vector<SensorSample> samples;
   std::uint64_t first = 0;  ///< row with Algorithm 5's first frame
   std::vector<PlanarPose> poses;
   std::vector<FrameMotion> motions;
   std::vector<double> distances;  ///< travelled since the first row, m
+  std::vector<double> drawn_c;    ///< from the battery since the start
 
   /// Throws InputError for a session that is not on soil, has no recorded heights, or in which
   /// Algorithm 5 drove nothing.

@@ -60,6 +60,7 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
   PlantOptions plant_options;
   plant_options.soil = recording.soil;
   plant_options.vehicle.motor = board_motor(info.board_name).motor;
+  plant_options.battery = recording.battery;
   plant_options.vehicle.tracks = recording.experiment.vehicle.tracks;
 
   SessionRollouts result;

@@ -18,14 +18,14 @@ struct KnownRun {
 };
 
 constexpr std::array<KnownRun, 5> kKnownRuns = {{
-    {"first_drive", "--duration 60", "b3e60fc4e580e2536f7eae1a0a086698"},
-    {"soft_bed", "--duration 6", "4105976e9374cd1cc5d84bb5822a3a67"},
-    {"soft_bed", "--hal surrogate --duration 10", "9f24d52de867b6afbbbd0466a4134732"},
+    {"first_drive", "--duration 60", "7d3aace92edbb731e6d7f9848c9b7474"},
+    {"soft_bed", "--duration 6", "e36c37299821ce686bd8b155d81fb123"},
+    {"soft_bed", "--hal surrogate --duration 10", "c780b89bdacefa9ac7bc90cde1f26ca3"},
     {"soft_bed",
      "--set experiment.algorithm=spin_on_peak --set soil.preset=lete_sand "
      "--set soil.drag_depth=0.002 --duration 4",
-     "c0e427fd6981e897599fdc32b6823410"},
-    {"gravel_bed", "--duration 1", "62bdea03487b1ea040539b943e0c168f"},
+     "4d2cfb7791addd21d1df8f4c609fbbf7"},
+    {"gravel_bed", "--duration 1", "90e600f7d9104c20cf1e6a16d5fca9f7"},
 }};
 
 class ContentHash : public Program {};

@@ -141,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "3eeae2ed83a14a272866857c1b7a7927", "14a37ab55d9c109c0a7d51c7e390f82b",
-                "b62df2be43b14d7ccf28b4bb69a96e43", "4ba5ad5709cd1797cbe2c36d0d7ec623",
-                "1346563ef159376fbfabf7b370a68226", "f617cfd61935c6287bf55334dce7e06d"}));
+                "5afb73277f35556e9d8fbf910a4b78cc", "14c6314119610a256724b9261e6ce1ed",
+                "87bd046b8ae6e8867685645186143a36", "9a1cdf701355e107cd3008b2320831fa",
+                "dd1d233fb4d0a29cb638316b940ba09e", "7cc6d8bb0b0636ad61cbee506891cc63"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.

@@ -78,21 +78,24 @@ TEST_F(ParamProgram, RefusesABadFileBeforeItLooksForARobot) {
 }
 
 TEST_F(ParamProgram, ARobotThatRefusesEndsTheLoad) {
-  write("slow.ini", "[parameters]\nclimb_speed = 150\n");
-  // Armed, it takes no parameters.
+  write("slow.ini", "[parameters]\nclimb_speed = 150\nspin_rate = 60\n");
+  // Armed, it takes live ones alone.
   const Result result = with_robot(
       "until $screed send --pty radio arm > /dev/null; do :; done\n"
       "$screed param load --pty radio slow.ini\n");
   EXPECT_EQ(result.exit_code, 1) << result.out << result.err;
-  EXPECT_NE(result.out.find("climb_speed = 150 mm/s: refused: "), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("1 in slow.ini, 1 differed, 0 set"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("climb_speed = 150 mm/s: done"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("spin_rate = 60 deg/s: refused: armed; disarm first"),
+            std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find("2 in slow.ini, 2 differed, 1 set"), std::string::npos) << result.out;
   EXPECT_NE(result.err.find("not all parameters were set"), std::string::npos) << result.err;
 }
 
 TEST_F(ParamProgram, ListAndDumpOfAnExperimentNeedNoRobot) {
   const Result list = run("param list");
   EXPECT_EQ(list.exit_code, 0);
-  EXPECT_NE(list.out.find("1 to 45 deg; default: 5 deg"), std::string::npos) << list.out;
+  EXPECT_NE(list.out.find("1 to 45 deg; default: 5 deg; live\n"), std::string::npos) << list.out;
   EXPECT_EQ(Json::parse(run("param list --json").out).size(), lines_in(list.out) / 2);
   write("slow.ini", "[experiment]\nalgorithm = spin_on_peak\n[parameters]\nclimb_speed = 90\n");
   const Result dump = run("param dump --experiment slow.ini");

@@ -193,6 +193,7 @@ TEST(WallDrive, SoilPilesUpAtTheWalls) {
   PlantOptions options = options_on(bed, kGears[0]);
   options.soil = soil_preset("viper");
   options.soil->drag_depth_m = 0.002;
+  options.battery.begin_with(0.95);  // 8.1 V
   options.start.attitude.heading = 45.0 * kDeg;
   options.start.x_m = options.start.y_m = 0.35;
   Trial trial(bed, options);

@@ -26,7 +26,7 @@ TEST_F(Arming, TheSummarySaysWhatPreventedIt) {
       {"--duration 2", "disarmed", {"start-up needs 4.5 s at rest, 2.5 s left"}},
       {"--set parameters.battery_low=9000",
        "disarmed",
-       {"battery 8.08 V below battery_low 9.00 V"}},
+       {"battery 8.38 V below battery_low 9.00 V"}},
       {"--set parameters.tilt_limit=1000 --set map.ramp=20",
        "disarmed",
        {"tilted 20 degrees, tilt_limit 10 degrees"}},
@@ -49,7 +49,7 @@ TEST_F(Arming, TheSummarySaysWhatPreventedIt) {
 TEST_F(Arming, TheTableHasALineForEachReason) {
   const Result low = run("sim e.ini --no-pictures --duration 4 --set parameters.battery_low=9000");
   EXPECT_EQ(low.exit_code, 0) << low.err;
-  EXPECT_NE(low.out.find("  cannot be armed:           battery 8.08 V below battery_low 9.00 V\n"
+  EXPECT_NE(low.out.find("  cannot be armed:           battery 8.38 V below battery_low 9.00 V\n"
                          "                             start-up needs 4.5 s at rest, 0.5 s left\n"),
             std::string::npos)
       << low.out;

@@ -1,5 +1,6 @@
 // How a run that ends before its time, or on a full disk, leaves its folder, and what the program
 // then ends with.
+#include "host_sim/core/json.h"
 #include "tests/sitl/program.h"
 
 namespace screed::testing {
@@ -72,6 +73,22 @@ TEST_F(RunEnds, ARobotThatNeverRanIsAFailure) {
   EXPECT_EQ(run(never + " --duration 9 --out s").exit_code, 0) << "it had no time to";
   EXPECT_EQ(run(never + " --set radio.ground_station=false --out n").exit_code, 0)
       << "nobody told it to";
+}
+
+// What is left of its charge lasts some minutes.
+TEST_F(RunEnds, AnEmptyBatteryStopsTheRobot) {
+  write_drive(50.0, 120.0);
+  const Result result = run(
+      "sim e.ini --quiet --no-pictures --set battery.charge=0.02 --set battery.capacity=0.5 --out "
+      "r");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "note: e: the robot is stopped by a fault: battery\n");
+  const auto summary = Json::parse(read(root_ / "r/summary.json"));
+  EXPECT_LT(summary["battery_charge"].get<double>(), 0.02);
+  EXPECT_GT(summary["distance_m"].get<double>(), 1.0);
+  // At 0.3 to 1 A.
+  EXPECT_GT(summary["charge_lasts_h"].get<double>(), 0.5);
+  EXPECT_LT(summary["charge_lasts_h"].get<double>(), 2.0);
 }
 
 TEST_F(RunEnds, ARobotThatAFaultStopsIsAFailure) {

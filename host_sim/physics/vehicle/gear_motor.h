@@ -1,4 +1,4 @@
-// The two DC gear motors and the battery of the robot, in SI units at the gearbox's output shaft.
+// The two DC gear motors of the robot, in SI units at the gearbox's output shaft.
 #pragma once
 
 namespace screed {
@@ -22,30 +22,6 @@ struct GearMotor {
   }
   double torque_per_ampere() const { return back_emf_v_s * efficiency; }
   double friction_torque() const { return torque_per_ampere() * no_load_current_a; }
-};
-
-/// Six NiMH cells as a source with internal resistance; the open-circuit voltage falls linearly
-/// with the charge drawn.
-struct Battery {
-  double full_v = 8.1;
-  double empty_v = 6.6;
-  double capacity_c = 2.0 * 3600.0;  ///< 2 Ah
-  double resistance_ohm = 0.15;
-  double electronics_a = 0.12;  ///< board, sensors, radio
-
-  double drawn_c = 0.0;
-  double energy_j = 0.0;  ///< drawn at the terminals since the start
-  double terminal_v = 8.1;
-
-  /// Draws `motor_current_a` (and the electronics' share) for dt seconds.
-  void step(double motor_current_a, double dt) {
-    const double current = motor_current_a + electronics_a;
-    const double share = drawn_c < capacity_c ? drawn_c / capacity_c : 1.0;
-    terminal_v = full_v + (empty_v - full_v) * share - resistance_ohm * current;
-    if (terminal_v < 0.0) terminal_v = 0.0;
-    drawn_c += current * dt;
-    energy_j += terminal_v * current * dt;
-  }
 };
 
 }  // namespace screed

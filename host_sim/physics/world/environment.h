@@ -10,7 +10,7 @@
 #include <span>
 
 #include "host_sim/physics/terrain/terrain.h"
-#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/battery.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
 #include "host_sim/physics/world/imu_truth.h"
 

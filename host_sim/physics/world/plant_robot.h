@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host_sim/physics/vehicle/assembly.h"
-#include "host_sim/physics/vehicle/gear_motor.h"
+#include "host_sim/physics/vehicle/battery.h"
 #include "host_sim/physics/vehicle/ode_world.h"
 #include "host_sim/physics/vehicle/vehicle.h"
 #include "host_sim/physics/world/environment.h"

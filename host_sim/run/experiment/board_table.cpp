@@ -2,11 +2,13 @@
 #include "host_sim/run/experiment/board_table.h"
 
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <system_error>
 
 #include "boards.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/core/ini_file.h"
@@ -26,6 +28,25 @@ const std::map<std::string, const BoardConstants*>& boards() {
 #undef SCREED_BOARD
   };
   return table;
+}
+
+/// Positive numbers, one for each of the keys in `values`.
+void read_numbers(const std::filesystem::path& path, const char* of,
+                  std::map<std::string, double>& values) {
+  for (const IniEntry& entry : read_ini_file(path)) {
+    const auto known = values.find(entry.key);
+    const char* const end = entry.value.data() + entry.value.size();
+    if (!entry.section.empty() || known == values.end() ||
+        std::from_chars(entry.value.data(), end, known->second).ptr != end ||
+        !(known->second > 0.0)) {
+      throw InputError(path.string() + ":" + std::to_string(entry.line) + ": " + entry.key +
+                       " = '" + entry.value +
+                       "'; allowed are positive numbers for the keys of the " + of);
+    }
+  }
+  for (const auto& [key, value] : values) {
+    if (value == 0.0) throw InputError(path.string() + ": " + key + " is missing");
+  }
 }
 
 }  // namespace
@@ -78,20 +99,7 @@ BoardMotor board_motor(const std::string& name) {
       {"no_load_rpm", 0.0},     {"no_load_current_a", 0.0}, {"inertia_kg_m2", 0.0},
       {"counts_per_turn", 0.0},
   };
-  for (const IniEntry& entry : read_ini_file(path)) {
-    const auto known = values.find(entry.key);
-    const char* const end = entry.value.data() + entry.value.size();
-    if (!entry.section.empty() || known == values.end() ||
-        std::from_chars(entry.value.data(), end, known->second).ptr != end ||
-        !(known->second > 0.0)) {
-      throw InputError(path.string() + ":" + std::to_string(entry.line) + ": " + entry.key +
-                       " = '" + entry.value +
-                       "'; allowed are positive numbers for the keys of the motor");
-    }
-  }
-  for (const auto& [key, value] : values) {
-    if (value == 0.0) throw InputError(path.string() + ": " + key + " is missing");
-  }
+  read_numbers(path, "motor", values);
   BoardMotor board;
   GearMotor& motor = board.motor;
   motor.resistance_ohm = values["nominal_v"] / values["stall_current_a"];
@@ -105,21 +113,27 @@ BoardMotor board_motor(const std::string& name) {
   return board;
 }
 
-int board_battery_cells(const std::string& name) {
+std::optional<Battery> board_battery(const std::string& name) {
   const std::filesystem::path path = folder_of(name) / "battery.ini";
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) return 0;
-  int cells = 0;
-  for (const IniEntry& entry : read_ini_file(path)) {
-    const char* const end = entry.value.data() + entry.value.size();
-    const auto [rest, failure] = std::from_chars(entry.value.data(), end, cells);
-    if (!entry.section.empty() || entry.key != "cells" || failure != std::errc() || rest != end ||
-        cells < 1 || cells > 20) {
-      throw InputError(path.string() + ":" + std::to_string(entry.line) + ": " + entry.key +
-                       " = '" + entry.value + "'; allowed is cells = 1..20");
-    }
-  }
-  return cells;
+  if (!std::filesystem::exists(path, error)) return std::nullopt;
+  std::map<std::string, double> values = {
+      {"cells", 0.0}, {"capacity_ah", 0.0}, {"resistance_ohm", 0.0}};
+  read_numbers(path, "battery", values);
+  constexpr double kMaxCells = 20.0;
+  if (values["cells"] > kMaxCells || values["cells"] != std::floor(values["cells"]))
+    throw InputError(path.string() + ": cells: allowed are 1..20");
+  Battery battery;
+  battery.cells = static_cast<int>(values["cells"]);
+  battery.capacity_c = values["capacity_ah"] * kSecondsPerHour;
+  battery.resistance_ohm = values["resistance_ohm"];
+  battery.begin_with(1.0);
+  return battery;
+}
+
+int board_battery_cells(const std::string& name) {
+  const std::optional<Battery> battery = board_battery(name);
+  return battery.has_value() ? battery->cells : 0;
 }
 
 }  // namespace screed

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/parameters/board_constants.h"
+#include "host_sim/physics/vehicle/battery.h"
 #include "host_sim/physics/vehicle/gear_motor.h"
 
 namespace screed {
@@ -34,8 +35,10 @@ struct BoardMotor {
 /// Throws InputError.
 BoardMotor board_motor(const std::string& name);
 
-/// NiMH cells in series of the board's robot, from battery.ini in its folder; 0 without one, or
+/// The battery of the board's robot, full, from battery.ini in its folder; nothing without one, or
 /// without the folder. Throws InputError when the file says something else.
+std::optional<Battery> board_battery(const std::string& name);
+/// Its NiMH cells in series, 0 where nothing is known.
 int board_battery_cells(const std::string& name);
 
 }  // namespace screed

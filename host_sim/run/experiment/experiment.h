@@ -21,6 +21,7 @@
 #include "host_sim/core/ini_file.h"
 #include "host_sim/ground_station/station/command_key.h"
 #include "host_sim/run/experiment/board_table.h"
+#include "host_sim/run/experiment/sections/battery_section.h"
 #include "host_sim/run/experiment/sections/drive_section.h"
 #include "host_sim/run/experiment/sections/experiment_section.h"
 #include "host_sim/run/experiment/sections/fixes_section.h"
@@ -59,6 +60,7 @@ struct Experiment {
   ExperimentSection experiment;
   DriveSection drive;
   FixesSection fixes;
+  BatterySection battery;
   SensorsSection sensors;
   RadioSection radio;
   PhysicsSection physics;

@@ -89,6 +89,7 @@ std::vector<ExperimentKey> make_keys() {
   list_section(keys, "trap", &Experiment::trap);
   list_section(keys, "drive", &Experiment::drive);
   list_section(keys, "fixes", &Experiment::fixes);
+  list_section(keys, "battery", &Experiment::battery);
   list_section(keys, "sensors", &Experiment::sensors);
   list_section(keys, "radio", &Experiment::radio);
   list_section(keys, "physics", &Experiment::physics);

@@ -1,4 +1,4 @@
-// The robot of an experiment: its model file, and how that is read.
+// The robot of an experiment: its model file, and how that is read; its battery.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host_sim/physics/vehicle/assembly.h"
+#include "host_sim/physics/vehicle/battery.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
 
@@ -15,5 +16,8 @@ namespace screed {
 /// angle. Throws InputError.
 Assembly make_robot_model(const Experiment& experiment, const std::string& board = kDefaultBoard,
                           const std::optional<std::filesystem::path>& file = std::nullopt);
+
+/// The battery of the board's robot, as [battery] has it begin. Throws InputError.
+Battery make_battery(const Experiment& experiment, const std::string& board);
 
 }  // namespace screed

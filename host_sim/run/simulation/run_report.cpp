@@ -79,12 +79,18 @@ Json json_of(const CycleReport& cycles) {
           {"interrupts", interrupts}};
 }
 
+Json json_of(const std::optional<double>& value) {
+  return value.has_value() ? Json(*value) : Json(nullptr);
+}
+
 Json json_of(const RobotSummary& robot) {
   return {{"content_hash", robot.content_hash},
           {"left_bed", robot.left_bed},
           {"distance_m", robot.distance_m},
           {"energy_j", robot.energy_j},
           {"battery_v", robot.battery_v},
+          {"battery_charge", robot.battery_charge},
+          {"charge_lasts_h", json_of(robot.charge_lasts_h)},
           {"peaks", robot.peaks},
           {"state", robot.state},
           {"faults", fault_names(robot.faults)},
@@ -105,6 +111,8 @@ Json json_of(const SimulationSummary& summary) {
       {"distance_m", summary.distance_m},
       {"energy_j", summary.energy_j},
       {"battery_v", summary.battery_v},
+      {"battery_charge", summary.battery_charge},
+      {"charge_lasts_h", json_of(summary.charge_lasts_h)},
       {"peaks", summary.peaks},
       {"training_frames", summary.training_frames},
       {"height_changes", summary.height_changes},
@@ -177,6 +185,9 @@ RobotSummary total_of(const std::vector<RobotSummary>& robots) {
     total.distance_m += robot.distance_m;
     total.energy_j += robot.energy_j;
     total.battery_v = std::min(total.battery_v, robot.battery_v);
+    total.battery_charge = std::min(total.battery_charge, robot.battery_charge);
+    if (total.charge_lasts_h.has_value() && robot.charge_lasts_h.has_value())
+      total.charge_lasts_h = std::min(*total.charge_lasts_h, *robot.charge_lasts_h);
     total.peaks += robot.peaks;
     if (robot.state != total.state) total.state = "several";
     total.faults = static_cast<uint16_t>(total.faults | robot.faults);

@@ -34,6 +34,8 @@ struct RobotSummary {
   double distance_m = 0.0;   ///< length of the chassis' true path, in space
   double energy_j = 0.0;
   double battery_v = 0.0;
+  double battery_charge = 0.0;           ///< share that is left, 0..1
+  std::optional<double> charge_lasts_h;  ///< a full one, at the run's mean current
   int peaks = 0;
   bool ran = false;     ///< was in the state running at any time
   std::string state;    ///< of the supervisor at the end

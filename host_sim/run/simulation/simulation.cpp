@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/parameters/parameter_table.h"
+#include "host_sim/core/constants.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/telemetry/arming.h"
 #include "host_sim/render/picture/robot_shape.h"
@@ -145,6 +146,9 @@ RobotSummary report_robot(const RunWorld& world, size_t number, const WatchedRob
   summary.distance_m = robot.frames.distance_m();
   summary.energy_j = view.battery().energy_j;
   summary.battery_v = view.battery().terminal_v;
+  summary.battery_charge = std::max(0.0, view.battery().charge());
+  if (const auto lasts_s = view.battery().lasts_s(view.time_s()); lasts_s.has_value())
+    summary.charge_lasts_h = *lasts_s / kSecondsPerHour;
   summary.peaks = shadow.leveling().peaks();
   summary.ran = robot.ran;
   summary.state = state_name(shadow.supervisor().state());

@@ -93,6 +93,7 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   const BoardMotor motor = board_motor(setup.board);
   options.vehicle.motor = motor.motor;
   options.encoder_counts_per_turn = motor.counts_per_turn;
+  options.battery = make_battery(experiment, setup.board);
   options.ground_port = setup.ground_port;
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;

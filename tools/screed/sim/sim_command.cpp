@@ -182,6 +182,10 @@ void print_table(const Experiment& experiment, const SimulationSummary& s) {
   std::printf("  %-26s %12s\n", "simulated time", format("%.1f s", s.time_s).c_str());
   std::printf("  %-26s %12s\n", "distance driven", format("%.2f m", s.distance_m).c_str());
   std::printf("  %-26s %12s\n", "energy from the battery", format("%.0f J", s.energy_j).c_str());
+  std::printf("  %-26s %12s\n", "battery left",
+              format("%.0f %%", 100.0 * s.battery_charge).c_str());
+  if (s.charge_lasts_h.has_value())
+    std::printf("  %-26s %12s\n", "a charge lasts", format("%.1f h", *s.charge_lasts_h).c_str());
   std::printf("  %-26s %12d\n", "peaks", s.peaks);
   std::printf("  %-26s %12s\n", s.robots.empty() ? "robot" : "robots", s.state.c_str());
   if (s.faults != 0) std::printf("  %-26s %12s\n", "faults", fault_names(s.faults).c_str());

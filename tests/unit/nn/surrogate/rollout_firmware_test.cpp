@@ -42,9 +42,9 @@ double farthest(const SessionRollouts& result, std::size_t surrogate = 0,
   return worst;
 }
 
-void expect_to_follow_itself(const std::string& board) {
+void expect_to_follow_itself(const std::string& board, const std::string& more = "") {
   const TempFolder folder;
-  record_surrogate(folder.path() / "run", skidding().robot(), kRows, "", board);
+  record_surrogate(folder.path() / "run", skidding().robot(), kRows, more, board);
   const SessionRollouts result =
       roll_out(folder.path() / "run", {skidding(), skidding(0.8)}, one_start());
   EXPECT_EQ(result.source, "made_up");
@@ -62,7 +62,10 @@ TEST(RolloutFirmware, FollowsASessionOfTheSameSurrogateAndNotOfAnother) {
 }
 
 TEST(RolloutFirmware, FollowsASessionWithTheMotorsOfAnotherBoard) {
-  expect_to_follow_itself("zumo_32u4");
+  // Half full: there the voltage hardly depends on the charge, which a recording says to a few
+  // parts in a million; the converter's last digit depends on those where the curve is steep.
+  expect_to_follow_itself("zumo_32u4",
+                          "[battery]\ncharge = 0.5\n[parameters]\nbattery_low = 4000\n");
 }
 
 /// The session with rows changed.

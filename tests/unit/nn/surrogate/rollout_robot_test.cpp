@@ -35,6 +35,7 @@ struct Session {
     PlantOptions options;
     options.soil = make_soil(experiment);
     options.vehicle.motor = board_motor(info.board_name).motor;
+    options.battery = make_battery(experiment, info.board_name);
     return {HeightField(16, 16, 0.25, true), make_robot_model(experiment, info.board_name), options,
             skidding()};
   }
@@ -84,7 +85,7 @@ TEST(RolloutRobot, HasTheSensorsOfARobotThatIsNotCalibrated) {
 }
 
 TEST(RolloutRobot, HasTheSeedOfTheExperimentAndTheMotorsOfTheBoard) {
-  expect_same_drive(Session("seed = 77\n", "zumo_32u4"));
+  expect_same_drive(Session("seed = 77\n[parameters]\nbattery_low = 4000\n", "zumo_32u4"));
 }
 
 TEST(RolloutRobot, FollowsARecordingAndThenGoesOnByItself) {

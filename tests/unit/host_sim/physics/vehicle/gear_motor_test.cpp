@@ -1,4 +1,4 @@
-// The motor and battery models against their data sheet points.
+// The motor against its data sheet.
 #include "host_sim/physics/vehicle/gear_motor.h"
 
 #include <gtest/gtest.h>
@@ -24,38 +24,6 @@ TEST(GearMotor, IsSymmetricAndBrakesAsAGenerator) {
   EXPECT_DOUBLE_EQ(motor.current(-7.2, -3.0), -motor.current(7.2, 3.0));
   EXPECT_LT(motor.current(0.0, 5.0), 0.0);
   EXPECT_LT(motor.efficiency, 1.0);
-}
-
-TEST(Battery, SagsUnderLoadAndEmptiesOverItsCapacity) {
-  Battery battery;
-  battery.step(0.0, 0.0);
-  EXPECT_NEAR(battery.terminal_v, 8.1 - 0.15 * 0.12, 1e-12);
-  battery.step(5.0, 0.0);
-  EXPECT_NEAR(battery.terminal_v, 8.1 - 0.15 * 5.12, 1e-12);
-  // Half of 2 Ah drawn: half-way between full and empty.
-  Battery half;
-  for (int second = 0; second < 3600; ++second) half.step(1.0 - half.electronics_a, 1.0);
-  EXPECT_NEAR(half.drawn_c, 3600.0, 1e-6);
-  half.step(-half.electronics_a, 0.0);
-  EXPECT_NEAR(half.terminal_v, (8.1 + 6.6) / 2.0, 1e-9);
-}
-
-TEST(Battery, EnergyIsVoltageTimesCharge) {
-  Battery battery;
-  battery.full_v = 7.0;
-  battery.empty_v = 7.0;
-  battery.resistance_ohm = 0.5;
-  battery.electronics_a = 0.0;
-  for (int i = 0; i < 1000; ++i) battery.step(2.0, 0.01);
-  EXPECT_NEAR(battery.energy_j, (7.0 - 1.0) * 2.0 * 10.0, 1e-9);
-}
-
-TEST(Battery, DoesNotGoBelowEmptyNorBelowZero) {
-  Battery battery;
-  for (int i = 0; i < 10000; ++i) battery.step(2.0, 1.0);
-  EXPECT_NEAR(battery.terminal_v, 6.6 - 0.15 * 2.12, 1e-9);
-  battery.step(1000.0, 0.001);
-  EXPECT_EQ(battery.terminal_v, 0.0);
 }
 
 }  // namespace

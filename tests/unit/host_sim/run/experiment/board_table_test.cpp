@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host_sim/core/errors.h"
@@ -57,6 +58,18 @@ TEST(BoardTable, FindsAFileOfABoard) {
   ASSERT_TRUE(rover.has_value());
   EXPECT_TRUE(std::filesystem::exists(*rover));
   EXPECT_FALSE(file_of_a_board("toaster.urdf").has_value());
+}
+
+TEST(BoardTable, BatteriesAreFullOnesOfTheirCells) {
+  const auto cells_and_voltage = [](const char* board) {
+    const Battery battery = board_battery(board).value();
+    EXPECT_EQ(board_battery_cells(board), battery.cells);
+    EXPECT_EQ(battery.charge(), 1.0);
+    return std::pair(battery.cells, battery.terminal_v);
+  };
+  EXPECT_EQ(cells_and_voltage("a_star_32u4"), std::pair(6, 6 * 1.4));
+  EXPECT_EQ(cells_and_voltage("zumo_32u4"), std::pair(4, 4 * 1.4));
+  EXPECT_FALSE(board_battery("toaster").has_value());
 }
 
 TEST(BoardTable, RefusesAnUnknownBoard) {

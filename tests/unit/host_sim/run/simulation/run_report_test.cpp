@@ -23,6 +23,8 @@ SimulationSummary summary() {
   s.distance_m = 15.5;
   s.energy_j = 16.5;
   s.battery_v = 18.5;
+  s.battery_charge = 0.875;
+  s.charge_lasts_h = 10.5;
   s.peaks = 19;
   s.state = "fault";
   s.faults = 0x0081;
@@ -135,7 +137,7 @@ TEST(RunReport, SaysWhatIsPartOfTheResultInAFixedOrder) {
       "world": {"hal": "native", "board": "a_star_32u4", "terrain": "scm", "soil": "viper"},
       "version": "1.2.3", "content_hash": "0123456789abcdef", "stopped_early": true,
       "left_bed": true, "time_s": 13.5, "distance_m": 15.5, "energy_j": 16.5,
-      "battery_v": 18.5, "peaks": 19, "training_frames": 11,
+      "battery_v": 18.5, "battery_charge": 0.875, "charge_lasts_h": 10.5, "peaks": 19, "training_frames": 11,
       "height_changes": 12, "state": "fault", "faults": "tilt, emergency_stop",
       "cannot_be_armed": ["one reason", "another"],
       "telemetry_frames": 20, "telemetry_frames_sent": 21, "telemetry_frames_damaged": 22,
