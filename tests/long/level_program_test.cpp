@@ -141,9 +141,9 @@ TEST_F(LevelBench, RunsOfTheFirstTestBedAreFrozen) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(column("content_hash"),
             (std::vector<std::string>{
-                "5afb73277f35556e9d8fbf910a4b78cc", "14c6314119610a256724b9261e6ce1ed",
-                "87bd046b8ae6e8867685645186143a36", "9a1cdf701355e107cd3008b2320831fa",
-                "dd1d233fb4d0a29cb638316b940ba09e", "7cc6d8bb0b0636ad61cbee506891cc63"}));
+                "ab1e6d283cd80d8b94034d72eebd623b", "36cce8bbf136f20ee886547628c4b0f1",
+                "396c17db90016416d49e40aa37e35ba4", "a43e1a46b643f3dfdb37ce46fb8670e4",
+                "f7378e66cac83c2e39cb605c130b38b4", "6b6ed3771d3e9bb20dd5f2d796a8b092"}));
 }
 
 // Courses with four robots have a step that they allow, those on particles all that particles need.
