@@ -67,8 +67,8 @@
   X(stroke_ease,            "0.1 m/s^2",   1,   500,     30, "strokes: change of the commanded speed into the downhill way; uphill it is at once, as 500 is") \
   X(stroke_time,            "ms",        100, 30000,  16000, "strokes: longest work at one place")
 
-/// Those that a robot also takes while it is armed or runs: gains and thresholds that are looked up
-/// anew in every tick, whatever they were before. All others shape what is under way.
+/// Those that a robot also takes while it is armed or runs: gains and thresholds that count from the
+/// next tick on, of the walk from its next leg. All others shape what is under way.
 #define SCREED_LIVE_PARAMETERS(X) \
   X(climb_threshold) X(climb_hysteresis) X(climb_speed) X(climb_turn) \
   X(walk_speed_min) X(walk_speed_max) X(walk_yaw_rate_max) X(walk_leg_min) X(walk_leg_max) \
@@ -98,7 +98,7 @@ struct Parameters {
 };
 
 /// Whether a robot takes this parameter, by its number in the table from 0, while it is armed or
-/// runs; of a number behind the table anything.
+/// runs. number: less than that of the parameters.
 bool changes_while_running(uint8_t number);
 
 }  // namespace screed

@@ -255,12 +255,13 @@ RequestResult Robot::send_parameter(uint16_t index) {
 // of index and value. For one index, a CRC-16 maps each 16-bit value to its own CRC: only the
 // intended value passes.
 RequestResult Robot::commit_parameter(uint8_t index, uint16_t crc) {
+  if (index >= kParameterCount) return RequestResult::kBadArgument;
   const bool disarmed = supervisor_.state() == RobotState::kDisarmed;
   if (!disarmed && !changes_while_running(index)) return RequestResult::kWrongState;
   if (store_ticks_ != 0) return RequestResult::kBusy;
   const int32_t value = get_s32(staged_ + 2);
   const auto value_16 = static_cast<int16_t>(value);
-  if (get_u16(staged_) != index || index >= kParameterCount || value_16 != value ||
+  if (get_u16(staged_) != index || value_16 != value ||
       crc16_ccitt(staged_, kStagedCrcBytes) != crc) {
     return RequestResult::kBadArgument;
   }

@@ -132,7 +132,7 @@ bool Supervisor::tilted(const Parameters& parameters, const SupervisorInput& inp
 }
 
 uint16_t Supervisor::look_for_faults(const Parameters& parameters, const SupervisorInput& input) {
-  // They change while the robot is disarmed alone, and the check takes time.
+  // A change while it is not disarmed is checked as it is made, and the check takes time.
   const bool parameters_good =
       parameters_intact_ && (state_ != RobotState::kDisarmed || parameters.valid());
   uint16_t found = parameters_good ? 0 : static_cast<uint16_t>(Fault::kParameters);

@@ -116,7 +116,7 @@ class Supervisor : private SupervisorMemory {
   explicit Supervisor(bool parameters_intact = true);
 
   /// One tick: looks for faults, watches the link, runs the stand-alone timer. The parameters are
-  /// those of this tick: they change while the robot is disarmed.
+  /// those of this tick.
   void tick(const Parameters& parameters, const SupervisorInput& input);
 
   RequestResult request(Request request);

@@ -7,11 +7,12 @@
 //   k          is there a key (0, 1), the robot's id, number of this start
 //   kKEYID     stores a key: 32 hexadecimal digits, 2 of the robot's id; it holds from the next
 //              start on, and is never shown
-//   ml, mr     turns the left or right motor forwards at a fifth of the duty, for a second as long
-//   as
-//              button A is held, of a robot whose motors are off
+//   ml, mr     turns the left or right motor forwards at a fifth of full duty, for a second and
+//   only
+//              while button A is held and the yellow and the red LED are off
 //   O          the lines of the radio come by USB as well, until C (SLCAN: open, close)
-//   t...       a line of the radio, as if it had come by radio
+//   t...       a line of the radio, taken whole as if it had come by radio. One that comes by radio
+//              at that moment is lost with it; senders repeat
 //
 // Anything else is answered with "?".
 #include "hal/avr/console.h"
@@ -46,8 +47,7 @@ struct State {
   uint8_t in_count;  // kInSize: the line was too long
   uint8_t out[kOutSize];
   uint8_t out_count;
-  bool radio_line;  // what comes is one, up to its end
-  bool mirror;      // the radio's lines go out here as well
+  bool mirror;  // the radio's lines go out here as well
   const uint8_t* lines;
   uint8_t lines_left;
   uint8_t test_ticks;
@@ -125,6 +125,10 @@ __attribute__((noinline)) bool execute() {
   const uint8_t command = state.in[0];
   if (command == 'k') return key_command();
   if (command == 'm') return motor_command();
+  if (command == 't') {
+    state.in[state.in_count] = '\r';
+    return radio_uart_inject(state.in, static_cast<uint8_t>(state.in_count + 1));
+  }
   if (state.in_count != 1) return false;
   switch (command) {
     case 'v':
@@ -164,36 +168,30 @@ uint8_t console_tested_motor() {
 
 void console_mirror(const uint8_t* lines, uint8_t count) {
   if (count == 0 || !state.mirror) return;
+  // An answer goes between two packets, never into one: that packet is left out.
   state.lines = lines;
-  state.lines_left = count;
+  state.lines_left = state.out_count == 0 ? count : 0;
 }
 
 void console_step() {
   if (state.test_ticks != 0) --state.test_ticks;
-  if (state.out_count != 0) {
-    if (usb_serial_put(state.out, state.out_count)) state.out_count = 0;
-    return;
-  }
   if (state.lines_left != 0) {
     const uint8_t count = state.lines_left < kMirrored ? state.lines_left : kMirrored;
     if (usb_serial_put(state.lines, count)) {
       state.lines += count;
       state.lines_left = static_cast<uint8_t>(state.lines_left - count);
     }
+  } else if (state.out_count != 0 && usb_serial_put(state.out, state.out_count)) {
+    state.out_count = 0;
   }
+  if (state.out_count != 0) return;
   uint8_t byte = 0;
   for (uint8_t i = 0; i < kBytesPerStep && usb_serial_get(byte); ++i) {
-    if (state.in_count == 0 && byte == 't') state.radio_line = true;
-    const bool end = byte == '\r' || byte == '\n';
-    if (state.radio_line) {
-      radio_uart_inject(byte);
-      state.radio_line = !end;
-    } else if (end) {
+    if (byte == '\r' || byte == '\n') {
       end_line();
       return;
-    } else if (byte != ' ' && state.in_count < kInSize) {
-      state.in[state.in_count++] = byte;
     }
+    if (byte != ' ' && state.in_count < kInSize) state.in[state.in_count++] = byte;
   }
 }
 

@@ -38,7 +38,7 @@ const uint16_t image_algorithms = kAlgorithmsInBuild;
 namespace hal {
 namespace {
 
-constexpr int16_t kTestDuty = 80;  // of a motor alone, of 400
+constexpr int16_t kTestDuty = 80;  // of a motor alone: a fifth of kDutyMax, 1.5 V
 
 }  // namespace
 
@@ -114,13 +114,16 @@ __attribute__((noinline)) void read_sensors(SensorSample& sample) {
 void write_outputs(const RobotOutput& output) {
   int16_t left = output.duty_left;
   int16_t right = output.duty_right;
-  if ((left | right) == 0) {
+  uint8_t leds = output.leds;
+  // Both off: the robot itself drives nothing, and no fault is latched.
+  if ((leds & (kLedYellow | kLedRed)) == 0) {
     const uint8_t tested = avr::console_tested_motor();
     if (tested == 'l') left = kTestDuty;
     if (tested == 'r') right = kTestDuty;
+    if (tested != 0) leds |= kLedYellow;
   }
   avr::motors_drive(left, right);
-  avr::leds_write(output.leds);
+  avr::leds_write(leds);
   avr::radio_uart_write(output.radio_out, output.radio_out_count);
   avr::console_mirror(output.radio_out, output.radio_out_count);
   if (output.store_parameter != 0) {

@@ -45,10 +45,15 @@ void radio_uart_init() {
   UCSR1B = _BV(RXCIE1) | _BV(RXEN1) | _BV(TXEN1);
 }
 
-void radio_uart_inject(uint8_t byte) {
+bool radio_uart_inject(const uint8_t* bytes, uint8_t count) {
+  bool fits = false;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-    if (state.in.room() != 0) state.in.put(byte);
+    fits = state.in.room() >= count;
+    if (fits) {
+      while (count-- != 0) state.in.put(*bytes++);
+    }
   }
+  return fits;
 }
 
 uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity) {

@@ -12,8 +12,9 @@ void radio_uart_init();
 /// bytes the hardware lost, are gone and counted.
 uint8_t radio_uart_read(uint8_t* bytes, uint8_t capacity);
 
-/// As if the byte had come by radio.
-void radio_uart_inject(uint8_t byte);
+/// As if these bytes had come by radio, one behind the other. False, and none is taken, without
+/// room.
+bool radio_uart_inject(const uint8_t* bytes, uint8_t count);
 
 /// Sends bytes from where they are, in the background: they must stay as they are until then, 174
 /// us each. What is still being sent is cut off. Never waits.

@@ -71,7 +71,7 @@ DrivingState RecordedDrive::state(std::uint64_t row, double counts_per_turn) con
   state.shaft_angle_rad = {angle(samples[row].encoder_left), angle(samples[row].encoder_right)};
   state.battery = battery;
   state.battery.terminal_v = frame.battery;
-  state.battery.drawn_c += drawn_c[row];
+  state.battery.draw(drawn_c[row]);
   state.battery.energy_j = frame.energy;
   return state;
 }

@@ -11,6 +11,8 @@
 #include "firmware/robot/supervisor.h"
 #include "hal/avr/reset_cause.h"
 #include "host_sim/devices/mcu/board.h"
+#include "schema/class_values.h"
+#include "tests/mcu/bench.h"
 #include "tests/mcu/ground_lines.h"
 #include "tests/mcu/images.h"
 #include "tests/mcu/usb_host.h"
@@ -134,6 +136,51 @@ TEST_F(BoardParts, StoresTheDefaultsAndRestarts) {
   EXPECT_EQ(mcu_.starts(), 2);
   open_console();
   EXPECT_EQ(cause(), static_cast<int>(ResetCause::kRequested));
+}
+
+// It needs neither a key nor a radio: so it is the robot that has to be sure that nobody is hurt.
+TEST(ConsoleMotorTest, TurnsAMotorOfADisarmedRobotWhileButtonAIsHeld) {
+  Bench bench;
+  bench.ground_station = true;
+  bench.run_ms(500);
+  UsbHost usb(bench.mcu);
+  ASSERT_TRUE(usb.plug_in());
+  ASSERT_TRUE(usb.set_line(115200, true));
+  const auto hold_button = [&](bool held) { bench.mcu.set_pin({'B', 3}, !held); };
+  using Duties = std::pair<int, int>;
+  const auto duties_after = [&](const char* order, int ms) {
+    if (*order != 0) usb.send(order);
+    bench.run_ms(ms);
+    return Duties(bench.left_duty(), bench.right_duty());
+  };
+  hold_button(false);
+  EXPECT_EQ(duties_after("ml\n", 100), Duties(0, 0));
+  hold_button(true);
+  EXPECT_EQ(duties_after("", 100), Duties(80, 0)) << "within the second";
+  hold_button(false);
+  EXPECT_EQ(duties_after("", 30), Duties(0, 0));
+  hold_button(true);
+  EXPECT_EQ(duties_after("mr\n", 100), Duties(0, 80));
+  EXPECT_EQ(duties_after("", 1000), Duties(0, 0)) << "the second is over";
+  for (const char* nonsense : {"m\n", "mx\n", "mll\n"}) {
+    EXPECT_EQ(duties_after(nonsense, 100), Duties(0, 0)) << nonsense;
+    EXPECT_EQ(usb.listen_ms(50), "?\n") << "nothing more is taken before that is fetched";
+  }
+  bench.set_parameter(&Parameters::algorithm,
+                      static_cast<std::int16_t>(message::LevelingAlgorithm::kDrive));
+  bench.run_ms(5000);
+  for (const CommandOp op : {CommandOp::kArm, CommandOp::kRun, CommandOp::kStop}) bench.command(op);
+  bench.run_ms(500);
+  ASSERT_EQ(message::Heartbeat::unpack(bench.last_frame(kIdHeartbeat).data).state,
+            static_cast<uint8_t>(message::HeartbeatState::kStopped));
+  EXPECT_EQ(duties_after("ml\n", 100), Duties(0, 0)) << "its controllers are at work";
+  bench.accel_z = -4096;
+  bench.run_ms(2000);
+  ASSERT_EQ(message::Heartbeat::unpack(bench.last_frame(kIdHeartbeat).data).state,
+            static_cast<uint8_t>(message::HeartbeatState::kFault));
+  bench.accel_z = 4096;
+  bench.run_ms(1000);
+  EXPECT_EQ(duties_after("ml\n", 100), Duties(0, 0)) << "with a latched fault";
 }
 
 TEST_F(BoardParts, RefusesNonsenseOnTheConsole) {

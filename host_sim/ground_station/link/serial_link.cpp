@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kSerialLookAgain{500};
 // As slcand sends them. By radio robots ignore them.
 constexpr std::string_view kSlcanOpen = "\rO\r";
+constexpr size_t kMaxAnswer = 100;
 constexpr std::string_view kSlcanClose = "\rC\r";
 
 speed_t speed_of(int baud) {
@@ -181,6 +182,13 @@ void SerialLink::take_lines(std::span<const uint8_t> bytes, uint64_t now_us,
       ++status_.received;
     }
     status_.refused += static_cast<uint8_t>(parser.rejected() - before);
+    // Lines of the radio end in \r, those of a console in \n.
+    if (byte == '\n') answer_ = line_;
+    if (byte == '\n' || byte == '\r') {
+      line_.clear();
+    } else if (line_.size() < kMaxAnswer) {
+      line_ += static_cast<char>(byte);
+    }
   }
 }
 

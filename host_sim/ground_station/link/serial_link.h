@@ -10,7 +10,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "host_sim/ground_station/link/file_descriptor.h"
 #include "host_sim/ground_station/link/link.h"
@@ -38,6 +40,8 @@ class SerialLink : public Link {
   bool send(const CanFrame& frame) override;
   /// Text for the console of a board whose USB the port is. False when it was not taken.
   bool send_text(std::string_view text);
+  /// The console's newest answer, once; empty when there is none.
+  std::string take_answer() { return std::exchange(answer_, {}); }
   const LinkStatus& status() const override { return status_; }
   const std::string& name() const override { return name_; }
 
@@ -61,6 +65,8 @@ class SerialLink : public Link {
   XbeeFrameType heard_type_ = XbeeFrameType::kReceive;
   /// Lines of several robots are distinguished by their modules' addresses; 0 without API mode.
   std::map<uint64_t, SlcanParser> parsers_;
+  std::string line_;
+  std::string answer_;
 };
 
 }  // namespace screed

@@ -39,16 +39,22 @@ struct Battery {
     return since_start_s * capacity_c / used_c;
   }
 
-  /// Draws `motor_current_a` (and the electronics' share) for dt seconds.
-  void step(double motor_current_a, double dt) {
-    if (spares > 0 && charge() < kReplacedAt) {
-      --spares;
+  /// Takes that much charge out, A s, and puts spares in when it is time.
+  void draw(double charge_c) {
+    used_c += charge_c;
+    const double usable_c = (1.0 - kReplacedAt) * capacity_c;
+    for (; spares > 0 && drawn_c + charge_c > usable_c; --spares) {
+      charge_c -= std::max(0.0, usable_c - drawn_c);
       drawn_c = 0.0;
     }
+    drawn_c += charge_c;
+  }
+
+  /// Draws `motor_current_a` (and the electronics' share) for dt seconds.
+  void step(double motor_current_a, double dt) {
     const double current = motor_current_a + electronics_a;
     terminal_v = std::max(0.0, cells * nimh_cell_v(charge()) - resistance_ohm * current);
-    drawn_c += current * dt;
-    used_c += current * dt;
+    draw(current * dt);
     energy_j += terminal_v * current * dt;
   }
 };

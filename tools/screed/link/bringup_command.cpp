@@ -2,18 +2,23 @@
 // what is wrong. Over the board's USB cable, which carries the radio's lines (docs/bringup.md).
 //
 // Steps wait for what the robot shows, not for a key: whoever turns a track by hand has no hand
-// left. Exit codes: 0 all passed, 1 a step did not, 2 wrong input, 130 interrupted.
+// left. Exit codes: 0 none failed, 1 a step did, 2 wrong input, 130 interrupted.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <iostream>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "firmware/protocol/node.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/ground_station/link/command_session.h"
 #include "host_sim/ground_station/link/robot_history.h"
@@ -32,125 +37,175 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPump{20};
 constexpr uint64_t kSecond_us = 1'000'000;
-// To be moved by hand: some 20 mm of track.
-constexpr int kByHand_counts = 40;
-// What a track that stands still may tremble by.
-constexpr int kStill_counts = 8;
+// Until then a robot has said everything that it says.
+constexpr double kHeard_s = 5.0;
+// A track that was moved, by hand or by its motor.
+constexpr double kMoved_mm = 20.0;
 constexpr double kMinTurn_deg = 45.0;
-constexpr double kField_mg[] = {200.0, 800.0};  ///< of the earth, with the scale's error
+// Of a robot at rest, within a second: noise of the chips is far below.
+constexpr double kMaxRestRate_dps = 4.0;
+constexpr double kMaxRestAccel_g = 0.06;
+// 1 g by an accelerometer that nobody has calibrated.
+constexpr double kGravity_g[] = {0.8, 1.2};
+// The earth's field, 250 to 650 mG, with the magnetometer's scale error.
+constexpr double kField_mg[] = {200.0, 800.0};
 
 struct BringupArguments {
   LinkArguments link;
   std::optional<std::string> radio;
-  std::string board = kDefaultBoard;
   double patience_s = 30.0;
   std::vector<std::string> only;
 };
 
-enum class Side : uint8_t { kLeft, kRight };
+/// What a step found.
+struct Outcome {
+  enum class Kind : uint8_t { kPass, kNote, kNotTried, kFail } kind;
+  std::string text = "";
 
-const char* name_of(Side side) {
-  return side == Side::kLeft ? "left" : "right";
+  bool failed() const { return kind == Kind::kFail; }
+};
+Outcome pass() {
+  return {Outcome::Kind::kPass};
+}
+Outcome note(std::string text) {
+  return {Outcome::Kind::kNote, std::move(text)};
+}
+Outcome not_tried(std::string text) {
+  return {Outcome::Kind::kNotTried, std::move(text)};
+}
+Outcome fail(std::string text) {
+  return {Outcome::Kind::kFail, std::move(text)};
 }
 
-struct Counts {
-  int left = 0;
-  int right = 0;
-  bool stirred = false;  ///< one of them changed, and may have come back
-};
+void print(const std::string& step, const Outcome& outcome) {
+  constexpr const char* kWords[] = {"pass", "pass, but ", "not tried: ", "FAIL: "};
+  std::printf("%-14s %s%s\n", step.c_str(), kWords[static_cast<size_t>(outcome.kind)],
+              outcome.text.c_str());
+  std::fflush(stdout);
+}
+
+void ask(const std::string& what) {
+  std::printf("  > %s\n", what.c_str());
+  std::fflush(stdout);
+}
+
+std::string text(const char* pattern, double number) {
+  char line[96];
+  std::snprintf(line, sizeof line, pattern, number);
+  return line;
+}
+
+constexpr const char* kSides[] = {"left", "right"};
+constexpr size_t kLeftSide = 0;
+constexpr size_t kRightSide = 1;
 
 class Bringup {
  public:
   explicit Bringup(const BringupArguments& arguments)
       : arguments_(arguments),
-        link_(open_serial_link(arguments.link)),
-        session_(*link_, {command_key(arguments.link),
-                          true,
-                          [this](const LinkFrame& frame) { on_frame(frame); },
-                          {},
-                          [] { stop_if_interrupted("the bring-up"); }}) {}
+        link_(*arguments.link.port, SerialOptions{}),
+        session_(link_, {command_key(arguments.link),
+                         true,
+                         [this](const LinkFrame& frame) { on_frame(frame); },
+                         {},
+                         [] { stop_if_interrupted("the bring-up"); }}) {}
 
   int run() {
     struct Step {
-      const char* name;
-      std::function<std::string()> problem;
+      std::string name;
+      std::vector<std::string> needs;  ///< without them it would say something wrong
+      std::function<Outcome()> outcome;
     };
     const std::vector<Step> steps = {
-        {"board", [this] { return board(); }},
-        {"chips", [this] { return chips(); }},
-        {"battery", [this] { return battery(); }},
-        {"level", [this] { return level(); }},
-        {"left encoder", [this] { return encoder(Side::kLeft); }},
-        {"right encoder", [this] { return encoder(Side::kRight); }},
-        {"left motor", [this] { return motor(Side::kLeft); }},
-        {"right motor", [this] { return motor(Side::kRight); }},
-        {"turn", [this] { return turn(); }},
-        {"nose", [this] { return nose(); }},
-        {"magnetometer", [this] { return magnetometer(); }},
-        {"radio", [this] { return radio(); }},
-        {"arm", [this] { return arm(); }},
+        {"board", {}, [this] { return board(); }},
+        {"chips", {}, [this] { return chips(); }},
+        {"level", {"chips"}, [this] { return level(); }},
+        {"left encoder", {}, [this] { return encoder(kLeftSide); }},
+        {"right encoder", {}, [this] { return encoder(kRightSide); }},
+        {"battery", {}, [this] { return battery(); }},
+        {"left motor",
+         {"left encoder", "right encoder", "battery"},
+         [this] { return motor(kLeftSide); }},
+        {"right motor",
+         {"left encoder", "right encoder", "battery"},
+         [this] { return motor(kRightSide); }},
+        {"turn", {"chips", "level"}, [this] { return turn(); }},
+        {"nose", {"chips", "level"}, [this] { return nose(); }},
+        {"magnetometer", {"chips"}, [this] { return magnetometer(); }},
+        {"radio", {}, [this] { return radio(); }},
+        {"arm", {}, [this] { return arm(); }},
     };
-    for (const std::string& name : arguments_.only) {
-      if (std::none_of(steps.begin(), steps.end(),
-                       [&](const Step& step) { return name == step.name; }))
+    const std::set<std::string> only(arguments_.only.begin(), arguments_.only.end());
+    for (const std::string& name : only) {
+      if (std::none_of(steps.begin(), steps.end(), [&](const Step& it) { return it.name == name; }))
         throw InputError("--only " + name + ": no step of this name; see screed bringup --help");
     }
-    int failed = 0;
+    std::set<std::string> failed;
     for (const Step& step : steps) {
-      const auto& only = arguments_.only;
-      const bool first = step.name == std::string("board");
-      if (!first && !only.empty() && std::find(only.begin(), only.end(), step.name) == only.end())
-        continue;
-      if (step.name == std::string("radio") && !arguments_.radio.has_value()) {
-        std::printf("%-14s not tried: name its module's port, --radio DEVICE\n", step.name);
-        continue;
-      }
-      const std::string problem = step.problem();
-      std::printf("%-14s %s\n", step.name, problem.empty() ? "pass" : ("FAIL: " + problem).c_str());
-      std::fflush(stdout);
-      if (problem.empty()) continue;
-      ++failed;
+      const bool first = &step == steps.data();
+      if (!first && !only.empty() && only.count(step.name) == 0) continue;
+      const auto broken = std::find_if(step.needs.begin(), step.needs.end(),
+                                       [&](const auto& name) { return failed.count(name) != 0; });
+      const Outcome outcome =
+          broken != step.needs.end() ? not_tried("first the " + *broken) : step.outcome();
+      print(step.name, outcome);
+      if (!outcome.failed()) continue;
+      failed.insert(step.name);
       if (first) break;  // nothing else can be seen
     }
-    return failed == 0 ? 0 : 1;
+    return failed.empty() ? 0 : 1;
   }
 
  private:
+  using Vector = std::array<double, 3>;
+
+  // ---- what the robot shows ----
+
   void on_frame(const LinkFrame& frame) {
     const RobotHistory* const robot = fleet_.add_frame(frame);
     if (robot == nullptr) return;
     robot_ = robot;
+    node_ = node_of(frame.frame.id);
     const std::string_view name = find_message(frame.frame.id)->name;
     if (name == "ENCODERS") count();
     if (name == "GYRO_RAW") integrate(frame.time_us);
   }
 
-  /// Counts since count_from_here(), which do not wrap.
+  /// Counts since clear_counts(), which do not wrap.
   void count() {
-    const auto step = [](int64_t now, int64_t before) {
-      return static_cast<int16_t>(static_cast<uint16_t>(now - before));
-    };
-    const int64_t left = *robot_->raw("encoders.left");
-    const int64_t right = *robot_->raw("encoders.right");
-    if (counted_) {
-      counts_.left += step(left, left_);
-      counts_.right += step(right, right_);
-      counts_.stirred |= left != left_ || right != right_;
+    const int64_t now[] = {*robot_->raw("encoders.left"), *robot_->raw("encoders.right")};
+    for (const size_t side : {kLeftSide, kRightSide}) {
+      if (counted_) {
+        counts_[side] += static_cast<int16_t>(static_cast<uint16_t>(now[side] - last_count_[side]));
+        stirred_[side] |= now[side] != last_count_[side];
+      }
+      last_count_[side] = now[side];
     }
-    left_ = left;
-    right_ = right;
     counted_ = true;
   }
+  void clear_counts() {
+    counts_ = {};
+    stirred_ = {};
+  }
+  bool moved(size_t side) const { return std::abs(counts_[side]) >= moved_counts_; }
+  bool either_moved() const { return moved(kLeftSide) || moved(kRightSide); }
 
-  /// Turned about each axis since turn_from_here(), deg; the robot stood still before.
+  /// Turned about each axis since it was cleared, deg.
   void integrate(uint64_t now_us) {
-    const double rate[3] = {*robot_->value("gyro_raw.x"), *robot_->value("gyro_raw.y"),
-                            *robot_->value("gyro_raw.z")};
     const double passed_s = static_cast<double>(now_us - turned_us_) * 1e-6;
     turned_us_ = now_us;
-    for (int axis = 0; axis < 3; ++axis) {
+    const Vector rate = vector("gyro_raw");
+    for (size_t axis = 0; axis < 3; ++axis) {
       if (passed_s < 1.0) turned_deg_[axis] += (rate[axis] - rest_dps_[axis]) * passed_s;
     }
+  }
+
+  double value(const std::string& path) const {
+    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+    return robot_ == nullptr ? kNothing : robot_->value(path).value_or(kNothing);
+  }
+  Vector vector(const std::string& message) const {
+    return {value(message + ".x"), value(message + ".y"), value(message + ".z")};
   }
 
   /// False when the time is over before.
@@ -166,216 +221,277 @@ class Bringup {
   void listen(double seconds) {
     wait_until([] { return false; }, seconds);
   }
-  double value(const char* path) const {
-    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-    return robot_ == nullptr ? kNothing : robot_->value(path).value_or(kNothing);
-  }
   /// What the robot measures; some of it comes once a second. Not a number where it does not say
   /// so.
-  double heard(const char* path) {
-    constexpr double kHeard_s = 5.0;
+  double heard(const std::string& path) {
     wait_until([&] { return !std::isnan(value(path)); }, kHeard_s);
     return value(path);
   }
-  static void ask(const std::string& what) { std::cout << "  > " << what << std::endl; }
-  static std::string text(const char* pattern, double number) {
-    char line[96];
-    std::snprintf(line, sizeof line, pattern, number);
-    return line;
+  /// The words of the console's answer; none when there is no console.
+  std::vector<std::string> console(const std::string& command) {
+    constexpr double kAnswer_s = 0.5;
+    std::string answer;
+    link_.take_answer();
+    link_.send_text(command + "\r");
+    wait_until([&] { return !(answer = link_.take_answer()).empty(); }, kAnswer_s);
+    std::istringstream words(answer);
+    return {std::istream_iterator<std::string>(words), {}};
   }
 
-  std::string board() {
-    if (!std::isnan(heard("health.reset_cause"))) return "";
-    return "no telemetry in 5 s: is the board on, flashed (make flash), and this its port? By "
-           "radio: BD, ID and CH of both modules (docs/link.md)";
+  /// Waits until the tracks have stood for a second: what moves them belongs to the step before.
+  bool wait_for_still_tracks() {
+    return wait_until(
+        [this] {
+          clear_counts();
+          listen(1.0);
+          return !stirred_[kLeftSide] && !stirred_[kRightSide];
+        },
+        arguments_.patience_s);
   }
 
-  std::string chips() {
+  /// Waits until the robot has been at rest for a second, and takes what its gyroscope and its
+  /// accelerometer say then: no chip of a gyroscope says 0.
+  bool wait_for_rest() {
+    return wait_until([this] { return rests_for_a_second(); }, arguments_.patience_s);
+  }
+  bool rests_for_a_second() {
+    std::vector<Vector> rates;
+    std::vector<Vector> gravities;
+    wait_until(
+        [&] {
+          rates.push_back(vector("gyro_raw"));
+          gravities.push_back(vector("accel_raw"));
+          return false;
+        },
+        1.0);
+    const auto mean_where_within = [](const std::vector<Vector>& all, double limit, Vector& mean) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const auto less = [axis](const Vector& a, const Vector& b) { return a[axis] < b[axis]; };
+        const auto [least, most] = std::minmax_element(all.begin(), all.end(), less);
+        // Also false of what is not there.
+        if (!((*most)[axis] - (*least)[axis] <= limit)) return false;
+        mean[axis] =
+            std::accumulate(all.begin(), all.end(), 0.0, [&](double sum, const Vector& it) {
+              return sum + it[axis] / static_cast<double>(all.size());
+            });
+      }
+      return true;
+    };
+    return mean_where_within(rates, kMaxRestRate_dps, rest_dps_) &&
+           mean_where_within(gravities, kMaxRestAccel_g * 1e3, rest_mg_);
+  }
+
+  // ---- steps ----
+
+  Outcome board() {
+    if (std::isnan(heard("health.reset_cause")))
+      return fail("no telemetry in 5 s: is the board on, flashed (make flash), and this its port?");
+    // screed VERSION BOARD ...
+    std::vector<std::string> words;
+    const auto answered = [&] {
+      words = console("v");
+      return words.size() > 3 && words[0] == "screed";
+    };
+    if (!wait_until(answered, kHeard_s))
+      return fail(
+          "telemetry, but no console: this is the port of a radio module; name the board's");
+    board_ = words[2];
+    const double count_mm = board_constants_of(board_).count_um_q4 / 16.0 * 1e-3;
+    moved_counts_ = static_cast<int>(std::lround(kMoved_mm / count_mm));
+    return pass();
+  }
+
+  Outcome chips() {
     const bool first = value("health.accel_mag_chip") != 0.0;
     const bool gyro = value("health.gyro_chip") != 0.0;
     const bool baro = value("health.baro_chip") != 0.0;
     if (first && gyro && baro)
-      return "no chip of the AltIMU-10 answers: SDA and SCL swapped, or no supply or ground";
-    if (first) return "the LSM303D (accelerometer, magnetometer) does not answer";
-    if (gyro) return "the L3GD20H (gyroscope) does not answer";
-    return baro ? "the LPS25H (barometer) does not answer; nothing needs it" : "";
+      return fail("no chip of the AltIMU-10 answers: SDA and SCL swapped, or no supply or ground");
+    if (first) return fail("the LSM303D (accelerometer, magnetometer) does not answer");
+    if (gyro) return fail("the L3GD20H (gyroscope) does not answer");
+    return baro ? note("the LPS25H (barometer) does not answer; nothing needs it") : pass();
   }
 
-  std::string battery() {
-    const double volts = heard("power.battery") * 1e-3;
-    const int cells = board_battery_cells(arguments_.board);
-    if (volts < 1.0)
-      return text("%.2f V: the battery is off, or the wire to the board's divider is loose", volts);
+  Outcome level() {
+    ask("put the robot on level ground and leave it");
+    if (!wait_for_rest()) return fail("it is never at rest: it was not left, or a chip is loose");
+    size_t up = 0;
+    for (const size_t axis : {1U, 2U}) {
+      if (std::abs(rest_mg_[axis]) > std::abs(rest_mg_[up])) up = axis;
+    }
+    const double g = std::abs(rest_mg_[up]) * 1e-3;
+    if (!(g > kGravity_g[0] && g < kGravity_g[1]))
+      return fail(
+          text("%.2f g along the axis that points up or down: it does not lie level, or the "
+               "accelerometer does not measure gravity",
+               g));
+    if (up != 2 || rest_mg_[2] < 0.0)
+      return fail(std::string("the IMU's ") + "XYZ"[up] + " axis points " +
+                  (rest_mg_[up] > 0.0 ? "up" : "down") + ": Z has to (docs/wiring.md)");
+    return pass();
+  }
+
+  Outcome encoder(size_t side) {
+    const size_t other = 1 - side;
+    const std::string name = kSides[side];
+    if (!wait_for_still_tracks()) return fail("the tracks never stand still");
+    ask("turn the " + name + " track forwards by hand, a hand's width");
+    if (!wait_until([this] { return either_moved(); }, arguments_.patience_s)) {
+      return fail(stirred_[side]
+                      ? "the count goes to and fro: one channel of the encoder is missing"
+                      : "no count: the encoder's supply, or both of its channels");
+    }
+    if (moved(other) && !stirred_[side])
+      return fail(std::string("the ") + kSides[other] +
+                  " encoder counts: the plugs of both are swapped");
+    if (!moved(side)) return fail("both tracks count: turn this one alone");
+    if (counts_[side] < 0) return fail("it counts backwards: channels A and B are swapped");
+    return pass();
+  }
+
+  Outcome battery() {
+    ask("switch the battery on");
+    if (!wait_until([this] { return value("power.battery") >= 1e3; }, arguments_.patience_s))
+      return fail(text("%.2f V: the battery is off, or the wire to the board's divider is loose",
+                       value("power.battery") * 1e-3));
+    const double volts = value("power.battery") * 1e-3;
+    const int cells = board_battery_cells(board_);
+    if (cells == 0) return note(text("%.2f V is not judged: the board has no battery.ini", volts));
     const std::optional<double> charge = battery_charge(volts, cells);
     if (!charge.has_value())
-      return text("%.2f V", volts) + " is no voltage of " + std::to_string(cells) + " NiMH cells";
-    return *charge < kLowCharge ? battery_text(volts, cells) + ": charge it" : "";
+      return fail(text("%.2f V", volts) + " is no voltage of " + std::to_string(cells) +
+                  " NiMH cells");
+    return *charge < kLowCharge ? note(battery_text(volts, cells) + ": charge it") : pass();
   }
 
-  std::string level() {
-    ask("put the robot on level ground and leave it");
-    listen(1.0);
-    for (int axis = 0; axis < 3; ++axis) rest_dps_[axis] = value(kGyro[axis]);
-    const double g[3] = {value("accel_raw.x") * 1e-3, value("accel_raw.y") * 1e-3,
-                         value("accel_raw.z") * 1e-3};
-    const char* const axes = "XYZ";
-    int up = 0;
-    for (int axis = 1; axis < 3; ++axis) {
-      if (std::abs(g[axis]) > std::abs(g[up])) up = axis;
-    }
-    if (!(std::abs(g[up]) > 0.8 && std::abs(g[up]) < 1.2))
-      return text("%.2f g in all: the accelerometer does not measure gravity, or the robot moves",
-                  std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]));
-    if (up != 2 || g[2] < 0.0)
-      return std::string("the IMU's ") + axes[up] + " axis points " +
-             (g[up] > 0.0 ? "up" : "down") + ": Z has to (docs/wiring.md)";
-    return "";
+  /// The board turns the motor only while button A is held, and says whether it is; nothing where
+  /// no answer came.
+  std::optional<bool> order_motor(size_t side) {
+    constexpr unsigned long kButtonA = 1;
+    link_.send_text(side == kLeftSide ? "ml\r" : "mr\r");
+    const std::vector<std::string> words = console("v");
+    if (words.empty()) return std::nullopt;
+    return (std::strtoul(words.back().c_str(), nullptr, 16) & kButtonA) != 0;
   }
 
-  std::string encoder(Side side) {
-    const std::string name = name_of(side);
-    counts_ = {};
-    ask("turn the " + name + " track forwards by hand, a hand's width");
-    const bool moved = wait_until(
-        [this] {
-          return std::abs(counts_.left) >= kByHand_counts ||
-                 std::abs(counts_.right) >= kByHand_counts;
-        },
-        arguments_.patience_s);
-    const auto [own, other] = of(side);
-    if (!moved) {
-      return counts_.stirred ? "the count goes to and fro: one channel of the encoder is missing"
-                             : "no count: the encoder's supply, or both of its channels";
-    }
-    if (std::abs(other) >= kByHand_counts)
-      return std::string("the ") + name_of(side == Side::kLeft ? Side::kRight : Side::kLeft) +
-             " encoder counts: the plugs of both are swapped";
-    if (own < 0) return "it counts backwards: channels A and B are swapped";
-    return "";
-  }
-
-  std::string motor(Side side) {
-    const std::string name = name_of(side);
-    ask("put the robot on a block, tracks in the air; hold button A of the board");
-    const double end_s = arguments_.patience_s;
-    counts_ = {};
-    const char* const order = side == Side::kLeft ? "ml\r" : "mr\r";
-    uint64_t next_us = 0;
-    const bool moved = wait_until(
-        [&] {
-          if (wall_clock_us() >= next_us) {
-            link_->send_text(order);
-            next_us = wall_clock_us() + kSecond_us / 2;
-          }
-          return std::abs(counts_.left) >= kByHand_counts ||
-                 std::abs(counts_.right) >= kByHand_counts;
-        },
-        end_s);
-    const auto [own, other] = of(side);
+  Outcome motor(size_t side) {
+    const size_t other = 1 - side;
+    constexpr double kHeld_s = 4.0;
+    if (!wait_for_still_tracks()) return fail("the tracks never stand still");
+    ask("put the robot on a block, tracks in the air; then hold button A of the board");
+    if (!wait_until([&] { return order_motor(side) == true; }, arguments_.patience_s))
+      return fail("button A was not held");
+    clear_counts();
+    const bool turned =
+        wait_until([&] { return order_motor(side) == false || either_moved(); }, kHeld_s) &&
+        either_moved();
+    const std::array<int, 2> counts = counts_;
+    const bool own_moved = moved(side);
     ask("let go of it");
-    listen(1.5);
-    if (!moved) return "nothing moves: button A not held, battery off, or the motor's wires";
-    if (std::abs(own) <= kStill_counts && std::abs(other) >= kByHand_counts)
-      return "the other track moves: the motors' plugs are swapped";
-    if (own < 0) return "it runs backwards: the motor's two wires are swapped";
-    return "";
+    wait_for_still_tracks();
+    if (!turned) return fail("nothing moves while button A is held: the motor's wires");
+    if (!own_moved)
+      return fail(std::string("the ") + kSides[other] +
+                  " track moves: the motors' plugs are swapped");
+    if (counts[side] < 0) return fail("it runs backwards: the motor's two wires are swapped");
+    return pass();
   }
 
-  std::string turn() {
-    std::fill(std::begin(turned_deg_), std::end(turned_deg_), 0.0);
-    ask("turn the whole robot to its left, a quarter turn");
-    return turned_about(2, 1.0, "to the left");
+  Outcome turn() {
+    return turned_about(2, 1.0, "turn the whole robot to its left, a quarter turn",
+                        "it says to the right: was it turned to its left?");
   }
-
-  std::string nose() {
-    std::fill(std::begin(turned_deg_), std::end(turned_deg_), 0.0);
-    ask("lift its nose until it stands on its tail, and put it down again");
-    // Nose up is a turn to the negative side of y, which points left.
-    return turned_about(1, -1.0, "nose up");
+  // Nose up is a turn to the negative side of y, which points left.
+  Outcome nose() {
+    return turned_about(1, -1.0, "lift its nose until it stands on its tail, and put it down again",
+                        "it says nose down: the IMU is turned by 180 degrees");
   }
-
-  std::string turned_about(int axis, double sense, const char* how) {
+  Outcome turned_about(size_t axis, double sense, const char* what, const char* other_sense) {
+    if (!wait_for_rest()) return fail("it is never at rest");
+    turned_deg_ = {};
+    ask(what);
     const auto most = [this] {
-      int found = 0;
-      for (int i = 1; i < 3; ++i) {
-        if (std::abs(turned_deg_[i]) > std::abs(turned_deg_[found])) found = i;
-      }
-      return found;
+      const auto less = [](double a, double b) { return std::abs(a) < std::abs(b); };
+      return static_cast<size_t>(std::max_element(turned_deg_.begin(), turned_deg_.end(), less) -
+                                 turned_deg_.begin());
     };
     if (!wait_until([&] { return std::abs(turned_deg_[most()]) >= kMinTurn_deg; },
                     arguments_.patience_s))
-      return "the gyroscope has not seen a turn";
-    const char* const axes = "XYZ";
+      return fail("the gyroscope has not seen a turn");
     if (most() != axis)
-      return std::string("turned ") + how + ", it says about " + axes[most()] +
-             ": the IMU is turned";
-    if (sense * turned_deg_[axis] < 0.0)
-      return std::string("turned ") + how +
-             ", it says the other way: the IMU is turned by 180 degrees";
-    return "";
+      return fail(std::string("it says about ") + "XYZ"[most()] + ": the IMU is turned");
+    return sense * turned_deg_[axis] < 0.0 ? fail(other_sense) : pass();
   }
 
-  std::string magnetometer() {
-    const double field =
-        std::sqrt(std::pow(heard("mag_raw.x"), 2) + std::pow(value("mag_raw.y"), 2) +
-                  std::pow(value("mag_raw.z"), 2));
-    if (field >= kField_mg[0] && field <= kField_mg[1]) return "";
-    return text(
-        "%.0f mG: iron or a motor beside it; screed calibrate takes what does not change off",
-        field);
+  Outcome magnetometer() {
+    heard("mag_raw.x");
+    const Vector field = vector("mag_raw");
+    const double length = std::hypot(field[0], field[1], field[2]);
+    if (std::isnan(length)) return fail("no measurement");
+    if (length >= kField_mg[0] && length <= kField_mg[1]) return pass();
+    return note(
+        text("%.0f mG: iron or a motor beside it; screed calibrate takes off what does not "
+             "change",
+             length));
   }
 
-  std::string radio() {
-    LinkArguments by_radio = arguments_.link;
-    by_radio.port = arguments_.radio;
-    by_radio.pty.reset();
-    const std::unique_ptr<Link> link = open_link(by_radio);
-    FleetView heard;
-    std::vector<LinkFrame> frames;
-    const uint64_t end_us = wall_clock_us() + 5 * kSecond_us;
-    while (heard.robots().empty() && wall_clock_us() < end_us) {
+  /// Meanwhile the cable is silent: the robot hears this ground station by radio or not at all.
+  Outcome radio() {
+    if (!arguments_.radio.has_value()) return not_tried("name its module's port, --radio DEVICE");
+    constexpr uint64_t kListened_us = 4 * kSecond_us;
+    SerialLink link(*arguments_.radio, SerialOptions{});
+    FleetView fleet;
+    CommandSession session(
+        link, {test_key(), true, [&](const LinkFrame& frame) { fleet.add_frame(frame); }, {}});
+    const uint64_t end_us = wall_clock_us() + kListened_us;
+    while (wall_clock_us() < end_us) {
       stop_if_interrupted("the bring-up");
-      frames.clear();
-      link->receive(kPump, frames);
-      for (const LinkFrame& frame : frames) heard.add_frame(frame);
+      session.pump(kPump);
     }
-    if (!heard.robots().empty()) return "";
-    return "nothing by radio: BD 6, AP 0, the same ID and CH on both modules; DOUT to the board's "
-           "RX";
+    const RobotHistory* const robot = fleet.robot(node_);
+    if (robot == nullptr)
+      return fail(
+          "nothing of it by radio: BD 6, AP 0, the same ID and CH on both modules; the "
+          "board's TX to its module's DIN");
+    if (robot->raw("heartbeat.link_alive").value_or(0) == 0)
+      return fail("it sends, and hears nothing: its module's DOUT to the board's RX");
+    return pass();
   }
 
-  std::string arm() {
+  Outcome arm() {
+    if (!arguments_.link.key.has_value()) return not_tried("name the robot's key, --key FILE");
     ask("put it on the ground and leave it");
-    std::string reason = "no answer";
-    const auto armed = [&] {
-      const std::optional<CommandAnswer> answer = session_.run(CommandOp::kArm);
-      if (answer.has_value() && answer->done()) return true;
-      if (answer.has_value()) reason = answer_text(*answer, robot_->latest(), wall_clock_us());
-      return false;
+    std::optional<CommandAnswer> answer;
+    // Right after its start the robot has to lie still for some seconds.
+    const auto answered = [&] {
+      answer = session_.run(CommandOp::kArm);
+      return answer.has_value() &&
+             answer->result != static_cast<uint8_t>(message::CommandAckResult::kNotReady);
     };
-    if (!wait_until(armed, arguments_.patience_s)) return reason;
-    session_.run(CommandOp::kDisarm);
-    return "";
+    wait_until(answered, arguments_.patience_s);
+    if (!answer.has_value()) return fail("no answer");
+    if (!answer->done()) return fail(answer_text(*answer, robot_->latest(), wall_clock_us()));
+    const std::optional<CommandAnswer> disarmed = session_.run(CommandOp::kDisarm);
+    if (!disarmed.has_value() || !disarmed->done())
+      return fail("it is armed and was not disarmed: screed send disarm");
+    return pass();
   }
-
-  std::pair<int, int> of(Side side) const {
-    return side == Side::kLeft ? std::pair(counts_.left, counts_.right)
-                               : std::pair(counts_.right, counts_.left);
-  }
-
-  static constexpr const char* kGyro[] = {"gyro_raw.x", "gyro_raw.y", "gyro_raw.z"};
 
   const BringupArguments& arguments_;
-  std::unique_ptr<SerialLink> link_;
+  SerialLink link_;
   CommandSession session_;
   FleetView fleet_;
   const RobotHistory* robot_ = nullptr;
+  uint8_t node_ = 1;
+  std::string board_;
+  int moved_counts_ = 1;
   bool counted_ = false;
-  int64_t left_ = 0;
-  int64_t right_ = 0;
-  Counts counts_;
-  double rest_dps_[3] = {};
-  double turned_deg_[3] = {};
+  std::array<int64_t, 2> last_count_{};
+  std::array<int, 2> counts_{};
+  std::array<bool, 2> stirred_{};  ///< the count changed, and may have come back
+  Vector rest_dps_{};
+  Vector rest_mg_{};
+  Vector turned_deg_{};
   uint64_t turned_us_ = 0;
 };
 
@@ -385,17 +501,18 @@ void register_bringup_command(Command& root, Program& program) {
   auto arguments = std::make_shared<BringupArguments>();
   Command* command = root.add_subcommand(
       "bringup", "Lead through the first hour of a robot: board, sensors, encoders, motors, radio");
-  add_link_options(*command, arguments->link);
+  command
+      ->add_option("--port", arguments->link.port,
+                   "The board's own serial port on USB, e.g. /dev/ttyACM0")
+      ->type_name("DEVICE")
+      ->required();
   add_key_option(*command, arguments->link);
   command
       ->add_option("--radio", arguments->radio, "Serial port of the radio module, to test it too")
       ->type_name("DEVICE");
-  command->add_option("--board", arguments->board, "Board of the robot, for its battery")
-      ->type_name("NAME")
-      ->show_default();
   command
       ->add_option("--only", arguments->only,
-                   "Only this step: chips, battery, level, \"left encoder\", \"right encoder\", "
+                   "Only this step: chips, level, \"left encoder\", \"right encoder\", battery, "
                    "\"left motor\", \"right motor\", turn, nose, magnetometer, radio, arm")
       ->type_name("STEP");
   add_number(*command, "--patience", arguments->patience_s,

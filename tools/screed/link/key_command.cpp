@@ -122,7 +122,9 @@ CommandKey random_key(uint8_t robot_id) {
 }
 
 bool provision_key(const AskConsole& ask, const std::string& port, const GetKey& get_key) {
-  ask("");  // ends what somebody has typed
+  // Ends what somebody has typed, and the radio's lines, which somebody may have asked for.
+  ask("");
+  ask("C");
   const std::string version = ask("v");
   if (version.rfind("screed ", 0) != 0) {
     throw RunError(port + ": no robot's console answers here; the key was not sent");

@@ -23,16 +23,11 @@ LinkArguments with_remembered(const LinkArguments& arguments) {
   return all;
 }
 
-SerialOptions serial_options_of(const LinkArguments& link) {
+std::unique_ptr<Link> open(const LinkArguments& link) {
+  if (link.can.has_value()) return std::make_unique<CanLink>(*link.can);
   SerialOptions options;
   if (link.baud.has_value()) options.baud = *link.baud;
   if (link.api.value_or(0) != 0) options.api = static_cast<XbeeApiMode>(*link.api);
-  return options;
-}
-
-std::unique_ptr<Link> open(const LinkArguments& link) {
-  if (link.can.has_value()) return std::make_unique<CanLink>(*link.can);
-  const SerialOptions options = serial_options_of(link);
   const std::string& device = link.port.has_value() ? *link.port : *link.pty;
   return std::make_unique<SharedLink>(
       device, [device, options] { return std::make_unique<SerialLink>(device, options); });
@@ -102,14 +97,6 @@ CommandKey command_key(const LinkArguments& arguments) {
     throw InputError(std::string(error.what()) + " (key remembered in " +
                      remembered_link_file().string() + ")");
   }
-}
-
-std::unique_ptr<SerialLink> open_serial_link(const LinkArguments& arguments) {
-  const LinkArguments link = with_remembered(arguments);
-  if (!link.port.has_value() && !link.pty.has_value())
-    throw InputError("name the port: --port DEVICE, the board's own on USB");
-  return std::make_unique<SerialLink>(link.port.has_value() ? *link.port : *link.pty,
-                                      serial_options_of(link));
 }
 
 }  // namespace screed

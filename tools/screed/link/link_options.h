@@ -7,7 +7,6 @@
 #include "tools/command_line/command.h"
 
 #include "host_sim/ground_station/link/link.h"
-#include "host_sim/ground_station/link/serial_link.h"
 #include "host_sim/ground_station/station/command_key.h"
 #include "tools/screed/cli/number_option.h"
 
@@ -37,8 +36,6 @@ void add_key_option(Command& command, LinkArguments& arguments);
 /// says on standard error; with --remember it is remembered once it is open. Throws InputError when
 /// it is none or several, and what the link itself throws.
 std::unique_ptr<Link> open_link(const LinkArguments& arguments);
-/// Likewise, a serial port or pseudo terminal alone, which nobody else may use meanwhile.
-std::unique_ptr<SerialLink> open_serial_link(const LinkArguments& arguments);
 
 /// The key of --key; without it that of the remembered link, where that is used; else the test key
 /// that simulated robots have.

@@ -70,6 +70,19 @@ TEST(Battery, SparesTakeItsPlaceWhenATenthIsLeft) {
   EXPECT_NEAR(*battery.lasts_s(3239.0 + 3 + 3242 + 3600), 3600.0, 1e-6);
 }
 
+TEST(Battery, MuchAtOnceIsAsMuchAsInSteps) {
+  Battery at_once;
+  at_once.begin_with(0.05);  // spent already
+  at_once.spares = 3;
+  Battery in_steps = at_once;
+  at_once.draw(10000.0);
+  for (int i = 0; i < 10000; ++i) in_steps.draw(1.0);
+  EXPECT_EQ(at_once.spares, 1);
+  EXPECT_EQ(in_steps.spares, 1);
+  EXPECT_NEAR(at_once.charge(), in_steps.charge(), 1e-9);
+  EXPECT_NEAR(at_once.charge(), 1.0 - (10000.0 - 6480.0) / 7200.0, 1e-9);
+}
+
 TEST(Battery, EnergyIsVoltageTimesCharge) {
   Battery battery;
   battery.capacity_c = 1e9;
