@@ -39,8 +39,8 @@ TEST(GiveKey, GoesToARobotsConsoleAndRestartsIt) {
   Console console{{{'v', {"screed v1 a_star_32u4 0 0 900 0 0"}}, {'k', {"ok"}}, {'r', {"?", ""}}},
                   {}};
   EXPECT_TRUE(provision_key(std::ref(console), "port", some_key));
-  const std::vector<std::string> expected = {"", "v", "k000102030405060708090A0B0C0D0E0FAB", "r",
-                                             "r"};
+  const std::vector<std::string> expected = {"",  "C", "v", "k000102030405060708090A0B0C0D0E0FAB",
+                                             "r", "r"};
   EXPECT_EQ(console.heard, expected);
 }
 
@@ -49,7 +49,7 @@ TEST(GiveKey, IsNotSentToWhatIsNoConsole) {
     Console console{{{'v', {answer}}, {'k', {"ok"}}}, {}};
     const auto not_asked = []() -> CommandKey { throw std::logic_error("a key is made"); };
     EXPECT_THROW(provision_key(std::ref(console), "port", not_asked), RunError);
-    EXPECT_EQ(console.heard.size(), 2U) << "no key after " << answer;
+    EXPECT_EQ(console.heard.size(), 3U) << "no key after " << answer;
   }
 }
 
