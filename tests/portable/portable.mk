@@ -7,7 +7,7 @@ PORTABLE_CXX := aarch64-linux-gnu-g++ -std=c++20 $(COMMON_FLAGS) -Wno-psabi -idi
 # A folder is compiled as one, but for the kernel of spheres, whose helpers are called as some of its neighbours.
 PORTABLE_SOURCES := tests/portable/worlds.cpp $(wildcard host_sim/standin/*.cpp host_sim/physics/soil/*.cpp host_sim/physics/terrain/*.cpp) \
   $(wildcard host_sim/physics/vehicle/*.cpp host_sim/physics/kernels/*.cpp host_sim/physics/particles/*.cpp) host_sim/core/elementary.cpp \
-  host_sim/core/lanes/instruction_set.cpp host_sim/physics/world/terrain_factory.cpp host_sim/physics/world/wall_clearance.cpp
+  host_sim/core/nimh_cell.cpp host_sim/core/lanes/instruction_set.cpp host_sim/physics/world/terrain_factory.cpp host_sim/physics/world/wall_clearance.cpp
 PORTABLE_SOURCES := $(filter-out %avx2.cpp %avx512.cpp %/grey_image.cpp %/ode_world.cpp %/vehicle.cpp %/model_report.cpp,$(PORTABLE_SOURCES))
 PORTABLE_ALONE := $(filter %/bed_kernel_scalar.cpp,$(PORTABLE_SOURCES))
 PORTABLE_TOGETHER := $(filter-out $(PORTABLE_ALONE),$(PORTABLE_SOURCES))
