@@ -8,16 +8,12 @@ namespace screed {
 #ifdef __AVR__
 template <class T>
 using Kept = const T&;
-#else
-template <class T>
-using Kept = T;
-#endif
-
-#ifdef __AVR__
 template <class T>
 inline void keep(const T& /*kept*/, const T& /*now*/) {}
 #else
-/// What changes at the place it was given from is taken again where it is a copy.
+template <class T>
+using Kept = T;
+/// What has changed at the place it was given from is taken again where it is a copy.
 template <class T>
 inline void keep(T& kept, const T& now) {
   kept = now;

@@ -7,9 +7,8 @@
 //   k          is there a key (0, 1), the robot's id, number of this start
 //   kKEYID     stores a key: 32 hexadecimal digits, 2 of the robot's id; it holds from the next
 //              start on, and is never shown
-//   ml, mr     turns the left or right motor forwards at a fifth of full duty, for a second and
-//   only
-//              while button A is held and the yellow and the red LED are off
+//   ml, mr     turns the left or right motor forwards at a fifth of full duty, for a second, while
+//              button A is held and the yellow and the red LED are off
 //   O          the lines of the radio come by USB as well, until C (SLCAN: open, close)
 //   t...       a line of the radio, taken whole as if it had come by radio. One that comes by radio
 //              at that moment is lost with it; senders repeat

@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kSerialLookAgain{500};
 // As slcand sends them. By radio robots ignore them.
 constexpr std::string_view kSlcanOpen = "\rO\r";
-constexpr size_t kMaxAnswer = 100;
 constexpr std::string_view kSlcanClose = "\rC\r";
+// Of a console; its longest line is half of that.
+constexpr size_t kMaxAnswer = 100;
 
 speed_t speed_of(int baud) {
   switch (baud) {

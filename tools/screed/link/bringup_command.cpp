@@ -506,7 +506,10 @@ void register_bringup_command(Command& root, Program& program) {
                    "The board's own serial port on USB, e.g. /dev/ttyACM0")
       ->type_name("DEVICE")
       ->required();
-  add_key_option(*command, arguments->link);
+  command
+      ->add_option("--key", arguments->link.key,
+                   "File with the robot's command key; without it arming is not tried")
+      ->type_name("FILE");
   command
       ->add_option("--radio", arguments->radio, "Serial port of the radio module, to test it too")
       ->type_name("DEVICE");
