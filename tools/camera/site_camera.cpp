@@ -7,7 +7,7 @@
 // Markers are OpenCV's ArUco, 4x4: number 0 on the robot, its upper edge to the front; 1 to 4 at
 // the corners of the site, south-west, south-east, north-east, north-west. Their four centres tell
 // where the camera is, the robot's own four corners where its marker is in front of it, at any
-// height and tilt of the ground.
+// height of the ground.
 //
 // Exit codes: 0 the source has ended, 1 it or a marker fails, 2 wrong input.
 #include <algorithm>
@@ -245,30 +245,86 @@ class Tracker {
     placed_ = true;
   }
 
+  /// By least squares over the marker's corners and the ground's slope. Corners alone are
+  /// ambiguous: seen from far above, a square that leans one way looks like one that leans the
+  /// other way, and `height` turns the wrong one into centimetres.
   Fix fix_of(const Quad& quad) const {
+    constexpr double kCorner_px = 0.3;
+    constexpr double kSlope_rad = 0.1;
     const auto half = static_cast<float>(0.5 * arguments_.side_m);
     const std::vector<cv::Point3f> square = {
         {-half, half, 0.0F}, {half, half, 0.0F}, {half, -half, 0.0F}, {-half, -half, 0.0F}};
-    cv::Vec3d turn;
-    cv::Vec3d shift;
-    cv::solvePnP(square, quad, lens_.matrix, lens_.distortion, turn, shift, false,
-                 cv::SOLVEPNP_IPPE_SQUARE);
-    cv::Matx33d marker_to_camera;
-    cv::Rodrigues(turn, marker_to_camera);
     // The robot's middle, in the axes of its marker: y to the front, z up.
     const cv::Vec3d middle(0.0, -arguments_.ahead_m, -arguments_.height_m);
-    const cv::Vec3d at = world_to_camera_.t() * (marker_to_camera * middle + shift - shift_);
+    const cv::Matx33d to_world = world_to_camera_.t();
 
-    // What the corners are wrong by, as the size of the marker turns it into distance and tilt.
-    constexpr double kCorner_px = 0.3;
-    const double side_px = std::sqrt(cv::contourArea(quad));
-    const double distance_m = cv::norm(shift);
-    const double relative = kCorner_px / side_px;
-    const double aside = std::hypot(shift[0], shift[1]) / shift[2];
-    const double sigma_m =
-        std::hypot(kCorner_px / lens_.matrix.at<double>(0, 0) * distance_m,
-                   relative * distance_m * aside, 2.0 * relative * arguments_.height_m);
-    return {at[0], at[1], sigma_m};
+    cv::Vec3d turn;
+    cv::Vec3d shift;
+    start_upright(square, quad, turn, shift);
+    for (int round = 0;; ++round) {
+      cv::Matx33d rotation;
+      cv::Matx<double, 3, 9> rotation_by_turn;
+      cv::Rodrigues(turn, rotation, rotation_by_turn);
+      const cv::Vec3d at = to_world * (rotation * middle + shift - shift_);
+      const cv::Vec3d up = to_world * rotation * cv::Vec3d(0.0, 0.0, 1.0);
+      std::vector<cv::Point2f> seen;
+      cv::Mat seen_by_pose;
+      cv::projectPoints(square, turn, shift, lens_.matrix, lens_.distortion, seen, seen_by_pose);
+
+      // Eight coordinates of corners, two slopes; turn and shift.
+      cv::Matx<double, 10, 1> off;
+      cv::Matx<double, 10, 6> by_pose;
+      cv::Matx<double, 2, 6> at_by_pose;
+      for (int corner = 0; corner < 4; ++corner) {
+        const cv::Point2d away = cv::Point2d(seen[corner]) - cv::Point2d(quad[corner]);
+        off(2 * corner) = away.x / kCorner_px;
+        off(2 * corner + 1) = away.y / kCorner_px;
+      }
+      for (int i = 0; i < 6; ++i) {
+        for (int k = 0; k < 8; ++k) by_pose(k, i) = seen_by_pose.at<double>(k, i) / kCorner_px;
+      }
+      for (int i = 0; i < 3; ++i) {
+        const cv::Matx33d rotation_by_i = rotation_by_turn.row(i).reshape<3, 3>();
+        const cv::Vec3d up_by_i = to_world * rotation_by_i * cv::Vec3d(0.0, 0.0, 1.0);
+        const cv::Vec3d at_by_i = to_world * rotation_by_i * middle;
+        for (int axis = 0; axis < 2; ++axis) {
+          off(8 + axis) = up[axis] / kSlope_rad;
+          by_pose(8 + axis, i) = up_by_i[axis] / kSlope_rad;
+          at_by_pose(axis, i) = at_by_i[axis];
+          at_by_pose(axis, 3 + i) = to_world(axis, i);
+        }
+      }
+      const cv::Matx66d covariance = (by_pose.t() * by_pose).inv(cv::DECOMP_CHOLESKY);
+      constexpr int kRounds = 10;
+      if (round == kRounds) {
+        const cv::Matx22d of_position = at_by_pose * covariance * at_by_pose.t();
+        return {at[0], at[1], std::sqrt(0.5 * cv::trace(of_position))};
+      }
+      const cv::Matx<double, 6, 1> step = covariance * (by_pose.t() * off);
+      for (int i = 0; i < 3; ++i) {
+        turn[i] -= step(i);
+        shift[i] -= step(3 + i);
+      }
+    }
+  }
+
+  /// Of the two ways in which a square can lean, the one that is nearer to upright.
+  void start_upright(const std::vector<cv::Point3f>& square, const Quad& quad, cv::Vec3d& turn,
+                     cv::Vec3d& shift) const {
+    std::vector<cv::Vec3d> turns;
+    std::vector<cv::Vec3d> shifts;
+    cv::solvePnPGeneric(square, quad, lens_.matrix, lens_.distortion, turns, shifts, false,
+                        cv::SOLVEPNP_IPPE_SQUARE);
+    double greatest = -2.0;
+    for (size_t i = 0; i < turns.size(); ++i) {
+      cv::Matx33d rotation;
+      cv::Rodrigues(turns[i], rotation);
+      const double upright = (world_to_camera_.t() * rotation)(2, 2);
+      if (upright <= greatest) continue;
+      greatest = upright;
+      turn = turns[i];
+      shift = shifts[i];
+    }
   }
 
   const TrackArguments& arguments_;
