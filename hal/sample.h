@@ -37,12 +37,29 @@ constexpr uint16_t kBatteryMax = 8 * 1023;
 /// Bits of SensorSample::chips_failing: the chip does not answer, or does not hold its settings.
 using ChipBit = message::HealthConditions;
 
+/// What the IMU measures, as nine counts and by its parts: x, y, z in the robot frame (x forward,
+/// y left, z up).
+struct ImuCounts {
+  static constexpr uint8_t kSize = 9;
+  int16_t all[kSize];
+
+  using Axes = int16_t[3];
+  Axes& gyro() { return axes(0); }  ///< 70 mdps/LSB
+  const Axes& gyro() const { return axes(0); }
+  Axes& accel() { return axes(3); }  ///< specific force, 0.244 mg/LSB: +z at rest when level
+  const Axes& accel() const { return axes(3); }
+  Axes& mag() { return axes(6); }  ///< 0.160 mG/LSB
+  const Axes& mag() const { return axes(6); }
+
+ private:
+  Axes& axes(uint8_t from) { return *reinterpret_cast<Axes*>(all + from); }
+  const Axes& axes(uint8_t from) const { return *reinterpret_cast<const Axes*>(all + from); }
+};
+
 /// What the robot knows of the world at one tick.
 struct SensorSample {
-  uint32_t time_us;        ///< time of this tick since start, wraps after 71.6 minutes
-  int16_t gyro[3];         ///< x, y, z in the robot frame (x forward, y left, z up), 70 mdps/LSB
-  int16_t accel[3];        ///< specific force, robot frame, 0.244 mg/LSB
-  int16_t mag[3];          ///< robot frame, 0.160 mG/LSB
+  uint32_t time_us;  ///< time of this tick since start, wraps after 71.6 minutes
+  ImuCounts imu;
   int32_t pressure;        ///< LPS25H, 1/4096 hPa/LSB, 24 bits
   int16_t temperature;     ///< LPS25H, 42.5 degC + raw/480
   uint16_t encoder_left;   ///< quadrature count, wraps; rises when the left track drives forward

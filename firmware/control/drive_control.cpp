@@ -64,9 +64,10 @@ SCREED_OUT_OF_LINE int32_t DriveControl::corrected_yaw_rate(const MotionCommand&
   // they owe they make up for once they can, as far as kYawCorrectionLimit lets it grow (30 degrees
   // with the default gain). ki/256 per s: ki e / 256 / 100 a tick, Q8: ki e / 100 = ki e 41 / 4096,
   // shifted in two parts to fit 32 bits.
-  const int32_t step = asr(asr(mul_i16(parameters_.yaw_ki, error), 4) * 41, 8);
+  const int32_t step = asr(asr(mul_i16(parameters_.yaw_ki(), error), 4) * 41, 8);
   yaw_integral_q8_ = limit_i32(yaw_integral_q8_ + step, kYawIntegralLimit_q8);
-  const int32_t correction = asr(mul_i16(parameters_.yaw_kp, error), 8) + asr(yaw_integral_q8_, 8);
+  const int32_t correction =
+      asr(mul_i16(parameters_.yaw_kp(), error), 8) + asr(yaw_integral_q8_, 8);
   // In 32 bits: the sum of two numbers of 16 does not fit the AVR's int.
   return static_cast<int32_t>(command.yaw_rate) + limit_i16(correction, kYawCorrectionLimit);
 }
@@ -82,11 +83,11 @@ DriveOutput DriveControl::tick(const MotionCommand& command, const DriveMeasurem
                            full_speed_mm_per_s_);
   }
   // Rounded up: the least limit still moves.
-  const int16_t step =
-      at_once
-          ? INT16_MAX
-          : static_cast<int16_t>(static_cast<uint16_t>(parameters_.accel_limit + kTickRate_hz - 1) /
-                                 static_cast<uint16_t>(kTickRate_hz));
+  const int16_t step = at_once
+                           ? INT16_MAX
+                           : static_cast<int16_t>(static_cast<uint16_t>(parameters_.accel_limit() +
+                                                                        kTickRate_hz - 1) /
+                                                  static_cast<uint16_t>(kTickRate_hz));
   targets_.left = approach(targets_.left, wanted.left, step);
   targets_.right = approach(targets_.right, wanted.right, step);
   return {left_.tick(targets_.left, measured.counts_left, measured.battery_mv),

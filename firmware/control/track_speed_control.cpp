@@ -31,54 +31,53 @@ constexpr int16_t kErrorLimit_dmm_per_s = 3000;
 
 SCREED_OUT_OF_LINE
 TrackSpeedControl::TrackSpeedControl(const BoardConstants& board, const Parameters& parameters)
-    : TrackSpeedMemory(),
-      count_um_q4_(board.count_um_q4),
+    : count_um_q4_(board.count_um_q4),
       nominal_mv_(board.motor_nominal_mv),
       parameters_(parameters),
       feed_forward_q8_(static_cast<int16_t>(
           quotient_u16(static_cast<uint32_t>(kDutyMax) * 256, board.full_speed_mm_per_s))) {}
 
 SCREED_OUT_OF_LINE void TrackSpeedControl::release(int16_t counts) {
-  integral_q16_ = 0;
-  halfway_q4_ = 0;
-  expected_q4_ = 0;
-  motion_.effort = 0;
+  state_.integral_q16 = 0;
+  state_.halfway_q4 = 0;
+  state_.expected_q4 = 0;
+  state_.motion.effort = 0;
   observe(counts);
 }
 
 void TrackSpeedControl::expect(int16_t target_mm_per_s) {
   const int32_t target_q4 = mul_i16(target_mm_per_s, 160);
-  halfway_q4_ += asr_round((target_q4 - halfway_q4_) * kLag_q8, 8);
-  expected_q4_ += asr_round((halfway_q4_ - expected_q4_) * kLag_q8, 8);
+  state_.halfway_q4 += asr_round((target_q4 - state_.halfway_q4) * kLag_q8, 8);
+  state_.expected_q4 += asr_round((state_.halfway_q4 - state_.expected_q4) * kLag_q8, 8);
 }
 
 void TrackSpeedControl::observe(int16_t counts) {
   const int32_t step_q12 = static_cast<int32_t>(counts) * 4096;
-  const int32_t error = lag_q12_ + step_q12 - speed_q12_;
-  lag_q12_ = error - asr(error * kAlpha_q8, 8);
+  const int32_t error = state_.lag_q12 + step_q12 - state_.speed_q12;
+  state_.lag_q12 = error - asr(error * kAlpha_q8, 8);
   // The filter's error stays within a few hundred counts; in Q12 its product with beta needs the
   // shift in two parts.
-  speed_q12_ += asr(asr(error, 2) * kBeta_q12, 10);
+  state_.speed_q12 += asr(asr(error, 2) * kBeta_q12, 10);
   // counts/tick Q12 * um Q4 * 100 ticks/s = 0.1 mm/s Q16, from the speed's upper and lower 16 bits:
   // noise at the limit is 5.7 m/s on the Rover 5, and that product passes 32 bits.
-  const int32_t whole = detail::mul_su(detail::high_half(speed_q12_), count_um_q4_);
-  const uint32_t part = mul_u16(detail::low_half(speed_q12_), count_um_q4_) >> 16;
-  motion_.speed_dmm_per_s = saturate_i16(whole + static_cast<int32_t>(part));
+  const int32_t whole = detail::mul_su(detail::high_half(state_.speed_q12), count_um_q4_);
+  const uint32_t part = mul_u16(detail::low_half(state_.speed_q12), count_um_q4_) >> 16;
+  state_.motion.speed_dmm_per_s = saturate_i16(whole + static_cast<int32_t>(part));
 }
 
 int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_t battery_mv) {
   observe(counts);
   expect(target_mm_per_s);
-  const bool standing = motion_.speed_dmm_per_s < kStanding_dmm_per_s &&
-                        motion_.speed_dmm_per_s > static_cast<int16_t>(-kStanding_dmm_per_s);
+  const bool standing = state_.motion.speed_dmm_per_s < kStanding_dmm_per_s &&
+                        state_.motion.speed_dmm_per_s > static_cast<int16_t>(-kStanding_dmm_per_s);
   if (target_mm_per_s == 0 && standing) {
-    integral_q16_ = 0;
-    motion_.effort = 0;
+    state_.integral_q16 = 0;
+    state_.motion.effort = 0;
     return 0;
   }
 
-  const int16_t error =
-      limit_i16(asr_round(expected_q4_, 4) - motion_.speed_dmm_per_s, kErrorLimit_dmm_per_s);
+  const int16_t error = limit_i16(asr_round(state_.expected_q4, 4) - state_.motion.speed_dmm_per_s,
+                                  kErrorLimit_dmm_per_s);
 
   // Feed-forward: duty that drives the unloaded track at the target, with the voltage there is. A
   // lower reading than half the nominal one is implausible; limits the compensation to twice.
@@ -89,20 +88,21 @@ int16_t TrackSpeedControl::tick(int16_t target_mm_per_s, int16_t counts, uint16_
       nominal_q4 *
       static_cast<int32_t>(quotient_u16(static_cast<uint32_t>(nominal_mv_) << 6, supply_mv));
   // kp/16 duty per mm/s on an error in 0.1 mm/s: kp e 256 / 160 = kp e 102 / 64 in Q8.
-  const int32_t proportional_q8 = asr(mul_i16(parameters_.speed_kp, error) * 102, 6);
+  const int32_t proportional_q8 = asr(mul_i16(parameters_.speed_kp(), error) * 102, 6);
   const int32_t without_integral = asr(feed_forward_q10, 10) + asr(proportional_q8, 8);
 
   // ki/16 duty per mm: each tick adds ki e / 16 / 10 / 100 duty = ki e 131 / 32 in Q16. While the
   // duty is at its limit the integral only moves back from it.
-  const int32_t unlimited = without_integral + asr(integral_q16_, 16);
+  const int32_t unlimited = without_integral + asr(state_.integral_q16, 16);
   const bool pushes_out = (unlimited >= kDutyMax && error > 0) ||
                           (unlimited <= -static_cast<int32_t>(kDutyMax) && error < 0);
   if (!pushes_out) {
-    integral_q16_ = limit_i32(integral_q16_ + asr(mul_i16(parameters_.speed_ki, error) * 131, 5),
-                              kIntegralLimit_q16);
+    state_.integral_q16 =
+        limit_i32(state_.integral_q16 + asr(mul_i16(parameters_.speed_ki(), error) * 131, 5),
+                  kIntegralLimit_q16);
   }
-  const int16_t duty = limit_i16(without_integral + asr(integral_q16_, 16), kDutyMax);
-  motion_.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));
+  const int16_t duty = limit_i16(without_integral + asr(state_.integral_q16, 16), kDutyMax);
+  state_.motion.effort = static_cast<int16_t>(duty - asr(feed_forward_q10, 10));
   return duty;
 }
 

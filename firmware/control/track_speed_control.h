@@ -17,18 +17,7 @@
 
 namespace screed {
 
-/// What the control of a track remembers, zero at the start: zeroed at once, which takes less
-/// flash.
-struct TrackSpeedMemory {
-  int32_t lag_q12_;       ///< counts by which the observed position trails the encoder
-  int32_t speed_q12_;     ///< counts a tick
-  int32_t halfway_q4_;    ///< target behind one lag, 0.1 mm/s
-  int32_t expected_q4_;   ///< target as the observer would show it, 0.1 mm/s
-  int32_t integral_q16_;  ///< duty
-  TrackMotion motion_;    ///< as others see it
-};
-
-class TrackSpeedControl : private TrackSpeedMemory {
+class TrackSpeedControl {
  public:
   TrackSpeedControl(const BoardConstants& board, const Parameters& parameters);
 
@@ -44,13 +33,25 @@ class TrackSpeedControl : private TrackSpeedMemory {
   void release(int16_t counts);
 
   /// Observed speed, 0.1 mm/s.
-  int16_t speed_dmm_per_s() const { return motion_.speed_dmm_per_s; }
-  const TrackMotion& motion() const { return motion_; }
+  int16_t speed_dmm_per_s() const { return state_.motion.speed_dmm_per_s; }
+  const TrackMotion& motion() const { return state_.motion; }
 
  private:
+  /// What the control of a track remembers, zero at the start: zeroed at once, which takes less
+  /// flash.
+  struct State {
+    int32_t lag_q12;       ///< counts by which the observed position trails the encoder
+    int32_t speed_q12;     ///< counts a tick
+    int32_t halfway_q4;    ///< target behind one lag, 0.1 mm/s
+    int32_t expected_q4;   ///< target as the observer would show it, 0.1 mm/s
+    int32_t integral_q16;  ///< duty
+    TrackMotion motion;    ///< as others see it
+  };
+
   void observe(int16_t counts);
   void expect(int16_t target_mm_per_s);
 
+  State state_{};
   uint16_t count_um_q4_;
   uint16_t nominal_mv_;
   Kept<Parameters> parameters_;

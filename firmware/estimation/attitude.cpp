@@ -5,12 +5,12 @@
 // rounding took is carried into the next tick, so nothing is lost over time. Corrections are
 // rounded as well: what they leave stays in the filter.
 //
-// update() in real numbers, in the order of the code. T = 0.01 s, q = orientation_, E = to_earth
-// (the matrix of q), g = kCountsPerG, n = the samples so far, counted up to a limit:
+// update() in real numbers, in the order of the code. T = 0.01 s, q = state_.orientation, E =
+// to_earth (the matrix of q), g = kCountsPerG, n = the samples so far, counted up to a limit:
 //   detect_rest           mean += (count - mean) / 2^kMeanShift
 //                         at rest: |count - mean| < kRestGyro, kRestAccel for kRestTicks
 //   learn_bias_at_rest    bias += (mean - bias) / (n + 1)
-//   integrate             h = half_angle_ = T (gyro - bias) / 2,  s = h^2
+//   integrate             h = state_.half_angle = T (gyro - bias) / 2,  s = h^2
 //                         q += q (-s/2, h (1 - s/6))       series of (cos |h|, h sin |h| / |h|)
 //                         yaw_rate = (row 2 of E) 2 h / T
 //   filter_gravity        difference = E accel - gravity
@@ -39,7 +39,7 @@ namespace {
 // Every constant has a physical meaning; none was fitted to a single recording.
 
 constexpr int32_t kCountsPerG = 4096;  // 0.244 mg a count
-constexpr uint8_t kGravityBits = 14;   // binary digits of gravity_
+constexpr uint8_t kGravityBits = 14;   // binary digits of state_.gravity
 constexpr uint16_t kHalfAnglePerCount =
     52473;  // 70 mdps * 10 ms / 2 = 6.10865e-6 rad, 33 binary digits
 constexpr int32_t kBiasLimit =
@@ -49,7 +49,7 @@ constexpr int32_t kBiasLimit =
 // 0.0047140:
 //   slope += wn^2 (input - gravity) - sqrt(2) wn slope;  gravity += slope
 constexpr int16_t kSquaredFrequency =
-    373;  // wn^2 * 2^8 in Q16: 2^8 between the digits of gravity_ and slope_
+    373;  // wn^2 * 2^8 in Q16: 2^8 between the digits of state_.gravity and state_.slope
 constexpr int16_t kDamping = 437;  // sqrt(2) wn in Q16
 
 // Heading: time constant 9 s; at first the mean of all samples (gain 1/k); then at most 2
@@ -104,36 +104,37 @@ SCREED_OUT_OF_LINE int32_t with_mean_bits(int16_t value) {
 }  // namespace
 
 void AttitudeEstimator::reset() {
-  static_cast<AttitudeState&>(*this) = AttitudeState{};
-  orientation_ = kIdentityQuaternion;
+  state_ = State{};
+  state_.orientation = kIdentityQuaternion;
 }
 
 void AttitudeEstimator::update(const ImuSample& sample, bool may_be_at_rest) {
-  const bool first = ticks_ == 0;
-  if (first && !align(sample.accel)) return;
+  const bool first = state_.ticks == 0;
+  if (first && !align(sample.imu.accel())) return;
   detect_rest(sample, may_be_at_rest);
   if (at_rest()) learn_bias_at_rest();
 
-  if (!first) integrate(sample.gyro);  // the alignment is the pose at the end of this tick already
-  const RotationMatrix to_earth = rotation_matrix(orientation_);
-  yaw_rate_ = scale_q16(asr(dot_q14(to_earth.row[2], half_angle_), 8), kYawRateScale);
+  if (!first)
+    integrate(sample.imu.gyro());  // the alignment is the pose at the end of this tick already
+  const RotationMatrix to_earth = rotation_matrix(state_.orientation);
+  state_.yaw_rate = scale_q16(asr(dot_q14(to_earth.row[2], state_.half_angle), 8), kYawRateScale);
 
-  filter_gravity(to_earth, sample.accel);
+  filter_gravity(to_earth, sample.imu.accel());
   // Half of the angle between the filtered acceleration and the vertical is y / (2 g) about x and
   // -x / (2 g) about y; with g = 2^12 counts and 14 digits that is 2^-3 in Q24. A filtered length
   // other than g only changes the gain.
-  SmallQuaternion correction = {length_deficit_q24(orientation_),
-                                limit_i16(asr_round(gravity_[1], 3), kMaxHalfAngle),
-                                limit_i16(asr_round(-gravity_[0], 3), kMaxHalfAngle), 0};
+  SmallQuaternion correction = {length_deficit_q24(state_.orientation),
+                                limit_i16(asr_round(state_.gravity[1], 3), kMaxHalfAngle),
+                                limit_i16(asr_round(-state_.gravity[0], 3), kMaxHalfAngle), 0};
   if (ready()) {
-    known_ = true;
+    state_.known = true;
     learn_bias_in_motion(to_earth, correction);
   }
-  if (mag_age_ < kMagAgeLimit) ++mag_age_;
-  if (mag_distrusted_ < UINT16_MAX) ++mag_distrusted_;
-  if (sample.mag_fresh && trust(to_earth, sample.mag)) {
-    correction.z = heading_correction(to_earth, sample.mag);
-    mag_distrusted_ = 0;
+  if (state_.mag_age < kMagAgeLimit) ++state_.mag_age;
+  if (state_.mag_distrusted < UINT16_MAX) ++state_.mag_distrusted;
+  if (sample.mag_fresh && trust(to_earth, sample.imu.mag())) {
+    correction.z = heading_correction(to_earth, sample.imu.mag());
+    state_.mag_distrusted = 0;
   }
   correct(correction);
 }
@@ -161,54 +162,52 @@ bool AttitudeEstimator::align(const int16_t (&accel)[3]) {
   const SmallQuaternion direction =
       upside_down ? SmallQuaternion{static_cast<int16_t>(-x), w, 0, static_cast<int16_t>(-y)}
                   : SmallQuaternion{w, x, y, 0};
-  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] = (&direction.w)[i] * scale;
-  gravity_[0] = 0;
-  gravity_[1] = 0;
-  gravity_[2] = kCountsPerG << kGravityBits;
+  for (uint8_t i = 0; i < 4; ++i) components(state_.orientation)[i] = (&direction.w)[i] * scale;
+  state_.gravity[0] = 0;
+  state_.gravity[1] = 0;
+  state_.gravity[2] = kCountsPerG << kGravityBits;
   return true;
 }
 
 /// Follows the short means and counts the ticks of standstill.
 void AttitudeEstimator::detect_rest(const ImuSample& sample, bool may_be_at_rest) {
-  static_assert(offsetof(ImuSample, accel) == 3 * sizeof(int16_t), "the gyro's counts go before");
-  const auto* const counts = reinterpret_cast<const int16_t*>(&sample);
   bool quiet = may_be_at_rest;
   for (uint8_t i = 0; i < 6; ++i) {
     const bool of_gyro = i < 3;
-    const int32_t count = with_mean_bits(counts[i]);
-    int32_t mean = ticks_ == 0 ? count : mean_[i];
+    const int32_t count = with_mean_bits(sample.imu.all[i]);
+    int32_t mean = state_.ticks == 0 ? count : state_.mean[i];
     const int32_t change = count - mean;
     mean += asr_round(change, kMeanShift);
-    mean_[i] = mean;
+    state_.mean[i] = mean;
     if (abs_u32(change) > (of_gyro ? kRestGyro : kRestAccel) ||
         (of_gyro && abs_u32(mean) > kRestGyroMean)) {
       quiet = false;
     }
   }
   if (!quiet) {
-    rest_ticks_ = 0;
-  } else if (rest_ticks_ < kRestTicks) {
-    ++rest_ticks_;
+    state_.rest_ticks = 0;
+  } else if (state_.rest_ticks < kRestTicks) {
+    ++state_.rest_ticks;
   }
 }
 
 SCREED_OUT_OF_LINE void AttitudeEstimator::forget_slope() {
-  slope_[0] = slope_[1] = slope_[2] = 0;
+  state_.slope[0] = state_.slope[1] = state_.slope[2] = 0;
 }
 
 /// Moves the bias to the mean of the gyroscope.
 void AttitudeEstimator::learn_bias_at_rest() {
-  if (bias_samples_ == 0) {
+  if (state_.bias_samples == 0) {
     // The bias may have turned the estimate by many degrees until now: average gravity and north
     // anew.
     forget_slope();
-    ticks_ = 1;
-    if (mag_samples_ != 0) mag_samples_ = 1;
+    state_.ticks = 1;
+    if (state_.mag_samples != 0) state_.mag_samples = 1;
   }
-  if (bias_samples_ < kBiasTicks) ++bias_samples_;
-  const int16_t gain = mean_gain_q16(bias_samples_);
+  if (state_.bias_samples < kBiasTicks) ++state_.bias_samples;
+  const int16_t gain = mean_gain_q16(state_.bias_samples);
   for (uint8_t i = 0; i < 3; ++i) {
-    bias_[i] += scale_q16(scale_q16(mean_[i] * 8, kMeanToBias) - bias_[i], gain);
+    state_.bias[i] += scale_q16(scale_q16(state_.mean[i] * 8, kMeanToBias) - state_.bias[i], gain);
   }
 }
 
@@ -218,7 +217,8 @@ void AttitudeEstimator::learn_bias_in_motion(const RotationMatrix& to_earth,
   for (uint8_t i = 0; i < 3; ++i) {
     const int32_t seen =
         mul_i16(to_earth.row[0][i], correction.x) + mul_i16(to_earth.row[1][i], correction.y);
-    bias_[i] = limit_i32(bias_[i] - scale_q16(asr(seen, 8), kMotionBiasGain), kBiasLimit);
+    state_.bias[i] =
+        limit_i32(state_.bias[i] - scale_q16(asr(seen, 8), kMotionBiasGain), kBiasLimit);
   }
 }
 
@@ -227,10 +227,10 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   int32_t exact[3];
   int32_t squared = 0;  // of the half angle, 34 digits: below 0.13
   for (uint8_t i = 0; i < 3; ++i) {
-    exact[i] =
-        detail::mul_su(gyro[i], kHalfAnglePerCount) - bias_[i] + static_cast<int32_t>(carry_[i]);
-    half_angle_[i] = detail::high_half(exact[i]);
-    squared += mul_i16(half_angle_[i], half_angle_[i]);
+    exact[i] = detail::mul_su(gyro[i], kHalfAnglePerCount) - state_.bias[i] +
+               static_cast<int32_t>(state_.carry[i]);
+    state_.half_angle[i] = detail::high_half(exact[i]);
+    squared += mul_i16(state_.half_angle[i], state_.half_angle[i]);
   }
   // With h the half angle and s = h^2: cos h - 1 = -s/2 and sin(h)/h - 1 = -s/6; at the gyroscope's
   // limit of 2000 dps about one axis the rest of the series changes the angle by 3e-5 of it.
@@ -239,26 +239,28 @@ void AttitudeEstimator::integrate(const int16_t (&gyro)[3]) {
   int16_t sine[3];
   for (uint8_t i = 0; i < 3; ++i) {
     exact[i] -= asr_round(scale_q16(exact[i], shrink), 2);
-    carry_[i] = detail::low_half(exact[i]);
+    state_.carry[i] = detail::low_half(exact[i]);
     sine[i] = detail::high_half(exact[i]);
   }
   const SmallQuaternion change = {static_cast<int16_t>(-asr(s, 2)), sine[0], sine[1],
-                                  sine[2]};                        // 17 digits
-  const Quaternion turned = scaled_product(orientation_, change);  // Q31
-  for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] += asr(components(turned)[i], 1);
+                                  sine[2]};                              // 17 digits
+  const Quaternion turned = scaled_product(state_.orientation, change);  // Q31
+  for (uint8_t i = 0; i < 4; ++i)
+    components(state_.orientation)[i] += asr(components(turned)[i], 1);
 }
 
 void AttitudeEstimator::filter_gravity(const RotationMatrix& to_earth, const int16_t (&accel)[3]) {
-  const bool starting = ticks_ < kStartTicks;
-  if (starting) ++ticks_;
-  const int16_t start_gain = starting ? mean_gain_q16(ticks_) : static_cast<int16_t>(0);
+  const bool starting = state_.ticks < kStartTicks;
+  if (starting) ++state_.ticks;
+  const int16_t start_gain = starting ? mean_gain_q16(state_.ticks) : static_cast<int16_t>(0);
   for (uint8_t i = 0; i < 3; ++i) {
-    const int32_t difference = dot_q14(to_earth.row[i], accel) - gravity_[i];
+    const int32_t difference = dot_q14(to_earth.row[i], accel) - state_.gravity[i];
     if (starting) {  // the mean of all samples so far
-      gravity_[i] += scale_q16(difference, start_gain);
+      state_.gravity[i] += scale_q16(difference, start_gain);
     } else {
-      slope_[i] += scale_q16(difference, kSquaredFrequency) - scale_q16(slope_[i], kDamping);
-      gravity_[i] += asr_round(slope_[i], 8);
+      state_.slope[i] +=
+          scale_q16(difference, kSquaredFrequency) - scale_q16(state_.slope[i], kDamping);
+      state_.gravity[i] += asr_round(state_.slope[i], 8);
     }
   }
 }
@@ -269,18 +271,20 @@ bool AttitudeEstimator::trust(const RotationMatrix& to_earth, const int16_t (&ma
   for (const int16_t count : mag) squared += static_cast<uint32_t>(mul_i16(count, count));
   const int16_t seen[2] = {static_cast<int16_t>(isqrt32(squared) >> 2),
                            detail::high_half(dot_q14(to_earth.row[2], mag))};
-  const bool learning = mag_samples_ < kHeadingLimitedFrom || mag_distrusted_ > kFieldRelearnTicks;
+  const bool learning =
+      state_.mag_samples < kHeadingLimitedFrom || state_.mag_distrusted > kFieldRelearnTicks;
   bool trusted = true;
   for (uint8_t i = 0; i < 2; ++i) {
-    if (learning) field_[i] = seen[i];
-    const auto change = static_cast<int16_t>(seen[i] - field_[i]);
+    if (learning) state_.field[i] = seen[i];
+    const auto change = static_cast<int16_t>(seen[i] - state_.field[i]);
     if (abs_i16(change) >= static_cast<uint16_t>(seen[0]) >> kFieldTolerance) trusted = false;
   }
   return trusted;
 }
 
 uint8_t AttitudeEstimator::heading_sigma() const {
-  return mag_samples_ == 0 ? UINT8_MAX : static_cast<uint8_t>(4 + (mag_distrusted_ >> 11));
+  return state_.mag_samples == 0 ? UINT8_MAX
+                                 : static_cast<uint8_t>(4 + (state_.mag_distrusted >> 11));
 }
 
 /// Half angle about the vertical, Q24, by which the magnetometer pulls its horizontal part to
@@ -288,48 +292,49 @@ uint8_t AttitudeEstimator::heading_sigma() const {
 int16_t AttitudeEstimator::heading_correction(const RotationMatrix& to_earth,
                                               const int16_t (&mag)[3]) {
   const Angle error = atan2_angle(dot_q14(to_earth.row[0], mag), dot_q14(to_earth.row[1], mag));
-  const auto age = static_cast<int16_t>(mag_age_);
-  mag_age_ = 0;
-  if (mag_samples_ == 0) {  // the first sample may be any angle away: turned at once and exactly
-    mag_samples_ = 1;
+  const auto age = static_cast<int16_t>(state_.mag_age);
+  state_.mag_age = 0;
+  if (state_.mag_samples ==
+      0) {  // the first sample may be any angle away: turned at once and exactly
+    state_.mag_samples = 1;
     const Angle half = static_cast<Angle>(asr(error, 1));
     const Quaternion turned =
-        scaled_reverse_product({cos_q15(half), 0, 0, sin_q15(half)}, orientation_);
-    for (uint8_t i = 0; i < 4; ++i) components(orientation_)[i] = components(turned)[i] * 2;
+        scaled_reverse_product({cos_q15(half), 0, 0, sin_q15(half)}, state_.orientation);
+    for (uint8_t i = 0; i < 4; ++i) components(state_.orientation)[i] = components(turned)[i] * 2;
     return 0;
   }
-  const auto gain = mag_samples_ < kHeadingStartSamples
-                        ? static_cast<int16_t>(kHalfAnglePerAngle / (mag_samples_ + 1U))
+  const auto gain = state_.mag_samples < kHeadingStartSamples
+                        ? static_cast<int16_t>(kHalfAnglePerAngle / (state_.mag_samples + 1U))
                         : static_cast<int16_t>(kHeadingGain * age);
-  const auto limit = mag_samples_ < kHeadingLimitedFrom
+  const auto limit = state_.mag_samples < kHeadingLimitedFrom
                          ? kMaxHalfAngle
                          : static_cast<int16_t>(kHeadingRateLimit * age);
-  if (mag_samples_ < kHeadingStartSamples) ++mag_samples_;
+  if (state_.mag_samples < kHeadingStartSamples) ++state_.mag_samples;
   return limit_i16(asr_round(mul_i16(error, gain), 6), limit);
 }
 
 /// Turns the estimate about the earth's axes, and the filtered gravity with it, so that nothing is
 /// corrected twice.
 void AttitudeEstimator::correct(const SmallQuaternion& correction) {
-  const Quaternion turned = scaled_reverse_product(correction, orientation_);  // Q38
+  const Quaternion turned = scaled_reverse_product(correction, state_.orientation);  // Q38
   for (uint8_t i = 0; i < 4; ++i) {
-    components(orientation_)[i] += asr_round(components(turned)[i], 8);
+    components(state_.orientation)[i] += asr_round(components(turned)[i], 8);
   }
   // Only the vertical component moves anything: the others are what is left of the last correction.
   // Doubled for the whole angle; with the digits of scale_q16 and Q24 that leaves 2^7.
-  gravity_[0] += asr_round(scale_q16(gravity_[2], correction.y) * 2, 8);
-  gravity_[1] -= asr_round(scale_q16(gravity_[2], correction.x) * 2, 8);
+  state_.gravity[0] += asr_round(scale_q16(state_.gravity[2], correction.y) * 2, 8);
+  state_.gravity[1] -= asr_round(scale_q16(state_.gravity[2], correction.x) * 2, 8);
   // Gravity that does not point up any more is a lost attitude (tumbling beyond the gyroscope's
   // range): start again.
-  if (gravity_[2] < (kCountsPerG / 4) << kGravityBits) {
+  if (state_.gravity[2] < (kCountsPerG / 4) << kGravityBits) {
     forget_slope();
-    ticks_ = 0;
-    mag_samples_ = 0;
+    state_.ticks = 0;
+    state_.mag_samples = 0;
   }
 }
 
 AttitudeAngles AttitudeEstimator::angles() const {
-  const RotationMatrix to_earth = rotation_matrix(orientation_);
+  const RotationMatrix to_earth = rotation_matrix(state_.orientation);
   const int16_t left = to_earth.row[2][1];
   const int16_t up = to_earth.row[2][2];
   const uint16_t level = isqrt32(static_cast<uint32_t>(mul_i16(left, left) + mul_i16(up, up)));
@@ -338,7 +343,7 @@ AttitudeAngles AttitudeEstimator::angles() const {
 }
 
 int32_t AttitudeEstimator::gyro_bias_mdps(uint8_t axis) const {
-  return scale_q16(asr(bias_[axis], 8), kMdpsScale);
+  return scale_q16(asr(state_.bias[axis], 8), kMdpsScale);
 }
 
 }  // namespace screed

@@ -13,17 +13,15 @@
 
 #include "firmware/math/quaternion.h"
 #include "firmware/math/trig.h"
+#include "hal/sample.h"
 
 namespace screed {
 
-/// One sample of the inertial sensors: raw counts in robot axes (x forward, y left, z up).
+/// One sample of the inertial sensors. Clipped counts of the accelerometer are taken as they are;
+/// the magnetometer's are without hard iron, and of any scale: only the direction is used.
 struct ImuSample {
-  int16_t gyro[3];  ///< 70 mdps a count
-  /// specific force, 0.244 mg a count: +z at rest when level; clipped values are taken as they are
-  int16_t accel[3];
-  /// 0.160 mG a count, hard iron removed; any scale does, only the direction is used
-  int16_t mag[3];
-  bool mag_fresh;  ///< mag is new since the last call; when false it is not looked at
+  ImuCounts imu;
+  bool mag_fresh;  ///< new since the last call; when false the magnetometer is not looked at
 };
 
 /// The orientation as three angles.
@@ -36,30 +34,7 @@ struct AttitudeAngles {
   int16_t cos_tilt_q14;  ///< of the inclination, whichever way
 };
 
-/// What the estimator remembers, all of it zero after a reset but the orientation. By itself so
-/// that it is forgotten at once: member by member that takes 100 bytes of flash more.
-struct AttitudeState {
-  Quaternion orientation_;
-  int32_t gravity_[3];  // filtered acceleration in the earth frame, counts, 14 binary digits
-  int32_t slope_[3];    // change of gravity_ a tick, counts, 22 binary digits
-  int32_t bias_[3];     // half angle in radians a tick, 33 binary digits
-  int32_t mean_[6];     // short means for the rest detection, counts, 14 binary digits: gyro,
-                        // then accelerometer
-  int32_t yaw_rate_;
-  uint16_t
-      carry_[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
-  int16_t half_angle_[3];    // rotation of this tick, half angle in radians, 17 binary digits
-  uint16_t ticks_;           // since the alignment, stops at kStartTicks; 0: not aligned yet
-  uint16_t mag_samples_;     // taken in, stops at kHeadingStartSamples
-  uint8_t mag_age_;          // ticks since the last magnetometer sample
-  uint8_t rest_ticks_;       // stops at kRestTicks
-  uint8_t bias_samples_;     // taken at rest, stops at kBiasTicks
-  bool known_;               // gravity has been averaged once
-  int16_t field_[2];         // the site's magnetic field: strength and vertical part, 4 counts
-  uint16_t mag_distrusted_;  // ticks since the magnetometer was last trusted, stops at its end
-};
-
-class AttitudeEstimator : private AttitudeState {
+class AttitudeEstimator {
  public:
   AttitudeEstimator() { reset(); }
 
@@ -73,7 +48,7 @@ class AttitudeEstimator : private AttitudeState {
 
   /// Sensor to earth (ENU, y to magnetic north), Q30, length 1 within 2e-4. Identity before the
   /// first usable sample.
-  const Quaternion& orientation() const { return orientation_; }
+  const Quaternion& orientation() const { return state_.orientation; }
 
   /// Roll, pitch and heading at once: three arc tangents, so once a tick is enough.
   AttitudeAngles angles() const;
@@ -83,25 +58,25 @@ class AttitudeEstimator : private AttitudeState {
 
   /// Turn rate about the earth's vertical, bias removed, 65536 units = one turn a second; > 0
   /// counter-clockwise.
-  int32_t yaw_rate() const { return yaw_rate_; }
+  int32_t yaw_rate() const { return state_.yaw_rate; }
 
   /// Gravity has been averaged for 3 s: roll and pitch can be relied on. The first standstill found
   /// starts this again, since the bias may have spoilt what was before: at rest from the start on,
   /// it is true after 4.5 s.
-  bool ready() const { return ticks_ == kStartTicks; }
+  bool ready() const { return state_.ticks == kStartTicks; }
 
   /// It was ready once: roll and pitch are those of the gyro, and of what was averaged before, also
   /// while the average is taken anew. A lost attitude begins again with that of the accelerometer.
-  bool known() const { return known_; }
+  bool known() const { return state_.known; }
 
   static constexpr uint16_t kStartTicks = 300;  ///< 3 s, the time constant of the gravity filter
   static constexpr uint8_t kRestTicks = 150;    ///< 1.5 s, until a standstill is found
 
   /// The magnetometer has set the heading.
-  bool heading_ready() const { return mag_samples_ != 0; }
+  bool heading_ready() const { return state_.mag_samples != 0; }
 
   /// The magnetic field differs from what it was, so the heading follows the gyroscope alone.
-  bool mag_disturbed() const { return mag_distrusted_ > kMagHitchTicks; }
+  bool mag_disturbed() const { return state_.mag_distrusted > kMagHitchTicks; }
 
   /// Standard deviation of the heading by its age, 0.5 degrees: 2 degrees while the magnetometer is
   /// trusted, then 0.5 more in 20 s; 255 before the magnetometer has set it.
@@ -110,12 +85,35 @@ class AttitudeEstimator : private AttitudeState {
   static constexpr uint8_t kMagHitchTicks = 20;  ///< without a sample to trust: no disturbance yet
 
   /// Standstill is detected: the bias is being taken from the gyroscope's mean.
-  bool at_rest() const { return rest_ticks_ == kRestTicks; }
+  bool at_rest() const { return state_.rest_ticks == kRestTicks; }
 
   /// Estimated gyroscope bias of an axis (0 x, 1 y, 2 z) in millidegrees a second, within +-30,000.
   int32_t gyro_bias_mdps(uint8_t axis) const;
 
  private:
+  /// What the estimator remembers, all of it zero after a reset but the orientation. By itself so
+  /// that it is forgotten at once: member by member that takes 100 bytes of flash more.
+  struct State {
+    Quaternion orientation;
+    int32_t gravity[3];  // filtered acceleration in the earth frame, counts, 14 binary digits
+    int32_t slope[3];    // change of gravity a tick, counts, 22 binary digits
+    int32_t bias[3];     // half angle in radians a tick, 33 binary digits
+    int32_t mean[6];     // short means for the rest detection, counts, 14 binary digits: gyro,
+                         // then accelerometer
+    int32_t yaw_rate;
+    uint16_t
+        carry[3];  // what the last tick's rotation lost to rounding, half angle, 33 binary digits
+    int16_t half_angle[3];    // rotation of this tick, half angle in radians, 17 binary digits
+    uint16_t ticks;           // since the alignment, stops at kStartTicks; 0: not aligned yet
+    uint16_t mag_samples;     // taken in, stops at kHeadingStartSamples
+    uint8_t mag_age;          // ticks since the last magnetometer sample
+    uint8_t rest_ticks;       // stops at kRestTicks
+    uint8_t bias_samples;     // taken at rest, stops at kBiasTicks
+    bool known;               // gravity has been averaged once
+    int16_t field[2];         // the site's magnetic field: strength and vertical part, 4 counts
+    uint16_t mag_distrusted;  // ticks since the magnetometer was last trusted, stops at its end
+  };
+
   bool align(const int16_t (&accel)[3]);
   void detect_rest(const ImuSample& sample, bool may_be_at_rest);
   void forget_slope();
@@ -126,6 +124,8 @@ class AttitudeEstimator : private AttitudeState {
   bool trust(const RotationMatrix& to_earth, const int16_t (&mag)[3]);
   int16_t heading_correction(const RotationMatrix& to_earth, const int16_t (&mag)[3]);
   void correct(const SmallQuaternion& correction);
+
+  State state_;
 };
 
 }  // namespace screed

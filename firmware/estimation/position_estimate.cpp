@@ -29,7 +29,7 @@ uint32_t limited(uint32_t variance) {
 }  // namespace
 
 void PositionEstimate::reset() {
-  static_cast<PositionState&>(*this) = PositionState();
+  state_ = State{};
 }
 
 void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch,
@@ -42,7 +42,8 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   const int32_t travel = scale_q16(both, scale);
   const int32_t horizontal = times_q15(travel, cos_q15(pitch));
   const int16_t direction[2] = {cos_q15(heading), sin_q15(heading)};
-  for (uint8_t axis = 0; axis < 2; ++axis) place_[axis] += times_q15(horizontal, direction[axis]);
+  for (uint8_t axis = 0; axis < 2; ++axis)
+    state_.place[axis] += times_q15(horizontal, direction[axis]);
 
   // Of both tracks, so that a turn on the spot makes the place uncertain as well. In 16 um: 16000
   // of it, 128 mm of both, make the parameter's unit; in Q16 that is 4.1 for each, taken as 4.
@@ -52,26 +53,26 @@ void PositionEstimate::update(int16_t counts_left, int16_t counts_right, Angle h
   const auto lost = static_cast<uint16_t>(UINT8_MAX + kAlwaysLost - share);
   const auto noise = static_cast<uint16_t>(mul_u16(noise_x4_, lost) >> 8);
   const uint32_t growth = mul_u16(travelled, noise);
-  for (uint32_t& variance : variance_) variance = limited(variance + growth);
+  for (uint32_t& variance : state_.variance) variance = limited(variance + growth);
 }
 
-void PositionEstimate::keep_inside(const int16_t (&half_mm)[2]) {
+void PositionEstimate::keep_inside(const int16_t* half_mm) {
   // The upper half of a place is in 8 mm, on a machine whose lower byte comes first. Two bytes are
   // cheaper to compare and to change than four.
-  auto* upper = reinterpret_cast<uint8_t*>(place_) + 2;
-  for (const int16_t wall : half_mm) {
-    const auto half = static_cast<int16_t>(static_cast<uint16_t>(wall) >> 3);
+  auto* upper = reinterpret_cast<uint8_t*>(state_.place) + 2;
+  for (const int16_t* const end = half_mm + 2; half_mm != end; ++half_mm) {
+    const auto half = static_cast<int16_t>(static_cast<uint16_t>(*half_mm) >> 3);
     int16_t place = 0;
     memcpy(&place, upper, sizeof(place));
     if (half != 0) place = clamp_i16(place, static_cast<int16_t>(-half), half);
     memcpy(upper, &place, sizeof(place));
-    upper += sizeof(place_[0]);
+    upper += sizeof(state_.place[0]);
   }
 }
 
 bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uint8_t gate) {
-  int32_t& place = place_[axis];
-  uint32_t& variance = variance_[axis];
+  int32_t& place = state_.place[axis];
+  uint32_t& variance = state_.variance[axis];
   const int16_t innovation = limit_i16(z_mm - asr(place, 13), INT16_MAX);
   // Variances in 32 mm^2, this one below 2^14.
   const auto half = static_cast<uint16_t>(static_cast<uint16_t>(variance >> 16) >> 1);
@@ -92,7 +93,7 @@ bool PositionEstimate::measure(uint8_t axis, int16_t z_mm, int16_t sigma_mm, uin
 void PositionEstimate::get(Place& place) const {
   for (uint8_t axis = 0; axis < 2; ++axis) {
     place.mm[axis] = short_mm(axis);
-    place.sigma[axis] = static_cast<uint8_t>(isqrt32(variance_[axis]) >> 8);
+    place.sigma[axis] = static_cast<uint8_t>(isqrt32(state_.variance[axis]) >> 8);
   }
 }
 

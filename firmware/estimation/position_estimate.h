@@ -24,18 +24,12 @@
 
 namespace screed {
 
-/// Zero after a reset.
-struct PositionState {
-  int32_t place_[2];      ///< 2^-13 mm
-  uint32_t variance_[2];  ///< 16 mm^2, Q16: up to 724 mm of standard deviation
-};
-
-class PositionEstimate : private PositionState {
+class PositionEstimate {
  public:
   /// count_um_q4: track travel per encoder count, 1/16 um. noise: variance of the position that a
   /// metre of travel makes which is lost by slip, 125 mm^2; 0..1000.
   PositionEstimate(uint16_t count_um_q4, int16_t noise)
-      : PositionState(), count_um_q4_(count_um_q4), noise_x4_(static_cast<uint16_t>(noise << 2)) {}
+      : count_um_q4_(count_um_q4), noise_x4_(static_cast<uint16_t>(noise << 2)) {}
 
   /// At the origin for sure.
   void reset();
@@ -45,8 +39,8 @@ class PositionEstimate : private PositionState {
   void update(int16_t counts_left, int16_t counts_right, Angle heading, Angle pitch, uint8_t share);
 
   /// No robot is beyond a wall: the place becomes the nearest within +-half_mm of the origin, east
-  /// and north, to 8 mm; below 8: no wall there. The variance stays.
-  void keep_inside(const int16_t (&half_mm)[2]);
+  /// and north (two numbers), to 8 mm; below 8: no wall there. The variance stays.
+  void keep_inside(const int16_t* half_mm);
 
   /// Measured along an axis: z_mm, +-sigma_mm (8..1000). False where that is further off than the
   /// root of `gate` standard deviations; 0: however far off it is. Then the position stays, and its
@@ -56,11 +50,18 @@ class PositionEstimate : private PositionState {
   /// Position and deviation now.
   SCREED_OUT_OF_LINE void get(Place& place) const;
   /// Along an axis, also beyond what a Place holds, mm. Wraps at +-262 m.
-  SCREED_OUT_OF_LINE int32_t mm(uint8_t axis) const { return asr(place_[axis], 13); }
+  SCREED_OUT_OF_LINE int32_t mm(uint8_t axis) const { return asr(state_.place[axis], 13); }
 
  private:
+  /// Zero after a reset.
+  struct State {
+    int32_t place[2];      ///< 2^-13 mm
+    uint32_t variance[2];  ///< 16 mm^2, Q16: up to 724 mm of standard deviation
+  };
+
   int16_t short_mm(uint8_t axis) const { return limit_i16(mm(axis), INT16_MAX); }
 
+  State state_{};
   uint16_t count_um_q4_;
   uint16_t noise_x4_;  ///< of 125 mm^2 a metre: 16 mm^2 for 128 mm
 };

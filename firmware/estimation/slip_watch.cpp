@@ -56,11 +56,12 @@ constexpr int16_t negated_if(bool negated, int16_t value) {
 }  // namespace
 
 bool SlipWatch::slips() const {
-  return evidence_ >= nn::model_slip::kSlipEvidence;
+  return state_.evidence >= nn::model_slip::kSlipEvidence;
 }
 
 void SlipWatch::set_share(uint8_t input, bool negative, uint16_t part) {
-  values_[input] = static_cast<int8_t>(negated_if(negative, share_q7(part, faster_track_)));
+  state_.values[input] =
+      static_cast<int8_t>(negated_if(negative, share_q7(part, state_.faster_track)));
 }
 
 void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
@@ -76,36 +77,36 @@ void SlipWatch::update_vibration(Vibration& vibration, int16_t counts) {
 /// What the robot drives against takes half of its speed, or more, within a few ticks, while its
 /// tracks go on.
 SCREED_OUT_OF_LINE void SlipWatch::feel_collision(int16_t residual) {
-  lost_ = static_cast<int16_t>(lost_ - asr_i16(lost_, 2) + residual);
-  const uint16_t fast = abs_i16(half_speed_);
+  state_.lost = static_cast<int16_t>(state_.lost - asr_i16(state_.lost, 2) + residual);
+  const uint16_t fast = abs_i16(state_.half_speed);
   // Half the speed is half of 4.2 for each half of 0.1 mm/s.
-  if (fast >= kMinHalfSpeed && abs_i16(lost_) >> 1 >= fast) {
-    collision_ticks_ = kCollisionTicks;
-  } else if (collision_ticks_ != 0) {
-    --collision_ticks_;
+  if (fast >= kMinHalfSpeed && abs_i16(state_.lost) >> 1 >= fast) {
+    state_.collision_ticks = kCollisionTicks;
+  } else if (state_.collision_ticks != 0) {
+    --state_.collision_ticks;
   }
 }
 
 /// What was lost, and the network's memory.
 void SlipWatch::forget() {
-  for (int32_t& loss : velocity_loss_) loss = 0;
+  for (int32_t& loss : state_.velocity_loss) loss = 0;
   for (uint8_t i = 0; i < kSlipUnits; ++i) {
-    states_[i] = 0;
-    values_[kSlipInputs + i] = 0;
+    state_.states[i] = 0;
+    state_.values[kSlipInputs + i] = 0;
   }
 }
 
 void SlipWatch::pass_over(const TrackMotion& left, const TrackMotion& right) {
-  half_speed_ = asr_i16(
+  state_.half_speed = asr_i16(
       static_cast<int16_t>(asr_i16(left.speed_dmm_per_s, 1) + asr_i16(right.speed_dmm_per_s, 1)),
       1);
   forget();
-  lost_ = 0;
-  collision_ticks_ = 0;
-  evidence_ = 0;
-  stuck_ = false;
-  half_done_ = false;
-  travel_share_ = 0;
+  state_.lost = 0;
+  state_.collision_ticks = 0;
+  state_.evidence = 0;
+  state_.stuck = false;
+  state_.half_done = false;
+  state_.travel_share = 0;
 }
 
 void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const int16_t* gyro,
@@ -115,76 +116,81 @@ void SlipWatch::tick(const TrackMotion& left, const TrackMotion& right, const in
   const int16_t half_right = asr_i16(right.speed_dmm_per_s, 1);
   const uint16_t left_speed = abs_i16(half_left);
   const uint16_t right_speed = abs_i16(half_right);
-  faster_track_ = static_cast<uint16_t>((left_speed < right_speed ? right_speed : left_speed) * 2);
+  state_.faster_track =
+      static_cast<uint16_t>((left_speed < right_speed ? right_speed : left_speed) * 2);
   // A count of 0.244 mg over a tick is 0.239 of 0.1 mm/s. In two of these: the change of the belts'
   // speed minus that of the robot's. 16 bits, modulo: no track changes its speed by 1.6 m/s.
   const int16_t half_speed = asr_i16(static_cast<int16_t>(half_left + half_right), 1);
-  const auto change = static_cast<int16_t>(half_speed - half_speed_);
-  half_speed_ = half_speed;
+  const auto change = static_cast<int16_t>(half_speed - state_.half_speed);
+  state_.half_speed = half_speed;
   const auto gained = static_cast<uint16_t>(4U * static_cast<uint16_t>(change));
   const int32_t residual = static_cast<int16_t>(gained + asr_i16(change, 2) - asr_i16(accel[0], 1) +
                                                 asr_i16(sin_pitch_q14, 3)) -
-                           asr_i16(saturate_i16(asr(mean_, 8)), 1);
+                           asr_i16(saturate_i16(asr(state_.mean, 8)), 1);
   feel_collision(limit_i16(residual, kMaxResidual));
   // While the tracks stand the mean is learned quickly and nothing is lost; then it follows slowly.
-  if (faster_track_ < kStanding_dmm_per_s) {
-    mean_ += residual * 8;
+  if (state_.faster_track < kStanding_dmm_per_s) {
+    state_.mean += residual * 8;
     forget();
   } else {
-    mean_ += residual;
+    state_.mean += residual;
     for (uint8_t i = 0; i < 3; ++i)
-      velocity_loss_[i] += residual - asr(velocity_loss_[i], static_cast<uint8_t>(6 + 2 * i));
+      state_.velocity_loss[i] +=
+          residual - asr(state_.velocity_loss[i], static_cast<uint8_t>(6 + 2 * i));
   }
-  update_vibration(vibration_[0], gyro[1]);
-  update_vibration(vibration_[1], accel[0]);
-  update_vibration(vibration_[2], accel[2]);
+  update_vibration(state_.vibration[0], gyro[1]);
+  update_vibration(state_.vibration[1], accel[0]);
+  update_vibration(state_.vibration[2], accel[2]);
   // Twice halved, so that a difference fits 16 bits.
   const int16_t rate = asr_i16(saturate_i16(asr(yaw_rate, 1)), 1);
-  yaw_rate_ =
-      static_cast<int16_t>(yaw_rate_ + asr_i16(static_cast<int16_t>(rate - yaw_rate_), kYawShift));
+  state_.yaw_rate = static_cast<int16_t>(
+      state_.yaw_rate + asr_i16(static_cast<int16_t>(rate - state_.yaw_rate), kYawShift));
   const auto effort = static_cast<int16_t>(negated_if(half_left < 0, left.effort) +
                                            negated_if(half_right < 0, right.effort));
-  effort_ = static_cast<int16_t>(effort_ + limit_i16(effort, kMaxEffort) -
-                                 asr_i16(effort_, kEffortShift));
+  state_.effort = static_cast<int16_t>(state_.effort + limit_i16(effort, kMaxEffort) -
+                                       asr_i16(state_.effort, kEffortShift));
   if (!classify_now) return;
-  if (faster_track_ < kMinTrackSpeed_dmm_per_s) {
-    evidence_ = 0;
-    stuck_ = false;
-    travel_share_ = UINT8_MAX;
-    half_done_ = false;
+  if (state_.faster_track < kMinTrackSpeed_dmm_per_s) {
+    state_.evidence = 0;
+    state_.stuck = false;
+    state_.travel_share = UINT8_MAX;
+    state_.half_done = false;
     return;
   }
-  half_done_ = !half_done_;
-  if (half_done_) {
+  state_.half_done = !state_.half_done;
+  if (state_.half_done) {
     set_inputs(half_left, half_right, sin_pitch_q14);
-    nn::gated_candidates(kShape, nn::model_slip::parameters, values_, candidates_);
+    nn::gated_candidates(kShape, nn::model_slip::parameters, state_.values, state_.candidates);
   } else {
     conclude();
   }
 }
 
 void SlipWatch::set_inputs(int16_t half_left, int16_t half_right, int16_t sin_pitch_q14) {
-  const bool backwards = half_speed_ < 0;
+  const bool backwards = state_.half_speed < 0;
   for (uint8_t i = 0; i < 3; ++i) {
-    const int16_t lost = saturate_i16(asr(velocity_loss_[i], 1));
+    const int16_t lost = saturate_i16(asr(state_.velocity_loss[i], 1));
     set_share(i, backwards != (lost < 0), abs_i16(lost));
   }
-  set_share(3, false, static_cast<uint16_t>(mul_u16(abs_i16(yaw_rate_), arc_q16_) >> 16));
+  set_share(3, false, static_cast<uint16_t>(mul_u16(abs_i16(state_.yaw_rate), arc_q16_) >> 16));
   set_share(4, false, abs_i16(static_cast<int16_t>(half_right - half_left)));
-  values_[5] = byte_of(static_cast<int16_t>(faster_track_ >> 5));
-  values_[6] = byte_of(negated_if(backwards, asr_i16(sin_pitch_q14, 6)));
-  values_[7] = byte_of(asr_i16(effort_, 3));
-  for (uint8_t i = 0; i < 3; ++i) values_[8 + i] = logarithm_q5(vibration_[i].magnitude);
-  values_[11] = byte_of(negated_if(backwards, saturate_i16(asr(vibration_[0].mean, 6))));
+  state_.values[5] = byte_of(static_cast<int16_t>(state_.faster_track >> 5));
+  state_.values[6] = byte_of(negated_if(backwards, asr_i16(sin_pitch_q14, 6)));
+  state_.values[7] = byte_of(asr_i16(state_.effort, 3));
+  for (uint8_t i = 0; i < 3; ++i)
+    state_.values[8 + i] = logarithm_q5(state_.vibration[i].magnitude);
+  state_.values[11] =
+      byte_of(negated_if(backwards, saturate_i16(asr(state_.vibration[0].mean, 6))));
 }
 
 void SlipWatch::conclude() {
   int16_t outputs[kSlipOutputs];
-  nn::gated_update(kShape, nn::model_slip::parameters, values_, candidates_, states_, outputs);
-  evidence_ = slip_evidence(evidence_, outputs[0]);
-  if (evidence_ >= nn::model_slip::kStuckEvidence) stuck_ = true;
-  if (evidence_ < nn::model_slip::kFreeEvidence) stuck_ = false;
-  travel_share_ = static_cast<uint8_t>(clamp_i16(asr_i16(outputs[1], 4), 0, UINT8_MAX));
+  nn::gated_update(kShape, nn::model_slip::parameters, state_.values, state_.candidates,
+                   state_.states, outputs);
+  state_.evidence = slip_evidence(state_.evidence, outputs[0]);
+  if (state_.evidence >= nn::model_slip::kStuckEvidence) state_.stuck = true;
+  if (state_.evidence < nn::model_slip::kFreeEvidence) state_.stuck = false;
+  state_.travel_share = static_cast<uint8_t>(clamp_i16(asr_i16(outputs[1], 4), 0, UINT8_MAX));
 }
 
 }  // namespace screed

@@ -38,9 +38,9 @@ MotionCommand Behaviour::enter_or_stay(LevelingState state, MotionCommand motion
 }
 
 SCREED_OUT_OF_LINE bool Behaviour::uphill(const LevelingInput& input) const {
-  int16_t limit = parameters_.climb_threshold;
+  int16_t limit = parameters_.climb_threshold();
   if (state_ == LevelingState::kClimb)
-    limit = static_cast<int16_t>(limit - parameters_.climb_hysteresis);
+    limit = static_cast<int16_t>(limit - parameters_.climb_hysteresis());
   return ahead(input.pitch) > angle_from_centidegrees(limit);
 }
 
@@ -62,10 +62,10 @@ MotionCommand Behaviour::walk() {
 // it by less than 4 degrees on slopes up to 25. On a plateau it is noise.
 MotionCommand Behaviour::climb(const LevelingInput& input) {
   enter_or_stay(LevelingState::kClimb);
-  MotionCommand motion = {parameters_.climb_speed, 0};
-  if (parameters_.climb_turn != 0 && uphill(input)) {
+  MotionCommand motion = {parameters_.climb_speed(), 0};
+  if (parameters_.climb_turn() != 0 && uphill(input)) {
     const Angle steepest = atan2_angle(ahead(input.roll), ahead(input.pitch));
-    motion.yaw_rate = limit_i16(mul_i16(parameters_.climb_turn, steepest), kMaxTurnRate);
+    motion.yaw_rate = limit_i16(mul_i16(parameters_.climb_turn(), steepest), kMaxTurnRate);
   }
   return motion_ahead(motion);
 }

@@ -116,7 +116,7 @@ class Behaviour {
   SCREED_OUT_OF_LINE Angle ahead(Angle angle) const;
   /// A motion, that way.
   MotionCommand motion_ahead(MotionCommand motion) const;
-  Angle hysteresis() const { return angle_from_centidegrees(parameters_.climb_hysteresis); }
+  Angle hysteresis() const { return angle_from_centidegrees(parameters_.climb_hysteresis()); }
 
   Kept<Parameters> parameters_;
   WalkLegs walk_;

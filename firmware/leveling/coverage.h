@@ -15,7 +15,7 @@ namespace screed {
 class Coverage : public AlgorithmDefaults {
  public:
   explicit Coverage(const Parameters& parameters)
-      : half_side_mm_(parameters.coverage_half_side), step_mm_(parameters.coverage_spacing) {}
+      : half_side_mm_(parameters.coverage_half_side()), step_mm_(parameters.coverage_spacing()) {}
 
   SCREED_OUT_OF_LINE MotionCommand tick(const LevelingInput& input, Behaviour& behaviour);
 

@@ -21,7 +21,7 @@ namespace screed {
 class Escape {
  public:
   explicit Escape(const Parameters& parameters)
-      : attempts_(static_cast<uint8_t>(parameters.escape_attempts)) {}
+      : attempts_(static_cast<uint8_t>(parameters.escape_attempts())) {}
 
   /// A run begins: all attempts are left.
   void start();

@@ -15,7 +15,7 @@ bool keeps_to_site(LevelingAlgorithm algorithm) {
 }  // namespace
 
 Leveling::Leveling(const Parameters& parameters)
-    : algorithm_(static_cast<LevelingAlgorithm>(parameters.algorithm)),
+    : algorithm_(static_cast<LevelingAlgorithm>(parameters.algorithm())),
       behaviour_(parameters),
       escape_(parameters),
       search_(parameters)

@@ -26,7 +26,7 @@ int16_t between(int16_t from, int16_t to, uint8_t part) {
 
 PeakMemory::PeakMemory(const Parameters& parameters)
     : parameters_(parameters),
-      random_(static_cast<uint16_t>(parameters.random_seed)),
+      random_(static_cast<uint16_t>(parameters.random_seed())),
       site_(parameters) {}
 
 PeakMemory::Spot PeakMemory::spot(const int16_t (&mm)[2]) const {
@@ -101,7 +101,7 @@ MotionCommand PeakMemory::tick(const LevelingInput& input, Behaviour& behaviour)
     choose_target();
   } else if (state == LevelingState::kSpin) {
     --ticks_left_;
-    const YawRate rate = yaw_rate_from_degrees(parameters_.spin_rate);
+    const YawRate rate = yaw_rate_from_degrees(parameters_.spin_rate());
     return behaviour.enter_or_stay(LevelingState::kSpin,
                                    {0, spin_left_ ? rate : static_cast<YawRate>(-rate)});
   }
@@ -113,8 +113,8 @@ MotionCommand PeakMemory::tick(const LevelingInput& input, Behaviour& behaviour)
   const auto east = static_cast<int16_t>(target_mm_[kX] - input.place.mm[kX]);
   const auto north = static_cast<int16_t>(target_mm_[kY] - input.place.mm[kY]);
   if (abs_i16(east) < kArrived_mm && abs_i16(north) < kArrived_mm) {
-    const int16_t ms =
-        limit_i16(asr(mul_i16(height(input.place.mm), kDwell_ms_per_mm), 5), parameters_.spin_time);
+    const int16_t ms = limit_i16(asr(mul_i16(height(input.place.mm), kDwell_ms_per_mm), 5),
+                                 parameters_.spin_time());
     ticks_left_ = 0;
     if (ms >= kShortestSpin_ms) {
       ticks_left_ = ticks_from_ms(ms);

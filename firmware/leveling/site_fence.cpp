@@ -15,10 +15,10 @@ uint32_t squares(int16_t x, int16_t y) {
 }  // namespace
 
 SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
-  if (parameters_.site_radius == 0) return false;
+  if (parameters_.site_radius() == 0) return false;
   const uint8_t sigma = place.sigma[kX] > place.sigma[kY] ? place.sigma[kX] : place.sigma[kY];
-  const int16_t half = asr_i16(parameters_.site_radius, 1);
-  auto radius = static_cast<int16_t>(parameters_.site_radius - 4 * sigma);
+  const int16_t half = asr_i16(parameters_.site_radius(), 1);
+  auto radius = static_cast<int16_t>(parameters_.site_radius() - 4 * sigma);
   if (radius < half) radius = half;
   outside_ = squares(place.mm[kX], place.mm[kY]) > static_cast<uint32_t>(mul_i16(radius, radius));
   return outside_;
@@ -27,7 +27,7 @@ SCREED_OUT_OF_LINE bool SiteFence::update(const Place& place) {
 MotionCommand SiteFence::steer(int16_t east_mm, int16_t north_mm, Angle heading) const {
   // A turn is 2^16: sums wrap.
   auto error = static_cast<uint16_t>(angle_difference(atan2_angle(north_mm, east_mm), heading));
-  int16_t speed = parameters_.walk_speed_max;
+  int16_t speed = parameters_.walk_speed_max();
   if ((static_cast<uint16_t>(error + kQuarterTurn) & kHalfTurn) != 0) {  // behind: backwards
     error ^= kHalfTurn;
     speed = static_cast<int16_t>(-speed);

@@ -12,8 +12,8 @@ namespace screed {
 
 struct SiteRectangle {
   explicit SiteRectangle(const Parameters& parameters)
-      : half_mm{parameters.site_x, parameters.site_y} {
-    const int16_t radius = parameters.site_radius;
+      : half_mm{parameters.site_x(), parameters.site_y()} {
+    const int16_t radius = parameters.site_radius();
     for (int16_t& side : half_mm) {
       int16_t half = side;
       if (half == 0 || (radius != 0 && radius < half)) half = radius;

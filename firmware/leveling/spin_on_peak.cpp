@@ -10,8 +10,8 @@ constexpr uint16_t kPlateauTicks = 3 * kTickRate_hz;
 }  // namespace
 
 SpinOnPeak::SpinOnPeak(const Parameters& parameters)
-    : spin_rate_(yaw_rate_from_degrees(parameters.spin_rate)),
-      spin_ticks_(ticks_from_ms(parameters.spin_time)) {}
+    : spin_rate_(yaw_rate_from_degrees(parameters.spin_rate())),
+      spin_ticks_(ticks_from_ms(parameters.spin_time())) {}
 
 SCREED_OUT_OF_LINE MotionCommand SpinOnPeak::spin(Behaviour& behaviour) const {
   const YawRate rate = spin_left_ ? spin_rate_ : static_cast<YawRate>(-spin_rate_);

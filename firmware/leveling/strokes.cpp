@@ -28,41 +28,41 @@ void follow(Angle& lagging, Angle value) {
 }  // namespace
 
 Strokes::Strokes(const Parameters& parameters)
-    : StrokesMemory(),
-      parameters_(parameters),
-      random_(static_cast<uint16_t>(parameters.random_seed)),
+    : parameters_(parameters),
+      random_(static_cast<uint16_t>(parameters.random_seed())),
       site_(parameters),
       limit_(kFirstLimit),
-      down_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_down))),
-      up_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_up))) {
+      down_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_down()))),
+      up_ticks_(static_cast<uint8_t>(ticks_from_ms(parameters.stroke_up()))) {
   begin_journey();
 }
 
 void Strokes::begin(Phase phase, uint16_t ticks) {
-  phase_ = phase;
-  ticks_left_ = ticks;
+  state_.phase = phase;
+  state_.ticks_left = ticks;
 }
 
 void Strokes::begin_cycle() {
-  cycle_ticks_ = static_cast<uint8_t>(down_ticks_ + up_ticks_);
+  state_.cycle_ticks = static_cast<uint8_t>(down_ticks_ + up_ticks_);
 }
 
 void Strokes::begin_journey() {
-  site_.draw_place_at_edge(random_, kFromEdge_mm, target_mm_);
+  site_.draw_place_at_edge(random_, kFromEdge_mm, state_.target_mm);
   begin(Phase::kTravel, kTravelTicks);
 }
 
 MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) {
-  if (ticks_left_ < kTravelTicks - kApartTicks &&
-      mul_i16(pitch_, pitch_) + mul_i16(roll_, roll_) > mul_i16(limit_, limit_)) {
+  if (state_.ticks_left < kTravelTicks - kApartTicks &&
+      mul_i16(state_.pitch, state_.pitch) + mul_i16(state_.roll, state_.roll) >
+          mul_i16(limit_, limit_)) {
     limit_ = static_cast<Angle>(limit_ + asr_i16(limit_, kRise));
-    downhill_ = pitch_ < 0;  // the way that takes the shorter turn
+    state_.downhill = state_.pitch < 0;  // the way that takes the shorter turn
     begin(Phase::kFace, kFaceTicks);
     return face(behaviour);
   }
-  const auto east = static_cast<int16_t>(target_mm_[kX] - input.place.mm[kX]);
-  const auto north = static_cast<int16_t>(target_mm_[kY] - input.place.mm[kY]);
-  if (ticks_left_ == 0 || (abs_i16(east) < kArrived_mm && abs_i16(north) < kArrived_mm)) {
+  const auto east = static_cast<int16_t>(state_.target_mm[kX] - input.place.mm[kX]);
+  const auto north = static_cast<int16_t>(state_.target_mm[kY] - input.place.mm[kY]);
+  if (state_.ticks_left == 0 || (abs_i16(east) < kArrived_mm && abs_i16(north) < kArrived_mm)) {
     limit_ = static_cast<Angle>(limit_ - asr_i16(limit_, kFall));
     if (limit_ < kMinLimit) limit_ = kMinLimit;
     begin_journey();
@@ -71,12 +71,12 @@ MotionCommand Strokes::travel(const LevelingInput& input, Behaviour& behaviour) 
 }
 
 MotionCommand Strokes::face(Behaviour& behaviour) {
-  Angle turn = atan2_angle(roll_, pitch_);
-  if (downhill_) turn = angle_difference(turn, INT16_MIN);
-  if (abs_i16(turn) < kFacing || ticks_left_ == 0) {
-    begin(Phase::kStroke, ticks_from_ms(parameters_.stroke_time));
+  Angle turn = atan2_angle(state_.roll, state_.pitch);
+  if (state_.downhill) turn = angle_difference(turn, INT16_MIN);
+  if (abs_i16(turn) < kFacing || state_.ticks_left == 0) {
+    begin(Phase::kStroke, ticks_from_ms(parameters_.stroke_time()));
     begin_cycle();
-    speed_ = 0;
+    state_.speed = 0;
     return stroke(behaviour);
   }
   return behaviour.enter_or_stay(LevelingState::kWalk,
@@ -84,36 +84,38 @@ MotionCommand Strokes::face(Behaviour& behaviour) {
 }
 
 MotionCommand Strokes::stroke(Behaviour& behaviour) {
-  if (cycle_ticks_ == 0) {
-    const auto uphill = downhill_ ? static_cast<Angle>(-pitch_) : pitch_;
-    if (ticks_left_ == 0 || uphill < asr_i16(limit_, 1)) {
+  if (state_.cycle_ticks == 0) {
+    const auto uphill = state_.downhill ? static_cast<Angle>(-state_.pitch) : state_.pitch;
+    if (state_.ticks_left == 0 || uphill < asr_i16(limit_, 1)) {
       begin(Phase::kTravel, kTravelTicks);  // on to the same place
       return behaviour.enter_or_stay(LevelingState::kWalk, {0, 0});
     }
     begin_cycle();
   }
-  --cycle_ticks_;
-  if (cycle_ticks_ < up_ticks_) {
-    speed_ = kSpeed_mm_per_s;
+  --state_.cycle_ticks;
+  if (state_.cycle_ticks < up_ticks_) {
+    state_.speed = kSpeed_mm_per_s;
   } else {
-    speed_ = static_cast<int16_t>(speed_ - parameters_.stroke_ease);  // 0.1 m/s^2: mm/s a tick
-    if (speed_ < -kSpeed_mm_per_s) speed_ = -kSpeed_mm_per_s;
+    state_.speed =
+        static_cast<int16_t>(state_.speed - parameters_.stroke_ease());  // 0.1 m/s^2: mm/s a tick
+    if (state_.speed < -kSpeed_mm_per_s) state_.speed = -kSpeed_mm_per_s;
   }
-  return behaviour.enter_or_stay(LevelingState::kStroke,
-                                 {downhill_ ? static_cast<int16_t>(-speed_) : speed_, 0});
+  return behaviour.enter_or_stay(
+      LevelingState::kStroke,
+      {state_.downhill ? static_cast<int16_t>(-state_.speed) : state_.speed, 0});
 }
 
 MotionCommand Strokes::tick(const LevelingInput& input, Behaviour& behaviour) {
   const LevelingState state = behaviour.state();
-  follow(pitch_, input.pitch);
-  follow(roll_, input.roll);
+  follow(state_.pitch, input.pitch);
+  follow(state_.roll, input.roll);
   // Something came between: the return to the site, an escape. That place may be out of reach.
   if (state != LevelingState::kWalk && state != LevelingState::kStroke) {
     begin_journey();
   }
-  if (ticks_left_ != 0) --ticks_left_;
-  if (phase_ == Phase::kFace) return face(behaviour);
-  if (phase_ == Phase::kStroke) return stroke(behaviour);
+  if (state_.ticks_left != 0) --state_.ticks_left;
+  if (state_.phase == Phase::kFace) return face(behaviour);
+  if (state_.phase == Phase::kStroke) return stroke(behaviour);
   return travel(input, behaviour);
 }
 

@@ -20,21 +20,7 @@
 
 namespace screed {
 
-/// What it remembers that begins with zero; by itself, so that it is zeroed at once.
-struct StrokesMemory {
-  enum class Phase : uint8_t { kTravel, kFace, kStroke };
-
-  Angle pitch_;  ///< with a lag
-  Angle roll_;
-  uint16_t ticks_left_;  ///< of the phase, at most
-  int16_t target_mm_[2];
-  int16_t speed_;  ///< uphill
-  Phase phase_;
-  bool downhill_;        ///< it faces downhill, else uphill
-  uint8_t cycle_ticks_;  ///< left of one way down and up
-};
-
-class Strokes : public AlgorithmDefaults, private StrokesMemory {
+class Strokes : public AlgorithmDefaults {
  public:
   explicit Strokes(const Parameters& parameters);
   void take(const Parameters& parameters) { keep(parameters_, parameters); }
@@ -45,6 +31,18 @@ class Strokes : public AlgorithmDefaults, private StrokesMemory {
   Angle limit() const { return limit_; }
 
  private:
+  enum class Phase : uint8_t { kTravel, kFace, kStroke };
+  struct State {
+    Angle pitch;  ///< with a lag
+    Angle roll;
+    uint16_t ticks_left;  ///< of the phase, at most
+    int16_t target_mm[2];
+    int16_t speed;  ///< uphill
+    Phase phase;
+    bool downhill;        ///< it faces downhill, else uphill
+    uint8_t cycle_ticks;  ///< left of one way down and up
+  };
+
   void begin(Phase phase, uint16_t ticks);
   void begin_cycle();
   void begin_journey();
@@ -52,6 +50,7 @@ class Strokes : public AlgorithmDefaults, private StrokesMemory {
   MotionCommand face(Behaviour& behaviour);
   MotionCommand stroke(Behaviour& behaviour);
 
+  State state_{};
   Kept<Parameters> parameters_;
   Random random_;
   SiteRectangle site_;

@@ -21,8 +21,8 @@ int16_t scaled(int16_t full, int8_t direction, int16_t share_q15) {
 }  // namespace
 
 TrainingDrive::TrainingDrive(const Parameters& parameters)
-    : random_(static_cast<uint16_t>(parameters.random_seed)),
-      block_ticks_(static_cast<uint16_t>(parameters.training_block)),
+    : random_(static_cast<uint16_t>(parameters.random_seed())),
+      block_ticks_(static_cast<uint16_t>(parameters.training_block())),
       ticks_left_(length_of(0)) {}
 
 // As printed: the first block has i <= n/8, so it takes one frame from the second.

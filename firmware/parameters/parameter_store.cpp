@@ -26,7 +26,7 @@ void seal_copy(uint16_t sequence, ParameterCopy& copy) {
 }
 
 void encode_parameters(const Parameters& parameters, uint16_t sequence, ParameterCopy& copy) {
-  memcpy(copy.bytes + kParameterHeaderSize, &parameters, sizeof(parameters));
+  memcpy(copy.bytes + kParameterHeaderSize, parameters.values, sizeof(parameters.values));
   seal_copy(sequence, copy);
 }
 
@@ -41,7 +41,7 @@ CopyState check_copy(const ParameterCopy& copy) {
 }
 
 void decode_parameters(const ParameterCopy& copy, Parameters& parameters) {
-  memcpy(&parameters, copy.bytes + kParameterHeaderSize, sizeof(parameters));
+  memcpy(parameters.values, copy.bytes + kParameterHeaderSize, sizeof(parameters.values));
 }
 
 uint16_t copy_sequence(const ParameterCopy& copy) {

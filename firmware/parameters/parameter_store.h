@@ -18,10 +18,9 @@
 
 namespace screed {
 
-constexpr uint8_t kParameterCount = sizeof(Parameters) / sizeof(int16_t);
 constexpr uint8_t kParameterCopies = 2;
 constexpr uint8_t kParameterHeaderSize = 4;
-constexpr uint8_t kParameterCopySize = kParameterHeaderSize + 2 * kParameterCount + 2;
+constexpr uint8_t kParameterCopySize = kParameterHeaderSize + 2 * Parameters::kCount + 2;
 
 /// Address of the first byte of a copy. The first 16 bytes of the EEPROM stay free, and each copy
 /// has room to grow.

@@ -7,17 +7,17 @@
 namespace screed {
 
 struct ParameterInfo {
+  uint8_t number;
   const char* name;
   const char* unit;
   int16_t min;
   int16_t max;
   int16_t default_value;
   const char* meaning;
-  int16_t Parameters::*field;
 };
 
-/// In the order of the struct. Defined in parameters.cpp, so that texts and ranges, which grow with
-/// the algorithms, are compiled once.
-extern const ParameterInfo kParameterTable[sizeof(Parameters) / sizeof(int16_t)];
+/// By their numbers. Defined in parameters.cpp, so that texts and ranges, which grow with the
+/// algorithms, are compiled once.
+extern const ParameterInfo kParameterTable[Parameters::kCount];
 
 }  // namespace screed

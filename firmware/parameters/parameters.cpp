@@ -14,17 +14,12 @@ namespace {
 constexpr uint8_t kSymmetric = 0x7F;
 constexpr uint8_t kLive = 0x80;
 
-enum Number : uint8_t {
-#define SCREED_NUMBER(name, unit, min, max, value, meaning) k_##name,
-  SCREED_PARAMETERS(SCREED_NUMBER)
-#undef SCREED_NUMBER
-};
-constexpr bool is_live(Number number) {
-#define SCREED_LIVE(name) || number == k_##name
+constexpr bool is_live(uint8_t number) {
+#define SCREED_LIVE(name) || number == Parameters::k_##name
   return false SCREED_LIVE_PARAMETERS(SCREED_LIVE);
 #undef SCREED_LIVE
 }
-constexpr uint8_t packed_min(Number number, int16_t min) {
+constexpr uint8_t packed_min(uint8_t number, int16_t min) {
   return static_cast<uint8_t>((is_live(number) ? kLive : 0) |
                               (min < 0 ? kSymmetric : static_cast<uint8_t>(min)));
 }
@@ -37,13 +32,12 @@ struct Range {
   uint8_t min;
   int16_t max;
 };
-const Range kRanges[] SCREED_PROGRAM_MEMORY = {
-#define SCREED_RANGE(name, unit, min, max, value, meaning) {packed_min(k_##name, min), max},
+const Range kRanges[Parameters::kCount] SCREED_PROGRAM_MEMORY = {
+#define SCREED_RANGE(name, unit, min, max, value, meaning) \
+  {packed_min(Parameters::k_##name, min), max},
     SCREED_PARAMETERS(SCREED_RANGE)
 #undef SCREED_RANGE
 };
-constexpr uint8_t kCount = sizeof(kRanges) / sizeof(kRanges[0]);
-static_assert(sizeof(Parameters) == kCount * sizeof(int16_t), "parameters are numbers alone");
 
 // Algorithms below the greatest number that this build leaves out; of a single one the number.
 constexpr uint16_t kGaps = kAllAlgorithms & ~kAlgorithmsInBuild & ((1U << kMaxAlgorithm) - 1U);
@@ -53,9 +47,9 @@ constexpr int16_t kGap = bits_of(static_cast<uint16_t>(kGaps - 1U));
 }  // namespace
 
 #ifndef __AVR__
-const ParameterInfo kParameterTable[kCount] = {
+const ParameterInfo kParameterTable[Parameters::kCount] = {
 #define SCREED_INFO(name, unit, min, max, value, meaning) \
-  {#name, unit, min, max, value, meaning, &Parameters::name},
+  {Parameters::k_##name, #name, unit, min, max, value, meaning},
     SCREED_PARAMETERS(SCREED_INFO)
 #undef SCREED_INFO
 };
@@ -66,7 +60,7 @@ bool changes_while_running(uint8_t number) {
 }
 
 bool Parameters::valid() const {
-  const auto* value = reinterpret_cast<const int16_t*>(this);
+  const int16_t* value = values;
   for (const Range* range = kRanges; range != kRanges + kCount; ++range, ++value) {
     int16_t min = read_program_u8(&range->min) & kSymmetric;
     const int16_t max = read_program_i16(&range->max);
@@ -75,11 +69,11 @@ bool Parameters::valid() const {
   }
   // The algorithms' numbers follow each other, or the range has let one pass that there is not.
   if (kOneGap) {
-    if (algorithm == kGap) return false;
-  } else if (kGaps != 0 && !algorithm_in_build(algorithm)) {
+    if (algorithm() == kGap) return false;
+  } else if (kGaps != 0 && !algorithm_in_build(algorithm())) {
     return false;
   }
-  return walk_speed_min <= walk_speed_max && walk_leg_min <= walk_leg_max;
+  return walk_speed_min() <= walk_speed_max() && walk_leg_min() <= walk_leg_max();
 }
 
 }  // namespace screed

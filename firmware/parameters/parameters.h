@@ -1,6 +1,6 @@
 // Every number a user may tune, in one table: name, unit, range, default, meaning.
 //
-// The table is a macro so that the struct, its defaults, its range check and the host's listing
+// The table is a macro so that numbers, accessors, defaults, range check and the host's listing
 // (names, documentation, experiment files) are made from the same lines and cannot drift apart.
 // Text stays out of the MCU image: parameters.cpp has the table of parameter_table.h on hosts
 // alone.
@@ -89,16 +89,36 @@ constexpr int16_t kDefaultAlgorithm = 1;
 #endif
 
 struct Parameters {
-#define SCREED_FIELD(name, unit, min, max, value, meaning) int16_t name = (value);
-  SCREED_PARAMETERS(SCREED_FIELD)
-#undef SCREED_FIELD
+  /// A parameter's row in the table, from 0, as it goes by radio and into the EEPROM.
+  enum Number : uint8_t {
+#define SCREED_NUMBER(name, unit, min, max, value, meaning) k_##name,
+    SCREED_PARAMETERS(SCREED_NUMBER)
+#undef SCREED_NUMBER
+        kEnd
+  };
+  static constexpr uint8_t kCount = kEnd;
+
+  /// By their numbers.
+  int16_t values[kCount] = {
+#define SCREED_DEFAULT(name, unit, min, max, value, meaning) (value),
+      SCREED_PARAMETERS(SCREED_DEFAULT)
+#undef SCREED_DEFAULT
+  };
+#define SCREED_ACCESSOR(name, unit, min, max, value, meaning) \
+  int16_t name() const {                                      \
+    return values[k_##name];                                  \
+  }                                                           \
+  int16_t& name() {                                           \
+    return values[k_##name];                                  \
+  }
+  SCREED_PARAMETERS(SCREED_ACCESSOR)
+#undef SCREED_ACCESSOR
 
   /// True when every value lies in its range; a robot with any other parameters refuses to arm.
   bool valid() const;
 };
 
-/// Whether a robot takes this parameter, by its number in the table from 0, while it is armed or
-/// runs. number: less than that of the parameters.
+/// Whether a robot takes the parameter of this number while it is armed or runs.
 bool changes_while_running(uint8_t number);
 
 }  // namespace screed

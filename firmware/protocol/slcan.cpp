@@ -52,40 +52,40 @@ bool slcan_byte(const uint8_t* digits, uint8_t& byte) {
 
 SCREED_OUT_OF_LINE bool SlcanParser::feed(uint8_t byte, CanFrame& frame) {
   if (byte == '\r') return end_line(frame);
-  if (length_ == kSlcanLineMax - 1) {
-    if (!too_long_) ++rejected_;
-    too_long_ = true;
+  if (state_.length == kSlcanLineMax - 1) {
+    if (!state_.too_long) ++state_.rejected;
+    state_.too_long = true;
     return false;
   }
-  if (length_ == 0) {
-    frame_like_ = byte == 't';
-    all_hex_ = true;
+  if (state_.length == 0) {
+    state_.frame_like = byte == 't';
+    state_.all_hex = true;
   } else {
     const uint8_t digit = hex_value(byte);
-    if (digit == kNotHex) all_hex_ = false;
-    if (length_ < kHeaderLength) {
-      header_ = static_cast<uint16_t>(header_ << 4 | digit);
+    if (digit == kNotHex) state_.all_hex = false;
+    if (state_.length < kHeaderLength) {
+      state_.header = static_cast<uint16_t>(state_.header << 4 | digit);
     } else {
-      uint8_t& data = data_[static_cast<uint8_t>(length_ - kHeaderLength) / 2U];
+      uint8_t& data = state_.data[static_cast<uint8_t>(state_.length - kHeaderLength) / 2U];
       data = static_cast<uint8_t>(data << 4 | digit);
     }
   }
-  ++length_;
+  ++state_.length;
   return false;
 }
 
 bool SlcanParser::end_line(CanFrame& frame) {
-  const auto size = static_cast<uint8_t>(header_ & 0xFU);
-  const bool good = !too_long_ && all_hex_ && (header_ & 0x8000U) == 0 && size <= sizeof(data_) &&
-                    length_ == kHeaderLength + 2 * size;
-  const bool is_frame = length_ > 0 && frame_like_;
-  if (is_frame && !too_long_ && !good) ++rejected_;
-  length_ = 0;
-  too_long_ = false;
+  const auto size = static_cast<uint8_t>(state_.header & 0xFU);
+  const bool good = !state_.too_long && state_.all_hex && (state_.header & 0x8000U) == 0 &&
+                    size <= sizeof(state_.data) && state_.length == kHeaderLength + 2 * size;
+  const bool is_frame = state_.length > 0 && state_.frame_like;
+  if (is_frame && !state_.too_long && !good) ++state_.rejected;
+  state_.length = 0;
+  state_.too_long = false;
   if (!is_frame || !good) return false;
-  frame.id = static_cast<uint16_t>(header_ >> 4);
+  frame.id = static_cast<uint16_t>(state_.header >> 4);
   frame.size = size;
-  memcpy(frame.data, data_, size);
+  memcpy(frame.data, state_.data, size);
   return true;
 }
 

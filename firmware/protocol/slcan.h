@@ -26,32 +26,34 @@ uint8_t* slcan_put_byte(uint8_t* at, uint8_t byte);
 /// The byte of two hexadecimal digits; false when they are none.
 bool slcan_byte(const uint8_t* digits, uint8_t& byte);
 
-/// What the parser remembers, zero at the start.
-struct SlcanMemory {
-  uint16_t header_;  ///< the first four digits: id and size
-  uint8_t data_[8];
-  uint8_t length_;  ///< of the line so far
-  bool frame_like_;
-  bool all_hex_;
-  bool too_long_;
-  uint8_t rejected_;
-};
-
 /// Collects bytes to lines and lines to frames. A line that is not exactly a data frame (other
 /// commands, wrong length, foreign characters, too long) is dropped; rejected() counts those that
 /// began like a frame, and those that are too long to be anything.
-class SlcanParser : private SlcanMemory {
+class SlcanParser {
  public:
-  SlcanParser() : SlcanMemory() {}
+  SlcanParser() {}
 
   /// Takes one byte. Returns true when it ended a well-formed frame, which is then in `frame`.
   bool feed(uint8_t byte, CanFrame& frame);
 
   /// Lines counted as rejected, wraps.
-  uint8_t rejected() const { return rejected_; }
+  uint8_t rejected() const { return state_.rejected; }
 
  private:
+  /// What the parser remembers, zero at the start.
+  struct State {
+    uint16_t header;  ///< the first four digits: id and size
+    uint8_t data[8];
+    uint8_t length;  ///< of the line so far
+    bool frame_like;
+    bool all_hex;
+    bool too_long;
+    uint8_t rejected;
+  };
+
   bool end_line(CanFrame& frame);
+
+  State state_{};
 };
 
 }  // namespace screed

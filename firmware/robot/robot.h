@@ -22,31 +22,7 @@
 
 namespace screed {
 
-/// What a robot remembers beside its parts, zero at the start. By itself so that it is zeroed at
-/// once: member by member that takes 150 bytes of flash more.
-struct RobotMemory {
-  static constexpr uint8_t kStagedSize = 6;  ///< u16, s32
-
-  RobotStatus status_;
-  MotionCommand drive_command_;  ///< last CommandOp::kDrive
-  uint16_t last_left_;
-  uint16_t last_right_;
-  message::CommandAck answer_;   ///< to the last command that was accepted
-  uint8_t staged_[kStagedSize];  ///< index and value of a PARAM_STAGE
-  uint8_t store_parameter_;      ///< as RobotOutput
-  int16_t store_value_;
-  uint8_t store_ticks_;     ///< until the EEPROM takes another parameter
-  uint8_t ground_counter_;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
-  UplinkCounts uplink_;
-  bool command_pending_;
-  // One byte: with the core's USB there is no other left below its word in RAM.
-  bool started_ : 1;  ///< the first tick is over
-  bool located_ : 1;  ///< a position fix has told where the robot is
-  bool stuck_;
-  uint8_t command_[kCommandSize];  ///< waits for its tick
-};
-
-class Robot : private RobotMemory {
+class Robot {
  public:
   /// `parameters_intact` = false: the parameters stand in for lost ones; the robot refuses to be
   /// armed.
@@ -63,12 +39,40 @@ class Robot : private RobotMemory {
   const Supervisor& supervisor() const { return supervisor_; }
   const Leveling& leveling() const { return leveling_; }
   const DriveControl& drive() const { return drive_; }
-  const MotionCommand& motion() const { return status_.motion; }
+  const MotionCommand& motion() const { return state_.status.motion; }
   const Parameters& parameters() const { return parameters_; }
   const CommandGate& gate() const { return gate_; }
   const SlipWatch& slip_watch() const { return slip_watch_; }
 
  private:
+  static constexpr uint8_t kStagedSize = 6;  ///< u16, s32
+  /// What a robot remembers beside its parts, zero at the start. By itself so that it is zeroed at
+  /// once: member by member that takes 150 bytes of flash more.
+  struct State {
+    RobotStatus status;
+    MotionCommand drive_command;  ///< last CommandOp::kDrive
+    uint16_t last_left;
+    uint16_t last_right;
+    message::CommandAck answer;   ///< to the last command that was accepted
+    uint8_t staged[kStagedSize];  ///< index and value of a PARAM_STAGE
+    uint8_t store_parameter;      ///< as RobotOutput
+    int16_t store_value;
+    uint8_t store_ticks;     ///< until the EEPROM takes another parameter
+    uint8_t ground_counter;  ///< alive counter of the last ground heartbeat, plus 1; 0: none yet
+    UplinkCounts uplink;
+    bool command_pending;
+    // One byte: with the core's USB there is no other left below its word in RAM.
+    bool started : 1;  ///< the first tick is over
+    bool located : 1;  ///< a position fix has told where the robot is
+    bool stuck;
+    uint8_t command[kCommandSize];  ///< waits for its tick
+    // What the downlink says of intervals.
+    uint8_t heartbeats_before;  ///< UplinkCounts::ground_heartbeats at the last LINK
+    uint16_t longest_tick_us;   ///< since the last HEALTH
+    uint32_t time_ms;           ///< at the last TIME; the sample's time wraps after 71.6 minutes
+    uint32_t time_us;           ///< the sample's, then
+  };
+
   struct Deltas {
     int16_t left;
     int16_t right;
@@ -84,7 +88,6 @@ class Robot : private RobotMemory {
   void process_command();
   RequestResult execute(const uint8_t* data);
   void fix_position(const DriveArgument& place_cm);
-  int16_t& parameter(uint8_t index);
   RequestResult send_parameter(uint16_t index);
   RequestResult commit_parameter(uint8_t index, uint16_t crc);
   uint16_t detail_of(RequestResult result) const;
@@ -100,8 +103,11 @@ class Robot : private RobotMemory {
   }
   void announce_state();
   void report(const SensorSample& sample, RobotOutput& output);
+  /// The frame of this id. Once for each that is sent: HEALTH and LINK start new intervals here.
+  void fill(CanFrame& frame, const SensorSample& sample);
   void write_actuators(RobotOutput& output);
 
+  State state_{};
   Kept<BoardConstants> board_;
   Parameters parameters_;
   AttitudeEstimator attitude_;

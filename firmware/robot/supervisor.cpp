@@ -97,13 +97,12 @@ static_assert(Fault::kAccelMagChip == ChipBit::kAccelMagChip << 8 &&
                   Fault::kGyroChip == ChipBit::kGyroChip << 8,
               "faults of chips are their bits, shifted");
 
-Supervisor::Supervisor(bool parameters_intact)
-    : SupervisorMemory(), parameters_intact_(parameters_intact) {
-  ticks_since_heartbeat_ = UINT16_MAX;
+Supervisor::Supervisor(bool parameters_intact) : parameters_intact_(parameters_intact) {
+  state_.ticks_since_heartbeat = UINT16_MAX;
 }
 
 bool Supervisor::link_alive() const {
-  return ticks_since_heartbeat_ <= kLinkStopTicks;
+  return state_.ticks_since_heartbeat <= kLinkStopTicks;
 }
 
 // Two witnesses: the estimator, which follows a roll by its gyro, and, at rest, the raw
@@ -112,7 +111,7 @@ bool Supervisor::link_alive() const {
 // and for a tenth of a second the force points anywhere. Tracks that slip on purpose brake it so
 // evenly that it seems to rest; there it counts only while the estimator knows nothing.
 bool Supervisor::tilted(const Parameters& parameters, const SupervisorInput& input) {
-  const int16_t cos_limit_q15 = cos_q15(angle_from_centidegrees(parameters.tilt_limit));
+  const int16_t cos_limit_q15 = cos_q15(angle_from_centidegrees(parameters.tilt_limit()));
   if (input.attitude_known) {
     if (input.cos_tilt_q14 < asr_i16(cos_limit_q15, 1)) return true;
     if (input.slips_on_purpose) return false;
@@ -134,131 +133,135 @@ bool Supervisor::tilted(const Parameters& parameters, const SupervisorInput& inp
 uint16_t Supervisor::look_for_faults(const Parameters& parameters, const SupervisorInput& input) {
   // A change while it is not disarmed is checked as it is made, and the check takes time.
   const bool parameters_good =
-      parameters_intact_ && (state_ != RobotState::kDisarmed || parameters.valid());
+      parameters_intact_ && (state_.state != RobotState::kDisarmed || parameters.valid());
   uint16_t found = parameters_good ? 0 : static_cast<uint16_t>(Fault::kParameters);
 
-  if (lasts(tilted(parameters, input), tilt_ticks_, kTiltTicks)) found |= Fault::kTilt;
+  if (lasts(tilted(parameters, input), state_.tilt_ticks, kTiltTicks)) found |= Fault::kTilt;
 
   const bool new_gyro = (input.fresh & kFreshGyro) != 0;
-  if (lasts(!new_gyro, silent_gyro_ticks_, kSilentTicks)) found |= Fault::kImuSilent;
-  if (lasts((input.fresh & kFreshAccel) == 0, silent_accel_ticks_, kSilentTicks)) {
+  if (lasts(!new_gyro, state_.silent_gyro_ticks, kSilentTicks)) found |= Fault::kImuSilent;
+  if (lasts((input.fresh & kFreshAccel) == 0, state_.silent_accel_ticks, kSilentTicks)) {
     found |= Fault::kImuSilent;
   }
 
   // The noise of a live gyro moves its last digit within a few samples.
   bool same = true;
   for (uint8_t i = 0; i < 3; ++i) {
-    same = same && input.gyro[i] == last_gyro_[i];
-    last_gyro_[i] = input.gyro[i];
+    same = same && input.gyro[i] == state_.last_gyro[i];
+    state_.last_gyro[i] = input.gyro[i];
   }
-  if (new_gyro) frozen_gyro_ticks_ = same ? count_up(frozen_gyro_ticks_) : static_cast<uint8_t>(0);
-  if (frozen_gyro_ticks_ >= kFrozenTicks) found |= Fault::kGyroFrozen;
+  if (new_gyro)
+    state_.frozen_gyro_ticks = same ? count_up(state_.frozen_gyro_ticks) : static_cast<uint8_t>(0);
+  if (state_.frozen_gyro_ticks >= kFrozenTicks) found |= Fault::kGyroFrozen;
 
   const auto failing = static_cast<uint8_t>(input.chips_failing & kVitalChips);
-  if (lasts(failing != 0, chip_ticks_, kChipTicks)) {
+  if (lasts(failing != 0, state_.chip_ticks, kChipTicks)) {
     found |= static_cast<uint16_t>(static_cast<uint16_t>(failing) << 8);
   }
 
-  left_.tick(input.duty_left, input.counts_left);
-  right_.tick(input.duty_right, input.counts_right);
-  const uint16_t stall_ticks = ticks_from_ms(parameters.stall_time);
-  if (left_.still_ticks() >= stall_ticks) found |= Fault::kStallLeft;
-  if (right_.still_ticks() >= stall_ticks) found |= Fault::kStallRight;
-  if (left_.alternates()) found |= Fault::kEncoderLeft;
-  if (right_.alternates()) found |= Fault::kEncoderRight;
-  left_.compare(input.duty_left, input.speed_left_dmm_per_s, input.full_speed_mm_per_s);
-  right_.compare(input.duty_right, input.speed_right_dmm_per_s, input.full_speed_mm_per_s);
-  if (left_.disobeys()) found |= Fault::kMotorLeft;
-  if (right_.disobeys()) found |= Fault::kMotorRight;
+  state_.left.tick(input.duty_left, input.counts_left);
+  state_.right.tick(input.duty_right, input.counts_right);
+  const uint16_t stall_ticks = ticks_from_ms(parameters.stall_time());
+  if (state_.left.still_ticks() >= stall_ticks) found |= Fault::kStallLeft;
+  if (state_.right.still_ticks() >= stall_ticks) found |= Fault::kStallRight;
+  if (state_.left.alternates()) found |= Fault::kEncoderLeft;
+  if (state_.right.alternates()) found |= Fault::kEncoderRight;
+  state_.left.compare(input.duty_left, input.speed_left_dmm_per_s, input.full_speed_mm_per_s);
+  state_.right.compare(input.duty_right, input.speed_right_dmm_per_s, input.full_speed_mm_per_s);
+  if (state_.left.disobeys()) found |= Fault::kMotorLeft;
+  if (state_.right.disobeys()) found |= Fault::kMotorRight;
 
-  stuck_for_ = input.stuck ? count_up(stuck_for_) : static_cast<uint16_t>(0);
-  const uint16_t stuck_ticks = ticks_from_ms(parameters.stuck_time);
-  if (input.gave_up || (stuck_ticks != 0 && stuck_for_ >= stuck_ticks)) found |= Fault::kStuck;
+  state_.stuck_for = input.stuck ? count_up(state_.stuck_for) : static_cast<uint16_t>(0);
+  const uint16_t stuck_ticks = ticks_from_ms(parameters.stuck_time());
+  if (input.gave_up || (stuck_ticks != 0 && state_.stuck_for >= stuck_ticks))
+    found |= Fault::kStuck;
   if (input.lost) found |= Fault::kLost;
 
-  if (lasts(input.battery_mv < static_cast<uint16_t>(parameters.battery_low), battery_ticks_,
-            kBatteryTicks)) {
+  if (lasts(input.battery_mv < static_cast<uint16_t>(parameters.battery_low()),
+            state_.battery_ticks, kBatteryTicks)) {
     found |= Fault::kBattery;
   }
   return found;
 }
 
 void Supervisor::watch_link() {
-  ticks_since_heartbeat_ = count_up(ticks_since_heartbeat_);
-  if (standalone_ || state_ == RobotState::kFault) return;
-  if (ticks_since_heartbeat_ > kLinkDisarmTicks) {
-    state_ = RobotState::kDisarmed;
-  } else if (ticks_since_heartbeat_ > kLinkStopTicks && state_ == RobotState::kRunning) {
-    state_ = RobotState::kStopped;
+  state_.ticks_since_heartbeat = count_up(state_.ticks_since_heartbeat);
+  if (state_.standalone || state_.state == RobotState::kFault) return;
+  if (state_.ticks_since_heartbeat > kLinkDisarmTicks) {
+    state_.state = RobotState::kDisarmed;
+  } else if (state_.ticks_since_heartbeat > kLinkStopTicks &&
+             state_.state == RobotState::kRunning) {
+    state_.state = RobotState::kStopped;
   }
 }
 
 // Arms and runs once, after the delay: a stand-alone robot that was stopped, even before that,
-// stays stopped. ticks_since_start_ == UINT16_MAX: the start has happened or was cancelled.
+// stays stopped. state_.ticks_since_start == UINT16_MAX: the start has happened or was
+// cancelled.
 void Supervisor::run_standalone(uint16_t delay_ticks) {
-  if (!standalone_ || ticks_since_start_ == UINT16_MAX) return;
-  if (ticks_since_start_ < delay_ticks) {
-    ++ticks_since_start_;
+  if (!state_.standalone || state_.ticks_since_start == UINT16_MAX) return;
+  if (state_.ticks_since_start < delay_ticks) {
+    ++state_.ticks_since_start;
     return;
   }
   if (request(Request::kArm) == RequestResult::kDone) {
     request(Request::kRun);
-    ticks_since_start_ = UINT16_MAX;
+    state_.ticks_since_start = UINT16_MAX;
   }
 }
 
 void Supervisor::tick(const Parameters& parameters, const SupervisorInput& input) {
-  standalone_ = parameters.standalone != 0;
-  estimator_ready_ = input.estimator_ready;
-  present_ = look_for_faults(parameters, input);
+  state_.standalone = parameters.standalone() != 0;
+  state_.estimator_ready = input.estimator_ready;
+  state_.present = look_for_faults(parameters, input);
   // Before anybody armed the robot a fault is no event: it only keeps the robot from being armed.
-  if (present_ != 0 && state_ != RobotState::kDisarmed) {
-    latched_ |= present_;
-    state_ = RobotState::kFault;
+  if (state_.present != 0 && state_.state != RobotState::kDisarmed) {
+    state_.latched |= state_.present;
+    state_.state = RobotState::kFault;
   }
   watch_link();
-  run_standalone(ticks_from_ms(parameters.standalone_delay));
+  run_standalone(ticks_from_ms(parameters.standalone_delay()));
 }
 
 RequestResult Supervisor::request(Request request) {
   // Whoever holds a stand-alone robot back before its start does not see it start by itself later.
   if (request == Request::kStop || request == Request::kDisarm ||
       request == Request::kEmergencyStop) {
-    ticks_since_start_ = UINT16_MAX;
+    state_.ticks_since_start = UINT16_MAX;
   }
   switch (request) {
     case Request::kArm:
-      if (state_ != RobotState::kDisarmed) return RequestResult::kWrongState;
-      if (present_ != 0) return RequestResult::kFaultPresent;
+      if (state_.state != RobotState::kDisarmed) return RequestResult::kWrongState;
+      if (state_.present != 0) return RequestResult::kFaultPresent;
       // What the next look at the link would undo is not done in the first place.
-      if (!standalone_ && !link_alive()) return RequestResult::kNoLink;
-      if (!estimator_ready_) return RequestResult::kNotReady;
-      state_ = RobotState::kArmed;
+      if (!state_.standalone && !link_alive()) return RequestResult::kNoLink;
+      if (!state_.estimator_ready) return RequestResult::kNotReady;
+      state_.state = RobotState::kArmed;
       return RequestResult::kDone;
     case Request::kRun:
-      if (state_ != RobotState::kArmed && state_ != RobotState::kStopped) {
+      if (state_.state != RobotState::kArmed && state_.state != RobotState::kStopped) {
         return RequestResult::kWrongState;
       }
-      if (!standalone_ && !link_alive()) return RequestResult::kNoLink;
-      state_ = RobotState::kRunning;
+      if (!state_.standalone && !link_alive()) return RequestResult::kNoLink;
+      state_.state = RobotState::kRunning;
       return RequestResult::kDone;
     case Request::kStop:
-      if (state_ != RobotState::kRunning) return RequestResult::kWrongState;
-      state_ = RobotState::kStopped;
+      if (state_.state != RobotState::kRunning) return RequestResult::kWrongState;
+      state_.state = RobotState::kStopped;
       return RequestResult::kDone;
     case Request::kDisarm:
-      if (state_ == RobotState::kFault) return RequestResult::kWrongState;
-      state_ = RobotState::kDisarmed;
+      if (state_.state == RobotState::kFault) return RequestResult::kWrongState;
+      state_.state = RobotState::kDisarmed;
       return RequestResult::kDone;
     case Request::kClear:
-      if (state_ != RobotState::kFault) return RequestResult::kWrongState;
-      if (present_ != 0) return RequestResult::kFaultPresent;
-      latched_ = 0;
-      state_ = RobotState::kDisarmed;
+      if (state_.state != RobotState::kFault) return RequestResult::kWrongState;
+      if (state_.present != 0) return RequestResult::kFaultPresent;
+      state_.latched = 0;
+      state_.state = RobotState::kDisarmed;
       return RequestResult::kDone;
     case Request::kEmergencyStop:
-      latched_ |= Fault::kEmergencyStop;
-      state_ = RobotState::kFault;
+      state_.latched |= Fault::kEmergencyStop;
+      state_.state = RobotState::kFault;
       return RequestResult::kDone;
     case Request::kNone:
       break;

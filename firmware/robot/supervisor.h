@@ -87,29 +87,7 @@ class TrackWatch {
   uint8_t disobedience_ = 0;           ///< ticks, those against high duty twice
 };
 
-/// What the supervisor remembers, zero at the start but the time without a heartbeat: zeroed at
-/// once, which takes less flash.
-struct SupervisorMemory {
-  RobotState state_;
-  uint16_t latched_;
-  uint16_t present_;  ///< causes seen in the last tick
-  bool estimator_ready_;
-  bool standalone_;
-  uint16_t ticks_since_heartbeat_;
-  uint16_t ticks_since_start_;
-  uint8_t tilt_ticks_;
-  uint8_t silent_gyro_ticks_;
-  uint8_t silent_accel_ticks_;
-  uint8_t frozen_gyro_ticks_;
-  uint8_t battery_ticks_;
-  uint8_t chip_ticks_;
-  uint16_t stuck_for_;  ///< ticks
-  TrackWatch left_;
-  TrackWatch right_;
-  int16_t last_gyro_[3];
-};
-
-class Supervisor : private SupervisorMemory {
+class Supervisor {
  public:
   /// Parameters that are not intact are a fault for good; intact ones that are not valid are one
   /// until a change makes them valid.
@@ -121,28 +99,55 @@ class Supervisor : private SupervisorMemory {
 
   RequestResult request(Request request);
   /// A valid heartbeat of the ground station arrived.
-  void heartbeat() { ticks_since_heartbeat_ = 0; }
+  void heartbeat() { state_.ticks_since_heartbeat = 0; }
 
-  RobotState state() const { return state_; }
-  bool running() const { return state_ == RobotState::kRunning; }
+  RobotState state() const { return state_.state; }
+  bool running() const { return state_.state == RobotState::kRunning; }
   /// The motors may have power: running, or ramping down.
-  bool powered() const { return state_ == RobotState::kRunning || state_ == RobotState::kStopped; }
+  bool powered() const {
+    return state_.state == RobotState::kRunning || state_.state == RobotState::kStopped;
+  }
   /// Latched causes; non-zero exactly in kFault.
-  uint16_t faults() const { return latched_; }
+  uint16_t faults() const { return state_.latched; }
   /// Causes that are there now, latched or not.
-  uint16_t present_faults() const { return present_; }
+  uint16_t present_faults() const { return state_.present; }
   /// What the heartbeat says: the latched causes in kFault, else those present, which would prevent
   /// arming. Present causes latch at once in the states between, so there are none.
-  uint16_t reported_faults() const { return state_ == RobotState::kFault ? latched_ : present_; }
+  uint16_t reported_faults() const {
+    return state_.state == RobotState::kFault ? state_.latched : state_.present;
+  }
   /// The ground station was heard within the last 0.5 s.
   bool link_alive() const;
 
  private:
+  /// What the supervisor remembers, zero at the start but the time without a heartbeat: zeroed at
+  /// once, which takes less flash.
+  struct State {
+    RobotState state;
+    uint16_t latched;
+    uint16_t present;  ///< causes seen in the last tick
+    bool estimator_ready;
+    bool standalone;
+    uint16_t ticks_since_heartbeat;
+    uint16_t ticks_since_start;
+    uint8_t tilt_ticks;
+    uint8_t silent_gyro_ticks;
+    uint8_t silent_accel_ticks;
+    uint8_t frozen_gyro_ticks;
+    uint8_t battery_ticks;
+    uint8_t chip_ticks;
+    uint16_t stuck_for;  ///< ticks
+    TrackWatch left;
+    TrackWatch right;
+    int16_t last_gyro[3];
+  };
+
   uint16_t look_for_faults(const Parameters& parameters, const SupervisorInput& input);
   bool tilted(const Parameters& parameters, const SupervisorInput& input);
   void watch_link();
   void run_standalone(uint16_t delay_ticks);
 
+  State state_{};
   bool parameters_intact_;
 };
 

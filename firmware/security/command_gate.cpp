@@ -9,14 +9,15 @@ namespace screed {
 
 SCREED_OUT_OF_LINE GateResult CommandGate::check(uint16_t can_id, const uint8_t* data) {
   if (!credentials_.key_set) return GateResult::kNoKey;
-  if (locked_ticks_ != 0) return GateResult::kLockedOut;
-  if (counter_ != 0 && memcmp(data, last_, kCommandSize) == 0) return GateResult::kRepeated;
+  if (state_.locked_ticks != 0) return GateResult::kLockedOut;
+  if (state_.counter != 0 && memcmp(data, state_.last, kCommandSize) == 0)
+    return GateResult::kRepeated;
 
   // 1 to 256 above the last one.
   const uint8_t steps = static_cast<uint8_t>(data[kCommandFreshnessOffset] -
-                                             static_cast<uint8_t>(counter_ & 0xFFU) - 1U);
-  if (counter_ > UINT16_MAX - 1U - steps) return GateResult::kUsedUp;
-  const auto counter = static_cast<uint16_t>(counter_ + steps + 1U);
+                                             static_cast<uint8_t>(state_.counter & 0xFFU) - 1U);
+  if (state_.counter > UINT16_MAX - 1U - steps) return GateResult::kUsedUp;
+  const auto counter = static_cast<uint16_t>(state_.counter + steps + 1U);
   uint8_t mac[kSipHashSize];
   command_mac(credentials_.key, can_id, credentials_.robot_id, credentials_.boot_epoch, counter,
               data, mac);
@@ -26,26 +27,26 @@ SCREED_OUT_OF_LINE GateResult CommandGate::check(uint16_t can_id, const uint8_t*
     wrong = static_cast<uint8_t>(wrong | (mac[i] ^ data[kCommandMacOffset + i]));
   }
   if (wrong != 0) {
-    ++refused_;
-    ++bad_macs_;
-    if (bad_macs_ == 1) bad_mac_decay_ticks_ = kBadMacDecayTicks;
-    if (bad_macs_ == kMaxBadMacs) {
-      bad_macs_ = 0;
-      locked_ticks_ = kLockoutTicks;
+    ++state_.refused;
+    ++state_.bad_macs;
+    if (state_.bad_macs == 1) state_.bad_mac_decay_ticks = kBadMacDecayTicks;
+    if (state_.bad_macs == kMaxBadMacs) {
+      state_.bad_macs = 0;
+      state_.locked_ticks = kLockoutTicks;
     }
     return GateResult::kBadMac;
   }
-  counter_ = counter;
-  memcpy(last_, data, kCommandSize);
+  state_.counter = counter;
+  memcpy(state_.last, data, kCommandSize);
   return GateResult::kAccepted;
 }
 
 void CommandGate::tick() {
-  if (locked_ticks_ != 0) --locked_ticks_;
-  if (bad_macs_ == 0) return;
-  if (--bad_mac_decay_ticks_ == 0) {
-    --bad_macs_;
-    bad_mac_decay_ticks_ = kBadMacDecayTicks;
+  if (state_.locked_ticks != 0) --state_.locked_ticks;
+  if (state_.bad_macs == 0) return;
+  if (--state_.bad_mac_decay_ticks == 0) {
+    --state_.bad_macs;
+    state_.bad_mac_decay_ticks = kBadMacDecayTicks;
   }
 }
 

@@ -30,24 +30,13 @@ enum class GateResult : uint8_t {
   kRepeated = 255,  ///< the command that was accepted last, once more: not to be done again
 };
 
-/// What the gate remembers, zero at the start (one loop of the microcontroller, not a store a
-/// byte).
-struct GateMemory {
-  uint16_t counter_;
-  uint16_t locked_ticks_;
-  uint16_t bad_mac_decay_ticks_;
-  uint8_t bad_macs_;
-  uint8_t refused_;
-  uint8_t last_[kCommandSize];  ///< the command that was accepted last
-};
-
-class CommandGate : private GateMemory {
+class CommandGate {
  public:
   static constexpr uint8_t kMaxBadMacs = 8;
   static constexpr uint16_t kBadMacDecayTicks = 4 * kTickRate_hz;
   static constexpr uint16_t kLockoutTicks = 30 * kTickRate_hz;
 
-  explicit CommandGate(const Credentials& credentials) : GateMemory(), credentials_(credentials) {}
+  explicit CommandGate(const Credentials& credentials) : credentials_(credentials) {}
 
   /// Looks at the kCommandSize bytes of a COMMAND. Costs 10,000 cycles on the AVR: once a tick.
   GateResult check(uint16_t can_id, const uint8_t* data);
@@ -56,14 +45,26 @@ class CommandGate : private GateMemory {
   void tick();
 
   /// Of the command that was accepted last; 0: none yet.
-  uint16_t counter() const { return counter_; }
+  uint16_t counter() const { return state_.counter; }
   uint16_t boot_epoch() const { return credentials_.boot_epoch; }
   /// Ticks until the gate opens; 0: it is open.
-  uint16_t locked_ticks() const { return locked_ticks_; }
+  uint16_t locked_ticks() const { return state_.locked_ticks; }
   /// Commands with a wrong MAC since start, wraps.
-  uint8_t refused() const { return refused_; }
+  uint8_t refused() const { return state_.refused; }
 
  private:
+  /// What the gate remembers, zero at the start (one loop of the microcontroller, not a store a
+  /// byte).
+  struct State {
+    uint16_t counter;
+    uint16_t locked_ticks;
+    uint16_t bad_mac_decay_ticks;
+    uint8_t bad_macs;
+    uint8_t refused;
+    uint8_t last[kCommandSize];  ///< the command that was accepted last
+  };
+
+  State state_{};
   Kept<Credentials> credentials_;
 };
 

@@ -240,9 +240,9 @@ void imu_read(SensorSample& sample) {
         ChipBit::kAccelMagChip | ChipBit::kGyroChip | (kHasBarometer ? ChipBit::kBaroChip : 0);
     state.errors = static_cast<uint8_t>(state.errors + 1);
   }
-  take_vector(state.bursts[kReadGyro], kGyroChip, kFreshGyro, sample.gyro, sample);
-  take_vector(state.bursts[kReadAccel], kAccelMagChip, kFreshAccel, sample.accel, sample);
-  take_vector(state.bursts[kReadMag], kAccelMagChip, kFreshMag, sample.mag, sample);
+  take_vector(state.bursts[kReadGyro], kGyroChip, kFreshGyro, sample.imu.gyro(), sample);
+  take_vector(state.bursts[kReadAccel], kAccelMagChip, kFreshAccel, sample.imu.accel(), sample);
+  take_vector(state.bursts[kReadMag], kAccelMagChip, kFreshMag, sample.imu.mag(), sample);
   take_baro(sample);
   sample.chips_failing = chips_failing();
   sample.bus_errors = state.errors;

@@ -48,7 +48,7 @@ __attribute__((noinline)) void read_copy(uint8_t index) {
 }
 
 void put(Parameters& parameters, uint8_t number, int16_t value) {
-  reinterpret_cast<int16_t*>(&parameters)[number - 1] = value;
+  parameters.values[number - 1] = value;
 }
 
 __attribute__((noinline)) void take_defaults() {

@@ -86,9 +86,10 @@ std::string element_text(ColumnType type, const std::uint8_t* bytes) {
 [[maybe_unused]] void every_member_has_a_column(const SensorSample& sample,
                                                 const RobotOutput& output) {
   [[maybe_unused]] const auto& [a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15,
-                                a16, a17, a18] = sample;
+                                a16] = sample;
   [[maybe_unused]] const auto& [b1, b2, b3, b4, b5, b6, b7] = output;
-  static_assert(kSampleColumns.size() == 18 && kOutputColumns.size() == 7);
+  static_assert(kSampleColumns.size() == 18, "the IMU has three");
+  static_assert(kOutputColumns.size() == 7);
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ void pack(const SimFrame& frame, FrameRow row) {
 
 void pack(const SensorSample& sample, SampleRow row) {
   std::uint8_t* cursor = row.data();
-#define SCREED_STORE(name, unit, meaning) store(sample.name, cursor);
+#define SCREED_STORE(name, member, unit, meaning) store(sample.member, cursor);
   SCREED_SAMPLE_COLUMNS(SCREED_STORE)
 #undef SCREED_STORE
   zero_behind(sample.radio_in_count, kRadioInCapacity, cursor);
@@ -125,7 +126,7 @@ void unpack(std::span<const std::uint8_t, kFrameBytes> row, SimFrame& frame) {
 
 void unpack(std::span<const std::uint8_t, kSampleBytes> row, SensorSample& sample) {
   const std::uint8_t* cursor = row.data();
-#define SCREED_LOAD(name, unit, meaning) load(cursor, sample.name);
+#define SCREED_LOAD(name, member, unit, meaning) load(cursor, sample.member);
   SCREED_SAMPLE_COLUMNS(SCREED_LOAD)
 #undef SCREED_LOAD
 }

@@ -12,32 +12,33 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "hal/sample.h"
 #include "host_sim/core/sim_frame.h"
 
 // clang-format off
-//  name             unit            meaning
+//  name            member          unit            meaning
 #define SCREED_SAMPLE_COLUMNS(X) \
-  X(time_us,         "us",           "time of this tick since start, wraps") \
-  X(gyro,            "70 mdps",      "angular rate x, y, z in the robot frame") \
-  X(accel,           "0.244 mg",     "specific force x, y, z in the robot frame") \
-  X(mag,             "0.160 mG",     "magnetic field x, y, z in the robot frame") \
-  X(pressure,        "1/4096 hPa",   "air pressure") \
-  X(temperature,     "1/480 degC",   "temperature, from 42.5 degC") \
-  X(encoder_left,    "count",        "quadrature count, wraps") \
-  X(encoder_right,   "count",        "quadrature count, wraps") \
-  X(battery,         "",             "sum of eight 10-bit conversions") \
-  X(last_tick_us,    "us",           "computation time of the previous tick") \
-  X(encoder_errors,  "count",        "missed quadrature edges, wraps") \
-  X(fresh,           "",             "devices with a new measurement: 1 gyro, 2 accel, 4 mag, 8 baro") \
-  X(chips_failing,   "",             "chips that do not answer or lost their settings: 1 LSM303D, 2 L3GD20H, 4 LPS25H") \
-  X(bus_errors,      "count",        "I2C transfers that failed, wraps") \
-  X(radio_errors,    "byte",         "received bytes that were lost, wraps") \
-  X(reset_cause,     "",             "why the program started, 0: power-on") \
-  X(radio_in_count,  "byte",         "valid bytes of radio_in") \
-  X(radio_in,        "",             "bytes received since the last tick")
+  X(time_us,        time_us,        "us",           "time of this tick since start, wraps") \
+  X(gyro,           imu.gyro(),     "70 mdps",      "angular rate x, y, z in the robot frame") \
+  X(accel,          imu.accel(),    "0.244 mg",     "specific force x, y, z in the robot frame") \
+  X(mag,            imu.mag(),      "0.160 mG",     "magnetic field x, y, z in the robot frame") \
+  X(pressure,       pressure,       "1/4096 hPa",   "air pressure") \
+  X(temperature,    temperature,    "1/480 degC",   "temperature, from 42.5 degC") \
+  X(encoder_left,   encoder_left,   "count",        "quadrature count, wraps") \
+  X(encoder_right,  encoder_right,  "count",        "quadrature count, wraps") \
+  X(battery,        battery,        "",             "sum of eight 10-bit conversions") \
+  X(last_tick_us,   last_tick_us,   "us",           "computation time of the previous tick") \
+  X(encoder_errors, encoder_errors, "count",        "missed quadrature edges, wraps") \
+  X(fresh,          fresh,          "",             "devices with a new measurement: 1 gyro, 2 accel, 4 mag, 8 baro") \
+  X(chips_failing,  chips_failing,  "",             "chips that do not answer or lost their settings: 1 LSM303D, 2 L3GD20H, 4 LPS25H") \
+  X(bus_errors,     bus_errors,     "count",        "I2C transfers that failed, wraps") \
+  X(radio_errors,   radio_errors,   "byte",         "received bytes that were lost, wraps") \
+  X(reset_cause,    reset_cause,    "",             "why the program started, 0: power-on") \
+  X(radio_in_count, radio_in_count, "byte",         "valid bytes of radio_in") \
+  X(radio_in,       radio_in,       "",             "bytes received since the last tick")
 
 #define SCREED_OUTPUT_COLUMNS(X) \
   X(duty_left,       "1/400",        "motor duty, -400..400") \
@@ -128,8 +129,10 @@ inline constexpr auto kFrameColumns = record_detail::with_offsets(std::to_array<
 }));
 
 inline constexpr auto kSampleColumns = record_detail::with_offsets(std::to_array<Column>({
-#define SCREED_COLUMN(name, unit, meaning) \
-  record_detail::make_column<decltype(SensorSample::name)>(#name, unit, meaning),
+#define SCREED_COLUMN(name, member, unit, meaning)                                            \
+  record_detail::make_column<                                                                 \
+      std::remove_reference_t<decltype((std::declval<SensorSample&>().member))>>(#name, unit, \
+                                                                                 meaning),
     SCREED_SAMPLE_COLUMNS(SCREED_COLUMN)
 #undef SCREED_COLUMN
 }));

@@ -167,14 +167,14 @@ const std::vector<Manoeuvre>& oracle_manoeuvres() {
 StuckScenario escape_scenario(std::uint64_t seed) {
   StuckScenario scenario = stuck_scenario(seed, ScenarioKind::kTrapped, kDrive_s + kEscapeTime_s);
   Experiment& e = scenario.experiment;
-  e.parameters.escape_attempts = Parameters{}.escape_attempts;
+  e.parameters.escape_attempts() = Parameters{}.escape_attempts();
   if (e.experiment.algorithm != "drive") return scenario;
   e.experiment.algorithm = "random_walk";
-  e.parameters.algorithm = algorithm_number(e.experiment.algorithm);
+  e.parameters.algorithm() = algorithm_number(e.experiment.algorithm);
   const auto speed = static_cast<std::int16_t>(std::lround(e.drive.speed_m_per_s * 1000.0));
-  e.parameters.walk_speed_min = speed;
-  e.parameters.walk_speed_max = speed;
-  e.parameters.walk_yaw_rate_max =
+  e.parameters.walk_speed_min() = speed;
+  e.parameters.walk_speed_max() = speed;
+  e.parameters.walk_yaw_rate_max() =
       static_cast<std::int16_t>(std::lround(std::abs(e.drive.yaw_rate_deg_per_s)));
   e.drive = {};
   return scenario;
@@ -186,7 +186,7 @@ EscapeResult escape_trials(std::uint64_t seed, const EscapeOptions& options,
   result.scenario = escape_scenario(seed);
   const Parameters escaping = result.scenario.experiment.parameters;
   Parameters plain = escaping;
-  plain.escape_attempts = 0;
+  plain.escape_attempts() = 0;
   const Trial alone = trial_of(result.scenario, plain, nullptr, progress);
   result.alarm_s = alone.alarm_s;
   if (!alone.stuck) {

@@ -66,8 +66,8 @@ SlipTick slip_tick_of(const World& world, const SensorSample& sample, const Robo
   tick.effort_left = drive.left().effort;
   tick.speed_right = drive.right().speed_dmm_per_s;
   tick.effort_right = drive.right().effort;
-  std::copy_n(sample.gyro, tick.gyro.size(), tick.gyro.begin());
-  std::copy_n(sample.accel, tick.accel.size(), tick.accel.begin());
+  std::copy_n(sample.imu.gyro(), tick.gyro.size(), tick.gyro.begin());
+  std::copy_n(sample.imu.accel(), tick.accel.size(), tick.accel.begin());
   tick.sin_pitch_q14 = robot.attitude().angles().sin_pitch_q14;
   tick.yaw_rate = robot.attitude().yaw_rate();
   tick.running = robot.supervisor().running();

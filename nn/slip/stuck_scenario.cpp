@@ -90,7 +90,7 @@ void choose_bed(Draw& draw, Experiment& e) {
   e.vehicle.x_m = draw.between(-0.3, 0.3);
   e.vehicle.y_m = draw.between(-0.3, 0.3);
   // Half of them turn before they meet a wall.
-  if (draw.one_in_two()) e.parameters.site_radius = 450;
+  if (draw.one_in_two()) e.parameters.site_radius() = 450;
 }
 
 /// Leveling algorithms on open ground or in a bed, or straight on along the bed, again and again
@@ -141,9 +141,9 @@ StuckScenario stuck_scenario(std::uint64_t seed, ScenarioKind kind, double durat
     }
     e.experiment.algorithm = drive_kind == DriveKind::kRandom ? "hill_sensing" : "drive";
   }
-  e.parameters.algorithm = algorithm_number(e.experiment.algorithm);
-  e.parameters.random_seed = static_cast<int16_t>(seed % 32767 + 1);
-  e.parameters.escape_attempts = 0;  // what is stuck stays so
+  e.parameters.algorithm() = algorithm_number(e.experiment.algorithm);
+  e.parameters.random_seed() = static_cast<int16_t>(seed % 32767 + 1);
+  e.parameters.escape_attempts() = 0;  // what is stuck stays so
   return scenario;
 }
 

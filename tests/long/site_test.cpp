@@ -21,8 +21,8 @@ namespace {
 /// Stuck at a wall of a bed of 3 m, having driven there from the middle.
 std::unique_ptr<TestDrive> at_wall(double heading_deg) {
   Parameters parameters = drive_parameters();
-  parameters.site_x = 1500;
-  parameters.site_y = 1500;
+  parameters.site_x() = 1500;
+  parameters.site_y() = 1500;
   WorldOptions options = drive_options(0.15, 0.0);
   options.start.attitude.heading = heading_deg * std::numbers::pi / 180.0;
   HeightField field = HeightField::flat(3.0, 0.1);
@@ -54,8 +54,8 @@ TEST(Site, TheWallsOfShippedBedsStandWhereTheRobotIsTold) {
     const Experiment experiment = read_experiment(find_experiment(name), {});
     const BedBounds bed = bounds_of(make_terrain(experiment));
     ASSERT_EQ(bed.edge, BedEdge::kWalled) << name;
-    EXPECT_NEAR(experiment.parameters.site_x, 500.0 * bed.width_m, 5.0) << name;
-    EXPECT_NEAR(experiment.parameters.site_y, 500.0 * bed.depth_m, 5.0) << name;
+    EXPECT_NEAR(experiment.parameters.site_x(), 500.0 * bed.width_m, 5.0) << name;
+    EXPECT_NEAR(experiment.parameters.site_y(), 500.0 * bed.depth_m, 5.0) << name;
   }
 }
 

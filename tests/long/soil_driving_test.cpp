@@ -73,7 +73,7 @@ TEST(SoilDriving, DrivesStraightOnWithoutSwinging) {
 // The loop's margin: twice its gain does not swing either.
 TEST(SoilDriving, ToleratesTwiceTheYawGain) {
   Parameters parameters = drive_parameters();
-  parameters.yaw_ki = static_cast<int16_t>(2 * parameters.yaw_ki);
+  parameters.yaw_ki() = static_cast<int16_t>(2 * parameters.yaw_ki());
   for (const char* soil : {"viper", "lete_sand", "ding_2011"}) {
     EXPECT_LT(straight_on(soil_preset(soil), 0.15, parameters).swing_deg_per_s, 1.5) << soil;
   }
@@ -130,7 +130,7 @@ TEST(SoilDriving, TenMinutesOfDigging) {
     options.soil->compaction = 0.3;
     options.physics_step_s = 0.005;
     Parameters parameters = drive_parameters();
-    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kSpinOnPeak);
+    parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kSpinOnPeak);
     const auto bumps = [](double x, double y) {
       return 0.02 * std::sin(2.0 * std::numbers::pi * x) * std::sin(2.0 * std::numbers::pi * y);
     };

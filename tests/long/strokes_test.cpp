@@ -23,10 +23,10 @@ class StrokesOnGravel : public ::testing::Test {
   }
   static Parameters parameters() {
     Parameters parameters;
-    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
-    parameters.site_radius = 1200;
-    parameters.site_x = 750;
-    parameters.site_y = 750;
+    parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
+    parameters.site_radius() = 1200;
+    parameters.site_x() = 750;
+    parameters.site_y() = 750;
     return parameters;
   }
   bool strokes() const { return drive_.robot.leveling().state() == LevelingState::kStroke; }

@@ -85,9 +85,9 @@ void Bench::command(CommandOp op, DriveArgument argument) {
   run_ms(50);
 }
 
-void Bench::set_parameter(std::int16_t Parameters::*field, std::int16_t value) {
+void Bench::set_parameter(Parameters::Number number, std::int16_t value) {
   ground_.handle_frame(last_frame(kIdHeartbeat));
-  mcu.receive(ground_.parameter(field, value));
+  mcu.receive(ground_.parameter(number, value));
   run_ms(50);
 }
 

@@ -22,7 +22,7 @@ class Bench {
   /// Sends a command and gives it time to act.
   void command(CommandOp op, DriveArgument argument = {0, 0});
   /// The same with a parameter of the firmware's table.
-  void set_parameter(std::int16_t Parameters::*field, std::int16_t value);
+  void set_parameter(Parameters::Number number, std::int16_t value);
 
   /// Turns an encoder by one state change.
   void turn_left_encoder(bool forward);

@@ -121,14 +121,14 @@ TEST_F(BoardParts, KeepsItsTickWhileAHostDoesNotFetch) {
 
 TEST_F(BoardParts, StoresTheDefaultsAndRestarts) {
   Parameters parameters;
-  parameters.climb_threshold = 750;
+  parameters.climb_threshold() = 750;
   write_copy(0, encoded(parameters, 7));
   mcu_.run_ms(50);
   open_console();
   EXPECT_EQ(ask("d", 1500), "ok\n");
   Parameters stored;
   decode_parameters(read_copy(1), stored);
-  EXPECT_EQ(stored.climb_threshold, Parameters().climb_threshold);
+  EXPECT_EQ(stored.climb_threshold(), Parameters().climb_threshold());
   EXPECT_EQ(copy_sequence(read_copy(1)), 8);
   usb_.send("r\n");
   usb_.pull_out();
@@ -166,7 +166,7 @@ TEST(ConsoleMotorTest, TurnsAMotorOfADisarmedRobotWhileButtonAIsHeld) {
     EXPECT_EQ(duties_after(nonsense, 100), Duties(0, 0)) << nonsense;
     EXPECT_EQ(usb.listen_ms(50), "?\n") << "nothing more is taken before that is fetched";
   }
-  bench.set_parameter(&Parameters::algorithm,
+  bench.set_parameter(Parameters::k_algorithm,
                       static_cast<std::int16_t>(message::LevelingAlgorithm::kDrive));
   bench.run_ms(5000);
   for (const CommandOp op : {CommandOp::kArm, CommandOp::kRun, CommandOp::kStop}) bench.command(op);
@@ -235,9 +235,9 @@ TEST_F(BoardParts, TakesALineByUsbAsOneOfTheRadio) {
 
 TEST_F(BoardParts, StoredParametersAreInForce) {
   Parameters parameters;
-  parameters.algorithm = 2;
+  parameters.algorithm() = 2;
   write_copy(1, encoded(parameters, 5));
-  parameters.algorithm = 0;
+  parameters.algorithm() = 0;
   write_copy(0, encoded(parameters, 4));
   mcu_.run_ms(300);
   const std::vector<CanFrame> frames = frames_in(mcu_.sent());

@@ -100,7 +100,7 @@ TEST_P(EachBoard, CountsAMissedEdge) {
 
 TEST_P(EachBoard, TurnsLeftWithTheRightTrackForward) {
   Parameters parameters;
-  parameters.algorithm = 0;  // drives as the ground station says
+  parameters.algorithm() = 0;  // drives as the ground station says
   ParameterCopy copy{};
   encode_parameters(parameters, 1, copy);
   board_.mcu.write_eeprom(parameter_copy_address(0), copy.bytes);

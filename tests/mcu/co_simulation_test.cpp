@@ -47,7 +47,7 @@ TEST(CoSimulation, TheImageDrivesAtTheSpeedItIsTold) {
 TEST(CoSimulation, HostAndImageGiveTheSameBytes) {
   ImageDrive drive;
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   const ParityResult result = parity(drive, parameters, 15.0);
   EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
   EXPECT_GT(result.ticks, 1490U);
@@ -59,7 +59,7 @@ TEST(CoSimulation, TheImageOfAnotherNodeIsThatRobotToTheByte) {
   key.robot_id = kOtherNode;
   ImageDrive drive(kOtherNodeImage, key);
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   const ParityResult result = parity(drive, parameters, 12.0, key);
   EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
   EXPECT_GT(result.driving_ticks, 300U) << "it took the commands of its ground station";
@@ -70,8 +70,8 @@ TEST(CoSimulation, TheImageOfAnotherNodeIsThatRobotToTheByte) {
 TEST(CoSimulation, ParityFindsADifference) {
   ImageDrive drive;
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
-  parameters.speed_kp = 25;  // the image has 24
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.speed_kp() = 25;  // the image has 24
   const ParityResult result = parity(drive, parameters, 10.0);
   EXPECT_GT(result.differing_bytes, 0U);
   ASSERT_TRUE(result.first_difference_tick.has_value());
@@ -94,8 +94,8 @@ TEST(CoSimulation, WhatTheProgramShowsIsWhatItsPinsDo) {
 TEST(CoSimulation, SensorsSayWhatTheWorldIs) {
   ImageDrive drive;
   drive.run(2.0);
-  EXPECT_NEAR(drive.sample.accel[2] * 0.244e-3, 1.0, 0.05);
-  EXPECT_NEAR(drive.sample.mag[1] * 0.160e-3, ImuModel::earth_field_gauss().y(), 0.05);
+  EXPECT_NEAR(drive.sample.imu.accel()[2] * 0.244e-3, 1.0, 0.05);
+  EXPECT_NEAR(drive.sample.imu.mag()[1] * 0.160e-3, ImuModel::earth_field_gauss().y(), 0.05);
   EXPECT_NEAR(drive.sample.pressure / 4096.0, 1013.25, 1.0);
   EXPECT_NEAR(drive.sample.temperature / 480.0 + 42.5, ImuModel::kTemperature_degc, 0.01);
   const double volt =
@@ -112,7 +112,8 @@ TEST(CoSimulation, AHandledRobotFeelsWhatAPersonDoes) {
     const ImuTruth now = calibration_motion(1e-3 * drive.time_ms());
     // The chips are configured, and the robot is held still.
     if (i < 100 || now.mean_rate_rad_per_s.norm() > 0.01) continue;
-    const Eigen::Vector3d felt(drive.sample.accel[0], drive.sample.accel[1], drive.sample.accel[2]);
+    const Eigen::Vector3d felt(drive.sample.imu.accel()[0], drive.sample.imu.accel()[1],
+                               drive.sample.imu.accel()[2]);
     ASSERT_LT((felt * 0.244e-3 - now.mean_specific_force / 9.80665).norm(), 0.06) << i;
     ++compared;
   }
@@ -134,11 +135,14 @@ TEST(CoSimulation, TheSameSeedGivesTheSameBytesAlsoBesideAnotherWorld) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     again.tick();
     other.tick();
-    ASSERT_EQ(std::memcmp(again.sample.gyro, samples[i].gyro, sizeof samples[i].gyro), 0) << i;
+    ASSERT_EQ(
+        std::memcmp(again.sample.imu.gyro(), samples[i].imu.gyro(), sizeof samples[i].imu.gyro()),
+        0)
+        << i;
     ASSERT_EQ(again.sample.encoder_left, samples[i].encoder_left) << i;
     ASSERT_EQ(again.output.duty_left, outputs[i].duty_left) << i;
     ASSERT_EQ(again.output.radio_out_count, outputs[i].radio_out_count) << i;
-    others_differ = others_differ || other.sample.gyro[0] != samples[i].gyro[0];
+    others_differ = others_differ || other.sample.imu.gyro()[0] != samples[i].imu.gyro()[0];
   }
   EXPECT_TRUE(others_differ);
   EXPECT_EQ(again.log.str(), alone.log.str());

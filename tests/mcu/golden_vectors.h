@@ -212,11 +212,11 @@ void golden_control(Link& link) {
   Parameters parameters;
   for (uint8_t run = 0; run < 2; ++run) {
     if (run == 1) {  // the largest gains of the parameter table
-      parameters.speed_kp = 320;
-      parameters.speed_ki = 3200;
-      parameters.yaw_kp = 1024;
-      parameters.yaw_ki = 4096;
-      parameters.accel_limit = 5000;
+      parameters.speed_kp() = 320;
+      parameters.speed_ki() = 3200;
+      parameters.yaw_kp() = 1024;
+      parameters.yaw_ki() = 4096;
+      parameters.accel_limit() = 5000;
     }
     TrackSpeedControl track(kGoldenBoard, parameters);
     DriveControl drive(kGoldenBoard, parameters);
@@ -240,8 +240,8 @@ void golden_position(Link& link) {
   GoldenNumbers numbers;
   PositionEstimate position(kGoldenBoard.count_um_q4, 42);
   Parameters parameters;
-  parameters.site_x = 1500;
-  parameters.site_y = 1280;
+  parameters.site_x() = 1500;
+  parameters.site_y() = 1280;
   for (uint16_t i = 0; i < 500; ++i) {
     const int16_t left = numbers.within(100);
     const int16_t right = numbers.within(100);
@@ -272,15 +272,15 @@ void golden_attitude(Link& link) {
     // Level at rest first, then turned about, at last anything the sensors can say.
     const int16_t gyro = i < 400 ? static_cast<int16_t>(4) : static_cast<int16_t>(4000);
     for (uint8_t axis = 0; axis < 3; ++axis) {
-      sample.gyro[axis] = i < 700 ? numbers.within(gyro) : numbers.narrow();
-      sample.accel[axis] =
+      sample.imu.gyro()[axis] = i < 700 ? numbers.within(gyro) : numbers.narrow();
+      sample.imu.accel()[axis] =
           i < 700 ? numbers.within(static_cast<int16_t>(i + 20U)) : numbers.narrow();
-      sample.mag[axis] = i < 700 ? numbers.within(50) : numbers.narrow();
+      sample.imu.mag()[axis] = i < 700 ? numbers.within(50) : numbers.narrow();
     }
     if (i < 700) {
-      sample.accel[2] = static_cast<int16_t>(sample.accel[2] + 4096);
-      sample.mag[1] = static_cast<int16_t>(sample.mag[1] + 1200);
-      sample.mag[2] = static_cast<int16_t>(sample.mag[2] - 2500);
+      sample.imu.accel()[2] = static_cast<int16_t>(sample.imu.accel()[2] + 4096);
+      sample.imu.mag()[1] = static_cast<int16_t>(sample.imu.mag()[1] + 1200);
+      sample.imu.mag()[2] = static_cast<int16_t>(sample.imu.mag()[2] - 2500);
     }
     sample.mag_fresh = i % 3U != 0;
     attitude.update(sample, i % 50U != 0);
@@ -297,9 +297,9 @@ void golden_leveling(Link& link) {
   GoldenNumbers numbers;
   Parameters parameters;
   for (uint8_t run = 0; run < 6; ++run) {
-    parameters.algorithm = static_cast<int16_t>(run % 3U);
-    parameters.site_radius = run < 3 ? static_cast<int16_t>(2000) : static_cast<int16_t>(30000);
-    parameters.random_seed = static_cast<int16_t>(32767 - run);
+    parameters.algorithm() = static_cast<int16_t>(run % 3U);
+    parameters.site_radius() = run < 3 ? static_cast<int16_t>(2000) : static_cast<int16_t>(30000);
+    parameters.random_seed() = static_cast<int16_t>(32767 - run);
     Leveling leveling(parameters);
     leveling.start();
     LevelingInput input = {0, 0, {{0, 0}, {0, 0}}, {0, 0}};

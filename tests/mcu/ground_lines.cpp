@@ -35,22 +35,17 @@ std::vector<std::uint8_t> GroundLines::command(CommandOp op, DriveArgument argum
   return line_of(signer_.sign(op, argument));
 }
 
-std::vector<std::uint8_t> GroundLines::parameter(std::int16_t Parameters::*field,
-                                                 std::int16_t value) {
-  const auto* const info =
-      std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
-                   [field](const ParameterInfo& it) { return it.field == field; });
-  const auto index = static_cast<std::uint8_t>(info - kParameterTable);
-  CanFrame stage = frame_of(message::ParamStage{index, value});
+std::vector<std::uint8_t> GroundLines::parameter(Parameters::Number number, std::int16_t value) {
+  CanFrame stage = frame_of(message::ParamStage{number, value});
   e2e_protect(stage.id, stage_counter_, stage.data, stage.size);
   stage_counter_ = static_cast<std::uint8_t>((stage_counter_ + 1) & 0x0F);
   std::uint8_t bound[4];  // index and value, which the signed command binds by their CRC
-  put_u16(bound, index);
+  put_u16(bound, number);
   put_u16(bound + 2, static_cast<std::uint16_t>(value));
   const std::uint32_t crc = crc16_ccitt(bound, sizeof bound);
   std::vector<std::uint8_t> lines = line_of(stage);
   for (const std::uint8_t byte :
-       line_of(signer_.sign(CommandOp::kParameterCommit, index | crc << 8))) {
+       line_of(signer_.sign(CommandOp::kParameterCommit, number | crc << 8))) {
     lines.push_back(byte);
   }
   return lines;

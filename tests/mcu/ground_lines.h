@@ -20,7 +20,7 @@ class GroundLines {
   std::vector<std::uint8_t> heartbeat(std::uint32_t time_ms);
   std::vector<std::uint8_t> command(CommandOp op, DriveArgument argument = {0, 0});
   /// Both lines that set a parameter: the value, and the command that commits it.
-  std::vector<std::uint8_t> parameter(std::int16_t Parameters::*field, std::int16_t value);
+  std::vector<std::uint8_t> parameter(Parameters::Number number, std::int16_t value);
 
  private:
   std::uint8_t heartbeat_counter_ = 0;

@@ -110,7 +110,7 @@ class ImageDrive {
     CoSimulationOptions options;
     options.elf = kScreedImage;
     options.board = kDefaultBoard;
-    options.parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+    options.parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
     options.world.seed = seed;
     options.world.calibration_motion = handled;
     options.world.drive = DriveCommand{speed_m_per_s, 0.0};

@@ -24,13 +24,13 @@ class Mission {
     sample_.time_us = static_cast<std::uint32_t>(tick) * kTickPeriod_us;
     const bool moving = tick > 400;
     const int pitch = moving ? slope(tick) : 0;  // accelerometer counts
-    for (std::int16_t& value : sample_.gyro) value = numbers_.within(moving ? 300 : 3);
-    sample_.accel[0] = static_cast<std::int16_t>(pitch + numbers_.within(10));
-    sample_.accel[1] = numbers_.within(10);
-    sample_.accel[2] = static_cast<std::int16_t>(4096 + numbers_.within(10));
-    sample_.mag[0] = numbers_.within(20);
-    sample_.mag[1] = static_cast<std::int16_t>(1250 + numbers_.within(20));
-    sample_.mag[2] = static_cast<std::int16_t>(-2500 + numbers_.within(20));
+    for (std::int16_t& value : sample_.imu.gyro()) value = numbers_.within(moving ? 300 : 3);
+    sample_.imu.accel()[0] = static_cast<std::int16_t>(pitch + numbers_.within(10));
+    sample_.imu.accel()[1] = numbers_.within(10);
+    sample_.imu.accel()[2] = static_cast<std::int16_t>(4096 + numbers_.within(10));
+    sample_.imu.mag()[0] = numbers_.within(20);
+    sample_.imu.mag()[1] = static_cast<std::int16_t>(1250 + numbers_.within(20));
+    sample_.imu.mag()[2] = static_cast<std::int16_t>(-2500 + numbers_.within(20));
     sample_.pressure = 4'150'000 + numbers_.within(100);
     sample_.temperature = static_cast<std::int16_t>(-9000 + numbers_.within(10));
     if (moving) {
@@ -44,7 +44,7 @@ class Mission {
     if (tick % 4 == 0) sample_.fresh |= kFreshBaro;
     if (tick % 97 == 0) sample_.fresh = 0;
     if (tick > 2300) {  // on its side
-      std::swap(sample_.accel[1], sample_.accel[2]);
+      std::swap(sample_.imu.accel()[1], sample_.imu.accel()[2]);
     }
     if (tick > 2400) babble();
     handle_frame(tick);
@@ -59,9 +59,9 @@ class Mission {
 
   /// Anything the devices can say.
   void babble() {
-    for (std::int16_t& value : sample_.gyro) value = numbers_.narrow();
-    for (std::int16_t& value : sample_.accel) value = numbers_.narrow();
-    for (std::int16_t& value : sample_.mag) value = numbers_.narrow();
+    for (std::int16_t& value : sample_.imu.gyro()) value = numbers_.narrow();
+    for (std::int16_t& value : sample_.imu.accel()) value = numbers_.narrow();
+    for (std::int16_t& value : sample_.imu.mag()) value = numbers_.narrow();
     sample_.pressure = numbers_.wide();
     sample_.temperature = numbers_.narrow();
     sample_.encoder_left = static_cast<std::uint16_t>(numbers_.wide());
@@ -84,9 +84,9 @@ class Mission {
     if (tick == 450) add(ground_.command(CommandOp::kArm));
     if (tick == 460) add(ground_.command(CommandOp::kRun));
     // While it runs, of each part that keeps parameters one.
-    if (tick == 701) add(ground_.parameter(&Parameters::walk_speed_max, kWalkSpeedMax));
-    if (tick == 961) add(ground_.parameter(&Parameters::accel_limit, kAccelLimit));
-    if (tick == 1211) add(ground_.parameter(&Parameters::climb_threshold, kClimbThreshold));
+    if (tick == 701) add(ground_.parameter(Parameters::k_walk_speed_max, kWalkSpeedMax));
+    if (tick == 961) add(ground_.parameter(Parameters::k_accel_limit, kAccelLimit));
+    if (tick == 1211) add(ground_.parameter(Parameters::k_climb_threshold, kClimbThreshold));
     if (tick == 1500) add(ground_.command(CommandOp::kStop));
     if (tick == 1520) add(ground_.command(CommandOp::kDrive, {100, -300}));
     if (tick == 1600) add(ground_.command(CommandOp::kRun));

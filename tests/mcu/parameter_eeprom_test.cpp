@@ -25,8 +25,8 @@ class ParameterEeprom : public ::testing::Test {
     return usb_.listen_ms(60);
   }
   /// By radio.
-  void change(std::int16_t Parameters::*field, std::int16_t value) {
-    bench_.set_parameter(field, value);
+  void change(Parameters::Number number, std::int16_t value) {
+    bench_.set_parameter(number, value);
     bench_.run_ms(2500);
   }
   /// Of the newest copy.
@@ -49,34 +49,34 @@ class ParameterEeprom : public ::testing::Test {
 };
 
 TEST_F(ParameterEeprom, TheDefaultsComeBackForTheNextStart) {
-  change(&Parameters::climb_threshold, 750);
-  EXPECT_EQ(stored().climb_threshold, 750);
+  change(Parameters::k_climb_threshold, 750);
+  EXPECT_EQ(stored().climb_threshold(), 750);
   EXPECT_EQ(ask("d"), "ok\n");
   bench_.run_ms(1000);
-  EXPECT_EQ(stored().climb_threshold, Parameters{}.climb_threshold);
+  EXPECT_EQ(stored().climb_threshold(), Parameters{}.climb_threshold());
 }
 
 TEST_F(ParameterEeprom, ARemoteChangeWaitsForASaveThatIsUnderWay) {
-  change(&Parameters::climb_threshold, 750);
+  change(Parameters::k_climb_threshold, 750);
   EXPECT_EQ(ask("d"), "ok\n");
   EXPECT_EQ(ask("d"), "?\n") << "one at a time";
-  bench_.set_parameter(&Parameters::stall_time, 220);
+  bench_.set_parameter(Parameters::k_stall_time, 220);
   bench_.run_ms(3500);
-  EXPECT_EQ(stored().stall_time, 220);
-  EXPECT_EQ(stored().climb_threshold, Parameters{}.climb_threshold);
+  EXPECT_EQ(stored().stall_time(), 220);
+  EXPECT_EQ(stored().climb_threshold(), Parameters{}.climb_threshold());
 }
 
 // The defaults are saved for the next start, but at odds with what the robot drives with and
 // changes now.
 TEST_F(ParameterEeprom, WhatTheRobotDrivesWithComesBeforeWhatContradictsIt) {
-  change(&Parameters::walk_speed_max, 240);
-  change(&Parameters::walk_speed_min, 200);
+  change(Parameters::k_walk_speed_max, 240);
+  change(Parameters::k_walk_speed_min, 200);
   EXPECT_EQ(ask("d"), "ok\n");
   bench_.run_ms(2000);
-  EXPECT_EQ(stored().walk_speed_max, Parameters{}.walk_speed_max);
-  change(&Parameters::walk_speed_min, 210);
-  EXPECT_EQ(stored().walk_speed_min, 210);
-  EXPECT_EQ(stored().walk_speed_max, 240);
+  EXPECT_EQ(stored().walk_speed_max(), Parameters{}.walk_speed_max());
+  change(Parameters::k_walk_speed_min, 210);
+  EXPECT_EQ(stored().walk_speed_min(), 210);
+  EXPECT_EQ(stored().walk_speed_max(), 240);
 }
 
 }  // namespace

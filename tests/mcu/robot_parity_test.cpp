@@ -54,9 +54,9 @@ TEST(RobotParity, McuAgreesWithHostForEveryTickOfAMission) {
   // The mission is worth the comparison: the robot drove, and met a fault.
   EXPECT_GT(driving_ticks, 800);
   EXPECT_TRUE(faulted);
-  EXPECT_EQ(robot.parameters().walk_speed_max, Mission::kWalkSpeedMax);
-  EXPECT_EQ(robot.parameters().accel_limit, Mission::kAccelLimit);
-  EXPECT_EQ(robot.parameters().climb_threshold, Mission::kClimbThreshold);
+  EXPECT_EQ(robot.parameters().walk_speed_max(), Mission::kWalkSpeedMax);
+  EXPECT_EQ(robot.parameters().accel_limit(), Mission::kAccelLimit);
+  EXPECT_EQ(robot.parameters().climb_threshold(), Mission::kClimbThreshold);
 }
 
 }  // namespace

@@ -36,9 +36,9 @@ uint32_t get_long(Link& link) {
 template <typename Link>
 void put_sample(Link& link, const SensorSample& sample) {
   put_long(link, sample.time_us);
-  for (const int16_t value : sample.gyro) put_word(link, static_cast<uint16_t>(value));
-  for (const int16_t value : sample.accel) put_word(link, static_cast<uint16_t>(value));
-  for (const int16_t value : sample.mag) put_word(link, static_cast<uint16_t>(value));
+  for (const int16_t value : sample.imu.gyro()) put_word(link, static_cast<uint16_t>(value));
+  for (const int16_t value : sample.imu.accel()) put_word(link, static_cast<uint16_t>(value));
+  for (const int16_t value : sample.imu.mag()) put_word(link, static_cast<uint16_t>(value));
   put_long(link, static_cast<uint32_t>(sample.pressure));
   put_word(link, static_cast<uint16_t>(sample.temperature));
   put_word(link, sample.encoder_left);
@@ -58,9 +58,9 @@ void put_sample(Link& link, const SensorSample& sample) {
 template <typename Link>
 void get_sample(Link& link, SensorSample& sample) {
   sample.time_us = get_long(link);
-  for (int16_t& value : sample.gyro) value = static_cast<int16_t>(get_word(link));
-  for (int16_t& value : sample.accel) value = static_cast<int16_t>(get_word(link));
-  for (int16_t& value : sample.mag) value = static_cast<int16_t>(get_word(link));
+  for (int16_t& value : sample.imu.gyro()) value = static_cast<int16_t>(get_word(link));
+  for (int16_t& value : sample.imu.accel()) value = static_cast<int16_t>(get_word(link));
+  for (int16_t& value : sample.imu.mag()) value = static_cast<int16_t>(get_word(link));
   sample.pressure = static_cast<int32_t>(get_long(link));
   sample.temperature = static_cast<int16_t>(get_word(link));
   sample.encoder_left = get_word(link);

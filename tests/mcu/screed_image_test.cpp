@@ -277,7 +277,7 @@ TEST(ScreedImage, ReversesAMotorOnlyWithoutDuty) {
   // As the ground station says: of the other algorithms a robot that the world pushes may be stuck.
   bench.ground_station = true;
   bench.run_ms(500);
-  bench.set_parameter(&Parameters::algorithm,
+  bench.set_parameter(Parameters::k_algorithm,
                       static_cast<std::int16_t>(message::LevelingAlgorithm::kDrive));
   set_off(bench);
   bench.command(CommandOp::kDrive, {100, 0});
@@ -351,7 +351,7 @@ TEST(ScreedImage, UsesMostOfTheComputedStack) {
   bench.command(CommandOp::kStop);
   bench.run_ms(1000);
   bench.command(CommandOp::kDisarm);
-  bench.set_parameter(&Parameters::random_seed, 7);
+  bench.set_parameter(Parameters::k_random_seed, 7);
   EXPECT_EQ(message::CommandAck::unpack(bench.last_frame(kIdCommandAck).data).result, 0)
       << "the robot refused it";
   EXPECT_LE(bench.mcu.stack_used(), computed_stack());

@@ -17,7 +17,7 @@ HeightField hill() {
 
 Parameters leveling_parameters(LevelingAlgorithm algorithm) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(algorithm);
+  parameters.algorithm() = static_cast<int16_t>(algorithm);
   return parameters;
 }
 
@@ -29,18 +29,18 @@ WorldOptions facing_the_hill() {
 
 TEST(Leveling, HillSensingChargesTheHill) {
   Parameters parameters = leveling_parameters(LevelingAlgorithm::kHillSensing);
-  parameters.site_radius = 2500;
+  parameters.site_radius() = 2500;
   TestDrive drive(hill(), facing_the_hill(), parameters);
   ASSERT_TRUE(drive.run_until(
       180.0, [&] { return drive.robot.leveling().state() == LevelingState::kClimb; }));
   EXPECT_GT(drive.attitude().pitch, 0.05);  // it really points up
-  EXPECT_EQ(drive.robot.motion().speed_mm_per_s, parameters.climb_speed);
+  EXPECT_EQ(drive.robot.motion().speed_mm_per_s, parameters.climb_speed());
   EXPECT_EQ(drive.robot.motion().yaw_rate, 0);
 }
 
 TEST(Leveling, SpinOnPeakSpinsNearTheTop) {
   Parameters parameters = leveling_parameters(LevelingAlgorithm::kSpinOnPeak);
-  parameters.walk_yaw_rate_max = 5;  // nearly straight at the hill
+  parameters.walk_yaw_rate_max() = 5;  // nearly straight at the hill
   TestDrive drive(hill(), facing_the_hill(), parameters);
   ASSERT_TRUE(drive.run_until(
       120.0, [&] { return drive.robot.leveling().state() == LevelingState::kSpin; }));
@@ -61,8 +61,8 @@ TEST(Leveling, SpinOnPeakSpinsNearTheTop) {
 
 TEST(Leveling, TheFenceKeepsTheRobotOnItsSite) {
   Parameters parameters = leveling_parameters(LevelingAlgorithm::kHillSensing);
-  parameters.site_radius = 1000;
-  parameters.walk_yaw_rate_max = 10;
+  parameters.site_radius() = 1000;
+  parameters.walk_yaw_rate_max() = 10;
   TestDrive drive(HeightField::flat(20.0, 0.1), WorldOptions{}, parameters);
   double farthest = 0.0;
   bool returned = false;

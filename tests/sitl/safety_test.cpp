@@ -120,7 +120,7 @@ TEST(Safety, AMagneticDisturbanceIsFlaggedAndTheHeadingHolds) {
   const double before = heading_error_deg();
 
   drive.tamper = [](SensorSample& sample) {  // half of the site's field, across the robot
-    sample.mag[1] = static_cast<int16_t>(sample.mag[1] + 1600);
+    sample.imu.mag()[1] = static_cast<int16_t>(sample.imu.mag()[1] + 1600);
   };
   for (int second = 0; second < 12; ++second) {
     drive.run(1.0);

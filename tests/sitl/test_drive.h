@@ -22,7 +22,7 @@ inline const Assembly& rover5() {
 
 inline Parameters drive_parameters() {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   return parameters;
 }
 

@@ -21,9 +21,9 @@ class TestRobot {
     CanFrame heard = frame_of(message::Heartbeat{0, 0, 0, kFirstBootEpoch, 0});
     heard.id = id_of_node(heard.id, signer.node());
     signer.handle_frame(heard);
-    sample.accel[2] = 4098;
-    sample.mag[1] = 1217;
-    sample.mag[2] = -3013;
+    sample.imu.accel()[2] = 4098;
+    sample.imu.mag()[1] = 1217;
+    sample.imu.mag()[2] = -3013;
     sample.battery = 3932;  // 7.2 V
   }
 
@@ -31,7 +31,7 @@ class TestRobot {
   void tick() {
     sample.time_us += kTickPeriod_us;
     sample.fresh = kFreshGyro | kFreshAccel | kFreshMag;
-    sample.gyro[0] = sample.gyro[0] == 0 ? 1 : 0;
+    sample.imu.gyro()[0] = sample.imu.gyro()[0] == 0 ? 1 : 0;
     if (heartbeats && ticks % 20 == 0) send(heartbeat());
     sample.radio_in_count = 0;
     while (!queue.empty() && sample.radio_in_count < kRadioInCapacity) {

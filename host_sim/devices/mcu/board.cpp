@@ -13,22 +13,6 @@
 namespace screed::mcu {
 namespace {
 
-// An AVR puts no gaps between members, so its objects are rows of a session as they are, when the
-// columns stand in the order of the members.
-template <std::size_t N>
-constexpr bool rises(const std::array<std::size_t, N>& offsets) {
-  for (std::size_t i = 1; i < N; ++i) {
-    if (offsets[i] <= offsets[i - 1]) return false;
-  }
-  return true;
-}
-#define SCREED_OFFSET(name, unit, meaning) offsetof(SensorSample, name),
-static_assert(rises(std::to_array<std::size_t>({SCREED_SAMPLE_COLUMNS(SCREED_OFFSET)})));
-#undef SCREED_OFFSET
-#define SCREED_OFFSET(name, unit, meaning) offsetof(RobotOutput, name),
-static_assert(rises(std::to_array<std::size_t>({SCREED_OUTPUT_COLUMNS(SCREED_OFFSET)})));
-#undef SCREED_OFFSET
-
 /// Channels of an encoder, A leads B when the count rises.
 struct Levels {
   bool a;
@@ -157,13 +141,15 @@ void Board::on_mark(std::uint8_t value) {
     case avr::kMarkerStart:
       ++programs_started_;
       mark_ = Mark::kStart;
-      if (address + 2U * kParameterCount <= kRamEnd) {
+      if (address + sizeof(Parameters) <= kRamEnd) {
         std::array<std::uint8_t, sizeof(Parameters)> bytes{};
         mcu.read_memory(address, bytes);
         std::memcpy(&parameters_, bytes.data(), bytes.size());
       }
       break;
     case avr::kMarkerSample: {
+      // An AVR puts no gaps between members, and the columns stand in their order: an object in its
+      // memory is a row of a session as it is.
       std::array<std::uint8_t, kSampleBytes> row{};
       if (address + row.size() > kRamEnd) return;
       mcu.read_memory(address, row);

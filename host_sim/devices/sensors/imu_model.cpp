@@ -91,9 +91,9 @@ void ImuModel::measure(const ImuTruth& truth, SensorSample& sample) {
   const Eigen::Vector3d accel = accel_mg(truth);
   const Eigen::Vector3d mag = mag_mgauss(truth);
   for (int i = 0; i < 3; ++i) {
-    sample.gyro[i] = quantise(gyro[i], kGyroLsb_dps);
-    sample.accel[i] = quantise(accel[i], kAccelLsb_mg);
-    sample.mag[i] = quantise(mag[i], kMagLsb_mgauss);
+    sample.imu.gyro()[i] = quantise(gyro[i], kGyroLsb_dps);
+    sample.imu.accel()[i] = quantise(accel[i], kAccelLsb_mg);
+    sample.imu.mag()[i] = quantise(mag[i], kMagLsb_mgauss);
   }
   sample.fresh = kFreshGyro | kFreshAccel | kFreshMag;
   if (ticks_ % kBaroTicks == 0) {

@@ -24,13 +24,6 @@ uint32_t drive_argument(const DriveCommand& command) {
                            static_cast<int16_t>(std::lround(command.yaw_rate_deg_per_s * 10.0))});
 }
 
-uint16_t algorithm_parameter() {
-  const auto* const at =
-      std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
-                   [](const ParameterInfo& it) { return it.field == &Parameters::algorithm; });
-  return static_cast<uint16_t>(at - std::begin(kParameterTable));
-}
-
 }  // namespace
 
 RobotPilot::RobotPilot(Link& link, PilotOptions options)
@@ -168,7 +161,7 @@ void RobotPilot::next_command() {
       start(Step::kDisarm, CommandOp::kDisarm);
     } else {
       step_ = Step::kAlgorithm;
-      session_->start_write(algorithm_parameter(), *wanted_);
+      session_->start_write(Parameters::k_algorithm, *wanted_);
     }
     return;
   }

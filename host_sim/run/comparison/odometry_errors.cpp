@@ -59,7 +59,7 @@ struct Sensed {
 class Reckoner {
  public:
   Reckoner(const SessionInfo& info, Reckoning way)
-      : way_(way), estimate_(info.board.count_um_q4, info.parameters.position_noise) {}
+      : way_(way), estimate_(info.board.count_um_q4, info.parameters.position_noise()) {}
 
   void begin(double true_heading) {
     estimate_.reset();
@@ -164,7 +164,7 @@ std::vector<OdometryLeg> odometry_legs(const std::filesystem::path& session_file
   const SessionReader session(session_file);
   check_replayable(session, session_file);
   const SessionInfo& info = session.info();
-  const Angle site_heading = angle_from_centidegrees(info.parameters.site_heading);
+  const Angle site_heading = angle_from_centidegrees(info.parameters.site_heading());
   const auto robot = std::make_unique<Robot>(info.board, info.parameters, info.credentials);
   RobotOutput output{};
   CountDeltas deltas;

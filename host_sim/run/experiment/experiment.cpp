@@ -109,7 +109,7 @@ void set_training_length(Experiment& experiment, const std::string& source) {
     }
     frames = static_cast<uint32_t>(wanted);
   }
-  experiment.parameters.training_block = static_cast<int16_t>(*frames / 8);
+  experiment.parameters.training_block() = static_cast<int16_t>(*frames / 8);
 }
 
 void check_robots(const Experiment& experiment, const std::string& source) {
@@ -130,14 +130,14 @@ void check_robots(const Experiment& experiment, const std::string& source) {
 }
 
 void check_parameters(const Parameters& p, const std::string& source) {
-  if (p.walk_speed_min > p.walk_speed_max) {
+  if (p.walk_speed_min() > p.walk_speed_max()) {
     throw InputError(source +
-                     ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min) +
-                     " is above walk_speed_max = " + std::to_string(p.walk_speed_max));
+                     ": [parameters] walk_speed_min = " + std::to_string(p.walk_speed_min()) +
+                     " is above walk_speed_max = " + std::to_string(p.walk_speed_max()));
   }
-  if (p.walk_leg_min > p.walk_leg_max) {
-    throw InputError(source + ": [parameters] walk_leg_min = " + std::to_string(p.walk_leg_min) +
-                     " is above walk_leg_max = " + std::to_string(p.walk_leg_max));
+  if (p.walk_leg_min() > p.walk_leg_max()) {
+    throw InputError(source + ": [parameters] walk_leg_min = " + std::to_string(p.walk_leg_min()) +
+                     " is above walk_leg_max = " + std::to_string(p.walk_leg_max()));
   }
 }
 
@@ -271,7 +271,7 @@ Experiment make_experiment(const ExperimentFile& file, const std::vector<PlacedE
   if (sandbox && experiment.map.xy_scale.has_value() && !experiment.map.of_particles())
     *experiment.map.xy_scale /= kSandboxUnitsPerMetre;
   for (const PlacedEntry& placed : entries) apply(experiment, placed.entry, placed.where);
-  experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
+  experiment.parameters.algorithm() = algorithm_number(experiment.experiment.algorithm);
   if (experiment.experiment.algorithm == kTrainingDriveName) set_training_length(experiment, whole);
   if (experiment.experiment.frames.has_value())
     experiment.experiment.duration_s = *experiment.experiment.frames / double{kTickRate_hz};

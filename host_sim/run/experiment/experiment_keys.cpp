@@ -47,15 +47,15 @@ void list_section(std::vector<ExperimentKey>& keys, const char* name, Section Ex
 
 /// The length of the training drive is that of the experiment, and means nothing without the drive.
 bool follows_from_others(const Experiment& experiment, const ParameterInfo& info) {
-  if (info.field != &Parameters::training_block) return false;
+  if (info.number != Parameters::k_training_block) return false;
   return experiment.experiment.algorithm == kTrainingDriveName ||
-         experiment.parameters.training_block == info.default_value;
+         experiment.parameters.training_block() == info.default_value;
 }
 
 void list_parameters(std::vector<ExperimentKey>& keys) {
   for (const ParameterInfo& info : kParameterTable) {
     // Said in [experiment], by its name.
-    if (info.field == &Parameters::algorithm) continue;
+    if (info.number == Parameters::k_algorithm) continue;
     const auto number = static_cast<uint8_t>(&info - kParameterTable);
     keys.push_back({"parameters", info.name, info.unit,
                     "an integer " + std::to_string(info.min) + ".." + std::to_string(info.max),
@@ -64,12 +64,12 @@ void list_parameters(std::vector<ExperimentKey>& keys) {
                       int16_t value = 0;
                       if (!parse_number(text, value) || value < info.min || value > info.max)
                         return false;
-                      e.parameters.*info.field = value;
+                      e.parameters.values[info.number] = value;
                       return true;
                     },
                     [info](const Experiment& e) -> std::optional<std::string> {
                       if (follows_from_others(e, info)) return std::nullopt;
-                      return std::to_string(e.parameters.*info.field);
+                      return std::to_string(e.parameters.values[info.number]);
                     }});
     keys.back().multiple_of = 1;
   }

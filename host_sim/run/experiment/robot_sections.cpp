@@ -87,7 +87,7 @@ void apply_robot_section(Experiment& experiment, size_t robot) {
   for (const auto& [place, value] : of_robots) {
     if (place.first == robot) experiment_keys()[place.second].set(experiment, value);
   }
-  experiment.parameters.algorithm = algorithm_number(experiment.experiment.algorithm);
+  experiment.parameters.algorithm() = algorithm_number(experiment.experiment.algorithm);
 }
 
 Experiment experiment_of_robot(const Experiment& experiment, size_t robot) {

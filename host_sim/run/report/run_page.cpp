@@ -285,7 +285,7 @@ Json parameters_of(const SessionReader& session) {
   for (const ParameterInfo& it : kParameterTable) {
     const bool recorded = std::find(missing.begin(), missing.end(), it.name) == missing.end();
     list.push_back({{"name", it.name},
-                    {"value", session.info().parameters.*it.field},
+                    {"value", session.info().parameters.values[it.number]},
                     {"unit", it.unit},
                     {"default", it.default_value},
                     {"meaning", it.meaning},
@@ -329,7 +329,7 @@ Json identity_of(std::span<const SessionReader> sessions, const RunPageOptions& 
   if (!setup.soil.empty()) add("Soil", setup.soil);
   add("Board", info.board_name);
   add("Seed of the world", std::to_string(info.seed));
-  add("Seed of the drive", std::to_string(info.parameters.random_seed));
+  add("Seed of the drive", std::to_string(info.parameters.random_seed()));
   add("Ticks",
       std::to_string(session.frames()) + " at " + std::to_string(info.tick_rate_hz) + " Hz");
   add("Program of the run", info.program_version);

@@ -16,7 +16,7 @@ SessionHash::SessionHash(const SessionInfo& info) {
   }
   for (const ParameterInfo& parameter : kParameterTable) {
     info_.add(parameter.name);
-    info_.add(info.parameters.*parameter.field);
+    info_.add(info.parameters.values[parameter.number]);
   }
   info_.add(key_text(command_key_of(info.credentials)));
   info_.add(info.credentials.key_set);

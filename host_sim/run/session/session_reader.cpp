@@ -87,7 +87,7 @@ SessionInfo read_info(hid_t file, std::vector<std::string>& missing_parameters) 
                               "cannot read group 'parameters'");
   for (const ParameterInfo& parameter : kParameterTable) {
     if (h5::has_attribute(parameters.get(), parameter.name)) {
-      info.parameters.*parameter.field =
+      info.parameters.values[parameter.number] =
           narrow<std::int16_t>(h5::read_int64(parameters.get(), parameter.name), parameter.name);
     } else {
       missing_parameters.emplace_back(parameter.name);

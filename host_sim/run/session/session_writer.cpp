@@ -109,7 +109,7 @@ void write_info(hid_t file, const SessionInfo& info) {
 
   const h5::Handle parameters = layout::create_group(file, layout::kParametersGroup);
   for (const ParameterInfo& parameter : kParameterTable) {
-    write_with_unit(parameters.get(), parameter.name, info.parameters.*parameter.field,
+    write_with_unit(parameters.get(), parameter.name, info.parameters.values[parameter.number],
                     parameter.unit);
   }
   const h5::Handle board = layout::create_group(file, layout::kBoardGroup);

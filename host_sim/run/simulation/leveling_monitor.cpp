@@ -14,8 +14,8 @@ constexpr double kRounding_s = 1e-6;  ///< of times that are sums of steps
 
 TraversabilityLimits limits_of(const Experiment& experiment, double tread_m) {
   constexpr double kRadPerCentidegree = std::numbers::pi / 18000.0;
-  return {0.5 * tread_m, experiment.parameters.tilt_limit * kRadPerCentidegree,
-          experiment.parameters.site_radius * 1e-3, BedBounds{}};
+  return {0.5 * tread_m, experiment.parameters.tilt_limit() * kRadPerCentidegree,
+          experiment.parameters.site_radius() * 1e-3, BedBounds{}};
 }
 
 bool returns_to_site(const SimFrame& frame) {

@@ -87,7 +87,7 @@ std::vector<std::string> obstacles_of(const WatchedRobot& robot, double time_s) 
   if (state != RobotState::kDisarmed && state != RobotState::kFault) return {};
   LatestTelemetry said = robot.telemetry.latest();
   for (const ParameterInfo& info : kParameterTable)
-    said.set_parameter(info.name, shadow.parameters().*(info.field));
+    said.set_parameter(info.name, shadow.parameters().values[info.number]);
   return arming_obstacles(said, static_cast<uint64_t>(time_s * 1e6));
 }
 

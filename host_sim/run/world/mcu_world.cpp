@@ -65,7 +65,7 @@ namespace {
 /// The robot would refuse to be armed, and its shadow on this machine would not.
 void check_algorithm(const CoSimulationOptions& options) {
   const std::optional<std::uint16_t> in_image = mcu::image_algorithms(options.elf);
-  const std::int16_t wanted = options.parameters.algorithm;
+  const std::int16_t wanted = options.parameters.algorithm();
   if (!in_image.has_value() || (*in_image >> wanted & 1) != 0) return;
   const std::vector<std::string> names = algorithm_names();
   std::string has;

@@ -19,8 +19,8 @@ Parameters parameters_of_robot(const Parameters& parameters, size_t number) {
   constexpr uint64_t kStride = 1009;
   constexpr uint64_t kSeeds = 32768;
   Parameters own = parameters;
-  own.random_seed = static_cast<int16_t>(
-      (static_cast<uint64_t>(parameters.random_seed) + kStride * number) % kSeeds);
+  own.random_seed() = static_cast<int16_t>(
+      (static_cast<uint64_t>(parameters.random_seed()) + kStride * number) % kSeeds);
   return own;
 }
 

@@ -20,7 +20,7 @@ namespace {
 class FakeTarget : public hal::Target {
  public:
   explicit FakeTarget(int ticks, int16_t seed = 1) : ticks_(ticks) {
-    parameters_.random_seed = seed;
+    parameters_.random_seed() = seed;
   }
 
   void init() override { calls += 'i'; }
@@ -43,8 +43,8 @@ class FakeTarget : public hal::Target {
   }
   void read_sensors(SensorSample& sample) override {
     calls += 'r';
-    sample.accel[2] = 4098;
-    sample.gyro[0] = static_cast<int16_t>(tick_ % 2);
+    sample.imu.accel()[2] = 4098;
+    sample.imu.gyro()[0] = static_cast<int16_t>(tick_ % 2);
     sample.fresh = kFreshGyro | kFreshAccel;
   }
   void write_outputs(const RobotOutput& output) override {

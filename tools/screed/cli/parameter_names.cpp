@@ -39,7 +39,7 @@ Unit unit_of(const ParameterInfo& info) {
 
 /// Names of the values: of the leveling algorithm alone. Empty: a number.
 std::span<const ValueInfo> value_names_of(const ParameterInfo& info) {
-  if (info.field != &Parameters::algorithm) return {};
+  if (info.number != Parameters::k_algorithm) return {};
   return find_signal("leveling.algorithm").signal->values;
 }
 

@@ -74,9 +74,9 @@ class RecordingReader {
     check_time();
     Row row{};
     for (std::size_t i = 0; i < 3; ++i) {
-      row.sample.gyro[i] = count(i);
-      row.sample.accel[i] = count(3 + i);
-      row.sample.mag[i] = count(6 + i);
+      row.sample.imu.gyro()[i] = count(i);
+      row.sample.imu.accel()[i] = count(3 + i);
+      row.sample.imu.mag()[i] = count(6 + i);
     }
     row.sample.mag_fresh = true;
     row.reference = reference();

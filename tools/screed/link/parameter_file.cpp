@@ -38,11 +38,11 @@ std::vector<ParameterValue> all_parameters(const Parameters& parameters) {
 }
 
 void set_parameter(Parameters& parameters, const ParameterValue& value) {
-  parameters.*kParameterTable[value.index].field = value.value;
+  parameters.values[value.index] = value.value;
 }
 
 int16_t get_parameter(const Parameters& parameters, uint16_t index) {
-  return parameters.*kParameterTable[index].field;
+  return parameters.values[index];
 }
 
 std::vector<ParameterValue> read_parameter_file(const std::filesystem::path& file) {
@@ -63,10 +63,10 @@ std::vector<ParameterValue> read_parameter_file(const std::filesystem::path& fil
 std::string parameter_file_text(const Parameters& parameters, const std::string& title) {
   constexpr int kFramesPerBlock = 8;  // of Algorithm 5
   const uint16_t algorithm = parameter_index("algorithm");
-  const std::string name = parameter_text(algorithm, parameters.algorithm);
+  const std::string name = parameter_text(algorithm, parameters.algorithm());
   std::string text = "# " + title + "\n[experiment]\nalgorithm = " + name + "\n";
   if (name == kTrainingDriveName)
-    text += "frames = " + std::to_string(parameters.training_block * kFramesPerBlock) + "\n";
+    text += "frames = " + std::to_string(parameters.training_block() * kFramesPerBlock) + "\n";
   text += "\n[parameters]\n";
   for (const ParameterValue& value : all_parameters(parameters)) {
     if (value.index == algorithm) continue;

@@ -60,7 +60,7 @@ Json describe(const fs::path& file, const SessionReader& session) {
   json["arithmetic"] = info.arithmetic;
   json["board"] = info.board_name;
   json["seed"] = info.seed;
-  json["random_seed"] = info.parameters.random_seed;
+  json["random_seed"] = info.parameters.random_seed();
   json["frames"] = session.frames();
   json["duration_s"] = static_cast<double>(session.frames()) / info.tick_rate_hz;
   json["training_first"] = training.first;

@@ -134,7 +134,7 @@ TEST(DriveControl, ARobotThatCannotTurnIsNotDrivenFasterAndFaster) {
 
 TEST(DriveControl, TargetsChangeByNoMoreThanTheAccelerationLimit) {
   Parameters parameters;
-  parameters.accel_limit = 600;
+  parameters.accel_limit() = 600;
   SkidRobot robot(0.8, parameters);
   TrackSpeeds last = {0, 0};
   const MotionCommand commands[] = {
@@ -154,7 +154,7 @@ TEST(DriveControl, TargetsChangeByNoMoreThanTheAccelerationLimit) {
 
 TEST(DriveControl, SlowestAccelerationStillMoves) {
   Parameters parameters;
-  parameters.accel_limit = 50;
+  parameters.accel_limit() = 50;
   SkidRobot robot(0.8, parameters);
   robot.run({100, 0}, 100);
   EXPECT_GT(robot.control().targets().left, 45);
@@ -170,9 +170,9 @@ TEST(DriveControl, IdleForgetsTheMotion) {
 
 TEST(DriveControl, ExtremeMeasurementsStayWithinTheDutyRange) {
   Parameters strongest;
-  strongest.yaw_kp = 1024;
-  strongest.yaw_ki = 4096;
-  strongest.accel_limit = 5000;
+  strongest.yaw_kp() = 1024;
+  strongest.yaw_ki() = 4096;
+  strongest.accel_limit() = 5000;
   for (const int32_t rate : {INT32_MIN / 2, -32768, 32767, INT32_MAX / 2}) {
     for (const int16_t yaw : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
       DriveControl control(kBoard, strongest);
@@ -217,9 +217,9 @@ TEST(DriveControl, TheYawLoopFollowsItsLawInNumbers) {
                         {{120, 500}, -14800, 60, false}, {{120, 500}, 16100, 60, false}};
   for (const auto& [kp, ki] : {std::pair{0, 768}, {128, 0}, {512, 300}, {1024, 2000}}) {
     Parameters parameters;
-    parameters.yaw_kp = static_cast<int16_t>(kp);
-    parameters.yaw_ki = static_cast<int16_t>(ki);
-    parameters.accel_limit = 5000;
+    parameters.yaw_kp() = static_cast<int16_t>(kp);
+    parameters.yaw_ki() = static_cast<int16_t>(ki);
+    parameters.accel_limit() = 5000;
     DriveControl control(kBoard, parameters);
     YawLoopInNumbers law(kp, ki);
     const SkidSteer kinematics(kBoard.tread_mm);
@@ -257,7 +257,7 @@ TEST(DriveControl, TheYawLoopFollowsItsLawInNumbers) {
 TEST(DriveControl, TheAccelerationLimitIsRoundedUpToWholeStepsATick) {
   for (const auto& [limit, step] : {std::pair{600, 6}, {601, 7}, {599, 6}, {700, 7}, {50, 1}}) {
     Parameters parameters;
-    parameters.accel_limit = static_cast<int16_t>(limit);
+    parameters.accel_limit() = static_cast<int16_t>(limit);
     DriveControl control(kBoard, parameters);
     control.tick({200, 0}, {0, 0, 0, 7200});
     EXPECT_EQ(control.targets().left, step) << limit;

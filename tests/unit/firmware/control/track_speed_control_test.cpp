@@ -104,8 +104,8 @@ TEST(TrackSpeedControl, ReachesTheTargetWithoutErrorAgainstALoad) {
 TEST(TrackSpeedControl, FeedForwardMakesUpForTheBattery) {
   // Without the controller's help the same target gives the same speed at any voltage.
   Parameters open_loop;
-  open_loop.speed_kp = 0;
-  open_loop.speed_ki = 0;
+  open_loop.speed_kp() = 0;
+  open_loop.speed_ki() = 0;
   for (const double battery_v : {6.0, 7.2, 8.1}) {
     TrackSpeedControl control = make_control(open_loop);
     SimulatedTrack track;
@@ -163,8 +163,8 @@ TEST(TrackSpeedControl, ReleaseForgetsTheIntegral) {
 
 TEST(TrackSpeedControl, EveryParameterAtItsEndsStaysWithinTheDutyRange) {
   Parameters strongest;
-  strongest.speed_kp = 320;
-  strongest.speed_ki = 3200;
+  strongest.speed_kp() = 320;
+  strongest.speed_ki() = 3200;
   for (const int16_t target : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
     for (const int16_t counts : std::initializer_list<int16_t>{INT16_MIN, INT16_MAX}) {
       for (const uint16_t battery_mv : std::initializer_list<uint16_t>{0, 3599, 3600, 65535}) {
@@ -237,8 +237,8 @@ TEST(TrackSpeedControl, FollowsItsLawInNumbers) {
                         {-30, 0, 7200, 200},  {1, 0, 7200, 50},      {0, 0, 7200, 50}};
   for (const auto& [kp, ki] : {std::pair{24, 160}, {0, 400}, {60, 40}, {6, 2400}}) {
     Parameters parameters;
-    parameters.speed_kp = static_cast<int16_t>(kp);
-    parameters.speed_ki = static_cast<int16_t>(ki);
+    parameters.speed_kp() = static_cast<int16_t>(kp);
+    parameters.speed_ki() = static_cast<int16_t>(ki);
     TrackSpeedControl control = make_control(parameters);
     LawInNumbers law(kp, ki);
     const double tolerance = 9.0 + 0.15 * kp;  // gains of the filters are whole 256ths

@@ -72,7 +72,8 @@ struct Reference {
   double vertical = 0.0;
 
   void update(const ImuSample& sample, bool may_rest) {
-    const Vec accel{1.0 * sample.accel[0], 1.0 * sample.accel[1], 1.0 * sample.accel[2]};
+    const Vec accel{1.0 * sample.imu.accel()[0], 1.0 * sample.imu.accel()[1],
+                    1.0 * sample.imu.accel()[2]};
     const bool first = ticks == 0;
     if (first && !align(accel)) return;
     detect_rest(sample, may_rest);
@@ -94,7 +95,7 @@ struct Reference {
     }
     mag_age = std::min(mag_age + 1, 10);
     ++distrusted;
-    const Vec mag{1.0 * sample.mag[0], 1.0 * sample.mag[1], 1.0 * sample.mag[2]};
+    const Vec mag{1.0 * sample.imu.mag()[0], 1.0 * sample.imu.mag()[1], 1.0 * sample.imu.mag()[2]};
     if (sample.mag_fresh && trust(mag)) {
       correction.z = heading_correction(turned(q, mag), most);
       distrusted = 0;
@@ -125,7 +126,7 @@ struct Reference {
   void detect_rest(const ImuSample& sample, bool may_rest) {
     bool quiet = may_rest;
     for (std::size_t i = 0; i < 6; ++i) {
-      const double count = i < 3 ? sample.gyro[i] : sample.accel[i - 3];
+      const double count = i < 3 ? sample.imu.gyro()[i] : sample.imu.accel()[i - 3];
       if (ticks == 0) mean[i] = count;
       const double change = count - mean[i];
       mean[i] += change / 64.0;
@@ -149,7 +150,7 @@ struct Reference {
     Vec h{};
     double s = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      h[i] = sample.gyro[i] * kPerCount - bias[i];
+      h[i] = sample.imu.gyro()[i] * kPerCount - bias[i];
       s += h[i] * h[i];
     }
     const double sine = 1.0 - s / 6.0;
@@ -218,9 +219,9 @@ class Comparison {
   void tick(const Reading& reading) {
     ImuSample sample{};
     for (std::size_t i = 0; i < 3; ++i) {
-      sample.gyro[i] = static_cast<int16_t>(std::lround(reading.gyro[i]));
-      sample.accel[i] = static_cast<int16_t>(std::lround(reading.accel[i]));
-      sample.mag[i] = static_cast<int16_t>(std::lround(reading.mag[i]));
+      sample.imu.gyro()[i] = static_cast<int16_t>(std::lround(reading.gyro[i]));
+      sample.imu.accel()[i] = static_cast<int16_t>(std::lround(reading.accel[i]));
+      sample.imu.mag()[i] = static_cast<int16_t>(std::lround(reading.mag[i]));
     }
     sample.mag_fresh = reading.mag_fresh;
     estimator.update(sample, reading.may_rest);

@@ -66,9 +66,9 @@ ImuSample reading(const Rot& q, const Vec& rate = {0, 0, 0}, const Vec& force = 
   const Vec m = seen(q, kField);
   ImuSample sample{};
   for (std::size_t i = 0; i < 3; ++i) {
-    sample.gyro[i] = counts(rate[i] / kDpsPerCount);
-    sample.accel[i] = counts(a[i]);
-    sample.mag[i] = counts(m[i]);
+    sample.imu.gyro()[i] = counts(rate[i] / kDpsPerCount);
+    sample.imu.accel()[i] = counts(a[i]);
+    sample.imu.mag()[i] = counts(m[i]);
   }
   sample.mag_fresh = true;
   return sample;
@@ -109,7 +109,7 @@ void repeat(AttitudeEstimator& estimator, const ImuSample& sample, int ticks,
 TEST(Attitude, StartsAsIdentityAndWaitsForAcceleration) {
   AttitudeEstimator estimator;
   ImuSample nothing{};
-  nothing.gyro[2] = 1000;
+  nothing.imu.gyro()[2] = 1000;
   repeat(estimator, nothing, 400);
   EXPECT_FALSE(estimator.ready());
   EXPECT_EQ(estimator.orientation().w, 1 << 30);
@@ -121,8 +121,8 @@ TEST(Attitude, StartsAsIdentityAndWaitsForAcceleration) {
 TEST(Attitude, StaticTiltHasTheProjectsSigns) {
   AttitudeEstimator estimator;
   ImuSample nose_up{};
-  nose_up.accel[0] = 2048;  // gravity's reaction has a part along x when the nose is up
-  nose_up.accel[2] = 3547;
+  nose_up.imu.accel()[0] = 2048;  // gravity's reaction has a part along x when the nose is up
+  nose_up.imu.accel()[2] = 3547;
   repeat(estimator, nose_up, 440);
   EXPECT_FALSE(estimator.ready());  // standstill was found after 1.5 s, and averaging takes 3 s
   repeat(estimator, nose_up, 20);
@@ -132,8 +132,8 @@ TEST(Attitude, StaticTiltHasTheProjectsSigns) {
 
   estimator.reset();
   ImuSample left_up{};
-  left_up.accel[1] = 2048;
-  left_up.accel[2] = 3547;
+  left_up.imu.accel()[1] = 2048;
+  left_up.imu.accel()[2] = 3547;
   repeat(estimator, left_up, 300);
   EXPECT_NEAR(degrees(estimator.roll()), 30.0, 0.05);
   EXPECT_NEAR(degrees(estimator.pitch()), 0.0, 0.05);
@@ -162,7 +162,7 @@ TEST(Attitude, EveryStaticPoseConverges) {
 TEST(Attitude, UpsideDownAtTheStart) {
   AttitudeEstimator estimator;
   ImuSample sample{};
-  sample.accel[2] = -4098;
+  sample.imu.accel()[2] = -4098;
   repeat(estimator, sample, 300);
   EXPECT_NEAR(std::fabs(degrees(estimator.roll())), 180.0, 0.05);
 }
@@ -224,9 +224,9 @@ TEST(Attitude, BiasIsFoundAtRest) {
   AttitudeEstimator estimator;
   const Rot truth = pose(30, 5, -8);
   ImuSample sample = reading(truth);
-  sample.gyro[0] = -20;
-  sample.gyro[1] = 30;
-  sample.gyro[2] = 300;  // 21 dps
+  sample.imu.gyro()[0] = -20;
+  sample.imu.gyro()[1] = 30;
+  sample.imu.gyro()[2] = 300;  // 21 dps
   repeat(estimator, sample, 140);
   EXPECT_FALSE(estimator.at_rest());
   EXPECT_EQ(estimator.gyro_bias_mdps(2), 0);
@@ -266,8 +266,8 @@ TEST(Attitude, LargeBiasAtTheStartLeavesNoTilt) {
   AttitudeEstimator estimator;
   const Rot truth = pose(30, 0, 0);
   ImuSample sample = reading(truth);
-  sample.gyro[0] = 285;  // 20 dps: 30 degrees until standstill is certain
-  sample.gyro[2] = 285;
+  sample.imu.gyro()[0] = 285;  // 20 dps: 30 degrees until standstill is certain
+  sample.imu.gyro()[2] = 285;
   double worst = 0.0;
   for (int tick = 0; tick < 1000; ++tick) {
     estimator.update(sample);
@@ -282,7 +282,7 @@ TEST(Attitude, LargeBiasAtTheStartLeavesNoTilt) {
 TEST(Attitude, NoRestWhileTheCallerForbidsIt) {
   AttitudeEstimator estimator;
   ImuSample sample = without_mag(reading(pose(0, 0, 0)));
-  sample.gyro[2] = 14;  // a real turn of 1 degree/s
+  sample.imu.gyro()[2] = 14;  // a real turn of 1 degree/s
   repeat(estimator, sample, 1000, false);
   EXPECT_FALSE(estimator.at_rest());
   EXPECT_EQ(estimator.gyro_bias_mdps(2), 0);
@@ -297,8 +297,8 @@ TEST(Attitude, BiasIsFoundInMotion) {
     const double roll = 20.0 * std::sin(phase);
     const double rate = 20.0 * 2 * kPi * 0.4 * std::cos(phase);
     ImuSample sample = reading(pose(0, 0, roll), {rate, 0, 0});
-    sample.gyro[0] = static_cast<std::int16_t>(sample.gyro[0] + bias);
-    sample.gyro[1] = static_cast<std::int16_t>(sample.gyro[1] + bias);
+    sample.imu.gyro()[0] = static_cast<std::int16_t>(sample.imu.gyro()[0] + bias);
+    sample.imu.gyro()[1] = static_cast<std::int16_t>(sample.imu.gyro()[1] + bias);
     estimator.update(sample, false);
   }
   EXPECT_NEAR(estimator.gyro_bias_mdps(0), 980, 60);
@@ -308,10 +308,10 @@ TEST(Attitude, BiasIsFoundInMotion) {
 TEST(Attitude, BiasStopsAtItsLimit) {
   AttitudeEstimator estimator;
   ImuSample sample = reading(pose(0, 0, 0));
-  sample.gyro[0] = 400;  // 28 dps
+  sample.imu.gyro()[0] = 400;  // 28 dps
   repeat(estimator, sample, 1000);
   ASSERT_NEAR(estimator.gyro_bias_mdps(0), 28000, 30);
-  sample.gyro[0] = 450;  // 31.5 dps
+  sample.imu.gyro()[0] = 450;  // 31.5 dps
   repeat(estimator, sample, 30000, false);
   EXPECT_NEAR(estimator.gyro_bias_mdps(0), 30000, 10);
 }
@@ -347,10 +347,11 @@ TEST(Attitude, VibrationOfTheTracksAveragesOut) {
     ImuSample sample = reading(truth);
     for (std::size_t i = 0; i < 3; ++i) {
       const int angle = noise(140);
-      sample.gyro[i] =
-          static_cast<std::int16_t>(sample.gyro[i] + angle - shake[i]);  // up to 20 dps
+      sample.imu.gyro()[i] =
+          static_cast<std::int16_t>(sample.imu.gyro()[i] + angle - shake[i]);  // up to 20 dps
       shake[i] = angle;
-      sample.accel[i] = static_cast<std::int16_t>(sample.accel[i] + noise(820));  // +-0.2 g
+      sample.imu.accel()[i] =
+          static_cast<std::int16_t>(sample.imu.accel()[i] + noise(820));  // +-0.2 g
     }
     estimator.update(sample, false);
     worst = std::fmax(worst, inclination_between(estimate(estimator), truth));
@@ -370,7 +371,7 @@ TEST(Attitude, ClippedAccelerationIsSurvived) {
     // neither.
     const double along = 12.0 * kG * std::cos(2 * kPi * 5.0 * kTick * tick);
     const ImuSample sample = reading(truth, {0, 0, 0}, {along, 0.3 * along, kG});
-    clipped += sample.accel[0] == 32767 || sample.accel[0] == -32768 ? 1 : 0;
+    clipped += sample.imu.accel()[0] == 32767 || sample.imu.accel()[0] == -32768 ? 1 : 0;
     estimator.update(sample, false);
     worst = std::fmax(worst, inclination_between(estimate(estimator), truth));
   }
@@ -393,13 +394,14 @@ TEST(Attitude, AnyInputKeepsAUnitQuaternion) {
     const bool held = (tick / 500) % 2 == 1;  // stretches of constant extremes as well
     if (!held || tick % 500 == 0) {
       for (std::size_t i = 0; i < 3; ++i) {
-        sample.gyro[i] = next();
-        sample.accel[i] = next();
-        sample.mag[i] = next();
+        sample.imu.gyro()[i] = next();
+        sample.imu.accel()[i] = next();
+        sample.imu.mag()[i] = next();
       }
     } else {
       for (std::size_t i = 0; i < 3; ++i) {
-        sample.gyro[i] = sample.accel[i] = sample.mag[i] = std::numeric_limits<std::int16_t>::min();
+        sample.imu.gyro()[i] = sample.imu.accel()[i] = sample.imu.mag()[i] =
+            std::numeric_limits<std::int16_t>::min();
       }
     }
     sample.mag_fresh = tick % 3 != 0;
@@ -415,10 +417,10 @@ TEST(Attitude, AnyInputKeepsAUnitQuaternion) {
 TEST(Attitude, LostAttitudeStartsAgain) {
   AttitudeEstimator estimator;
   ImuSample sample = reading(pose(0, 0, 0));
-  sample.gyro[1] = 7;
+  sample.imu.gyro()[1] = 7;
   repeat(estimator, sample, 600);
   ImuSample turned_over = reading(pose(0, 0, 170));  // and the gyroscope saw nothing of it
-  turned_over.gyro[1] = 7;
+  turned_over.imu.gyro()[1] = 7;
   repeat(estimator, turned_over, 1500);
   EXPECT_NEAR(degrees(estimator.roll()), 170.0, 0.1);
   EXPECT_TRUE(estimator.ready());
@@ -430,9 +432,9 @@ TEST(Attitude, MagneticDisturbanceTurnsSlowly) {
   repeat(estimator, reading(truth), 1000);
   ASSERT_NEAR(degrees(estimator.heading()), 60.0, 0.1);
   ImuSample disturbed = reading(truth);
-  std::swap(disturbed.mag[0], disturbed.mag[1]);
+  std::swap(disturbed.imu.mag()[0], disturbed.imu.mag()[1]);
   for (int tick = 0; tick < 200; ++tick) {
-    disturbed.gyro[2] = tick % 2 == 0 ? 3 : -3;
+    disturbed.imu.gyro()[2] = tick % 2 == 0 ? 3 : -3;
     estimator.update(disturbed);
   }
   EXPECT_NEAR(degrees(estimator.heading()), 60.0, 4.1);  // at most 2 degrees/s for 2 s
@@ -444,7 +446,7 @@ TEST(Attitude, MagneticDisturbanceTurnsSlowly) {
 ImuSample near_steel(const Rot& truth, const Vec& field) {
   ImuSample sample = reading(truth);
   const Vec m = seen(truth, field);
-  for (std::size_t i = 0; i < 3; ++i) sample.mag[i] = counts(m[i]);
+  for (std::size_t i = 0; i < 3; ++i) sample.imu.mag()[i] = counts(m[i]);
   return sample;
 }
 

@@ -13,8 +13,8 @@ constexpr int kDegree = 65536 / 360;
 
 Parameters site() {
   Parameters parameters;
-  parameters.site_x = 1000;
-  parameters.site_y = 700;
+  parameters.site_x() = 1000;
+  parameters.site_y() = 700;
   return parameters;
 }
 
@@ -61,7 +61,7 @@ TEST(SiteWalls, AWallThatCannotBeThereIsNone) {
 // One blow may be false; but where blow follows blow it is the place that is.
 TEST(SiteWalls, AWallThatIsTooFarOffIsBelievedInTheEnd) {
   Parameters parameters = site();
-  parameters.site_x = 1500;  // 1355 mm: 3.4 deviations of 402 mm, 2.8 of 477 mm
+  parameters.site_x() = 1500;  // 1355 mm: 3.4 deviations of 402 mm, 2.8 of 477 mm
   PositionEstimate position = uncertain();
   EXPECT_FALSE(touch_wall(kBoard, parameters, 0, true, position));
   EXPECT_EQ(position.mm(kX), 0);
@@ -92,7 +92,7 @@ TEST(SiteWalls, NotFeltItIsThereForARobotThatBelievesToBeBeyond) {
 
 TEST(SiteWalls, DoubtHasAnEnd) {
   Parameters parameters = site();
-  parameters.site_x = 15000;
+  parameters.site_x() = 15000;
   PositionEstimate position = uncertain();
   for (int blow = 0; blow < 50; ++blow) {
     EXPECT_FALSE(touch_wall(kBoard, parameters, 0, true, position));
@@ -105,7 +105,7 @@ TEST(SiteWalls, DoubtHasAnEnd) {
 
 TEST(SiteWalls, ASiteMayHaveWallsOnTwoSidesOnlyOrNone) {
   Parameters parameters = site();
-  parameters.site_y = 0;
+  parameters.site_y() = 0;
   PositionEstimate position = uncertain();
   EXPECT_FALSE(touch_wall(kBoard, parameters, 90 * kDegree, true, position));
   EXPECT_EQ(position.mm(kY), 0);

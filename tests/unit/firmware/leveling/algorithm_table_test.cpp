@@ -26,8 +26,8 @@ std::vector<schema::ValueName> algorithms() {
 
 Parameters parameters_of(int64_t algorithm) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(algorithm);
-  parameters.site_radius = 1000;
+  parameters.algorithm() = static_cast<int16_t>(algorithm);
+  parameters.site_radius() = 1000;
   return parameters;
 }
 
@@ -36,7 +36,7 @@ TEST(AlgorithmTable, EveryAlgorithmOfTheSchemaIsThereAndDrives) {
   for (const schema::ValueName& it : algorithms()) {
     const Parameters parameters = parameters_of(it.value);
     EXPECT_TRUE(parameters.valid()) << it.name;
-    EXPECT_TRUE(algorithm_in_build(parameters.algorithm)) << it.name;
+    EXPECT_TRUE(algorithm_in_build(parameters.algorithm())) << it.name;
     Leveling leveling(parameters);
     leveling.start();
     EXPECT_EQ(static_cast<int64_t>(leveling.algorithm()), it.value);

@@ -16,9 +16,9 @@ constexpr double kAngleUnits = 65536.0 / (2.0 * std::numbers::pi);
 
 Parameters coverage_parameters(int16_t half_side_mm, int16_t spacing_mm) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kCoverage);
-  parameters.coverage_half_side = half_side_mm;
-  parameters.coverage_spacing = spacing_mm;
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kCoverage);
+  parameters.coverage_half_side() = half_side_mm;
+  parameters.coverage_spacing() = spacing_mm;
   return parameters;
 }
 
@@ -83,7 +83,7 @@ TEST(Coverage, ErrorsAcrossTheLineDieAway) {
 
 TEST(Coverage, TheFenceEndsALine) {
   Parameters parameters = coverage_parameters(30000, 200);
-  parameters.site_radius = 1000;
+  parameters.site_radius() = 1000;
   Leveling leveling(parameters);
   leveling.start();
   Point point;

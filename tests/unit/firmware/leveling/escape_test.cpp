@@ -16,7 +16,7 @@ namespace {
 
 Parameters escape_parameters(int16_t attempts) {
   Parameters parameters;
-  parameters.escape_attempts = attempts;
+  parameters.escape_attempts() = attempts;
   return parameters;
 }
 
@@ -295,7 +295,7 @@ TEST(LevelingEscape, OnlyOfAlgorithmsThatKeepToTheirSite) {
         LevelingAlgorithm::kTrainingDrive, LevelingAlgorithm::kRandomWalk,
         LevelingAlgorithm::kCoverage}) {
     Parameters parameters;
-    parameters.algorithm = static_cast<int16_t>(algorithm);
+    parameters.algorithm() = static_cast<int16_t>(algorithm);
     Leveling leveling(parameters);
     leveling.start();
     leveling.tick(stuck_input(true));
@@ -307,7 +307,7 @@ TEST(LevelingEscape, OnlyOfAlgorithmsThatKeepToTheirSite) {
 
 TEST(LevelingEscape, TheSiteFenceGoesOnAfterIt) {
   Parameters parameters;
-  parameters.site_radius = 1000;
+  parameters.site_radius() = 1000;
   Leveling leveling(parameters);
   leveling.start();
   leveling.tick(stuck_input(false, 1100));
@@ -323,7 +323,7 @@ TEST(LevelingEscape, TheSiteFenceGoesOnAfterIt) {
 TEST(LevelingEscape, BacksOffForHalfAsLongOnTheWayBackToTheSiteOnly) {
   for (const int x_mm : {900, 1100}) {
     Parameters parameters;
-    parameters.site_radius = 1000;
+    parameters.site_radius() = 1000;
     Leveling leveling(parameters);
     leveling.start();
     leveling.tick(stuck_input(false, static_cast<int16_t>(x_mm)));
@@ -345,7 +345,7 @@ TEST(LevelingEscape, BacksOffForHalfAsLongOnTheWayBackToTheSiteOnly) {
 // Seeking walls it is stuck at one again and again: each is the first attempt.
 TEST(LevelingEscape, AWallIsNoFailedAttempt) {
   Parameters parameters;
-  parameters.escape_attempts = 2;
+  parameters.escape_attempts() = 2;
   Leveling leveling(parameters);
   leveling.start();
   for (int wall = 0; wall < 5; ++wall) {
@@ -395,7 +395,7 @@ struct HungUpRobot {
 
 TEST(RobotEscape, ARobotThatHangsHoldsWithTheFaultStuckAfterTheAttempts) {
   Parameters parameters;
-  parameters.walk_speed_min = 150;
+  parameters.walk_speed_min() = 150;
   HungUpRobot hung_up(parameters);
   const int ticks = hung_up.run(180 * kTickRate_hz);
   EXPECT_LT(ticks, 120 * kTickRate_hz);
@@ -411,7 +411,7 @@ TEST(RobotEscape, ARobotThatHangsHoldsWithTheFaultStuckAfterTheAttempts) {
 
 TEST(RobotEscape, TheGroundStationsDriveIsNotInterfered) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   HungUpRobot hung_up(parameters);
   hung_up.robot.send(hung_up.robot.command(CommandOp::kDrive, {150, 0}));
   EXPECT_EQ(hung_up.run(60 * kTickRate_hz), 60 * kTickRate_hz);
@@ -421,7 +421,7 @@ TEST(RobotEscape, TheGroundStationsDriveIsNotInterfered) {
 
 TEST(RobotEscape, AStopEndsIt) {
   Parameters parameters;
-  parameters.walk_speed_min = 150;
+  parameters.walk_speed_min() = 150;
   HungUpRobot hung_up(parameters);
   for (int tick = 0; tick < 60 * kTickRate_hz && hung_up.escaping == 0; ++tick) hung_up.run(1);
   ASSERT_EQ(hung_up.escaping, 1);

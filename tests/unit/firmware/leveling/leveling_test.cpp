@@ -16,7 +16,7 @@ constexpr Angle degrees(double value) {
 
 Parameters parameters_of(LevelingAlgorithm algorithm) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(algorithm);
+  parameters.algorithm() = static_cast<int16_t>(algorithm);
   return parameters;
 }
 
@@ -55,14 +55,14 @@ class Walker {
 
 TEST(HillSensing, ClimbsAboveTheThresholdAndWalksBelow) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
-  parameters.climb_threshold = 500;
-  parameters.climb_hysteresis = 100;
+  parameters.climb_threshold() = 500;
+  parameters.climb_hysteresis() = 100;
   Walker walker(parameters);
   EXPECT_EQ(walker.leveling.state(), LevelingState::kIdle);
   EXPECT_EQ(walker.tick(0.0), LevelingState::kWalk);
   EXPECT_EQ(walker.tick(4.9), LevelingState::kWalk);
   EXPECT_EQ(walker.tick(5.1), LevelingState::kClimb);
-  EXPECT_EQ(walker.motion.speed_mm_per_s, parameters.climb_speed);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, parameters.climb_speed());
   EXPECT_EQ(walker.motion.yaw_rate, 0);
   EXPECT_EQ(walker.tick(4.1), LevelingState::kClimb);  // within the hysteresis
   EXPECT_EQ(walker.leveling.peaks(), 0);
@@ -74,8 +74,8 @@ TEST(HillSensing, ClimbsAboveTheThresholdAndWalksBelow) {
 
 TEST(HillSensing, AClimbEndsOneLegAndTheWalkBeginsAnother) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
-  parameters.walk_leg_min = 20000;
-  parameters.walk_leg_max = 20000;
+  parameters.walk_leg_min() = 20000;
+  parameters.walk_leg_max() = 20000;
   Walker walker(parameters);
   walker.tick(0.0);
   const MotionCommand leg = walker.motion;
@@ -88,7 +88,7 @@ TEST(HillSensing, AClimbEndsOneLegAndTheWalkBeginsAnother) {
 
 TEST(SpinOnPeak, SpinsOnceTheDeclineBegins) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
-  parameters.spin_time = 2000;
+  parameters.spin_time() = 2000;
   Walker walker(parameters);
   EXPECT_EQ(walker.tick(2.0), LevelingState::kWalk);
   EXPECT_EQ(walker.tick(8.0), LevelingState::kClimb);
@@ -142,7 +142,7 @@ double turn_on_slope(const Parameters& parameters, double pitch_deg, double roll
   input.roll = degrees(roll_deg);
   const MotionCommand motion = leveling.tick(input);
   EXPECT_EQ(leveling.state(), LevelingState::kClimb);
-  EXPECT_EQ(motion.speed_mm_per_s, parameters.climb_speed);
+  EXPECT_EQ(motion.speed_mm_per_s, parameters.climb_speed());
   return motion.yaw_rate * 360.0 / 65536.0;
 }
 
@@ -150,24 +150,24 @@ TEST(Climb, TurnsTowardsTheSteepestAscent) {
   for (const LevelingAlgorithm algorithm :
        {LevelingAlgorithm::kHillSensing, LevelingAlgorithm::kSpinOnPeak}) {
     Parameters parameters = parameters_of(algorithm);
-    parameters.climb_turn = 1;
+    parameters.climb_turn() = 1;
     EXPECT_NEAR(turn_on_slope(parameters, 10.0, 0.0), 0.0, 0.1);
     // Left side up: the ascent is to the left, by the slope's direction and not by its size.
     EXPECT_NEAR(turn_on_slope(parameters, 10.0, 10.0), 45.0, 0.1);
     EXPECT_NEAR(turn_on_slope(parameters, 20.0, 20.0), 45.0, 0.1);
     EXPECT_NEAR(turn_on_slope(parameters, 10.0, -5.0), -26.565, 0.1);
-    parameters.climb_turn = 4;
+    parameters.climb_turn() = 4;
     EXPECT_NEAR(turn_on_slope(parameters, 20.0, 2.0), 4.0 * 5.711, 0.1);
     EXPECT_NEAR(turn_on_slope(parameters, 10.0, 30.0), 60.0, 0.1);  // no faster
     EXPECT_NEAR(turn_on_slope(parameters, 10.0, -30.0), -60.0, 0.1);
-    parameters.climb_turn = 0;  // Algorithm 6 as printed
+    parameters.climb_turn() = 0;  // Algorithm 6 as printed
     EXPECT_EQ(turn_on_slope(parameters, 10.0, 10.0), 0.0);
   }
 }
 
 TEST(Climb, GoesStraightOnOverAPlateau) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
-  parameters.climb_turn = 1;
+  parameters.climb_turn() = 1;
   Leveling leveling(parameters);
   leveling.start();
   LevelingInput input{};
@@ -184,21 +184,21 @@ TEST(RandomWalk, WalksOverHillsAsWell) {
   Walker walker(parameters);
   for (const double pitch_deg : {0.0, 20.0, -20.0}) {
     EXPECT_EQ(walker.tick(pitch_deg), LevelingState::kWalk);
-    EXPECT_GE(walker.motion.speed_mm_per_s, parameters.walk_speed_min);
-    EXPECT_LE(walker.motion.speed_mm_per_s, parameters.walk_speed_max);
+    EXPECT_GE(walker.motion.speed_mm_per_s, parameters.walk_speed_min());
+    EXPECT_LE(walker.motion.speed_mm_per_s, parameters.walk_speed_max());
   }
   EXPECT_EQ(walker.leveling.peaks(), 0);
 }
 
 /// At the fence in the east, facing east, in the tick in which it is told to back in.
 Walker at_the_fence(Parameters parameters) {
-  parameters.site_radius = 1000;
+  parameters.site_radius() = 1000;
   Walker walker(parameters);
   walker.tick(0.0);
   EXPECT_GT(walker.motion.speed_mm_per_s, 0);
   walker.x_mm = 1001;
   EXPECT_EQ(walker.tick(20.0), LevelingState::kReturn) << "not even a hill keeps it out there";
-  EXPECT_EQ(walker.motion.speed_mm_per_s, -parameters.walk_speed_max);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, -parameters.walk_speed_max());
   return walker;
 }
 
@@ -212,15 +212,15 @@ TEST(Leveling, AtTheFenceItTurnsRoundAndWalksAcrossTheSite) {
     for (const int16_t x_mm : std::initializer_list<int16_t>{1010, 1001, 990, 0, -1000}) {
       walker.x_mm = x_mm;
       ASSERT_EQ(walker.tick(0.0), LevelingState::kWalk) << x_mm;
-      EXPECT_LE(walker.motion.speed_mm_per_s, -parameters.walk_speed_min);
-      EXPECT_GE(walker.motion.speed_mm_per_s, -parameters.walk_speed_max);
+      EXPECT_LE(walker.motion.speed_mm_per_s, -parameters.walk_speed_min());
+      EXPECT_GE(walker.motion.speed_mm_per_s, -parameters.walk_speed_max());
     }
     // At the other side it drives on forwards.
     walker.x_mm = -1001;
     ASSERT_EQ(walker.tick(0.0), LevelingState::kReturn);
-    EXPECT_EQ(walker.motion.speed_mm_per_s, parameters.walk_speed_max);
+    EXPECT_EQ(walker.motion.speed_mm_per_s, parameters.walk_speed_max());
     ASSERT_EQ(walker.tick(0.0), LevelingState::kWalk);
-    EXPECT_GE(walker.motion.speed_mm_per_s, parameters.walk_speed_min);
+    EXPECT_GE(walker.motion.speed_mm_per_s, parameters.walk_speed_min());
   }
 }
 
@@ -241,13 +241,13 @@ TEST(Leveling, OutsideItWalksInwardsAlone) {
 // Where its tail leads, a hill is where the tail rises.
 TEST(Leveling, ARobotThatWalksBackwardsClimbsBackwards) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
-  parameters.climb_turn = 1;
+  parameters.climb_turn() = 1;
   Walker walker = at_the_fence(parameters);
   walker.x_mm = 0;
   EXPECT_EQ(walker.tick(20.0), LevelingState::kWalk);
   walker.roll_deg = 10.0;
   EXPECT_EQ(walker.tick(-10.0), LevelingState::kClimb);
-  EXPECT_EQ(walker.motion.speed_mm_per_s, -parameters.climb_speed);
+  EXPECT_EQ(walker.motion.speed_mm_per_s, -parameters.climb_speed());
   // The ascent lies behind on the left: clockwise the tail turns there.
   EXPECT_NEAR(walker.motion.yaw_rate * 360.0 / 65536.0, -45.0, 0.1);
   EXPECT_EQ(walker.tick(2.0), LevelingState::kSpin);
@@ -282,7 +282,7 @@ TEST(Leveling, StuckOutsideTheSiteItBacksOffHalfAsFar) {
 
 TEST(Leveling, AClimbCutShortByTheFenceIsNoPeak) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
-  parameters.site_radius = 1000;
+  parameters.site_radius() = 1000;
   Walker walker(parameters);
   ASSERT_EQ(walker.tick(20.0), LevelingState::kClimb);
   walker.x_mm = 1001;
@@ -292,7 +292,7 @@ TEST(Leveling, AClimbCutShortByTheFenceIsNoPeak) {
 
 TEST(Leveling, ASpinIsFinishedBeforeTheFenceCounts) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
-  parameters.site_radius = 1000;
+  parameters.site_radius() = 1000;
   Walker walker(parameters);
   walker.tick(10.0);
   ASSERT_EQ(walker.tick(-5.0), LevelingState::kSpin);
@@ -304,7 +304,7 @@ TEST(Leveling, ASpinIsFinishedBeforeTheFenceCounts) {
 
 TEST(Leveling, DriveFollowsTheGroundStationAnywhere) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kDrive);
-  parameters.site_radius = 100;
+  parameters.site_radius() = 100;
   Walker walker(parameters);
   walker.x_mm = 5000;
   walker.drive = {-70, 1234};
@@ -330,8 +330,8 @@ LevelingState state_at(Leveling& leveling, int32_t pitch) {
 
 TEST(HillSensing, TheThresholdItselfIsNoIncline) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kHillSensing);
-  parameters.climb_threshold = 500;
-  parameters.climb_hysteresis = 100;
+  parameters.climb_threshold() = 500;
+  parameters.climb_hysteresis() = 100;
   const Angle rising = angle_from_centidegrees(500);
   const int32_t falling = rising - angle_from_centidegrees(100);
   Leveling leveling(parameters);
@@ -344,8 +344,8 @@ TEST(HillSensing, TheThresholdItselfIsNoIncline) {
 
 TEST(SpinOnPeak, ThresholdsThemselvesAreNeitherInclineNorDecline) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kSpinOnPeak);
-  parameters.climb_threshold = 500;
-  parameters.climb_hysteresis = 100;
+  parameters.climb_threshold() = 500;
+  parameters.climb_hysteresis() = 100;
   const Angle rising = angle_from_centidegrees(500);
   const Angle hysteresis = angle_from_centidegrees(100);
   Leveling leveling(parameters);
@@ -374,7 +374,7 @@ TEST(SpinOnPeak, TheFirstSpinIsToTheRight) {
 
 TEST(Leveling, ATrainingDriveIsDrivenToItsEnd) {
   Parameters parameters = parameters_of(LevelingAlgorithm::kTrainingDrive);
-  parameters.training_block = 20;
+  parameters.training_block() = 20;
   Leveling leveling(parameters);
   leveling.start();
   int ticks = 0;
@@ -393,8 +393,8 @@ TEST(Leveling, ATrainingDriveIsDrivenToItsEnd) {
 // A value that the parameter cannot have; the supervisor refuses it as well.
 TEST(Leveling, AnAlgorithmThatThereIsNotStandsAndDoesNothingElse) {
   Parameters parameters;
-  parameters.algorithm = 99;
-  parameters.site_radius = 1000;
+  parameters.algorithm() = 99;
+  parameters.site_radius() = 1000;
   Leveling leveling(parameters);
   leveling.start();
   LevelingInput input{};

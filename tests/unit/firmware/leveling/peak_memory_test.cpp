@@ -22,11 +22,11 @@ class PeakMemoryOnAHill : public ::testing::Test {
  protected:
   static Parameters parameters() {
     Parameters parameters;
-    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kPeakMemory);
-    parameters.site_radius = 1200;
-    parameters.site_x = kHalf_mm;
-    parameters.site_y = kHalf_mm;
-    parameters.spin_time = 4000;
+    parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kPeakMemory);
+    parameters.site_radius() = 1200;
+    parameters.site_x() = kHalf_mm;
+    parameters.site_y() = kHalf_mm;
+    parameters.spin_time() = 4000;
     return parameters;
   }
 
@@ -179,10 +179,10 @@ class PeakMemoryByHand : public ::testing::Test {
 
   static Parameters parameters() {
     Parameters parameters;
-    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kPeakMemory);
-    parameters.site_x = kEast_mm;
-    parameters.site_y = kNorth_mm;
-    parameters.random_seed = 5;
+    parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kPeakMemory);
+    parameters.site_x() = kEast_mm;
+    parameters.site_y() = kNorth_mm;
+    parameters.random_seed() = 5;
     return parameters;
   }
   static Angle units(double degrees) {
@@ -392,7 +392,7 @@ TEST_F(PeakMemoryByHand, BeyondAWallThereIsTheGroundBesideIt) {
 
 // On level ground all of them are as high.
 TEST_F(PeakMemoryByHand, DrivesToTheFirstOfEightPlacesThatAreAsHigh) {
-  Random random(static_cast<uint16_t>(parameters().random_seed));
+  Random random(static_cast<uint16_t>(parameters().random_seed()));
   const SiteRectangle site(parameters());
   for (int i = 0; i < 3; ++i) {
     journey();
@@ -408,7 +408,7 @@ TEST_F(PeakMemoryByHand, DrivesToTheFirstOfEightPlacesThatAreAsHigh) {
 TEST_F(PeakMemoryByHand, DrivesToTheHighestOfEightPlaces) {
   learn_a_ridge();
   // As often as it has chosen until then.
-  Random random(static_cast<uint16_t>(parameters().random_seed));
+  Random random(static_cast<uint16_t>(parameters().random_seed()));
   const SiteRectangle site(parameters());
   const auto highest_of_eight = [&] {
     std::array<int, 2> highest{};
@@ -488,7 +488,7 @@ TEST_F(PeakMemoryByHand, SpinsFor300msForEachMmToTheRightAndToTheLeftInTurn) {
 TEST_F(PeakMemoryByHand, ASpinTakes300msAtLeast) {
   for (const int spin_time : {299, 300}) {
     Parameters shorter = parameters();
-    shorter.spin_time = static_cast<int16_t>(spin_time);
+    shorter.spin_time() = static_cast<int16_t>(spin_time);
     memory_ = PeakMemory{shorter};
     learn_a_ridge();
     journey();

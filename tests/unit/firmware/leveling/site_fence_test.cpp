@@ -12,8 +12,8 @@ namespace {
 
 Parameters site(int16_t radius_mm) {
   Parameters parameters;
-  parameters.site_radius = radius_mm;
-  parameters.walk_speed_max = 100;
+  parameters.site_radius() = radius_mm;
+  parameters.walk_speed_max() = 100;
   return parameters;
 }
 

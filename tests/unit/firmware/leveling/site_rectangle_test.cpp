@@ -18,9 +18,9 @@ class SitePlaces : public ::testing::Test {
  protected:
   static Parameters parameters() {
     Parameters parameters;
-    parameters.site_radius = 3000;
-    parameters.site_x = 750;
-    parameters.site_y = 500;
+    parameters.site_radius() = 3000;
+    parameters.site_x() = 750;
+    parameters.site_y() = 500;
     return parameters;
   }
   static constexpr int kReach_mm[2] = {750 - kFromEdge_mm, 500 - kFromEdge_mm};

@@ -23,10 +23,10 @@ class StrokesOnAPlane : public ::testing::Test {
  protected:
   static Parameters parameters() {
     Parameters parameters;
-    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
-    parameters.site_radius = 1200;
-    parameters.site_x = kHalf_mm;
-    parameters.site_y = kHalf_mm;
+    parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
+    parameters.site_radius() = 1200;
+    parameters.site_x() = kHalf_mm;
+    parameters.site_y() = kHalf_mm;
     return parameters;
   }
 
@@ -179,9 +179,9 @@ class StrokesHeld : public ::testing::Test {
  protected:
   static Parameters parameters() {
     Parameters parameters;
-    parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
-    parameters.site_x = kHalf_mm;
-    parameters.site_y = kHalf_mm;
+    parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kStrokes);
+    parameters.site_x() = kHalf_mm;
+    parameters.site_y() = kHalf_mm;
     return parameters;
   }
 

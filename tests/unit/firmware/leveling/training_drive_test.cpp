@@ -17,9 +17,9 @@ namespace {
 
 Parameters parameters_of(int16_t block, int16_t seed) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kTrainingDrive);
-  parameters.training_block = block;
-  parameters.random_seed = seed;
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kTrainingDrive);
+  parameters.training_block() = block;
+  parameters.random_seed() = seed;
   return parameters;
 }
 

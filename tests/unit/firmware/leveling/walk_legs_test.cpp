@@ -88,8 +88,8 @@ std::vector<Leg> legs(const Parameters& parameters, int ticks) {
 
 TEST(WalkLegs, LegsKeepTheirRangesAndFillThem) {
   Parameters parameters;
-  parameters.walk_leg_min = 100;
-  parameters.walk_leg_max = 300;
+  parameters.walk_leg_min() = 100;
+  parameters.walk_leg_max() = 300;
   const std::vector<Leg> all = legs(parameters, 100000);
   ASSERT_GT(all.size(), 4000U);
   int slowest = 1000;
@@ -106,9 +106,9 @@ TEST(WalkLegs, LegsKeepTheirRangesAndFillThem) {
     shortest = std::min(shortest, leg.ticks);
     longest = std::max(longest, leg.ticks);
   }
-  EXPECT_EQ(slowest, parameters.walk_speed_min);
-  EXPECT_EQ(fastest, parameters.walk_speed_max);
-  const double limit = parameters.walk_yaw_rate_max * 65536.0 / 360.0;
+  EXPECT_EQ(slowest, parameters.walk_speed_min());
+  EXPECT_EQ(fastest, parameters.walk_speed_max());
+  const double limit = parameters.walk_yaw_rate_max() * 65536.0 / 360.0;
   EXPECT_LE(left_most, limit);
   EXPECT_GE(right_most, -limit);
   EXPECT_GT(left_most, 0.99 * limit);
@@ -121,7 +121,7 @@ TEST(WalkLegs, LegsKeepTheirRangesAndFillThem) {
 TEST(WalkLegs, SameSeedSameWalkOtherSeedOtherWalk) {
   Parameters one;
   Parameters two;
-  two.random_seed = 2;
+  two.random_seed() = 2;
   WalkLegs walk_a(one);
   WalkLegs walk_b(one);
   WalkLegs walk_c(two);
@@ -139,8 +139,8 @@ TEST(WalkLegs, SameSeedSameWalkOtherSeedOtherWalk) {
 
 TEST(WalkLegs, RestartDrawsANewLeg) {
   Parameters parameters;
-  parameters.walk_leg_min = 20000;
-  parameters.walk_leg_max = 20000;
+  parameters.walk_leg_min() = 20000;
+  parameters.walk_leg_max() = 20000;
   WalkLegs walk(parameters);
   const MotionCommand before = walk.tick();
   EXPECT_EQ(walk.tick().yaw_rate, before.yaw_rate);

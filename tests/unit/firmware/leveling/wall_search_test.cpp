@@ -10,10 +10,10 @@ namespace {
 
 Parameters lost_beyond_200_mm(LostAction action) {
   Parameters parameters;
-  parameters.lost_sigma = 200;
-  parameters.lost_action = static_cast<int16_t>(action);
-  parameters.site_x = 1500;
-  parameters.site_y = 1500;
+  parameters.lost_sigma() = 200;
+  parameters.lost_action() = static_cast<int16_t>(action);
+  parameters.site_x() = 1500;
+  parameters.site_y() = 1500;
   return parameters;
 }
 
@@ -39,7 +39,7 @@ TEST(WallSearch, DrivesToTheNearerWallOfTheAxisItKnowsLeast) {
 
 TEST(WallSearch, WithoutAWallThereItStops) {
   Parameters parameters = lost_beyond_200_mm(LostAction::kSeekWall);
-  parameters.site_y = 0;
+  parameters.site_y() = 0;
   WallSearch search(parameters);
   EXPECT_TRUE(search.update(place(0, 0, 300, 100)));
   EXPECT_FALSE(search.gave_up());
@@ -57,7 +57,7 @@ TEST(WallSearch, StopsUntilItKnowsAgain) {
 
 TEST(WallSearch, WithoutALimitItIsNeverLost) {
   Parameters parameters = lost_beyond_200_mm(LostAction::kStop);
-  parameters.lost_sigma = 0;
+  parameters.lost_sigma() = 0;
   WallSearch search(parameters);
   EXPECT_FALSE(search.update(place(0, 0, 1020, 1020)));
   EXPECT_FALSE(search.gave_up());
@@ -66,7 +66,7 @@ TEST(WallSearch, WithoutALimitItIsNeverLost) {
 // As a motion: towards the wall, in a state of its own, and no peak of a climb that it cut off.
 TEST(WallSearch, LevelingSeeksTheWall) {
   Parameters parameters = lost_beyond_200_mm(LostAction::kSeekWall);
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kHillSensing);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kHillSensing);
   Leveling leveling(parameters);
   leveling.start();
   LevelingInput input{};
@@ -76,7 +76,7 @@ TEST(WallSearch, LevelingSeeksTheWall) {
   input.place = place(100, 0, 300, 0);
   const MotionCommand motion = leveling.tick(input);
   EXPECT_EQ(leveling.state(), LevelingState::kSeekWall);
-  EXPECT_EQ(motion.speed_mm_per_s, parameters.walk_speed_max);
+  EXPECT_EQ(motion.speed_mm_per_s, parameters.walk_speed_max());
   EXPECT_EQ(motion.yaw_rate, 0) << "east already";
   EXPECT_EQ(leveling.peaks(), 0);
   EXPECT_FALSE(leveling.lost());

@@ -15,9 +15,9 @@ namespace {
 
 Parameters unusual() {
   Parameters parameters;
-  parameters.climb_speed = 123;
-  parameters.tilt_limit = 4321;
-  parameters.standalone_delay = 30000;
+  parameters.climb_speed() = 123;
+  parameters.tilt_limit() = 4321;
+  parameters.standalone_delay() = 30000;
   return parameters;
 }
 
@@ -45,7 +45,7 @@ TEST(ParameterStore, ReadsWhatItWrote) {
   Parameters read;
   decode_parameters(copy, read);
   for (const ParameterInfo& info : kParameterTable) {
-    EXPECT_EQ(read.*info.field, unusual().*info.field) << info.name;
+    EXPECT_EQ(read.values[info.number], unusual().values[info.number]) << info.name;
   }
 }
 
@@ -56,7 +56,7 @@ TEST(ParameterStore, LiesInTheEepromAsDocumented) {
   EXPECT_EQ(copy.bytes[3], 0x12);
   std::size_t at = kParameterHeaderSize;
   for (const ParameterInfo& info : kParameterTable) {
-    const auto bits = static_cast<std::uint16_t>(unusual().*info.field);
+    const auto bits = static_cast<std::uint16_t>(unusual().values[info.number]);
     EXPECT_EQ(copy.bytes[at], bits & 0xFF) << info.name;
     EXPECT_EQ(copy.bytes[at + 1], bits >> 8) << info.name;
     at += 2;
@@ -115,7 +115,7 @@ TEST(ParameterStore, ATornWriteLeavesTheOtherCopy) {
   const ParameterCopy kept = encoded(Parameters(), 10);
   const ParameterCopy old = encoded(unusual(), 9);
   Parameters changed = unusual();
-  changed.site_radius = 2000;
+  changed.site_radius() = 2000;
   const ParameterCopy next = encoded(changed, 11);
   for (std::size_t written = 0; written < sizeof(next.bytes); ++written) {
     for (const bool erased : {false, true}) {

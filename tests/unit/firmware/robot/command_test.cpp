@@ -18,9 +18,9 @@
 namespace screed {
 namespace {
 
-constexpr uint8_t kTiltLimit = offsetof(Parameters, tilt_limit) / sizeof(int16_t);
-constexpr uint8_t kSpeedKp = offsetof(Parameters, speed_kp) / sizeof(int16_t);
-constexpr uint8_t kAlgorithm = offsetof(Parameters, algorithm) / sizeof(int16_t);
+constexpr uint8_t kTiltLimit = Parameters::k_tilt_limit;
+constexpr uint8_t kSpeedKp = Parameters::k_speed_kp;
+constexpr uint8_t kAlgorithm = Parameters::k_algorithm;
 
 /// A robot that waits to be armed.
 TestRobot ready_robot(const Parameters& parameters = {}) {
@@ -108,7 +108,7 @@ TEST(Command, OfAnotherRobotIsRefusedFault11) {
 
 TEST(Command, AFloodOfWrongMacsLocksOutAndTheEmergencyStopStillWorksFault9) {
   Parameters parameters;
-  parameters.escape_attempts = 0;  // its IMU stands still while the tracks turn
+  parameters.escape_attempts() = 0;  // its IMU stands still while the tracks turn
   TestRobot robot = ready_robot(parameters);
   robot.send(robot.command(CommandOp::kArm));
   robot.run(4);
@@ -175,7 +175,7 @@ TEST(Command, DriveIsForTheAlgorithmDriveWhileItRuns) {
   EXPECT_EQ(result_of(walking, walking.command(CommandOp::kDrive, {100, 0})),
             RequestResult::kWrongState);
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   TestRobot driven = ready_robot(parameters);
   EXPECT_EQ(result_of(driven, driven.command(CommandOp::kDrive, {100, 0})),
             RequestResult::kWrongState);
@@ -227,22 +227,20 @@ std::optional<message::ParamValue> read(TestRobot& robot, uint8_t index) {
 
 TEST(RadioParameters, AreReadByIndex) {
   Parameters parameters;
-  parameters.climb_threshold = 777;
+  parameters.climb_threshold() = 777;
   TestRobot robot = ready_robot(parameters);
-  for (uint8_t index = 0; index < kParameterCount; ++index) {
+  for (uint8_t index = 0; index < Parameters::kCount; ++index) {
     const auto value = read(robot, index);
     ASSERT_TRUE(value.has_value()) << static_cast<int>(index);
     EXPECT_EQ(value->index, index);
-    int16_t expected = 0;
-    std::memcpy(&expected, reinterpret_cast<const uint8_t*>(&parameters) + 2 * index, 2);
-    EXPECT_EQ(value->value, expected);
+    EXPECT_EQ(value->value, parameters.values[index]);
   }
-  EXPECT_FALSE(read(robot, kParameterCount).has_value());
-  robot.send(robot.signer.sign(CommandOp::kParameterRead, kParameterCount));
+  EXPECT_FALSE(read(robot, Parameters::kCount).has_value());
+  robot.send(robot.signer.sign(CommandOp::kParameterRead, Parameters::kCount));
   const auto answer = robot.answer();
   ASSERT_TRUE(answer.has_value());
   EXPECT_EQ(answer->result, static_cast<uint8_t>(RequestResult::kBadArgument));
-  EXPECT_EQ(answer->detail, kParameterCount) << "says how many there are";
+  EXPECT_EQ(answer->detail, Parameters::kCount) << "says how many there are";
 }
 
 TEST(RadioParameters, ACommittedOneHoldsAtOnceAndIsStoredOnce) {
@@ -260,15 +258,15 @@ TEST(RadioParameters, ACommittedOneHoldsAtOnceAndIsStoredOnce) {
     EXPECT_EQ(robot.output.store_value, static_cast<int>(LevelingAlgorithm::kDrive));
   }
   EXPECT_EQ(stored, 1);
-  EXPECT_EQ(robot.robot.parameters().algorithm, static_cast<int>(LevelingAlgorithm::kDrive));
+  EXPECT_EQ(robot.robot.parameters().algorithm(), static_cast<int>(LevelingAlgorithm::kDrive));
   EXPECT_EQ(robot.robot.leveling().algorithm(), LevelingAlgorithm::kDrive);
 }
 
 TEST(RadioParameters, AStricterTiltLimitIsHeededAtOnce) {
   TestRobot robot = ready_robot();
   EXPECT_EQ(commit(robot, kTiltLimit, 1000), RequestResult::kDone);
-  robot.sample.accel[0] = 1400;  // 20 degrees nose up
-  robot.sample.accel[2] = 3850;
+  robot.sample.imu.accel()[0] = 1400;  // 20 degrees nose up
+  robot.sample.imu.accel()[2] = 3850;
   robot.run(100);
   EXPECT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kFaultPresent);
 }
@@ -276,7 +274,7 @@ TEST(RadioParameters, AStricterTiltLimitIsHeededAtOnce) {
 // As an image without this algorithm finds them in its EEPROM.
 TEST(RadioParameters, AChangeThatMakesThemValidLetsTheRobotBeArmed) {
   Parameters parameters;
-  parameters.algorithm = message::kLevelingAlgorithmMax + 1;
+  parameters.algorithm() = message::kLevelingAlgorithmMax + 1;
   for (const bool intact : {true, false}) {
     TestRobot robot(parameters);
     if (!intact) {
@@ -337,10 +335,10 @@ TEST(RadioParameters, WhatIsNotStagedOrOutOfRangeIsRefused) {
       RequestResult::kBadArgument);
   EXPECT_EQ(commit(robot, kSpeedKp, 65536 + 30), RequestResult::kBadArgument);
   EXPECT_EQ(commit(robot, kSpeedKp, 321), RequestResult::kBadArgument);
-  EXPECT_EQ(commit(robot, kParameterCount, 1), RequestResult::kBadArgument);
-  EXPECT_EQ(robot.robot.parameters().speed_kp, Parameters{}.speed_kp);
+  EXPECT_EQ(commit(robot, Parameters::kCount, 1), RequestResult::kBadArgument);
+  EXPECT_EQ(robot.robot.parameters().speed_kp(), Parameters{}.speed_kp());
   EXPECT_EQ(commit(robot, kSpeedKp, 30), RequestResult::kDone);
-  EXPECT_EQ(robot.robot.parameters().speed_kp, 30);
+  EXPECT_EQ(robot.robot.parameters().speed_kp(), 30);
 }
 
 TEST(RadioParameters, OneAtATime) {
@@ -349,14 +347,14 @@ TEST(RadioParameters, OneAtATime) {
   EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kBusy);
   robot.run(240);
   EXPECT_EQ(commit(robot, kSpeedKp, 31), RequestResult::kDone);
-  EXPECT_EQ(robot.robot.parameters().speed_kp, 31);
+  EXPECT_EQ(robot.robot.parameters().speed_kp(), 31);
 }
 
 TEST(RadioParameters, AnArmedRobotTakesTheLiveOnesAlone) {
   TestRobot robot = ready_robot();
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   int live = 0;
-  for (uint8_t number = 0; number < kParameterCount; ++number) {
+  for (uint8_t number = 0; number < Parameters::kCount; ++number) {
     const ParameterInfo& info = kParameterTable[number];
     live += changes_while_running(number) ? 1 : 0;
     const RequestResult expected =
@@ -372,11 +370,11 @@ TEST(RadioParameters, AnArmedRobotTakesTheLiveOnesAlone) {
 // Each part of the core that keeps parameters takes the new ones, in the next tick.
 TEST(RadioParameters, ARunningRobotDrivesByThem) {
   Parameters walks;
-  walks.algorithm = static_cast<int16_t>(LevelingAlgorithm::kHillSensing);
-  walks.walk_leg_max = walks.walk_leg_min;
+  walks.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kHillSensing);
+  walks.walk_leg_max() = walks.walk_leg_min();
   // What carries this robot neither turns nor pushes it.
-  walks.walk_yaw_rate_max = 0;
-  walks.escape_attempts = 0;
+  walks.walk_yaw_rate_max() = 0;
+  walks.escape_attempts() = 0;
   TestRobot robot = ready_robot(walks);
   ASSERT_EQ(result_of(robot, CommandOp::kArm), RequestResult::kDone);
   ASSERT_EQ(result_of(robot, CommandOp::kRun), RequestResult::kDone);
@@ -384,22 +382,19 @@ TEST(RadioParameters, ARunningRobotDrivesByThem) {
     const TrackSpeeds& targets = robot.robot.drive().targets();
     return (targets.left + targets.right) / 2;
   };
-  const auto set = [&](int16_t Parameters::*field, int16_t value) {
-    const auto info = std::find_if(std::begin(kParameterTable), std::end(kParameterTable),
-                                   [&](const ParameterInfo& it) { return it.field == field; });
-    EXPECT_EQ(commit(robot, static_cast<uint8_t>(info - kParameterTable), value),
-              RequestResult::kDone);
+  const auto set = [&](Parameters::Number number, int16_t value) {
+    EXPECT_EQ(commit(robot, number, value), RequestResult::kDone);
   };
-  set(&Parameters::walk_speed_max, 90);
+  set(Parameters::k_walk_speed_max, 90);
   robot.run(240);
-  set(&Parameters::walk_speed_min, 90);
+  set(Parameters::k_walk_speed_min, 90);
   robot.run(240);
   EXPECT_NEAR(asked(), 90, 2) << "the legs of the walk";
-  set(&Parameters::accel_limit, 50);
+  set(Parameters::k_accel_limit, 50);
   robot.run(240);
-  set(&Parameters::walk_speed_max, 250);
+  set(Parameters::k_walk_speed_max, 250);
   robot.run(240);
-  set(&Parameters::walk_speed_min, 250);
+  set(Parameters::k_walk_speed_min, 250);
   int before = asked();
   const int slow = before;
   for (int i = 0; i < 400; ++i) {
@@ -447,7 +442,7 @@ TEST(Run, BeginsAtItsOwnOrigin) {
 
 TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   TestRobot robot(parameters);
   robot.start();
   robot.send(robot.command(CommandOp::kDrive, {30, 0}));  // no slip is sought below 35 mm/s
@@ -468,7 +463,7 @@ TEST(Run, ThatGoesOnAfterAStopKeepsItsOrigin) {
 
 TEST(Run, TheFenceLiesRoundThePlaceWhereItBegan) {
   Parameters parameters;
-  parameters.site_radius = 1000;
+  parameters.site_radius() = 1000;
   TestRobot robot = ready_robot(parameters);
   push(robot, 1200);
   robot.run(50);
@@ -483,7 +478,7 @@ TEST(Run, TheFenceLiesRoundThePlaceWhereItBegan) {
 // where it was put.
 TEST(PositionFix, TellsTheRobotWhereItIs) {
   Parameters parameters;
-  parameters.fix_sigma = 30;
+  parameters.fix_sigma() = 30;
   TestRobot robot = ready_robot(parameters);
   const DriveArgument far{120, -85};
   ASSERT_EQ(result_of(robot, robot.command(CommandOp::kPositionFix, far)), RequestResult::kDone);
@@ -510,8 +505,8 @@ TEST(PositionFix, TellsTheRobotWhereItIs) {
 // The site is that of the fixes: a run does not begin at an origin of its own.
 TEST(PositionFix, ARunBeginsWhereTheFixesSay) {
   Parameters parameters;
-  parameters.fix_sigma = 8;
-  parameters.site_radius = 500;
+  parameters.fix_sigma() = 8;
+  parameters.site_radius() = 500;
   TestRobot robot = ready_robot(parameters);
   for (int i = 0; i < 3000; ++i) {
     robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + 5);
@@ -532,7 +527,7 @@ TEST(PositionFix, ARunBeginsWhereTheFixesSay) {
 
 TEST(Lost, StopsWithTheFault) {
   Parameters parameters;
-  parameters.lost_sigma = 20;
+  parameters.lost_sigma() = 20;
   TestRobot robot(parameters);
   robot.start();
   ASSERT_EQ(robot.state(), RobotState::kRunning);
@@ -555,14 +550,14 @@ struct WallSeeker : TestRobot {
   }
   static Parameters parameters() {
     Parameters parameters;
-    parameters.site_x = kSite_mm;
-    parameters.site_y = kSite_mm;
-    parameters.walk_speed_min = 30;
-    parameters.walk_speed_max = 30;
-    parameters.walk_yaw_rate_max = 0;
-    parameters.position_noise = 1000;
-    parameters.lost_sigma = 28;
-    parameters.lost_action = static_cast<int16_t>(LostAction::kSeekWall);
+    parameters.site_x() = kSite_mm;
+    parameters.site_y() = kSite_mm;
+    parameters.walk_speed_min() = 30;
+    parameters.walk_speed_max() = 30;
+    parameters.walk_yaw_rate_max() = 0;
+    parameters.position_noise() = 1000;
+    parameters.lost_sigma() = 28;
+    parameters.lost_action() = static_cast<int16_t>(LostAction::kSeekWall);
     return parameters;
   }
   bool seeks() const { return robot.leveling().state() == LevelingState::kSeekWall; }
@@ -570,14 +565,14 @@ struct WallSeeker : TestRobot {
   void raise_nose(double degrees) {
     constexpr int kTicks = 25;
     const double step = degrees / kTicks;
-    sample.gyro[1] = static_cast<int16_t>(std::lround(-step * 100.0 / 0.07));
+    sample.imu.gyro()[1] = static_cast<int16_t>(std::lround(-step * 100.0 / 0.07));
     for (int i = 1; i <= kTicks; ++i) {
       const double angle = i * step * std::numbers::pi / 180.0;
-      sample.accel[0] = static_cast<int16_t>(std::lround(4098 * std::sin(angle)));
-      sample.accel[2] = static_cast<int16_t>(std::lround(4098 * std::cos(angle)));
+      sample.imu.accel()[0] = static_cast<int16_t>(std::lround(4098 * std::sin(angle)));
+      sample.imu.accel()[2] = static_cast<int16_t>(std::lround(4098 * std::cos(angle)));
       tick();
     }
-    sample.gyro[1] = 0;
+    sample.imu.gyro()[1] = 0;
   }
 };
 

@@ -75,7 +75,7 @@ TEST(DriveFaults, AStalledTrackAndADeadEncoderAreFoundAtLowSpeed) {
 TEST(DriveFaults, AWellRobotMayReverseAsItLikes) {
   for (const int16_t accel_limit : std::initializer_list<int16_t>{50, 600, 2000, 5000}) {
     Parameters parameters = drive_parameters();
-    parameters.accel_limit = accel_limit;
+    parameters.accel_limit() = accel_limit;
     TestRobot robot(parameters);
     robot.start();
     for (const int16_t speed :

@@ -9,7 +9,7 @@ namespace screed {
 
 inline Parameters drive_parameters() {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   return parameters;
 }
 

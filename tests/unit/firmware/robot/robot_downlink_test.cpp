@@ -62,7 +62,7 @@ class HeardRobot : public TestRobot {
 
 Parameters driven() {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   return parameters;
 }
 
@@ -122,7 +122,7 @@ void compare(const HeardRobot& robot, const CanFrame& frame) {
       break;
     }
     case message::AccelRaw::kId:
-      EXPECT_EQ(message::AccelRaw::unpack(frame.data).z, sample.accel[2]);
+      EXPECT_EQ(message::AccelRaw::unpack(frame.data).z, sample.imu.accel()[2]);
       break;
     default:
       break;
@@ -134,8 +134,8 @@ class RobotDownlinkTo : public ::testing::TestWithParam<bool> {};
 TEST_P(RobotDownlinkTo, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
   HeardRobot robot(driven());
   if (GetParam()) {  // a quarter turn from where it looks else
-    robot.sample.mag[0] = 1217;
-    robot.sample.mag[1] = 0;
+    robot.sample.imu.mag()[0] = 1217;
+    robot.sample.imu.mag()[1] = 0;
   }
   std::set<uint16_t> seen;
   std::set<int> states;
@@ -161,10 +161,10 @@ TEST_P(RobotDownlinkTo, EveryMessageSaysWhatTheRobotKnowsInThatTick) {
   const int32_t y_mm = std::abs(robot.robot.position().mm(kY));
   EXPECT_GT(std::max(x_mm, y_mm), 10) << "little: nothing but its tracks says that it moves";
   EXPECT_EQ(x_mm > y_mm, !GetParam()) << x_mm << " " << y_mm;
-  robot.sample.accel[1] = 700;  // rolls
+  robot.sample.imu.accel()[1] = 700;  // rolls
   robot.sample.encoder_errors = 9;
   hear(100);
-  robot.sample.accel[1] = 0;
+  robot.sample.imu.accel()[1] = 0;
   robot.send(robot.command(CommandOp::kStop));
   hear(60);
   robot.heartbeats = false;  // is disarmed for that
@@ -179,11 +179,137 @@ INSTANTIATE_TEST_SUITE_P(Directions, RobotDownlinkTo, ::testing::Bool());
 
 TEST(RobotDownlink, AnIncliningRobotSaysItsAngles) {
   HeardRobot robot;
-  robot.sample.accel[0] = static_cast<int16_t>(std::lround(4098.0 * std::sin(0.2)));
-  robot.sample.accel[2] = static_cast<int16_t>(std::lround(4098.0 * std::cos(0.2)));
+  robot.sample.imu.accel()[0] = static_cast<int16_t>(std::lround(4098.0 * std::sin(0.2)));
+  robot.sample.imu.accel()[2] = static_cast<int16_t>(std::lround(4098.0 * std::cos(0.2)));
   robot.run(1000);
   EXPECT_NEAR(robot.next<message::Attitude>().pitch / 100.0, 0.2 * 180.0 / 3.14159265, 0.3);
   EXPECT_NEAR(robot.next<message::Attitude>().roll, 0, 30);
+}
+
+TEST(RobotDownlink, RollIsThatOfARobotUpsideDown) {
+  HeardRobot robot;
+  robot.sample.imu.accel()[2] = -4098;
+  robot.run(200);
+  EXPECT_NEAR(std::abs(robot.next<message::Attitude>().roll), 18000, 60);
+}
+
+TEST(RobotDownlink, TheHeadingIsWithinATurnAllRound) {
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    HeardRobot robot;
+    // North is where the field points; a robot that looks east sees it on its left.
+    const double heading_rad = degrees * 3.14159265 / 180.0;
+    robot.sample.imu.mag()[0] = static_cast<int16_t>(std::lround(1217.0 * std::sin(heading_rad)));
+    robot.sample.imu.mag()[1] = static_cast<int16_t>(std::lround(1217.0 * std::cos(heading_rad)));
+    robot.run(700);
+    const int said = robot.next<message::Attitude>().heading;
+    EXPECT_LT(said, 36000);
+    EXPECT_NEAR(std::remainder(said / 100.0 - degrees, 360.0), 0.0, 0.5);
+    EXPECT_EQ(robot.next<message::Odometry>().heading, said);
+  }
+}
+
+// ---- what the sensors say
+
+TEST(RobotDownlink, RawVectorsAndEncodersGoAsTheyCome) {
+  HeardRobot robot;
+  for (int16_t i = 0; i < 3; ++i) {
+    robot.sample.imu.accel()[i] = static_cast<int16_t>(-4098 + i);
+    robot.sample.imu.gyro()[i] = static_cast<int16_t>(100 + i);
+    robot.sample.imu.mag()[i] = static_cast<int16_t>(INT16_MIN + i);
+  }
+  robot.sample.encoder_left = 65535;
+  robot.sample.encoder_right = 1;
+  robot.sample.encoder_errors = 77;
+  const auto accel = robot.next<message::AccelRaw>();
+  EXPECT_EQ(accel.x, -4098);
+  EXPECT_EQ(accel.y, -4097);
+  EXPECT_EQ(accel.z, -4096);
+  const auto gyro = robot.next<message::GyroRaw>();
+  EXPECT_EQ(gyro.y, 101);
+  EXPECT_EQ(gyro.z, 102);
+  EXPECT_EQ(robot.next<message::MagRaw>().x, INT16_MIN);
+  const auto encoders = robot.next<message::Encoders>();
+  EXPECT_EQ(encoders.left, 65535);
+  EXPECT_EQ(encoders.right, 1);
+  EXPECT_EQ(encoders.interval * 4, 10000);
+  EXPECT_EQ(robot.next<message::Motors>().missed_edges, 77);
+}
+
+// As the sensor says it: temperature 42.5 degC + raw / 480, pressure without its last four bits,
+// 256 a hPa, less than its noise.
+TEST(RobotDownlink, BaroKeepsTheSensorsResolution) {
+  HeardRobot robot;
+  robot.sample.pressure = static_cast<int32_t>(1013.25 * 4096);
+  robot.sample.temperature = -10800;
+  const auto it = robot.next<message::Baro>();
+  EXPECT_EQ(it.pressure * 0.390625, 101325.0);
+  EXPECT_EQ(it.temperature, -10800);
+  robot.sample.pressure += 41;  // 0.01 hPa, the sensor's noise
+  EXPECT_GE(robot.next<message::Baro>().pressure, it.pressure + 2);
+  robot.sample.pressure = INT32_MIN;  // not a value of 24 bits: nonsense, but no overflow
+  robot.next<message::Baro>();
+}
+
+TEST(RobotDownlink, HealthOfTheParts) {
+  using Conditions = message::HealthConditions;
+  HeardRobot robot;
+  robot.run(700);
+  robot.sample.reset_cause = static_cast<uint8_t>(message::HealthResetCause::kWatchdog);
+  robot.sample.bus_errors = 200;
+  robot.sample.radio_errors = 201;
+  robot.sample.chips_failing = Conditions::kGyroChip | Conditions::kBaroChip;
+  const auto health = robot.next<message::Health>();
+  EXPECT_EQ(health.reset_cause, 2);
+  EXPECT_EQ(health.i2c_errors, 200);
+  EXPECT_EQ(health.uart_errors, 201);
+  EXPECT_EQ(health.conditions, Conditions::kGyroChip | Conditions::kBaroChip);
+  robot.sample.chips_failing = 0;
+  robot.sample.imu.mag()[0] = 4000;  // iron nearby
+  robot.run(100);
+  EXPECT_EQ(robot.next<message::Health>().conditions, Conditions::kMagDisturbed);
+}
+
+TEST(RobotDownlink, TheLongestTickIsThatSinceTheLastMessage) {
+  HeardRobot robot;
+  EXPECT_EQ(robot.next<message::Health>().longest_tick, 0);
+  robot.sample.last_tick_us = 5000;
+  robot.tick();
+  robot.sample.last_tick_us = 100;
+  EXPECT_EQ(robot.next<message::Health>().longest_tick, 5000);
+  EXPECT_EQ(robot.next<message::Health>().longest_tick, 100);
+}
+
+// Per cent of a tick, rounded down; 255 stands for all above as well.
+TEST(RobotDownlink, TheLoadIsInPerCent) {
+  HeardRobot robot;
+  const std::map<uint16_t, int> loads = {{99, 0},      {100, 1},     {4321, 43},       {25499, 254},
+                                         {25500, 255}, {25600, 255}, {UINT16_MAX, 255}};
+  for (const auto& [time_us, load] : loads) {
+    robot.sample.last_tick_us = time_us;
+    EXPECT_EQ(robot.next<message::Power>().cpu_load, load) << time_us;
+  }
+}
+
+TEST(RobotDownlink, OfThePeaksTheLowerByteIsSaid) {
+  Parameters parameters;
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kSpinOnPeak);
+  parameters.spin_time() = 100;
+  parameters.escape_attempts() = 0;  // no ground: the slip watch calls it stuck
+  HeardRobot robot(parameters);
+  robot.start();
+  // It rocks: half a second up by 17 degrees, a second down, half a second up again.
+  double pitch_rad = 0.0;
+  for (int tick = 0; robot.robot.leveling().peaks() < 258 && tick < 100000; ++tick) {
+    const int phase = tick % 200;
+    const int rate = phase < 50 || phase >= 150 ? -500 : 500;  // counts; nose up is negative
+    robot.sample.imu.gyro()[1] = static_cast<int16_t>(rate);
+    pitch_rad -= rate * 0.07 * 3.14159265 / 180.0 * 0.01;
+    robot.sample.imu.accel()[0] = static_cast<int16_t>(std::lround(4098.0 * std::sin(pitch_rad)));
+    robot.sample.imu.accel()[2] = static_cast<int16_t>(std::lround(4098.0 * std::cos(pitch_rad)));
+    robot.tick();
+  }
+  ASSERT_EQ(robot.robot.leveling().peaks(), 258);
+  EXPECT_EQ(robot.next<message::Leveling>().peaks, 2);
 }
 
 // ---- the battery
@@ -222,8 +348,8 @@ TEST(RobotDownlink, EachChangeOfStateIsToldWithTheFaults) {
   EXPECT_EQ(events[0].code, static_cast<int>(message::EventCode::kState));
   EXPECT_EQ(events[0].argument, static_cast<int>(RobotState::kArmed));
   EXPECT_TRUE(robot.all<message::Event>(200).empty()) << "nothing changed";
-  robot.sample.accel[1] = 4098;
-  robot.sample.accel[2] = 0;
+  robot.sample.imu.accel()[1] = 4098;
+  robot.sample.imu.accel()[2] = 0;
   events = robot.all<message::Event>(100);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].argument, Fault::kTilt * 256 + static_cast<int>(RobotState::kFault));
@@ -352,6 +478,32 @@ TEST(RobotDownlink, AHeartbeatWhoseCounterStandsStillIsNoneHoweverItsTimeGoesOn)
   EXPECT_FALSE(robot.robot.supervisor().link_alive());
 }
 
+TEST(RobotDownlink, QualityIsTheShareOfTheLastSecondsHeartbeats) {
+  HeardRobot robot;
+  robot.heartbeats = false;
+  robot.next<message::Link>();
+  for (const int heard : {5, 4, 3, 0, 6, 9}) {
+    for (int i = 0; i < heard; ++i) {
+      robot.send(robot.heartbeat());
+      robot.run(4);
+    }
+    EXPECT_EQ(robot.next<message::Link>().quality, std::min(100, 20 * heard));
+  }
+}
+
+// The sample's time wraps after 71.6 minutes; the ground's clocks do not.
+TEST(RobotDownlink, TimeGoesOnWhenTheSamplesTimeWraps) {
+  HeardRobot robot;
+  robot.sample.time_us = UINT32_MAX - 5000000U;
+  uint32_t last_ms = robot.next<message::Time>().time;
+  for (int second = 0; second < 10; ++second) {
+    const uint32_t now_ms = robot.next<message::Time>().time;
+    EXPECT_EQ(now_ms - last_ms, 1000U) << second;
+    last_ms = now_ms;
+  }
+  EXPECT_GT(last_ms, UINT32_MAX / 1000U);
+}
+
 TEST(RobotDownlink, TimeEchoesTheLastHeartbeats) {
   HeardRobot robot;
   robot.heartbeats = false;
@@ -392,8 +544,8 @@ TEST(RobotDownlink, RefusalsSayWhatHelps) {
   EXPECT_LE(answer.detail, CommandGate::kLockoutTicks);
 
   TestRobot tilted;
-  tilted.sample.accel[1] = 4098;
-  tilted.sample.accel[2] = 0;
+  tilted.sample.imu.accel()[1] = 4098;
+  tilted.sample.imu.accel()[2] = 0;
   tilted.run(600);
   tilted.send(tilted.command(CommandOp::kArm));
   const auto refused = tilted.answer();
@@ -444,11 +596,11 @@ TestRobot with_parameter(uint8_t index, int16_t value, const Parameters& paramet
 }
 
 TEST(RobotDownlink, ACommittedParameterDrivesAsIfItHadBeenThereFromTheStart) {
-  constexpr uint8_t kSpeedKp = offsetof(Parameters, speed_kp) / sizeof(int16_t);
+  constexpr uint8_t kSpeedKp = Parameters::k_speed_kp;
   Parameters other = driven();
-  other.speed_kp = 5;
-  ASSERT_NE(other.speed_kp, Parameters{}.speed_kp);
-  TestRobot committed = with_parameter(kSpeedKp, other.speed_kp, driven());
+  other.speed_kp() = 5;
+  ASSERT_NE(other.speed_kp(), Parameters{}.speed_kp());
+  TestRobot committed = with_parameter(kSpeedKp, other.speed_kp(), driven());
   TestRobot born(other);
   TestRobot plain(driven());
   for (TestRobot* robot : {&committed, &born, &plain}) {

@@ -11,38 +11,38 @@ namespace {
 
 TEST(RobotImu, OffsetsOfTheImuAreTakenOffBeforeTheEstimate) {
   Parameters parameters;
-  parameters.accel_offset_x = 300;
-  parameters.accel_offset_y = -200;
-  parameters.accel_offset_z = 100;
-  parameters.mag_offset_x = 4150;
-  parameters.mag_offset_y = -4120;
-  parameters.mag_offset_z = 90;
-  parameters.gyro_offset_x = 25;
-  parameters.gyro_offset_y = -20;
-  parameters.gyro_offset_z = 15;
+  parameters.accel_offset_x() = 300;
+  parameters.accel_offset_y() = -200;
+  parameters.accel_offset_z() = 100;
+  parameters.mag_offset_x() = 4150;
+  parameters.mag_offset_y() = -4120;
+  parameters.mag_offset_z() = 90;
+  parameters.gyro_offset_x() = 25;
+  parameters.gyro_offset_y() = -20;
+  parameters.gyro_offset_z() = 15;
   TestRobot plain;
   TestRobot shifted(parameters);
   for (TestRobot* robot : {&plain, &shifted}) {
-    robot->sample.accel[0] = 500;
-    robot->sample.accel[1] = 400;
-    robot->sample.mag[0] = 300;
+    robot->sample.imu.accel()[0] = 500;
+    robot->sample.imu.accel()[1] = 400;
+    robot->sample.imu.mag()[0] = 300;
   }
   for (int i = 0; i < 3; ++i) {
     const int16_t accel[] = {300, -200, 100};
     const int16_t mag[] = {4150, -4120, 90};
     const int16_t gyro[] = {25, -20, 15};
-    shifted.sample.accel[i] = static_cast<int16_t>(shifted.sample.accel[i] + accel[i]);
-    shifted.sample.mag[i] = static_cast<int16_t>(shifted.sample.mag[i] + mag[i]);
-    shifted.sample.gyro[i] = static_cast<int16_t>(shifted.sample.gyro[i] + gyro[i]);
+    shifted.sample.imu.accel()[i] = static_cast<int16_t>(shifted.sample.imu.accel()[i] + accel[i]);
+    shifted.sample.imu.mag()[i] = static_cast<int16_t>(shifted.sample.imu.mag()[i] + mag[i]);
+    shifted.sample.imu.gyro()[i] = static_cast<int16_t>(shifted.sample.imu.gyro()[i] + gyro[i]);
   }
   // The gyro's first axis has a last digit that moves: the same one in both.
   for (int tick = 0; tick < 800; ++tick) {
-    plain.sample.gyro[0] = static_cast<int16_t>(tick % 2);
-    plain.sample.gyro[1] = static_cast<int16_t>(tick % 5);
-    plain.sample.gyro[2] = static_cast<int16_t>(tick % 3);
+    plain.sample.imu.gyro()[0] = static_cast<int16_t>(tick % 2);
+    plain.sample.imu.gyro()[1] = static_cast<int16_t>(tick % 5);
+    plain.sample.imu.gyro()[2] = static_cast<int16_t>(tick % 3);
     for (int i = 0; i < 3; ++i) {
       const int16_t gyro[] = {25, -20, 15};
-      shifted.sample.gyro[i] = static_cast<int16_t>(plain.sample.gyro[i] + gyro[i]);
+      shifted.sample.imu.gyro()[i] = static_cast<int16_t>(plain.sample.imu.gyro()[i] + gyro[i]);
     }
     for (TestRobot* robot : {&plain, &shifted}) {
       robot->sample.fresh = kFreshGyro | kFreshAccel | kFreshMag;
@@ -60,11 +60,11 @@ TEST(RobotImu, OffsetsOfTheImuAreTakenOffBeforeTheEstimate) {
 
 TEST(RobotImu, ACountThatTheOffsetWouldWrapStaysAsItIs) {
   Parameters parameters;
-  parameters.accel_offset_x = 1000;
+  parameters.accel_offset_x() = 1000;
   TestRobot corrected(parameters);
   TestRobot plain;
   for (TestRobot* robot : {&corrected, &plain}) {
-    robot->sample.accel[0] = INT16_MIN + 10;  // less 1000 would be a large positive number
+    robot->sample.imu.accel()[0] = INT16_MIN + 10;  // less 1000 would be a large positive number
     robot->run(300);
   }
   EXPECT_EQ(corrected.robot.attitude().angles().pitch, plain.robot.attitude().angles().pitch);
@@ -75,12 +75,12 @@ TEST(RobotImu, OnlyANewMagnetometersSampleTurnsTheHeading) {
   robot.run(700);
   ASSERT_TRUE(robot.robot.attitude().ready());
   const Angle before = robot.robot.attitude().angles().heading;
-  robot.sample.mag[0] = 1217;  // a quarter turn
-  robot.sample.mag[1] = 0;
+  robot.sample.imu.mag()[0] = 1217;  // a quarter turn
+  robot.sample.imu.mag()[1] = 0;
   for (int tick = 0; tick < 1000; ++tick) {
     robot.sample.time_us += kTickPeriod_us;
     robot.sample.fresh = kFreshGyro | kFreshAccel;
-    robot.sample.gyro[0] = robot.sample.gyro[0] == 0 ? 1 : 0;
+    robot.sample.imu.gyro()[0] = robot.sample.imu.gyro()[0] == 0 ? 1 : 0;
     robot.sample.radio_in_count = 0;
     robot.robot.tick(robot.sample, robot.output);
   }
@@ -107,10 +107,10 @@ TEST(RobotImu, ARollOrPitchThatTheGyroFollowsIsSeenWhileItGoesOn) {
       robot.sample.time_us += kTickPeriod_us;
       robot.sample.radio_in_count = 0;
       const int noise = ++robot.ticks % 2;  // else it is a frozen gyro
-      robot.sample.gyro[axis] = static_cast<int16_t>(kRate_deg_per_s / 0.07 + noise);
-      robot.sample.accel[axis == 0 ? 1 : 0] =
+      robot.sample.imu.gyro()[axis] = static_cast<int16_t>(kRate_deg_per_s / 0.07 + noise);
+      robot.sample.imu.accel()[axis == 0 ? 1 : 0] =
           static_cast<int16_t>((axis == 0 ? 1.0 : -1.0) * 4098.0 * std::sin(radians));
-      robot.sample.accel[2] = static_cast<int16_t>(4098.0 * std::cos(radians));
+      robot.sample.imu.accel()[2] = static_cast<int16_t>(4098.0 * std::cos(radians));
       robot.robot.tick(robot.sample, robot.output);
     }
     EXPECT_EQ(robot.robot.supervisor().faults(), Fault::kTilt) << axis;
@@ -128,8 +128,8 @@ TEST(RobotImu, ARateThatStaysIsBiasOnlyWhileBothTracksRest) {
     for (int tick = 0; tick < 2000; ++tick) {
       robot.sample.time_us += kTickPeriod_us;
       robot.sample.fresh = kFreshGyro | kFreshAccel;
-      robot.sample.gyro[0] = robot.sample.gyro[0] == 0 ? 1 : 0;
-      robot.sample.gyro[2] = 7;
+      robot.sample.imu.gyro()[0] = robot.sample.imu.gyro()[0] == 0 ? 1 : 0;
+      robot.sample.imu.gyro()[2] = 7;
       robot.sample.radio_in_count = 0;
       if (tick % 2 == 0) {
         robot.sample.encoder_left = static_cast<uint16_t>(robot.sample.encoder_left + left);

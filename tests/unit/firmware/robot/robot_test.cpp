@@ -249,7 +249,7 @@ TEST(Robot, SameSamplesSameBytes) {
   for (int tick = 0; tick < 3000; ++tick) {
     world.tick();
     SensorSample sample = world.sample;
-    for (int16_t& value : sample.gyro) {
+    for (int16_t& value : sample.imu.gyro()) {
       noise = noise * 1664525U + 1013904223U;
       value = static_cast<int16_t>(noise >> 20);
     }
@@ -279,10 +279,10 @@ TEST(Robot, ACopyGoesOnLikeTheOriginal) {
 
 TEST(Robot, GarbageSamplesNeverDriveBeyondTheDutyRange) {
   Parameters parameters;
-  parameters.standalone = 1;
-  parameters.standalone_delay = 0;
-  parameters.tilt_limit = 9000;
-  parameters.battery_low = 0;
+  parameters.standalone() = 1;
+  parameters.standalone_delay() = 0;
+  parameters.tilt_limit() = 9000;
+  parameters.battery_low() = 0;
   TestRobot robot(parameters);
   robot.heartbeats = false;
   robot.run(700);

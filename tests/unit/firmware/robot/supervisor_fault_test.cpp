@@ -228,7 +228,7 @@ TEST(SupervisorFaults, TheAccelerometerIsNoWitnessOfTiltWhileTheTracksSlipOnPurp
 
 TEST(SupervisorFaults, TheEstimatorsInclinationIsComparedWithTheLimitItself) {
   Parameters parameters;
-  parameters.tilt_limit = 6000;
+  parameters.tilt_limit() = 6000;
   for (const double degrees : {59.9, 60.1}) {
     SupervisedRobot watch(parameters);
     watch.bring_to(RobotState::kRunning);
@@ -272,7 +272,7 @@ TEST(SupervisorFaults, EmergencyStopIsClearedByHandOnly) {
 
 TEST(SupervisorFaults, ParametersOutOfRangeRefuseToArm) {
   Parameters parameters;
-  parameters.spin_rate = 1;
+  parameters.spin_rate() = 1;
   SupervisedRobot watch(parameters);
   watch.tick();
   EXPECT_EQ(watch.supervisor.request(Request::kArm), RequestResult::kFaultPresent);
@@ -391,7 +391,7 @@ TEST(SupervisorFaults, SlowOrWeaklyDrivenTracksAreNotStalled) {
 
 TEST(SupervisorFaults, BatteryWatchCanBeSwitchedOff) {
   Parameters parameters;
-  parameters.battery_low = 0;
+  parameters.battery_low() = 0;
   SupervisedRobot watch(parameters);
   watch.bring_to(RobotState::kRunning);
   watch.battery_mv = 0;

@@ -152,8 +152,8 @@ TEST(SupervisorLink, IsAliveForHalfASecond) {
 
 Parameters standalone_parameters() {
   Parameters parameters;
-  parameters.standalone = 1;
-  parameters.standalone_delay = 3000;
+  parameters.standalone() = 1;
+  parameters.standalone_delay() = 3000;
   return parameters;
 }
 
@@ -206,7 +206,7 @@ TEST(SupervisorStandalone, AFaultEndsItForGood) {
 
 TEST(Supervisor, StopsARobotThatIsStuckForTooLong) {
   Parameters parameters;
-  parameters.stuck_time = 2000;
+  parameters.stuck_time() = 2000;
   SupervisedRobot watch(parameters);
   watch.bring_to(RobotState::kRunning);
   watch.stuck = true;

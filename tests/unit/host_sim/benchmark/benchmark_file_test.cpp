@@ -105,7 +105,7 @@ TEST_F(BenchmarkFile, AStrangersEntryIsAnExperimentFile) {
   EXPECT_EQ(add_entry(mine, benchmark), "mine");
   const CampaignPlan plan =
       make_plan(benchmark_campaign(benchmark, {.suite = "short", .entries = {"mine"}}), "1");
-  EXPECT_EQ(resolve_run(plan, 0).experiment.parameters.spin_time, 1234);
+  EXPECT_EQ(resolve_run(plan, 0).experiment.parameters.spin_time(), 1234);
   EXPECT_NE(refusal([&] { add_entry(mine, benchmark); }).find("an entry mine already"),
             std::string::npos);
 

@@ -60,7 +60,7 @@ TEST_F(Campaign, WithoutFactorsRunsTheExperimentOnceASeed) {
   for (size_t run = 0; run < 3; ++run) {
     const Experiment experiment = resolve_run(campaign, run).experiment;
     EXPECT_EQ(experiment.experiment.seed, 3 + run);
-    EXPECT_EQ(experiment.parameters.random_seed, 3 + static_cast<int>(run));
+    EXPECT_EQ(experiment.parameters.random_seed(), 3 + static_cast<int>(run));
     EXPECT_EQ(experiment.experiment.name, "study");
     EXPECT_EQ(experiment.vehicle.x_m, 1.0);
   }
@@ -97,13 +97,13 @@ TEST_F(Campaign, CombinesGridListAndSamples) {
   EXPECT_EQ(run.experiment.vehicle.y_m, 2.0);
   EXPECT_EQ(run.experiment.vehicle.z_m, 2.0);
   EXPECT_EQ(run.experiment.map.edges, "walls");
-  EXPECT_EQ(std::to_string(run.experiment.parameters.spin_time), first[4]);
+  EXPECT_EQ(std::to_string(run.experiment.parameters.spin_time()), first[4]);
 }
 
 TEST_F(Campaign, SeedsMayBeTheValuesOfOtherKeys) {
   const CampaignPlan campaign = plan("seeds = 1, 40000\nseed_keys = experiment.seed\n");
   EXPECT_EQ(resolve_run(campaign, 1).experiment.experiment.seed, 40000U);
-  EXPECT_EQ(resolve_run(campaign, 1).experiment.parameters.random_seed, 1);
+  EXPECT_EQ(resolve_run(campaign, 1).experiment.parameters.random_seed(), 1);
 }
 
 TEST_F(Campaign, AWorldIsAFactor) {

@@ -24,11 +24,12 @@ TEST(EscapeScenario, IsTheTrappedDriveByAnAlgorithmThatEscapes) {
     algorithms.insert(escape.experiment.experiment.algorithm);
     const Parameters& parameters = escape.experiment.parameters;
     EXPECT_TRUE(parameters.valid()) << seed;
-    EXPECT_GT(parameters.escape_attempts, 0);
+    EXPECT_GT(parameters.escape_attempts(), 0);
     if (drive.experiment.experiment.algorithm != "drive") continue;
-    EXPECT_NEAR(parameters.walk_speed_max, drive.experiment.drive.speed_m_per_s * 1000.0, 0.5);
-    EXPECT_EQ(parameters.walk_speed_min, parameters.walk_speed_max);
-    EXPECT_EQ(parameters.walk_yaw_rate_max == 0, drive.experiment.drive.yaw_rate_deg_per_s == 0.0);
+    EXPECT_NEAR(parameters.walk_speed_max(), drive.experiment.drive.speed_m_per_s * 1000.0, 0.5);
+    EXPECT_EQ(parameters.walk_speed_min(), parameters.walk_speed_max());
+    EXPECT_EQ(parameters.walk_yaw_rate_max() == 0,
+              drive.experiment.drive.yaw_rate_deg_per_s == 0.0);
   }
   EXPECT_EQ(algorithms, (std::set<std::string>{"hill_sensing", "random_walk"}));
 }

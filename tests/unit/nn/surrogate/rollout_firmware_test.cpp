@@ -117,7 +117,7 @@ TEST(RolloutFirmware, MeasuresByItselfFromTheStartOn) {
     fs::remove_all(altered);
   };
   const auto wipe = [](SensorSample& sample) {
-    for (int axis = 0; axis < 3; ++axis) sample.gyro[axis] = sample.accel[axis] = 0;
+    for (int axis = 0; axis < 3; ++axis) sample.imu.gyro()[axis] = sample.imu.accel()[axis] = 0;
     sample.encoder_left = sample.encoder_right = sample.battery = 0;
   };
   alter(run, altered, [&](std::size_t row, SensorSample& sample) {

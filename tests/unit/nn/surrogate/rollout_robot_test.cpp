@@ -59,7 +59,7 @@ void expect_same_drive(const Session& session) {
   for (std::size_t row = 0; row < session.samples.size(); ++row) {
     for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.duty_ratio());
     SensorSample given = session.samples[row];
-    for (int axis = 0; axis < 3; ++axis) given.gyro[axis] = given.accel[axis] = 0;
+    for (int axis = 0; axis < 3; ++axis) given.imu.gyro()[axis] = given.imu.accel()[axis] = 0;
     given.encoder_left = given.encoder_right = given.battery = 0;
     RolloutRobot measuring = robot;
     ASSERT_EQ(packed<kSampleBytes>(measuring.measure(plant, given)),

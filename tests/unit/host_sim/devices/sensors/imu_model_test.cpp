@@ -37,48 +37,48 @@ SensorSample ideal(const ImuTruth& truth) {
 
 TEST(ImuModel, LevelAtRest) {
   const SensorSample sample = ideal(at_rest(Eigen::Matrix3d::Identity()));
-  EXPECT_EQ(sample.accel[0], 0);
-  EXPECT_EQ(sample.accel[1], 0);
-  EXPECT_NEAR(sample.accel[2], kOneG_counts, 0.5);
-  for (const int16_t rate : sample.gyro) EXPECT_EQ(rate, 0);
+  EXPECT_EQ(sample.imu.accel()[0], 0);
+  EXPECT_EQ(sample.imu.accel()[1], 0);
+  EXPECT_NEAR(sample.imu.accel()[2], kOneG_counts, 0.5);
+  for (const int16_t rate : sample.imu.gyro()) EXPECT_EQ(rate, 0);
 }
 
 TEST(ImuModel, OnItsSideAndOnItsNose) {
   // Roll > 0: left side up, so the y axis points up.
   const SensorSample left_up = ideal(at_rest(turn(90.0 * kDegree, Eigen::Vector3d::UnitX())));
-  EXPECT_NEAR(left_up.accel[1], kOneG_counts, 0.5);
-  EXPECT_NEAR(left_up.accel[2], 0.0, 0.5);
+  EXPECT_NEAR(left_up.imu.accel()[1], kOneG_counts, 0.5);
+  EXPECT_NEAR(left_up.imu.accel()[2], 0.0, 0.5);
   // Nose up: x points up. A right-handed turn about y takes the nose down.
   const SensorSample nose_up = ideal(at_rest(turn(-90.0 * kDegree, Eigen::Vector3d::UnitY())));
-  EXPECT_NEAR(nose_up.accel[0], kOneG_counts, 0.5);
+  EXPECT_NEAR(nose_up.imu.accel()[0], kOneG_counts, 0.5);
   const SensorSample upside_down = ideal(at_rest(turn(180.0 * kDegree, Eigen::Vector3d::UnitX())));
-  EXPECT_NEAR(upside_down.accel[2], -kOneG_counts, 0.5);
+  EXPECT_NEAR(upside_down.imu.accel()[2], -kOneG_counts, 0.5);
 }
 
 TEST(ImuModel, TheNeedlePointsNorthAndDown) {
   // Heading east, x is east and y north: no field along x, north along y, down along -z.
   const SensorSample east = ideal(at_rest(Eigen::Matrix3d::Identity()));
-  EXPECT_EQ(east.mag[0], 0);
-  EXPECT_NEAR(east.mag[1] * 0.160, 520.0 * std::cos(68.0 * kDegree), 0.1);
-  EXPECT_NEAR(east.mag[2] * 0.160, -520.0 * std::sin(68.0 * kDegree), 0.1);
+  EXPECT_EQ(east.imu.mag()[0], 0);
+  EXPECT_NEAR(east.imu.mag()[1] * 0.160, 520.0 * std::cos(68.0 * kDegree), 0.1);
+  EXPECT_NEAR(east.imu.mag()[2] * 0.160, -520.0 * std::sin(68.0 * kDegree), 0.1);
   // Heading north, 90 degrees counter-clockwise: the field lies along x.
   const SensorSample north = ideal(at_rest(turn(90.0 * kDegree, Eigen::Vector3d::UnitZ())));
-  EXPECT_NEAR(north.mag[0] * 0.160, 520.0 * std::cos(68.0 * kDegree), 0.1);
-  EXPECT_NEAR(north.mag[1], 0.0, 0.5);
+  EXPECT_NEAR(north.imu.mag()[0] * 0.160, 520.0 * std::cos(68.0 * kDegree), 0.1);
+  EXPECT_NEAR(north.imu.mag()[1], 0.0, 0.5);
 }
 
 TEST(ImuModel, RatesAreQuantisedToTheNearestCount) {
   for (const double degrees_per_s : {-300.0, -0.036, -0.034, 0.0, 0.034, 0.036, 90.0, 1999.0}) {
     ImuTruth truth = at_rest(Eigen::Matrix3d::Identity());
     truth.mean_rate_rad_per_s = Eigen::Vector3d(0.0, 0.0, degrees_per_s * kDegree);
-    EXPECT_NEAR(ideal(truth).gyro[2], degrees_per_s / 0.070, 0.5 + 1e-9);
+    EXPECT_NEAR(ideal(truth).imu.gyro()[2], degrees_per_s / 0.070, 0.5 + 1e-9);
   }
   ImuTruth small = at_rest(Eigen::Matrix3d::Identity());
   small.mean_rate_rad_per_s = Eigen::Vector3d(0.036, -0.036, 0.034) * kDegree;
   const SensorSample sample = ideal(small);
-  EXPECT_EQ(sample.gyro[0], 1);
-  EXPECT_EQ(sample.gyro[1], -1);
-  EXPECT_EQ(sample.gyro[2], 0);
+  EXPECT_EQ(sample.imu.gyro()[0], 1);
+  EXPECT_EQ(sample.imu.gyro()[1], -1);
+  EXPECT_EQ(sample.imu.gyro()[2], 0);
 }
 
 TEST(ImuModel, BeyondFullScaleItClips) {
@@ -86,11 +86,11 @@ TEST(ImuModel, BeyondFullScaleItClips) {
   truth.mean_rate_rad_per_s = Eigen::Vector3d(1e6, -1e6, 0.0);
   truth.mean_specific_force = Eigen::Vector3d(20.0, -20.0, 7.9) * kGravity;
   const SensorSample sample = ideal(truth);
-  EXPECT_EQ(sample.gyro[0], INT16_MAX);
-  EXPECT_EQ(sample.gyro[1], INT16_MIN);
-  EXPECT_EQ(sample.accel[0], INT16_MAX);  // 8 g
-  EXPECT_EQ(sample.accel[1], INT16_MIN);
-  EXPECT_NEAR(sample.accel[2], 7.9 * kOneG_counts, 0.5);
+  EXPECT_EQ(sample.imu.gyro()[0], INT16_MAX);
+  EXPECT_EQ(sample.imu.gyro()[1], INT16_MIN);
+  EXPECT_EQ(sample.imu.accel()[0], INT16_MAX);  // 8 g
+  EXPECT_EQ(sample.imu.accel()[1], INT16_MIN);
+  EXPECT_NEAR(sample.imu.accel()[2], 7.9 * kOneG_counts, 0.5);
 }
 
 TEST(ImuModel, ChipsDeliverAtTheirOwnRates) {
@@ -161,16 +161,16 @@ TEST(ImuModel, NoiseIsThatOfTheDataSheets) {
   errors.accel_noise_mg = ImuErrors{}.accel_noise_mg;
   errors.mag_noise_mgauss = ImuErrors{}.mag_noise_mgauss;
   for (int axis = 0; axis < 3; ++axis) {
-    const Moments gyro =
-        moments(errors, [axis](const SensorSample& s) { return s.gyro[axis] * 0.070 + 1e-12; });
+    const Moments gyro = moments(
+        errors, [axis](const SensorSample& s) { return s.imu.gyro()[axis] * 0.070 + 1e-12; });
     EXPECT_NEAR(gyro.sigma, with_quantisation(0.011 * std::sqrt(50.0), 0.070), 0.03 * 0.08);
     EXPECT_NEAR(gyro.mean, 0.0, 0.003);
-    const Moments accel =
-        moments(errors, [axis](const SensorSample& s) { return s.accel[axis] * 0.244 + 1e-12; });
+    const Moments accel = moments(
+        errors, [axis](const SensorSample& s) { return s.imu.accel()[axis] * 0.244 + 1e-12; });
     EXPECT_NEAR(accel.sigma, with_quantisation(0.150 * std::sqrt(50.0), 0.244), 0.05 * 1.06);
     EXPECT_NEAR(accel.mean, axis == 2 ? 1000.0 : 0.0, 0.05);
     const Moments mag =
-        moments(errors, [axis](const SensorSample& s) { return s.mag[axis] * 0.160; });
+        moments(errors, [axis](const SensorSample& s) { return s.imu.mag()[axis] * 0.160; });
     EXPECT_NEAR(mag.sigma, with_quantisation(5.0, 0.160), 0.03 * 5.0);
   }
 }
@@ -189,11 +189,11 @@ TEST(ImuModel, BiasIsDrawnOncePerWorldWithItsSigma) {
     ImuModel imu(seed, errors);
     const SensorSample first = measure(imu, truth);
     const SensorSample second = measure(imu, truth);
-    ASSERT_EQ(first.gyro[0], second.gyro[0]);
-    ASSERT_EQ(first.accel[2], second.accel[2]);
-    gyro += std::pow(first.gyro[0] * 0.070, 2);
-    accel_x += std::pow(first.accel[0] * 0.244, 2);
-    accel_z += std::pow(first.accel[2] * 0.244 - 1000.0, 2);
+    ASSERT_EQ(first.imu.gyro()[0], second.imu.gyro()[0]);
+    ASSERT_EQ(first.imu.accel()[2], second.imu.accel()[2]);
+    gyro += std::pow(first.imu.gyro()[0] * 0.070, 2);
+    accel_x += std::pow(first.imu.accel()[0] * 0.244, 2);
+    accel_z += std::pow(first.imu.accel()[2] * 0.244 - 1000.0, 2);
   }
   const double tolerance = 5.0 / std::sqrt(2.0 * kWorlds);
   EXPECT_NEAR(std::sqrt(gyro / kWorlds), 0.5, 0.5 * tolerance);
@@ -210,9 +210,10 @@ TEST(ImuModel, QuietIsExactButNotFrozen) {
   int longest = 0;
   for (int tick = 0; tick < 10000; ++tick) {
     const SensorSample now = measure(imu, truth);
-    EXPECT_EQ(now.accel[0], 0);
-    const bool repeated =
-        now.gyro[0] == last.gyro[0] && now.gyro[1] == last.gyro[1] && now.gyro[2] == last.gyro[2];
+    EXPECT_EQ(now.imu.accel()[0], 0);
+    const bool repeated = now.imu.gyro()[0] == last.imu.gyro()[0] &&
+                          now.imu.gyro()[1] == last.imu.gyro()[1] &&
+                          now.imu.gyro()[2] == last.imu.gyro()[2];
     same = repeated ? same + 1 : 0;
     longest = std::max(longest, same);
     last = now;
@@ -231,10 +232,10 @@ TEST(ImuModel, SameSeedSameSamples) {
     const SensorSample b = measure(two, truth);
     const SensorSample c = measure(other, truth);
     for (int axis = 0; axis < 3; ++axis) {
-      ASSERT_EQ(a.gyro[axis], b.gyro[axis]);
-      ASSERT_EQ(a.accel[axis], b.accel[axis]);
-      ASSERT_EQ(a.mag[axis], b.mag[axis]);
-      if (a.accel[axis] != c.accel[axis]) ++differing;
+      ASSERT_EQ(a.imu.gyro()[axis], b.imu.gyro()[axis]);
+      ASSERT_EQ(a.imu.accel()[axis], b.imu.accel()[axis]);
+      ASSERT_EQ(a.imu.mag()[axis], b.imu.mag()[axis]);
+      if (a.imu.accel()[axis] != c.imu.accel()[axis]) ++differing;
     }
     ASSERT_EQ(a.pressure, b.pressure);
   }

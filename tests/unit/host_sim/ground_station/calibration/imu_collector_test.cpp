@@ -28,9 +28,9 @@ void hold(ImuModel& imu, double from_s, double to_s, ImuCollector& collector) {
   SensorSample sample{};
   for (int tick = static_cast<int>(from_s * kTickRate_hz); tick < to_s * kTickRate_hz; ++tick) {
     imu.measure(calibration_motion(static_cast<double>(tick) / kTickRate_hz), sample);
-    if (tick % 10 == 0) collector.add_frame(frame_with<message::AccelRaw>(sample.accel));
-    if (tick % 10 == 5) collector.add_frame(frame_with<message::GyroRaw>(sample.gyro));
-    if (tick % 50 == 0) collector.add_frame(frame_with<message::MagRaw>(sample.mag));
+    if (tick % 10 == 0) collector.add_frame(frame_with<message::AccelRaw>(sample.imu.accel()));
+    if (tick % 10 == 5) collector.add_frame(frame_with<message::GyroRaw>(sample.imu.gyro()));
+    if (tick % 50 == 0) collector.add_frame(frame_with<message::MagRaw>(sample.imu.mag()));
   }
 }
 

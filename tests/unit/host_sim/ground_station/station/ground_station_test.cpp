@@ -187,7 +187,7 @@ TEST(GroundStation, DamagedFramesAreCountedAndNotLogged) {
 TEST(GroundStation, BringsARealRobotToRun) {
   GroundStation ground(true, DriveCommand{0.1, 0.0}, nullptr);
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+  parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
   TestRobot robot(parameters);
   robot.heartbeats = false;
   for (uint64_t tick = 0; tick < 800; ++tick) {

@@ -144,8 +144,8 @@ TEST(Arming, SentencesAreThereExactlyWhenTheRobotRefuses) {
        {"battery 5.00 V below battery_low 6.00 V (the default)"}},
       {"on its side",
        [](TestRobot& robot) {
-         robot.sample.accel[1] = 4098;
-         robot.sample.accel[2] = 0;
+         robot.sample.imu.accel()[1] = 4098;
+         robot.sample.imu.accel()[2] = 0;
        },
        Result::kFaultPresent,
        {"tilted 90 degrees, tilt_limit 50 degrees (the default)"}},

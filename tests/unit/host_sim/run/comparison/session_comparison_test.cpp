@@ -91,7 +91,7 @@ TEST_F(Comparison, ARunIsIdenticalToItself) {
 
 TEST_F(Comparison, TheFirstDifferenceIsTheFirstTickAndItsCause) {
   Recording other = straight(2000);
-  other.samples[1300].gyro[2] = 5;
+  other.samples[1300].imu.gyro()[2] = 5;
   other.outputs[1300].duty_left = -3;
   other.frames[1300].velocity_x = 0.25;
   other.frames[1400].y = 0.5;

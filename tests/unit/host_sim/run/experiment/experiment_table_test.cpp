@@ -91,7 +91,7 @@ TEST_F(ExperimentTable, AColumnMayHoldSeveralKeys) {
   const Experiment e =
       read("experiment.name,experiment.seed + parameters.random_seed\nrow,411\n").front();
   EXPECT_EQ(e.experiment.seed, 411U);
-  EXPECT_EQ(e.parameters.random_seed, 411);
+  EXPECT_EQ(e.parameters.random_seed(), 411);
   EXPECT_EQ(refusal("experiment.name,experiment.seed + parameters.random_seed\nrow,40000\n"),
             "t.csv:2: row 'row', column 'experiment.seed + parameters.random_seed': [parameters] "
             "random_seed = '40000' is not allowed; expected an integer 0..32767");
@@ -174,7 +174,7 @@ TEST(TableOfTheStandIn, EveryRowIsAValidExperimentOfItsOwn) {
     EXPECT_EQ(e.experiment.algorithm, kTrainingDriveName) << row.where;
     EXPECT_TRUE(e.notes.empty()) << row.where;
     EXPECT_TRUE(seeds.insert(e.experiment.seed).second) << row.where << ": seed of another row";
-    EXPECT_EQ(static_cast<uint64_t>(e.parameters.random_seed), e.experiment.seed) << row.where;
+    EXPECT_EQ(static_cast<uint64_t>(e.parameters.random_seed()), e.experiment.seed) << row.where;
   }
   const auto count = [&](const char* pattern) { return select_rows(rows, {pattern}).size(); };
   EXPECT_EQ(count("c_*"), 12U);

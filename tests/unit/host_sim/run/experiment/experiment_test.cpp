@@ -259,9 +259,9 @@ TEST_F(ExperimentFile, KeysThatDoNotFitTogether) {
 }
 
 TEST_F(ExperimentFile, TheAlgorithmReachesTheParameters) {
-  EXPECT_EQ(read("[experiment]\nalgorithm = drive\n").parameters.algorithm, 0);
-  EXPECT_EQ(read("").parameters.algorithm, 1);
-  EXPECT_EQ(read("[experiment]\nalgorithm = spin_on_peak\n").parameters.algorithm, 2);
+  EXPECT_EQ(read("[experiment]\nalgorithm = drive\n").parameters.algorithm(), 0);
+  EXPECT_EQ(read("").parameters.algorithm(), 1);
+  EXPECT_EQ(read("[experiment]\nalgorithm = spin_on_peak\n").parameters.algorithm(), 2);
   EXPECT_EQ(algorithm_number("hill_sensing"), 1);
   EXPECT_EQ(algorithm_number(kTrainingDriveName), 3);
   EXPECT_THROW(algorithm_number("Random"), InputError);
@@ -269,12 +269,12 @@ TEST_F(ExperimentFile, TheAlgorithmReachesTheParameters) {
 
 TEST_F(ExperimentFile, TheTrainingDriveTakesItsLengthFromFramesOrDuration) {
   const Experiment frames = read("[experiment]\nalgorithm = training_drive\nframes = 64000\n");
-  EXPECT_EQ(frames.parameters.algorithm, 3);
-  EXPECT_EQ(frames.parameters.training_block, 8000);
+  EXPECT_EQ(frames.parameters.algorithm(), 3);
+  EXPECT_EQ(frames.parameters.training_block(), 8000);
   EXPECT_EQ(frames.experiment.duration_s, 640.0);
   const Experiment duration = read("[experiment]\nalgorithm = training_drive\nduration = 20.05\n");
   EXPECT_EQ(duration.experiment.frames, 2000U);
-  EXPECT_EQ(duration.parameters.training_block, 250);
+  EXPECT_EQ(duration.parameters.training_block(), 250);
   EXPECT_EQ(read("[experiment]\nframes = 800\n").experiment.duration_s, 8.0);
   EXPECT_TRUE(contains(error_message("[experiment]\nalgorithm = training_drive\nduration = 1e5\n"),
                        "duration = 1e+05 s: algorithm training_drive needs 0.08 s to"));
@@ -379,7 +379,7 @@ TEST_F(ExperimentFile, Figure53IsAcceptedAsPrinted) {
   EXPECT_TRUE(e.map.wrap());
   EXPECT_NEAR(e.raygrid.resolution_per_m, 24.0, 1e-12);
   EXPECT_EQ(e.experiment.name, "sparse_random");
-  EXPECT_EQ(e.parameters.algorithm, 3);
+  EXPECT_EQ(e.parameters.algorithm(), 3);
   const HeightField bed = make_terrain(e);
   EXPECT_NEAR(bed.x_max() - bed.x_min(), 6.0, 1e-9);
   EXPECT_TRUE(bed.inside(e.vehicle.x_m, e.vehicle.y_m));
@@ -402,8 +402,8 @@ TEST_F(ExperimentFile, EveryParameterOfTheFirmwareHasAKeyOfItsOwn) {
     const Experiment experiment =
         read("[parameters]\n" + name + " = " + std::to_string(value) + "\n");
     for (const ParameterInfo& other : kParameterTable) {
-      const int16_t expected = other.field == info.field ? value : other.default_value;
-      EXPECT_EQ(experiment.parameters.*other.field, expected) << name << ": " << other.name;
+      const int16_t expected = other.number == info.number ? value : other.default_value;
+      EXPECT_EQ(experiment.parameters.values[other.number], expected) << name << ": " << other.name;
     }
   }
 }

@@ -49,16 +49,16 @@ TEST_F(RobotSections, AreInForceForTheirRobotAlone) {
   const Experiment experiment = read(kThree);
   const Experiment defaults;
   EXPECT_EQ(experiment.experiment.algorithm, defaults.experiment.algorithm);
-  EXPECT_EQ(experiment.parameters.climb_speed, defaults.parameters.climb_speed);
+  EXPECT_EQ(experiment.parameters.climb_speed(), defaults.parameters.climb_speed());
   const Experiment second = experiment_of_robot(experiment, 2);
   EXPECT_EQ(second.vehicle.x_m, 0.7);
   EXPECT_EQ(second.drive.speed_m_per_s, 0.2);
   EXPECT_EQ(second.experiment.algorithm, "drive");
-  EXPECT_EQ(second.parameters.algorithm, algorithm_number("drive"));
-  EXPECT_EQ(second.parameters.climb_speed, 120);
+  EXPECT_EQ(second.parameters.algorithm(), algorithm_number("drive"));
+  EXPECT_EQ(second.parameters.climb_speed(), 120);
   const Experiment first = experiment_of_robot(experiment, 1);
   EXPECT_EQ(first.vehicle.heading_deg, 45.0);
-  EXPECT_EQ(first.parameters.climb_speed, defaults.parameters.climb_speed);
+  EXPECT_EQ(first.parameters.climb_speed(), defaults.parameters.climb_speed());
   EXPECT_TRUE(robot_has_own(experiment, 2, "parameters", "climb_speed"));
   EXPECT_FALSE(robot_has_own(experiment, 1, "parameters", "climb_speed"));
 }
@@ -93,13 +93,13 @@ TEST_F(RobotSections, FirmwareGetsItsOwnParametersAndASeedThatWasSaid) {
   const Experiment experiment = read(kThree, {"robot_1.random_seed=77"});
   const std::vector<RobotSettings> robots = robot_settings(experiment, kDefaultBoard);
   ASSERT_EQ(robots.size(), 3U);
-  EXPECT_EQ(robots[0].parameters.random_seed, experiment.parameters.random_seed);
-  EXPECT_EQ(robots[1].parameters.random_seed, 77);
-  EXPECT_EQ(robots[2].parameters.random_seed,
-            parameters_of_robot(experiment.parameters, 2).random_seed);
-  EXPECT_EQ(robots[1].parameters.climb_speed, experiment.parameters.climb_speed);
-  EXPECT_EQ(robots[2].parameters.climb_speed, 120);
-  EXPECT_EQ(robots[2].parameters.algorithm, algorithm_number("drive"));
+  EXPECT_EQ(robots[0].parameters.random_seed(), experiment.parameters.random_seed());
+  EXPECT_EQ(robots[1].parameters.random_seed(), 77);
+  EXPECT_EQ(robots[2].parameters.random_seed(),
+            parameters_of_robot(experiment.parameters, 2).random_seed());
+  EXPECT_EQ(robots[1].parameters.climb_speed(), experiment.parameters.climb_speed());
+  EXPECT_EQ(robots[2].parameters.climb_speed(), 120);
+  EXPECT_EQ(robots[2].parameters.algorithm(), algorithm_number("drive"));
 }
 
 TEST_F(RobotSections, NoTwoKeysHaveOneName) {

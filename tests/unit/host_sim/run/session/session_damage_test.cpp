@@ -122,7 +122,7 @@ TEST_F(SessionTest, OldFilesWithFewerFrameColumnsAreRead) {
   const SessionReader reader(file_);
   EXPECT_EQ(reader.missing_columns(), (std::vector<std::string>{"battery", "faults"}));
   EXPECT_EQ(reader.missing_parameters(), (std::vector<std::string>{"climb_speed"}));
-  EXPECT_EQ(reader.info().parameters.climb_speed, Parameters{}.climb_speed);
+  EXPECT_EQ(reader.info().parameters.climb_speed(), Parameters{}.climb_speed());
   std::vector<SimFrame> frames(3);
   reader.read(0, std::span(frames));
   for (const SimFrame& frame : frames) {

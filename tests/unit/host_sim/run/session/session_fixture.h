@@ -63,7 +63,7 @@ inline Recording random_run(std::size_t ticks, std::uint64_t seed = 1) {
   run.info.seed = 0xFEDCBA9876543210U;
   run.info.board_name = "a_star_32u4";
   run.info.board = {9048, 1831, 195, 7200, 250, 145};
-  run.info.parameters.climb_speed = 123;
+  run.info.parameters.climb_speed() = 123;
   Noise noise(seed);
   for (std::size_t i = 0; i < ticks; ++i) {
     SimFrame frame;

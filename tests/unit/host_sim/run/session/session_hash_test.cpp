@@ -51,7 +51,7 @@ TEST_F(SessionTest, TheHashCoversTheConditionsButNotTheNames) {
   EXPECT_NE(original, hash([](Recording& r) { r.info.tick_rate_hz = 50; }));
   EXPECT_NE(original, hash([](Recording& r) { ++r.info.board.tread_mm; }));
   for (const ParameterInfo& parameter : kParameterTable) {
-    EXPECT_NE(original, hash([&](Recording& r) { ++(r.info.parameters.*parameter.field); }))
+    EXPECT_NE(original, hash([&](Recording& r) { ++r.info.parameters.values[parameter.number]; }))
         << parameter.name;
   }
   EXPECT_NE(original, hash([](Recording& r) { ++r.before.heights[5]; }));

@@ -15,16 +15,16 @@ namespace {
 Recording robot_run(std::size_t ticks) {
   Recording run = random_run(ticks);
   run.info.parameters = Parameters{};
-  run.info.parameters.standalone = 1;
+  run.info.parameters.standalone() = 1;
   Robot robot(run.info.board, run.info.parameters, run.info.credentials);
   RobotOutput output{};
   for (std::size_t i = 0; i < ticks; ++i) {
     SensorSample& sample = run.samples[i];
     sample.time_us = static_cast<std::uint32_t>(i * kTickPeriod_us);
     for (int axis = 0; axis < 3; ++axis) {
-      sample.gyro[axis] = static_cast<std::int16_t>(sample.gyro[axis] / 256);
-      sample.accel[axis] =
-          static_cast<std::int16_t>(sample.accel[axis] / 256 + (axis == 2 ? 4096 : 0));
+      sample.imu.gyro()[axis] = static_cast<std::int16_t>(sample.imu.gyro()[axis] / 256);
+      sample.imu.accel()[axis] =
+          static_cast<std::int16_t>(sample.imu.accel()[axis] / 256 + (axis == 2 ? 4096 : 0));
     }
     sample.encoder_left = static_cast<std::uint16_t>(i * 3);
     sample.encoder_right = static_cast<std::uint16_t>(i * 2);

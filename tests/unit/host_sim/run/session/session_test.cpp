@@ -14,7 +14,7 @@ namespace {
 TEST(Record, RowsAreLittleEndianWithoutPadding) {
   SensorSample sample{};
   sample.time_us = 0x04030201;
-  sample.gyro[0] = -2;
+  sample.imu.gyro()[0] = -2;
   sample.pressure = -1;
   sample.encoder_errors = 0xAB;
   sample.chips_failing = 1;
@@ -84,7 +84,8 @@ TEST_F(SessionTest, EverythingComesBack) {
   EXPECT_EQ(info.board.count_um_q4, 9048);
   EXPECT_EQ(info.board.full_speed_mm_per_s, 250);
   for (const ParameterInfo& parameter : kParameterTable) {
-    EXPECT_EQ(info.parameters.*parameter.field, run.info.parameters.*parameter.field)
+    EXPECT_EQ(info.parameters.values[parameter.number],
+              run.info.parameters.values[parameter.number])
         << parameter.name;
   }
 
@@ -232,7 +233,7 @@ TEST_F(SessionTest, H5dumpReadsTheSameNumbers) {
   expected.clear();
   for (const SensorSample& s : run.samples) {
     expected.insert(expected.end(), {static_cast<double>(s.time_us)});
-    for (const auto* axes : {s.gyro, s.accel, s.mag})
+    for (const auto* axes : {s.imu.gyro(), s.imu.accel(), s.imu.mag()})
       expected.insert(expected.end(), axes, axes + 3);
     expected.insert(expected.end(),
                     {static_cast<double>(s.pressure), static_cast<double>(s.temperature),

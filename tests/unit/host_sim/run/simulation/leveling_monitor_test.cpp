@@ -129,8 +129,8 @@ TEST_F(LevelingMonitorTest, LooksAtTheFilteredSurfaceOfParticles) {
 }
 
 TEST_F(LevelingMonitorTest, TheLimitsAreThoseOfTheRobotsParameters) {
-  experiment_.parameters.tilt_limit = 1000;  // 10 degrees
-  experiment_.parameters.site_radius = 50;   // mm
+  experiment_.parameters.tilt_limit() = 1000;  // 10 degrees
+  experiment_.parameters.site_radius() = 50;   // mm
   experiment_.metrics.interval_s = 1e6;
   LevelingMonitor monitor(experiment_, kTread_m, false);
   monitor.begin(terrain_, sink_);

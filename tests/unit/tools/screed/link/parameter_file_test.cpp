@@ -38,8 +38,8 @@ class ParameterFile : public ::testing::Test {
 /// Each at its greatest, where they fit together.
 Parameters unusual() {
   Parameters parameters;
-  for (const ParameterInfo& info : kParameterTable) parameters.*info.field = info.max;
-  parameters.algorithm = static_cast<int16_t>(message::LevelingAlgorithm::kSpinOnPeak);
+  for (const ParameterInfo& info : kParameterTable) parameters.values[info.number] = info.max;
+  parameters.algorithm() = static_cast<int16_t>(message::LevelingAlgorithm::kSpinOnPeak);
   EXPECT_TRUE(parameters.valid());
   return parameters;
 }
@@ -61,8 +61,8 @@ TEST_F(ParameterFile, ADumpIsAnExperiment) {
 
 TEST_F(ParameterFile, TheTrainingDriveKeepsItsLength) {
   Parameters parameters;
-  parameters.algorithm = static_cast<int16_t>(message::LevelingAlgorithm::kTrainingDrive);
-  parameters.training_block = 321;
+  parameters.algorithm() = static_cast<int16_t>(message::LevelingAlgorithm::kTrainingDrive);
+  parameters.training_block() = 321;
   EXPECT_EQ(read(parameter_file_text(parameters, "")), all_parameters(parameters));
   const auto values = read("[experiment]\nalgorithm = training_drive\nframes = 800\n");
   ASSERT_EQ(values.size(), 2U);
