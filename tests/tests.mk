@@ -1,5 +1,5 @@
 # Unit tests, software-in-the-loop tests, tests of the microcontroller's images, and the long ones of all these. Included by the top
-# Makefile after the parts whose tests it runs; parts with tests of their own (tools/flash) add to TESTS and TEST_IMAGES.
+# Makefile after the parts whose tests it runs; parts with tests of their own add to TESTS and TEST_IMAGES, or to what `test` needs.
 #
 # tests/unit mirrors the folders of the sources. A test of more than two seconds lies in tests/long, whose program `make test` neither
 # compiles nor links.
@@ -40,7 +40,7 @@ $(LONG_TESTS): $(LONG_OBJECTS) $(MCU_LONG_PARTS) $(TESTED) $(B)/link.flags
 	$(call link_tests)
 
 # Every host source that is compiled with the host's flags or the firmware's: what lint and clangd look at.
-ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants tests/unit tests/sitl tests/flash tests/portable) $(LONG_SOURCES)
+ALL_HOST_SOURCES = $(LIBRARY_SOURCES) tools/screed/main.cpp $(call sources,tools/avr tools/schema tools/bench tools/mutants tests/unit tests/sitl tests/portable) $(LONG_SOURCES)
 
 # Expanded twice: later parts add their tests.
 .SECONDEXPANSION:
@@ -61,5 +61,5 @@ test-tutorial: $(SCREED)  ## the commands of docs/tutorial.md, from top to botto
 	@tests/docs/tutorial.sh docs/tutorial.md
 
 .PHONY: test-install
-test-install: $(SCREED) $(B)/screed_flash $(REPORT_PAGE)  ## install, move the tree, run it from elsewhere
+test-install: $(SCREED) $(REPORT_PAGE)  ## install, move the tree, run it from elsewhere
 	@tests/install/run.sh

@@ -37,7 +37,7 @@ check 'a model of its own' "$screed" sim soft_bed --hal surrogate --model "$data
 check 'a robot of its own' "$screed" sim four_wheels --duration 1 --quiet --out wheeled
 check 'a session' "$screed" replay native
 check 'a page of it' "$screed" report native
-check 'the flash tool' test -x "$tree/moved/bin/screed_flash"
+check 'the flash tool' "$tree/moved/bin/screed_flash" fuses --mcu atmega32u4
 check 'the udev rule' test -s "$tree/moved/lib/udev/rules.d/60-screed.rules"
 check 'completion for bash' bash -n "$tree/moved/share/bash-completion/completions/screed"
 check 'completion for zsh and fish' test -s "$tree/moved/share/zsh/site-functions/_screed" -a -s "$tree/moved/share/fish/vendor_completions.d/screed.fish"

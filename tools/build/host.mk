@@ -247,8 +247,9 @@ INSTALLED_FISH := share/fish/vendor_completions.d/screed.fish
 INSTALLED_MAN := share/man/man1
 # One word, since make takes blanks for the ends of names.
 INTO = $(if $(word 2,$(DESTDIR)$(PREFIX)),$(error PREFIX and DESTDIR: no blanks),$(DESTDIR)$(PREFIX))
-install: $(SCREED) $(B)/screed_flash $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html  ## install program, data, flash tool and docs (PREFIX=/usr/local)
-	install -D -m 755 -t $(INTO)/bin $(SCREED) $(B)/screed_flash
+install: $(SCREED) $(SCHEMA_HEADERS) $(BUILD_ROOT)/report/page.html  ## install program, data, flash tool and docs (PREFIX=/usr/local)
+	install -D -m 755 -t $(INTO)/bin $(SCREED)
+	install -D -m 755 tools/flash/flash.py $(INTO)/bin/screed_flash
 	install -D -m 644 tools/flash/60-screed.rules $(INTO)/$(INSTALLED_RULES)
 	@mkdir -p $(INTO)/$(INSTALLED_DATA) $(INTO)/$(INSTALLED_DOC)
 	cp -r host_sim/data/. boards nn/models $(SCHEMA) $(GENERATED_FOLDER)/wireshark $(INTO)/$(INSTALLED_DATA)/

@@ -17,7 +17,7 @@ $(1): $(2) $(B)/$(4).flags .clang-tidy tools/lint/tidy.sh tools/lint/paste.awk
 endef
 # Tests are straight-line code with small indices: without the analyser and without the widening of products.
 TEST_CHECKS := -clang-analyzer-*$(comma)-bugprone-implicit-widening-of-multiplication-result
-OTHER_SOURCES := $(call sources,tools/avr tools/schema tools/bench tools/flash tools/mutants tests/portable)
+OTHER_SOURCES := $(call sources,tools/avr tools/schema tools/bench tools/mutants tests/portable)
 $(eval $(call tidy_set,CORE,$(CORE_SOURCES),firmware))
 # What gives its lanes the same names as another of them goes alone.
 LANES := $(wildcard host_sim/physics/kernels/avx*.cpp host_sim/physics/kernels/baseline.cpp host_sim/physics/particles/bed_kernel_*.cpp)
@@ -30,7 +30,7 @@ define tidy_tests
 $(call tidy_set,$(1),$($(1)_GROUPS) $($(1)_ALONE),$(2),$$(TEST_CHECKS))
 TIDY += $$($(1)_TIDY)
 endef
-$(foreach set,UNIT SITL LONG FLASH,$(eval $(call tidy_tests,$(set),lint)))
+$(foreach set,UNIT SITL LONG,$(eval $(call tidy_tests,$(set),lint)))
 $(foreach set,MCU MCU_LONG,$(eval $(call tidy_tests,$(set),mcu_tests)))
 # What has no object of the host: one by one.
 AVR_TIDY := $(AVR_TIDY_SOURCES:%.cpp=$(B)/tidy/%.tidy)
