@@ -3,7 +3,8 @@
 set -euo pipefail
 self=tools/lint
 mapfile -t files < <(if [ $# -gt 0 ]; then printf '%s\n' "$@"; else
-  git ls-files '*.h' '*.cpp' '*.inc' '*.mk' '*.md' '*.sh' '*.awk' '*.ini' '*.dbc' Makefile | grep -vE '^(LICENSE|host_sim/data/terrain/|tests/data/)'; fi)
+  git ls-files '*.h' '*.cpp' '*.inc' '*.mk' '*.md' '*.sh' '*.py' '*.awk' '*.ini' '*.dbc' Makefile |
+    grep -vE '^(LICENSE|host_sim/data/terrain/|tests/data/)'; fi)
 status=0
 while IFS=$'\t' read -r pattern use; do
   case $pattern in '#'* | '') continue ;; esac
