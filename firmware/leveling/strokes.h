@@ -6,7 +6,7 @@
 // at the lower end of a stroke, where gravity works against it, and hardly at the upper one, where
 // gravity helps: so most of the slip is downhill, the more since the way down begins gently. The
 // way up takes longer, by what the robot slides down on 10 degrees; gentler slopes it works its way
-// up. A spin slips as much to all sides and carries a fifth of that (docs/measurements/soil.md,
+// up. A spin slips as much to all sides and carries a fifth of that (docs/studies/soil.md,
 // Strokes).
 //
 // Where: it drives from one random place at the edge of its site to the next and works on every

@@ -10,7 +10,7 @@
 
 namespace screed {
 
-/// Masses and places as in docs/measurements/soil.md.
+/// Masses and places as in docs/studies/soil.md.
 struct SoilRobotShape {
   double wheel_radius_m = 0.03;
   double wheel_width_m = 0.025;

@@ -1,5 +1,5 @@
 // What a rigid wheel on soil does when the grid is infinitely fine and the step infinitely short:
-// the equations of the contact, integrated along it. Knows no grid; docs/measurements/soil.md
+// the equations of the contact, integrated along it. Knows no grid; docs/studies/soil.md
 // states the equations.
 #pragma once
 

@@ -49,7 +49,7 @@ SoilParameters soil(const char* name, double k_phi, double k_c, double n, double
 
 /// The simulant of Ding et al., 2011. Published: k_phi, k_c, c, phi. E as for the other sands. c1
 /// and c3 assumed, near the published ones of their wheels. Fitted to the smooth wheel
-/// (docs/measurements/soil.md): n, slip_sinkage, K, c2.
+/// (docs/studies/soil.md): n, slip_sinkage, K, c2.
 SoilParameters ding_2011() {
   SoilParameters s = soil("ding_2011", 2407.4e3, 15.6e3, 0.94, 250.0, 31.9, 0.0041, 1e8);
   s.slip_sinkage = 0.54;
@@ -60,7 +60,7 @@ SoilParameters ding_2011() {
 }
 
 /// The sand of Carnegie Mellon University's wheel tests, 2022. Published: k_phi, n, phi, density.
-/// c1 assumed, as above. Fitted to the smooth wheel at slip angle 0 (docs/measurements/soil.md):
+/// c1 assumed, as above. Fitted to the smooth wheel at slip angle 0 (docs/studies/soil.md):
 /// slip_sinkage, K, c2, c2_braked, c3.
 SoilParameters cmu_2022() {
   SoilParameters s = soil("cmu_2022", 8e6, 0.0, 1.46, 0.0, 29.0, 0.0127, 1e8);
@@ -73,7 +73,7 @@ SoilParameters cmu_2022() {
   return s;
 }
 
-/// What a bed of particles of 15 mm is like (docs/measurements/soil.md, Digging).
+/// What a bed of particles of 15 mm is like (docs/studies/soil.md, Digging).
 SoilParameters gravel() {
   SoilParameters s = soil("gravel", 827e3, 0.0, 0.9, 0.0, 22.8, 0.0017, 2e6);
   s.repose_deg = 34.4;

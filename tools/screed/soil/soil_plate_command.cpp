@@ -31,7 +31,7 @@ struct PlateArguments {
 constexpr double kPlateDepths_m[] = {0.001, 0.002, 0.005, 0.01, 0.015, 0.02};
 
 /// What Chrono's SCM with its default rays adds to Bekker's pressure, percent
-/// (docs/measurements/soil.md).
+/// (docs/studies/soil.md).
 std::optional<double> peer_pressure(const PlateArguments& a, double depth_m) {
   const PlateTest& t = a.test;
   if (!a.common.as_peer() || a.common.cell_m != 0.005 || t.round || t.length_m != 0.05 ||

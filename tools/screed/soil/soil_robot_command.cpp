@@ -29,7 +29,7 @@ struct RobotArguments {
   double y_m = 0.0;
 };
 
-/// Milliseconds a step of Chrono's SCM with its default rays (docs/measurements/soil.md).
+/// Milliseconds a step of Chrono's SCM with its default rays (docs/studies/soil.md).
 std::optional<double> peer_step_us(const RobotArguments& a) {
   if (!a.common.as_peer() || a.size_m != 2.0) return std::nullopt;
   constexpr struct {

@@ -31,7 +31,7 @@ struct WheelArguments {
 };
 
 /// Chrono's SCM (exact rays) for Ding's wheel: slip, drawbar pull N, sinkage m
-/// (docs/measurements/soil.md).
+/// (docs/studies/soil.md).
 struct PeerWheel {
   double slip;
   double drawbar_pull_n;

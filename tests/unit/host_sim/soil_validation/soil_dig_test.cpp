@@ -21,7 +21,7 @@ DigResult dig(Manoeuvre manoeuvre, double cell_m, double spin_s = 10.0, bool dra
 }
 
 /// What particles of 15 mm move, cm^3: `screed soil dig --ground particles --beds 64`, the volume
-/// without noise at least and that of the mean (docs/measurements/soil.md, Digging).
+/// without noise at least and that of the mean (docs/studies/soil.md, Digging).
 struct OnParticles {
   double raised_at_least;
   double raised;
@@ -43,7 +43,7 @@ void expect_sunk(double factor, const OnParticles& particles, const DigResult& s
 }
 
 // Gravel's drag depth and compaction were fitted to the spin. The other two are to be within a
-// factor of 1.5. On the mound soil moves too little (docs/measurements/soil.md says so and why): no
+// factor of 1.5. On the mound soil moves too little (docs/studies/soil.md says so and why): no
 // less than it does.
 TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
   const DigResult spin = dig(Manoeuvre::kSpin, 0.005);
@@ -65,7 +65,7 @@ TEST(SoilDigTest, MovesAsMuchAsAmongParticles) {
 
 // Volume times the way along the slip. Gravel's drag share was fitted to the 60 % slip; strokes on
 // level ground and at 5 degrees, to which nothing was fitted, are within a factor of 2.3 of
-// particles, 8 to 16 beds (docs/measurements/soil.md, Strokes).
+// particles, 8 to 16 beds (docs/studies/soil.md, Strokes).
 TEST(SoilDigTest, SlipCarriesAsFarAsAmongParticles) {
   EXPECT_NEAR(dig(Manoeuvre::kSlip, 0.005).carried_m4 * 1e6, -8.5, 0.3);
   struct OnSlope {
@@ -85,7 +85,7 @@ TEST(SoilDigTest, SlipCarriesAsFarAsAmongParticles) {
 
 // On four beds of particles a spin of 40 s sinks 127 cm3 more than it raises, twice as much as one
 // of 10 s: ground is trodden down once. compaction_depth was fitted to that; sunk are 250 cm3
-// (docs/measurements/soil.md).
+// (docs/studies/soil.md).
 TEST(SoilDigTest, ALongSpinFindsGroundThatIsDense) {
   const DigResult spin = dig(Manoeuvre::kSpin, 0.005, 40.0);
   EXPECT_NEAR((spin.sunk_m3 - spin.raised_m3) * 1e6, 127.0, 10.0);
