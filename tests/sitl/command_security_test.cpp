@@ -1,5 +1,5 @@
-// Replayed commands against the gate, in numbers. SCREED_REPLAYS sets how many (docs/security.md
-// names the figure for ten million).
+// Replayed commands against the gate, in numbers. SCREED_REPLAYS sets how many
+// (docs/studies/protocol.md names the figure for ten million).
 #include <gtest/gtest.h>
 
 #include <cstdio>
