@@ -9,7 +9,7 @@
 // the wheels' shafts, are what the pins felt.
 //
 // Method: Baraff and Witkin, Large steps in cloth simulation, SIGGRAPH 1998, in one dimension.
-// docs/robot-model.md says what else was tried.
+// docs/studies/robot-models.md says what else was tried.
 #pragma once
 
 #include <Eigen/Geometry>
