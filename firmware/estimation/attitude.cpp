@@ -24,7 +24,7 @@
 //                         gain = 1 / (n + 1) at first, then T / 9 s a tick
 //   correct               q += (w, x, y, z) q,  gravity turned about x and y by twice that
 // Sources: Laidig and Seel 2023 (filter, rest, gains), Mahony, Hamel and Pflimlin 2008 (bias in
-// motion); docs/attitude.md has them in full.
+// motion); docs/studies/attitude.md has them in full.
 #include "firmware/estimation/attitude.h"
 
 #include <stddef.h>

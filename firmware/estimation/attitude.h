@@ -6,7 +6,7 @@
 // bias estimation and magnetic disturbance rejection", Information Fusion 91, 2023;
 // arXiv:2203.17024): the gyroscope is integrated strap-down, the acceleration is turned into that
 // almost inertial frame and low-pass filtered THERE, where what a vehicle does averages out and
-// gravity stays. docs/attitude.md has the formulas, figures and limits.
+// gravity stays. docs/studies/attitude.md has the formulas and figures.
 #pragma once
 
 #include <stdint.h>

@@ -9,7 +9,7 @@
 // need beyond idling (a robot that hangs needs little), how much the chassis vibrates (one that
 // stands does not) and how it pitches (one that digs itself in does so slowly). The network's
 // memory holds how all this was before. A step takes two calls, so that no tick has all of it.
-// docs/networks.md has figures, `screed nn stuck` measures them.
+// docs/studies/networks.md has figures, `screed nn stuck` measures them.
 #pragma once
 
 #include <stdint.h>
