@@ -7,9 +7,6 @@
 #include <new>
 #endif
 
-#include "firmware/robot/robot.h"
-#include "hal/hal.h"
-
 /// On the AVR the robot has a fixed address: what lies further than 63 bytes into a stack frame
 /// costs 20 bytes of code to reach, every time. It is made where it lies, since this function runs
 /// once: of a static object the compiler would have to remember whether it is there. A host runs
@@ -36,11 +33,7 @@ void main_loop() {
                                     hal::parameters_intact());
   SCREED_RESIDENT SensorSample sample{};
   SCREED_RESIDENT RobotOutput output{};
-  while (hal::wait_for_tick()) {
-    hal::read_sensors(sample);
-    robot.tick(sample, output);
-    hal::write_outputs(output);
-  }
+  while (hal::wait_for_tick()) tick_firmware(robot, sample, output);
 }
 
 }  // namespace screed

@@ -1,7 +1,6 @@
 // hal.h for hosts: forwards to the current target of this thread.
 #include "hal/hal.h"
 
-#include "firmware/main_loop.h"
 #include "hal/host/target.h"
 
 namespace screed {
@@ -37,13 +36,11 @@ void write_outputs(const RobotOutput& output) {
   current->write_outputs(output);
 }
 
-void run_firmware(Target& target) {
-  struct Restore {
-    Target* before = current;
-    ~Restore() { current = before; }
-  } restore;
+TargetScope::TargetScope(Target& target) : before_(current) {
   current = &target;
-  main_loop();
+}
+TargetScope::~TargetScope() {
+  current = before_;
 }
 
 }  // namespace hal

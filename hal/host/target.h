@@ -16,19 +16,30 @@ namespace hal {
 class Target {
  public:
   virtual ~Target() = default;
-  /// The calls of hal.h except parameters_intact(), which is true on a host.
-  virtual void init() = 0;
+  /// The calls of hal.h except parameters_intact(), which is true on a host. The first and
+  /// wait_for_tick() are for targets that main_loop() runs on; where a world says when a tick is
+  /// due, it calls tick_firmware().
+  virtual void init() {}
   virtual const BoardConstants& board_constants() = 0;
   virtual const Parameters& parameters() = 0;
   virtual const Credentials& credentials() = 0;
-  virtual bool wait_for_tick() = 0;
+  virtual bool wait_for_tick() { return false; }
   virtual void read_sensors(SensorSample& sample) = 0;
   virtual void write_outputs(const RobotOutput& output) = 0;
 };
 
-/// Runs the firmware's main loop on this target, in this thread, until wait_for_tick() returns
-/// false. Exceptions of the target pass through. Several threads may each run a robot of their own.
-void run_firmware(Target& target);
+/// While it lives, this thread's calls of hal.h go to this target; after it to the one before.
+/// Threads may each run robots of their own, and one thread several in turn.
+class TargetScope {
+ public:
+  explicit TargetScope(Target& target);
+  ~TargetScope();
+  TargetScope(const TargetScope&) = delete;
+  TargetScope& operator=(const TargetScope&) = delete;
+
+ private:
+  Target* before_;
+};
 
 }  // namespace hal
 }  // namespace screed

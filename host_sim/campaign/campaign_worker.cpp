@@ -33,7 +33,7 @@ double seconds_since(Clock::time_point begin) {
 class CurveKeeper : public SimulationObserver {
  public:
   void on_begin(const HeightField& /*before*/, const HeightField& /*terrain*/) override {}
-  void on_tick(const SimFrame& /*frame*/, const HeightField& /*terrain*/) override {}
+  void on_tick(std::span<const SimFrame> /*frames*/, const HeightField& /*terrain*/) override {}
   void on_end() override {}
   void on_leveling(const LevelingPoint& point) override {
     if (!points_.empty() && points_.back().time >= point.time) points_.pop_back();

@@ -37,17 +37,17 @@ BeltGround ground_of(const HeightField& terrain, const TrackGeometry& tracks,
         "the surrogate world knows tracks alone: [vehicle] tracks = true and track_model = belt, "
         "or another --hal than surrogate");
   }
-  return {terrain, *options.soil, tracks, 1 + options.further_starts.size(), fit};
+  return {terrain, *options.soil, tracks, options.starts.size(), fit};
 }
 
 StandInKind kind_of(const Assembly& model, const PlantOptions& options) {
   StandInKind kind;
   kind.tracks = track_geometry(model);
-  kind.motor = options.vehicle.motor;
-  kind.battery = options.battery;
+  kind.planar = {options.vehicle.motor, options.battery, kind.tracks.radius_m,
+                 kind.tracks.half_tread_m};
   kind.outline = VehicleParts(model, options.vehicle).outline_at_rest();
   const int imu = model.body_index("Imu");
-  if (imu >= 0) kind.imu = model.bodies[static_cast<std::size_t>(imu)].pose.translation();
+  if (imu >= 0) kind.planar.imu = model.bodies[static_cast<std::size_t>(imu)].pose.translation();
   return kind;
 }
 
@@ -59,9 +59,9 @@ struct Overlap {
 };
 
 /// From one robot to the nearest copy of another, on a bed that wraps around.
-Eigen::Vector2d nearest_way(const StandInRobot& robot, const StandInRobot& other) {
+Eigen::Vector2d nearest_way(const StandInRobot& robot, const StandInRobot& other,
+                            const HeightField& ground) {
   Eigen::Vector2d way = other.middle() - robot.middle();
-  const HeightField& ground = robot.terrain();
   if (ground.wrap()) {
     const Eigen::Array2d size(ground.x_max() - ground.x_min(), ground.y_max() - ground.y_min());
     way.array() -= size * (way.array() / size).round();
@@ -71,8 +71,9 @@ Eigen::Vector2d nearest_way(const StandInRobot& robot, const StandInRobot& other
 
 /// By the separating axis (S. Gottschalk, M. Lin, D. Manocha, SIGGRAPH 1996); nothing when there is
 /// one.
-std::optional<Overlap> overlap(const StandInRobot& robot, const StandInRobot& other) {
-  const Eigen::Vector2d copy = robot.middle() + nearest_way(robot, other) - other.middle();
+std::optional<Overlap> overlap(const StandInRobot& robot, const StandInRobot& other,
+                               const HeightField& ground) {
+  const Eigen::Vector2d copy = robot.middle() + nearest_way(robot, other, ground) - other.middle();
   const auto own = robot.corners();
   auto others = other.corners();
   for (Eigen::Vector2d& corner : others) corner += copy;
@@ -120,11 +121,9 @@ StandInPlant::StandInPlant(const HeightField& terrain, const Assembly& model,
                            const PlantOptions& options, const BeltFit& fit)
     : ground_(ground_of(terrain, track_geometry(model), options, fit)) {
   const StandInKind kind = kind_of(model, options);
-  std::vector<StartPose> starts = {options.start};
-  starts.insert(starts.end(), options.further_starts.begin(), options.further_starts.end());
-  for (const StartPose& start : starts) {
-    robots_.push_back(std::make_unique<StandInRobot>(*this, ground_, robots_.size(), kind,
-                                                     *options.soil, fit, start));
+  for (const StartPose& start : options.starts) {
+    robots_.push_back(
+        std::make_unique<StandInRobot>(ground_, robots_.size(), kind, *options.soil, fit, start));
     check_apart(start);
   }
 }
@@ -135,7 +134,7 @@ void StandInPlant::check_apart(const StartPose& start) const {
   for (const Eigen::Vector2d& corner : last.corners()) box.extend(corner);
   check_between_walls(bounds_of(ground_.surface()), box, {start.x_m, start.y_m});
   for (std::size_t i = 0; i + 1 < robots_.size(); ++i) {
-    if (!overlap(last, *robots_[i]).has_value()) continue;
+    if (!overlap(last, *robots_[i], terrain()).has_value()) continue;
     throw InputError("robots " + std::to_string(i) + " and " + std::to_string(robots_.size() - 1) +
                      " stand in one another at the start");
   }
@@ -154,11 +153,11 @@ void StandInPlant::push_from_walls(StandInRobot& robot) const {
   }
 }
 
-void StandInPlant::push_apart(StandInRobot& robot, StandInRobot& other) {
-  const std::optional<Overlap> in = overlap(robot, other);
+void StandInPlant::push_apart(StandInRobot& robot, StandInRobot& other) const {
+  const std::optional<Overlap> in = overlap(robot, other, terrain());
   if (!in.has_value()) return;
   const Eigen::Vector2d beside_other =
-      in->place + (other.middle() - robot.middle()) - nearest_way(robot, other);
+      in->place + (other.middle() - robot.middle()) - nearest_way(robot, other, terrain());
   const double parting =
       (robot.velocity_at(in->place) - other.velocity_at(beside_other)).dot(in->normal);
   const Eigen::Vector2d force = pushing(in->depth_m, parting) * in->normal;
@@ -166,11 +165,7 @@ void StandInPlant::push_apart(StandInRobot& robot, StandInRobot& other) {
   other.push(beside_other, -force);
 }
 
-void StandInPlant::step(const DutyRatio& duty_ratio) {
-  step_all({&duty_ratio, 1});
-}
-
-void StandInPlant::step_all(std::span<const DutyRatio> duty_ratios) {
+void StandInPlant::step(std::span<const DutyRatio> duty_ratios) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     robots_[i]->step_motors(duty_ratios[i], kTick_s / kStepsPerTick);
   }
@@ -210,10 +205,6 @@ void StandInPlant::end_stride() {
     ground_.end_stride();
   }
   for (const auto& robot : robots_) robot->end_frame();
-}
-
-double StandInPlant::time_s() const {
-  return static_cast<double>(steps_) / (kStepsPerTick * static_cast<double>(kTickRate_hz));
 }
 
 }  // namespace screed

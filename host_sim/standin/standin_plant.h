@@ -41,33 +41,23 @@ class StandInPlant final : public Environment {
   void follow_frame(const std::array<double, 2>& belts_m_per_s, const PlanarPose& pose,
                     const FrameMotion& motion);
 
-  void step(const DutyRatio& duty_ratio) override;
-  void step_all(std::span<const DutyRatio> duty_ratios) override;
+  void step(std::span<const DutyRatio> duty_ratios) override;
   std::size_t robots() const override { return robots_.size(); }
   StandInRobot& robot(std::size_t number) override { return *robots_[number]; }
   const StandInRobot& robot(std::size_t number) const override { return *robots_[number]; }
 
   int steps_per_tick() const override { return kStepsPerTick; }
   uint64_t steps() const override { return steps_; }
-  double time_s() const override;
   const HeightField& terrain() const override { return ground_.surface(); }
   bool is_deformable() const override { return true; }
   VolumeBalance volume_balance() const override { return ground_.balance(); }
-
-  // Of the first robot.
-  ImuTruth motion() const override { return robots_[0]->motion(); }
-  void lay_on_side() override { robots_[0]->lay_on_side(); }
-  const VehicleState& vehicle() const override { return robots_[0]->vehicle(); }
-  const std::array<int64_t, 2>& wrap_counts() const override { return robots_[0]->wrap_counts(); }
-  Eigen::Vector3d unwrapped_position() const override { return robots_[0]->unwrapped_position(); }
-  const Battery& battery() const override { return robots_[0]->battery(); }
 
  private:
   static constexpr int kStepsPerTick = 5;  // of motors and battery
 
   void check_apart(const StartPose& start) const;
   void push_from_walls(StandInRobot& robot) const;
-  static void push_apart(StandInRobot& robot, StandInRobot& other);
+  void push_apart(StandInRobot& robot, StandInRobot& other) const;
   void end_frame();
   void end_stride();
 

@@ -11,72 +11,48 @@
 
 namespace screed {
 namespace {
-// Of wheels and belt, and what of the robot's mass a belt feels when it speeds up.
-constexpr double kTurnedInertia_kg_m2 = 1.8e-4;
 // Strides are five frames apart: share of the way to the belts' new plane that the body makes in
 // one.
 constexpr double kFollowing = 0.3;
 
-int64_t beds_off(double coordinate, double size) {
-  return static_cast<int64_t>(std::floor(coordinate / size + 0.5));
-}
-
 }  // namespace
 
-StandInRobot::StandInRobot(const Environment& world, BeltGround& ground, std::size_t number,
-                           const StandInKind& kind, const SoilParameters& soil, const BeltFit& fit,
-                           const StartPose& start)
-    : world_(world),
+StandInRobot::StandInRobot(BeltGround& ground, std::size_t number, const StandInKind& kind,
+                           const SoilParameters& soil, const BeltFit& fit, const StartPose& start)
+    : PlanarRobot(ground.surface(), kind.planar),
       ground_(ground),
       number_(number),
       kind_(kind),
-      shafts_{DriveShaft(kind.motor, 1, kTurnedInertia_kg_m2),
-              DriveShaft(kind.motor, 1, kTurnedInertia_kg_m2)},
-      battery_(kind.battery),
       belts_(kind.tracks, soil, fit),
       pose_{start.x_m, start.y_m, start.attitude.heading},
       stride_(pose_) {
   ground_.place(number_, pose_);
   plane_ = ground_.plane(number_);
-  now_ = body_pose();
-  count_wraps();
-}
-
-void StandInRobot::run_belts(const std::array<double, 2>& belts_m_per_s) {
-  for (std::size_t i = 0; i < shafts_.size(); ++i) {
-    shafts_[i].spin(belts_m_per_s[i] / kind_.tracks.radius_m);
-  }
+  DrivingState start_state;
+  start_state.pose = pose_;
+  start_state.battery = kind.planar.battery;
+  begin_at(start_state, body_pose());
 }
 
 void StandInRobot::set_state(const DrivingState& state) {
-  run_belts(state.track_speed_m_per_s);
-  for (std::size_t i = 0; i < shafts_.size(); ++i) {
-    angle_offset_rad_[i] = state.shaft_angle_rad[i] - shafts_[i].angle_rad();
-  }
-  battery_ = state.battery;
   pose_ = state.pose;
   motion_ = state.last;
   belts_.set_motion(motion_, ground_.support(number_));
   stride_ = BeltStrideRecorder(pose_);
-  now_ = body_pose();
-  velocity_ << heading() * Eigen::Vector2d(motion_.forward_m, motion_.sideways_m) / kTick_s, 0.0;
-  imu_velocity_ = imu_velocity_before_ = velocity_;
-  rate_body_ << 0.0, 0.0, motion_.turn_rad / kTick_s;
-  count_wraps();
+  begin_at(state, body_pose());
 }
 
 void StandInRobot::step_motors(const DutyRatio& duty, double dt) {
-  double current = 0.0;
-  for (std::size_t i = 0; i < shafts_.size(); ++i) {
-    current += std::max(0.0, duty[i] * shafts_[i].current_a());
-    const double traction = on_side_ ? 0.0 : belts_.traction_n()[i];
-    shafts_[i].step(duty[i] * battery_.terminal_v, -traction * kind_.tracks.radius_m, dt);
+  std::array<double, 2> torque_nm{};
+  for (std::size_t i = 0; i < torque_nm.size(); ++i) {
+    const double traction = on_side() ? 0.0 : belts_.traction_n()[i];
+    torque_nm[i] = -traction * kind_.tracks.radius_m;
   }
-  battery_.step(current, dt);
+  step_shafts(duty, torque_nm, dt);
 }
 
 void StandInRobot::move() {
-  if (on_side_) return;
+  if (on_side()) return;
   motion_ = belts_.step(track_speed_m_per_s(kLeft), track_speed_m_per_s(kRight),
                         ground_.support(number_), push_);
   push_.setZero();
@@ -93,12 +69,12 @@ void StandInRobot::follow(const PlanarPose& pose, const FrameMotion& motion) {
 }
 
 void StandInRobot::press() {
-  if (!on_side_) ground_.press(number_, stride_.take(pose_));
+  if (!on_side()) ground_.press(number_, stride_.take(pose_));
 }
 
 void StandInRobot::end_frame() {
-  if (on_side_) {
-    set_at_rest();
+  if (on_side()) {
+    stand_still();
     return;
   }
   const TrackPlane& to = ground_.plane(number_);
@@ -108,15 +84,7 @@ void StandInRobot::end_frame() {
   const double carried = plane_.forward * motion_.forward_m + plane_.left * motion_.sideways_m;
   plane_ = {part(plane_.height_m + carried, to.height_m), part(plane_.forward, to.forward),
             part(plane_.left, to.left)};
-  const BodyPose before = now_;
-  now_ = body_pose();
-  const Eigen::Matrix3d& from = before.rotation;
-  const Eigen::Matrix3d& now = now_.rotation;
-  rate_body_ = rotation_vector(Eigen::Quaterniond(from.transpose() * now)) / kTick_s;
-  velocity_ = (now_.place - before.place) / kTick_s;
-  imu_velocity_before_ = imu_velocity_;
-  imu_velocity_ = velocity_ + (now - from) * kind_.imu / kTick_s;
-  count_wraps();
+  move_body(body_pose());
 }
 
 void StandInRobot::push(const Eigen::Vector2d& at, const Eigen::Vector2d& force) {
@@ -136,7 +104,7 @@ std::array<Eigen::Vector2d, 4> StandInRobot::corners() const {
 
 Eigen::Vector2d StandInRobot::velocity_at(const Eigen::Vector2d& place) const {
   const Eigen::Vector2d arm = place - middle();
-  return velocity_.head<2>() + motion_.turn_rad / kTick_s * Eigen::Vector2d(-arm.y(), arm.x());
+  return velocity().head<2>() + motion_.turn_rad / kTick_s * Eigen::Vector2d(-arm.y(), arm.x());
 }
 
 StandInRobot::BodyPose StandInRobot::body_pose() const {
@@ -150,71 +118,8 @@ StandInRobot::BodyPose StandInRobot::body_pose() const {
           rotation_from(attitude)};
 }
 
-void StandInRobot::set_at_rest() {
-  motion_ = {};
-  velocity_.setZero();
-  imu_velocity_before_.setZero();
-  imu_velocity_.setZero();
-  rate_body_.setZero();
-}
-
-void StandInRobot::count_wraps() {
-  const HeightField& ground = ground_.surface();
-  if (!ground.wrap()) return;
-  wrap_counts_ = {beds_off(now_.place.x(), ground.x_max() - ground.x_min()),
-                  beds_off(now_.place.y(), ground.y_max() - ground.y_min())};
-}
-
-ImuTruth StandInRobot::motion() const {
-  ImuTruth truth;
-  truth.body_to_world = now_.rotation;
-  truth.mean_rate_rad_per_s = rate_body_;
-  truth.mean_specific_force =
-      truth.body_to_world.transpose() * ((imu_velocity_ - imu_velocity_before_) / kTick_s +
-                                         kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());
-  truth.altitude_m = now_.place.z();
-  return truth;
-}
-
-void StandInRobot::lay_on_side() {
-  on_side_ = true;
-  now_.attitude.roll = -std::numbers::pi / 2.0;
-  now_.attitude.pitch = 0.0;
-  now_.rotation = rotation_from(now_.attitude);
-  set_at_rest();
-}
-
-ChassisState StandInRobot::chassis() const {
-  ChassisState state;
-  state.pose.linear() = now_.rotation;
-  state.pose.translation() = now_.place;
-  const HeightField& ground = ground_.surface();
-  if (ground.wrap()) {
-    state.pose.translation().x() -=
-        static_cast<double>(wrap_counts_[0]) * (ground.x_max() - ground.x_min());
-    state.pose.translation().y() -=
-        static_cast<double>(wrap_counts_[1]) * (ground.y_max() - ground.y_min());
-  }
-  state.velocity = velocity_;
-  state.omega_body = rate_body_;
-  return state;
-}
-
-double StandInRobot::track_speed_m_per_s(Side side) const {
-  return shafts_[static_cast<std::size_t>(side)].omega_rad_per_s() * kind_.tracks.radius_m;
-}
-
-double StandInRobot::shaft_angle_rad(Side side) const {
-  const auto i = static_cast<std::size_t>(side);
-  return shafts_[i].angle_rad() + angle_offset_rad_[i];
-}
-
-double StandInRobot::current_a(Side side) const {
-  return shafts_[static_cast<std::size_t>(side)].current_a();
-}
-
 double StandInRobot::load_n(Side side) const {
-  if (on_side_) return 0.0;
+  if (on_side()) return 0.0;
   double share = 0.0;
   for (const double load : ground_.support(number_).load[static_cast<std::size_t>(side)]) {
     share += load;
@@ -224,11 +129,6 @@ double StandInRobot::load_n(Side side) const {
 
 double StandInRobot::sinkage_m(Side side) const {
   return ground_.sinkage_m(number_, static_cast<std::size_t>(side));
-}
-
-double StandInRobot::ground_speed_m_per_s(Side side) const {
-  const double arm = side == kLeft ? kind_.tracks.half_tread_m : -kind_.tracks.half_tread_m;
-  return now_.rotation.col(0).dot(velocity_) - rate_body_.z() * arm;
 }
 
 }  // namespace screed

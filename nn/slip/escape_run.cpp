@@ -24,19 +24,22 @@ constexpr std::uint64_t kEscapeReportTicks = kTickRate_hz / 5;
 constexpr double kAngleUnitsPerDegree = 65536.0 / 360.0;
 
 /// The oracle's hands on the motors: the robot's drive control with other commands.
-class Driver {
+class Driver : public RobotWatch {
  public:
-  Driver(const Manoeuvre& manoeuvre, const Parameters& parameters, const SensorSample& sample)
+  /// Of the world's robot, from now on.
+  Driver(const Manoeuvre& manoeuvre, const World& world)
       : manoeuvre_(manoeuvre),
-        control_(board_constants_of(kDefaultBoard), parameters),
-        left_(sample.encoder_left),
-        right_(sample.encoder_right) {}
+        world_(world),
+        control_(board_constants_of(kDefaultBoard), world.robot().settings().parameters),
+        left_(world.sample().encoder_left),
+        right_(world.sample().encoder_right) {}
 
-  void tick(const SensorSample& sample, const Robot& robot, RobotOutput& output) {
+  void on_output(std::size_t /*robot*/, RobotOutput& output) override {
+    const SensorSample& sample = world_.sample();
     const DriveMeasurement measured = {
         static_cast<std::int16_t>(static_cast<std::uint16_t>(sample.encoder_left - left_)),
         static_cast<std::int16_t>(static_cast<std::uint16_t>(sample.encoder_right - right_)),
-        robot.attitude().yaw_rate(), kBattery_mv};
+        world_.firmware().attitude().yaw_rate(), kBattery_mv};
     left_ = sample.encoder_left;
     right_ = sample.encoder_right;
     const DriveOutput duty = control_.tick(command(), measured);
@@ -60,6 +63,7 @@ class Driver {
   }
 
   const Manoeuvre& manoeuvre_;
+  const World& world_;
   DriveControl control_;
   std::uint16_t left_;
   std::uint16_t right_;
@@ -81,9 +85,8 @@ Trial run_trial(const StuckScenario& scenario, const Parameters& parameters,
                 const Manoeuvre* manoeuvre, const TaskProgress& progress) {
   Experiment e = scenario.experiment;
   e.parameters = parameters;
-  const std::unique_ptr<World> world = make_world(e, nullptr);
-  Robot robot(board_constants_of(kDefaultBoard), parameters, credentials_of(e));
-  RobotOutput output{};
+  const std::unique_ptr<World> world = make_world(e);
+  const Robot& robot = world->firmware();
   SlipDrive run = drive_of(scenario);
   std::optional<Driver> driver;
   Trial trial;
@@ -91,9 +94,8 @@ Trial run_trial(const StuckScenario& scenario, const Parameters& parameters,
   const double after_s = manoeuvre == nullptr ? kEscapeTime_s : kManoeuvreTime_s;
   while (world->time_s() < (trial.stuck ? trial.alarm_s + after_s : kDrive_s)) {
     if (world->ticks() % kEscapeReportTicks == 0) report_progress(progress, "driving", 0.0);
-    world->advance();
-    robot.tick(world->sample(), output);
-    const Eigen::Vector2d position = world->plant().unwrapped_position().head<2>();
+    world->advance(driver ? &*driver : nullptr);
+    const Eigen::Vector2d position = world->plant().robot(0).unwrapped_position().head<2>();
     if (trial.stuck) {
       trial.faults = robot.supervisor().faults();
       if (trial.faults != 0 && !driver) break;
@@ -102,21 +104,19 @@ Trial run_trial(const StuckScenario& scenario, const Parameters& parameters,
         trial.out_s = world->time_s() - trial.alarm_s;
         break;
       }
-      if (driver) driver->tick(world->sample(), robot, output);
     } else {
       trial.faults = robot.supervisor().faults();
       if (trial.faults != 0) break;
-      run.ticks.push_back(slip_tick_of(*world, world->sample(), robot));
+      run.ticks.push_back(slip_tick_of(*world));
       const std::size_t end = run.ticks.size();
       if (run.ticks.back().running && robot.slip_watch().stuck()) {
         if (TrueMotion(run).travel_share(end - std::min(end, kHalfSecond), end) > kFreeShare) break;
         trial.stuck = true;
         trial.alarm_s = world->time_s();
         alarm_position = position;
-        if (manoeuvre != nullptr) driver.emplace(*manoeuvre, parameters, world->sample());
+        if (manoeuvre != nullptr) driver.emplace(*manoeuvre, *world);
       }
     }
-    world->apply(output);
   }
   return trial;
 }

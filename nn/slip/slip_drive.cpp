@@ -56,7 +56,9 @@ SlipDrive recorded_drive(const StuckScenario& scenario, const TaskProgress& prog
 
 }  // namespace
 
-SlipTick slip_tick_of(const World& world, const SensorSample& sample, const Robot& robot) {
+SlipTick slip_tick_of(const World& world) {
+  const SensorSample& sample = world.sample();
+  const Robot& robot = world.firmware();
   const VehicleState& vehicle = world.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Vector3d velocity = chassis.pose.linear().transpose() * chassis.velocity;
@@ -87,20 +89,15 @@ SlipDrive drive(const StuckScenario& scenario, const TaskProgress& progress) {
   SlipDrive driven = drive_of(scenario);
   const Experiment& e = scenario.experiment;
   try {
-    const std::unique_ptr<World> world = make_world(e, nullptr);
-    Robot robot(board_constants_of(kDefaultBoard), e.parameters, credentials_of(e));
-    RobotOutput output{};
+    const std::unique_ptr<World> world = make_world(e);
     const auto ticks =
         static_cast<std::size_t>(std::lround(e.experiment.duration_s * kTickRate_hz));
     driven.ticks.reserve(ticks);
     for (std::size_t i = 0; i < ticks; ++i) {
       if (i % kReportTicks == 0) report_progress(progress, kTask, i, ticks);
       world->advance();
-      const SensorSample sample = world->sample();
-      robot.tick(sample, output);
-      driven.ticks.push_back(slip_tick_of(*world, sample, robot));
-      world->apply(output);
-      if (robot.supervisor().faults() != 0) break;
+      driven.ticks.push_back(slip_tick_of(*world));
+      if (world->firmware().supervisor().faults() != 0) break;
     }
   } catch (const RunError& error) {
     driven.failure = error.what();

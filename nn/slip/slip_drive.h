@@ -45,7 +45,7 @@ struct SlipDrive {
 };
 
 /// What the tick that the robot has just had was.
-SlipTick slip_tick_of(const World& world, const SensorSample& sample, const Robot& robot);
+SlipTick slip_tick_of(const World& world);
 
 /// The drive of a scenario before its first tick.
 SlipDrive drive_of(const StuckScenario& scenario);

@@ -57,9 +57,9 @@ GroundCheck check_ground(const std::filesystem::path& session_folder, double sec
   PlantOptions options;
   options.soil = recording.soil;
   options.vehicle.motor = board_motor(info.board_name).motor;
-  options.start.x_m = recording.poses[begin].x_m;
-  options.start.y_m = recording.poses[begin].y_m;
-  options.start.attitude.heading = recording.poses[begin].heading_rad;
+  options.starts[0].x_m = recording.poses[begin].x_m;
+  options.starts[0].y_m = recording.poses[begin].y_m;
+  options.starts[0].attitude.heading = recording.poses[begin].heading_rad;
   const HeightField before =
       coarse_ground(field_of(recording.session.heights_after(begin + 1)), kStandInCell_m);
   StandInPlant plant(before, make_robot_model(recording.experiment, info.board_name), options);

@@ -42,9 +42,10 @@ Rollout by_firmware(const RecordedDrive& recording, std::uint64_t start, std::ui
   plant.set_state(recording.state(start, robot.counts_per_turn()));
   RolloutChecker checker(recording, start);
   for (std::uint64_t row = start + 1; row < end; ++row) {
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.duty_ratio());
+    const DutyRatio duty = robot.duty_ratio();
+    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step({&duty, 1});
     checker.add_row(row, plant.pose());
-    robot.tick(plant, recording.samples[row]);
+    robot.tick(plant.robot(0), recording.samples[row]);
   }
   return checker.take();
 }
@@ -85,9 +86,9 @@ SessionRollouts roll_out(const std::filesystem::path& session_folder,
       report_progress(options.progress, "rolling out", row * surrogates.size() + (end - row) * i,
                       rows * surrogates.size());
       if (!surrogates[i].robot) {
-        plant_options.start.x_m = recording.poses[row].x_m;
-        plant_options.start.y_m = recording.poses[row].y_m;
-        plant_options.start.attitude.heading = recording.poses[row].heading_rad;
+        plant_options.starts[0].x_m = recording.poses[row].x_m;
+        plant_options.starts[0].y_m = recording.poses[row].y_m;
+        plant_options.starts[0].attitude.heading = recording.poses[row].heading_rad;
         StandInPlant plant(coarse_ground(ground, kStandInCell_m), model, plant_options);
         if (options.drive == RolloutDrive::kTracks) {
           plant.set_state(recording.state(row, robot.counts_per_turn()));

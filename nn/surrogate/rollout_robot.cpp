@@ -30,23 +30,23 @@ void RolloutRobot::follow(const SensorSample& recorded) {
   imu_.measure(at_rest, unused);  // so that its generators stand where they stood
 }
 
-SensorSample RolloutRobot::measure(const Environment& world, const SensorSample& recorded) {
+SensorSample RolloutRobot::measure(const RobotView& robot, const SensorSample& recorded) {
   const auto counts = [&](Side side) {
-    const double turns = world.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
+    const double turns = robot.vehicle().shaft_angle_rad(side) / (2.0 * std::numbers::pi);
     return static_cast<std::uint16_t>(
         static_cast<std::int64_t>(std::floor(turns * counts_per_turn_)) & 0xFFFF);
   };
   SensorSample sample = recorded;
-  imu_.measure(world.motion(), sample);
+  imu_.measure(robot.motion(), sample);
   sample.encoder_left = counts(kLeft);
   sample.encoder_right = counts(kRight);
   sample.battery = static_cast<std::uint16_t>(
-      std::clamp(std::round(world.battery().terminal_v / volt_per_lsb_), 0.0, double{kBatteryMax}));
+      std::clamp(std::round(robot.battery().terminal_v / volt_per_lsb_), 0.0, double{kBatteryMax}));
   return sample;
 }
 
-void RolloutRobot::tick(const Environment& world, const SensorSample& recorded) {
-  firmware_.tick(measure(world, recorded), output_);
+void RolloutRobot::tick(const RobotView& robot, const SensorSample& recorded) {
+  firmware_.tick(measure(robot, recorded), output_);
 }
 
 std::array<double, 2> RolloutRobot::duty_ratio() const {

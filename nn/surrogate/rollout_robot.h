@@ -20,12 +20,12 @@ class RolloutRobot {
   /// Goes on by a row of the recording: the firmware receives the sample it received then, and the
   /// sensors' noise advances as it did.
   void follow(const SensorSample& recorded);
-  /// A tick on its own: the sensors measure the world. Of the recorded sample time and radio
+  /// A tick on its own: the sensors measure the robot. Of the recorded sample time and radio
   /// remain.
-  void tick(const Environment& world, const SensorSample& recorded);
+  void tick(const RobotView& robot, const SensorSample& recorded);
 
   /// The sample of such a tick: of the recorded one time and radio remain.
-  SensorSample measure(const Environment& world, const SensorSample& recorded);
+  SensorSample measure(const RobotView& robot, const SensorSample& recorded);
 
   /// The last answer of the firmware: what the motors receive of the battery voltage, -1..1.
   std::array<double, 2> duty_ratio() const;

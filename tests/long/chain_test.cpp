@@ -8,6 +8,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/core/gravity.h"
 #include "tests/sitl/test_drive.h"
+#include "tests/step_one.h"
 
 namespace screed::testing {
 namespace {
@@ -45,9 +46,9 @@ struct Worst {
 void run(Plant& plant, double seconds, double left, double right, Worst& worst) {
   const int64_t steps = std::lround(seconds / plant.step_s());
   for (int64_t i = 0; i < steps; ++i) {
-    plant.step({left, right});
+    testing::step_one(plant, {left, right});
     for (const Side side : {kLeft, kRight}) {
-      const ChainTrack& chain = *plant.vehicle().chain(side);
+      const ChainTrack& chain = *plant.robot(0).vehicle().chain(side);
       const double length = chain.length_m() / chain.unloaded_length_m();
       // fmax and fmin pass a NaN over; the sum does not.
       ASSERT_TRUE(std::isfinite(length + chain.farthest_from_loop_m()));
@@ -56,7 +57,7 @@ void run(Plant& plant, double seconds, double left, double right, Worst& worst) 
       worst.shortest = std::min(worst.shortest, length);
     }
     worst.fastest_m_per_s =
-        std::max(worst.fastest_m_per_s, std::abs(plant.vehicle().chassis().velocity.z()));
+        std::max(worst.fastest_m_per_s, std::abs(plant.robot(0).vehicle().chassis().velocity.z()));
   }
 }
 
@@ -68,7 +69,7 @@ void expect_whole(const Worst& worst, double most_from_loop_m) {
 
 TEST(ChainTrack, HangsOnItsWheelsWithItsTension) {
   Plant plant(level(), rover5(), chains());
-  const ChainTrack& chain = *plant.vehicle().chain(kLeft);
+  const ChainTrack& chain = *plant.robot(0).vehicle().chain(kLeft);
   EXPECT_EQ(chain.pins(), 56u);
   // 10 N stretch it by a thousandth; the weight on it changes that little.
   EXPECT_NEAR(chain.length_m() / chain.unloaded_length_m(), 1.001, 0.0002);
@@ -78,12 +79,12 @@ TEST(ChainTrack, HangsOnItsWheelsWithItsTension) {
 TEST(ChainTrack, StaysAtRest) {
   for (const double slope_deg : {0.0, 20.0}) {
     WorldOptions options = chains();
-    options.start.attitude.pitch = slope_deg * kDeg;
+    options.starts[0].attitude.pitch = slope_deg * kDeg;
     Plant plant(HeightField::ramp(10.0, 0.1, slope_deg), rover5(), options);
-    const Eigen::Vector3d begin = plant.vehicle().chassis().pose.translation();
+    const Eigen::Vector3d begin = plant.robot(0).vehicle().chassis().pose.translation();
     Worst worst;
     run(plant, 20.0, 0.0, 0.0, worst);
-    const ChassisState end = plant.vehicle().chassis();
+    const ChassisState end = plant.robot(0).vehicle().chassis();
     EXPECT_LT((end.pose.translation() - begin).norm(), 1e-6) << slope_deg;
     EXPECT_LT(end.velocity.norm() + end.omega_body.norm(), 1e-9) << slope_deg;
   }
@@ -94,13 +95,14 @@ TEST(ChainTrack, DrivesAtTheSpeedOfItsSprockets) {
   Plant plant(level(), rover5(), chains());
   Worst worst;
   run(plant, 1.0, 0.5, 0.5, worst);
-  const double begin = plant.vehicle().chassis().pose.translation().x();
-  const double angle = plant.vehicle().shaft_angle_rad(kLeft);
+  const double begin = plant.robot(0).vehicle().chassis().pose.translation().x();
+  const double angle = plant.robot(0).vehicle().shaft_angle_rad(kLeft);
   run(plant, 60.0, 0.5, 0.5, worst);
-  const double rolled = (plant.vehicle().shaft_angle_rad(kLeft) - angle) * 0.03;
+  const double rolled = (plant.robot(0).vehicle().shaft_angle_rad(kLeft) - angle) * 0.03;
   EXPECT_GT(rolled, 5.0);
-  EXPECT_NEAR(plant.vehicle().chassis().pose.translation().x() - begin, rolled, 0.05 * rolled);
-  EXPECT_NEAR(plant.vehicle().chassis().pose.translation().y(), 0.0, 0.05);
+  EXPECT_NEAR(plant.robot(0).vehicle().chassis().pose.translation().x() - begin, rolled,
+              0.05 * rolled);
+  EXPECT_NEAR(plant.robot(0).vehicle().chassis().pose.translation().y(), 0.0, 0.05);
   expect_whole(worst, 0.002);
   EXPECT_LT(worst.fastest_m_per_s, 0.03);
 }
@@ -109,8 +111,8 @@ TEST(ChainTrack, TurnsInPlace) {
   Plant plant(level(), rover5(), chains());
   Worst worst;
   run(plant, 60.0, -0.6, 0.6, worst);
-  EXPECT_LT(plant.vehicle().chassis().pose.translation().head<2>().norm(), 0.1);
-  EXPECT_GT(plant.vehicle().chassis().omega_body.z(), 0.5);
+  EXPECT_LT(plant.robot(0).vehicle().chassis().pose.translation().head<2>().norm(), 0.1);
+  EXPECT_GT(plant.robot(0).vehicle().chassis().omega_body.z(), 0.5);
   expect_whole(worst, 0.002);
 }
 
@@ -118,29 +120,29 @@ TEST(ChainTrack, CrossesRoughGround) {
   Plant plant(rough(0.0125), rover5(), chains());
   Worst worst;
   run(plant, 60.0, 0.8, 0.7, worst);
-  EXPECT_GT(plant.vehicle().shaft_angle_rad(kLeft) * 0.03, 10.0);
+  EXPECT_GT(plant.robot(0).vehicle().shaft_angle_rad(kLeft) * 0.03, 10.0);
   expect_whole(worst, 0.01);
 }
 
 TEST(ChainTrack, SurvivesAFallAndSpinsUpsideDown) {
   WorldOptions options = chains();
-  options.start.z_m = 0.4;
+  options.starts[0].z_m = 0.4;
   Plant fall(level(), rover5(), options);
   Worst worst;
   run(fall, 3.0, 0.0, 0.0, worst);
   expect_whole(worst, 0.02);
-  EXPECT_LT(fall.vehicle().chassis().velocity.norm(), 1e-6);
+  EXPECT_LT(fall.robot(0).vehicle().chassis().velocity.norm(), 1e-6);
 
-  options.start.attitude.roll = std::numbers::pi;
+  options.starts[0].attitude.roll = std::numbers::pi;
   Plant roof(level(), rover5(), options);
   run(roof, 5.0, 0.5, 0.5, worst);
   expect_whole(worst, 0.02);
-  EXPECT_LT(roof.vehicle().chassis().pose.translation().head<2>().norm(), 0.1);
+  EXPECT_LT(roof.robot(0).vehicle().chassis().pose.translation().head<2>().norm(), 0.1);
 }
 
 TEST(ChainTrack, ClimbsTwentyDegrees) {
   WorldOptions options = chains(0.1, 0.0);
-  options.start.x_m = -4.0;
+  options.starts[0].x_m = -4.0;
   TestDrive drive(HeightField::ramp(10.0, 0.1, 20.0), options);
   ASSERT_TRUE(drive.start());
   const Eigen::Vector3d begin = drive.position();
@@ -153,11 +155,11 @@ TEST(ChainTrack, ClimbsTwentyDegrees) {
 TEST(ChainTrack, TheStartHeadingDoesNotMatter) {
   const auto displacement = [](double heading_deg) {
     WorldOptions options = chains();
-    options.start.attitude.heading = heading_deg * kDeg;
+    options.starts[0].attitude.heading = heading_deg * kDeg;
     Plant plant(level(), rover5(), options);
     Worst worst;
     run(plant, 5.0, 0.6, 0.5, worst);
-    return plant.vehicle().chassis().pose.translation().head<2>().norm();
+    return plant.robot(0).vehicle().chassis().pose.translation().head<2>().norm();
   };
   EXPECT_NEAR(displacement(57.0), displacement(0.0), 1e-3);
 }
@@ -165,14 +167,14 @@ TEST(ChainTrack, TheStartHeadingDoesNotMatter) {
 // Lighter wheels carry it, the robot's mass is the same; in the air nothing pushes it sideways.
 TEST(ChainTrack, KeepsMassAndMomentum) {
   WorldOptions options = chains();
-  options.start.z_m = 20.0;
+  options.starts[0].z_m = 20.0;
   Plant plant(level(), rover5(), options);
   OdeWorld belt_world;
   const Vehicle belt(belt_world, rover5(), VehicleOptions{});
-  EXPECT_NEAR(plant.vehicle().mass_kg(), belt.mass_kg(), 1e-12);
+  EXPECT_NEAR(plant.robot(0).vehicle().mass_kg(), belt.mass_kg(), 1e-12);
   Worst worst;
   run(plant, 1.0, 1.0, -1.0, worst);
-  const ChassisState state = plant.vehicle().chassis();
+  const ChassisState state = plant.robot(0).vehicle().chassis();
   EXPECT_NEAR(state.velocity.z(), -kGravity_m_per_s2, 0.005);
   EXPECT_LT(state.velocity.head<2>().norm(), 0.005);
   expect_whole(worst, 0.002);
@@ -183,7 +185,7 @@ TEST(ChainTrack, TheFirmwareDrivesItOnSoil) {
     SCOPED_TRACE(soil);
     WorldOptions options = chains(0.1, 0.0);
     options.soil = soil_preset(soil);
-    options.start.x_m = -0.7;
+    options.starts[0].x_m = -0.7;
     TestDrive drive(HeightField::flat(2.0, 0.005), options);
     ASSERT_TRUE(drive.start());
     const Eigen::Vector3d begin = drive.position();
@@ -208,7 +210,7 @@ TEST(ChainTrack, CrossesRoughSoil) {
 TEST(ChainTrack, StaysOnItsWheelsOnGravel) {
   WorldOptions options = chains();
   options.particles = ParticleOptions{};
-  options.start.x_m = -0.2;
+  options.starts[0].x_m = -0.2;
   Plant plant(
       HeightField::from_function(
           121, 121, 0.01, false,
@@ -216,7 +218,7 @@ TEST(ChainTrack, StaysOnItsWheelsOnGravel) {
       rover5(), options);
   Worst worst;
   run(plant, 2.0, 0.7, 0.7, worst);
-  EXPECT_GT(plant.vehicle().chassis().pose.translation().x(), 0.0);
+  EXPECT_GT(plant.robot(0).vehicle().chassis().pose.translation().x(), 0.0);
   for (const double spin : {0.8, -0.8}) run(plant, 6.0, -spin, spin, worst);
   run(plant, 2.0, -0.7, -0.7, worst);
   expect_whole(worst, 0.02);

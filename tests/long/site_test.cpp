@@ -24,7 +24,7 @@ std::unique_ptr<TestDrive> at_wall(double heading_deg) {
   parameters.site_x() = 1500;
   parameters.site_y() = 1500;
   WorldOptions options = drive_options(0.15, 0.0);
-  options.start.attitude.heading = heading_deg * std::numbers::pi / 180.0;
+  options.starts[0].attitude.heading = heading_deg * std::numbers::pi / 180.0;
   HeightField field = HeightField::flat(3.0, 0.1);
   field.add_walls();
   auto drive = std::make_unique<TestDrive>(std::move(field), options, parameters);

@@ -37,7 +37,7 @@ StraightOn straight_on(const SoilParameters& soil, double speed_m_per_s,
                        const Parameters& parameters) {
   WorldOptions options = drive_options(speed_m_per_s, 0.0);
   options.soil = soil;
-  options.start.x_m = -1.2;
+  options.starts[0].x_m = -1.2;
   TestDrive drive(HeightField::flat(4.0, 0.005), options, parameters);
   if (!drive.start()) ADD_FAILURE() << "does not start";
   drive.run(4.0);
@@ -86,8 +86,8 @@ TEST(SoilDriving, KeepsItsHeadingAtFullSpeed) {
     for (const double speed : {0.25, -0.25}) {
       WorldOptions options = drive_options(speed, 0.0);
       options.soil = soil_preset(soil);
-      options.start.y_m = speed > 0.0 ? -2.0 : 2.0;
-      options.start.attitude.heading = 90.0 * kDeg;
+      options.starts[0].y_m = speed > 0.0 ? -2.0 : 2.0;
+      options.starts[0].attitude.heading = 90.0 * kDeg;
       TestDrive drive(HeightField::ramp(6.0, 0.01, 5.0), options);
       ASSERT_TRUE(drive.start());
       const double start = drive.attitude().heading;

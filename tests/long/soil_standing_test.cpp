@@ -55,9 +55,9 @@ WorldOptions standing_on(double slope_deg, double heading_deg) {
   WorldOptions options = drive_options(0.0, 0.0);
   const double slope = slope_deg * kDeg;
   const double heading = heading_deg * kDeg;
-  options.start.attitude.heading = heading;
-  options.start.attitude.pitch = std::atan(std::cos(heading) * std::tan(slope));
-  options.start.attitude.roll = -std::asin(std::sin(heading) * std::sin(slope));
+  options.starts[0].attitude.heading = heading;
+  options.starts[0].attitude.pitch = std::atan(std::cos(heading) * std::tan(slope));
+  options.starts[0].attitude.roll = -std::asin(std::sin(heading) * std::sin(slope));
   return options;
 }
 
@@ -68,7 +68,7 @@ TEST(SoilStanding, StaysOnSlopesBelowTheFrictionAngle) {
       if (kSanitized && heading_deg != 45.0) continue;
       WorldOptions options = drive_options(0.0, 0.0);
       options.soil = preset.soil;
-      options.start.attitude.heading = heading_deg * kDeg;
+      options.starts[0].attitude.heading = heading_deg * kDeg;
       const double slope_deg = share * preset.soil.friction_deg;
       EXPECT_LT(creep_m_per_minute(HeightField::ramp(3.0, 0.01, slope_deg), options, 5.0),
                 kMaxCreep_m_per_minute)

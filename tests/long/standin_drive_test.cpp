@@ -14,7 +14,6 @@
 namespace screed {
 namespace {
 
-using testing::drive_parameters;
 using testing::rover5;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
@@ -25,28 +24,16 @@ WorldOptions on_soil(const char* preset = "viper") {
   return options;
 }
 
-struct StandInDrive {
+struct StandInDrive : testing::TestDrive {
   StandInDrive(const HeightField& ground, const WorldOptions& options)
-      : world(std::make_unique<StandInPlant>(ground, rover5(), options), kBoard, options, nullptr),
-        robot(kBoard, drive_parameters(), credentials_of(test_key())) {}
+      : TestDrive(std::make_unique<StandInPlant>(ground, rover5(), options), options) {}
 
-  void run(double seconds) {
-    for (int64_t i = 0; i < std::lround(seconds * kTickRate_hz); ++i) {
-      world.advance();
-      robot.tick(world.sample(), output);
-      world.apply(output);
-    }
-  }
-  Eigen::Vector3d place() const { return world.plant().unwrapped_position(); }
-
-  World world;
-  Robot robot;
-  RobotOutput output{};
+  Eigen::Vector3d place() const { return world.plant().robot(0).unwrapped_position(); }
 };
 
 TEST(StandInDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.1, 0.0};
+  options.robots[0].drive = DriveCommand{0.1, 0.0};
   StandInDrive drive(HeightField::flat(4.0, 0.02), options);
   drive.run(8.0);
   ASSERT_TRUE(drive.robot.supervisor().running());
@@ -58,7 +45,7 @@ TEST(StandInDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
 
 TEST(StandInDrive, FirmwareTurnsAtTheCommandedRateAndSensorsFeelTheSlope) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.0, 30.0};
+  options.robots[0].drive = DriveCommand{0.0, 30.0};
   StandInDrive drive(HeightField::ramp(4.0, 0.02, 6.0), options);
   drive.run(8.0);
   const double before = attitude_of(drive.world.vehicle().chassis().pose.linear()).heading;
@@ -88,20 +75,20 @@ TEST(StandInDrive, WhatIsNotDrivenStays) {
 
 TEST(StandInDrive, WrapsAroundAndKeepsTheWayMade) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.2, 0.0};
+  options.robots[0].drive = DriveCommand{0.2, 0.0};
   StandInDrive drive(
       HeightField::from_function(80, 80, 0.02, true, [](double, double) { return 0.0; }), options);
   drive.run(20.0);
   EXPECT_GT(drive.place().x(), 1.6);
-  EXPECT_GT(drive.world.plant().wrap_counts()[0], 0);
+  EXPECT_GT(drive.world.plant().robot(0).wrap_counts()[0], 0);
   EXPECT_LT(std::abs(drive.world.vehicle().chassis().pose.translation().x()), 0.81);
 }
 
 TEST(StandInDrive, StaysBetweenWallsAndTurnsAlongThem) {
   for (const double heading_deg : {0.0, 40.0}) {
     WorldOptions options = on_soil();
-    options.drive = DriveCommand{0.2, 0.0};
-    options.start.attitude.heading = heading_deg * kRadPerDeg;
+    options.robots[0].drive = DriveCommand{0.2, 0.0};
+    options.starts[0].attitude.heading = heading_deg * kRadPerDeg;
     HeightField field = HeightField::flat(1.6, 0.02);
     field.add_walls();
     StandInDrive drive(field, options);
@@ -112,7 +99,7 @@ TEST(StandInDrive, StaysBetweenWallsAndTurnsAlongThem) {
     EXPECT_GT(drive.place().x(), 0.5) << heading_deg;
   }
   WorldOptions beyond = on_soil();
-  beyond.start.x_m = 0.75;
+  beyond.starts[0].x_m = 0.75;
   HeightField field = HeightField::flat(1.6, 0.02);
   field.add_walls();
   EXPECT_THROW(StandInPlant(field, rover5(), beyond), InputError);
@@ -120,10 +107,10 @@ TEST(StandInDrive, StaysBetweenWallsAndTurnsAlongThem) {
 
 TEST(StandInDrive, LaidOnItsSideItFaultsAndStays) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.1, 0.0};
+  options.robots[0].drive = DriveCommand{0.1, 0.0};
   StandInDrive drive(HeightField::flat(2.0, 0.02), options);
   drive.run(8.0);
-  drive.world.lay_on_side();
+  drive.world.plant().robot(0).lay_on_side();
   const Eigen::Vector3d begin = drive.place();
   drive.run(3.0);
   EXPECT_NE(drive.robot.supervisor().faults(), 0);
@@ -134,18 +121,18 @@ TEST(StandInDrive, LaidOnItsSideItFaultsAndStays) {
 TEST(StandInPlant, RobotsMeet) {
   PlantOptions options;
   options.soil = soil_preset("viper");
-  options.start = {-0.25, 0.0, {}, {0.0, 0.0, 0.0}};
-  options.further_starts = {{0.25, 0.0, {}, {0.0, 0.0, std::numbers::pi}}};
+  options.starts = {{-0.25, 0.0, {}, {0.0, 0.0, 0.0}},
+                    {0.25, 0.0, {}, {0.0, 0.0, std::numbers::pi}}};
   StandInPlant plant(HeightField::flat(2.0, 0.02), rover5(), options);
   const DutyRatio ahead{0.6, 0.6};
   for (int i = 0; i < 10 * kTickRate_hz * plant.steps_per_tick(); ++i) {
-    plant.step_all(std::array{ahead, ahead});
+    plant.step(std::array{ahead, ahead});
   }
   const double apart =
       (plant.robot(0).unwrapped_position() - plant.robot(1).unwrapped_position()).head<2>().norm();
   EXPECT_GT(apart, 0.19);
   EXPECT_LT(plant.robot(0).unwrapped_position().x(), plant.robot(1).unwrapped_position().x());
-  options.further_starts = {{-0.2, 0.0, {}, {0.0, 0.0, 0.0}}};
+  options.starts = {options.starts[0], {-0.2, 0.0, {}, {0.0, 0.0, 0.0}}};
   EXPECT_THROW(StandInPlant(HeightField::flat(2.0, 0.02), rover5(), options), InputError);
 }
 

@@ -18,11 +18,11 @@
 #include "nn/terrain/terrain_network.h"
 #include "tests/sitl/program.h"
 #include "tests/sitl/test_drive.h"
+#include "tests/step_one.h"
 
 namespace screed {
 namespace {
 
-using testing::drive_parameters;
 using testing::rover5;
 
 WorldOptions on_soil() {
@@ -38,28 +38,16 @@ std::unique_ptr<nn::SurrogatePlant> plant_of(HeightField ground, const WorldOpti
       nn::Surrogate(nn::skid_kinematics(1.0, 0.127), nn::SupportGeometry{}, 1));
 }
 
-struct SurrogateDrive {
+struct SurrogateDrive : testing::TestDrive {
   SurrogateDrive(HeightField ground, const WorldOptions& options)
-      : world(plant_of(std::move(ground), options), kBoard, options, nullptr),
-        robot(kBoard, drive_parameters(), credentials_of(test_key())) {}
+      : TestDrive(plant_of(std::move(ground), options), options) {}
 
-  void run(double seconds) {
-    for (int64_t i = 0; i < std::lround(seconds * kTickRate_hz); ++i) {
-      world.advance();
-      robot.tick(world.sample(), output);
-      world.apply(output);
-    }
-  }
-  Eigen::Vector3d place() const { return world.plant().unwrapped_position(); }
-
-  World world;
-  Robot robot;
-  RobotOutput output{};
+  Eigen::Vector3d place() const { return world.plant().robot(0).unwrapped_position(); }
 };
 
 TEST(SurrogateDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.1, 0.0};
+  options.robots[0].drive = DriveCommand{0.1, 0.0};
   SurrogateDrive drive(HeightField::flat(20.0, 0.1), options);
   drive.run(8.0);
   ASSERT_TRUE(drive.robot.supervisor().running());
@@ -72,7 +60,7 @@ TEST(SurrogateDrive, FirmwareDrivesStraightAtTheCommandedSpeed) {
 
 TEST(SurrogateDrive, FirmwareTurnsAtTheCommandedRateAndSensorsFeelTheSlope) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.0, 30.0};
+  options.robots[0].drive = DriveCommand{0.0, 30.0};
   SurrogateDrive drive(HeightField::ramp(20.0, 0.1, 6.0), options);
   drive.run(8.0);
   const double before = attitude_of(drive.world.vehicle().chassis().pose.linear()).heading;
@@ -90,12 +78,12 @@ TEST(SurrogateDrive, FirmwareTurnsAtTheCommandedRateAndSensorsFeelTheSlope) {
 
 TEST(SurrogateDrive, WrapsAroundAndKeepsTheWayMade) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.2, 0.0};
+  options.robots[0].drive = DriveCommand{0.2, 0.0};
   SurrogateDrive drive(
       HeightField::from_function(32, 32, 0.05, true, [](double, double) { return 0.0; }), options);
   drive.run(20.0);
   EXPECT_GT(drive.place().x(), 1.6);
-  EXPECT_GT(drive.world.plant().wrap_counts()[0], 0);
+  EXPECT_GT(drive.world.plant().robot(0).wrap_counts()[0], 0);
   EXPECT_LT(std::abs(drive.world.vehicle().chassis().pose.translation().x()), 0.81);
 }
 
@@ -103,8 +91,8 @@ TEST(SurrogateDrive, WrapsAroundAndKeepsTheWayMade) {
 TEST(SurrogateDrive, StopsAtWalls) {
   for (const double heading_deg : {0.0, 30.0}) {
     WorldOptions options = on_soil();
-    options.drive = DriveCommand{0.2, 0.0};
-    options.start.attitude.heading = heading_deg * std::numbers::pi / 180.0;
+    options.robots[0].drive = DriveCommand{0.2, 0.0};
+    options.starts[0].attitude.heading = heading_deg * std::numbers::pi / 180.0;
     HeightField field = HeightField::flat(1.6, 0.05);
     field.add_walls();
     SurrogateDrive drive(std::move(field), options);
@@ -118,7 +106,7 @@ TEST(SurrogateDrive, StopsAtWalls) {
     EXPECT_LT(std::abs(drive.place().y()), 0.8 - 0.1);
   }
   WorldOptions beyond = on_soil();
-  beyond.start.x_m = 0.75;
+  beyond.starts[0].x_m = 0.75;
   HeightField field = HeightField::flat(1.6, 0.05);
   field.add_walls();
   EXPECT_THROW(plant_of(std::move(field), beyond), InputError);
@@ -126,10 +114,10 @@ TEST(SurrogateDrive, StopsAtWalls) {
 
 TEST(SurrogateDrive, LaidOnItsSideItFaultsAndStays) {
   WorldOptions options = on_soil();
-  options.drive = DriveCommand{0.1, 0.0};
+  options.robots[0].drive = DriveCommand{0.1, 0.0};
   SurrogateDrive drive(HeightField::flat(20.0, 0.1), options);
   drive.run(8.0);
-  drive.world.lay_on_side();
+  drive.world.plant().robot(0).lay_on_side();
   const Eigen::Vector3d begin = drive.place();
   drive.run(3.0);
   EXPECT_NE(drive.robot.supervisor().faults(), 0);
@@ -144,20 +132,14 @@ const std::string kModels = data_folders().models.string();
 HeightField driven_ground(const HeightField& bed) {
   WorldOptions options;
   options.vehicle.tracks = false;
-  options.drive = DriveCommand{0.12, 9.0};
+  options.robots[0].drive = DriveCommand{0.12, 9.0};
   auto plant = plant_of(bed, options);
   plant->change_ground_by(
       nn::read_terrain_network(kModels + "/terrain_flux.json").change(rover5()));
   const nn::SurrogatePlant& world_plant = *plant;
-  World world(std::move(plant), kBoard, options, nullptr);
-  Robot robot(kBoard, drive_parameters(), credentials_of(test_key()));
-  RobotOutput output{};
-  for (int i = 0; i < 60 * kTickRate_hz; ++i) {
-    world.advance();
-    robot.tick(world.sample(), output);
-    world.apply(output);
-  }
-  EXPECT_EQ(robot.supervisor().faults(), 0);
+  testing::TestDrive drive(std::move(plant), options);
+  drive.run(60.0);
+  EXPECT_EQ(drive.robot.supervisor().faults(), 0);
   EXPECT_EQ(world_plant.terrain().height_sum(), bed.height_sum());
   return world_plant.terrain();
 }
@@ -191,10 +173,10 @@ TEST(SurrogateDrive, TheGroundChangesStrideByStrideAndBearsTheRobot) {
     }
   });
   const double before = plant->vehicle().chassis().pose.translation().z();
-  for (int i = 0; i < 1000; ++i) plant->step({0.0, 0.0});
+  for (int i = 0; i < 1000; ++i) testing::step_one(*plant, {0.0, 0.0});
   EXPECT_TRUE(strides.empty()) << "what stands changes nothing";
   const double speed = [&] {
-    for (int i = 0; i < 1000; ++i) plant->step({0.4, 0.5});
+    for (int i = 0; i < 1000; ++i) testing::step_one(*plant, {0.4, 0.5});
     return plant->vehicle().track_speed_m_per_s(kLeft);
   }();
   ASSERT_EQ(strides.size(), 20U);

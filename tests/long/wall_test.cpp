@@ -14,6 +14,7 @@
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/world/wall_clearance.h"
 #include "tests/sitl/test_drive.h"
+#include "tests/step_one.h"
 
 namespace screed::testing {
 namespace {
@@ -65,7 +66,7 @@ HeightField walled(const Bed& bed) {
 }
 
 double depth_in_walls(const Plant& plant, const BedBounds& bed) {
-  return out_of_walls(bed, plant.vehicle().outline()).cwiseAbs().maxCoeff();
+  return out_of_walls(bed, plant.robot(0).vehicle().outline()).cwiseAbs().maxCoeff();
 }
 
 /// Drives on and looks after every step.
@@ -76,15 +77,17 @@ struct Trial {
   void run(double seconds, double left, double right) {
     const int64_t steps = std::lround(seconds / kStep_s);
     for (int64_t i = 0; i < steps; ++i) {
-      plant.step({left, right});
-      const ChassisState chassis = plant.vehicle().chassis();
+      testing::step_one(plant, {left, right});
+      const ChassisState chassis = plant.robot(0).vehicle().chassis();
       deepest = std::max(deepest, depth_in_walls(plant, bounds));
       fastest = std::max(fastest, chassis.velocity.norm());
       highest = std::max(highest, chassis.pose.translation().z());
     }
   }
-  Eigen::Vector3d at() const { return plant.vehicle().chassis().pose.translation(); }
-  double heading() const { return attitude_of(plant.vehicle().chassis().pose.linear()).heading; }
+  Eigen::Vector3d at() const { return plant.robot(0).vehicle().chassis().pose.translation(); }
+  double heading() const {
+    return attitude_of(plant.robot(0).vehicle().chassis().pose.linear()).heading;
+  }
 
   Plant plant;
   BedBounds bounds;
@@ -111,7 +114,7 @@ std::vector<double> headings_deg(const WallCase& of) {
 TEST_P(Walls, StopARobotThatDrivesIntoThem) {
   for (const double heading_deg : headings_deg(GetParam())) {
     PlantOptions options = options_on(GetParam().bed, GetParam().gear);
-    options.start.attitude.heading = heading_deg * kDeg;
+    options.starts[0].attitude.heading = heading_deg * kDeg;
     // Into the wall backwards at 180 degrees: with its stern.
     const double forward = heading_deg == 180.0 ? -1.0 : 1.0;
     Trial trial(GetParam().bed, options);
@@ -127,7 +130,7 @@ TEST_P(Walls, StopARobotThatDrivesIntoThem) {
 
 TEST_P(Walls, HoldARobotThatSpinsInACorner) {
   PlantOptions options = options_on(GetParam().bed, GetParam().gear);
-  options.start.attitude.heading = 45.0 * kDeg;
+  options.starts[0].attitude.heading = 45.0 * kDeg;
   Trial trial(GetParam().bed, options);
   trial.run(3.0, 1.0, 1.0);
   trial.run(3.0, -1.0, 1.0);
@@ -154,9 +157,9 @@ INSTANTIATE_TEST_SUITE_P(Terrain, Walls, ::testing::ValuesIn(all_cases()), [](co
 TEST(WallDrive, ARobotThatScrapesAlongAWallYaws) {
   for (const double side : {-1.0, 1.0}) {
     PlantOptions options = options_on(kBeds[0], kGears[0]);
-    options.start.attitude.heading = side * 15.0 * kDeg;
-    options.start.x_m = -0.35;
-    options.start.y_m = side * 0.4;
+    options.starts[0].attitude.heading = side * 15.0 * kDeg;
+    options.starts[0].x_m = -0.35;
+    options.starts[0].y_m = side * 0.4;
     Trial trial(kBeds[0], options);
     trial.run(2.5, 0.7, 0.7);
     EXPECT_GT(trial.deepest, 0.0);
@@ -173,7 +176,7 @@ TEST(WallDrive, AStoppedRobotSlipsItsTracks) {
   options.vehicle.track_friction = 0.4;
   options.vehicle.wall_friction = 0.0;
   Trial trial(kBeds[0], options);
-  const Vehicle& vehicle = trial.plant.vehicle();
+  const Vehicle& vehicle = trial.plant.robot(0).vehicle();
   trial.run(1.5, 0.8, 0.8);
   const auto current = [&] { return vehicle.current_a(kLeft) + vehicle.current_a(kRight); };
   const double rolling_a = current();
@@ -194,8 +197,8 @@ TEST(WallDrive, SoilPilesUpAtTheWalls) {
   options.soil = soil_preset("viper");
   options.soil->drag_depth_m = 0.002;
   options.battery.begin_with(0.95);  // 8.1 V
-  options.start.attitude.heading = 45.0 * kDeg;
-  options.start.x_m = options.start.y_m = 0.35;
+  options.starts[0].attitude.heading = 45.0 * kDeg;
+  options.starts[0].x_m = options.starts[0].y_m = 0.35;
   Trial trial(bed, options);
   const auto highest_at_walls = [&] {
     const HeightField& surface = trial.plant.terrain();
@@ -218,9 +221,9 @@ TEST(WallDrive, SoilPilesUpAtTheWalls) {
 
 std::string refusal(double x, double y, double heading_deg, double size_m = 1.2) {
   PlantOptions options;
-  options.start.x_m = x;
-  options.start.y_m = y;
-  options.start.attitude.heading = heading_deg * kDeg;
+  options.starts[0].x_m = x;
+  options.starts[0].y_m = y;
+  options.starts[0].attitude.heading = heading_deg * kDeg;
   HeightField field = HeightField::flat(size_m, size_m / 8.0);
   field.add_walls();
   try {
@@ -257,14 +260,14 @@ TEST(WallDrive, AStartInAWallIsRefusedWithTheAllowedPlaces) {
 
 TEST(WallDrive, ARobotLaidOnItsSideAtAWallIsInTheBed) {
   PlantOptions options = options_on(kBeds[0], kGears[0]);
-  options.start.attitude.heading = 90.0 * kDeg;
-  options.start.x_m = -0.48;
+  options.starts[0].attitude.heading = 90.0 * kDeg;
+  options.starts[0].x_m = -0.48;
   Trial trial(kBeds[0], options);
-  trial.plant.lay_on_side();
+  trial.plant.robot(0).lay_on_side();
   EXPECT_LT(depth_in_walls(trial.plant, trial.bounds), 1e-9);
   trial.run(2.0, 0.0, 0.0);
   EXPECT_LT(trial.deepest, kDepth_m);
-  EXPECT_LT(trial.plant.vehicle().chassis().velocity.norm(), 1e-3);
+  EXPECT_LT(trial.plant.robot(0).vehicle().chassis().velocity.norm(), 1e-3);
 }
 
 // Walls that nobody touches change no bit.
@@ -277,9 +280,9 @@ TEST(WallDrive, FarFromWallsNothingChanges) {
                                           [](double, double) { return 0.1; }),
                rover5(), options);
     between.run(1.0, 0.6, 0.4);
-    for (int i = 0; i < 1000; ++i) open.step({0.6, 0.4});
-    EXPECT_EQ(between.plant.vehicle().chassis().pose.matrix(),
-              open.vehicle().chassis().pose.matrix());
+    for (int i = 0; i < 1000; ++i) testing::step_one(open, {0.6, 0.4});
+    EXPECT_EQ(between.plant.robot(0).vehicle().chassis().pose.matrix(),
+              open.robot(0).vehicle().chassis().pose.matrix());
   }
 }
 

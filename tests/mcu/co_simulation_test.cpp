@@ -11,34 +11,34 @@
 #include "host_sim/devices/sensors/calibration_motion.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/simulation/parity.h"
+#include "host_sim/run/world/image_robot.h"
 #include "tests/mcu/image_drive.h"
 
 namespace screed::mcu {
 namespace {
 
 double forward_speed(ImageDrive& drive) {
-  const ChassisState chassis = drive.plant().vehicle().chassis();
+  const ChassisState chassis = drive.body().vehicle().chassis();
   return chassis.pose.linear().col(0).dot(chassis.velocity);
 }
 
 /// Against a host's robot with these parameters.
-ParityResult parity(ImageDrive& drive, const Parameters& parameters, double seconds,
-                    const CommandKey& key = test_key()) {
-  const std::vector<RobotSettings> robots = {
-      {board_constants_of(kDefaultBoard), parameters, credentials_of(key)}};
-  return run_parity(drive.world, robots, seconds, [](const ParityResult&) { return true; });
+ParityResult parity(ImageDrive& drive, const Parameters& parameters, double seconds) {
+  RobotSettings host = drive.world.robot().settings();
+  host.parameters = parameters;
+  return run_parity(drive.world, host, seconds, [](const ParityResult&) { return true; });
 }
 
 TEST(CoSimulation, TheImageDrivesAtTheSpeedItIsTold) {
   ImageDrive drive;
   drive.set_off();
-  const double begin_x = drive.plant().vehicle().chassis().pose.translation().x();
+  const double begin_x = drive.body().vehicle().chassis().pose.translation().x();
   drive.run(5.0);
-  const double displacement = drive.plant().vehicle().chassis().pose.translation().x() - begin_x;
+  const double displacement = drive.body().vehicle().chassis().pose.translation().x() - begin_x;
   EXPECT_NEAR(displacement, 5.0 * ImageDrive::kSpeed_m_per_s, 0.05);
   EXPECT_NEAR(forward_speed(drive), ImageDrive::kSpeed_m_per_s, 0.02);
   drive.expect_punctual();
-  const CycleReport cycles = drive.world.cycles();
+  const CycleReport cycles = drive.cycles();
   EXPECT_EQ(cycles.encoder_missing, 0);
   EXPECT_GT(cycles.encoder_edges, 2000U);
   EXPECT_EQ(cycles.uart_overruns, 0U);
@@ -60,7 +60,7 @@ TEST(CoSimulation, TheImageOfAnotherNodeIsThatRobotToTheByte) {
   ImageDrive drive(kOtherNodeImage, key);
   Parameters parameters;
   parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
-  const ParityResult result = parity(drive, parameters, 12.0, key);
+  const ParityResult result = parity(drive, parameters, 12.0);
   EXPECT_EQ(result.differing_bytes, 0U) << result.first_difference;
   EXPECT_GT(result.driving_ticks, 300U) << "it took the commands of its ground station";
   EXPECT_FALSE(drive.last_frame(id_of_node(kIdAttitude, kOtherNode)).empty());
@@ -84,7 +84,7 @@ TEST(CoSimulation, WhatTheProgramShowsIsWhatItsPinsDo) {
   drive.set_off();
   for (int i = 0; i < 100; ++i) {
     drive.tick();
-    const Board& board = drive.world.board();
+    const Board& board = drive.board();
     EXPECT_EQ(std::lround(board.motor_duty_ratio(kLeft) * kDutyMax), drive.output.duty_left);
     EXPECT_EQ(std::lround(board.motor_duty_ratio(kRight) * kDutyMax), drive.output.duty_right);
     EXPECT_EQ(board.leds(), drive.output.leds);
@@ -100,7 +100,7 @@ TEST(CoSimulation, SensorsSayWhatTheWorldIs) {
   EXPECT_NEAR(drive.sample.temperature / 480.0 + 42.5, ImuModel::kTemperature_degc, 0.01);
   const double volt =
       drive.sample.battery * board_constants_of(kDefaultBoard).battery_uv_per_lsb * 1e-6;
-  EXPECT_NEAR(volt, drive.plant().battery().terminal_v, 0.02);
+  EXPECT_NEAR(volt, drive.body().battery().terminal_v, 0.02);
 }
 
 TEST(CoSimulation, AHandledRobotFeelsWhatAPersonDoes) {
@@ -151,7 +151,7 @@ TEST(CoSimulation, TheSameSeedGivesTheSameBytesAlsoBesideAnotherWorld) {
 TEST(CoSimulation, AnUndeclaredRegisterEndsTheRunWithItsName) {
   ImageDrive drive;
   drive.run(0.2);
-  Lsm303d& chip = drive.world.board().accel_mag;
+  Lsm303d& chip = drive.board().accel_mag;
   chip.select(Lsm303d::kAddress, false);
   chip.write(0x55);
   chip.write(0x12);
@@ -166,9 +166,9 @@ TEST(CoSimulation, AnUndeclaredRegisterEndsTheRunWithItsName) {
 }
 
 TEST(CoSimulation, RefusesWhatIsNoImage) {
-  CoSimulationOptions options;
-  options.elf = "/no/such/screed.elf";
-  EXPECT_THROW(make_co_simulation(HeightField::flat(2.0, 0.1), {}, options, nullptr), InputError);
+  RobotOptions robot;
+  robot.image = RobotImage{"/no/such/screed.elf", kDefaultBoard};
+  EXPECT_THROW(check_image(robot), InputError);
   EXPECT_THROW(Mcu{kScreedListing}, InputError);
 }
 

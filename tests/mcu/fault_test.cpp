@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint16_t kChipFaults = Fault::kAccelMagChip | Fault::kGyroChip;
 
 I2cChip& chip_of(ImageDrive& drive, uint8_t bit) {
-  Board& board = drive.world.board();
+  Board& board = drive.board();
   if (bit == ChipBit::kAccelMagChip) return board.accel_mag;
   if (bit == ChipBit::kGyroChip) return board.gyro;
   return *board.baro;
@@ -23,9 +23,9 @@ TEST(Fault, ADeviceInTheMiddleOfAByteIsClockedFreeWithin25Ms) {
   ImageDrive drive;
   drive.set_off();
   for (const unsigned clocks : {1U, 5U, 9U}) {
-    drive.world.board().bus.hold_data(clocks);
+    drive.board().bus.hold_data(clocks);
     const std::optional<double> freed =
-        drive.ms_until([&] { return !drive.world.board().bus.data_held(); }, 1.0);
+        drive.ms_until([&] { return !drive.board().bus.data_held(); }, 1.0);
     ASSERT_TRUE(freed.has_value());
     EXPECT_LE(*freed, 25.0) << clocks << " clocks";
     drive.run(1.0);
@@ -56,12 +56,12 @@ TEST(Fault, AChipAbsentAtBootKeepsTheRobotFromBeingArmed) {
 TEST(Fault, ABarometerThatFailsIsReportedAndStopsNothing) {
   ImageDrive drive;
   drive.set_off();
-  drive.world.board().baro->present = false;
+  drive.board().baro->present = false;
   drive.run(2.0);
   EXPECT_TRUE(drive.powered());
   EXPECT_EQ(drive.report().state, RobotState::kRunning);
   EXPECT_EQ(drive.failing_chips(), ChipBit::kBaroChip);
-  drive.world.board().baro->present = true;
+  drive.board().baro->present = true;
   drive.run(2.0);
   EXPECT_EQ(drive.failing_chips(), 0);
   drive.expect_punctual();
@@ -87,7 +87,7 @@ TEST(Fault, AChipThatVanishesStopsTheRobotWithin100Ms) {
 TEST(Fault, AChipThatLosesItsSettingsStopsTheRobotAndIsConfiguredAgain) {
   ImageDrive drive;
   drive.set_off();
-  drive.world.board().gyro.power_up();
+  drive.board().gyro.power_up();
   EXPECT_TRUE(drive.ms_until_stop().has_value());
   drive.run(1.0);
   EXPECT_NE(drive.report().faults & Fault::kGyroChip, 0);
@@ -100,7 +100,7 @@ TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
   ImageDrive drive;
   drive.set_off();
   const std::uint8_t rejected_before = drive.last_frame(kIdLink).at(4);
-  drive.world.image_robot().flood = true;
+  drive.image().flood = true;
   const std::optional<double> stopped = drive.ms_until_stop(4.0);
   ASSERT_TRUE(stopped.has_value());
   EXPECT_LE(*stopped, 1500.0) << "0.5 s without a heartbeat, then the ramp";
@@ -108,12 +108,12 @@ TEST(Fault, AFloodedRadioLineLeavesTheTickAloneAndEndsTheLink) {
   EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
   const std::vector<std::uint8_t> heartbeat = drive.last_frame(kIdHeartbeat);
   EXPECT_EQ(heartbeat.at(7), 0) << "link not alive";
-  EXPECT_GE(drive.world.cycles().uart_received, 15000U) << "no flood";
-  EXPECT_EQ(drive.world.cycles().uart_overruns, 0U);
+  EXPECT_GE(drive.cycles().uart_received, 15000U) << "no flood";
+  EXPECT_EQ(drive.cycles().uart_overruns, 0U);
   drive.expect_punctual();
   EXPECT_NE(drive.last_frame(kIdLink).at(4), rejected_before) << "rejected lines are not counted";
   // No arming by itself when the line is free again.
-  drive.world.image_robot().flood = false;
+  drive.image().flood = false;
   drive.run(2.0);
   EXPECT_EQ(drive.report().state, RobotState::kDisarmed);
 }

@@ -12,9 +12,11 @@
 
 #include "firmware/leveling/leveling.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/physics/world/plant.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/world/mcu_world.h"
+#include "host_sim/run/world/mcu_robot.h"
+#include "host_sim/run/world/world.h"
 #include "tests/mcu/images.h"
 
 namespace screed::mcu {
@@ -26,19 +28,21 @@ class ImageDrive {
   /// handled: the IMU feels a person turning the robot over.
   explicit ImageDrive(std::uint64_t seed = 1, double speed_m_per_s = kSpeed_m_per_s,
                       bool handled = false)
-      : world(HeightField::flat(20.0, 0.1), rover5(), options(seed, speed_m_per_s, handled), &log) {
-  }
+      : ImageDrive(options(seed, speed_m_per_s, handled)) {}
 
   /// The image of another node, with that robot's key.
-  ImageDrive(const std::string& image, const CommandKey& key)
-      : world(HeightField::flat(20.0, 0.1), rover5(), options(image, key), &log) {}
+  ImageDrive(const std::string& image, const CommandKey& key) : ImageDrive(options(image, key)) {}
 
   /// One control tick of the program.
   void tick() {
-    sample = world.run_to_sample();
-    output = world.run_to_output();
+    world.advance();
+    sample = world.sample();
+    output = world.output();
   }
-  double time_ms() { return world.board().mcu.time_ms(); }
+  McuRobot& image() { return dynamic_cast<McuRobot&>(world.robot()); }
+  Board& board() { return image().board(); }
+  CycleReport cycles() const { return world.robot().cycles().value(); }
+  double time_ms() { return board().mcu.time_ms(); }
   void run(double seconds) {
     const double end = time_ms() + seconds * 1000.0;
     while (time_ms() < end) tick();
@@ -53,8 +57,7 @@ class ImageDrive {
     return std::nullopt;
   }
   bool powered() {
-    return world.board().motor_duty_ratio(kLeft) != 0.0 ||
-           world.board().motor_duty_ratio(kRight) != 0.0;
+    return board().motor_duty_ratio(kLeft) != 0.0 || board().motor_duty_ratio(kRight) != 0.0;
   }
   /// Armed, running and at speed.
   void set_off() {
@@ -66,8 +69,8 @@ class ImageDrive {
     return ms_until([this] { return !powered(); }, most_s);
   }
 
-  const Environment& plant() { return world.world().plant(); }
-  const RobotReport& report() { return world.world().ground_station().report(); }
+  const RobotView& body() const { return world.plant().robot(0); }
+  const RobotReport& report() const { return world.ground_station().report(); }
   /// Payload of the newest frame of an id that came down the radio, as the log has it.
   std::vector<std::uint8_t> last_frame(std::uint16_t id) const {
     char name[8];
@@ -90,37 +93,46 @@ class ImageDrive {
   }
   /// The tick never missed its deadline, and kept to its budget.
   void expect_punctual() const {
-    const CycleReport cycles = world.cycles();
-    EXPECT_EQ(cycles.missed_ticks, 0U);
-    EXPECT_LE(cycles.longest_tick_cycles, CycleReport::kTickCycles / 2);
-    EXPECT_EQ(cycles.resets, 0);
+    const CycleReport spent = cycles();
+    EXPECT_EQ(spent.missed_ticks, 0U);
+    EXPECT_LE(spent.longest_tick_cycles, CycleReport::kTickCycles / 2);
+    EXPECT_EQ(spent.resets, 0);
   }
 
   std::ostringstream log;
-  McuWorld world;
+  World world;
   SensorSample sample{};
   RobotOutput output{};
 
  private:
+  explicit ImageDrive(WorldOptions options)
+      : world(std::make_unique<Plant>(HeightField::flat(20.0, 0.1), rover5(), options),
+              with_log(options, log)) {}
+  static const WorldOptions& with_log(WorldOptions& options, std::ostream& log) {
+    options.robots[0].telemetry_log = &log;
+    return options;
+  }
   static const Assembly& rover5() {
     static const Assembly model = import_urdf(find_model_file(Experiment{}));
     return model;
   }
-  static CoSimulationOptions options(std::uint64_t seed, double speed_m_per_s, bool handled) {
-    CoSimulationOptions options;
-    options.elf = kScreedImage;
-    options.board = kDefaultBoard;
-    options.parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
-    options.world.seed = seed;
-    options.world.calibration_motion = handled;
-    options.world.drive = DriveCommand{speed_m_per_s, 0.0};
+  static WorldOptions options(std::uint64_t seed, double speed_m_per_s, bool handled) {
+    WorldOptions options;
+    options.seed = seed;
+    options.calibration_motion = handled;
+    RobotOptions& robot = options.robots[0];
+    robot.settings.board = board_constants_of(kDefaultBoard);
+    robot.settings.parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kDrive);
+    robot.image = RobotImage{kScreedImage, kDefaultBoard};
+    robot.drive = DriveCommand{speed_m_per_s, 0.0};
     return options;
   }
-  static CoSimulationOptions options(const std::string& image, const CommandKey& key) {
-    CoSimulationOptions own = options(1, kSpeed_m_per_s, false);
-    own.elf = image;
-    own.credentials = credentials_of(key);
-    own.world.ground_key = key;
+  static WorldOptions options(const std::string& image, const CommandKey& key) {
+    WorldOptions own = options(1, kSpeed_m_per_s, false);
+    RobotOptions& robot = own.robots[0];
+    robot.image->elf = image;
+    robot.settings.credentials = credentials_of(key);
+    robot.ground_key = key;
     return own;
   }
 };

@@ -90,8 +90,8 @@ Assembly tracked_robot() {
 void drive_standin() {
   PlantOptions options;
   options.soil = gravel();
-  options.start = {-0.4, 0.0, {}, {}};
-  options.further_starts = {{0.4, 0.1, {}, {0.0, 0.0, 3.0}}, {0.0, -0.4, {}, {0.0, 0.0, 1.5}}};
+  options.starts = {
+      {-0.4, 0.0, {}, {}}, {0.4, 0.1, {}, {0.0, 0.0, 3.0}}, {0.0, -0.4, {}, {0.0, 0.0, 1.5}}};
   HeightField ground = HeightField::from_function(
       61, 61, 0.03, false, [](double x, double y) { return 0.05 * x * y + 0.02 * x * x; });
   ground.add_walls();
@@ -101,7 +101,7 @@ void drive_standin() {
     const bool turns = step / 1000 % 3 == 2;
     const std::array<DutyRatio, 3> duty = {
         {{0.9, turns ? -0.9 : 0.8}, {0.8, 0.9}, {turns ? -0.7 : 0.7, 0.9}}};
-    plant.step_all(duty);
+    plant.step(duty);
     if (step % 100 != 0) continue;
     for (size_t i = 0; i < plant.robots(); ++i) {
       hash.add(plant.robot(i).unwrapped_position());

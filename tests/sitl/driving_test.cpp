@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Orders, Driving,
 
 TEST(DrivingOnSlopes, ClimbsTwentyDegrees) {
   WorldOptions options = drive_options(0.1, 0.0);
-  options.start.x_m = -4.0;
+  options.starts[0].x_m = -4.0;
   TestDrive drive(HeightField::ramp(10.0, 0.1, 20.0), options);
   ASSERT_TRUE(drive.start());
   const Eigen::Vector3d begin = drive.position();

@@ -23,7 +23,7 @@ Parameters leveling_parameters(LevelingAlgorithm algorithm) {
 
 WorldOptions facing_the_hill() {
   WorldOptions options;
-  options.start.x_m = -1.5;
+  options.starts[0].x_m = -1.5;
   return options;
 }
 

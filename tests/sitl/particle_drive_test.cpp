@@ -16,7 +16,7 @@ HeightField level_bed() {
 WorldOptions on_particles(double speed_m_per_s, double yaw_rate_deg_per_s, bool tracks) {
   WorldOptions options = drive_options(speed_m_per_s, yaw_rate_deg_per_s);
   options.vehicle.tracks = tracks;
-  options.start.x_m = -0.2;
+  options.starts[0].x_m = -0.2;
   options.particles.emplace();
   return options;
 }

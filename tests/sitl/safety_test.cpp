@@ -15,7 +15,7 @@ TEST(Safety, ARobotLaidOnItsSideIsReportedAndStopped) {
   ASSERT_TRUE(drive.start());
   drive.run(3.0);
   ASSERT_GT(drive.output.duty_left, 0);
-  drive.world.lay_on_side();
+  drive.world.plant().robot(0).lay_on_side();
   const uint64_t begin = drive.world.ticks();
   ASSERT_TRUE(drive.run_until(
       1.0, [&] { return drive.output.duty_left == 0 && drive.output.duty_right == 0; }));
@@ -34,8 +34,8 @@ TEST(Safety, ARobotLaidOnItsSideIsReportedAndStopped) {
 
 TEST(Safety, ARobotThatStartsOnItsSideIsNotArmed) {
   WorldOptions options = drive_options(0.1, 0.0);
-  options.start.attitude.roll = 1.5707963;
-  options.start.z_m = 0.12;
+  options.starts[0].attitude.roll = 1.5707963;
+  options.starts[0].z_m = 0.12;
   TestDrive drive(HeightField::flat(20.0, 0.1), options);
   drive.run(10.0);
   EXPECT_EQ(drive.robot.supervisor().state(), RobotState::kDisarmed);
@@ -48,24 +48,17 @@ TEST(Safety, ALostLinkStopsThenDisarms) {
   ASSERT_TRUE(drive.start());
   drive.run(2.0);
   // The ground falls silent: nothing of what arrives reaches the robot any more.
-  SensorSample sample{};
-  const auto deaf_tick = [&] {
-    drive.world.advance();
-    sample = drive.world.sample();
-    sample.radio_in_count = 0;
-    drive.robot.tick(sample, drive.output);
-    drive.world.apply(drive.output);
-  };
+  drive.tamper = [](SensorSample& sample) { sample.radio_in_count = 0; };
   int stopped_after = 0;
   while (drive.robot.supervisor().running() && stopped_after < 300) {
-    deaf_tick();
+    drive.tick();
     ++stopped_after;
   }
   EXPECT_LE(stopped_after, 55);
   EXPECT_GE(stopped_after, 30);  // heartbeats come every 0.2 s
   int disarmed_after = stopped_after;
   while (drive.robot.supervisor().state() != RobotState::kDisarmed && disarmed_after < 600) {
-    deaf_tick();
+    drive.tick();
     ++disarmed_after;
   }
   EXPECT_LE(disarmed_after, 155);
@@ -78,13 +71,10 @@ TEST(Safety, ATrackThatCannotMoveLosesPower) {
   drive.run(2.0);
   // The left encoder stands still from now on.
   const uint16_t stuck = drive.world.sample().encoder_left;
+  drive.tamper = [stuck](SensorSample& sample) { sample.encoder_left = stuck; };
   int ticks = 0;
   while (drive.robot.supervisor().faults() == 0 && ticks < 200) {
-    drive.world.advance();
-    SensorSample sample = drive.world.sample();
-    sample.encoder_left = stuck;
-    drive.robot.tick(sample, drive.output);
-    drive.world.apply(drive.output);
+    drive.tick();
     ++ticks;
   }
   EXPECT_EQ(drive.robot.supervisor().faults(), Fault::kStallLeft);

@@ -35,15 +35,16 @@ struct Step {
 std::vector<Step> drive_over_the_edges(HeightField terrain, double seconds,
                                        const std::optional<SoilParameters>& soil = {}) {
   WorldOptions options = drive_options(0.2, 4.0);
-  options.start.attitude.heading = 0.7;
+  options.starts[0].attitude.heading = 0.7;
   options.soil = soil;
   TestDrive drive(std::move(terrain), options);
   FrameRecorder recorder;
   std::vector<Step> steps;
   for (int tick = 0; tick < std::lround(seconds * kTickRate_hz); ++tick) {
     drive.tick();
-    steps.push_back({recorder.record(drive.world.plant(), drive.robot),
-                     drive.world.vehicle().chassis().velocity});
+    steps.push_back(
+        {recorder.record(drive.world.plant().time_s(), drive.world.plant().robot(0), drive.robot),
+         drive.world.vehicle().chassis().velocity});
   }
   return steps;
 }
@@ -86,17 +87,17 @@ TEST(Teleport, OnSoilToo) {
 TEST(Teleport, OnParticlesToo) {
   constexpr double kSize_m = 0.6;
   WorldOptions options = drive_options(0.2, 0.0);
-  options.start.x_m = 0.25;
+  options.starts[0].x_m = 0.25;
   options.particles.emplace();
   TestDrive drive(
       HeightField::from_function(48, 48, kSize_m / 48, true, [](double, double) { return 0.1; }),
       options);
   ASSERT_TRUE(drive.start());
-  const double begin = drive.world.plant().unwrapped_position().x();
+  const double begin = drive.world.plant().robot(0).unwrapped_position().x();
   drive.run(3.0);
-  EXPECT_EQ(drive.world.plant().wrap_counts()[0], 1);
+  EXPECT_EQ(drive.world.plant().robot(0).wrap_counts()[0], 1);
   EXPECT_LT(std::abs(drive.position().x()), kSize_m / 2);
-  const double end = drive.world.plant().unwrapped_position().x();
+  const double end = drive.world.plant().robot(0).unwrapped_position().x();
   EXPECT_DOUBLE_EQ(end, drive.position().x() + kSize_m);
   EXPECT_GT(end - begin, 0.2);
   EXPECT_LT(end - begin, 0.7);

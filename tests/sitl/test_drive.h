@@ -10,6 +10,7 @@
 #include "boards/a_star_32u4/board.h"
 #include "firmware/robot/robot.h"
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
+#include "host_sim/physics/world/plant.h"
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/world/world.h"
 
@@ -26,20 +27,27 @@ inline Parameters drive_parameters() {
   return parameters;
 }
 
-class TestDrive {
+/// The options with firmware of the default board in the first robot, that starts so.
+inline WorldOptions with_firmware(WorldOptions options, const Parameters& parameters) {
+  options.robots[0].settings.board = kBoard;
+  options.robots[0].settings.parameters = parameters;
+  return options;
+}
+
+class TestDrive : private RobotWatch {
  public:
+  /// In any kind of world, of one robot.
+  TestDrive(std::unique_ptr<Environment> plant, const WorldOptions& options,
+            const Parameters& parameters = drive_parameters())
+      : world(std::move(plant), with_firmware(options, parameters)),
+        robot(world.firmware()),
+        output(world.output()) {}
   TestDrive(HeightField terrain, const WorldOptions& options,
             const Parameters& parameters = drive_parameters())
-      : world(std::move(terrain), rover5(), kBoard, options, nullptr),
-        robot(kBoard, parameters, credentials_of(test_key())) {}
+      : TestDrive(std::make_unique<Plant>(std::move(terrain), rover5(), options), options,
+                  parameters) {}
 
-  void tick() {
-    world.advance();
-    SensorSample sample = world.sample();
-    if (tamper) tamper(sample);
-    robot.tick(sample, output);
-    world.apply(output);
-  }
+  void tick() { world.advance(this); }
   void run(double seconds) {
     const int64_t ticks = std::lround(seconds * kTickRate_hz);
     for (int64_t i = 0; i < ticks; ++i) tick();
@@ -71,14 +79,20 @@ class TestDrive {
   }
 
   World world;
-  Robot robot;
-  RobotOutput output{};
+  const Robot& robot;
+  const RobotOutput& output;
   std::function<void(SensorSample&)> tamper;  ///< a fault of the sensors, each tick
+
+ private:
+  bool on_sample(size_t /*robot*/, SensorSample& sample) override {
+    if (tamper) tamper(sample);
+    return true;
+  }
 };
 
 inline WorldOptions drive_options(double speed_m_per_s, double yaw_rate_deg_per_s) {
   WorldOptions options;
-  options.drive = DriveCommand{speed_m_per_s, yaw_rate_deg_per_s};
+  options.robots[0].drive = DriveCommand{speed_m_per_s, yaw_rate_deg_per_s};
   return options;
 }
 

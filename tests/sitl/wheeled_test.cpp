@@ -7,6 +7,7 @@
 #include "host_sim/core/gravity.h"
 #include "host_sim/soil_validation/wheel_limit.h"
 #include "tests/sitl/test_drive.h"
+#include "tests/step_one.h"
 
 namespace screed::testing {
 namespace {
@@ -26,7 +27,7 @@ Plant wheeled_plant(HeightField ground, const WorldOptions& options = wheels(0.0
 
 void run(Plant& plant, double seconds, double left, double right) {
   const int64_t steps = std::lround(seconds / kStep_s);
-  for (int64_t i = 0; i < steps; ++i) plant.step({left, right});
+  for (int64_t i = 0; i < steps; ++i) testing::step_one(plant, {left, right});
 }
 
 TEST(WheeledRover, DrivesStraightAtTheOrderedSpeed) {
@@ -44,11 +45,12 @@ TEST(WheeledRover, DrivesStraightAtTheOrderedSpeed) {
 TEST(WheeledRover, RollsAtTheSpeedOfItsWheels) {
   Plant plant = wheeled_plant(HeightField::flat(10.0, 0.1));
   run(plant, 1.0, 0.5, 0.5);
-  const double begin = plant.vehicle().chassis().pose.translation().x();
-  const double angle = plant.vehicle().shaft_angle_rad(kLeft);
+  const double begin = plant.robot(0).vehicle().chassis().pose.translation().x();
+  const double angle = plant.robot(0).vehicle().shaft_angle_rad(kLeft);
   run(plant, 3.0, 0.5, 0.5);
-  const double rolled = (plant.vehicle().shaft_angle_rad(kLeft) - angle) * 0.03;
-  EXPECT_NEAR(plant.vehicle().chassis().pose.translation().x() - begin, rolled, 0.02 * rolled);
+  const double rolled = (plant.robot(0).vehicle().shaft_angle_rad(kLeft) - angle) * 0.03;
+  EXPECT_NEAR(plant.robot(0).vehicle().chassis().pose.translation().x() - begin, rolled,
+              0.02 * rolled);
 }
 
 // Turning in place every wheel slides sideways: with wheel spacing L and tread B, equal loads and
@@ -59,13 +61,14 @@ TEST(WheeledRover, SkidTurnFollowsTheMomentBalance) {
   Plant plant = wheeled_plant(HeightField::flat(10.0, 0.1));
   run(plant, 2.0, -0.6, 0.6);
   double turned = 0.0;
-  const double angle = plant.vehicle().shaft_angle_rad(kRight);
+  const double angle = plant.robot(0).vehicle().shaft_angle_rad(kRight);
   for (int i = 0; i < 3000; ++i) {
-    plant.step({-0.6, 0.6});
-    turned += plant.vehicle().chassis().omega_body.z() * kStep_s;
+    testing::step_one(plant, {-0.6, 0.6});
+    turned += plant.robot(0).vehicle().chassis().omega_body.z() * kStep_s;
   }
-  const double tread = plant.vehicle().tread_m();
-  const double kinematic = (plant.vehicle().shaft_angle_rad(kRight) - angle) * 0.03 / (0.5 * tread);
+  const double tread = plant.robot(0).vehicle().tread_m();
+  const double kinematic =
+      (plant.robot(0).vehicle().shaft_angle_rad(kRight) - angle) * 0.03 / (0.5 * tread);
   const double expected = 1.0 / (1.0 + std::pow(0.185 / tread, 2));
   EXPECT_NEAR(turned / kinematic, expected, 0.05 * expected);
 }
@@ -85,7 +88,7 @@ TEST(WheeledRover, KeepsTheOrderedTurnRate) {
 
 TEST(WheeledRover, ClimbsTwentyDegrees) {
   WorldOptions options = wheels(0.1, 0.0);
-  options.start.x_m = -4.0;
+  options.starts[0].x_m = -4.0;
   TestDrive drive(HeightField::ramp(10.0, 0.1, 20.0), options);
   ASSERT_TRUE(drive.start());
   const Eigen::Vector3d begin = drive.position();
@@ -99,23 +102,23 @@ TEST(WheeledRover, ClimbsTwentyDegrees) {
 // What the shafts put out is found again as height, less what slip and the tyres' damping take.
 TEST(WheeledRover, WorkOfTheShaftsLiftsTheRobot) {
   WorldOptions options = wheels(0.0, 0.0);
-  options.start.x_m = -2.0;
-  options.start.attitude.pitch = 10.0 * kDeg;
+  options.starts[0].x_m = -2.0;
+  options.starts[0].attitude.pitch = 10.0 * kDeg;
   Plant plant = wheeled_plant(HeightField::ramp(10.0, 0.1, 10.0), options);
   run(plant, 1.0, 0.7, 0.7);
   const GearMotor motor;
-  const double begin = plant.vehicle().chassis().pose.translation().z();
+  const double begin = plant.robot(0).vehicle().chassis().pose.translation().z();
   double work = 0.0;
   for (int i = 0; i < 5000; ++i) {
-    plant.step({0.7, 0.7});
+    testing::step_one(plant, {0.7, 0.7});
     for (const Side side : {kLeft, kRight}) {
-      const double torque =
-          motor.torque_per_ampere() * plant.vehicle().current_a(side) - motor.friction_torque();
-      work += torque * plant.vehicle().track_speed_m_per_s(side) / 0.03 * kStep_s;
+      const double torque = motor.torque_per_ampere() * plant.robot(0).vehicle().current_a(side) -
+                            motor.friction_torque();
+      work += torque * plant.robot(0).vehicle().track_speed_m_per_s(side) / 0.03 * kStep_s;
     }
   }
-  const double lifted = plant.vehicle().mass_kg() * kGravity_m_per_s2 *
-                        (plant.vehicle().chassis().pose.translation().z() - begin);
+  const double lifted = plant.robot(0).vehicle().mass_kg() * kGravity_m_per_s2 *
+                        (plant.robot(0).vehicle().chassis().pose.translation().z() - begin);
   EXPECT_GT(lifted, 1.0);
   EXPECT_GT(work, lifted);
   EXPECT_LT(work, 1.15 * lifted);
@@ -123,12 +126,12 @@ TEST(WheeledRover, WorkOfTheShaftsLiftsTheRobot) {
 
 TEST(WheeledRover, StandsStill) {
   WorldOptions options = wheels(0.0, 0.0);
-  options.start.attitude.pitch = 20.0 * kDeg;
+  options.starts[0].attitude.pitch = 20.0 * kDeg;
   Plant plant = wheeled_plant(HeightField::ramp(10.0, 0.1, 20.0), options);
-  const Eigen::Vector3d begin = plant.vehicle().chassis().pose.translation();
+  const Eigen::Vector3d begin = plant.robot(0).vehicle().chassis().pose.translation();
   run(plant, 10.0, 0.0, 0.0);
-  EXPECT_LT((plant.vehicle().chassis().pose.translation() - begin).norm(), 1e-4);
-  EXPECT_LT(plant.vehicle().chassis().velocity.norm(), 1e-6);
+  EXPECT_LT((plant.robot(0).vehicle().chassis().pose.translation() - begin).norm(), 1e-4);
+  EXPECT_LT(plant.robot(0).vehicle().chassis().velocity.norm(), 1e-6);
 }
 
 /// Slip at which four wheels on untouched and rutted soil pull as much as they are held back: two
@@ -161,7 +164,7 @@ TEST(WheeledRover, TheFirmwareDrivesItOnSoil) {
     SCOPED_TRACE(soil.name);
     WorldOptions options = wheels(0.1, 0.0);
     options.soil = soil;
-    options.start.x_m = -0.7;
+    options.starts[0].x_m = -0.7;
     TestDrive drive(HeightField::flat(2.0, 0.005), options);
     ASSERT_TRUE(drive.start());
     Eigen::Vector3d begin = drive.position();

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "hal/sample.h"
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/physics/vehicle/battery.h"
 #include "host_sim/physics/vehicle/vehicle_state.h"
@@ -20,7 +21,7 @@ namespace screed {
 /// drives forward.
 using DutyRatio = std::array<double, 2>;
 
-/// One robot, and the world that it is in.
+/// One robot's body in its world.
 class RobotView {
  public:
   virtual ~RobotView() = default;
@@ -32,18 +33,6 @@ class RobotView {
   /// Picks the robot up and lays it on its left side where it is.
   virtual void lay_on_side() = 0;
 
-  virtual int steps_per_tick() const = 0;
-  virtual uint64_t steps() const = 0;
-  virtual double time_s() const = 0;
-  /// The terrain's surface as it is now.
-  virtual const HeightField& terrain() const = 0;
-  /// As Terrain::is_deformable().
-  virtual bool is_deformable() const = 0;
-  /// As Terrain::balance() and Terrain::work(); all zero where nothing of the kind is booked.
-  virtual VolumeBalance volume_balance() const { return {}; }
-  virtual TerrainWork terrain_work() const { return {}; }
-  /// As Terrain::spheres().
-  virtual SphereSet spheres() const { return {}; }
   virtual const VehicleState& vehicle() const = 0;
   /// With wrap-around: how many beds east and north of its first copy the robot has come. Whenever
   /// its origin passes an edge it is teleported to the opposite one (thesis 5.1.4), motion and all,
@@ -59,18 +48,32 @@ class RobotView {
   RobotView& operator=(const RobotView&) = default;
 };
 
-/// A world, seen by the first of its robots.
-class Environment : public RobotView {
+/// The ground, and the robots on it, numbered from 0.
+class Environment {
  public:
-  /// One physics step of a world with one robot.
-  virtual void step(const DutyRatio& duty_ratio) = 0;
-  /// One physics step, with a duty for each robot in their order.
-  virtual void step_all(std::span<const DutyRatio> duty_ratios) { step(duty_ratios[0]); }
+  virtual ~Environment() = default;
 
-  virtual size_t robots() const { return 1; }
-  /// Number 0 is the first robot.
-  virtual RobotView& robot(size_t /*number*/) { return *this; }
-  virtual const RobotView& robot(size_t /*number*/) const { return *this; }
+  /// One physics step, with a duty for each robot in their order.
+  virtual void step(std::span<const DutyRatio> duty_ratios) = 0;
+
+  virtual size_t robots() const = 0;
+  virtual RobotView& robot(size_t number) = 0;
+  virtual const RobotView& robot(size_t number) const = 0;
+
+  virtual int steps_per_tick() const = 0;
+  virtual uint64_t steps() const = 0;
+  double time_s() const {
+    return static_cast<double>(steps()) / (static_cast<double>(steps_per_tick()) * kTickRate_hz);
+  }
+  /// The terrain's surface as it is now.
+  virtual const HeightField& terrain() const = 0;
+  /// As Terrain::is_deformable().
+  virtual bool is_deformable() const = 0;
+  /// As Terrain::balance() and Terrain::work(); all zero where nothing of the kind is booked.
+  virtual VolumeBalance volume_balance() const { return {}; }
+  virtual TerrainWork terrain_work() const { return {}; }
+  /// As Terrain::spheres().
+  virtual SphereSet spheres() const { return {}; }
 
  protected:
   Environment() = default;

@@ -52,15 +52,13 @@ Plant::Plant(std::unique_ptr<Terrain> terrain, const Assembly& model, const Plan
       meeting_substeps_(std::max(
           substeps_, static_cast<int>(std::ceil(step_s_ / RobotContact::kLongestStep_s - 1e-9)))),
       contact_(options.robot_friction, notice_m(step_s_)) {
-  add_robot(model, options);
-  check_step();
-  place(*robots_[0], options.start);
-  for (const StartPose& start : options.further_starts) {
+  for (const StartPose& start : options.starts) {
     add_robot(model, options);
+    check_step();
     place(*robots_.back(), start);
     check_apart();
   }
-  if (!options.start.z_m.has_value()) settle(options.progress);
+  if (!options.starts[0].z_m.has_value()) settle(options.progress);
 }
 
 void Plant::add_robot(const Assembly& model, const PlantOptions& options) {
@@ -70,7 +68,7 @@ void Plant::add_robot(const Assembly& model, const PlantOptions& options) {
 }
 
 void Plant::check_step() const {
-  if (robots_[0]->vehicle().chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
+  if (robots_.back()->vehicle().chain(kLeft) != nullptr && step_s_ > kLongestChainStep_s + 1e-12) {
     throw InputError("[physics] step = " + std::to_string(step_s_) +
                      " s; with [vehicle] track_model = chain at most 0.001 s is allowed");
   }
@@ -81,7 +79,8 @@ void Plant::place(PlantRobot& robot, const StartPose& start) {
   const Eigen::Matrix3d rotation = rotation_from(start.attitude);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = rotation;
-  const double resting = vehicle.resting_height(Plant::terrain(), start.x_m, start.y_m, rotation);
+  const double resting =
+      vehicle.resting_height(terrain_->surface(), start.x_m, start.y_m, rotation);
   pose.translation() << start.x_m, start.y_m, start.z_m.value_or(resting);
   if (start.z_m.has_value() && *start.z_m < resting - 0.01) {
     throw InputError("[vehicle] z = " + std::to_string(*start.z_m) +
@@ -153,20 +152,12 @@ void Plant::step_bodies() {
   for (const auto& robot : robots_) robot->wrap_around();
 }
 
-void Plant::step(const DutyRatio& duty_ratio) {
-  step_all({&duty_ratio, 1});
-}
-
-void Plant::step_all(std::span<const DutyRatio> duty_ratios) {
+void Plant::step(std::span<const DutyRatio> duty_ratios) {
   for (size_t i = 0; i < robots_.size(); ++i)
     voltages_[i] = robots_[i]->motor_voltage(duty_ratios[i]);
   step_bodies();
   for (const auto& robot : robots_) robot->end_step(step_s_);
   ++steps_;
-}
-
-double Plant::time_s() const {
-  return static_cast<double>(steps_) / (static_cast<double>(steps_per_tick_) * kTickRate_hz);
 }
 
 }  // namespace screed

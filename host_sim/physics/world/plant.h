@@ -32,8 +32,7 @@ class Plant : public Environment {
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
 
-  void step(const DutyRatio& duty_ratio) override;
-  void step_all(std::span<const DutyRatio> duty_ratios) override;
+  void step(std::span<const DutyRatio> duty_ratios) override;
   size_t robots() const override { return robots_.size(); }
   PlantRobot& robot(size_t number) override { return *robots_[number]; }
   const PlantRobot& robot(size_t number) const override { return *robots_[number]; }
@@ -44,23 +43,13 @@ class Plant : public Environment {
   /// robots touch or are about to.
   int substeps() const;
   uint64_t steps() const override { return steps_; }
-  double time_s() const override;
   const HeightField& terrain() const override { return terrain_->surface(); }
   bool is_deformable() const override { return terrain_->is_deformable(); }
   VolumeBalance volume_balance() const override { return terrain_->balance(); }
   TerrainWork terrain_work() const override { return terrain_->work(); }
   SphereSet spheres() const override { return terrain_->spheres(); }
 
-  // Of the first robot.
-  ImuTruth motion() const override { return first().motion(); }
-  void lay_on_side() override { robots_[0]->lay_on_side(); }
-  const Vehicle& vehicle() const override { return first().vehicle(); }
-  const std::array<int64_t, 2>& wrap_counts() const override { return first().wrap_counts(); }
-  Eigen::Vector3d unwrapped_position() const override { return first().unwrapped_position(); }
-  const Battery& battery() const override { return first().battery(); }
-
  private:
-  const PlantRobot& first() const { return *robots_[0]; }
   void add_robot(const Assembly& model, const PlantOptions& options);
   void check_step() const;
   /// Puts a robot where it starts.

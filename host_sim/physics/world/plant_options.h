@@ -22,9 +22,8 @@ struct StartPose {
 
 struct PlantOptions : TerrainOptions {
   double physics_step_s = 0.001;  ///< divides the control tick of 10 ms
-  StartPose start;
-  /// Of robots of the same kind beside the first one; z_m as the first one has it, given or not.
-  std::vector<StartPose> further_starts;
+  /// Of each robot; all of one kind, and z_m given for all or for none.
+  std::vector<StartPose> starts = {StartPose{}};
   double robot_friction = 0.5;  ///< Coulomb coefficient between robots
   VehicleOptions vehicle;
   Battery battery;

@@ -23,7 +23,7 @@ Eigen::Vector3d imu_position(const Assembly& model) {
 
 }  // namespace
 
-PlantRobot::PlantRobot(const RobotView& plant, const Terrain& terrain, OdeWorld& ode,
+PlantRobot::PlantRobot(const Environment& plant, const Terrain& terrain, OdeWorld& ode,
                        const Assembly& model, const VehicleOptions& options, const Battery& battery)
     : plant_(plant),
       terrain_(terrain),
@@ -99,7 +99,7 @@ ImuTruth PlantRobot::motion() const {
   const Eigen::Matrix3d rotation = chassis.pose.linear();
   if (!now.velocity.allFinite() || !chassis.pose.translation().allFinite() ||
       now.velocity.norm() > 1000.0) {
-    throw RunError("the physics diverged at " + std::to_string(time_s()) +
+    throw RunError("the physics diverged at " + std::to_string(plant_.time_s()) +
                    " s; a smaller [physics] step may help");
   }
   const size_t oldest = (newest_ + 1) % imu_history_.size();
@@ -108,7 +108,7 @@ ImuTruth PlantRobot::motion() const {
     rate_sum += imu_history_[(oldest + i) % imu_history_.size()].rate_body;
   }
   ImuTruth truth;
-  truth.mean_rate_rad_per_s = rate_sum / steps_per_tick();
+  truth.mean_rate_rad_per_s = rate_sum / plant_.steps_per_tick();
   truth.mean_specific_force =
       rotation.transpose() * ((now.velocity - imu_history_[oldest].velocity) / kTick_s +
                               kGravity_m_per_s2 * Eigen::Vector3d::UnitZ());

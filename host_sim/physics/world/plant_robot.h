@@ -20,7 +20,7 @@ class PlantRobot : public RobotView {
  public:
   /// `plant` is what it is in, and says what concerns all robots. It, its terrain and `ode` must
   /// outlive the robot.
-  PlantRobot(const RobotView& plant, const Terrain& terrain, OdeWorld& ode, const Assembly& model,
+  PlantRobot(const Environment& plant, const Terrain& terrain, OdeWorld& ode, const Assembly& model,
              const VehicleOptions& options, const Battery& battery);
 
   /// What the motors get in a step with this duty. Counts the battery's current.
@@ -42,15 +42,6 @@ class PlantRobot : public RobotView {
   Eigen::Vector3d unwrapped_position() const override;
   const Battery& battery() const override { return battery_; }
 
-  int steps_per_tick() const override { return plant_.steps_per_tick(); }
-  uint64_t steps() const override { return plant_.steps(); }
-  double time_s() const override { return plant_.time_s(); }
-  const HeightField& terrain() const override { return plant_.terrain(); }
-  bool is_deformable() const override { return plant_.is_deformable(); }
-  VolumeBalance volume_balance() const override { return plant_.volume_balance(); }
-  TerrainWork terrain_work() const override { return plant_.terrain_work(); }
-  SphereSet spheres() const override { return plant_.spheres(); }
-
  private:
   struct ImuState {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of the IMU, world frame, m/s
@@ -60,7 +51,7 @@ class PlantRobot : public RobotView {
   Eigen::Vector3d imu_velocity(const ChassisState& chassis) const;
   void reset_motion_history(const Eigen::Vector3d& velocity);
 
-  const RobotView& plant_;
+  const Environment& plant_;
   const Terrain& terrain_;
   Vehicle vehicle_;
   Battery battery_;

@@ -128,38 +128,35 @@ void draw_path_overlay(Canvas& canvas, const MapFrame& frame, bool wrap,
                        const PictureOptions& options) {
   canvas.clip(frame.map());
   // Below the paths, whose ends they would hide.
-  if (options.robot) draw_robot(canvas, frame, *options.robot);
-  for (const PictureRobot& robot : options.further_robots) {
+  for (const PictureRobot& robot : options.robots) {
     if (robot.outline) draw_robot(canvas, frame, *robot.outline);
   }
-  draw_path(canvas, frame, wrap, options.paths_from_start, options.path);
-  for (const PictureRobot& robot : options.further_robots)
+  for (const PictureRobot& robot : options.robots)
     draw_path(canvas, frame, wrap, options.paths_from_start, robot.path);
   canvas.unclip();
 }
 
 std::vector<size_t> states_on_paths(const PictureOptions& options) {
   std::vector<size_t> states;
-  const auto add = [&](const std::vector<PathPoint>& path) {
-    for (const PathPoint& point : path) {
+  for (const PictureRobot& robot : options.robots) {
+    for (const PathPoint& point : robot.path) {
       if (std::find(states.begin(), states.end(), point.state) == states.end())
         states.push_back(point.state);
     }
-  };
-  add(options.path);
-  for (const PictureRobot& robot : options.further_robots) add(robot.path);
+  }
   std::sort(states.begin(), states.end());
   return states;
 }
 
 double legend_height_px(const PictureOptions& options) {
-  if (options.path.empty()) return 0.0;
+  const size_t states = states_on_paths(options).size();
+  if (states == 0) return 0.0;
   const size_t markers = options.paths_from_start ? 2 : 1;  // start and end
-  return kLegendRow_px * static_cast<double>(1 + states_on_paths(options).size() + markers);
+  return kLegendRow_px * static_cast<double>(1 + states + markers);
 }
 
 void draw_legend(Canvas& canvas, const MapFrame& frame, const PictureOptions& options) {
-  if (options.path.empty()) return;
+  if (states_on_paths(options).empty()) return;
   constexpr double kSample_px = 28.0;
   Pixel row = frame.legend();
   const auto name = [&](const std::string& text) {

@@ -34,16 +34,16 @@ void require_finite(const char* what, std::initializer_list<double> values) {
   }
 }
 
-void check_robot(const PictureOptions& options, const std::vector<PathPoint>& path,
-                 const std::optional<RobotOutline>& outline) {
-  for (const PathPoint& point : path) {
+void check_robot(const PictureOptions& options, const PictureRobot& robot) {
+  for (const PathPoint& point : robot.path) {
     if (point.state >= options.state_names.size()) {
       throw InputError("picture: path state " + std::to_string(point.state) + " has no name; " +
                        std::to_string(options.state_names.size()) + " states are named");
     }
     require_finite("path point", {point.x_m, point.y_m});
   }
-  if (outline) require_finite("robot outline", {outline->x_m, outline->y_m, outline->heading_rad});
+  if (const auto& outline = robot.outline)
+    require_finite("robot outline", {outline->x_m, outline->y_m, outline->heading_rad});
 }
 
 void check(const PictureOptions& options) {
@@ -53,9 +53,7 @@ void check(const PictureOptions& options) {
     throw InputError("picture: " + std::to_string(options.state_names.size()) +
                      " state names; allowed: at most " + std::to_string(kStateColors));
   }
-  check_robot(options, options.path, options.robot);
-  for (const PictureRobot& robot : options.further_robots)
-    check_robot(options, robot.path, robot.outline);
+  for (const PictureRobot& robot : options.robots) check_robot(options, robot);
   if (options.heights) {
     const HeightRange& heights = *options.heights;
     require_finite("range of heights", {heights.low_m, heights.high_m});

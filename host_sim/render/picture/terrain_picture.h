@@ -49,11 +49,9 @@ struct PictureOptions {
   std::string subtitle;  ///< empty: a line of figures about the terrain
   /// Of a height map. Without it the map's own: pictures that are to be compared need the same.
   std::optional<HeightRange> heights;
-  std::vector<PathPoint> path;
+  std::vector<PictureRobot> robots;
   bool paths_from_start = true;  ///< else their first points are no starts, and are not marked
-  std::vector<std::string> state_names;  ///< of all states; the legend lists those of the path
-  std::optional<RobotOutline> robot;
-  std::vector<PictureRobot> further_robots;  ///< beside that one
+  std::vector<std::string> state_names;  ///< of all states; the legend lists those of the paths
 };
 
 /// The heights of both.

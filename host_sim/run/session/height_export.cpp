@@ -57,19 +57,18 @@ class RecordedPath {
       : session_(session), first_(first), next_(first) {}
 
   /// Goes on to a frame, not before the last one. Without a shape there is no outline.
-  void go_to(std::uint64_t frame, const std::optional<RobotShape>& shape,
-             std::vector<PathPoint>& path, std::optional<RobotOutline>& outline) {
+  void go_to(std::uint64_t frame, const std::optional<RobotShape>& shape, PictureRobot& robot) {
     constexpr std::uint64_t kPathFrames = 10;
     frames_.resize(frame + 1 - next_);
     session_.read(next_, std::span(frames_));
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       if ((next_ + i - first_) % kPathFrames == 0)
-        path.push_back(
+        robot.path.push_back(
             {frames_[i].x, frames_[i].y, static_cast<std::size_t>(frames_[i].leveling_state)});
     }
     const SimFrame& now = frames_.back();
     next_ = frame + 1;
-    if (shape) outline = RobotOutline{now.x, now.y, now.yaw, *shape};
+    if (shape) robot.outline = RobotOutline{now.x, now.y, now.yaw, *shape};
   }
 
  private:
@@ -144,28 +143,26 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
   return done;
 }
 
-std::vector<fs::path> export_pictures(const SessionReader& session, const FrameRange& range,
-                                      std::uint64_t every, const fs::path& folder,
-                                      const PictureSeries& series, const TaskProgress& progress) {
+std::vector<fs::path> export_pictures(std::span<const SessionReader> sessions,
+                                      const FrameRange& range, std::uint64_t every,
+                                      const fs::path& folder, const PictureSeries& series,
+                                      const TaskProgress& progress) {
+  const SessionReader& session = sessions.front();
   check(session, range, every);
   std::vector<fs::path> files;
   PictureOptions options;
   const HeightExtremes extremes = session.height_extremes();
   options.heights = HeightRange{extremes.lowest * kHeightUnit_m, extremes.highest * kHeightUnit_m};
   options.state_names = series.state_names;
-  RecordedPath path(session, range.first);
-  std::vector<RecordedPath> further;
-  for (const SessionReader& robot : series.further_robots) further.emplace_back(robot, range.first);
-  options.further_robots.resize(further.size());
+  std::vector<RecordedPath> paths;
+  for (const SessionReader& robot : sessions) paths.emplace_back(robot, range.first);
+  options.robots.resize(paths.size());
   const ExportProgress told{progress, "exporting pictures"};
   PartialFolder partial(folder);
   HeightPainter painter;
   for_each_frame(session, range, every, told, [&](std::uint64_t frame, const HeightMap& map) {
-    path.go_to(frame, series.shape, options.path, options.robot);
-    for (std::size_t i = 0; i < further.size(); ++i) {
-      PictureRobot& robot = options.further_robots[i];
-      further[i].go_to(frame, series.shape, robot.path, robot.outline);
-    }
+    for (std::size_t i = 0; i < paths.size(); ++i)
+      paths[i].go_to(frame, series.shape, options.robots[i]);
     options.title = session.info().experiment_name + ": frame " + std::to_string(frame);
     const std::string name = numbered("picture", frame);
     const HeightField terrain = field_of(map);

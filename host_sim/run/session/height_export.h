@@ -38,8 +38,6 @@ struct PictureSeries {
   std::optional<RobotShape> shape;       ///< without one the path's end stands for the robot
   /// The surface that is drawn of a terrain; empty: the terrain.
   std::function<HeightField(const HeightField&)> surface;
-  /// Robots to be drawn beside that of the session.
-  std::span<const SessionReader> further_robots = {};
 };
 
 /// Writes frames first, first + every, ... of `range` as folder/height_NNNNNN.png (NNNNNN: the row
@@ -51,9 +49,10 @@ HeightExport export_heights_png(const SessionReader& session, const FrameRange& 
                                 std::uint64_t every, const std::filesystem::path& folder,
                                 const TaskProgress& progress = {});
 
-/// Writes the same frames as shaded pictures with path and robot, folder/picture_NNNNNN.png, in the
-/// same way. Reports the task "exporting pictures".
-std::vector<std::filesystem::path> export_pictures(const SessionReader& session,
+/// Writes the same frames as shaded pictures with the robots and their paths,
+/// folder/picture_NNNNNN.png, in the same way. `sessions`: of all robots, the one with the heights
+/// first. Reports the task "exporting pictures".
+std::vector<std::filesystem::path> export_pictures(std::span<const SessionReader> sessions,
                                                    const FrameRange& range, std::uint64_t every,
                                                    const std::filesystem::path& folder,
                                                    const PictureSeries& series,

@@ -24,7 +24,7 @@ double slip(double surface, double ground) {
 
 }  // namespace
 
-SimFrame FrameRecorder::record(const RobotView& plant, const Robot& robot) {
+SimFrame FrameRecorder::record(double time_s, const RobotView& plant, const Robot& robot) {
   const VehicleState& vehicle = plant.vehicle();
   const ChassisState chassis = vehicle.chassis();
   const Eigen::Matrix3d& rotation = chassis.pose.linear();
@@ -33,7 +33,7 @@ SimFrame FrameRecorder::record(const RobotView& plant, const Robot& robot) {
   const Eigen::Vector3d velocity = rotation.transpose() * chassis.velocity;
 
   SimFrame frame;
-  frame.time = plant.time_s();
+  frame.time = time_s;
   frame.x = position.x();
   frame.y = position.y();
   frame.z = position.z();

@@ -10,7 +10,7 @@ namespace screed {
 class FrameRecorder {
  public:
   /// The frame of this tick: the plant as the sample saw it, the robot after its answer.
-  SimFrame record(const RobotView& plant, const Robot& robot);
+  SimFrame record(double time_s, const RobotView& plant, const Robot& robot);
 
   /// Length of the chassis' path so far, m.
   double distance_m() const { return distance_m_; }

@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 
-#include "host_sim/run/world/co_simulation.h"
-#include "host_sim/run/world/robot_settings.h"
+#include "host_sim/run/world/world.h"
 
 namespace screed {
 
@@ -23,10 +21,10 @@ struct ParityResult {
   double simulated_s = 0.0;
 };
 
-/// Runs until the world's clock has passed `seconds`, or `go_on` returns false. `robots`: what the
-/// firmware of each robot of the world has; the first one's is that of the Robot beside the image,
-/// the others drive natively.
-ParityResult run_parity(CoSimulation& image, std::span<const RobotSettings> robots, double seconds,
+/// Runs until the world's clock has passed `seconds`, or `go_on` returns false. Compares the first
+/// robot, an image, with a Robot that starts with `host`: with what the image has, if the two are
+/// to agree.
+ParityResult run_parity(World& world, const RobotSettings& host, double seconds,
                         const std::function<bool(const ParityResult&)>& go_on);
 
 }  // namespace screed

@@ -9,20 +9,17 @@
 #include <optional>
 #include <string>
 
-#include "firmware/parameters/board_constants.h"
-#include "firmware/parameters/parameters.h"
 #include "firmware/robot/robot.h"
-#include "firmware/security/credentials.h"
 #include "hal/sample.h"
+#include "host_sim/run/world/world_options.h"
 
 namespace screed {
 
 class ParityChecker {
  public:
   /// With what the other robot was built with, so that both start in the same state.
-  ParityChecker(const BoardConstants& board, const Parameters& parameters,
-                const Credentials& credentials)
-      : shadow_(board, parameters, credentials) {}
+  explicit ParityChecker(const RobotSettings& robot)
+      : shadow_(robot.board, robot.parameters, robot.credentials) {}
 
   /// Lets the shadow answer a sample. Once a tick, before the other robot's answer is compared.
   void tick(const SensorSample& sample);

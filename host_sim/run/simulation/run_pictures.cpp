@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr double kDrawnSides = 20.0;  ///< of the bed: the longest path that is drawn
 
-DrivenRun driven_run(const SessionReader& session, const std::optional<RobotShape>& shape) {
+void add_robot(const SessionReader& session, const std::optional<RobotShape>& shape,
+               DrivenRun& run) {
   constexpr std::uint64_t kBlockRows = 1024;
   std::vector<PathPoint> path;
   std::vector<SimFrame> frames;
@@ -36,19 +37,18 @@ DrivenRun driven_run(const SessionReader& session, const std::optional<RobotShap
       if ((first + i) % kPathTicks == 0) path.push_back(path_point(frames[i]));
     }
   }
-  return driven_run(std::move(path), frames.empty() ? SimFrame() : frames.back(), shape);
+  add_robot(std::move(path), frames.empty() ? SimFrame() : frames.back(), shape, run);
 }
 
 }  // namespace
 
-DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
-                     const std::optional<RobotShape>& shape) {
-  DrivenRun run;
-  run.path = std::move(path);
-  if (run.path.empty()) return run;
-  run.time_s = last.time;
-  if (shape) run.robot = RobotOutline{last.x, last.y, last.yaw, *shape};
-  return run;
+void add_robot(std::vector<PathPoint> path, const SimFrame& last,
+               const std::optional<RobotShape>& shape, DrivenRun& run) {
+  PictureRobot& robot = run.robots.emplace_back();
+  robot.path = std::move(path);
+  if (robot.path.empty()) return;
+  run.time_s = std::max(run.time_s, last.time);
+  if (shape) robot.outline = RobotOutline{last.x, last.y, last.yaw, *shape};
 }
 
 std::span<const PathPoint> last_stretch(std::span<const PathPoint> path, double length_m,
@@ -105,10 +105,8 @@ std::vector<fs::path> write_run_pictures(const fs::path& folder, const Experimen
     return std::vector<PathPoint>(end.begin(), end.end());
   };
   options.state_names = leveling_state_names();
-  options.path = drawn(run.path);
-  options.robot = run.robot;
-  options.further_robots = run.further_robots;
-  for (PictureRobot& robot : options.further_robots) robot.path = drawn(robot.path);
+  options.robots = run.robots;
+  for (PictureRobot& robot : options.robots) robot.path = drawn(robot.path);
   if (!options.paths_from_start)
     options.title += ", path of the last " + std::to_string(std::lround(drawn_m)) + " m";
   files.push_back(folder / "terrain_after.png");
@@ -128,12 +126,9 @@ std::vector<fs::path> export_run_pictures(const fs::path& folder,
   }
   const Experiment experiment = setup_of(session.info(), {}).experiment;
   const TerrainMeasure measure(experiment);
-  DrivenRun driven = driven_run(session, shape);
+  DrivenRun driven;
+  for (const SessionReader& robot : sessions) add_robot(robot, shape, driven);
   driven.leveling = session.leveling();
-  for (const SessionReader& further : sessions.subspan(1)) {
-    DrivenRun own = driven_run(further, shape);
-    driven.further_robots.push_back({std::move(own.path), std::move(own.robot)});
-  }
   return write_run_pictures(folder, experiment,
                             {measure.surface(field_of(*before)), measure.surface(field_of(*after))},
                             driven);

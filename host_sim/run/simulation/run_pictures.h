@@ -26,15 +26,14 @@ struct RunSurfaces {
 /// What the robots did between them.
 struct DrivenRun {
   double time_s = 0.0;
-  std::vector<PathPoint> path;  ///< its states are those of the leveling algorithm (LevelingState)
-  std::optional<RobotOutline> robot;  ///< at the end
-  std::vector<PictureRobot> further_robots = {};
-  std::vector<LevelingPoint> leveling = {};
+  /// At the end; the states of their paths are those of the leveling algorithm (LevelingState).
+  std::vector<PictureRobot> robots;
+  std::vector<LevelingPoint> leveling;
 };
 
-/// `last`: the frame of the last tick; of no use for a path without a point.
-DrivenRun driven_run(std::vector<PathPoint> path, const SimFrame& last,
-                     const std::optional<RobotShape>& shape);
+/// Adds the next robot. `last`: the frame of its last tick; of no use for a path without a point.
+void add_robot(std::vector<PathPoint> path, const SimFrame& last,
+               const std::optional<RobotShape>& shape, DrivenRun& run);
 
 /// The end of a path, no longer than so much; all of a path that is no longer. A step of more than
 /// half a bed is none that was driven: it leads over the edge of a wrapped one.

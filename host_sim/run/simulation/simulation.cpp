@@ -21,7 +21,6 @@
 #include "host_sim/run/simulation/run_files.h"
 #include "host_sim/run/simulation/run_loop.h"
 #include "host_sim/run/simulation/run_pictures.h"
-#include "host_sim/run/simulation/run_world.h"
 #include "host_sim/run/simulation/session_recorder.h"
 
 namespace screed {
@@ -93,10 +92,10 @@ std::vector<std::string> obstacles_of(const WatchedRobot& robot, double time_s) 
 
 /// A robot of a run, and where what it does goes.
 struct RobotOfRun {
-  RobotOfRun(const RunWorld& world, size_t number, const std::filesystem::path& session,
+  RobotOfRun(const World& world, size_t number, const std::filesystem::path& session,
              const SessionInfo& info, const HeightField& before,
              const std::optional<SoilParameters>& soil)
-      : robot(world.robot_settings(number)), recorder(session, info, before, soil) {}
+      : robot(world.robot(number).settings()), recorder(session, info, before, soil) {}
 
   WatchedRobot robot;
   SessionRecorder recorder;
@@ -109,7 +108,7 @@ class TelemetryLogs {
   explicit TelemetryLogs(size_t robots) : logs_(robots) {
     for (TelemetryLog& log : logs_) streams_.push_back(&log.stream());
   }
-  std::span<std::ostream* const> streams() const { return streams_; }
+  const std::vector<std::ostream*>& streams() const { return streams_; }
   void open(const RunFiles& files) {
     for (size_t i = 0; i < logs_.size(); ++i) logs_[i].open(files.telemetry_log(i));
   }
@@ -123,57 +122,55 @@ class TelemetryLogs {
 };
 
 RobotsOfRun make_robots(const Experiment& experiment, const SimulationOptions& options,
-                        const RunWorld& world, const RunFiles& files, const HeightField& before) {
+                        const World& world, const RunFiles& files, const HeightField& before) {
   const std::optional<SoilParameters> soil = soil_of(experiment);
   RobotsOfRun robots;
   for (size_t i = 0; i < world.robots(); ++i) {
     robots.push_back(std::make_unique<RobotOfRun>(
-        world, i, files.session(i), session_info(experiment, options, world.robot_settings(i)),
+        world, i, files.session(i), session_info(experiment, options, world.robot(i).settings()),
         before, soil));
   }
   return robots;
 }
 
 /// What a robot did and says at the end of the run.
-RobotSummary report_robot(const RunWorld& world, size_t number, const WatchedRobot& robot,
+RobotSummary report_robot(const World& world, size_t number, const WatchedRobot& robot,
                           const std::string& content_hash) {
   const Robot& shadow = robot.parity.shadow();
-  const RobotView& view = world.robot(number);
+  const RobotView& view = world.plant().robot(number);
+  const double time_s = world.plant().time_s();
   const GroundStation& ground = world.ground_station(number);
   RobotSummary summary;
   summary.content_hash = content_hash;
-  summary.left_bed = left_bed(view.terrain(), view);
+  summary.left_bed = left_bed(world.terrain(), view);
   summary.distance_m = robot.frames.distance_m();
   summary.energy_j = view.battery().energy_j;
   summary.battery_v = view.battery().terminal_v;
   summary.battery_charge = std::max(0.0, view.battery().charge());
-  if (const auto lasts_s = view.battery().lasts_s(view.time_s()); lasts_s.has_value())
+  if (const auto lasts_s = view.battery().lasts_s(time_s); lasts_s.has_value())
     summary.charge_lasts_h = *lasts_s / kSecondsPerHour;
   summary.peaks = shadow.leveling().peaks();
   summary.ran = robot.ran;
   summary.state = state_name(shadow.supervisor().state());
   summary.faults = shadow.supervisor().faults();
-  summary.cannot_be_armed = obstacles_of(robot, view.time_s());
+  summary.cannot_be_armed = obstacles_of(robot, time_s);
   summary.telemetry_frames = ground.frames();
   summary.telemetry_frames_damaged = ground.rejected_frames();
   summary.telemetry_frames_sent = robot.telemetry.frames();
-  summary.telemetry_share = robot.telemetry.line_share(view.time_s());
+  summary.telemetry_share = robot.telemetry.line_share(time_s);
   return summary;
 }
 
 /// The robots between the terrains of a run whose sessions are closed.
 DrivenRun driven_by(const RobotsOfRun& robots, const RobotShape& shape, const RunFiles& files) {
-  DrivenRun all = driven_run(robots[0]->recorder.path(), robots[0]->robot.frame, shape);
-  for (size_t i = 1; i < robots.size(); ++i) {
-    DrivenRun own = driven_run(robots[i]->recorder.path(), robots[i]->robot.frame, shape);
-    all.further_robots.push_back({std::move(own.path), std::move(own.robot)});
-  }
+  DrivenRun all;
+  for (const auto& it : robots) add_robot(it->recorder.path(), it->robot.frame, shape, all);
   all.leveling = SessionReader(files.session()).leveling();
   return all;
 }
 
 /// Closes the sessions with the terrain as the run left it.
-void finish_robots(const RunWorld& world, RobotsOfRun& robots, SimulationSummary& summary) {
+void finish_robots(const World& world, RobotsOfRun& robots, SimulationSummary& summary) {
   const Environment& plant = world.plant();
   std::vector<RobotSummary> all;
   for (size_t i = 0; i < robots.size(); ++i) {
@@ -185,25 +182,38 @@ void finish_robots(const RunWorld& world, RobotsOfRun& robots, SimulationSummary
   if (all.size() > 1) summary.robots = std::move(all);
 }
 
+/// What the options say of the world.
+WorldSetup world_setup(const SimulationOptions& options) {
+  WorldSetup setup;
+  setup.board = options.board;
+  setup.image = options.image;
+  setup.ground_port = options.ground_port;
+  setup.environment = options.environment;
+  setup.progress = options.setup_progress;
+  return setup;
+}
+
 }  // namespace
 
 void check_simulation(const Experiment& experiment, const SimulationOptions& options) {
-  const RunWorld trial(as_run(experiment, options), options, {});
+  make_world(as_run(experiment, options), world_setup(options));
 }
 
 SimulationSummary run_simulation(const Experiment& asked, const SimulationOptions& options) {
   const Experiment experiment = as_run(asked, options);
   // Everything that can be wrong with the input is found before the first file is made.
   TelemetryLogs telemetry(experiment.robots.count);
-  RunWorld world(experiment, options, telemetry.streams());
-  const Environment& plant = world.plant();
+  WorldSetup setup = world_setup(options);
+  setup.telemetry_logs = telemetry.streams();
+  const std::unique_ptr<World> world = make_world(experiment, setup);
+  const Environment& plant = world->plant();
   const RobotShape shape =
       shape_of(make_robot_model(experiment, options.board), experiment.vehicle.tracks);
 
   RunFiles files(experiment, options);
   telemetry.open(files);
   const HeightField before = terrain_before(experiment, plant);
-  RobotsOfRun robots = make_robots(experiment, options, world, files, before);
+  RobotsOfRun robots = make_robots(experiment, options, *world, files, before);
   SessionRecorder& recorder = robots[0]->recorder;
   if (options.heights) recorder.record_heights(plant.terrain());
   recorder.record_particles_before(plant.spheres());
@@ -216,23 +226,21 @@ SimulationSummary run_simulation(const Experiment& asked, const SimulationOption
   Progress progress(options.progress);
   WallClock clock;
   Pacer pacer(clock, options.realtime);
-  LevelingMonitor leveling(experiment, world.robot_settings().board.tread_mm * 1e-3,
+  LevelingMonitor leveling(experiment, world->robot().settings().board.tread_mm * 1e-3,
                            plant.is_deformable());
-  RunParts parts{robots[0]->robot, recorder, leveling,         stop,
-                 progress,         pacer,    options.observer, before};
-  for (size_t i = 1; i < robots.size(); ++i)
-    parts.further_robots.push_back({robots[i]->robot, robots[i]->recorder});
-  RunLoop loop(world, parts);
+  std::vector<RecordedRobot> recorded;
+  for (const auto& it : robots) recorded.push_back({it->robot, it->recorder});
+  RunLoop loop(*world, {recorded, leveling, stop, progress, pacer, options.observer, before});
   summary.end = loop.run();
   summary.wall_s = pacer.elapsed_s();
 
-  finish_robots(world, robots, summary);
+  finish_robots(*world, robots, summary);
   telemetry.close();
 
   summary.folder = files.final_folder();
   summary.leftovers = files.leftovers();
   summary.time_s = plant.time_s();
-  summary.cycles = world.cycles();
+  summary.cycles = world->robot().cycles();
   summary.training_frames = stop.training_frames();
   summary.ordered = experiment.radio.ground_station;
   summary.height_changes = recorder.height_changes();

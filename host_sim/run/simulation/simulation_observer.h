@@ -19,11 +19,9 @@ class SimulationObserver {
   /// Before the first tick. `before`: the terrain from which the summary of the run counts changes,
   /// on soil as it was laid out. `terrain`: as the robot stands on it, settled in.
   virtual void on_begin(const HeightField& before, const HeightField& terrain) = 0;
-  /// Before on_tick() of a world with several robots: the frames of those behind the first.
-  virtual void on_further_robots(std::span<const SimFrame> /*frames*/) {}
-  /// After each tick, with the first robot's frame as it was recorded and the terrain after the
-  /// answer (natively that of the sample). May take its time: the run waits.
-  virtual void on_tick(const SimFrame& frame, const HeightField& terrain) = 0;
+  /// After each tick, with the frame of each robot as it was recorded and the terrain after the
+  /// answers (natively that of the samples). May take its time: the run waits.
+  virtual void on_tick(std::span<const SimFrame> frames, const HeightField& terrain) = 0;
   /// A new point of the leveling curve, the first one after on_begin().
   virtual void on_leveling(const LevelingPoint& /*point*/) {}
   /// After the last tick; the run is not saved yet.

@@ -53,9 +53,18 @@ void StopCondition::count_tick(RobotState state, message::LevelingState leveling
     ++driven_;
 }
 
+uint64_t StopCondition::ticks_to_run() const {
+  return static_cast<uint64_t>(std::llround(duration_s_ * kTickRate_hz));
+}
+
+bool StopCondition::is_over(double time_s) const {
+  constexpr double kRounding_s = 1e-9;
+  return training_frames_ == 0 &&
+         time_s > static_cast<double>(ticks_to_run()) / kTickRate_hz + kRounding_s;
+}
+
 bool StopCondition::done() const {
-  if (training_frames_ == 0)
-    return ticks_ >= static_cast<uint64_t>(std::llround(duration_s_ * kTickRate_hz));
+  if (training_frames_ == 0) return ticks_ >= ticks_to_run();
   return driven_ == training_frames_ || ticks_ >= training_frames_ + kMaxIdleTicks;
 }
 

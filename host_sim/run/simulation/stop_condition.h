@@ -41,6 +41,8 @@ class StopCondition {
   /// The run has lasted as long as it was to: the training drive (Algorithm 5) has driven all its
   /// frames, or idled for too long beside them; any other algorithm has had its duration.
   bool done() const;
+  /// Whether no tick of the run can begin as late as this, s.
+  bool is_over(double time_s) const;
   /// Nothing while the run is to go on. `off_bed`: see left_bed().
   std::optional<RunEnd> reason(bool off_bed) const;
 
@@ -53,6 +55,8 @@ class StopCondition {
   double duration_s() const { return duration_s_; }
 
  private:
+  uint64_t ticks_to_run() const;  ///< of an algorithm that is not training drive
+
   uint64_t training_frames_;  ///< to be driven; 0 under another algorithm
   double duration_s_;
   const std::atomic<bool>* stop_;

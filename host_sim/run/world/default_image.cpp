@@ -1,6 +1,6 @@
 // Where the image of a board is looked for.
 #include "host_sim/core/data_folders.h"
-#include "host_sim/run/world/co_simulation.h"
+#include "host_sim/run/world/image_robot.h"
 
 namespace screed {
 

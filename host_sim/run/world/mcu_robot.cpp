@@ -4,23 +4,42 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
 #include "firmware/parameters/parameter_store.h"
+#include "host_sim/core/data_folders.h"
 #include "host_sim/core/errors.h"
+#include "host_sim/devices/mcu/mcu.h"
 #include "host_sim/devices/sensors/calibration_motion.h"
+#include "host_sim/run/experiment/sections/experiment_section.h"
+#include "host_sim/run/world/image_robot.h"
+#include "host_sim/run/world/robot_number.h"
 
 namespace screed::mcu {
+namespace {
 
-McuRobot::McuRobot(Board& board, const CoSimulationOptions& image, const WorldOptions& own,
-                   RobotView& in_world, std::ostream* telemetry_log)
-    : RobotController(own, in_world, telemetry_log),
-      board_(board),
-      elf_(image.elf),
-      parameters_(image.parameters),
-      calibration_motion_(own.calibration_motion),
-      chip_clock_(own.seed, "chip clocks"),
-      flood_bytes_(own.seed, "flood") {
-  store_in_eeprom(image);
+// No healthy program is silent for so long, not even through a reset by the watchdog.
+constexpr std::uint64_t kAnswerTimeout_us = 2'000'000;
+
+Wiring wiring_of(const std::string& board) {
+  const std::filesystem::path folder = data_folders().boards / board;
+  std::error_code error;
+  if (board.empty() || !std::filesystem::is_directory(folder, error)) {
+    throw InputError("board '" + board + "': no folder " + folder.string());
+  }
+  return read_wiring(folder / "wiring.ini");
+}
+
+}  // namespace
+
+McuRobot::McuRobot(const WorldOptions& options, Environment& plant, std::size_t number)
+    : RobotController(options, plant, number),
+      elf_(options.robots[number].image->elf),
+      board_(elf_, wiring_of(options.robots[number].image->board)),
+      calibration_motion_(options.calibration_motion),
+      chip_clock_(seed_of_robot(options.seed, number), "chip clocks"),
+      flood_bytes_(seed_of_robot(options.seed, number), "flood") {
+  store_in_eeprom();
   for (const Side side : {kLeft, kRight}) {
     position_.at(side) = devices().encoder_position(robot(), side);
     board_.set_encoder(side, static_cast<std::int64_t>(std::floor(position_.at(side))));
@@ -31,13 +50,14 @@ McuRobot::McuRobot(Board& board, const CoSimulationOptions& image, const WorldOp
   });
 }
 
-void McuRobot::store_in_eeprom(const CoSimulationOptions& image) {
+void McuRobot::store_in_eeprom() {
   ParameterCopy copy{};
-  encode_parameters(image.parameters, 1, copy);
+  encode_parameters(settings().parameters, 1, copy);
   for (std::uint8_t i = 0; i < kParameterCopies; ++i) {
     board_.mcu.write_eeprom(parameter_copy_address(i), copy.bytes);
   }
-  board_.mcu.write_eeprom(kCredentialRecordAddress, credential_record(image.credentials).bytes);
+  board_.mcu.write_eeprom(kCredentialRecordAddress,
+                          credential_record(settings().credentials).bytes);
 }
 
 void McuRobot::begin_tick(uint64_t tick) {
@@ -50,7 +70,7 @@ DutyRatio McuRobot::duty_ratio() const {
 }
 
 void McuRobot::end_step() {
-  const std::uint64_t begin_us = us_at(robot().steps() - 1);
+  const std::uint64_t begin_us = us_at(plant().steps() - 1);
   const std::uint64_t end_us = world_us();
   step_begin_ = begin_us * kCyclesPerUs;
   step_end_ = end_us * kCyclesPerUs;
@@ -161,27 +181,90 @@ void McuRobot::dispatch(const Event& event) {
 }
 
 void McuRobot::check_parameters() const {
-  if (std::memcmp(&board_.parameters(), &parameters_, sizeof(Parameters)) == 0) return;
+  if (std::memcmp(&board_.parameters(), &settings().parameters, sizeof(Parameters)) == 0) return;
   throw RunError(elf_ +
                  ": the image does not take the experiment's parameters; it was built for another "
                  "parameter table (run make firmware)");
 }
 
-bool McuRobot::run_to(Board::Mark mark) {
+Board::Mark McuRobot::run_to_mark() {
   for (;;) {
     const bool waiting = next_event_ < events_.size();
     const std::uint64_t target = waiting ? events_[next_event_].cycle : step_end_;
     const bool arrived = board_.mcu.run_to(target);
     board_.check();
     if (!arrived) {
-      const Board::Mark shown = board_.take_mark();
-      if (shown == Board::Mark::kStart) check_parameters();
-      if (shown == mark) return true;
-      continue;
+      const Board::Mark mark = board_.take_mark();
+      if (mark == Board::Mark::kNone) continue;
+      return mark;
     }
-    if (!waiting) return false;
+    if (!waiting) return Board::Mark::kNone;
     dispatch(events_[next_event_++]);
   }
 }
 
+RobotController::Progress McuRobot::live(RobotWatch* watch) {
+  Progress progress = Progress::kNoAnswer;
+  for (;;) {
+    switch (run_to_mark()) {
+      case Board::Mark::kNone:
+        if (now_us() > last_mark_us_ + kAnswerTimeout_us) {
+          throw RunError("the image has made no control tick for 2 s, at " +
+                         std::to_string(plant().time_s()) + " s");
+        }
+        return progress;
+      case Board::Mark::kStart:
+        check_parameters();
+        break;
+      case Board::Mark::kSample:
+        last_mark_us_ = now_us();
+        sample_ = board_.sample();
+        if (watch != nullptr && !watch->on_sample(number(), sample_)) return Progress::kOver;
+        break;
+      case Board::Mark::kOutput:
+        last_mark_us_ = now_us();
+        output_ = board_.output();
+        if (watch != nullptr) watch->on_output(number(), output_);
+        progress = Progress::kAnswered;
+        break;
+    }
+  }
+}
+
 }  // namespace screed::mcu
+
+namespace screed {
+namespace {
+
+/// The robot would refuse to be armed, and its shadow on this machine would not.
+void check_algorithm(const std::string& elf, const Parameters& parameters) {
+  const std::optional<std::uint16_t> in_image = mcu::image_algorithms(elf);
+  const std::int16_t wanted = parameters.algorithm();
+  if (!in_image.has_value() || (*in_image >> wanted & 1) != 0) return;
+  const std::vector<std::string> names = algorithm_names();
+  std::string has;
+  for (size_t i = 0; i < names.size(); ++i)
+    if ((*in_image >> i & 1) != 0) has += (has.empty() ? "" : ", ") + names[i];
+  const std::string& name = names.at(static_cast<size_t>(wanted));
+  throw InputError(elf + ": the image has no algorithm " + name + ", only " + has +
+                   "; make firmware LEVELING=" + name + " builds one that has it, for --elf");
+}
+
+}  // namespace
+
+void check_image(const RobotOptions& robot) {
+  const RobotImage& image = *robot.image;
+  std::error_code error;
+  if (!std::filesystem::exists(image.elf, error)) {
+    throw InputError(image.elf + ": no such image; run make firmware BOARD=" + image.board);
+  }
+  check_algorithm(image.elf, robot.settings.parameters);
+}
+
+std::unique_ptr<RobotController> make_image_robot(const WorldOptions& options, Environment& plant,
+                                                  std::size_t number) {
+  check_image(options.robots[number]);
+  return std::make_unique<mcu::McuRobot>(options, plant, number);
+}
+
+}  // namespace screed

@@ -6,33 +6,33 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <ostream>
+#include <string>
 #include <vector>
 
 #include "host_sim/core/random.h"
 #include "host_sim/devices/mcu/board.h"
-#include "host_sim/run/world/co_simulation.h"
 #include "host_sim/run/world/robot_controller.h"
 
 namespace screed::mcu {
 
 class McuRobot : public RobotController {
  public:
-  /// `own`: of this robot's world; parameters and key go from `image` into the EEPROM. The board
-  /// must outlive this.
-  McuRobot(Board& board, const CoSimulationOptions& image, const WorldOptions& own,
-           RobotView& robot, std::ostream* telemetry_log);
+  /// As make_image_robot().
+  McuRobot(const WorldOptions& options, Environment& plant, std::size_t number);
 
   void begin_tick(uint64_t tick) override;
   DutyRatio duty_ratio() const override;
   /// What happens to the board in this step is known now, and has not happened yet.
   void end_step() override;
+  /// Runs the board to the end of the physics step. The program marks when it has read its sensors
+  /// and when it has set its outputs; the pins act on the world by themselves. Throws RunError when
+  /// the program crashes, hangs or misuses a chip.
+  Progress live(RobotWatch* watch) override;
 
-  /// Runs the board until the program shows this mark, or to the end of the physics step; says
-  /// whether it was the mark. Throws RunError as CoSimulation.
-  bool run_to(Board::Mark mark);
-  /// How far the microcontroller has come.
-  std::uint64_t now_us() const { return board_.mcu.cycle() / kCyclesPerUs; }
+  const SensorSample& sample() const override { return sample_; }
+  const RobotOutput& output() const override { return output_; }
+  std::optional<CycleReport> cycles() const override { return board_.cycles(); }
+  Board& board() { return board_; }
 
   /// While true, something else sends random bytes on the robot's receive line, back to back.
   bool flood = false;
@@ -51,7 +51,7 @@ class McuRobot : public RobotController {
     double next_us = 0.0;
   };
 
-  void store_in_eeprom(const CoSimulationOptions& image);
+  void store_in_eeprom();
   void check_parameters() const;
   void add_edges(Side side);
   void add_measurements(EventKind kind, Sampler& sampler, double rate_hz, double begin_us,
@@ -59,9 +59,13 @@ class McuRobot : public RobotController {
   void add_radio(std::uint64_t begin_us, std::uint64_t end_us);
   void dispatch(const Event& event);
 
-  Board& board_;
+  /// How far the microcontroller has come.
+  std::uint64_t now_us() const { return board_.mcu.cycle() / kCyclesPerUs; }
+  /// The board up to the next mark of the program, kNone at the end of the physics step.
+  Board::Mark run_to_mark();
+
   std::string elf_;
-  Parameters parameters_;
+  Board board_;
   bool calibration_motion_;
   WorldRandom chip_clock_;  ///< draws each chip's phase
   WorldRandom flood_bytes_;
@@ -75,6 +79,9 @@ class McuRobot : public RobotController {
   std::uint64_t step_end_ = 0;
   std::optional<ImuTruth> motion_;  ///< of this step, once somebody asked
   double flood_us_ = 0.0;
+  SensorSample sample_{};
+  RobotOutput output_{};
+  std::uint64_t last_mark_us_ = 0;
 };
 
 }  // namespace screed::mcu

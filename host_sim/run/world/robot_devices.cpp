@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "hal/sample.h"
+#include "host_sim/run/world/robot_number.h"
 
 namespace screed {
 namespace {
@@ -20,17 +21,20 @@ std::optional<uint64_t> tick_at(const std::optional<double>& time_s) {
 
 }  // namespace
 
-RobotDevices::RobotDevices(const WorldOptions& options, const RobotView& robot,
-                           std::ostream* telemetry_log)
-    : imu_(options.seed, options.imu),
-      uplink_(options.seed, "uplink", options.radio),
-      downlink_(options.seed, "downlink", options.radio),
-      ground_(options.ground_station_arms, options.drive, telemetry_log, options.ground_key,
-              PositionFixes(options.seed, options.fixes)),
-      ground_end_(options.ground_port),
+RobotDevices::RobotDevices(const WorldOptions& options, size_t number, const RobotView& robot)
+    : RobotDevices(options, options.robots[number], seed_of_robot(options.seed, number), robot) {}
+
+RobotDevices::RobotDevices(const WorldOptions& options, const RobotOptions& own, uint64_t seed,
+                           const RobotView& robot)
+    : imu_(seed, options.imu),
+      uplink_(seed, "uplink", options.radio),
+      downlink_(seed, "downlink", options.radio),
+      ground_(options.ground_station_arms, own.drive, own.telemetry_log, own.ground_key,
+              PositionFixes(seed, options.fixes)),
+      ground_end_(own.ground_port),
       station_m_(robot_position(robot)),
       encoder_counts_per_turn_(options.encoder_counts_per_turn),
-      lay_on_side_tick_(tick_at(options.lay_on_side_at_s)) {}
+      lay_on_side_tick_(tick_at(own.lay_on_side_at_s)) {}
 
 void RobotDevices::execute_events(uint64_t tick, RobotView& robot) {
   if (lay_on_side_tick_ == tick) robot.lay_on_side();

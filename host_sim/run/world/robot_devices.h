@@ -1,8 +1,8 @@
 // Everything round one robot that is neither its bodies nor its microcontroller: IMU, encoders, the
 // radio with the ground station at its other end, and the events that an experiment scripts.
 //
-// It exists once, for the firmware compiled for the host (world.h) and for the flash image
-// (mcu_world.h). These differ in when they look: the one once a control tick, the other at the
+// It exists once, for the firmware compiled for the host (native_robot.h) and for the flash image
+// (mcu_robot.h). These differ in when they look: the one once a control tick, the other at the
 // moment of each measurement, edge and byte. Each device draws from a generator of its own, so the
 // order in which devices are asked changes nothing.
 #pragma once
@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
-#include <ostream>
 
 #include "host_sim/devices/radio/radio_link.h"
 #include "host_sim/devices/sensors/imu_model.h"
@@ -24,9 +23,8 @@ namespace screed {
 
 class RobotDevices {
  public:
-  /// The ground station stands where the robot is now. telemetry_log may be null; it must outlive
-  /// this.
-  RobotDevices(const WorldOptions& options, const RobotView& robot, std::ostream* telemetry_log);
+  /// Of a robot of the options. The ground station stands where it is now.
+  RobotDevices(const WorldOptions& options, size_t number, const RobotView& robot);
 
   /// Executes what is scripted for this control tick, counted from 1. Before its physics.
   void execute_events(uint64_t tick, RobotView& robot);
@@ -46,6 +44,9 @@ class RobotDevices {
   const GroundStation& ground_station() const { return ground_; }
 
  private:
+  RobotDevices(const WorldOptions& options, const RobotOptions& own, uint64_t seed,
+               const RobotView& robot);
+
   ImuModel imu_;
   RadioLink uplink_;
   RadioLink downlink_;

@@ -1,4 +1,4 @@
-// Robots in one world, of physics or of what stands in for it, advanced together; mostly one.
+// Robots in one world, of physics or of what stands in for it, advanced together.
 //
 // The world owns its clock and its seeded generators; nothing in it looks at the wall clock or at
 // global random state, so the same configuration gives the same bytes on every run and any number
@@ -6,51 +6,45 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <ostream>
+#include <optional>
 #include <vector>
 
-#include "firmware/parameters/board_constants.h"
 #include "hal/sample.h"
-#include "host_sim/physics/world/plant.h"
-#include "host_sim/run/world/native_robot.h"
+#include "host_sim/devices/mcu/cycle_report.h"
+#include "host_sim/physics/world/environment.h"
 #include "host_sim/run/world/robot_controller.h"
+#include "host_sim/run/world/robot_watch.h"
 #include "host_sim/run/world/world_options.h"
 
 namespace screed {
 
 class World {
  public:
-  /// Makes what drives a robot; arguments as those of RobotController.
-  using ControllerFactory = std::function<std::unique_ptr<RobotController>(
-      const WorldOptions& options, RobotView& robot, std::ostream* telemetry_log)>;
+  /// The robots of this plant, which nobody has stepped yet; of the options those count that are
+  /// not the plant's. Throws InputError for an image that cannot be run.
+  World(std::unique_ptr<Environment> plant, const WorldOptions& options);
 
-  /// telemetry_log, of the first robot, may be null; it must outlive the world. `first` makes the
-  /// controller of the first robot; without it that is a native one, as all others are. Throws
-  /// InputError when the options do not fit together.
-  World(HeightField terrain, const Assembly& model, const BoardConstants& board,
-        const WorldOptions& options, std::ostream* telemetry_log,
-        const ControllerFactory& first = nullptr);
-  /// The same with the robots in another kind of environment, which nobody has stepped yet; of the
-  /// options only those count that are not the plant's.
-  World(std::unique_ptr<Environment> plant, const BoardConstants& board,
-        const WorldOptions& options, std::ostream* telemetry_log,
-        const ControllerFactory& first = nullptr);
-
-  /// Advances plant, sensors and radio by one physics step. Throws RunError when the physics has
-  /// diverged.
-  void step();
-  /// The same up to the end of the control tick.
-  void advance();
-  /// Whether a control tick ends here: native robots have read their sensors.
-  bool at_end_of_tick() const;
+  /// Advances all until each robot has answered. Native ones do at the end of each control tick of
+  /// the world, an image a moment later and, while it starts, less often. The watch, which may be
+  /// null, sees it; returns false when it wanted no answer. Throws RunError when the physics
+  /// diverges or an image crashes, hangs or misuses a chip.
+  bool advance(RobotWatch* watch = nullptr);
 
   size_t robots() const { return robots_.size(); }
-  /// What a native robot's sensors said at the end of the last tick; number 0 is the first robot.
-  const SensorSample& sample(size_t robot = 0) const { return natives_[robot]->sample(); }
-  /// Applies a native robot's answer until the next tick.
-  void apply(const RobotOutput& output, size_t robot = 0) { natives_[robot]->apply(output); }
+  RobotController& robot(size_t number = 0) { return *robots_[number]; }
+  const RobotController& robot(size_t number = 0) const { return *robots_[number]; }
+  /// What a robot has read and answered, newest.
+  const SensorSample& sample(size_t robot = 0) const { return robots_[robot]->sample(); }
+  const RobotOutput& output(size_t robot = 0) const { return robots_[robot]->output(); }
+  /// The firmware of a native robot.
+  const Robot& firmware(size_t robot = 0) const { return *robots_[robot]->firmware(); }
+  const GroundStation& ground_station(size_t robot = 0) const {
+    return robots_[robot]->devices().ground_station();
+  }
+  GroundStation& ground_station(size_t robot = 0) {
+    return robots_[robot]->devices().ground_station();
+  }
 
   /// Control ticks begun, and as a time.
   uint64_t ticks() const { return ticks_; }
@@ -58,21 +52,15 @@ class World {
   const Environment& plant() const { return *plant_; }
   Environment& plant() { return *plant_; }
   const HeightField& terrain() const { return plant_->terrain(); }
-  const VehicleState& vehicle() const { return plant_->vehicle(); }
-  const Battery& battery() const { return plant_->battery(); }
-  const GroundStation& ground_station(size_t robot = 0) const {
-    return robots_[robot]->devices().ground_station();
-  }
-  GroundStation& ground_station(size_t robot = 0) {
-    return robots_[robot]->devices().ground_station();
-  }
-  /// Picks the first robot up and lays it on its left side where it is.
-  void lay_on_side() { plant_->lay_on_side(); }
+  const VehicleState& vehicle(size_t robot = 0) const { return plant_->robot(robot).vehicle(); }
+  const Battery& battery(size_t robot = 0) const { return plant_->robot(robot).battery(); }
 
  private:
+  /// Plant, sensors and radio, by one physics step.
+  void step();
+
   std::unique_ptr<Environment> plant_;
   std::vector<std::unique_ptr<RobotController>> robots_;
-  std::vector<NativeRobot*> natives_;  ///< the same; null where another controller drives
   std::vector<DutyRatio> duty_ratios_;
   uint64_t ticks_ = 0;
 };

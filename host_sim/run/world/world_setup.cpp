@@ -13,9 +13,12 @@
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/physics/terrain/grey_image.h"
+#include "host_sim/physics/world/plant.h"
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/experiment/robot_sections.h"
 #include "host_sim/run/experiment/trap.h"
+#include "host_sim/run/world/image_robot.h"
+#include "host_sim/run/world/robot_number.h"
 #include "host_sim/run/world/robot_placement.h"
 
 namespace screed {
@@ -94,16 +97,8 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.vehicle.motor = motor.motor;
   options.encoder_counts_per_turn = motor.counts_per_turn;
   options.battery = make_battery(experiment, setup.board);
-  options.ground_port = setup.ground_port;
   options.seed = experiment.experiment.seed;
   options.physics_step_s = experiment.physics.step_s;
-  options.start.x_m = experiment.vehicle.x_m;
-  options.start.y_m = experiment.vehicle.y_m;
-  options.start.z_m = experiment.vehicle.z_m;
-  options.start.attitude = {experiment.vehicle.roll_deg * kRadPerDeg,
-                            experiment.vehicle.pitch_deg * kRadPerDeg,
-                            experiment.vehicle.heading_deg * kRadPerDeg};
-  options.further_telemetry_logs = setup.further_telemetry_logs;
   options.robot_friction = experiment.robots.friction;
   options.vehicle.tracks = experiment.vehicle.tracks;
   options.vehicle.track_model =
@@ -124,14 +119,10 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   options.radio.range_m = experiment.radio.range_m;
   options.radio.bytes_per_s = experiment.radio.baud / 10.0;
   options.radio.pause_characters = experiment.radio.packet_pause;
-  options.ground_key = ground_key_of(experiment);
   options.ground_station_arms = experiment.radio.ground_station;
   options.fixes = {experiment.fixes.period_s, experiment.fixes.sigma_m,
                    experiment.fixes.outage_every_s, experiment.fixes.outage_s};
-  options.drive = drive_of(experiment);
-  for (size_t i = 1; i < experiment.robots.count; ++i)
-    options.further_drives.push_back(drive_of(experiment_of_robot(experiment, i)));
-  options.lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
+  options.robots = robot_options(experiment, setup.board);
   if (experiment.map.is_soil()) {
     options.soil = make_soil(experiment);
     options.soil_options.bulldozing = experiment.soil.bulldozing;
@@ -142,22 +133,18 @@ WorldOptions world_options(const Experiment& experiment, const WorldSetup& setup
   return options;
 }
 
-/// Puts the robots where they start.
-void place_robots(const Experiment& experiment, const HeightField& terrain, WorldOptions& options) {
-  const StartPose as_in_file = options.start;
-  bool first = true;
+/// Where the robots start: at these places, all at the height and as inclined as [vehicle] says.
+std::vector<StartPose> start_poses(const Experiment& experiment, const HeightField& terrain) {
+  const VehicleSection& vehicle = experiment.vehicle;
+  std::vector<StartPose> starts;
   for (const RobotPlace& place : robot_places(experiment, terrain)) {
-    StartPose start = as_in_file;
-    start.x_m = place.x_m;
-    start.y_m = place.y_m;
-    start.attitude.heading = place.heading_deg * kRadPerDeg;
-    if (first) {
-      options.start = start;
-    } else {
-      options.further_starts.push_back(start);
-    }
-    first = false;
+    starts.push_back({place.x_m,
+                      place.y_m,
+                      vehicle.z_m,
+                      {vehicle.roll_deg * kRadPerDeg, vehicle.pitch_deg * kRadPerDeg,
+                       place.heading_deg * kRadPerDeg}});
   }
+  return starts;
 }
 
 /// Threads of a bed of particles. No key of an experiment: nothing in a run depends on it.
@@ -208,34 +195,48 @@ HeightField make_terrain(const Experiment& experiment) {
   return field;
 }
 
-std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const WorldSetup& setup) {
-  WorldOptions options = world_options(experiment, setup);
-  const BoardConstants& board = board_constants_of(setup.board);
-  const Assembly model = make_robot_model(experiment, setup.board);
-  HeightField terrain = make_terrain(experiment);
-  place_robots(experiment, terrain, options);
-  if (setup.environment) {
-    return std::make_unique<World>(setup.environment(std::move(terrain), model, options), board,
-                                   options, telemetry_log);
+std::vector<RobotOptions> robot_options(const Experiment& experiment, const std::string& board) {
+  const BoardConstants& constants = board_constants_of(board);
+  const Credentials credentials = credentials_of(experiment);
+  const CommandKey ground_key = ground_key_of(experiment);
+  std::vector<RobotOptions> robots;
+  for (size_t i = 0; i < experiment.robots.count; ++i) {
+    const Experiment its = experiment_of_robot(experiment, i);
+    RobotOptions own;
+    own.settings = {constants, its.parameters, credentials_of_robot(credentials, i)};
+    if (!robot_has_own(experiment, i, "parameters", "random_seed"))
+      own.settings.parameters = parameters_of_robot(its.parameters, i);
+    own.drive = drive_of(its);
+    own.ground_key = key_of_robot(ground_key, i);
+    robots.push_back(own);
   }
-  return std::make_unique<World>(std::move(terrain), model, board, options, telemetry_log);
+  // A script is one robot's, the others go on.
+  robots[0].lay_on_side_at_s = experiment.experiment.lay_on_side_at_s;
+  return robots;
 }
 
-std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
-                                                 std::ostream* telemetry_log,
-                                                 const std::string& image,
-                                                 const WorldSetup& setup) {
-  CoSimulationOptions options;
-  options.elf = image;
-  options.board = setup.board;
-  options.parameters = experiment.parameters;
-  options.credentials = credentials_of(experiment);
-  options.world = world_options(experiment, setup);
+std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup& setup) {
+  WorldOptions options = world_options(experiment, setup);
+  RobotOptions& first = options.robots[0];
+  first.ground_port = setup.ground_port;
+  for (size_t i = 0; i < setup.telemetry_logs.size(); ++i)
+    options.robots[i].telemetry_log = setup.telemetry_logs[i];
+  if (setup.image.has_value()) {
+    if (experiment.experiment.algorithm == kTrainingDriveName) {
+      throw InputError(
+          "[experiment] algorithm = training_drive is not part of the microcontroller's image; it "
+          "runs without --hal mcu");
+    }
+    first.image = RobotImage{*setup.image, setup.board};
+    check_image(first);
+  }
+  const Assembly model = make_robot_model(experiment, setup.board);
   HeightField terrain = make_terrain(experiment);
-  place_robots(experiment, terrain, options.world);
-  return make_co_simulation(std::move(terrain), make_robot_model(experiment, setup.board), options,
-                            telemetry_log);
+  options.starts = start_poses(experiment, terrain);
+  std::unique_ptr<Environment> plant =
+      setup.environment ? setup.environment(std::move(terrain), model, options)
+                        : std::make_unique<Plant>(std::move(terrain), model, options);
+  return std::make_unique<World>(std::move(plant), options);
 }
 
 }  // namespace screed

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,7 +14,6 @@
 #include "host_sim/physics/vehicle/assembly.h"
 #include "host_sim/run/experiment/board_table.h"
 #include "host_sim/run/experiment/experiment.h"
-#include "host_sim/run/world/co_simulation.h"
 #include "host_sim/run/world/world.h"
 
 namespace screed {
@@ -26,10 +26,13 @@ using EnvironmentFactory = std::function<std::unique_ptr<Environment>(
 /// What a world is made with beside the experiment.
 struct WorldSetup {
   std::string board = kDefaultBoard;  ///< a folder of boards/
-  /// Programs outside at the ground end of the radio; may be null, must outlive the world.
+  /// The flash image that drives the first robot; firmware compiled for this machine all others.
+  std::optional<std::string> image = std::nullopt;
+  /// Programs outside at the ground end of the first robot's radio; may be null, must outlive the
+  /// world.
   GroundPort* ground_port = nullptr;
-  /// Of the robots behind the first, as in WorldOptions.
-  std::vector<std::ostream*> further_telemetry_logs = {};
+  /// One a robot, or none; each may be null, must outlive the world.
+  std::vector<std::ostream*> telemetry_logs = {};
   EnvironmentFactory environment = nullptr;  ///< in place of physics; may be empty
   TaskProgress progress = nullptr;           ///< of laying and settling; may be empty, may end it
 };
@@ -41,14 +44,10 @@ SoilParameters make_soil(const Experiment& experiment);
 ParticleOptions make_particles(const Experiment& experiment);
 /// The terrain an experiment asks for; the surface that particles are laid up to.
 HeightField make_terrain(const Experiment& experiment);
-/// A world as the experiment describes it. telemetry_log may be null. Throws InputError, and what
-/// setup.progress throws.
-std::unique_ptr<World> make_world(const Experiment& experiment, std::ostream* telemetry_log,
-                                  const WorldSetup& setup = {});
-/// The same world with the image in the first robot (co_simulation.h), always of physics.
-std::unique_ptr<CoSimulation> make_co_simulation(const Experiment& experiment,
-                                                 std::ostream* telemetry_log,
-                                                 const std::string& image,
-                                                 const WorldSetup& setup = {});
+/// What is each robot's own in an experiment, on a board of this name. Throws InputError for an
+/// unknown one.
+std::vector<RobotOptions> robot_options(const Experiment& experiment, const std::string& board);
+/// A world as the experiment describes it. Throws InputError, and what setup.progress throws.
+std::unique_ptr<World> make_world(const Experiment& experiment, const WorldSetup& setup = {});
 
 }  // namespace screed

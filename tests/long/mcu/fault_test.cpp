@@ -13,7 +13,7 @@ namespace {
 TEST(Fault, DataLineHeldLowForFiveSecondsStopsTheRobot) {
   ImageDrive drive;
   drive.set_off();
-  drive.world.board().bus.hold_data();
+  drive.board().bus.hold_data();
   const std::optional<double> stopped = drive.ms_until_stop();
   ASSERT_TRUE(stopped.has_value());
   EXPECT_LE(*stopped, 100.0);
@@ -26,7 +26,7 @@ TEST(Fault, DataLineHeldLowForFiveSecondsStopsTheRobot) {
             ChipBit::kAccelMagChip | ChipBit::kGyroChip | ChipBit::kBaroChip);
   drive.expect_punctual();
   // The bus comes back, and with it the numbers; the fault stays latched.
-  drive.world.board().bus.release_data();
+  drive.board().bus.release_data();
   drive.run(1.0);
   EXPECT_EQ(drive.failing_chips(), 0);
   EXPECT_NE(drive.sample.fresh & kFreshGyro, 0);
@@ -49,7 +49,7 @@ TEST(Fault, ABrokenEncoderStopsTheRobotWithin200Ms) {
                                Broken{kLeft, true, true, 0.15}, Broken{kRight, true, true, 0.25}}) {
     ImageDrive drive(1, broken.speed_m_per_s);
     drive.set_off();
-    Board& board = drive.world.board();
+    Board& board = drive.board();
     if (broken.a) board.break_encoder_wire(broken.side, 0);
     if (broken.b) board.break_encoder_wire(broken.side, 1);
     const std::optional<double> stopped = drive.ms_until_stop();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "boards/a_star_32u4/board.h"
+#include "firmware/main_loop.h"
 #include "firmware/robot/robot.h"
 #include "hal/hal.h"
 #include "hal/host/target.h"
@@ -15,6 +16,11 @@
 
 namespace screed {
 namespace {
+
+void run_firmware(hal::Target& target) {
+  const hal::TargetScope scope(target);
+  main_loop();
+}
 
 /// Counts calls, feeds level samples, keeps what comes back.
 class FakeTarget : public hal::Target {
@@ -50,7 +56,7 @@ class FakeTarget : public hal::Target {
   void write_outputs(const RobotOutput& output) override {
     calls += 'o';
     outputs.insert(outputs.end(), output.radio_out, output.radio_out + output.radio_out_count);
-    if (inner != nullptr) hal::run_firmware(*inner);
+    if (inner != nullptr) run_firmware(*inner);
   }
 
   std::string calls;
@@ -67,7 +73,7 @@ class FakeTarget : public hal::Target {
 
 TEST(HostHal, TheMainLoopCallsInOrder) {
   FakeTarget target(2);
-  hal::run_firmware(target);
+  run_firmware(target);
   // The order in which board and parameters are asked for is the compiler's.
   EXPECT_EQ(target.calls.substr(0, 1), "i");
   EXPECT_EQ(target.calls.substr(4), "wrowrow");
@@ -75,7 +81,7 @@ TEST(HostHal, TheMainLoopCallsInOrder) {
 
 TEST(HostHal, WhatTheRobotSaysReachesTheTarget) {
   FakeTarget target(50);
-  hal::run_firmware(target);
+  run_firmware(target);
   Robot robot(kBoard, Parameters{}, credentials_of(test_key()));
   FakeTarget samples(50);
   std::vector<uint8_t> expected;
@@ -94,7 +100,7 @@ TEST(HostHal, ATargetMayRunAnotherAndGoesOnAfterwards) {
   FakeTarget inner(1);
   FakeTarget outer(3);
   outer.inner = &inner;
-  hal::run_firmware(outer);
+  run_firmware(outer);
   EXPECT_EQ(outer.calls.substr(4), "wrowrowrow");
   EXPECT_EQ(inner.calls.substr(0, 1), "i");
 }
@@ -104,19 +110,19 @@ TEST(HostHal, AnErrorOfTheTargetPassesThroughAndLeavesTheThreadUsable) {
   failing.fail_at = 4;
   FakeTarget outer(2);
   outer.inner = &failing;
-  EXPECT_THROW(hal::run_firmware(outer), std::runtime_error);
+  EXPECT_THROW(run_firmware(outer), std::runtime_error);
   FakeTarget next(5);
-  EXPECT_NO_THROW(hal::run_firmware(next));
+  EXPECT_NO_THROW(run_firmware(next));
   EXPECT_EQ(next.calls.size(), 4U + 5U * 3U + 1U);
 }
 
 TEST(HostHal, ThreadsHaveARobotEach) {
   FakeTarget alone(300);
-  hal::run_firmware(alone);
+  run_firmware(alone);
   std::vector<FakeTarget> targets(4, FakeTarget(300));
   std::vector<std::thread> threads;
   threads.reserve(targets.size());
-  for (FakeTarget& target : targets) threads.emplace_back([&target] { hal::run_firmware(target); });
+  for (FakeTarget& target : targets) threads.emplace_back([&target] { run_firmware(target); });
   for (std::thread& thread : threads) thread.join();
   for (const FakeTarget& target : targets) EXPECT_EQ(target.outputs, alone.outputs);
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "boards/a_star_32u4/board.h"
 #include "firmware/robot/robot.h"
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/experiment.h"
@@ -19,10 +18,9 @@ class TimedDrive {
  public:
   explicit TimedDrive(const Experiment& experiment, const WorldChoice& choice = {})
       : experiment_(experiment),
-        world_(make_world(experiment_, nullptr, {.environment = environment_of(choice)})),
-        robot_(kBoard, experiment_.parameters, credentials_of(experiment_)) {
+        world_(make_world(experiment_, {.environment = environment_of(choice)})) {
     constexpr uint64_t kLongestStart = 20U * uint64_t{kTickRate_hz};
-    while (!is_running(robot_)) {
+    while (!is_running(robot())) {
       if (world_->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
       tick();
     }
@@ -32,11 +30,7 @@ class TimedDrive {
     return robot.supervisor().state() == RobotState::kRunning;
   }
 
-  void tick() {
-    world_->advance();
-    robot_.tick(world_->sample(), output_);
-    world_->apply(output_);
-  }
+  void tick() { world_->advance(); }
 
   static EnvironmentFactory environment_of(const WorldChoice& choice) {
     SimulationOptions options;
@@ -47,16 +41,14 @@ class TimedDrive {
   bool is_over() const {
     return static_cast<double>(world_->ticks()) >= experiment_.experiment.duration_s * kTickRate_hz;
   }
-  const Robot& robot() const { return robot_; }
-  Eigen::Vector3d place() const { return world_->plant().unwrapped_position(); }
+  const Robot& robot() const { return world_->firmware(); }
+  Eigen::Vector3d place() const { return world_->plant().robot(0).unwrapped_position(); }
   /// Of the last tick.
   const SensorSample& sample() const { return world_->sample(); }
 
  private:
   Experiment experiment_;
   std::unique_ptr<World> world_;
-  Robot robot_;
-  RobotOutput output_{};
 };
 
 }  // namespace screed

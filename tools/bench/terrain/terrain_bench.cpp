@@ -141,21 +141,14 @@ double mean_awake(const TerrainWork& before, const TerrainWork& after) {
 /// A world with its robot, in a thread of its own.
 class Drive {
  public:
-  explicit Drive(const Experiment& experiment)
-      : world_(make_world(experiment, nullptr)),
-        robot_(board_constants_of(kDefaultBoard), experiment.parameters,
-               credentials_of(experiment)) {}
+  explicit Drive(const Experiment& experiment) : world_(make_world(experiment)) {}
 
-  void frame() {
-    world_->advance();
-    robot_.tick(world_->sample(), output_);
-    world_->apply(output_);
-  }
+  void frame() { world_->advance(); }
 
   void start() {
     constexpr std::uint64_t kLongestStart = 20U * std::uint64_t{kTickRate_hz};
     constexpr std::uint64_t kWarmUp = kTickRate_hz;  // driving, not timed
-    while (robot_.supervisor().state() != RobotState::kRunning) {
+    while (world_->firmware().supervisor().state() != RobotState::kRunning) {
       if (world_->ticks() > kLongestStart) throw RunError("the robot does not begin to drive");
       frame();
     }
@@ -175,8 +168,6 @@ class Drive {
 
  private:
   std::unique_ptr<World> world_;
-  Robot robot_;
-  RobotOutput output_{};
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "host_sim/core/errors.h"
+#include "host_sim/run/world/image_robot.h"
 #include "host_sim/standin/standin_plant.h"
 #include "nn/model/model_file.h"
 #include "nn/surrogate/surrogate_plant.h"

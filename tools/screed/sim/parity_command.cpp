@@ -13,6 +13,8 @@
 #include "host_sim/run/experiment/experiment.h"
 #include "host_sim/run/simulation/parity.h"
 #include "host_sim/run/simulation/simulation.h"
+#include "host_sim/run/world/image_robot.h"
+#include "host_sim/run/world/world_setup.h"
 #include "tools/screed/cli/command.h"
 #include "tools/screed/cli/interrupt.h"
 #include "tools/screed/cli/number_option.h"
@@ -69,24 +71,25 @@ void print_text(const ParityArguments& arguments, const ParityResult& result, do
 
 int run_parity_command(const ParityArguments& arguments) {
   const Experiment experiment = read_experiment(arguments.file, arguments.sets);
-  const std::vector<RobotSettings> robots = robot_settings(experiment, arguments.board);
   const bool quiet = arguments.quiet || arguments.json;
   TaskBar setup_bar(quiet);
-  const std::unique_ptr<CoSimulation> image = make_co_simulation(
-      experiment, nullptr, arguments.elf.value_or(default_image(arguments.board)),
-      {.board = arguments.board, .progress = setup_bar.progress()});
+  const std::unique_ptr<World> world =
+      make_world(experiment, {.board = arguments.board,
+                              .image = arguments.elf.value_or(default_image(arguments.board)),
+                              .progress = setup_bar.progress()});
   setup_bar.clear();
   std::optional<ProgressBar> bar;
   if (!quiet) bar.emplace(std::cerr);
   const double seconds = arguments.minutes * 60.0;
   const auto begin = std::chrono::steady_clock::now();
-  const ParityResult result = run_parity(*image, robots, seconds, [&](const ParityResult& so_far) {
-    if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
-      bar->show(so_far.simulated_s, seconds,
-                std::to_string(so_far.differing_bytes) + " bytes differ");
-    }
-    return !interrupted();
-  });
+  const ParityResult result =
+      run_parity(*world, world->robot().settings(), seconds, [&](const ParityResult& so_far) {
+        if (bar.has_value() && so_far.ticks % kTickRate_hz == 0) {
+          bar->show(so_far.simulated_s, seconds,
+                    std::to_string(so_far.differing_bytes) + " bytes differ");
+        }
+        return !interrupted();
+      });
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double factor = wall_s > 0.0 ? result.simulated_s / wall_s : 0.0;

@@ -179,7 +179,6 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
                          const FrameRange& range, const PicturePaths& paths, TaskBar& bar) {
   const SessionReader& session = sessions.front();
   PictureSeries series;
-  series.further_robots = sessions.subspan(1);
   series.state_names = leveling_state_names();
   series.shape = shape_of_run(session, paths.file);
   std::size_t count = export_run_pictures(paths.folder, sessions, series.shape).size();
@@ -187,7 +186,7 @@ void export_all_pictures(const ExportArguments& arguments, std::span<const Sessi
     const TerrainMeasure measure(setup_of(session.info(), {}).experiment);
     series.surface = [&](const HeightField& terrain) { return measure.surface(terrain); };
     const std::uint64_t tenth = std::max<std::uint64_t>(1, (range.count + 9) / 10);
-    count += export_pictures(session, range, arguments.every.value_or(tenth), paths.folder, series,
+    count += export_pictures(sessions, range, arguments.every.value_or(tenth), paths.folder, series,
                              bar.progress())
                  .size();
     bar.clear();

@@ -22,13 +22,10 @@ constexpr double kLugPitch_m = 0.0115;  // of the tread
 constexpr double kBoard_m = 0.018;      // thickness of a wall
 constexpr double kMinBoard_px = 3.0;
 
-/// Calls draw(robot, trail, state), last for the one that the panel tells about.
+/// Calls draw(robot), last for the one that the panel tells about.
 template <class Draw>
 void each_robot(const Scene& scene, Draw draw) {
-  if (scene.further_robots != nullptr) {
-    for (const FurtherRobot& it : *scene.further_robots) draw(it.robot, it.trail, it.state);
-  }
-  draw(scene.robot, *scene.trail, static_cast<uint8_t>(scene.status.leveling_state));
+  for (size_t i = 1; i <= scene.robots.size(); ++i) draw(scene.robots[i % scene.robots.size()]);
 }
 
 }  // namespace
@@ -59,20 +56,14 @@ void Drawing::draw(const Scene& scene) {
   canvas_.clip(terrain_box());
   draw_bed_edge(scene);
   // Below the paths, whose ends they would hide.
-  each_robot(scene, [&](const RobotMarker& robot, const std::vector<TrailPoint>&, uint8_t state) {
-    draw_robot(scene, robot, state);
-  });
+  each_robot(scene, [&](const ShownRobot& it) { draw_robot(scene, it.robot, it.state); });
   canvas_.unclip();
   if (scene.show_trail) {
-    each_robot(scene, [&](const RobotMarker& robot, const std::vector<TrailPoint>& trail, uint8_t) {
-      draw_trail(scene, trail, robot);
-    });
+    each_robot(scene, [&](const ShownRobot& it) { draw_trail(scene, it.trail, it.robot); });
   }
   canvas_.clip(terrain_box());
   if (scene.show_trail) {
-    each_robot(scene, [&](const RobotMarker& robot, const std::vector<TrailPoint>& trail, uint8_t) {
-      draw_trail_ends(scene, trail, robot);
-    });
+    each_robot(scene, [&](const ShownRobot& it) { draw_trail_ends(scene, it.trail, it.robot); });
   }
   draw_overlay(scene);
   canvas_.unclip();

@@ -44,27 +44,17 @@ void LiveViewer::on_begin(const HeightField& before, const HeightField& ground) 
   display_->set_driver(driver_.driver());
 }
 
-void LiveViewer::on_further_robots(std::span<const SimFrame> frames) {
-  std::vector<FurtherRobot>& robots = display_->further_robots();
-  robots.resize(frames.size());
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const SimFrame& frame = frames[i];
-    robots[i].robot.travel_left_m += frame.track_left / kTickRate_hz;
-    robots[i].robot.travel_right_m += frame.track_right / kTickRate_hz;
-    if (ticks_ % kTrailTicks == 0) robots[i].trail.push_back(trail_point(frame));
-    place_robot(robots[i], frame);
-  }
-}
-
-void LiveViewer::on_tick(const SimFrame& frame, const HeightField& ground) {
+void LiveViewer::on_tick(std::span<const SimFrame> frames, const HeightField& ground) {
   display_->change_terrain(watch_->changes(ground));
-  travel_left_m_ += frame.track_left / kTickRate_hz;
-  travel_right_m_ += frame.track_right / kTickRate_hz;
-  display_->set_travel(travel_left_m_, travel_right_m_);
-  if (ticks_ % kTrailTicks == 0) display_->add_trail(trail_point(frame));
+  display_->set_frames(frames);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    ShownRobot& shown = display_->robots()[i];
+    shown.robot.travel_left_m += frames[i].track_left / kTickRate_hz;
+    shown.robot.travel_right_m += frames[i].track_right / kTickRate_hz;
+    if (ticks_ % kTrailTicks == 0) shown.trail.push_back(trail_point(frames[i]));
+  }
   ++ticks_;
-  time_s_ = frame.time;
-  display_->set_frame(frame);
+  time_s_ = frames.front().time;
   if (!options_.window) {
     display_->handle_input(time_s_, 0);
     steer();

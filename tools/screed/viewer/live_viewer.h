@@ -21,8 +21,7 @@ class LiveViewer : public SimulationObserver {
              KeyboardDriver& driver, std::function<void()> end_run);
 
   void on_begin(const HeightField& before, const HeightField& ground) override;
-  void on_further_robots(std::span<const SimFrame> frames) override;
-  void on_tick(const SimFrame& frame, const HeightField& ground) override;
+  void on_tick(std::span<const SimFrame> frames, const HeightField& ground) override;
   void on_leveling(const LevelingPoint& point) override;
   void on_end() override;
 
@@ -49,8 +48,6 @@ class LiveViewer : public SimulationObserver {
   std::optional<HeightWatch> watch_;
   std::optional<ViewerDisplay> display_;
   uint64_t ticks_ = 0;
-  double travel_left_m_ = 0.0;
-  double travel_right_m_ = 0.0;
   double time_s_ = 0.0;
   double next_show_s_ = 0.0;  ///< of the run, when frames are counted
   Clock::time_point next_show_{};

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
+#include <tuple>
 
 #include "host_sim/core/errors.h"
 #include "host_sim/run/experiment/run_setup.h"
@@ -54,9 +55,7 @@ RecordedViewer::RecordedViewer(const std::filesystem::path& run, const ViewerOpt
   for (Recorded& robot : robots_) read_trail(robot);
   display_.emplace(options_, std::move(shown), field_of(before),
                    field_of(session().has_heights() ? session().heights_after(0) : before));
-  display_->set_trail(robots_.front().trail);
-  for (size_t i = 1; i < robots_.size(); ++i)
-    display_->further_robots().push_back({{}, robots_[i].trail});
+  for (const Recorded& robot : robots_) display_->robots().push_back({{}, robot.trail});
   for (const LevelingPoint& point : session().leveling()) display_->add_leveling(point);
   if (!session().has_heights()) {
     after_ = session().terrain_after();
@@ -95,31 +94,24 @@ const SimFrame& RecordedViewer::frame(Recorded& robot, uint64_t row) {
   return block[row - robot.block_first];
 }
 
-void RecordedViewer::show_further_robots(uint64_t ticks, size_t trail_point) {
-  for (size_t i = 1; i < robots_.size(); ++i) {
-    FurtherRobot& shown = display_->further_robots()[i - 1];
-    place_robot(shown, frame(robots_[i], ticks - 1));
-    shown.robot.travel_left_m = robots_[i].travel_m[trail_point].first;
-    shown.robot.travel_right_m = robots_[i].travel_m[trail_point].second;
-  }
-}
-
 /// The path and the ground up to this time.
 void RecordedViewer::go_to(double time_s) {
   time_s_ = std::clamp(time_s, tick_s_, duration_s_);
   const auto ticks = std::clamp<uint64_t>(static_cast<uint64_t>(std::llround(time_s_ / tick_s_)), 1,
                                           session().frames());
-  Recorded& first = robots_.front();
-  const SimFrame& now = frame(first, ticks - 1);
-  const size_t point = std::min(first.trail.size() - 1, (ticks - 1) / kTrailTicks);
+  const size_t point = std::min(robots_.front().trail.size() - 1, (ticks - 1) / kTrailTicks);
   display_->show_trail_points(point + 1);
-  display_->set_travel(first.travel_m[point].first, first.travel_m[point].second);
-  show_further_robots(ticks, point);
-  display_->set_frame(now);
+  std::vector<SimFrame> frames;
+  for (size_t i = 0; i < robots_.size(); ++i) {
+    frames.push_back(frame(robots_[i], ticks - 1));
+    RobotMarker& shown = display_->robots()[i].robot;
+    std::tie(shown.travel_left_m, shown.travel_right_m) = robots_[i].travel_m[point];
+  }
+  display_->set_frames(frames);
   Driver driver;
   driver.replay = true;
   driver.algorithm = algorithm_;
-  if (now.leveling_state == static_cast<int32_t>(message::LevelingState::kDrive))
+  if (frames.front().leveling_state == static_cast<int32_t>(message::LevelingState::kDrive))
     driver.kind = Driver::Kind::kUnknownStation;
   display_->set_driver(driver);
   show_terrain_after(ticks);

@@ -42,7 +42,6 @@ class RecordedViewer {
   void read_trail(Recorded& robot);
   void go_to(double time_s);
   static const SimFrame& frame(Recorded& robot, uint64_t row);
-  void show_further_robots(uint64_t ticks, size_t trail_point);
   void show_terrain_after(uint64_t ticks);
   void take_jumps();
   void capture_frames();

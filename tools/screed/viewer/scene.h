@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,8 @@ struct RobotMarker {
   double travel_right_m = 0.0;
 };
 
-/// A robot beside the one that the panel tells about.
-struct FurtherRobot {
+/// A robot and its way.
+struct ShownRobot {
   RobotMarker robot;
   std::vector<TrailPoint> trail;
   uint8_t state = 0;  ///< LevelingState
@@ -112,10 +113,8 @@ struct Scene {
   Shading shading = Shading::kHeight;
   Camera camera;
   const RobotShape* shape = nullptr;
-  RobotMarker robot;
-  const std::vector<TrailPoint>* trail = nullptr;
-  const std::vector<FurtherRobot>* further_robots = nullptr;  ///< null: none
-  size_t trail_points = 0;                                    ///< of each trail, that many
+  std::span<const ShownRobot> robots;  ///< the panel tells about the first
+  size_t trail_points = 0;             ///< of each trail, that many
   bool show_trail = true;
   Status status;
   std::vector<std::string> badges;  ///< short words over the ground: paused, follow

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <iostream>
 
@@ -81,11 +82,6 @@ DisplaySetup display_setup(const Experiment& experiment, const std::string& soil
 TrailPoint trail_point(const SimFrame& frame) {
   return {static_cast<float>(frame.x), static_cast<float>(frame.y),
           static_cast<uint8_t>(std::clamp<int32_t>(frame.leveling_state, 0, 31))};
-}
-
-void place_robot(FurtherRobot& robot, const SimFrame& frame) {
-  move_to(robot.robot, frame);
-  robot.state = trail_point(frame).state;
 }
 
 std::string FrameTimes::text() const {
@@ -188,8 +184,13 @@ void ViewerDisplay::show_leveling() {
   }
 }
 
-void ViewerDisplay::set_frame(const SimFrame& frame) {
-  move_to(robot_, frame);
+void ViewerDisplay::set_frames(std::span<const SimFrame> frames) {
+  robots_.resize(frames.size());
+  for (size_t i = 0; i < frames.size(); ++i) {
+    move_to(robots_[i].robot, frames[i]);
+    robots_[i].state = trail_point(frames[i]).state;
+  }
+  const SimFrame& frame = frames.front();
   status_.time_s = frame.time;
   show_leveling();
   // A training drive lasts for its frames, and some seconds before them.
@@ -279,12 +280,11 @@ void ViewerDisplay::handle_mouse(const InputEvent& event) {
 Scene ViewerDisplay::scene() {
   if (controls_.fit) camera_.fit(bed_of(ground_));
   controls_.fit = false;
-  if (controls_.follow) camera_.look_at(robot_.x_m, robot_.y_m);
+  if (controls_.follow) camera_.look_at(robots_[0].robot.x_m, robots_[0].robot.y_m);
   status_.pace = controls_.paused ? "paused" : controls_.pace_text();
-  const size_t points = trail_points_.value_or(trail_.size());
-  status_.states_seen = 1U << static_cast<unsigned>(status_.leveling_state);
-  for (size_t i = 0; i < points; ++i) status_.states_seen |= 1U << trail_[i].state;
-  for (const FurtherRobot& robot : further_robots_) {
+  const size_t points = trail_points_.value_or(SIZE_MAX);
+  status_.states_seen = 0;
+  for (const ShownRobot& robot : robots_) {
     status_.states_seen |= 1U << robot.state;
     for (size_t i = 0; i < std::min(points, robot.trail.size()); ++i)
       status_.states_seen |= 1U << robot.trail[i].state;
@@ -298,10 +298,8 @@ Scene ViewerDisplay::scene() {
   scene.shading = controls_.shading;
   scene.camera = camera_;
   scene.shape = &setup_.shape;
-  scene.robot = robot_;
-  scene.trail = &trail_;
+  scene.robots = robots_;
   scene.trail_points = points;
-  scene.further_robots = &further_robots_;
   scene.show_trail = controls_.trail;
   scene.status = status_;
   if (controls_.paused) scene.badges.emplace_back("paused");

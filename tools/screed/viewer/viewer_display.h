@@ -63,8 +63,6 @@ DisplaySetup display_setup(const Experiment& experiment, const std::string& soil
 
 /// The place of this frame.
 TrailPoint trail_point(const SimFrame& frame);
-/// Puts the robot where it is in this frame.
-void place_robot(FurtherRobot& robot, const SimFrame& frame);
 
 /// Ticks from one point of the path to the next.
 inline constexpr uint64_t kTrailTicks = kTickRate_hz / 10;
@@ -98,26 +96,18 @@ class ViewerDisplay {
 
   /// The ground has changed: by that much, since the last call.
   void change_terrain(std::span<const HeightChange> changes);
-  /// Where the path goes on.
-  void add_trail(const TrailPoint& point) { trail_.push_back(point); }
-  void set_trail(std::vector<TrailPoint> trail) { trail_ = std::move(trail); }
-  /// Robots beside the one whose path, travel and frame the other calls tell; trails as long as its
-  /// own.
-  std::vector<FurtherRobot>& further_robots() { return further_robots_; }
-  /// How many points of it are shown; all without a call.
+  /// For their trails, all of one length, and travel.
+  std::vector<ShownRobot>& robots() { return robots_; }
+  /// How many points of the trails are shown; all without a call.
   void show_trail_points(size_t points) { trail_points_ = points; }
   void set_notice(std::string notice) { status_.notice = std::move(notice); }
   /// Who drives, and what a user who drives should know.
   void set_driver(const Driver& driver, std::string notice = "");
-  void set_travel(double left_m, double right_m) {
-    robot_.travel_left_m = left_m;
-    robot_.travel_right_m = right_m;
-  }
   /// The next point of the leveling curve; of those not after the moment shown the last one is
   /// shown, beside the first.
   void add_leveling(const LevelingPoint& point);
-  /// The moment to be shown.
-  void set_frame(const SimFrame& frame);
+  /// The moment to be shown: a frame of each robot.
+  void set_frames(std::span<const SimFrame> frames);
 
   /// Takes what the user does; waits at most so long for it. A time of the run goes with it: the
   /// script's keys up to it are pressed.
@@ -174,9 +164,7 @@ class ViewerDisplay {
   Status status_;
   Status::Motion motion_;
   std::vector<HelpLine> help_;
-  RobotMarker robot_;
-  std::vector<TrailPoint> trail_;
-  std::vector<FurtherRobot> further_robots_;
+  std::vector<ShownRobot> robots_;
   std::optional<size_t> trail_points_;
   std::optional<Pixel> drag_;
   bool scrubbing_ = false;

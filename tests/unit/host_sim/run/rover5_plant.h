@@ -16,9 +16,9 @@ inline const Assembly& rover5() {
 /// Half a metre above the ground at (x, y): where it is does not depend on how it comes to rest.
 inline PlantOptions held_at(double x_m, double y_m) {
   PlantOptions options;
-  options.start.x_m = x_m;
-  options.start.y_m = y_m;
-  options.start.z_m = 0.5;
+  options.starts[0].x_m = x_m;
+  options.starts[0].y_m = y_m;
+  options.starts[0].z_m = 0.5;
   return options;
 }
 

@@ -1,5 +1,6 @@
 // Firmware and sensors of a rollout: those of the recorded robot, tick by tick and bit by bit.
 #include "nn/surrogate/rollout_robot.h"
+#include "tests/step_one.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +58,7 @@ void expect_same_drive(const Session& session) {
   RolloutRobot robot(session.info, session.experiment);
   std::size_t driving = 0;
   for (std::size_t row = 0; row < session.samples.size(); ++row) {
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(robot.duty_ratio());
+    for (int i = 0; i < plant.steps_per_tick(); ++i) testing::step_one(plant, robot.duty_ratio());
     SensorSample given = session.samples[row];
     for (int axis = 0; axis < 3; ++axis) given.imu.gyro()[axis] = given.imu.accel()[axis] = 0;
     given.encoder_left = given.encoder_right = given.battery = 0;
@@ -95,7 +96,7 @@ TEST(RolloutRobot, FollowsARecordingAndThenGoesOnByItself) {
   RolloutRobot driver(session.info, session.experiment);
   const std::size_t last = session.samples.size() - 50;
   for (std::size_t row = 0; row < session.samples.size(); ++row) {
-    for (int i = 0; i < plant.steps_per_tick(); ++i) plant.step(driver.duty_ratio());
+    for (int i = 0; i < plant.steps_per_tick(); ++i) testing::step_one(plant, driver.duty_ratio());
     driver.tick(plant, session.samples[row]);
     if (row < last) {
       follower.follow(session.samples[row]);

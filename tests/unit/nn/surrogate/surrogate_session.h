@@ -29,7 +29,7 @@ inline void record_surrogate(const fs::path& folder, const Surrogate& driven, st
                                const PlantOptions& options) {
     return std::make_unique<SurrogatePlant>(std::move(terrain), model, options, driven);
   };
-  const auto world = make_world(experiment, nullptr, {.board = board, .environment = environment});
+  const auto world = make_world(experiment, {.board = board, .environment = environment});
   SessionInfo info;
   info.experiment_name = experiment.experiment.name;
   info.experiment_text = experiment.text();
@@ -41,15 +41,12 @@ inline void record_surrogate(const fs::path& folder, const Surrogate& driven, st
   SessionWriter writer(folder / "session.h5", info);
   writer.record_heights(map_of(world->terrain()).view());
   HeightWatch watch(world->terrain());
-  Robot robot(info.board, info.parameters, info.credentials);
-  RobotOutput output{};
   FrameRecorder frames;
   for (std::size_t row = 0; row < rows; ++row) {
     world->advance();
-    robot.tick(world->sample(), output);
-    const SimFrame frame = frames.record(world->plant(), robot);
-    writer.append(frame, world->sample(), output, watch.changes(world->terrain()));
-    world->apply(output);
+    const SimFrame frame =
+        frames.record(world->plant().time_s(), world->plant().robot(0), world->firmware());
+    writer.append(frame, world->sample(), world->output(), watch.changes(world->terrain()));
   }
   writer.finish();
 }

@@ -9,6 +9,7 @@
 #include "host_sim/physics/vehicle/urdf/urdf_importer.h"
 #include "host_sim/physics/world/plant.h"
 #include "paths.h"
+#include "tests/step_one.h"
 
 namespace screed {
 namespace {
@@ -125,7 +126,7 @@ class NotingTerrain final : public Terrain {
 
 PlantOptions in_the_air(TrackModel model) {
   PlantOptions options;
-  options.start.z_m = 5.0;
+  options.starts[0].z_m = 5.0;
   options.vehicle.track_model = model;
   return options;
 }
@@ -139,7 +140,7 @@ TEST(TerrainContract, APlantTakesStepsAsShortAsItsTerrainNeeds) {
   Plant plant(std::make_unique<NotingTerrain>(FootprintShape::kSolid, 0.0003, log), rover(),
               in_the_air(TrackModel::kBelt));
   EXPECT_TRUE(log.empty());
-  plant.step({0.0, 0.0});
+  testing::step_one(plant, {0.0, 0.0});
   std::vector<std::string> ends = log;
   std::erase_if(ends, [](const std::string& call) { return call.starts_with("press"); });
   EXPECT_EQ(ends, std::vector<std::string>(4, "end 0.000250"));
@@ -153,7 +154,7 @@ TEST(TerrainContract, WithoutFootprintsATerrainIsNotPressed) {
   std::vector<std::string> log;
   Plant plant(std::make_unique<NotingTerrain>(FootprintShape::kNone, 1.0, log), rover(),
               in_the_air(TrackModel::kBelt));
-  plant.step({0.0, 0.0});
+  testing::step_one(plant, {0.0, 0.0});
   EXPECT_EQ(log, std::vector<std::string>{"end 0.001000"});
 }
 
@@ -163,7 +164,7 @@ TEST(TerrainContract, AChainIsABandOrALinkEach) {
     auto terrain = std::make_unique<NotingTerrain>(shape, 1.0, log);
     const NotingTerrain& noted = *terrain;
     Plant plant(std::move(terrain), rover(), in_the_air(model));
-    plant.step({0.0, 0.0});
+    testing::step_one(plant, {0.0, 0.0});
     return noted.footprints;
   };
   const size_t belts = footprints(TrackModel::kBelt, FootprintShape::kLowerSurface);
@@ -179,18 +180,19 @@ TEST(TerrainContract, ReactionsActOnTheRobot) {
   auto terrain = std::make_unique<NotingTerrain>(FootprintShape::kLowerSurface, 1.0, log);
   terrain->lift = {0.0, 0.0, 20.0};
   Plant plant(std::move(terrain), rover(), in_the_air(TrackModel::kBelt));
-  for (int i = 0; i < 10; ++i) plant.step({0.0, 0.0});
-  EXPECT_GT(plant.vehicle().chassis().velocity.z(), 0.05);
+  for (int i = 0; i < 10; ++i) testing::step_one(plant, {0.0, 0.0});
+  EXPECT_GT(plant.robot(0).vehicle().chassis().velocity.z(), 0.05);
 }
 
 // The terrain's bounds decide, not its height map.
 TEST(TerrainContract, ARobotThatLeavesAWrappedBedComesBack) {
   std::vector<std::string> log;
   PlantOptions options = in_the_air(TrackModel::kBelt);
-  options.start.x_m = 0.35;  // beds of 0.2 m: two further
+  options.starts[0].x_m = 0.35;  // beds of 0.2 m: two further
   Plant plant(std::make_unique<NotingTerrain>(FootprintShape::kNone, 1.0, log), rover(), options);
-  EXPECT_NEAR(plant.vehicle().chassis().pose.translation().x(), -0.05, 1e-12);
-  EXPECT_NEAR(plant.unwrapped_position().x(), -0.05, 1e-12);  // the start is on the first bed
+  EXPECT_NEAR(plant.robot(0).vehicle().chassis().pose.translation().x(), -0.05, 1e-12);
+  EXPECT_NEAR(plant.robot(0).unwrapped_position().x(), -0.05,
+              1e-12);  // the start is on the first bed
 }
 
 }  // namespace

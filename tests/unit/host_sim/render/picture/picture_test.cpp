@@ -50,8 +50,8 @@ PictureOptions small_picture() {
   options.height_px = 700;
   options.title = "Test";
   options.state_names = {"drive", "turn"};
-  options.path = {{-0.5, -0.5, 0}, {0.0, 0.0, 1}, {0.5, 0.2, 1}};
-  options.robot = RobotOutline{0.5, 0.2, 0.3, tracked_robot()};
+  options.robots = {{{{-0.5, -0.5, 0}, {0.0, 0.0, 1}, {0.5, 0.2, 1}},
+                     RobotOutline{0.5, 0.2, 0.3, tracked_robot()}}};
   return options;
 }
 
@@ -185,10 +185,10 @@ TEST_F(PictureTest, EveryPartChangesThePicture) {
   };
   const std::string whole = drawn(small_picture());
   PictureOptions options = small_picture();
-  options.robot->heading_rad += 0.5;
+  options.robots[0].outline->heading_rad += 0.5;
   EXPECT_NE(drawn(options), whole);
   options = small_picture();
-  options.path[1].state = 0;
+  options.robots[0].path[1].state = 0;
   EXPECT_NE(drawn(options), whole);
   options = small_picture();
   options.state_names[1] = "stop";
@@ -208,9 +208,9 @@ TEST_F(PictureTest, DrawsLevelGround) {
 
 TEST(PathOverlayTest, AJumpOverTheSeamIsDrawnOnlyWithoutWrap) {
   PictureOptions options = small_picture();
-  options.robot.reset();
+  options.robots[0].outline.reset();
   // State 1 has a colour without blue.
-  options.path = {{-0.9, 0.0, 1}, {-0.8, 0.0, 1}, {0.8, 0.0, 1}, {0.9, 0.0, 1}};
+  options.robots[0].path = {{-0.9, 0.0, 1}, {-0.8, 0.0, 1}, {0.8, 0.0, 1}, {0.9, 0.0, 1}};
   for (const bool wrap : {false, true}) {
     Canvas canvas(800, 700, {1.0, 1.0, 1.0});
     const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, 0.0);
@@ -230,7 +230,8 @@ TEST(PathOverlayTest, AWheeledRobotHasWheelsAndATrackedOneTracks) {
   }
   for (const bool tracks : {false, true}) {
     PictureOptions options;
-    options.robot = RobotOutline{0.1, 0.2, std::numbers::pi / 2.0, shape_of(model, tracks)};
+    options.robots = {
+        {{}, RobotOutline{0.1, 0.2, std::numbers::pi / 2.0, shape_of(model, tracks)}}};
     Canvas canvas(800, 700, {0.0, 1.0, 0.0});
     const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, 0.0);
     draw_path_overlay(canvas, frame, false, options);
@@ -250,8 +251,8 @@ TEST(PathOverlayTest, AWheeledRobotHasWheelsAndATrackedOneTracks) {
 
 TEST(PathOverlayTest, ThePathsEndLiesOverTheRobot) {
   PictureOptions options = small_picture();
-  options.path = {{-0.5, 0.0, 2}, {0.2, 0.0, 2}};
-  options.robot = RobotOutline{0.2, 0.0, 0.0, tracked_robot()};
+  options.robots = {
+      {{{-0.5, 0.0, 2}, {0.2, 0.0, 2}}, RobotOutline{0.2, 0.0, 0.0, tracked_robot()}}};
   Canvas canvas(800, 700, {1.0, 1.0, 1.0});
   const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, 0.0);
   draw_path_overlay(canvas, frame, false, options);
@@ -265,7 +266,7 @@ TEST(PathOverlayTest, ThePathsEndLiesOverTheRobot) {
 TEST(PathOverlayTest, TheLegendNamesTheStatesOfThePathInTheirColours) {
   PictureOptions options = small_picture();
   options.state_names = {"idle", "walk", "climb", "spin", "return", "drive"};
-  options.path = {{0.0, 0.0, 5}, {0.1, 0.0, 1}, {0.2, 0.0, 5}};
+  options.robots[0].path = {{0.0, 0.0, 5}, {0.1, 0.0, 1}, {0.2, 0.0, 5}};
   EXPECT_EQ(states_on_paths(options), (std::vector<size_t>{1, 5}));
   Canvas canvas(800, 700, {1.0, 1.0, 1.0});
   const MapFrame frame(canvas, {-1.0, 1.0, -1.0, 1.0}, legend_height_px(options));
@@ -322,13 +323,13 @@ TEST_F(PictureTest, RefusesWrongOptions) {
     EXPECT_FALSE(fs::exists(folder_ / "no.png"));
   };
   PictureOptions options = small_picture();
-  options.path[1].state = 2;
+  options.robots[0].path[1].state = 2;
   refused(options);
   options = small_picture();
-  options.path[1].x_m = std::nan("");
+  options.robots[0].path[1].x_m = std::nan("");
   refused(options);
   options = small_picture();
-  options.robot->heading_rad = std::nan("");
+  options.robots[0].outline->heading_rad = std::nan("");
   refused(options);
   options = small_picture();
   options.heights = HeightRange{0.2, 0.1};

@@ -151,7 +151,7 @@ TEST(HeightMapPicture, AnIntervalBelowAMillimetreHasItsDecimals) {
 // Of a path that is cut short its first point is no start.
 TEST(HeightMapPicture, MarksTheStartOfPathsThatBeginThere) {
   PictureOptions options;
-  options.path = {{-0.5, 0.0, 0}, {0.5, 0.0, 0}};
+  options.robots = {{{{-0.5, 0.0, 0}, {0.5, 0.0, 0}}, {}}};
   options.state_names = {"walk"};
   const Shown from_start(draw_height_map(step(0.0, 0.0), options));
   options.paths_from_start = false;

@@ -11,7 +11,7 @@
 #include "host_sim/core/errors.h"
 #include "host_sim/run/world/robot_number.h"
 #include "host_sim/run/world/robot_placement.h"
-#include "host_sim/run/world/robot_settings.h"
+#include "host_sim/run/world/world_setup.h"
 #include "tests/temp_folder.h"
 
 namespace screed {
@@ -91,15 +91,15 @@ TEST_F(RobotSections, PlacesAreOnTopOfThoseOfAll) {
 
 TEST_F(RobotSections, FirmwareGetsItsOwnParametersAndASeedThatWasSaid) {
   const Experiment experiment = read(kThree, {"robot_1.random_seed=77"});
-  const std::vector<RobotSettings> robots = robot_settings(experiment, kDefaultBoard);
+  const std::vector<RobotOptions> robots = robot_options(experiment, kDefaultBoard);
   ASSERT_EQ(robots.size(), 3U);
-  EXPECT_EQ(robots[0].parameters.random_seed(), experiment.parameters.random_seed());
-  EXPECT_EQ(robots[1].parameters.random_seed(), 77);
-  EXPECT_EQ(robots[2].parameters.random_seed(),
+  EXPECT_EQ(robots[0].settings.parameters.random_seed(), experiment.parameters.random_seed());
+  EXPECT_EQ(robots[1].settings.parameters.random_seed(), 77);
+  EXPECT_EQ(robots[2].settings.parameters.random_seed(),
             parameters_of_robot(experiment.parameters, 2).random_seed());
-  EXPECT_EQ(robots[1].parameters.climb_speed(), experiment.parameters.climb_speed());
-  EXPECT_EQ(robots[2].parameters.climb_speed(), 120);
-  EXPECT_EQ(robots[2].parameters.algorithm(), algorithm_number("drive"));
+  EXPECT_EQ(robots[1].settings.parameters.climb_speed(), experiment.parameters.climb_speed());
+  EXPECT_EQ(robots[2].settings.parameters.climb_speed(), 120);
+  EXPECT_EQ(robots[2].settings.parameters.algorithm(), algorithm_number("drive"));
 }
 
 TEST_F(RobotSections, NoTwoKeysHaveOneName) {

@@ -26,7 +26,7 @@ class ParityCheckerTest : public ::testing::Test {
   }
 
   TestRobot robot_;
-  ParityChecker checker_{kBoard, Parameters{}, credentials_of(test_key())};
+  ParityChecker checker_{RobotSettings{kBoard, Parameters{}, credentials_of(test_key())}};
 };
 
 TEST_F(ParityCheckerTest, TwoRobotsOnTheSameSamplesAgree) {

@@ -110,11 +110,11 @@ TEST(FramesToDrive, AreThoseOfTheTrainingDriveUpToItsEarlyEnd) {
 
 TEST(LeftBed, AnyGroundEndsAtItsEdges) {
   const auto flat = [] { return HeightField::flat(2.0, 0.05); };
-  EXPECT_FALSE(left_bed(flat(), Plant(flat(), rover5(), on_soil(held_at(0.9, 0.0)))));
-  EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), on_soil(held_at(1.1, 0.0)))));
-  EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), on_soil(held_at(0.0, -1.1)))));
-  EXPECT_FALSE(left_bed(flat(), Plant(flat(), rover5(), held_at(0.9, 0.0))));
-  EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), held_at(1.1, 0.0))));
+  EXPECT_FALSE(left_bed(flat(), Plant(flat(), rover5(), on_soil(held_at(0.9, 0.0))).robot(0)));
+  EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), on_soil(held_at(1.1, 0.0))).robot(0)));
+  EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), on_soil(held_at(0.0, -1.1))).robot(0)));
+  EXPECT_FALSE(left_bed(flat(), Plant(flat(), rover5(), held_at(0.9, 0.0)).robot(0)));
+  EXPECT_TRUE(left_bed(flat(), Plant(flat(), rover5(), held_at(1.1, 0.0)).robot(0)));
 }
 
 }  // namespace

@@ -245,7 +245,7 @@ class ViewerDrawing : public ::testing::Test {
     scene_.camera.set_box(drawing_.terrain_box());
     scene_.camera.fit(scene_.bed);
     scene_.shape = &shape_;
-    scene_.trail = &trail_;
+    scene_.robots = robots_;
   }
 
   uint32_t at(double x_m, double y_m) {
@@ -262,16 +262,16 @@ class ViewerDrawing : public ::testing::Test {
   TerrainImage image_;
   Drawing drawing_;
   RobotShape shape_;
-  std::vector<TrailPoint> trail_;
+  std::vector<ShownRobot> robots_{1};
   Scene scene_;
 };
 
 TEST_F(ViewerDrawing, TheRobotStandsWhereItIsAndLooksWhereItGoes) {
   drawing_.draw(scene_);
   const uint32_t ground = at(0.5, 0.5);
-  scene_.robot.x_m = 0.5;
-  scene_.robot.y_m = 0.5;
-  scene_.robot.heading_rad = 1.5707963;  // north: its left track lies west of it
+  robots_[0].robot.x_m = 0.5;
+  robots_[0].robot.y_m = 0.5;
+  robots_[0].robot.heading_rad = 1.5707963;  // north: its left track lies west of it
   drawing_.draw(scene_);
   EXPECT_NE(at(0.5, 0.5), ground);
   EXPECT_LT(brightness(at(0.4, 0.55)), 250);   // rubber
@@ -282,11 +282,11 @@ TEST_F(ViewerDrawing, TheRobotStandsWhereItIsAndLooksWhereItGoes) {
 
 TEST_F(ViewerDrawing, ThePathShowsAsFarAsItHasCome) {
   for (int i = 0; i <= 20; ++i) {
-    trail_.push_back({static_cast<float>(-0.8 + 0.04 * i), -0.5F, 1});
+    robots_[0].trail.push_back({static_cast<float>(-0.8 + 0.04 * i), -0.5F, 1});
   }
-  scene_.robot.x_m = -0.4;
-  scene_.robot.y_m = -0.5;
-  scene_.robot.heading_rad = 0.0;
+  robots_[0].robot.x_m = -0.4;
+  robots_[0].robot.y_m = -0.5;
+  robots_[0].robot.heading_rad = 0.0;
   scene_.trail_points = 10;
   drawing_.draw(scene_);
   const uint32_t ground = at(0.5, 0.5);
@@ -298,8 +298,9 @@ TEST_F(ViewerDrawing, ThePathShowsAsFarAsItHasCome) {
 }
 
 TEST_F(ViewerDrawing, TheRobotDoesNotHideThePathsEnd) {
-  for (int i = 0; i <= 10; ++i) trail_.push_back({static_cast<float>(-0.4 + 0.04 * i), 0.0F, 2});
-  scene_.trail_points = trail_.size();
+  for (int i = 0; i <= 10; ++i)
+    robots_[0].trail.push_back({static_cast<float>(-0.4 + 0.04 * i), 0.0F, 2});
+  scene_.trail_points = robots_[0].trail.size();
   drawing_.draw(scene_);
   // Over the tail of the hull, which reaches from -0.1 to 0.1; its end at the robot's centre.
   EXPECT_EQ(at(-0.08, 0.0), packed(state_color(2)));
