@@ -31,7 +31,7 @@ define link_tests
 	$(call runnable,$@)
 endef
 # What tests are linked with.
-TESTED := $(call objects,$(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_tools.a $(B)/libmutants.a
+TESTED := $(call objects,$(SCHEMA_LIBRARY_SOURCES) $(LAB_LIBRARY_SOURCES)) $(LIBRARY) $(B)/libavr_tools.a
 $(B)/tests/unit_tests: $(UNIT_OBJECTS) $(TESTED) $(B)/link.flags
 	$(call link_tests)
 $(B)/tests/sitl_tests: $(SITL_OBJECTS) $(LIBRARY) $(B)/link.flags
