@@ -19,4 +19,4 @@ mutants: $(B)/tests/unit_tests $(if $(findstring --unit,$(ARGS)),,$(B)/tests/sit
 test-mutants:  ## the mutation tool: what it changes, its tables, and a campaign on a small program
 	@echo "  TEST tests/mutants"
 	@python3 -B -m unittest discover -s tests/mutants -p '*_test.py'
-test: test-mutants
+test-long: test-mutants
