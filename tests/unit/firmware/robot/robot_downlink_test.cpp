@@ -66,6 +66,11 @@ Parameters driven() {
   return parameters;
 }
 
+/// 0.01 degrees, from 0 to below a whole turn.
+uint16_t heading_cdeg(const AttitudeAngles& angles) {
+  return static_cast<uint16_t>(uint32_t{static_cast<uint16_t>(angles.heading)} * 36000U >> 16U);
+}
+
 /// A message of a tick against the robot at the end of that tick.
 void compare(const HeardRobot& robot, const CanFrame& frame) {
   const Robot& core = robot.robot;
@@ -85,6 +90,7 @@ void compare(const HeardRobot& robot, const CanFrame& frame) {
       const auto it = message::Attitude::unpack(frame.data);
       EXPECT_NEAR(it.roll, angles.roll * 36000.0 / 65536.0, 1.0);
       EXPECT_NEAR(it.pitch, angles.pitch * 36000.0 / 65536.0, 1.0);
+      EXPECT_EQ(it.heading, heading_cdeg(angles));
       break;
     }
     case message::Leveling::kId: {
@@ -109,6 +115,7 @@ void compare(const HeardRobot& robot, const CanFrame& frame) {
       const auto it = message::Odometry::unpack(frame.data);
       EXPECT_EQ(it.x, core.position().mm(kX));
       EXPECT_EQ(it.y, core.position().mm(kY));
+      EXPECT_EQ(it.heading, heading_cdeg(core.attitude().angles()));
       break;
     }
     case message::Position::kId: {
