@@ -47,21 +47,15 @@ BeltGround::BeltGround(const HeightField& surface, const SoilParameters& soil,
       tracks_(tracks),
       fit_(fit),
       flow_(surface, soil.repose_deg, Compaction{soil.compaction, soil.compaction_depth_m}),
-      volume_before_(surface.height_sum()),
       cell_area_(surface.spacing_m() * surface.spacing_m()),
       bekker_(soil.k_c / tracks.width_m + soil.k_phi),
       unloading_pa_per_m_(std::min(soil.elastic_pa_per_m,
                                    fit.unloading * kPressure_pa /
                                        portable::pow(kPressure_pa / bekker_, 1.0 / soil.exponent))),
       tan_repose_(portable::tan(soil.repose_deg * std::numbers::pi / 180.0)),
-      histories_(flow_.nodes()),
       stances_(robots) {
   check_soil(soil);
   powers_ = power_tables(soil.exponent, kExponentStep, soil.slip_sinkage);
-}
-
-VolumeBalance BeltGround::balance() const {
-  return {volume_before_, flow_.surface().height_sum(), flow_.compacted(), flow_.in_transit()};
 }
 
 std::size_t BeltGround::patch_of(double x) const {
@@ -71,7 +65,7 @@ std::size_t BeltGround::patch_of(double x) const {
 }
 
 void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
-  const HeightField& field = flow_.surface();
+  const HeightField& field = surface();
   const double edge = field.spacing_m();
   const auto [s, c] = portable::sine_cosine(stride.pose.heading_rad);
   const double across_edge = edge * (std::abs(c) + std::abs(s));
@@ -106,16 +100,14 @@ void BeltGround::find_cells(const BeltStride& stride, const TrackPlane& about) {
             std::min(most_share,
                      0.5 + (0.5 * tracks_.width_m - std::abs(cell.y - middle(side))) / across_edge);
         if (cell.share <= kMinShare) continue;
-        const std::int64_t node = flow_.node_at(ix, iy);
-        if (node < 0) continue;
-        cell.node = static_cast<std::size_t>(node);
-        cell.ix = ix;
-        cell.iy = iy;
+        cell.at = {0, ix, iy};
+        if (!flow_.grid().find(cell.at)) continue;
         const double r = tracks_.radius_m;
         if (beyond > 0.0) cell.over = r - std::sqrt(r * r - beyond * beyond);
-        const double sunk = flow_.sunk(cell.node) * kHeightUnit_m;
-        cell.level = flow_.reference(cell.node) * kHeightUnit_m;
-        cell.division = histories_[cell.node].divide(cell.share, sunk, stride_);
+        const SoilCell& soil = flow_.grid()[cell.at.node];
+        const double sunk = soil.sunk * kHeightUnit_m;
+        cell.level = flow_.grid().reference(cell.at.node) * kHeightUnit_m;
+        cell.division = soil.history.divide(cell.share, sunk, stride_);
         cell.prior = cell.division.under(cell.share, sunk);
         cells_.push_back(cell);
       }
@@ -227,18 +219,18 @@ void BeltGround::compact(const BeltStride& stride, std::size_t side) {
   flow_.begin_footprint({{ahead * c - left * s, ahead * s + left * c}, {c, s}, tracks_.width_m});
   for (std::size_t i = sides_.at(side); i < sides_.at(side + 1); ++i) {
     const Cell& cell = cells_[i];
-    CellHistory& history = histories_[cell.node];
+    CellHistory& history = flow_.grid()[cell.at.node].history;
     if (cell.pressure <= 0.0) {
       history.release();
       continue;
     }
     history.keep(cell.share, cell.division);
     history.touch(stride_);
-    flow_.cover(cell.node, cell.ix, cell.iy);
+    flow_.cover(cell.at);
     const double now = cell.depth - cell.pressure / unloading_pa_per_m_;
     const auto units =
         static_cast<Height>(std::lround(cell.share * (now - cell.prior) / kHeightUnit_m));
-    if (units > 0) flow_.sink(cell.node, cell.ix, cell.iy, units);
+    if (units > 0) flow_.sink(cell.at, units);
   }
 }
 
@@ -255,7 +247,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
     cells += cell.share;
     along += cell.share * cell.x;
     square += cell.share * cell.x * cell.x;
-    flow_.shear(cell.node, cell.share * shear.patch_m.at(patch_of(cell.x)));
+    flow_.shear(cell.at.node, cell.share * shear.patch_m.at(patch_of(cell.x)));
   }
   if (cells <= 0.0) return;
   along /= cells;
@@ -284,7 +276,7 @@ void BeltGround::dig(const BeltStride& stride, const TrackPlane& plane, std::siz
 void BeltGround::keep_support(const TrackPlane& plane, Stance& stance) const {
   BeltSupport& support = stance.support;
   support = {plane.forward, plane.left, {}, {}, {}, {}};
-  const double half_cell = 0.5 * flow_.surface().spacing_m();
+  const double half_cell = 0.5 * surface().spacing_m();
   double sum = 0.0;
   for (const std::size_t side : {0U, 1U}) {
     double area = 0.0;

@@ -20,9 +20,9 @@
 #include <optional>
 #include <vector>
 
-#include "host_sim/physics/soil/cell_history.h"
 #include "host_sim/physics/soil/material_flow.h"
 #include "host_sim/physics/soil/power_table.h"
+#include "host_sim/physics/soil/soil_grid.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/terrain/terrain.h"
 #include "host_sim/standin/belt_fit.h"
@@ -63,8 +63,8 @@ class BeltGround {
   BeltGround(const HeightField& surface, const SoilParameters& soil, const TrackGeometry& tracks,
              std::size_t robots, const BeltFit& fit = {});
 
-  const HeightField& surface() const { return flow_.surface(); }
-  VolumeBalance balance() const;
+  const HeightField& surface() const { return flow_.grid().surface(); }
+  VolumeBalance balance() const { return flow_.balance(); }
 
   /// A robot that has not been here before sinks in where it stands.
   void place(std::size_t robot, const PlanarPose& pose);
@@ -90,9 +90,7 @@ class BeltGround {
     std::array<double, 2> sinkage_m{};
   };
   struct Cell {  // of the ground below a belt
-    std::size_t node;
-    int ix;
-    int iy;
+    GridNode at;
     double x;  // in the robot's axes, from where the plane's height counts, m
     double y;
     double share;  // of the cell that lies below
@@ -130,13 +128,11 @@ class BeltGround {
   /// Of Bekker's exponent, as slip-sinkage makes it grow.
   static constexpr double kExponentStep = 0.02;
   std::shared_ptr<const PowerTables> powers_;
-  std::int64_t volume_before_;
   double cell_area_;
   double bekker_;
   double unloading_pa_per_m_;
   double tan_repose_;
   double dig_remainder_ = 0.0;  // parts of a unit, for what is dug next
-  std::vector<CellHistory> histories_;
   std::vector<Stance> stances_;
   std::vector<Cell> cells_;
   std::array<std::size_t, 3> sides_{};  // where a side's cells begin

@@ -42,39 +42,29 @@ uint32_t mixed(uint32_t x) {
 }  // namespace
 
 MaterialFlow::MaterialFlow(HeightField surface, double repose_deg, const Compaction& compaction)
-    : surface_(std::move(surface)), compaction_(compaction) {
-  const double slope =
-      portable::tan(repose_deg * std::numbers::pi / 180.0) * surface_.spacing_m() / kHeightUnit_m;
+    : grid_(std::move(surface),
+            compaction.most_m > 0.0
+                ? static_cast<Height>(std::lround(compaction.most_m / kHeightUnit_m))
+                : std::numeric_limits<Height>::max()),
+      volume_before_(grid_.surface().height_sum()),
+      compaction_(compaction),
+      queue_(grid_.size()) {
+  const double slope = portable::tan(repose_deg * std::numbers::pi / 180.0) *
+                       grid_.surface().spacing_m() / kHeightUnit_m;
   limit_straight_ = static_cast<Height>(std::floor(slope));
   limit_diagonal_ = static_cast<Height>(std::floor(slope * std::numbers::sqrt2));
-  const size_t count = static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny());
-  sunk_.assign(count, 0);
-  if (compaction.most_m > 0.0) {
-    loose_.assign(count, static_cast<Height>(std::lround(compaction.most_m / kHeightUnit_m)));
-  }
-  flags_.assign(count, 0);
-  queue_.resize(count);
-  const int nx = surface_.nx();
-  const int ny = surface_.ny();
-  for (int ix = 0; ix < nx; ++ix) flags_[index(ix, 0)] = flags_[index(ix, ny - 1)] = kBorder;
-  for (int iy = 0; iy < ny; ++iy) flags_[index(0, iy)] = flags_[index(nx - 1, iy)] = kBorder;
-  flags_[index(nx - 2, ny - 2)] = kBorder;
 }
 
 void MaterialFlow::enqueue_all() {
-  for (size_t node = 0; node < nodes(); ++node) {
-    if ((flags_[node] & kQueued) == 0) push(node);
+  for (size_t node = 0; node < grid_.size(); ++node) {
+    if (!grid_[node].queued) push(node);
   }
 }
 
 void MaterialFlow::change(const GridNode& place, Height units) {
-  const Height changed = height(place.node) + units;
-  if (on_field(place.ix, place.iy)) {  // quicker than finding column and row by division
-    surface_.set_node(place.ix, place.iy, changed);
-  } else {
-    set_height(place.node, changed);
-  }
-  if (units > 0) sunk_[place.node] -= std::min(units, sunk_[place.node]);
+  grid_.set_height(place, grid_.height(place.node) + units);
+  Height& sunk = grid_[place.node].sunk;
+  if (units > 0) sunk -= std::min(units, sunk);
   enqueue(place.node);
 }
 
@@ -97,8 +87,9 @@ void MaterialFlow::dig(const DugPatch& patch, int64_t units) {
           last ? units : std::min(units, static_cast<int64_t>(passed * per_weight));
       if (until > taken) {
         const auto here = static_cast<Height>(until - taken);
-        change(sheared_[i].node, -here);
-        moved += here - compact(sheared_[i].node, here);
+        const size_t node = sheared_[i].node;
+        change(grid_.place(node), -here);
+        moved += here - compact(grid_[node], here);
       }
       taken = until;
     }
@@ -135,10 +126,11 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
   constexpr uint32_t kAlong = 3242174889U;
   constexpr uint32_t kAcross = 2447445414U;
   constexpr double kPerTurn = 1.0 / 4294967296.0;
+  const HeightField& field = grid_.surface();
   const DugPatch& patch = dug.patch;
   const double length = patch.half_length + patch.band;
   const double width = patch.half_width + patch.band;
-  const double per_spacing = 1.0 / surface_.spacing_m();
+  const double per_spacing = 1.0 / field.spacing_m();
   double sum_along = 0.0;
   double sum_across = 0.0;
   double squares_along = 0.0;
@@ -151,11 +143,9 @@ int64_t MaterialFlow::spread_dug(const Dug& dug) {
     if (std::abs(along) < patch.half_length && std::abs(across) < patch.half_width) continue;
     const double x = patch.centre.x() + along * patch.forward.x() - across * patch.forward.y();
     const double y = patch.centre.y() + along * patch.forward.y() + across * patch.forward.x();
-    GridNode place{0, static_cast<int>(std::floor((x - surface_.x_min()) * per_spacing + 0.5)),
-                   static_cast<int>(std::floor((y - surface_.y_min()) * per_spacing + 0.5))};
-    const int64_t node = node_at(place.ix, place.iy);
-    if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
-    place.node = static_cast<size_t>(node);
+    GridNode place{0, static_cast<int>(std::floor((x - field.x_min()) * per_spacing + 0.5)),
+                   static_cast<int>(std::floor((y - field.y_min()) * per_spacing + 0.5))};
+    if (!grid_.find(place) || grid_[place.node].covered) continue;
     deposit_nodes_.push_back({place, along, across});
     sum_along += along;
     sum_across += across;
@@ -236,9 +226,7 @@ void MaterialFlow::find_ring(size_t begin, size_t end) {
         const auto bit = static_cast<size_t>(std::countr_zero(ring));
         GridNode neighbour{0, first_x - 1 + static_cast<int>(word * kBits + bit),
                            first_y - 2 + static_cast<int>(row)};
-        const int64_t node = node_at(neighbour.ix, neighbour.iy);
-        if (node < 0 || (flags_[static_cast<size_t>(node)] & kCovered) != 0) continue;
-        neighbour.node = static_cast<size_t>(node);
+        if (!grid_.find(neighbour) || grid_[neighbour.node].covered) continue;
         ring_.push_back({neighbour, 0.0, 0.0});
       }
     }
@@ -267,7 +255,7 @@ void MaterialFlow::drop_rut(const ActiveFootprint& footprint, size_t end) {
 /// exp(-|s - p| spacing / reach) that sum up to one over them. Sums with such weights are two
 /// recursions, from either end.
 void MaterialFlow::weigh_ring(const ActiveFootprint& footprint, size_t end_pressed) {
-  const double spacing = surface_.spacing_m();
+  const double spacing = grid_.surface().spacing_m();
   const double decay = portable::exp(-spacing / std::max(spacing, footprint.patch.reach));
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
@@ -352,9 +340,9 @@ bool MaterialFlow::spread(const ActiveFootprint& footprint, size_t end, size_t e
 /// What a body has left may slide.
 void MaterialFlow::release_held() {
   for (const GridNode& here : held_list_) {
-    uint8_t& flags = flags_[here.node];
-    if ((flags & (kHeld | kCovered)) != kHeld) continue;
-    flags &= static_cast<uint8_t>(~kHeld);
+    SoilCell& cell = grid_[here.node];
+    if (!cell.held || cell.covered) continue;
+    cell.held = false;
     enqueue(here.node);
   }
 }
@@ -364,8 +352,8 @@ bool MaterialFlow::may_slide(size_t node) const {
   // Four nodes of a row, of which the last is not looked at.
   using Four __attribute__((vector_size(16))) = Height;
   constexpr Height kNever = std::numeric_limits<Height>::max();
-  const Height* const here = surface_.heights() + node;
-  const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
+  const Height* const here = grid_.surface().heights() + node;
+  const auto nx = static_cast<std::ptrdiff_t>(grid_.surface().nx());
   // Half of 1 is 0 units: nothing to move.
   const Height straight = limit_straight_ + 1;
   const Height diagonal = limit_diagonal_ + 1;
@@ -386,27 +374,23 @@ bool MaterialFlow::may_slide(size_t node) const {
 /// Slides what is too steep beside a node, neighbour by neighbour; returns the moves made.
 int64_t MaterialFlow::slide_around(const GridNode& place) {
   int64_t moves = 0;
-  Height here = height(place.node);
-  const bool inside = (flags_[place.node] & kBorder) == 0;
-  const auto nx = static_cast<std::ptrdiff_t>(surface_.nx());
+  Height here = grid_.height(place.node);
+  const bool inside = !grid_[place.node].at_border;
+  const auto nx = static_cast<std::ptrdiff_t>(grid_.surface().nx());
   for (int k = 0; k < 8; ++k) {
     const auto [dx, dy] = kNeighbours[k];
     GridNode beside{place.node + static_cast<size_t>(dy * nx + dx), place.ix + dx, place.iy + dy};
-    if (!inside) {
-      const int64_t node = node_at(beside.ix, beside.iy);
-      if (node < 0) continue;
-      beside.node = static_cast<size_t>(node);
-    }
-    const Height difference = here - height(beside.node);
+    if (!inside && !grid_.find(beside)) continue;
+    const Height difference = here - grid_.height(beside.node);
     const Height excess = std::abs(difference) - (k < 4 ? limit_straight_ : limit_diagonal_);
     if (excess <= 1) continue;  // half of 1 is 0 units: nothing to move
-    if ((flags_[beside.node] & kCovered) != 0) continue;
+    if (grid_[beside.node].covered) continue;
     const Height units = difference > 0 ? excess / 2 : -(excess / 2);
     here -= units;
     change(beside, units);
     ++moves;
   }
-  if (moves > 0) change(place, here - height(place.node));
+  if (moves > 0) change(place, here - grid_.height(place.node));
   return moves;
 }
 
@@ -417,11 +401,10 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
     const size_t node = queue_[queue_begin_];
     queue_begin_ = queue_begin_ + 1 == queue_.size() ? 0 : queue_begin_ + 1;
     --queue_size_;
-    uint8_t& flags = flags_[node];
-    flags &= static_cast<uint8_t>(~kQueued);
-    if ((flags & kCovered) != 0) continue;
-    if ((flags & kBorder) == 0 && !may_slide(node)) continue;
-    moves += slide_around({node, column(node), row(node)});
+    SoilCell& cell = grid_[node];
+    cell.queued = false;
+    if (cell.covered || (!cell.at_border && !may_slide(node))) continue;
+    moves += slide_around(grid_.place(node));
   }
   if (queue_size_ == 0) queue_begin_ = 0;  // in memory that was used lately
   return moves;
@@ -430,8 +413,8 @@ int64_t MaterialFlow::slide(int64_t max_moves) {
 void MaterialFlow::uncover() {
   release_held();
   for (const GridNode& here : covered_list_) {
-    uint8_t& flags = flags_[here.node];
-    flags = static_cast<uint8_t>((flags & ~kCovered) | kHeld);
+    grid_[here.node].covered = false;
+    grid_[here.node].held = true;
   }
   held_list_.swap(covered_list_);
   covered_list_.clear();

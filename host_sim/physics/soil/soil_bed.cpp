@@ -43,7 +43,7 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
       tan_repose_(portable::tan(soil.repose_deg * kDegree)),
       passive_(soil) {
   check_soil(soil);
-  const double spacing = flow_.surface().spacing_m();
+  const double spacing = flow_.grid().surface().spacing_m();
   cell_area_ = spacing * spacing;
   // Even, as the permutation below needs it.
   samples_per_side_ =
@@ -61,13 +61,7 @@ SoilBed::SoilBed(HeightField surface, const SoilParameters& soil, const SoilOpti
       lattices_[kFull].y.push_back(place(j));
     }
   }
-  volume_before_ = flow_.surface().height_sum();
-  histories_.resize(flow_.nodes());
   tables_ = power_tables(soil.exponent, kExponentStep, soil.slip_sinkage);
-}
-
-VolumeBalance SoilBed::balance() const {
-  return {volume_before_, flow_.surface().height_sum(), flow_.compacted(), flow_.in_transit()};
 }
 
 TerrainReaction SoilBed::press(const Footprint& footprint, const FootprintMotion& motion, double dt,

@@ -1,14 +1,11 @@
 // Deformable soil on a grid of integer heights (soil contact model, SCM): bodies sink in, shear,
 // push material aside.
 //
-// Each node keeps two integers: `height`, the surface as it lies there unloaded, and `reference`,
-// the level from which Bekker's sinkage counts; their difference is the plastic sinkage. Material
-// that moves changes both, in pairwise opposite amounts, so that the volume is exact; material that
-// is compacted is booked. A node stands for a cell: its pressure is the mean over the cell, of
-// Bekker's law at a lattice of sample points below the body (footprint.h), so a body may cover a
-// cell in part and the result does not depend on where the grid lies. Sample points that the lowest
-// point of a rolling wheel has passed are known to be unloading, from the geometry alone, which
-// spares a memory finer than the grid.
+// A cell (soil_grid.h) has a pressure that is the mean over it, of Bekker's law at a lattice of
+// sample points below the body (footprint.h), so a body may cover a cell in part and the result
+// does not depend on where the grid lies. Sample points that the lowest point of a rolling wheel
+// has passed are known to be unloading, from the geometry alone, which spares a memory finer than
+// the grid.
 //
 // Forces of a footprint are summed in a fixed order: the same bits on every compiler and any number
 // of worlds side by side.
@@ -22,11 +19,11 @@
 #include <vector>
 
 #include "host_sim/physics/kernels/kernels.h"
-#include "host_sim/physics/soil/cell_history.h"
 #include "host_sim/physics/soil/material_flow.h"
 #include "host_sim/physics/soil/passive_pressure.h"
 #include "host_sim/physics/soil/power_table.h"
 #include "host_sim/physics/soil/sinking.h"
+#include "host_sim/physics/soil/soil_grid.h"
 #include "host_sim/physics/soil/soil_parameters.h"
 #include "host_sim/physics/soil/wheel_stress.h"
 #include "host_sim/physics/terrain/footprint_contact.h"
@@ -71,7 +68,7 @@ class SoilBed final : public Terrain {
   /// Lets slopes slide until none is too steep, or `max_moves` moves were made; returns the moves.
   int64_t relax_slopes(int64_t max_moves = INT64_MAX);
 
-  const HeightField& surface() const override { return flow_.surface(); }
+  const HeightField& surface() const override { return flow_.grid().surface(); }
   bool is_deformable() const override { return true; }
   BedBounds bounds() const override { return bounds_of(surface()); }
   FootprintShape footprint_shape() const override { return FootprintShape::kLowerSurface; }
@@ -80,17 +77,15 @@ class SoilBed final : public Terrain {
   }
   /// Whether the slopes round a node are still to be looked at: a body stood on it in the last step
   /// and held it, or more slid than a step has time for; then slopes_left() was not 0.
-  bool is_slope_queued(int ix, int iy) const { return flow_.is_queued(flow_.index(ix, iy)); }
+  bool is_slope_queued(int ix, int iy) const { return flow_.is_queued(flow_.grid().node(ix, iy)); }
   /// Nodes that the last step had no time for.
   size_t slopes_left() const { return slopes_left_; }
   const SoilParameters& soil() const { return soil_; }
-  VolumeBalance balance() const override;
+  VolumeBalance balance() const override { return flow_.balance(); }
 
  private:
   struct GridPlace {
-    size_t node;
-    int ix;
-    int iy;
+    GridNode at;
     uint32_t candidate;  // its number
   };
   /// The sample points of a cell.
@@ -165,12 +160,10 @@ class SoilBed final : public Terrain {
   double cell_area_;
   int samples_per_side_;  // along one side of a cell
   std::array<LatticePoints, kLattices> lattices_;
-  int64_t volume_before_;
   double dig_remainder_ = 0.0;
   size_t slopes_left_ = 0;
   uint32_t step_ = 1;
   PassivePressure passive_;
-  std::vector<CellHistory> histories_;
 
   // Of the footprint being pressed; kept for their room.
   std::vector<Row> rows_;

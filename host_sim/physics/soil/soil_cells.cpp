@@ -61,9 +61,9 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
   law.cell.exponent = table.exponent();
   law.cell.power = table.lines();
   law.cell.rebound = footprint.is_wheel() ? soil_.exit_angle * soil_.exit_angle : 0.0;
-  law.cell.half_square = 0.5 * flow_.surface().spacing_m() / samples_per_side_;
+  law.cell.half_square = 0.5 * surface().spacing_m() / samples_per_side_;
   law.cell.cell_area = cell_area_;
-  law.cell.edge = flow_.surface().spacing_m();
+  law.cell.edge = surface().spacing_m();
   law.cell.radial = options_.normal_stress == NormalStress::kRadial;
   law.cell.centre = triple(footprint.pose().translation());
   law.cell.axis_x = triple(frame.axes.col(0));
@@ -75,7 +75,7 @@ SoilBed::Law SoilBed::law_below(const FootprintContact& contact, const RunFrame&
 SoilBed::Range SoilBed::find_cells(const FootprintContact& contact, double elastic) {
   const Footprint& footprint = *contact.footprint;
   ContactMemory& memory = *contact.memory;
-  const double spacing = flow_.surface().spacing_m();
+  const double spacing = surface().spacing_m();
   Range range;
   range.begin = range.end = blocks_;
   range.frame = footprint.run_frame();
@@ -177,7 +177,7 @@ void SoilBed::find_extent(const Footprint& footprint, const CellSums& sums, Rang
 /// The rows of cells that may lie below a level, from the rectangle that holds the footprint seen
 /// from above. False: there are none.
 bool SoilBed::find_rows(const Footprint& footprint, double highest) {
-  const HeightField& field = flow_.surface();
+  const HeightField& field = surface();
   const double spacing = field.spacing_m();
   const Eigen::Vector3d& centre = footprint.pose().translation();
   rows_.clear();
@@ -248,14 +248,14 @@ bool SoilBed::find_rows(const Footprint& footprint, double highest) {
 void SoilBed::drop_cells_below(const Footprint& footprint, double rebound_m) {
   const Eigen::Vector3d plane = footprint.plane_below();
   if (!std::isfinite(plane.x())) return;
-  const HeightField& field = flow_.surface();
+  const HeightField& field = surface();
   const double spacing = field.spacing_m();
   const Eigen::Vector3d& centre = footprint.pose().translation();
   const double fall = 0.5 * spacing * (std::abs(plane.y()) + std::abs(plane.z()));
   size_t kept = 0;
   for (const Row& row : rows_) {
     Row left{row.iy, row.end_ix, row.first_ix};
-    flow_.each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int ix, size_t count) {
+    flow_.grid().each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int ix, size_t count) {
       const double z = centre.z() + plane.x() + plane.y() * (field.node_x(ix) - centre.x()) +
                        plane.z() * (field.node_y(row.iy) - centre.y()) - fall - rebound_m;
       const AboveLine above =
@@ -273,7 +273,7 @@ void SoilBed::drop_cells_below(const Footprint& footprint, double rebound_m) {
 SoilBed::Lattice SoilBed::lattice_of_corner(size_t candidate, double highest_surface,
                                             double rim) const {
   const FootprintSamples& points = candidate_points_;
-  const double spacing = flow_.surface().spacing_m();
+  const double spacing = surface().spacing_m();
   if (!(points.share[candidate] > 0.0)) return rim > highest_surface ? kNone : kOnePerRowAndColumn;
   const double fall =
       (std::abs(points.slope_x[candidate]) + std::abs(points.slope_y[candidate])) * 0.5 * spacing;
@@ -284,7 +284,7 @@ SoilBed::Lattice SoilBed::lattice_of_corner(size_t candidate, double highest_sur
 
 /// Sorts the cells of rows_ by the lattice that they are looked at with.
 void SoilBed::classify(const Footprint& footprint, double rebound_m) {
-  const double spacing = flow_.surface().spacing_m();
+  const double spacing = surface().spacing_m();
   const double rim = footprint.lowest_at_rim(spacing);
   const size_t count = candidate_points_.count;
   if (footprint.has_corners()) {
@@ -294,8 +294,7 @@ void SoilBed::classify(const Footprint& footprint, double rebound_m) {
         const Lattice lattice =
             lattice_of_corner(i, candidate_heights_[i] * kHeightUnit_m + rebound_m, rim);
         if (lattice == kNone) continue;
-        candidates_[lattice].push_back(
-            {flow_.node_on(ix, row.iy), ix, row.iy, static_cast<uint32_t>(i)});
+        candidates_[lattice].push_back({flow_.grid().place(ix, row.iy), static_cast<uint32_t>(i)});
       }
     }
     return;
@@ -321,7 +320,7 @@ void SoilBed::classify(const Footprint& footprint, double rebound_m) {
           end += static_cast<size_t>(row->end_ix - row->first_ix);
         }
         const int ix = row->first_ix + static_cast<int>(i - begin);
-        places.push_back({flow_.node_on(ix, row->iy), ix, row->iy, static_cast<uint32_t>(i)});
+        places.push_back({flow_.grid().place(ix, row->iy), static_cast<uint32_t>(i)});
       }
     }
   };
@@ -332,7 +331,7 @@ void SoilBed::classify(const Footprint& footprint, double rebound_m) {
 /// The cells that a footprint may touch.
 void SoilBed::find_candidates(const Footprint& footprint, const PathHistory& path,
                               double rebound_m) {
-  const HeightField& field = flow_.surface();
+  const HeightField& field = surface();
   const double spacing = field.spacing_m();
   const Eigen::Vector3d& centre = footprint.pose().translation();
   for (auto& list : candidates_) list.clear();
@@ -357,7 +356,7 @@ void SoilBed::find_candidates(const Footprint& footprint, const PathHistory& pat
   for (const Row& row : rows_) {
     const double y = field.node_y(row.iy);
     for (int ix = row.first_ix; ix < row.end_ix; ++ix) candidate_points_.add(field.node_x(ix), y);
-    flow_.each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int, size_t length) {
+    flow_.grid().each_run(row.iy, row.first_ix, row.end_ix, [&](size_t node, int, size_t length) {
       std::copy_n(field.heights() + node, length, &candidate_heights_[i]);
       i += length;
     });
@@ -397,15 +396,15 @@ void SoilBed::lay_out_cells() {
       Height sunk[kLanes];
       for (size_t lane = 0; lane < kLanes; ++lane) {
         const GridPlace& place = places[lane];
-        const CellHistory& history = histories_[place.node];
-        sunk[lane] = flow_.sunk(place.node);
+        const SoilCell& cell = flow_.grid()[place.at.node];
+        sunk[lane] = cell.sunk;
         level[lane] = candidate_heights_[place.candidate] + sunk[lane];
         block.x[lane] = candidate_points_.x[place.candidate];
         block.y[lane] = candidate_points_.y[place.candidate];
-        block.fresh[lane] = history.is_contact_new(step_) ? 1.0 : 0.0;
-        block.covered_before[lane] = history.covered();
-        block.old_sinkage[lane] = history.old_sinkage();
-        block.beside[lane] = history.beside();
+        block.fresh[lane] = cell.history.is_contact_new(step_) ? 1.0 : 0.0;
+        block.covered_before[lane] = cell.history.covered();
+        block.old_sinkage[lane] = cell.history.old_sinkage();
+        block.beside[lane] = cell.history.beside();
       }
       for (size_t lane = 0; lane < kLanes; ++lane) {
         block.reference[lane] = level[lane] * kHeightUnit_m;
@@ -416,7 +415,7 @@ void SoilBed::lay_out_cells() {
       left -= std::min(left, kLanes);
       if (lattice != kOnePerRowAndColumn) continue;
       for (size_t lane = 0; lane < kLanes; ++lane) {  // every other cell mirrors its points
-        if (((places[lane].ix + places[lane].iy) & 1) != 0) block.spread_x[lane] = -1.0;
+        if (((places[lane].at.ix + places[lane].at.iy) & 1) != 0) block.spread_x[lane] = -1.0;
       }
     }
   }
@@ -438,7 +437,7 @@ void SoilBed::sample_surface(const Footprint& footprint, const PathHistory& path
                           lattice.x.size(), sample_points_.x.data() + group.first_point,
                           sample_points_.y.data() + group.first_point);
   }
-  const double edge = flow_.surface().spacing_m() / samples_per_side_;
+  const double edge = surface().spacing_m() / samples_per_side_;
   footprint.surface(edge, path, sample_points_, kernels_, first);
 }
 
@@ -449,7 +448,7 @@ void SoilBed::copy_plane_points(const Footprint& footprint, const Group& group) 
   FootprintSamples& to = sample_points_;
   const Eigen::Vector3d& centre = footprint.pose().translation();
   const Eigen::Vector2d left = footprint.pose().linear().col(1).head<2>();
-  const double half_side = 0.5 * footprint.projected_side(flow_.surface().spacing_m());
+  const double half_side = 0.5 * footprint.projected_side(surface().spacing_m());
   for (size_t i = 0; i < group.blocks * kLanes; ++i) {
     const size_t candidate = places_[group.begin * kLanes + i].candidate;
     const size_t at = group.first_point + i;
@@ -478,7 +477,7 @@ void SoilBed::copy_plane_points(const Footprint& footprint, const Group& group) 
 // a disc r^2/4.
 void SoilBed::measure_patch(const Footprint& footprint, const CellSums& sums,
                             ContactMemory& memory) const {
-  const double edge = flow_.surface().spacing_m();
+  const double edge = surface().spacing_m();
   memory.patch_area_m2 = sums.area * cell_area_;
   // A cell spreads its share over itself.
   const double own = sums.own * edge * edge / 12.0;

@@ -63,7 +63,7 @@ constexpr double kNoLimit = 1e12;
 void SoilBed::dig_below(const ReactionSums& sums, const ReactionLaw& law,
                         const Eigen::Isometry3d& pose, double dt) {
   if (sums.area <= 0.0) return;
-  const double edge = flow_.surface().spacing_m();
+  const double edge = surface().spacing_m();
   const double per_share = 1.0 / sums.area;
   const double along = sums.sum_along * per_share;
   const double across = sums.sum_across * per_share;
@@ -171,9 +171,9 @@ void SoilBed::settle(const Range& range, bool slips) {
     const CellBlock& block = cells_[b];
     for (size_t lane = 0; lane < kLanes; ++lane) {
       if (!(block.active[lane] > 0.0)) continue;
-      const GridPlace& place = places[lane];
-      flow_.cover(place.node, place.ix, place.iy);
-      CellHistory& history = histories_[place.node];
+      const GridNode& at = places[lane].at;
+      flow_.cover(at);
+      CellHistory& history = flow_.grid()[at.node].history;
       history.keep(block.covered[lane], {block.old_sinkage[lane], block.beside[lane]});
       if (!(block.bears[lane] > 0.0)) {
         history.release();
@@ -181,8 +181,8 @@ void SoilBed::settle(const Range& range, bool slips) {
       }
       history.touch(step_);
       const auto units = static_cast<Height>(block.units[lane]);
-      if (units > 0) flow_.sink(place.node, place.ix, place.iy, units);
-      if (slips) flow_.shear(place.node, block.shears[lane]);
+      if (units > 0) flow_.sink(at, units);
+      if (slips) flow_.shear(at.node, block.shears[lane]);
     }
   }
 }

@@ -21,18 +21,19 @@ inline Height stable(double distance_m) {
 }
 
 inline int64_t volume(const MaterialFlow& flow) {
-  int64_t sum = 0;
-  for (size_t node = 0; node < flow.nodes(); ++node) sum += flow.height(node);
-  return sum;
+  return flow.balance().now;
+}
+
+inline Height height(const MaterialFlow& flow, int ix, int iy) {
+  return flow.grid().height(flow.grid().node(ix, iy));
 }
 
 /// A footprint of one node, pressed down by so many units.
 inline void press(MaterialFlow& flow, int ix, int iy, Height units, double velocity_x = 0.0,
                   double velocity_y = 0.0) {
   flow.begin_footprint({{velocity_x, velocity_y}});
-  const size_t node = flow.index(ix, iy);
-  flow.cover(node, ix, iy);
-  flow.sink(node, ix, iy, units);
+  flow.cover(flow.grid().place(ix, iy));
+  flow.sink(flow.grid().place(ix, iy), units);
 }
 
 }  // namespace screed

@@ -19,11 +19,11 @@ struct HeapedPlace {
 
 /// What one step of digging `units` in the field's north-east corner lays elsewhere.
 std::vector<HeapedPlace> heap_up(MaterialFlow& flow, const DugPatch& patch, int64_t units) {
-  const HeightField& surface = flow.surface();
+  const HeightField& surface = flow.grid().surface();
   const int nx = surface.nx();
-  const size_t hole = flow.nodes() - 1;
-  std::vector<Height> before(flow.nodes());
-  for (size_t node = 0; node < flow.nodes(); ++node) before[node] = flow.height(node);
+  const size_t hole = flow.grid().size() - 1;
+  std::vector<Height> before(flow.grid().size());
+  for (size_t node = 0; node < flow.grid().size(); ++node) before[node] = flow.grid().height(node);
   flow.shear(hole, 1.0);
   flow.dig(patch, units);
   flow.deposit();
@@ -31,7 +31,7 @@ std::vector<HeapedPlace> heap_up(MaterialFlow& flow, const DugPatch& patch, int6
   const Eigen::Vector2d side(-patch.forward.y(), patch.forward.x());
   std::vector<HeapedPlace> places;
   for (size_t node = 0; node < hole; ++node) {
-    const Height laid = flow.height(node) - before[node];
+    const Height laid = flow.grid().height(node) - before[node];
     if (laid == 0) continue;
     const auto place = static_cast<int>(node);
     const Eigen::Vector2d at(surface.node_x(place % nx), surface.node_y(place / nx));
@@ -70,7 +70,7 @@ TEST(MaterialCarried, FewPlacesSideBySideCarryNoFurtherThanAQuarterOfTheBandsSqu
       DugPatch patch{{0.0, 0.0}, {0.0, 1.0}, 0.06, 0.05, 0.03};
       if (axis == 0) patch.forward = {1.0, 0.0};
       // East is forward, or to its right: against the axis across.
-      patch.centre.x() = flow.surface().x_min() - (axis == 0 ? 0.06 : 0.05);
+      patch.centre.x() = flow.grid().surface().x_min() - (axis == 0 ? 0.06 : 0.05);
       constexpr double kCarried = 5e4;  // units m
       patch.carried = {way * kCarried, 0.0};
       const double signed_carried = axis == 0 ? way * kCarried : -way * kCarried;
@@ -95,10 +95,11 @@ TEST(MaterialCarried, AStepInWhichNothingIsDugCarriesNothing) {
   MaterialFlow flow = level();
   DugPatch patch{{0.0, 0.0}, {1.0, 0.0}, 2.0 * kSpacing_m, kSpacing_m, 3.0 * kSpacing_m};
   patch.carried = {1e4, 1e4};
-  flow.shear(flow.index(10, 10), 1.0);
+  flow.shear(flow.grid().node(10, 10), 1.0);
   flow.dig(patch, 0);
   flow.deposit();
-  for (size_t node = 0; node < flow.nodes(); ++node) EXPECT_EQ(flow.height(node), 0) << node;
+  for (size_t node = 0; node < flow.grid().size(); ++node)
+    EXPECT_EQ(flow.grid().height(node), 0) << node;
   EXPECT_EQ(flow.queued(), 0U);
 }
 

@@ -18,13 +18,14 @@ TEST(MaterialFlow, WhatSinksIsInHandUntilItIsSetDownRoundTheFootprint) {
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), 0);
-  EXPECT_EQ(flow.height(flow.index(10, 10)), -800);
-  EXPECT_EQ(flow.reference(flow.index(10, 10)), 0) << "sinkage counts from where the ground was";
+  EXPECT_EQ(height(flow, 10, 10), -800);
+  EXPECT_EQ(flow.grid().reference(flow.grid().node(10, 10)), 0)
+      << "sinkage counts from where the ground was";
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
       if (dx == 0 && dy == 0) continue;
-      EXPECT_EQ(flow.height(flow.index(10 + dx, 10 + dy)), 100) << dx << " " << dy;
-      EXPECT_EQ(flow.reference(flow.index(10 + dx, 10 + dy)), 100);
+      EXPECT_EQ(height(flow, 10 + dx, 10 + dy), 100) << dx << " " << dy;
+      EXPECT_EQ(flow.grid().reference(flow.grid().node(10 + dx, 10 + dy)), 100);
     }
   }
 }
@@ -32,21 +33,21 @@ TEST(MaterialFlow, WhatSinksIsInHandUntilItIsSetDownRoundTheFootprint) {
 // What is pressed beside a rut is deposited in it, too.
 TEST(MaterialFlow, WhatFillsARutIsLooseAndLiesOnWhatIsPressed) {
   MaterialFlow flow = level();
-  const size_t rut = flow.index(10, 10);
+  const size_t rut = flow.grid().node(10, 10);
   press(flow, 10, 10, 800);
   flow.deposit();
   flow.uncover();
   press(flow, 11, 10, 8 * 500);  // an eighth to each neighbour
   flow.deposit();
   flow.uncover();
-  EXPECT_EQ(flow.height(rut), -300);
-  EXPECT_EQ(flow.sunk(rut), 300) << "of 800 units 500 are filled";
-  EXPECT_EQ(flow.reference(rut), 0);
+  EXPECT_EQ(flow.grid().height(rut), -300);
+  EXPECT_EQ(flow.grid()[rut].sunk, 300) << "of 800 units 500 are filled";
+  EXPECT_EQ(flow.grid().reference(rut), 0);
   press(flow, 9, 10, 8 * 450);
   flow.deposit();
-  EXPECT_EQ(flow.height(rut), 150);
-  EXPECT_EQ(flow.sunk(rut), 0);
-  EXPECT_EQ(flow.reference(rut), 150);
+  EXPECT_EQ(flow.grid().height(rut), 150);
+  EXPECT_EQ(flow.grid()[rut].sunk, 0);
+  EXPECT_EQ(flow.grid().reference(rut), 150);
 }
 
 TEST(MaterialFlow, WhatDoesNotDivideGoesToOtherNeighboursEachTime) {
@@ -62,7 +63,7 @@ TEST(MaterialFlow, WhatDoesNotDivideGoesToOtherNeighboursEachTime) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         if (dx == 0 && dy == 0) continue;
-        EXPECT_EQ(flow.height(flow.index(10 + dx, 10 + dy)), units) << dx << " " << dy;
+        EXPECT_EQ(height(flow, 10 + dx, 10 + dy), units) << dx << " " << dy;
       }
     }
   }
@@ -76,14 +77,14 @@ TEST(MaterialFlow, AStepForgetsTheFootprintsOfTheOneBeforeButNotTheirMaterial) {
   press(flow, 4, 4, 8);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
-  EXPECT_EQ(flow.height(flow.index(5, 4)), 11);
-  EXPECT_EQ(flow.height(flow.index(11, 10)), 0);
+  EXPECT_EQ(height(flow, 5, 4), 11);
+  EXPECT_EQ(height(flow, 11, 10), 0);
   flow.uncover();
   while (flow.slide(1000) > 0) {
   }
   press(flow, 15, 15, 0);
   flow.uncover();
-  EXPECT_FALSE(flow.is_queued(flow.index(4, 4))) << "its body was there in another step";
+  EXPECT_FALSE(flow.is_queued(flow.grid().node(4, 4))) << "its body was there in another step";
 }
 
 TEST(MaterialFlow, NothingIsSetDownInTheRutBehindAMovingFootprint) {
@@ -92,18 +93,18 @@ TEST(MaterialFlow, NothingIsSetDownInTheRutBehindAMovingFootprint) {
     press(flow, 10, 10, 500, speed, 0.0);
     flow.deposit();
     for (int dy = -1; dy <= 1; ++dy) {
-      EXPECT_EQ(flow.height(flow.index(9, 10 + dy)), 0) << speed;
-      EXPECT_EQ(flow.height(flow.index(11, 10 + dy)), 100) << speed;
+      EXPECT_EQ(height(flow, 9, 10 + dy), 0) << speed;
+      EXPECT_EQ(height(flow, 11, 10 + dy), 100) << speed;
     }
-    EXPECT_EQ(flow.height(flow.index(10, 9)), 100);
-    EXPECT_EQ(flow.height(flow.index(10, 11)), 100);
+    EXPECT_EQ(height(flow, 10, 9), 100);
+    EXPECT_EQ(height(flow, 10, 11), 100);
   }
   // Across, and against the axes.
   MaterialFlow flow = level();
   press(flow, 10, 10, 500, 0.0, -0.3);
   flow.deposit();
-  EXPECT_EQ(flow.height(flow.index(10, 11)), 0);
-  EXPECT_EQ(flow.height(flow.index(10, 9)), 100);
+  EXPECT_EQ(height(flow, 10, 11), 0);
+  EXPECT_EQ(height(flow, 10, 9), 100);
 }
 
 TEST(MaterialFlow, TheRutOfADiagonalWayLiesBehindItAtAnySpeed) {
@@ -116,7 +117,7 @@ TEST(MaterialFlow, TheRutOfADiagonalWayLiesBehindItAtAnySpeed) {
       for (int dx = -1; dx <= 1; ++dx) {
         if (dx == 0 && dy == 0) continue;
         const bool behind = 0.8 * dx + 0.6 * dy < 0.0;
-        EXPECT_EQ(flow.height(flow.index(10 + dx, 10 + dy)), behind ? 0 : 100)
+        EXPECT_EQ(height(flow, 10 + dx, 10 + dy), behind ? 0 : 100)
             << speed << ": " << dx << " " << dy;
       }
     }
@@ -128,7 +129,7 @@ TEST(MaterialFlow, OnlyWhatGetsMaterialIsLookedAtAgain) {
   press(flow, 10, 10, 3);
   flow.deposit();
   EXPECT_EQ(flow.queued(), 3U) << "three neighbours";
-  const size_t below = flow.index(10, 10);
+  const size_t below = flow.grid().node(10, 10);
   EXPECT_FALSE(flow.is_queued(below)) << "it is held as long as the footprint stands there";
   flow.uncover();
   EXPECT_TRUE(flow.is_queued(below));
@@ -143,34 +144,34 @@ TEST(MaterialFlow, AFootprintThatHardlyMovesHasNoRutBehindIt) {
     MaterialFlow flow = level();
     press(flow, 10, 10, 800, speed, 0.0);
     flow.deposit();
-    EXPECT_EQ(flow.height(flow.index(9, 10)), 100) << speed;
+    EXPECT_EQ(height(flow, 9, 10), 100) << speed;
   }
   MaterialFlow flow = level();
   press(flow, 10, 10, 500, 0.0011, 0.0);
   flow.deposit();
-  EXPECT_EQ(flow.height(flow.index(9, 10)), 0);
+  EXPECT_EQ(height(flow, 9, 10), 0);
 }
 
 TEST(MaterialFlow, WhereAllIsBehindItTheRutIsFilled) {
   // A footprint as wide as the field drives off it.
   MaterialFlow flow = level(5);
   flow.begin_footprint({{0.1, 0.0}});
-  for (int iy = 0; iy < 5; ++iy) flow.cover(flow.index(4, iy), 4, iy);
-  flow.sink(flow.index(4, 2), 4, 2, 50);
+  for (int iy = 0; iy < 5; ++iy) flow.cover(flow.grid().place(4, iy));
+  flow.sink(flow.grid().place(4, 2), 50);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
-  for (int iy = 0; iy < 5; ++iy) EXPECT_EQ(flow.height(flow.index(3, iy)), 10) << iy;
+  for (int iy = 0; iy < 5; ++iy) EXPECT_EQ(height(flow, 3, iy), 10) << iy;
 }
 
 TEST(MaterialFlow, TheOnlyNeighbourThatIsNotBehindTakesAll) {
   MaterialFlow flow = level(5);
   flow.begin_footprint({{0.1, 0.0}});
-  for (int iy = 0; iy < 5; ++iy) flow.cover(flow.index(3, iy), 3, iy);
-  for (int iy = 0; iy < 4; ++iy) flow.cover(flow.index(4, iy), 4, iy);
-  flow.sink(flow.index(3, 2), 3, 2, 50);
+  for (int iy = 0; iy < 5; ++iy) flow.cover(flow.grid().place(3, iy));
+  for (int iy = 0; iy < 4; ++iy) flow.cover(flow.grid().place(4, iy));
+  flow.sink(flow.grid().place(3, 2), 50);
   flow.deposit();
-  EXPECT_EQ(flow.height(flow.index(4, 4)), 50);
-  EXPECT_EQ(flow.height(flow.index(2, 2)), 0);
+  EXPECT_EQ(height(flow, 4, 4), 50);
+  EXPECT_EQ(height(flow, 2, 2), 0);
 }
 
 TEST(MaterialFlow, ASingleUnitIsDepositedAtOnceAndSoIsOneAtTheFieldsCorner) {
@@ -181,16 +182,16 @@ TEST(MaterialFlow, ASingleUnitIsDepositedAtOnceAndSoIsOneAtTheFieldsCorner) {
   flow.uncover();
   press(flow, 1, 1, 800);
   flow.deposit();
-  EXPECT_EQ(flow.height(flow.index(0, 0)), 100) << "the first node is one, too";
+  EXPECT_EQ(height(flow, 0, 0), 100) << "the first node is one, too";
 }
 
 TEST(MaterialFlow, TheReferenceBeginsAtTheSurface) {
   const HeightField surface = HeightField::from_function(
       4, 3, kSpacing_m, false, [](double x, double y) { return 0.3 + x + 2.0 * y; });
   const MaterialFlow flow(surface, kRepose_deg);
-  for (size_t node = 0; node < flow.nodes(); ++node) {
-    EXPECT_EQ(flow.reference(node), flow.height(node)) << node;
-    EXPECT_GT(flow.reference(node), 0) << node;
+  for (size_t node = 0; node < flow.grid().size(); ++node) {
+    EXPECT_EQ(flow.grid().reference(node), flow.grid().height(node)) << node;
+    EXPECT_GT(flow.grid().reference(node), 0) << node;
   }
 }
 
@@ -203,25 +204,17 @@ TEST(MaterialFlow, WhatIsCompactedIsNotSetDownAnyMore) {
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), -1000);
-  EXPECT_EQ(flow.height(flow.index(5, 4)), 50);
-  EXPECT_EQ(flow.height(flow.index(15, 14)), 125);
-}
-
-TEST(MaterialFlow, ARutFromBeforeIsSunkAndNothingMoves) {
-  MaterialFlow flow = level();
-  flow.begin_sunk(flow.index(4, 4), 800);
-  EXPECT_EQ(flow.height(flow.index(4, 4)), -800);
-  EXPECT_EQ(flow.sunk(flow.index(4, 4)), 800);
-  EXPECT_EQ(flow.in_transit(), 0);
+  EXPECT_EQ(height(flow, 5, 4), 50);
+  EXPECT_EQ(height(flow, 15, 14), 125);
 }
 
 TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
   MaterialFlow flow(HeightField(2, 2, kSpacing_m, false), kRepose_deg);
   flow.begin_footprint();
   for (int iy = 0; iy < 2; ++iy) {
-    for (int ix = 0; ix < 2; ++ix) flow.cover(flow.index(ix, iy), ix, iy);
+    for (int ix = 0; ix < 2; ++ix) flow.cover(flow.grid().place(ix, iy));
   }
-  flow.sink(0, 0, 0, 30);
+  flow.sink({0, 0, 0}, 30);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 30);
   EXPECT_EQ(volume(flow), -30);
@@ -230,16 +223,16 @@ TEST(MaterialFlow, WhatFindsNoFreeNeighbourWaitsForALaterFootprint) {
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), 0);
-  EXPECT_EQ(flow.height(flow.index(1, 1)), 12);
+  EXPECT_EQ(height(flow, 1, 1), 12);
 }
 
 /// A footprint of 3 x `length` nodes from (10, 10) on, along x, pressed down at its first column.
 void press_one_end(MaterialFlow& flow, int length, const PressedPatch& patch, Height units) {
   flow.begin_footprint(patch);
   for (int ix = 10; ix < 10 + length; ++ix) {
-    for (int iy = 10; iy < 13; ++iy) flow.cover(flow.index(ix, iy), ix, iy);
+    for (int iy = 10; iy < 13; ++iy) flow.cover(flow.grid().place(ix, iy));
   }
-  for (int iy = 10; iy < 13; ++iy) flow.sink(flow.index(10, iy), 10, iy, units);
+  for (int iy = 10; iy < 13; ++iy) flow.sink(flow.grid().place(10, iy), units);
 }
 
 TEST(MaterialFlow, WhatIsPressedIsLaidBesideWhereItWas) {
@@ -251,9 +244,7 @@ TEST(MaterialFlow, WhatIsPressedIsLaidBesideWhereItWas) {
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), 0);
   // Beside it both rows have the same, less by exp(-distance / reach) with each column.
-  const auto at = [&](int ix, int iy) {
-    return static_cast<double>(flow.height(flow.index(ix, iy)));
-  };
+  const auto at = [&](int ix, int iy) { return static_cast<double>(height(flow, ix, iy)); };
   const double per_column = std::exp(-kSpacing_m / kReach_m);
   for (int ix = 10; ix < 9 + kLength; ++ix) {
     EXPECT_NEAR(at(ix, 9), at(ix, 13), 1.0) << ix;
@@ -278,16 +269,16 @@ TEST(MaterialFlow, ATiltedPresserCarriesHardlyAnythingToItsOtherEnd) {
         for (int ix = 0; ix < 61; ++ix) {
           const double along = (ix - 30) * c + (iy - 30) * s;
           const double across = (iy - 30) * c - (ix - 30) * s;
-          visit(flow.index(ix, iy), ix, iy, along,
+          visit(flow.grid().node(ix, iy), ix, iy, along,
                 std::abs(along) <= 12.0 && std::abs(across) <= 1.6);
         }
       }
     };
     each_node([&](size_t node, int ix, int iy, double, bool below) {
-      if (below) flow.cover(node, ix, iy);
+      if (below) flow.cover({node, ix, iy});
     });
     each_node([&](size_t node, int ix, int iy, double along, bool below) {
-      if (below && along < -6.0) flow.sink(node, ix, iy, 10000);
+      if (below && along < -6.0) flow.sink({node, ix, iy}, 10000);
     });
     const auto moved = static_cast<double>(flow.in_transit());
     flow.deposit();
@@ -295,8 +286,8 @@ TEST(MaterialFlow, ATiltedPresserCarriesHardlyAnythingToItsOtherEnd) {
     double far = 0.0;
     each_node([&](size_t node, int, int, double along, bool below) {
       if (below) return;
-      if (along < -3.0) near += flow.height(node);
-      if (along > 3.0) far += flow.height(node);
+      if (along < -3.0) near += flow.grid().height(node);
+      if (along > 3.0) far += flow.grid().height(node);
     });
     EXPECT_GT(near, 0.8 * moved) << degrees;
     EXPECT_LT(far, 0.04 * moved) << degrees;
@@ -317,8 +308,8 @@ TEST(MaterialFlow, AFewUnitsAreSharedOutAsManyAre) {
   press_one_end(at_once, 24, patch, 2 * kSteps);
   at_once.deposit();
   for (int ix = 9; ix <= 34; ++ix) {
-    const double expected = at_once.height(at_once.index(ix, 9));
-    EXPECT_NEAR(flow.height(flow.index(ix, 9)), expected, 2.0 + 4.0 * std::sqrt(expected)) << ix;
+    const double expected = height(at_once, ix, 9);
+    EXPECT_NEAR(height(flow, ix, 9), expected, 2.0 + 4.0 * std::sqrt(expected)) << ix;
   }
 }
 
@@ -329,14 +320,14 @@ TEST(MaterialFlow, WhatComesFromOtherFootprintsIsLaidWhereThisOnePresses) {
   press_one_end(flow, 24, {{0.0, 0.0}, {1.0, 0.0}, 0.01}, 1000);
   flow.deposit();
   EXPECT_EQ(volume(flow), 0);
-  EXPECT_EQ(flow.height(flow.index(34, 11)), 0);
+  EXPECT_EQ(height(flow, 34, 11), 0);
   MaterialFlow none_of_its_own = level(51);
   press(none_of_its_own, 45, 45, 56 * 4);
   none_of_its_own.uncover();
   press_one_end(none_of_its_own, 24, {{0.0, 0.0}, {1.0, 0.0}, 0.01}, 0);
   none_of_its_own.deposit();
   EXPECT_EQ(volume(none_of_its_own), 0);
-  EXPECT_GT(none_of_its_own.height(none_of_its_own.index(34, 11)), 0) << "in equal parts";
+  EXPECT_GT(height(none_of_its_own, 34, 11), 0) << "in equal parts";
 }
 
 TEST(MaterialFlow, TwoFootprintsDoNotSetDownUnderEachOther) {
@@ -346,23 +337,11 @@ TEST(MaterialFlow, TwoFootprintsDoNotSetDownUnderEachOther) {
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
   EXPECT_EQ(volume(flow), 0);
-  EXPECT_EQ(flow.height(flow.index(10, 10)), -700);
-  EXPECT_EQ(flow.height(flow.index(11, 10)), -700);
-  EXPECT_EQ(flow.height(flow.index(9, 10)), 100);
-  EXPECT_EQ(flow.height(flow.index(12, 10)), 100);
-  EXPECT_EQ(flow.height(flow.index(10, 9)), 200) << "a neighbour of both";
-}
-
-TEST(MaterialFlow, ANodeIsFoundAcrossTheEdgeOfAFieldThatRepeatsAndNotOfOneThatDoesNot) {
-  const MaterialFlow wrapped = level(5, true);
-  EXPECT_EQ(wrapped.node_at(-1, 0), 4);
-  EXPECT_EQ(wrapped.node_at(5, -1), 20);
-  EXPECT_EQ(wrapped.node_at(-6, 12), 14);
-  const MaterialFlow edged = level(5);
-  EXPECT_EQ(edged.node_at(4, 4), 24);
-  for (const auto& [ix, iy] : {std::pair{-1, 0}, {5, 0}, {0, -1}, {0, 5}}) {
-    EXPECT_EQ(edged.node_at(ix, iy), -1) << ix << " " << iy;
-  }
+  EXPECT_EQ(height(flow, 10, 10), -700);
+  EXPECT_EQ(height(flow, 11, 10), -700);
+  EXPECT_EQ(height(flow, 9, 10), 100);
+  EXPECT_EQ(height(flow, 12, 10), 100);
+  EXPECT_EQ(height(flow, 10, 9), 200) << "a neighbour of both";
 }
 
 // ---- slopes
@@ -375,7 +354,7 @@ MaterialFlow with_peak(Height units, bool all = true) {
   if (all) {
     flow.enqueue_all();
   } else {
-    flow.cover(flow.index(10, 10), 10, 10);
+    flow.cover(flow.grid().place(10, 10));
     flow.uncover();
   }
   return flow;
@@ -388,11 +367,11 @@ TEST(MaterialFlow, ASlopeAtTheAngleOfReposeStaysAndASteeperOneSlides) {
   EXPECT_EQ(stays.queued(), 0U);
   MaterialFlow slides = with_peak(limit + 2);
   EXPECT_EQ(slides.slide(1000), 1);
-  EXPECT_EQ(slides.height(slides.index(10, 10)), limit + 1);
+  EXPECT_EQ(height(slides, 10, 10), limit + 1);
   EXPECT_EQ(volume(slides), limit + 2);
   MaterialFlow hole = with_peak(-limit - 2);
   EXPECT_EQ(hole.slide(1000), 1);
-  EXPECT_EQ(hole.height(hole.index(10, 10)), -limit - 1);
+  EXPECT_EQ(height(hole, 10, 10), -limit - 1);
   EXPECT_EQ(volume(hole), -limit - 2);
 }
 
@@ -400,10 +379,10 @@ TEST(MaterialFlow, HalfOfWhatIsTooMuchSlidesAndTheReferenceGoesAlong) {
   const Height limit = stable(kSpacing_m);
   MaterialFlow flow = with_peak(limit + 1000, false);
   EXPECT_EQ(flow.slide(1), 4) << "a node is finished once it is begun";
-  const size_t east = flow.index(11, 10);
-  EXPECT_EQ(flow.height(east), 500);
-  EXPECT_EQ(flow.reference(east), 500);
-  EXPECT_EQ(flow.height(flow.index(9, 10)), 250);
+  const size_t east = flow.grid().node(11, 10);
+  EXPECT_EQ(flow.grid().height(east), 500);
+  EXPECT_EQ(flow.grid().reference(east), 500);
+  EXPECT_EQ(height(flow, 9, 10), 250);
 }
 
 TEST(MaterialFlow, AllSlopesSettleBelowTheAngleOfReposeAlsoDiagonally) {
@@ -417,10 +396,10 @@ TEST(MaterialFlow, AllSlopesSettleBelowTheAngleOfReposeAlsoDiagonally) {
   Height steepest_diagonal = 0;
   for (int iy = 0; iy < 20; ++iy) {
     for (int ix = 0; ix < 20; ++ix) {
-      const Height here = flow.height(flow.index(ix, iy));
-      EXPECT_LE(std::abs(here - flow.height(flow.index(ix + 1, iy))), straight + 1);
-      EXPECT_LE(std::abs(here - flow.height(flow.index(ix, iy + 1))), straight + 1);
-      const Height across = std::abs(here - flow.height(flow.index(ix + 1, iy + 1)));
+      const Height here = height(flow, ix, iy);
+      EXPECT_LE(std::abs(here - height(flow, ix + 1, iy)), straight + 1);
+      EXPECT_LE(std::abs(here - height(flow, ix, iy + 1)), straight + 1);
+      const Height across = std::abs(here - height(flow, ix + 1, iy + 1));
       EXPECT_LE(across, diagonal + 1);
       steepest_diagonal = std::max(steepest_diagonal, across);
     }
@@ -431,7 +410,7 @@ TEST(MaterialFlow, AllSlopesSettleBelowTheAngleOfReposeAlsoDiagonally) {
 TEST(MaterialFlow, AHoleFillsAlsoWhenItAloneIsLookedAt) {
   MaterialFlow flow = with_peak(-stable(kSpacing_m) - 1000, false);
   EXPECT_EQ(flow.slide(1), 4);
-  EXPECT_EQ(flow.height(flow.index(11, 10)), -500);
+  EXPECT_EQ(height(flow, 11, 10), -500);
 }
 
 TEST(MaterialFlow, ANewBedIsLookedAtWholeOnlyWhenAsked) {
@@ -439,7 +418,8 @@ TEST(MaterialFlow, ANewBedIsLookedAtWholeOnlyWhenAsked) {
   EXPECT_EQ(flow.queued(), 0U);
   flow.enqueue_all();
   EXPECT_EQ(flow.queued(), 25U);
-  for (size_t node = 0; node < flow.nodes(); ++node) EXPECT_TRUE(flow.is_queued(node)) << node;
+  for (size_t node = 0; node < flow.grid().size(); ++node)
+    EXPECT_TRUE(flow.is_queued(node)) << node;
 }
 
 TEST(MaterialFlow, WhenNothingSlidesAnyMoreNoNodeWaits) {
@@ -447,26 +427,27 @@ TEST(MaterialFlow, WhenNothingSlidesAnyMoreNoNodeWaits) {
   while (flow.slide(1000) > 0) {
   }
   EXPECT_EQ(flow.queued(), 0U);
-  for (size_t node = 0; node < flow.nodes(); ++node) EXPECT_FALSE(flow.is_queued(node)) << node;
+  for (size_t node = 0; node < flow.grid().size(); ++node)
+    EXPECT_FALSE(flow.is_queued(node)) << node;
 }
 
 TEST(MaterialFlow, TheFirstNodeTakesWhatSlidesAsAnyOther) {
   HeightField surface(5, 5, kSpacing_m, false);
   surface.set_node(1, 1, 10 * stable(kSpacing_m));
   MaterialFlow flow(std::move(surface), kRepose_deg);
-  flow.cover(flow.index(1, 1), 1, 1);
+  flow.cover(flow.grid().place(1, 1));
   flow.uncover();
   EXPECT_EQ(flow.slide(1), 8) << "a node has eight neighbours";
-  EXPECT_GT(flow.height(flow.index(0, 0)), 0);
+  EXPECT_GT(height(flow, 0, 0), 0);
 }
 
 TEST(MaterialFlow, NothingSlidesOntoOrOffANodeThatABodyStandsOnUntilItIsGone) {
   const Height limit = stable(kSpacing_m);
   MaterialFlow flow = with_peak(limit + 1000);
-  flow.cover(flow.index(10, 10), 10, 10);
+  flow.cover(flow.grid().place(10, 10));
   EXPECT_EQ(flow.slide(1000), 0);
   flow.uncover();
-  EXPECT_TRUE(flow.is_queued(flow.index(10, 10)));
+  EXPECT_TRUE(flow.is_queued(flow.grid().node(10, 10)));
   EXPECT_GT(flow.slide(1000), 0);
 }
 

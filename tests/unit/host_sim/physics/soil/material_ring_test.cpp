@@ -48,25 +48,23 @@ Outline ring_round(const Outline& outline) {
 void expect_laid_round(MaterialFlow& flow, const Outline& outline, int first_x, int first_y) {
   constexpr Height kEach = 100;
   const Outline ring = ring_round(outline);
-  std::vector<Height> expected(flow.nodes());
-  for (size_t node = 0; node < flow.nodes(); ++node) expected[node] = flow.height(node);
-  const auto node_of = [&](const std::pair<int, int>& place) {
-    return flow.node_on(first_x + place.first, first_y + place.second);
+  std::vector<Height> expected(flow.grid().size());
+  for (size_t node = 0; node < flow.grid().size(); ++node)
+    expected[node] = flow.grid().height(node);
+  const auto at = [&](const std::pair<int, int>& place) {
+    return flow.grid().place(first_x + place.first, first_y + place.second);
   };
-  for (const auto& place : ring) expected[node_of(place)] += kEach;
+  for (const auto& place : ring) expected[at(place).node] += kEach;
   const auto pressed = static_cast<Height>(ring.size()) * kEach;
-  expected[node_of(*outline.begin())] -= pressed;
+  expected[at(*outline.begin()).node] -= pressed;
   flow.begin_footprint();
-  for (const auto& place : outline) {
-    flow.cover(node_of(place), first_x + place.first, first_y + place.second);
-  }
-  const auto& [ix, iy] = *outline.begin();
-  flow.sink(node_of({ix, iy}), first_x + ix, first_y + iy, pressed);
+  for (const auto& place : outline) flow.cover(at(place));
+  flow.sink(at(*outline.begin()), pressed);
   flow.deposit();
   flow.uncover();
   EXPECT_EQ(flow.in_transit(), 0);
-  for (size_t node = 0; node < flow.nodes(); ++node) {
-    ASSERT_EQ(flow.height(node), expected[node]) << node << " of " << outline.size();
+  for (size_t node = 0; node < flow.grid().size(); ++node) {
+    ASSERT_EQ(flow.grid().height(node), expected[node]) << node << " of " << outline.size();
   }
 }
 
@@ -116,7 +114,7 @@ TEST(MaterialRing, AFootprintAcrossTheSeamOfAFieldThatRepeatsHasAllNodesBesideIt
 TEST(MaterialRing, WhatIsDugWaitsBesideAFootprintThatTouchesNothing) {
   MaterialFlow flow = level();
   flow.begin_footprint();
-  flow.shear(flow.index(10, 10), 1.0);
+  flow.shear(flow.grid().node(10, 10), 1.0);
   flow.dig({{0.0, 0.0}, {1.0, 0.0}, 2.0 * kSpacing_m, kSpacing_m, 0.0}, 80);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 80);
@@ -124,17 +122,18 @@ TEST(MaterialRing, WhatIsDugWaitsBesideAFootprintThatTouchesNothing) {
   press(flow, 4, 4, 0);
   flow.deposit();
   EXPECT_EQ(flow.in_transit(), 0);
-  EXPECT_EQ(flow.height(flow.index(5, 5)), 10);
+  EXPECT_EQ(height(flow, 5, 5), 10);
 }
 
 TEST(MaterialRing, ASingleUnitFillsARut) {
   MaterialFlow flow = level();
-  const size_t rut = flow.index(10, 10);
-  flow.begin_sunk(rut, 800);
+  const GridNode rut = flow.grid().place(10, 10);
+  flow.grid().set_height(rut, -800);
+  flow.grid()[rut.node].sunk = 800;
   press(flow, 11, 10, 8);  // one for each neighbour
   flow.deposit();
-  EXPECT_EQ(flow.height(rut), -799);
-  EXPECT_EQ(flow.sunk(rut), 799);
+  EXPECT_EQ(flow.grid().height(rut.node), -799);
+  EXPECT_EQ(flow.grid()[rut.node].sunk, 799);
 }
 
 // ---- shares
@@ -142,8 +141,8 @@ TEST(MaterialRing, ASingleUnitFillsARut) {
 /// A footprint of one row along x, pressed down at its first node.
 void press_row(MaterialFlow& flow, int length, double reach, Height units) {
   flow.begin_footprint({{0.0, 0.0}, {1.0, 0.0}, reach});
-  for (int i = 0; i < length; ++i) flow.cover(flow.index(10 + i, 2), 10 + i, 2);
-  flow.sink(flow.index(10, 2), 10, 2, units);
+  for (int i = 0; i < length; ++i) flow.cover(flow.grid().place(10 + i, 2));
+  flow.sink(flow.grid().place(10, 2), units);
 }
 
 TEST(MaterialRing, WhatAFootprintDidNotPressItselfIsSharedOutEqually) {
@@ -156,11 +155,11 @@ TEST(MaterialRing, WhatAFootprintDidNotPressItselfIsSharedOutEqually) {
   EXPECT_EQ(flow.in_transit(), 0);
   for (int ix = 9; ix <= 40; ++ix) {
     for (const int iy : {1, 3}) {
-      EXPECT_NEAR(flow.height(flow.index(ix, iy)), 100, 1) << ix << " " << iy;
+      EXPECT_NEAR(height(flow, ix, iy), 100, 1) << ix << " " << iy;
     }
   }
-  EXPECT_NEAR(flow.height(flow.index(9, 2)), 100, 1);
-  EXPECT_NEAR(flow.height(flow.index(40, 2)), 100, 1);
+  EXPECT_NEAR(height(flow, 9, 2), 100, 1);
+  EXPECT_NEAR(height(flow, 40, 2), 100, 1);
 }
 
 TEST(MaterialRing, ASingleUnitIsLaidBesideWhereItWasPressed) {
@@ -176,9 +175,9 @@ TEST(MaterialRing, ASingleUnitIsLaidBesideWhereItWasPressed) {
   // At one spacing of reach less than exp(-20) of it comes farther than twenty.
   int64_t near = 0;
   for (int ix = 9; ix < 30; ++ix) {
-    for (const int iy : {1, 3}) near += flow.height(flow.index(ix, iy));
+    for (const int iy : {1, 3}) near += height(flow, ix, iy);
   }
-  EXPECT_EQ(near + flow.height(flow.index(9, 2)), 50);
+  EXPECT_EQ(near + height(flow, 9, 2), 50);
 }
 
 /// The last steps of MurmurHash3, as published.
@@ -195,9 +194,9 @@ uint32_t murmur_of(uint32_t key) {
 void skip_turns(MaterialFlow& flow, Height turns) {
   flow.begin_footprint();
   for (int iy = 1; iy < 283; iy += 3) {
-    for (int ix = 1; ix < 283; ix += 3) flow.cover(flow.index(ix, iy), ix, iy);
+    for (int ix = 1; ix < 283; ix += 3) flow.cover(flow.grid().place(ix, iy));
   }
-  flow.sink(flow.index(1, 1), 1, 1, turns);
+  flow.sink(flow.grid().place(1, 1), turns);
   flow.deposit();
   flow.uncover();
 }
@@ -215,7 +214,7 @@ TEST(MaterialRing, WhereASingleUnitOfEqualSharesIsLaidFollowsTheHashOfTheTurn) {
     std::vector<size_t> ring;  // row by row
     for (int iy = 1; iy <= 3; ++iy) {
       for (int ix = 9; ix <= 10 + kLength; ++ix) {
-        if (iy != 2 || ix == 9 || ix == 10 + kLength) ring.push_back(flow.index(ix, iy));
+        if (iy != 2 || ix == 9 || ix == 10 + kLength) ring.push_back(flow.grid().node(ix, iy));
       }
     }
     ASSERT_EQ(ring.size(), size_t{kRing});
@@ -224,9 +223,9 @@ TEST(MaterialRing, WhereASingleUnitOfEqualSharesIsLaidFollowsTheHashOfTheTurn) {
       // The first place at which the threshold and the shares so far make a whole.
       const double missing = 1.0 - murmur_of(beginning + step) / 4294967296.0;
       const auto place = static_cast<size_t>(std::ceil(missing * kRing)) - 1;
-      const Height before = flow.height(ring[place]);
+      const Height before = flow.grid().height(ring[place]);
       flow.deposit();
-      ASSERT_EQ(flow.height(ring[place]), before + 1) << beginning << " " << step;
+      ASSERT_EQ(flow.grid().height(ring[place]), before + 1) << beginning << " " << step;
       flow.uncover();
     }
   }

@@ -25,15 +25,14 @@ MaterialFlow settled_peak(int nx, int ny, bool wrap, int ix, int iy, Height unit
 /// The steepest slope beyond the stable one between any neighbours, units.
 Height beyond_stable(const MaterialFlow& flow) {
   Height most = 0;
-  for (int iy = 0; iy < flow.surface().ny(); ++iy) {
-    for (int ix = 0; ix < flow.surface().nx(); ++ix) {
+  for (int iy = 0; iy < flow.grid().surface().ny(); ++iy) {
+    for (int ix = 0; ix < flow.grid().surface().nx(); ++ix) {
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
-          const int64_t beside = flow.node_at(ix + dx, iy + dy);
-          if (beside < 0) continue;
+          GridNode beside{0, ix + dx, iy + dy};
+          if (!flow.grid().find(beside)) continue;
           const double distance_m = kSpacing_m * (dx != 0 && dy != 0 ? std::sqrt(2.0) : 1.0);
-          const Height fall =
-              flow.height(flow.index(ix, iy)) - flow.height(static_cast<size_t>(beside));
+          const Height fall = height(flow, ix, iy) - flow.grid().height(beside.node);
           most = std::max(most, fall - stable(distance_m));
         }
       }
@@ -67,15 +66,15 @@ TEST(MaterialSlides, AFieldThatRepeatsSettlesAcrossItsSeamAsInItsMiddle) {
   MaterialFlow at_seam(std::move(surface), kRepose_deg);
   MaterialFlow in_middle(std::move(same), kRepose_deg);
   for (const auto& [flow, ix, iy] : {std::tuple{&at_seam, 0, 0}, std::tuple{&in_middle, 8, 6}}) {
-    flow->cover(flow->index(ix, iy), ix, iy);
+    flow->cover(flow->grid().place(ix, iy));
     flow->uncover();
     while (flow->slide(1000000) > 0) {
     }
   }
   for (int iy = 0; iy < 12; ++iy) {
     for (int ix = 0; ix < 16; ++ix) {
-      EXPECT_EQ(at_seam.height(at_seam.node_on(ix - 8, iy - 6)),
-                in_middle.height(in_middle.index(ix, iy)))
+      EXPECT_EQ(at_seam.grid().height(at_seam.grid().node(ix - 8, iy - 6)),
+                height(in_middle, ix, iy))
           << ix << " " << iy;
     }
   }
@@ -85,10 +84,10 @@ TEST(MaterialSlides, TheCornerTakesWhatSlidesAlongTheEdge) {
   HeightField surface(5, 5, kSpacing_m, false);
   surface.set_node(1, 0, 10 * stable(kSpacing_m));
   MaterialFlow flow(std::move(surface), kRepose_deg);
-  flow.cover(flow.index(1, 0), 1, 0);
+  flow.cover(flow.grid().place(1, 0));
   flow.uncover();
   EXPECT_EQ(flow.slide(1), 5) << "a node at the edge has five neighbours";
-  EXPECT_GT(flow.height(flow.index(0, 0)), 0);
+  EXPECT_GT(height(flow, 0, 0), 0);
 }
 
 TEST(MaterialSlides, SlidingInPortionsEndsAsSlidingAtOnce) {
@@ -104,8 +103,8 @@ TEST(MaterialSlides, SlidingInPortionsEndsAsSlidingAtOnce) {
       if (flow.slide(portion) == 0) break;
     }
     EXPECT_EQ(flow.queued(), 0U) << portion;
-    for (size_t node = 0; node < flow.nodes(); ++node) {
-      ASSERT_EQ(flow.height(node), at_once.height(node)) << portion << ": " << node;
+    for (size_t node = 0; node < flow.grid().size(); ++node) {
+      ASSERT_EQ(flow.grid().height(node), at_once.grid().height(node)) << portion << ": " << node;
       ASSERT_FALSE(flow.is_queued(node)) << portion << ": " << node;
     }
   }
@@ -113,7 +112,8 @@ TEST(MaterialSlides, SlidingInPortionsEndsAsSlidingAtOnce) {
 
 TEST(MaterialSlides, WithoutAnyMoveWhatIsToSlideWaits) {
   MaterialFlow flow = settled_peak(21, 21, false, 10, 10, 20 * stable(kSpacing_m));
-  flow.begin_sunk(flow.index(2, 2), 1000000);
+  flow.shear(flow.grid().node(2, 2), 1.0);
+  flow.dig({}, 1000000);
   EXPECT_EQ(flow.slide(0), 0);
   EXPECT_EQ(flow.queued(), 1U);
   EXPECT_EQ(flow.slide(1), 8) << "the slopes of the hole";
@@ -121,7 +121,8 @@ TEST(MaterialSlides, WithoutAnyMoveWhatIsToSlideWaits) {
 
 TEST(MaterialSlides, ANodeThatWaitsAlreadyDoesNotWaitTwice) {
   MaterialFlow flow = level(5);
-  flow.begin_sunk(flow.index(2, 2), 10);
+  flow.shear(flow.grid().node(2, 2), 1.0);
+  flow.dig({}, 10);
   ASSERT_EQ(flow.queued(), 1U);
   flow.enqueue_all();
   EXPECT_EQ(flow.queued(), 25U);

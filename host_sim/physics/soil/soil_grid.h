@@ -1,0 +1,115 @@
+// Deformable soil as a grid of cells: all that is kept of a cell, and where on the grid it lies. A
+// node of the height field stands for the cell around it. What happens to cells is elsewhere:
+// SoilBed and the stand-in's BeltGround press on them, MaterialFlow moves what they hold.
+//
+// A cell has two levels: its height, the surface as it lies there unloaded, and its reference, from
+// which Bekker's sinkage counts; their difference is the plastic sinkage. Material that moves
+// changes heights in pairwise opposite amounts, so that the volume is exact; material that is
+// compacted is booked.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "host_sim/physics/soil/cell_history.h"
+#include "host_sim/physics/terrain/height_field.h"
+
+namespace screed {
+
+/// A cell of soil, but for the height of its surface, which stands in a HeightField.
+struct SoilCell {
+  /// How far the cell has been pressed down, units: what is deposited on it takes from that, what
+  /// slides or is dug away leaves it as it is.
+  Height sunk = 0;
+  Height loose;            ///< what it may still lose by compaction, units
+  CellHistory history{};   ///< of the body on it
+  bool covered = false;    ///< by a body, in this step: nothing slides onto or off it
+  bool held = false;       ///< by a body, in the last step
+  bool queued = false;     ///< the slopes round it are to be looked at
+  bool at_border = false;  ///< its neighbours are not all beside it in memory, or nothing follows
+};
+
+/// A cell by its number and its place; of a field with wrap-around the place may be outside.
+struct GridNode {
+  size_t node;
+  int ix;
+  int iy;
+};
+
+class SoilGrid {
+ public:
+  /// Each cell may lose `loose` units by compaction.
+  SoilGrid(HeightField surface, Height loose)
+      : surface_(std::move(surface)),
+        cells_(static_cast<size_t>(surface_.nx()) * static_cast<size_t>(surface_.ny()),
+               SoilCell{.loose = loose}) {
+    const int nx = surface_.nx();
+    const int ny = surface_.ny();
+    const auto mark = [&](int ix, int iy) { cells_[node(ix, iy)].at_border = true; };
+    for (int ix = 0; ix < nx; ++ix) mark(ix, 0), mark(ix, ny - 1);
+    for (int iy = 0; iy < ny; ++iy) mark(0, iy), mark(nx - 1, iy);
+    mark(nx - 2, ny - 2);
+  }
+
+  const HeightField& surface() const { return surface_; }
+  size_t size() const { return cells_.size(); }
+  SoilCell& operator[](size_t node) { return cells_[node]; }
+  const SoilCell& operator[](size_t node) const { return cells_[node]; }
+  Height height(size_t node) const { return surface_.node(node); }
+  /// Level from which sinkage counts.
+  Height reference(size_t node) const { return height(node) + cells_[node].sunk; }
+  void set_height(const GridNode& at, Height height) {
+    // Quicker than always finding column and row by division.
+    const GridNode within = on_field(at.ix, at.iy) ? at : place(at.node);
+    surface_.set_node(within.ix, within.iy, height);
+  }
+
+  /// The number of the cell at a place on the field or of a field with wrap-around: not checked.
+  size_t node(int ix, int iy) const {
+    if (!on_field(ix, iy)) {
+      const int nx = surface_.nx();
+      const int ny = surface_.ny();
+      ix = ((ix % nx) + nx) % nx;
+      iy = ((iy % ny) + ny) % ny;
+    }
+    return static_cast<size_t>(iy) * static_cast<size_t>(surface_.nx()) + static_cast<size_t>(ix);
+  }
+  GridNode place(int ix, int iy) const { return {node(ix, iy), ix, iy}; }
+  GridNode place(size_t node) const {
+    return {node, column(node),
+            static_cast<int>(static_cast<uint32_t>(node) / static_cast<uint32_t>(surface_.nx()))};
+  }
+  /// Sets the number of the cell at a place. False: none is there.
+  bool find(GridNode& at) const {
+    if (!on_field(at.ix, at.iy) && !surface_.wrap()) return false;
+    at.node = node(at.ix, at.iy);
+    return true;
+  }
+  /// A part of a row of the grid, [first_ix, end_ix), of places as node() takes them, in runs of
+  /// cells that follow each other: calls run(first node, its ix, length).
+  template <typename Run>
+  void each_run(int iy, int first_ix, int end_ix, const Run& run) const {
+    for (int ix = first_ix; ix < end_ix;) {
+      const size_t first = node(ix, iy);
+      const int left_in_row = surface_.nx() - column(first);
+      const int length = end_ix - ix < left_in_row ? end_ix - ix : left_in_row;
+      run(first, ix, static_cast<size_t>(length));
+      ix += length;
+    }
+  }
+
+ private:
+  bool on_field(int ix, int iy) const {
+    return ix >= 0 && iy >= 0 && ix < surface_.nx() && iy < surface_.ny();
+  }
+  int column(size_t node) const {
+    return static_cast<int>(static_cast<uint32_t>(node) % static_cast<uint32_t>(surface_.nx()));
+  }
+
+  HeightField surface_;
+  std::vector<SoilCell> cells_;
+};
+
+}  // namespace screed
