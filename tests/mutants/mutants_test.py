@@ -89,6 +89,7 @@ class Switches(unittest.TestCase):
                          "const int kA = (::mutants::on(1) ? 4 : ::mutants::on(2) ? 6 : 5);\nbool f(int a) {\n"
                          "  return a < ::mutants::Less{3} < kA;\n}\n")
         self.assertEqual(operators.with_switches(source, found, {1}, {"kA"}), source)
+        self.assertEqual(operators.with_switches(source, found, {0, 1}), source)
         self.assertEqual(operators.with_switches(source, found, (), {"kA"}, 100),
                          "constexpr int kA = 5;\nbool f(int a) {\n  return a < ::mutants::Less{103} < kA;\n}\n")
 
@@ -266,7 +267,9 @@ class Tests(unittest.TestCase):
 
 SOURCE = """#include "a.h"
 constexpr int kSize = 3;
+static_assert(kSize > 2, "");
 int table[kSize];
+int size() { return sizeof(table) / sizeof(int); }
 namespace {
 int wasted(int a) {
   return a + 1;
@@ -284,15 +287,22 @@ int loop(int n) {
 int unused(int a) {
   return a - 1;
 }
+int at_start = unused(7);
 """
 TESTS = """#include "a.h"
 #include <gtest/gtest.h>
+#include <ctime>
 TEST(Area, OfARectangle) { EXPECT_EQ(area(2, 5), 10); }
 TEST(Area, Fails) { EXPECT_EQ(area(2, 5), 11); }
 TEST(Loop, CountsItsSteps) { EXPECT_EQ(loop(3), 3); }
+TEST(Table, HasItsSize) { EXPECT_EQ(size(), 3); }
+TEST(Unused, Slowly) {
+  while (clock() < CLOCKS_PER_SEC / 2) {}
+  EXPECT_EQ(unused(2), 1);
+}
 TEST(ContentHash, NoticesEverything) { EXPECT_EQ(loop(2), 2); }
 """
-HEADER = "int area(int a, int b);\nint loop(int n);\nint unused(int a);\n"
+HEADER = "int area(int a, int b);\nint loop(int n);\nint size();\nint unused(int a);\n"
 
 
 class ACampaign(unittest.TestCase):
@@ -323,37 +333,44 @@ class ACampaign(unittest.TestCase):
         return {line.split(" ")[1]: line.split(" ")[2:] for line in Path("w/results.txt").read_text().splitlines()}
 
     def test_kills_what_tests_notice_and_remembers_it(self):
-        code, output, said = self.run_tool("--unit", "--jobs", "2")
+        code, output, said = self.run_tool("--unit", "--longest", "0.3", "--jobs", "2")
         self.assertEqual(code, 1, said + output)
         self.assertIn("Area.Fails does not pass", said)
         fates = self.fates()
-        self.assertEqual(fates["11:12:arithmetic"][::2], ["killed", "Area.OfARectangle"])
-        self.assertEqual(fates["6:12:arithmetic"][::2], ["killed", "Loop.CountsItsSteps"])
-        self.assertEqual(fates["15:27:step"][::2], ["killed", "Loop.CountsItsSteps"])
-        self.assertEqual(fates["19:12:arithmetic"][0], "survived")
-        self.assertIn("firmware/a.cpp:19:12:arithmetic  no test reaches it\n- return a - 1;\n+ return a + 1;\n", output)
+        self.assertEqual(fates["13:12:arithmetic"][::2], ["killed", "Area.OfARectangle"])
+        self.assertEqual(fates["8:12:arithmetic"][::2], ["killed", "Loop.CountsItsSteps"])
+        self.assertEqual(fates["17:27:step"][::2], ["killed", "Loop.CountsItsSteps"])
+        self.assertEqual(fates["21:12:arithmetic"][0], "survived", "it runs before the first test")
+        self.assertIn("firmware/a.cpp:21:12:arithmetic  no test reaches it\n- return a - 1;\n+ return a + 1;\n", output)
         self.assertIn("below", output)
-        self.assertNotIn("10:9:comparison.1", fates, "equivalent")
+        self.assertNotIn("12:9:comparison.1", fates, "equivalent")
         self.assertEqual(self.row(output)[4], "1", "equivalent")
-        # The size of an array is a constant: its mutants have programs of their own.
-        self.assertEqual(fates["2:23:constant.1"][0], "survived")
-        self.assertEqual(set(fate[0] for fate in fates.values()), {"killed", "survived"})
+        # The size of an array is a constant: its mutants are compiled each on its own.
+        self.assertEqual(fates["2:23:constant.1"][0], "invalid")
+        self.assertEqual(fates["2:23:constant.2"][::2], ["killed", "Table.HasItsSize"])
+        self.assertEqual(self.row(output)[5], "1", "invalid")
 
-        again = self.run_tool("--unit")
-        self.assertIn("what 3 tests reach; known of 3", again[2])
+        again = self.run_tool("--unit", "--longest", "0.3")
+        self.assertIn("what 5 tests reach; known of 5", again[2])
         self.assertIn("firmware/a.cpp: 0 of", again[2])
         self.assertEqual(self.row(again[1]), self.row(output))
 
-        # A test that reaches the survivors is new.
+        # A slow test notices what no other one does.
+        self.run_tool("--unit", "--longest", "0")
+        self.assertEqual(self.fates()["21:12:arithmetic"][::2], ["killed", "Unused.Slowly"])
+
+        # A test that reaches a survivor is new, and the file with the tests that kill another one.
         Path("tests/a_test.cpp").write_text(TESTS + "TEST(Unused, IsNow) { EXPECT_EQ(unused(2), 1); }\n")
         subprocess.run("g++ @b/host.flags -MMD -MP -c tests/a_test.cpp -o b/a_test.o".split(), check=True)
-        code, output, said = self.run_tool("--unit")
-        self.assertEqual(self.fates()["19:12:arithmetic"][::2], ["killed", "Unused.IsNow"])
+        self.run_tool("--unit", "--longest", "0.3")
+        self.assertEqual(self.fates()["21:12:arithmetic"][::2], ["killed", "Unused.IsNow"])
+        self.assertEqual(Path("w/results.txt").read_text().count(" 13:12:arithmetic "), 2)
+        self.assertEqual(Path("w/results.txt").read_text().count(" 2:23:constant.1 "), 1)
 
     def test_lists_mutants_without_running_any(self):
         code, output, _ = self.run_tool("--list")
         self.assertEqual(code, 0)
-        self.assertIn("firmware/a.cpp:11:12:arithmetic\n- return a * b;\n+ return a / b;\n", output)
+        self.assertIn("firmware/a.cpp:13:12:arithmetic\n- return a * b;\n+ return a / b;\n", output)
         self.assertFalse(Path("w/results.txt").exists())
         _, sample, _ = self.run_tool("--list", "--sample", "3")
         self.assertEqual(len(sample.splitlines()), 9)

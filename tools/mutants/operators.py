@@ -500,7 +500,8 @@ def with_edit(source, edit):
 def with_switches(source, mutations, alone=(), kept=(), first=0):
     """The source with the switches of all sites but the `alone` ones; the constants named in `kept` stay constexpr, and
     the sites in them are left alone, too. As many lines as the source. `first` is added to the mutants' numbers."""
-    # At one place first what closes, the inner first; then what opens, the outer first; then what stands for a token.
+    # At one place first what closes, brackets of one kind; then what opens, the outer first; then what stands for a
+    # token.
     events = []
     switched = set()
     for i, site in enumerate(mutations.sites):
@@ -514,7 +515,7 @@ def with_switches(source, mutations, alone=(), kept=(), first=0):
         for wrap in site.wraps:
             order = len(events)
             events.append((wrap.begin, 1, -wrap.end, order, wrap.begin, numbered(wrap.before)))
-            events.append((wrap.end, 0, -wrap.begin, -order, wrap.end, numbered(wrap.behind)))
+            events.append((wrap.end, 0, 0, order, wrap.end, numbered(wrap.behind)))
         for edit in site.replacements:
             events.append((edit.begin, 2, 0, 0, edit.end, numbered(edit.text)))
     for constant in mutations.constants:
