@@ -127,8 +127,9 @@ int main() {
             program = folder / "program"
             if text:
                 (folder / "a.cpp").write_text(text)
-                subprocess.run(["g++", "-w", "-fwrapv", f"-I{ROOT}", "-include", "tools/mutants/mutant_switch.h",
-                                folder / "a.cpp", folder / "switch.o", "-o", program], check=True, cwd=ROOT)
+                subprocess.run(["g++", "-w", "-fwrapv", "-Wl,--wrap=main", f"-I{ROOT}", "-include",
+                                "tools/mutants/mutant_switch.h", folder / "a.cpp", folder / "switch.o", "-o", program],
+                               check=True, cwd=ROOT)
             ended = mutants.run([program], folder / "output", {"MUTANT": str(mutant)}, limit_s=1)
             return "does not end" if ended.out_of_time else ended.said
 

@@ -18,10 +18,13 @@ unsigned char* reached = nowhere;
 
 namespace {
 
-// Before the constants of other files are made. The file of reached mutants is shared with the
-// programs that a test starts.
+// Before the constants of other files are made.
 __attribute__((constructor(101))) void choose() {
   if (const char* number = std::getenv("MUTANT")) alive = std::atoi(number);
+}
+
+/// The file of reached mutants is shared with the programs that a test starts.
+void map_reached() {
   const char* path = std::getenv("MUTANTS_REACH");
   if (path == nullptr) return;
   const int file = open(path, O_RDWR | O_CLOEXEC);
@@ -36,3 +39,12 @@ __attribute__((constructor(101))) void choose() {
 
 }  // namespace
 }  // namespace mutants
+
+// The linker puts it in the place of main (--wrap=main): what runs before main is no test's.
+// NOLINTBEGIN(bugprone-reserved-identifier)
+extern "C" int __real_main(int argc, char** argv);
+extern "C" int __wrap_main(int argc, char** argv) {
+  mutants::map_reached();
+  return __real_main(argc, argv);
+}
+// NOLINTEND(bugprone-reserved-identifier)

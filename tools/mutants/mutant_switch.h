@@ -5,7 +5,7 @@
 // `a + Plus{7} + b`, of the same precedence, so that the compiler finds the operands. C++14,
 // because firmware is.
 //
-// Compiled with MUTANTS_REACH, no mutant is alive and every one that is passed is counted instead.
+// Compiled with MUTANTS_REACH, no mutant is alive and every one that is passed is noted instead.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 namespace mutants {
 
 extern int alive;
-extern unsigned char* reached;  // a byte a mutant of all files: how often it was passed, or 255
+extern unsigned char* reached;  // a byte a mutant of all files
 
 // Of each source its own: what the linker took for the same would count for another source.
 namespace {
 
 inline bool on(int id) {
 #ifdef MUTANTS_REACH
-  if (id > 0 && reached[id] != 255) ++reached[id];
+  if (id > 0) reached[id] = 1;
   return false;
 #else
   return id == alive;

@@ -339,8 +339,9 @@ class Builder:
         arguments = self.arguments[program]
         # Objects of the library stand before it, which then does not add its own.
         first = [ours for theirs, ours in objects.items() if theirs in self.library and theirs not in arguments]
-        return run(["g++", *self.linker, *first, self.switch, *[objects.get(word, word) for word in arguments],
-                    "-o", result], result.with_name(result.name + ".txt"))
+        arguments = [objects.get(word, word) for word in arguments]
+        return run(["g++", *self.linker, "-Wl,--wrap=main", *first, self.switch, *arguments, "-o", result],
+                   result.with_name(result.name + ".txt"))
 
     def link_or_stop(self, program, objects, result):
         ended = self.link(program, objects, result)
@@ -544,15 +545,12 @@ class Campaign:
                   if is_wanted(name, self.options.tests) and not name.startswith("ContentHash.")]
         missing = [test for test in wanted if test not in known]
         tell(f"what {len(wanted)} tests reach; known of {len(wanted) - len(missing)}")
-        # What runs before the first test is no test's.
-        idle = {program: self.reach_of(folder, program, "-*") for program in {test[0] for test in missing}}
+        idle = {program: self.reach_of(folder, program, "-*")[1] for program in {test[0] for test in missing}}
 
         def reach_one(test):
             program, name, _ = test
-            passes, cpu_s, counts = self.reach_of(folder, program, name)
-            _, idle_s, idle_counts = idle[program]
-            reached = [i for i, count in enumerate(counts) if count > idle_counts[i] or count == 255]
-            known[test] = Test(*test, round(max(0.0, cpu_s - idle_s), 4) if passes else -1.0, reached)
+            passes, cpu_s, reached = self.reach_of(folder, program, name)
+            known[test] = Test(*test, round(max(0.0, cpu_s - idle[program]), 4) if passes else -1.0, reached)
             with self.lock, open(log, "a") as out:
                 print(json.dumps([key, *known[test]], separators=(",", ":")), file=out)
 
@@ -569,7 +567,7 @@ class Campaign:
                 self.reached_by.setdefault(i, []).append(test)
 
     def reach_of(self, folder, program, test):
-        """Whether it passes, its processor time, and how often it passes every mutant."""
+        """Whether it passes, its processor time, and the mutants that it passes."""
         last = self.subjects[-1]
         mutants = last.first + sum(len(site.mutants) for site in last.mutations.sites)
         with tempfile.TemporaryDirectory(dir=self.options.work) as name:
@@ -579,7 +577,7 @@ class Campaign:
             ended = run([folder / program, f"--gtest_filter={test}"], scratch / "output.txt",
                         environment)
             passes = ended.good and "[  PASSED  ] 1 test" in ended.said
-            return passes, ended.cpu_s, (scratch / "reach").read_bytes()
+            return passes, ended.cpu_s, [i for i, passed in enumerate((scratch / "reach").read_bytes()) if passed]
 
     def tests_for(self, subject, candidate):
         """The tests that may notice a mutant, the quickest first, unit tests before the others."""
