@@ -37,7 +37,10 @@ namespace avr {
 namespace {
 
 constexpr uint8_t kInSize = 1 + 2 * kKeySize + 1;
-constexpr uint8_t kOutSize = 50;
+// Of the longest answer, that to `v`: its text, numbers of two digits and of four, the line's end.
+// A modified tree's version is longer than a commit's.
+constexpr uint8_t kOutSize = sizeof("screed " SCREED_VERSION " " SCREED_BOARD) - 1 + 4 * 3 + 5 + 1;
+static_assert(kOutSize <= kUsbSerialPut, "the name of this board is too long");
 constexpr uint8_t kBytesPerStep = 16;
 constexpr uint8_t kMirrored = kRadioOutCapacity / 2;  // the next tick has no lines
 

@@ -18,8 +18,10 @@ void usb_serial_step();
 /// Takes one received byte; false when there is none.
 bool usb_serial_get(uint8_t& byte);
 
-/// Sends all bytes (at most 48), or none when the host has left no room. true as well when no
-/// program on the host has opened the line: then they are dropped.
+constexpr uint8_t kUsbSerialPut = 63;  // Arduino's core keeps a byte of its 64 free
+
+/// Sends all bytes (at most kUsbSerialPut), or none when the host has left no room. true as well
+/// when no program on the host has opened the line: then they are dropped.
 bool usb_serial_put(const uint8_t* bytes, uint8_t count);
 
 }  // namespace avr
