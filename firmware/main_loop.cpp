@@ -7,6 +7,9 @@
 #include <new>
 #endif
 
+#include "firmware/robot/robot.h"
+#include "hal/hal.h"
+
 /// On the AVR the robot has a fixed address: what lies further than 63 bytes into a stack frame
 /// costs 20 bytes of code to reach, every time. It is made where it lies, since this function runs
 /// once: of a static object the compiler would have to remember whether it is there. A host runs
@@ -25,6 +28,12 @@ inline void* operator new(size_t /*size*/, void* place) noexcept {
 #endif
 
 namespace screed {
+
+void tick_firmware(Robot& robot, SensorSample& sample, RobotOutput& output) {
+  hal::read_sensors(sample);
+  robot.tick(sample, output);
+  hal::write_outputs(output);
+}
 
 void main_loop() {
   hal::init();
