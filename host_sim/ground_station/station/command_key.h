@@ -1,11 +1,8 @@
-// The key that commands are signed with, as a ground station holds it: text, and a file.
-//
-// A key file is one line of text: 32 hexadecimal digits of the key, a blank, and the robot's id.
+// The key that commands are signed with, as a ground station holds it; key_file.h keeps it.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "firmware/security/key_store.h"
@@ -26,13 +23,6 @@ CommandKey test_key();
 /// "000102...0F 1" and back. Throws InputError that names `where` and what is allowed.
 std::string key_text(const CommandKey& key);
 CommandKey parse_key(const std::string& text, const std::string& where);
-
-/// Throws InputError when the file cannot be read, or others may read it (its mode must be 0600 or
-/// 0400).
-CommandKey read_key_file(const std::filesystem::path& file);
-/// Creates the file with mode 0600, never over one that is there: a key that is lost locks its
-/// robot until somebody comes with a USB cable. Throws InputError.
-void write_key_file(const std::filesystem::path& file, const CommandKey& key);
 
 /// The first start in which a robot can have a key: it was set in the one before.
 constexpr uint16_t kFirstBootEpoch = 2;

@@ -5,7 +5,7 @@
 
 #include "firmware/protocol/e2e.h"
 #include "hal/sample.h"
-#include "host_sim/ground_station/telemetry/candump_log.h"
+#include "host_sim/ground_station/telemetry/candump_line.h"
 
 namespace screed {
 namespace {

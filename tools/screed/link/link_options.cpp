@@ -7,6 +7,7 @@
 #include "host_sim/ground_station/link/can_link.h"
 #include "host_sim/ground_station/link/serial_link.h"
 #include "host_sim/ground_station/link/shared_link.h"
+#include "host_sim/ground_station/station/key_file.h"
 #include "tools/screed/link/remembered_link.h"
 
 namespace screed {

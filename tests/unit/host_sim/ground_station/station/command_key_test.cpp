@@ -1,5 +1,5 @@
 // Keys as text and files.
-#include "host_sim/ground_station/station/command_key.h"
+#include "host_sim/ground_station/station/key_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

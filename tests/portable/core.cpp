@@ -1,54 +1,26 @@
-// Worlds of soil, of particles and of the stand-in, made of nothing but this project's sources,
-// Eigen and a C++ compiler: no ODE, no files, no model of a robot but the one below. Prints what
-// each has come to as a hash of its bits, the same on every processor (run.sh compares).
+// The portable core: the stand-in, soil, and robots with their firmware in the stand-in's world.
 #include <array>
-#include <bit>
-#include <cinttypes>
-#include <cstdint>
-#include <cstdio>
+#include <memory>
 #include <numbers>
 
+#include "boards/a_star_32u4/board.h"
 #include "hal/sample.h"
 #include "host_sim/core/elementary.h"
 #include "host_sim/core/rotation.h"
-#include "host_sim/physics/particles/particle_bed.h"
+#include "host_sim/leveling/transport.h"
 #include "host_sim/physics/soil/soil_bed.h"
+#include "host_sim/run/world/robot_number.h"
+#include "host_sim/run/world/world.h"
 #include "host_sim/standin/standin_plant.h"
+#include "tests/portable/portable.h"
 
 namespace screed {
 namespace {
-
-/// Of bits, by FNV-1a: the hash of sessions (core/content_hash.h) needs a library.
-class Hash {
- public:
-  void add(uint64_t bits) { value_ = (value_ ^ bits) * 0x100000001B3U; }
-  void add(double number) { add(std::bit_cast<uint64_t>(number)); }
-  void add(const Eigen::Vector3d& vector) {
-    for (const double number : vector) add(number);
-  }
-  void add(const HeightField& field) {
-    for (int iy = 0; iy < field.ny(); ++iy) {
-      for (int ix = 0; ix < field.nx(); ++ix) add(static_cast<uint64_t>(field.node(ix, iy)));
-    }
-  }
-  void print(const char* name) const { std::printf("%016" PRIx64 "  %s\n", value_, name); }
-
- private:
-  uint64_t value_ = 0xCBF29CE484222325U;
-};
 
 SoilParameters gravel() {
   SoilParameters soil = soil_preset("gravel");
   soil.drag_depth_m = 0.0029;
   return soil;
-}
-
-/// Hills of 40 mm.
-HeightField hills(int nodes, double cell_m) {
-  const double k = 4.0 * std::numbers::pi / (nodes * cell_m);
-  return HeightField::from_function(nodes, nodes, cell_m, true, [k](double x, double y) {
-    return 0.02 * portable::sin(k * x) * portable::cos(k * y);
-  });
 }
 
 /// Some 1.2 kg on two tracks of the size of a Rover 5's.
@@ -142,28 +114,36 @@ void drive_on_soil() {
   hash.print("a wheel on soil, 4 s");
 }
 
-/// Spheres fall into place, and a box is pushed through them.
-void push_particles() {
-  ParticleOptions options;
-  ParticleBed bed(hills(24, 0.025), options);
-  Footprint box = Footprint::box({0.1, 0.1, 0.1});
+/// Two robots with their firmware, sensors and radio level a bed of the stand-in's soil.
+void run_firmware() {
+  WorldOptions options;
+  options.soil = gravel();
+  options.starts = {{-0.4, 0.0, {}, {}}, {0.4, 0.1, {}, {0.0, 0.0, 3.0}}};
+  options.robots.resize(2);
+  for (RobotOptions& robot : options.robots) {
+    robot.settings.board = kBoard;
+    robot.settings.parameters.algorithm() = static_cast<int16_t>(LevelingAlgorithm::kHillSensing);
+  }
+  options.robots[1].ground_key = key_of_robot(test_key(), 1);
+  options.robots[1].settings.credentials = credentials_of(options.robots[1].ground_key);
+  HeightField ground = HeightField::from_function(
+      61, 61, 0.03, false, [](double x, double y) { return 0.05 * x * y + 0.02 * x * x; });
+  ground.add_walls();
+  World world(std::make_unique<StandInPlant>(ground, tracked_robot(), options), options);
   Hash hash;
-  const double dt = bed.longest_step_s();
-  for (int step = 0; step < 300; ++step) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() << 0.3 * step * dt, 0.0, 0.05;
-    box.set_pose(pose);
-    FootprintMotion motion;
-    motion.velocity = {0.3, 0.0, 0.0};
-    hash.add(bed.press(box, motion, dt).force);
-    bed.step(dt);
+  bool ran = false;
+  for (int tick = 0; tick < 40 * kTickRate_hz; ++tick) {
+    world.advance();
+    for (size_t i = 0; i < world.robots(); ++i) {
+      hash.add(static_cast<uint64_t>(static_cast<uint16_t>(world.output(i).duty_left)));
+      for (uint8_t byte = 0; byte < world.output(i).radio_out_count; ++byte)
+        hash.add(uint64_t{world.output(i).radio_out[byte]});
+      ran = ran || world.firmware(i).supervisor().running();
+    }
   }
-  for (size_t i = 0; i < bed.size(); ++i) {
-    hash.add(bed.position(i));
-    hash.add(bed.angular_velocity(i));
-  }
-  hash.add(bed.surface());
-  hash.print("spheres");
+  hash.add(world.terrain());
+  hash.add(least_transport(ground_blocks(world.terrain())));
+  hash.print(ran ? "two robots with their firmware, 40 s" : "the firmware never ran");
 }
 
 }  // namespace
@@ -172,5 +152,5 @@ void push_particles() {
 int main() {
   screed::drive_standin();
   screed::drive_on_soil();
-  screed::push_particles();
+  screed::run_firmware();
 }
