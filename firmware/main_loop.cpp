@@ -13,7 +13,7 @@
 /// On the AVR the robot has a fixed address: what lies further than 63 bytes into a stack frame
 /// costs 20 bytes of code to reach, every time. It is made where it lies, since this function runs
 /// once: of a static object the compiler would have to remember whether it is there. A host runs
-/// several robots, each on the stack of its thread.
+/// several robots, and keeps them itself.
 #ifdef __AVR__
 #define SCREED_RESIDENT static
 #else

@@ -1,7 +1,7 @@
 // The hardware abstraction layer: the only seam between the firmware and a target.
 //
 // Free functions, one header for every target, resolved at link time: hal/avr drives the
-// ATmega32U4, hal/host forwards to the current robot of a simulated world. Only the main loop calls
+// ATmega32U4, hal/host forwards to the current robot of a simulated world. Only main_loop.cpp calls
 // them; the core (firmware/robot) never does.
 #pragma once
 
@@ -33,10 +33,9 @@ const Credentials& credentials();
 /// them, so the robot must not be armed with them.
 bool parameters_intact();
 
-/// Waits for the next control tick. On the robot this sleeps until the timer fires; in a simulation
-/// it advances the world by one tick, so that time belongs to the world and no wall clock decides a
-/// result. Returns false when there is no next tick (a simulation has ended); never false on the
-/// robot.
+/// Waits for the next control tick: sleeps until the timer fires. Returns false when there is no
+/// next tick, never on the robot. A simulated world asks nobody to wait: time is its own, and it
+/// calls tick_firmware() (firmware/main_loop.h) when a tick is due.
 bool wait_for_tick();
 
 /// Takes the newest measurements of every device. Never blocks: a device that did not answer keeps

@@ -1,8 +1,9 @@
 // The host's side of the hardware abstraction layer: the free functions of hal.h forward to the
 // current target of the thread.
 //
-// A target is whatever stands in for the hardware: a world of physics, a replayed log, the real
-// image under an MCU simulator. Virtual functions are fine here: the host has the memory for them.
+// A target is whatever stands in for a robot's hardware: a robot of a simulated world, or a test.
+// (The flash image under the MCU simulator has the real HAL.) Virtual functions are fine here: the
+// host has the memory for them.
 #pragma once
 
 #include "firmware/parameters/board_constants.h"

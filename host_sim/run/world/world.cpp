@@ -1,8 +1,10 @@
 #include "host_sim/run/world/world.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
+#include "host_sim/core/errors.h"
 #include "host_sim/run/world/image_robot.h"
 #include "host_sim/run/world/native_robot.h"
 
@@ -10,6 +12,10 @@ namespace screed {
 
 World::World(std::unique_ptr<Environment> plant, const WorldOptions& options)
     : plant_(std::move(plant)), duty_ratios_(plant_->robots()) {
+  if (options.robots.size() != plant_->robots()) {
+    throw InputError("a world of " + std::to_string(plant_->robots()) + " robots with options of " +
+                     std::to_string(options.robots.size()) + "; as many are needed");
+  }
   for (size_t i = 0; i < plant_->robots(); ++i) {
     robots_.push_back(options.robots[i].image.has_value()
                           ? make_image_robot(options, *plant_, i)

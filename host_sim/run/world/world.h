@@ -22,7 +22,8 @@ namespace screed {
 class World {
  public:
   /// The robots of this plant, which nobody has stepped yet; of the options those count that are
-  /// not the plant's. Throws InputError for an image that cannot be run.
+  /// not the plant's. Throws InputError for an image that cannot be run, and for options of another
+  /// number of robots.
   World(std::unique_ptr<Environment> plant, const WorldOptions& options);
 
   /// Advances all until each robot has answered. Native ones do at the end of each control tick of

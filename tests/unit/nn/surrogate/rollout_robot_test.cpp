@@ -1,6 +1,5 @@
 // Firmware and sensors of a rollout: those of the recorded robot, tick by tick and bit by bit.
 #include "nn/surrogate/rollout_robot.h"
-#include "tests/step_one.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 
 #include "host_sim/run/experiment/robot_model.h"
 #include "host_sim/run/world/world_setup.h"
+#include "tests/step_one.h"
 #include "tests/unit/host_sim/run/rover5_plant.h"
 #include "tests/unit/nn/surrogate/surrogate_session.h"
 

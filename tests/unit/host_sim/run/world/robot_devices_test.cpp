@@ -1,14 +1,17 @@
 // Radio, encoders and scripted events round a robot.
 #include "host_sim/run/world/robot_devices.h"
-#include "tests/step_one.h"
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <numbers>
 #include <sstream>
 
 #include "firmware/protocol/e2e.h"
 #include "hal/sample.h"
+#include "host_sim/core/errors.h"
+#include "host_sim/run/world/world.h"
+#include "tests/step_one.h"
 #include "tests/unit/host_sim/run/rover5_plant.h"
 
 namespace screed {
@@ -102,6 +105,14 @@ TEST(RobotDevices, AnEncoderCountsTurnsOfItsShaft) {
   }
   EXPECT_GT(devices.encoder_position(plant.robot(0), kLeft), 0.0);
   EXPECT_LT(devices.encoder_position(plant.robot(0), kRight), 0.0);
+}
+
+TEST(World, HasOptionsForEachOfItsRobots) {
+  WorldOptions options;
+  options.robots.resize(2);
+  EXPECT_THROW(
+      World(std::make_unique<Plant>(HeightField::flat(2.0, 0.1), rover5(), options), options),
+      InputError);
 }
 
 }  // namespace
